@@ -1,0 +1,23 @@
+# Language, warnings and sanitizers of every target.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
+
+# No contraction into fused operations: results must not depend on the machine they were compiled for.
+add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+if(CORDON_WARNINGS_AS_ERRORS)
+  add_compile_options(-Werror)
+endif()
+if(CORDON_SANITIZE)
+  add_compile_options(-fsanitize=${CORDON_SANITIZE} -fno-omit-frame-pointer -O1)
+  add_link_options(-fsanitize=${CORDON_SANITIZE})
+endif()
+
+find_program(CORDON_CCACHE ccache)
+if(CORDON_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CORDON_CCACHE}")
+endif()

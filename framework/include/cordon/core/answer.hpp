@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Claims and answers: what a result promises, and what is proven about it.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+
+#include "cordon/core/types.hpp"
+
+namespace cordon {
+
+/// Answer to a question about sets. `yes` and `no` are given on a proof only; everything else is `unknown`:
+/// a solver that failed, a value within its tolerance, an outer approximation that cannot tell.
+enum class Answer { no, yes, unknown };
+
+/// Claim that travels with a set: equal to the mathematical result, or enclosing it.
+enum class Tightness { exact, outer };
+
+/// What "encloses" means in floating point.
+enum class Rounding {
+  nominal,  ///< up to rounding errors of ordinary double arithmetic
+  outward,  ///< for the floating-point numbers themselves, rounding errors included
+  rational  ///< exact arithmetic
+};
+
+/// The weaker of two claims.
+inline Tightness meet(Tightness a, Tightness b) { return std::max(a, b); }
+inline Answer negate(Answer a) { return a == Answer::yes ? Answer::no : a == Answer::no ? Answer::yes : a; }
+
+std::string_view to_string(Answer answer) noexcept;
+std::string_view to_string(Tightness tightness) noexcept;
+std::string_view to_string(Rounding rounding) noexcept;
+
+/// Proof of an answer, in a form that can be checked again without a solver.
+///   farkas  y with bᵀy > ‖Aᵀy‖₁: the boxed program {ξ : Aξ = b, ‖ξ‖∞ ≤ 1} has no solution; margin = bᵀy - ‖Aᵀy‖₁
+///   point   ξ near a solution of the boxed program whose residual was repaired rigorously; margin = slack left
+///   dual    y of the bound max gᵀξ ≤ bᵀy + ‖g - Aᵀy‖₁; margin = the bound
+///   direction  d with h_X(d) > h_Y(d): X is not a subset of Y; margin = the difference
+///   structure  follows from the representation alone (no constraints, no lines)
+struct Certificate {
+  enum class Kind { none, farkas, point, dual, direction, structure };
+  Kind kind = Kind::none;
+  Vector data;
+  double margin = 0;
+};
+
+std::string_view to_string(Certificate::Kind kind) noexcept;
+
+}  // namespace cordon

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Dense decompositions behind plain functions. No other file includes Eigen's decomposition headers: each costs seconds of
+// compile time in every file that sees it.
+#pragma once
+
+#include <complex>
+#include <optional>
+
+#include "cordon/core/types.hpp"
+
+namespace cordon::linalg {
+
+struct Svd {
+  Matrix U;       ///< m×m orthogonal
+  Vector sigma;   ///< min(m,n) singular values, decreasing
+  Matrix V;       ///< n×n orthogonal; A = U diag(σ) Vᵀ
+};
+
+/// Full singular value decomposition. Empty matrices give identities.
+Svd svd(MatrixIn A);
+
+/// Number of singular values above `relative_tolerance` · σ₁ (0 for a zero matrix).
+Index rank(MatrixIn A, double relative_tolerance = 1e-10);
+
+/// Moore-Penrose inverse; singular values up to `relative_tolerance` · σ₁ count as zero.
+Matrix pseudo_inverse(MatrixIn A, double relative_tolerance = 1e-12);
+
+/// Orthonormal basis of the range of A (n×r), by column-pivoted QR with a relative tolerance on R's diagonal.
+Matrix range_basis(MatrixIn A, double relative_tolerance = 1e-10);
+
+/// Orthonormal basis of the null space of A (n×(n-r)), by singular values.
+Matrix null_space(MatrixIn A, double relative_tolerance = 1e-10);
+
+/// X with A X = B for square A (partial-pivoted LU), or nothing when A is numerically singular (reciprocal condition < 1e-14).
+std::optional<Matrix> solve(MatrixIn A, MatrixIn B);
+
+/// X with A X = B for symmetric positive definite A (Cholesky), or nothing when a pivot is not positive.
+std::optional<Matrix> solve_spd(MatrixIn A, MatrixIn B);
+
+/// L with L Lᵀ = A (lower Cholesky factor), or nothing when a pivot is not positive.
+std::optional<Matrix> cholesky(MatrixIn A);
+
+/// Eigenvectors (columns) of a symmetric matrix by increasing eigenvalue.
+struct SymmetricEigen {
+  Vector values;
+  Matrix vectors;
+};
+SymmetricEigen symmetric_eigen(MatrixIn A);
+
+/// Eigenvalues of a square matrix.
+Eigen::VectorXcd eigenvalues(MatrixIn A);
+
+double determinant(MatrixIn A);
+
+/// A B through one compiled kernel (Eigen's product templates are expensive to compile in every file).
+Matrix product(MatrixIn A, MatrixIn B);
+
+/// [A 0; 0 B].
+Matrix block_diagonal(MatrixIn A, MatrixIn B);
+
+}  // namespace cordon::linalg

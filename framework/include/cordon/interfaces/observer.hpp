@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "cordon/interfaces/backend.hpp"
+#include "cordon/interfaces/model.hpp"
+
+namespace cordon {
+
+/// A set that contains every state consistent with model, bounds and data up to time k.
+struct Estimate {
+  Index k = 0;                             ///< may lag behind the sample
+  Enclosure set;
+  Answer consistent = Answer::unknown;     ///< `no`: the set is proven empty, so the data contradict model or bounds
+};
+
+/// Wall-clock time of the last step by phase, in microseconds; `question` is the emptiness test.
+struct PhaseTimes {
+  double predict = 0, correct = 0, reduce = 0, question = 0;
+  double step() const { return predict + correct + reduce; }
+};
+
+/// A set-based observer. The base class keeps the previous sample, asks for emptiness after each step, and holds on to ∅: once the data
+/// are proven inconsistent every later estimate is ∅, until `replace`.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  Observer(const Observer&) = delete;
+  Observer& operator=(const Observer&) = delete;
+
+  /// Begins anew; X0 overrides the model's initial set.
+  void start(std::optional<Enclosure> X0 = {});
+  /// Takes the sample of the next time; samples come in order. Sizes are checked.
+  Estimate step(const Sample& now);
+  /// Replaces the current set and keeps the time.
+  void replace(Enclosure X);
+
+  const PhaseTimes& times() const { return times_; }
+
+  /// A set that the observer assumes to contain the true state at all times (beyond the model's bounds), or none. Guarantees hold while it does.
+  virtual const Set* admissible_set() const { return nullptr; }
+
+ protected:
+  Observer(Model model, std::shared_ptr<const SetBackend> backend) : model_(std::move(model)), backend_(std::move(backend)) {}
+
+  const Model& model() const { return model_; }
+  const SetBackend& backend() const { return *backend_; }
+
+  enum class Phase { predict, correct, reduce };
+  /// Runs `work` and books its time to the phase.
+  template <class Work>
+  auto timed(Phase phase, Work&& work) {
+    const Stopwatch watch(phase == Phase::predict ? times_.predict : phase == Phase::correct ? times_.correct : times_.reduce);
+    return work();
+  }
+
+ private:
+  /// The estimate at the first sample; X0 is of the observer's backend.
+  virtual Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) = 0;
+  virtual Enclosure do_step(const Sample& before, const Sample& now) = 0;
+  virtual void do_replace(const Enclosure& X) = 0;
+
+  class Stopwatch {
+   public:
+    explicit Stopwatch(double& total);
+    ~Stopwatch();
+
+   private:
+    double& total_;
+    long long begin_;
+  };
+
+  Model model_;
+  std::shared_ptr<const SetBackend> backend_;
+  std::optional<Enclosure> X0_;
+  std::optional<Sample> before_;
+  bool inconsistent_ = false;
+  PhaseTimes times_;
+};
+
+}  // namespace cordon

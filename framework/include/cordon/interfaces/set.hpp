@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The abstract set. A plugin author derives from Set and SetBackend (backend.hpp); a caller sees the public functions only.
+#pragma once
+
+#include <memory>
+
+#include "cordon/core/answer.hpp"
+#include "cordon/core/box.hpp"
+#include "cordon/core/line_form.hpp"
+
+namespace cordon {
+
+class Set;
+class SetBackend;
+
+/// Sets are immutable and shared: no operation changes an operand, a copy is a reference count, threads need no locks.
+using SetPtr = std::shared_ptr<const Set>;
+
+/// A set and its producer's claim; they travel together. An operation's result claims at most the weakest claim of its inputs.
+struct Enclosure {
+  SetPtr set;
+  Tightness tightness = Tightness::exact;
+
+  const Set& operator*() const { return *set; }
+  const Set* operator->() const { return set.get(); }
+};
+
+/// Size of a representation.
+struct Complexity {
+  Index generators = 0, lines = 0, constraints = 0;
+};
+
+/// Volume of a set: exact, or that of its interval hull (an upper bound).
+struct Volume {
+  double value = 0;  ///< +inf for an unbounded set with interior, 0 for ∅ and for flat sets
+  bool exact = false;
+};
+
+/// A closed convex subset of Rⁿ in some representation.
+///
+/// Public functions check dimensions and finiteness (Errc::dimension, Errc::not_finite), settle n = 0 and what follows from the answer
+/// "empty", and then call the private `do_…` function, whose preconditions are thereby met. Every `do_…` function but
+/// the first two has a default through the exchange form.
+class Set {
+ public:
+  virtual ~Set() = default;
+  Set(const Set&) = delete;
+  Set& operator=(const Set&) = delete;
+
+  Index dim() const { return dim_; }
+  const SetBackend& backend() const { return *backend_; }
+  Complexity complexity() const { return do_complexity(); }
+
+  /// The set in the common form: equal to it if the backend's `exact_exchange` holds, else enclosing it.
+  LineForm line_form() const;
+
+  /// Three-valued questions. Through an outer exchange form only `is_empty: yes`, `contains: no`, `is_disjoint_from: yes`,
+  /// `is_bounded: yes` and, for an exact right-hand side, `is_subset_of: yes` are given. `why` receives the proof.
+  Answer is_empty(Certificate* why = nullptr) const;
+  Answer contains(VectorIn x, Certificate* why = nullptr) const;
+  Answer is_subset_of(const Set& other, Certificate* why = nullptr) const;
+  Answer is_disjoint_from(const Set& other, Certificate* why = nullptr) const;
+  Answer is_bounded() const;
+
+  /// Upper bound of h_X(d) = sup{dᵀx : x ∈ X}; +inf when unbounded or unsolved, -inf when proven empty.
+  double support(VectorIn d, Certificate* why = nullptr) const;
+
+  /// Smallest box around the set as far as proven: contains X in any case. An empty box only if X is proven empty.
+  Box interval_hull() const;
+
+  /// Exact where the representation offers it (see the backend), else the volume of the interval hull.
+  Volume volume() const;
+
+ protected:
+  Set(const SetBackend& backend, Index dim) : backend_(&backend), dim_(dim) {}
+
+ private:
+  virtual Complexity do_complexity() const = 0;
+  virtual LineForm do_line_form() const = 0;
+  // Defaults: the certified questions of solvers/set_questions.hpp on the exchange form.
+  virtual Answer do_is_empty(Certificate* why) const;
+  virtual Answer do_contains(VectorIn x, Certificate* why) const;
+  virtual Answer do_is_bounded() const;
+  virtual double do_support(VectorIn d, Certificate* why) const;
+  virtual Box do_interval_hull() const;
+  /// Exact volume of a bounded set, or a negative number: "not offered".
+  virtual double do_exact_volume() const { return -1; }
+
+  bool exact_exchange() const;
+
+  const SetBackend* backend_;
+  Index dim_;
+};
+
+}  // namespace cordon

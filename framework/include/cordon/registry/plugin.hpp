@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a plugin is: a shared library with one exported descriptor. A plugin author includes this file.
+//
+//   void register_components(cordon::Registrar& registrar) { registrar.backend({...}); }
+//   CORDON_PLUGIN("my_box", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "axis-aligned boxes", register_components)
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cordon/interfaces/backend.hpp"
+#include "cordon/interfaces/metric.hpp"
+#include "cordon/interfaces/observer.hpp"
+#include "cordon/registry/abi.hpp"
+#include "cordon/registry/schema.hpp"
+
+namespace cordon {
+
+/// What every component tells about itself.
+struct ComponentInfo {
+  std::string name;      ///< snake_case, unique among components of its kind
+  std::string summary;   ///< one sentence
+  std::string citation;  ///< bibliography key, may be empty
+  ParamSchema schema;
+};
+
+/// What an observer is made for. `check` functions see the same, so that impossible combinations are reported with all other errors.
+struct ObserverContext {
+  const Model& model;
+  std::shared_ptr<const SetBackend> backend;
+};
+
+struct BackendEntry {
+  ComponentInfo info;
+  std::function<std::unique_ptr<SetBackend>(const Params&)> create;
+};
+struct ObserverEntry {
+  ComponentInfo info;
+  /// Problems of this combination of model, backend and parameters (pointers relative to the observer's object, "/name"); empty: `create` will succeed.
+  std::function<std::vector<Diagnostic>(const ObserverContext&, const Params&)> check;
+  std::function<std::unique_ptr<Observer>(const ObserverContext&, const Params&)> create;
+};
+struct MetricEntry {
+  ComponentInfo info;
+  std::function<std::unique_ptr<Metric>(const Params&)> create;
+};
+
+/// Handed to a plugin's register function; what was added is rolled back if that function throws.
+class Registrar {
+ public:
+  virtual ~Registrar() = default;
+  virtual void backend(BackendEntry entry) = 0;
+  virtual void observer(ObserverEntry entry) = 0;
+  virtual void metric(MetricEntry entry) = 0;
+};
+
+/// Plain data, read before any code of the plugin runs. Layout changes only with `abi_version`.
+struct PluginDescriptor {
+  std::uint32_t size;         ///< sizeof(PluginDescriptor)
+  std::uint32_t abi_version;  ///< CORDON_ABI_VERSION
+  const char* abi_tag;        ///< CORDON_ABI_TAG: everything that changes layout or allocator
+  const char* name;           ///< unique among plugins
+  const char* version;
+  const char* license;
+  const char* author;
+  const char* summary;
+  void (*register_components)(Registrar&);
+};
+
+}  // namespace cordon
+
+/// Exports the descriptor under the one symbol that the host looks for.
+#define CORDON_PLUGIN(plugin_name, plugin_version, plugin_license, plugin_author, plugin_summary, register_function)             \
+  extern "C" __attribute__((visibility("default"), used)) const ::cordon::PluginDescriptor cordon_plugin_descriptor;             \
+  extern "C" const ::cordon::PluginDescriptor cordon_plugin_descriptor{                                                          \
+      sizeof(::cordon::PluginDescriptor), CORDON_ABI_VERSION, CORDON_ABI_TAG, plugin_name, plugin_version, plugin_license,       \
+      plugin_author, plugin_summary, register_function};

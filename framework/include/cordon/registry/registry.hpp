@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Loads plugins and makes components. An object, not a singleton; nothing registers itself.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cordon/registry/plugin.hpp"
+
+namespace cordon {
+
+/// One plugin library that was found, and what became of it.
+struct PluginReport {
+  enum class State { loaded, shadowed, refused };
+  std::filesystem::path file;
+  State state = State::refused;
+  std::string name, version, license, author, summary;  ///< known for loaded ones; `name` falls back to the file's stem
+  std::string abi_tag;
+  std::string reason;  ///< refused: why; shadowed: by which file
+  std::string fix;     ///< refused: what to do
+  std::vector<std::string> components;  ///< "backend zonotope", "observer descriptor", …
+};
+
+/// Where the registry looks, in this order; the first plugin of a name wins. Never the working directory implicitly.
+struct SearchPath {
+  std::vector<std::filesystem::path> directories;
+};
+/// `extra` (from a study, already absolute), CORDON_PLUGIN_PATH (colon-separated), `<exe>/../lib/cordon/plugins-v1`, the installed directory.
+SearchPath default_search_path(std::span<const std::filesystem::path> extra = {});
+
+class Registry {
+ public:
+  Registry();
+  ~Registry();
+  Registry(const Registry&) = delete;
+  Registry& operator=(const Registry&) = delete;
+
+  /// Loads every `*.so` of the directories (in order; names sorted). Refusals are recorded, never thrown.
+  void load(const SearchPath& path);
+  /// Loads one library. The same checks; the report tells the outcome.
+  const PluginReport& load_file(const std::filesystem::path& file);
+  /// Closes a plugin's library. Throws Errc::plugin, naming the number, while objects of it live.
+  void unload(std::string_view plugin);
+
+  const std::vector<PluginReport>& reports() const;
+
+  std::vector<std::string> backends() const;   ///< names, sorted
+  std::vector<std::string> observers() const;
+  std::vector<std::string> metrics() const;
+  const ComponentInfo* backend_info(std::string_view name) const;   ///< null if there is none
+  const ComponentInfo* observer_info(std::string_view name) const;
+  const ComponentInfo* metric_info(std::string_view name) const;
+  /// The plugin that a component came from; "" if registered directly.
+  std::string plugin_of(std::string_view kind, std::string_view name) const;
+  /// If a refused plugin probably held the component (its file is named after it), that report.
+  const PluginReport* refused_provider(std::string_view component) const;
+
+  /// Makes components from validated parameters; every object pins its library. Exceptions of a plugin arrive as Errc::plugin
+  /// with the plugin's name, cordon::Error unchanged.
+  std::shared_ptr<const SetBackend> make_backend(std::string_view name, const Params& params) const;
+  std::vector<Diagnostic> check_observer(std::string_view name, const ObserverContext& context, const Params& params) const;
+  std::shared_ptr<Observer> make_observer(std::string_view name, const ObserverContext& context, const Params& params) const;
+  std::shared_ptr<Metric> make_metric(std::string_view name, const Params& params) const;
+
+  /// Registers components of the host itself (tests, programs that embed the framework): not from a library.
+  void add(void (*register_components)(Registrar&));
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cordon

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Typed parameters of components. One schema drives validation, defaults, `cordon info`, the tables of the manual and the JSON Schema for editors.
+// No JSON type appears here: parameters can be built from C++ as well.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "cordon/core/error.hpp"
+#include "cordon/core/line_form.hpp"
+
+namespace cordon {
+
+/// Values by name. Asking for a name that is absent, or for another type, throws Errc::invalid: validated parameters hold every name
+/// of their schema that is required or has a default.
+class Params {
+ public:
+  using Value = std::variant<std::int64_t, double, bool, std::string, Vector, Matrix, LineForm>;
+
+  Params& set(std::string name, Value value);
+  bool has(std::string_view name) const;
+  const std::map<std::string, Value, std::less<>>& values() const { return values_; }
+
+  std::int64_t integer(std::string_view name) const;
+  double real(std::string_view name) const;
+  bool flag(std::string_view name) const;
+  const std::string& text(std::string_view name) const;  ///< also for choices
+  const Vector& vector(std::string_view name) const;
+  const Matrix& matrix(std::string_view name) const;
+  const LineForm& set_form(std::string_view name) const;
+
+ private:
+  std::map<std::string, Value, std::less<>> values_;
+};
+
+enum class ParamKind { integer, real, flag, choice, text, vector, matrix, set };
+std::string_view to_string(ParamKind kind) noexcept;
+
+/// One parameter of a component.
+struct ParamSpec {
+  std::string name;
+  ParamKind kind;
+  std::string doc;                      ///< one sentence, with unit and meaning of the limits
+  bool required = false;
+  std::optional<Params::Value> fallback;  ///< value when absent; none and not required: the parameter stays absent
+  double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
+  std::vector<std::string> choices;
+};
+
+/// The parameters a component takes, in the order of the manual.
+class ParamSchema {
+ public:
+  ParamSchema& integer(std::string name, std::string doc, std::optional<std::int64_t> fallback, std::int64_t lowest, std::int64_t highest);
+  ParamSchema& real(std::string name, std::string doc, std::optional<double> fallback, double lowest, double highest);
+  ParamSchema& flag(std::string name, std::string doc, bool fallback);
+  ParamSchema& choice(std::string name, std::string doc, std::vector<std::string> choices, std::string fallback);
+  ParamSchema& vector(std::string name, std::string doc);
+  ParamSchema& matrix(std::string name, std::string doc);
+  ParamSchema& set(std::string name, std::string doc);
+  ParamSchema& required();  ///< makes the last added parameter required
+
+  const std::vector<ParamSpec>& specs() const { return specs_; }
+  const ParamSpec* find(std::string_view name) const;
+  std::vector<std::string> names() const;
+
+  /// Fills in defaults and returns every problem (unknown name, wrong type, out of range, missing); pointers are "/name".
+  std::vector<Diagnostic> complete(Params& params) const;
+
+ private:
+  ParamSchema& add(ParamSpec spec);
+  std::vector<ParamSpec> specs_;
+};
+
+}  // namespace cordon

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one linear program of this field: few rows, variables in [-1,1].
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "cordon/core/answer.hpp"
+#include "cordon/core/types.hpp"
+
+namespace cordon {
+
+/// The polytope P = {ξ ∈ Rᵍ : Aξ = b, ‖ξ‖∞ ≤ 1} and certified questions about it.
+///
+/// A linear-programming solver proposes points and multipliers; what is answered follows from a check of the proposal with
+/// rounding errors bounded, so that a solver's failure can cost tightness (`unknown`, a larger bound) but never soundness.
+/// Degenerate cases: no rows: P is the unit box. g = 0: P is {0} if b = 0, else ∅.
+/// The object keeps A and b and factorises nothing; `maximum` warm-starts from the previous call of the same object, so
+/// one object serves the 2n directions of an interval hull. Not thread-safe: one object per thread.
+class BoxedProgram {
+ public:
+  BoxedProgram(Matrix A, Vector b);
+  ~BoxedProgram();
+  BoxedProgram(BoxedProgram&&) noexcept;
+  BoxedProgram& operator=(BoxedProgram&&) noexcept;
+
+  /// Result of `maximum`.
+  struct Bound {
+    double upper = 0;         ///< max gᵀξ ≤ upper, certified by `y`; -inf if P is proven empty (then y is a Farkas vector)
+    Vector y;                 ///< multipliers: upper = bᵀy + ‖g - Aᵀy‖₁, rounded up
+    std::optional<Vector> xi; ///< the solver's maximiser, not proven feasible
+    bool solved = false;      ///< the solver claims optimality (for information: nothing rests on it)
+  };
+  /// Certified upper bound of max{gᵀξ : ξ ∈ P}.
+  Bound maximum(VectorIn g);
+
+  /// Is P empty? `yes` by a Farkas vector y: bᵀy > ‖Aᵀy‖₁; `no` by a point whose residual is repaired rigorously.
+  Answer is_empty(Certificate* why = nullptr);
+
+  /// A point well inside P where there is one: ξ with the smallest ‖ξ‖∞ that satisfies the rows (up to rounding).
+  /// Nothing when the solver found none; nothing is proven by that.
+  std::optional<Vector> central_point();
+
+  /// h with gᵀξ ≥ h for some point ξ proven to lie in P near `xi`; -inf when no such proof succeeds.
+  double attained(VectorIn g, VectorIn xi);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Checks bᵀy > ‖Aᵀy‖₁ with rounding errors bounded; returns the certified margin (positive: P is empty).
+double farkas_margin(MatrixIn A, VectorIn b, VectorIn y);
+
+/// Proves that some ξ' near ξ satisfies Aξ' = b, ‖ξ'‖∞ ≤ 1. Returns an upper bound of ‖ξ' - ξ‖ entrywise, or nothing.
+/// The correction is sought in the span of D Aᵀ, D = diag(1 - |ξ|); (A D Aᵀ) is verified to be regular by an approximate
+/// inverse R with ‖I - R A D Aᵀ‖∞ < 1. Fails for dependent rows. O(m² g + m³).
+std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi);
+
+}  // namespace cordon

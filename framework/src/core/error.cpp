@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/core/error.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace cordon {
+
+namespace {
+
+std::string render(const std::string& file, const std::vector<Diagnostic>& diagnostics) {
+  std::string text = file + ": " + std::to_string(diagnostics.size()) + (diagnostics.size() == 1 ? " error" : " errors");
+  for (const Diagnostic& d : diagnostics) {
+    text += "\n  " + (d.pointer.empty() ? std::string("(document)") : d.pointer);
+    if (d.line > 0) text += " (line " + std::to_string(d.line) + ")";
+    text += ": " + d.message;
+    if (!d.suggestion.empty()) text += "; " + d.suggestion;
+  }
+  return text;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string_view to_string(Errc code) noexcept {
+  switch (code) {
+    case Errc::dimension: return "dimension";
+    case Errc::not_finite: return "not_finite";
+    case Errc::invalid: return "invalid";
+    case Errc::unsupported: return "unsupported";
+    case Errc::solver: return "solver";
+    case Errc::plugin: return "plugin";
+    case Errc::io: return "io";
+    case Errc::internal: return "internal";
+  }
+  return "internal";
+}
+
+InputError::InputError(std::string file, std::vector<Diagnostic> diagnostics)
+    : Error(Errc::invalid, render(file, diagnostics)), file_(std::move(file)), diagnostics_(std::move(diagnostics)) {}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  if (word.size() > 200) return "";  // hostile input: the distance is quadratic
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
+  if (const std::string near = nearest(word, candidates); !near.empty()) return "did you mean \"" + near + "\"?";
+  if (candidates.empty()) return "";
+  std::string text = candidates.size() == 1 ? "there is only" : "there are";
+  for (std::size_t i = 0; i < candidates.size(); ++i) text += (i == 0 ? " \"" : ", \"") + candidates[i] + "\"";
+  return text;
+}
+
+}  // namespace cordon

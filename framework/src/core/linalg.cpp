@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/core/linalg.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+#include "cordon/core/error.hpp"
+
+namespace cordon::linalg {
+
+namespace {
+
+Index count_above(const Vector& sigma, double relative_tolerance) {
+  if (sigma.size() == 0 || sigma[0] == 0) return 0;
+  return (sigma.array() > relative_tolerance * sigma[0]).count();
+}
+
+}  // namespace
+
+Svd svd(MatrixIn A) {
+  const Index m = A.rows(), n = A.cols();
+  if (m == 0 || n == 0) return {Matrix::Identity(m, m), Vector(0), Matrix::Identity(n, n)};
+  const Eigen::JacobiSVD<Matrix> decomposition(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return {decomposition.matrixU(), decomposition.singularValues(), decomposition.matrixV()};
+}
+
+Index rank(MatrixIn A, double relative_tolerance) { return count_above(svd(A).sigma, relative_tolerance); }
+
+Matrix pseudo_inverse(MatrixIn A, double relative_tolerance) {
+  const Svd d = svd(A);
+  const Index r = count_above(d.sigma, relative_tolerance);
+  Matrix inverse = Matrix::Zero(A.cols(), A.rows());
+  for (Index i = 0; i < r; ++i) inverse += d.V.col(i) * (d.U.col(i).transpose() / d.sigma[i]);
+  return inverse;
+}
+
+Matrix range_basis(MatrixIn A, double relative_tolerance) {
+  if (A.cols() == 0 || A.rows() == 0) return Matrix(A.rows(), 0);
+  Eigen::ColPivHouseholderQR<Matrix> qr(A);
+  qr.setThreshold(relative_tolerance);
+  const Index r = A.isZero(0) ? 0 : qr.rank();
+  Matrix Q = Matrix::Identity(A.rows(), r);
+  Q.applyOnTheLeft(qr.householderQ());
+  return Q;
+}
+
+Matrix null_space(MatrixIn A, double relative_tolerance) {
+  const Svd d = svd(A);
+  const Index r = count_above(d.sigma, relative_tolerance);
+  return d.V.rightCols(A.cols() - r);
+}
+
+std::optional<Matrix> solve(MatrixIn A, MatrixIn B) {
+  if (A.rows() == 0) return Matrix(0, B.cols());
+  const Eigen::PartialPivLU<Matrix> lu(A);
+  const double condition = lu.rcond();
+  if (!(condition >= 1e-14)) return std::nullopt;
+  return Matrix(lu.solve(B));
+}
+
+std::optional<Matrix> solve_spd(MatrixIn A, MatrixIn B) {
+  if (A.rows() == 0) return Matrix(0, B.cols());
+  const Eigen::LLT<Matrix> llt(A);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  Matrix X = llt.solve(B);
+  if (!X.allFinite()) return std::nullopt;
+  return X;
+}
+
+std::optional<Matrix> cholesky(MatrixIn A) {
+  if (A.rows() == 0) return Matrix(0, 0);
+  const Eigen::LLT<Matrix> llt(A);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  return Matrix(llt.matrixL());
+}
+
+SymmetricEigen symmetric_eigen(MatrixIn A) {
+  if (A.rows() == 0) return {Vector(0), Matrix(0, 0)};
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(A);
+  if (solver.info() != Eigen::Success) throw Error(Errc::solver, "eigenvalues of a symmetric matrix did not converge");
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+Eigen::VectorXcd eigenvalues(MatrixIn A) {
+  if (A.rows() == 0) return Eigen::VectorXcd(0);
+  const Eigen::EigenSolver<Matrix> solver(A, false);
+  if (solver.info() != Eigen::Success) throw Error(Errc::solver, "eigenvalues did not converge");
+  return solver.eigenvalues();
+}
+
+double determinant(MatrixIn A) { return A.rows() == 0 ? 1.0 : Matrix(A).determinant(); }
+
+Matrix product(MatrixIn A, MatrixIn B) {
+  Matrix C(A.rows(), B.cols());
+  if (A.cols() == 0) return C.setZero();
+  C.noalias() = A * B;
+  return C;
+}
+
+Matrix block_diagonal(MatrixIn A, MatrixIn B) {
+  Matrix C = Matrix::Zero(A.rows() + B.rows(), A.cols() + B.cols());
+  C.topLeftCorner(A.rows(), A.cols()) = A;
+  C.bottomRightCorner(B.rows(), B.cols()) = B;
+  return C;
+}
+
+}  // namespace cordon::linalg

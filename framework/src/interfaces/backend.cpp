@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/interfaces/backend.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/rounding.hpp"
+
+namespace cordon {
+
+namespace {
+
+void require(bool fits, const std::string& message) {
+  if (!fits) throw Error(Errc::dimension, message);
+}
+
+void require_map(MatrixIn T, Index rows, Index cols, const char* what) {
+  require(T.rows() == rows && T.cols() == cols, std::string(what) + ": the matrix is " + std::to_string(T.rows()) + " x " +
+                                                    std::to_string(T.cols()) + ", must be " + std::to_string(rows) + " x " +
+                                                    std::to_string(cols));
+  if (!T.allFinite()) throw Error(Errc::not_finite, std::string(what) + ": the matrix has a NaN or infinite entry");
+}
+
+void require_vector(VectorIn t, Index size, const char* what) {
+  require(t.size() == size, std::string(what) + ": the vector has size " + std::to_string(t.size()) + ", must be " + std::to_string(size));
+  if (!t.allFinite()) throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
+}
+
+const Set& require_set(const Enclosure& X, const char* what) {
+  if (!X.set) throw Error(Errc::invalid, std::string(what) + ": no set was given");
+  return *X.set;
+}
+
+}  // namespace
+
+/// Control blocks are made here, so that no code of a plugin runs after its library has gone: the deleter destroys the set, then lets go of the backend.
+Enclosure SetBackend::adopt(Made made, Tightness inputs) const {
+  if (!made.set) throw Error(Errc::plugin, "backend " + info_.name + " returned no set");
+  const Set* raw = made.set.release();
+  SetPtr set(raw, [keep = shared_from_this()](const Set* dying) { delete dying; });
+  return {std::move(set), meet(made.tightness, inputs)};
+}
+
+Enclosure SetBackend::import(const LineForm& X, Tightness claim) const {
+  check(X, "import into " + info_.name);
+  return adopt(do_import(X), claim);
+}
+
+Enclosure SetBackend::import(const Enclosure& X) const {
+  const Set& set = require_set(X, "import");
+  if (&set.backend() == this) return X;
+  const Tightness exchange = set.backend().info().exact_exchange ? Tightness::exact : Tightness::outer;
+  return import(set.line_form(), meet(X.tightness, exchange));
+}
+
+Enclosure SetBackend::box(const Box& box) const { return import(make_box(box)); }
+Enclosure SetBackend::point(VectorIn x) const { return import(make_point(x)); }
+Enclosure SetBackend::space(Index n) const { return import(make_space(n)); }
+Enclosure SetBackend::empty(Index n) const { return import(make_empty(n)); }
+
+Enclosure SetBackend::predict(const Enclosure& X, const Predict& p) const {
+  const Enclosure own = import(X);
+  require_map(p.A, p.A.rows(), own->dim(), "predict: A");
+  require_vector(p.f, p.A.rows(), "predict: f");
+  Tightness inputs = own.tightness;
+  std::vector<Enclosure> imported;
+  imported.reserve(p.terms.size());
+  std::vector<Term> terms;
+  terms.reserve(p.terms.size());
+  for (const Term& term : p.terms) {
+    imported.push_back(import(term.set));
+    require_map(term.T, p.A.rows(), imported.back()->dim(), "predict: T");
+    inputs = meet(inputs, imported.back().tightness);
+    terms.push_back({term.T, imported.back()});
+  }
+  return adopt(do_predict(*own.set, {p.A, p.f, terms}), inputs);
+}
+
+Enclosure SetBackend::correct(const Enclosure& X, const Correct& c) const {
+  const Enclosure own = import(X), noise = import(c.noise.set);
+  require_map(c.C, c.C.rows(), own->dim(), "correct: C");
+  require_vector(c.z, c.C.rows(), "correct: z");
+  require_map(c.noise.T, c.C.rows(), noise->dim(), "correct: T");
+  return adopt(do_correct(*own.set, {c.C, c.z, {c.noise.T, noise}}), meet(own.tightness, noise.tightness));
+}
+
+Enclosure SetBackend::reduce(const Enclosure& X, Budget budget) const {
+  if (budget.generators < 0 || budget.constraints < 0) throw Error(Errc::invalid, "reduce: a negative budget");
+  const Enclosure own = import(X);
+  Made made = do_reduce(*own.set, budget);
+  return made.set ? adopt(std::move(made), own.tightness) : own;
+}
+
+Enclosure SetBackend::affine_map(const Enclosure& X, MatrixIn T, VectorIn t) const { return predict(X, {T, t, {}}); }
+
+Enclosure SetBackend::interval_map(const Enclosure& X, const IntervalMatrix& A) const {
+  const Enclosure own = import(X);
+  require_map(A.center, A.center.rows(), own->dim(), "interval map: centre");
+  require_map(A.radius, A.center.rows(), own->dim(), "interval map: radius");
+  if (A.radius.size() && A.radius.minCoeff() < 0) throw Error(Errc::invalid, "interval map: a negative radius");
+  return adopt(do_interval_map(*own.set, A), own.tightness);
+}
+
+Enclosure SetBackend::sum(const Enclosure& X, const Enclosure& Y) const {
+  const Index n = require_set(X, "sum").dim();
+  require(require_set(Y, "sum").dim() == n, "sum: dimensions differ");
+  const Matrix I = Matrix::Identity(n, n);
+  const Term term{I, Y};
+  return predict(X, {I, Vector::Zero(n), {&term, 1}});
+}
+
+Enclosure SetBackend::product(const Enclosure& X, const Enclosure& Y) const {
+  const Index n = require_set(X, "product").dim(), m = require_set(Y, "product").dim();
+  Matrix left = Matrix::Zero(n + m, n), right = Matrix::Zero(n + m, m);
+  left.topRows(n).setIdentity();
+  right.bottomRows(m).setIdentity();
+  const Term term{right, Y};
+  return predict(X, {left, Vector::Zero(n + m), {&term, 1}});
+}
+
+Enclosure SetBackend::intersection(const Enclosure& X, MatrixIn R, const Enclosure& Y) const {
+  const Enclosure own = import(X), other = import(Y);
+  require_map(R, other->dim(), own->dim(), "intersection: R");
+  return adopt(do_intersection(*own.set, R, *other.set), meet(own.tightness, other.tightness));
+}
+
+Enclosure SetBackend::convex_hull(const Enclosure& X, const Enclosure& Y) const {
+  const Enclosure own = import(X), other = import(Y);
+  require(own->dim() == other->dim(), "convex hull: dimensions differ");
+  if (own->is_empty() == Answer::yes) return {other.set, meet(own.tightness, other.tightness)};
+  if (other->is_empty() == Answer::yes) return {own.set, meet(own.tightness, other.tightness)};
+  return adopt(do_convex_hull(*own.set, *other.set), meet(own.tightness, other.tightness));
+}
+
+SetBackend::Made SetBackend::do_predict(const Set& X, const Predict& p) const {
+  LineForm sum = cordon::affine_map(X.line_form(), p.A, p.f);
+  for (const Term& term : p.terms) {
+    sum = minkowski_sum(sum, cordon::affine_map(term.set->line_form(), term.T, Vector::Zero(p.A.rows())));
+  }
+  return do_import(sum);
+}
+
+SetBackend::Made SetBackend::do_correct(const Set& X, const Correct& c) const {
+  // z - C x ∈ T V  ⇔  C x ∈ z ⊕ (-T V)
+  const LineForm target = cordon::affine_map(c.noise.set->line_form(), -c.noise.T, c.z);
+  return do_import(cordon::intersection(X.line_form(), c.C, target));
+}
+
+SetBackend::Made SetBackend::do_interval_map(const Set& X, const IntervalMatrix& A) const {
+  // A x = mid(A) x + Δ x with |Δ x| ≤ rad(A) |x|, |x| bounded by the interval hull
+  const LineForm mapped = cordon::affine_map(X.line_form(), A.center, Vector::Zero(A.rows()));
+  if (A.is_exact()) return do_import(mapped);
+  const Box hull = X.interval_hull();
+  if (hull.is_empty()) return do_import(make_empty(A.rows()));
+  Box spread{Vector::Zero(A.rows()), Vector::Zero(A.rows())};
+  for (Index i = 0; i < A.rows(); ++i) {
+    double width = 0;
+    for (Index j = 0; j < A.cols(); ++j) {
+      if (A.radius(i, j) > 0) width += A.radius(i, j) * std::max(std::abs(hull.lower[j]), std::abs(hull.upper[j]));
+    }
+    spread.upper[i] = width == 0 ? 0 : rounding::up(width * (1 + rounding::gamma(2 * A.cols() + 2)));
+    spread.lower[i] = -spread.upper[i];
+  }
+  Made made = do_import(minkowski_sum(mapped, make_box(spread)));
+  made.tightness = Tightness::outer;
+  return made;
+}
+
+SetBackend::Made SetBackend::do_intersection(const Set& X, MatrixIn R, const Set& Y) const {
+  return do_import(cordon::intersection(X.line_form(), R, Y.line_form()));
+}
+
+SetBackend::Made SetBackend::do_convex_hull(const Set& X, const Set& Y) const {
+  const LineForm A = X.line_form(), B = Y.line_form();
+  Made made = do_import(cordon::convex_hull(A, B));
+  if (A.lines() > 0 || B.lines() > 0) made.tightness = Tightness::outer;
+  return made;
+}
+
+SetBackend::Made SetBackend::do_reduce(const Set&, Budget) const { return {}; }
+
+}  // namespace cordon
