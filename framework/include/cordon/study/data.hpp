@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The samples of a study, one after another: simulated or recorded. Nothing is kept, so that memory does not grow with the length of a run.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "cordon/study/study.hpp"
+
+namespace cordon {
+
+struct Record {
+  Sample sample;
+  std::optional<Vector> truth;
+};
+
+/// A stream of records. Two streams of one study give the same records bit by bit.
+class DataSource {
+ public:
+  virtual ~DataSource() = default;
+  virtual std::optional<Record> next() = 0;
+  /// Number of records, if known in advance (for progress).
+  virtual std::optional<std::int64_t> size() const = 0;
+};
+
+/// Opens the data of a study. Throws InputError (CSV problems with their lines; an inconsistent x0).
+std::unique_ptr<DataSource> open_data(const Study& study);
+
+}  // namespace cordon

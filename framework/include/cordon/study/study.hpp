@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A study: one system, its data, and pipelines that are compared on them. Read from a JSON file (docs/study_format.md).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "cordon/interfaces/model.hpp"
+#include "cordon/registry/registry.hpp"
+
+namespace cordon {
+
+/// A known input channel over time; time is k, angles are radians.
+struct Signal {
+  enum class Type {
+    constant,  ///< offset
+    sine,      ///< offset + amplitude sin(omega k + phase)
+    cosine,    ///< offset + amplitude cos(omega k + phase)
+    step,      ///< offset, from k = `from` on offset + amplitude
+    square,    ///< offset ± amplitude, period `period`, first half positive
+    prbs,      ///< offset ± amplitude, pseudo-random, held for `period` steps, from the seed
+    table      ///< values[k], the last value held
+  };
+  Type type = Type::constant;
+  double offset = 0, amplitude = 0, omega = 0, phase = 0;
+  std::int64_t from = 0, period = 1, seed = 0;
+  Vector values;
+};
+
+/// How the bounded disturbances are drawn: uniform in the generators' factors, at random vertices of the factor box, all zero (the centre),
+/// or as sines of different frequency per factor.
+enum class Noise { uniform, vertex, zero, sine };
+
+/// Simulated data: x_{k+1}, y_k from the model, seeded and identical on every machine.
+struct SimulateSpec {
+  std::int64_t steps = 0;  ///< samples k = 0 … steps
+  std::uint64_t seed = 1;
+  Noise noise = Noise::uniform;
+  std::optional<Vector> x0;  ///< default: the centre of X0. Descriptor systems: must meet the static rows for some w_0 ∈ W
+  std::vector<Signal> input;  ///< one per input channel
+};
+
+/// Recorded data: a CSV file with a header row and named columns.
+struct CsvSpec {
+  std::filesystem::path file;  ///< absolute, or relative to the study's folder (resolved when read)
+  std::vector<std::string> inputs, outputs, truth;  ///< column names; truth may be empty
+};
+
+struct ComponentSpec {
+  std::string type;
+  Params params;  ///< complete: every default filled in
+};
+
+struct PipelineSpec {
+  std::string name;
+  ComponentSpec backend, observer;
+};
+
+struct Study {
+  std::filesystem::path file;
+  std::string title;
+  Model model;
+  std::variant<SimulateSpec, CsvSpec> data;
+  std::vector<PipelineSpec> pipelines;
+  std::vector<ComponentSpec> metrics;
+  std::vector<std::string> warnings;  ///< e.g. a refused plugin that the study does not need
+  std::string resolved;               ///< the study as JSON with every default, for the results file
+};
+
+/// Reads, loads the plugins the study names, validates against the registry, and resolves. Throws InputError with every problem at once
+/// (pointer, line, reason, suggestion), or Errc::plugin if a component is missing because its plugin was refused. Writes nothing.
+Study read_study(const std::filesystem::path& file, Registry& registry);
+
+/// JSON Schema (2020-12) of study files, with the components that the registry knows. For editors.
+std::string study_json_schema(const Registry& registry);
+
+}  // namespace cordon
