@@ -24,7 +24,7 @@ std::vector<std::pair<std::string, std::string>> versions(const BuildInfo& build
   return versions;
 }
 
-bool exists(const fs::path& directory) {
+bool is_present(const fs::path& directory) {
   std::error_code error;
   return fs::is_directory(directory, error);
 }
@@ -33,7 +33,7 @@ std::string as_json(const BuildInfo& build, const SearchPath& path, const Regist
   Json json{{"versions", Json::object()}, {"abi_tag", build.abi_tag}, {"search_path", Json::array()}, {"plugins", Json::array()}};
   for (const auto& [name, version] : versions(build)) json["versions"][name] = version;
   for (const fs::path& directory : path.directories) {
-    json["search_path"].push_back({{"directory", directory.string()}, {"exists", exists(directory)}});
+    json["search_path"].push_back({{"directory", directory.string()}, {"exists", is_present(directory)}});
   }
   for (const PluginReport& r : registry.reports()) {
     Json entry{{"file", r.file.string()}, {"state", to_string(r.state)}, {"name", r.name}};
@@ -71,7 +71,7 @@ std::string as_text(const BuildInfo& build, const SearchPath& path, const Regist
   text += fmt::format("  {:<14}{}\n", "ABI tag", build.abi_tag);
   text += paint.bold("Search path") + "\n";
   for (const fs::path& directory : path.directories) {
-    text += fmt::format("  {}{}\n", directory.string(), exists(directory) ? "" : " (does not exist)");
+    text += fmt::format("  {}{}\n", directory.string(), is_present(directory) ? "" : " (does not exist)");
   }
   text += paint.bold("Plugins") + "\n";
   for (const PluginReport& report : registry.reports()) text += describe(report, paint);
