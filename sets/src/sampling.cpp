@@ -2,6 +2,7 @@
 #include "cordon/sets/sampling.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "cordon/core/error.hpp"
@@ -95,7 +96,7 @@ std::optional<Matrix> sample(const LineForm& X, Index count, std::uint64_t seed)
   }
   const LineForm Y = equilibrated(X);
   const std::optional<Vector> start = central_factors(Y);
-  if (!start || start->tail(X.generators()).cwiseAbs().maxCoeff() > 1 + 1e-9) return std::nullopt;
+  if (!start || (start->tail(X.generators()).array().abs() > 1 + 1e-9).any()) return std::nullopt;
   Matrix rows(X.constraints(), factors);
   rows << Y.S, Y.A;
   if ((linalg::product(rows, *start) - Y.b).lpNorm<Eigen::Infinity>() > 1e-9 * (1 + start->lpNorm<Eigen::Infinity>())) {

@@ -173,7 +173,8 @@ Zonotope merge_parallel_generators(const Zonotope& Z) {
     double sign = 1;
     for (; twin < count; ++twin) {
       sign = directions.col(twin).dot(unit) < 0 ? -1.0 : 1.0;
-      if ((unit - sign * directions.col(twin)).lpNorm<Eigen::Infinity>() <= tolerance) break;
+      const auto gap = (unit - sign * directions.col(twin)).cwiseAbs().array();
+      if ((gap <= tolerance * unit.cwiseAbs().array()).all()) break;
     }
     if (twin < count) {
       merged.col(twin) += sign * g;

@@ -37,6 +37,8 @@ TEST_CASE("redundant generators") {
   CHECK(drop_zero_generators({Vector::Zero(2), Matrix{{0, 1, 0}, {0, 0, 1e-300}}}).G == Matrix{{1, 0}, {0, 1e-300}});
   CHECK(merge_parallel_generators(Zonotope{Vector::Zero(2), Matrix{{1, 1}, {0, 1e-9}}}).generators() == 2);
   CHECK(merge_parallel_generators(Zonotope{Vector::Zero(2), Matrix(2, 0)}).generators() == 0);
+  CHECK(merge_parallel_generators(Zonotope{Vector::Zero(2), Matrix{{1e8, 1e8}, {1e-9, -1e-9}}}).generators() == 2);
+  CHECK(merge_parallel_generators(Zonotope{Vector::Zero(2), Matrix{{.1, .7}, {.3, 2.1}}}).generators() == 1);
 }
 
 TEST_CASE("volume of degenerate zonotopes and its limit") {

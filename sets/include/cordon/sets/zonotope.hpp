@@ -63,7 +63,7 @@ double volume_bound(const Zonotope& Z);
 Zonotope drop_zero_generators(const Zonotope& Z);
 
 /// Z with parallel generators added up (to the first of them), zero ones dropped: the same set. Generators count as
-/// parallel when they deviate from it by a few units in the last place. O(n g²).
+/// parallel when each entry deviates by a few units in its last place. O(n g²).
 Zonotope merge_parallel_generators(const Zonotope& Z);
 
 }  // namespace cordon::sets
