@@ -96,8 +96,11 @@ void CsvReader::read_row(CsvRow& row, int c) {
     }
     row.fields.push_back(std::move(field));
     if (c != ',') return;
+    if (!count(row)) {
+      skip_line();
+      return;
+    }
     c = get();
-    ++row_bytes_;
   }
 }
 
@@ -117,11 +120,14 @@ void CsvReader::read_quoted(CsvRow& row, std::string& field) {
   }
 }
 
+bool CsvReader::count(CsvRow& row) {
+  if (++row_bytes_ <= row_limit) return true;
+  row.problem = "longer than 1 MiB: not a table of numbers, or a quote is never closed";
+  return false;
+}
+
 bool CsvReader::grow(CsvRow& row, std::string& field, int c) {
-  if (++row_bytes_ > row_limit) {
-    row.problem = "longer than 1 MiB: not a table of numbers, or a quote is never closed";
-    return false;
-  }
+  if (!count(row)) return false;
   field += static_cast<char>(c);
   return true;
 }

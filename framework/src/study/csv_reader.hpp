@@ -16,9 +16,9 @@ struct CsvRow {
   std::string problem;    ///< not empty: the row is malformed
 };
 
-/// Reads rows of bytes. Lines end with LF, CR LF or CR; quoted fields may hold commas, quotes ("") and line ends; a UTF-8 byte order
-/// mark is skipped; blank lines at the end of the file are ignored, elsewhere they are malformed rows. A row beyond 1 MiB is malformed
-/// and skipped to its end of line, so that memory stays bounded for any file. Throws Errc::io when reading fails.
+/// Reads rows of bytes. Lines end with LF, CR LF or CR; quoted fields may hold commas, quotes ("") and line ends; a UTF-8 byte
+/// order mark is skipped; blank lines at the end of the file are ignored, elsewhere they are malformed rows. A row beyond 1 MiB
+/// is malformed and skipped to its end of line, so that memory stays bounded for any file. Throws Errc::io when reading fails.
 class CsvReader {
  public:
   explicit CsvReader(const std::filesystem::path& file);
@@ -34,6 +34,7 @@ class CsvReader {
   bool fill();
   void read_row(CsvRow& row, int first);
   void read_quoted(CsvRow& row, std::string& field);
+  bool count(CsvRow& row);
   bool grow(CsvRow& row, std::string& field, int c);
   void skip_line();
   bool ends_line(int c);

@@ -47,7 +47,8 @@ CsvSource::CsvSource(const CsvSpec& spec, const LinearModel& model)
   require_file(file_);
   validate();
   if (!problems_.empty()) {
-    if (too_many()) problems_.back().suggestion += std::string(problems_.back().suggestion.empty() ? "" : "; ") + "reading stopped here";
+    if (too_many())
+      problems_.back().suggestion += std::string(problems_.back().suggestion.empty() ? "" : "; ") + "reading stopped here";
     throw InputError(file_.string(), std::move(problems_));
   }
   reader_.emplace(file_);
@@ -59,7 +60,8 @@ void CsvSource::check_sizes(const CsvSpec& spec, const LinearModel& model) const
   std::vector<Diagnostic> problems;
   const auto require = [&](std::size_t size, Index wanted, const char* pointer, const char* of) {
     if (static_cast<Index>(size) == wanted) return;
-    problems.push_back({pointer, "names " + std::to_string(size) + " columns, must be " + std::to_string(wanted) + ", " + of, ""});
+    problems.push_back(
+        {pointer, "names " + std::to_string(size) + " columns, must be " + std::to_string(wanted) + ", " + of, ""});
   };
   require(spec.inputs.size(), model.inputs(), "/data/csv/inputs", "one per column of /system/B");
   require(spec.outputs.size(), model.outputs(), "/data/csv/outputs", "one per row of /system/C");
@@ -69,7 +71,8 @@ void CsvSource::check_sizes(const CsvSpec& spec, const LinearModel& model) const
 
 void CsvSource::report(std::string pointer, std::int64_t line, std::string message, std::string mend) {
   if (too_many()) return;
-  problems_.push_back({std::move(pointer), std::move(message), std::move(mend), static_cast<int>(std::min<std::int64_t>(line, 2147483647))});
+  problems_.push_back(
+      {std::move(pointer), std::move(message), std::move(mend), static_cast<int>(std::min<std::int64_t>(line, 2147483647))});
 }
 
 void CsvSource::validate() {
@@ -132,8 +135,8 @@ void CsvSource::check_row(const CsvRow& row) {
     report("/data/csv/file", row.line, row.problem);
   } else if (row.fields.size() != width_) {
     report("/data/csv/file", row.line,
-           "the row has " + std::to_string(row.fields.size()) + (row.fields.size() == 1 ? " field" : " fields") + ", the header " +
-               std::to_string(width_));
+           "the row has " + std::to_string(row.fields.size()) + (row.fields.size() == 1 ? " field" : " fields") +
+               ", the header " + std::to_string(width_));
   } else {
     for (const Columns* columns : {&inputs_, &outputs_, &truth_}) numbers(row, *columns);
   }
@@ -163,7 +166,8 @@ std::optional<Record> CsvSource::next() {
     y = numbers(row, outputs_);
     truth = numbers(row, truth_);
   }
-  if (!u || !y || !truth) throw Error(Errc::io, file_.string() + " was changed while it was read (line " + std::to_string(row.line) + ")");
+  if (!u || !y || !truth)
+    throw Error(Errc::io, file_.string() + " was changed while it was read (line " + std::to_string(row.line) + ")");
   Record record{{static_cast<Index>(k_++), std::move(*u), std::move(*y)}, std::nullopt};
   if (!truth_.names.empty()) record.truth = std::move(truth);
   return record;

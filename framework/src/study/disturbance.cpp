@@ -60,8 +60,9 @@ Disturbance::Disturbance(const LineForm& X, Noise noise, RandomStream stream, In
   const std::optional<Vector> anchor = central_factors(X_);
   if (!anchor) {
     const bool empty = is_empty(X_) == Answer::yes;
-    throw InputError(file, {{pointer, empty ? "cannot be simulated: the set is empty" : "cannot be simulated: no point of the set was found",
-                             "check its constraints"}});
+    throw InputError(
+        file, {{pointer, empty ? "cannot be simulated: the set is empty" : "cannot be simulated: no point of the set was found",
+                "check its constraints"}});
   }
   anchor_ = *anchor;
   if (X_.constraints() > 0) inverse_ = linalg::pseudo_inverse(X_.A);
@@ -78,10 +79,18 @@ Vector Disturbance::factor_draw(std::int64_t k) {
   Vector xi(X_.generators());
   for (Index i = 0; i < xi.size(); ++i) {
     switch (noise_) {
-      case Noise::uniform: xi[i] = stream_.symmetric(); break;
-      case Noise::vertex: xi[i] = stream_.sign(); break;
-      case Noise::sine: xi[i] = sine(omega_[i], k, 0); break;
-      case Noise::zero: xi[i] = 0; break;
+      case Noise::uniform:
+        xi[i] = stream_.symmetric();
+        break;
+      case Noise::vertex:
+        xi[i] = stream_.sign();
+        break;
+      case Noise::sine:
+        xi[i] = sine(omega_[i], k, 0);
+        break;
+      case Noise::zero:
+        xi[i] = 0;
+        break;
     }
   }
   return xi;

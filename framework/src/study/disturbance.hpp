@@ -40,9 +40,9 @@ class Disturbance {
   LineForm X_;  ///< without lines
   Noise noise_;
   RandomStream stream_;
-  Vector omega_;        ///< frequencies, for Noise::sine
-  Matrix inverse_;      ///< A⁺
-  Vector anchor_;       ///< a central ξ
+  Vector omega_;    ///< frequencies, for Noise::sine
+  Matrix inverse_;  ///< A⁺
+  Vector anchor_;   ///< a central ξ
 };
 
 }  // namespace cordon::detail

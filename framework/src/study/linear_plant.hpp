@@ -40,11 +40,11 @@ class LinearPlant {
   void split(const std::string& file);
 
   LinearModel model_;
-  Matrix V_;                                    ///< n×n: (Ṽ, V̌)
-  Matrix dynamic_A_, dynamic_B_, dynamic_Bw_;   ///< Σ̃⁻¹ Ũᵀ (A, B, Bw)
-  Matrix static_A_, static_B_, static_Bw_;      ///< Ǔᵀ (A, B, Bw)
-  Matrix solve_;                                ///< -(Ǔᵀ A V̌)⁻¹
-  Vector z_;                                    ///< z̃_k
+  Matrix V_;                                   ///< n×n: (Ṽ, V̌)
+  Matrix dynamic_A_, dynamic_B_, dynamic_Bw_;  ///< Σ̃⁻¹ Ũᵀ (A, B, Bw)
+  Matrix static_A_, static_B_, static_Bw_;     ///< Ǔᵀ (A, B, Bw)
+  Matrix solve_;                               ///< -(Ǔᵀ A V̌)⁻¹
+  Vector z_;                                   ///< z̃_k
 };
 
 }  // namespace cordon::detail

@@ -41,16 +41,22 @@ SignalSource::SignalSource(Signal signal, std::size_t channel)
 double SignalSource::at(std::int64_t k) {
   const Signal& s = signal_;
   switch (s.type) {
-    case Signal::Type::constant: return s.offset;
-    case Signal::Type::sine: return s.offset + s.amplitude * sine(s.omega, k, s.phase);
-    case Signal::Type::cosine: return s.offset + s.amplitude * cosine(s.omega, k, s.phase);
-    case Signal::Type::step: return k >= s.from ? s.offset + s.amplitude : s.offset;
+    case Signal::Type::constant:
+      return s.offset;
+    case Signal::Type::sine:
+      return s.offset + s.amplitude * sine(s.omega, k, s.phase);
+    case Signal::Type::cosine:
+      return s.offset + s.amplitude * cosine(s.omega, k, s.phase);
+    case Signal::Type::step:
+      return k >= s.from ? s.offset + s.amplitude : s.offset;
     case Signal::Type::square: {
       const std::int64_t place = k % s.period;
       return place < s.period - place ? s.offset + s.amplitude : s.offset - s.amplitude;
     }
-    case Signal::Type::prbs: return pseudo_random(k);
-    case Signal::Type::table: return s.values[static_cast<Index>(std::min<std::int64_t>(k, s.values.size() - 1))];
+    case Signal::Type::prbs:
+      return pseudo_random(k);
+    case Signal::Type::table:
+      return s.values[static_cast<Index>(std::min<std::int64_t>(k, s.values.size() - 1))];
   }
   throw Error(Errc::internal, "a signal of unknown type");
 }

@@ -37,14 +37,16 @@ void SimulatedSource::check_sizes(const Model& model) const {
     if (size == wanted) return;
     problems.push_back({pointer, "has size " + std::to_string(size) + ", must be " + std::to_string(wanted) + ", " + of, ""});
   };
-  require(static_cast<Index>(spec_.input.size()), model.linear.inputs(), "/data/simulate/input", "one signal per column of /system/B");
+  require(static_cast<Index>(spec_.input.size()), model.linear.inputs(), "/data/simulate/input",
+          "one signal per column of /system/B");
   require(model.W.dim(), model.linear.disturbances(), "/system/W", "the columns of /system/Bw");
   require(model.V.dim(), model.linear.noises(), "/system/V", "the columns of /system/Dv");
   if (spec_.x0) require(spec_.x0->size(), model.linear.states(), "/data/simulate/x0", "the rows of /system/A");
   if (spec_.x0 && !spec_.x0->allFinite()) problems.push_back({"/data/simulate/x0", "has a NaN or infinite number", ""});
   if (spec_.steps < 0) problems.push_back({"/data/simulate/steps", "is negative", ""});
   for (std::size_t i = 0; i < spec_.input.size(); ++i) {
-    for (Diagnostic& d : problems_of(spec_.input[i], "/data/simulate/input/" + std::to_string(i))) problems.push_back(std::move(d));
+    for (Diagnostic& d : problems_of(spec_.input[i], "/data/simulate/input/" + std::to_string(i)))
+      problems.push_back(std::move(d));
   }
   if (!problems.empty()) throw InputError(file_, std::move(problems));
 }
@@ -68,8 +70,10 @@ void SimulatedSource::start(const Model& model) {
   const Vector rest = linalg::product(plant_.static_A(), *spec_.x0) + linalg::product(plant_.static_B(), u0);
   const Vector open = rest + linalg::product(plant_.static_Bw(), w0_);
   fail("/data/simulate/x0",
-       "is not consistent with the static rows of the descriptor system for any w_0 in W found: the nearest correction of w_0 leaves a "
-       "residual of " + to_text(largest(open)),
+       "is not consistent with the static rows of the descriptor system for any w_0 in W found: the nearest correction of w_0 "
+       "leaves a "
+       "residual of " +
+           to_text(largest(open)),
        "choose x0 with 0 = A x0 + B u_0 + Bw w_0 in the static rows, or leave x0 out");
 }
 
@@ -88,7 +92,8 @@ bool SimulatedSource::start_near_given(const Model& model, const Vector& x0, con
 
 void SimulatedSource::start_from_center(const Model& model, const Vector& u0) {
   const std::optional<Vector> center = central_point(model.X0);
-  if (!center) fail("/system/X0", "no point of the set was found to start from", "check its constraints, or give /data/simulate/x0");
+  if (!center)
+    fail("/system/X0", "no point of the set was found to start from", "check its constraints, or give /data/simulate/x0");
   plant_.start(*center);
   if (plant_.static_A().rows() == 0 || contains(model.X0, plant_.state(u0, w0_)) != Answer::no) return;
   if (start_from_joint_set(model.X0, model.W, u0)) return;
@@ -120,7 +125,8 @@ std::optional<Record> SimulatedSource::next() {
   const Vector w = k == 0 ? w0_ : disturbance_.at(k);
   LinearPlant::Output now = plant_.step(record.sample.u, w, noise_.at(k));
   if (!now.x.allFinite() || !now.y.allFinite()) {
-    fail("/data/simulate/steps", "the simulated state overflows at k = " + std::to_string(k), "simulate fewer steps, or stabilise the system");
+    fail("/data/simulate/steps", "the simulated state overflows at k = " + std::to_string(k),
+         "simulate fewer steps, or stabilise the system");
   }
   record.sample.y = std::move(now.y);
   record.truth = std::move(now.x);
