@@ -132,19 +132,21 @@ class Elimination {
     Q_.resize(g, 0);
   }
 
-  /// The cheapest factor and the row to solve for it; false if no row has a usable pivot. `loss` is its score.
+  /// The cheapest factor, and the row in which it has the largest share of the row's 1-norm: the row that binds it most. The choice of the row
+  /// does not change the set but the rows that remain, and with them all later scores. False if no row has a usable pivot. `loss` is the score.
   bool choose(Index& row, Index& col, double& loss) const {
     double best = std::numeric_limits<double>::infinity(), best_pivot = 0;
     bool found = false;
+    const Vector row_norm = A_.cwiseAbs().rowwise().sum();
     for (Index j = 0; j < factors(); ++j) {
       if (!free_[at(j)]) continue;
       Index pivot_row = -1;
       double pivot = pivot_floor;
       for (Index i = 0; i < rows(); ++i) {
         if (!in_row_[at(i)]) continue;
-        const double size = std::abs(A_(i, j)) / row_scale_[i];
-        if (size > pivot) {
-          pivot = size;
+        const double share = std::abs(A_(i, j)) / row_norm[i];
+        if (share > pivot) {
+          pivot = share;
           pivot_row = i;
         }
       }

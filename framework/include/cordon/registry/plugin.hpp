@@ -74,7 +74,7 @@ struct PluginDescriptor {
 
 /// Exports the descriptor under the one symbol that the host looks for.
 #define CORDON_PLUGIN(plugin_name, plugin_version, plugin_license, plugin_author, plugin_summary, register_function)             \
-  extern "C" __attribute__((visibility("default"), used)) const ::cordon::PluginDescriptor cordon_plugin_descriptor;             \
+  extern "C" __attribute__((visibility("default"))) const ::cordon::PluginDescriptor cordon_plugin_descriptor;                   \
   extern "C" const ::cordon::PluginDescriptor cordon_plugin_descriptor{                                                          \
       sizeof(::cordon::PluginDescriptor), CORDON_ABI_VERSION, CORDON_ABI_TAG, plugin_name, plugin_version, plugin_license,       \
       plugin_author, plugin_summary, register_function};
