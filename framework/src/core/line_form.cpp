@@ -11,6 +11,8 @@ namespace cordon {
 
 namespace {
 
+constexpr double product_noise = 1e-14;  ///< cancelled to this share of its terms, a value is zero
+
 Matrix beside(MatrixIn left, MatrixIn right) {
   Matrix C(left.rows(), left.cols() + right.cols());
   C << left, right;
@@ -42,6 +44,21 @@ void require_map(MatrixIn T, Index dim, const char* operation) {
                                      " columns does not act on a set of dimension " + std::to_string(dim));
   }
   if (!T.allFinite()) throw Error(Errc::not_finite, std::string(operation) + ": the matrix has a NaN or infinite entry");
+}
+
+/// A B with entries that cancel to rounding noise set to zero. For coefficients of lines and right-hand sides: multiplied with an unbounded
+/// variable, or alone in a row, noise would turn into a statement.
+Matrix denoised_product(MatrixIn A, MatrixIn B) {
+  Matrix C = linalg::product(A, B);
+  if (C.size() == 0) return C;
+  const Matrix magnitude = linalg::product(A.cwiseAbs(), B.cwiseAbs());
+  return (C.array().abs() <= product_noise * magnitude.array()).select(0.0, C);
+}
+
+/// x - y with the same rule.
+Vector denoised_difference(VectorIn x, VectorIn y, VectorIn magnitude) {
+  const Vector d = x - y;
+  return (d.array().abs() <= product_noise * magnitude.array()).select(0.0, d);
 }
 
 bool has_false_row(const LineForm& X) {
@@ -134,7 +151,7 @@ LineForm make_strip(VectorIn rho, double d, double sigma) {
 LineForm affine_map(const LineForm& X, MatrixIn T, VectorIn t) {
   require_map(T, X.dim(), "affine map");
   require_same_dim(T.rows(), t.size(), "affine map");
-  return {linalg::product(T, X.M), linalg::product(T, X.G), linalg::product(T, X.c) + t, X.S, X.A, X.b};
+  return {denoised_product(T, X.M), linalg::product(T, X.G), linalg::product(T, X.c) + t, X.S, X.A, X.b};
 }
 
 LineForm minkowski_sum(const LineForm& X, const LineForm& Y) {
@@ -155,9 +172,10 @@ LineForm intersection(const LineForm& X, MatrixIn R, const LineForm& Y) {
   return {beside(X.M, Matrix::Zero(n, Y.lines())),
           beside(X.G, Matrix::Zero(n, Y.generators())),
           X.c,
-          above(linalg::block_diagonal(X.S, Y.S), beside(linalg::product(R, X.M), -Y.M)),
+          above(linalg::block_diagonal(X.S, Y.S), beside(denoised_product(R, X.M), -Y.M)),
           above(linalg::block_diagonal(X.A, Y.A), beside(linalg::product(R, X.G), -Y.G)),
-          joined(joined(X.b, Y.b), Y.c - linalg::product(R, X.c))};
+          joined(joined(X.b, Y.b), denoised_difference(Y.c, linalg::product(R, X.c),
+                                                       Y.c.cwiseAbs() + linalg::product(R.cwiseAbs(), X.c.cwiseAbs())))};
 }
 
 // With λ = (1 + ξ₀)/2 the point is λ x + (1 - λ) y. The scaled factors become variables of their own, |α_i| ≤ λ and |β_i| ≤ 1 - λ;

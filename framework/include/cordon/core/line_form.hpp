@@ -54,8 +54,8 @@ LineForm convex_hull(const LineForm& X, const LineForm& Y);
 
 /// One condition R x ∈ Z of `domain_of_maps`.
 struct MapCondition {
-  MatrixIn R;
-  const LineForm& Z;
+  Matrix R;
+  LineForm Z;
 };
 /// {x ∈ Rⁿ : R_i x ∈ Z_i for all i}, the domain of p linear mappings; exact. [Rego2025, (10)]
 LineForm domain_of_maps(Index n, std::span<const MapCondition> conditions);

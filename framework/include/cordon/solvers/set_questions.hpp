@@ -4,14 +4,10 @@
 
 #include "cordon/core/answer.hpp"
 #include "cordon/core/box.hpp"
+#include "cordon/core/line_elimination.hpp"
 #include "cordon/core/line_form.hpp"
 
 namespace cordon {
-
-/// X with as many lines eliminated as constraints allow: exact. Rows are equilibrated, pivots are chosen over the whole of S;
-/// an entry counts as zero below 1e-10 of its equilibrated row (lines and generators together). Afterwards S = 0 and M is an orthonormal basis of
-/// the lineality space. Rows that become 0 = 0 are dropped. O((n + m)(l + g) min(l, m)). [Rego2025, Alg. 1]
-LineForm eliminate_lines(const LineForm& X);
 
 /// Is X empty? Lines are eliminated first; then a Farkas vector or a repaired point of the constraints in ξ decides.
 Answer is_empty(const LineForm& X, Certificate* why = nullptr);

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/solvers/set_questions.hpp"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/rounding.hpp"
+#include "cordon/solvers/boxed_program.hpp"
+
+namespace cordon {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// A violation smaller than this share of its terms may stem from rounding errors of nominal operations.
+constexpr double nominal_tolerance = 1e-10;
+/// Candidates for facets that `is_subset` tries before it answers `unknown`.
+constexpr Index max_facets = 20'000;
+
+/// The part of X in ξ alone: lines eliminated, directions with lines known.
+struct Questioned {
+  LineForm X;
+  BoxedProgram program;
+
+  explicit Questioned(const LineForm& form) : X(form.lines() ? eliminate_lines(form) : form), program(X.A, X.b) {}
+
+  bool unbounded_along(VectorIn d) const {
+    return X.lines() > 0 && linalg::product(X.M.transpose(), d).cwiseAbs().maxCoeff() > 1e-12 * d.cwiseAbs().maxCoeff();
+  }
+
+  double support(VectorIn d, Certificate* why) {
+    if (unbounded_along(d)) return is_empty(nullptr) == Answer::yes ? -infinity : infinity;
+    const Vector g = linalg::product(X.G.transpose(), d);
+    const BoxedProgram::Bound bound = program.maximum(g);
+    if (why) *why = {bound.upper == -infinity ? Certificate::Kind::farkas : Certificate::Kind::dual, bound.y, bound.upper};
+    if (bound.upper == -infinity) return -infinity;
+    const double gradient_error = rounding::product_error(X.G.transpose(), d).sum();
+    return rounding::up(rounding::up(rounding::dot(d, X.c).upper + bound.upper) + gradient_error);
+  }
+
+  Answer is_empty(Certificate* why) { return program.is_empty(why); }
+};
+
+/// Next k-subset of {0 … n-1} in lexicographic order; false after the last.
+bool next_subset(std::vector<Index>& subset, Index n) {
+  const Index k = static_cast<Index>(subset.size());
+  Index i = k - 1;
+  while (i >= 0 && subset[static_cast<std::size_t>(i)] == n - k + i) --i;
+  if (i < 0) return false;
+  Index value = subset[static_cast<std::size_t>(i)];
+  for (; i < k; ++i) subset[static_cast<std::size_t>(i)] = ++value;
+  return true;
+}
+
+double subsets(Index n, Index k) {
+  double count = 1;
+  for (Index i = 0; i < k; ++i) count *= static_cast<double>(n - i) / static_cast<double>(i + 1);
+  return count;
+}
+
+/// Unit normals of all facets of the zonotope with generators L (full rank): cross products of (n-1)-subsets. Nothing when there are too many.
+std::optional<std::vector<Vector>> facet_normals(const Matrix& L) {
+  const Index n = L.rows(), g = L.cols();
+  if (g < n - 1 || subsets(g, n - 1) > static_cast<double>(max_facets)) return std::nullopt;
+  std::vector<Vector> normals;
+  std::vector<Index> subset(static_cast<std::size_t>(n - 1));
+  for (Index i = 0; i < n - 1; ++i) subset[static_cast<std::size_t>(i)] = i;
+  do {
+    Matrix chosen(n, n - 1);
+    for (Index i = 0; i < n - 1; ++i) chosen.col(i) = L.col(subset[static_cast<std::size_t>(i)]);
+    const Matrix normal = linalg::null_space(chosen.transpose(), 1e-10);
+    if (normal.cols() == 1) normals.emplace_back(normal.col(0));
+  } while (next_subset(subset, g));
+  return normals;
+}
+
+/// X ⊆ Y refuted along ±d? Fills `why`.
+bool refuted(const LineForm& X, const LineForm& Y, VectorIn d, Certificate* why) {
+  const double inside = attained(X, d), bound = support(Y, d);
+  const double scale = d.cwiseAbs().dot(X.c.cwiseAbs() + Y.c.cwiseAbs()) + std::abs(inside) + std::abs(bound);
+  if (!(inside > -infinity) || !(bound < infinity)) return false;
+  if (inside < infinity && bound > -infinity && !(inside - bound > nominal_tolerance * scale)) return false;
+  if (why) *why = {Certificate::Kind::direction, Vector(d), inside - bound};
+  return true;
+}
+
+/// All of X's points satisfy the facets of the lifted zonotope {(Gξ, Aξ - b)} of Y at its section by 0, with a margin that covers the
+/// rounding errors of the normals.
+Answer within_facets(const LineForm& X, const LineForm& Y) {
+  const Index n = Y.dim(), m = Y.constraints();
+  Matrix lifted(n + m, Y.generators());
+  lifted.topRows(n) = Y.G;
+  lifted.bottomRows(m) = Y.A;
+  Vector center(n + m);
+  center << Y.c, -Y.b;
+  if (linalg::rank(lifted) < n + m) return Answer::unknown;  // flat: no facets with interior
+  const auto normals = facet_normals(lifted);
+  if (!normals) return Answer::unknown;
+  for (const Vector& normal : *normals) {
+    for (const double sign : {1.0, -1.0}) {
+      const Vector d = sign * normal;
+      const double reach = rounding::down(rounding::dot(d, center).lower + rounding::norm_1(linalg::product(lifted.transpose(), d)).lower);
+      const double needed = support(X, d.head(n));
+      const double scale = center.cwiseAbs().maxCoeff() + lifted.cwiseAbs().rowwise().sum().maxCoeff() + std::abs(needed);
+      if (!(needed <= reach - 1e-12 * scale)) return Answer::unknown;
+    }
+  }
+  return Answer::yes;
+}
+
+/// Y is a box given without constraints (one non-zero per generator and row): compared bound by bound, without any margin.
+bool is_plain_box(const LineForm& Y) {
+  if (Y.constraints() > 0) return false;
+  for (Index j = 0; j < Y.generators(); ++j) {
+    if ((Y.G.col(j).array() != 0).count() > 1) return false;
+  }
+  for (Index j = 0; j < Y.lines(); ++j) {
+    if ((Y.M.col(j).array() != 0).count() > 1) return false;
+  }
+  return true;
+}
+
+/// Both plain boxes: |c_X - c_Y| + r_X ≤ r_Y in every coordinate, without rounding where the centres agree.
+Answer box_within_box(const LineForm& X, const LineForm& Y) {
+  for (Index i = 0; i < Y.dim(); ++i) {
+    if (Y.lines() > 0 && !Y.M.row(i).isZero(0)) continue;
+    if (X.lines() > 0 && !X.M.row(i).isZero(0)) return Answer::unknown;
+    if ((Y.G.row(i).array() != 0).count() > 1 || (X.G.row(i).array() != 0).count() > 1) return Answer::unknown;
+    const double inner = X.generators() ? X.G.row(i).cwiseAbs().maxCoeff() : 0.0;
+    const double outer = Y.generators() ? Y.G.row(i).cwiseAbs().maxCoeff() : 0.0;
+    const double shift = X.c[i] == Y.c[i] ? 0.0 : rounding::up(std::abs(X.c[i] - Y.c[i]));
+    if (!((shift == 0 ? inner : rounding::up(shift + inner)) <= outer)) return Answer::unknown;
+  }
+  return Answer::yes;
+}
+
+Answer within_box(const LineForm& X, const LineForm& Y) {
+  if (is_plain_box(X) && box_within_box(X, Y) == Answer::yes) return Answer::yes;
+  const Box outer = interval_hull(X);
+  for (Index i = 0; i < Y.dim(); ++i) {
+    if (Y.lines() > 0 && !Y.M.row(i).isZero(0)) continue;
+    const rounding::Range radius = rounding::norm_1(Y.G.row(i).transpose());
+    const bool one = (Y.G.row(i).array() != 0).count() <= 1;
+    const double reach = one ? (Y.generators() ? Y.G.row(i).cwiseAbs().maxCoeff() : 0.0) : radius.lower;
+    if (!(outer.upper[i] <= rounding::down(Y.c[i] + reach)) || !(outer.lower[i] >= rounding::up(Y.c[i] - reach))) return Answer::unknown;
+  }
+  return Answer::yes;
+}
+
+}  // namespace
+
+Answer is_empty(const LineForm& X, Certificate* why) {
+  if (X.constraints() == 0) {
+    if (why) *why = {Certificate::Kind::structure, Vector(0), 1};
+    return Answer::no;
+  }
+  return Questioned(X).is_empty(why);
+}
+
+Answer contains(const LineForm& X, VectorIn x, Certificate* why) {
+  if (x.size() != X.dim()) throw Error(Errc::dimension, "contains: the point has another dimension than the set");
+  const Index n = X.dim(), m = X.constraints();
+  LineForm point{Matrix(0, X.lines()),          Matrix(0, X.generators()),      Vector(0),
+                 Matrix(m + n, X.lines()), Matrix(m + n, X.generators()), Vector(m + n)};
+  point.S << X.S, X.M;
+  point.A << X.A, X.G;
+  point.b << X.b, x - X.c;
+  Vector magnitude = Vector::Zero(m + n);
+  magnitude.tail(n) = x.cwiseAbs() + X.c.cwiseAbs();
+  if (X.lines() == 0) return negate(BoxedProgram(point.A, point.b).is_empty(magnitude, why));
+  // With lines the rows are combined: the largest magnitude stands for all that are left.
+  const LineForm rest = eliminate_lines(point);
+  const double largest = magnitude.size() ? magnitude.maxCoeff() : 0.0;
+  return negate(BoxedProgram(rest.A, rest.b).is_empty(Vector::Constant(rest.constraints(), largest), why));
+}
+
+double support(const LineForm& X, VectorIn d, Certificate* why) {
+  if (d.size() != X.dim()) throw Error(Errc::dimension, "support: the direction has another dimension than the set");
+  if (!d.allFinite()) throw Error(Errc::not_finite, "support: the direction has a NaN or infinite entry");
+  return Questioned(X).support(d, why);
+}
+
+double attained(const LineForm& X, VectorIn d) {
+  Questioned q(X);
+  if (q.unbounded_along(d)) return q.is_empty(nullptr) == Answer::no ? infinity : -infinity;
+  const Vector g = linalg::product(q.X.G.transpose(), d);
+  const BoxedProgram::Bound bound = q.program.maximum(g);
+  if (!bound.xi) return -infinity;
+  double value = q.program.attained(g, *bound.xi);
+  if (value == -infinity) {  // a degenerate vertex: a step towards the middle has slack in every coordinate
+    if (const auto center = q.program.central_point()) {
+      value = q.program.attained(g, (1 - 1e-7) * *bound.xi + 1e-7 * *center);
+    }
+  }
+  if (value == -infinity) return value;
+  const double gradient_error = rounding::product_error(q.X.G.transpose(), d).sum();
+  return rounding::down(rounding::down(rounding::dot(d, q.X.c).lower + value) - gradient_error);
+}
+
+Box interval_hull(const LineForm& X) {
+  const Index n = X.dim();
+  Questioned q(X);
+  Box hull = Box::space(n);
+  bool asked = false;
+  for (Index i = 0; i < n; ++i) {
+    const Vector d = Vector::Unit(n, i);
+    if (q.unbounded_along(d)) continue;
+    hull.upper[i] = q.support(d, nullptr);
+    hull.lower[i] = -q.support(-d, nullptr);
+    asked = true;
+    if (hull.upper[i] == -infinity || hull.lower[i] == infinity) return Box::empty(n);
+  }
+  if (!asked && n > 0 && q.is_empty(nullptr) == Answer::yes) return Box::empty(n);
+  // Bounds of a set that is flat up to rounding may cross: both are kept, an empty box would need a proof.
+  for (Index i = 0; i < n; ++i) {
+    if (hull.lower[i] > hull.upper[i]) std::swap(hull.lower[i], hull.upper[i]);
+  }
+  return hull;
+}
+
+Matrix lineality_space(const LineForm& X) { return X.lines() ? eliminate_lines(X).M : Matrix(X.dim(), 0); }
+
+Answer is_bounded(const LineForm& X) {
+  if (X.lines() == 0) return Answer::yes;
+  Questioned q(X);
+  if (q.X.lines() == 0) return Answer::yes;
+  const Answer empty = q.is_empty(nullptr);
+  return empty == Answer::yes ? Answer::yes : empty == Answer::no ? Answer::no : Answer::unknown;
+}
+
+Answer is_disjoint(const LineForm& X, const LineForm& Y, Certificate* why) {
+  if (X.dim() != Y.dim()) throw Error(Errc::dimension, "is_disjoint: the dimensions differ");
+  return is_empty(intersection(X, Matrix::Identity(X.dim(), X.dim()), Y), why);
+}
+
+Answer is_subset(const LineForm& X_in, const LineForm& Y_in, Certificate* why) {
+  if (X_in.dim() != Y_in.dim()) throw Error(Errc::dimension, "is_subset: the dimensions differ");
+  const LineForm X = X_in.lines() ? eliminate_lines(X_in) : X_in, Y = Y_in.lines() ? eliminate_lines(Y_in) : Y_in;
+  const Index n = X.dim();
+  if (is_empty(X, why) == Answer::yes) return Answer::yes;
+  if (is_plain_box(Y) && within_box(X, Y) == Answer::yes) return Answer::yes;
+
+  // Directions that may refute: coordinates, and the normals to Y's lines along X's generators.
+  for (Index i = 0; i < n; ++i) {
+    for (const double sign : {1.0, -1.0}) {
+      if (refuted(X, Y, sign * Vector::Unit(n, i), why)) return Answer::no;
+    }
+  }
+  // Both are seen across Y's lines; X must not have others.
+  LineForm across_X = X, across_Y = Y;
+  if (Y.lines() > 0) {
+    const Matrix normal = linalg::null_space(Y.M.transpose());
+    if (normal.cols() == 0) return Answer::yes;
+    across_X = affine_map(X, normal.transpose(), Vector::Zero(normal.cols()));
+    across_Y = affine_map(Y, normal.transpose(), Vector::Zero(normal.cols()));
+    across_Y.M.resize(normal.cols(), 0);
+    across_Y.S.resize(across_Y.constraints(), 0);
+  }
+  if (across_X.lines() > 0) {
+    if (across_X.M.cwiseAbs().maxCoeff() > 1e-12) return Answer::unknown;
+    across_X.M.resize(across_X.dim(), 0);
+    across_X.S.resize(across_X.constraints(), 0);
+  }
+  if (within_facets(across_X, across_Y) == Answer::yes) return Answer::yes;
+  if (across_Y.constraints() == 0 && linalg::rank(across_Y.G) == across_Y.dim()) {
+    if (const auto normals = facet_normals(across_Y.G)) {
+      for (const Vector& d : *normals) {
+        const Vector full = Y.lines() > 0 ? Vector(linalg::product(linalg::null_space(Y.M.transpose()), d)) : d;
+        if (refuted(X, Y, full, why) || refuted(X, Y, -full, why)) return Answer::no;
+      }
+    }
+  }
+  return Answer::unknown;
+}
+
+}  // namespace cordon

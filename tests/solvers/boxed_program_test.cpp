@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+#include <rapidcheck.h>
+
+#include <cmath>
+#include <limits>
+
+#include "cordon/core/error.hpp"
+#include "cordon/core/rounding.hpp"
+#include "cordon/solvers/boxed_program.hpp"
+#include "cordon/solvers/lp.hpp"
+
+using namespace cordon;
+
+TEST_CASE("a plain linear program") {
+  LinearProgram lp(Matrix{{1.0, 1.0, 1.0}}, Vector{{1.0}}, Vector{{0.0, 0.0, 0.0}}, Vector{{1.0, 2.0, 0.25}});
+  auto solution = lp.maximize(Vector{{1.0, 2.0, 3.0}});
+  REQUIRE(solution.status == LinearProgram::Status::optimal);
+  CHECK(solution.objective == doctest::Approx(0.75 * 2 + 0.25 * 3));
+  solution = lp.maximize(Vector{{-1.0, -2.0, -3.0}});
+  CHECK(solution.objective == doctest::Approx(-1.0));
+  LinearProgram bad(Matrix{{1.0}}, Vector{{3.0}}, Vector{{0.0}}, Vector{{1.0}});
+  CHECK(bad.maximize(Vector{{1.0}}).status == LinearProgram::Status::infeasible);
+  LinearProgram open(Matrix(0, 1), Vector(0), Vector{{0.0}}, Vector{{std::numeric_limits<double>::infinity()}});
+  CHECK(open.maximize(Vector{{1.0}}).status == LinearProgram::Status::unbounded);
+}
+
+TEST_CASE("numbers that would abort the solver are refused before") {
+  CHECK_THROWS_AS(LinearProgram(Matrix{{std::nan("")}}, Vector{{0.0}}, Vector{{0.0}}, Vector{{1.0}}), Error);
+  CHECK_THROWS_AS(LinearProgram(Matrix{{1.0}}, Vector{{0.0}}, Vector{{2.0}}, Vector{{1.0}}), Error);
+  LinearProgram lp(Matrix{{1.0}}, Vector{{0.0}}, Vector{{-1.0}}, Vector{{1.0}});
+  CHECK_THROWS_AS(lp.maximize(Vector{{std::nan("")}}), Error);
+}
+
+TEST_CASE("bounds hold for any multipliers, and are attained") {
+  CHECK(rc::check("upper ≥ attained, and both meet on feasible programs", [] {
+    const Index g = *rc::gen::inRange<Index>(1, 12), m = *rc::gen::inRange<Index>(0, 5);
+    const auto number = [] { return static_cast<double>(*rc::gen::inRange(-100, 101)) / 10; };
+    Matrix A(m, g);
+    for (Index k = 0; k < A.size(); ++k) A.data()[k] = number();
+    Vector xi(g), objective(g);
+    for (Index j = 0; j < g; ++j) xi[j] = static_cast<double>(*rc::gen::inRange(-95, 96)) / 100;
+    for (Index j = 0; j < g; ++j) objective[j] = number();
+    const Vector b = A * xi;
+    BoxedProgram program(A, b);
+    RC_ASSERT(program.is_empty() != Answer::yes);
+    const auto bound = program.maximum(objective);
+    RC_ASSERT(bound.upper >= objective.dot(xi) - 1e-9 * (1 + objective.lpNorm<1>()));
+    if (bound.xi) {
+      const double low = program.attained(objective, *bound.xi);
+      RC_ASSERT(low <= bound.upper);
+      if (std::isfinite(low)) RC_ASSERT(bound.upper - low <= 1e-6 * (1 + objective.lpNorm<1>()));
+    }
+    // any y gives a bound
+    Vector y(m);
+    for (Index i = 0; i < m; ++i) y[i] = number();
+    const double any = rounding::up(rounding::dot(b, y).upper + rounding::residual_norm_1(objective, A, y));
+    RC_ASSERT(any >= objective.dot(xi) - 1e-9 * (1 + objective.lpNorm<1>()));
+  }));
+}
+
+TEST_CASE("emptiness is decided on both sides of the boundary") {
+  CHECK(rc::check("rows moved beyond their reach", [] {
+    const Index g = *rc::gen::inRange<Index>(1, 10), m = *rc::gen::inRange<Index>(1, 4);
+    Matrix A(m, g);
+    for (Index k = 0; k < A.size(); ++k) A.data()[k] = static_cast<double>(*rc::gen::inRange(-9, 10));
+    Vector y(m);
+    for (Index i = 0; i < m; ++i) y[i] = static_cast<double>(*rc::gen::inRange(-9, 10));
+    RC_PRE(y.squaredNorm() > 0);
+    const double reach = (A.transpose() * y).lpNorm<1>();
+    // b along y with bᵀy = reach (1 + 1e-6) + 1e-6: outside by construction
+    const Vector b = y * ((reach * (1 + 1e-6) + 1e-6) / y.squaredNorm());
+    Certificate why;
+    RC_ASSERT(BoxedProgram(A, b).is_empty(&why) == Answer::yes);
+    RC_ASSERT(farkas_margin(A, b, why.data) > 0);
+  }));
+}
+
+TEST_CASE("a repaired point is proven, a point that cannot be repaired is not") {
+  const Matrix A{{1.0, 1.0, 0.0}, {0.0, 1.0, 1.0}};
+  const Vector b{{.5, .25}};
+  const auto radius = repair_radius(A, b, Vector{{.25, .25, 0.0}} * (1 + 1e-9));
+  REQUIRE(radius);
+  CHECK(radius->maxCoeff() < 1e-8);
+  CHECK(radius->maxCoeff() > 0);
+  CHECK_FALSE(repair_radius(Matrix{{1.0, 1.0}, {1.0, 1.0}}, Vector{{.5, .5}}, Vector{{.25, .25}}));  // dependent rows
+  CHECK_FALSE(repair_radius(Matrix{{0.0, 0.0}}, Vector{{1.0}}, Vector{{0.0, 0.0}}));
+}
