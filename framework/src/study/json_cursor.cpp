@@ -165,7 +165,8 @@ std::optional<Matrix> read_matrix(const Cursor& at) {
   const auto& rows = at.value().items();
   if (rows.empty()) return Matrix(0, 0);
   const std::size_t cols = rows.front().items().size();
-  if (rows.size() > static_cast<std::size_t>(max_entries) || rows.size() * std::max<std::size_t>(cols, 1) > static_cast<std::size_t>(max_entries)) {
+  if (rows.size() > static_cast<std::size_t>(max_entries) ||
+      rows.size() * std::max<std::size_t>(cols, 1) > static_cast<std::size_t>(max_entries)) {
     at.error("has more than " + std::to_string(max_entries) + " entries");
     return std::nullopt;
   }
@@ -177,8 +178,10 @@ std::optional<Matrix> read_matrix(const Cursor& at) {
       ++wrong;
     } else if (row.size() != cols) {
       ++wrong;
-      row.error("has " + counted(static_cast<Index>(row.size()), "number") + ", the first row has " + std::to_string(cols), "all rows are of equal length");
-    } else if (!read_entries(row, finite_entry, [&](std::size_t j, double x) { A(static_cast<Index>(i), static_cast<Index>(j)) = x; })) {
+      row.error("has " + counted(static_cast<Index>(row.size()), "number") + ", the first row has " + std::to_string(cols),
+                "all rows are of equal length");
+    } else if (!read_entries(row, finite_entry,
+                             [&](std::size_t j, double x) { A(static_cast<Index>(i), static_cast<Index>(j)) = x; })) {
       ++wrong;
     }
   }
@@ -206,7 +209,9 @@ std::optional<std::vector<std::string>> read_names(const Cursor& at, const std::
 
 std::string shape(Index rows, Index cols) { return std::to_string(rows) + " × " + std::to_string(cols); }
 
-std::string counted(Index number, const std::string& noun) { return std::to_string(number) + " " + noun + (number == 1 ? "" : "s"); }
+std::string counted(Index number, const std::string& noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+}
 
 bool expect_size(const Cursor& at, const Vector& x, Index size, const std::string& like) {
   if (x.size() == size) return true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Typed reading of a JSON tree. A reader returns nothing when the value is wrong, after it has reported why: whoever asked goes on
-// with the rest of the file, and skips only what depends on the missing value.
+// Typed reading of a JSON tree. A reader returns nothing when the value is wrong, after it has reported why: whoever asked goes
+// on with the rest of the file, and skips only what depends on the missing value.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,14 @@
 namespace cordon::json {
 
 inline constexpr Index max_dimension = 1000;
-inline constexpr Index max_entries = 1'000'000;       ///< of one matrix
+inline constexpr Index max_entries = 1'000'000;          ///< of one matrix
 inline constexpr double max_integer = 9007199254740992;  ///< 2⁵³: every integer up to here is a double
 
 /// A value with its place in the file.
 class Cursor {
  public:
-  Cursor(const Value& value, std::string pointer, Problems& problems) : value_(&value), pointer_(std::move(pointer)), problems_(&problems) {}
+  Cursor(const Value& value, std::string pointer, Problems& problems)
+      : value_(&value), pointer_(std::move(pointer)), problems_(&problems) {}
 
   const Value& value() const { return *value_; }
   const std::string& pointer() const { return pointer_; }
@@ -36,7 +37,8 @@ class Cursor {
   void error(std::string message, std::string suggestion = "") const;
   /// Reports unless the value is of this kind; silent for a value that was reported before.
   bool expect(Value::Kind kind, const std::string& suggestion) const;
-  /// An object with no other keys than these ($comment and $schema are always allowed): reports every other key as an unknown `noun`.
+  /// An object with no other keys than these ($comment and $schema are always allowed): reports every other key as an unknown
+  /// `noun`.
   bool expect_keys(const std::vector<std::string>& keys, const std::string& noun, const std::string& suggestion) const;
 
  private:

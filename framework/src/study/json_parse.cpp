@@ -76,7 +76,9 @@ class Parser {
   bool at_end() const { return at_ >= text_.size(); }
   bool next_is(char c) const { return !at_end() && text_[at_] == c; }
   bool take(char c) { return next_is(c) && ++at_ > 0; }
-  [[noreturn]] void fail(std::string message, std::string suggestion = "") const { fail_at(at_, std::move(message), std::move(suggestion)); }
+  [[noreturn]] void fail(std::string message, std::string suggestion = "") const {
+    fail_at(at_, std::move(message), std::move(suggestion));
+  }
   [[noreturn]] static void fail_at(std::size_t position, std::string message, std::string suggestion) {
     throw SyntaxError{position, std::move(message), std::move(suggestion)};
   }
@@ -102,7 +104,9 @@ std::string Parser::found() const {
   if (at_end()) return "the file ends here";
   std::size_t end = at_ + 1;
   while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0u) == 0x80u) ++end;  // a whole character
-  if (is_word(peek())) end = static_cast<std::size_t>(std::find_if_not(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), is_word) - text_.begin());
+  if (is_word(peek()))
+    end = static_cast<std::size_t>(std::find_if_not(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), is_word) -
+                                   text_.begin());
   return "found " + (peek() == '"' ? std::string("a text") : quoted(text_.substr(at_, end - at_)));
 }
 
@@ -110,8 +114,10 @@ void Parser::report_syntax(std::size_t position, std::string message, std::strin
   const std::string_view before = text_.substr(0, position);
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
   const std::string_view row = before.substr(before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1);
-  const auto column = 1 + std::count_if(row.begin(), row.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; });
-  problems_.add(pointer(), static_cast<int>(line), "column " + std::to_string(column) + ": " + std::move(message), std::move(suggestion));
+  const auto column =
+      1 + std::count_if(row.begin(), row.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; });
+  problems_.add(pointer(), static_cast<int>(line), "column " + std::to_string(column) + ": " + std::move(message),
+                std::move(suggestion));
 }
 
 Value Parser::document() {
@@ -124,7 +130,8 @@ Value Parser::document() {
     skip_space();
     Value root = value();
     skip_space();
-    if (!at_end()) fail("more text after the end of the document, " + found(), "a file holds one JSON value; is there a brace too many?");
+    if (!at_end())
+      fail("more text after the end of the document, " + found(), "a file holds one JSON value; is there a brace too many?");
     return root;
   } catch (SyntaxError& error) {
     report_syntax(error.position, std::move(error.message), std::move(error.suggestion));
@@ -195,7 +202,8 @@ Value Parser::object() {
       result.parts->keys.push_back(std::move(key));
       result.parts->items.push_back(std::move(member));
     } else {
-      problems_.add(pointer(), key_line, "the key is repeated (first on line " + std::to_string(result.find(key)->line) + ")", "remove one of the two");
+      problems_.add(pointer(), key_line, "the key is repeated (first on line " + std::to_string(result.find(key)->line) + ")",
+                    "remove one of the two");
     }
     skip_space();
     if (take('}')) break;
@@ -243,9 +251,11 @@ Value Parser::word() {
   if (name == "null") return of_kind(Value::Kind::null);
   for (const std::string_view infinite : {"NaN", "nan", "NAN", "Infinity", "infinity", "inf", "Inf", "INF"}) {
     if (name != infinite) continue;
-    return broken_number(std::string(name) + " is not a number", "numbers are finite; only bounds of a box may be free: \"-inf\" and \"inf\" in quotes");
+    return broken_number(std::string(name) + " is not a number",
+                         "numbers are finite; only bounds of a box may be free: \"-inf\" and \"inf\" in quotes");
   }
-  fail_at(begin, "unknown word " + quoted(name), "texts are written in double quotes; the words of JSON are true, false and null");
+  fail_at(begin, "unknown word " + quoted(name),
+          "texts are written in double quotes; the words of JSON are true, false and null");
 }
 
 Value Parser::number() {
@@ -266,7 +276,8 @@ Value Parser::number() {
   Value result = of_kind(Value::Kind::number);
   const auto [end, code] = std::from_chars(text_.data() + begin, text_.data() + at_, result.number);
   if (code != std::errc() || end != text_.data() + at_) {
-    return broken_number(quoted(text_.substr(begin, at_ - begin)) + " is beyond the range of double numbers", "about 1e-308 to 1.8e308, or 0");
+    return broken_number(quoted(text_.substr(begin, at_ - begin)) + " is beyond the range of double numbers",
+                         "about 1e-308 to 1.8e308, or 0");
   }
   return result;
 }

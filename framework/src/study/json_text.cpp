@@ -55,18 +55,25 @@ const Value* Value::find(std::string_view key) const {
 
 std::string_view kind_name(Value::Kind kind) noexcept {
   switch (kind) {
-    case Value::Kind::null: return "null";
-    case Value::Kind::boolean: return "true or false";
-    case Value::Kind::number: return "a number";
-    case Value::Kind::text: return "a text";
-    case Value::Kind::array: return "a list";
-    case Value::Kind::object: return "an object";
-    case Value::Kind::broken: return "broken";
+    case Value::Kind::null:
+      return "null";
+    case Value::Kind::boolean:
+      return "true or false";
+    case Value::Kind::number:
+      return "a number";
+    case Value::Kind::text:
+      return "a text";
+    case Value::Kind::array:
+      return "a list";
+    case Value::Kind::object:
+      return "an object";
+    case Value::Kind::broken:
+      return "broken";
   }
   return "broken";
 }
 
-std::string quoted(std::string_view word) { return '"' + escaped(word, 60) + '"'; }
+std::string quoted(std::string_view word, std::size_t limit) { return '"' + escaped(word, limit) + '"'; }
 
 std::string child(std::string_view pointer, std::string_view key) {
   std::string text(pointer);
@@ -102,7 +109,8 @@ std::vector<Diagnostic> Problems::sorted() const {
 std::string read_file(const std::string& file) {
   std::error_code failure;
   const auto status = std::filesystem::status(file, failure);
-  if (status.type() == std::filesystem::file_type::not_found) refuse(file, "no such file", "check the name and the working directory");
+  if (status.type() == std::filesystem::file_type::not_found)
+    refuse(file, "no such file", "check the name and the working directory");
   if (std::filesystem::is_directory(status)) refuse(file, "is a directory", "name the JSON file inside it");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!stream) refuse(file, std::string("cannot be opened: ") + std::strerror(errno), "check its permissions");
@@ -112,7 +120,8 @@ std::string read_file(const std::string& file) {
     text.append(chunk.data(), got);
     if (text.size() > max_bytes) refuse(file, "is larger than 64 MB", "recorded data belong into a CSV file");
   }
-  if (std::ferror(stream.get()) != 0) refuse(file, std::string("cannot be read: ") + std::strerror(errno), "check the file system");
+  if (std::ferror(stream.get()) != 0)
+    refuse(file, std::string("cannot be read: ") + std::strerror(errno), "check the file system");
   return text;
 }
 

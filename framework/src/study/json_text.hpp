@@ -39,8 +39,9 @@ struct Parts {
 /// "is a text", for messages.
 std::string_view kind_name(Value::Kind kind) noexcept;
 
-/// `word` in double quotes, control characters escaped, cut after about 60 bytes: what comes from a file is printed to a terminal.
-std::string quoted(std::string_view word);
+/// `word` in double quotes, control characters escaped, cut after about `limit` bytes: what comes from a file is printed to a
+/// terminal.
+std::string quoted(std::string_view word, std::size_t limit = 60);
 /// One more step of a JSON pointer (RFC 6901): "~" and "/" of the key are escaped.
 std::string child(std::string_view pointer, std::string_view key);
 std::string child(std::string_view pointer, std::size_t index);
@@ -66,8 +67,9 @@ inline constexpr std::size_t max_values = 10'000'000;
 /// The bytes of a file. Throws InputError: missing, a directory, not readable, more than `max_bytes`.
 std::string read_file(const std::string& file);
 
-/// The tree of a text. Reports what is wrong: not UTF-8 or not JSON (one problem with line and column; the result is then `broken`), a key that is
-/// repeated, a number beyond the range of double, NaN and the like. A byte order mark is skipped. O(size of the text).
+/// The tree of a text. Reports what is wrong: not UTF-8 or not JSON (one problem with line and column; the result is then
+/// `broken`), a key that is repeated, a number beyond the range of double, NaN and the like. A byte order mark is skipped. O(size
+/// of the text).
 Value parse(std::string_view text, Problems& problems);
 
 }  // namespace cordon::json

@@ -25,9 +25,11 @@ Signal read_signal(const Cursor& at) {
   const auto type_at = at.need("type", suggest("", signal_types()));
   const auto name = type_at ? read_choice(*type_at, signal_types()) : std::nullopt;
   if (!name) return signal;
-  signal.type = static_cast<Signal::Type>(std::find(signal_types().begin(), signal_types().end(), *name) - signal_types().begin());
+  signal.type =
+      static_cast<Signal::Type>(std::find(signal_types().begin(), signal_types().end(), *name) - signal_types().begin());
   std::vector<std::string> keys = signal_keys(signal.type);
-  for (std::size_t i = 0; i < required_signal_keys(signal.type); ++i) at.need(keys[i], "needed by a signal of type " + quoted(*name));
+  for (std::size_t i = 0; i < required_signal_keys(signal.type); ++i)
+    at.need(keys[i], "needed by a signal of type " + quoted(*name));
   keys.insert(keys.begin(), "type");
   at.expect_keys(keys, "key of a signal of type " + quoted(*name), "");
   real(at, "offset", signal.offset);
@@ -39,7 +41,8 @@ Signal read_signal(const Cursor& at) {
   integer(at, "seed", 0, signal.seed);
   if (const auto values = at.find("values"); values && signal.type == Signal::Type::table) {
     signal.values = read_vector(*values).value_or(Vector(0));
-    if (values->is(Kind::array) && values->size() == 0) values->error("is an empty list", "give at least one value; the last one is held");
+    if (values->is(Kind::array) && values->size() == 0)
+      values->error("is an empty list", "give at least one value; the last one is held");
   }
   return signal;
 }
@@ -47,12 +50,14 @@ Signal read_signal(const Cursor& at) {
 void read_input(const Cursor& simulate, std::optional<Index> inputs, std::vector<Signal>& out) {
   const auto at = simulate.find("input");
   if (!at) {
-    if (inputs && *inputs > 0) simulate.need("input", "a list of " + counted(*inputs, "signal") + ", one per column of /system/B");
+    if (inputs && *inputs > 0)
+      simulate.need("input", "a list of " + counted(*inputs, "signal") + ", one per column of /system/B");
     return;
   }
   if (!at->expect(Kind::array, "a list of signals, one per column of /system/B")) return;
   if (inputs && static_cast<Index>(at->size()) != *inputs) {
-    at->error("has " + counted(static_cast<Index>(at->size()), "signal") + ", must have " + std::to_string(*inputs) + " like the columns of /system/B");
+    at->error("has " + counted(static_cast<Index>(at->size()), "signal") + ", must have " + std::to_string(*inputs) +
+              " like the columns of /system/B");
   }
   for (std::size_t i = 0; i < at->size(); ++i) out.push_back(read_signal(at->item(i)));
 }
@@ -60,13 +65,16 @@ void read_input(const Cursor& simulate, std::optional<Index> inputs, std::vector
 /// Disturbances are drawn from bounded sets only.
 void expect_bounded(const Cursor& data, const LineForm& X, const char* key) {
   if (X.lines() == 0 || is_bounded(X) == Answer::yes) return;
-  data.error(std::string("cannot be simulated: /system/") + key + " is unbounded", "bound " + std::string(key) + ", or use recorded data: \"csv\"");
+  data.error(std::string("cannot be simulated: /system/") + key + " is unbounded",
+             "bound " + std::string(key) + ", or use recorded data: \"csv\"");
 }
 
 SimulateSpec read_simulate(const Cursor& at, const SystemPart& system) {
   SimulateSpec spec;
-  if (!at.expect_keys({"steps", "seed", "noise", "x0", "input"}, "key of simulated data", "{\"steps\": 100, \"input\": [...]}")) return spec;
-  if (const auto steps = at.need("steps", "the number of steps: samples k = 0 ... steps")) spec.steps = read_integer(*steps, 1, max_steps).value_or(0);
+  if (!at.expect_keys({"steps", "seed", "noise", "x0", "input"}, "key of simulated data", "{\"steps\": 100, \"input\": [...]}"))
+    return spec;
+  if (const auto steps = at.need("steps", "the number of steps: samples k = 0 ... steps"))
+    spec.steps = read_integer(*steps, 1, max_steps).value_or(0);
   if (const auto seed = at.find("seed")) spec.seed = static_cast<std::uint64_t>(read_integer(*seed, 0, max_integer).value_or(0));
   if (const auto noise = at.find("noise")) {
     if (const auto name = read_choice(*noise, noise_names())) {
@@ -85,14 +93,16 @@ SimulateSpec read_simulate(const Cursor& at, const SystemPart& system) {
   return spec;
 }
 
-std::vector<std::string> read_columns(const Cursor& csv, const char* key, std::optional<Index> size, const char* like, bool needed) {
+std::vector<std::string> read_columns(const Cursor& csv, const char* key, std::optional<Index> size, const char* like,
+                                      bool needed) {
   const bool absent = !csv.find(key);
   if (absent && (!needed || size == Index{0})) return {};
   const auto at = csv.need(key, "a list of column names");
   if (!at) return {};
   auto names = read_names(*at, "column");
   if (names && size && static_cast<Index>(names->size()) != *size) {
-    at->error("names " + counted(static_cast<Index>(names->size()), "column") + ", must name " + std::to_string(*size) + " like " + like);
+    at->error("names " + counted(static_cast<Index>(names->size()), "column") + ", must name " + std::to_string(*size) +
+              " like " + like);
   }
   return names.value_or(std::vector<std::string>{});
 }
@@ -100,7 +110,9 @@ std::vector<std::string> read_columns(const Cursor& csv, const char* key, std::o
 DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::path& folder) {
   DataPart part;
   CsvSpec spec;
-  if (!at.expect_keys({"file", "inputs", "outputs", "truth"}, "key of recorded data", "{\"file\": \"data.csv\", \"outputs\": [\"y\"]}")) return part;
+  if (!at.expect_keys({"file", "inputs", "outputs", "truth"}, "key of recorded data",
+                      "{\"file\": \"data.csv\", \"outputs\": [\"y\"]}"))
+    return part;
   const auto file_at = at.need("file", "the CSV file, relative to the folder of the study");
   if (const auto file = file_at ? read_text(*file_at, 4096) : std::nullopt) {
     part.written_file = *file;
@@ -108,9 +120,9 @@ DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::p
     std::error_code failure;
     const auto status = std::filesystem::status(spec.file, failure);
     if (!std::filesystem::exists(status)) {
-      file_at->error("no such file: " + quoted(spec.file.string()), "the path is relative to the folder of the study");
+      file_at->error("no such file: " + quoted(spec.file.string(), 1000), "the path is relative to the folder of the study");
     } else if (std::filesystem::is_directory(status)) {
-      file_at->error("is a directory: " + quoted(spec.file.string()), "name the CSV file inside it");
+      file_at->error("is a directory: " + quoted(spec.file.string(), 1000), "name the CSV file inside it");
     }
   }
   spec.inputs = read_columns(at, "inputs", sizes.inputs, "the columns of /system/B", true);
@@ -134,13 +146,19 @@ const std::vector<std::string>& noise_names() {
 
 std::vector<std::string> signal_keys(Signal::Type type) {
   switch (type) {
-    case Signal::Type::constant: return {"offset"};
+    case Signal::Type::constant:
+      return {"offset"};
     case Signal::Type::sine:
-    case Signal::Type::cosine: return {"amplitude", "omega", "phase", "offset"};
-    case Signal::Type::step: return {"amplitude", "from", "offset"};
-    case Signal::Type::square: return {"amplitude", "period", "offset"};
-    case Signal::Type::prbs: return {"amplitude", "period", "seed", "offset"};
-    case Signal::Type::table: return {"values"};
+    case Signal::Type::cosine:
+      return {"amplitude", "omega", "phase", "offset"};
+    case Signal::Type::step:
+      return {"amplitude", "from", "offset"};
+    case Signal::Type::square:
+      return {"amplitude", "period", "offset"};
+    case Signal::Type::prbs:
+      return {"amplitude", "period", "seed", "offset"};
+    case Signal::Type::table:
+      return {"values"};
   }
   return {};
 }

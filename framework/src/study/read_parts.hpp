@@ -38,14 +38,11 @@ std::vector<std::string> signal_keys(Signal::Type type);  ///< without "type"; t
 std::size_t required_signal_keys(Signal::Type type);      ///< how many of them are required
 DataPart read_data(const Cursor& data, const SystemPart& system, const std::filesystem::path& folder);
 
-/// A component that is missing because its plugin was refused: a problem of the installation, not of the file.
-struct Refusal {
-  Diagnostic place;
-};
 struct ComponentContext {
   const Registry& registry;
   std::vector<std::string>& warnings;
-  std::vector<Refusal>& refusals;
+  std::vector<Diagnostic>&
+      refusals;  ///< components that plugins failed to provide: problems of the installation, not of the file
 };
 std::vector<PipelineSpec> read_pipelines(const Cursor& pipelines, const SystemPart& system, const ComponentContext& context);
 std::vector<ComponentSpec> read_metrics(const Cursor& metrics, const ComponentContext& context);
@@ -55,7 +52,8 @@ struct WrittenPaths {
   std::vector<std::string> plugins;
   std::string csv_file;
 };
-/// The study as JSON with every default: keys in a fixed order, sets in exchange form, doubles in the shortest form that reads back equal.
+/// The study as JSON with every default: keys in a fixed order, sets in exchange form, doubles in the shortest form that reads
+/// back equal.
 std::string resolve(const Study& study, const WrittenPaths& paths, const Registry& registry);
 
 }  // namespace cordon::json

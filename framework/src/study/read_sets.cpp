@@ -26,20 +26,24 @@ Block read_block(const Cursor& set, const char* key) {
   if (!at) return {};
   auto entries = read_matrix(*at);
   const bool good = entries.has_value();
-  if (good && entries->size() == 0 && (key == std::string_view("generators") || key == std::string_view("lines"))) entries.reset();
+  if (good && entries->size() == 0 && (key == std::string_view("generators") || key == std::string_view("lines")))
+    entries.reset();
   return {good, std::move(entries)};
 }
 
 bool expect_rows(const Cursor& set, const char* key, const Matrix& entries, Index rows, const char* like) {
   if (entries.rows() == rows) return true;
-  set.find(key)->error("is " + shape(entries.rows(), entries.cols()) + ", must have " + counted(rows, "row") + " like " + child(set.pointer(), like),
-                       "rows belong to " + std::string(like == std::string_view("center") ? "states" : "constraints") + ", columns to generators");
+  set.find(key)->error(
+      "is " + shape(entries.rows(), entries.cols()) + ", must have " + counted(rows, "row") + " like " +
+          child(set.pointer(), like),
+      "rows belong to " + std::string(like == std::string_view("center") ? "states" : "constraints") + ", columns to generators");
   return false;
 }
 
 bool expect_cols(const Cursor& set, const char* key, const Matrix& entries, Index cols, const char* like) {
   if (entries.cols() == cols) return true;
-  set.find(key)->error("is " + shape(entries.rows(), entries.cols()) + ", must have " + counted(cols, "column") + " like " + child(set.pointer(), like));
+  set.find(key)->error("is " + shape(entries.rows(), entries.cols()) + ", must have " + counted(cols, "column") + " like " +
+                       child(set.pointer(), like));
   return false;
 }
 
@@ -77,7 +81,8 @@ std::optional<Box> read_box(const Cursor& set, bool finite) {
     const double low = (*lower)[i], high = (*upper)[i];
     good = expect_interval(*lower_at, *upper_at, static_cast<std::size_t>(i), low, high) && good;
     if (finite && std::isinf(low) && std::isinf(high)) {
-      lower_at->item(static_cast<std::size_t>(i)).error("the bounds of a polytope are finite", "give a box that contains the polytope");
+      lower_at->item(static_cast<std::size_t>(i))
+          .error("the bounds of a polytope are finite", "give a box that contains the polytope");
       good = false;
     }
   }
@@ -186,11 +191,13 @@ LineForm make_polytope(const Box& box, MatrixIn H, VectorIn h) {
   for (Index i = 0; i < m; ++i) {
     const rounding::Range left = rounding::subtract({h[i], h[i]}, rounding::dot(H.row(i).transpose(), B.c));  // h_i - H_i c
     const double row_error = rounding::norm_1(error.row(i).transpose()).upper;
-    const double largest = rounding::up(rounding::up(left.upper + rounding::norm_1(X.A.row(i).head(g).transpose()).upper) + row_error);
+    const double largest =
+        rounding::up(rounding::up(left.upper + rounding::norm_1(X.A.row(i).head(g).transpose()).upper) + row_error);
     if (largest < 0) return make_empty(B.dim());
     const double middle = largest / 2;
     X.b[i] = left.lower - middle;
-    const double shift = rounding::up(rounding::up(left.upper - middle) - X.b[i]);  // how far the true right-hand side may lie above b
+    const double shift =
+        rounding::up(rounding::up(left.upper - middle) - X.b[i]);  // how far the true right-hand side may lie above b
     const double below = rounding::up(X.b[i] - rounding::down(left.lower - middle));
     X.A(i, g + i) = rounding::up(middle + rounding::up(row_error + std::max(shift, below)));
   }

@@ -17,9 +17,10 @@ const std::vector<std::string>& set_types();
 /// is returned and `warnings` tells.
 std::optional<LineForm> read_set(const Cursor& at, std::vector<std::string>& warnings);
 
-/// {x : lower ≤ x ≤ upper, H x ≤ h} with finite bounds, as a constrained zonotope: the box's generators and one more generator and constraint per row,
-/// H_i (c + G ξ) + s_i = h_i with the slack s_i ∈ [0, h_i - min H_i x]. The slack's interval is widened by the rounding errors of its row, so
-/// that the set is enclosed. ∅ if a half-space is proven to miss the box. [Scott2016, Thm 1]
+/// {x : lower ≤ x ≤ upper, H x ≤ h} with finite bounds, as a constrained zonotope: the box's generators and one more generator
+/// and constraint per row, H_i (c + G ξ) + s_i = h_i with the slack s_i ∈ [0, h_i - min H_i x]. The slack's interval is widened
+/// by the rounding errors of its row, so that the set is enclosed. ∅ if a half-space is proven to miss the box. [Scott2016, Thm
+/// 1]
 LineForm make_polytope(const Box& box, MatrixIn H, VectorIn h);
 
 }  // namespace cordon::json

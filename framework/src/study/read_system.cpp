@@ -6,11 +6,12 @@ namespace cordon::json {
 
 namespace {
 
-/// Reads the matrices of a model one after another and compares their shapes with those read before. A matrix that is wrong leaves
-/// the sizes it would have fixed unknown, and what depends on them unchecked.
+/// Reads the matrices of a model one after another and compares their shapes with those read before. A matrix that is wrong
+/// leaves the sizes it would have fixed unknown, and what depends on them unchecked.
 class SystemReader {
  public:
-  SystemReader(const Cursor& system, std::vector<std::string>& warnings) : system_(system), warnings_(warnings), before_(system.problems().count()) {}
+  SystemReader(const Cursor& system, std::vector<std::string>& warnings)
+      : system_(system), warnings_(warnings), before_(system.problems().count()) {}
 
   SystemPart read();
 
@@ -51,7 +52,8 @@ bool SystemReader::has_rows(const char* key, const std::optional<Matrix>& A, std
 
 bool SystemReader::has_cols(const char* key, const std::optional<Matrix>& A, std::optional<Index> cols, const char* like) {
   if (!A || !cols || A->cols() == *cols) return A.has_value();
-  system_.find(key)->error("is " + shape(A->rows(), A->cols()) + ", must have " + counted(*cols, "column") + " like " + place(like));
+  system_.find(key)->error("is " + shape(A->rows(), A->cols()) + ", must have " + counted(*cols, "column") + " like " +
+                           place(like));
   return false;
 }
 
@@ -60,7 +62,8 @@ void SystemReader::read_dynamics(bool descriptor) {
   std::optional<Index>& n = part_.sizes.states;
   if (const auto A = needed_matrix("A", "the matrix of x⁺ = A x + B u + Bw w, n × n")) {
     if (A->rows() != A->cols() || A->rows() == 0 || A->rows() > max_dimension) {
-      system_.find("A")->error("is " + shape(A->rows(), A->cols()) + (A->rows() == A->cols() ? ", must have 1 to 1000 rows" : ", must be square"));
+      system_.find("A")->error("is " + shape(A->rows(), A->cols()) +
+                               (A->rows() == A->cols() ? ", must have 1 to 1000 rows" : ", must be square"));
     } else {
       n = A->rows();
       model.A = *A;
@@ -99,7 +102,8 @@ void SystemReader::read_outputs() {
   std::optional<Index>& p = part_.sizes.outputs;
   const auto C = needed_matrix("C", "the matrix of y = C x + D u + Dv v");
   if (C && (C->rows() == 0 || C->rows() > max_dimension)) {
-    system_.find("C")->error("is " + shape(C->rows(), C->cols()) + ", must have 1 to 1000 rows", "an observer needs at least one output");
+    system_.find("C")->error("is " + shape(C->rows(), C->cols()) + ", must have 1 to 1000 rows",
+                             "an observer needs at least one output");
   } else if (C) {
     p = C->rows();
     if (has_cols("C", C, sizes.states, "A")) model.C = *C;
@@ -125,7 +129,8 @@ void SystemReader::read_bounds_set(const char* key, std::optional<Index> dim, co
     out = make_point(Vector(0));
     return;
   }
-  const auto at = system_.need(key, "the set of all values it can take, for example {\"type\": \"box\", \"lower\": [...], \"upper\": [...]}");
+  const auto at =
+      system_.need(key, "the set of all values it can take, for example {\"type\": \"box\", \"lower\": [...], \"upper\": [...]}");
   auto X = at ? read_set(*at, warnings_) : std::nullopt;
   if (!X) return;
   if (dim && X->dim() != *dim) {
@@ -154,7 +159,8 @@ SystemPart SystemReader::read() {
   const auto type = type_at ? read_choice(*type_at, system_types()) : std::nullopt;
   std::vector<std::string> keys{"type", "E", "A", "B", "Bw", "C", "D", "Dv", "X0", "W", "V"};
   if (type == "lti") {
-    if (const auto E = system_.find("E")) E->error("belongs to descriptor systems", "write \"type\": \"descriptor\", or remove E");
+    if (const auto E = system_.find("E"))
+      E->error("belongs to descriptor systems", "write \"type\": \"descriptor\", or remove E");
   }
   system_.expect_keys(keys, "key of a system", "");
   read_dynamics(type == "descriptor");
