@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "registry/catalogue.hpp"
+
+#include <fmt/format.h>
+
+#include "registry/descriptor.hpp"
+
+namespace cordon::registry {
+
+namespace {
+
+void check_schema(const std::string& component, const ParamSchema& schema, std::vector<std::string>& problems) {
+  for (const ParamSpec& spec : schema.specs()) {
+    if (!is_snake_case(spec.name))
+      problems.push_back(fmt::format("parameter \"{}\" of {} is not in snake_case", spec.name, component));
+    if (spec.doc.empty()) problems.push_back(fmt::format("parameter \"{}\" of {} is not documented", spec.name, component));
+  }
+}
+
+template <class Entry>
+void remove_from(Shelf<Entry>& shelf, std::string_view plugin) {
+  std::erase_if(shelf, [&](const auto& item) { return item.second.plugin == plugin; });
+}
+
+}  // namespace
+
+void Catalogue::remove(std::string_view plugin) {
+  remove_from(backends, plugin);
+  remove_from(observers, plugin);
+  remove_from(metrics, plugin);
+}
+
+template <class Entry>
+void Batch::add(Shelf<Entry>& mine, const Shelf<Entry>& known, const std::string& kind, Entry entry) {
+  const std::string component = kind + " \"" + entry.info.name + "\"";
+  components_.push_back(kind + " " + entry.info.name);
+  if (!is_snake_case(entry.info.name)) problems_.push_back(component + " is not in snake_case");
+  if (entry.info.summary.empty()) problems_.push_back(component + " has no summary");
+  check_schema(component, entry.info.schema, problems_);
+  if (!entry.create) problems_.push_back(component + " has no function that makes it");
+  if (mine.count(entry.info.name)) problems_.push_back(component + " is registered twice");
+  if (const auto other = known.find(entry.info.name); other != known.end()) {
+    problems_.push_back(component + (other->second.plugin.empty()
+                                         ? " is there already, from this program itself"
+                                         : " is there already, from plugin \"" + other->second.plugin + "\""));
+  }
+  std::string name = entry.info.name;
+  mine.emplace(std::move(name), Provided<Entry>{std::move(entry), plugin_});
+}
+
+void Batch::backend(BackendEntry entry) { add(mine_.backends, known_.backends, "backend", std::move(entry)); }
+void Batch::observer(ObserverEntry entry) { add(mine_.observers, known_.observers, "observer", std::move(entry)); }
+void Batch::metric(MetricEntry entry) { add(mine_.metrics, known_.metrics, "metric", std::move(entry)); }
+
+void Batch::commit(Catalogue& catalogue) {
+  catalogue.backends.merge(mine_.backends);
+  catalogue.observers.merge(mine_.observers);
+  catalogue.metrics.merge(mine_.metrics);
+}
+
+}  // namespace cordon::registry

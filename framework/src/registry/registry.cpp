@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/registry/registry.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "registry/catalogue.hpp"
+#include "registry/loader.hpp"
+
+namespace cordon {
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace registry;
+
+template <class Entry>
+std::vector<std::string> names(const Shelf<Entry>& shelf) {
+  std::vector<std::string> names;
+  for (const auto& item : shelf) names.push_back(item.first);
+  return names;
+}
+
+template <class Entry>
+const ComponentInfo* info(const Shelf<Entry>& shelf, std::string_view name) {
+  const auto found = shelf.find(name);
+  return found == shelf.end() ? nullptr : &found->second.entry.info;
+}
+
+template <class Entry>
+std::string provider(const Shelf<Entry>& shelf, std::string_view name) {
+  const auto found = shelf.find(name);
+  return found == shelf.end() ? "" : found->second.plugin;
+}
+
+/// The error that is thrown is made here, never in a plugin: it may outlive the plugin's library.
+template <class Call>
+auto guarded(const std::string& plugin, const std::string& component, Call&& call) {
+  const auto broken = [&](const std::string& what) {
+    const std::string owner = plugin.empty() ? "this program" : "plugin \"" + plugin + "\"";
+    return Error(Errc::plugin, fmt::format("{} of {} threw {}", component, owner, what));
+  };
+  try {
+    return call();
+  } catch (const InputError& error) {
+    throw InputError(error.file(), error.diagnostics());
+  } catch (const Error& error) {
+    throw Error(error.code(), error.what());
+  } catch (const std::exception& error) {
+    throw broken(error.what());
+  } catch (...) {
+    throw broken("something that is no std::exception");
+  }
+}
+
+/// The control block is made here and pins the library: the last code of a plugin that runs is the object's destructor.
+template <class T>
+std::shared_ptr<T> pin(std::unique_ptr<T> made, LibraryPtr library) {
+  T* raw = made.release();
+  return std::shared_ptr<T>(raw, [library = std::move(library)](T* dying) { delete dying; });
+}
+
+}  // namespace
+
+struct Registry::State {
+  // The order matters: entries hold code of the plugins and die first.
+  std::map<std::string, LoadedPlugin, std::less<>> plugins;
+  Catalogue catalogue;
+  std::vector<PluginReport> reports;
+
+  LibraryPtr library(const std::string& plugin) const {
+    const auto found = plugins.find(plugin);
+    return found == plugins.end() ? nullptr : found->second.library;
+  }
+};
+
+namespace {
+
+template <class Entry>
+const Provided<Entry>& require(const Registry& registry, const Shelf<Entry>& shelf, const std::string& kind,
+                               std::string_view name) {
+  const auto found = shelf.find(name);
+  if (found != shelf.end()) return found->second;
+  if (const PluginReport* refused = registry.refused_provider(name)) {
+    throw Error(Errc::plugin, fmt::format("no {} \"{}\": {} was refused, {}; {}", kind, name, refused->file.string(),
+                                          refused->reason, refused->fix));
+  }
+  const std::string mend = shelf.empty() ? "no plugin provides one" : suggest(name, names(shelf));
+  throw Error(Errc::invalid, fmt::format("no {} \"{}\"; {}", kind, name, mend));
+}
+
+Params completed(const std::string& component, const ParamSchema& schema, Params params) {
+  std::vector<Diagnostic> problems = schema.complete(params);
+  if (!problems.empty()) throw InputError(component, std::move(problems));
+  return params;
+}
+
+/// `create` is called with complete parameters.
+template <class T, class Entry, class Create>
+std::shared_ptr<T> make(const Provided<Entry>& provided, const std::string& kind, const Params& given, LibraryPtr library,
+                        Create&& create) {
+  const std::string component = fmt::format("{} \"{}\"", kind, provided.entry.info.name);
+  const Params params = completed(component, provided.entry.info.schema, given);
+  std::unique_ptr<T> made = guarded(provided.plugin, component, [&] { return create(provided.entry, params); });
+  if (!made)
+    throw Error(Errc::plugin,
+                fmt::format("{} of plugin \"{}\" was not made: its function returned nothing", component, provided.plugin));
+  return pin(std::move(made), std::move(library));
+}
+
+}  // namespace
+
+Registry::Registry() : state_(std::make_unique<State>()) {}
+Registry::~Registry() = default;
+
+void Registry::load(const SearchPath& path) {
+  for (const fs::path& directory : path.directories) {
+    std::error_code error;
+    std::vector<fs::path> files;
+    for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
+      if (entry->path().extension() == ".so") files.push_back(entry->path());
+    }
+    if (error && error != std::errc::no_such_file_or_directory) {
+      PluginReport report;
+      report.file = directory;
+      report.name = directory.stem().string();
+      report.reason = "the directory cannot be read: " + error.message();
+      report.fix = "check its permissions, or take it off the search path";
+      state_->reports.push_back(std::move(report));
+    }
+    std::sort(files.begin(), files.end());
+    for (const fs::path& file : files) load_file(file);
+  }
+}
+
+const PluginReport& Registry::load_file(const fs::path& file) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(file, error).lexically_normal();
+  auto& reports = state_->reports;
+  auto report = std::find_if(reports.begin(), reports.end(), [&](const PluginReport& r) {
+    return r.file == absolute || (r.state == PluginReport::State::loaded && fs::equivalent(r.file, absolute, error));
+  });
+  if (report != reports.end() && report->state == PluginReport::State::loaded) return *report;
+  if (report == reports.end()) report = reports.insert(reports.end(), PluginReport{});
+  *report = load_plugin(absolute, state_->plugins, state_->catalogue);
+  return *report;
+}
+
+void Registry::unload(std::string_view plugin) {
+  const auto found = state_->plugins.find(plugin);
+  if (found == state_->plugins.end()) {
+    std::vector<std::string> loaded;
+    for (const auto& item : state_->plugins) loaded.push_back(item.first);
+    throw Error(Errc::invalid, fmt::format("no plugin \"{}\" is loaded; {}", plugin, suggest(plugin, loaded)));
+  }
+  if (const long live = found->second.library.use_count() - 1; live > 0) {
+    throw Error(Errc::plugin, fmt::format("plugin \"{}\" cannot be unloaded while {} of its backends, observers or metrics live; "
+                                          "let go of them and of their sets first",
+                                          plugin, live));
+  }
+  std::erase_if(state_->reports,
+                [&](const PluginReport& r) { return r.state == PluginReport::State::loaded && r.name == plugin; });
+  state_->catalogue.remove(found->first);
+  state_->plugins.erase(found);
+}
+
+std::string_view to_string(PluginReport::State state) noexcept {
+  switch (state) {
+    case PluginReport::State::loaded:
+      return "loaded";
+    case PluginReport::State::shadowed:
+      return "shadowed";
+    case PluginReport::State::refused:
+      return "refused";
+  }
+  return "refused";
+}
+
+const std::vector<PluginReport>& Registry::reports() const { return state_->reports; }
+
+std::vector<std::string> Registry::backends() const { return names(state_->catalogue.backends); }
+std::vector<std::string> Registry::observers() const { return names(state_->catalogue.observers); }
+std::vector<std::string> Registry::metrics() const { return names(state_->catalogue.metrics); }
+const ComponentInfo* Registry::backend_info(std::string_view name) const { return info(state_->catalogue.backends, name); }
+const ComponentInfo* Registry::observer_info(std::string_view name) const { return info(state_->catalogue.observers, name); }
+const ComponentInfo* Registry::metric_info(std::string_view name) const { return info(state_->catalogue.metrics, name); }
+
+std::string Registry::plugin_of(std::string_view kind, std::string_view name) const {
+  if (kind == "backend") return provider(state_->catalogue.backends, name);
+  if (kind == "observer") return provider(state_->catalogue.observers, name);
+  if (kind == "metric") return provider(state_->catalogue.metrics, name);
+  throw Error(Errc::invalid,
+              fmt::format("no kind of component \"{}\"; {}", kind, suggest(kind, {"backend", "observer", "metric"})));
+}
+
+const PluginReport* Registry::refused_provider(std::string_view component) const {
+  const auto refused = [&](auto&& holds) -> const PluginReport* {
+    const auto found = std::find_if(state_->reports.begin(), state_->reports.end(), [&](const PluginReport& report) {
+      return report.state == PluginReport::State::refused && holds(report);
+    });
+    return found == state_->reports.end() ? nullptr : &*found;
+  };
+  const auto registers = [&](const PluginReport& report) {
+    return std::any_of(report.components.begin(), report.components.end(),
+                       [&](const std::string& c) { return std::string_view(c).substr(c.find(' ') + 1) == component; });
+  };
+  const auto is_named = [&](const PluginReport& report) { return report.file.stem() == component || report.name == component; };
+  if (const PluginReport* report = refused(registers)) return report;
+  if (const PluginReport* report = refused(is_named)) return report;
+  return refused([&](const PluginReport& report) { return file_holds_name(report.file, component); });
+}
+
+std::shared_ptr<const SetBackend> Registry::make_backend(std::string_view name, const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.backends, "backend", name);
+  return make<SetBackend>(provided, "backend", params, state_->library(provided.plugin),
+                          [](const BackendEntry& entry, const Params& p) { return entry.create(p); });
+}
+
+std::vector<Diagnostic> Registry::check_observer(std::string_view name, const ObserverContext& context,
+                                                 const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.observers, "observer", name);
+  const std::string component = fmt::format("observer \"{}\"", name);
+  Params complete = params;
+  std::vector<Diagnostic> problems = provided.entry.info.schema.complete(complete);
+  if (!problems.empty() || !provided.entry.check) return problems;
+  return guarded(provided.plugin, component, [&] { return provided.entry.check(context, complete); });
+}
+
+std::shared_ptr<Observer> Registry::make_observer(std::string_view name, const ObserverContext& context,
+                                                  const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.observers, "observer", name);
+  return make<Observer>(provided, "observer", params, state_->library(provided.plugin),
+                        [&](const ObserverEntry& entry, const Params& p) { return entry.create(context, p); });
+}
+
+std::shared_ptr<Metric> Registry::make_metric(std::string_view name, const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.metrics, "metric", name);
+  return make<Metric>(provided, "metric", params, state_->library(provided.plugin),
+                      [](const MetricEntry& entry, const Params& p) { return entry.create(p); });
+}
+
+void Registry::add(void (*register_components)(Registrar&)) {
+  Batch batch(state_->catalogue, "");
+  register_components(batch);
+  if (!batch.problems().empty()) throw Error(Errc::invalid, fmt::format("{}", fmt::join(batch.problems(), "; ")));
+  batch.commit(state_->catalogue);
+}
+
+}  // namespace cordon
