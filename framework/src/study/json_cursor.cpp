@@ -64,7 +64,9 @@ void Cursor::error(std::string message, std::string suggestion) const {
 
 bool Cursor::expect(Kind kind, const std::string& suggestion) const {
   if (is(kind)) return true;
-  if (!is(Kind::broken)) {
+  if (is(Kind::broken)) {
+    problems_->pass_over();
+  } else {
     std::string hint = suggestion;
     if (hint.empty() && is(Kind::text) && kind == Kind::number) hint = "write the number without quotes";
     error("is " + std::string(kind_name(value_->kind)) + ", must be " + std::string(kind_name(kind)), std::move(hint));
@@ -124,7 +126,7 @@ std::optional<std::string> read_choice(const Cursor& at, const std::vector<std::
   if (!at.expect(Kind::text, suggest("", choices))) return std::nullopt;
   const std::string& text = at.value().text();
   if (std::find(choices.begin(), choices.end(), text) != choices.end()) return text;
-  at.error("unknown choice " + quoted(text), suggest(text, choices));
+  at.error("unknown choice " + in_quotes(text), suggest(text, choices));
   return std::nullopt;
 }
 
@@ -174,9 +176,8 @@ std::optional<Matrix> read_matrix(const Cursor& at) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < rows.size() && wrong < shown_entries; ++i) {
     const Cursor row = at.item(i);
-    if (!row.expect(Kind::array, form)) {
-      ++wrong;
-    } else if (row.size() != cols) {
+    if (!row.expect(Kind::array, form)) return std::nullopt;  // the other rows are probably of the same kind
+    if (row.size() != cols) {
       ++wrong;
       row.error("has " + counted(static_cast<Index>(row.size()), "number") + ", the first row has " + std::to_string(cols),
                 "all rows are of equal length");
@@ -199,7 +200,7 @@ std::optional<std::vector<std::string>> read_names(const Cursor& at, const std::
     good = good && name.has_value();
     if (!name) continue;
     if (!seen.insert(*name).second) {
-      item.error("repeats the " + noun + " " + quoted(*name), "name each " + noun + " once");
+      item.error("repeats the " + noun + " " + in_quotes(*name), "name each " + noun + " once");
       good = false;
     }
     names.push_back(*name);

@@ -79,7 +79,7 @@ class Parser {
   [[noreturn]] void fail(std::string message, std::string suggestion = "") const {
     fail_at(at_, std::move(message), std::move(suggestion));
   }
-  [[noreturn]] static void fail_at(std::size_t position, std::string message, std::string suggestion) {
+  [[noreturn]] static void fail_at(std::size_t position, std::string message, std::string suggestion = "") {
     throw SyntaxError{position, std::move(message), std::move(suggestion)};
   }
   std::string found() const;
@@ -107,7 +107,7 @@ std::string Parser::found() const {
   if (is_word(peek()))
     end = static_cast<std::size_t>(std::find_if_not(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), is_word) -
                                    text_.begin());
-  return "found " + (peek() == '"' ? std::string("a text") : quoted(text_.substr(at_, end - at_)));
+  return "found " + (peek() == '"' ? std::string("a text") : in_quotes(text_.substr(at_, end - at_)));
 }
 
 void Parser::report_syntax(std::size_t position, std::string message, std::string suggestion) {
@@ -176,7 +176,7 @@ Value Parser::value() {
   if (c == '-' || is_digit(c)) return number();
   if (is_word(c)) return word();
   if (c == '\'') fail("texts are written in double quotes");
-  if (c == '+' || c == '.') fail("a number cannot begin with " + quoted(std::string_view(&c, 1)), "write 0.5, not .5 or +0.5");
+  if (c == '+' || c == '.') fail("a number cannot begin with " + in_quotes(std::string_view(&c, 1)), "write 0.5, not .5 or +0.5");
   fail("a value is missing, " + found(), c == ']' || c == '}' ? "is there a comma too many?" : "");
 }
 
@@ -195,7 +195,7 @@ Value Parser::object() {
     std::string key = string();
     path_.back().key = key;
     skip_space();
-    if (!take(':')) fail("a colon is missing after the key " + quoted(key) + ", " + found());
+    if (!take(':')) fail("a colon is missing after the key " + in_quotes(key) + ", " + found());
     skip_space();
     Value member = value();
     if (seen.insert(key).second) {
@@ -254,7 +254,7 @@ Value Parser::word() {
     return broken_number(std::string(name) + " is not a number",
                          "numbers are finite; only bounds of a box may be free: \"-inf\" and \"inf\" in quotes");
   }
-  fail_at(begin, "unknown word " + quoted(name),
+  fail_at(begin, "unknown word " + in_quotes(name),
           "texts are written in double quotes; the words of JSON are true, false and null");
 }
 
@@ -264,7 +264,11 @@ Value Parser::number() {
     if (!is_digit(peek())) fail(std::string("a digit is missing ") + where + ", " + found());
     while (is_digit(peek())) ++at_;
   };
-  if (take('-') && is_word(peek())) return word();
+  if (take('-') && is_word(peek())) {
+    Value infinite = word();
+    if (infinite.kind != Value::Kind::broken) fail_at(begin, "a digit is missing after the sign");
+    return infinite;
+  }
   const std::size_t first = at_;
   digits("in a number");
   if (text_[first] == '0' && at_ > first + 1) fail_at(first, "a number begins with a superfluous 0", "write 7, not 07");
@@ -276,7 +280,7 @@ Value Parser::number() {
   Value result = of_kind(Value::Kind::number);
   const auto [end, code] = std::from_chars(text_.data() + begin, text_.data() + at_, result.number);
   if (code != std::errc() || end != text_.data() + at_) {
-    return broken_number(quoted(text_.substr(begin, at_ - begin)) + " is beyond the range of double numbers",
+    return broken_number(in_quotes(text_.substr(begin, at_ - begin)) + " is beyond the range of double numbers",
                          "about 1e-308 to 1.8e308, or 0");
   }
   return result;

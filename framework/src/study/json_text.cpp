@@ -73,7 +73,7 @@ std::string_view kind_name(Value::Kind kind) noexcept {
   return "broken";
 }
 
-std::string quoted(std::string_view word, std::size_t limit) { return '"' + escaped(word, limit) + '"'; }
+std::string in_quotes(std::string_view word, std::size_t limit) { return '"' + escaped(word, limit) + '"'; }
 
 std::string child(std::string_view pointer, std::string_view key) {
   std::string text(pointer);

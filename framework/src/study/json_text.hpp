@@ -41,7 +41,7 @@ std::string_view kind_name(Value::Kind kind) noexcept;
 
 /// `word` in double quotes, control characters escaped, cut after about `limit` bytes: what comes from a file is printed to a
 /// terminal.
-std::string quoted(std::string_view word, std::size_t limit = 60);
+std::string in_quotes(std::string_view word, std::size_t limit = 60);
 /// One more step of a JSON pointer (RFC 6901): "~" and "/" of the key are escaped.
 std::string child(std::string_view pointer, std::string_view key);
 std::string child(std::string_view pointer, std::size_t index);
@@ -52,12 +52,16 @@ class Problems {
   void add(std::string pointer, int line, std::string message, std::string suggestion = "");
   bool any() const { return count_ > 0; }
   std::size_t count() const { return count_; }
+  /// A reader met a value that was reported before.
+  void pass_over() { ++passed_over_; }
+  /// Grows with every wrong value that a reader meets: unchanged over a section, the section is right.
+  std::size_t met() const { return count_ + passed_over_; }
   /// In the order of their lines; the last one tells how many were left out.
   std::vector<Diagnostic> sorted() const;
 
  private:
   std::vector<Diagnostic> found_;
-  std::size_t count_ = 0;
+  std::size_t count_ = 0, passed_over_ = 0;
 };
 
 inline constexpr std::size_t max_bytes = std::size_t{64} << 20;

@@ -74,7 +74,7 @@ void read_params(const Cursor& at, const ParamSchema& schema, const std::string&
                  Params& params) {
   std::vector<std::string> names = schema.names();
   names.insert(names.begin(), "type");
-  at.expect_keys(names, "parameter of " + component, "");
+  if (at.is(Kind::object)) at.expect_keys(names, "parameter of " + component, "");
   std::vector<std::string> wrong;
   for (const ParamSpec& spec : schema.specs()) {
     const auto value_at = at.find(spec.name);
@@ -91,7 +91,7 @@ void read_params(const Cursor& at, const ParamSchema& schema, const std::string&
 }
 
 void report_unknown(const Cursor& type_at, const Shelf& shelf, const std::string& type, const ComponentContext& context) {
-  const std::string what = std::string("no ") + shelf.kind + " " + quoted(type);
+  const std::string what = std::string("no ") + shelf.kind + " " + in_quotes(type);
   if (const PluginReport* refused = context.registry.refused_provider(type)) {
     const std::string reason = what + ": its plugin " + refused->file.string() + " was refused: " + refused->reason;
     context.refusals.push_back({type_at.pointer(), reason, refused->fix, type_at.value().line});
@@ -99,7 +99,7 @@ void report_unknown(const Cursor& type_at, const Shelf& shelf, const std::string
   }
   const std::vector<std::string> names = (context.registry.*shelf.names)();
   if (const std::string near = nearest(type, names); !near.empty()) {
-    type_at.error(what, "did you mean " + quoted(near) + "?");
+    type_at.error(what, "did you mean " + in_quotes(near) + "?");
   } else if (names.empty()) {
     type_at.error(what, std::string("no loaded plugin provides a ") + shelf.kind +
                             "; `cordon doctor` tells which plugins were found where");
@@ -124,10 +124,10 @@ std::optional<ComponentSpec> read_component(const Cursor& at, const Shelf& shelf
     report_unknown(*type_at, shelf, *type, context);
     return std::nullopt;
   }
-  const std::size_t before = at.problems().count();
+  const std::size_t before = at.problems().met();
   ComponentSpec spec{*type, {}};
-  read_params(at, info->schema, std::string(shelf.kind) + " " + quoted(*type), context, spec.params);
-  return at.problems().count() == before ? std::optional<ComponentSpec>(std::move(spec)) : std::nullopt;
+  read_params(at, info->schema, std::string(shelf.kind) + " " + in_quotes(*type), context, spec.params);
+  return at.problems().met() == before ? std::optional<ComponentSpec>(std::move(spec)) : std::nullopt;
 }
 
 /// Makes the backend and asks the observer whether it can work with it on this model. What a plugin throws becomes a problem of
@@ -200,7 +200,7 @@ std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& sys
     if (const auto name_at = item.find("name")) {
       name_at->error("repeats the name of " + other, "names of pipelines are unique");
     } else {
-      item.error("has the same name as " + other + ": " + quoted(name) + ", by default that of its backend",
+      item.error("has the same name as " + other + ": " + in_quotes(name) + ", by default that of its backend",
                  "give it a \"name\"");
     }
   }

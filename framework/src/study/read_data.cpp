@@ -29,9 +29,9 @@ Signal read_signal(const Cursor& at) {
       static_cast<Signal::Type>(std::find(signal_types().begin(), signal_types().end(), *name) - signal_types().begin());
   std::vector<std::string> keys = signal_keys(signal.type);
   for (std::size_t i = 0; i < required_signal_keys(signal.type); ++i)
-    at.need(keys[i], "needed by a signal of type " + quoted(*name));
+    at.need(keys[i], "needed by a signal of type " + in_quotes(*name));
   keys.insert(keys.begin(), "type");
-  at.expect_keys(keys, "key of a signal of type " + quoted(*name), "");
+  at.expect_keys(keys, "key of a signal of type " + in_quotes(*name), "");
   real(at, "offset", signal.offset);
   real(at, "amplitude", signal.amplitude);
   real(at, "omega", signal.omega);
@@ -120,9 +120,9 @@ DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::p
     std::error_code failure;
     const auto status = std::filesystem::status(spec.file, failure);
     if (!std::filesystem::exists(status)) {
-      file_at->error("no such file: " + quoted(spec.file.string(), 1000), "the path is relative to the folder of the study");
+      file_at->error("no such file: " + in_quotes(spec.file.string(), 1000), "the path is relative to the folder of the study");
     } else if (std::filesystem::is_directory(status)) {
-      file_at->error("is a directory: " + quoted(spec.file.string(), 1000), "name the CSV file inside it");
+      file_at->error("is a directory: " + in_quotes(spec.file.string(), 1000), "name the CSV file inside it");
     }
   }
   spec.inputs = read_columns(at, "inputs", sizes.inputs, "the columns of /system/B", true);
@@ -168,12 +168,13 @@ std::size_t required_signal_keys(Signal::Type type) {
 }
 
 DataPart read_data(const Cursor& data, const SystemPart& system, const std::filesystem::path& folder) {
+  const std::size_t before = data.problems().count();
   if (!data.expect_keys({"simulate", "csv"}, "kind of data", "{\"simulate\": {...}} or {\"csv\": {...}}")) return {};
   const auto simulate = data.find("simulate"), csv = data.find("csv");
   if (simulate && csv) {
     data.error("holds both \"simulate\" and \"csv\"", "remove one of the two");
   } else if (!simulate && !csv) {
-    data.error("holds neither \"simulate\" nor \"csv\"", "give one of the two");
+    if (data.problems().count() == before) data.error("holds neither \"simulate\" nor \"csv\"", "give one of the two");
   } else if (csv) {
     return read_csv(*csv, system.sizes, folder);
   } else {

@@ -210,7 +210,7 @@ std::optional<LineForm> read_set(const Cursor& at, std::vector<std::string>& war
   const auto name = type_at ? read_choice(*type_at, set_types()) : std::nullopt;
   if (!name) return std::nullopt;
   const auto type = std::find_if(types().begin(), types().end(), [&](const SetType& t) { return t.name == *name; });
-  at.expect_keys(type->keys, "key of a set of type " + quoted(*name), "");
+  at.expect_keys(type->keys, "key of a set of type " + in_quotes(*name), "");
   try {
     std::optional<LineForm> X = type->read(at);
     if (!X) return std::nullopt;

@@ -13,7 +13,8 @@ constexpr std::size_t max_title = 1000;
 /// Reads the sections of one file in turn.
 class StudyReader {
  public:
-  StudyReader(const std::filesystem::path& file, Registry& registry) : file_(file), registry_(registry) {}
+  StudyReader(const std::filesystem::path& file, Registry& registry, const SearchPath& path)
+      : file_(file), registry_(registry), path_(path) {}
 
   Study read();
 
@@ -28,6 +29,7 @@ class StudyReader {
 
   std::filesystem::path file_;
   Registry& registry_;
+  const SearchPath& path_;
   Problems problems_;
   std::vector<Diagnostic> refusals_;
   WrittenPaths paths_;
@@ -53,19 +55,20 @@ void StudyReader::read_title(const Cursor& root) {
 }
 
 void StudyReader::load_plugins(const Cursor& root) {
-  std::vector<std::filesystem::path> directories;
+  SearchPath path;
   if (const auto at = root.find("plugins")) {
     paths_.plugins = read_names(*at, "directory").value_or(std::vector<std::string>{});
     for (std::size_t i = 0; i < paths_.plugins.size(); ++i) {
-      directories.push_back(folder() / paths_.plugins[i]);
+      path.directories.push_back(folder() / paths_.plugins[i]);
       std::error_code failure;
-      if (!std::filesystem::is_directory(directories.back(), failure)) {
-        at->item(i).error("no such directory: " + quoted(directories.back().string(), 1000),
+      if (!std::filesystem::is_directory(path.directories.back(), failure)) {
+        at->item(i).error("no such directory: " + in_quotes(path.directories.back().string(), 1000),
                           "the path is relative to the folder of the study");
       }
     }
   }
-  registry_.load(default_search_path(directories));
+  path.directories.insert(path.directories.end(), path_.directories.begin(), path_.directories.end());
+  registry_.load(path);
 }
 
 void StudyReader::read_sections(const Cursor& root) {
@@ -122,6 +125,8 @@ Study StudyReader::read() {
 
 }  // namespace
 
-Study read_study(const std::filesystem::path& file, Registry& registry) { return StudyReader(file, registry).read(); }
+Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path) {
+  return StudyReader(file, registry, path).read();
+}
 
 }  // namespace cordon

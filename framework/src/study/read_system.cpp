@@ -11,7 +11,7 @@ namespace {
 class SystemReader {
  public:
   SystemReader(const Cursor& system, std::vector<std::string>& warnings)
-      : system_(system), warnings_(warnings), before_(system.problems().count()) {}
+      : system_(system), warnings_(warnings), before_(system.problems().met()) {}
 
   SystemPart read();
 
@@ -166,7 +166,7 @@ SystemPart SystemReader::read() {
   read_dynamics(type == "descriptor");
   read_outputs();
   read_sets(disturbances_, noises_);
-  part_.good = system_.problems().count() == before_;
+  part_.good = system_.problems().met() == before_;
   return std::move(part_);
 }
 
