@@ -40,6 +40,7 @@ void Batch::add(Shelf<Entry>& mine, const Shelf<Entry>& known, const std::string
   if (!entry.create) problems_.push_back(component + " has no function that makes it");
   if (mine.count(entry.info.name)) problems_.push_back(component + " is registered twice");
   if (const auto other = known.find(entry.info.name); other != known.end()) {
+    collides_ = true;
     problems_.push_back(component + (other->second.plugin.empty()
                                          ? " is there already, from this program itself"
                                          : " is there already, from plugin \"" + other->second.plugin + "\""));

@@ -36,7 +36,8 @@ class Batch final : public Registrar {
   void observer(ObserverEntry entry) override;
   void metric(MetricEntry entry) override;
 
-  const std::vector<std::string>& problems() const { return problems_; }      ///< broken rules; none: may be committed
+  const std::vector<std::string>& problems() const { return problems_; }  ///< broken rules; none: may be committed
+  bool collides() const { return collides_; }  ///< one of the problems is a name that somebody else has
   const std::vector<std::string>& components() const { return components_; }  ///< "backend zonotope", …
   void commit(Catalogue& catalogue);
 
@@ -48,6 +49,7 @@ class Batch final : public Registrar {
   std::string plugin_;
   Catalogue mine_;
   std::vector<std::string> problems_, components_;
+  bool collides_ = false;
 };
 
 }  // namespace cordon::registry

@@ -17,19 +17,13 @@ class Library {
   boost::dll::shared_library handle_;
 };
 
-LibraryPtr open_library(const std::filesystem::path& file, std::string& why) try {
+LibraryPtr open_library(const std::filesystem::path& file, std::string& why) {
   ::dlerror();  // forget older messages
   std::error_code error;
   boost::dll::shared_library handle(file, boost::dll::load_mode::rtld_now, error);
   if (!error && handle.is_loaded()) return std::make_shared<const Library>(std::move(handle));
   const char* message = ::dlerror();
   why = message ? message : error.message();
-  return nullptr;
-} catch (const std::exception& thrown) {  // by a static constructor of the library
-  why = std::string("its static constructors threw: ") + thrown.what();
-  return nullptr;
-} catch (...) {
-  why = "its static constructors threw";
   return nullptr;
 }
 

@@ -29,8 +29,10 @@ std::optional<Refusal> register_into(Batch& batch, const PluginDescriptor& descr
     return Refusal{"it threw something that is no std::exception while registering", fix};
   }
   if (!batch.problems().empty()) {
-    return Refusal{fmt::format("it broke the rules of registering: {}", fmt::join(batch.problems(), "; ")),
-                   "mend the plugin, or remove the other one that has the same component"};
+    const char* mend = batch.collides()
+                           ? "remove one of the two plugins, or rename the component"
+                           : "mend what the plugin registers: snake_case names, each once, with a summary and documentation";
+    return Refusal{fmt::format("it broke the rules of registering: {}", fmt::join(batch.problems(), "; ")), mend};
   }
   return {};
 }

@@ -43,7 +43,7 @@
 #define CORDON_ABI_TSAN "0"
 #endif
 
-#define CORDON_ABI_TAG                                                                                           \
+#define CORDON_ABI_TAG \
   "gxx_abi=" CORDON_ABI_TEXT(__GXX_ABI_VERSION) ";cxx11_abi=" CORDON_ABI_TEXT(_GLIBCXX_USE_CXX11_ABI)            \
   ";stl_debug=" CORDON_ABI_DEBUG ";eigen=" CORDON_ABI_TEXT(EIGEN_WORLD_VERSION) "." CORDON_ABI_TEXT(            \
       EIGEN_MAJOR_VERSION) "." CORDON_ABI_TEXT(EIGEN_MINOR_VERSION) ";order=" CORDON_ABI_ORDER                   \

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a plugin is: a shared library with one exported descriptor. A plugin author includes this file.
+// What a plugin is: a shared library with one exported descriptor. A plugin author includes this file. Keep static objects
+// trivial: their constructors run before the ABI tag is compared, and what they throw ends the program.
 //
 //   void register_components(cordon::Registrar& registrar) { registrar.backend({...}); }
 //   CORDON_PLUGIN("my_box", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "axis-aligned boxes", register_components)
@@ -27,7 +28,8 @@ struct ComponentInfo {
   ParamSchema schema;
 };
 
-/// What an observer is made for. `check` functions see the same, so that impossible combinations are reported with all other errors.
+/// What an observer is made for. `check` functions see the same, so that impossible combinations are reported with all other
+/// errors.
 struct ObserverContext {
   const Model& model;
   std::shared_ptr<const SetBackend> backend;
@@ -39,7 +41,8 @@ struct BackendEntry {
 };
 struct ObserverEntry {
   ComponentInfo info;
-  /// Problems of this combination of model, backend and parameters (pointers relative to the observer's object, "/name"); empty: `create` will succeed.
+  /// Problems of this combination of model, backend and parameters (pointers relative to the observer's object, "/name"); empty:
+  /// `create` will succeed.
   std::function<std::vector<Diagnostic>(const ObserverContext&, const Params&)> check;
   std::function<std::unique_ptr<Observer>(const ObserverContext&, const Params&)> create;
 };
@@ -48,7 +51,9 @@ struct MetricEntry {
   std::function<std::unique_ptr<Metric>(const Params&)> create;
 };
 
-/// Handed to a plugin's register function; what was added is rolled back if that function throws.
+/// Handed to a plugin's register function; what was added is rolled back if that function throws or breaks a rule. Names of
+/// components and parameters are in snake_case, components have a summary, parameters a documentation, and no name is there twice
+/// in its kind.
 class Registrar {
  public:
   virtual ~Registrar() = default;
@@ -73,8 +78,14 @@ struct PluginDescriptor {
 }  // namespace cordon
 
 /// Exports the descriptor under the one symbol that the host looks for.
-#define CORDON_PLUGIN(plugin_name, plugin_version, plugin_license, plugin_author, plugin_summary, register_function)             \
-  extern "C" __attribute__((visibility("default"), used)) const ::cordon::PluginDescriptor cordon_plugin_descriptor;             \
-  extern "C" const ::cordon::PluginDescriptor cordon_plugin_descriptor{                                                          \
-      sizeof(::cordon::PluginDescriptor), CORDON_ABI_VERSION, CORDON_ABI_TAG, plugin_name, plugin_version, plugin_license,       \
-      plugin_author, plugin_summary, register_function};
+#define CORDON_PLUGIN(plugin_name, plugin_version, plugin_license, plugin_author, plugin_summary, register_function) \
+  extern "C" __attribute__((visibility("default"))) const ::cordon::PluginDescriptor cordon_plugin_descriptor;       \
+  extern "C" const ::cordon::PluginDescriptor cordon_plugin_descriptor{sizeof(::cordon::PluginDescriptor),           \
+                                                                       CORDON_ABI_VERSION,                           \
+                                                                       CORDON_ABI_TAG,                               \
+                                                                       plugin_name,                                  \
+                                                                       plugin_version,                               \
+                                                                       plugin_license,                               \
+                                                                       plugin_author,                                \
+                                                                       plugin_summary,                               \
+                                                                       register_function};

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The commands: each adds its subcommand, whose callback leaves its exit code in `program.exit`.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace cordon::apps {
+
+/// What the commands share with main.
+struct Program {
+  std::vector<std::filesystem::path> plugins;  ///< --plugins, searched first
+  Exit exit = Exit::done;
+};
+
+void add_run(CLI::App& app, Program& program);
+void add_validate(CLI::App& app, Program& program);
+void add_list(CLI::App& app, Program& program);
+void add_info(CLI::App& app, Program& program);
+void add_schema(CLI::App& app, Program& program);
+void add_doctor(CLI::App& app, Program& program);
+
+}  // namespace cordon::apps

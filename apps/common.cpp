@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+namespace cordon::apps {
+
+const char* const exit_codes_help =
+    "Exit codes:\n"
+    "  0  done\n"
+    "  1  internal error\n"
+    "  2  invalid input, or a file that cannot be read or written\n"
+    "  3  a plugin was refused or failed\n"
+    "  4  a claimed guarantee was violated\n"
+    "  5  a solver gave no answer in its limit\n"
+    "Plugins are searched in: --plugins, the study's \"plugins\", CORDON_PLUGIN_PATH, beside the program, the installed "
+    "directory.";
+
+Exit exit_for(Errc code) noexcept {
+  switch (code) {
+    case Errc::dimension:
+    case Errc::not_finite:
+    case Errc::invalid:
+    case Errc::unsupported:
+    case Errc::io:
+      return Exit::invalid;
+    case Errc::solver:
+      return Exit::unanswered;
+    case Errc::plugin:
+      return Exit::plugin;
+    case Errc::internal:
+      return Exit::internal;
+  }
+  return Exit::internal;
+}
+
+Exit report_current_exception() noexcept try {
+  try {
+    throw;
+  } catch (const Error& error) {
+    complain(error.what());
+    return exit_for(error.code());
+  } catch (const std::bad_alloc&) {
+    complain("out of memory");
+  } catch (const std::exception& error) {
+    complain(fmt::format("internal error: {}", error.what()));
+  } catch (...) {
+    complain("internal error: an unknown exception");
+  }
+  return Exit::internal;
+} catch (...) {
+  return Exit::internal;
+}
+
+void print(const std::string& text) {
+  static bool reader_is_gone = false;
+  if (reader_is_gone) return;
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
+  if (errno != EPIPE) throw Error(Errc::io, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+  reader_is_gone = true;
+}
+
+namespace {
+
+void to_stderr(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);  // nobody is left to be told if this fails
+}
+
+}  // namespace
+
+void note(const std::string& text) { to_stderr(text + "\n"); }
+void warn(const std::string& text) { to_stderr(Paint(stderr).yellow("warning:") + " " + text + "\n"); }
+void complain(const std::string& text) { to_stderr(Paint(stderr).red("error:") + " " + text + "\n"); }
+
+Paint::Paint(std::FILE* stream) : on_(isatty(fileno(stream)) == 1) {
+  const char *none = std::getenv("NO_COLOR"), *terminal = std::getenv("TERM");
+  if ((none && *none) || !terminal || std::strcmp(terminal, "dumb") == 0) on_ = false;
+}
+
+std::string Paint::wrap(const char* code, const std::string& text) const {
+  return on_ ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : text;
+}
+
+namespace {
+
+/// Number of code points: every byte that does not continue one.
+std::size_t width(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
+std::string table(const std::vector<std::vector<std::string>>& rows, const Paint& paint) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      text += &row == &rows.front() ? paint.bold(row[i]) : row[i];
+      if (i + 1 < row.size()) text += std::string(widths[i] - width(row[i]) + 2, ' ');
+    }
+    while (text.ends_with(' ')) text.pop_back();
+    text += '\n';
+  }
+  return text;
+}
+
+void load_plugins(Registry& registry, std::span<const std::filesystem::path> first) { registry.load(default_search_path(first)); }
+
+void warn_refused(const Registry& registry) {
+  for (const PluginReport& report : registry.reports()) {
+    if (report.state != PluginReport::State::refused) continue;
+    warn(fmt::format("{} was refused: {}; {}", report.file.string(), report.reason, report.fix));
+  }
+}
+
+std::vector<Component> components(const Registry& registry) {
+  std::vector<Component> found;
+  for (const auto& name : registry.backends())
+    found.push_back({"backend", registry.backend_info(name), registry.plugin_of("backend", name)});
+  for (const auto& name : registry.observers()) {
+    found.push_back({"observer", registry.observer_info(name), registry.plugin_of("observer", name)});
+  }
+  for (const auto& name : registry.metrics())
+    found.push_back({"metric", registry.metric_info(name), registry.plugin_of("metric", name)});
+  return found;
+}
+
+std::string default_text(const ParamSpec& spec) {
+  if (spec.required) return "(required)";
+  if (!spec.fallback) return "";
+  if (const auto* integer = std::get_if<std::int64_t>(&*spec.fallback)) return fmt::format("{}", *integer);
+  if (const auto* real = std::get_if<double>(&*spec.fallback)) return fmt::format("{}", *real);
+  if (const auto* flag = std::get_if<bool>(&*spec.fallback)) return *flag ? "true" : "false";
+  if (const auto* text = std::get_if<std::string>(&*spec.fallback)) return *text;
+  return "";
+}
+
+std::string range_text(const ParamSpec& spec) {
+  if (spec.kind == ParamKind::choice) return fmt::format("{}", fmt::join(spec.choices, " | "));
+  if (spec.kind != ParamKind::integer && spec.kind != ParamKind::real) return "";
+  const bool whole = spec.kind == ParamKind::integer;
+  const double widest = whole ? 0x1p63 : INFINITY;  // an integer's own limits are no range
+  const bool below = std::abs(spec.lowest) < widest, above = std::abs(spec.highest) < widest;
+  if (below && above) return fmt::format("[{}, {}]", spec.lowest, spec.highest);
+  if (below) return fmt::format("≥ {}", spec.lowest);
+  return above ? fmt::format("≤ {}", spec.highest) : "";
+}
+
+}  // namespace cordon::apps

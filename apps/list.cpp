@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+std::string as_json(const std::vector<Component>& found) {
+  auto entries = nlohmann::ordered_json::array();
+  for (const Component& c : found) {
+    entries.push_back({{"kind", c.kind},
+                       {"name", c.info->name},
+                       {"plugin", c.plugin},
+                       {"summary", c.info->summary},
+                       {"citation", c.info->citation}});
+  }
+  return nlohmann::ordered_json{{"components", std::move(entries)}}.dump(2, ' ', false,
+                                                                         nlohmann::json::error_handler_t::replace) +
+         "\n";
+}
+
+std::string as_table(const std::vector<Component>& found) {
+  std::vector<std::vector<std::string>> rows{{"KIND", "NAME", "PLUGIN", "SUMMARY"}};
+  for (const Component& c : found) rows.push_back({c.kind, c.info->name, c.plugin, c.info->summary});
+  return table(rows, Paint(stdout));
+}
+
+Exit list(const Program& program, bool json) {
+  Registry registry;
+  load_plugins(registry, program.plugins);
+  warn_refused(registry);
+  const auto found = components(registry);
+  if (found.empty()) warn("no components were found; `cordon doctor` tells where plugins are searched");
+  print(json ? as_json(found) : as_table(found));
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand("list", "List backends, observers and metrics with their plugins");
+  const auto json = std::make_shared<bool>(false);
+  command->add_flag("--json", *json, "Print JSON for programs");
+  command->callback([&program, json] { program.exit = list(program, *json); });
+}
+
+}  // namespace cordon::apps

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <csignal>
+#include <iostream>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+
+#include "commands.hpp"
+#include "cordon/registry/build.hpp"
+
+namespace {
+
+using namespace cordon::apps;
+
+/// `did you mean "list"?` for a word that is no command; "" if there is none.
+std::string unknown_command(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining();
+  if (words.empty() || !app.get_subcommands().empty()) return "";
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return "no command \"" + words.front() + "\"; " + cordon::suggest(words.front(), names);
+}
+
+/// What CLI11 has to say (help, version, usage errors); its own code is replaced by ours.
+Exit answer(const CLI::App& app, const CLI::ParseError& outcome) {
+  std::ostringstream out, err;
+  const bool failed = app.exit(outcome, out, err) != 0;
+  print(out.str());
+  if (!failed) return Exit::done;
+  const std::string unknown = unknown_command(app);
+  complain(unknown.empty() ? err.str().substr(0, err.str().find_last_not_of('\n') + 1) : unknown);
+  return Exit::invalid;
+}
+
+Exit run(int argc, char** argv) {
+  Program program;
+  CLI::App app("Cordon: guaranteed set-based state estimation with interchangeable set representations", "cordon");
+  app.footer(exit_codes_help);
+  app.fallthrough();
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "cordon " + cordon::build_info().version);
+  app.add_option("--plugins", program.plugins, "Directory with plugins, searched before all others (may be repeated)")
+      ->check(CLI::ExistingDirectory)
+      ->option_text("DIR")
+      ->allow_extra_args(false);
+  // One line per command: add_run, add_validate and add_schema belong here, in the order of a user's first hour.
+  add_list(app, program);
+  add_info(app, program);
+  add_doctor(app, program);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& outcome) {
+    return answer(app, outcome);
+  }
+  return program.exit;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves is an error code of write, not the end of the process
+  Exit exit = Exit::internal;
+  try {
+    exit = run(argc, argv);
+  } catch (...) {
+    exit = report_current_exception();
+  }
+  return static_cast<int>(exit);
+}

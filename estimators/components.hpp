@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The components of this plugin, one register function per file.
+#pragma once
+
+#include "cordon/registry/plugin.hpp"
+
+namespace cordon::estimators {
+
+void register_prediction_correction(Registrar& registrar);
+void register_descriptor(Registrar& registrar);
+void register_metrics(Registrar& registrar);
+
+}  // namespace cordon::estimators

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Observer for descriptor systems E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with singular E. The recursion follows from what the backend can do.
+//
+// Backends with exact intersections [Rego2025, sec. 4], with E = U Σ Vᵀ, z = Vᵀ x = (z̃, ž), n_z = rank E:
+//   z̃_k = Ã z_{k-1} + B̃ u_{k-1} + B̃w w_{k-1},   0 = Ǎ z_k + B̌ u_k + B̌w w_k  (static rows)
+//   Z̄_k = {([Ã z + B̃ u + B̃w w]; ž) : z ∈ Ẑ_{k-1}, w ∈ W, ž ∈ R^{n-n_z}} cut by the static rows with a second copy of W, then by the measurement.
+// ž is free with lines; without, it is taken from an admissible set X_A that holds x_k for all k. Exact if no generator of W enters both B̃w and B̌w;
+// else the two copies of W make the recursion an outer one, and the estimate says so.
+//
+// Other backends [Wang2018a]: with [T N] = [E; C]⁺ it holds T E + N C = I, so
+//   x_k = (T A - L C) x_{k-1} + T B u_{k-1} + T Bw w_{k-1} + L (y_{k-1} - D u_{k-1} - Dv v_{k-1}) + N (y_k - D u_k - Dv v_k)
+// for every gain L; L_k = T A P Cᵀ (C P Cᵀ + Q)⁻¹ with P = G Gᵀ of the estimate and Q = Dv Gv Gvᵀ Dvᵀ minimises the F-radius.
+#include <cmath>
+
+#include "components.hpp"
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "observer_parameters.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr double rank_tolerance = 1e-10;
+
+/// Entries that are zero up to rounding of the decomposition that made them.
+Matrix denoised(const Matrix& A) {
+  if (A.size() == 0) return A;
+  return (A.array().abs() <= 1e-14 * A.cwiseAbs().maxCoeff()).select(0.0, A);
+}
+
+/// The system in the coordinates z = Vᵀ x: dynamic rows above, static rows below.
+struct Transformed {
+  Matrix T;                               ///< x = T z
+  Matrix A, B, Bw;                        ///< dynamic rows, n_z of them, divided by the singular values
+  Matrix static_A, static_B, static_Bw;   ///< static rows
+  Matrix free_part;                       ///< [0; I]: where ž enters
+
+  explicit Transformed(const LinearModel& m) {
+    const Index n = m.states();
+    const linalg::Svd d = linalg::svd(m.is_descriptor() ? m.E : Matrix(Matrix::Identity(n, n)));
+    const Index rank = d.sigma.size() && d.sigma[0] > 0 ? (d.sigma.array() > rank_tolerance * d.sigma[0]).count() : 0;
+    Vector scale = Vector::Ones(n);
+    for (Index i = 0; i < rank; ++i) scale[i] = 1 / d.sigma[i];
+    const Matrix left = scale.asDiagonal() * d.U.transpose();
+    T = denoised(d.V);
+    const Matrix all_A = denoised(linalg::product(left, linalg::product(m.A, T)));
+    const Matrix all_B = denoised(linalg::product(left, m.B)), all_Bw = denoised(linalg::product(left, m.Bw));
+    A = all_A.topRows(rank);
+    B = all_B.topRows(rank);
+    Bw = all_Bw.topRows(rank);
+    static_A = all_A.bottomRows(n - rank);
+    static_B = all_B.bottomRows(n - rank);
+    static_Bw = all_Bw.bottomRows(n - rank);
+    free_part = Matrix::Zero(n, n - rank);
+    free_part.bottomRows(n - rank).setIdentity();
+  }
+
+  Index rank() const { return A.rows(); }
+  Index static_rows() const { return static_A.rows(); }
+};
+
+/// Does a factor of W enter dynamic and static rows alike? Constraints couple all factors.
+bool shares_disturbances(const Transformed& t, const LineForm& W) {
+  const auto enters = [](const Matrix& rows, const Matrix& columns, Index j) { return !linalg::product(rows, columns.col(j)).isZero(0); };
+  bool any_dynamic = false, any_static = false, both = false;
+  for (const Matrix* columns : {&W.G, &W.M}) {
+    for (Index j = 0; j < columns->cols(); ++j) {
+      const bool dynamic = enters(t.Bw, *columns, j), fixed = enters(t.static_Bw, *columns, j);
+      any_dynamic = any_dynamic || dynamic;
+      any_static = any_static || fixed;
+      both = both || (dynamic && fixed);
+    }
+  }
+  return both || (W.constraints() > 0 && any_dynamic && any_static);
+}
+
+class SingularValueObserver final : public Observer {
+ public:
+  SingularValueObserver(const ObserverContext& context, const Params& params)
+      : Observer(context.model, context.backend), transformed_(model().linear), budget_(budget_from(params)),
+        static_at_start_(params.flag("static_at_start")), X0_(initial_set(model(), params)), W_(backend().import(model().W)),
+        V_(backend().import(model().V)), measured_(linalg::product(model().linear.C, transformed_.T)) {
+    const Index n = model().linear.states(), free = transformed_.static_rows();
+    recursion_ = shares_disturbances(transformed_, model().W) ? Tightness::outer : Tightness::exact;
+    stacked_A_ = Matrix::Zero(n, n);
+    stacked_A_.topRows(transformed_.rank()) = transformed_.A;
+    stacked_Bw_ = Matrix::Zero(n, transformed_.Bw.cols());
+    stacked_Bw_.topRows(transformed_.rank()) = transformed_.Bw;
+    if (params.has("admissible_set")) {
+      admissible_ = backend().import(params.set_form("admissible_set"));
+      const Matrix lower = transformed_.T.transpose().bottomRows(free);
+      free_ = backend().affine_map(admissible_, lower, Vector::Zero(free));
+    } else {
+      free_ = backend().space(free);
+    }
+  }
+
+  const Set* admissible_set() const override { return admissible_.set.get(); }
+
+ private:
+  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
+    const Enclosure start = X0 ? *X0 : backend().import(X0_);
+    Z_ = to_z(start);
+    if (static_at_start_) Z_ = with_static_rows(Z_, first.u);
+    return finish(Z_, first);
+  }
+
+  Enclosure do_step(const Sample& before, const Sample& now) override {
+    const Enclosure predicted = timed(Phase::predict, [&] {
+      Vector f = Vector::Zero(model().linear.states());
+      f.head(transformed_.rank()) = linalg::product(transformed_.B, before.u);
+      const Term terms[]{{stacked_Bw_, W_}, {transformed_.free_part, free_}};
+      const std::size_t count = transformed_.static_rows() > 0 ? 2 : 1;
+      Enclosure Z = backend().predict(Z_, {stacked_A_, f, {terms, count}});
+      Z.tightness = meet(Z.tightness, recursion_);
+      return with_static_rows(Z, now.u);
+    });
+    return finish(predicted, now);
+  }
+
+  void do_replace(const Enclosure& X) override { Z_ = to_z(X); }
+
+  Enclosure to_z(const Enclosure& X) const { return backend().affine_map(X, transformed_.T.transpose(), Vector::Zero(X->dim())); }
+
+  /// 0 = Ǎ z + B̌ u + B̌w w with a fresh w ∈ W.
+  Enclosure with_static_rows(const Enclosure& Z, VectorIn u) const {
+    if (transformed_.static_rows() == 0) return Z;
+    return backend().correct(Z, {transformed_.static_A, -linalg::product(transformed_.static_B, u), {transformed_.static_Bw, W_}});
+  }
+
+  Enclosure finish(const Enclosure& predicted, const Sample& now) {
+    const LinearModel& m = model().linear;
+    const Enclosure corrected = timed(Phase::correct, [&] {
+      return m.outputs() == 0 ? predicted : backend().correct(predicted, {measured_, now.y - linalg::product(m.D, now.u), {m.Dv, V_}});
+    });
+    Z_ = timed(Phase::reduce, [&] { return backend().reduce(corrected, budget_); });
+    return backend().affine_map(Z_, transformed_.T, Vector::Zero(m.states()));
+  }
+
+  Transformed transformed_;
+  Budget budget_;
+  bool static_at_start_;
+  LineForm X0_;
+  Enclosure W_, V_;
+  Matrix measured_;  ///< C T
+  Matrix stacked_A_, stacked_Bw_;
+  Tightness recursion_ = Tightness::exact;
+  Enclosure admissible_, free_, Z_;
+};
+
+class PseudoInverseObserver final : public Observer {
+ public:
+  PseudoInverseObserver(const ObserverContext& context, const Params& params)
+      : Observer(context.model, context.backend), budget_(budget_from(params)), X0_(initial_set(model(), params)),
+        W_(backend().import(model().W)), V_(backend().import(model().V)) {
+    const LinearModel& m = model().linear;
+    const Index n = m.states();
+    Matrix stacked(n + m.outputs(), n);
+    stacked << (m.is_descriptor() ? m.E : Matrix(Matrix::Identity(n, n))), m.C;
+    const Matrix inverse = linalg::pseudo_inverse(stacked);
+    T_ = denoised(inverse.leftCols(n));
+    N_ = denoised(inverse.rightCols(m.outputs()));
+    TA_ = linalg::product(T_, m.A);
+    TBw_ = linalg::product(T_, m.Bw);
+    minus_NDv_ = -linalg::product(N_, m.Dv);
+    const Matrix noise = linalg::product(m.Dv, model().V.G);
+    Q_ = linalg::product(noise, noise.transpose());
+  }
+
+ private:
+  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override { return X_ = X0 ? *X0 : backend().import(X0_); }
+
+  Enclosure do_step(const Sample& before, const Sample& now) override {
+    const LinearModel& m = model().linear;
+    const Enclosure predicted = timed(Phase::predict, [&] {
+      const Matrix L = gain();
+      const Matrix minus_LDv = -linalg::product(L, m.Dv);
+      const Vector f = linalg::product(T_, linalg::product(m.B, before.u)) + linalg::product(L, before.y - linalg::product(m.D, before.u)) +
+                       linalg::product(N_, now.y - linalg::product(m.D, now.u));
+      const Term terms[]{{TBw_, W_}, {minus_LDv, V_}, {minus_NDv_, V_}};
+      return backend().predict(X_, {TA_ - linalg::product(L, m.C), f, terms});
+    });
+    X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
+    X_.tightness = Tightness::outer;  // the measurement enters by a gain, and v_{k-1} twice
+    return X_;
+  }
+
+  void do_replace(const Enclosure& X) override { X_ = X; }
+
+  /// Minimises the F-radius of the next estimate.
+  Matrix gain() const {
+    const LinearModel& m = model().linear;
+    const Matrix G = X_->line_form().G;
+    const Matrix CG = linalg::product(m.C, G);
+    const Matrix S = linalg::product(CG, CG.transpose()) + Q_;
+    const Matrix cross = linalg::product(linalg::product(TA_, G), CG.transpose());
+    if (const auto solved = linalg::solve_spd(S, cross.transpose())) return solved->transpose();
+    return linalg::product(cross, linalg::pseudo_inverse(S));
+  }
+
+  Budget budget_;
+  LineForm X0_;
+  Enclosure W_, V_, X_;
+  Matrix T_, N_, TA_, TBw_, minus_NDv_, Q_;
+};
+
+bool by_singular_values(const SetBackend& backend) { return backend.info().intersections; }
+
+std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
+  std::vector<Diagnostic> problems = check_common(context, params);
+  const LinearModel& m = context.model.linear;
+  const BackendInfo& info = context.backend->info();
+  const Transformed t(m);
+  if (by_singular_values(*context.backend)) {
+    if (params.has("admissible_set")) {
+      check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
+    } else if (!info.unbounded && t.static_rows() > 0) {
+      problems.push_back({"/admissible_set", "is missing: the backend \"" + info.name + "\" holds bounded sets only, so the part of the state that E does not determine needs a bound",
+                          "give a set that contains the state at all times, or use \"line_zonotope\""});
+    }
+    return problems;
+  }
+  for (const char* name : {"admissible_set"}) {
+    if (params.has(name)) problems.push_back({std::string("/") + name, "has no use with the backend \"" + info.name + "\"", "leave it out"});
+  }
+  if (params.flag("static_at_start")) {
+    problems.push_back({"/static_at_start", "needs exact intersections, which the backend \"" + info.name + "\" does not have", "leave it out"});
+  }
+  Matrix stacked(m.states() + m.outputs(), m.states());
+  stacked << (m.is_descriptor() ? m.E : Matrix(Matrix::Identity(m.states(), m.states()))), m.C;
+  if (linalg::rank(stacked, rank_tolerance) < m.states()) {
+    problems.push_back({"", "[E; C] does not have full column rank, so that no T, N with T E + N C = I exist", "measure more, or use \"line_zonotope\""});
+  }
+  return problems;
+}
+
+}  // namespace
+
+void register_descriptor(Registrar& registrar) {
+  ParamSchema schema = common_parameters();
+  schema.set("admissible_set", "set that holds the state at all times; needed by bounded representations with exact intersections");
+  schema.flag("static_at_start", "let the static rows of k = 0 cut the initial set", false);
+  registrar.observer({{"descriptor", "descriptor systems with singular E, any backend", "Rego2025; Rego2020b; Wang2018a", schema},
+                      check,
+                      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+                        if (by_singular_values(*context.backend)) return std::make_unique<SingularValueObserver>(context, params);
+                        return std::make_unique<PseudoInverseObserver>(context, params);
+                      }});
+}
+
+}  // namespace cordon::estimators

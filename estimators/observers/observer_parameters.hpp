@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parameters and checks that observers share.
+#pragma once
+
+#include <vector>
+
+#include "cordon/registry/plugin.hpp"
+
+namespace cordon::estimators {
+
+/// max_generators, max_constraints, initial_set.
+ParamSchema common_parameters();
+
+/// The budget; at least as many generators as the estimate's dimension are needed.
+Budget budget_from(const Params& params);
+
+/// X0 of the model, or the parameter `initial_set` in its place.
+const LineForm& initial_set(const Model& model, const Params& params);
+
+/// Problems that every observer would have: budget below the dimension, initial set of another dimension, unbounded where the backend holds bounded sets only, ….
+std::vector<Diagnostic> check_common(const ObserverContext& context, const Params& params);
+
+/// "/name" diagnostics for a set parameter of the wrong dimension or one that the backend cannot hold.
+void check_set(const ObserverContext& context, const LineForm& set, const std::string& pointer, std::vector<Diagnostic>& problems);
+
+}  // namespace cordon::estimators

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "constrained_form.hpp"
+
+#include <limits>
+
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/sets/constrained_zonotope.hpp"
+#include "cordon/sets/interval.hpp"
+#include "cordon/sets/vertices.hpp"
+#include "cordon/solvers/set_questions.hpp"
+
+namespace cordon::plugins {
+
+Answer ConstrainedForm::is_empty(const Value& X, Certificate* why) const { return cordon::is_empty(X, why); }
+Answer ConstrainedForm::contains(const Value& X, VectorIn x, Certificate* why) const { return cordon::contains(X, x, why); }
+Answer ConstrainedForm::is_bounded(const Value& X) const { return cordon::is_bounded(X); }
+double ConstrainedForm::support(const Value& X, VectorIn d, Certificate* why) const { return cordon::support(X, d, why); }
+Box ConstrainedForm::interval_hull(const Value& X) const { return cordon::interval_hull(X); }
+double ConstrainedForm::exact_volume(const Value& X) const { return sets::volume(X).value_or(-1); }
+
+ConstrainedForm::Result ConstrainedForm::import(const LineForm& X) const {
+  if (lines || X.lines() == 0) return {X, Tightness::exact};
+  const auto Z = sets::to_constrained_zonotope(X);
+  if (Z) return {sets::line_form(*Z), Tightness::exact};
+  if (cordon::is_empty(X) == Answer::yes) return {make_empty(X.dim()), Tightness::exact};
+  throw Error(Errc::unsupported,
+              "constrained_zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
+}
+
+ConstrainedForm::Result ConstrainedForm::predict(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
+  std::vector<sets::Summand> summands;
+  summands.reserve(operands.size());
+  for (const auto& operand : operands) summands.push_back({operand.T, operand.value});
+  return {sets::affine_sum(X, A, f, summands), Tightness::exact};
+}
+
+ConstrainedForm::Result ConstrainedForm::correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {
+  return {sets::strip_intersection(X, C, z, noise.T, noise.value), Tightness::exact};
+}
+
+ConstrainedForm::Result ConstrainedForm::interval_map(const Value& X, const IntervalMatrix& A) const {
+  // A x = mid(A) x + Δ x with |Δ x| ≤ rad(A) |x|, |x| bounded by the interval hull
+  const LineForm mapped = cordon::affine_map(X, A.center, Vector::Zero(A.rows()));
+  if (A.is_exact()) return {mapped, Tightness::exact};
+  const Box hull = cordon::interval_hull(X);
+  if (hull.is_empty()) return {make_empty(A.rows()), Tightness::exact};
+  const Box spread = sets::interval_map(hull, IntervalMatrix(Matrix::Zero(A.rows(), A.cols()), A.radius));
+  if (!lines && !spread.is_bounded()) throw Error(Errc::unsupported, "constrained_zonotope: the image under the interval matrix has no proven bound");
+  return {minkowski_sum(mapped, make_box(spread)), Tightness::outer};
+}
+
+ConstrainedForm::Result ConstrainedForm::intersection(const Value& X, MatrixIn R, const Value& Y) const {
+  return {cordon::intersection(X, R, Y), Tightness::exact};
+}
+
+ConstrainedForm::Result ConstrainedForm::convex_hull(const Value& X, const Value& Y) const {
+  return {cordon::convex_hull(X, Y), X.lines() + Y.lines() > 0 ? Tightness::outer : Tightness::exact};
+}
+
+std::optional<ConstrainedForm::Result> ConstrainedForm::reduce(const Value& X, Budget budget) const {
+  const sets::Reduced reduced = sets::reduce(X, budget.generators, budget.constraints, reduction);
+  return Result{reduced.set, reduced.exact ? Tightness::exact : Tightness::outer};
+}
+
+ParamSchema reduction_schema() {
+  ParamSchema schema;
+  schema.choice("reduction", "how generators are reduced to the budget", {"yang_scott", "girard", "combastel", "pca"}, "yang_scott");
+  schema.choice("precondition", "rows as they are, or in Gauss-Jordan form, before constraints are eliminated", {"raw", "gauss_jordan"}, "raw");
+  schema.flag("rescale", "tighten the factors' bounds before constraints are eliminated", false);
+  return schema;
+}
+
+sets::GeneratorReduction generator_reduction_from(const std::string& name) {
+  if (name == "girard") return sets::GeneratorReduction::girard;
+  if (name == "combastel") return sets::GeneratorReduction::combastel;
+  if (name == "pca") return sets::GeneratorReduction::pca;
+  return sets::GeneratorReduction::yang_scott;
+}
+
+sets::LineReduction reduction_from(const Params& params) {
+  return {generator_reduction_from(params.text("reduction")), {params.flag("rescale"), params.text("precondition") == "gauss_jordan"}};
+}
+
+}  // namespace cordon::plugins

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/sets/interval.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "adapter.hpp"
+#include "cordon/core/rounding.hpp"
+#include "cordon/registry/plugin.hpp"
+#include "cordon/solvers/set_questions.hpp"
+
+namespace {
+
+using namespace cordon;
+using plugins::Operand;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// A point that is outside by less than this share of the bound may be so by rounding errors.
+constexpr double nominal_tolerance = 1e-10;
+
+bool is_plain_box(const LineForm& X) {
+  const auto axis_parallel = [](const Matrix& columns) {
+    for (Index j = 0; j < columns.cols(); ++j) {
+      if ((columns.col(j).array() != 0).count() > 1) return false;
+    }
+    return true;
+  };
+  return X.constraints() == 0 && axis_parallel(X.G) && axis_parallel(X.M);
+}
+
+struct Intervals {
+  using Value = Box;
+  using Result = plugins::ResultOf<Box>;
+
+  Index dim(const Box& X) const { return X.dim(); }
+  LineForm line_form(const Box& X) const { return make_box(X); }
+  Complexity complexity(const Box& X) const {
+    Complexity c;
+    for (Index i = 0; i < X.dim(); ++i) {
+      if (std::isinf(X.upper[i])) {
+        ++c.lines;
+      } else if (X.upper[i] > X.lower[i]) {
+        ++c.generators;
+      }
+    }
+    return c;
+  }
+  Answer is_empty(const Box& X, Certificate* why) const {
+    if (why) *why = {Certificate::Kind::structure, Vector(0), 0};
+    return X.is_empty() ? Answer::yes : Answer::no;
+  }
+  Answer contains(const Box& X, VectorIn x, Certificate*) const {
+    if (X.is_empty()) return Answer::no;
+    Answer answer = Answer::yes;
+    for (Index i = 0; i < X.dim(); ++i) {
+      const double beyond = std::max(X.lower[i] - x[i], x[i] - X.upper[i]);
+      if (beyond <= 0) continue;
+      const double bound = x[i] > X.upper[i] ? X.upper[i] : X.lower[i];
+      if (beyond > nominal_tolerance * (std::abs(x[i]) + std::abs(bound))) return Answer::no;
+      answer = Answer::unknown;
+    }
+    return answer;
+  }
+  Answer is_bounded(const Box& X) const { return X.is_empty() || X.is_bounded() ? Answer::yes : Answer::no; }
+  double support(const Box& X, VectorIn d, Certificate*) const {
+    if (X.is_empty()) return -infinity;
+    Vector terms = Vector::Zero(X.dim());
+    for (Index i = 0; i < X.dim(); ++i) {
+      if (d[i] == 0) continue;
+      terms[i] = d[i] > 0 ? rounding::up(d[i] * X.upper[i]) : rounding::up(d[i] * X.lower[i]);
+      if (std::isinf(terms[i])) return infinity;
+    }
+    return rounding::sum(terms).upper;
+  }
+  Box interval_hull(const Box& X) const { return X; }
+  double exact_volume(const Box& X) const { return (X.upper - X.lower).prod(); }
+
+  Result import(const LineForm& X) const { return {cordon::interval_hull(X), is_plain_box(X) ? Tightness::exact : Tightness::outer}; }
+
+  Result predict(const Box& X, MatrixIn A, VectorIn f, std::span<const Operand<Box>> operands) const {
+    Box sum = sets::affine_map(X, A, f);
+    bool exact = sets::is_monomial(A);
+    for (const auto& operand : operands) {
+      sum = sets::minkowski_sum(sum, sets::affine_map(operand.value, operand.T, Vector::Zero(A.rows())));
+      exact = exact && sets::is_monomial(operand.T);
+    }
+    return {sum, exact ? Tightness::exact : Tightness::outer};
+  }
+  Result correct(const Box& X, MatrixIn C, VectorIn z, const Operand<Box>& noise) const {
+    const bool exact = sets::has_monomial_rows(C) && sets::is_monomial(noise.T);
+    return {sets::contract(X, C, z, noise.T, noise.value), exact ? Tightness::exact : Tightness::outer};
+  }
+  Result interval_map(const Box& X, const IntervalMatrix& A) const { return {sets::interval_map(X, A), Tightness::outer}; }
+  Result intersection(const Box& X, MatrixIn R, const Box& Y) const {
+    if (R.isIdentity(0)) return {sets::intersection(X, Y), Tightness::exact};
+    // R x ∈ Y ⇔ 0 - R x ∈ -Y
+    const Matrix minus = -Matrix::Identity(Y.dim(), Y.dim());
+    return {sets::contract(X, R, Vector::Zero(Y.dim()), minus, Y), sets::has_monomial_rows(R) ? Tightness::exact : Tightness::outer};
+  }
+  Result convex_hull(const Box& X, const Box& Y) const { return {sets::convex_hull(X, Y), Tightness::outer}; }
+  std::optional<Result> reduce(const Box&, Budget) const { return std::nullopt; }
+};
+
+std::unique_ptr<SetBackend> create(const Params&) {
+  BackendInfo info;
+  info.name = "interval";
+  info.unbounded = true;
+  info.intersections = false;
+  info.summary = "axis-aligned boxes; a coordinate is bounded or free";
+  info.citation = "Moore2009";
+  return std::make_unique<plugins::ValueBackend<Intervals>>(info, Intervals{});
+}
+
+void register_components(Registrar& registrar) {
+  registrar.backend({{"interval", "axis-aligned boxes; a coordinate is bounded or free", "Moore2009", {}}, create});
+}
+
+}  // namespace
+
+CORDON_PLUGIN("interval", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "interval vectors", register_components)

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "constrained_form.hpp"
+
+namespace {
+
+using namespace cordon;
+using plugins::ConstrainedForm;
+
+std::unique_ptr<SetBackend> create(const Params& params) {
+  BackendInfo info;
+  info.name = "line_zonotope";
+  info.unbounded = true;
+  info.intersections = true;
+  info.summary = "zonotopes with lines and linear constraints: polytopes and sets unbounded along subspaces, exact intersections";
+  info.citation = "Rego2025";
+  return std::make_unique<plugins::ValueBackend<ConstrainedForm>>(info, ConstrainedForm{true, plugins::reduction_from(params)});
+}
+
+void register_components(Registrar& registrar) {
+  registrar.backend({{"line_zonotope", "zonotopes with lines and linear constraints: polytopes and sets unbounded along subspaces, exact intersections", "Rego2025", plugins::reduction_schema()}, create});
+}
+
+}  // namespace
+
+CORDON_PLUGIN("line_zonotope", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "line zonotopes", register_components)

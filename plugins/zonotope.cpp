@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/sets/zonotope.hpp"
+
+#include <limits>
+
+#include "adapter.hpp"
+#include "cordon/core/error.hpp"
+#include "cordon/core/line_elimination.hpp"
+#include "cordon/registry/plugin.hpp"
+#include "cordon/sets/constraint_elimination.hpp"
+#include "cordon/sets/generator_reduction.hpp"
+#include "cordon/sets/strip.hpp"
+#include "cordon/solvers/set_questions.hpp"
+
+namespace {
+
+using namespace cordon;
+using plugins::Operand;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A zonotope, or the empty set, which has no generators' form of its own.
+struct MaybeZonotope {
+  Index n = 0;
+  std::optional<sets::Zonotope> Z;
+};
+
+struct Zonotopes {
+  using Value = MaybeZonotope;
+  using Result = plugins::ResultOf<MaybeZonotope>;
+
+  sets::GeneratorReduction reduction = sets::GeneratorReduction::yang_scott;
+  sets::StripMethod strip = sets::StripMethod::segment;
+
+  static Result result(sets::Zonotope Z, Tightness tightness) {
+    const Index n = Z.dim();
+    return {{n, std::move(Z)}, tightness};
+  }
+  static Result empty(Index n) { return {{n, std::nullopt}, Tightness::exact}; }
+
+  Index dim(const Value& X) const { return X.n; }
+  LineForm line_form(const Value& X) const { return X.Z ? make_zonotope(X.Z->c, X.Z->G) : make_empty(X.n); }
+  Complexity complexity(const Value& X) const { return {X.Z ? X.Z->generators() : 0, 0, 0}; }
+  Answer is_empty(const Value& X, Certificate* why) const {
+    if (why) *why = {Certificate::Kind::structure, Vector(0), 0};
+    return X.Z ? Answer::no : Answer::yes;
+  }
+  Answer contains(const Value& X, VectorIn x, Certificate* why) const { return cordon::contains(line_form(X), x, why); }
+  Answer is_bounded(const Value&) const { return Answer::yes; }
+  double support(const Value& X, VectorIn d, Certificate*) const { return X.Z ? sets::support(*X.Z, d) : -infinity; }
+  Box interval_hull(const Value& X) const { return X.Z ? sets::interval_hull(*X.Z) : Box::empty(X.n); }
+  double exact_volume(const Value& X) const { return X.Z ? sets::volume(*X.Z).value_or(-1) : 0; }
+
+  /// Constraints are eliminated one by one, each forgetting one factor's bound: an outer enclosure.
+  Result import(const LineForm& X) const {
+    LineForm Y = eliminate_lines(X);
+    if (Y.constraints() > 0 && cordon::is_empty(Y) == Answer::yes) return empty(X.dim());
+    if (Y.lines() > 0) {
+      throw Error(Errc::unsupported, "zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
+    }
+    if (Y.constraints() == 0) return result({Y.c, Y.G}, Tightness::exact);
+    const sets::Reduced reduced = sets::eliminate_constraints(Y, 0, {.rescale = true});
+    return result({reduced.set.c, reduced.set.G}, reduced.exact && reduced.set.constraints() == 0 ? Tightness::exact : Tightness::outer);
+  }
+
+  Result predict(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
+    if (!X.Z) return empty(A.rows());
+    sets::Zonotope sum = sets::affine_map(*X.Z, A, f);
+    for (const auto& operand : operands) {
+      if (!operand.value.Z) return empty(A.rows());
+      sum = sets::minkowski_sum(sum, sets::affine_map(*operand.value.Z, operand.T, Vector::Zero(A.rows())));
+    }
+    return result(std::move(sum), Tightness::exact);
+  }
+  Result correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {
+    if (!X.Z || !noise.value.Z) return empty(X.n);
+    return {{X.n, sets::correct(*X.Z, C, z, noise.T, *noise.value.Z, strip)}, Tightness::outer};
+  }
+  Result interval_map(const Value& X, const IntervalMatrix& A) const {
+    if (!X.Z) return empty(A.rows());
+    return result(sets::interval_map(*X.Z, A), A.is_exact() ? Tightness::exact : Tightness::outer);
+  }
+  Result intersection(const Value& X, MatrixIn R, const Value& Y) const {
+    // R x ∈ Y ⇔ 0 - R x ∈ -Y
+    const Matrix minus = -Matrix::Identity(Y.n, Y.n);
+    return correct(X, R, Vector::Zero(Y.n), {minus, Y});
+  }
+  Result convex_hull(const Value& X, const Value& Y) const {
+    if (!X.Z) return {Y, Tightness::exact};
+    if (!Y.Z) return {X, Tightness::exact};
+    return result(sets::convex_hull(*X.Z, *Y.Z), Tightness::outer);
+  }
+  std::optional<Result> reduce(const Value& X, Budget budget) const {
+    if (!X.Z || X.Z->generators() <= budget.generators) return std::nullopt;
+    return result({X.Z->c, sets::reduce_generators(X.Z->G, budget.generators, reduction)}, Tightness::outer);
+  }
+};
+
+ParamSchema schema() {
+  ParamSchema schema;
+  schema.choice("reduction", "how generators are reduced to the budget", {"yang_scott", "girard", "combastel", "pca"}, "yang_scott");
+  schema.choice("strip", "how a strip is intersected: smallest F-radius, smallest volume among parallel strips, or smallest volume",
+                {"segment", "bravo", "volume"}, "segment");
+  return schema;
+}
+
+std::unique_ptr<SetBackend> create(const Params& params) {
+  BackendInfo info;
+  info.name = "zonotope";
+  info.summary = "centrally symmetric polytopes given by generators";
+  info.citation = "Combastel2003; Alamo2005";
+  Zonotopes zonotopes;
+  const std::string& reduction = params.text("reduction");
+  zonotopes.reduction = reduction == "girard"      ? sets::GeneratorReduction::girard
+                        : reduction == "combastel" ? sets::GeneratorReduction::combastel
+                        : reduction == "pca"       ? sets::GeneratorReduction::pca
+                                                   : sets::GeneratorReduction::yang_scott;
+  const std::string& strip = params.text("strip");
+  zonotopes.strip = strip == "bravo" ? sets::StripMethod::bravo : strip == "volume" ? sets::StripMethod::volume : sets::StripMethod::segment;
+  return std::make_unique<plugins::ValueBackend<Zonotopes>>(info, zonotopes);
+}
+
+void register_components(Registrar& registrar) {
+  registrar.backend({{"zonotope", "centrally symmetric polytopes given by generators", "Combastel2003; Alamo2005", schema()}, create});
+}
+
+}  // namespace
+
+CORDON_PLUGIN("zonotope", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "zonotopes", register_components)

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "cordon/core/line_form.hpp"
+#include "cordon/sets/constraint_elimination.hpp"
+#include "cordon/sets/generator_reduction.hpp"
+
+namespace cordon::sets {
+
+/// The line zonotope {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b} is the exchange form itself. Maps, sums, products, generalised intersections and convex hulls
+/// are in core/line_form.hpp, line elimination in core/line_elimination.hpp, questions (support, hull, emptiness, …) in
+/// solvers/set_questions.hpp. Here: the two fused operations of an observer's step, and reduction.
+using LineZonotope = LineForm;
+
+/// The summand T·set.
+struct Summand {
+  MatrixIn T;
+  const LineZonotope& set;
+};
+
+/// A X ⊕ {f} ⊕ Σ Tᵢ Sᵢ; exact, assembled without temporaries. A is m×n, Tᵢ is m×dim Sᵢ.
+LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands);
+
+/// {x ∈ X : z - C x ∈ T V}; exact. Rows: those of X, those of V, then C M δ + C G ξ + T(M_V δ_V + G_V ξ_V) = z - C c - T c_V.
+LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T, const LineZonotope& V);
+
+/// How a line zonotope is reduced.
+struct LineReduction {
+  GeneratorReduction generators = GeneratorReduction::yang_scott;
+  ConstraintElimination constraints;
+};
+
+/// Encloses X by a set of at most `max_generators` and `max_constraints`: lines are eliminated (exact), then constraints, then the generators
+/// of the lifted zonotope [G; A] are reduced. If max_generators < n + constraints, more constraints are eliminated. Needs max_generators ≥ n.
+Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraints, const LineReduction& how = {});
+
+}  // namespace cordon::sets

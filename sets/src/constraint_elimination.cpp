@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/sets/constraint_elimination.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+
+namespace cordon::sets {
+
+namespace {
+
+constexpr double vanished = 1e-12;    ///< a row cancelled to this share of its terms is 0 = b
+constexpr double pivot_floor = 1e-9;  ///< pivots below this share of their row are not used
+
+/// The rows and outputs being reduced. Factors and rows are marked instead of moved.
+class Elimination {
+ public:
+  Elimination(const LineForm& X) : G_(X.G), c_(X.c), A_(X.A), b_(X.b), row_scale_(X.constraints()), in_row_(X.constraints(), true), free_(X.generators(), true) {
+    for (Index i = 0; i < rows(); ++i) row_scale_[i] = scale(i);
+  }
+
+  Index rows() const { return A_.rows(); }
+  Index factors() const { return A_.cols(); }
+
+  Index live_rows() const {
+    Index count = 0;
+    for (const bool live : in_row_) count += live ? 1 : 0;
+    return count;
+  }
+
+  /// Drops rows that became 0 = 0 up to rounding; dropping a row never shrinks the set.
+  void drop_vanished_rows() {
+    for (Index i = 0; i < rows(); ++i) {
+      if (!in_row_[at(i)]) continue;
+      const double largest = scale(i);
+      if (largest <= vanished * row_scale_[i] && std::abs(b_[i]) <= 1e3 * vanished * std::max(row_scale_[i], 1e-300)) in_row_[at(i)] = false;
+      if (row_scale_[i] == 0 && b_[i] == 0) in_row_[at(i)] = false;
+    }
+  }
+
+  void to_gauss_jordan() {
+    std::vector<bool> done(at(rows()), false);
+    for (Index step = 0; step < rows(); ++step) {
+      Index row = -1, col = -1;
+      double best = 0;
+      for (Index i = 0; i < rows(); ++i) {
+        if (done[at(i)] || !in_row_[at(i)] || row_scale_[i] == 0) continue;
+        for (Index j = 0; j < factors(); ++j) {
+          if (std::abs(A_(i, j)) > best * row_scale_[i]) {
+            best = std::abs(A_(i, j)) / row_scale_[i];
+            row = i;
+            col = j;
+          }
+        }
+      }
+      if (row < 0) return;
+      done[at(row)] = true;
+      const double pivot = A_(row, col);
+      A_.row(row) /= pivot;
+      b_[row] /= pivot;
+      row_scale_[row] = scale(row);
+      for (Index i = 0; i < rows(); ++i) {
+        if (i != row && in_row_[at(i)]) subtract_row(i, row, A_(i, col), col);
+      }
+    }
+  }
+
+  /// The interval ρ_j that each row allows ξ_j, and the bounds E_j = ρ_j ∩ [-1,1] that follow, in two passes over the rows.
+  void bound_factors() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    allowed_lower_ = Vector::Constant(factors(), -infinity);
+    allowed_upper_ = Vector::Constant(factors(), infinity);
+    lower_ = -Vector::Ones(factors());
+    upper_ = Vector::Ones(factors());
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Index i = 0; i < rows(); ++i) {
+        if (in_row_[at(i)]) bound_by_row(i);
+      }
+    }
+  }
+
+  /// ξ = mid(E) + rad(E) ξ': exact, as E holds every feasible ξ.
+  void rescale() {
+    for (Index j = 0; j < factors(); ++j) {
+      if (!free_[at(j)] || !(lower_[j] <= upper_[j])) continue;
+      const double mid = (lower_[j] + upper_[j]) / 2, rad = (upper_[j] - lower_[j]) / 2;
+      if (mid == 0 && rad == 1) continue;
+      c_ += mid * G_.col(j);
+      b_ -= mid * A_.col(j);
+      G_.col(j) *= rad;
+      A_.col(j) *= rad;
+    }
+    for (Index i = 0; i < rows(); ++i) row_scale_[i] = std::max(row_scale_[i] * vanished, scale(i));
+  }
+
+  /// P = I - F Fᵀ + Q Qᵀ; F from the factorisations of I + GGᵀ and A H Aᵀ, Q from the eliminations so far.
+  void factorise() {
+    const Index n = G_.rows(), g = factors(), m = rows();
+    F_ = Matrix::Zero(g, n + m);
+    const auto half = linalg::cholesky(Matrix::Identity(n, n) + linalg::product(G_, G_.transpose()));
+    if (!half) throw Error(Errc::not_finite, "constraint elimination: the generators overflow");
+    for (Index k = 0; k < n; ++k) {  // columns of Gᵀ L⁻ᵀ by forward substitution
+      F_.col(k) = G_.row(k).transpose();
+      for (Index l = 0; l < k; ++l) F_.col(k) -= (*half)(k, l) * F_.col(l);
+      F_.col(k) /= (*half)(k, k);
+    }
+    // Rows of A H^{1/2}, orthonormalised in the metric H one after another; dependent ones add nothing.
+    Matrix basis(m, g);  // B with F_A = H Bᵀ normalised
+    Index count = 0;
+    for (Index i = 0; i < m; ++i) {
+      if (!in_row_[at(i)]) continue;
+      Vector a = A_.row(i).transpose();
+      Vector h = a - F_.leftCols(n) * (F_.leftCols(n).transpose() * a);
+      const double before = a.dot(h);
+      for (Index k = 0; k < count; ++k) {
+        const double overlap = F_.col(n + k).dot(a);
+        a -= overlap * basis.row(k).transpose();
+        h -= overlap * F_.col(n + k);
+      }
+      const double squared = a.dot(h);
+      if (!(squared > vanished * before) || !(squared > 0)) continue;
+      const double norm = std::sqrt(squared);
+      basis.row(count) = a.transpose() / norm;
+      F_.col(n + count) = h / norm;
+      ++count;
+    }
+    F_.conservativeResize(g, n + count);
+    diagonal_ = 1 - F_.rowwise().squaredNorm().array();
+    Q_.resize(g, 0);
+  }
+
+  /// The cheapest factor, and the row in which it has the largest share of the row's 1-norm: the row that binds it most. The choice of the row
+  /// does not change the set but the rows that remain, and with them all later scores. False if no row has a usable pivot. `loss` is the score.
+  bool choose(Index& row, Index& col, double& loss) const {
+    double best = std::numeric_limits<double>::infinity(), best_pivot = 0;
+    bool found = false;
+    const Vector row_norm = A_.cwiseAbs().rowwise().sum();
+    for (Index j = 0; j < factors(); ++j) {
+      if (!free_[at(j)]) continue;
+      Index pivot_row = -1;
+      double pivot = pivot_floor;
+      for (Index i = 0; i < rows(); ++i) {
+        if (!in_row_[at(i)]) continue;
+        const double share = std::abs(A_(i, j)) / row_norm[i];
+        if (share > pivot) {
+          pivot = share;
+          pivot_row = i;
+        }
+      }
+      if (pivot_row < 0) continue;
+      const double reach = std::max({0.0, std::abs(allowed_lower_[j]) - 1, std::abs(allowed_upper_[j]) - 1});
+      const double score = reach == 0 ? 0 : reach * reach / std::max(diagonal_[j], 1e-15);
+      if (!found || score < best * (1 - 1e-9) || (score <= best * (1 + 1e-9) && pivot > best_pivot)) {
+        found = true;
+        best = score;
+        best_pivot = pivot;
+        row = pivot_row;
+        col = j;
+      }
+    }
+    loss = best;
+    return found;
+  }
+
+  /// Solves `row` for ξ_col and drops both.
+  void eliminate(Index row, Index col) {
+    const Eigen::RowVectorXd pivot_row = A_.row(row) / A_(row, col);
+    const double right = b_[row] / A_(row, col);
+    const Vector out = G_.col(col);
+    for (Index j = 0; j < factors(); ++j) {
+      if (pivot_row[j] != 0) G_.col(j) -= pivot_row[j] * out;
+    }
+    c_ += right * out;
+    G_.col(col).setZero();
+    for (Index i = 0; i < rows(); ++i) {
+      if (i != row && in_row_[at(i)]) subtract_row(i, row, A_(i, col) / A_(row, col), col);
+    }
+    in_row_[at(row)] = false;
+    free_[at(col)] = false;
+    update_scores(col);
+  }
+
+  LineForm result(const Matrix& M) const {
+    std::vector<Index> rows_left, factors_left;
+    for (Index i = 0; i < rows(); ++i) {
+      if (in_row_[at(i)]) rows_left.push_back(i);
+    }
+    for (Index j = 0; j < factors(); ++j) {
+      if (free_[at(j)]) factors_left.push_back(j);
+    }
+    const Index m = static_cast<Index>(rows_left.size()), g = static_cast<Index>(factors_left.size());
+    LineForm X{M, Matrix(G_.rows(), g), c_, Matrix::Zero(m, M.cols()), Matrix(m, g), Vector(m)};
+    for (Index j = 0; j < g; ++j) {
+      X.G.col(j) = G_.col(factors_left[at(j)]);
+      for (Index i = 0; i < m; ++i) X.A(i, j) = A_(rows_left[at(i)], factors_left[at(j)]);
+    }
+    for (Index i = 0; i < m; ++i) X.b[i] = b_[rows_left[at(i)]];
+    return X;
+  }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  double scale(Index i) const { return A_.cols() ? A_.row(i).cwiseAbs().maxCoeff() : 0.0; }
+
+  void subtract_row(Index i, Index row, double factor, Index col) {
+    if (factor != 0) {
+      A_.row(i) -= factor * A_.row(row);
+      b_[i] -= factor * b_[row];
+    }
+    A_(i, col) = 0;
+  }
+
+  void bound_by_row(Index i) {
+    double low = 0, high = 0;
+    for (Index j = 0; j < factors(); ++j) {
+      const double a = A_(i, j);
+      low += a > 0 ? a * lower_[j] : a * upper_[j];
+      high += a > 0 ? a * upper_[j] : a * lower_[j];
+    }
+    for (Index j = 0; j < factors(); ++j) {
+      const double a = A_(i, j);
+      if (!free_[at(j)] || std::abs(a) <= pivot_floor * row_scale_[i]) continue;
+      const double own_low = a > 0 ? a * lower_[j] : a * upper_[j], own_high = a > 0 ? a * upper_[j] : a * lower_[j];
+      double from = (b_[i] - (high - own_high)) / a, to = (b_[i] - (low - own_low)) / a;
+      if (from > to) std::swap(from, to);
+      allowed_lower_[j] = std::max(allowed_lower_[j], from);
+      allowed_upper_[j] = std::min(allowed_upper_[j], to);
+      const double new_lower = std::max(lower_[j], from), new_upper = std::min(upper_[j], to);
+      if (!(new_lower <= new_upper)) continue;  // ∅ up to rounding: left to the question of emptiness
+      low += a > 0 ? a * (new_lower - lower_[j]) : a * (new_upper - upper_[j]);
+      high += a > 0 ? a * (new_upper - upper_[j]) : a * (new_lower - lower_[j]);
+      lower_[j] = new_lower;
+      upper_[j] = new_upper;
+    }
+  }
+
+  void update_scores(Index col) {
+    Vector p = -(F_ * F_.row(col).transpose());
+    if (Q_.cols() > 0) p += Q_ * Q_.row(col).transpose();
+    p[col] += 1;
+    const double rest = 1 - p[col];
+    if (!(rest > 1e-14)) return;
+    const Vector q = p / std::sqrt(rest);
+    diagonal_.array() += q.array().square();
+    Q_.conservativeResize(Eigen::NoChange, Q_.cols() + 1);
+    Q_.col(Q_.cols() - 1) = q;
+  }
+
+  Matrix G_;
+  Vector c_;
+  Matrix A_;
+  Vector b_;
+  Vector row_scale_;  ///< size of the terms of each row
+  std::vector<bool> in_row_, free_;
+  Vector lower_, upper_, allowed_lower_, allowed_upper_;
+  Matrix F_, Q_;
+  Vector diagonal_;
+};
+
+}  // namespace
+
+Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
+  if (max_constraints < 0) throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
+  if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0)) throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
+  Elimination work(X);
+  work.drop_vanished_rows();
+  if (work.live_rows() <= max_constraints) return {work.result(X.M), true};
+  if (options.gauss_jordan) work.to_gauss_jordan();
+  work.bound_factors();
+  if (options.rescale) {
+    work.rescale();
+    work.bound_factors();
+  }
+  work.factorise();
+  bool exact = true;
+  while (work.live_rows() > max_constraints) {
+    Index row = 0, col = 0;
+    double loss = 0;
+    if (!work.choose(row, col, loss)) break;
+    exact = exact && loss == 0;
+    work.eliminate(row, col);
+    work.drop_vanished_rows();
+    work.bound_factors();
+  }
+  return {work.result(X.M), exact};
+}
+
+}  // namespace cordon::sets

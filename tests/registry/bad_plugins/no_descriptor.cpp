@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+extern "C" int cordon_test_some_function() { return 1; }
