@@ -44,9 +44,10 @@ Exit run(int argc, char** argv) {
       ->option_text("DIR")
       ->allow_extra_args(false);
   add_run(app, program);
-  // One line per command: add_validate and add_schema belong here, in the order of a user's first hour.
+  add_validate(app, program);
   add_list(app, program);
   add_info(app, program);
+  add_schema(app, program);
   add_doctor(app, program);
   try {
     app.parse(argc, argv);
