@@ -98,9 +98,23 @@ TEST_CASE("a box is reduced without loss; parallel generators are merged for not
 }
 
 TEST_CASE("the cheapest column goes first") {
-  // v1 = (.9, .9) in the basis I costs .81, v2 = (.9, .01) costs .009
-  const Matrix H = reduce_generators(Matrix{{1, 0, .9, .9}, {0, 1, .9, .01}}, 3);
-  CHECK(same_columns(H, Matrix{{1.9, 0, .9}, {0, 1.01, .9}}, 1e-12));
+  // v1 = (.4, .4) in the basis I costs .16, v2 = (.9, .01) only .009, though it is longer
+  const Matrix H = reduce_generators(Matrix{{1, 0, .4, .9}, {0, 1, .4, .01}}, 3);
+  CHECK(same_columns(H, Matrix{{1.9, 0, .4}, {0, 1.01, .4}}, 1e-12));
+}
+
+TEST_CASE("coordinates of very unlike scale keep their accuracy") {
+  sets::Random random(5);
+  Matrix G(3, 12);
+  for (double& x : G.reshaped()) x = random.between(-1, 1);
+  G = Matrix(Vector{{1e8, 1, 1e-8}}.asDiagonal() * G);
+  for (const GeneratorReduction method : methods) {
+    const Matrix H = reduce_generators(G, 3, method);
+    for (Index i = 0; i < 3; ++i) {
+      CHECK(H.row(i).lpNorm<1>() >= G.row(i).lpNorm<1>() * (1 - 1e-12));
+      CHECK(H.row(i).lpNorm<1>() <= G.row(i).lpNorm<1>() * 10);
+    }
+  }
 }
 
 TEST_CASE("flat sets stay flat") {

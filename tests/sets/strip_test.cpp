@@ -109,6 +109,28 @@ TEST_CASE("degenerate strips and sets") {
   }
 }
 
+TEST_CASE("a repeated equality changes nothing") {
+  const Zonotope Z{Vector{{.1, .2, .3}}, Matrix{{1, .5, 0, 2}, {0, 1, -.3, 1}, {.2, 0, 1, -1}}};
+  const Vector rho{{.1, -.7, .3}};
+  for (const StripMethod method : methods) {
+    const Zonotope once = *intersect_strip(Z, rho, .2, 0, method);
+    // the second cut sees rounding errors only: no direction may be taken from them
+    const Zonotope twice = *intersect_strip(once, rho / 3, .2 / 3, 0, method);
+    CHECK((interval_hull(twice).upper - interval_hull(once).upper).norm() < 1e-12);
+    CHECK((interval_hull(twice).lower - interval_hull(once).lower).norm() < 1e-12);
+    CHECK(intersect_strip(once, rho, .2 + 1e-13, 0, method));
+    CHECK(!intersect_strip(once, rho, .2 + 1e-9, 0, method));
+  }
+}
+
+TEST_CASE("a wide strip leaves the zonotope when no other member of the family is smaller") {
+  const Zonotope Z{Vector::Zero(2), Matrix::Identity(2, 2)};
+  for (const StripMethod method : {StripMethod::bravo, StripMethod::volume}) {
+    CHECK(intersect_strip(Z, Vector::Ones(2), 0, 1.9, method)->G == Z.G);
+    CHECK(*volume(*intersect_strip(Z, Vector::Ones(2), 0, .9, method)) == doctest::Approx(3.6));
+  }
+}
+
 TEST_CASE("the segment gain has the smallest F-radius of the family") {
   const Zonotope Z = zonotope({0, 0, 0}, {{1, .5, 0, 2}, {0, 1, -.3, 1}, {.2, 0, 1, -1}});
   const Vector rho{{1, -.5, 2}};

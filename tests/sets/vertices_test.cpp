@@ -77,6 +77,10 @@ TEST_CASE("degenerate polygons") {
     const auto pick = [](double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; };
     return SupportPoint{d.lpNorm<1>(), Vector{{pick(d[0]), pick(d[1])}}};
   };
+  const SupportOracle segment = [](const Vector& d) {
+    return SupportPoint{std::abs(d[1]), Vector{{0, d[1] > 0 ? 1.0 : d[1] < 0 ? -1.0 : 0.0}}};
+  };
+  CHECK(same_cycle(polygon(segment), Matrix{{0, 0}, {-1, 1}}, 1e-12));
   CHECK(same_cycle(polygon(square), Matrix{{1, 1, -1, -1}, {-1, 1, 1, -1}}, 1e-12));
 }
 

@@ -3,7 +3,7 @@
 //
 // Definition: Z ∩ S with Z = <c, G> and the strip S = {x : |ρᵀx - d| ≤ σ}, σ ≥ 0. For every λ ∈ Rⁿ the zonotope
 //     Z(λ) = <c + λ (d - ρᵀc), [(I - λρᵀ) G, σλ]>
-// encloses it [Alamo2005, Prop. 1]; the methods differ in λ.
+// encloses it [Alamo2005]; the methods differ in λ.
 // Degenerate cases: Z inside S: Z itself. ρ = 0: Z if |d| ≤ σ, else ∅. σ = 0: a hyperplane. g = 0: the point c or ∅.
 // An intersection that is proven empty is no zonotope: nothing is returned. The gap must exceed the rounding errors of the test
 // and 1e-12 of the sizes involved, for a zonotope carries the rounding errors of the operations that made it.
@@ -21,9 +21,9 @@ namespace cordon::sets {
 
 /// Choice of λ.
 enum class StripMethod {
-  segment,  ///< smallest F-radius: λ = GGᵀρ / (ρᵀGGᵀρ + σ²) [Alamo2005, sec. 6.1]
+  segment,  ///< smallest F-radius: λ = GGᵀρ / (ρᵀGGᵀρ + σ²) [Alamo2005]
   bravo,    ///< smallest volume among Z and the g zonotopes with λ = g_j / ρᵀg_j [Bravo2006]
-  volume    ///< smallest volume of all λ: a convex piecewise linear problem, solved as a linear program [Alamo2005, sec. 6.2]
+  volume    ///< smallest volume of all λ: a convex piecewise linear problem, solved as a linear program [Alamo2005]
 };
 
 /// Outer; exact if Z lies in the strip. The volume methods need the (n-1)-subsets of the generators; beyond 20,000 of them
