@@ -43,9 +43,11 @@ Exit run(int argc, char** argv) {
       ->check(CLI::ExistingDirectory)
       ->option_text("DIR")
       ->allow_extra_args(false);
-  // One line per command: add_run, add_validate and add_schema belong here, in the order of a user's first hour.
+  add_run(app, program);
+  add_validate(app, program);
   add_list(app, program);
   add_info(app, program);
+  add_schema(app, program);
   add_doctor(app, program);
   try {
     app.parse(argc, argv);

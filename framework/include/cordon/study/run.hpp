@@ -5,6 +5,7 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,12 +25,17 @@ struct PipelineOutcome {
   std::string name, backend, observer;
   std::int64_t steps = 0;
   std::int64_t consistent = 0, inconsistent = 0, undecided = 0;  ///< answers to "is the estimate non-empty?"
-  std::int64_t inconsistent_from = -1;   ///< first k with an estimate proven empty
-  std::int64_t assumptions_until = -1;   ///< first k at which the truth is proven outside the pipeline's own assumptions
-  std::int64_t violated_at = -1;         ///< first k with the truth proven outside although all assumptions hold: a defect
-  std::string error;                     ///< the pipeline stopped with this error; the others go on
+  std::int64_t inconsistent_from = -1;                           ///< first k with an estimate proven empty
+  std::int64_t assumptions_until = -1;  ///< first k at which the truth is proven outside the pipeline's own assumptions
+  std::int64_t outside_from = -1;  ///< first k with the truth proven outside the estimate, by more than rounding (1e-9 relative)
+  std::int64_t violated_at = -1;   ///< `outside_from` where all assumptions hold, which is known of simulated data only: a defect
+  std::string error;               ///< the pipeline stopped with this error; the others go on
+  std::optional<Errc> error_code;
   std::vector<MetricValue> summary;
-  PhaseTimes median_us;                  ///< medians over the steps
+  PhaseTimes median_us;       ///< medians over the steps, each phase for itself
+  double median_step_us = 0;  ///< median of predict + correct + reduce
+  double median_hull_us = 0;  ///< median of the interval hulls, which are not part of a step
+  double wall_s = 0;          ///< wall-clock time of the whole pipeline, data and results included
 };
 
 struct RunOutcome {
@@ -38,7 +44,10 @@ struct RunOutcome {
   std::vector<std::filesystem::path> files;
 };
 
-/// Runs all pipelines. Throws Errc::io when results cannot be written (old ones are left as they were).
+/// Runs all pipelines, one after another. `out` receives results.json, sets.jsonl, steps.csv, summary.csv (the same bytes
+/// whenever the run is repeated) and run.json (host, times). They are written beside the old ones, renamed at the end, and
+/// removed if the run fails or is interrupted. Throws InputError for bad data, Errc::io when results cannot be written: old ones
+/// are left as they were. An exception of a component ends its pipeline only. Memory does not depend on the number of steps.
 RunOutcome run_study(const Study& study, const Registry& registry, const RunOptions& options);
 
 }  // namespace cordon

@@ -71,9 +71,10 @@ struct Study {
   std::string resolved;               ///< the study as JSON with every default, for the results file
 };
 
-/// Reads, loads the plugins the study names, validates against the registry, and resolves. Throws InputError with every problem at once
-/// (pointer, line, reason, suggestion), or Errc::plugin if a component is missing because its plugin was refused. Writes nothing.
-Study read_study(const std::filesystem::path& file, Registry& registry);
+/// Reads, loads plugins from the directories that the study names and then from `path` (the first plugin of a name wins, so hand in a registry without
+/// plugins), validates against the registry, and resolves. Throws InputError with every problem at once (pointer, line, reason,
+/// suggestion), or Errc::plugin if nothing is wrong but components that are missing because their plugin was refused. Writes nothing.
+Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path = default_search_path());
 
 /// JSON Schema (2020-12) of study files, with the components that the registry knows. For editors.
 std::string study_json_schema(const Registry& registry);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "progress_bar.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace cordon::apps {
+
+namespace {
+
+std::string duration(double seconds) {
+  const auto whole = static_cast<std::int64_t>(std::ceil(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+}  // namespace
+
+std::string progress_line(const std::string& name, double fraction, std::int64_t done, std::int64_t total, double elapsed_s) {
+  const std::string shown = fmt::format("{:.20}", name);
+  if (total <= 0) return fmt::format("{}  {}", shown, done);
+  const auto filled = static_cast<std::size_t>(30 * fraction);
+  const std::string bar = std::string(filled, '#') + std::string(30 - filled, ' ');
+  const std::string left = fraction > 0 ? duration(elapsed_s * (1 - fraction) / fraction) + " left" : "";
+  return fmt::format("[{}] {:3.0f} %  {}  {}/{}  {}", bar, 100 * fraction, shown, done, total, left);
+}
+
+ProgressBar::ProgressBar(std::vector<std::string> pipelines, bool visible)
+    : pipelines_(std::move(pipelines)), visible_(visible), begin_(Clock::now()), drawn_at_(begin_) {}
+
+void ProgressBar::show(std::size_t pipeline, std::int64_t done, std::int64_t total) {
+  if (!visible_ || pipeline >= pipelines_.size()) return;
+  const Clock::time_point now = Clock::now();
+  if (now - begin_ < std::chrono::seconds(1) || now - drawn_at_ < std::chrono::milliseconds(100)) return;
+  drawn_at_ = now;
+  const double part = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0;
+  const double fraction = (static_cast<double>(pipeline) + part) / static_cast<double>(pipelines_.size());
+  const double elapsed = std::chrono::duration<double>(now - begin_).count();
+  std::fputs(("\r\x1b[K" + progress_line(pipelines_[pipeline], fraction, done, total, elapsed)).c_str(), stderr);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void ProgressBar::clear() {
+  if (!drawn_) return;
+  std::fputs("\r\x1b[K", stderr);
+  std::fflush(stderr);
+  drawn_ = false;
+}
+
+}  // namespace cordon::apps

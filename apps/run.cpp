@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/run.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <optional>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "progress_bar.hpp"
+#include "run_report.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+constexpr Exit interrupted = static_cast<Exit>(130);  // as a shell reports a process that SIGINT ended
+
+std::atomic<bool> stop_requested = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
+
+/// The first signal asks for an end; the next one gets the system's default and kills.
+extern "C" void request_stop(int) {
+  stop_requested = true;
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
+void catch_signals() {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    if (std::signal(signal, request_stop) == SIG_IGN) std::signal(signal, SIG_IGN);  // started to ignore it: keep to that
+  }
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file size is an error of write, not the end of the process
+}
+
+struct Arguments {
+  std::filesystem::path study, out;
+  bool json = false, quiet = false;
+};
+
+/// The code of the worst outcome: a violated guarantee before errors of pipelines.
+Exit exit_of(const RunOutcome& outcome) {
+  Exit exit = Exit::done;
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    if (pipeline.violated_at >= 0) return Exit::violated;
+    if (exit == Exit::done && !pipeline.error.empty()) exit = exit_for(pipeline.error_code.value_or(Errc::internal));
+  }
+  return exit;
+}
+
+void complain_about(const RunOutcome& outcome) {
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    if (!pipeline.error.empty()) {
+      complain(fmt::format("pipeline \"{}\" stopped after {} steps: {}", pipeline.name, pipeline.steps, pipeline.error));
+    }
+    if (pipeline.violated_at >= 0) {
+      complain(fmt::format(
+          "pipeline \"{}\" violates its guarantee: at k = {} the true state is proven outside the estimate. This is a "
+          "defect of its backend or observer, or x0 lies outside X0",
+          pipeline.name, pipeline.violated_at));
+    }
+  }
+}
+
+Exit run(const Program& program, const Arguments& arguments) {
+  Registry registry;
+  registry.load({program.plugins});  // the study's own directories and the usual ones follow
+  const Study study = read_study(arguments.study, registry);
+  if (!arguments.quiet) {
+    for (const std::string& warning : study.warnings) warn(warning);
+  }
+  std::vector<std::string> names;
+  for (const PipelineSpec& pipeline : study.pipelines) names.push_back(pipeline.name);
+  ProgressBar bar(names, !arguments.quiet && isatty(STDERR_FILENO) == 1);
+  RunOptions options;
+  options.out = arguments.out.empty() ? std::filesystem::path("results") / arguments.study.stem() : arguments.out;
+  options.stop = &stop_requested;
+  options.progress = [&](std::size_t pipeline, std::int64_t done, std::int64_t total) { bar.show(pipeline, done, total); };
+  catch_signals();
+  const RunOutcome outcome = run_study(study, registry, options);
+  bar.clear();
+  if (outcome.interrupted) {
+    complain(fmt::format("interrupted: nothing was written; earlier results in {} are unchanged", options.out.string()));
+    return interrupted;
+  }
+  if (!arguments.quiet) print(arguments.json ? report_json(outcome) : report_text(study, outcome, options.out));
+  complain_about(outcome);
+  return exit_of(outcome);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand("run", "Run a study and compare its pipelines");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("STUDY", arguments->study, "Study file (JSON)")->required()->option_text(" ");
+  command->add_option("--out", arguments->out, "Directory for the results [results/<name of the study>]")->option_text("DIR");
+  command->add_flag("--json", arguments->json, "Print JSON for programs instead of the table");
+  command->add_flag("--quiet", arguments->quiet, "Print errors only");
+  command->footer(
+      "Results appear when all are complete: results.json, sets.jsonl, steps.csv, summary.csv, run.json.\n"
+      "SIGINT or SIGTERM ends the run with exit code 130 and leaves earlier results as they were; a second one kills.");
+  command->callback([&program, arguments] { program.exit = run(program, *arguments); });
+}
+
+}  // namespace cordon::apps

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "common.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+const MetricValue* find(const PipelineOutcome& pipeline, std::string_view name) {
+  const auto found =
+      std::find_if(pipeline.summary.begin(), pipeline.summary.end(), [&](const MetricValue& m) { return m.name == name; });
+  return found == pipeline.summary.end() ? nullptr : &*found;
+}
+
+std::string text(const MetricValue* metric) {
+  if (!metric) return "-";
+  if (const auto* integer = std::get_if<Index>(&metric->value)) return fmt::format("{}", *integer);
+  if (const auto* word = std::get_if<std::string>(&metric->value)) return *word;
+  const double number = std::get<double>(metric->value);
+  return std::isnan(number) ? "-" : fmt::format("{:.4g}", number);
+}
+
+/// Steps whose set is proven to contain the truth, of those where the question was asked.
+std::string contained(const PipelineOutcome& pipeline) {
+  Index yes = 0, all = 0;
+  for (const char* answer : {"yes", "no", "unknown"}) {
+    const MetricValue* count = find(pipeline, std::string("contains_truth_") + answer);
+    const Index* number = count ? std::get_if<Index>(&count->value) : nullptr;
+    if (!number) return "-";
+    all += *number;
+    if (answer == std::string_view("yes")) yes = *number;
+  }
+  return all == 0 ? "-" : fmt::format("{}/{}", yes, all);
+}
+
+std::string consistency(const PipelineOutcome& pipeline) {
+  if (!pipeline.error.empty()) return fmt::format("error after {} steps", pipeline.steps);
+  if (pipeline.violated_at >= 0) return fmt::format("VIOLATED at k = {}", pipeline.violated_at);
+  if (pipeline.inconsistent_from >= 0) return fmt::format("empty from k = {}", pipeline.inconsistent_from);
+  if (pipeline.undecided > 0) return fmt::format("undecided at {} steps", pipeline.undecided);
+  return "consistent";
+}
+
+struct Column {
+  std::string header;
+  std::string metric;  ///< shown if a pipeline has it; "" : always
+  std::function<std::string(const PipelineOutcome&)> cell;
+};
+
+Column metric_column(std::string header, const std::string& name) {
+  return {std::move(header), name, [name](const PipelineOutcome& p) { return text(find(p, name)); }};
+}
+
+/// The usual columns, in the order of interest; metrics that are not among the usual ones follow under their own names.
+std::vector<Column> columns(const RunOutcome& outcome) {
+  std::vector<Column> found{
+      {"PIPELINE", "", [](const PipelineOutcome& p) { return p.name; }},
+      {"BACKEND", "", [](const PipelineOutcome& p) { return p.backend; }},
+      metric_column("MEAN RADIUS", "radius_mean"),
+      metric_column("MAX RADIUS", "radius_max"),
+      metric_column("MEAN VOLUME", "volume_mean"),
+      {"TRUTH INSIDE", "contains_truth_yes", contained},
+      {"CONSISTENCY", "", consistency},
+      metric_column("GEN", "generators_max"),
+      metric_column("LINES", "lines_max"),
+      metric_column("CONSTR", "constraints_max"),
+  };
+  static const std::vector<std::string> usual{"radius_unbounded_steps", "volume_of_hull_steps", "contains_truth_no",
+                                              "contains_truth_unknown", "exact_share",          "step_time_us_mean",
+                                              "step_time_us_max"};
+  const auto has = [](const RunOutcome& o, const std::string& name) {
+    return std::any_of(o.pipelines.begin(), o.pipelines.end(),
+                       [&](const PipelineOutcome& p) { return find(p, name) != nullptr; });
+  };
+  std::erase_if(found, [&](const Column& column) { return !column.metric.empty() && !has(outcome, column.metric); });
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    for (const MetricValue& metric : pipeline.summary) {
+      const bool shown =
+          std::any_of(found.begin(), found.end(), [&](const Column& column) { return column.metric == metric.name; });
+      if (!shown && std::find(usual.begin(), usual.end(), metric.name) == usual.end())
+        found.push_back(metric_column(metric.name, metric.name));
+    }
+  }
+  found.push_back(
+      {"µs/STEP", "", [](const PipelineOutcome& p) { return p.steps ? fmt::format("{:.1f}", p.median_step_us) : "-"; }});
+  return found;
+}
+
+ordered_json number(double value) {
+  if (std::isnan(value)) return nullptr;
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+ordered_json time_or_null(std::int64_t k) { return k < 0 ? ordered_json(nullptr) : ordered_json(k); }
+
+ordered_json json_of(const PipelineOutcome& p) {
+  ordered_json metrics = ordered_json::object();
+  for (const MetricValue& metric : p.summary) {
+    if (const auto* value = std::get_if<double>(&metric.value)) {
+      metrics[metric.name] = number(*value);
+    } else {
+      std::visit([&](const auto& other) { metrics[metric.name] = other; }, metric.value);
+    }
+  }
+  return {{"name", p.name},
+          {"backend", p.backend},
+          {"observer", p.observer},
+          {"steps", p.steps},
+          {"consistent", p.consistent},
+          {"inconsistent", p.inconsistent},
+          {"undecided", p.undecided},
+          {"inconsistent_from", time_or_null(p.inconsistent_from)},
+          {"assumptions_until", time_or_null(p.assumptions_until)},
+          {"outside_from", time_or_null(p.outside_from)},
+          {"violated_at", time_or_null(p.violated_at)},
+          {"error", p.error.empty() ? ordered_json(nullptr) : ordered_json(p.error)},
+          {"metrics", std::move(metrics)},
+          {"median_step_us", p.median_step_us},
+          {"median_hull_us", p.median_hull_us}};
+}
+
+}  // namespace
+
+std::string report_text(const Study& study, const RunOutcome& outcome, const std::filesystem::path& out) {
+  const std::vector<Column> shown = columns(outcome);
+  std::vector<std::vector<std::string>> rows(1);
+  for (const Column& column : shown) rows[0].push_back(column.header);
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    rows.emplace_back();
+    for (const Column& column : shown) rows.back().push_back(column.cell(pipeline));
+  }
+  const Paint paint(stdout);
+  const std::string title = study.title.empty() ? "" : paint.bold(study.title) + "\n\n";
+  return title + table(rows, paint) + "\nResults are in " + out.string() + "\n";
+}
+
+std::string report_json(const RunOutcome& outcome) {
+  ordered_json pipelines = ordered_json::array(), files = ordered_json::array();
+  for (const PipelineOutcome& pipeline : outcome.pipelines) pipelines.push_back(json_of(pipeline));
+  for (const std::filesystem::path& file : outcome.files) files.push_back(file.string());
+  const ordered_json report{{"pipelines", std::move(pipelines)}, {"files", std::move(files)}};
+  return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace cordon::apps

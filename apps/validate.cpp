@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "cordon/study/data.hpp"
+#include "cordon/study/study.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::vector<std::string> studies;
+  bool json = false;
+};
+
+std::string count(Index number, const char* noun) { return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s"); }
+
+std::string describe_system(const LinearModel& model) {
+  return fmt::format("{}, {}, {}, {}, {}, {}", model.is_descriptor() ? "descriptor" : "lti", count(model.states(), "state"),
+                     count(model.inputs(), "input"), count(model.outputs(), "output"), count(model.disturbances(), "disturbance"),
+                     count(model.noises(), "noise"));
+}
+
+std::string describe_data(const Study& study) {
+  if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
+    return fmt::format("simulated, {}, seed {}", count(simulate->steps, "step"), simulate->seed);
+  }
+  return "recorded, " + std::get<CsvSpec>(study.data).file.string();
+}
+
+std::string describe(const Study& study) {
+  const Paint paint(stdout);
+  std::string text = fmt::format("{}: {}\n  title     {}\n  system    {}\n  data      {}\n", study.file.string(),
+                                 paint.green("ok"), study.title, describe_system(study.model.linear), describe_data(study));
+  const char* label = "pipelines";
+  for (const PipelineSpec& pipeline : study.pipelines) {
+    text += fmt::format("  {:<9} {}: {}, {}\n", label, pipeline.name, pipeline.backend.type, pipeline.observer.type);
+    label = "";
+  }
+  std::vector<std::string> metrics;
+  for (const ComponentSpec& metric : study.metrics) metrics.push_back(metric.type);
+  if (!metrics.empty()) text += fmt::format("  metrics   {}\n", fmt::join(metrics, ", "));
+  return text;
+}
+
+Json as_json(const Study& study) {
+  Json entry{{"file", study.file.string()}, {"valid", true}, {"warnings", study.warnings}, {"errors", Json::array()}};
+  entry["study"] = Json::parse(study.resolved);
+  return entry;
+}
+
+/// The error in flight, for programs.
+Json as_json(const std::string& file, const Error& error) {
+  Json entry{{"file", file},
+             {"valid", false},
+             {"code", to_string(error.code())},
+             {"warnings", Json::array()},
+             {"errors", Json::array()}};
+  const auto* input = dynamic_cast<const InputError*>(&error);
+  if (!input) entry["errors"].push_back({{"message", error.what()}});
+  for (const Diagnostic& d : input ? input->diagnostics() : std::vector<Diagnostic>{}) {
+    entry["errors"].push_back({{"file", input->file()},
+                               {"pointer", d.pointer},
+                               {"line", d.line},
+                               {"message", d.message},
+                               {"suggestion", d.suggestion}});
+  }
+  return entry;
+}
+
+/// Reads one study and its data as `cordon run` would, but runs nothing and writes nothing.
+Exit validate_one(const std::string& file, const Program& program, bool json, Json& entries) {
+  try {
+    Registry registry;
+    registry.load(SearchPath{program.plugins});
+    const Study study = read_study(file, registry);
+    open_data(study);
+    if (json) {
+      entries.push_back(as_json(study));
+    } else {
+      for (const std::string& warning : study.warnings) warn(warning);
+      print(describe(study));
+    }
+    return Exit::done;
+  } catch (const Error& error) {
+    if (json) entries.push_back(as_json(file, error));
+    return json ? exit_for(error.code()) : report_current_exception();
+  }
+}
+
+/// The exit code is that of the first study that fails; the others are looked at all the same.
+Exit validate(const Program& program, const Arguments& arguments) {
+  Exit exit = Exit::done;
+  Json entries = Json::array();
+  for (const std::string& file : arguments.studies) {
+    const Exit one = validate_one(file, program, arguments.json, entries);
+    if (exit == Exit::done) exit = one;
+  }
+  if (arguments.json) print(Json{{"studies", std::move(entries)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return exit;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand("validate", "Check study files and their data, and show every error at once");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("STUDY", arguments->studies, "Study files (JSON)")->required();
+  command->add_flag("--json", arguments->json, "Print JSON for programs: errors, warnings, and the study with every default");
+  command->callback([&program, arguments] { program.exit = validate(program, *arguments); });
+}
+
+}  // namespace cordon::apps

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Operations on random constrained sets of (states, generators, constraints) = (3,30,5), (10,100,20), (20,200,50).
+#include <random>
+
+#include <benchmark/benchmark.h>
+
+#include "cordon/sets/line_zonotope.hpp"
+#include "cordon/sets/strip.hpp"
+#include "cordon/sets/zonotope.hpp"
+#include "cordon/solvers/set_questions.hpp"
+
+namespace {
+
+using namespace cordon;
+
+struct Size {
+  Index n, g, m;
+};
+
+Size size(const benchmark::State& state) { return {state.range(0), state.range(1), state.range(2)}; }
+
+Matrix random_matrix(std::mt19937_64& engine, Index rows, Index cols) {
+  Matrix A(rows, cols);
+  for (Index k = 0; k < A.size(); ++k) A.data()[k] = static_cast<double>(engine() >> 11) * 0x1p-52 - 1;
+  return A;
+}
+
+/// Feasible by construction: b = A ξ for a ξ inside the box.
+LineForm random_set(Size s, std::uint64_t seed = 1) {
+  std::mt19937_64 engine(seed);
+  LineForm X = make_zonotope(random_matrix(engine, s.n, 1), random_matrix(engine, s.n, s.g));
+  X.A = random_matrix(engine, s.m, s.g);
+  X.b = X.A * (0.7 * random_matrix(engine, s.g, 1));
+  X.S.resize(s.m, 0);
+  return X;
+}
+
+void affine_map_of_set(benchmark::State& state) {
+  const LineForm X = random_set(size(state));
+  std::mt19937_64 engine(2);
+  const Matrix T = random_matrix(engine, X.dim(), X.dim());
+  const Vector t = Vector::Zero(X.dim());
+  for (auto _ : state) benchmark::DoNotOptimize(affine_map(X, T, t));
+}
+void minkowski_sum_of_sets(benchmark::State& state) {
+  const LineForm X = random_set(size(state)), Y = random_set(size(state), 2);
+  for (auto _ : state) benchmark::DoNotOptimize(minkowski_sum(X, Y));
+}
+void generalised_intersection(benchmark::State& state) {
+  const LineForm X = random_set(size(state)), Y = make_box({Vector::Constant(2, -1), Vector::Constant(2, 1)});
+  std::mt19937_64 engine(2);
+  const Matrix R = random_matrix(engine, 2, X.dim());
+  for (auto _ : state) benchmark::DoNotOptimize(intersection(X, R, Y));
+}
+void line_elimination(benchmark::State& state) {
+  const LineForm X = intersection(make_space(size(state).n), Matrix::Identity(size(state).n, size(state).n), random_set(size(state)));
+  for (auto _ : state) benchmark::DoNotOptimize(eliminate_lines(X));
+}
+void constraint_elimination_of_one(benchmark::State& state) {
+  const LineForm X = random_set(size(state));
+  for (auto _ : state) benchmark::DoNotOptimize(sets::eliminate_constraints(X, X.constraints() - 1));
+}
+void constraint_elimination_to_5(benchmark::State& state) {
+  Size s = size(state);
+  if (s.m <= 5) s.m = 8;
+  const LineForm X = random_set(s);
+  for (auto _ : state) benchmark::DoNotOptimize(sets::eliminate_constraints(X, 5));
+}
+void generator_reduction_by_a_fifth(benchmark::State& state) {
+  const LineForm X = random_set(size(state));
+  Matrix lifted(X.dim() + X.constraints(), X.generators());
+  lifted << X.G, X.A;
+  const Index target = X.generators() * 4 / 5;
+  for (auto _ : state) benchmark::DoNotOptimize(sets::reduce_generators(lifted, target));
+}
+void interval_hull_certified(benchmark::State& state) {
+  const LineForm X = random_set(size(state));
+  for (auto _ : state) benchmark::DoNotOptimize(interval_hull(X));
+}
+void emptiness_of_non_empty(benchmark::State& state) {
+  const LineForm X = random_set(size(state));
+  if (is_empty(X) == Answer::yes) state.SkipWithError("the instance must not be empty");
+  for (auto _ : state) benchmark::DoNotOptimize(is_empty(X));
+}
+void emptiness_of_empty(benchmark::State& state) {
+  LineForm X = random_set(size(state));
+  X.b *= 4;
+  if (is_empty(X) != Answer::yes) state.SkipWithError("the instance must be proven empty");
+  for (auto _ : state) benchmark::DoNotOptimize(is_empty(X));
+}
+void containment_of_inner_point(benchmark::State& state) {
+  const LineForm X = random_set(size(state));
+  const Box hull = interval_hull(X);
+  const Vector x = hull.center();
+  for (auto _ : state) benchmark::DoNotOptimize(contains(X, x));
+}
+void strip_of_zonotope(benchmark::State& state) {
+  const LineForm X = random_set(size(state));
+  const sets::Zonotope Z{X.c, X.G};
+  const Vector rho = Vector::Ones(X.dim());
+  for (auto _ : state) benchmark::DoNotOptimize(sets::intersect_strip(Z, rho, rho.dot(Z.c), .1));
+}
+
+void sizes(benchmark::internal::Benchmark* b) {
+  b->Args({3, 30, 5})->Args({10, 100, 20})->Args({20, 200, 50})->Repetitions(7)->Unit(benchmark::kMicrosecond)->MinTime(.05);
+}
+
+BENCHMARK(affine_map_of_set)->Apply(sizes);
+BENCHMARK(minkowski_sum_of_sets)->Apply(sizes);
+BENCHMARK(generalised_intersection)->Apply(sizes);
+BENCHMARK(line_elimination)->Apply(sizes);
+BENCHMARK(constraint_elimination_of_one)->Apply(sizes);
+BENCHMARK(constraint_elimination_to_5)->Apply(sizes);
+BENCHMARK(generator_reduction_by_a_fifth)->Apply(sizes);
+BENCHMARK(interval_hull_certified)->Apply(sizes);
+BENCHMARK(emptiness_of_non_empty)->Apply(sizes);
+BENCHMARK(emptiness_of_empty)->Apply(sizes);
+BENCHMARK(containment_of_inner_point)->Apply(sizes);
+BENCHMARK(strip_of_zonotope)->Apply(sizes);
+
+}  // namespace

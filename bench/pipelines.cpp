@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One step (predict, correct, reduce; and the certified hull apart) of every pipeline of the main study, through plugins as in a run.
+#include <memory>
+
+#include <benchmark/benchmark.h>
+
+#include "cordon/study/data.hpp"
+#include "cordon/study/study.hpp"
+
+namespace {
+
+using namespace cordon;
+
+struct Fixture {
+  Registry registry;
+  Study study;
+  Fixture() {
+    registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+    study = read_study(CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
+  }
+};
+
+const Fixture& fixture() {
+  static const Fixture instance;
+  return instance;
+}
+
+/// Runs a pipeline over and over its data up to k = 20 (all pipelines are consistent there); each iteration is one step from k = 2 on.
+template <class Work>
+void steps(benchmark::State& state, const PipelineSpec& pipeline, Work work) {
+  const Fixture& f = fixture();
+  const auto backend = f.registry.make_backend(pipeline.backend.type, pipeline.backend.params);
+  const auto observer = f.registry.make_observer(pipeline.observer.type, {f.study.model, backend}, pipeline.observer.params);
+  std::vector<Sample> samples;
+  for (const auto source = open_data(f.study); samples.size() <= 20;) samples.push_back(source->next()->sample);
+  std::size_t k = samples.size();
+  for (auto _ : state) {
+    if (k >= samples.size()) {
+      observer->start();
+      observer->step(samples[0]);
+      observer->step(samples[1]);
+      k = 2;
+    }
+    const Estimate estimate = observer->step(samples[k++]);
+    state.SetIterationTime(work(*observer, estimate) * 1e-6);
+  }
+}
+
+double hull_time(const Estimate& estimate) {
+  const auto begin = std::chrono::steady_clock::now();
+  benchmark::DoNotOptimize(estimate.set->interval_hull());
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+}
+
+const int registered = [] {
+  for (const PipelineSpec& pipeline : fixture().study.pipelines) {
+    const auto add = [&](const std::string& what, double (*work)(const Observer&, const Estimate&)) {
+      benchmark::RegisterBenchmark((what + "/" + pipeline.name).c_str(),
+                                   [&pipeline, work](benchmark::State& state) { steps(state, pipeline, work); })
+          ->UseManualTime()
+          ->Repetitions(7)
+          ->Unit(benchmark::kMicrosecond)
+          ->MinTime(.05);
+    };
+    add("step", [](const Observer& observer, const Estimate&) { return observer.times().step(); });
+    add("step_with_question", [](const Observer& observer, const Estimate&) { return observer.times().step() + observer.times().question; });
+    add("step_with_hull", [](const Observer& observer, const Estimate& e) { return observer.times().step() + hull_time(e); });
+  }
+  return 0;
+}();
+
+}  // namespace

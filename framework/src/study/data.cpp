@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/data.hpp"
+
+#include "study/csv_source.hpp"
+#include "study/simulate.hpp"
+
+namespace cordon {
+
+std::unique_ptr<DataSource> open_data(const Study& study) {
+  if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
+    return std::make_unique<detail::SimulatedSource>(study.model, *simulate, study.file.string());
+  }
+  return std::make_unique<detail::CsvSource>(std::get<CsvSpec>(study.data), study.model.linear);
+}
+
+}  // namespace cordon

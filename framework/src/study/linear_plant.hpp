@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The linear plant of a simulation, step by step, with disturbances given from outside.
+#pragma once
+
+#include <string>
+
+#include "cordon/interfaces/model.hpp"
+
+namespace cordon::detail {
+
+/// E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with E singular of index 1, regular, or the identity.
+///
+/// With E = U Σ Vᵀ (rank r by singular values above 1e-10 σ₁), z = Vᵀx = (z̃, ž) and Uᵀ splits the rows [Rego2025, (13)]:
+///   z̃⁺ = Σ̃⁻¹ Ũᵀ(A x + B u + Bw w)     (r dynamic rows)
+///   0  = Ǔᵀ(A x + B u + Bw w)          (n - r static rows; they hold at every k with the w of the same k)
+/// The static rows are solved for ž: Ǔᵀ A V̌ must be regular, else the index is above 1 and the constructor throws InputError.
+/// r = n: no static rows, any E of full rank. One step is O(n (n + n_u + n_w + n_y)).
+class LinearPlant {
+ public:
+  LinearPlant(const LinearModel& model, const std::string& file);
+
+  /// Sets z̃_0 from a state; its static part is found by the first step.
+  void start(VectorIn x0);
+
+  struct Output {
+    Vector x, y;
+  };
+  /// x_k and y_k for the current k, then moves on to k + 1.
+  Output step(VectorIn u, VectorIn w, VectorIn v);
+
+  /// The state that belongs to z̃_k, u_k and w_k.
+  Vector state(VectorIn u, VectorIn w) const;
+
+  /// Static rows 0 = Ǎ x + B̌ u + B̌w w (in coordinates of x); no rows if E is regular.
+  const Matrix& static_A() const { return static_A_; }
+  const Matrix& static_B() const { return static_B_; }
+  const Matrix& static_Bw() const { return static_Bw_; }
+
+ private:
+  void split(const std::string& file);
+
+  LinearModel model_;
+  Matrix V_;                                   ///< n×n: (Ṽ, V̌)
+  Matrix dynamic_A_, dynamic_B_, dynamic_Bw_;  ///< Σ̃⁻¹ Ũᵀ (A, B, Bw)
+  Matrix static_A_, static_B_, static_Bw_;     ///< Ǔᵀ (A, B, Bw)
+  Matrix solve_;                               ///< -(Ǔᵀ A V̌)⁻¹
+  Vector z_;                                   ///< z̃_k
+};
+
+}  // namespace cordon::detail

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/results.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cordon/registry/build.hpp"
+#include "study/host.hpp"
+#include "study/numbers.hpp"
+
+namespace cordon::detail {
+
+namespace {
+
+using Layout = JsonWriter::Layout;
+
+void write(JsonWriter& json, const MetricValue& metric) {
+  json.key(metric.name);
+  std::visit([&](const auto& value) { json.value(value); }, metric.value);
+}
+
+/// RFC 4180: quoted where needed.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+std::string csv_number(double value) { return std::isnan(value) ? "" : to_text(value); }
+
+std::string csv_value(const MetricValue& metric) {
+  if (const auto* number = std::get_if<double>(&metric.value)) return csv_number(*number);
+  if (const auto* integer = std::get_if<Index>(&metric.value)) return std::to_string(*integer);
+  return csv_field(std::get<std::string>(metric.value));
+}
+
+/// A time index that may not exist.
+std::string csv_time(std::int64_t k) { return k < 0 ? "" : std::to_string(k); }
+void write_time(JsonWriter& json, std::string_view name, std::int64_t k) {
+  json.key(name);
+  k < 0 ? json.null() : json.value(k);
+}
+
+std::string joined(const std::vector<std::string>& fields) {
+  std::string row;
+  for (std::size_t i = 0; i < fields.size(); ++i) row += (i == 0 ? "" : ",") + fields[i];
+  return row + '\n';
+}
+
+/// FNV-1a with 64 bits, to tell studies apart.
+std::string fingerprint(std::string_view text) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  std::string digits(16, '0');
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
+  return "fnv1a64:" + digits;
+}
+
+void write_times(JsonWriter& json, const PhaseTimes& times, double hull_us) {
+  json.begin_object();
+  json.member("predict", times.predict).member("correct", times.correct).member("reduce", times.reduce);
+  json.member("question", times.question).member("hull", hull_us).end_object();
+}
+
+}  // namespace
+
+// run.json and results.json come last: where a results.json is new, the other files are new too.
+Results::Results(const Study& study, const Registry& registry, const std::filesystem::path& out)
+    : study_(study),
+      directory_(out),
+      sets_file_(directory_.create("sets.jsonl")),
+      steps_file_(directory_.create("steps.csv")),
+      summary_file_(directory_.create("summary.csv")),
+      run_file_(directory_.create("run.json")),
+      results_file_(directory_.create("results.json")),
+      results_(results_file_),
+      run_(run_file_) {
+  begin_results(registry);
+  begin_run(registry);
+}
+
+void Results::begin_results(const Registry& registry) {
+  const BuildInfo build = build_info();
+  results_.begin_object(Layout::lines).member("cordon_results", 1);
+  results_.key("cordon").begin_object().member("version", build.version).member("abi_tag", build.abi_tag).end_object();
+  results_.key("tools").begin_object();
+  for (const auto& [tool, version] : build.tools) results_.member(tool, version);
+  results_.end_object();
+  results_.key("plugins").begin_array();
+  for (const PluginReport& report : registry.reports()) {
+    if (report.state != PluginReport::State::loaded) continue;
+    results_.begin_object().member("name", report.name).member("version", report.version).end_object();
+  }
+  results_.end_array();
+  results_.member("title", study_.title).member("study_hash", fingerprint(study_.resolved));
+  results_.key("study");
+  study_.resolved.empty() ? results_.null() : results_.raw(study_.resolved);
+  results_.key("pipelines").begin_array(Layout::lines);
+}
+
+void Results::begin_run(const Registry& registry) {
+  const Host host = this_host();
+  run_.begin_object(Layout::lines).member("cordon_run", 1).member("study", study_.file.string()).member("started", utc_now());
+  run_.key("host").begin_object().member("name", host.name).member("system", host.system).member("cpu", host.cpu).end_object();
+  run_.key("plugins").begin_array(Layout::lines);
+  for (const PluginReport& report : registry.reports()) {
+    if (report.state != PluginReport::State::loaded) continue;
+    run_.begin_object().member("name", report.name).member("file", report.file.string()).end_object();
+  }
+  run_.end_array();
+  run_.key("warnings").begin_array(Layout::lines);
+  for (const std::string& warning : study_.warnings) run_.value(warning);
+  run_.end_array().key("pipelines").begin_array(Layout::lines);
+}
+
+void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding) {
+  pipeline_ = csv_field(spec.name);
+  pipeline_json_ = json_string(spec.name);
+  rounding_ = rounding;
+  results_.begin_object(Layout::lines)
+      .member("name", spec.name)
+      .member("backend", spec.backend.type)
+      .member("observer", spec.observer.type);
+  results_.key("rounding");
+  rounding ? results_.value(to_string(*rounding)) : results_.null();
+  results_.key("steps").begin_array(Layout::lines);
+  run_.begin_object(Layout::lines).member("name", spec.name).key("steps").begin_array(Layout::lines);
+}
+
+void Results::check_columns(const MetricValues& metrics) {
+  if (!columns_) {
+    columns_.emplace();
+    for (const MetricValue& metric : metrics.reproducible) columns_->push_back(metric.name);
+    return;
+  }
+  bool same = columns_->size() == metrics.reproducible.size();
+  for (std::size_t i = 0; same && i < columns_->size(); ++i) same = (*columns_)[i] == metrics.reproducible[i].name;
+  if (!same) throw Error(Errc::plugin, "the metrics name their values otherwise than in an earlier pipeline");
+}
+
+void Results::step(const StepResult& result) {
+  const Estimate& estimate = result.estimate;
+  results_.begin_object().member("k", estimate.k);
+  results_.key("hull").begin_object().member("lower", result.hull.lower).member("upper", result.hull.upper).end_object();
+  results_.member("consistent", to_string(estimate.consistent)).member("tightness", to_string(estimate.set.tightness));
+  for (const MetricValue& metric : result.metrics.reproducible) write(results_, metric);
+  results_.end_object();
+  run_.begin_object().member("k", estimate.k).key("time_us");
+  write_times(run_, result.times, result.hull_us);
+  for (const MetricValue& metric : result.metrics.measured) write(run_, metric);
+  run_.end_object();
+  write_row(result);
+  write_set(estimate);
+}
+
+void Results::write_header(Index states) {
+  std::vector<std::string> names{"pipeline", "k", "consistent", "tightness"};
+  for (const char* bound : {"lower_", "upper_"}) {
+    for (Index i = 1; i <= states; ++i) names.push_back(bound + std::to_string(i));
+  }
+  if (columns_) {
+    for (const std::string& name : *columns_) names.push_back(csv_field(name));
+  }
+  steps_file_.write(joined(names));
+  header_written_ = true;
+}
+
+void Results::write_row(const StepResult& result) {
+  if (!header_written_) write_header(result.hull.dim());
+  std::vector<std::string> row{pipeline_, std::to_string(result.estimate.k), std::string(to_string(result.estimate.consistent)),
+                               std::string(to_string(result.estimate.set.tightness))};
+  for (const Vector* bound : {&result.hull.lower, &result.hull.upper}) {
+    for (const double x : *bound) row.push_back(csv_number(x));
+  }
+  for (const MetricValue& metric : result.metrics.reproducible) row.push_back(csv_value(metric));
+  steps_file_.write(joined(row));
+}
+
+void Results::write_set(const Estimate& estimate) {
+  const LineForm X = estimate.set->line_form();
+  const bool exact = estimate.set->backend().info().exact_exchange;
+  JsonWriter json(sets_file_);
+  json.begin_object().key("pipeline").raw(pipeline_json_).member("k", estimate.k);
+  json.member("tightness", to_string(estimate.set.tightness));
+  json.member("exchange", to_string(exact ? Tightness::exact : Tightness::outer));
+  json.member("dim", X.dim())
+      .member("lines", X.lines())
+      .member("generators", X.generators())
+      .member("constraints", X.constraints());
+  json.key("M").matrix(X.M).key("G").matrix(X.G).member("c", X.c).key("S").matrix(X.S).key("A").matrix(X.A).member("b", X.b);
+  Certificate why;
+  if (estimate.consistent == Answer::no && estimate.set->is_empty(&why) == Answer::yes) {
+    json.key("empty")
+        .begin_object()
+        .member("kind", to_string(why.kind))
+        .member("margin", why.margin)
+        .member("data", why.data)
+        .end_object();
+  }
+  json.end_object();
+  sets_file_.write("\n");
+}
+
+void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& summary) {
+  results_.end_array().key("summary").begin_object(Layout::lines);
+  results_.member("steps", outcome.steps).member("consistent", outcome.consistent).member("inconsistent", outcome.inconsistent);
+  results_.member("undecided", outcome.undecided);
+  write_time(results_, "inconsistent_from", outcome.inconsistent_from);
+  write_time(results_, "assumptions_until", outcome.assumptions_until);
+  write_time(results_, "outside_from", outcome.outside_from);
+  write_time(results_, "violated_at", outcome.violated_at);
+  results_.key("error");
+  outcome.error.empty() ? results_.null() : results_.value(outcome.error);
+  Summary row;
+  for (const MetricValue& metric : summary.reproducible) {
+    write(results_, metric);
+    row.metrics[metric.name] = csv_value(metric);
+    const bool known = std::find(summary_columns_.begin(), summary_columns_.end(), metric.name) != summary_columns_.end();
+    if (!known) summary_columns_.push_back(metric.name);
+  }
+  results_.end_object().end_object();
+  row.fields = {pipeline_,
+                csv_field(outcome.backend),
+                csv_field(outcome.observer),
+                rounding_ ? std::string(to_string(*rounding_)) : "",
+                std::to_string(outcome.steps),
+                std::to_string(outcome.consistent),
+                std::to_string(outcome.inconsistent),
+                std::to_string(outcome.undecided),
+                csv_time(outcome.inconsistent_from),
+                csv_time(outcome.assumptions_until),
+                csv_time(outcome.outside_from),
+                csv_time(outcome.violated_at),
+                csv_field(outcome.error)};
+  summaries_.push_back(std::move(row));
+  run_.end_array().key("summary").begin_object(Layout::lines).key("median_time_us");
+  write_times(run_, outcome.median_us, outcome.median_hull_us);
+  run_.member("median_step_us", outcome.median_step_us).member("wall_s", outcome.wall_s);
+  for (const MetricValue& metric : summary.measured) write(run_, metric);
+  run_.end_object().end_object();
+}
+
+void Results::write_summaries() {
+  std::vector<std::string> names{"pipeline",     "backend",      "observer",  "rounding",          "steps",
+                                 "consistent",   "inconsistent", "undecided", "inconsistent_from", "assumptions_until",
+                                 "outside_from", "violated_at",  "error"};
+  for (const std::string& name : summary_columns_) names.push_back(csv_field(name));
+  summary_file_.write(joined(names));
+  for (Summary& summary : summaries_) {
+    for (const std::string& name : summary_columns_) summary.fields.push_back(summary.metrics[name]);
+    summary_file_.write(joined(summary.fields));
+  }
+}
+
+std::vector<std::filesystem::path> Results::commit(const RunOutcome& outcome) {
+  if (!header_written_) write_header(study_.model.linear.states());
+  write_summaries();
+  results_.end_array().end_object();
+  results_file_.write("\n");
+  double wall = 0;
+  for (const PipelineOutcome& pipeline : outcome.pipelines) wall += pipeline.wall_s;
+  run_.end_array().member("wall_s", wall).member("finished", utc_now()).end_object();
+  run_file_.write("\n");
+  return directory_.commit();
+}
+
+}  // namespace cordon::detail

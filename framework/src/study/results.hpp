@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files of a run, streamed. All but run.json are the same byte for byte when a run is repeated.
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "cordon/study/run.hpp"
+#include "study/atomic_directory.hpp"
+#include "study/json_writer.hpp"
+#include "study/metric_board.hpp"
+
+namespace cordon::detail {
+
+/// What is written about one step.
+struct StepResult {
+  const Estimate& estimate;
+  const Box& hull;
+  const MetricValues& metrics;
+  const PhaseTimes& times;
+  double hull_us;
+};
+
+/// Writes into `out`:
+///   results.json  resolved study, versions, and per pipeline steps[] {k, hull, consistent, tightness, metrics} and summary
+///   sets.jsonl    one line per step and pipeline: the estimate's exchange form, and the proof if it is empty
+///   steps.csv, summary.csv   the same numbers as tables (∞ as inf, absent values as empty fields)
+///   run.json      host, times, and what else differs from run to run
+/// Nothing is visible under its name before `commit`.
+class Results {
+ public:
+  Results(const Study& study, const Registry& registry, const std::filesystem::path& out);
+
+  void begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding);
+  /// Throws Errc::plugin, before anything is written, if the metrics have names that they had not in an earlier pipeline.
+  void check_columns(const MetricValues& metrics);
+  void step(const StepResult& result);
+  void end_pipeline(const PipelineOutcome& outcome, const MetricValues& summary);
+
+  std::vector<std::filesystem::path> commit(const RunOutcome& outcome);
+
+ private:
+  void begin_results(const Registry& registry);
+  void begin_run(const Registry& registry);
+  void write_set(const Estimate& estimate);
+  void write_row(const StepResult& result);
+  void write_header(Index states);
+  void write_summaries();
+
+  const Study& study_;
+  AtomicDirectory directory_;
+  OutputFile& sets_file_;
+  OutputFile& steps_file_;
+  OutputFile& summary_file_;
+  OutputFile& run_file_;
+  OutputFile& results_file_;
+  JsonWriter results_, run_;
+  std::string pipeline_;  ///< name of the current one, as a CSV field
+  std::string pipeline_json_;
+  std::optional<std::vector<std::string>> columns_;  ///< of metrics in steps.csv, from the first step
+  bool header_written_ = false;
+  struct Summary {
+    std::vector<std::string> fields;  ///< what every pipeline has
+    std::map<std::string, std::string> metrics;
+  };
+  std::vector<Summary> summaries_;
+  std::vector<std::string> summary_columns_;
+  std::optional<Rounding> rounding_;
+};
+
+}  // namespace cordon::detail

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/run.hpp"
+
+#include <chrono>
+#include <deque>
+
+#include "study/median.hpp"
+#include "study/results.hpp"
+
+namespace cordon {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using detail::Median;
+using detail::MetricBoard;
+using detail::MetricValues;
+using detail::Results;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Is x outside X by more than the rounding errors of its own simulation? A box of relative size 1e-9 around x is proven disjoint
+/// from X.
+bool proven_outside(const Set& X, const Vector& x) {
+  if (X.contains(x) != Answer::no) return false;
+  const double margin = 1e-9 * std::max(1.0, x.size() ? x.cwiseAbs().maxCoeff() : 0.0);
+  const Enclosure around = X.backend().box({x.array() - margin, x.array() + margin});
+  return X.is_disjoint_from(*around) == Answer::yes;
+}
+
+struct Medians {
+  Median predict, correct, reduce, question, hull, step;
+
+  void add(const PhaseTimes& times, double hull_us) {
+    predict.add(times.predict);
+    correct.add(times.correct);
+    reduce.add(times.reduce);
+    question.add(times.question);
+    hull.add(hull_us);
+    step.add(times.step());
+  }
+};
+
+/// One pipeline: its components, and what became of it so far.
+class Pipeline {
+ public:
+  Pipeline(const Study& study, const PipelineSpec& spec)
+      : study_(study), simulated_(std::holds_alternative<SimulateSpec>(study.data)) {
+    outcome_.name = spec.name;
+    outcome_.backend = spec.backend.type;
+    outcome_.observer = spec.observer.type;
+  }
+
+  std::optional<Rounding> make(const PipelineSpec& spec, const Registry& registry) {
+    guarded([&] {
+      backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
+      observer_ = registry.make_observer(spec.observer.type, {study_.model, backend_}, spec.observer.params);
+      board_.emplace(study_.metrics, registry);
+      observer_->start();
+    });
+    return backend_ ? std::optional(backend_->info().rounding) : std::nullopt;
+  }
+
+  /// False once the pipeline has stopped with an error.
+  bool step(const Record& record, Results* results) {
+    std::optional<Estimate> estimate;
+    Box hull;
+    const MetricValues* values = nullptr;
+    double hull_us = 0;
+    guarded([&] {
+      estimate = observer_->step(record.sample);
+      const Clock::time_point begin = Clock::now();
+      hull = estimate->consistent == Answer::no ? Box::empty(estimate->set->dim()) : estimate->set->interval_hull();
+      hull_us = seconds_since(begin) * 1e6;
+      const Vector* truth = judge(record, *estimate);
+      values = &board_->step({*estimate, hull, truth, outcome_.assumptions_until < 0, observer_->times()});
+      if (results) results->check_columns(*values);
+    });
+    if (!outcome_.error.empty()) return false;
+    count(*estimate);
+    medians_.add(observer_->times(), hull_us);
+    if (results) results->step({*estimate, hull, *values, observer_->times(), hull_us});
+    return true;
+  }
+
+  PipelineOutcome finish(Results* results, double wall_s) {
+    MetricValues summary;
+    if (board_) guarded([&] { summary = board_->summary(); });
+    outcome_.summary = summary.reproducible;
+    outcome_.summary.insert(outcome_.summary.end(), summary.measured.begin(), summary.measured.end());
+    outcome_.median_us = {medians_.predict.value(), medians_.correct.value(), medians_.reduce.value(), medians_.question.value()};
+    outcome_.median_hull_us = medians_.hull.value();
+    outcome_.median_step_us = medians_.step.value();
+    outcome_.wall_s = wall_s;
+    if (results) results->end_pipeline(outcome_, summary);
+    return std::move(outcome_);
+  }
+
+  bool failed() const { return !outcome_.error.empty(); }
+
+ private:
+  /// Runs code of components: what it throws stops this pipeline and no other.
+  template <class Work>
+  void guarded(Work&& work) {
+    try {
+      work();
+    } catch (const Error& error) {
+      stop(error.code(), error.what());
+    } catch (const std::exception& error) {
+      stop(Errc::plugin, error.what());
+    } catch (...) {
+      stop(Errc::plugin, "an exception of unknown type");
+    }
+  }
+
+  void stop(Errc code, const std::string& message) {
+    if (failed()) return;
+    outcome_.error_code = code;
+    outcome_.error = message.empty() ? std::string(to_string(code)) : message;
+  }
+
+  /// Keeps count of assumptions and containment; returns the truth at the estimate's time, if the data have it.
+  const Vector* judge(const Record& record, const Estimate& estimate) {
+    if (!record.truth) return nullptr;
+    truths_.emplace_back(record.sample.k, *record.truth);
+    const Set* admissible = observer_->admissible_set();
+    if (outcome_.assumptions_until < 0 && admissible && admissible->contains(*record.truth) == Answer::no) {
+      outcome_.assumptions_until = record.sample.k;
+    }
+    while (!truths_.empty() && truths_.front().first < estimate.k) truths_.pop_front();  // estimates may lag behind the samples
+    if (truths_.empty() || truths_.front().first != estimate.k) return nullptr;
+    const Vector& truth = truths_.front().second;
+    const bool still_inside = outcome_.outside_from < 0;
+    if (still_inside && (estimate.consistent == Answer::no || proven_outside(*estimate.set, truth))) {
+      outcome_.outside_from = estimate.k;
+      if (simulated_ && outcome_.assumptions_until < 0) outcome_.violated_at = estimate.k;
+    }
+    return &truth;
+  }
+
+  void count(const Estimate& estimate) {
+    ++outcome_.steps;
+    switch (estimate.consistent) {
+      case Answer::yes:
+        ++outcome_.consistent;
+        break;
+      case Answer::unknown:
+        ++outcome_.undecided;
+        break;
+      case Answer::no:
+        ++outcome_.inconsistent;
+        if (outcome_.inconsistent_from < 0) outcome_.inconsistent_from = estimate.k;
+        break;
+    }
+  }
+
+  const Study& study_;
+  bool simulated_;
+  std::shared_ptr<const SetBackend> backend_;
+  std::shared_ptr<Observer> observer_;
+  std::optional<MetricBoard> board_;
+  std::deque<std::pair<Index, Vector>> truths_;
+  Medians medians_;
+  PipelineOutcome outcome_;
+};
+
+/// Runs one pipeline over its own stream of the data. False: stopped from outside.
+bool run_pipeline(const Study& study, std::size_t index, const Registry& registry, const RunOptions& options, DataSource& data,
+                  Results* results, RunOutcome& outcome) {
+  const PipelineSpec& spec = study.pipelines[index];
+  const Clock::time_point begin = Clock::now();
+  const std::int64_t total = data.size().value_or(0);
+  Pipeline pipeline(study, spec);
+  const std::optional<Rounding> rounding = pipeline.make(spec, registry);
+  if (results) results->begin_pipeline(spec, rounding);
+  std::int64_t done = 0;
+  Clock::time_point told = begin;
+  while (!pipeline.failed()) {
+    if (options.stop && options.stop->load()) return false;
+    const std::optional<Record> record = data.next();
+    if (!record || !pipeline.step(*record, results)) break;
+    ++done;
+    if (options.progress && seconds_since(told) > 0.05) {
+      options.progress(index, done, total);
+      told = Clock::now();
+    }
+  }
+  if (options.progress) options.progress(index, done, total);
+  outcome.pipelines.push_back(pipeline.finish(results, seconds_since(begin)));
+  return true;
+}
+
+}  // namespace
+
+RunOutcome run_study(const Study& study, const Registry& registry, const RunOptions& options) {
+  std::unique_ptr<DataSource> data = open_data(study);  // first: bad data leave no trace on the disk
+  std::optional<Results> results;
+  if (!options.out.empty()) results.emplace(study, registry, options.out);
+  Results* const writer = results ? &*results : nullptr;
+  RunOutcome outcome;
+  for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
+    if (i > 0) data = open_data(study);
+    if (!run_pipeline(study, i, registry, options, *data, writer, outcome)) {
+      outcome.interrupted = true;
+      return outcome;
+    }
+  }
+  if (options.stop && options.stop->load()) {
+    outcome.interrupted = true;
+  } else if (writer) {
+    outcome.files = writer->commit(outcome);
+  }
+  return outcome;
+}
+
+}  // namespace cordon

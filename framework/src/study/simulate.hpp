@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Simulated data: x_{k+1}, y_k from the model, with seeded disturbances.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cordon/study/data.hpp"
+#include "study/disturbance.hpp"
+#include "study/linear_plant.hpp"
+#include "study/signals.hpp"
+
+namespace cordon::detail {
+
+/// Samples k = 0 … steps with the true state. Memory is constant.
+///
+/// Start of a system with static rows: x0 must satisfy them for some w_0 ∈ W. The drawn w_0 is corrected by least squares on the
+/// static rows; where that leaves W, a central point of {w ∈ W : static rows} replaces it. Without x0, the dynamic part of the
+/// centre of X0 is taken and the static part follows from w_0; where that state leaves X0, a central pair (x_0, w_0) is taken.
+/// Throws InputError: sizes, unbounded W or V, index above 1, an x0 that no w_0 ∈ W explains (with the residual).
+class SimulatedSource final : public DataSource {
+ public:
+  SimulatedSource(const Model& model, const SimulateSpec& spec, std::string file);
+
+  std::optional<Record> next() override;
+  std::optional<std::int64_t> size() const override { return spec_.steps + 1; }
+
+ private:
+  void check_sizes(const Model& model) const;
+  Vector input(std::int64_t k);
+  void start(const Model& model);
+  bool start_near_given(const Model& model, const Vector& x0, const Vector& u0);
+  void start_from_center(const Model& model, const Vector& u0);
+  bool start_from_joint_set(const LineForm& X0, const LineForm& W, const Vector& u0);
+  [[noreturn]] void fail(const std::string& pointer, const std::string& message, const std::string& mend) const;
+
+  SimulateSpec spec_;
+  std::string file_;
+  LinearPlant plant_;
+  Disturbance disturbance_, noise_;
+  std::vector<SignalSource> signals_;
+  Vector w0_;
+  std::int64_t k_ = 0;
+};
+
+}  // namespace cordon::detail

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Observers on two plants of the literature [Alamo2005, sec. 7.1; a vehicle's lateral motion]; expected hulls of the last estimate as published with the
+// CORA toolbox and reproduced independently.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "csv.hpp"
+#include "study_models.hpp"
+
+using namespace cordon;
+
+namespace {
+
+Model plant(const Matrix& A, const Matrix& B, const Matrix& C, double start, const Matrix& W, double v) {
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = A;
+  m.B = B;
+  m.Bw = Matrix::Identity(2, 2);
+  m.C = C;
+  m.D = Matrix::Zero(1, B.cols());
+  m.Dv = Matrix::Identity(1, 1);
+  model.X0 = make_box(cube(2, start));
+  model.W = make_zonotope(Vector::Zero(2), W);
+  model.V = make_box(cube(1, v));
+  return model;
+}
+
+Model two_states() {
+  return plant(Matrix{{0, -.5}, {1, 1}}, Matrix::Identity(2, 2), Matrix{{-2, 1}}, 3, Matrix{{-.12}, {.02}}, .2);
+}
+
+Model vehicle() {
+  return plant(Matrix{{0.9922748449450575, -0.0080030620640856}, {0.2889726943723335, 0.9299044703341978}},
+               Matrix{{0.0222329772960317}, {0.2473223577905438}}, Matrix{{0, 15}}, 1, Matrix{{.005, 0}, {0, .055}}, .1);
+}
+
+std::vector<Sample> samples(const std::string& name, Index inputs) {
+  std::vector<Sample> all;
+  for (const auto& v : read_table(CORDON_SOURCE_DIR "/tests/published/data/" + name + ".csv")) {
+    Vector u(inputs);
+    for (Index i = 0; i < inputs; ++i) u[i] = v[static_cast<std::size_t>(i) + 1];
+    all.push_back({static_cast<Index>(v[0]), u, Vector{{v.back()}}});
+  }
+  return all;
+}
+
+void check_last(const Model& model, const std::string& data, const std::string& backend, Params backend_params, std::int64_t generators,
+                std::int64_t constraints, const Box& expected) {
+  const Plugins plugins;
+  Params params;
+  params.set("max_generators", generators).set("max_constraints", constraints);
+  const auto observer = plugins.observer("prediction_correction", model, plugins.backend(backend, std::move(backend_params)), params);
+  observer->start();
+  Estimate estimate;
+  for (const Sample& sample : samples(data, model.linear.inputs())) estimate = observer->step(sample);
+  const Box hull = estimate.set->interval_hull();
+  for (Index i = 0; i < 2; ++i) {
+    CAPTURE(i);
+    CHECK(std::abs(hull.lower[i] - expected.lower[i]) <= 1e-6);
+    CHECK(std::abs(hull.upper[i] - expected.upper[i]) <= 1e-6);
+  }
+}
+
+const Box exact_two_states{Vector{{-0.1062309346120359, -0.2540037859300612}}, Vector{{0.1411256696418789, 0.212784605551955}}};
+const Box exact_vehicle{Vector{{-0.1808439583069218, 0.2870340937441625}}, Vector{{0.1636688236433201, 0.3003674270774961}}};
+
+Params choices(const std::string& reduction, const std::string& strip) {
+  Params p;
+  p.set("reduction", reduction).set("strip", strip);
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("unreduced constrained and line zonotopes are the exact recursion") {
+  check_last(two_states(), "observer_2dim", "constrained_zonotope", {}, 10000, 10000, exact_two_states);
+  check_last(two_states(), "observer_2dim", "line_zonotope", {}, 10000, 10000, exact_two_states);
+}
+
+TEST_CASE("the exact recursion of the vehicle over 100 steps") {
+  check_last(vehicle(), "observer_vehicle", "constrained_zonotope", {}, 100000, 100000, exact_vehicle);
+}
+
+TEST_CASE("zonotopes and strips of least F-radius") {
+  check_last(two_states(), "observer_2dim", "zonotope", choices("girard", "segment"), 40, 0,
+             {Vector{{-0.1252836718233518, -0.3590605415736482}}, Vector{{0.1755077905850537, 0.3031460898598283}}});
+}
+
+TEST_CASE("zonotopes and strips of least volume among the parallel ones") {
+  check_last(two_states(), "observer_2dim", "zonotope", choices("girard", "bravo"), 40, 0,
+             {Vector{{-0.1148743303581211, -0.3792153944480451}}, Vector{{0.141125669641879, 0.212784605551955}}});
+}

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Components for tests of runs, registered in the process: a box backend that rests on the exchange form, a recursive observer,
+// observers that misbehave, and metrics.
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+
+#include "cordon/registry/registry.hpp"
+#include "cordon/solvers/set_questions.hpp"
+#include "cordon/study/run.hpp"
+
+namespace fakes {
+
+using namespace cordon;
+
+class BoxSet final : public Set {
+ public:
+  BoxSet(const SetBackend& backend, Box box) : Set(backend, box.dim()), box_(std::move(box)) {}
+
+ private:
+  Complexity do_complexity() const override { return {dim(), 0, 0}; }
+  LineForm do_line_form() const override { return make_box(box_); }
+
+  Box box_;
+};
+
+class BoxBackend final : public SetBackend {
+ public:
+  BoxBackend() : SetBackend({"box", true, false, true, Rounding::nominal, "boxes", ""}) {}
+
+ private:
+  Made do_import(const LineForm& X) const override {
+    return {std::make_unique<BoxSet>(*this, cordon::interval_hull(X)), Tightness::outer};
+  }
+};
+
+/// x_k ∈ A X ⊕ B u ⊕ Bw W, corrected by the output.
+class Recursive : public Observer {
+ public:
+  explicit Recursive(const ObserverContext& context)
+      : Observer(context.model, context.backend), W_(backend().import(model().W)), V_(backend().import(model().V)) {}
+
+ protected:
+  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
+    return X_ = corrected(X0 ? *X0 : backend().import(model().X0), first);
+  }
+  Enclosure do_step(const Sample& before, const Sample& now) override {
+    const LinearModel& m = model().linear;
+    const Term term{m.Bw, W_};
+    const Enclosure next = timed(Phase::predict, [&] { return backend().predict(X_, {m.A, m.B * before.u, {&term, 1}}); });
+    return X_ = corrected(next, now);
+  }
+  void do_replace(const Enclosure& X) override { X_ = X; }
+
+ private:
+  Enclosure corrected(const Enclosure& X, const Sample& now) {
+    const LinearModel& m = model().linear;
+    return timed(Phase::correct, [&] { return backend().correct(X, {m.C, now.y - m.D * now.u, {m.Dv, V_}}); });
+  }
+
+  Enclosure W_, V_, X_;
+};
+
+/// Breaks down at k = 5, in one of several ways.
+class Breaking final : public Observer {
+ public:
+  Breaking(const ObserverContext& context, std::string how) : Observer(context.model, context.backend), how_(std::move(how)) {}
+
+ private:
+  Enclosure do_start(const std::optional<Enclosure>&, const Sample&) override { return backend().space(model().linear.states()); }
+  Enclosure do_step(const Sample&, const Sample& now) override {
+    if (now.k == 5 && how_ == "error") throw Error(Errc::unsupported, "out of \"order\",\nat k = 5");
+    if (now.k == 5 && how_ == "exception") throw std::runtime_error("something else");
+    if (now.k == 5 && how_ == "int") throw 5;
+    return backend().space(model().linear.states());
+  }
+  void do_replace(const Enclosure&) override {}
+
+  std::string how_;
+};
+
+/// Claims a small box around the origin from k = 3 on, whatever the data say; or ∅.
+class Claiming final : public Observer {
+ public:
+  Claiming(const ObserverContext& context, double radius, double admissible)
+      : Observer(context.model, context.backend), radius_(radius) {
+    const Index n = model().linear.states();
+    if (admissible > 0) admissible_ = backend().box({Vector::Constant(n, -admissible), Vector::Constant(n, admissible)});
+  }
+  const Set* admissible_set() const override { return admissible_.set.get(); }
+
+ private:
+  Enclosure do_start(const std::optional<Enclosure>&, const Sample&) override { return backend().space(model().linear.states()); }
+  Enclosure do_step(const Sample&, const Sample& now) override {
+    const Index n = model().linear.states();
+    if (now.k < 3) return backend().space(n);
+    if (radius_ < 0) return backend().import(make_empty(n));
+    return backend().box({Vector::Constant(n, -radius_), Vector::Constant(n, radius_)});
+  }
+  void do_replace(const Enclosure&) override {}
+
+  double radius_;
+  Enclosure admissible_;
+};
+
+class Radius final : public Metric {
+ public:
+  std::vector<MetricValue> step(const StepView& view) override {
+    largest_ = std::max(largest_, view.hull.longest_half_edge());
+    return {{"radius", view.hull.longest_half_edge()},
+            {"tightness", std::string("hidden")},
+            {"k", Index{7}},
+            {"assumed", std::string(view.assumptions_hold ? "yes" : "no")},
+            {"missing", std::nan("")}};
+  }
+  std::vector<MetricValue> summary() const override { return {{"radius_max", largest_}}; }
+
+ private:
+  double largest_ = 0;
+};
+
+class Time final : public Metric {
+ public:
+  std::vector<MetricValue> step(const StepView& view) override { return {{"step_time", view.times.step()}}; }
+  std::vector<MetricValue> summary() const override { return {{"steps_timed", Index{1}}}; }
+  bool reproducible() const override { return false; }
+};
+
+/// Changes the names of its values after the first step.
+class Fickle final : public Metric {
+ public:
+  std::vector<MetricValue> step(const StepView& view) override { return {{view.estimate.k == 0 ? "a" : "b", 1.0}}; }
+  std::vector<MetricValue> summary() const override { return {}; }
+};
+
+inline void register_all(Registrar& registrar) {
+  registrar.backend({{"box", "boxes", "", {}}, [](const Params&) { return std::make_unique<BoxBackend>(); }});
+  const auto no_problem = [](const ObserverContext&, const Params&) { return std::vector<Diagnostic>{}; };
+  registrar.observer({{"recursive", "predicts and corrects", "", {}}, no_problem, [](const ObserverContext& c, const Params&) {
+                        return std::make_unique<Recursive>(c);
+                      }});
+  ParamSchema how;
+  how.choice("how", "way to break down", {"error", "exception", "int"}, "error");
+  registrar.observer({{"breaking", "breaks down", "", how}, no_problem, [](const ObserverContext& c, const Params& p) {
+                        return std::make_unique<Breaking>(c, p.text("how"));
+                      }});
+  ParamSchema claim;
+  claim.real("radius", "of the claimed box", 1e-3, -1, 1e9);
+  claim.real("admissible", "radius of the admissible set; 0: none", 0, 0, 1e9);
+  registrar.observer({{"claiming", "claims a box", "", claim}, no_problem, [](const ObserverContext& c, const Params& p) {
+                        return std::make_unique<Claiming>(c, p.real("radius"), p.real("admissible"));
+                      }});
+  registrar.metric({{"radius", "half the longest edge", "", {}}, [](const Params&) { return std::make_unique<Radius>(); }});
+  registrar.metric({{"time", "of a step", "", {}}, [](const Params&) { return std::make_unique<Time>(); }});
+  registrar.metric({{"fickle", "changes its names", "", {}}, [](const Params&) { return std::make_unique<Fickle>(); }});
+}
+
+inline PipelineSpec pipeline(std::string name, std::string observer = "recursive", Params params = {}) {
+  return {std::move(name), {"box", {}}, {std::move(observer), std::move(params)}};
+}
+
+/// A stable system of two states; its input drives the state away from the origin.
+inline Study study(std::vector<PipelineSpec> pipelines, std::int64_t steps = 20) {
+  Study s;
+  s.file = "two_states.json";
+  s.title = "two states";
+  LinearModel& m = s.model.linear;
+  m.A = Matrix{{.9, .1}, {0, .8}};
+  m.B = Matrix{{0.}, {1.}};
+  m.Bw = .1 * Matrix::Identity(2, 2);
+  m.C = Matrix{{1., 0.}};
+  m.D = Matrix::Zero(1, 1);
+  m.Dv = Matrix{{.05}};
+  s.model.X0 = s.model.W = make_box({-Vector::Ones(2), Vector::Ones(2)});
+  s.model.V = make_box({-Vector::Ones(1), Vector::Ones(1)});
+  SimulateSpec simulate;
+  simulate.steps = steps;
+  simulate.input.resize(1);
+  simulate.input[0].offset = 1;
+  s.data = simulate;
+  s.pipelines = std::move(pipelines);
+  s.metrics = {{"radius", {}}, {"time", {}}};
+  s.resolved = R"({"cordon": 1, "title": "two states"})";
+  return s;
+}
+
+}  // namespace fakes

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Components with the names and parameters of the shipped plugins that do nothing: reading a study needs no algorithm. And
+// helpers to read studies from texts.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "cordon/registry/registry.hpp"
+#include "cordon/study/study.hpp"
+
+namespace study_test {
+
+/// Backends interval, zonotope, constrained_zonotope, line_zonotope; observers prediction_correction, descriptor and `all_kinds`
+/// (one parameter of every kind); the metrics of the shipped plugin and `quantile` with a required parameter.
+void register_fakes(cordon::Registrar& registrar);
+
+/// A directory of its own that is removed in the end.
+class Scratch {
+ public:
+  Scratch();
+  ~Scratch();
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  std::filesystem::path write(const std::string& name, const std::string& text) const;
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// A valid study, one member per line, in which the tests exchange pieces.
+extern const char* const valid_study;
+
+/// `text` with its only occurrence of `from` exchanged. Throws std::logic_error if there is none or more than one.
+std::string exchanged(std::string text, const std::string& from, const std::string& to);
+
+/// Reads a text as a study with the fake components.
+cordon::Study read_text(const std::string& text);
+/// The problems of a text; none if it is valid.
+std::vector<cordon::Diagnostic> problems_of(const std::string& text);
+
+}  // namespace study_test
