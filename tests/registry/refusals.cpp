@@ -146,9 +146,9 @@ TEST_CASE("a truncated library is refused at every length") {
   const std::string bytes = read(good("test_box"));
   Registry registry;
   std::vector<std::size_t> lengths;
-  for (std::size_t n = 0; n < 1100; n += 10) lengths.push_back(n);                   // in the headers
-  for (std::size_t n = 1100; n < bytes.size(); n += 4096 - 7) lengths.push_back(n);  // in the segments
-  for (std::size_t n = 1; n < 2000; n += 11) lengths.push_back(bytes.size() - n);    // in the tables at the end
+  for (std::size_t n = 0; n < 1100; n += 10) lengths.push_back(n);                                   // in the headers
+  for (std::size_t n = 1100; n < bytes.size(); n += 4089 + bytes.size() / 64) lengths.push_back(n);  // in the segments
+  for (std::size_t n = 1; n < 2000; n += 11) lengths.push_back(bytes.size() - n);                    // in the tables at the end
   for (const std::size_t length : lengths) {
     const PluginReport& report = registry.load_file(directory.write("test_box.so", bytes.substr(0, length)));
     REQUIRE_MESSAGE(report.state == PluginReport::State::refused, "cut to ", length, " of ", bytes.size(), " bytes");
