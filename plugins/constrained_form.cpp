@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "constrained_form.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/line_elimination.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/sets/constrained_zonotope.hpp"
 #include "cordon/sets/interval.hpp"
 #include "cordon/sets/vertices.hpp"
+#include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/set_questions.hpp"
 
 namespace cordon::plugins {
@@ -17,7 +20,29 @@ Answer ConstrainedForm::contains(const Value& X, VectorIn x, Certificate* why) c
 Answer ConstrainedForm::is_bounded(const Value& X) const { return cordon::is_bounded(X); }
 double ConstrainedForm::support(const Value& X, VectorIn d, Certificate* why) const { return cordon::support(X, d, why); }
 Box ConstrainedForm::interval_hull(const Value& X) const { return cordon::interval_hull(X); }
-double ConstrainedForm::exact_volume(const Value& X) const { return sets::volume(X).value_or(-1); }
+
+double ConstrainedForm::exact_volume(const Value& X) const {
+  const LineForm Y = eliminate_lines(X);
+  if (Y.lines() > 0 || Y.dim() > 3) return -1;
+  BoxedProgram program(Y.A, Y.b);  // one program, warm from direction to direction
+  bool solved = true;
+  const sets::SupportOracle oracle = [&](const Vector& d) -> sets::SupportPoint {
+    const BoxedProgram::Bound bound = program.maximum(linalg::product(Y.G.transpose(), d));
+    if (!bound.xi) {
+      solved = solved && bound.upper == -std::numeric_limits<double>::infinity();
+      return {-std::numeric_limits<double>::infinity(), Y.c};
+    }
+    return {d.dot(Y.c) + bound.upper, Y.c + linalg::product(Y.G, *bound.xi)};
+  };
+  double volume = -1;
+  if (Y.dim() == 1) volume = std::max(0.0, oracle(Vector{{1.0}}).h + oracle(Vector{{-1.0}}).h);
+  if (Y.dim() == 2) volume = sets::area(sets::polygon(oracle));
+  if (Y.dim() == 3) {
+    const sets::VolumeBounds bounds = sets::volume(oracle);
+    volume = bounds.converged ? bounds.upper : -1;
+  }
+  return solved ? volume : -1;
+}
 
 ConstrainedForm::Result ConstrainedForm::import(const LineForm& X) const {
   if (lines || X.lines() == 0) return {X, Tightness::exact};

@@ -83,7 +83,7 @@ struct Case {
 const std::vector<Case> cases{{"interval", false, true}, {"zonotope", false, true}, {"constrained_zonotope", false, true}, {"line_zonotope", true, true}};
 
 void assert_contains(const Enclosure& X, const Vector& x, double scale, const char* what) {
-  RC_TAG(std::string(what));
+  RC_LOG() << what << "\n";
   RC_ASSERT(X->is_empty() != Answer::yes);
   const Box hull = X->interval_hull();
   for (Index i = 0; i < x.size(); ++i) {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Zonotopes around the intersection of a zonotope with strips: the measurement update of zonotopic observers.
+//
+// Definition: Z ∩ S with Z = <c, G> and the strip S = {x : |ρᵀx - d| ≤ σ}, σ ≥ 0. For every λ ∈ Rⁿ the zonotope
+//     Z(λ) = <c + λ (d - ρᵀc), [(I - λρᵀ) G, σλ]>
+// encloses it [Alamo2005, Prop. 1]; the methods differ in λ.
+// Degenerate cases: Z inside S: Z itself. ρ = 0: Z if |d| ≤ σ, else ∅. σ = 0: a hyperplane. g = 0: the point c or ∅.
+// An intersection that is proven empty is no zonotope: nothing is returned. The gap must exceed the rounding errors of the test
+// and 1e-12 of the sizes involved, for a zonotope carries the rounding errors of the operations that made it.
+// A flat Z stays flat: λ is chosen in the range of G, where the volume of its own dimension counts.
+// A strip that cuts Z on one side only is first narrowed to what Z meets of it. Generators of which ρ sees less than 1e-6 are
+// not used for λ.
+// Rounding: nominal. Errors: Errc::invalid for σ < 0, Errc::dimension, Errc::not_finite.
+#pragma once
+
+#include <optional>
+
+#include "cordon/sets/zonotope.hpp"
+
+namespace cordon::sets {
+
+/// Choice of λ.
+enum class StripMethod {
+  segment,  ///< smallest F-radius: λ = GGᵀρ / (ρᵀGGᵀρ + σ²) [Alamo2005, sec. 6.1]
+  bravo,    ///< smallest volume among Z and the g zonotopes with λ = g_j / ρᵀg_j [Bravo2006]
+  volume    ///< smallest volume of all λ: a convex piecewise linear problem, solved as a linear program [Alamo2005, sec. 6.2]
+};
+
+/// Outer; exact if Z lies in the strip. The volume methods need the (n-1)-subsets of the generators; beyond 20,000 of them
+/// the sum of squared instead of absolute determinants is minimised: its minimiser over all λ is that of `segment`.
+/// O(n g) for segment, O(n³ C(g, n-1)) for the others.
+std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double d, double sigma,
+                                        StripMethod method = StripMethod::segment);
+
+/// A zonotope around {x ∈ Z : z - C x ∈ T V}, row by row with the strips |C_i x - (z_i - T_i c_V)| ≤ ‖(T G_V)_i‖₁.
+/// T with no columns: C x = z. At most one generator more per row. Outer.
+std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, MatrixIn T, const Zonotope& V,
+                                StripMethod method = StripMethod::segment);
+
+}  // namespace cordon::sets

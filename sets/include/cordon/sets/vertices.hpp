@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vertices, area and volume of bounded sets of two and three dimensions, found through their support functions.
+#pragma once
+
+#include <functional>
+
+#include "cordon/sets/zonotope.hpp"
+
+namespace cordon::sets {
+
+/// h = sup{dᵀx : x ∈ X} and a point x ∈ X that attains it (both up to rounding).
+struct SupportPoint {
+  double h = 0;
+  Vector x;
+};
+/// Answers for any direction d ≠ 0. An empty set answers h = -∞, an unbounded direction h = +∞ (x is not read then).
+using SupportOracle = std::function<SupportPoint(const Vector& d)>;
+
+/// The oracle of a zonotope: c + G sgn(Gᵀd).
+SupportOracle support_oracle(const Zonotope& Z);
+
+/// Vertices of a bounded set X ⊂ R² as the columns of a matrix, counter-clockwise; one column for a point, two for a segment,
+/// none for ∅. Each edge between known points is confirmed by its normal or split by a new point. Exact for a polygon up to
+/// `tolerance` relative to each coordinate's width; a curved set is cut off after 10,000 queries by an inscribed polygon.
+/// Two queries per vertex and edge. Errors: Errc::unsupported for an unbounded set.
+Matrix polygon(const SupportOracle& X, double tolerance = 1e-10);
+
+/// Vertices of a zonotope in R² from its generators in the order of their angles: exact; at most 2g. O(g log g).
+Matrix polygon(const Zonotope& Z);
+
+/// Area of the polygon with the given vertices (2×k, counter-clockwise); 0 for k < 3. O(k).
+double area(const Matrix& vertices);
+
+/// Bounds of a volume: those of an inscribed and of a circumscribed polytope.
+struct VolumeBounds {
+  double lower = 0, upper = 0;
+  bool converged = false;  ///< lower and upper agree to the tolerance
+};
+
+/// Volume of a bounded set X ⊂ R³. The hull of known points of X grows until the support function confirms each of its
+/// facets; the largest relative gap of a facet, seen from an inner point, bounds the volume from above. Bounds are nominal
+/// (up to rounding). Exact for polytopes; for curved sets the bounds at the limit of queries are returned. Flat sets and ∅
+/// have the volume 0. Errors: Errc::unsupported for an unbounded set. O(V²) for V vertices, one query per facet tried.
+VolumeBounds volume(const SupportOracle& X, double relative_tolerance = 1e-9, Index max_queries = 20000);
+
+}  // namespace cordon::sets

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/sets/interval.hpp"
+
+#include <vector>
+
+#include "directed.hpp"
+#include "require.hpp"
+
+namespace cordon::sets {
+
+namespace {
+
+using rounding::Range;
+
+Range coordinate(const Box& X, Index i) { return {X.lower[i], X.upper[i]}; }
+
+/// Stores an interval; one that is not finite on both sides becomes the whole line.
+void store(Box& X, Index i, Range x) {
+  if (!directed::is_finite(x)) x = directed::line();
+  X.lower[i] = x.lower;
+  X.upper[i] = x.upper;
+}
+
+Range matrix_entry(const IntervalMatrix& A, Index i, Index j) {
+  const double center = A.center(i, j), radius = A.radius(i, j);
+  return {directed::plus(center, -radius).lower, directed::plus(center, radius).upper};
+}
+
+/// The hull of T V in row i.
+Range image_row(const Box& V, MatrixIn T, Index i) {
+  Range sum{0, 0};
+  for (Index j = 0; j < T.cols(); ++j) {
+    if (T(i, j) == 0) continue;
+    if (!directed::is_finite(coordinate(V, j))) return directed::line();
+    sum = directed::plus(sum, directed::times(T(i, j), coordinate(V, j)));
+  }
+  return directed::is_finite(sum) ? sum : directed::line();
+}
+
+using Row = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
+
+enum class Progress { none, some, empty };
+
+/// Contracts a box by one condition Σ_j row_j x_j ∈ y with y bounded. The sums of the other terms come from running sums
+/// from the left and from the right. A single free coordinate can be contracted; two or more block the row.
+class RowContractor {
+ public:
+  explicit RowContractor(Index n) : after_(static_cast<std::size_t>(n) + 1) {}
+
+  Progress contract(Box& X, const Row& row, Range y) {
+    const Index n = X.dim();
+    Index free = -1, frees = 0;
+    for (Index j = 0; j < n; ++j) {
+      if (row[j] == 0 || directed::is_finite(coordinate(X, j))) continue;
+      free = j;
+      ++frees;
+    }
+    if (frees > 1) return Progress::none;
+    after(n) = {0, 0};
+    for (Index j = n - 1; j >= 0; --j) after(j) = directed::plus(after(j + 1), term(X, row, j));
+    if (frees == 0 && (after(0).lower > y.upper || after(0).upper < y.lower)) return Progress::empty;
+    Progress progress = Progress::none;
+    Range before{0, 0};
+    for (Index j = 0; j < n; ++j) {
+      const Range own = term(X, row, j);
+      if (row[j] != 0 && (frees == 0 || j == free)) {
+        const Range others = directed::plus(before, after(j + 1));
+        const Progress step = tighten(X, j, directed::over(directed::minus(y, others), row[j]));
+        if (step == Progress::empty) return step;
+        if (step == Progress::some) progress = step;
+      }
+      before = directed::plus(before, own);
+    }
+    return progress;
+  }
+
+ private:
+  Range& after(Index j) { return after_[static_cast<std::size_t>(j)]; }
+
+  /// row_j x_j, with 0 for a free coordinate (it is then the only one and left out of its own `others`).
+  static Range term(const Box& X, const Row& row, Index j) {
+    if (row[j] == 0 || !directed::is_finite(coordinate(X, j))) return {0, 0};
+    return directed::times(row[j], coordinate(X, j));
+  }
+
+  static Progress tighten(Box& X, Index j, Range x) {
+    if (!directed::is_finite(x)) return Progress::none;
+    const double lower = std::max(X.lower[j], x.lower), upper = std::min(X.upper[j], x.upper);
+    if (lower > upper) return Progress::empty;
+    const double old_width = X.upper[j] - X.lower[j], width = upper - lower;
+    X.lower[j] = lower;
+    X.upper[j] = upper;
+    return std::isinf(old_width) || old_width - width > 1e-9 * old_width ? Progress::some : Progress::none;
+  }
+
+  std::vector<Range> after_;
+};
+
+}  // namespace
+
+void check(const Box& X, const char* what) {
+  require_size(X.upper.size(), X.lower.size(), what, "the upper bound");
+  for (Index i = 0; i < X.dim(); ++i) {
+    const Range x = coordinate(X, i);
+    if (directed::is_finite(x) || (x.lower == directed::line().lower && x.upper == directed::line().upper)) continue;
+    const std::string where = std::string(what) + ": coordinate " + std::to_string(i);
+    if (std::isnan(x.lower) || std::isnan(x.upper)) throw Error(Errc::not_finite, where + " has a NaN bound");
+    throw Error(Errc::invalid, where + " is bounded on one side only; give two finite bounds or none");
+  }
+}
+
+bool has_monomial_rows(MatrixIn C) {
+  for (Index i = 0; i < C.rows(); ++i) {
+    if ((C.row(i).array() != 0).count() > 1) return false;
+  }
+  return true;
+}
+
+bool is_monomial(MatrixIn T) {
+  for (Index j = 0; j < T.cols(); ++j) {
+    if ((T.col(j).array() != 0).count() > 1) return false;
+  }
+  return has_monomial_rows(T);
+}
+
+Box affine_map(const Box& X, MatrixIn T, VectorIn t) {
+  check(X, "affine map of a box");
+  require_map(T, X.dim(), "affine map of a box", "the matrix");
+  require_size(t.size(), T.rows(), "affine map of a box", "the translation");
+  require_finite(t, "affine map of a box", "the translation");
+  if (X.is_empty()) return Box::empty(T.rows());
+  Box Y = Box::space(T.rows());
+  for (Index i = 0; i < T.rows(); ++i) {
+    const Range image = image_row(X, T, i);
+    if (directed::is_finite(image)) store(Y, i, directed::plus(image, Range{t[i], t[i]}));
+  }
+  return Y;
+}
+
+Box minkowski_sum(const Box& X, const Box& Y) {
+  check(X, "sum of boxes");
+  check(Y, "sum of boxes");
+  require_size(Y.dim(), X.dim(), "sum of boxes", "the second box");
+  if (X.is_empty() || Y.is_empty()) return Box::empty(X.dim());
+  Box Z = Box::space(X.dim());
+  for (Index i = 0; i < X.dim(); ++i) {
+    const Range x = coordinate(X, i), y = coordinate(Y, i);
+    if (directed::is_finite(x) && directed::is_finite(y)) store(Z, i, directed::plus(x, y));
+  }
+  return Z;
+}
+
+Box cartesian_product(const Box& X, const Box& Y) {
+  check(X, "product of boxes");
+  check(Y, "product of boxes");
+  if (X.is_empty() || Y.is_empty()) return Box::empty(X.dim() + Y.dim());
+  Box Z{Vector(X.dim() + Y.dim()), Vector(X.dim() + Y.dim())};
+  Z.lower << X.lower, Y.lower;
+  Z.upper << X.upper, Y.upper;
+  return Z;
+}
+
+Box intersection(const Box& X, const Box& Y) {
+  check(X, "intersection of boxes");
+  check(Y, "intersection of boxes");
+  require_size(Y.dim(), X.dim(), "intersection of boxes", "the second box");
+  if (X.is_empty() || Y.is_empty()) return Box::empty(X.dim());
+  Box Z{X.lower.cwiseMax(Y.lower), X.upper.cwiseMin(Y.upper)};
+  return Z.is_empty() ? Box::empty(X.dim()) : Z;
+}
+
+Box interval_map(const Box& X, const IntervalMatrix& A) {
+  check(X, "interval map of a box");
+  require_map(A.center, X.dim(), "interval map of a box", "the centre");
+  require_map(A.radius, X.dim(), "interval map of a box", "the radius");
+  require_size(A.radius.rows(), A.rows(), "interval map of a box", "the radius");
+  if (A.radius.size() > 0 && A.radius.minCoeff() < 0) {
+    throw Error(Errc::invalid, "interval map of a box: a radius is negative; radii are at least 0");
+  }
+  if (X.is_empty()) return Box::empty(A.rows());
+  Box Y = Box::space(A.rows());
+  for (Index i = 0; i < A.rows(); ++i) {
+    Range sum{0, 0};
+    for (Index j = 0; j < X.dim(); ++j) {
+      if (A.center(i, j) == 0 && A.radius(i, j) == 0) continue;
+      const Range x = coordinate(X, j), a = matrix_entry(A, i, j);
+      sum = directed::is_finite(x) && directed::is_finite(a) ? directed::plus(sum, directed::times(a, x)) : directed::line();
+      if (!directed::is_finite(sum)) break;
+    }
+    store(Y, i, sum);
+  }
+  return Y;
+}
+
+Box convex_hull(const Box& X, const Box& Y) {
+  check(X, "hull of boxes");
+  check(Y, "hull of boxes");
+  require_size(Y.dim(), X.dim(), "hull of boxes", "the second box");
+  if (X.is_empty()) return Y.is_empty() ? Box::empty(X.dim()) : Y;
+  if (Y.is_empty()) return X;
+  return {X.lower.cwiseMin(Y.lower), X.upper.cwiseMax(Y.upper)};
+}
+
+Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V) {
+  constexpr const char* name = "contraction of a box";
+  check(X, name);
+  check(V, name);
+  require_map(C, X.dim(), name, "C");
+  require_map(T, V.dim(), name, "T");
+  require_size(z.size(), C.rows(), name, "z");
+  require_size(T.rows(), C.rows(), name, "the number of rows of T");
+  require_finite(z, name, "z");
+  if (X.is_empty() || V.is_empty()) return Box::empty(X.dim());
+  std::vector<Range> y(static_cast<std::size_t>(C.rows()));
+  for (Index i = 0; i < C.rows(); ++i) {
+    const Range noise = image_row(V, T, i);
+    y[static_cast<std::size_t>(i)] = directed::is_finite(noise) ? directed::minus(Range{z[i], z[i]}, noise) : noise;
+  }
+  Box Y = X;
+  RowContractor rows(X.dim());
+  for (int sweep = 0; sweep < 20; ++sweep) {
+    bool progress = false;
+    for (Index i = 0; i < C.rows(); ++i) {
+      const Range range = y[static_cast<std::size_t>(i)];
+      if (!directed::is_finite(range)) continue;
+      const Progress step = rows.contract(Y, C.row(i), range);
+      if (step == Progress::empty) return Box::empty(X.dim());
+      progress |= step == Progress::some;
+    }
+    if (!progress) break;
+  }
+  return Y;
+}
+
+}  // namespace cordon::sets
