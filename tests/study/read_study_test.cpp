@@ -310,6 +310,21 @@ TEST_CASE("a component of a refused plugin is a problem of the installation") {
   CHECK(what.find("ellipsoid.so was refused") != std::string::npos);
 }
 
+TEST_CASE("without any plugin the installation is at fault, told once per kind") {
+  const Scratch scratch;
+  Registry registry;
+  try {
+    read_study(scratch.write("s.json", valid_study), registry, SearchPath{});
+    FAIL("no error");
+  } catch (const Error& error) {
+    CHECK(error.code() == Errc::plugin);
+    const std::string what = error.what();
+    CHECK(what.find("3 errors") != std::string::npos);
+    CHECK(what.find("no plugin of any backend was found; `cordon doctor`") != std::string::npos);
+    CHECK(what.find("no plugin of any metric was found") != std::string::npos);
+  }
+}
+
 TEST_CASE("the examples are valid, and their resolved texts read back") {
   const std::filesystem::path folder = std::filesystem::path(CORDON_SOURCE_DIR) / "examples/studies";
   const Scratch scratch;

@@ -98,13 +98,15 @@ void report_unknown(const Cursor& type_at, const Shelf& shelf, const std::string
     return;
   }
   const std::vector<std::string> names = (context.registry.*shelf.names)();
-  if (const std::string near = nearest(type, names); !near.empty()) {
-    type_at.error(what, "did you mean " + in_quotes(near) + "?");
-  } else if (names.empty()) {
-    type_at.error(what, std::string("no loaded plugin provides a ") + shelf.kind +
-                            "; `cordon doctor` tells which plugins were found where");
-  } else {
-    type_at.error(what, suggest("", names) + "; `cordon doctor` tells which plugins were found where");
+  const std::string near = nearest(type, names), doctor = "`cordon doctor` tells which plugins were found where";
+  if (!names.empty()) {
+    type_at.error(what, near.empty() ? suggest("", names) + "; " + doctor : "did you mean " + in_quotes(near) + "?");
+    return;
+  }
+  const std::string none = what + ": no plugin of any " + shelf.kind + " was found";  // one cause, told once
+  const auto told = [&](const Diagnostic& d) { return d.message.ends_with(none.substr(what.size())); };
+  if (std::none_of(context.refusals.begin(), context.refusals.end(), told)) {
+    context.refusals.push_back({type_at.pointer(), none, doctor, type_at.value().line});
   }
 }
 

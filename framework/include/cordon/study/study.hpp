@@ -31,8 +31,8 @@ struct Signal {
   Vector values;
 };
 
-/// How the bounded disturbances are drawn: uniform in the generators' factors, at random vertices of the factor box, all zero (the centre),
-/// or as sines of different frequency per factor.
+/// How the bounded disturbances are drawn: uniform in the generators' factors, at random vertices of the factor box, all zero
+/// (the centre), or as sines of different frequency per factor.
 enum class Noise { uniform, vertex, zero, sine };
 
 /// Simulated data: x_{k+1}, y_k from the model, seeded and identical on every machine.
@@ -40,13 +40,13 @@ struct SimulateSpec {
   std::int64_t steps = 0;  ///< samples k = 0 … steps
   std::uint64_t seed = 1;
   Noise noise = Noise::uniform;
-  std::optional<Vector> x0;  ///< default: the centre of X0. Descriptor systems: must meet the static rows for some w_0 ∈ W
+  std::optional<Vector> x0;   ///< default: the centre of X0. Descriptor systems: must meet the static rows for some w_0 ∈ W
   std::vector<Signal> input;  ///< one per input channel
 };
 
 /// Recorded data: a CSV file with a header row and named columns.
 struct CsvSpec {
-  std::filesystem::path file;  ///< absolute, or relative to the study's folder (resolved when read)
+  std::filesystem::path file;                       ///< absolute, or relative to the study's folder (resolved when read)
   std::vector<std::string> inputs, outputs, truth;  ///< column names; truth may be empty
 };
 
@@ -71,9 +71,10 @@ struct Study {
   std::string resolved;               ///< the study as JSON with every default, for the results file
 };
 
-/// Reads, loads plugins from the directories that the study names and then from `path` (the first plugin of a name wins, so hand in a registry without
-/// plugins), validates against the registry, and resolves. Throws InputError with every problem at once (pointer, line, reason,
-/// suggestion), or Errc::plugin if nothing is wrong but components that are missing because their plugin was refused. Writes nothing.
+/// Reads, loads plugins from the directories that the study names and then from `path` (the first plugin of a name wins, so hand
+/// in a registry without plugins), validates against the registry, and resolves. Throws InputError with every problem at once
+/// (pointer, line, reason, suggestion), or Errc::plugin if nothing is wrong but components that are missing because their plugin
+/// was refused. Writes nothing.
 Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path = default_search_path());
 
 /// JSON Schema (2020-12) of study files, with the components that the registry knows. For editors.
