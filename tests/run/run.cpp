@@ -212,6 +212,7 @@ TEST_CASE("an estimate proven empty: inconsistent from there, with its proof; th
   CHECK(outcome.pipelines[0].consistent == 3);
   CHECK(outcome.pipelines[0].violated_at == 3);  // the truth exists: ∅ is a false claim
   CHECK(outcome.pipelines[1].inconsistent_from == -1);
+  CHECK(outcome.pipelines[1].median_step_us > 0);
   const json results = json::parse(bytes_of(scratch / "results.json"));
   for (std::size_t k = 3; k <= 20; ++k) {
     CHECK(results["pipelines"][0]["steps"][k]["consistent"] == "no");

@@ -77,8 +77,8 @@ class Pipeline {
       if (results) results->check_columns(*values);
     });
     if (!outcome_.error.empty()) return false;
+    if (outcome_.inconsistent_from < 0) medians_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
     count(*estimate);
-    medians_.add(observer_->times(), hull_us);
     if (results) results->step({*estimate, hull, *values, observer_->times(), hull_us});
     return true;
   }

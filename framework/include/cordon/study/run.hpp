@@ -32,7 +32,7 @@ struct PipelineOutcome {
   std::string error;               ///< the pipeline stopped with this error; the others go on
   std::optional<Errc> error_code;
   std::vector<MetricValue> summary;
-  PhaseTimes median_us;       ///< medians over the steps, each phase for itself
+  PhaseTimes median_us;       ///< medians over the steps up to the first estimate proven empty, phase by phase
   double median_step_us = 0;  ///< median of predict + correct + reduce
   double median_hull_us = 0;  ///< median of the interval hulls, which are not part of a step
   double wall_s = 0;          ///< wall-clock time of the whole pipeline, data and results included
