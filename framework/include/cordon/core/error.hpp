@@ -27,6 +27,9 @@ std::string_view to_string(Errc code) noexcept;
 class Error : public std::runtime_error {
  public:
   Error(Errc code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  Error(const Error&) = default;
+  Error& operator=(const Error&) = default;
+  ~Error() override;  // defined in the framework: an error thrown by a plugin must be readable after its library has gone
   Errc code() const noexcept { return code_; }
 
  private:
@@ -45,6 +48,9 @@ struct Diagnostic {
 class InputError : public Error {
  public:
   InputError(std::string file, std::vector<Diagnostic> diagnostics);
+  InputError(const InputError&) = default;
+  InputError& operator=(const InputError&) = default;
+  ~InputError() override;
   const std::string& file() const noexcept { return file_; }
   const std::vector<Diagnostic>& diagnostics() const noexcept { return diagnostics_; }
 
