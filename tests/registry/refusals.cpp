@@ -189,3 +189,21 @@ TEST_CASE("the refused plugin that held a component is found") {
     }
   }
 }
+
+TEST_CASE("a library that is announced but missing is named, with its components") {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "gone.provides") << "backend gone_box\nobserver gone_observer\n";
+  std::ofstream(directory / "broken.provides") << "backend broken_box\n";
+  std::ofstream(directory / "broken.so") << "no library\n";
+  Registry registry;
+  registry.load({{directory.path()}});
+  const PluginReport* gone = registry.refused_provider("gone_observer");
+  REQUIRE(gone);
+  CHECK(gone->file == directory / "gone.so");
+  CHECK(gone->reason.find("missing") != std::string::npos);
+  CHECK_FALSE(gone->fix.empty());
+  const PluginReport* broken = registry.refused_provider("broken_box");
+  REQUIRE(broken);
+  CHECK(broken->file == directory / "broken.so");
+  CHECK_FALSE(registry.refused_provider("another_box"));
+}

@@ -2,6 +2,7 @@
 #include "cordon/registry/registry.hpp"
 
 #include <algorithm>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -111,6 +112,31 @@ std::shared_ptr<T> make(const Provided<Entry>& provided, const std::string& kind
 
 }  // namespace
 
+namespace {
+
+/// The components that `NAME.provides` beside a library announces, a line each; none if there is no such file.
+std::vector<std::string> announced(const fs::path& library) {
+  constexpr std::size_t most = 1000;  // the file is input like any other
+  std::ifstream file(fs::path(library).replace_extension(".provides"));
+  std::vector<std::string> components;
+  for (std::string line; components.size() < most && std::getline(file, line);) {
+    if (!line.empty() && line.size() < 200) components.push_back(line);
+  }
+  return components;
+}
+
+PluginReport missing(const fs::path& library) {
+  PluginReport report;
+  report.file = library;
+  report.name = library.stem().string();
+  report.reason = "the file is missing, though " + library.stem().string() + ".provides beside it announces it";
+  report.fix = "build or install the plugin again, or delete the announcement too";
+  report.components = announced(library);
+  return report;
+}
+
+}  // namespace
+
 Registry::Registry() : state_(std::make_unique<State>()) {}
 Registry::~Registry() = default;
 
@@ -120,6 +146,11 @@ void Registry::load(const SearchPath& path) {
     std::vector<fs::path> files;
     for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
       if (entry->path().extension() == ".so") files.push_back(entry->path());
+      if (entry->path().extension() == ".provides") {
+        const fs::path library = fs::absolute(fs::path(entry->path()).replace_extension(".so")).lexically_normal();
+        std::error_code ignored;
+        if (fs::symlink_status(library, ignored).type() == fs::file_type::not_found) state_->reports.push_back(missing(library));
+      }
     }
     if (error && error != std::errc::no_such_file_or_directory) {
       PluginReport report;
@@ -144,6 +175,7 @@ const PluginReport& Registry::load_file(const fs::path& file) {
   if (report != reports.end() && report->state == PluginReport::State::loaded) return *report;
   if (report == reports.end()) report = reports.insert(reports.end(), PluginReport{});
   *report = load_plugin(absolute, state_->plugins, state_->catalogue);
+  if (report->state == PluginReport::State::refused && report->components.empty()) report->components = announced(absolute);
   return *report;
 }
 

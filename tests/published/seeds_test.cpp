@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The main study over a hundred seeds: the truth stays inside every estimate, and the mean radii are the published ones [Rego2025, fig. 5].
+#include <doctest/doctest.h>
+
+#include <map>
+
+#include "cordon/study/data.hpp"
+#include "cordon/study/study.hpp"
+#include "study_models.hpp"
+
+using namespace cordon;
+
+namespace {
+
+struct Figures {
+  double radius_sum = 0;
+  Index radius_count = 0, empty_before_exit = 0;
+};
+
+/// Runs one pipeline over one seed; containment is asserted while the truth keeps to the pipeline's admissible set.
+void run(const Study& study, const PipelineSpec& pipeline, const Registry& registry, Figures& figures) {
+  const auto backend = registry.make_backend(pipeline.backend.type, pipeline.backend.params);
+  const auto observer = registry.make_observer(pipeline.observer.type, {study.model, backend}, pipeline.observer.params);
+  observer->start();
+  const auto source = open_data(study);
+  bool admissible = true;
+  while (const auto record = source->next()) {
+    const Estimate estimate = observer->step(record->sample);
+    const Index k = record->sample.k;
+    if (const Set* set = observer->admissible_set()) admissible = admissible && set->contains(*record->truth) != Answer::no;
+    if (!admissible) return;
+    INFO(pipeline.name << ", k = " << k);
+    REQUIRE(estimate.consistent != Answer::no);  // never empty before the truth leaves
+    REQUIRE(estimate.set->contains(*record->truth) == Answer::yes);
+    if (k >= 2 && k <= 20) {
+      figures.radius_sum += estimate.set->interval_hull().longest_half_edge();
+      ++figures.radius_count;
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a hundred seeds of the main study") {
+  const Plugins plugins;
+  Registry registry;
+  registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+  Study study = read_study(CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
+  std::map<std::string, Figures> figures;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    CAPTURE(seed);
+    std::get<SimulateSpec>(study.data).seed = seed;
+    std::get<SimulateSpec>(study.data).noise = seed % 10 == 0 ? Noise::vertex : Noise::uniform;
+    for (const PipelineSpec& pipeline : study.pipelines) run(study, pipeline, registry, figures[pipeline.backend.type + (seed % 10 == 0 ? "_vertex" : "")]);
+  }
+  const auto mean = [&](const std::string& backend) { return figures.at(backend).radius_sum / static_cast<double>(figures.at(backend).radius_count); };
+  MESSAGE("mean radii k = 2..20: line " << mean("line_zonotope") << ", constrained " << mean("constrained_zonotope") << ", zonotope "
+                                        << mean("zonotope") << ", interval " << mean("interval"));
+  CHECK(mean("line_zonotope") == doctest::Approx(1.6469).epsilon(.03));
+  CHECK(mean("constrained_zonotope") == doctest::Approx(1.6466).epsilon(.03));
+  CHECK(mean("zonotope") == doctest::Approx(6.66).epsilon(.03));
+}
