@@ -13,7 +13,7 @@ if(CORDON_WARNINGS_AS_ERRORS)
   add_compile_options(-Werror)
 endif()
 if(CORDON_SANITIZE)
-  add_compile_options(-fsanitize=${CORDON_SANITIZE} -fno-omit-frame-pointer -O1)
+  add_compile_options(-fsanitize=${CORDON_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${CORDON_SANITIZE})
 endif()
 

@@ -68,16 +68,32 @@ class Elimination {
     }
   }
 
-  /// The interval ρ_j that each row allows ξ_j, and the bounds E_j = ρ_j ∩ [-1,1] that follow, in two passes over the rows.
+  /// The interval ρ_j that the rows allow ξ_j while all other factors keep to [-1,1]. Bounds tightened by rows must not enter here: they would rest on
+  /// |ξ_j| ≤ 1 itself, and ρ_j ⊆ [-1,1] would no longer show that this bound may be forgotten.
   void bound_factors() {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     allowed_lower_ = Vector::Constant(factors(), -infinity);
     allowed_upper_ = Vector::Constant(factors(), infinity);
+    for (Index i = 0; i < rows(); ++i) {
+      if (!in_row_[at(i)]) continue;
+      const double norm = A_.row(i).lpNorm<1>();
+      for (Index j = 0; j < factors(); ++j) {
+        const double a = A_(i, j);
+        if (!free_[at(j)] || std::abs(a) <= pivot_floor * row_scale_[i]) continue;
+        const double middle = b_[i] / a, spread = (norm - std::abs(a)) / std::abs(a);
+        allowed_lower_[j] = std::max(allowed_lower_[j], middle - spread);
+        allowed_upper_[j] = std::min(allowed_upper_[j], middle + spread);
+      }
+    }
+  }
+
+  /// Bounds E_j of ξ_j over all feasible ξ, by two passes of interval propagation over the rows.
+  void tighten() {
     lower_ = -Vector::Ones(factors());
     upper_ = Vector::Ones(factors());
     for (int pass = 0; pass < 2; ++pass) {
       for (Index i = 0; i < rows(); ++i) {
-        if (in_row_[at(i)]) bound_by_row(i);
+        if (in_row_[at(i)]) tighten_by_row(i);
       }
     }
   }
@@ -213,7 +229,7 @@ class Elimination {
     A_(i, col) = 0;
   }
 
-  void bound_by_row(Index i) {
+  void tighten_by_row(Index i) {
     double low = 0, high = 0;
     for (Index j = 0; j < factors(); ++j) {
       const double a = A_(i, j);
@@ -226,8 +242,6 @@ class Elimination {
       const double own_low = a > 0 ? a * lower_[j] : a * upper_[j], own_high = a > 0 ? a * upper_[j] : a * lower_[j];
       double from = (b_[i] - (high - own_high)) / a, to = (b_[i] - (low - own_low)) / a;
       if (from > to) std::swap(from, to);
-      allowed_lower_[j] = std::max(allowed_lower_[j], from);
-      allowed_upper_[j] = std::min(allowed_upper_[j], to);
       const double new_lower = std::max(lower_[j], from), new_upper = std::min(upper_[j], to);
       if (!(new_lower <= new_upper)) continue;  // ∅ up to rounding: left to the question of emptiness
       low += a > 0 ? a * (new_lower - lower_[j]) : a * (new_upper - upper_[j]);
@@ -269,11 +283,11 @@ Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const Co
   work.drop_vanished_rows();
   if (work.live_rows() <= max_constraints) return {work.result(X.M), true};
   if (options.gauss_jordan) work.to_gauss_jordan();
-  work.bound_factors();
   if (options.rescale) {
+    work.tighten();
     work.rescale();
-    work.bound_factors();
   }
+  work.bound_factors();
   work.factorise();
   bool exact = true;
   while (work.live_rows() > max_constraints) {

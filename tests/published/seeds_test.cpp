@@ -31,7 +31,10 @@ void run(const Study& study, const PipelineSpec& pipeline, const Registry& regis
     if (!admissible) return;
     INFO(pipeline.name << ", k = " << k);
     REQUIRE(estimate.consistent != Answer::no);  // never empty before the truth leaves
-    REQUIRE(estimate.set->contains(*record->truth) == Answer::yes);
+    const Answer inside = estimate.set->contains(*record->truth);
+    REQUIRE(inside != Answer::no);
+    // noise at a vertex may put the truth on the boundary, where nothing is proven
+    if (std::get<SimulateSpec>(study.data).noise == Noise::uniform) REQUIRE(inside == Answer::yes);
     if (k >= 2 && k <= 20) {
       figures.radius_sum += estimate.set->interval_hull().longest_half_edge();
       ++figures.radius_count;

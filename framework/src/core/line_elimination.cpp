@@ -10,9 +10,9 @@ namespace cordon {
 
 namespace {
 
-constexpr double line_noise = 1e-10;    ///< cancelled to this share of its terms, a coefficient of a line is zero
-constexpr double other_noise = 1e-14;   ///< the same for coefficients of generators and right-hand sides
-constexpr double basis_noise = 1e-14;   ///< entries of an orthonormal basis below this are zero
+constexpr double line_noise = 1e-10;   ///< cancelled to this share of its terms, a coefficient of a line, or a whole row, is zero
+constexpr double other_noise = 1e-14;  ///< the same for a single coefficient of a generator or a right-hand side
+constexpr double basis_noise = 1e-14;  ///< entries of an orthonormal basis below this are zero
 
 /// Rows of [S A b] above rows of [M G c], with the magnitude of the terms that each entry was computed from.
 struct Tableau {
@@ -68,7 +68,10 @@ struct Tableau {
     T(row, col) = 1;
   }
 
-  bool vanished(Index row) const { return T.row(row).tail(width - lines).isZero(0); }
+  /// 0 = 0 up to rounding: every coefficient and the right-hand side cancelled. Dropping a row never shrinks the set.
+  bool vanished(Index row) const {
+    return (T.row(row).tail(width - lines).array().abs() <= line_noise * magnitude.row(row).tail(width - lines).array()).all();
+  }
 };
 
 }  // namespace
