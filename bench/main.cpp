@@ -18,7 +18,7 @@ class MedianReporter final : public benchmark::BenchmarkReporter {
     for (const Run& run : runs) {
       if (run.run_type != Run::RT_Aggregate || run.aggregate_name != "median") continue;
       std::string name = run.run_name.str();
-      for (const char* suffix : {"/repeats:7", "/manual_time"}) {
+      for (const char* suffix : {"/repeats:7", "/manual_time", "/min_time:0.050"}) {
         if (const auto at = name.find(suffix); at != std::string::npos) name.erase(at, std::string(suffix).size());
       }
       std::printf("%-52s %9.2f µs\n", name.c_str(), run.GetAdjustedRealTime());

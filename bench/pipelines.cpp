@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step (predict, correct, reduce; and the certified hull apart) of every pipeline of the main study, through plugins as in a run.
+// One step (predict, correct, reduce; and the certified hull apart) of every pipeline of the main study, through plugins as in a
+// run.
 #include <memory>
 
 #include <benchmark/benchmark.h>
@@ -25,7 +26,8 @@ const Fixture& fixture() {
   return instance;
 }
 
-/// Runs a pipeline over and over its data up to k = 20 (all pipelines are consistent there); each iteration is one step from k = 2 on.
+/// Runs a pipeline over and over its data up to k = 20 (all pipelines are consistent there); each iteration is one step from k =
+/// 2 on.
 template <class Work>
 void steps(benchmark::State& state, const PipelineSpec& pipeline, Work work) {
   const Fixture& f = fixture();
@@ -63,7 +65,8 @@ const int registered = [] {
           ->MinTime(.05);
     };
     add("step", [](const Observer& observer, const Estimate&) { return observer.times().step(); });
-    add("step_with_question", [](const Observer& observer, const Estimate&) { return observer.times().step() + observer.times().question; });
+    add("step_with_question",
+        [](const Observer& observer, const Estimate&) { return observer.times().step() + observer.times().question; });
     add("step_with_hull", [](const Observer& observer, const Estimate& e) { return observer.times().step() + hull_time(e); });
   }
   return 0;

@@ -51,7 +51,8 @@ class Radius final : public Metric {
     return {{"radius", radius}};
   }
   std::vector<MetricValue> summary() const override {
-    return {{"radius_mean", average_.mean()}, {"radius_max", average_.largest()}, {"radius_unbounded_steps", average_.unbounded()}};
+    return {
+        {"radius_mean", average_.mean()}, {"radius_max", average_.largest()}, {"radius_unbounded_steps", average_.unbounded()}};
   }
 
  private:
@@ -67,7 +68,9 @@ class VolumeOfSet final : public Metric {
     if (!volume.exact) ++hulls_;
     return {{"volume", volume.value}, {"volume_of", std::string(volume.exact ? "set" : "hull")}};
   }
-  std::vector<MetricValue> summary() const override { return {{"volume_mean", average_.mean()}, {"volume_of_hull_steps", hulls_}}; }
+  std::vector<MetricValue> summary() const override {
+    return {{"volume_mean", average_.mean()}, {"volume_of_hull_steps", hulls_}};
+  }
 
  private:
   Average average_;
@@ -94,7 +97,8 @@ class Size final : public Metric {
  public:
   std::vector<MetricValue> step(const StepView& view) override {
     const Complexity c = view.estimate.set->complexity();
-    largest_ = {std::max(largest_.generators, c.generators), std::max(largest_.lines, c.lines), std::max(largest_.constraints, c.constraints)};
+    largest_ = {std::max(largest_.generators, c.generators), std::max(largest_.lines, c.lines),
+                std::max(largest_.constraints, c.constraints)};
     return {{"generators", c.generators}, {"lines", c.lines}, {"constraints", c.constraints}};
   }
   std::vector<MetricValue> summary() const override {
@@ -146,8 +150,10 @@ void add(Registrar& registrar, const char* name, const char* summary) {
 
 void register_metrics(Registrar& registrar) {
   add<Radius>(registrar, "radius", "half the longest edge of the interval hull");
-  add<VolumeOfSet>(registrar, "volume", "volume: exact up to dimension 3 where the representation offers it, else of the interval hull");
-  add<ContainsTruth>(registrar, "contains_truth", "certified containment of the true state while the pipeline's assumptions hold");
+  add<VolumeOfSet>(registrar, "volume",
+                   "volume: exact up to dimension 3 where the representation offers it, else of the interval hull");
+  add<ContainsTruth>(registrar, "contains_truth",
+                     "certified containment of the true state while the pipeline's assumptions hold");
   add<Size>(registrar, "complexity", "generators, lines and constraints of the estimate");
   add<ExactSteps>(registrar, "tightness", "share of steps whose set is claimed to be exact");
   add<StepTime>(registrar, "step_time", "measured time of prediction, correction and reduction in microseconds");

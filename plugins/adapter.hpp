@@ -64,7 +64,8 @@ class ValueSet final : public Set {
 template <class Representation>
 class ValueBackend final : public SetBackend {
  public:
-  ValueBackend(BackendInfo info, Representation representation) : SetBackend(std::move(info)), representation_(std::move(representation)) {}
+  ValueBackend(BackendInfo info, Representation representation)
+      : SetBackend(std::move(info)), representation_(std::move(representation)) {}
 
  private:
   using Value = typename Representation::Value;
@@ -88,7 +89,9 @@ class ValueBackend final : public SetBackend {
   Made do_correct(const Set& X, const Correct& c) const override {
     return make(representation_.correct(value(X), c.C, c.z, Operand<Value>{c.noise.T, value(*c.noise.set)}));
   }
-  Made do_interval_map(const Set& X, const IntervalMatrix& A) const override { return make(representation_.interval_map(value(X), A)); }
+  Made do_interval_map(const Set& X, const IntervalMatrix& A) const override {
+    return make(representation_.interval_map(value(X), A));
+  }
   Made do_intersection(const Set& X, MatrixIn R, const Set& Y) const override {
     return make(representation_.intersection(value(X), R, value(Y)));
   }

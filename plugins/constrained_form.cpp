@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "cordon/core/error.hpp"
-#include "cordon/core/line_elimination.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/line_elimination.hpp"
 #include "cordon/sets/constrained_zonotope.hpp"
 #include "cordon/sets/interval.hpp"
 #include "cordon/sets/vertices.hpp"
@@ -49,11 +49,13 @@ ConstrainedForm::Result ConstrainedForm::import(const LineForm& X) const {
   const auto Z = sets::to_constrained_zonotope(X);
   if (Z) return {sets::line_form(*Z), Tightness::exact};
   if (cordon::is_empty(X) == Answer::yes) return {make_empty(X.dim()), Tightness::exact};
-  throw Error(Errc::unsupported,
-              "constrained_zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
+  throw Error(
+      Errc::unsupported,
+      "constrained_zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
 }
 
-ConstrainedForm::Result ConstrainedForm::predict(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
+ConstrainedForm::Result ConstrainedForm::predict(const Value& X, MatrixIn A, VectorIn f,
+                                                 std::span<const Operand<Value>> operands) const {
   std::vector<sets::Summand> summands;
   summands.reserve(operands.size());
   for (const auto& operand : operands) summands.push_back({operand.T, operand.value});
@@ -71,7 +73,8 @@ ConstrainedForm::Result ConstrainedForm::interval_map(const Value& X, const Inte
   const Box hull = cordon::interval_hull(X);
   if (hull.is_empty()) return {make_empty(A.rows()), Tightness::exact};
   const Box spread = sets::interval_map(hull, IntervalMatrix(Matrix::Zero(A.rows(), A.cols()), A.radius));
-  if (!lines && !spread.is_bounded()) throw Error(Errc::unsupported, "constrained_zonotope: the image under the interval matrix has no proven bound");
+  if (!lines && !spread.is_bounded())
+    throw Error(Errc::unsupported, "constrained_zonotope: the image under the interval matrix has no proven bound");
   return {minkowski_sum(mapped, make_box(spread)), Tightness::outer};
 }
 
@@ -90,8 +93,10 @@ std::optional<ConstrainedForm::Result> ConstrainedForm::reduce(const Value& X, B
 
 ParamSchema reduction_schema() {
   ParamSchema schema;
-  schema.choice("reduction", "how generators are reduced to the budget", {"yang_scott", "girard", "combastel", "pca"}, "yang_scott");
-  schema.choice("precondition", "rows as they are, or in Gauss-Jordan form, before constraints are eliminated", {"raw", "gauss_jordan"}, "raw");
+  schema.choice("reduction", "how generators are reduced to the budget", {"yang_scott", "girard", "combastel", "pca"},
+                "yang_scott");
+  schema.choice("precondition", "rows as they are, or in Gauss-Jordan form, before constraints are eliminated",
+                {"raw", "gauss_jordan"}, "raw");
   schema.flag("rescale", "tighten the factors' bounds before constraints are eliminated", false);
   return schema;
 }
@@ -104,7 +109,8 @@ sets::GeneratorReduction generator_reduction_from(const std::string& name) {
 }
 
 sets::LineReduction reduction_from(const Params& params) {
-  return {generator_reduction_from(params.text("reduction")), {params.flag("rescale"), params.text("precondition") == "gauss_jordan"}};
+  return {generator_reduction_from(params.text("reduction")),
+          {params.flag("rescale"), params.text("precondition") == "gauss_jordan"}};
 }
 
 }  // namespace cordon::plugins

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the two representations with constraints share: both hold {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}, the constrained zonotope without lines.
+// What the two representations with constraints share: both hold {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}, the constrained zonotope
+// without lines.
 #pragma once
 
 #include <string>

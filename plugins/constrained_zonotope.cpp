@@ -17,9 +17,12 @@ std::unique_ptr<SetBackend> create(const Params& params) {
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"constrained_zonotope", "zonotopes with linear constraints: convex polytopes, exact intersections", "Scott2016", plugins::reduction_schema()}, create});
+  registrar.backend({{"constrained_zonotope", "zonotopes with linear constraints: convex polytopes, exact intersections",
+                      "Scott2016", plugins::reduction_schema()},
+                     create});
 }
 
 }  // namespace
 
-CORDON_PLUGIN("constrained_zonotope", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "constrained zonotopes", register_components)
+CORDON_PLUGIN("constrained_zonotope", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "constrained zonotopes",
+              register_components)

@@ -75,7 +75,9 @@ struct Intervals {
   Box interval_hull(const Box& X) const { return X; }
   double exact_volume(const Box& X) const { return (X.upper - X.lower).prod(); }
 
-  Result import(const LineForm& X) const { return {cordon::interval_hull(X), is_plain_box(X) ? Tightness::exact : Tightness::outer}; }
+  Result import(const LineForm& X) const {
+    return {cordon::interval_hull(X), is_plain_box(X) ? Tightness::exact : Tightness::outer};
+  }
 
   Result predict(const Box& X, MatrixIn A, VectorIn f, std::span<const Operand<Box>> operands) const {
     Box sum = sets::affine_map(X, A, f);
@@ -95,7 +97,8 @@ struct Intervals {
     if (R.isIdentity(0)) return {sets::intersection(X, Y), Tightness::exact};
     // R x ∈ Y ⇔ 0 - R x ∈ -Y
     const Matrix minus = -Matrix::Identity(Y.dim(), Y.dim());
-    return {sets::contract(X, R, Vector::Zero(Y.dim()), minus, Y), sets::has_monomial_rows(R) ? Tightness::exact : Tightness::outer};
+    return {sets::contract(X, R, Vector::Zero(Y.dim()), minus, Y),
+            sets::has_monomial_rows(R) ? Tightness::exact : Tightness::outer};
   }
   Result convex_hull(const Box& X, const Box& Y) const { return {sets::convex_hull(X, Y), Tightness::outer}; }
   std::optional<Result> reduce(const Box&, Budget) const { return std::nullopt; }

@@ -17,7 +17,11 @@ std::unique_ptr<SetBackend> create(const Params& params) {
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"line_zonotope", "zonotopes with lines and linear constraints: polytopes and sets unbounded along subspaces, exact intersections", "Rego2025", plugins::reduction_schema()}, create});
+  registrar.backend(
+      {{"line_zonotope",
+        "zonotopes with lines and linear constraints: polytopes and sets unbounded along subspaces, exact intersections",
+        "Rego2025", plugins::reduction_schema()},
+       create});
 }
 
 }  // namespace

@@ -56,11 +56,13 @@ struct Zonotopes {
     LineForm Y = eliminate_lines(X);
     if (Y.constraints() > 0 && cordon::is_empty(Y) == Answer::yes) return empty(X.dim());
     if (Y.lines() > 0) {
-      throw Error(Errc::unsupported, "zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
+      throw Error(Errc::unsupported,
+                  "zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
     }
     if (Y.constraints() == 0) return result({Y.c, Y.G}, Tightness::exact);
     const sets::Reduced reduced = sets::eliminate_constraints(Y, 0, {.rescale = true});
-    return result({reduced.set.c, reduced.set.G}, reduced.exact && reduced.set.constraints() == 0 ? Tightness::exact : Tightness::outer);
+    return result({reduced.set.c, reduced.set.G},
+                  reduced.exact && reduced.set.constraints() == 0 ? Tightness::exact : Tightness::outer);
   }
 
   Result predict(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
@@ -98,8 +100,10 @@ struct Zonotopes {
 
 ParamSchema schema() {
   ParamSchema schema;
-  schema.choice("reduction", "how generators are reduced to the budget", {"yang_scott", "girard", "combastel", "pca"}, "yang_scott");
-  schema.choice("strip", "how a strip is intersected: smallest F-radius, smallest volume among parallel strips, or smallest volume",
+  schema.choice("reduction", "how generators are reduced to the budget", {"yang_scott", "girard", "combastel", "pca"},
+                "yang_scott");
+  schema.choice("strip",
+                "how a strip is intersected: smallest F-radius, smallest volume among parallel strips, or smallest volume",
                 {"segment", "bravo", "volume"}, "segment");
   return schema;
 }
@@ -116,12 +120,15 @@ std::unique_ptr<SetBackend> create(const Params& params) {
                         : reduction == "pca"       ? sets::GeneratorReduction::pca
                                                    : sets::GeneratorReduction::yang_scott;
   const std::string& strip = params.text("strip");
-  zonotopes.strip = strip == "bravo" ? sets::StripMethod::bravo : strip == "volume" ? sets::StripMethod::volume : sets::StripMethod::segment;
+  zonotopes.strip = strip == "bravo"    ? sets::StripMethod::bravo
+                    : strip == "volume" ? sets::StripMethod::volume
+                                        : sets::StripMethod::segment;
   return std::make_unique<plugins::ValueBackend<Zonotopes>>(info, zonotopes);
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"zonotope", "centrally symmetric polytopes given by generators", "Combastel2003; Alamo2005", schema()}, create});
+  registrar.backend(
+      {{"zonotope", "centrally symmetric polytopes given by generators", "Combastel2003; Alamo2005", schema()}, create});
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Observer for descriptor systems E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with singular E. The recursion follows from what the backend can do.
+// Observer for descriptor systems E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with singular E. The recursion follows from what
+// the backend can do.
 //
 // Backends with exact intersections [Rego2025, sec. 4], with E = U Σ Vᵀ, z = Vᵀ x = (z̃, ž), n_z = rank E:
 //   z̃_k = Ã z_{k-1} + B̃ u_{k-1} + B̃w w_{k-1},   0 = Ǎ z_k + B̌ u_k + B̌w w_k  (static rows)
-//   Z̄_k = {([Ã z + B̃ u + B̃w w]; ž) : z ∈ Ẑ_{k-1}, w ∈ W, ž ∈ R^{n-n_z}} cut by the static rows with a second copy of W, then by the measurement.
-// ž is free with lines; without, it is taken from an admissible set X_A that holds x_k for all k. Exact if no generator of W enters both B̃w and B̌w;
-// else the two copies of W make the recursion an outer one, and the estimate says so.
+//   Z̄_k = {([Ã z + B̃ u + B̃w w]; ž) : z ∈ Ẑ_{k-1}, w ∈ W, ž ∈ R^{n-n_z}} cut by the static rows with a second copy of W, then by
+//   the measurement.
+// ž is free with lines; without, it is taken from an admissible set X_A that holds x_k for all k. Exact if no generator of W
+// enters both B̃w and B̌w; else the two copies of W make the recursion an outer one, and the estimate says so.
 //
 // Other backends [Wang2018a]: with [T N] = [E; C]⁺ it holds T E + N C = I, so
 //   x_k = (T A - L C) x_{k-1} + T B u_{k-1} + T Bw w_{k-1} + L (y_{k-1} - D u_{k-1} - Dv v_{k-1}) + N (y_k - D u_k - Dv v_k)
@@ -31,10 +33,10 @@ Matrix denoised(const Matrix& A) {
 
 /// The system in the coordinates z = Vᵀ x: dynamic rows above, static rows below.
 struct Transformed {
-  Matrix T;                               ///< x = T z
-  Matrix A, B, Bw;                        ///< dynamic rows, n_z of them, divided by the singular values
-  Matrix static_A, static_B, static_Bw;   ///< static rows
-  Matrix free_part;                       ///< [0; I]: where ž enters
+  Matrix T;                              ///< x = T z
+  Matrix A, B, Bw;                       ///< dynamic rows, n_z of them, divided by the singular values
+  Matrix static_A, static_B, static_Bw;  ///< static rows
+  Matrix free_part;                      ///< [0; I]: where ž enters
 
   explicit Transformed(const LinearModel& m) {
     const Index n = m.states();
@@ -62,7 +64,9 @@ struct Transformed {
 
 /// Does a factor of W enter dynamic and static rows alike? Constraints couple all factors.
 bool shares_disturbances(const Transformed& t, const LineForm& W) {
-  const auto enters = [](const Matrix& rows, const Matrix& columns, Index j) { return !linalg::product(rows, columns.col(j)).isZero(0); };
+  const auto enters = [](const Matrix& rows, const Matrix& columns, Index j) {
+    return !linalg::product(rows, columns.col(j)).isZero(0);
+  };
   bool any_dynamic = false, any_static = false, both = false;
   for (const Matrix* columns : {&W.G, &W.M}) {
     for (Index j = 0; j < columns->cols(); ++j) {
@@ -78,9 +82,14 @@ bool shares_disturbances(const Transformed& t, const LineForm& W) {
 class SingularValueObserver final : public Observer {
  public:
   SingularValueObserver(const ObserverContext& context, const Params& params)
-      : Observer(context.model, context.backend), transformed_(model().linear), budget_(budget_from(params)),
-        static_at_start_(params.flag("static_at_start")), X0_(initial_set(model(), params)), W_(backend().import(model().W)),
-        V_(backend().import(model().V)), measured_(linalg::product(model().linear.C, transformed_.T)) {
+      : Observer(context.model, context.backend),
+        transformed_(model().linear),
+        budget_(budget_from(params)),
+        static_at_start_(params.flag("static_at_start")),
+        X0_(initial_set(model(), params)),
+        W_(backend().import(model().W)),
+        V_(backend().import(model().V)),
+        measured_(linalg::product(model().linear.C, transformed_.T)) {
     const Index n = model().linear.states(), free = transformed_.static_rows();
     recursion_ = shares_disturbances(transformed_, model().W) ? Tightness::outer : Tightness::exact;
     stacked_A_ = Matrix::Zero(n, n);
@@ -126,13 +135,15 @@ class SingularValueObserver final : public Observer {
   /// 0 = Ǎ z + B̌ u + B̌w w with a fresh w ∈ W.
   Enclosure with_static_rows(const Enclosure& Z, VectorIn u) const {
     if (transformed_.static_rows() == 0) return Z;
-    return backend().correct(Z, {transformed_.static_A, -linalg::product(transformed_.static_B, u), {transformed_.static_Bw, W_}});
+    return backend().correct(Z,
+                             {transformed_.static_A, -linalg::product(transformed_.static_B, u), {transformed_.static_Bw, W_}});
   }
 
   Enclosure finish(const Enclosure& predicted, const Sample& now) {
     const LinearModel& m = model().linear;
     const Enclosure corrected = timed(Phase::correct, [&] {
-      return m.outputs() == 0 ? predicted : backend().correct(predicted, {measured_, now.y - linalg::product(m.D, now.u), {m.Dv, V_}});
+      return m.outputs() == 0 ? predicted
+                              : backend().correct(predicted, {measured_, now.y - linalg::product(m.D, now.u), {m.Dv, V_}});
     });
     Z_ = timed(Phase::reduce, [&] { return backend().reduce(corrected, budget_); });
     return backend().affine_map(Z_, transformed_.T, Vector::Zero(m.states()));
@@ -152,8 +163,11 @@ class SingularValueObserver final : public Observer {
 class PseudoInverseObserver final : public Observer {
  public:
   PseudoInverseObserver(const ObserverContext& context, const Params& params)
-      : Observer(context.model, context.backend), budget_(budget_from(params)), X0_(initial_set(model(), params)),
-        W_(backend().import(model().W)), V_(backend().import(model().V)) {
+      : Observer(context.model, context.backend),
+        budget_(budget_from(params)),
+        X0_(initial_set(model(), params)),
+        W_(backend().import(model().W)),
+        V_(backend().import(model().V)) {
     const LinearModel& m = model().linear;
     const Index n = m.states();
     Matrix stacked(n + m.outputs(), n);
@@ -176,7 +190,8 @@ class PseudoInverseObserver final : public Observer {
     const Enclosure predicted = timed(Phase::predict, [&] {
       const Matrix L = gain();
       const Matrix minus_LDv = -linalg::product(L, m.Dv);
-      const Vector f = linalg::product(T_, linalg::product(m.B, before.u)) + linalg::product(L, before.y - linalg::product(m.D, before.u)) +
+      const Vector f = linalg::product(T_, linalg::product(m.B, before.u)) +
+                       linalg::product(L, before.y - linalg::product(m.D, before.u)) +
                        linalg::product(N_, now.y - linalg::product(m.D, now.u));
       const Term terms[]{{TBw_, W_}, {minus_LDv, V_}, {minus_NDv_, V_}};
       return backend().predict(X_, {TA_ - linalg::product(L, m.C), f, terms});
@@ -216,21 +231,26 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
     if (params.has("admissible_set")) {
       check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
     } else if (!info.unbounded && t.static_rows() > 0) {
-      problems.push_back({"/admissible_set", "is missing: the backend \"" + info.name + "\" holds bounded sets only, so the part of the state that E does not determine needs a bound",
+      problems.push_back({"/admissible_set",
+                          "is missing: the backend \"" + info.name +
+                              "\" holds bounded sets only, so the part of the state that E does not determine needs a bound",
                           "give a set that contains the state at all times, or use \"line_zonotope\""});
     }
     return problems;
   }
   for (const char* name : {"admissible_set"}) {
-    if (params.has(name)) problems.push_back({std::string("/") + name, "has no use with the backend \"" + info.name + "\"", "leave it out"});
+    if (params.has(name))
+      problems.push_back({std::string("/") + name, "has no use with the backend \"" + info.name + "\"", "leave it out"});
   }
   if (params.flag("static_at_start")) {
-    problems.push_back({"/static_at_start", "needs exact intersections, which the backend \"" + info.name + "\" does not have", "leave it out"});
+    problems.push_back(
+        {"/static_at_start", "needs exact intersections, which the backend \"" + info.name + "\" does not have", "leave it out"});
   }
   Matrix stacked(m.states() + m.outputs(), m.states());
   stacked << (m.is_descriptor() ? m.E : Matrix(Matrix::Identity(m.states(), m.states()))), m.C;
   if (linalg::rank(stacked, rank_tolerance) < m.states()) {
-    problems.push_back({"", "[E; C] does not have full column rank, so that no T, N with T E + N C = I exist", "measure more, or use \"line_zonotope\""});
+    problems.push_back({"", "[E; C] does not have full column rank, so that no T, N with T E + N C = I exist",
+                        "measure more, or use \"line_zonotope\""});
   }
   return problems;
 }
@@ -239,7 +259,8 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
 
 void register_descriptor(Registrar& registrar) {
   ParamSchema schema = common_parameters();
-  schema.set("admissible_set", "set that holds the state at all times; needed by bounded representations with exact intersections");
+  schema.set("admissible_set",
+             "set that holds the state at all times; needed by bounded representations with exact intersections");
   schema.flag("static_at_start", "let the static rows of k = 0 cut the initial set", false);
   registrar.observer({{"descriptor", "descriptor systems with singular E, any backend", "Rego2025; Rego2020b; Wang2018a", schema},
                       check,

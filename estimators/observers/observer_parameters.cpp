@@ -12,7 +12,8 @@ constexpr std::int64_t most = 100'000;
 ParamSchema common_parameters() {
   ParamSchema schema;
   schema.integer("max_generators", "most generators of an estimate after reduction; at least the number of states", 30, 1, most);
-  schema.integer("max_constraints", "most constraints of an estimate after reduction, where the representation has them", 5, 0, most);
+  schema.integer("max_constraints", "most constraints of an estimate after reduction, where the representation has them", 5, 0,
+                 most);
   schema.set("initial_set", "set of initial states in place of the system's X0");
   return schema;
 }
@@ -23,10 +24,12 @@ const LineForm& initial_set(const Model& model, const Params& params) {
   return params.has("initial_set") ? params.set_form("initial_set") : model.X0;
 }
 
-void check_set(const ObserverContext& context, const LineForm& set, const std::string& pointer, std::vector<Diagnostic>& problems) {
+void check_set(const ObserverContext& context, const LineForm& set, const std::string& pointer,
+               std::vector<Diagnostic>& problems) {
   const Index n = context.model.linear.states();
   if (set.dim() != n) {
-    problems.push_back({pointer, "has dimension " + std::to_string(set.dim()) + ", the state has " + std::to_string(n), "give a set of dimension " + std::to_string(n)});
+    problems.push_back({pointer, "has dimension " + std::to_string(set.dim()) + ", the state has " + std::to_string(n),
+                        "give a set of dimension " + std::to_string(n)});
   } else if (!context.backend->info().unbounded && eliminate_lines(set).lines() > 0) {
     problems.push_back({pointer, "is unbounded, which the backend \"" + context.backend->info().name + "\" cannot represent",
                         "give a bounded set, or use a backend with lines such as \"line_zonotope\""});
@@ -37,14 +40,18 @@ std::vector<Diagnostic> check_common(const ObserverContext& context, const Param
   std::vector<Diagnostic> problems;
   const Index n = context.model.linear.states();
   if (params.integer("max_generators") < n) {
-    problems.push_back({"/max_generators", "is " + std::to_string(params.integer("max_generators")) + ", fewer than the " + std::to_string(n) + " states",
-                        "give at least " + std::to_string(n)});
+    problems.push_back(
+        {"/max_generators",
+         "is " + std::to_string(params.integer("max_generators")) + ", fewer than the " + std::to_string(n) + " states",
+         "give at least " + std::to_string(n)});
   }
   if (params.has("initial_set")) {
     check_set(context, params.set_form("initial_set"), "/initial_set", problems);
   } else if (!context.backend->info().unbounded && eliminate_lines(context.model.X0).lines() > 0) {
-    problems.push_back({"", "the system's X0 is unbounded or not given, which the backend \"" + context.backend->info().name + "\" cannot represent",
-                        "give X0 in the system or \"initial_set\" here, or use a backend with lines such as \"line_zonotope\""});
+    problems.push_back(
+        {"",
+         "the system's X0 is unbounded or not given, which the backend \"" + context.backend->info().name + "\" cannot represent",
+         "give X0 in the system or \"initial_set\" here, or use a backend with lines such as \"line_zonotope\""});
   }
   return problems;
 }

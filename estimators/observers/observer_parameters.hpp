@@ -17,10 +17,12 @@ Budget budget_from(const Params& params);
 /// X0 of the model, or the parameter `initial_set` in its place.
 const LineForm& initial_set(const Model& model, const Params& params);
 
-/// Problems that every observer would have: budget below the dimension, initial set of another dimension, unbounded where the backend holds bounded sets only, ….
+/// Problems that every observer would have: budget below the dimension, initial set of another dimension, unbounded where the
+/// backend holds bounded sets only, ….
 std::vector<Diagnostic> check_common(const ObserverContext& context, const Params& params);
 
 /// "/name" diagnostics for a set parameter of the wrong dimension or one that the backend cannot hold.
-void check_set(const ObserverContext& context, const LineForm& set, const std::string& pointer, std::vector<Diagnostic>& problems);
+void check_set(const ObserverContext& context, const LineForm& set, const std::string& pointer,
+               std::vector<Diagnostic>& problems);
 
 }  // namespace cordon::estimators

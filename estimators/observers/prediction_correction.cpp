@@ -15,8 +15,11 @@ namespace {
 class PredictionCorrection final : public Observer {
  public:
   PredictionCorrection(const ObserverContext& context, const Params& params)
-      : Observer(context.model, context.backend), budget_(budget_from(params)), X0_(initial_set(model(), params)),
-        W_(backend().import(model().W)), V_(backend().import(model().V)) {}
+      : Observer(context.model, context.backend),
+        budget_(budget_from(params)),
+        X0_(initial_set(model(), params)),
+        W_(backend().import(model().W)),
+        V_(backend().import(model().V)) {}
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
@@ -58,12 +61,13 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
 }  // namespace
 
 void register_prediction_correction(Registrar& registrar) {
-  registrar.observer({{"prediction_correction", "prediction by the model, correction by the measurement; standard linear systems, any backend",
-                       "Combastel2003; Scott2016", common_parameters()},
-                      check,
-                      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
-                        return std::make_unique<PredictionCorrection>(context, params);
-                      }});
+  registrar.observer(
+      {{"prediction_correction", "prediction by the model, correction by the measurement; standard linear systems, any backend",
+        "Combastel2003; Scott2016", common_parameters()},
+       check,
+       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+         return std::make_unique<PredictionCorrection>(context, params);
+       }});
 }
 
 }  // namespace cordon::estimators

@@ -18,7 +18,14 @@ constexpr double pivot_floor = 1e-9;  ///< pivots below this share of their row 
 /// The rows and outputs being reduced. Factors and rows are marked instead of moved.
 class Elimination {
  public:
-  Elimination(const LineForm& X) : G_(X.G), c_(X.c), A_(X.A), b_(X.b), row_scale_(X.constraints()), in_row_(X.constraints(), true), free_(X.generators(), true) {
+  Elimination(const LineForm& X)
+      : G_(X.G),
+        c_(X.c),
+        A_(X.A),
+        b_(X.b),
+        row_scale_(X.constraints()),
+        in_row_(X.constraints(), true),
+        free_(X.generators(), true) {
     for (Index i = 0; i < rows(); ++i) row_scale_[i] = scale(i);
   }
 
@@ -36,7 +43,8 @@ class Elimination {
     for (Index i = 0; i < rows(); ++i) {
       if (!in_row_[at(i)]) continue;
       const double largest = scale(i);
-      if (largest <= vanished * row_scale_[i] && std::abs(b_[i]) <= 1e3 * vanished * std::max(row_scale_[i], 1e-300)) in_row_[at(i)] = false;
+      if (largest <= vanished * row_scale_[i] && std::abs(b_[i]) <= 1e3 * vanished * std::max(row_scale_[i], 1e-300))
+        in_row_[at(i)] = false;
       if (row_scale_[i] == 0 && b_[i] == 0) in_row_[at(i)] = false;
     }
   }
@@ -68,8 +76,8 @@ class Elimination {
     }
   }
 
-  /// The interval ρ_j that the rows allow ξ_j while all other factors keep to [-1,1]. Bounds tightened by rows must not enter here: they would rest on
-  /// |ξ_j| ≤ 1 itself, and ρ_j ⊆ [-1,1] would no longer show that this bound may be forgotten.
+  /// The interval ρ_j that the rows allow ξ_j while all other factors keep to [-1,1]. Bounds tightened by rows must not enter
+  /// here: they would rest on |ξ_j| ≤ 1 itself, and ρ_j ⊆ [-1,1] would no longer show that this bound may be forgotten.
   void bound_factors() {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     allowed_lower_ = Vector::Constant(factors(), -infinity);
@@ -148,8 +156,9 @@ class Elimination {
     Q_.resize(g, 0);
   }
 
-  /// The cheapest factor, and the row in which it has the largest share of the row's 1-norm: the row that binds it most. The choice of the row
-  /// does not change the set but the rows that remain, and with them all later scores. False if no row has a usable pivot. `loss` is the score.
+  /// The cheapest factor, and the row in which it has the largest share of the row's 1-norm: the row that binds it most. The
+  /// choice of the row does not change the set but the rows that remain, and with them all later scores. False if no row has a
+  /// usable pivot. `loss` is the score.
   bool choose(Index& row, Index& col, double& loss) const {
     double best = std::numeric_limits<double>::infinity(), best_pivot = 0;
     bool found = false;
@@ -278,7 +287,8 @@ class Elimination {
 
 Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
   if (max_constraints < 0) throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
-  if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0)) throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
+  if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0))
+    throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
   Elimination work(X);
   work.drop_vanished_rows();
   if (work.live_rows() <= max_constraints) return {work.result(X.M), true};

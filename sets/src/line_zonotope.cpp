@@ -2,8 +2,8 @@
 #include "cordon/sets/line_zonotope.hpp"
 
 #include "cordon/core/error.hpp"
-#include "cordon/core/line_elimination.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/line_elimination.hpp"
 
 namespace cordon::sets {
 
@@ -68,8 +68,8 @@ LineZonotope drop_zero_generators(LineZonotope X) {
 Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraints, const LineReduction& how) {
   const Index n = X.dim();
   if (max_generators < n) {
-    throw Error(Errc::invalid, "reduce: " + std::to_string(max_generators) + " generators cannot enclose a set of dimension " + std::to_string(n) +
-                                   "; give at least " + std::to_string(n));
+    throw Error(Errc::invalid, "reduce: " + std::to_string(max_generators) + " generators cannot enclose a set of dimension " +
+                                   std::to_string(n) + "; give at least " + std::to_string(n));
   }
   Reduced reduced = eliminate_constraints(eliminate_lines(X), max_constraints, how.constraints);
   reduced.set = drop_zero_generators(std::move(reduced.set));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every backend encloses: points of the operands, mapped by hand, lie in the result of every operation. And a claim of `exact` means the support
-// function of the exact block form. Sets are random, degenerate, flat, badly scaled, empty or unbounded.
-#include <doctest/doctest.h>
-#include <rapidcheck.h>
-
+// Every backend encloses: points of the operands, mapped by hand, lie in the result of every operation. And a claim of `exact`
+// means the support function of the exact block form. Sets are random, degenerate, flat, badly scaled, empty or unbounded.
 #include <cmath>
 #include <limits>
+
+#include <doctest/doctest.h>
+#include <rapidcheck.h>
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_form.hpp"
@@ -80,7 +80,8 @@ struct Case {
   std::string name;
   bool lines, constraints;  ///< what it is given; every backend must enclose what it accepts
 };
-const std::vector<Case> cases{{"interval", false, true}, {"zonotope", false, true}, {"constrained_zonotope", false, true}, {"line_zonotope", true, true}};
+const std::vector<Case> cases{
+    {"interval", false, true}, {"zonotope", false, true}, {"constrained_zonotope", false, true}, {"line_zonotope", true, true}};
 
 void assert_contains(const Enclosure& X, const Vector& x, double scale, const char* what) {
   RC_LOG() << what << "\n";
@@ -142,7 +143,9 @@ TEST_CASE("operations enclose and keep their claims") {
       assert_contains(corrected, kept, 10 * scale, "correct");
 
       assert_contains(backend->product(EX, EY), (Vector(n + p) << kept, Y.points.front()).finished(), scale, "product");
-      const Enclosure both = backend->intersection(EX, Matrix::Identity(n, n), backend->import(make_box({kept - Vector::Constant(n, .5), kept + Vector::Constant(n, .5)})));
+      const Enclosure both =
+          backend->intersection(EX, Matrix::Identity(n, n),
+                                backend->import(make_box({kept - Vector::Constant(n, .5), kept + Vector::Constant(n, .5)})));
       assert_contains(both, kept, scale, "intersection");
 
       const Matrix radius = random_matrix(p, n).cwiseAbs();
@@ -187,7 +190,8 @@ TEST_CASE("the empty set absorbs, and is neutral in the hull") {
     for (const Enclosure& hull : {backend->convex_hull(X, none), backend->convex_hull(none, X)}) {
       CHECK(hull->support(Vector{{1, 1}}) == doctest::Approx(2));
     }
-    CHECK(backend->correct(X, {Matrix{{1, 0}}, Vector{{5}}, {Matrix{{1.0}}, backend->box(cube(1, 1))}})->is_empty() == Answer::yes);
+    CHECK(backend->correct(X, {Matrix{{1, 0}}, Vector{{5}}, {Matrix{{1.0}}, backend->box(cube(1, 1))}})->is_empty() ==
+          Answer::yes);
   }
 }
 

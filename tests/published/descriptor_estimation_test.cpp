@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// State estimation of the descriptor system of [Rego2025, sec. 6.1] on one fixed noise sequence, against the exact hulls of the full horizon,
-// which were computed independently and without any reduction.
-#include <doctest/doctest.h>
-
+// State estimation of the descriptor system of [Rego2025, sec. 6.1] on one fixed noise sequence, against the exact hulls of the
+// full horizon, which were computed independently and without any reduction.
 #include <cmath>
 #include <map>
+
+#include <doctest/doctest.h>
 
 #include "csv.hpp"
 #include "study_models.hpp"
@@ -33,7 +33,8 @@ const std::vector<Row>& recorded() {
 std::map<Index, Box> exact_hulls(int constrained_start) {
   std::map<Index, Box> hulls;
   for (const auto& v : read_table(CORDON_SOURCE_DIR "/tests/published/data/descriptor_case_hulls.csv")) {
-    if (static_cast<int>(v[0]) == constrained_start) hulls[static_cast<Index>(v[1])] = {Vector{{v[2], v[3], v[4]}}, Vector{{v[5], v[6], v[7]}}};
+    if (static_cast<int>(v[0]) == constrained_start)
+      hulls[static_cast<Index>(v[1])] = {Vector{{v[2], v[3], v[4]}}, Vector{{v[5], v[6], v[7]}}};
   }
   return hulls;
 }
@@ -111,13 +112,15 @@ TEST_CASE("constrained zonotopes equal the exact hulls until the state leaves th
   CHECK(empty_from == 25);
 }
 
-// The second data set: w_k = (sin k, cos 2k, sin(3k+1)) with w_0 = (0, 1, 0), v_k = (cos k, sin(2k + 1/2)), u_k = (1 + sin(kπ/10)/2, -2 cos(kπ/10)).
+// The second data set: w_k = (sin k, cos 2k, sin(3k+1)) with w_0 = (0, 1, 0), v_k = (cos k, sin(2k + 1/2)), u_k = (1 +
+// sin(kπ/10)/2, -2 cos(kπ/10)).
 namespace {
 
 std::map<Index, Box> deterministic_hulls(int which) {
   std::map<Index, Box> hulls;
   for (const auto& v : read_table(CORDON_SOURCE_DIR "/tests/published/data/deterministic_hulls.csv")) {
-    if (static_cast<int>(v[0]) == which) hulls[static_cast<Index>(v[1])] = {Vector{{v[2], v[3], v[4]}}, Vector{{v[5], v[6], v[7]}}};
+    if (static_cast<int>(v[0]) == which)
+      hulls[static_cast<Index>(v[1])] = {Vector{{v[2], v[3], v[4]}}, Vector{{v[5], v[6], v[7]}}};
   }
   return hulls;
 }
@@ -133,14 +136,16 @@ std::vector<Deterministic> deterministic() {
   for (const auto& v : read_table(CORDON_SOURCE_DIR "/tests/published/data/deterministic_case.csv")) {
     const double angle = v[0] * std::acos(-1.0) / 10;
     rows.push_back({{static_cast<Index>(v[0]), Vector{{1 + std::sin(angle) / 2, -2 * std::cos(angle)}}, Vector{{v[4], v[5]}}},
-                    Vector{{v[1], v[2], v[3]}}, v[6], v[7]});
+                    Vector{{v[1], v[2], v[3]}},
+                    v[6],
+                    v[7]});
   }
   return rows;
 }
 
 /// Runs an observer over the deterministic data and compares its hulls with the exact ones of the case, to 1e-6 of their widths.
-void check_case(const Model& model, const std::string& backend, const Params& params, int which, const std::vector<Index>& rows_of_y,
-                const std::vector<Index>& lines = {}) {
+void check_case(const Model& model, const std::string& backend, const Params& params, int which,
+                const std::vector<Index>& rows_of_y, const std::vector<Index>& lines = {}) {
   const Plugins plugins;
   const auto observer = plugins.observer("descriptor", model, plugins.backend(backend), params);
   observer->start();
@@ -247,8 +252,8 @@ TEST_CASE("sizes grow by Remark 3") {
     Z = backend->predict(Z, {A, Vector::Zero(3), terms});
     Z = backend->correct(Z, {model.linear.A.row(2), Vector::Zero(1), {model.linear.Bw.row(2), W}});
     const Complexity after = Z->complexity();
-    CHECK(after.lines == before.lines + 1);             // n - n_z, W has no lines
+    CHECK(after.lines == before.lines + 1);  // n - n_z, W has no lines
     CHECK(after.generators == before.generators + 2 * 3);
-    CHECK(after.constraints == before.constraints + 1); // n - n_z, W has no constraints
+    CHECK(after.constraints == before.constraints + 1);  // n - n_z, W has no constraints
   }
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The examples of sections 2.1 and 3.2 of the line-zonotope paper [Rego2025]; numbers computed independently.
-#include <doctest/doctest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <doctest/doctest.h>
 
 #include "cordon/solvers/set_questions.hpp"
 
@@ -51,8 +51,9 @@ TEST_CASE("3.2.1: zonotope and strip intersect exactly") {
   CHECK(X.constraints() == 3);
   check_hull(X, vector({0.45614173648134015, -0.4438582635186596}), vector({0.7960940957578764, -0.20154916894070946}));
   // the four vertices, seen along their own directions
-  const Matrix vertices = matrix(4, 2, {0.7960940957578764, -0.3039059042421235, 0.6984508310592904, -0.20154916894070943, 0.45614173648134015,
-                                        -0.4438582635186596, 0.6703077684691544, -0.42969223153084546});
+  const Matrix vertices = matrix(4, 2,
+                                 {0.7960940957578764, -0.3039059042421235, 0.6984508310592904, -0.20154916894070943,
+                                  0.45614173648134015, -0.4438582635186596, 0.6703077684691544, -0.42969223153084546});
   for (Index i = 0; i < 4; ++i) {
     const Vector v = vertices.row(i).transpose();
     CHECK(contains(X, v + (vector({.63, -.35}) - v) * 1e-6) == Answer::yes);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Observers on two plants of the literature [Alamo2005, sec. 7.1; a vehicle's lateral motion]; expected hulls of the last estimate as published with the
-// CORA toolbox and reproduced independently.
-#include <doctest/doctest.h>
-
+// Observers on two plants of the literature [Alamo2005, sec. 7.1; a vehicle's lateral motion]; expected hulls of the last
+// estimate as published with the CORA toolbox and reproduced independently.
 #include <cmath>
+
+#include <doctest/doctest.h>
 
 #include "csv.hpp"
 #include "study_models.hpp"
@@ -46,12 +46,13 @@ std::vector<Sample> samples(const std::string& name, Index inputs) {
   return all;
 }
 
-void check_last(const Model& model, const std::string& data, const std::string& backend, Params backend_params, std::int64_t generators,
-                std::int64_t constraints, const Box& expected) {
+void check_last(const Model& model, const std::string& data, const std::string& backend, Params backend_params,
+                std::int64_t generators, std::int64_t constraints, const Box& expected) {
   const Plugins plugins;
   Params params;
   params.set("max_generators", generators).set("max_constraints", constraints);
-  const auto observer = plugins.observer("prediction_correction", model, plugins.backend(backend, std::move(backend_params)), params);
+  const auto observer =
+      plugins.observer("prediction_correction", model, plugins.backend(backend, std::move(backend_params)), params);
   observer->start();
   Estimate estimate;
   for (const Sample& sample : samples(data, model.linear.inputs())) estimate = observer->step(sample);

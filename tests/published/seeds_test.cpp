@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The main study over a hundred seeds: the truth stays inside every estimate, and the mean radii are the published ones [Rego2025, fig. 5].
-#include <doctest/doctest.h>
-
+// The main study over a hundred seeds: the truth stays inside every estimate, and the mean radii are the published ones
+// [Rego2025, fig. 5].
 #include <map>
+
+#include <doctest/doctest.h>
 
 #include "cordon/study/data.hpp"
 #include "cordon/study/study.hpp"
@@ -54,11 +55,14 @@ TEST_CASE("a hundred seeds of the main study") {
     CAPTURE(seed);
     std::get<SimulateSpec>(study.data).seed = seed;
     std::get<SimulateSpec>(study.data).noise = seed % 10 == 0 ? Noise::vertex : Noise::uniform;
-    for (const PipelineSpec& pipeline : study.pipelines) run(study, pipeline, registry, figures[pipeline.backend.type + (seed % 10 == 0 ? "_vertex" : "")]);
+    for (const PipelineSpec& pipeline : study.pipelines)
+      run(study, pipeline, registry, figures[pipeline.backend.type + (seed % 10 == 0 ? "_vertex" : "")]);
   }
-  const auto mean = [&](const std::string& backend) { return figures.at(backend).radius_sum / static_cast<double>(figures.at(backend).radius_count); };
-  MESSAGE("mean radii k = 2..20: line " << mean("line_zonotope") << ", constrained " << mean("constrained_zonotope") << ", zonotope "
-                                        << mean("zonotope") << ", interval " << mean("interval"));
+  const auto mean = [&](const std::string& backend) {
+    return figures.at(backend).radius_sum / static_cast<double>(figures.at(backend).radius_count);
+  };
+  MESSAGE("mean radii k = 2..20: line " << mean("line_zonotope") << ", constrained " << mean("constrained_zonotope")
+                                        << ", zonotope " << mean("zonotope") << ", interval " << mean("interval"));
   CHECK(mean("line_zonotope") == doctest::Approx(1.6469).epsilon(.03));
   CHECK(mean("constrained_zonotope") == doctest::Approx(1.6466).epsilon(.03));
   CHECK(mean("zonotope") == doctest::Approx(6.66).epsilon(.03));

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Set operations with results published in the test suites of CORA and ZonoOpt (named case by case in the data file), checked there or independently by
-// linear programs. Those of plain zonotopes are in tests/sets.
-#include <doctest/doctest.h>
-
+// Set operations with results published in the test suites of CORA and ZonoOpt (named case by case in the data file), checked
+// there or independently by linear programs. Those of plain zonotopes are in tests/sets.
 #include <fstream>
 
+#include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include "cordon/core/linalg.hpp"
@@ -115,7 +114,8 @@ TEST_CASE("published cases of set operations") {
 }
 
 TEST_CASE("intersection with a polyhedron") {
-  // X has the vertices (1,3), (1,-1), (3,2), (3,-2); the line x₁ - 2 x₂ = 1 meets it for 1 ≤ x₁ ≤ 3, and -2 x₁ + x₂ ≤ -4.25 leaves x₁ ≥ 2.5 of that.
+  // X has the vertices (1,3), (1,-1), (3,2), (3,-2); the line x₁ - 2 x₂ = 1 meets it for 1 ≤ x₁ ≤ 3, and -2 x₁ + x₂ ≤ -4.25
+  // leaves x₁ ≥ 2.5 of that.
   LineForm X = make_zonotope(Vector::Zero(2), Matrix{{3, 0, 1}, {0, 2, 1}});
   X.A = Matrix{{1, 0, 1}};
   X.b = Vector{{1}};

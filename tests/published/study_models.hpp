@@ -41,7 +41,8 @@ class Plugins {
     return registry.make_backend(name, complete(registry.backend_info(name), std::move(params)));
   }
   std::shared_ptr<cordon::Observer> observer(const std::string& name, const cordon::Model& model,
-                                             std::shared_ptr<const cordon::SetBackend> backend, cordon::Params params = {}) const {
+                                             std::shared_ptr<const cordon::SetBackend> backend,
+                                             cordon::Params params = {}) const {
     return registry.make_observer(name, {model, std::move(backend)}, complete(registry.observer_info(name), std::move(params)));
   }
 

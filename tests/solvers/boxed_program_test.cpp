@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-#include <rapidcheck.h>
+#include "cordon/solvers/boxed_program.hpp"
 
 #include <cmath>
 #include <limits>
 
+#include <doctest/doctest.h>
+#include <rapidcheck.h>
+
 #include "cordon/core/error.hpp"
 #include "cordon/core/rounding.hpp"
-#include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/lp.hpp"
 
 using namespace cordon;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <doctest/doctest.h>
-#include <rapidcheck.h>
+#include "cordon/solvers/set_questions.hpp"
 
 #include <cmath>
 #include <limits>
 
+#include <doctest/doctest.h>
+#include <rapidcheck.h>
+
 #include "cordon/core/error.hpp"
-#include "cordon/solvers/set_questions.hpp"
 
 using namespace cordon;
 
@@ -164,7 +165,8 @@ TEST_CASE("the convex hull contains both sets and their mixtures") {
   CHECK(rc::check("mixtures of known points", [] {
     const Index n = *rc::gen::inRange<Index>(1, 4);
     Vector x, y;
-    const LineForm X = random_set(n, 4, *rc::gen::inRange<Index>(0, 3), 0, x, 0), Y = random_set(n, 3, *rc::gen::inRange<Index>(0, 2), 0, y, 0);
+    const LineForm X = random_set(n, 4, *rc::gen::inRange<Index>(0, 3), 0, x, 0),
+                   Y = random_set(n, 3, *rc::gen::inRange<Index>(0, 2), 0, y, 0);
     const LineForm H = convex_hull(X, Y);
     const double lambda = static_cast<double>(*rc::gen::inRange(0, 101)) / 100;
     RC_ASSERT(contains(H, lambda * x + (1 - lambda) * y) != Answer::no);

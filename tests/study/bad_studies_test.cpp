@@ -141,6 +141,7 @@ const Mistake data[] = {
     {"\"seed\": 7", "\"seed\": -7", "/data/simulate/seed", "is too small", "between 0 and 9007199254740992"},
     {"\"noise\": \"vertex\"", "\"noise\": \"vertices\"", "/data/simulate/noise", "unknown choice", "\"vertex\""},
     {"\"noise\": \"vertex\"", "\"faults\": []", "/data/simulate/faults", "unknown key of simulated data", "\"steps\""},
+    {"\"x0\": [0.5, 0.25]", "\"x0\": [9, 0.25]", "/data/simulate/x0", "lies outside X0", "widen that set"},
     {"\"x0\": [0.5, 0.25]", "\"x0\": [0.5]", "/data/simulate/x0", "has 1 number, must have 2 like the rows of /system/A", ""},
     {",\n\"input\": [{\"type\": \"sine\", \"amplitude\": 1, \"omega\": 0.5}]", "", "/data/simulate/input", "is missing",
      "1 signal", 18},

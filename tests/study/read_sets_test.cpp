@@ -16,10 +16,10 @@ using namespace study_test;
 
 namespace {
 
-/// The set of a JSON text in R², read as X0.
+/// The set of a JSON text in R², read as X0 of a study whose simulation does not start from a given point.
 LineForm set_of(const std::string& json) {
-  return read_text(
-             exchanged(valid_study, "{\"type\": \"zonotope\", \"center\": [0, 1], \"generators\": [[1, 0.5], [0, 1]]}", json))
+  const std::string text = exchanged(valid_study, "\"x0\": [0.5, 0.25],\n", "");
+  return read_text(exchanged(text, "{\"type\": \"zonotope\", \"center\": [0, 1], \"generators\": [[1, 0.5], [0, 1]]}", json))
       .model.X0;
 }
 

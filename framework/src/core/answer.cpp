@@ -12,12 +12,18 @@ std::string_view to_string(Rounding rounding) noexcept {
 }
 std::string_view to_string(Certificate::Kind kind) noexcept {
   switch (kind) {
-    case Certificate::Kind::none: return "none";
-    case Certificate::Kind::farkas: return "farkas";
-    case Certificate::Kind::point: return "point";
-    case Certificate::Kind::dual: return "dual";
-    case Certificate::Kind::direction: return "direction";
-    case Certificate::Kind::structure: return "structure";
+    case Certificate::Kind::none:
+      return "none";
+    case Certificate::Kind::farkas:
+      return "farkas";
+    case Certificate::Kind::point:
+      return "point";
+    case Certificate::Kind::dual:
+      return "dual";
+    case Certificate::Kind::direction:
+      return "direction";
+    case Certificate::Kind::structure:
+      return "structure";
   }
   return "none";
 }

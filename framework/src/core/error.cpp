@@ -39,14 +39,22 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string_view to_string(Errc code) noexcept {
   switch (code) {
-    case Errc::dimension: return "dimension";
-    case Errc::not_finite: return "not_finite";
-    case Errc::invalid: return "invalid";
-    case Errc::unsupported: return "unsupported";
-    case Errc::solver: return "solver";
-    case Errc::plugin: return "plugin";
-    case Errc::io: return "io";
-    case Errc::internal: return "internal";
+    case Errc::dimension:
+      return "dimension";
+    case Errc::not_finite:
+      return "not_finite";
+    case Errc::invalid:
+      return "invalid";
+    case Errc::unsupported:
+      return "unsupported";
+    case Errc::solver:
+      return "solver";
+    case Errc::plugin:
+      return "plugin";
+    case Errc::io:
+      return "io";
+    case Errc::internal:
+      return "internal";
   }
   return "internal";
 }

@@ -34,7 +34,8 @@ Vector joined(VectorIn top, VectorIn bottom) {
 
 void require_same_dim(Index a, Index b, const char* operation) {
   if (a != b) {
-    throw Error(Errc::dimension, std::string(operation) + ": dimensions " + std::to_string(a) + " and " + std::to_string(b) + " differ");
+    throw Error(Errc::dimension,
+                std::string(operation) + ": dimensions " + std::to_string(a) + " and " + std::to_string(b) + " differ");
   }
 }
 
@@ -46,8 +47,8 @@ void require_map(MatrixIn T, Index dim, const char* operation) {
   if (!T.allFinite()) throw Error(Errc::not_finite, std::string(operation) + ": the matrix has a NaN or infinite entry");
 }
 
-/// A B with entries that cancel to rounding noise set to zero. For coefficients of lines and right-hand sides: multiplied with an unbounded
-/// variable, or alone in a row, noise would turn into a statement.
+/// A B with entries that cancel to rounding noise set to zero. For coefficients of lines and right-hand sides: multiplied with an
+/// unbounded variable, or alone in a row, noise would turn into a statement.
 Matrix denoised_product(MatrixIn A, MatrixIn B) {
   Matrix C = linalg::product(A, B);
   if (C.size() == 0) return C;
@@ -109,7 +110,8 @@ LineForm make_box(const Box& box) {
     if (std::isnan(lower) || std::isnan(upper)) throw Error(Errc::not_finite, "box: a bound is NaN");
     if (lower > upper) return make_empty(n);
     if (std::isinf(lower) != std::isinf(upper) || (std::isinf(lower) && lower == upper)) {
-      throw Error(Errc::invalid, "box: coordinate " + std::to_string(i) + " is bounded on one side only; a coordinate is bounded or free");
+      throw Error(Errc::invalid,
+                  "box: coordinate " + std::to_string(i) + " is bounded on one side only; a coordinate is bounded or free");
     }
     if (std::isinf(lower)) {
       ++free;
@@ -178,8 +180,8 @@ LineForm intersection(const LineForm& X, MatrixIn R, const LineForm& Y) {
                                                        Y.c.cwiseAbs() + linalg::product(R.cwiseAbs(), X.c.cwiseAbs())))};
 }
 
-// With λ = (1 + ξ₀)/2 the point is λ x + (1 - λ) y. The scaled factors become variables of their own, |α_i| ≤ λ and |β_i| ≤ 1 - λ;
-// the gap of each inequality lies in [0,2] and is written 1 + s with a slack s ∈ [-1,1].
+// With λ = (1 + ξ₀)/2 the point is λ x + (1 - λ) y. The scaled factors become variables of their own, |α_i| ≤ λ and |β_i| ≤ 1 -
+// λ; the gap of each inequality lies in [0,2] and is written 1 + s with a slack s ∈ [-1,1].
 LineForm convex_hull(const LineForm& X, const LineForm& Y) {
   require_same_dim(X.dim(), Y.dim(), "convex hull");
   if (has_false_row(X)) return Y;
@@ -187,7 +189,7 @@ LineForm convex_hull(const LineForm& X, const LineForm& Y) {
   const Index n = X.dim(), p = X.generators(), q = Y.generators(), lx = X.lines(), ly = Y.lines();
   const Index slacks = 2 * (p + q), generators = p + q + 1 + slacks;
   const Index mx = X.constraints(), my = Y.constraints(), rows = mx + my + slacks;
-  LineForm Z{Matrix::Zero(n, lx + ly),    Matrix::Zero(n, generators), (X.c + Y.c) / 2,
+  LineForm Z{Matrix::Zero(n, lx + ly),    Matrix::Zero(n, generators),    (X.c + Y.c) / 2,
              Matrix::Zero(rows, lx + ly), Matrix::Zero(rows, generators), Vector::Zero(rows)};
   const Index selector = p + q;
   Z.M << X.M, Y.M;

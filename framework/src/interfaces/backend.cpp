@@ -24,7 +24,8 @@ void require_map(MatrixIn T, Index rows, Index cols, const char* what) {
 }
 
 void require_vector(VectorIn t, Index size, const char* what) {
-  require(t.size() == size, std::string(what) + ": the vector has size " + std::to_string(t.size()) + ", must be " + std::to_string(size));
+  require(t.size() == size,
+          std::string(what) + ": the vector has size " + std::to_string(t.size()) + ", must be " + std::to_string(size));
   if (!t.allFinite()) throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
 }
 
@@ -35,7 +36,8 @@ const Set& require_set(const Enclosure& X, const char* what) {
 
 }  // namespace
 
-/// Control blocks are made here, so that no code of a plugin runs after its library has gone: the deleter destroys the set, then lets go of the backend.
+/// Control blocks are made here, so that no code of a plugin runs after its library has gone: the deleter destroys the set, then
+/// lets go of the backend.
 Enclosure SetBackend::adopt(Made made, Tightness inputs) const {
   if (!made.set) throw Error(Errc::plugin, "backend " + info_.name + " returned no set");
   const Set* raw = made.set.release();

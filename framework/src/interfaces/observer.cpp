@@ -15,9 +15,9 @@ long long now_ns() {
 
 void check(const Sample& sample, const LinearModel& model) {
   if (sample.u.size() != model.inputs() || sample.y.size() != model.outputs()) {
-    throw Error(Errc::dimension, "sample " + std::to_string(sample.k) + " has " + std::to_string(sample.u.size()) + " inputs and " +
-                                     std::to_string(sample.y.size()) + " outputs, the model has " + std::to_string(model.inputs()) +
-                                     " and " + std::to_string(model.outputs()));
+    throw Error(Errc::dimension, "sample " + std::to_string(sample.k) + " has " + std::to_string(sample.u.size()) +
+                                     " inputs and " + std::to_string(sample.y.size()) + " outputs, the model has " +
+                                     std::to_string(model.inputs()) + " and " + std::to_string(model.outputs()));
   }
   if (!sample.u.allFinite() || !sample.y.allFinite()) {
     throw Error(Errc::not_finite, "sample " + std::to_string(sample.k) + " has a NaN or infinite value");
@@ -32,7 +32,8 @@ Observer::Stopwatch::~Stopwatch() { total_ += static_cast<double>(now_ns() - beg
 void Observer::start(std::optional<Enclosure> X0) {
   if (X0) {
     *X0 = backend_->import(*X0);
-    if ((*X0)->dim() != model_.linear.states()) throw Error(Errc::dimension, "the initial set has another dimension than the state");
+    if ((*X0)->dim() != model_.linear.states())
+      throw Error(Errc::dimension, "the initial set has another dimension than the state");
   }
   X0_ = std::move(X0);
   before_.reset();

@@ -16,8 +16,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void require(VectorIn x, Index dim, const char* what) {
   if (x.size() != dim) {
-    throw Error(Errc::dimension, std::string(what) + ": a vector of size " + std::to_string(x.size()) + " for a set of dimension " +
-                                     std::to_string(dim));
+    throw Error(Errc::dimension, std::string(what) + ": a vector of size " + std::to_string(x.size()) +
+                                     " for a set of dimension " + std::to_string(dim));
   }
   if (!x.allFinite()) throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
 }

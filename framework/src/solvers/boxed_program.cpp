@@ -47,7 +47,7 @@ double upper_bound(VectorIn g, const Matrix& A, const Vector& b, const Vector& y
 struct BoxedProgram::State {
   Matrix A;
   Vector b;
-  Vector scale;                  ///< row scales of the solver's programs
+  Vector scale;  ///< row scales of the solver's programs
   std::optional<LinearProgram> objective_program, scaling_program;
 
   Matrix proposal_matrix() const {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The only file that sees GLPK. Facts it lives with: the environment is per thread; NaN or a bad index aborts the process,
-// so everything is validated before; an internal error calls a hook that must not return, so it jumps out, and the thread's environment is
-// thrown away with every problem in it.
-#include <glpk.h>
-
+// so everything is validated before; an internal error calls a hook that must not return, so it jumps out, and the thread's
+// environment is thrown away with every problem in it.
 #include <cmath>
 #include <csetjmp>
 #include <limits>
 #include <vector>
+
+#include <glpk.h>
 
 #include "cordon/core/error.hpp"
 #include "cordon/solvers/lp.hpp"

@@ -62,7 +62,8 @@ double subsets(Index n, Index k) {
   return count;
 }
 
-/// Unit normals of all facets of the zonotope with generators L (full rank): cross products of (n-1)-subsets. Nothing when there are too many.
+/// Unit normals of all facets of the zonotope with generators L (full rank): cross products of (n-1)-subsets. Nothing when there
+/// are too many.
 std::optional<std::vector<Vector>> facet_normals(const Matrix& L) {
   const Index n = L.rows(), g = L.cols();
   if (g < n - 1 || subsets(g, n - 1) > static_cast<double>(max_facets)) return std::nullopt;
@@ -88,8 +89,8 @@ bool refuted(const LineForm& X, const LineForm& Y, VectorIn d, Certificate* why)
   return true;
 }
 
-/// All of X's points satisfy the facets of the lifted zonotope {(Gξ, Aξ - b)} of Y at its section by 0, with a margin that covers the
-/// rounding errors of the normals.
+/// All of X's points satisfy the facets of the lifted zonotope {(Gξ, Aξ - b)} of Y at its section by 0, with a margin that covers
+/// the rounding errors of the normals.
 Answer within_facets(const LineForm& X, const LineForm& Y) {
   const Index n = Y.dim(), m = Y.constraints();
   Matrix lifted(n + m, Y.generators());
@@ -103,7 +104,8 @@ Answer within_facets(const LineForm& X, const LineForm& Y) {
   for (const Vector& normal : *normals) {
     for (const double sign : {1.0, -1.0}) {
       const Vector d = sign * normal;
-      const double reach = rounding::down(rounding::dot(d, center).lower + rounding::norm_1(linalg::product(lifted.transpose(), d)).lower);
+      const double reach =
+          rounding::down(rounding::dot(d, center).lower + rounding::norm_1(linalg::product(lifted.transpose(), d)).lower);
       const double needed = support(X, d.head(n));
       const double scale = center.cwiseAbs().maxCoeff() + lifted.cwiseAbs().rowwise().sum().maxCoeff() + std::abs(needed);
       if (!(needed <= reach - 1e-12 * scale)) return Answer::unknown;
@@ -146,7 +148,8 @@ Answer within_box(const LineForm& X, const LineForm& Y) {
     const rounding::Range radius = rounding::norm_1(Y.G.row(i).transpose());
     const bool one = (Y.G.row(i).array() != 0).count() <= 1;
     const double reach = one ? (Y.generators() ? Y.G.row(i).cwiseAbs().maxCoeff() : 0.0) : radius.lower;
-    if (!(outer.upper[i] <= rounding::down(Y.c[i] + reach)) || !(outer.lower[i] >= rounding::up(Y.c[i] - reach))) return Answer::unknown;
+    if (!(outer.upper[i] <= rounding::down(Y.c[i] + reach)) || !(outer.lower[i] >= rounding::up(Y.c[i] - reach)))
+      return Answer::unknown;
   }
   return Answer::yes;
 }
@@ -164,7 +167,7 @@ Answer is_empty(const LineForm& X, Certificate* why) {
 Answer contains(const LineForm& X, VectorIn x, Certificate* why) {
   if (x.size() != X.dim()) throw Error(Errc::dimension, "contains: the point has another dimension than the set");
   const Index n = X.dim(), m = X.constraints();
-  LineForm point{Matrix(0, X.lines()),          Matrix(0, X.generators()),      Vector(0),
+  LineForm point{Matrix(0, X.lines()),     Matrix(0, X.generators()),     Vector(0),
                  Matrix(m + n, X.lines()), Matrix(m + n, X.generators()), Vector(m + n)};
   point.S << X.S, X.M;
   point.A << X.A, X.G;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/solvers/set_questions.hpp"
 #include "cordon/study/study.hpp"
 #include "study/read_parts.hpp"
 
@@ -23,6 +24,7 @@ class StudyReader {
   void read_version(const Cursor& root);
   void read_title(const Cursor& root);
   void load_plugins(const Cursor& root);
+  void check_start(const Cursor& root);
   void add_plugin_warnings();
   std::filesystem::path folder() const;
   void finish();
@@ -94,6 +96,26 @@ void StudyReader::read_sections(const Cursor& root) {
   study_.model = std::move(system.model);
 }
 
+/// A simulation that starts outside the set an observer starts from would break its guarantee by construction.
+void StudyReader::check_start(const Cursor& root) {
+  const auto* spec = std::get_if<SimulateSpec>(&study_.data);
+  if (problems_.any() || !spec || !spec->x0) return;
+  const Vector& x0 = *spec->x0;
+  const auto outside = [&](const LineForm& set) { return set.dim() == x0.size() && contains(set, x0) == Answer::no; };
+  const Cursor at = *root.find("data")->find("simulate")->find("x0");
+  bool own = false;  // does a pipeline start from the system's X0?
+  for (std::size_t i = 0; i < study_.pipelines.size(); ++i) {
+    const Params& params = study_.pipelines[i].observer.params;
+    if (!params.has("initial_set")) {
+      own = true;
+    } else if (outside(params.set_form("initial_set"))) {
+      at.error("lies outside the initial_set of pipeline " + in_quotes(study_.pipelines[i].name),
+               "choose x0 inside, or widen the set");
+    }
+  }
+  if (own && outside(study_.model.X0)) at.error("lies outside X0", "choose x0 inside /system/X0, or widen that set");
+}
+
 void StudyReader::add_plugin_warnings() {
   for (const PluginReport& report : registry_.reports()) {
     if (report.state != PluginReport::State::refused) continue;
@@ -116,7 +138,9 @@ Study StudyReader::read() {
   study_.file = file_;
   const std::string text = read_file(file_.string());
   const Value tree = parse(text, problems_);
-  read_sections(Cursor(tree, "", problems_));
+  const Cursor root(tree, "", problems_);
+  read_sections(root);
+  check_start(root);
   finish();
   add_plugin_warnings();
   study_.resolved = resolve(study_, paths_, registry_);

@@ -14,12 +14,12 @@ struct Box {
   bool is_empty() const { return (lower.array() > upper.array()).any(); }
   bool is_bounded() const { return lower.array().isFinite().all() && upper.array().isFinite().all(); }
   bool contains(VectorIn x) const { return (lower.array() <= x.array()).all() && (x.array() <= upper.array()).all(); }
-  Vector center() const;   ///< midpoint; 0 in a free coordinate
-  Vector radius() const;   ///< half widths; +inf in a free coordinate
+  Vector center() const;             ///< midpoint; 0 in a free coordinate
+  Vector radius() const;             ///< half widths; +inf in a free coordinate
   double longest_half_edge() const;  ///< half the longest edge; +inf if unbounded, 0 if empty or n = 0
 
-  static Box space(Index n);   ///< Rⁿ
-  static Box empty(Index n);   ///< [1,-1]ⁿ, n ≥ 1
+  static Box space(Index n);  ///< Rⁿ
+  static Box empty(Index n);  ///< [1,-1]ⁿ, n ≥ 1
 };
 
 }  // namespace cordon

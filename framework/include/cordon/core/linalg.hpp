@@ -11,9 +11,9 @@
 namespace cordon::linalg {
 
 struct Svd {
-  Matrix U;       ///< m×m orthogonal
-  Vector sigma;   ///< min(m,n) singular values, decreasing
-  Matrix V;       ///< n×n orthogonal; A = U diag(σ) Vᵀ
+  Matrix U;      ///< m×m orthogonal
+  Vector sigma;  ///< min(m,n) singular values, decreasing
+  Matrix V;      ///< n×n orthogonal; A = U diag(σ) Vᵀ
 };
 
 /// Full singular value decomposition. Empty matrices give identities.

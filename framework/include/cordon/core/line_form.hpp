@@ -31,14 +31,14 @@ struct LineForm {
 /// `what` names the set in the message.
 void check(const LineForm& X, const std::string& what);
 
-LineForm make_point(VectorIn x);                                  ///< {x}
-LineForm make_space(Index n);                                     ///< Rⁿ
-LineForm make_empty(Index n);                                     ///< ∅ ⊂ Rⁿ
-LineForm make_zonotope(VectorIn c, MatrixIn G);                   ///< {c + Gξ : ‖ξ‖∞ ≤ 1}
+LineForm make_point(VectorIn x);                 ///< {x}
+LineForm make_space(Index n);                    ///< Rⁿ
+LineForm make_empty(Index n);                    ///< ∅ ⊂ Rⁿ
+LineForm make_zonotope(VectorIn c, MatrixIn G);  ///< {c + Gξ : ‖ξ‖∞ ≤ 1}
 /// Interval vector; a coordinate is bounded or free. Half-bounded or NaN bounds throw; an empty box gives ∅.
 /// Centre and radius are rounded so that the box is enclosed.
 LineForm make_box(const Box& box);
-LineForm make_strip(VectorIn rho, double d, double sigma);        ///< {x : |ρᵀx - d| ≤ σ}
+LineForm make_strip(VectorIn rho, double d, double sigma);  ///< {x : |ρᵀx - d| ≤ σ}
 
 /// T X + t; exact. T is m×n, t has size m. [Rego2025, (6)]
 LineForm affine_map(const LineForm& X, MatrixIn T, VectorIn t);

@@ -26,9 +26,9 @@ struct Range {
 /// γₙ = n u / (1 - n u), itself rounded up.
 inline double gamma(Index n) { return up(static_cast<double>(n) * unit / (1 - static_cast<double>(n) * unit)) * (1 + 4 * unit); }
 
-Range sum(VectorIn x);                    ///< Σ x_i
-Range dot(VectorIn x, VectorIn y);        ///< xᵀy
-Range norm_1(VectorIn x);                 ///< ‖x‖₁
+Range sum(VectorIn x);              ///< Σ x_i
+Range dot(VectorIn x, VectorIn y);  ///< xᵀy
+Range norm_1(VectorIn x);           ///< ‖x‖₁
 inline Range add(Range a, Range b) { return {down(a.lower + b.lower), up(a.upper + b.upper)}; }
 inline Range subtract(Range a, Range b) { return {down(a.lower - b.upper), up(a.upper - b.lower)}; }
 

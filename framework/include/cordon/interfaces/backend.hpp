@@ -14,10 +14,10 @@ namespace cordon {
 
 /// What a backend can do. Observers choose their recursion by this, never by name.
 struct BackendInfo {
-  std::string name;             ///< component name, e.g. "zonotope"
-  bool unbounded = false;       ///< represents Rⁿ and other sets with lines exactly
-  bool intersections = false;   ///< X ∩_R Y of representable sets is exact
-  bool exact_exchange = true;   ///< line_form() equals the set
+  std::string name;            ///< component name, e.g. "zonotope"
+  bool unbounded = false;      ///< represents Rⁿ and other sets with lines exactly
+  bool intersections = false;  ///< X ∩_R Y of representable sets is exact
+  bool exact_exchange = true;  ///< line_form() equals the set
   Rounding rounding = Rounding::nominal;
   std::string summary, citation;
 };
@@ -68,15 +68,16 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
 
   Enclosure predict(const Enclosure& X, const Predict& p) const;
   Enclosure correct(const Enclosure& X, const Correct& c) const;
-  /// Encloses X within the budget. X itself if it fits already. Separate from the rest, so that it is timed and chosen separately.
+  /// Encloses X within the budget. X itself if it fits already. Separate from the rest, so that it is timed and chosen
+  /// separately.
   Enclosure reduce(const Enclosure& X, Budget budget) const;
 
-  Enclosure affine_map(const Enclosure& X, MatrixIn T, VectorIn t) const;         ///< T X + t
-  Enclosure interval_map(const Enclosure& X, const IntervalMatrix& A) const;     ///< {A x : A ∈ [A], x ∈ X}, outer
-  Enclosure sum(const Enclosure& X, const Enclosure& Y) const;                    ///< X ⊕ Y
-  Enclosure product(const Enclosure& X, const Enclosure& Y) const;                ///< X × Y
+  Enclosure affine_map(const Enclosure& X, MatrixIn T, VectorIn t) const;            ///< T X + t
+  Enclosure interval_map(const Enclosure& X, const IntervalMatrix& A) const;         ///< {A x : A ∈ [A], x ∈ X}, outer
+  Enclosure sum(const Enclosure& X, const Enclosure& Y) const;                       ///< X ⊕ Y
+  Enclosure product(const Enclosure& X, const Enclosure& Y) const;                   ///< X × Y
   Enclosure intersection(const Enclosure& X, MatrixIn R, const Enclosure& Y) const;  ///< {x ∈ X : R x ∈ Y}
-  Enclosure convex_hull(const Enclosure& X, const Enclosure& Y) const;            ///< closure of conv(X ∪ Y)
+  Enclosure convex_hull(const Enclosure& X, const Enclosure& Y) const;               ///< closure of conv(X ∪ Y)
 
  protected:
   explicit SetBackend(BackendInfo info) : info_(std::move(info)) {}

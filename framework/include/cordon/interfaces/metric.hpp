@@ -12,9 +12,9 @@ namespace cordon {
 /// What a metric sees of one step.
 struct StepView {
   const Estimate& estimate;
-  const Box& hull;               ///< interval hull of the estimate
-  const Vector* truth;           ///< true state, if the data have it
-  bool assumptions_hold;         ///< the truth has kept to the pipeline's own assumptions (its admissible set) so far
+  const Box& hull;        ///< interval hull of the estimate
+  const Vector* truth;    ///< true state, if the data have it
+  bool assumptions_hold;  ///< the truth has kept to the pipeline's own assumptions (its admissible set) so far
   const PhaseTimes& times;
 };
 

@@ -10,9 +10,9 @@ namespace cordon {
 
 /// A set that contains every state consistent with model, bounds and data up to time k.
 struct Estimate {
-  Index k = 0;                             ///< may lag behind the sample
+  Index k = 0;  ///< may lag behind the sample
   Enclosure set;
-  Answer consistent = Answer::unknown;     ///< `no`: the set is proven empty, so the data contradict model or bounds
+  Answer consistent = Answer::unknown;  ///< `no`: the set is proven empty, so the data contradict model or bounds
 };
 
 /// Wall-clock time of the last step by phase, in microseconds; `question` is the emptiness test.
@@ -21,8 +21,8 @@ struct PhaseTimes {
   double step() const { return predict + correct + reduce; }
 };
 
-/// A set-based observer. The base class keeps the previous sample, asks for emptiness after each step, and holds on to ∅: once the data
-/// are proven inconsistent every later estimate is ∅, until `replace`.
+/// A set-based observer. The base class keeps the previous sample, asks for emptiness after each step, and holds on to ∅: once
+/// the data are proven inconsistent every later estimate is ∅, until `replace`.
 class Observer {
  public:
   virtual ~Observer() = default;
@@ -38,7 +38,8 @@ class Observer {
 
   const PhaseTimes& times() const { return times_; }
 
-  /// A set that the observer assumes to contain the true state at all times (beyond the model's bounds), or none. Guarantees hold while it does.
+  /// A set that the observer assumes to contain the true state at all times (beyond the model's bounds), or none. Guarantees hold
+  /// while it does.
   virtual const Set* admissible_set() const { return nullptr; }
 
  protected:

@@ -38,9 +38,9 @@ struct Volume {
 
 /// A closed convex subset of Rⁿ in some representation.
 ///
-/// Public functions check dimensions and finiteness (Errc::dimension, Errc::not_finite), settle n = 0 and what follows from the answer
-/// "empty", and then call the private `do_…` function, whose preconditions are thereby met. Every `do_…` function but
-/// the first two has a default through the exchange form.
+/// Public functions check dimensions and finiteness (Errc::dimension, Errc::not_finite), settle n = 0 and what follows from the
+/// answer "empty", and then call the private `do_…` function, whose preconditions are thereby met. Every `do_…` function but the
+/// first two has a default through the exchange form.
 class Set {
  public:
   virtual ~Set() = default;

@@ -26,17 +26,18 @@ class BoxedProgram {
 
   /// Result of `maximum`.
   struct Bound {
-    double upper = 0;         ///< max gᵀξ ≤ upper, certified by `y`; -inf if P is proven empty (then y is a Farkas vector)
-    Vector y;                 ///< multipliers: upper = bᵀy + ‖g - Aᵀy‖₁, rounded up
-    std::optional<Vector> xi; ///< the solver's maximiser, not proven feasible
-    bool solved = false;      ///< the solver claims optimality (for information: nothing rests on it)
+    double upper = 0;          ///< max gᵀξ ≤ upper, certified by `y`; -inf if P is proven empty (then y is a Farkas vector)
+    Vector y;                  ///< multipliers: upper = bᵀy + ‖g - Aᵀy‖₁, rounded up
+    std::optional<Vector> xi;  ///< the solver's maximiser, not proven feasible
+    bool solved = false;       ///< the solver claims optimality (for information: nothing rests on it)
   };
   /// Certified upper bound of max{gᵀξ : ξ ∈ P}.
   Bound maximum(VectorIn g);
 
   /// Is P empty? `yes` by a Farkas vector y: bᵀy > ‖Aᵀy‖₁; `no` by a point whose residual is repaired rigorously.
-  /// "Empty" is said only if the margin exceeds 1e-10 of the terms it is made of, |y|ᵀ(|b| + |A|1 + row_magnitude): a smaller one may stem from
-  /// rounding in the operations that made A and b. `row_magnitude` is the size of quantities that cancelled in b, if known.
+  /// "Empty" is said only if the margin exceeds 1e-10 of the terms it is made of, |y|ᵀ(|b| + |A|1 + row_magnitude): a smaller one
+  /// may stem from rounding in the operations that made A and b. `row_magnitude` is the size of quantities that cancelled in b,
+  /// if known.
   Answer is_empty(Certificate* why = nullptr);
   Answer is_empty(VectorIn row_magnitude, Certificate* why = nullptr);
 

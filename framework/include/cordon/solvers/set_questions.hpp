@@ -35,8 +35,8 @@ Answer is_bounded(const LineForm& X);
 /// X ∩ Y = ∅? By emptiness of the exact intersection.
 Answer is_disjoint(const LineForm& X, const LineForm& Y, Certificate* why = nullptr);
 
-/// X ⊆ Y? `no` by a direction d with a point of X proven beyond h_Y(d). `yes` if X is proven empty, or by the facets of Y's lifted
-/// zonotope {(Gξ, Aξ)} where there are at most `max_facets` candidates. Else `unknown`.
+/// X ⊆ Y? `no` by a direction d with a point of X proven beyond h_Y(d). `yes` if X is proven empty, or by the facets of Y's
+/// lifted zonotope {(Gξ, Aξ)} where there are at most `max_facets` candidates. Else `unknown`.
 Answer is_subset(const LineForm& X, const LineForm& Y, Certificate* why = nullptr);
 
 }  // namespace cordon

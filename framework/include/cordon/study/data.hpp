@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The samples of a study, one after another: simulated or recorded. Nothing is kept, so that memory does not grow with the length of a run.
+// The samples of a study, one after another: simulated or recorded. Nothing is kept, so that memory does not grow with the length
+// of a run.
 #pragma once
 
 #include <memory>

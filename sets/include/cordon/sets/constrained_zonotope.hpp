@@ -7,8 +7,9 @@
 
 namespace cordon::sets {
 
-/// Constrained zonotope {c + Gξ : ‖ξ‖∞ ≤ 1, Aξ = b}, a convex polytope [Scott2016]. It is the line zonotope without lines: `line_form` is a
-/// view of it as one, and every operation of line_zonotope.hpp applied to forms without lines gives a form without lines.
+/// Constrained zonotope {c + Gξ : ‖ξ‖∞ ≤ 1, Aξ = b}, a convex polytope [Scott2016]. It is the line zonotope without lines:
+/// `line_form` is a view of it as one, and every operation of line_zonotope.hpp applied to forms without lines gives a form
+/// without lines.
 struct ConstrainedZonotope {
   Vector c;
   Matrix G, A;

@@ -23,9 +23,10 @@ struct Reduced {
 ///
 /// One row after another is solved for a factor ξ_j and dropped, which forgets |ξ_j| ≤ 1. The factor is the one with the smallest
 ///   r_j² / P_jj,   P = H - (AH)ᵀ(AHAᵀ)⁻¹(AH),  H = (I + GᵀG)⁻¹,
-/// the least squared change of (ξ, Gξ) that reaches as far as the rows would let ξ_j go beyond its bound: r_j = max(0, max|ρ_j| - 1) with ρ_j the interval
-/// that the rows allow. r_j = 0 loses nothing. One factorisation serves all scores and is updated by rank-one terms.
-/// Rows that have become 0 = 0 are dropped; a row 0 = b ≠ 0 stays (X is ∅). O(g (n + m)² + per eliminated row g (n + m)).
+/// the least squared change of (ξ, Gξ) that reaches as far as the rows would let ξ_j go beyond its bound: r_j = max(0, max|ρ_j| -
+/// 1) with ρ_j the interval that the rows allow. r_j = 0 loses nothing. One factorisation serves all scores and is updated by
+/// rank-one terms. Rows that have become 0 = 0 are dropped; a row 0 = b ≠ 0 stays (X is ∅). O(g (n + m)² + per eliminated row g
+/// (n + m)).
 Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options = {});
 
 }  // namespace cordon::sets

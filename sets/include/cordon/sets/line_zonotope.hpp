@@ -9,9 +9,9 @@
 
 namespace cordon::sets {
 
-/// The line zonotope {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b} is the exchange form itself. Maps, sums, products, generalised intersections and convex hulls
-/// are in core/line_form.hpp, line elimination in core/line_elimination.hpp, questions (support, hull, emptiness, …) in
-/// solvers/set_questions.hpp. Here: the two fused operations of an observer's step, and reduction.
+/// The line zonotope {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b} is the exchange form itself. Maps, sums, products, generalised
+/// intersections and convex hulls are in core/line_form.hpp, line elimination in core/line_elimination.hpp, questions (support,
+/// hull, emptiness, …) in solvers/set_questions.hpp. Here: the two fused operations of an observer's step, and reduction.
 using LineZonotope = LineForm;
 
 /// The summand T·set.
@@ -32,8 +32,9 @@ struct LineReduction {
   ConstraintElimination constraints;
 };
 
-/// Encloses X by a set of at most `max_generators` and `max_constraints`: lines are eliminated (exact), then constraints, then the generators
-/// of the lifted zonotope [G; A] are reduced. If max_generators < n + constraints, more constraints are eliminated. Needs max_generators ≥ n.
+/// Encloses X by a set of at most `max_generators` and `max_constraints`: lines are eliminated (exact), then constraints, then
+/// the generators of the lifted zonotope [G; A] are reduced. If max_generators < n + constraints, more constraints are
+/// eliminated. Needs max_generators ≥ n.
 Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraints, const LineReduction& how = {});
 
 }  // namespace cordon::sets
