@@ -53,7 +53,6 @@ struct LinearProgram::State {
   glp_prob* problem = nullptr;
   unsigned born = 0;  ///< the environment the problem lives in
   Index rows = 0, cols = 0;
-  bool fresh = true;
 
   bool alive() const { return problem != nullptr && born == environment; }
   ~State() {
@@ -115,8 +114,8 @@ LinearProgram::Solution LinearProgram::maximize(VectorIn g) {
     glp_init_smcp(&control);
     control.msg_lev = GLP_MSG_OFF;
     control.it_lim = static_cast<int>(std::min<Index>(1'000'000, 1000 + 100 * (s.rows + s.cols)));
-    // The first solve starts from the logical basis by the dual method; later ones keep the basis, which stays primal feasible.
-    control.meth = s.fresh ? GLP_DUALP : GLP_PRIMAL;
+    // With boxed variables every basis is dual feasible: the dual method needs no first phase, whatever the last direction was.
+    control.meth = GLP_DUALP;
     code = glp_simplex(s.problem, &control);
     status = glp_get_status(s.problem);
     if (code != 0 || status == GLP_UNDEF || status == GLP_INFEAS) {
@@ -125,7 +124,6 @@ LinearProgram::Solution LinearProgram::maximize(VectorIn g) {
       code = glp_simplex(s.problem, &control);
       status = glp_get_status(s.problem);
     }
-    s.fresh = code != 0 || status != GLP_OPT;
     if (code != 0 || status != GLP_OPT) return;
     for (Index j = 0; j < s.cols; ++j) x[j] = glp_get_col_prim(s.problem, static_cast<int>(j) + 1);
     for (Index i = 0; i < s.rows; ++i) y[i] = glp_get_row_dual(s.problem, static_cast<int>(i) + 1);
