@@ -32,6 +32,12 @@ double ConstrainedForm::exact_volume(const Value& X) const {
       solved = solved && bound.upper == -std::numeric_limits<double>::infinity();
       return {-std::numeric_limits<double>::infinity(), Y.c};
     }
+    // the solver's point must be one of the set, and the certified bound its value
+    const Vector g = linalg::product(Y.G.transpose(), d);
+    const double size = 1e-9 * (g.lpNorm<1>() + d.cwiseAbs().dot(Y.c.cwiseAbs()));
+    const Vector gap = linalg::product(Y.A, *bound.xi) - Y.b;
+    const bool feasible = (gap.array().abs() <= 1e-7 * (Y.b.cwiseAbs() + Y.A.cwiseAbs().rowwise().sum()).array()).all();
+    solved = solved && feasible && bound.upper - g.dot(*bound.xi) <= size;
     return {d.dot(Y.c) + bound.upper, Y.c + linalg::product(Y.G, *bound.xi)};
   };
   double volume = -1;

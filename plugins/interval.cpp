@@ -94,7 +94,7 @@ struct Intervals {
   }
   Result interval_map(const Box& X, const IntervalMatrix& A) const { return {sets::interval_map(X, A), Tightness::outer}; }
   Result intersection(const Box& X, MatrixIn R, const Box& Y) const {
-    if (R.isIdentity(0)) return {sets::intersection(X, Y), Tightness::exact};
+    if (R.rows() == R.cols() && R.isIdentity(0)) return {sets::intersection(X, Y), Tightness::exact};
     // R x ∈ Y ⇔ 0 - R x ∈ -Y
     const Matrix minus = -Matrix::Identity(Y.dim(), Y.dim());
     return {sets::contract(X, R, Vector::Zero(Y.dim()), minus, Y),

@@ -34,6 +34,8 @@ struct Zonotopes {
 
   static Result result(sets::Zonotope Z, Tightness tightness) {
     const Index n = Z.dim();
+    if (!Z.c.allFinite() || !Z.G.allFinite())
+      throw Error(Errc::not_finite, "zonotope: an operation overflows; scale the problem");
     return {{n, std::move(Z)}, tightness};
   }
   static Result empty(Index n) { return {{n, std::nullopt}, Tightness::exact}; }

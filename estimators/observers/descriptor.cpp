@@ -7,7 +7,8 @@
 //   Z̄_k = {([Ã z + B̃ u + B̃w w]; ž) : z ∈ Ẑ_{k-1}, w ∈ W, ž ∈ R^{n-n_z}} cut by the static rows with a second copy of W, then by
 //   the measurement.
 // ž is free with lines; without, it is taken from an admissible set X_A that holds x_k for all k. Exact if no generator of W
-// enters both B̃w and B̌w; else the two copies of W make the recursion an outer one, and the estimate says so.
+// enters both B̃w and B̌w; and the static rows of k = 0 are
+// included; else the two copies of W, or the larger start, make the recursion an outer one, and the estimate says so.
 //
 // Other backends [Wang2018a]: with [T N] = [E; C]⁺ it holds T E + N C = I, so
 //   x_k = (T A - L C) x_{k-1} + T B u_{k-1} + T Bw w_{k-1} + L (y_{k-1} - D u_{k-1} - Dv v_{k-1}) + N (y_k - D u_k - Dv v_k)
@@ -25,10 +26,18 @@ namespace {
 
 constexpr double rank_tolerance = 1e-10;
 
-/// Entries that are zero up to rounding of the decomposition that made them.
-Matrix denoised(const Matrix& A) {
-  if (A.size() == 0) return A;
-  return (A.array().abs() <= 1e-14 * A.cwiseAbs().maxCoeff()).select(0.0, A);
+/// An orthogonal factor without entries that are zero up to the rounding of the decomposition.
+Matrix denoised(const Matrix& Q) { return (Q.array().abs() <= 1e-15).select(0.0, Q); }
+
+/// Row scales of E x⁺ = …: each row by its entries in E, static rows by those of A. The equation stays the same, and the rank of
+/// E does not depend on units.
+Vector equation_scales(const LinearModel& m) {
+  Vector scale = linalg::row_scales(m.E);
+  const Vector of_A = linalg::row_scales(m.A);
+  for (Index i = 0; i < scale.size(); ++i) {
+    if (m.E.row(i).isZero(0)) scale[i] = of_A[i];
+  }
+  return scale;
 }
 
 /// The system in the coordinates z = Vᵀ x: dynamic rows above, static rows below.
@@ -37,17 +46,20 @@ struct Transformed {
   Matrix A, B, Bw;                       ///< dynamic rows, n_z of them, divided by the singular values
   Matrix static_A, static_B, static_Bw;  ///< static rows
   Matrix free_part;                      ///< [0; I]: where ž enters
+  Vector sigma;                          ///< singular values of the scaled E
 
   explicit Transformed(const LinearModel& m) {
     const Index n = m.states();
-    const linalg::Svd d = linalg::svd(m.is_descriptor() ? m.E : Matrix(Matrix::Identity(n, n)));
+    const Vector units = m.is_descriptor() ? equation_scales(m) : Vector(Vector::Ones(n));
+    const linalg::Svd d = linalg::svd(m.is_descriptor() ? Matrix(units.asDiagonal() * m.E) : Matrix(Matrix::Identity(n, n)));
+    sigma = d.sigma;
     const Index rank = d.sigma.size() && d.sigma[0] > 0 ? (d.sigma.array() > rank_tolerance * d.sigma[0]).count() : 0;
     Vector scale = Vector::Ones(n);
     for (Index i = 0; i < rank; ++i) scale[i] = 1 / d.sigma[i];
-    const Matrix left = scale.asDiagonal() * d.U.transpose();
+    const Matrix left = scale.asDiagonal() * denoised(d.U).transpose() * units.asDiagonal();
     T = denoised(d.V);
-    const Matrix all_A = denoised(linalg::product(left, linalg::product(m.A, T)));
-    const Matrix all_B = denoised(linalg::product(left, m.B)), all_Bw = denoised(linalg::product(left, m.Bw));
+    const Matrix all_A = linalg::denoised_product(left, linalg::denoised_product(m.A, T));
+    const Matrix all_B = linalg::denoised_product(left, m.B), all_Bw = linalg::denoised_product(left, m.Bw);
     A = all_A.topRows(rank);
     B = all_B.topRows(rank);
     Bw = all_Bw.topRows(rank);
@@ -91,7 +103,9 @@ class SingularValueObserver final : public Observer {
         V_(backend().import(model().V)),
         measured_(linalg::product(model().linear.C, transformed_.T)) {
     const Index n = model().linear.states(), free = transformed_.static_rows();
-    recursion_ = shares_disturbances(transformed_, model().W) ? Tightness::outer : Tightness::exact;
+    // Without the static rows of k = 0 every estimate is that of a larger initial set.
+    const bool whole = transformed_.static_rows() == 0 || static_at_start_;
+    recursion_ = whole && !shares_disturbances(transformed_, model().W) ? Tightness::exact : Tightness::outer;
     stacked_A_ = Matrix::Zero(n, n);
     stacked_A_.topRows(transformed_.rank()) = transformed_.A;
     stacked_Bw_ = Matrix::Zero(n, transformed_.Bw.cols());
@@ -173,8 +187,8 @@ class PseudoInverseObserver final : public Observer {
     Matrix stacked(n + m.outputs(), n);
     stacked << (m.is_descriptor() ? m.E : Matrix(Matrix::Identity(n, n))), m.C;
     const Matrix inverse = linalg::pseudo_inverse(stacked);
-    T_ = denoised(inverse.leftCols(n));
-    N_ = denoised(inverse.rightCols(m.outputs()));
+    T_ = inverse.leftCols(n);
+    N_ = inverse.rightCols(m.outputs());
     TA_ = linalg::product(T_, m.A);
     TBw_ = linalg::product(T_, m.Bw);
     minus_NDv_ = -linalg::product(N_, m.Dv);
@@ -227,6 +241,16 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   const LinearModel& m = context.model.linear;
   const BackendInfo& info = context.backend->info();
   const Transformed t(m);
+  for (Index i = 0; i < t.sigma.size(); ++i) {
+    const double share = t.sigma[0] > 0 ? t.sigma[i] / t.sigma[0] : 0;
+    if (share > 1e-13 && share < 1e-7) {
+      problems.push_back({"",
+                          "E is nearly singular (its singular values differ by a factor of " + std::to_string(1 / share) +
+                              "), so that it is not clear which of its rows are static",
+                          "set entries of E that stand for zero to zero, or choose other units of the states"});
+      break;
+    }
+  }
   if (by_singular_values(*context.backend)) {
     if (params.has("admissible_set")) {
       check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);

@@ -12,7 +12,10 @@ namespace cordon::sets {
 
 namespace {
 
-constexpr double vanished = 1e-12;    ///< a row cancelled to this share of its terms is 0 = b
+constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a coefficient is zero
+constexpr double unreliable =
+    1e-5;  ///< a row cancelled to this share of its terms is dropped: what is left is too uncertain to prove anything
+constexpr double dependent = 1e-12;   ///< a row this near to the span of others adds nothing to the scores
 constexpr double pivot_floor = 1e-9;  ///< pivots below this share of their row are not used
 
 /// The rows and outputs being reduced. Factors and rows are marked instead of moved.
@@ -23,11 +26,10 @@ class Elimination {
         c_(X.c),
         A_(X.A),
         b_(X.b),
-        row_scale_(X.constraints()),
+        A_terms_(X.A.cwiseAbs()),
+        b_terms_(X.b.cwiseAbs()),
         in_row_(X.constraints(), true),
-        free_(X.generators(), true) {
-    for (Index i = 0; i < rows(); ++i) row_scale_[i] = scale(i);
-  }
+        free_(X.generators(), true) {}
 
   Index rows() const { return A_.rows(); }
   Index factors() const { return A_.cols(); }
@@ -38,16 +40,23 @@ class Elimination {
     return count;
   }
 
-  /// Drops rows that became 0 = 0 up to rounding; dropping a row never shrinks the set.
-  void drop_vanished_rows() {
+  /// Drops rows that became 0 = 0 up to rounding, or so small by cancellation that rounding could make them false. Dropping a row
+  /// never shrinks the set; it is no longer exact if more than noise was dropped.
+  void drop_unreliable_rows() {
     for (Index i = 0; i < rows(); ++i) {
       if (!in_row_[at(i)]) continue;
-      const double largest = scale(i);
-      if (largest <= vanished * row_scale_[i] && std::abs(b_[i]) <= 1e3 * vanished * std::max(row_scale_[i], 1e-300))
-        in_row_[at(i)] = false;
-      if (row_scale_[i] == 0 && b_[i] == 0) in_row_[at(i)] = false;
+      double terms = b_terms_[i];
+      for (Index j = 0; j < factors(); ++j) {
+        if (free_[at(j)]) terms = std::max(terms, A_terms_(i, j));
+      }
+      const double left = std::max(scale(i), std::abs(b_[i]));
+      if (left > unreliable * terms) continue;
+      in_row_[at(i)] = false;
+      exact_ = exact_ && left <= noise * terms;
     }
   }
+
+  bool exact() const { return exact_; }
 
   void to_gauss_jordan() {
     std::vector<bool> done(at(rows()), false);
@@ -55,10 +64,11 @@ class Elimination {
       Index row = -1, col = -1;
       double best = 0;
       for (Index i = 0; i < rows(); ++i) {
-        if (done[at(i)] || !in_row_[at(i)] || row_scale_[i] == 0) continue;
+        const double largest = scale(i);
+        if (done[at(i)] || !in_row_[at(i)] || largest == 0) continue;
         for (Index j = 0; j < factors(); ++j) {
-          if (std::abs(A_(i, j)) > best * row_scale_[i]) {
-            best = std::abs(A_(i, j)) / row_scale_[i];
+          if (std::abs(A_(i, j)) > best * largest) {
+            best = std::abs(A_(i, j)) / largest;
             row = i;
             col = j;
           }
@@ -68,11 +78,13 @@ class Elimination {
       done[at(row)] = true;
       const double pivot = A_(row, col);
       A_.row(row) /= pivot;
+      A_terms_.row(row) /= std::abs(pivot);
       b_[row] /= pivot;
-      row_scale_[row] = scale(row);
+      b_terms_[row] /= std::abs(pivot);
       for (Index i = 0; i < rows(); ++i) {
         if (i != row && in_row_[at(i)]) subtract_row(i, row, A_(i, col), col);
       }
+      drop_unreliable_rows();
     }
   }
 
@@ -84,10 +96,10 @@ class Elimination {
     allowed_upper_ = Vector::Constant(factors(), infinity);
     for (Index i = 0; i < rows(); ++i) {
       if (!in_row_[at(i)]) continue;
-      const double norm = A_.row(i).lpNorm<1>();
+      const double norm = A_.row(i).lpNorm<1>(), floor = pivot_floor * scale(i);
       for (Index j = 0; j < factors(); ++j) {
         const double a = A_(i, j);
-        if (!free_[at(j)] || std::abs(a) <= pivot_floor * row_scale_[i]) continue;
+        if (!free_[at(j)] || std::abs(a) <= floor) continue;
         const double middle = b_[i] / a, spread = (norm - std::abs(a)) / std::abs(a);
         allowed_lower_[j] = std::max(allowed_lower_[j], middle - spread);
         allowed_upper_[j] = std::min(allowed_upper_[j], middle + spread);
@@ -114,19 +126,21 @@ class Elimination {
       if (mid == 0 && rad == 1) continue;
       c_ += mid * G_.col(j);
       b_ -= mid * A_.col(j);
+      b_terms_ = b_terms_.cwiseMax(std::abs(mid) * A_terms_.col(j));
       G_.col(j) *= rad;
       A_.col(j) *= rad;
+      A_terms_.col(j) *= rad;
     }
-    for (Index i = 0; i < rows(); ++i) row_scale_[i] = std::max(row_scale_[i] * vanished, scale(i));
+    drop_unreliable_rows();
   }
 
-  /// P = I - F Fᵀ + Q Qᵀ; F from the factorisations of I + GGᵀ and A H Aᵀ, Q from the eliminations so far.
+  /// P = I - F Fᵀ + Q Qᵀ (without the part of G where its scales are too far apart to factorise: scores only order candidates); F
+  /// from the factorisations of I + GGᵀ and A H Aᵀ, Q from the eliminations so far.
   void factorise() {
     const Index n = G_.rows(), g = factors(), m = rows();
     F_ = Matrix::Zero(g, n + m);
     const auto half = linalg::cholesky(Matrix::Identity(n, n) + linalg::product(G_, G_.transpose()));
-    if (!half) throw Error(Errc::not_finite, "constraint elimination: the generators overflow");
-    for (Index k = 0; k < n; ++k) {  // columns of Gᵀ L⁻ᵀ by forward substitution
+    for (Index k = 0; half && k < n; ++k) {  // columns of Gᵀ L⁻ᵀ by forward substitution
       F_.col(k) = G_.row(k).transpose();
       for (Index l = 0; l < k; ++l) F_.col(k) -= (*half)(k, l) * F_.col(l);
       F_.col(k) /= (*half)(k, k);
@@ -145,7 +159,7 @@ class Elimination {
         h -= overlap * F_.col(n + k);
       }
       const double squared = a.dot(h);
-      if (!(squared > vanished * before) || !(squared > 0)) continue;
+      if (!(squared > dependent * before) || !(squared > 0)) continue;
       const double norm = std::sqrt(squared);
       basis.row(count) = a.transpose() / norm;
       F_.col(n + count) = h / norm;
@@ -232,8 +246,16 @@ class Elimination {
 
   void subtract_row(Index i, Index row, double factor, Index col) {
     if (factor != 0) {
-      A_.row(i) -= factor * A_.row(row);
+      const double size = std::abs(factor);
+      for (Index j = 0; j < factors(); ++j) {
+        if (A_terms_(row, j) == 0) continue;
+        A_(i, j) -= factor * A_(row, j);
+        A_terms_(i, j) = std::max(A_terms_(i, j), size * A_terms_(row, j));
+        if (std::abs(A_(i, j)) <= noise * A_terms_(i, j)) A_(i, j) = 0;
+      }
       b_[i] -= factor * b_[row];
+      b_terms_[i] = std::max(b_terms_[i], size * b_terms_[row]);
+      if (std::abs(b_[i]) <= noise * b_terms_[i]) b_[i] = 0;
     }
     A_(i, col) = 0;
   }
@@ -245,12 +267,15 @@ class Elimination {
       low += a > 0 ? a * lower_[j] : a * upper_[j];
       high += a > 0 ? a * upper_[j] : a * lower_[j];
     }
+    const double floor = pivot_floor * scale(i), rounding = noise * (std::abs(low) + std::abs(high) + std::abs(b_[i]));
     for (Index j = 0; j < factors(); ++j) {
       const double a = A_(i, j);
-      if (!free_[at(j)] || std::abs(a) <= pivot_floor * row_scale_[i]) continue;
+      if (!free_[at(j)] || std::abs(a) <= floor) continue;
       const double own_low = a > 0 ? a * lower_[j] : a * upper_[j], own_high = a > 0 ? a * upper_[j] : a * lower_[j];
       double from = (b_[i] - (high - own_high)) / a, to = (b_[i] - (low - own_low)) / a;
       if (from > to) std::swap(from, to);
+      from -= rounding / std::abs(a);
+      to += rounding / std::abs(a);
       const double new_lower = std::max(lower_[j], from), new_upper = std::min(upper_[j], to);
       if (!(new_lower <= new_upper)) continue;  // ∅ up to rounding: left to the question of emptiness
       low += a > 0 ? a * (new_lower - lower_[j]) : a * (new_upper - upper_[j]);
@@ -276,7 +301,9 @@ class Elimination {
   Vector c_;
   Matrix A_;
   Vector b_;
-  Vector row_scale_;  ///< size of the terms of each row
+  Matrix A_terms_;  ///< size of the terms each coefficient was computed from
+  Vector b_terms_;
+  bool exact_ = true;
   std::vector<bool> in_row_, free_;
   Vector lower_, upper_, allowed_lower_, allowed_upper_;
   Matrix F_, Q_;
@@ -290,8 +317,8 @@ Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const Co
   if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0))
     throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
   Elimination work(X);
-  work.drop_vanished_rows();
-  if (work.live_rows() <= max_constraints) return {work.result(X.M), true};
+  work.drop_unreliable_rows();
+  if (work.live_rows() <= max_constraints) return {work.result(X.M), work.exact()};
   if (options.gauss_jordan) work.to_gauss_jordan();
   if (options.rescale) {
     work.tighten();
@@ -306,10 +333,10 @@ Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const Co
     if (!work.choose(row, col, loss)) break;
     exact = exact && loss == 0;
     work.eliminate(row, col);
-    work.drop_vanished_rows();
+    work.drop_unreliable_rows();
     work.bound_factors();
   }
-  return {work.result(X.M), exact};
+  return {work.result(X.M), exact && work.exact()};
 }
 
 }  // namespace cordon::sets

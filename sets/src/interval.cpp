@@ -39,6 +39,10 @@ Range image_row(const Box& V, MatrixIn T, Index i) {
 
 using Row = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
 
+/// Rounding errors of the nominal operations that made a measurement or a box, relative to their terms: less is no proof of
+/// emptiness.
+constexpr double nominal_error = 1e-10;
+
 enum class Progress { none, some, empty };
 
 /// Contracts a box by one condition Σ_j row_j x_j ∈ y with y bounded. The sums of the other terms come from running sums
@@ -57,15 +61,21 @@ class RowContractor {
     }
     if (frees > 1) return Progress::none;
     after(n) = {0, 0};
-    for (Index j = n - 1; j >= 0; --j) after(j) = directed::plus(after(j + 1), term(X, row, j));
-    if (frees == 0 && (after(0).lower > y.upper || after(0).upper < y.lower)) return Progress::empty;
+    double terms = largest(y);
+    for (Index j = n - 1; j >= 0; --j) {
+      const Range own = term(X, row, j);
+      after(j) = directed::plus(after(j + 1), own);
+      terms += largest(own);
+    }
+    const double doubt = nominal_error * terms;
+    if (frees == 0 && (after(0).lower - y.upper > doubt || y.lower - after(0).upper > doubt)) return Progress::empty;
     Progress progress = Progress::none;
     Range before{0, 0};
     for (Index j = 0; j < n; ++j) {
       const Range own = term(X, row, j);
       if (row[j] != 0 && (frees == 0 || j == free)) {
         const Range others = directed::plus(before, after(j + 1));
-        const Progress step = tighten(X, j, directed::over(directed::minus(y, others), row[j]));
+        const Progress step = tighten(X, j, directed::over(directed::minus(y, others), row[j]), doubt / std::abs(row[j]));
         if (step == Progress::empty) return step;
         if (step == Progress::some) progress = step;
       }
@@ -83,10 +93,13 @@ class RowContractor {
     return directed::times(row[j], coordinate(X, j));
   }
 
-  static Progress tighten(Box& X, Index j, Range x) {
+  static double largest(Range x) { return std::max(std::abs(x.lower), std::abs(x.upper)); }
+
+  /// X_j ∩ x. They are called disjoint only if they are apart by more than `doubt`; nearer, X_j stays as it is.
+  static Progress tighten(Box& X, Index j, Range x, double doubt) {
     if (!directed::is_finite(x)) return Progress::none;
     const double lower = std::max(X.lower[j], x.lower), upper = std::min(X.upper[j], x.upper);
-    if (lower > upper) return Progress::empty;
+    if (lower > upper) return lower - upper > doubt ? Progress::empty : Progress::none;
     const double old_width = X.upper[j] - X.lower[j], width = upper - lower;
     X.lower[j] = lower;
     X.upper[j] = upper;

@@ -22,7 +22,7 @@ constexpr Index max_normals = 20000;
 /// Generators whose part along ρ is a smaller fraction of |ρ|ᵀ|g| give no gain: it would magnify rounding errors.
 constexpr double smallest_part = 1e-6;
 /// Accumulated rounding errors of a nominal set, relative to its size: less is no proof of emptiness.
-constexpr double nominal_error = 1e-12;
+constexpr double nominal_error = 1e-10;
 
 /// λ of the smallest F-radius; 0 if the strip does not see the generators.
 Vector segment_gain(MatrixIn G, VectorIn rho, double sigma) {

@@ -71,7 +71,7 @@ TEST_CASE("3.2.2: two strips in space") {
   CHECK(reduced.lines() == 1);
   CHECK(reduced.generators() == 2);
   CHECK(reduced.constraints() == 0);
-  CHECK(std::abs(std::abs(reduced.M.col(0).dot(vector({1, 0, -1}) / std::sqrt(2.0))) - 1) < 1e-12);
+  CHECK(std::abs(std::abs(lineality_space(X).col(0).dot(vector({1, 0, -1}) / std::sqrt(2.0))) - 1) < 1e-12);
   check_hull(X, vector({-inf, -.1, -inf}), vector({inf, .1, inf}));
   CHECK(support(X, vector({1, 0, 1})) == doctest::Approx(1.1).epsilon(1e-9));
   CHECK(-support(X, vector({-1, 0, -1})) == doctest::Approx(.9).epsilon(1e-9));

@@ -86,6 +86,51 @@ TEST_CASE("known traps do not make a set empty") {
   CHECK(interval_hull(steep).upper[0] == doctest::Approx(6e12));
 }
 
+TEST_CASE("lines keep their directions, whatever their scale") {
+  const LineForm plane = affine_map(make_space(2), Matrix{{1e6, 0.0}, {0.0, 1e-6}}, Vector::Zero(2));
+  CHECK(interval_hull(plane).upper[1] == inf);
+  CHECK(contains(plane, Vector{{0.0, 5.0}}) == Answer::yes);
+  CHECK(is_subset(plane, make_box({Vector{{-inf, -1.0}}, Vector{{inf, 1.0}}})) != Answer::yes);
+  LineForm line = make_point(Vector{{0.0, 0.0}});
+  line.M = Matrix{{1e8}, {1e-8}};
+  line.S.resize(0, 1);
+  CHECK(interval_hull(line).upper[1] == inf);
+  // a line that three nearly dependent rows leave, (4, 9, -3)
+  const double e = std::ldexp(1.0, -27);
+  LineForm space = make_space(3);
+  space.S = Matrix{{3.0, 1.0, 7.0}, {3.0, 1 + e, 7 + 3 * e}, {0.0, 1.0, 3.0}};
+  space.A.resize(3, 0);
+  space.b = Vector::Zero(3);
+  CHECK(contains(space, Vector{{4.0, 9.0, -3.0}}) != Answer::no);
+  CHECK(is_bounded(space) != Answer::yes);
+  // a coefficient of 1e-11 that is meant
+  LineForm steep = make_zonotope(Vector{{0.0}}, Matrix{{0.0}});
+  steep.M = Matrix{{1.0, 0.0}};
+  steep.S = Matrix{{1.0, 1.0}, {1.0, 1 + 1e-11}};
+  steep.A = Matrix{{1.0}, {0.0}};
+  steep.b = Vector{{0.0, 5.0}};
+  CHECK(is_empty(steep) != Answer::yes);
+  // the support along a direction that leaves the lines by a little
+  CHECK(support(make_box({Vector{{-1.0, -inf}}, Vector{{1.0, inf}}}), Vector{{1.0, 1e-13}}) == inf);
+}
+
+TEST_CASE("an empty right-hand side that spans the space holds nothing") {
+  LineForm nothing = make_space(1);
+  nothing.S = Matrix{{0.0}};
+  nothing.A.resize(1, 0);
+  nothing.b = Vector{{1.0}};
+  LineForm point = make_point(Vector{{0.0}});
+  CHECK(is_subset(point, nothing) != Answer::yes);
+}
+
+TEST_CASE("operations that overflow throw") {
+  const LineForm X = make_zonotope(Vector{{1e200, -1e200}}, Matrix{{1e200}, {-1e200}});
+  CHECK_THROWS_AS(affine_map(X, Matrix{{1e200, 1e200}}, Vector::Zero(1)), Error);
+  LineForm line = make_space(1);
+  line.M(0, 0) = 1e200;
+  CHECK_THROWS_AS(intersection(line, Matrix{{1e200}}, make_point(Vector{{5.0}})), Error);
+}
+
 TEST_CASE("a singleton contains its point, and nothing is said within rounding errors") {
   const Vector x{{.1, .2, .3}};
   CHECK(contains(make_point(x), x) == Answer::yes);

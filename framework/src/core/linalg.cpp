@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/core/linalg.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -98,6 +101,23 @@ Matrix product(MatrixIn A, MatrixIn B) {
   if (A.cols() == 0) return C.setZero();
   C.noalias() = A * B;
   return C;
+}
+
+Matrix denoised_product(MatrixIn A, MatrixIn B) {
+  Matrix C = product(A, B);
+  if (C.size() == 0) return C;
+  if (!C.allFinite()) throw Error(Errc::not_finite, "a matrix product overflows; scale the problem");
+  const Matrix magnitude = product(A.cwiseAbs(), B.cwiseAbs());
+  return (C.array().abs() <= 1e-14 * magnitude.array()).select(0.0, C);
+}
+
+Vector row_scales(MatrixIn A) {
+  Vector scale = Vector::Ones(A.rows());
+  for (Index i = 0; i < A.rows(); ++i) {
+    const double largest = A.cols() ? A.row(i).cwiseAbs().maxCoeff() : 0.0;
+    if (largest > 0) scale[i] = std::ldexp(1.0, std::min(1000, std::max(-1000, -std::ilogb(largest))));
+  }
+  return scale;
 }
 
 Matrix block_diagonal(MatrixIn A, MatrixIn B) {

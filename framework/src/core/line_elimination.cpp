@@ -4,15 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include "cordon/core/linalg.hpp"
-
 namespace cordon {
 
 namespace {
 
-constexpr double line_noise = 1e-10;   ///< cancelled to this share of its terms, a coefficient of a line, or a whole row, is zero
-constexpr double other_noise = 1e-14;  ///< the same for a single coefficient of a generator or a right-hand side
-constexpr double basis_noise = 1e-14;  ///< entries of an orthonormal basis below this are zero
+constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a coefficient is zero
 
 /// Rows of [S A b] above rows of [M G c], with the magnitude of the terms that each entry was computed from.
 struct Tableau {
@@ -20,7 +16,8 @@ struct Tableau {
   Matrix T, magnitude;
   std::vector<bool> used;
 
-  explicit Tableau(const LineForm& X)
+  /// `b_magnitude`: size of what cancelled in b already; may be empty.
+  Tableau(const LineForm& X, VectorIn b_magnitude)
       : lines(X.lines()), rows(X.constraints()), width(lines + X.generators() + 1), T(rows + X.dim(), width), used(rows, false) {
     const Index g = X.generators();
     T.topLeftCorner(rows, lines) = X.S;
@@ -30,6 +27,7 @@ struct Tableau {
     T.block(rows, lines, X.dim(), g) = X.G;
     T.bottomRightCorner(X.dim(), 1) = -X.c;  // so that every row is treated alike: x = Mδ + Gξ - (-c)
     magnitude = T.cwiseAbs();
+    if (b_magnitude.size() > 0) magnitude.col(width - 1).head(rows) = magnitude.col(width - 1).head(rows).cwiseMax(b_magnitude);
   }
 
   /// The largest equilibrated entry of S among unused rows; false if none is left.
@@ -49,18 +47,19 @@ struct Tableau {
     return best > 0;
   }
 
+  /// Terms inherit the magnitude of the pivot row: what cancelled there is noise here too.
   void eliminate(Index row, Index col) {
     used[static_cast<std::size_t>(row)] = true;
-    const Eigen::RowVectorXd pivot = T.row(row) / T(row, col);
+    const double divisor = T(row, col);
+    const Eigen::RowVectorXd pivot = T.row(row) / divisor, pivot_magnitude = magnitude.row(row) / std::abs(divisor);
     for (Index i = 0; i < T.rows(); ++i) {
       const double factor = T(i, col);
       if (i == row || factor == 0) continue;
       for (Index j = 0; j < width; ++j) {
-        if (pivot[j] == 0) continue;
-        const double term = factor * pivot[j];
-        T(i, j) -= term;
-        magnitude(i, j) = std::max(magnitude(i, j), std::abs(term));
-        if (std::abs(T(i, j)) <= (j < lines ? line_noise : other_noise) * magnitude(i, j)) T(i, j) = 0;
+        if (pivot_magnitude[j] == 0) continue;
+        T(i, j) -= factor * pivot[j];
+        magnitude(i, j) = std::max(magnitude(i, j), std::abs(factor) * pivot_magnitude[j]);
+        if (std::abs(T(i, j)) <= noise * magnitude(i, j)) T(i, j) = 0;
       }
       T(i, col) = 0;
     }
@@ -70,15 +69,61 @@ struct Tableau {
 
   /// 0 = 0 up to rounding: every coefficient and the right-hand side cancelled. Dropping a row never shrinks the set.
   bool vanished(Index row) const {
-    return (T.row(row).tail(width - lines).array().abs() <= line_noise * magnitude.row(row).tail(width - lines).array()).all();
+    return (T.row(row).tail(width - lines).array().abs() <= noise * magnitude.row(row).tail(width - lines).array()).all();
   }
 };
 
+/// The columns of M that span the same space, none of them superfluous: column elimination with the same rule for noise. Lines
+/// are unbounded, so a column may be scaled, and small entries of a column are directions like any other.
+Matrix independent_columns(Matrix M) {
+  const Index n = M.rows();
+  Matrix magnitude = M.cwiseAbs();
+  std::vector<bool> row_used(static_cast<std::size_t>(n), false);
+  Index kept = 0;
+  while (kept < M.cols()) {
+    Index row = -1, col = -1;
+    double best = 0;
+    for (Index i = 0; i < n; ++i) {
+      if (row_used[static_cast<std::size_t>(i)]) continue;
+      const double scale = magnitude.row(i).tail(M.cols() - kept).maxCoeff();
+      for (Index j = kept; j < M.cols(); ++j) {
+        if (M(i, j) != 0 && std::abs(M(i, j)) / scale > best) {
+          best = std::abs(M(i, j)) / scale;
+          row = i;
+          col = j;
+        }
+      }
+    }
+    if (row < 0) break;
+    row_used[static_cast<std::size_t>(row)] = true;
+    M.col(kept).swap(M.col(col));
+    magnitude.col(kept).swap(magnitude.col(col));
+    for (Index j = kept + 1; j < M.cols(); ++j) {
+      const double factor = M(row, j) / M(row, kept);
+      if (factor == 0) continue;
+      for (Index i = 0; i < n; ++i) {
+        M(i, j) -= factor * M(i, kept);
+        magnitude(i, j) = std::max(magnitude(i, j), std::abs(factor) * magnitude(i, kept));
+        if (std::abs(M(i, j)) <= noise * magnitude(i, j)) M(i, j) = 0;
+      }
+      M(row, j) = 0;
+    }
+    M.col(kept) *= std::ldexp(1.0, -std::ilogb(M.col(kept).cwiseAbs().maxCoeff()));
+    ++kept;
+  }
+  return M.leftCols(kept);
+}
+
 }  // namespace
 
-LineForm eliminate_lines(const LineForm& X) {
-  if (X.lines() == 0) return {Matrix(X.dim(), 0), X.G, X.c, Matrix(X.constraints(), 0), X.A, X.b};
-  Tableau tableau(X);
+LineForm eliminate_lines(const LineForm& X) { return eliminate_lines_with_magnitude(X, Vector(0)).set; }
+
+LinesEliminated eliminate_lines_with_magnitude(const LineForm& X, VectorIn b_magnitude) {
+  if (X.lines() == 0) {
+    const Vector magnitude = b_magnitude.size() ? Vector(b_magnitude) : Vector::Zero(X.constraints());
+    return {{Matrix(X.dim(), 0), X.G, X.c, Matrix(X.constraints(), 0), X.A, X.b}, magnitude};
+  }
+  Tableau tableau(X, b_magnitude);
   std::vector<bool> gone(static_cast<std::size_t>(X.lines()), false);
   for (Index row = 0, col = 0; tableau.find_pivot(row, col);) {
     tableau.eliminate(row, col);
@@ -104,12 +149,11 @@ LineForm eliminate_lines(const LineForm& X) {
     Y.A.row(k) = tableau.T.row(kept_rows[static_cast<std::size_t>(k)]).segment(X.lines(), g);
     Y.b[k] = tableau.T(kept_rows[static_cast<std::size_t>(k)], tableau.width - 1);
   }
-  if (Y.M.cols() > 0) {
-    Y.M = linalg::range_basis(Y.M);
-    Y.M = (Y.M.array().abs() < basis_noise).select(0.0, Y.M);
-  }
+  Y.M = independent_columns(std::move(Y.M));
   Y.S = Matrix::Zero(m, Y.M.cols());
-  return Y;
+  Vector magnitude(m);
+  for (Index k = 0; k < m; ++k) magnitude[k] = tableau.magnitude.row(kept_rows[static_cast<std::size_t>(k)]).maxCoeff();
+  return {std::move(Y), std::move(magnitude)};
 }
 
 }  // namespace cordon

@@ -47,18 +47,21 @@ void require_map(MatrixIn T, Index dim, const char* operation) {
   if (!T.allFinite()) throw Error(Errc::not_finite, std::string(operation) + ": the matrix has a NaN or infinite entry");
 }
 
-/// A B with entries that cancel to rounding noise set to zero. For coefficients of lines and right-hand sides: multiplied with an
-/// unbounded variable, or alone in a row, noise would turn into a statement.
-Matrix denoised_product(MatrixIn A, MatrixIn B) {
-  Matrix C = linalg::product(A, B);
-  if (C.size() == 0) return C;
-  const Matrix magnitude = linalg::product(A.cwiseAbs(), B.cwiseAbs());
-  return (C.array().abs() <= product_noise * magnitude.array()).select(0.0, C);
+void require_finite(const Matrix& A) {
+  if (!A.allFinite()) throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
 }
 
-/// x - y with the same rule.
+LineForm finite(LineForm X) {
+  for (const Matrix* block : {&X.M, &X.G, &X.S, &X.A}) require_finite(*block);
+  require_finite(X.c);
+  require_finite(X.b);
+  return X;
+}
+
+/// x - y, zero where it cancels to rounding noise.
 Vector denoised_difference(VectorIn x, VectorIn y, VectorIn magnitude) {
   const Vector d = x - y;
+  require_finite(d);
   return (d.array().abs() <= product_noise * magnitude.array()).select(0.0, d);
 }
 
@@ -153,13 +156,13 @@ LineForm make_strip(VectorIn rho, double d, double sigma) {
 LineForm affine_map(const LineForm& X, MatrixIn T, VectorIn t) {
   require_map(T, X.dim(), "affine map");
   require_same_dim(T.rows(), t.size(), "affine map");
-  return {denoised_product(T, X.M), linalg::product(T, X.G), linalg::product(T, X.c) + t, X.S, X.A, X.b};
+  return finite({linalg::denoised_product(T, X.M), linalg::product(T, X.G), linalg::product(T, X.c) + t, X.S, X.A, X.b});
 }
 
 LineForm minkowski_sum(const LineForm& X, const LineForm& Y) {
   require_same_dim(X.dim(), Y.dim(), "sum");
-  return {beside(X.M, Y.M), beside(X.G, Y.G), X.c + Y.c, linalg::block_diagonal(X.S, Y.S), linalg::block_diagonal(X.A, Y.A),
-          joined(X.b, Y.b)};
+  return finite({beside(X.M, Y.M), beside(X.G, Y.G), X.c + Y.c, linalg::block_diagonal(X.S, Y.S),
+                 linalg::block_diagonal(X.A, Y.A), joined(X.b, Y.b)});
 }
 
 LineForm cartesian_product(const LineForm& X, const LineForm& Y) {
@@ -171,13 +174,11 @@ LineForm intersection(const LineForm& X, MatrixIn R, const LineForm& Y) {
   require_map(R, X.dim(), "intersection");
   require_same_dim(R.rows(), Y.dim(), "intersection");
   const Index n = X.dim();
-  return {beside(X.M, Matrix::Zero(n, Y.lines())),
-          beside(X.G, Matrix::Zero(n, Y.generators())),
-          X.c,
-          above(linalg::block_diagonal(X.S, Y.S), beside(denoised_product(R, X.M), -Y.M)),
-          above(linalg::block_diagonal(X.A, Y.A), beside(linalg::product(R, X.G), -Y.G)),
-          joined(joined(X.b, Y.b), denoised_difference(Y.c, linalg::product(R, X.c),
-                                                       Y.c.cwiseAbs() + linalg::product(R.cwiseAbs(), X.c.cwiseAbs())))};
+  return finite({beside(X.M, Matrix::Zero(n, Y.lines())), beside(X.G, Matrix::Zero(n, Y.generators())), X.c,
+                 above(linalg::block_diagonal(X.S, Y.S), beside(linalg::denoised_product(R, X.M), -Y.M)),
+                 above(linalg::block_diagonal(X.A, Y.A), beside(linalg::product(R, X.G), -Y.G)),
+                 joined(joined(X.b, Y.b), denoised_difference(Y.c, linalg::product(R, X.c),
+                                                              Y.c.cwiseAbs() + linalg::product(R.cwiseAbs(), X.c.cwiseAbs())))});
 }
 
 // With λ = (1 + ξ₀)/2 the point is λ x + (1 - λ) y. The scaled factors become variables of their own, |α_i| ≤ λ and |β_i| ≤ 1 -

@@ -43,7 +43,10 @@ void Observer::start(std::optional<Enclosure> X0) {
 
 Estimate Observer::step(const Sample& now) {
   check(now, model_.linear);
-  if (before_ && now.k <= before_->k) throw Error(Errc::invalid, "samples must come in the order of time");
+  if (before_ && now.k != before_->k + 1) {
+    throw Error(Errc::invalid, "sample " + std::to_string(now.k) + " follows sample " + std::to_string(before_->k) +
+                                   "; samples come one time after another");
+  }
   times_ = {};
   Estimate estimate{now.k, {}, Answer::unknown};
   if (inconsistent_) {
@@ -60,6 +63,7 @@ Estimate Observer::step(const Sample& now) {
 }
 
 void Observer::replace(Enclosure X) {
+  if (!before_) throw Error(Errc::invalid, "replace: no sample has been taken; give the set to start() instead");
   X = backend_->import(X);
   if (X->dim() != model_.linear.states()) throw Error(Errc::dimension, "the replacing set has another dimension than the state");
   inconsistent_ = false;

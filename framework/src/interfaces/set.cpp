@@ -70,7 +70,7 @@ double Set::support(VectorIn d, Certificate* why) const {
 Box Set::interval_hull() const { return dim_ == 0 ? Box{Vector(0), Vector(0)} : do_interval_hull(); }
 
 Volume Set::volume() const {
-  if (dim_ == 0) return {1.0, true};
+  if (dim_ == 0) return {is_empty() == Answer::yes ? 0.0 : 1.0, true};
   const Box hull = interval_hull();
   if (hull.is_empty()) return {0.0, true};
   if (hull.is_bounded()) {

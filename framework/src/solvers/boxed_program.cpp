@@ -19,16 +19,6 @@ constexpr double proposal_tolerance = 1e-13;
 /// An infeasibility smaller than this share of the terms it is made of may stem from the rounding errors of nominal operations.
 constexpr double nominal_tolerance = 1e-10;
 
-/// Powers of two (so that scaling is exact) near 1 / max |row|; 1 for zero rows.
-Vector row_scales(const Matrix& A) {
-  Vector scale = Vector::Ones(A.rows());
-  for (Index i = 0; i < A.rows(); ++i) {
-    const double largest = A.cols() ? A.row(i).cwiseAbs().maxCoeff() : 0.0;
-    if (largest > 0) scale[i] = std::ldexp(1.0, std::min(1000, std::max(-1000, -std::ilogb(largest))));
-  }
-  return scale;
-}
-
 /// |ξ| + radius ≤ 1 in every coordinate, rounding included.
 bool fits(VectorIn xi, const Vector& radius) {
   for (Index j = 0; j < xi.size(); ++j) {
@@ -46,7 +36,7 @@ double upper_bound(VectorIn g, const Matrix& A, const Vector& b, const Vector& y
 
 struct BoxedProgram::State {
   Matrix A;
-  Vector b;
+  Vector b, row_magnitude;
   Vector scale;  ///< row scales of the solver's programs
   std::optional<LinearProgram> objective_program, scaling_program;
 
@@ -86,12 +76,13 @@ struct BoxedProgram::State {
   }
 };
 
-BoxedProgram::BoxedProgram(Matrix A, Vector b) : state_(std::make_unique<State>()) {
+BoxedProgram::BoxedProgram(Matrix A, Vector b, Vector row_magnitude) : state_(std::make_unique<State>()) {
   if (A.rows() != b.size()) throw Error(Errc::dimension, "boxed program: matrix and right-hand side differ in rows");
   if (!A.allFinite() || !b.allFinite()) throw Error(Errc::not_finite, "boxed program: a NaN or infinite coefficient");
-  state_->scale = row_scales(A);
+  state_->scale = linalg::row_scales(A);
   state_->A = std::move(A);
   state_->b = std::move(b);
+  state_->row_magnitude = row_magnitude.size() ? std::move(row_magnitude) : Vector(Vector::Zero(state_->b.size()));
 }
 BoxedProgram::~BoxedProgram() = default;
 BoxedProgram::BoxedProgram(BoxedProgram&&) noexcept = default;
@@ -122,9 +113,7 @@ BoxedProgram::Bound BoxedProgram::maximum(VectorIn g) {
   return bound;
 }
 
-Answer BoxedProgram::is_empty(Certificate* why) { return is_empty(Vector::Zero(state_->b.size()), why); }
-
-Answer BoxedProgram::is_empty(VectorIn row_magnitude, Certificate* why) {
+Answer BoxedProgram::is_empty(Certificate* why) {
   State& s = *state_;
   const Index m = s.A.rows(), g = s.A.cols();
   const auto conclude = [&](Answer answer, Certificate::Kind kind, Vector data, double margin) {
@@ -134,7 +123,7 @@ Answer BoxedProgram::is_empty(VectorIn row_magnitude, Certificate* why) {
   if (why) *why = {};
   if (m == 0) return conclude(Answer::no, Certificate::Kind::structure, Vector(0), 1);
 
-  const Vector weight = s.b.cwiseAbs() + (g ? Vector(s.A.cwiseAbs().rowwise().sum()) : Vector::Zero(m)) + Vector(row_magnitude);
+  const Vector weight = s.b.cwiseAbs() + (g ? Vector(s.A.cwiseAbs().rowwise().sum()) : Vector::Zero(m)) + s.row_magnitude;
   const auto empty_by = [&](const Vector& y, double& margin) {
     margin = farkas_margin(s.A, s.b, y);
     return margin > nominal_tolerance * y.cwiseAbs().dot(weight);
@@ -198,7 +187,7 @@ std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi) {
   const Index g = A.cols();
   if (!xi.allFinite() || xi.size() != g) return std::nullopt;
   // Zero rows 0 = 0 hold by themselves; the others are scaled by powers of two, which is exact.
-  const Vector scale = row_scales(A);
+  const Vector scale = linalg::row_scales(A);
   Matrix rows(A.rows(), g);
   Vector right(A.rows());
   Index m = 0;

@@ -26,10 +26,15 @@ struct Questioned {
   LineForm X;
   BoxedProgram program;
 
-  explicit Questioned(const LineForm& form) : X(form.lines() ? eliminate_lines(form) : form), program(X.A, X.b) {}
+  explicit Questioned(const LineForm& form) : Questioned(eliminate_lines_with_magnitude(form, Vector(0))) {}
+  explicit Questioned(LinesEliminated eliminated)
+      : X(std::move(eliminated.set)), program(X.A, X.b, std::move(eliminated.row_magnitude)) {}
 
   bool unbounded_along(VectorIn d) const {
-    return X.lines() > 0 && linalg::product(X.M.transpose(), d).cwiseAbs().maxCoeff() > 1e-12 * d.cwiseAbs().maxCoeff();
+    for (Index j = 0; j < X.lines(); ++j) {
+      if (std::abs(X.M.col(j).dot(d)) > 1e-14 * X.M.col(j).cwiseAbs().dot(d.cwiseAbs())) return true;
+    }
+    return false;
   }
 
   double support(VectorIn d, Certificate* why) {
@@ -174,11 +179,8 @@ Answer contains(const LineForm& X, VectorIn x, Certificate* why) {
   point.b << X.b, x - X.c;
   Vector magnitude = Vector::Zero(m + n);
   magnitude.tail(n) = x.cwiseAbs() + X.c.cwiseAbs();
-  if (X.lines() == 0) return negate(BoxedProgram(point.A, point.b).is_empty(magnitude, why));
-  // With lines the rows are combined: the largest magnitude stands for all that are left.
-  const LineForm rest = eliminate_lines(point);
-  const double largest = magnitude.size() ? magnitude.maxCoeff() : 0.0;
-  return negate(BoxedProgram(rest.A, rest.b).is_empty(Vector::Constant(rest.constraints(), largest), why));
+  LinesEliminated rest = eliminate_lines_with_magnitude(point, magnitude);
+  return negate(BoxedProgram(std::move(rest.set.A), std::move(rest.set.b), std::move(rest.row_magnitude)).is_empty(why));
 }
 
 double support(const LineForm& X, VectorIn d, Certificate* why) {
@@ -225,7 +227,7 @@ Box interval_hull(const LineForm& X) {
   return hull;
 }
 
-Matrix lineality_space(const LineForm& X) { return X.lines() ? eliminate_lines(X).M : Matrix(X.dim(), 0); }
+Matrix lineality_space(const LineForm& X) { return X.lines() ? linalg::range_basis(eliminate_lines(X).M) : Matrix(X.dim(), 0); }
 
 Answer is_bounded(const LineForm& X) {
   if (X.lines() == 0) return Answer::yes;
@@ -257,14 +259,14 @@ Answer is_subset(const LineForm& X_in, const LineForm& Y_in, Certificate* why) {
   LineForm across_X = X, across_Y = Y;
   if (Y.lines() > 0) {
     const Matrix normal = linalg::null_space(Y.M.transpose());
-    if (normal.cols() == 0) return Answer::yes;
+    if (normal.cols() == 0) return is_empty(Y) == Answer::no ? Answer::yes : Answer::unknown;
     across_X = affine_map(X, normal.transpose(), Vector::Zero(normal.cols()));
     across_Y = affine_map(Y, normal.transpose(), Vector::Zero(normal.cols()));
     across_Y.M.resize(normal.cols(), 0);
     across_Y.S.resize(across_Y.constraints(), 0);
   }
   if (across_X.lines() > 0) {
-    if (across_X.M.cwiseAbs().maxCoeff() > 1e-12) return Answer::unknown;
+    if (!across_X.M.isZero(0)) return Answer::unknown;
     across_X.M.resize(across_X.dim(), 0);
     across_X.S.resize(across_X.constraints(), 0);
   }

@@ -27,12 +27,17 @@ LinearPlant::LinearPlant(const LinearModel& model, const std::string& file) : mo
 }
 
 void LinearPlant::split(const std::string& file) {
-  const linalg::Svd svd = linalg::svd(model_.E);
+  Vector units = linalg::row_scales(model_.E);  // the rank of E must not depend on the units of its rows
+  const Vector of_A = linalg::row_scales(model_.A);
+  for (Index i = 0; i < units.size(); ++i) {
+    if (model_.E.row(i).isZero(0)) units[i] = of_A[i];
+  }
+  const linalg::Svd svd = linalg::svd(units.asDiagonal() * model_.E);
   const Index n = model_.states();
   Index r = 0;
   while (r < svd.sigma.size() && svd.sigma[r] > rank_tolerance * svd.sigma[0]) ++r;
   V_ = svd.V;
-  const Matrix rows = svd.U.transpose();
+  const Matrix rows = svd.U.transpose() * units.asDiagonal();
   Matrix scaled = rows.topRows(r);
   for (Index i = 0; i < r; ++i) scaled.row(i) /= svd.sigma[i];
   dynamic_A_ = linalg::product(scaled, model_.A);

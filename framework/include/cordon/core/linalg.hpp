@@ -55,6 +55,13 @@ double determinant(MatrixIn A);
 /// A B through one compiled kernel (Eigen's product templates are expensive to compile in every file).
 Matrix product(MatrixIn A, MatrixIn B);
 
+/// A B with entries that cancel to 1e-14 of their terms or less set to zero: for coefficients of unbounded variables and of whole
+/// equations, where rounding noise would turn into a statement. Throws Errc::not_finite if the product overflows.
+Matrix denoised_product(MatrixIn A, MatrixIn B);
+
+/// Powers of two near 1 / max|row|, so that scaling by them is exact; 1 for zero rows.
+Vector row_scales(MatrixIn A);
+
 /// [A 0; 0 B].
 Matrix block_diagonal(MatrixIn A, MatrixIn B);
 

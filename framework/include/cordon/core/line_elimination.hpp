@@ -5,11 +5,19 @@
 
 namespace cordon {
 
-/// X with as many lines eliminated as its constraints allow: {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Aξ = b} with M an orthonormal basis of the
-/// lineality space and no S. The same set: a line is unbounded, so that solving a row for it loses nothing.
-/// Pivots are chosen over the whole of S, largest in its equilibrated row first. An entry that cancelled to less than 1e-10 of
+/// X with as many lines eliminated as its constraints allow: {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Aξ = b} with independent columns of M,
+/// which span the lineality space, and no S. The same set: a line is unbounded, so that solving a row for it loses nothing.
+/// Pivots are chosen over the whole of S, largest in its equilibrated row first. An entry that cancelled to less than 1e-13 of
 /// the terms it was computed from counts as zero; an entry that is small but was not cancelled is used. Rows that become 0 = 0
 /// are dropped, a row 0 = b ≠ 0 stays (X is ∅). O((n + m)(l + g) min(l, m)). [Rego2025, Alg. 1]
 LineForm eliminate_lines(const LineForm& X);
+
+/// The same with the size of the terms that each row was computed from: a violation of a row is known up to a share of it only.
+struct LinesEliminated {
+  LineForm set;
+  Vector row_magnitude;
+};
+/// `b_magnitude` (empty: none) is the size of what cancelled in b before.
+LinesEliminated eliminate_lines_with_magnitude(const LineForm& X, VectorIn b_magnitude);
 
 }  // namespace cordon

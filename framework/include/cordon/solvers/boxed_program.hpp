@@ -19,7 +19,8 @@ namespace cordon {
 /// one object serves the 2n directions of an interval hull. Not thread-safe: one object per thread.
 class BoxedProgram {
  public:
-  BoxedProgram(Matrix A, Vector b);
+  /// `row_magnitude` (empty: none): size of the terms that each row was computed from, see `is_empty`.
+  BoxedProgram(Matrix A, Vector b, Vector row_magnitude = {});
   ~BoxedProgram();
   BoxedProgram(BoxedProgram&&) noexcept;
   BoxedProgram& operator=(BoxedProgram&&) noexcept;
@@ -36,10 +37,8 @@ class BoxedProgram {
 
   /// Is P empty? `yes` by a Farkas vector y: bᵀy > ‖Aᵀy‖₁; `no` by a point whose residual is repaired rigorously.
   /// "Empty" is said only if the margin exceeds 1e-10 of the terms it is made of, |y|ᵀ(|b| + |A|1 + row_magnitude): a smaller one
-  /// may stem from rounding in the operations that made A and b. `row_magnitude` is the size of quantities that cancelled in b,
-  /// if known.
+  /// may stem from rounding in the operations that made A and b.
   Answer is_empty(Certificate* why = nullptr);
-  Answer is_empty(VectorIn row_magnitude, Certificate* why = nullptr);
 
   /// A point well inside P where there is one: ξ with the smallest ‖ξ‖∞ that satisfies the rows (up to rounding).
   /// Nothing when the solver found none; nothing is proven by that.
