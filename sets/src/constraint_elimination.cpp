@@ -267,7 +267,7 @@ class Elimination {
       low += a > 0 ? a * lower_[j] : a * upper_[j];
       high += a > 0 ? a * upper_[j] : a * lower_[j];
     }
-    const double floor = pivot_floor * scale(i), rounding = noise * (std::abs(low) + std::abs(high) + std::abs(b_[i]));
+    const double floor = pivot_floor * scale(i), rounding = noise * (A_terms_.row(i).sum() + b_terms_[i]);
     for (Index j = 0; j < factors(); ++j) {
       const double a = A_(i, j);
       if (!free_[at(j)] || std::abs(a) <= floor) continue;

@@ -257,3 +257,38 @@ TEST_CASE("sizes grow by Remark 3") {
     CHECK(after.constraints == before.constraints + 1);  // n - n_z, W has no constraints
   }
 }
+
+TEST_CASE("the units of the equations do not decide which of them are static") {
+  // 1e6 x₁⁺ = 1e6 x₁, 1e-6 x₂⁺ = 1e-6 x₂: two constants, and y = x₁ + x₂ + v
+  Model model;
+  LinearModel& m = model.linear;
+  m.E = m.A = Matrix{{1e6, 0}, {0, 1e-6}};
+  m.B = Matrix(2, 0);
+  m.Bw = Matrix(2, 0);
+  m.C = Matrix{{1, 1}};
+  m.D = Matrix(1, 0);
+  m.Dv = Matrix{{1.0}};
+  model.X0 = make_box(cube(2, 1));
+  model.W = make_point(Vector(0));
+  model.V = make_box(cube(1, .1));
+  const Plugins plugins;
+  Params params = budget(30, 5);
+  params.set("admissible_set", make_box(cube(2, 2)));
+  const auto observer = plugins.observer("descriptor", model, plugins.backend("constrained_zonotope"), params);
+  observer->start();
+  for (Index k = 0; k < 4; ++k) {
+    const Estimate estimate = observer->step({k, Vector(0), Vector{{.9}}});
+    CHECK(estimate.set->contains(Vector{{.4, .5}}) == Answer::yes);
+  }
+}
+
+TEST_CASE("an E that is singular up to a hair is refused with its singular values") {
+  const Plugins plugins;
+  Model model = descriptor_example();
+  model.linear.E = Matrix{{1, 1, 0}, {1, 1 + 1e-9, 0}, {0, 0, 0}};
+  Params params = budget(30, 5);
+  REQUIRE(plugins.registry.observer_info("descriptor")->schema.complete(params).empty());
+  const auto problems = plugins.registry.check_observer("descriptor", {model, plugins.backend("line_zonotope")}, params);
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].message.find("nearly singular") != std::string::npos);
+}

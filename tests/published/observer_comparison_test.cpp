@@ -93,3 +93,15 @@ TEST_CASE("zonotopes and strips of least volume among the parallel ones") {
   check_last(two_states(), "observer_2dim", "zonotope", choices("girard", "bravo"), 40, 0,
              {Vector{{-0.1148743303581211, -0.3792153944480451}}, Vector{{0.141125669641879, 0.212784605551955}}});
 }
+
+TEST_CASE("a gap in time, a repeated sample and a replacement before the start are refused") {
+  const Plugins plugins;
+  const auto observer = plugins.observer("prediction_correction", two_states(), plugins.backend("zonotope"));
+  observer->start();
+  CHECK_THROWS_AS(observer->replace(plugins.backend("zonotope")->box(cube(2, 1))), Error);
+  const auto all = samples("observer_2dim", 2);
+  observer->step(all[0]);
+  CHECK_THROWS_AS(observer->step(all[0]), Error);
+  CHECK_THROWS_AS(observer->step(all[2]), Error);
+  CHECK(observer->step(all[1]).consistent != Answer::no);
+}
