@@ -15,8 +15,9 @@ namespace {
 constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a coefficient is zero
 constexpr double unreliable =
     1e-5;  ///< a row cancelled to this share of its terms is dropped: what is left is too uncertain to prove anything
-constexpr double dependent = 1e-12;   ///< a row this near to the span of others adds nothing to the scores
-constexpr double pivot_floor = 1e-9;  ///< pivots below this share of their row are not used
+constexpr double dependent = 1e-12;     ///< a row this near to the span of others adds nothing to the scores
+constexpr double factor_weight = 1e-6;  ///< of the change of the factors beside that of the state: decides ties
+constexpr double pivot_floor = 1e-9;    ///< pivots below this share of their row are not used
 
 /// The rows and outputs being reduced. Factors and rows are marked instead of moved.
 class Elimination {
@@ -137,6 +138,11 @@ class Elimination {
   /// P = I - F Fᵀ + Q Qᵀ (without the part of G where its scales are too far apart to factorise: scores only order candidates); F
   /// from the factorisations of I + GGᵀ and A H Aᵀ, Q from the eliminations so far.
   void factorise() {
+    state_ = G_;
+    for (Index i = 0; i < G_.rows(); ++i) {  // in units of the set's own width
+      const double width = G_.row(i).lpNorm<1>();
+      if (width > 0) state_.row(i) /= width;
+    }
     const Index n = G_.rows(), g = factors(), m = rows();
     F_ = Matrix::Zero(g, n + m);
     const auto half = linalg::cholesky(Matrix::Identity(n, n) + linalg::product(G_, G_.transpose()));
@@ -177,6 +183,7 @@ class Elimination {
     double best = std::numeric_limits<double>::infinity(), best_pivot = 0;
     bool found = false;
     const Vector row_norm = A_.cwiseAbs().rowwise().sum();
+    const Matrix moved = state_shift();
     for (Index j = 0; j < factors(); ++j) {
       if (!free_[at(j)]) continue;
       Index pivot_row = -1;
@@ -191,7 +198,8 @@ class Elimination {
       }
       if (pivot_row < 0) continue;
       const double reach = std::max({0.0, std::abs(allowed_lower_[j]) - 1, std::abs(allowed_upper_[j]) - 1});
-      const double score = reach == 0 ? 0 : reach * reach / std::max(diagonal_[j], 1e-15);
+      const double diagonal = std::max(diagonal_[j], 1e-15);
+      const double score = reach == 0 ? 0 : reach * reach * (moved.col(j).squaredNorm() / diagonal + factor_weight) / diagonal;
       if (!found || score < best * (1 - 1e-9) || (score <= best * (1 + 1e-9) && pivot > best_pivot)) {
         found = true;
         best = score;
@@ -243,6 +251,14 @@ class Elimination {
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   double scale(Index i) const { return A_.cols() ? A_.row(i).cwiseAbs().maxCoeff() : 0.0; }
+
+  /// G P by its factors: column j over P_jj is the change of the state when ξ_j moves by one and the other factors as little as
+  /// the rows allow.
+  Matrix state_shift() const {
+    Matrix shift = state_ - linalg::product(linalg::product(state_, F_), F_.transpose());
+    if (Q_.cols() > 0) shift += linalg::product(linalg::product(state_, Q_), Q_.transpose());
+    return shift;
+  }
 
   void subtract_row(Index i, Index row, double factor, Index col) {
     if (factor != 0) {
@@ -307,6 +323,7 @@ class Elimination {
   std::vector<bool> in_row_, free_;
   Vector lower_, upper_, allowed_lower_, allowed_upper_;
   Matrix F_, Q_;
+  Matrix state_;  ///< the generators at the time of the factorisation, rows in units of the set's width
   Vector diagonal_;
 };
 

@@ -36,6 +36,9 @@ void run(const Study& study, const PipelineSpec& pipeline, const Registry& regis
     REQUIRE(inside != Answer::no);
     // noise at a vertex may put the truth on the boundary, where nothing is proven
     if (std::get<SimulateSpec>(study.data).noise == Noise::uniform) REQUIRE(inside == Answer::yes);
+    // a bound of every estimate: the measurement y₂ = x₁ - x₂ + 1.5 v₂ and x₁ = ± 0.35 of the exact sets
+    if (pipeline.backend.type == "line_zonotope" && k >= 1)
+      REQUIRE(estimate.set->interval_hull().longest_half_edge() <= 1.85 * (1 + 1e-6));
     if (k >= 2 && k <= 20) {
       figures.radius_sum += estimate.set->interval_hull().longest_half_edge();
       ++figures.radius_count;

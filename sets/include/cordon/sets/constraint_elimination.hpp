@@ -22,11 +22,14 @@ struct Reduced {
 /// Encloses X = {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Aξ = b} (S = 0) by a set with at most `max_constraints` rows. [Scott2016, sec. 4.2]
 ///
 /// One row after another is solved for a factor ξ_j and dropped, which forgets |ξ_j| ≤ 1. The factor is the one with the smallest
-///   r_j² / P_jj,   P = H - (AH)ᵀ(AHAᵀ)⁻¹(AH),  H = (I + GᵀG)⁻¹,
-/// the least squared change of (ξ, Gξ) that reaches as far as the rows would let ξ_j go beyond its bound: r_j = max(0, max|ρ_j| -
-/// 1) with ρ_j the interval that the rows allow. r_j = 0 loses nothing. One factorisation serves all scores and is updated by
-/// rank-one terms. Rows that have become 0 = 0 are dropped; a row 0 = b ≠ 0 stays (X is ∅). O(g (n + m)² + per eliminated row g
-/// (n + m)).
+///   r_j² (‖D G P e_j‖² / P_jj + w) / P_jj,   P = H - (AH)ᵀ(AHAᵀ)⁻¹(AH),  H = (I + GᵀG)⁻¹,  w = 1e-6,
+/// with r_j = max(0, max|ρ_j| - 1) how far the rows would let ξ_j go beyond its bound (ρ_j: the interval that they allow) and D
+/// the inverse widths of the set: d = r_j P e_j / P_jj is the least change of (ξ, Gξ) that goes so far, ‖D G d‖ what it does to
+/// the state. [Scott2016] weighs ‖d‖² + ‖G d‖² alike; on the published descriptor system that loses up to a factor of two in
+/// single steps, where the state's part loses nothing.
+/// r_j = 0 loses nothing. One factorisation serves all scores and is updated by rank-one terms.
+/// Rows that have become 0 = 0, or that cancelled to 1e-5 of their terms or less, are dropped; a row 0 = b ≠ 0 stays (X is ∅).
+/// O(g (n + m)² + per eliminated row g (n + m)).
 Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options = {});
 
 }  // namespace cordon::sets
