@@ -138,11 +138,6 @@ class Elimination {
   /// P = I - F Fᵀ + Q Qᵀ (without the part of G where its scales are too far apart to factorise: scores only order candidates); F
   /// from the factorisations of I + GGᵀ and A H Aᵀ, Q from the eliminations so far.
   void factorise() {
-    state_ = G_;
-    for (Index i = 0; i < G_.rows(); ++i) {  // in units of the set's own width
-      const double width = G_.row(i).lpNorm<1>();
-      if (width > 0) state_.row(i) /= width;
-    }
     const Index n = G_.rows(), g = factors(), m = rows();
     F_ = Matrix::Zero(g, n + m);
     const auto half = linalg::cholesky(Matrix::Identity(n, n) + linalg::product(G_, G_.transpose()));
@@ -174,6 +169,12 @@ class Elimination {
     F_.conservativeResize(g, n + count);
     diagonal_ = 1 - F_.rowwise().squaredNorm().array();
     Q_.resize(g, 0);
+    moved_ = G_;
+    for (Index i = 0; i < n; ++i) {  // in units of the set's own width
+      const double width = G_.row(i).lpNorm<1>();
+      if (width > 0) moved_.row(i) /= width;
+    }
+    moved_ -= linalg::product(linalg::product(moved_, F_), F_.transpose());
   }
 
   /// The cheapest factor, and the row in which it has the largest share of the row's 1-norm: the row that binds it most. The
@@ -183,7 +184,6 @@ class Elimination {
     double best = std::numeric_limits<double>::infinity(), best_pivot = 0;
     bool found = false;
     const Vector row_norm = A_.cwiseAbs().rowwise().sum();
-    const Matrix moved = state_shift();
     for (Index j = 0; j < factors(); ++j) {
       if (!free_[at(j)]) continue;
       Index pivot_row = -1;
@@ -199,7 +199,7 @@ class Elimination {
       if (pivot_row < 0) continue;
       const double reach = std::max({0.0, std::abs(allowed_lower_[j]) - 1, std::abs(allowed_upper_[j]) - 1});
       const double diagonal = std::max(diagonal_[j], 1e-15);
-      const double score = reach == 0 ? 0 : reach * reach * (moved.col(j).squaredNorm() / diagonal + factor_weight) / diagonal;
+      const double score = reach == 0 ? 0 : reach * reach * (moved_.col(j).squaredNorm() / diagonal + factor_weight) / diagonal;
       if (!found || score < best * (1 - 1e-9) || (score <= best * (1 + 1e-9) && pivot > best_pivot)) {
         found = true;
         best = score;
@@ -252,14 +252,6 @@ class Elimination {
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   double scale(Index i) const { return A_.cols() ? A_.row(i).cwiseAbs().maxCoeff() : 0.0; }
 
-  /// G P by its factors: column j over P_jj is the change of the state when ξ_j moves by one and the other factors as little as
-  /// the rows allow.
-  Matrix state_shift() const {
-    Matrix shift = state_ - linalg::product(linalg::product(state_, F_), F_.transpose());
-    if (Q_.cols() > 0) shift += linalg::product(linalg::product(state_, Q_), Q_.transpose());
-    return shift;
-  }
-
   void subtract_row(Index i, Index row, double factor, Index col) {
     if (factor != 0) {
       const double size = std::abs(factor);
@@ -307,7 +299,8 @@ class Elimination {
     p[col] += 1;
     const double rest = 1 - p[col];
     if (!(rest > 1e-14)) return;
-    const Vector q = p / std::sqrt(rest);
+    const Vector q = p / std::sqrt(rest), shift = moved_.col(col);
+    moved_ += linalg::product(shift, p.transpose() / rest);
     diagonal_.array() += q.array().square();
     Q_.conservativeResize(Eigen::NoChange, Q_.cols() + 1);
     Q_.col(Q_.cols() - 1) = q;
@@ -323,7 +316,7 @@ class Elimination {
   std::vector<bool> in_row_, free_;
   Vector lower_, upper_, allowed_lower_, allowed_upper_;
   Matrix F_, Q_;
-  Matrix state_;  ///< the generators at the time of the factorisation, rows in units of the set's width
+  Matrix moved_;  ///< D G P: column j over P_jj is the change of the state when ξ_j moves by one
   Vector diagonal_;
 };
 
