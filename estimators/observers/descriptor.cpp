@@ -111,6 +111,7 @@ class SingularValueObserver final : public Observer {
     stacked_Bw_ = Matrix::Zero(n, transformed_.Bw.cols());
     stacked_Bw_.topRows(transformed_.rank()) = transformed_.Bw;
     if (params.has("admissible_set")) {
+      recursion_ = Tightness::outer;  // of the set only the part that E does not determine is used
       admissible_ = backend().import(params.set_form("admissible_set"));
       const Matrix lower = transformed_.T.transpose().bottomRows(free);
       free_ = backend().affine_map(admissible_, lower, Vector::Zero(free));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
@@ -24,6 +25,15 @@ TEST_CASE("a plain linear program") {
   CHECK(bad.maximize(Vector{{1.0}}).status == LinearProgram::Status::infeasible);
   LinearProgram open(Matrix(0, 1), Vector(0), Vector{{0.0}}, Vector{{std::numeric_limits<double>::infinity()}});
   CHECK(open.maximize(Vector{{1.0}}).status == LinearProgram::Status::unbounded);
+}
+
+TEST_CASE("on another thread a program gives no answer instead of a wrong one") {
+  BoxedProgram program(Matrix{{1.0, 2.0}}, Vector{{1.0}});
+  const double here = program.maximum(Vector{{1.0, -1.0}}).upper;
+  BoxedProgram::Bound there;
+  std::thread([&] { there = program.maximum(Vector{{1.0, -1.0}}); }).join();
+  CHECK_FALSE(there.solved);
+  CHECK(there.upper >= here);
 }
 
 TEST_CASE("numbers that would abort the solver are refused before") {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <csetjmp>
 #include <limits>
+#include <thread>
 #include <vector>
 
 #include <glpk.h>
@@ -54,7 +55,10 @@ struct LinearProgram::State {
   unsigned born = 0;  ///< the environment the problem lives in
   Index rows = 0, cols = 0;
 
-  bool alive() const { return problem != nullptr && born == environment; }
+  std::thread::id home = std::this_thread::get_id();  ///< GLPK's memory belongs to a thread
+
+  /// On another thread the problem cannot be touched: solves fail there, which is no answer.
+  bool alive() const { return problem != nullptr && born == environment && home == std::this_thread::get_id(); }
   ~State() {
     if (alive()) guarded([this] { glp_delete_prob(problem); });
   }

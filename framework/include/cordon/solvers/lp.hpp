@@ -9,6 +9,7 @@
 namespace cordon {
 
 /// maximise gᵀx subject to A x = b, lower ≤ x ≤ upper. Bounds may be infinite; A may have no rows.
+/// An object belongs to the thread that made it: on another one every solve is `failed`.
 /// The constraint matrix is loaded once; objectives change cheaply and the basis is kept from solve to solve.
 class LinearProgram {
  public:
