@@ -19,7 +19,7 @@ Answer ConstrainedForm::is_empty(const Value& X, Certificate* why) const { retur
 Answer ConstrainedForm::contains(const Value& X, VectorIn x, Certificate* why) const { return cordon::contains(X, x, why); }
 Answer ConstrainedForm::is_bounded(const Value& X) const { return cordon::is_bounded(X); }
 double ConstrainedForm::support(const Value& X, VectorIn d, Certificate* why) const { return cordon::support(X, d, why); }
-Box ConstrainedForm::interval_hull(const Value& X) const { return cordon::interval_hull(X); }
+Box ConstrainedForm::interval_hull(const Value& X, std::vector<Certificate>* why) const { return cordon::interval_hull(X, why); }
 
 double ConstrainedForm::exact_volume(const Value& X) const {
   const LineForm Y = eliminate_lines(X);

@@ -25,7 +25,7 @@ struct ConstrainedForm {
   Answer contains(const Value& X, VectorIn x, Certificate* why) const;
   Answer is_bounded(const Value& X) const;
   double support(const Value& X, VectorIn d, Certificate* why) const;
-  Box interval_hull(const Value& X) const;
+  Box interval_hull(const Value& X, std::vector<Certificate>* why) const;
   double exact_volume(const Value& X) const;
 
   Result import(const LineForm& X) const;

@@ -50,7 +50,10 @@ struct Zonotopes {
   Answer contains(const Value& X, VectorIn x, Certificate* why) const { return cordon::contains(line_form(X), x, why); }
   Answer is_bounded(const Value&) const { return Answer::yes; }
   double support(const Value& X, VectorIn d, Certificate*) const { return X.Z ? sets::support(*X.Z, d) : -infinity; }
-  Box interval_hull(const Value& X) const { return X.Z ? sets::interval_hull(*X.Z) : Box::empty(X.n); }
+  Box interval_hull(const Value& X, std::vector<Certificate>* why) const {
+    if (why) why->assign(static_cast<std::size_t>(2 * X.n), {Certificate::Kind::structure, Vector(0), 0});
+    return X.Z ? sets::interval_hull(*X.Z) : Box::empty(X.n);
+  }
   double exact_volume(const Value& X) const { return X.Z ? sets::volume(*X.Z).value_or(-1) : 0; }
 
   /// Constraints are eliminated one by one, each forgetting one factor's bound: an outer enclosure.

@@ -98,7 +98,7 @@ class SingularValueObserver final : public Observer {
         transformed_(model().linear),
         budget_(budget_from(params)),
         static_at_start_(params.flag("static_at_start")),
-        X0_(initial_set(model(), params)),
+        X0_(initial_set_from(model(), params)),
         W_(backend().import(model().W)),
         V_(backend().import(model().V)),
         measured_(linalg::product(model().linear.C, transformed_.T)) {
@@ -120,6 +120,7 @@ class SingularValueObserver final : public Observer {
     }
   }
 
+  LineForm initial_set() const override { return X0_; }
   const Set* admissible_set() const override { return admissible_.set.get(); }
 
  private:
@@ -180,7 +181,7 @@ class PseudoInverseObserver final : public Observer {
   PseudoInverseObserver(const ObserverContext& context, const Params& params)
       : Observer(context.model, context.backend),
         budget_(budget_from(params)),
-        X0_(initial_set(model(), params)),
+        X0_(initial_set_from(model(), params)),
         W_(backend().import(model().W)),
         V_(backend().import(model().V)) {
     const LinearModel& m = model().linear;
@@ -196,6 +197,8 @@ class PseudoInverseObserver final : public Observer {
     const Matrix noise = linalg::product(m.Dv, model().V.G);
     Q_ = linalg::product(noise, noise.transpose());
   }
+
+  LineForm initial_set() const override { return X0_; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override { return X_ = X0 ? *X0 : backend().import(X0_); }

@@ -20,7 +20,7 @@ ParamSchema common_parameters() {
 
 Budget budget_from(const Params& params) { return {params.integer("max_generators"), params.integer("max_constraints")}; }
 
-const LineForm& initial_set(const Model& model, const Params& params) {
+const LineForm& initial_set_from(const Model& model, const Params& params) {
   return params.has("initial_set") ? params.set_form("initial_set") : model.X0;
 }
 

@@ -15,7 +15,7 @@ ParamSchema common_parameters();
 Budget budget_from(const Params& params);
 
 /// X0 of the model, or the parameter `initial_set` in its place.
-const LineForm& initial_set(const Model& model, const Params& params);
+const LineForm& initial_set_from(const Model& model, const Params& params);
 
 /// Problems that every observer would have: budget below the dimension, initial set of another dimension, unbounded where the
 /// backend holds bounded sets only, ….

@@ -17,9 +17,11 @@ class PredictionCorrection final : public Observer {
   PredictionCorrection(const ObserverContext& context, const Params& params)
       : Observer(context.model, context.backend),
         budget_(budget_from(params)),
-        X0_(initial_set(model(), params)),
+        X0_(initial_set_from(model(), params)),
         W_(backend().import(model().W)),
         V_(backend().import(model().V)) {}
+
+  LineForm initial_set() const override { return X0_; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {

@@ -48,14 +48,15 @@ Estimate Observer::step(const Sample& now) {
                                    "; samples come one time after another");
   }
   times_ = {};
-  Estimate estimate{now.k, {}, Answer::unknown};
+  Estimate estimate{now.k, {}, Answer::unknown, {}};
   if (inconsistent_) {
     estimate.set = backend_->empty(model_.linear.states());
     estimate.consistent = Answer::no;
+    estimate.set->is_empty(&estimate.why);
   } else {
     estimate.set = before_ ? do_step(*before_, now) : do_start(X0_, now);
     const Stopwatch watch(times_.question);
-    estimate.consistent = negate(estimate.set->is_empty());
+    estimate.consistent = negate(estimate.set->is_empty(&estimate.why));
     inconsistent_ = estimate.consistent == Answer::no;
   }
   before_ = now;

@@ -67,7 +67,13 @@ double Set::support(VectorIn d, Certificate* why) const {
   return std::isnan(h) ? infinity : h;
 }
 
-Box Set::interval_hull() const { return dim_ == 0 ? Box{Vector(0), Vector(0)} : do_interval_hull(); }
+Box Set::interval_hull(std::vector<Certificate>* why) const {
+  if (why) why->assign(static_cast<std::size_t>(2 * dim_), Certificate{});
+  if (dim_ == 0) return {Vector(0), Vector(0)};
+  Box hull = do_interval_hull(why);
+  if (why) why->resize(static_cast<std::size_t>(2 * dim_));
+  return hull;
+}
 
 Volume Set::volume() const {
   if (dim_ == 0) return {is_empty() == Answer::yes ? 0.0 : 1.0, true};
@@ -102,6 +108,6 @@ Answer Set::do_is_bounded() const {
 
 double Set::do_support(VectorIn d, Certificate* why) const { return cordon::support(do_line_form(), d, why); }
 
-Box Set::do_interval_hull() const { return cordon::interval_hull(do_line_form()); }
+Box Set::do_interval_hull(std::vector<Certificate>* why) const { return cordon::interval_hull(do_line_form(), why); }
 
 }  // namespace cordon

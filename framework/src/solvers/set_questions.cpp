@@ -206,16 +206,18 @@ double attained(const LineForm& X, VectorIn d) {
   return rounding::down(rounding::down(rounding::dot(d, q.X.c).lower + value) - gradient_error);
 }
 
-Box interval_hull(const LineForm& X) {
+Box interval_hull(const LineForm& X, std::vector<Certificate>* why) {
   const Index n = X.dim();
+  if (why) why->assign(static_cast<std::size_t>(2 * n), {});
+  const auto proof = [&](Index i) { return why ? &(*why)[static_cast<std::size_t>(i)] : nullptr; };
   Questioned q(X);
   Box hull = Box::space(n);
   bool asked = false;
   for (Index i = 0; i < n; ++i) {
     const Vector d = Vector::Unit(n, i);
     if (q.unbounded_along(d)) continue;
-    hull.upper[i] = q.support(d, nullptr);
-    hull.lower[i] = -q.support(-d, nullptr);
+    hull.upper[i] = q.support(d, proof(2 * i));
+    hull.lower[i] = -q.support(-d, proof(2 * i + 1));
     asked = true;
     if (hull.upper[i] == -infinity || hull.lower[i] == infinity) return Box::empty(n);
   }

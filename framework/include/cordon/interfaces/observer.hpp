@@ -13,6 +13,7 @@ struct Estimate {
   Index k = 0;  ///< may lag behind the sample
   Enclosure set;
   Answer consistent = Answer::unknown;  ///< `no`: the set is proven empty, so the data contradict model or bounds
+  Certificate why;                      ///< proof of `consistent` (of the emptiness of `set`)
 };
 
 /// Wall-clock time of the last step by phase, in microseconds; `question` is the emptiness test.
@@ -37,6 +38,10 @@ class Observer {
   void replace(Enclosure X);
 
   const PhaseTimes& times() const { return times_; }
+
+  /// The set that the observer assumes to contain the state at the first sample: the model's X0, or what its parameters put
+  /// there.
+  virtual LineForm initial_set() const { return model_.X0; }
 
   /// A set that the observer assumes to contain the true state at all times (beyond the model's bounds), or none. Guarantees hold
   /// while it does.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "cordon/core/answer.hpp"
 #include "cordon/core/box.hpp"
@@ -66,7 +67,8 @@ class Set {
   double support(VectorIn d, Certificate* why = nullptr) const;
 
   /// Smallest box around the set as far as proven: contains X in any case. An empty box only if X is proven empty.
-  Box interval_hull() const;
+  /// `why` receives the proofs of the bounds: two per coordinate, of the upper bound (direction e_i) and of the lower (-e_i).
+  Box interval_hull(std::vector<Certificate>* why = nullptr) const;
 
   /// Exact where the representation offers it (see the backend), else the volume of the interval hull.
   Volume volume() const;
@@ -82,7 +84,7 @@ class Set {
   virtual Answer do_contains(VectorIn x, Certificate* why) const;
   virtual Answer do_is_bounded() const;
   virtual double do_support(VectorIn d, Certificate* why) const;
-  virtual Box do_interval_hull() const;
+  virtual Box do_interval_hull(std::vector<Certificate>* why) const;
   /// Exact volume of a bounded set, or a negative number: "not offered".
   virtual double do_exact_volume() const { return -1; }
 

@@ -2,6 +2,8 @@
 // Certified questions about a set in exchange form: what every representation's answers rest on.
 #pragma once
 
+#include <vector>
+
 #include "cordon/core/answer.hpp"
 #include "cordon/core/box.hpp"
 #include "cordon/core/line_elimination.hpp"
@@ -23,8 +25,8 @@ double support(const LineForm& X, VectorIn d, Certificate* why = nullptr);
 double attained(const LineForm& X, VectorIn d);
 
 /// Smallest box that contains X, each bound a certified support value; ±inf in unbounded coordinates; Box::empty if X is
-/// proven empty (n = 0: see `is_empty`).
-Box interval_hull(const LineForm& X);
+/// proven empty (n = 0: see `is_empty`). `why` receives two proofs per coordinate: of the upper and of the lower bound.
+Box interval_hull(const LineForm& X, std::vector<Certificate>* why = nullptr);
 
 /// Lineality space {x : X + x = X} of a non-empty X: an orthonormal basis (n×r) of M ker S.
 Matrix lineality_space(const LineForm& X);
