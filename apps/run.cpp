@@ -103,7 +103,7 @@ void add_run(CLI::App& app, Program& program) {
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of the table");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->footer(
-      "Results appear when all are complete: results.json, sets.jsonl, steps.csv, summary.csv, run.json.\n"
+      "Results appear when all are complete: results.json, sets.jsonl, data.csv, steps.csv, summary.csv, run.json.\n"
       "SIGINT or SIGTERM ends the run with exit code 130 and leaves earlier results as they were; a second one kills.");
   command->callback([&program, arguments] { program.exit = run(program, *arguments); });
 }

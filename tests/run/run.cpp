@@ -46,8 +46,8 @@ TEST_CASE("results.json: the study, each step, the summary") {
   const RunOutcome outcome =
       run(fakes::study({fakes::pipeline("first \"box\", é\x01"), fakes::pipeline("second")}), scratch.path());
   CHECK_FALSE(outcome.interrupted);
-  CHECK(outcome.files.size() == 5);
-  CHECK(tree(scratch.path()).size() == 5);
+  CHECK(outcome.files.size() == 6);
+  CHECK(tree(scratch.path()).size() == 6);
   const json results = json::parse(bytes_of(scratch / "results.json"));
   CHECK(results["cordon_results"] == 1);
   CHECK(results["study"]["title"] == "two states");
@@ -112,7 +112,9 @@ TEST_CASE("sets.jsonl holds the exchange form of each estimate") {
     CHECK(row["exchange"] == "exact");
     CHECK(row["dim"] == 2);
     CHECK(row["generators"] == 2);
-    CHECK_FALSE(row.contains("empty"));
+    CHECK(row["consistent"] == "yes");
+    CHECK(row["proof"]["kind"] == "structure");
+    CHECK(row["hull_proofs"].size() == 4);
     const json& hull = results["pipelines"][i / 21]["steps"][i % 21]["hull"];
     for (std::size_t j = 0; j < 2; ++j) {
       CHECK(row["c"][j].get<double>() + row["G"][j][j].get<double>() ==
@@ -121,6 +123,23 @@ TEST_CASE("sets.jsonl holds the exchange form of each estimate") {
     CHECK(row["S"].empty());
     CHECK(row["b"].empty());
   }
+}
+
+TEST_CASE("what a check of the run needs: data, assumptions, counts of proven answers") {
+  const Scratch scratch;
+  run(fakes::study({fakes::pipeline("p")}), scratch.path());
+  const auto rows = lines(bytes_of(scratch / "data.csv"));
+  REQUIRE(rows.size() == 22);
+  CHECK(rows[0].starts_with("k,u_1,y_1,x_1"));
+  CHECK(rows[21].starts_with("20,"));
+  const json pipeline = json::parse(bytes_of(scratch / "results.json"))["pipelines"][0];
+  CHECK(pipeline["assumptions"]["initial_set"]["dim"] == 2);
+  CHECK(pipeline["assumptions"]["admissible_set"].is_null());
+  const json& answers = pipeline["summary"]["answers"];
+  CHECK(answers["emptiness"]["proven"] == 21);
+  CHECK(answers["containment"]["proven"] == 21);
+  CHECK(answers["bounds"]["proven"] == 84);
+  CHECK(answers["bounds"]["unknown"] == 0);
 }
 
 TEST_CASE("the tables hold the same numbers") {
@@ -141,8 +160,8 @@ TEST_CASE("the tables hold the same numbers") {
   CHECK(summary[0] ==
         "pipeline,backend,observer,rounding,steps,consistent,inconsistent,undecided,inconsistent_from,assumptions_until,outside_"
         "from,"
-        "violated_at,error,radius_max");
-  CHECK(summary[2].starts_with("q,box,recursive,nominal,21,21,0,0,,,,,,"));
+        "violated_at,answers_proven,answers_unknown,error,radius_max");
+  CHECK(summary[2].starts_with("q,box,recursive,nominal,21,21,0,0,,,,,126,0,,"));
 }
 
 TEST_CASE("run.json holds what differs from run to run") {
@@ -173,7 +192,7 @@ TEST_CASE("a repeated run gives the same bytes in all files but run.json") {
   auto first = tree(one.path()), second = tree(two.path());
   first.erase("run.json");
   second.erase("run.json");
-  CHECK(first.size() == 4);
+  CHECK(first.size() == 5);
   CHECK((first == second));
 }
 
@@ -218,7 +237,9 @@ TEST_CASE("an estimate proven empty: inconsistent from there, with its proof; th
     CHECK(results["pipelines"][0]["steps"][k]["consistent"] == "no");
     CHECK(results["pipelines"][0]["steps"][k]["hull"]["lower"][0].get<double>() >
           results["pipelines"][0]["steps"][k]["hull"]["upper"][0].get<double>());
-    CHECK(json::parse(lines(bytes_of(scratch / "sets.jsonl"))[k])["empty"]["margin"] > 0);
+    const json row = json::parse(lines(bytes_of(scratch / "sets.jsonl"))[k]);
+    CHECK(row["proof"]["kind"] == "farkas");
+    CHECK(row["proof"]["margin"] > 0);
   }
 }
 

@@ -10,15 +10,21 @@ namespace {
 
 constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a coefficient is zero
 
-/// Rows of [S A b] above rows of [M G c], with the magnitude of the terms that each entry was computed from.
+/// Rows of [S A b] above rows of [M G c], with the magnitude of the terms that each entry was computed from, and the combination
+/// of the original rows [S A b] that was added to each.
 struct Tableau {
   Index lines, rows, width;
-  Matrix T, magnitude;
+  Matrix T, magnitude, trace;
   std::vector<bool> used;
 
   /// `b_magnitude`: size of what cancelled in b already; may be empty.
   Tableau(const LineForm& X, VectorIn b_magnitude)
-      : lines(X.lines()), rows(X.constraints()), width(lines + X.generators() + 1), T(rows + X.dim(), width), used(rows, false) {
+      : lines(X.lines()),
+        rows(X.constraints()),
+        width(lines + X.generators() + 1),
+        T(rows + X.dim(), width),
+        trace(Matrix::Identity(rows + X.dim(), rows)),
+        used(static_cast<std::size_t>(rows), false) {
     const Index g = X.generators();
     T.topLeftCorner(rows, lines) = X.S;
     T.block(0, lines, rows, g) = X.A;
@@ -52,6 +58,7 @@ struct Tableau {
     used[static_cast<std::size_t>(row)] = true;
     const double divisor = T(row, col);
     const Eigen::RowVectorXd pivot = T.row(row) / divisor, pivot_magnitude = magnitude.row(row) / std::abs(divisor);
+    trace.row(row) /= divisor;
     for (Index i = 0; i < T.rows(); ++i) {
       const double factor = T(i, col);
       if (i == row || factor == 0) continue;
@@ -62,8 +69,10 @@ struct Tableau {
         if (std::abs(T(i, j)) <= noise * magnitude(i, j)) T(i, j) = 0;
       }
       T(i, col) = 0;
+      trace.row(i) -= factor * trace.row(row);
     }
-    T.row(row).head(lines).setZero();
+    T.row(row) = pivot;  // kept, and treated like the others from now on: it tells the line by the factors
+    magnitude.row(row) = pivot_magnitude;
     T(row, col) = 1;
   }
 
@@ -116,18 +125,31 @@ Matrix independent_columns(Matrix M) {
 
 }  // namespace
 
-LineForm eliminate_lines(const LineForm& X) { return eliminate_lines_with_magnitude(X, Vector(0)).set; }
+LineForm eliminate_lines(const LineForm& X) { return eliminate_lines_traced(X, Vector(0)).set; }
 
-LinesEliminated eliminate_lines_with_magnitude(const LineForm& X, VectorIn b_magnitude) {
+LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) {
+  const Index n = X.dim(), g = X.generators(), all = X.constraints();
   if (X.lines() == 0) {
-    const Vector magnitude = b_magnitude.size() ? Vector(b_magnitude) : Vector::Zero(X.constraints());
-    return {{Matrix(X.dim(), 0), X.G, X.c, Matrix(X.constraints(), 0), X.A, X.b}, magnitude};
+    return {{Matrix(n, 0), X.G, X.c, Matrix(all, 0), X.A, X.b},
+            b_magnitude.size() ? Vector(b_magnitude) : Vector::Zero(all),
+            Matrix::Identity(all, all),
+            Matrix::Zero(n, all),
+            Matrix(0, g),
+            Vector(0)};
   }
   Tableau tableau(X, b_magnitude);
   std::vector<bool> gone(static_cast<std::size_t>(X.lines()), false);
+  Matrix lines_by_factors = Matrix::Zero(X.lines(), g);
+  Vector lines_offset = Vector::Zero(X.lines());
+  std::vector<std::pair<Index, Index>> pivots;
   for (Index row = 0, col = 0; tableau.find_pivot(row, col);) {
     tableau.eliminate(row, col);
     gone[static_cast<std::size_t>(col)] = true;
+    pivots.emplace_back(row, col);
+  }
+  for (const auto& [row, col] : pivots) {
+    lines_by_factors.row(col) = -tableau.T.row(row).segment(X.lines(), g);
+    lines_offset[col] = tableau.T(row, tableau.width - 1);
   }
 
   std::vector<Index> kept_rows, kept_lines;
@@ -137,7 +159,7 @@ LinesEliminated eliminate_lines_with_magnitude(const LineForm& X, VectorIn b_mag
   for (Index j = 0; j < X.lines(); ++j) {
     if (!gone[static_cast<std::size_t>(j)]) kept_lines.push_back(j);
   }
-  const Index n = X.dim(), g = X.generators(), m = static_cast<Index>(kept_rows.size());
+  const Index m = static_cast<Index>(kept_rows.size());
   LineForm Y{Matrix(n, static_cast<Index>(kept_lines.size())),
              tableau.T.block(tableau.rows, X.lines(), n, g),
              -tableau.T.bottomRightCorner(n, 1),
@@ -145,15 +167,23 @@ LinesEliminated eliminate_lines_with_magnitude(const LineForm& X, VectorIn b_mag
              Matrix(m, g),
              Vector(m)};
   for (Index k = 0; k < Y.M.cols(); ++k) Y.M.col(k) = tableau.T.col(kept_lines[static_cast<std::size_t>(k)]).tail(n);
+  Vector magnitude(m);
+  Matrix rows(m, all);
   for (Index k = 0; k < m; ++k) {
-    Y.A.row(k) = tableau.T.row(kept_rows[static_cast<std::size_t>(k)]).segment(X.lines(), g);
-    Y.b[k] = tableau.T(kept_rows[static_cast<std::size_t>(k)], tableau.width - 1);
+    const Index i = kept_rows[static_cast<std::size_t>(k)];
+    Y.A.row(k) = tableau.T.row(i).segment(X.lines(), g);
+    Y.b[k] = tableau.T(i, tableau.width - 1);
+    magnitude[k] = tableau.magnitude.row(i).maxCoeff();
+    rows.row(k) = tableau.trace.row(i);
   }
   Y.M = independent_columns(std::move(Y.M));
   Y.S = Matrix::Zero(m, Y.M.cols());
-  Vector magnitude(m);
-  for (Index k = 0; k < m; ++k) magnitude[k] = tableau.magnitude.row(kept_rows[static_cast<std::size_t>(k)]).maxCoeff();
-  return {std::move(Y), std::move(magnitude)};
+  return {std::move(Y),
+          std::move(magnitude),
+          std::move(rows),
+          Matrix(tableau.trace.bottomRows(n)),
+          std::move(lines_by_factors),
+          std::move(lines_offset)};
 }
 
 }  // namespace cordon

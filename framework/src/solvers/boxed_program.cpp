@@ -28,16 +28,20 @@ bool fits(VectorIn xi, const Vector& radius) {
   return true;
 }
 
-double upper_bound(VectorIn g, const Matrix& A, const Vector& b, const Vector& y) {
-  return rounding::up(rounding::dot(b, y).upper + rounding::residual_norm_1(g, A, y));
+/// What an uncertain right-hand side adds to bᵀy at most.
+double doubt(VectorIn error, VectorIn y) { return error.isZero(0) ? 0.0 : rounding::dot(error, y.cwiseAbs()).upper; }
+
+double upper_bound(VectorIn g, const Matrix& A, const Vector& b, const Vector& y, VectorIn error) {
+  return rounding::up(rounding::up(rounding::dot(b, y).upper + rounding::residual_norm_1(g, A, y)) + doubt(error, y));
 }
 
 }  // namespace
 
 struct BoxedProgram::State {
   Matrix A;
-  Vector b, row_magnitude;
-  Vector scale;  ///< row scales of the solver's programs
+  Vector b;
+  Accuracy accuracy;  ///< complete: zeros where nothing was given
+  Vector scale;       ///< row scales of the solver's programs
   std::optional<LinearProgram> objective_program, scaling_program;
 
   Matrix proposal_matrix() const {
@@ -76,13 +80,18 @@ struct BoxedProgram::State {
   }
 };
 
-BoxedProgram::BoxedProgram(Matrix A, Vector b, Vector row_magnitude) : state_(std::make_unique<State>()) {
+BoxedProgram::BoxedProgram(Matrix A, Vector b, Accuracy accuracy) : state_(std::make_unique<State>()) {
   if (A.rows() != b.size()) throw Error(Errc::dimension, "boxed program: matrix and right-hand side differ in rows");
   if (!A.allFinite() || !b.allFinite()) throw Error(Errc::not_finite, "boxed program: a NaN or infinite coefficient");
   state_->scale = linalg::row_scales(A);
   state_->A = std::move(A);
   state_->b = std::move(b);
-  state_->row_magnitude = row_magnitude.size() ? std::move(row_magnitude) : Vector(Vector::Zero(state_->b.size()));
+  for (Vector* part : {&accuracy.magnitude, &accuracy.error}) {
+    if (part->size() == 0) part->setZero(state_->b.size());
+    if (part->size() != state_->b.size())
+      throw Error(Errc::dimension, "boxed program: the accuracy of the rows has the wrong size");
+  }
+  state_->accuracy = std::move(accuracy);
 }
 BoxedProgram::~BoxedProgram() = default;
 BoxedProgram::BoxedProgram(BoxedProgram&&) noexcept = default;
@@ -92,7 +101,7 @@ BoxedProgram::Bound BoxedProgram::maximum(VectorIn g) {
   State& s = *state_;
   if (g.size() != s.A.cols()) throw Error(Errc::dimension, "boxed program: the objective has the wrong size");
   const Vector none = Vector::Zero(s.A.rows());
-  Bound bound{upper_bound(g, s.A, s.b, none), none, std::nullopt, false};
+  Bound bound{upper_bound(g, s.A, s.b, none, s.accuracy.error), none, std::nullopt, false};
   if (s.A.rows() == 0) {
     bound.xi = g.array().sign().matrix();
     bound.solved = true;
@@ -101,7 +110,7 @@ BoxedProgram::Bound BoxedProgram::maximum(VectorIn g) {
   const LinearProgram::Solution solution = s.for_objectives().maximize(g);
   if (solution.status == LinearProgram::Status::optimal) {
     const Vector y = s.scale.cwiseProduct(solution.y);
-    if (const double upper = upper_bound(g, s.A, s.b, y); upper < bound.upper) {
+    if (const double upper = upper_bound(g, s.A, s.b, y, s.accuracy.error); upper < bound.upper) {
       bound.upper = upper;
       bound.y = y;
     }
@@ -123,9 +132,9 @@ Answer BoxedProgram::is_empty(Certificate* why) {
   if (why) *why = {};
   if (m == 0) return conclude(Answer::no, Certificate::Kind::structure, Vector(0), 1);
 
-  const Vector weight = s.b.cwiseAbs() + (g ? Vector(s.A.cwiseAbs().rowwise().sum()) : Vector::Zero(m)) + s.row_magnitude;
+  const Vector weight = s.b.cwiseAbs() + (g ? Vector(s.A.cwiseAbs().rowwise().sum()) : Vector::Zero(m)) + s.accuracy.magnitude;
   const auto empty_by = [&](const Vector& y, double& margin) {
-    margin = farkas_margin(s.A, s.b, y);
+    margin = farkas_margin(s.A, s.b, y, s.accuracy.error);
     return margin > nominal_tolerance * y.cwiseAbs().dot(weight);
   };
   double margin = 0;
@@ -135,7 +144,7 @@ Answer BoxedProgram::is_empty(Certificate* why) {
     if (empty_by(y, margin)) return conclude(Answer::yes, Certificate::Kind::farkas, y, margin);
   }
   const auto point_proves = [&](const Vector& xi) {
-    const std::optional<Vector> radius = repair_radius(s.A, s.b, xi);
+    const std::optional<Vector> radius = repair_radius(s.A, s.b, xi, s.accuracy.error);
     return radius && fits(xi, *radius);
   };
   // Cheap first: the least-squares point proves either answer when it lies clearly inside or outside.
@@ -173,30 +182,32 @@ double BoxedProgram::attained(VectorIn g, VectorIn xi) {
   const State& s = *state_;
   if (xi.size() && !(xi.cwiseAbs().maxCoeff() <= 1 + 1e-6)) return -infinity;
   const Vector inside = xi.cwiseMax(-1.0).cwiseMin(1.0);
-  const std::optional<Vector> radius = repair_radius(s.A, s.b, inside);
+  const std::optional<Vector> radius = repair_radius(s.A, s.b, inside, s.accuracy.error);
   if (!radius || !fits(inside, *radius)) return -infinity;
   return rounding::down(rounding::dot(g, inside).lower - rounding::dot(g.cwiseAbs(), *radius).upper);
 }
 
-double farkas_margin(MatrixIn A, VectorIn b, VectorIn y) {
+double farkas_margin(MatrixIn A, VectorIn b, VectorIn y, VectorIn error) {
   if (!y.allFinite()) return -infinity;
-  return rounding::down(rounding::dot(b, y).lower - rounding::residual_norm_1(Vector::Zero(A.cols()), A, y));
+  const double margin = rounding::down(rounding::dot(b, y).lower - rounding::residual_norm_1(Vector::Zero(A.cols()), A, y));
+  return rounding::down(margin - doubt(error, y));
 }
 
-std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi) {
+std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi, VectorIn error) {
   const Index g = A.cols();
   if (!xi.allFinite() || xi.size() != g) return std::nullopt;
   // Zero rows 0 = 0 hold by themselves; the others are scaled by powers of two, which is exact.
   const Vector scale = linalg::row_scales(A);
   Matrix rows(A.rows(), g);
-  Vector right(A.rows());
+  Vector right(A.rows()), unsure = Vector::Zero(A.rows());
   Index m = 0;
   for (Index i = 0; i < A.rows(); ++i) {
     if (g == 0 || A.row(i).isZero(0)) {
-      if (b[i] != 0) return std::nullopt;
+      if (b[i] != 0 || (error.size() && error[i] != 0)) return std::nullopt;
       continue;
     }
     rows.row(m) = A.row(i) * scale[i];
+    if (error.size()) unsure[m] = error[i] * scale[i];
     right[m++] = b[i] * scale[i];
   }
   if (m == 0) return Vector(Vector::Zero(g));
@@ -210,16 +221,17 @@ std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi) {
 
   // E = I - (A D Aᵀ) R, bounded entrywise: computed value, error of its own product, error of K times |R|.
   const Matrix residual = Matrix::Identity(m, m) - linalg::product(K, *R);
-  const Matrix error = residual.cwiseAbs() + 2 * rounding::product_error(K, *R) +
-                       2 * linalg::product(rounding::product_error(rows, weighted), R->cwiseAbs()) +
-                       Matrix::Constant(m, m, 4 * rounding::unit);
-  const double alpha = error.rowwise().sum().maxCoeff() * (1 + 1e-10);
+  const Matrix distance = residual.cwiseAbs() + 2 * rounding::product_error(K, *R) +
+                          2 * linalg::product(rounding::product_error(rows, weighted), R->cwiseAbs()) +
+                          Matrix::Constant(m, m, 4 * rounding::unit);
+  const double alpha = distance.rowwise().sum().maxCoeff() * (1 + 1e-10);
   if (!(alpha < 0.5)) return std::nullopt;
 
   Vector gap(m);  // |b - A ξ|, rounded up
   for (Index i = 0; i < m; ++i) {
     const rounding::Range product = rounding::dot(rows.row(i).transpose(), xi);
     gap[i] = std::max(std::abs(rounding::up(right[i] - product.lower)), std::abs(rounding::down(right[i] - product.upper)));
+    if (unsure[i] > 0) gap[i] = rounding::up(gap[i] + unsure[i]);
   }
   // δ = D Aᵀ R (I - E)⁻¹ (b - Aξ), |(I - E)⁻¹ r| ≤ |r| + α/(1-α) ‖r‖∞
   const double spread = alpha / (1 - alpha) * gap.maxCoeff();

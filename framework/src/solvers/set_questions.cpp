@@ -10,6 +10,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/solvers/boxed_program.hpp"
+#include "cordon/solvers/certificate.hpp"
 
 namespace cordon {
 
@@ -21,14 +22,17 @@ constexpr double nominal_tolerance = 1e-10;
 /// Candidates for facets that `is_subset` tries before it answers `unknown`.
 constexpr Index max_facets = 20'000;
 
-/// The part of X in ξ alone: lines eliminated, directions with lines known.
+/// The part of X in ξ alone: lines eliminated, directions with lines known. `error` bounds that of X.b.
 struct Questioned {
-  LineForm X;
+  LinesEliminated eliminated;
+  const LineForm& X;
   BoxedProgram program;
 
-  explicit Questioned(const LineForm& form) : Questioned(eliminate_lines_with_magnitude(form, Vector(0))) {}
-  explicit Questioned(LinesEliminated eliminated)
-      : X(std::move(eliminated.set)), program(X.A, X.b, std::move(eliminated.row_magnitude)) {}
+  explicit Questioned(const LineForm& form) : Questioned(eliminate_lines_traced(form, Vector(0)), Vector(0)) {}
+  Questioned(LinesEliminated made, Vector error)
+      : eliminated(std::move(made)), X(eliminated.set), program(X.A, X.b, {eliminated.row_magnitude, std::move(error)}) {}
+  Questioned(const Questioned&) = delete;
+  Questioned& operator=(const Questioned&) = delete;
 
   bool unbounded_along(VectorIn d) const {
     for (Index j = 0; j < X.lines(); ++j) {
@@ -38,17 +42,105 @@ struct Questioned {
   }
 
   double support(VectorIn d, Certificate* why) {
-    if (unbounded_along(d)) return is_empty(nullptr) == Answer::yes ? -infinity : infinity;
+    if (why) *why = {};
+    if (unbounded_along(d)) return is_empty(why) == Answer::yes ? -infinity : infinity;
     const Vector g = linalg::product(X.G.transpose(), d);
     const BoxedProgram::Bound bound = program.maximum(g);
-    if (why) *why = {bound.upper == -infinity ? Certificate::Kind::farkas : Certificate::Kind::dual, bound.y, bound.upper};
-    if (bound.upper == -infinity) return -infinity;
+    if (bound.upper == -infinity) {
+      if (why) {
+        *why = {Certificate::Kind::farkas, linalg::product(eliminated.rows.transpose(), bound.y),
+                farkas_margin(X.A, X.b, bound.y)};
+      }
+      return -infinity;
+    }
     const double gradient_error = rounding::product_error(X.G.transpose(), d).sum();
-    return rounding::up(rounding::up(rounding::dot(d, X.c).upper + bound.upper) + gradient_error);
+    const double h = rounding::up(rounding::up(rounding::dot(d, X.c).upper + bound.upper) + gradient_error);
+    if (why) {
+      const Vector y = linalg::product(eliminated.rows.transpose(), bound.y) - linalg::product(eliminated.outputs.transpose(), d);
+      *why = {Certificate::Kind::dual, y, h};
+    }
+    return h;
   }
 
-  Answer is_empty(Certificate* why) { return program.is_empty(why); }
+  /// `why` speaks of the rows and factors before the elimination.
+  Answer is_empty(Certificate* why) {
+    Certificate own;
+    const Answer answer = program.is_empty(&own);
+    if (why) *why = answer == Answer::no ? point(own) : answer == Answer::yes ? farkas(own) : Certificate{};
+    return answer;
+  }
+
+  /// A point that the solver takes for a solution; it proves nothing by itself.
+  Certificate candidate() {
+    const auto xi = program.central_point();
+    return xi ? point({Certificate::Kind::point, *xi, 0}) : Certificate{};
+  }
+
+ private:
+  Certificate farkas(const Certificate& own) const {
+    return {own.kind, linalg::product(eliminated.rows.transpose(), own.data), own.margin};
+  }
+
+  Certificate point(const Certificate& own) const {
+    const Index l = eliminated.lines_offset.size(), g = X.generators();
+    const Vector xi = own.kind == Certificate::Kind::structure ? Vector(Vector::Zero(g)) : own.data;
+    Vector both(l + g);
+    both << eliminated.lines_offset + linalg::product(eliminated.lines_by_factors, xi), xi;
+    return {Certificate::Kind::point, std::move(both), own.margin};
+  }
 };
+
+/// Sδ + Aξ = b with ‖ξ‖∞ ≤ 1, and how well b is known.
+struct Rows {
+  Matrix S, A;
+  Vector b, magnitude, error;
+};
+
+/// Rational arithmetic above this many operations, about a second, is not worth an answer.
+bool is_small(const Rows& rows) {
+  const double m = static_cast<double>(rows.b.size()), columns = static_cast<double>(rows.S.cols() + rows.A.cols());
+  return m * m * columns <= 3e5;
+}
+
+/// Are the rows unsatisfiable? What is proven with bounded rounding errors stands. Lines are unbounded, so that no bound of
+/// rounding errors covers their elimination: there, and where rows are dependent or a solution touches its bounds, rational
+/// arithmetic decides (`empty` and `not_empty` check a proof so).
+template <class Empty, class NotEmpty>
+Answer is_infeasible(const Rows& rows, Certificate* why, Empty empty, NotEmpty not_empty) {
+  const Index m = rows.b.size(), l = rows.S.cols();
+  const bool lines = l > 0 && !rows.S.isZero(0), small = is_small(rows);
+  const LineForm X{Matrix(0, lines ? l : 0), Matrix(0, rows.A.cols()), Vector(0), lines ? rows.S : Matrix(m, 0), rows.A, rows.b};
+  Questioned q(eliminate_lines_traced(X, rows.magnitude), lines ? Vector(0) : rows.error);
+  const auto with_idle_lines = [&](Certificate proof) {
+    if (!lines && l > 0 && proof.kind == Certificate::Kind::point) {
+      Vector both = Vector::Zero(l + proof.data.size());
+      both.tail(proof.data.size()) = proof.data;
+      proof.data = std::move(both);
+    }
+    return proof;
+  };
+  Certificate proof;
+  Answer answer = q.is_empty(&proof);
+  proof = with_idle_lines(std::move(proof));
+  if (lines && answer == Answer::yes && !(small && empty(proof))) answer = Answer::unknown;
+  if (lines && answer == Answer::no && !(small && not_empty(proof))) answer = Answer::unknown;
+  if (answer == Answer::unknown && small) {
+    proof = with_idle_lines(q.candidate());
+    if (proof.kind == Certificate::Kind::point && not_empty(proof)) answer = Answer::no;
+  }
+  if (why) *why = answer == Answer::unknown ? Certificate{} : std::move(proof);
+  return answer;
+}
+
+/// x - y and a bound of its rounding error, 0 where it is exact.
+void difference(VectorIn x, VectorIn y, Eigen::Ref<Vector> value, Eigen::Ref<Vector> error) {
+  for (Index i = 0; i < x.size(); ++i) {
+    const double d = x[i] - y[i], part = d - x[i];
+    value[i] = d;
+    error[i] = std::abs((x[i] - (d - part)) - (y[i] + part));
+  }
+  if (!value.allFinite() || !error.allFinite()) throw Error(Errc::not_finite, "a set question overflows; scale the problem");
+}
 
 /// Next k-subset of {0 … n-1} in lexicographic order; false after the last.
 bool next_subset(std::vector<Index>& subset, Index n) {
@@ -166,21 +258,23 @@ Answer is_empty(const LineForm& X, Certificate* why) {
     if (why) *why = {Certificate::Kind::structure, Vector(0), 1};
     return Answer::no;
   }
-  return Questioned(X).is_empty(why);
+  return is_infeasible(
+      {X.S, X.A, X.b, Vector(0), Vector(0)}, why, [&](const Certificate& proof) { return proves_empty(X, proof); },
+      [&](const Certificate& proof) { return proves_not_empty(X, proof); });
 }
 
 Answer contains(const LineForm& X, VectorIn x, Certificate* why) {
   if (x.size() != X.dim()) throw Error(Errc::dimension, "contains: the point has another dimension than the set");
   const Index n = X.dim(), m = X.constraints();
-  LineForm point{Matrix(0, X.lines()),     Matrix(0, X.generators()),     Vector(0),
-                 Matrix(m + n, X.lines()), Matrix(m + n, X.generators()), Vector(m + n)};
-  point.S << X.S, X.M;
-  point.A << X.A, X.G;
-  point.b << X.b, x - X.c;
-  Vector magnitude = Vector::Zero(m + n);
-  magnitude.tail(n) = x.cwiseAbs() + X.c.cwiseAbs();
-  LinesEliminated rest = eliminate_lines_with_magnitude(point, magnitude);
-  return negate(BoxedProgram(std::move(rest.set.A), std::move(rest.set.b), std::move(rest.row_magnitude)).is_empty(why));
+  Rows rows{Matrix(m + n, X.lines()), Matrix(m + n, X.generators()), Vector(m + n), Vector::Zero(m + n), Vector::Zero(m + n)};
+  rows.S << X.S, X.M;
+  rows.A << X.A, X.G;
+  rows.b.head(m) = X.b;
+  difference(x, X.c, rows.b.tail(n), rows.error.tail(n));
+  rows.magnitude.tail(n) = x.cwiseAbs() + X.c.cwiseAbs();
+  return negate(is_infeasible(
+      rows, why, [&](const Certificate& proof) { return proves_excludes(X, x, proof); },
+      [&](const Certificate& proof) { return proves_contains(X, x, proof); }));
 }
 
 double support(const LineForm& X, VectorIn d, Certificate* why) {
@@ -232,16 +326,26 @@ Box interval_hull(const LineForm& X, std::vector<Certificate>* why) {
 Matrix lineality_space(const LineForm& X) { return X.lines() ? linalg::range_basis(eliminate_lines(X).M) : Matrix(X.dim(), 0); }
 
 Answer is_bounded(const LineForm& X) {
-  if (X.lines() == 0) return Answer::yes;
-  Questioned q(X);
-  if (q.X.lines() == 0) return Answer::yes;
-  const Answer empty = q.is_empty(nullptr);
+  if (!has_lineality(X)) return Answer::yes;
+  const Answer empty = is_empty(X);
   return empty == Answer::yes ? Answer::yes : empty == Answer::no ? Answer::no : Answer::unknown;
 }
 
 Answer is_disjoint(const LineForm& X, const LineForm& Y, Certificate* why) {
   if (X.dim() != Y.dim()) throw Error(Errc::dimension, "is_disjoint: the dimensions differ");
-  return is_empty(intersection(X, Matrix::Identity(X.dim(), X.dim()), Y), why);
+  const Index n = X.dim(), m = X.constraints(), p = Y.constraints();
+  Rows rows{Matrix::Zero(m + p + n, X.lines() + Y.lines()), Matrix::Zero(m + p + n, X.generators() + Y.generators()),
+            Vector(m + p + n), Vector::Zero(m + p + n), Vector::Zero(m + p + n)};
+  rows.S.topRows(m + p) = linalg::block_diagonal(X.S, Y.S);
+  rows.A.topRows(m + p) = linalg::block_diagonal(X.A, Y.A);
+  rows.S.bottomRows(n) << X.M, -Y.M;
+  rows.A.bottomRows(n) << X.G, -Y.G;
+  rows.b.head(m + p) << X.b, Y.b;
+  difference(Y.c, X.c, rows.b.tail(n), rows.error.tail(n));
+  rows.magnitude.tail(n) = X.c.cwiseAbs() + Y.c.cwiseAbs();
+  return is_infeasible(
+      rows, why, [&](const Certificate& proof) { return proves_disjoint(X, Y, proof); },
+      [&](const Certificate& proof) { return proves_meet(X, Y, proof); });
 }
 
 Answer is_subset(const LineForm& X_in, const LineForm& Y_in, Certificate* why) {

@@ -57,6 +57,31 @@ std::string fingerprint(std::string_view text) {
   return "fnv1a64:" + digits;
 }
 
+/// The blocks of an exchange form; the object stays open.
+void write_blocks(JsonWriter& json, const LineForm& X) {
+  json.member("dim", X.dim())
+      .member("lines", X.lines())
+      .member("generators", X.generators())
+      .member("constraints", X.constraints());
+  json.key("M").matrix(X.M).key("G").matrix(X.G).member("c", X.c).key("S").matrix(X.S).key("A").matrix(X.A).member("b", X.b);
+}
+
+void write(JsonWriter& json, const LineForm& X) {
+  json.begin_object();
+  write_blocks(json, X);
+  json.end_object();
+}
+
+void write(JsonWriter& json, const Certificate& why) {
+  json.begin_object().member("kind", to_string(why.kind));
+  if (why.data.size() > 0) json.member("margin", why.margin).member("data", why.data);
+  json.end_object();
+}
+
+void write(JsonWriter& json, std::string_view name, const AnswerCount& count) {
+  json.key(name).begin_object().member("proven", count.proven).member("unknown", count.unknown).end_object();
+}
+
 void write_times(JsonWriter& json, const PhaseTimes& times, double hull_us) {
   json.begin_object();
   json.member("predict", times.predict).member("correct", times.correct).member("reduce", times.reduce);
@@ -69,6 +94,7 @@ void write_times(JsonWriter& json, const PhaseTimes& times, double hull_us) {
 Results::Results(const Study& study, const Registry& registry, const std::filesystem::path& out)
     : study_(study),
       directory_(out),
+      data_file_(directory_.create("data.csv")),
       sets_file_(directory_.create("sets.jsonl")),
       steps_file_(directory_.create("steps.csv")),
       summary_file_(directory_.create("summary.csv")),
@@ -114,7 +140,8 @@ void Results::begin_run(const Registry& registry) {
   run_.end_array().key("pipelines").begin_array(Layout::lines);
 }
 
-void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding) {
+void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding,
+                             const std::optional<Assumptions>& assumptions) {
   pipeline_ = csv_field(spec.name);
   pipeline_json_ = json_string(spec.name);
   rounding_ = rounding;
@@ -124,8 +151,37 @@ void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> r
       .member("observer", spec.observer.type);
   results_.key("rounding");
   rounding ? results_.value(to_string(*rounding)) : results_.null();
+  results_.key("assumptions");
+  if (assumptions) {
+    results_.begin_object(Layout::lines).key("initial_set");
+    write(results_, assumptions->initial_set);
+    results_.key("admissible_set");
+    assumptions->admissible_set ? write(results_, *assumptions->admissible_set) : void(results_.null());
+    results_.end_object();
+  } else {
+    results_.null();
+  }
   results_.key("steps").begin_array(Layout::lines);
   run_.begin_object(Layout::lines).member("name", spec.name).key("steps").begin_array(Layout::lines);
+}
+
+void Results::data(const Record& record) {
+  if (last_sample_ && record.sample.k <= *last_sample_) return;
+  const std::pair<const char*, const Vector*> parts[]{
+      {"u_", &record.sample.u}, {"y_", &record.sample.y}, {"x_", record.truth ? &*record.truth : nullptr}};
+  if (!last_sample_) {
+    std::vector<std::string> names{"k"};
+    for (const auto& [name, part] : parts) {
+      for (Index i = 1; part && i <= part->size(); ++i) names.push_back(name + std::to_string(i));
+    }
+    data_file_.write(joined(names));
+  }
+  std::vector<std::string> row{std::to_string(record.sample.k)};
+  for (const auto& [name, part] : parts) {
+    for (Index i = 0; part && i < part->size(); ++i) row.push_back(to_text((*part)[i]));
+  }
+  data_file_.write(joined(row));
+  last_sample_ = record.sample.k;
 }
 
 void Results::check_columns(const MetricValues& metrics) {
@@ -151,7 +207,7 @@ void Results::step(const StepResult& result) {
   for (const MetricValue& metric : result.metrics.measured) write(run_, metric);
   run_.end_object();
   write_row(result);
-  write_set(estimate);
+  write_set(result);
 }
 
 void Results::write_header(Index states) {
@@ -177,26 +233,22 @@ void Results::write_row(const StepResult& result) {
   steps_file_.write(joined(row));
 }
 
-void Results::write_set(const Estimate& estimate) {
+void Results::write_set(const StepResult& result) {
+  const Estimate& estimate = result.estimate;
   const LineForm X = estimate.set->line_form();
   const bool exact = estimate.set->backend().info().exact_exchange;
   JsonWriter json(sets_file_);
   json.begin_object().key("pipeline").raw(pipeline_json_).member("k", estimate.k);
   json.member("tightness", to_string(estimate.set.tightness));
   json.member("exchange", to_string(exact ? Tightness::exact : Tightness::outer));
-  json.member("dim", X.dim())
-      .member("lines", X.lines())
-      .member("generators", X.generators())
-      .member("constraints", X.constraints());
-  json.key("M").matrix(X.M).key("G").matrix(X.G).member("c", X.c).key("S").matrix(X.S).key("A").matrix(X.A).member("b", X.b);
-  Certificate why;
-  if (estimate.consistent == Answer::no && estimate.set->is_empty(&why) == Answer::yes) {
-    json.key("empty")
-        .begin_object()
-        .member("kind", to_string(why.kind))
-        .member("margin", why.margin)
-        .member("data", why.data)
-        .end_object();
+  write_blocks(json, X);
+  json.member("consistent", to_string(estimate.consistent));
+  json.key("proof");
+  write(json, estimate.why);
+  if (estimate.consistent != Answer::no) {
+    json.key("hull_proofs").begin_array();
+    for (const Certificate& proof : result.hull_proofs) write(json, proof);
+    json.end_array();
   }
   json.end_object();
   sets_file_.write("\n");
@@ -210,6 +262,11 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
   write_time(results_, "assumptions_until", outcome.assumptions_until);
   write_time(results_, "outside_from", outcome.outside_from);
   write_time(results_, "violated_at", outcome.violated_at);
+  results_.key("answers").begin_object();
+  write(results_, "emptiness", outcome.emptiness);
+  write(results_, "containment", outcome.containment);
+  write(results_, "bounds", outcome.bounds);
+  results_.end_object();
   results_.key("error");
   outcome.error.empty() ? results_.null() : results_.value(outcome.error);
   Summary row;
@@ -232,6 +289,8 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
                 csv_time(outcome.assumptions_until),
                 csv_time(outcome.outside_from),
                 csv_time(outcome.violated_at),
+                std::to_string(outcome.emptiness.proven + outcome.containment.proven + outcome.bounds.proven),
+                std::to_string(outcome.emptiness.unknown + outcome.containment.unknown + outcome.bounds.unknown),
                 csv_field(outcome.error)};
   summaries_.push_back(std::move(row));
   run_.end_array().key("summary").begin_object(Layout::lines).key("median_time_us");
@@ -242,9 +301,9 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
 }
 
 void Results::write_summaries() {
-  std::vector<std::string> names{"pipeline",     "backend",      "observer",  "rounding",          "steps",
-                                 "consistent",   "inconsistent", "undecided", "inconsistent_from", "assumptions_until",
-                                 "outside_from", "violated_at",  "error"};
+  std::vector<std::string> names{"pipeline",     "backend",      "observer",       "rounding",          "steps",
+                                 "consistent",   "inconsistent", "undecided",      "inconsistent_from", "assumptions_until",
+                                 "outside_from", "violated_at",  "answers_proven", "answers_unknown",   "error"};
   for (const std::string& name : summary_columns_) names.push_back(csv_field(name));
   summary_file_.write(joined(names));
   for (Summary& summary : summaries_) {

@@ -16,14 +16,24 @@ namespace cordon::detail {
 struct StepResult {
   const Estimate& estimate;
   const Box& hull;
+  const std::vector<Certificate>& hull_proofs;  ///< two per coordinate: of the upper and of the lower bound
   const MetricValues& metrics;
   const PhaseTimes& times;
   double hull_us;
 };
 
+/// What a pipeline takes for granted beyond the model's W and V.
+struct Assumptions {
+  LineForm initial_set;
+  std::optional<LineForm> admissible_set;
+};
+
 /// Writes into `out`:
 ///   results.json  resolved study, versions, and per pipeline steps[] {k, hull, consistent, tightness, metrics} and summary
-///   sets.jsonl    one line per step and pipeline: the estimate's exchange form, and the proof if it is empty
+///   sets.jsonl    one line per step and pipeline: the estimate's exchange form, the proofs of its emptiness or non-emptiness and
+///   of its
+///                 hull's bounds
+///   data.csv      the samples, and the truth where it is known
 ///   steps.csv, summary.csv   the same numbers as tables (∞ as inf, absent values as empty fields)
 ///   run.json      host, times, and what else differs from run to run
 /// Nothing is visible under its name before `commit`.
@@ -31,7 +41,9 @@ class Results {
  public:
   Results(const Study& study, const Registry& registry, const std::filesystem::path& out);
 
-  void begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding);
+  void begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding, const std::optional<Assumptions>& assumptions);
+  /// Every pipeline hands over its records; each is written once.
+  void data(const Record& record);
   /// Throws Errc::plugin, before anything is written, if the metrics have names that they had not in an earlier pipeline.
   void check_columns(const MetricValues& metrics);
   void step(const StepResult& result);
@@ -42,13 +54,14 @@ class Results {
  private:
   void begin_results(const Registry& registry);
   void begin_run(const Registry& registry);
-  void write_set(const Estimate& estimate);
+  void write_set(const StepResult& result);
   void write_row(const StepResult& result);
   void write_header(Index states);
   void write_summaries();
 
   const Study& study_;
   AtomicDirectory directory_;
+  OutputFile& data_file_;
   OutputFile& sets_file_;
   OutputFile& steps_file_;
   OutputFile& summary_file_;
@@ -59,6 +72,7 @@ class Results {
   std::string pipeline_json_;
   std::optional<std::vector<std::string>> columns_;  ///< of metrics in steps.csv, from the first step
   bool header_written_ = false;
+  std::optional<Index> last_sample_;  ///< the last k in data.csv
   struct Summary {
     std::vector<std::string> fields;  ///< what every pipeline has
     std::map<std::string, std::string> metrics;

@@ -2,6 +2,7 @@
 #include "cordon/study/run.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <deque>
 
 #include "study/median.hpp"
@@ -12,6 +13,7 @@ namespace cordon {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using detail::Assumptions;
 using detail::Median;
 using detail::MetricBoard;
 using detail::MetricValues;
@@ -19,10 +21,9 @@ using detail::Results;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// Is x outside X by more than the rounding errors of its own simulation? A box of relative size 1e-9 around x is proven disjoint
-/// from X.
-bool proven_outside(const Set& X, const Vector& x) {
-  if (X.contains(x) != Answer::no) return false;
+/// Is x, which is not in X, outside by more than the rounding errors of its own simulation? A box of relative size 1e-9 around x
+/// is proven disjoint from X.
+bool clearly_outside(const Set& X, const Vector& x) {
   const double margin = 1e-9 * std::max(1.0, x.size() ? x.cwiseAbs().maxCoeff() : 0.0);
   const Enclosure around = X.backend().box({x.array() - margin, x.array() + margin});
   return X.is_disjoint_from(*around) == Answer::yes;
@@ -51,14 +52,18 @@ class Pipeline {
     outcome_.observer = spec.observer.type;
   }
 
-  std::optional<Rounding> make(const PipelineSpec& spec, const Registry& registry) {
+  std::optional<Rounding> rounding() const { return backend_ ? std::optional(backend_->info().rounding) : std::nullopt; }
+  const std::optional<Assumptions>& assumptions() const { return assumptions_; }
+
+  void make(const PipelineSpec& spec, const Registry& registry) {
     guarded([&] {
       backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
       observer_ = registry.make_observer(spec.observer.type, {study_.model, backend_}, spec.observer.params);
       board_.emplace(study_.metrics, registry);
       observer_->start();
+      assumptions_ = {observer_->initial_set(), std::nullopt};
+      if (const Set* admissible = observer_->admissible_set()) assumptions_->admissible_set = admissible->line_form();
     });
-    return backend_ ? std::optional(backend_->info().rounding) : std::nullopt;
   }
 
   /// False once the pipeline has stopped with an error.
@@ -70,7 +75,8 @@ class Pipeline {
     guarded([&] {
       estimate = observer_->step(record.sample);
       const Clock::time_point begin = Clock::now();
-      hull = estimate->consistent == Answer::no ? Box::empty(estimate->set->dim()) : estimate->set->interval_hull();
+      hull = estimate->consistent == Answer::no ? Box::empty(estimate->set->dim())
+                                                : estimate->set->interval_hull(results ? &hull_proofs_ : nullptr);
       hull_us = seconds_since(begin) * 1e6;
       const Vector* truth = judge(record, *estimate);
       values = &board_->step({*estimate, hull, truth, outcome_.assumptions_until < 0, observer_->times()});
@@ -78,8 +84,8 @@ class Pipeline {
     });
     if (!outcome_.error.empty()) return false;
     if (outcome_.inconsistent_from < 0) medians_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
-    count(*estimate);
-    if (results) results->step({*estimate, hull, *values, observer_->times(), hull_us});
+    count(*estimate, hull);
+    if (results) results->step({*estimate, hull, hull_proofs_, *values, observer_->times(), hull_us});
     return true;
   }
 
@@ -124,22 +130,37 @@ class Pipeline {
     if (!record.truth) return nullptr;
     truths_.emplace_back(record.sample.k, *record.truth);
     const Set* admissible = observer_->admissible_set();
-    if (outcome_.assumptions_until < 0 && admissible && admissible->contains(*record.truth) == Answer::no) {
+    if (outcome_.assumptions_until < 0 && admissible && holds(*admissible, *record.truth) == Answer::no) {
       outcome_.assumptions_until = record.sample.k;
     }
     while (!truths_.empty() && truths_.front().first < estimate.k) truths_.pop_front();  // estimates may lag behind the samples
     if (truths_.empty() || truths_.front().first != estimate.k) return nullptr;
     const Vector& truth = truths_.front().second;
     const bool still_inside = outcome_.outside_from < 0;
-    if (still_inside && (estimate.consistent == Answer::no || proven_outside(*estimate.set, truth))) {
+    if (still_inside && (estimate.consistent == Answer::no ||
+                         (holds(*estimate.set, truth) == Answer::no && clearly_outside(*estimate.set, truth)))) {
       outcome_.outside_from = estimate.k;
       if (simulated_ && outcome_.assumptions_until < 0) outcome_.violated_at = estimate.k;
     }
     return &truth;
   }
 
-  void count(const Estimate& estimate) {
+  Answer holds(const Set& X, const Vector& x) {
+    const Answer answer = X.contains(x);
+    outcome_.containment.add(answer != Answer::unknown);
+    return answer;
+  }
+
+  void count(const Estimate& estimate, const Box& hull) {
     ++outcome_.steps;
+    outcome_.emptiness.add(estimate.consistent != Answer::unknown);
+    if (estimate.consistent != Answer::no) {
+      const bool all = hull.is_bounded() || estimate.set->is_bounded() == Answer::no;
+      for (Index i = 0; i < hull.dim(); ++i) {
+        outcome_.bounds.add(all || std::isfinite(hull.upper[i]));
+        outcome_.bounds.add(all || std::isfinite(hull.lower[i]));
+      }
+    }
     switch (estimate.consistent) {
       case Answer::yes:
         ++outcome_.consistent;
@@ -158,8 +179,10 @@ class Pipeline {
   bool simulated_;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Observer> observer_;
+  std::optional<Assumptions> assumptions_;
   std::optional<MetricBoard> board_;
   std::deque<std::pair<Index, Vector>> truths_;
+  std::vector<Certificate> hull_proofs_;
   Medians medians_;
   PipelineOutcome outcome_;
 };
@@ -171,14 +194,16 @@ bool run_pipeline(const Study& study, std::size_t index, const Registry& registr
   const Clock::time_point begin = Clock::now();
   const std::int64_t total = data.size().value_or(0);
   Pipeline pipeline(study, spec);
-  const std::optional<Rounding> rounding = pipeline.make(spec, registry);
-  if (results) results->begin_pipeline(spec, rounding);
+  pipeline.make(spec, registry);
+  if (results) results->begin_pipeline(spec, pipeline.rounding(), pipeline.assumptions());
   std::int64_t done = 0;
   Clock::time_point told = begin;
   while (!pipeline.failed()) {
     if (options.stop && options.stop->load()) return false;
     const std::optional<Record> record = data.next();
-    if (!record || !pipeline.step(*record, results)) break;
+    if (!record) break;
+    if (results) results->data(*record);
+    if (!pipeline.step(*record, results)) break;
     ++done;
     if (options.progress && seconds_since(told) > 0.05) {
       options.progress(index, done, total);

@@ -32,7 +32,7 @@ std::string_view to_string(Tightness tightness) noexcept;
 std::string_view to_string(Rounding rounding) noexcept;
 
 /// Proof of an answer about a set in exchange form {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}, which can be checked again without a
-/// solver.
+/// solver (solvers/certificate.hpp).
 ///   farkas     y, one entry per constraint, with Sᵀy = 0 and bᵀy > ‖Aᵀy‖₁: the set is empty; margin = bᵀy - ‖Aᵀy‖₁
 ///   point      (δ, ξ), near a solution of the constraints: the set is not empty; margin = the slack 1 - ‖ξ‖∞
 ///   dual       y with Sᵀy = Mᵀd: h(d) ≤ dᵀc + bᵀy + ‖Gᵀd - Aᵀy‖₁; margin = that bound

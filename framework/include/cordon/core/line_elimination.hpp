@@ -12,12 +12,17 @@ namespace cordon {
 /// are dropped, a row 0 = b ≠ 0 stays (X is ∅). O((n + m)(l + g) min(l, m)). [Rego2025, Alg. 1]
 LineForm eliminate_lines(const LineForm& X);
 
-/// The same with the size of the terms that each row was computed from: a violation of a row is known up to a share of it only.
+/// The same, with what leads back to X. `set` has m' rows, X has m rows and l lines; every row is the combination of X's rows
+/// that made it, so that a proof about `set` becomes one about X.
 struct LinesEliminated {
   LineForm set;
-  Vector row_magnitude;
+  Vector row_magnitude;  ///< m', size of the terms that each row was computed from: a violation is known up to a share of it only
+  Matrix rows;           ///< m'×m: row k of `set` is rows.row(k) [S A b] (up to rounding, as all of these)
+  Matrix outputs;        ///< n×m: [0 G' -c'] = [M G -c] + outputs [S A b] in the eliminated lines
+  Matrix lines_by_factors;  ///< l×g and
+  Vector lines_offset;      ///< l: δ = lines_offset + lines_by_factors ξ is a choice of lines that satisfies the rows used up
 };
 /// `b_magnitude` (empty: none) is the size of what cancelled in b before.
-LinesEliminated eliminate_lines_with_magnitude(const LineForm& X, VectorIn b_magnitude);
+LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude);
 
 }  // namespace cordon

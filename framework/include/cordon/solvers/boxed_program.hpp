@@ -19,8 +19,13 @@ namespace cordon {
 /// one object serves the 2n directions of an interval hull. Not thread-safe: one object per thread.
 class BoxedProgram {
  public:
-  /// `row_magnitude` (empty: none): size of the terms that each row was computed from, see `is_empty`.
-  BoxedProgram(Matrix A, Vector b, Vector row_magnitude = {});
+  /// How well the rows are known; empty vectors: exactly.
+  struct Accuracy {
+    Vector magnitude;  ///< size of the terms that each row was computed from, see `is_empty`
+    Vector error;      ///< bound of |b - true right-hand side|: what is proven holds for the true one
+  };
+  BoxedProgram(Matrix A, Vector b) : BoxedProgram(std::move(A), std::move(b), Accuracy{}) {}
+  BoxedProgram(Matrix A, Vector b, Accuracy accuracy);
   ~BoxedProgram();
   BoxedProgram(BoxedProgram&&) noexcept;
   BoxedProgram& operator=(BoxedProgram&&) noexcept;
@@ -36,7 +41,7 @@ class BoxedProgram {
   Bound maximum(VectorIn g);
 
   /// Is P empty? `yes` by a Farkas vector y: bᵀy > ‖Aᵀy‖₁; `no` by a point whose residual is repaired rigorously.
-  /// "Empty" is said only if the margin exceeds 1e-10 of the terms it is made of, |y|ᵀ(|b| + |A|1 + row_magnitude): a smaller one
+  /// "Empty" is said only if the margin exceeds 1e-10 of the terms it is made of, |y|ᵀ(|b| + |A|1 + magnitude): a smaller one
   /// may stem from rounding in the operations that made A and b.
   Answer is_empty(Certificate* why = nullptr);
 
@@ -52,12 +57,14 @@ class BoxedProgram {
   std::unique_ptr<State> state_;
 };
 
-/// Checks bᵀy > ‖Aᵀy‖₁ with rounding errors bounded; returns the certified margin (positive: P is empty).
-double farkas_margin(MatrixIn A, VectorIn b, VectorIn y);
+/// Checks bᵀy > ‖Aᵀy‖₁ with rounding errors bounded; returns the certified margin (positive: P is empty), for every right-hand
+/// side within `error` of b.
+double farkas_margin(MatrixIn A, VectorIn b, VectorIn y, VectorIn error = Vector(0));
 
 /// Proves that some ξ' near ξ satisfies Aξ' = b, ‖ξ'‖∞ ≤ 1. Returns an upper bound of ‖ξ' - ξ‖ entrywise, or nothing.
 /// The correction is sought in the span of D Aᵀ, D = diag(1 - |ξ|); (A D Aᵀ) is verified to be regular by an approximate
-/// inverse R with ‖I - R A D Aᵀ‖∞ < 1. Fails for dependent rows. O(m² g + m³).
-std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi);
+/// inverse R with ‖I - R A D Aᵀ‖∞ < 1. Fails for dependent rows. Holds for every right-hand side within `error` of b. O(m² g +
+/// m³).
+std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi, VectorIn error = Vector(0));
 
 }  // namespace cordon

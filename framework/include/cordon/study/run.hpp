@@ -21,6 +21,12 @@ struct RunOptions {
   std::function<void(std::size_t, std::int64_t, std::int64_t)> progress;
 };
 
+/// How many questions of a kind a run has asked, by what became of them.
+struct AnswerCount {
+  std::int64_t proven = 0, unknown = 0;
+  void add(bool is_proven) { ++(is_proven ? proven : unknown); }
+};
+
 struct PipelineOutcome {
   std::string name, backend, observer;
   std::int64_t steps = 0;
@@ -29,6 +35,9 @@ struct PipelineOutcome {
   std::int64_t assumptions_until = -1;  ///< first k at which the truth is proven outside the pipeline's own assumptions
   std::int64_t outside_from = -1;  ///< first k with the truth proven outside the estimate, by more than rounding (1e-9 relative)
   std::int64_t violated_at = -1;   ///< `outside_from` where all assumptions hold, which is known of simulated data only: a defect
+  AnswerCount emptiness;           ///< of every estimate
+  AnswerCount containment;         ///< of the truth in estimates and admissible sets
+  AnswerCount bounds;              ///< of interval hulls; unknown: infinite although the estimate is not proven unbounded
   std::string error;               ///< the pipeline stopped with this error; the others go on
   std::optional<Errc> error_code;
   std::vector<MetricValue> summary;
@@ -44,8 +53,8 @@ struct RunOutcome {
   std::vector<std::filesystem::path> files;
 };
 
-/// Runs all pipelines, one after another. `out` receives results.json, sets.jsonl, steps.csv, summary.csv (the same bytes
-/// whenever the run is repeated) and run.json (host, times). They are written beside the old ones, renamed at the end, and
+/// Runs all pipelines, one after another. `out` receives results.json, sets.jsonl, data.csv, steps.csv, summary.csv (the same
+/// bytes whenever the run is repeated) and run.json (host, times). They are written beside the old ones, renamed at the end, and
 /// removed if the run fails or is interrupted. Throws InputError for bad data, Errc::io when results cannot be written: old ones
 /// are left as they were. An exception of a component ends its pipeline only. Memory does not depend on the number of steps.
 RunOutcome run_study(const Study& study, const Registry& registry, const RunOptions& options);
