@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Questions about a set in exchange form, answered in rational arithmetic: the doubles are taken as the numbers they are. Slower
+// by orders of magnitude than set_questions.hpp; used where a claim is checked and where rounding leaves a question open.
+#pragma once
+
+#include "cordon/core/line_form.hpp"
+#include "cordon/core/rounding.hpp"
+
+namespace cordon::exact {
+
+/// X = ∅? Always `yes` or `no`.
+/// All functions here: Errc::dimension and Errc::not_finite for operands that do not fit, Errc::unsupported above `max_columns`
+/// lines and generators or `max_rows` constraints (with both numbers in the message). No lock, any number of threads. Bounded
+/// dual simplex method on a fraction-free tableau, started from the floating-point solver's basis: milliseconds for tens of
+/// columns, seconds at the limit.
+Answer is_empty(const LineForm& X);
+
+/// x ∈ X? Always `yes` or `no`.
+Answer contains(const LineForm& X, VectorIn x);
+
+/// h_X(d) = sup{dᵀx : x ∈ X} between two neighbouring doubles (one, if it is a double); (+inf, +inf) if unbounded, (-inf, -inf)
+/// if X is empty.
+rounding::Range support(const LineForm& X, VectorIn d);
+
+inline constexpr Index max_columns = 200, max_rows = 100;
+
+}  // namespace cordon::exact

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Convex polyhedra over the rationals, for exact checks.
+#pragma once
+
+#include <memory>
+
+#include "cordon/core/answer.hpp"
+#include "cordon/core/box.hpp"
+#include "cordon/core/line_form.hpp"
+#include "cordon/core/rounding.hpp"
+
+namespace cordon {
+
+/// Convex polyhedron in Rⁿ, bounded or not, given by inequalities (H) or generators (V), converted by the double-description
+/// method over GMP rationals when the other form is needed [Fukuda1996]. Every double is taken as the number it is, and every
+/// operation is exact. Immutable; a copy shares the representation. Redundant rows and generators are removed.
+///
+/// Degenerate cases: ∅ in any dimension; n = 0: the point or ∅. Errors: Errc::dimension, Errc::not_finite (NaN and infinity never
+/// reach GMP), Errc::unsupported when an operation exceeds its size limit, with the size and the limit in the message. cddlib is
+/// not thread-safe: calls from several threads wait for each other. Cost grows exponentially with n: practical up to about n = 6
+/// and a few hundred vertices.
+class Polytope {
+ public:
+  /// {x : H x ≤ h, Q x = q}.
+  static Polytope from_inequalities(MatrixIn H, VectorIn h);
+  static Polytope from_inequalities(MatrixIn H, VectorIn h, MatrixIn Q, VectorIn q);
+  /// conv(columns of V) ⊕ cone(columns of rays) ⊕ span(columns of lines); ∅ if V has no columns.
+  static Polytope from_generators(MatrixIn V);
+  static Polytope from_generators(MatrixIn V, MatrixIn rays, MatrixIn lines);
+  /// The projection {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b} of the lifted set. Practical up to about 10 generators with
+  /// constraints, more without.
+  static Polytope from(const LineForm& X);
+  static Polytope empty(Index n);
+  static Polytope space(Index n);
+
+  Index dim() const;
+  bool is_empty() const;
+  bool is_bounded() const;
+  bool contains(VectorIn x) const;
+  bool contains(const Polytope& X) const;  ///< X ⊆ *this
+  friend bool operator==(const Polytope& X, const Polytope& Y);
+
+  Polytope affine_map(MatrixIn T, VectorIn t) const;           ///< T X + t
+  Polytope preimage(MatrixIn R, VectorIn t) const;             ///< {x : R x + t ∈ X}
+  Polytope minkowski_sum(const Polytope& Y) const;             ///< X ⊕ Y
+  Polytope cartesian_product(const Polytope& Y) const;         ///< X × Y
+  Polytope intersection(const Polytope& Y) const;              ///< X ∩ Y
+  Polytope intersection(MatrixIn R, const Polytope& Y) const;  ///< {x ∈ X : R x ∈ Y}
+  Polytope convex_hull(const Polytope& Y) const;               ///< closure of conv(X ∪ Y)
+
+  /// h(d) = sup{dᵀx} between neighbouring doubles; ±inf as in exact::support.
+  rounding::Range support(VectorIn d) const;
+  /// Volume of a bounded polytope between neighbouring doubles; 0 if flat or empty. Errc::unsupported if unbounded.
+  rounding::Range volume() const;
+  Box interval_hull() const;  ///< rounded outward to neighbouring doubles
+
+  /// Generators and inequalities without redundancy, rounded to the nearest double each (rays, lines and rows are scaled to a
+  /// largest entry of about 1 first). Equations of H stand in Q, q.
+  struct Generators {
+    Matrix vertices, rays, lines;  ///< one per column
+  };
+  struct Inequalities {
+    Matrix H;
+    Vector h;
+    Matrix Q;
+    Vector q;
+  };
+  Generators generators() const;
+  Inequalities inequalities() const;
+
+  /// A constrained zonotope (no lines) or, for a set with lines, a line zonotope: {x in the hull : H x ≤ h} with one slack factor
+  /// per facet. Encloses the polytope; `exact` if no number had to be rounded. Errc::unsupported for half-unbounded sets, which
+  /// the exchange form cannot hold.
+  struct Export {
+    LineForm form;
+    Tightness tightness = Tightness::outer;
+  };
+  Export to_line_form() const;
+
+ private:
+  struct Representation;
+  explicit Polytope(std::shared_ptr<const Representation> representation) : representation_(std::move(representation)) {}
+  std::shared_ptr<const Representation> representation_;
+};
+
+}  // namespace cordon
