@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/run.hpp"
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <memory>
 #include <optional>
 #include <unistd.h>
@@ -12,31 +10,13 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "progress_bar.hpp"
 #include "run_report.hpp"
 
 namespace cordon::apps {
 
 namespace {
-
-constexpr Exit interrupted = static_cast<Exit>(130);  // as a shell reports a process that SIGINT ended
-
-std::atomic<bool> stop_requested = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
-
-/// The first signal asks for an end; the next one gets the system's default and kills.
-extern "C" void request_stop(int) {
-  stop_requested = true;
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-}
-
-void catch_signals() {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    if (std::signal(signal, request_stop) == SIG_IGN) std::signal(signal, SIG_IGN);  // started to ignore it: keep to that
-  }
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file size is an error of write, not the end of the process
-}
 
 struct Arguments {
   std::filesystem::path study, out;
@@ -79,9 +59,8 @@ Exit run(const Program& program, const Arguments& arguments) {
   ProgressBar bar(names, !arguments.quiet && isatty(STDERR_FILENO) == 1);
   RunOptions options;
   options.out = arguments.out.empty() ? std::filesystem::path("results") / arguments.study.stem() : arguments.out;
-  options.stop = &stop_requested;
+  options.stop = stop_on_signals();
   options.progress = [&](std::size_t pipeline, std::int64_t done, std::int64_t total) { bar.show(pipeline, done, total); };
-  catch_signals();
   const RunOutcome outcome = run_study(study, registry, options);
   bar.clear();
   if (outcome.interrupted) {

@@ -85,6 +85,16 @@ class Tableau {
     return value;
   }
 
+  std::vector<Rational> solution(const std::vector<int>& at) const {
+    std::vector<Rational> xi(at.begin(), at.end());
+    for (std::size_t i = 0; i < basic_.size(); ++i) {
+      Rational value(basic_value(i, at), scale_);
+      value.canonicalize();
+      xi[index(basic_[i])] = value;
+    }
+    return xi;
+  }
+
   Rational objective(const std::vector<int>& at) const {
     mpz_class value = rows_.back().back();
     subtract_bounds(rows_.back(), at, value);
@@ -200,7 +210,7 @@ ExactProgram::Result ExactProgram::maximum() const {
     }
     if (side == 0) {
       if (tableau.objective_has_lines()) return {Status::unbounded, 0};
-      return {Status::optimal, tableau.objective(at)};
+      return {Status::optimal, tableau.objective(at), tableau.solution(at), tableau.basis()};
     }
     // Entering factor: one that can move the leaving one back; the smallest ratio keeps all costs on the right side.
     Index entering = -1;

@@ -21,7 +21,9 @@ struct ExactProgram {
   enum class Status { optimal, infeasible, unbounded };
   struct Result {
     Status status;
-    rational::Rational value;  ///< for `optimal`
+    rational::Rational value;                 ///< for `optimal`, like the rest
+    std::vector<rational::Rational> xi = {};  ///< a maximiser's boxed part
+    std::vector<Index> basis = {};  ///< boxed variables whose columns, with those of the lines, solve for the multipliers
   };
   /// Errc::solver after an absurd number of pivots.
   Result maximum() const;

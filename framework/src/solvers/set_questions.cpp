@@ -11,6 +11,8 @@
 #include "cordon/core/rounding.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/certificate.hpp"
+#include "solvers/question_rows.hpp"
+#include "solvers/rational_system.hpp"
 
 namespace cordon {
 
@@ -21,6 +23,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nominal_tolerance = 1e-10;
 /// Candidates for facets that `is_subset` tries before it answers `unknown`.
 constexpr Index max_facets = 20'000;
+
+/// Rational arithmetic above this many operations, about a second, is not worth an answer.
+bool is_small(Index rows, Index columns) {
+  const double m = static_cast<double>(rows);
+  return m * m * static_cast<double>(columns) <= 3e5;
+}
 
 /// The part of X in ξ alone: lines eliminated, directions with lines known. `error` bounds that of X.b.
 struct Questioned {
@@ -41,25 +49,37 @@ struct Questioned {
     return false;
   }
 
-  double support(VectorIn d, Certificate* why) {
+  /// Of the set `whole` that was eliminated. Through lines, a bound is what rational arithmetic makes of the multipliers.
+  double support(const LineForm& whole, VectorIn d, Certificate* why) {
     if (why) *why = {};
-    if (unbounded_along(d)) return is_empty(why) == Answer::yes ? -infinity : infinity;
+    if (unbounded_along(d)) return beyond(whole, why);
     const Vector g = linalg::product(X.G.transpose(), d);
     const BoxedProgram::Bound bound = program.maximum(g);
     if (bound.upper == -infinity) {
-      if (why) {
-        *why = {Certificate::Kind::farkas, linalg::product(eliminated.rows.transpose(), bound.y),
-                farkas_margin(X.A, X.b, bound.y)};
-      }
+      const Certificate proof{Certificate::Kind::farkas, linalg::product(eliminated.rows.transpose(), bound.y),
+                              farkas_margin(X.A, X.b, bound.y)};
+      if (whole.lines() > 0 && !proves_empty(whole, proof)) return beyond(whole, why);
+      if (why) *why = proof;
       return -infinity;
     }
     const double gradient_error = rounding::product_error(X.G.transpose(), d).sum();
-    const double h = rounding::up(rounding::up(rounding::dot(d, X.c).upper + bound.upper) + gradient_error);
-    if (why) {
-      const Vector y = linalg::product(eliminated.rows.transpose(), bound.y) - linalg::product(eliminated.outputs.transpose(), d);
-      *why = {Certificate::Kind::dual, y, h};
+    double h = rounding::up(rounding::up(rounding::dot(d, X.c).upper + bound.upper) + gradient_error);
+    const Vector y = linalg::product(eliminated.rows.transpose(), bound.y) - linalg::product(eliminated.outputs.transpose(), d);
+    if (whole.lines() > 0 && is_small(whole.constraints(), whole.lines() + whole.generators())) {
+      const auto proven = proven_support(whole, d, y);
+      if (!proven) return beyond(whole, why);
+      h = *proven;
     }
+    if (why) *why = {Certificate::Kind::dual, y, h};
     return h;
+  }
+
+  /// Nothing bounds the set along a direction: +inf, unless it is empty.
+  static double beyond(const LineForm& whole, Certificate* why) {
+    Certificate proof;
+    if (cordon::is_empty(whole, &proof) != Answer::yes) return infinity;
+    if (why) *why = std::move(proof);
+    return -infinity;
   }
 
   /// `why` speaks of the rows and factors before the elimination.
@@ -90,50 +110,10 @@ struct Questioned {
   }
 };
 
-/// Sδ + Aξ = b with ‖ξ‖∞ ≤ 1, and how well b is known.
-struct Rows {
-  Matrix S, A;
-  Vector b, magnitude, error;
-};
-
-/// Rational arithmetic above this many operations, about a second, is not worth an answer.
-bool is_small(const Rows& rows) {
-  const double m = static_cast<double>(rows.b.size()), columns = static_cast<double>(rows.S.cols() + rows.A.cols());
-  return m * m * columns <= 3e5;
-}
-
-/// Are the rows unsatisfiable? What is proven with bounded rounding errors stands. Lines are unbounded, so that no bound of
-/// rounding errors covers their elimination: there, and where rows are dependent or a solution touches its bounds, rational
-/// arithmetic decides (`empty` and `not_empty` check a proof so).
-template <class Empty, class NotEmpty>
-Answer is_infeasible(const Rows& rows, Certificate* why, Empty empty, NotEmpty not_empty) {
-  const Index m = rows.b.size(), l = rows.S.cols();
-  const bool lines = l > 0 && !rows.S.isZero(0), small = is_small(rows);
-  const LineForm X{Matrix(0, lines ? l : 0), Matrix(0, rows.A.cols()), Vector(0), lines ? rows.S : Matrix(m, 0), rows.A, rows.b};
-  Questioned q(eliminate_lines_traced(X, rows.magnitude), lines ? Vector(0) : rows.error);
-  const auto with_idle_lines = [&](Certificate proof) {
-    if (!lines && l > 0 && proof.kind == Certificate::Kind::point) {
-      Vector both = Vector::Zero(l + proof.data.size());
-      both.tail(proof.data.size()) = proof.data;
-      proof.data = std::move(both);
-    }
-    return proof;
-  };
-  Certificate proof;
-  Answer answer = q.is_empty(&proof);
-  proof = with_idle_lines(std::move(proof));
-  if (lines && answer == Answer::yes && !(small && empty(proof))) answer = Answer::unknown;
-  if (lines && answer == Answer::no && !(small && not_empty(proof))) answer = Answer::unknown;
-  if (answer == Answer::unknown && small) {
-    proof = with_idle_lines(q.candidate());
-    if (proof.kind == Certificate::Kind::point && not_empty(proof)) answer = Answer::no;
-  }
-  if (why) *why = answer == Answer::unknown ? Certificate{} : std::move(proof);
-  return answer;
-}
-
 /// x - y and a bound of its rounding error, 0 where it is exact.
-void difference(VectorIn x, VectorIn y, Eigen::Ref<Vector> value, Eigen::Ref<Vector> error) {
+void difference(VectorIn x, VectorIn y, Vector& value, Vector& error) {
+  value.resize(x.size());
+  error.resize(x.size());
   for (Index i = 0; i < x.size(); ++i) {
     const double d = x[i] - y[i], part = d - x[i];
     value[i] = d;
@@ -141,6 +121,73 @@ void difference(VectorIn x, VectorIn y, Eigen::Ref<Vector> value, Eigen::Ref<Vec
   }
   if (!value.allFinite() || !error.allFinite()) throw Error(Errc::not_finite, "a set question overflows; scale the problem");
 }
+
+/// Are the rows of a question unsatisfiable? What is proven with bounded rounding errors stands. Lines are unbounded, so that no
+/// bound of rounding errors covers their elimination: there, and where rows are dependent or a solution touches its bounds,
+/// rational arithmetic decides.
+class Infeasibility {
+ public:
+  explicit Infeasibility(rational::Rows rows)
+      : rows_(std::move(rows)),
+        lines_(rows_.S.cols() > 0 && !rows_.S.isZero(0)),
+        small_(is_small(rows_.plus.size(), rows_.S.cols() + rows_.A.cols())) {
+    difference(rows_.plus, rows_.minus, b_, error_);
+    magnitude_ = (rows_.minus.array() == 0).select(0.0, rows_.plus.cwiseAbs() + rows_.minus.cwiseAbs());
+  }
+
+  Answer answer(Certificate* why) {
+    const Index m = b_.size(), l = lines_ ? rows_.S.cols() : 0;
+    const LineForm X{Matrix(0, l), Matrix(0, rows_.A.cols()), Vector(0), lines_ ? rows_.S : Matrix(m, 0), rows_.A, b_};
+    Questioned q(eliminate_lines_traced(X, magnitude_), lines_ ? Vector(0) : error_);
+    Certificate proof;
+    Answer answer = q.is_empty(&proof);
+    proof = with_idle_lines(std::move(proof));
+    if (lines_ && answer != Answer::unknown && !holds(proof)) answer = Answer::unknown;
+    if (answer == Answer::unknown && small_) {
+      proof = with_idle_lines(q.candidate());
+      if (proof.kind != Certificate::Kind::point || !holds(proof)) proof = settled();
+      answer = proof.kind == Certificate::Kind::none     ? Answer::unknown
+               : proof.kind == Certificate::Kind::farkas ? Answer::yes
+                                                         : Answer::no;
+    }
+    if (why) *why = answer == Answer::unknown ? Certificate{} : std::move(proof);
+    return answer;
+  }
+
+ private:
+  /// Lines that enter no row were left out: any value will do.
+  Certificate with_idle_lines(Certificate proof) const {
+    if (!lines_ && rows_.S.cols() > 0 && proof.kind == Certificate::Kind::point) {
+      Vector both = Vector::Zero(rows_.S.cols() + proof.data.size());
+      both.tail(proof.data.size()) = proof.data;
+      proof.data = std::move(both);
+    }
+    return proof;
+  }
+
+  /// In rational arithmetic; a margin of emptiness must exceed what nominal operations may have added.
+  bool holds(Certificate& proof) {
+    if (!small_) return false;
+    if (!system_) system_.emplace(rows_);
+    if (proof.kind == Certificate::Kind::point) return has_solution_near(*system_, proof.data);
+    const auto margin = rational::farkas_margin(*system_, proof.data);
+    if (!margin) return false;
+    proof.margin = margin->get_d();
+    const Vector weight = b_.cwiseAbs() + rows_.A.cwiseAbs().rowwise().sum() + magnitude_;
+    return proof.margin > nominal_tolerance * proof.data.cwiseAbs().dot(weight);
+  }
+
+  Certificate settled() {
+    const rational::Finding found = rational::settle(rows_);
+    Certificate proof{found.feasible ? Certificate::Kind::point : Certificate::Kind::farkas, found.data, 0};
+    return holds(proof) ? proof : Certificate{};
+  }
+
+  rational::Rows rows_;
+  bool lines_, small_;
+  Vector b_, error_, magnitude_;
+  std::optional<rational::System> system_;
+};
 
 /// Next k-subset of {0 … n-1} in lexicographic order; false after the last.
 bool next_subset(std::vector<Index>& subset, Index n) {
@@ -258,29 +305,18 @@ Answer is_empty(const LineForm& X, Certificate* why) {
     if (why) *why = {Certificate::Kind::structure, Vector(0), 1};
     return Answer::no;
   }
-  return is_infeasible(
-      {X.S, X.A, X.b, Vector(0), Vector(0)}, why, [&](const Certificate& proof) { return proves_empty(X, proof); },
-      [&](const Certificate& proof) { return proves_not_empty(X, proof); });
+  return Infeasibility(rows_of(X)).answer(why);
 }
 
 Answer contains(const LineForm& X, VectorIn x, Certificate* why) {
   if (x.size() != X.dim()) throw Error(Errc::dimension, "contains: the point has another dimension than the set");
-  const Index n = X.dim(), m = X.constraints();
-  Rows rows{Matrix(m + n, X.lines()), Matrix(m + n, X.generators()), Vector(m + n), Vector::Zero(m + n), Vector::Zero(m + n)};
-  rows.S << X.S, X.M;
-  rows.A << X.A, X.G;
-  rows.b.head(m) = X.b;
-  difference(x, X.c, rows.b.tail(n), rows.error.tail(n));
-  rows.magnitude.tail(n) = x.cwiseAbs() + X.c.cwiseAbs();
-  return negate(is_infeasible(
-      rows, why, [&](const Certificate& proof) { return proves_excludes(X, x, proof); },
-      [&](const Certificate& proof) { return proves_contains(X, x, proof); }));
+  return negate(Infeasibility(rows_of_point(X, x)).answer(why));
 }
 
 double support(const LineForm& X, VectorIn d, Certificate* why) {
   if (d.size() != X.dim()) throw Error(Errc::dimension, "support: the direction has another dimension than the set");
   if (!d.allFinite()) throw Error(Errc::not_finite, "support: the direction has a NaN or infinite entry");
-  return Questioned(X).support(d, why);
+  return Questioned(X).support(X, d, why);
 }
 
 double attained(const LineForm& X, VectorIn d) {
@@ -310,8 +346,8 @@ Box interval_hull(const LineForm& X, std::vector<Certificate>* why) {
   for (Index i = 0; i < n; ++i) {
     const Vector d = Vector::Unit(n, i);
     if (q.unbounded_along(d)) continue;
-    hull.upper[i] = q.support(d, proof(2 * i));
-    hull.lower[i] = -q.support(-d, proof(2 * i + 1));
+    hull.upper[i] = q.support(X, d, proof(2 * i));
+    hull.lower[i] = -q.support(X, -d, proof(2 * i + 1));
     asked = true;
     if (hull.upper[i] == -infinity || hull.lower[i] == infinity) return Box::empty(n);
   }
@@ -333,19 +369,7 @@ Answer is_bounded(const LineForm& X) {
 
 Answer is_disjoint(const LineForm& X, const LineForm& Y, Certificate* why) {
   if (X.dim() != Y.dim()) throw Error(Errc::dimension, "is_disjoint: the dimensions differ");
-  const Index n = X.dim(), m = X.constraints(), p = Y.constraints();
-  Rows rows{Matrix::Zero(m + p + n, X.lines() + Y.lines()), Matrix::Zero(m + p + n, X.generators() + Y.generators()),
-            Vector(m + p + n), Vector::Zero(m + p + n), Vector::Zero(m + p + n)};
-  rows.S.topRows(m + p) = linalg::block_diagonal(X.S, Y.S);
-  rows.A.topRows(m + p) = linalg::block_diagonal(X.A, Y.A);
-  rows.S.bottomRows(n) << X.M, -Y.M;
-  rows.A.bottomRows(n) << X.G, -Y.G;
-  rows.b.head(m + p) << X.b, Y.b;
-  difference(Y.c, X.c, rows.b.tail(n), rows.error.tail(n));
-  rows.magnitude.tail(n) = X.c.cwiseAbs() + Y.c.cwiseAbs();
-  return is_infeasible(
-      rows, why, [&](const Certificate& proof) { return proves_disjoint(X, Y, proof); },
-      [&](const Certificate& proof) { return proves_meet(X, Y, proof); });
+  return Infeasibility(rows_of_intersection(X, Y)).answer(why);
 }
 
 Answer is_subset(const LineForm& X_in, const LineForm& Y_in, Certificate* why) {

@@ -5,6 +5,8 @@
 // Errors: Errc::dimension, Errc::not_finite for operands that do not fit. O((l + m)² (l + g + m)) rational operations.
 #pragma once
 
+#include <optional>
+
 #include "cordon/core/answer.hpp"
 #include "cordon/core/line_form.hpp"
 
@@ -26,6 +28,9 @@ bool proves_meet(const LineForm& X, const LineForm& Y, const Certificate& why);
 /// h_X(d) ≤ bound, by y with Sᵀy = Mᵀd and dᵀc + bᵀy + ‖Gᵀd - Aᵀy‖₁ ≤ bound (kind `dual`; `structure` is y = 0; `farkas` if X =
 /// ∅).
 bool proves_support(const LineForm& X, VectorIn d, double bound, const Certificate& why);
+
+/// The bound that multipliers y prove, rounded up; nothing if no y nearby satisfies Sᵀy = Mᵀd (then h_X(d) = +inf, or X = ∅).
+std::optional<double> proven_support(const LineForm& X, VectorIn d, VectorIn y);
 
 /// Has the recession space M ker S of a non-empty X more than 0? Decided by ranks, without a certificate.
 bool has_lineality(const LineForm& X);

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/verify.hpp"
+
+#include <csignal>
+#include <memory>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "progress_bar.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+struct Arguments {
+  std::filesystem::path directory;
+  VerifyOptions options;
+  bool json = false, quiet = false;
+};
+
+std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
+  std::vector<std::vector<std::string>> rows{
+      {"pipeline", "backend", "rounding", "steps", "exact sets", "directions", "proofs", "exact claims", "undecided"}};
+  for (const VerifiedPipeline& p : outcome.pipelines) {
+    rows.push_back({p.name, p.backend, std::string(to_string(p.rounding)), std::to_string(p.steps),
+                    std::to_string(p.by_polytopes), std::to_string(p.by_supports), std::to_string(p.proofs),
+                    std::to_string(p.exact_claims), std::to_string(p.undecided)});
+  }
+  return table(rows, paint);
+}
+
+std::string report_json(const VerifyOutcome& outcome) {
+  using Json = nlohmann::ordered_json;
+  Json report{{"verified", !outcome.violation.has_value()}, {"pipelines", Json::array()}, {"violation", nullptr}};
+  for (const VerifiedPipeline& p : outcome.pipelines) {
+    report["pipelines"].push_back({{"name", p.name},
+                                   {"backend", p.backend},
+                                   {"rounding", to_string(p.rounding)},
+                                   {"steps", p.steps},
+                                   {"by_polytopes", p.by_polytopes},
+                                   {"by_supports", p.by_supports},
+                                   {"proofs", p.proofs},
+                                   {"exact_claims", p.exact_claims},
+                                   {"undecided", p.undecided},
+                                   {"first_undecided", p.first_undecided}});
+  }
+  if (const auto& v = outcome.violation) {
+    report["violation"] = {{"pipeline", v->pipeline}, {"k", v->k}, {"what", v->what}, {"pointer", v->pointer}};
+  }
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::int64_t undecided(const VerifyOutcome& outcome) {
+  std::int64_t count = 0;
+  for (const VerifiedPipeline& p : outcome.pipelines) {
+    if (p.undecided > 0) warn(fmt::format("pipeline \"{}\": undecided at {}", p.name, p.first_undecided));
+    count += p.undecided;
+  }
+  return count;
+}
+
+Exit verify(Arguments& arguments) {
+  VerifyOptions& options = arguments.options;
+  const bool visible = !arguments.quiet && isatty(STDERR_FILENO) == 1;
+  std::optional<ProgressBar> bar;
+  options.progress = [&](const std::vector<std::string>& names, std::size_t pipeline, std::int64_t done, std::int64_t total) {
+    if (!bar) bar.emplace(names, visible);
+    bar->show(pipeline, done, total);
+  };
+  options.stop = stop_on_signals();
+  const VerifyOutcome outcome = verify_run(arguments.directory, options);
+  if (bar) bar->clear();
+  if (outcome.interrupted) {
+    complain("interrupted: the run is not verified");
+    return interrupted;
+  }
+  if (!arguments.quiet) print(arguments.json ? report_json(outcome) : report_text(outcome, Paint(stdout)));
+  if (const auto& v = outcome.violation) {
+    complain(fmt::format("violated at {}, pipeline \"{}\", k = {}: {}", v->pointer, v->pipeline, v->k, v->what));
+    return Exit::violated;
+  }
+  if (const std::int64_t open = undecided(outcome); open > 0) {
+    complain(fmt::format("{} checks could not be decided; all others hold", open));
+    return Exit::unanswered;
+  }
+  if (!arguments.quiet && !arguments.json) print("Every claim that was checked holds.\n");
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand("verify", "Check the results of a run again, in exact arithmetic");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("DIR", arguments->directory, "Directory that \"cordon run\" wrote")->required();
+  command->add_option("--every", arguments->options.every, "Check every M-th step")
+      ->option_text("M [1]")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--directions", arguments->options.directions, "Random directions where exact polytopes are too large")
+      ->option_text("N [32]")
+      ->check(CLI::Range(0, 100000));
+  command->add_option("--seed", arguments->options.seed, "Seed of these directions")->option_text("N [1]");
+  command->add_flag("--json", arguments->json, "Print JSON for programs instead of the table");
+  command->add_flag("--quiet", arguments->quiet, "Print errors only");
+  command->footer(
+      "Checks for each step that the reported set and hull contain every state that model, data and the pipeline's own\n"
+      "assumptions allow, that the stored proofs hold, and that claims of \"exact\" are true. No plugin is loaded.\n"
+      "Exit code 4 and the first violation if a claim is false; 5 if a check could not be decided.");
+  command->callback([&program, arguments] { program.exit = verify(*arguments); });
+}
+
+}  // namespace cordon::apps

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solvers/rational_system.hpp"
+
+#include <cmath>
+
+#include "solvers/exact_program.hpp"
+
+namespace cordon::rational {
+
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+void put(RationalMatrix& K, Index col, const Matrix& block) {
+  for (Index i = 0; i < block.rows(); ++i) {
+    for (Index j = 0; j < block.cols(); ++j) {
+      if (block(i, j) != 0) K(i, col + j) = exact(block(i, j));
+    }
+  }
+}
+
+/// y moved onto the equations Lᵀy = t, L the columns of the lines; nothing if they have no solution.
+std::optional<RationalVector> multipliers(const System& s, const RationalVector& t, VectorIn y) {
+  RationalVector moved = exact(y);
+  RationalMatrix equations(s.lines, s.K.rows());
+  RationalVector missing = t;
+  bool holds = true;
+  for (Index j = 0; j < s.lines; ++j) {
+    for (Index i = 0; i < s.K.rows(); ++i) {
+      equations(j, i) = s.K(i, j);
+      if (sgn(s.K(i, j)) != 0) missing[at(j)] -= s.K(i, j) * moved[at(i)];
+    }
+    holds = holds && sgn(missing[at(j)]) == 0;
+  }
+  if (holds) return moved;
+  const double largest = y.size() ? y.cwiseAbs().maxCoeff() : 0;
+  const Vector preference = y.cwiseAbs().cwiseMax(1e-6 * largest + 1e-300);  // large entries bear a change best
+  const auto change = solve(std::move(equations), std::move(missing), preference);
+  if (!change) return std::nullopt;
+  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += (*change)[i];
+  return moved;
+}
+
+/// ‖g - Aᵀy‖₁ over the factors.
+Rational distance(const System& s, const RationalVector& g, const RationalVector& y) {
+  Rational sum;
+  for (Index j = 0; j < s.factors(); ++j) {
+    Rational value = g[at(j)];
+    for (Index i = 0; i < s.K.rows(); ++i) {
+      if (sgn(s.K(i, s.lines + j)) != 0 && sgn(y[at(i)]) != 0) value -= s.K(i, s.lines + j) * y[at(i)];
+    }
+    sum += abs(value);
+  }
+  return sum;
+}
+
+/// The rows for the exact simplex method, which takes doubles: plus - minus is written with a factor that a row of its own fixes
+/// to
+/// 1. `right` in place of the right-hand side: 0, and the right-hand side times a last factor, which the method maximises.
+ExactProgram program_of(const Rows& rows, bool scaled) {
+  const Index m = rows.plus.size(), g = rows.A.cols(), l = rows.S.cols();
+  const bool shifted = !rows.minus.isZero(0);
+  const Index extra_row = shifted ? 1 : 0, constant = g, tau = g + extra_row, cols = tau + (scaled ? 1 : 0);
+  ExactProgram p{Matrix::Zero(m + extra_row, l), Matrix::Zero(m + extra_row, cols), Vector::Zero(m + extra_row), Vector::Zero(l),
+                 Vector::Zero(cols)};
+  p.S.topRows(m) = rows.S;
+  p.A.topLeftCorner(m, g) = rows.A;
+  if (shifted) p.A.block(0, constant, m, 1) = rows.minus;
+  if (scaled) {
+    p.A.block(0, tau, m, 1) = -rows.plus;
+    if (shifted) p.A(m, constant) = 1, p.A(m, tau) = -1;
+    p.g[tau] = 1;
+  } else {
+    p.b.head(m) = rows.plus;
+    if (shifted) p.A(m, constant) = 1, p.b[m] = 1;
+  }
+  return p;
+}
+
+/// Doubles of about 1 at most: multipliers may be scaled.
+Vector rounded(const RationalVector& x, Index size) {
+  Vector y(size);
+  for (Index i = 0; i < size; ++i) y[i] = nearest(x[at(i)]);
+  return y;
+}
+
+}  // namespace
+
+std::optional<RationalVector> solve(RationalMatrix K, RationalVector r, const Vector& preference, Index* rank) {
+  std::vector<std::pair<Index, Index>> pivots;
+  std::vector<bool> used(at(K.cols()), false);
+  for (Index i = 0; i < K.rows(); ++i) {
+    Index col = -1;
+    double best = 0;
+    for (Index j = 0; j < K.cols(); ++j) {
+      if (used[at(j)] || preference[j] == 0 || sgn(K(i, j)) == 0) continue;
+      const double score = std::abs(K(i, j).get_d()) * preference[j];
+      if (col < 0 || score > best) {
+        best = score;
+        col = j;
+      }
+    }
+    if (col < 0) {
+      if (sgn(r[at(i)]) != 0) return std::nullopt;
+      continue;
+    }
+    used[at(col)] = true;
+    pivots.emplace_back(i, col);
+    const Rational pivot = K(i, col);
+    for (Index j = 0; j < K.cols(); ++j) {
+      if (sgn(K(i, j)) != 0) K(i, j) /= pivot;
+    }
+    r[at(i)] /= pivot;
+    for (Index k = 0; k < K.rows(); ++k) {
+      if (k == i || sgn(K(k, col)) == 0) continue;
+      const Rational factor = K(k, col);
+      for (Index j = 0; j < K.cols(); ++j) {
+        if (sgn(K(i, j)) != 0) K(k, j) -= factor * K(i, j);
+      }
+      r[at(k)] -= factor * r[at(i)];
+    }
+  }
+  if (rank) *rank = static_cast<Index>(pivots.size());
+  RationalVector x(at(K.cols()));
+  for (const auto& [row, col] : pivots) x[at(col)] = r[at(row)];
+  return x;
+}
+
+System::System(const Rows& rows) : K(rows.plus.size(), rows.S.cols() + rows.A.cols()), r(exact(rows.plus)), lines(rows.S.cols()) {
+  put(K, 0, rows.S);
+  put(K, lines, rows.A);
+  for (Index i = 0; i < rows.minus.size(); ++i) {
+    if (rows.minus[i] != 0) r[at(i)] -= exact(rows.minus[i]);
+  }
+}
+
+std::optional<Rational> farkas_margin(const System& s, VectorIn y) {
+  if (y.size() != s.K.rows() || !y.allFinite()) return std::nullopt;
+  const auto moved = multipliers(s, RationalVector(at(s.lines)), y);
+  if (!moved) return std::nullopt;
+  return Rational(dot(s.r, *moved) - distance(s, RationalVector(at(s.factors())), *moved));
+}
+
+std::optional<Rational> dual_bound(const System& s, const RationalVector& t, const RationalVector& g, VectorIn y) {
+  if (y.size() != s.K.rows() || !y.allFinite()) return std::nullopt;
+  const auto moved = multipliers(s, t, y);
+  if (!moved) return std::nullopt;
+  return Rational(dot(s.r, *moved) + distance(s, g, *moved));
+}
+
+bool has_solution_near(const System& s, VectorIn data) {
+  if (data.size() != s.K.cols() || !data.allFinite()) return false;
+  Vector start = data, preference(s.K.cols());
+  start.tail(s.factors()) = start.tail(s.factors()).cwiseMax(-1.0).cwiseMin(1.0);
+  preference.head(s.lines).setConstant(1e6);  // lines have no bound to keep
+  preference.tail(s.factors()) = 1 - start.tail(s.factors()).array().abs();
+  const RationalVector point = exact(start);
+  RationalVector gap = s.r;
+  bool holds = true;
+  for (Index i = 0; i < s.K.rows(); ++i) {
+    for (Index j = 0; j < s.K.cols(); ++j) {
+      if (sgn(s.K(i, j)) != 0) gap[at(i)] -= s.K(i, j) * point[at(j)];
+    }
+    holds = holds && sgn(gap[at(i)]) == 0;
+  }
+  if (holds) return true;
+  const auto change = solve(s.K, std::move(gap), preference);
+  if (!change) return false;
+  for (Index j = s.lines; j < s.K.cols(); ++j) {
+    if (sgn((*change)[at(j)]) != 0 && abs(point[at(j)] + (*change)[at(j)]) > 1) return false;
+  }
+  return true;
+}
+
+Finding settle(const Rows& rows) {
+  const Index m = rows.plus.size(), l = rows.S.cols(), g = rows.A.cols();
+  const ExactProgram::Result found = program_of(rows, false).maximum();
+  if (found.status != ExactProgram::Status::infeasible) {
+    Vector data = Vector::Zero(l + g);  // the lines follow from the factors
+    data.tail(g) = rounded(found.xi, g);
+    return {true, std::move(data)};
+  }
+  // max τ < 1 with the right-hand side scaled by τ: its multipliers y solve [L B]ᵀy = (0, cost of B) for the basis B
+  const ExactProgram scaled = program_of(rows, true);
+  const ExactProgram::Result gap = scaled.maximum();
+  const Index all = scaled.b.size(), basic = static_cast<Index>(gap.basis.size());
+  RationalMatrix equations(l + basic, all);
+  RationalVector costs(at(l + basic));
+  for (Index j = 0; j < l + basic; ++j) {
+    const Index column = j < l ? j : gap.basis[at(j - l)];
+    for (Index i = 0; i < all; ++i) equations(j, i) = exact(j < l ? scaled.S(i, column) : scaled.A(i, column));
+    if (j >= l) costs[at(j)] = exact(scaled.g[column]);
+  }
+  auto y = solve(std::move(equations), std::move(costs), Vector::Ones(all));
+  if (!y) return {false, Vector::Zero(m)};
+  scale_to_one(*y);
+  Vector data = -rounded(*y, m);
+  return {false, std::move(data)};
+}
+
+}  // namespace cordon::rational

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rows with free and boxed variables over the rationals: proofs about them, restored and found.
+#pragma once
+
+#include <optional>
+
+#include "cordon/core/types.hpp"
+#include "solvers/rational.hpp"
+
+namespace cordon::rational {
+
+/// Sδ + Aξ = plus - minus with δ free and ‖ξ‖∞ ≤ 1, in doubles; the difference is taken exactly.
+struct Rows {
+  Matrix S, A;
+  Vector plus, minus;
+};
+
+/// {(δ, ξ) : K (δ, ξ) = r, ‖ξ‖∞ ≤ 1}; the first `lines` variables are free.
+struct System {
+  explicit System(const Rows& rows);
+
+  RationalMatrix K;
+  RationalVector r;
+  Index lines;
+
+  Index factors() const { return K.cols() - lines; }
+};
+
+/// bᵀy - ‖Aᵀy‖₁ for the y nearby that solves Lᵀy = 0 exactly, L the lines' columns: positive, and the system has no solution.
+/// Nothing if there is no such y.
+std::optional<Rational> farkas_margin(const System& s, VectorIn y);
+
+/// gᵀξ + tᵀδ ≤ bᵀy + ‖g - Aᵀy‖₁ for the y nearby with Lᵀy = t: that bound.
+std::optional<Rational> dual_bound(const System& s, const RationalVector& t, const RationalVector& g, VectorIn y);
+
+/// Is there a solution at the point, moved onto the rows?
+bool has_solution_near(const System& s, VectorIn point);
+
+/// What the exact simplex method finds: a solution (δ, ξ), or multipliers of the largest gap to a solution, each rounded to
+/// doubles. A proof only after one of the checks above.
+struct Finding {
+  bool feasible;
+  Vector data;
+};
+Finding settle(const Rows& rows);
+
+/// K x = r by Gauss-Jordan elimination; x is 0 outside the pivot columns, which are chosen by |entry| · preference (a column of
+/// preference 0 is never one). Nothing if the system is inconsistent on those columns. `rank` (may be null) receives the number
+/// of pivots.
+std::optional<RationalVector> solve(RationalMatrix K, RationalVector r, const Vector& preference, Index* rank = nullptr);
+
+}  // namespace cordon::rational

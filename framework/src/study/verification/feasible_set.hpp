@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The states that model, bounds and data allow: what every reported set must contain.
+#pragma once
+
+#include <optional>
+
+#include "cordon/interfaces/model.hpp"
+#include "cordon/solvers/polytope.hpp"
+
+namespace cordon::verification {
+
+/// F_k = {x_k : there are x_0 ∈ X_0, w_j ∈ W, v_j ∈ V with E x_{j+1} = A x_j + B u_j + Bw w_j, y_j = C x_j + D u_j + Dv v_j, x_j
+/// ∈ X_A for all j ≤ k}; the equation of j = k, whose x_{k+1} is free, restricts x_k by its static rows. Exact, by polyhedra in
+/// Rⁿ:
+///   P_0 = X_0 ∩ X_A ∩ Y_0,   P_k = {x : E x ∈ A P_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W} ∩ X_A ∩ Y_k,
+///   F_k = {x ∈ P_k : A x + B u_k ∈ E Rⁿ ⊕ (-Bw W)},   Y_k = {x : y_k - D u_k - C x ∈ Dv V}.
+/// Throws Errc::unsupported where polyhedra grow too large.
+class FeasibleSets {
+ public:
+  FeasibleSets(const Model& model, const LineForm& initial_set, const std::optional<LineForm>& admissible_set);
+
+  /// F_k for the next sample.
+  Polytope step(const Sample& now);
+
+ private:
+  Polytope measured(const Polytope& X, const Sample& now) const;
+
+  const LinearModel& model_;
+  Polytope initial_;
+  std::optional<Polytope> admissible_, P_;
+  Polytope disturbance_, minus_disturbance_, minus_noise_;  ///< Bw W, -Bw W, -Dv V
+  std::optional<Sample> before_;
+};
+
+/// {x_k : x_{k-1} ∈ X_{k-1} is consistent with sample k-1, and x_k is a successor of it that is consistent with sample k}: an
+/// exchange form whose rows hold the numbers of model and data as they are, so that nothing is rounded. Without `before`: X ∩ X_A
+/// ∩ Y_k. As for F_k, static rows of time k restrict x_k.
+struct Transition {
+  const Sample* before = nullptr;
+  const Sample& now;
+};
+LineForm successors(const Model& model, const LineForm& X, const std::optional<LineForm>& admissible_set,
+                    const Transition& transition);
+
+}  // namespace cordon::verification

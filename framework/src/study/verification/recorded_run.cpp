@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/verification/recorded_run.hpp"
+
+#include <algorithm>
+
+#include "study/read_parts.hpp"
+
+namespace cordon::verification {
+
+namespace {
+
+using namespace json;
+using Kind = Value::Kind;
+
+const std::string& mend() {
+  static const std::string text = "the file is not as \"cordon run\" wrote it; run the study again";
+  return text;
+}
+
+/// A block of rows × cols; a matrix without rows or columns is written as [] or [[], …].
+std::optional<Matrix> read_block(const Cursor& set, const char* key, Index rows, Index cols) {
+  const auto at = set.need(key, mend());
+  auto entries = at ? read_matrix(*at) : std::nullopt;
+  if (!entries) return std::nullopt;
+  if (entries->size() == 0 && rows * cols == 0) return Matrix(rows, cols);
+  if (entries->rows() == rows && entries->cols() == cols) return entries;
+  at->error("is " + shape(entries->rows(), entries->cols()) + ", must be " + shape(rows, cols), mend());
+  return std::nullopt;
+}
+
+std::optional<Vector> read_part(const Cursor& set, const char* key, Index size) {
+  const auto at = set.need(key, mend());
+  auto entries = at ? read_vector(*at) : std::nullopt;
+  if (!entries || entries->size() == size) return entries;
+  at->error("has " + std::to_string(entries->size()) + " numbers, must have " + std::to_string(size), mend());
+  return std::nullopt;
+}
+
+std::optional<Index> read_size(const Cursor& set, const char* key) {
+  const auto at = set.need(key, mend());
+  const auto size = at ? read_integer(*at, 0, max_entries) : std::nullopt;
+  return size ? std::optional<Index>(*size) : std::nullopt;
+}
+
+std::optional<LineForm> read_form(const Cursor& at, Index dim) {
+  if (!at.expect(Kind::object, mend())) return std::nullopt;
+  const auto n = read_size(at, "dim"), l = read_size(at, "lines"), g = read_size(at, "generators"),
+             m = read_size(at, "constraints");
+  if (!n || !l || !g || !m) return std::nullopt;
+  if (*n != dim) {
+    at.error("has dimension " + std::to_string(*n) + ", the state has " + std::to_string(dim), mend());
+    return std::nullopt;
+  }
+  auto M = read_block(at, "M", *n, *l), G = read_block(at, "G", *n, *g), S = read_block(at, "S", *m, *l),
+       A = read_block(at, "A", *m, *g);
+  auto c = read_part(at, "c", *n), b = read_part(at, "b", *m);
+  if (!M || !G || !S || !A || !c || !b) return std::nullopt;
+  return LineForm{std::move(*M), std::move(*G), std::move(*c), std::move(*S), std::move(*A), std::move(*b)};
+}
+
+template <class Enum>
+std::optional<Enum> read_word(const Cursor& object, const char* key, std::initializer_list<Enum> all) {
+  const auto at = object.need(key, mend());
+  if (!at) return std::nullopt;
+  std::vector<std::string> words;
+  for (const Enum one : all) words.emplace_back(to_string(one));
+  const auto word = read_choice(*at, words);
+  if (!word) return std::nullopt;
+  return *(all.begin() + (std::find(words.begin(), words.end(), *word) - words.begin()));
+}
+
+std::optional<Certificate> read_certificate(const Cursor& at) {
+  if (!at.expect(Kind::object, mend())) return std::nullopt;
+  using Proof = Certificate::Kind;
+  const auto kind =
+      read_word(at, "kind", {Proof::none, Proof::farkas, Proof::point, Proof::dual, Proof::direction, Proof::structure});
+  if (!kind) return std::nullopt;
+  Certificate why{*kind, Vector(0), 0};
+  if (const auto data = at.find("data")) {
+    auto numbers = read_vector(*data);
+    if (!numbers) return std::nullopt;
+    why.data = std::move(*numbers);
+  }
+  if (const auto margin = at.find("margin")) why.margin = read_number(*margin).value_or(0);
+  return why;
+}
+
+std::optional<RecordedStep> read_step(const Cursor& at, Index n) {
+  if (!at.expect(Kind::object, mend())) return std::nullopt;
+  RecordedStep step;
+  const auto k_at = at.need("k", mend()), hull = at.need("hull", mend());
+  const auto k = k_at ? read_integer(*k_at, 0, max_integer) : std::nullopt;
+  const auto consistent = read_word(at, "consistent", {Answer::yes, Answer::no, Answer::unknown});
+  const auto tightness = read_word(at, "tightness", {Tightness::exact, Tightness::outer});
+  if (!hull || !hull->expect(Kind::object, mend())) return std::nullopt;
+  const auto lower_at = hull->need("lower", mend()), upper_at = hull->need("upper", mend());
+  auto lower = lower_at ? read_bounds(*lower_at) : std::nullopt, upper = upper_at ? read_bounds(*upper_at) : std::nullopt;
+  if (!k || !consistent || !tightness || !lower || !upper) return std::nullopt;
+  if (!expect_size(*lower_at, *lower, n, "the state") || !expect_size(*upper_at, *upper, n, "the state")) return std::nullopt;
+  return RecordedStep{*k, {std::move(*lower), std::move(*upper)}, *consistent, *tightness};
+}
+
+std::optional<RecordedPipeline> read_pipeline(const Cursor& at, Index n) {
+  if (!at.expect(Kind::object, mend())) return std::nullopt;
+  RecordedPipeline pipeline;
+  const auto name = at.need("name", mend()), backend = at.need("backend", mend()), assumed = at.need("assumptions", mend()),
+             steps = at.need("steps", mend());
+  if (!name || !backend || !assumed || !steps || !steps->expect(Kind::array, mend())) return std::nullopt;
+  pipeline.name = read_text(*name, 1000).value_or("");
+  pipeline.backend = read_text(*backend, 1000).value_or("");
+  if (assumed->is(Kind::null) && steps->size() == 0) return pipeline;  // stopped before its first step
+  if (const auto rounding = read_word(at, "rounding", {Rounding::nominal, Rounding::outward, Rounding::rational})) {
+    pipeline.rounding = *rounding;
+  }
+  if (!assumed->expect(Kind::object, mend())) return std::nullopt;
+  if (const auto initial = assumed->need("initial_set", mend())) {
+    if (auto form = read_form(*initial, n)) pipeline.initial_set = std::move(*form);
+  }
+  if (const auto admissible = assumed->need("admissible_set", mend()); admissible && !admissible->is(Kind::null)) {
+    pipeline.admissible_set = read_form(*admissible, n);
+  }
+  for (std::size_t i = 0; i < steps->size(); ++i) {
+    if (auto step = read_step(steps->item(i), n)) pipeline.steps.push_back(std::move(*step));
+  }
+  return pipeline;
+}
+
+CsvSpec data_of(const std::filesystem::path& directory, const LinearModel& model) {
+  CsvSpec spec;
+  spec.file = directory / "data.csv";
+  for (Index i = 1; i <= model.inputs(); ++i) spec.inputs.push_back("u_" + std::to_string(i));
+  for (Index i = 1; i <= model.outputs(); ++i) spec.outputs.push_back("y_" + std::to_string(i));
+  return spec;
+}
+
+}  // namespace
+
+RecordedRun read_run(const std::filesystem::path& directory) {
+  const std::filesystem::path file = directory / "results.json";
+  Problems problems;
+  const std::string text = read_file(file.string());
+  const Value tree = parse(text, problems);
+  const Cursor root(tree, "", problems);
+  RecordedRun run;
+  run.directory = directory;
+  if (root.expect(Kind::object, "a results file of \"cordon run\" is an object")) {
+    const auto version = root.need("cordon_results", "this is not a results file of \"cordon run\"");
+    const auto number = version ? read_number(*version) : std::nullopt;
+    if (number && *number != 1) version->error("this version of the format is not known", "this program reads 1");
+    const auto study = root.need("study", mend()), pipelines = root.need("pipelines", mend());
+    const auto system = study && study->expect(Kind::object, mend()) ? study->need("system", mend()) : std::nullopt;
+    std::vector<std::string> warnings;
+    SystemPart part = system ? read_system(*system, warnings) : SystemPart{};
+    if (part.good && pipelines && pipelines->expect(Kind::array, mend())) {
+      for (std::size_t i = 0; i < pipelines->size(); ++i) {
+        if (auto pipeline = read_pipeline(pipelines->item(i), part.model.linear.states())) {
+          run.pipelines.push_back(std::move(*pipeline));
+        }
+      }
+    }
+    run.model = std::move(part.model);
+  }
+  if (problems.any()) throw InputError(file.string(), problems.sorted());
+  run.data = data_of(directory, run.model.linear);
+  return run;
+}
+
+SetReader::SetReader(const std::filesystem::path& directory) : file_(directory / "sets.jsonl"), stream_(file_, std::ios::binary) {
+  if (!stream_) throw InputError(file_.string(), {{"", "cannot be read", "\"cordon run\" writes it beside results.json"}});
+}
+
+std::optional<RecordedSet> SetReader::next() {
+  std::string text;
+  if (!std::getline(stream_, text)) return std::nullopt;
+  ++line_;
+  Problems problems;
+  RecordedSet row;
+  row.line = line_;
+  if (text.size() > max_bytes) {
+    problems.add("", 1, "the line is longer than " + std::to_string(max_bytes) + " bytes", mend());
+  } else {
+    const Value tree = parse(text, problems);
+    const Cursor root(tree, "", problems);
+    if (root.expect(Kind::object, mend())) {
+      const auto name = root.need("pipeline", mend()), k_at = root.need("k", mend()), proof = root.need("proof", mend());
+      const auto exchange = read_word(root, "exchange", {Tightness::exact, Tightness::outer});
+      const auto dim = read_size(root, "dim");
+      if (name) row.pipeline = read_text(*name, 1000).value_or("");
+      if (k_at) row.k = read_integer(*k_at, 0, max_integer).value_or(0);
+      if (exchange) row.exact_exchange = *exchange == Tightness::exact;
+      if (auto form = dim ? read_form(root, *dim) : std::nullopt) row.set = std::move(*form);
+      if (proof) row.proof = read_certificate(*proof).value_or(Certificate{});
+      if (const auto proofs = root.find("hull_proofs"); proofs && proofs->expect(Kind::array, mend())) {
+        for (std::size_t i = 0; i < proofs->size(); ++i) {
+          row.hull_proofs.push_back(read_certificate(proofs->item(i)).value_or(Certificate{}));
+        }
+      }
+    }
+  }
+  if (!problems.any()) return row;
+  std::vector<Diagnostic> found = problems.sorted();
+  for (Diagnostic& one : found) one.line = static_cast<int>(std::min<std::int64_t>(line_, 1'000'000'000));
+  throw InputError(file_.string(), std::move(found));
+}
+
+}  // namespace cordon::verification

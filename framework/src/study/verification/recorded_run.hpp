@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files of a finished run, read with every size and number checked.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cordon/study/study.hpp"
+#include "study/json_cursor.hpp"
+
+namespace cordon::verification {
+
+/// One entry of steps[] in results.json.
+struct RecordedStep {
+  Index k = 0;
+  Box hull;
+  Answer consistent = Answer::unknown;
+  Tightness tightness = Tightness::outer;
+};
+
+struct RecordedPipeline {
+  std::string name, backend;
+  Rounding rounding = Rounding::nominal;
+  LineForm initial_set;
+  std::optional<LineForm> admissible_set;
+  std::vector<RecordedStep> steps;
+};
+
+/// One line of sets.jsonl.
+struct RecordedSet {
+  std::string pipeline;
+  Index k = 0;
+  bool exact_exchange = true;
+  LineForm set;
+  Certificate proof;
+  std::vector<Certificate> hull_proofs;  ///< two per coordinate; none for an empty set
+  std::int64_t line = 0;
+};
+
+struct RecordedRun {
+  std::filesystem::path directory;
+  Model model;
+  CsvSpec data;  ///< data.csv
+  std::vector<RecordedPipeline> pipelines;
+};
+
+/// Throws InputError.
+RecordedRun read_run(const std::filesystem::path& directory);
+
+/// Streams sets.jsonl.
+class SetReader {
+ public:
+  explicit SetReader(const std::filesystem::path& directory);
+  /// The next line; nothing at the end. Throws InputError.
+  std::optional<RecordedSet> next();
+
+ private:
+  std::filesystem::path file_;
+  std::ifstream stream_;
+  std::int64_t line_ = 0;
+};
+
+}  // namespace cordon::verification

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The single checks of one reported step.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cordon/solvers/polytope.hpp"
+#include "cordon/study/verify.hpp"
+#include "study/verification/recorded_run.hpp"
+
+namespace cordon::verification {
+
+/// A step with its set, and what its checks found.
+class StepCheck {
+ public:
+  StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding);
+
+  void proofs();
+  /// F ⊆ X_k and F ⊆ hull, by the vertices of F; where `exact` is claimed, X_k ⊆ F by its inequalities.
+  void against(const Polytope& F);
+  /// The same inclusions for the set that `successors` holds, in the directions of the columns.
+  void against(const LineForm& successors, const Matrix& directions);
+
+  /// An inclusion could not be checked at all.
+  void skipped(std::string why) { open(std::move(why)); }
+
+  struct Finding {
+    std::string what;
+    bool in_sets_file = false;  ///< else in the step's hull
+  };
+  const std::optional<Finding>& violation() const { return violation_; }
+  std::int64_t proofs_that_hold() const { return proofs_; }
+  std::int64_t undecided() const { return undecided_; }
+  const std::string& first_undecided() const { return first_undecided_; }
+  bool exact_claim_holds() const { return exact_holds_; }
+
+ private:
+  void violated(std::string what, bool in_sets_file);
+  void open(std::string what);
+  void emptiness_proof();
+  void bound_proof(Index i, bool upper);
+  void contains_vertex(const Vector& x);
+  void contains_direction(const Vector& d, bool line);
+  void within(const Vector& normal, double h, const Polytope& F);
+  bool reported_empty() const { return step_.consistent == Answer::no; }
+
+  const RecordedStep& step_;
+  const RecordedSet& row_;
+  Vector size_;       ///< of each coordinate
+  double tolerance_;  ///< relative to it
+  LineForm widened_;  ///< X_k ⊕ the tolerance
+  std::optional<Finding> violation_;
+  std::int64_t proofs_ = 0, undecided_ = 0;
+  std::string first_undecided_;
+  bool exact_holds_ = false;
+};
+
+}  // namespace cordon::verification

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/verify.hpp"
+
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "cordon/core/error.hpp"
+#include "cordon/study/data.hpp"
+#include "study/random.hpp"
+#include "study/verification/feasible_set.hpp"
+#include "study/verification/recorded_run.hpp"
+#include "study/verification/step_check.hpp"
+
+namespace cordon {
+
+namespace {
+
+using namespace verification;
+using Clock = std::chrono::steady_clock;
+
+constexpr Index most_states_of_polytopes = 4;
+constexpr std::size_t most_kept_polytopes = 5000;
+
+bool same(const Matrix& A, const Matrix& B) { return A.rows() == B.rows() && A.cols() == B.cols() && A == B; }
+bool same(const LineForm& X, const LineForm& Y) {
+  return same(X.M, Y.M) && same(X.G, Y.G) && same(X.c, Y.c) && same(X.S, Y.S) && same(X.A, Y.A) && same(X.b, Y.b);
+}
+bool same_assumptions(const RecordedPipeline& a, const RecordedPipeline& b) {
+  if (!same(a.initial_set, b.initial_set) || a.admissible_set.has_value() != b.admissible_set.has_value()) return false;
+  return !a.admissible_set || same(*a.admissible_set, *b.admissible_set);
+}
+
+/// F_0, F_1, … of one set of assumptions, kept for later pipelines that share them.
+class FeasibleSequence {
+ public:
+  FeasibleSequence(const Model& model, const RecordedPipeline& pipeline) : pipeline_(pipeline) {
+    if (model.linear.states() > most_states_of_polytopes) return;
+    try {
+      sets_.emplace(model, pipeline.initial_set, pipeline.admissible_set);
+    } catch (const Error& error) {
+      if (error.code() != Errc::unsupported) throw;
+    }
+  }
+
+  bool serves(const RecordedPipeline& other) const { return same_assumptions(pipeline_, other); }
+
+  /// Samples come in order; nothing once the polytopes have grown too large.
+  std::optional<Polytope> at(std::size_t i, const Sample& sample) {
+    if (i < kept_.size()) return kept_[i];
+    std::optional<Polytope> F;
+    if (sets_) {
+      try {
+        F = sets_->step(sample);
+      } catch (const Error& error) {
+        if (error.code() != Errc::unsupported) throw;
+        sets_.reset();
+      }
+    }
+    if (kept_.size() < most_kept_polytopes) kept_.push_back(F);
+    return F;
+  }
+
+  bool complete(std::size_t steps) const { return steps <= kept_.size() || steps <= most_kept_polytopes; }
+
+ private:
+  const RecordedPipeline& pipeline_;
+  std::optional<FeasibleSets> sets_;
+  std::vector<std::optional<Polytope>> kept_;
+};
+
+/// ±e_i and random directions, as columns.
+Matrix directions_of(Index n, const VerifyOptions& options, Index k) {
+  Matrix D(n, 2 * n + options.directions);
+  D.leftCols(n).setIdentity();
+  D.middleCols(n, n) = -Matrix::Identity(n, n);
+  detail::RandomStream random(options.seed, detail::Purpose::direction, static_cast<std::uint64_t>(k));
+  for (Index j = 2 * n; j < D.cols(); ++j) {
+    for (Index i = 0; i < n; ++i) D(i, j) = random.symmetric();
+  }
+  return D;
+}
+
+class Verification {
+ public:
+  Verification(const std::filesystem::path& directory, const VerifyOptions& options)
+      : run_(read_run(directory)), options_(options), sets_(directory) {
+    for (const RecordedPipeline& pipeline : run_.pipelines) names_.push_back(pipeline.name);
+  }
+
+  VerifyOutcome run() {
+    std::optional<FeasibleSequence> feasible;
+    for (std::size_t p = 0; p < run_.pipelines.size(); ++p) {
+      const RecordedPipeline& pipeline = run_.pipelines[p];
+      if (!feasible || !feasible->serves(pipeline) || !feasible->complete(pipeline.steps.size())) {
+        feasible.emplace(run_.model, pipeline);
+      }
+      outcome_.pipelines.push_back({});
+      outcome_.pipelines.back().name = pipeline.name;
+      outcome_.pipelines.back().backend = pipeline.backend;
+      outcome_.pipelines.back().rounding = pipeline.rounding;
+      check(p, *feasible);
+      if (outcome_.violation || outcome_.interrupted) return std::move(outcome_);
+    }
+    if (const auto extra = sets_.next()) refuse(extra->line, "has more lines than results.json has steps");
+    return std::move(outcome_);
+  }
+
+ private:
+  [[noreturn]] void refuse(std::int64_t line, const std::string& reason) const {
+    throw InputError((run_.directory / "sets.jsonl").string(),
+                     {{"", reason, "the file is not as \"cordon run\" wrote it; run the study again", static_cast<int>(line)}});
+  }
+
+  RecordedSet set_of(const RecordedPipeline& pipeline, const RecordedStep& step) {
+    std::optional<RecordedSet> row = sets_.next();
+    if (!row) refuse(0, fmt::format("ends before pipeline \"{}\", k = {}", pipeline.name, step.k));
+    if (row->pipeline != pipeline.name || row->k != step.k || row->set.dim() != run_.model.linear.states()) {
+      refuse(row->line, fmt::format("does not hold the set of pipeline \"{}\", k = {}", pipeline.name, step.k));
+    }
+    return std::move(*row);
+  }
+
+  void check(std::size_t p, FeasibleSequence& feasible) {
+    const RecordedPipeline& pipeline = run_.pipelines[p];
+    Study study;
+    study.file = run_.directory / "results.json";
+    study.model = run_.model;
+    study.data = run_.data;
+    const std::unique_ptr<DataSource> data = open_data(study);
+    std::optional<Sample> sample, before;
+    std::optional<RecordedSet> row, row_before;
+    std::size_t read = 0;
+    Clock::time_point told = Clock::now();
+    for (std::size_t i = 0; i < pipeline.steps.size(); ++i) {
+      if (options_.stop && options_.stop->load()) {
+        outcome_.interrupted = true;
+        return;
+      }
+      const RecordedStep& step = pipeline.steps[i];
+      std::optional<Polytope> F;
+      while (!sample || sample->k < step.k) {
+        std::optional<Record> record = data->next();
+        if (!record) refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
+        before = std::move(sample);
+        sample = std::move(record->sample);
+        F = feasible.at(read++, *sample);
+      }
+      row_before = std::move(row);
+      row = set_of(pipeline, step);
+      if (static_cast<std::int64_t>(i) % options_.every != 0) continue;
+      const bool follows = row_before && before && row_before->k + 1 == step.k && before->k + 1 == step.k;
+      check_step(p, i, *row, F, follows ? &*row_before : nullptr, {follows ? &*before : nullptr, *sample});
+      if (outcome_.violation) return;
+      if (options_.progress && Clock::now() - told > std::chrono::milliseconds(50)) {
+        options_.progress(names_, p, static_cast<std::int64_t>(i), static_cast<std::int64_t>(pipeline.steps.size()));
+        told = Clock::now();
+      }
+    }
+    const auto total = static_cast<std::int64_t>(pipeline.steps.size());
+    if (options_.progress) options_.progress(names_, p, total, total);
+  }
+
+  void check_step(std::size_t p, std::size_t i, const RecordedSet& row, const std::optional<Polytope>& F,
+                  const RecordedSet* row_before, const Transition& transition) {
+    const RecordedPipeline& pipeline = run_.pipelines[p];
+    VerifiedPipeline& found = outcome_.pipelines.back();
+    StepCheck check(pipeline.steps[i], row, pipeline.rounding);
+    check.proofs();
+    if (!check.violation()) {
+      if (F) {
+        check.against(*F);
+        ++found.by_polytopes;
+      } else if (i > 0 && !row_before) {
+        check.skipped("the step does not follow the one before: its successors are not checked");
+      } else {
+        const LineForm& start = row_before ? row_before->set : pipeline.initial_set;
+        check.against(successors(run_.model, start, pipeline.admissible_set, transition),
+                      directions_of(run_.model.linear.states(), options_, row.k));
+        ++found.by_supports;
+      }
+    }
+    ++found.steps;
+    found.proofs += check.proofs_that_hold();
+    found.exact_claims += check.exact_claim_holds() ? 1 : 0;
+    if (check.undecided() > 0 && found.undecided == 0) {
+      found.first_undecided = fmt::format("k = {}: {}", row.k, check.first_undecided());
+    }
+    found.undecided += check.undecided();
+    if (const auto& violation = check.violation()) {
+      outcome_.violation = {
+          pipeline.name, row.k, violation->what,
+          violation->in_sets_file ? fmt::format("sets.jsonl:{}", row.line) : fmt::format("/pipelines/{}/steps/{}/hull", p, i)};
+    }
+  }
+
+  RecordedRun run_;
+  const VerifyOptions& options_;
+  SetReader sets_;
+  std::vector<std::string> names_;
+  VerifyOutcome outcome_;
+};
+
+}  // namespace
+
+VerifyOutcome verify_run(const std::filesystem::path& directory, const VerifyOptions& options) {
+  if (options.every < 1 || options.directions < 0) throw Error(Errc::invalid, "verify: every and directions must be positive");
+  return Verification(directory, options).run();
+}
+
+}  // namespace cordon
