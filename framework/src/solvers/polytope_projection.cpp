@@ -14,7 +14,6 @@ namespace cordon::polytope {
 
 namespace {
 
-using cdd::Description;
 using rational::Rational;
 using rational::RationalMatrix;
 using rational::RationalVector;
