@@ -187,6 +187,17 @@ TEST_CASE("published intersections") {
   CHECK(is(P.support(Vector{{0.0, 1.0, 0.0}}), 0.1));
   CHECK(P.support(Vector{{1.0, 0.0, 1.0}}).upper == doctest::Approx(1.1).epsilon(1e-15));
 
+  // a zonotope and a strip [Rego2025, section 3.2.1]
+  const LineForm Z = make_zonotope(Vector::Zero(2), Matrix{{0.2812, 0.1968, 0.4235}, {0.0186, -0.2063, -0.2267}});
+  const Polytope cut = Polytope::from(Z).intersection(Polytope::from(make_strip(Vector{{1.0, -1.0}}, 1, 0.1)));
+  CHECK(cut.generators().vertices.cols() == 4);
+  CHECK(cut.volume().lower == doctest::Approx(0.03680954218666721).epsilon(1e-14));
+  CHECK(Polytope::from(Z).volume().upper == doctest::Approx(0.70420268).epsilon(1e-8));
+  const Box hull = cut.interval_hull();
+  CHECK((hull.lower - Vector{{0.45614173648134015, -0.4438582635186596}}).cwiseAbs().maxCoeff() < 1e-15);
+  CHECK((hull.upper - Vector{{0.7960940957578764, -0.20154916894070946}}).cwiseAbs().maxCoeff() < 1e-15);
+  CHECK(is(Polytope::from(make_zonotope(Vector{{-4.0, 1.0}}, Matrix{{-3, -2, -1}, {2, 3, 4}})).volume(), 80));
+
   // two constrained zonotopes with known vertices
   LineForm A = make_zonotope(Vector::Zero(2), Matrix{{3, 0, 1}, {0, 2, 1}});
   A.A = Matrix{{1, 0, 1}}, A.S.resize(1, 0), A.b = Vector{{1.0}};

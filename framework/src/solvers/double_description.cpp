@@ -261,6 +261,10 @@ ConeGenerators cone(const std::vector<RationalVector>& inequalities, const std::
 
 /// Rows of the description by kind.
 ConeGenerators split(const Description& in) {
+  if (in.dim > most_dimensions) {
+    throw Error(Errc::unsupported, "polytope: dimension " + std::to_string(in.dim) + " to convert; at most " +
+                                       std::to_string(most_dimensions) + " are supported");
+  }
   if (in.rows.size() > most_rows) {
     throw Error(Errc::unsupported, "polytope: " + std::to_string(in.rows.size()) + " rows to convert; at most " +
                                        std::to_string(most_rows) + " are supported");
