@@ -48,8 +48,8 @@ LineForm random_set(Index n, Index largest = 6) {
 
 TEST_CASE("small gaps decide exactly") {
   const double above = std::nextafter(1.0, 2.0), below = std::nextafter(1.0, 0.0);
-  for (const auto& [b, answer] : {std::pair{1.0, Answer::no}, {above, Answer::yes}, {below, Answer::no}, {-1.0, Answer::no},
-                                  {-above, Answer::yes}}) {
+  for (const auto& [b, answer] :
+       {std::pair{1.0, Answer::no}, {above, Answer::yes}, {below, Answer::no}, {-1.0, Answer::no}, {-above, Answer::yes}}) {
     CHECK(exact::is_empty(constrained(Matrix{{1.0}}, Matrix{{1.0}}, Vector{{b}})) == answer);
   }
   // .1 + .2 > .3 for the doubles

@@ -129,6 +129,19 @@ const Mistake sets[] = {
     {"{\"type\": \"box\", \"lower\": [-0.1], \"upper\": [0.1]}",
      "{\"type\": \"polytope\", \"lower\": [\"-inf\"], \"upper\": [\"inf\"], \"H\": [[-1]], \"h\": [-2]}", "/system/V/lower/0",
      "are finite", "give a box"},
+    {"{\"type\": \"box\", \"lower\": [-0.1], \"upper\": [0.1]}", "{\"type\": \"polytope\", \"H\": [[1], [-1]], \"h\": [-2, 1]}",
+     "/system/V", "the set is empty", "check"},
+    {"{\"type\": \"box\", \"lower\": [-0.1], \"upper\": [0.1]}", "{\"type\": \"polytope\", \"H\": [[1]], \"h\": [2]}",
+     "/system/V/H", "half-spaces cannot be represented", "give bounds"},
+    {"{\"type\": \"box\", \"lower\": [-0.1], \"upper\": [0.1]}", "{\"type\": \"polytope\", \"H\": [[1], [-1]], \"h\": [2]}",
+     "/system/V/H", "is 2 × 1, must have 1 row", "constraints"},
+    {"{\"type\": \"box\", \"lower\": [-0.1], \"upper\": [0.1]}",
+     "{\"type\": \"polytope\", \"H\": [[1], [-1]], \"h\": [2, 2], \"lower\": [0]}", "/system/V/upper", "is missing",
+     "upper bounds"},
+    {"{\"type\": \"box\", \"lower\": [-0.1], \"upper\": [0.1]}", "{\"type\": \"polytope\", \"vertices\": [[1], [2]], \"h\": [2]}",
+     "/system/V/h", "cannot stand beside", "remove one"},
+    {"{\"type\": \"box\", \"lower\": [-0.1], \"upper\": [0.1]}", "{\"type\": \"polytope\", \"vertices\": []}",
+     "/system/V/vertices", "has no vertices", "one vertex per row"},
 };
 
 const Mistake data[] = {

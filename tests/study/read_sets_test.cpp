@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cordon/solvers/polytope.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "study/fakes.hpp"
 
@@ -76,6 +77,18 @@ TEST_CASE("polytope: the triangle x, y ≥ 0, x + y ≤ 1") {
   CHECK(support(X, point(1, 1)) == doctest::Approx(1));
   CHECK(support(X, point(1, 2)) == doctest::Approx(2));
   CHECK(support(X, point(-1, -1)) == doctest::Approx(0));
+}
+
+TEST_CASE("polytope: the same triangle without bounds, and by its vertices") {
+  for (const char* json : {R"({"type": "polytope", "H": [[1, 1], [-1, 0], [0, -1], [1, 0]], "h": [1, 0, 0, 7]})",
+                           R"({"type": "polytope", "vertices": [[0, 0], [1, 0], [0.25, 0.25], [0, 1]]})"}) {
+    const LineForm X = set_of(json);
+    CHECK(Polytope::from(X) == Polytope::from_generators(Matrix{{0, 1, 0}, {0, 0, 1}}));
+    CHECK(X.constraints() == 1);
+  }
+  CHECK(set_of(R"({"type": "polytope", "vertices": [[4, 5]]})").c == point(4, 5));
+  const LineForm strip = set_of(R"({"type": "polytope", "H": [[1, 0], [-1, 0]], "h": [1, 0]})");
+  CHECK(Polytope::from(strip) == Polytope::from(make_strip(point(1, 0), 0.5, 0.5)));
 }
 
 TEST_CASE("polytope: contains the points of its inequalities, and the supports of no others, over random ones") {

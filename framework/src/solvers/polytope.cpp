@@ -13,7 +13,6 @@ namespace cordon {
 
 namespace {
 
-using cdd::Description;
 using polytope::Form;
 using rational::Rational;
 using rational::RationalMatrix;
@@ -121,10 +120,10 @@ Polytope Polytope::Representation::make(Form form, Description description) {
 const Description& Polytope::Representation::locked_generators() const {
   if (minimal_generators_) return *minimal_generators_;
   if (given_inequalities_) {
-    minimal_generators_ = cdd::generators(*given_inequalities_);
+    minimal_generators_ = cordon::generators_of(*given_inequalities_);
   } else {
-    if (!minimal_inequalities_) minimal_inequalities_ = cdd::inequalities(*given_generators_);
-    minimal_generators_ = cdd::generators(*minimal_inequalities_);
+    if (!minimal_inequalities_) minimal_inequalities_ = cordon::inequalities_of(*given_generators_);
+    minimal_generators_ = cordon::generators_of(*minimal_inequalities_);
   }
   return *minimal_generators_;
 }
@@ -137,7 +136,7 @@ const Description& Polytope::Representation::generators() const {
 const Description& Polytope::Representation::inequalities() const {
   const std::lock_guard lock(lock_);
   if (!minimal_inequalities_) {
-    minimal_inequalities_ = cdd::inequalities(given_generators_ ? *given_generators_ : locked_generators());
+    minimal_inequalities_ = cordon::inequalities_of(given_generators_ ? *given_generators_ : locked_generators());
   }
   return *minimal_inequalities_;
 }
@@ -296,6 +295,11 @@ Polytope Polytope::minkowski_sum(const Polytope& Y) const {
   require(Y.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " + std::to_string(Y.dim()) + " differ");
   const Description &a = representation_->generators(), &b = Y.representation_->generators();
   if (a.rows.empty() || b.rows.empty()) return empty(dim());
+  if (a.rows.size() * b.rows.size() > most_rows) {
+    throw Error(Errc::unsupported, "polytope: a sum of " + std::to_string(a.rows.size()) + " and " +
+                                       std::to_string(b.rows.size()) + " generators; at most " + std::to_string(most_rows) +
+                                       " pairs are supported");
+  }
   Description out{dim(), {}, {}};
   for (const RationalVector& x : a.rows) {
     for (const RationalVector& y : b.rows) {

@@ -11,7 +11,6 @@ namespace cordon {
 
 namespace {
 
-using cdd::Description;
 using rational::Rational;
 using rational::RationalMatrix;
 using rational::RationalVector;
@@ -255,8 +254,8 @@ Polytope::Export enclose(const Description& generators, const Description& inequ
       wider.add(RationalVector(index(n + 1)), true);
       wider.rows.back()[index(i + 1)] = 1;
     }
-    const Description wider_rows = cdd::inequalities(wider);
-    return {enclose(cdd::generators(wider_rows), wider_rows).form, Tightness::outer};
+    const Description wider_rows = cordon::inequalities_of(wider);
+    return {enclose(cordon::generators_of(wider_rows), wider_rows).form, Tightness::outer};
   }
   return {std::move(X), section.tightness};
 }

@@ -14,12 +14,12 @@ namespace cordon::polytope {
 
 namespace {
 
-using cdd::Description;
 using rational::Rational;
 using rational::RationalMatrix;
 using rational::RationalVector;
 
 constexpr double most_subsets = 20'000;
+constexpr Index most_coordinates = 40, most_columns = 300;
 
 std::size_t index(Index i) { return static_cast<std::size_t>(i); }
 
@@ -151,6 +151,13 @@ Lifted lift(const LineForm& X) {
 
 Description inequalities_of(const LineForm& X) {
   const Index n = X.dim();
+  if (n + X.constraints() > most_coordinates || X.generators() + X.lines() > most_columns) {
+    throw Error(Errc::unsupported, "polytope: a set in dimension " + std::to_string(n) + " with " +
+                                       std::to_string(X.constraints()) + " constraints, " + std::to_string(X.generators()) +
+                                       " generators and " + std::to_string(X.lines()) + " lines; at most " +
+                                       std::to_string(most_coordinates) + " dimensions and constraints with " +
+                                       std::to_string(most_columns) + " generators and lines are supported");
+  }
   const Lifted lifted = lift(X);
   const Index k = lifted.K.rows(), g = lifted.Z.cols();
   Description out{n, {}, {}};

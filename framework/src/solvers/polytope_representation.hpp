@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "cordon/solvers/polytope.hpp"
-#include "solvers/cdd.hpp"
+#include "solvers/double_description.hpp"
 
 namespace cordon {
 
@@ -15,34 +15,34 @@ namespace polytope {
 enum class Form { inequalities, generators };
 
 /// Inequalities of the projection of a set in exchange form.
-cdd::Description inequalities_of(const LineForm& X);
+Description inequalities_of(const LineForm& X);
 
 /// Volume of a bounded, full-dimensional polytope given both ways, without redundancy.
-rational::Rational volume(const cdd::Description& generators, const cdd::Description& inequalities);
+rational::Rational volume(const Description& generators, const Description& inequalities);
 
 /// Polyhedron given both ways, without redundancy, in exchange form; see Polytope::to_line_form.
-Polytope::Export enclose(const cdd::Description& generators, const cdd::Description& inequalities);
+Polytope::Export enclose(const Description& generators, const Description& inequalities);
 
 }  // namespace polytope
 
 /// One description at least; the other ones are found when they are asked for, and kept.
 struct Polytope::Representation {
-  Representation(polytope::Form form, cdd::Description description);
-  static Polytope make(polytope::Form form, cdd::Description description);
+  Representation(polytope::Form form, Description description);
+  static Polytope make(polytope::Form form, Description description);
 
   const Index dim;
   /// Rows that describe the set: those that were given, or else the ones without redundancy.
-  const cdd::Description& any_inequalities() const;
+  const Description& any_inequalities() const;
   /// Without redundancy, with the equations among them; ∅ is the one row -1 ≥ 0.
-  const cdd::Description& inequalities() const;
+  const Description& inequalities() const;
   /// Without redundancy; no rows for ∅.
-  const cdd::Description& generators() const;
+  const Description& generators() const;
 
  private:
-  const cdd::Description& locked_generators() const;
-  std::optional<cdd::Description> given_inequalities_, given_generators_;
+  const Description& locked_generators() const;
+  std::optional<Description> given_inequalities_, given_generators_;
   mutable std::mutex lock_;  ///< of the two below
-  mutable std::optional<cdd::Description> minimal_inequalities_, minimal_generators_;
+  mutable std::optional<Description> minimal_inequalities_, minimal_generators_;
 };
 
 }  // namespace cordon

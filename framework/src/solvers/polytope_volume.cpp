@@ -20,7 +20,7 @@ constexpr int most_simplices = 200'000;
 
 class Triangulation {
  public:
-  Triangulation(const cdd::Description& generators, const cdd::Description& inequalities)
+  Triangulation(const Description& generators, const Description& inequalities)
       : vertices_(generators.rows), dim_(generators.dim) {
     for (const RationalVector& row : inequalities.rows) {
       Face facet;
@@ -95,7 +95,7 @@ class Triangulation {
 
 }  // namespace
 
-Rational volume(const cdd::Description& generators, const cdd::Description& inequalities) {
+Rational volume(const Description& generators, const Description& inequalities) {
   if (generators.dim > most_dimensions) {
     throw Error(Errc::unsupported,
                 "polytope: dimension " + std::to_string(generators.dim) + " exceeds 6, the limit of exact volumes");

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "cordon/solvers/polytope.hpp"
 #include "cordon/solvers/set_questions.hpp"
 
 namespace cordon::json {
@@ -140,7 +142,48 @@ std::optional<LineForm> read_single_point(const Cursor& set) {
   return c ? std::optional<LineForm>(make_point(*c)) : std::nullopt;
 }
 
+/// A polyhedron in exchange form; an error stands at `at`.
+std::optional<LineForm> read_exactly(const Cursor& at, const std::function<Polytope()>& make, const std::string& suggestion) {
+  try {
+    const Polytope P = make();
+    if (P.generators().rays.cols() == 0) return P.to_line_form().form;
+    at.error("leaves the polytope unbounded on one side only: half-spaces cannot be represented", suggestion);
+  } catch (const Error& error) {
+    at.error(error.what(), suggestion);
+  }
+  return std::nullopt;
+}
+
+std::optional<LineForm> read_vertices(const Cursor& set, const Cursor& at) {
+  for (const char* key : {"lower", "upper", "H", "h"}) {
+    if (const auto other = set.find(key)) {
+      other->error("cannot stand beside \"vertices\"", "a polytope is given by its vertices or by its inequalities: remove one");
+      return std::nullopt;
+    }
+  }
+  const auto V = read_matrix(at);
+  if (!V) return std::nullopt;
+  if (V->rows() == 0) {
+    at.error("has no vertices: the polytope is empty", "one vertex per row");
+    return std::nullopt;
+  }
+  return read_exactly(
+      at, [&] { return Polytope::from_generators(V->transpose()); },
+      "give its inequalities with bounds, or a set of another type");
+}
+
 std::optional<LineForm> read_polytope(const Cursor& set) {
+  if (const auto at = set.find("vertices")) return read_vertices(set, *at);
+  if (!set.find("lower") && !set.find("upper")) {
+    const auto H_at = set.need("H", "the rows of H x ≤ h; or \"vertices\", one per row");
+    const auto h_at = set.need("h", "the right-hand side of H x ≤ h");
+    const auto H = H_at ? read_matrix(*H_at) : std::nullopt;
+    const auto h = h_at ? read_vector(*h_at) : std::nullopt;
+    if (!H || !h || !expect_rows(set, "H", *H, h->size(), "h")) return std::nullopt;
+    return read_exactly(
+        *H_at, [&] { return Polytope::from_inequalities(*H, *h); },
+        "give bounds: \"lower\" and \"upper\", lists of finite numbers");
+  }
   const auto box = read_box(set, true);
   const auto H_at = set.need("H", "the rows of H x ≤ h"), h_at = set.need("h", "the right-hand side of H x ≤ h");
   const auto H = H_at ? read_matrix(*H_at) : std::nullopt;
@@ -165,7 +208,7 @@ const std::vector<SetType>& types() {
       {"strip", {"type", "rho", "d", "sigma"}, read_strip},
       {"space", {"type", "dim"}, read_space},
       {"point", {"type", "center"}, read_single_point},
-      {"polytope", {"type", "lower", "upper", "H", "h"}, read_polytope},
+      {"polytope", {"type", "lower", "upper", "H", "h", "vertices"}, read_polytope},
   };
   return all;
 }

@@ -62,9 +62,10 @@ Json sets() {
       "{x : |rhoᵀx - d| ≤ sigma}"));
   all.push_back(described(typed("space", {{"dim", integer(0, json::max_dimension)}}, {"dim"}), "the whole space"));
   all.push_back(described(typed("point", {{"center", vector}}, {"center"}), "a single point"));
-  all.push_back(described(
-      typed("polytope", {{"lower", vector}, {"upper", vector}, {"H", matrix}, {"h", vector}}, {"lower", "upper", "H", "h"}),
-      "{x : lower ≤ x ≤ upper, H x ≤ h}"));
+  Json polytope = typed("polytope", {{"lower", vector}, {"upper", vector}, {"H", matrix}, {"h", vector}}, {"H", "h"});
+  polytope["dependentRequired"] = {{"lower", {"upper"}}, {"upper", {"lower"}}};
+  all.push_back(described(polytope, "{x : lower ≤ x ≤ upper, H x ≤ h}; without bounds they are found exactly"));
+  all.push_back(described(typed("polytope", {{"vertices", matrix}}, {"vertices"}), "convex hull; one vertex per row"));
   return {{"oneOf", all}};
 }
 

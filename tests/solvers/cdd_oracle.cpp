@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solvers/cdd.hpp"
+#include "solvers/cdd_oracle.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
-#include <mutex>
 #include <string>
 
 // cdd.h needs the other header before it
@@ -19,12 +17,6 @@ namespace cordon::cdd {
 
 namespace {
 
-/// cddlib works on global variables.
-std::mutex& library_lock() {
-  static std::mutex lock;
-  return lock;
-}
-
 void initialize_once() {
   static const bool done = (dd_set_global_constants(), true);
   static_cast<void>(done);
@@ -33,38 +25,11 @@ void initialize_once() {
 using OwnMatrix = std::unique_ptr<dd_MatrixType, decltype(&dd_FreeMatrix)>;
 using OwnPolyhedron = std::unique_ptr<dd_PolyhedraType, decltype(&dd_FreePolyhedra)>;
 
-double binomial(Index n, Index k) {
-  double value = 1;
-  for (Index i = 0; i < k; ++i) value *= static_cast<double>(n - i) / static_cast<double>(i + 1);
-  return k < 0 || n < k ? 0.0 : value;
-}
-
-/// Most vertices that `rows` half-spaces in Rⁿ can have (upper-bound theorem, for the cone over the polyhedron).
-double most_outputs(Index rows, Index n) {
-  if (rows <= n) return 1;
-  return binomial(rows - (n + 1) / 2, n / 2) + binomial(rows - n / 2 - 1, (n - 1) / 2);
-}
-
-void check_size(const Description& in, const char* what) {
-  if (in.dim > max_dim) {
-    throw Error(Errc::unsupported, "polytope: dimension " + std::to_string(in.dim) + " exceeds " + std::to_string(max_dim) +
-                                       ", the limit of exact conversions");
-  }
-  const auto rows = static_cast<Index>(in.rows.size());
-  const double outputs = most_outputs(rows, in.dim);
-  if (outputs > max_output) {
-    throw Error(Errc::unsupported, "polytope: " + std::to_string(rows) + " " + what + " in dimension " + std::to_string(in.dim) +
-                                       " can give " + std::to_string(std::llround(std::min(outputs, 1e15))) +
-                                       " rows; exact conversions are limited to " + std::to_string(std::llround(max_output)));
-  }
-}
-
 Description convert(const Description& in, dd_RepresentationType from) {
-  const std::lock_guard lock(library_lock());
   initialize_once();
   const auto rows = static_cast<Index>(in.rows.size());
   const OwnMatrix matrix(dd_CreateMatrix(rows, in.dim + 1), dd_FreeMatrix);
-  if (!matrix) throw Error(Errc::solver, "polytope: the exact conversion ran out of memory");
+  if (!matrix) throw Error(Errc::solver, "cddlib: the conversion ran out of memory");
   matrix->representation = from;
   matrix->numbtype = dd_Rational;
   for (Index i = 0; i < rows; ++i) {
@@ -75,12 +40,11 @@ Description convert(const Description& in, dd_RepresentationType from) {
   dd_ErrorType error = dd_NoError;
   const OwnPolyhedron polyhedron(dd_DDMatrix2Poly(matrix.get(), &error), dd_FreePolyhedra);
   if (!polyhedron || error != dd_NoError) {
-    throw Error(Errc::solver,
-                "polytope: the exact conversion failed (cddlib, error " + std::to_string(static_cast<int>(error)) + ")");
+    throw Error(Errc::solver, "cddlib: the conversion failed with error " + std::to_string(static_cast<int>(error)));
   }
   const OwnMatrix result(from == dd_Inequality ? dd_CopyGenerators(polyhedron.get()) : dd_CopyInequalities(polyhedron.get()),
                          dd_FreeMatrix);
-  if (!result) throw Error(Errc::solver, "polytope: the exact conversion gave no result");
+  if (!result) throw Error(Errc::solver, "cddlib: the conversion gave no result");
   Description out{in.dim, {}, {}};
   for (Index i = 0; i < result->rowsize; ++i) {
     rational::RationalVector row;
@@ -98,7 +62,7 @@ rational::RationalVector unit_row(Index dim, int first) {
 
 }  // namespace
 
-Description generators(const Description& inequalities) {
+Description generators_of(const Description& inequalities) {
   const Index n = inequalities.dim;
   // rows without x are decided here: cddlib need not see them
   Description real{n, {}, {}};
@@ -119,15 +83,18 @@ Description generators(const Description& inequalities) {
     }
     return space;
   }
-  check_size(real, "inequalities");
-  return convert(real, dd_Inequality);
+  Description out = convert(real, dd_Inequality);
+  // cddlib leaves out the apex of a cone at the origin
+  const bool has_point = std::any_of(out.rows.begin(), out.rows.end(), [](const auto& row) { return sgn(row[0]) != 0; });
+  const bool homogeneous = std::all_of(real.rows.begin(), real.rows.end(), [](const auto& row) { return sgn(row[0]) == 0; });
+  if (!has_point && homogeneous) out.add(unit_row(n, 1), false);
+  return out;
 }
 
-Description inequalities(const Description& generators) {
+Description inequalities_of(const Description& generators) {
   const Index n = generators.dim;
   if (generators.rows.empty()) return {n, {unit_row(n, -1)}, {false}};
   if (n == 0) return {n, {}, {}};
-  check_size(generators, "generators");
   const Description all = convert(generators, dd_Generator);
   Description out{n, {}, {}};
   for (std::size_t i = 0; i < all.rows.size(); ++i) {
