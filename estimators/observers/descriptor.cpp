@@ -128,6 +128,7 @@ class SingularValueObserver final : public Observer {
     const Enclosure start = X0 ? *X0 : backend().import(X0_);
     Z_ = to_z(start);
     if (static_at_start_) Z_ = with_static_rows(Z_, first.u);
+    Z_.tightness = meet(Z_.tightness, recursion_);
     return finish(Z_, first);
   }
 
@@ -201,7 +202,11 @@ class PseudoInverseObserver final : public Observer {
   LineForm initial_set() const override { return X0_; }
 
  private:
-  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override { return X_ = X0 ? *X0 : backend().import(X0_); }
+  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
+    X_ = X0 ? *X0 : backend().import(X0_);
+    X_.tightness = Tightness::outer;  // the first measurement enters with the second
+    return X_;
+  }
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const LinearModel& m = model().linear;

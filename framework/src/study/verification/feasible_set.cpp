@@ -7,6 +7,8 @@ namespace cordon::verification {
 
 namespace {
 
+constexpr int steps_between_rounding = 8;
+
 Vector zero(Index n) { return Vector::Zero(n); }
 
 /// T x as a polytope of one point: the product is exact there.
@@ -101,6 +103,16 @@ class Rows {
 
 Matrix identity(Index n) { return Matrix::Identity(n, n); }
 
+/// An enclosing polytope with doubles as coefficients, larger by some units in the last place: exact numbers grow with every
+/// step, and all work with them. Unbounded and flat sets stay as they are.
+Polytope with_short_numbers(const Polytope& X) {
+  if (!X.is_bounded() || X.is_empty()) return X;
+  Polytope::Inequalities faces = X.inequalities();
+  if (faces.Q.rows() > 0) return X;
+  for (Index i = 0; i < faces.h.size(); ++i) faces.h[i] = X.support(faces.H.row(i)).upper;
+  return Polytope::from_inequalities(faces.H, faces.h);
+}
+
 }  // namespace
 
 FeasibleSets::FeasibleSets(const Model& model, const LineForm& initial_set, const std::optional<LineForm>& admissible_set)
@@ -128,6 +140,7 @@ Polytope FeasibleSets::step(const Sample& now) {
   }
   if (admissible_) P = P.intersection(*admissible_);
   P_ = measured(P, now);
+  if (++steps_ % steps_between_rounding == 0) P_ = with_short_numbers(*P_);
   before_ = now;
   if (!model_.is_descriptor()) return *P_;
   const Polytope range = Polytope::from_generators(zero(n), Matrix(n, 0), model_.E);

@@ -14,6 +14,7 @@ namespace cordon::verification {
 /// Rⁿ:
 ///   P_0 = X_0 ∩ X_A ∩ Y_0,   P_k = {x : E x ∈ A P_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W} ∩ X_A ∩ Y_k,
 ///   F_k = {x ∈ P_k : A x + B u_k ∈ E Rⁿ ⊕ (-Bw W)},   Y_k = {x : y_k - D u_k - C x ∈ Dv V}.
+/// Every few steps the numbers are rounded outward to doubles, a few units in the last place: otherwise they grow without bound.
 /// Throws Errc::unsupported where polyhedra grow too large.
 class FeasibleSets {
  public:
@@ -30,6 +31,7 @@ class FeasibleSets {
   std::optional<Polytope> admissible_, P_;
   Polytope disturbance_, minus_disturbance_, minus_noise_;  ///< Bw W, -Bw W, -Dv V
   std::optional<Sample> before_;
+  int steps_ = 0;
 };
 
 /// {x_k : x_{k-1} ∈ X_{k-1} is consistent with sample k-1, and x_k is a successor of it that is consistent with sample k}: an

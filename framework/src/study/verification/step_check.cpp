@@ -22,7 +22,7 @@ constexpr double nominal_tolerance = 1e-9, outward_tolerance = 1e-14;
 
 std::string text(VectorIn x) {
   std::string out = "(";
-  for (Index i = 0; i < x.size(); ++i) out += fmt::format("{}{:.9g}", i ? ", " : "", x[i]);
+  for (Index i = 0; i < x.size(); ++i) out += fmt::format("{}{}", i ? ", " : "", x[i]);
   return out + ")";
 }
 
