@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/rounding.hpp"
+
+namespace cordon::conformance {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nominal = 1e-9;
+
+}  // namespace
+
+double size_of(const LineForm& X) {
+  if (X.dim() == 0) return 0;
+  Vector size = X.c.cwiseAbs();
+  if (X.generators()) size += X.G.cwiseAbs().rowwise().sum();
+  if (X.lines()) size += 2 * X.M.cwiseAbs().rowwise().sum();
+  return size.maxCoeff();
+}
+
+Reference::Reference(const LineForm& X, std::vector<Vector> known, double terms, double row_terms)
+    : Reference(eliminate_lines_with_magnitude(X, Vector(0)), std::move(known), std::max(terms, size_of(X)), row_terms) {}
+
+Reference::Reference(LinesEliminated eliminated, std::vector<Vector> known, double terms, double row_terms)
+    : X_(std::move(eliminated.set)),
+      row_magnitude_(std::move(eliminated.row_magnitude)),
+      program_(X_.A, X_.b, row_magnitude_),
+      known_(std::move(known)),
+      terms_(std::max(terms, size_of(X_))),
+      row_terms_(row_terms) {}
+
+Reference::Along Reference::along(VectorIn d) const {
+  double share = 0;
+  for (Index j = 0; j < X_.lines(); ++j) {
+    const double size = X_.M.col(j).cwiseAbs().dot(d.cwiseAbs());
+    if (size > 0) share = std::max(share, std::abs(X_.M.col(j).dot(d)) / size);
+  }
+  return share > 1e-6 ? Along::line : share > 0 ? Along::unclear : Along::bounded;
+}
+
+const BoxedProgram::Bound& Reference::solve(VectorIn d) {
+  if (asked_.size() != d.size() || asked_ != d) {
+    asked_ = d;
+    bound_ = program_.maximum(linalg::product(X_.G.transpose(), d));
+  }
+  return bound_;
+}
+
+double Reference::lower(VectorIn d) {
+  double value = -infinity;
+  for (const Vector& x : known_) value = std::max(value, d.dot(x));
+  const Along line = along(d);
+  if (line == Along::line) {
+    return !known_.empty() || program_.is_empty() == Answer::no ? infinity : -infinity;
+  }
+  if (line == Along::unclear) return value;
+  const BoxedProgram::Bound bound = solve(d);
+  if (!bound.xi) return value;
+  const double reached = program_.attained(linalg::product(X_.G.transpose(), d), *bound.xi);
+  return std::max(value, d.dot(X_.c) + reached);
+}
+
+double Reference::upper(VectorIn d) {
+  if (along(d) != Along::bounded) return infinity;
+  const double gradient_error = rounding::product_error(X_.G.transpose(), d).sum();
+  return rounding::up(d.dot(X_.c) + solve(d).upper) + gradient_error;
+}
+
+double Reference::tolerance(VectorIn d) {
+  double size = d.lpNorm<1>() * terms_;
+  if (along(d) == Along::bounded) {
+    const Vector& y = solve(d).y;
+    for (Index i = 0; i < y.size() && i < X_.constraints(); ++i) {
+      double row = std::abs(X_.b[i]) + row_terms_;
+      if (X_.generators()) row += X_.A.row(i).cwiseAbs().sum();
+      if (i < row_magnitude_.size()) row += row_magnitude_[i];
+      size += std::abs(y[i]) * row;
+    }
+  }
+  return nominal * size;
+}
+
+std::optional<Vector> Reference::maximizer(VectorIn d) {
+  if (along(d) != Along::bounded) return std::nullopt;
+  const BoxedProgram::Bound& bound = solve(d);
+  if (!bound.xi) return std::nullopt;
+  return Vector(X_.c + linalg::product(X_.G, *bound.xi));
+}
+
+void Truth::add(const LineForm& part, std::vector<Vector> known, double terms, double row_terms) {
+  forms_.push_back(part);
+  parts_.push_back(std::make_shared<Reference>(part, std::move(known), terms, row_terms));
+}
+
+double Truth::lower(VectorIn d) {
+  double value = -infinity;
+  for (const auto& part : parts_) value = std::max(value, part->lower(d));
+  return value;
+}
+double Truth::upper(VectorIn d) {
+  double value = -infinity;
+  for (const auto& part : parts_) value = std::max(value, part->upper(d));
+  return value;
+}
+double Truth::tolerance(VectorIn d) {
+  double value = 0;
+  for (const auto& part : parts_) value = std::max(value, part->tolerance(d));
+  return value;
+}
+
+std::vector<Vector> directions(const std::vector<LineForm>& forms, Index n, Random& random, int count) {
+  std::vector<Vector> found;
+  for (Index i = 0; i < n; ++i) {
+    found.push_back(Vector::Unit(n, i));
+    found.push_back(-Vector::Unit(n, i));
+  }
+  for (int k = 0; k < count && n > 1; ++k) {
+    Vector d(n);
+    for (double& entry : d) entry = static_cast<double>(random.between(-8, 8)) / 8;
+    if (!d.isZero(0)) found.push_back(d);
+  }
+  // normals of facets of a zonotope: to one generator in the plane, to two in space
+  for (const LineForm& X : forms) {
+    const Index g = X.generators();
+    if (g == 0 || n < 2 || n > 3) continue;
+    for (int k = 0; k < count; ++k) {
+      const Vector u = X.G.col(random.below(g)), v = X.G.col(random.below(g));
+      Vector d = n == 2 ? Vector{{-u[1], u[0]}}
+                        : Vector{{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]}};
+      const double size = d.cwiseAbs().maxCoeff();
+      if (!(size > 0) || !std::isfinite(size)) continue;
+      found.push_back(d / size * random.sign());
+    }
+  }
+  return found;
+}
+
+std::vector<Vector> points_of(const LineForm& X, const Vector& delta, const Vector& xi, Random& random, int count) {
+  const Index l = X.lines(), g = X.generators(), m = X.constraints();
+  std::vector<Vector> points{X.c + X.M * delta + X.G * xi};
+  if (l + g == 0) return points;
+  Matrix rows(m, l + g);
+  rows << X.S, X.A;
+  const Matrix kernel = m > 0 ? linalg::null_space(rows) : Matrix(0, 0);
+  Vector full(l + g);
+  full << delta, xi;
+  for (int k = 0; k < count; ++k) {
+    if (m == 0) {
+      for (Index j = 0; j < l; ++j) full[j] = static_cast<double>(random.between(-4, 4));
+      for (Index j = 0; j < g; ++j)
+        full[l + j] = random.chance(0.5) ? random.sign() : static_cast<double>(random.between(-4, 4)) / 4;
+    } else {
+      if (kernel.cols() == 0) break;
+      Vector along(kernel.cols());
+      for (double& a : along) a = 2 * random.unit() - 1;
+      const Vector step = kernel * along;
+      double length = 1;
+      for (Index j = 0; j < g; ++j) {
+        const double d = step[l + j];
+        if (std::abs(d) > 1e-12) length = std::min(length, ((d > 0 ? 1 : -1) - full[l + j]) / d);
+      }
+      full += (random.chance(0.5) ? length : random.unit() * length) * step;
+      for (Index j = 0; j < g; ++j) full[l + j] = std::clamp(full[l + j], -1.0, 1.0);
+    }
+    points.push_back(X.c + X.M * full.head(l) + X.G * full.tail(g));
+  }
+  return points;
+}
+
+}  // namespace cordon::conformance
