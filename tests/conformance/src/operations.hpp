@@ -13,6 +13,8 @@ struct Operand {
   LineForm form;               ///< a set that is known to lie inside, or equal if `equal`
   bool equal = false;          ///< `form` is the held set
   std::vector<Vector> points;  ///< some points that the set must hold; the first is the known one of the case
+  bool sure = false;           ///< the import changed nothing: no rounding lies between these points and the set
+  double size = 0;             ///< of the numbers that the imported and the held form are made of
 };
 
 /// The result of an operation with what it must enclose.
@@ -21,6 +23,7 @@ struct Applied {
   Truth truth;                 ///< all of it lies in the result
   bool complete = false;       ///< and the exact result is no larger
   std::vector<Vector> points;  ///< of the exact result
+  bool sure = false;           ///< and known to be so without any rounding
   std::vector<std::pair<std::string, std::string>> derived;
 };
 
@@ -35,8 +38,9 @@ const std::vector<Operation>& operations();
 /// Imports a set of the case.
 Operand import_operand(const Context& context, const TestSet& X);
 
-/// The result is not called empty, its support function is no smaller than the truth's, and no point is said to lie outside.
-Verdict encloses(const Context& context, const Enclosure& result, Truth& truth, const std::vector<Vector>& points, bool tame,
+/// The result's support function is no smaller than the truth's. If the points are `sure`, the result is not called empty and none
+/// of them is said to lie outside.
+Verdict encloses(const Context& context, const Enclosure& result, Truth& truth, const std::vector<Vector>& points, bool sure,
                  std::uint64_t seed);
 /// The set that the result's exchange form describes does not leave `truth`.
 Verdict stays_within(const Context& context, const Enclosure& result, Truth& truth, std::uint64_t seed);

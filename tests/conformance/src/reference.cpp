@@ -14,6 +14,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nominal = 1e-9;
+/// Outward rounding of a zero.
+constexpr double underflow = 1e-290;
 
 }  // namespace
 
@@ -84,7 +86,7 @@ double Reference::tolerance(VectorIn d) {
       size += std::abs(y[i]) * row;
     }
   }
-  return nominal * size;
+  return nominal * size + underflow;
 }
 
 std::optional<Vector> Reference::maximizer(VectorIn d) {
@@ -146,30 +148,25 @@ std::vector<Vector> points_of(const LineForm& X, const Vector& delta, const Vect
   const Index l = X.lines(), g = X.generators(), m = X.constraints();
   std::vector<Vector> points{X.c + X.M * delta + X.G * xi};
   if (l + g == 0) return points;
-  Matrix rows(m, l + g);
+  Matrix rows(m, l + g), columns(X.dim(), l + g);
   rows << X.S, X.A;
-  const Matrix kernel = m > 0 ? linalg::null_space(rows) : Matrix(0, 0);
+  columns << X.M, X.G;
   Vector full(l + g);
   full << delta, xi;
+  const auto within = [&](const Vector& f) { return g == 0 || f.tail(g).cwiseAbs().maxCoeff() <= 1; };
   for (int k = 0; k < count; ++k) {
-    if (m == 0) {
-      for (Index j = 0; j < l; ++j) full[j] = static_cast<double>(random.between(-4, 4));
-      for (Index j = 0; j < g; ++j)
-        full[l + j] = random.chance(0.5) ? random.sign() : static_cast<double>(random.between(-4, 4)) / 4;
-    } else {
-      if (kernel.cols() == 0) break;
-      Vector along(kernel.cols());
-      for (double& a : along) a = 2 * random.unit() - 1;
-      const Vector step = kernel * along;
-      double length = 1;
-      for (Index j = 0; j < g; ++j) {
-        const double d = step[l + j];
-        if (std::abs(d) > 1e-12) length = std::min(length, ((d > 0 ? 1 : -1) - full[l + j]) / d);
-      }
-      full += (random.chance(0.5) ? length : random.unit() * length) * step;
-      for (Index j = 0; j < g; ++j) full[l + j] = std::clamp(full[l + j], -1.0, 1.0);
+    for (Index j = 0; m == 0 && j < l + g; ++j) {
+      full[j] = j >= l && random.chance(0.5) ? random.sign() : static_cast<double>(random.between(-4, 4)) / 4;
     }
-    points.push_back(X.c + X.M * full.head(l) + X.G * full.tail(g));
+    for (int trial = 0; m > 0 && trial < 8; ++trial) {
+      const Index i = random.below(l + g), j = random.below(l + g), row = random.below(m);
+      Vector moved = full;
+      const double length = random.sign() * std::ldexp(1.0, static_cast<int>(random.between(-4, 0)));
+      moved[i] += length * (i == j ? 1 : rows(row, j));
+      if (i != j) moved[j] -= length * rows(row, i);
+      if (within(moved) && (rows * (moved - full)).isZero(0)) full = moved;
+    }
+    points.push_back(X.c + columns * full);
   }
   return points;
 }

@@ -71,8 +71,8 @@ class Truth {
 /// Directions that tell sets apart: ± coordinates, random ones, and normals to generators of the forms.
 std::vector<Vector> directions(const std::vector<LineForm>& forms, Index n, Random& random, int count);
 
-/// Points of X near its known factors and elsewhere: c + Mδ + Gξ. Without constraints at random factors, also vertices of their
-/// box; with constraints along the rows' null space. The first is the known one.
+/// Points of X, exact where the numbers are tame: c + Mδ + Gξ at factors of few digits, vertices of their box among them. With
+/// constraints, factors move only along pairs of columns whose rows stay as they are. The first is the known one.
 std::vector<Vector> points_of(const LineForm& X, const Vector& delta, const Vector& xi, Random& random, int count);
 
 }  // namespace cordon::conformance

@@ -81,7 +81,7 @@ void add_soundness(LawList& list) {
                     [&operation](const Context& context, const TestCase& test) {
                       Applied applied = operation.apply(context, test);
                       return with_derived(
-                          encloses(context, applied.result, applied.truth, applied.points, test.tame(), test.seed), applied);
+                          encloses(context, applied.result, applied.truth, applied.points, applied.sure, test.seed), applied);
                     }});
   }
   list.push_back({{"soundness.support", "dᵀx ≤ support(d) for x ∈ X"}, one_set, check_support});
