@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How operations go together. Equality is asked where both sides claim to be exact; else what can be proven: an enclosure encloses.
+// How operations go together. Equality is asked where both sides claim to be exact; else what can be proven: an enclosure
+// encloses.
 #include <cmath>
 #include <limits>
 
@@ -82,10 +83,19 @@ Verdict check_empty_absorbs(const Context& context, const TestCase& test) {
       {"X ∩ ∅", [&] { return backend.intersection(X.set, I, *E); }},
       {"∅ ∩ X", [&] { return backend.intersection(*E, I, X.set); }},
       {"I ∅ + 0", [&] { return backend.affine_map(*E, I, zero); }},
-      {"{x ∈ X : 0 - x ∈ ∅}", [&] { return backend.correct(X.set, {I, zero, {I, *E}}); }},
-      {"{x ∈ ∅ : 0 - x ∈ X}", [&] { return backend.correct(*E, {I, zero, {I, X.set}}); }},
+      {"{x ∈ X : 0 - x ∈ ∅}",
+       [&] {
+         return backend.correct(X.set, {I, zero, {I, *E}});
+       }},
+      {"{x ∈ ∅ : 0 - x ∈ X}",
+       [&] {
+         return backend.correct(*E, {I, zero, {I, X.set}});
+       }},
       {"[A] ∅", [&] { return backend.interval_map(*E, IntervalMatrix(I, I)); }},
-      {"reduce(∅)", [&] { return backend.reduce(*E, {n, 0}); }},
+      {"reduce(∅)",
+       [&] {
+         return backend.reduce(*E, {n, 0});
+       }},
   };
   for (const auto& [what, operation] : results) {
     Enclosure result;
@@ -232,7 +242,11 @@ Verdict check_monotone(const Context& context, const TestCase& test) {
       {"[A] X", [&] { return b.interval_map(larger, IntervalMatrix(A, radius)); }, affine_map(X.form, A + radius, zero),
        [&](const Vector& x) { return (A + radius) * x; }},
       {"X ∩ X", [&] { return b.intersection(larger, I, larger); }, X.form, [](const Vector& x) { return x; }},
-      {"reduce(X)", [&] { return b.reduce(larger, {n, 0}); }, X.form, [](const Vector& x) { return x; }},
+      {"reduce(X)",
+       [&] {
+         return b.reduce(larger, {n, 0});
+       },
+       X.form, [](const Vector& x) { return x; }},
   };
   for (const Step& step : steps) {
     Enclosure result;
@@ -265,9 +279,7 @@ TestCase generate_reduce(const Setting& s) {
   return test;
 }
 
-Budget budget_of(const TestCase& test) {
-  return {test.set(0).form.dim() + test.number(0) + test.number(1), test.number(0)};
-}
+Budget budget_of(const TestCase& test) { return {test.set(0).form.dim() + test.number(0) + test.number(1), test.number(0)}; }
 
 /// n generators hold a box, one more per constraint a constrained box: a budget of this size can always be met.
 Verdict check_reduce_budget(const Context& context, const TestCase& test) {
@@ -317,8 +329,11 @@ Verdict check_self_intersection(const Context& context, const TestCase& test) {
 }  // namespace
 
 void add_algebra(LawList& list) {
-  list.push_back({{"algebra.empty_absorbs", "X ⊕ ∅, X × ∅, X ∩ ∅, T ∅, [A] ∅ and reduce(∅) are ∅"}, generate_with_empty,
-                  check_empty_absorbs, {}, 0.5});
+  list.push_back({{"algebra.empty_absorbs", "X ⊕ ∅, X × ∅, X ∩ ∅, T ∅, [A] ∅ and reduce(∅) are ∅"},
+                  generate_with_empty,
+                  check_empty_absorbs,
+                  {},
+                  0.5});
   list.push_back({{"algebra.empty_hull", "convex_hull(X, ∅) = X"}, generate_with_empty, check_empty_hull});
   list.push_back({{"algebra.zero_neutral", "X ⊕ {0} = X"}, generate_sets<1>, check_zero_neutral});
   list.push_back({{"algebra.sum_commutes", "X ⊕ Y = Y ⊕ X"}, generate_sets<2>, check_sum_commutes});
@@ -326,11 +341,16 @@ void add_algebra(LawList& list) {
   list.push_back({{"algebra.map_composes", "T₁(T₂ X) = (T₁ T₂) X"}, generate_two_maps, check_map_composes});
   list.push_back({{"algebra.map_distributes", "T (X ⊕ Y) = T X ⊕ T Y"}, generate_map_of_sum, check_map_distributes});
   list.push_back({{"algebra.import_of_line_form", "import(X.line_form()) = X"}, generate_sets<1>, check_import_of_line_form});
-  list.push_back({{"algebra.monotone", "X ⊆ Y ⇒ f(X) ⊆ f(Y) for maps, sums, intersections and reductions f"}, generate_monotone,
-                  check_monotone, {}, 0.5});
+  list.push_back({{"algebra.monotone", "X ⊆ Y ⇒ f(X) ⊆ f(Y) for maps, sums, intersections and reductions f"},
+                  generate_monotone,
+                  check_monotone,
+                  {},
+                  0.5});
   list.push_back({{"algebra.reduce_budget", "reduce keeps to its budget if n generators and one more per constraint are allowed"},
-                  generate_reduce, check_reduce_budget});
-  list.push_back({{"algebra.reduce_encloses", "X ⊆ reduce(X) ⊆ reduce(reduce(X))"}, generate_reduce, check_reduce_encloses, {}, 0.5});
+                  generate_reduce,
+                  check_reduce_budget});
+  list.push_back(
+      {{"algebra.reduce_encloses", "X ⊆ reduce(X) ⊆ reduce(reduce(X))"}, generate_reduce, check_reduce_encloses, {}, 0.5});
   list.push_back({{"algebra.self_intersection", "X ∩ X = X"}, generate_sets<1>, check_self_intersection});
 }
 

@@ -38,8 +38,8 @@ const std::vector<Operation>& operations();
 /// Imports a set of the case.
 Operand import_operand(const Context& context, const TestSet& X);
 
-/// The result's support function is no smaller than the truth's. If the points are `sure`, the result is not called empty and none
-/// of them is said to lie outside.
+/// The result's support function is no smaller than the truth's. If the points are `sure`, the result is not called empty and
+/// none of them is said to lie outside.
 Verdict encloses(const Context& context, const Enclosure& result, Truth& truth, const std::vector<Vector>& points, bool sure,
                  std::uint64_t seed);
 /// The set that the result's exchange form describes does not leave `truth`.
