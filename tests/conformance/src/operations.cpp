@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "cordon/core/error.hpp"
+
 namespace cordon::conformance {
 
 namespace {
@@ -40,6 +42,7 @@ Applied apply_import(const Context& context, const TestCase& test) {
   a.truth.add(X.form, a.points, 0, 0);
   a.sure = test.tame();
   a.complete = true;
+  a.exact = [&test] { return Polytope::from(test.set(0).form); };
   return a;
 }
 
@@ -62,6 +65,7 @@ Applied apply_map(const Context& context, const TestCase& test) {
   a.sure = test.tame() && X.sure;
   a.complete = X.equal;
   show_held(a, "X", X, test.set(0));
+  a.exact = [&test] { return Polytope::from(test.set(0).form).affine_map(test.matrix(0), test.vector(0)); };
   return a;
 }
 
@@ -77,6 +81,7 @@ Applied apply_sum(const Context& context, const TestCase& test) {
   a.complete = X.equal && Y.equal;
   show_held(a, "X", X, test.set(0));
   show_held(a, "Y", Y, test.set(1));
+  a.exact = [&test] { return Polytope::from(test.set(0).form).minkowski_sum(Polytope::from(test.set(1).form)); };
   return a;
 }
 
@@ -96,6 +101,7 @@ Applied apply_product(const Context& context, const TestCase& test) {
   a.complete = X.equal && Y.equal;
   show_held(a, "X", X, test.set(0));
   show_held(a, "Y", Y, test.set(1));
+  a.exact = [&test] { return Polytope::from(test.set(0).form).cartesian_product(Polytope::from(test.set(1).form)); };
   return a;
 }
 
@@ -130,6 +136,9 @@ Applied apply_intersection(const Context& context, const TestCase& test) {
   a.complete = X.equal && Y.equal;
   show_held(a, "X", X, test.set(0));
   show_held(a, "Y", Y, moved);
+  a.exact = [&test, form = moved.form] {
+    return Polytope::from(test.set(0).form).intersection(test.matrix(0), Polytope::from(form));
+  };
   return a;
 }
 
@@ -161,6 +170,10 @@ Applied apply_correct(const Context& context, const TestCase& test) {
   a.complete = X.equal && V.equal;
   show_held(a, "X", X, test.set(0));
   show_held(a, "V", V, test.set(1));
+  a.exact = [&test, z] {
+    const Polytope noise = Polytope::from(test.set(1).form).affine_map(-test.matrix(1), z);
+    return Polytope::from(test.set(0).form).intersection(test.matrix(0), noise);
+  };
   return a;
 }
 
@@ -197,6 +210,13 @@ Applied apply_predict(const Context& context, const TestCase& test) {
   show_held(a, "X", X, test.set(0));
   show_held(a, "V", V, test.set(1));
   show_held(a, "W", W, test.set(2));
+  a.exact = [&test] {
+    const Matrix& T_V = test.matrix(1);
+    return Polytope::from(test.set(0).form)
+        .affine_map(test.matrix(0), test.vector(0))
+        .minkowski_sum(Polytope::from(test.set(1).form).affine_map(T_V, Vector::Zero(T_V.rows())))
+        .minkowski_sum(Polytope::from(test.set(2).form));
+  };
   return a;
 }
 
@@ -234,6 +254,8 @@ Applied apply_interval_map(const Context& context, const TestCase& test) {
   a.sure = test.tame() && X.sure;
   a.complete = X.equal;
   show_held(a, "X", X, test.set(0));
+  // a part of it: the image under the centre
+  a.exact = [&test] { return Polytope::from(test.set(0).form).affine_map(test.matrix(0), Vector::Zero(test.matrix(0).rows())); };
   return a;
 }
 
@@ -250,6 +272,7 @@ Applied apply_convex_hull(const Context& context, const TestCase& test) {
   a.complete = X.equal && Y.equal;
   show_held(a, "X", X, test.set(0));
   show_held(a, "Y", Y, test.set(1));
+  a.exact = [&test] { return Polytope::from(test.set(0).form).convex_hull(Polytope::from(test.set(1).form)); };
   return a;
 }
 
@@ -274,6 +297,7 @@ Applied apply_reduce(const Context& context, const TestCase& test) {
   a.sure = test.tame() && X.sure;
   a.complete = X.equal;
   show_held(a, "X", X, test.set(0));
+  a.exact = [&test] { return Polytope::from(test.set(0).form); };
   return a;
 }
 
@@ -328,6 +352,27 @@ Verdict encloses(const Context& context, const Enclosure& result, Truth& truth, 
   return {};
 }
 
+/// Normals of all facets of a small truth: together with the bounds they say everything about it. None for larger ones.
+std::vector<Vector> facet_normals(const std::vector<LineForm>& forms) {
+  Index columns = 0;
+  for (const LineForm& X : forms) columns += X.lines() + X.generators();
+  if (forms.front().dim() > 3 || columns > 8) return {};
+  std::vector<Vector> normals;
+  try {
+    Polytope hull = Polytope::empty(forms.front().dim());
+    for (const LineForm& X : forms) hull = hull.convex_hull(Polytope::from(X));
+    const Polytope::Inequalities facets = hull.inequalities();
+    for (const auto row : facets.H.rowwise()) normals.emplace_back(row.transpose());
+    for (const auto row : facets.Q.rowwise()) {
+      normals.emplace_back(row.transpose());
+      normals.emplace_back(-row.transpose());
+    }
+  } catch (const Error& error) {  // beyond the limits of the exact conversion: the other directions must do
+    if (error.code() != Errc::unsupported) throw;
+  }
+  return normals;
+}
+
 Verdict stays_within(const Context& context, const Enclosure& result, Truth& truth, std::uint64_t seed) {
   if (result.tightness != Tightness::exact || !context.exact_exchange()) return Verdict::inapplicable();
   const LineForm form = result->line_form();
@@ -335,7 +380,10 @@ Verdict stays_within(const Context& context, const Enclosure& result, Truth& tru
   Random random(seed);
   std::vector<LineForm> forms = truth.forms();
   forms.push_back(form);
-  for (const Vector& d : directions(forms, truth.dim(), random, 4)) {
+  std::vector<Vector> along = directions(forms, truth.dim(), random, 4);
+  const std::vector<Vector> facets = facet_normals(truth.forms());
+  along.insert(along.end(), facets.begin(), facets.end());
+  for (const Vector& d : along) {
     const double allowed = truth.upper(d);
     if (std::isinf(allowed) && allowed > 0) continue;
     const double reached = found.lower(d);

@@ -2,6 +2,7 @@
 // The operations of a backend, each beside its exact result: what the laws of soundness and of tightness share.
 #pragma once
 
+#include "cordon/solvers/polytope.hpp"
 #include "law.hpp"
 #include "reference.hpp"
 
@@ -20,10 +21,11 @@ struct Operand {
 /// The result of an operation with what it must enclose.
 struct Applied {
   Enclosure result;
-  Truth truth;                 ///< all of it lies in the result
-  bool complete = false;       ///< and the exact result is no larger
-  std::vector<Vector> points;  ///< of the exact result
-  bool sure = false;           ///< and known to be so without any rounding
+  Truth truth;                      ///< all of it lies in the result
+  bool complete = false;            ///< and the exact result is no larger
+  std::vector<Vector> points;       ///< of the exact result
+  bool sure = false;                ///< and known to be so without any rounding
+  std::function<Polytope()> exact;  ///< the exact result for the imported sets, in rational arithmetic
   std::vector<std::pair<std::string, std::string>> derived;
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/solvers/certificate.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "operations.hpp"
 
@@ -287,6 +288,52 @@ Verdict check_agree(const Context& context, const TestCase& test) {
   return {};
 }
 
+// ---- proofs ----
+
+std::optional<std::string> needs_exact_exchange(const Context& context) {
+  if (context.exact_exchange()) return std::nullopt;
+  return "certificates are about the exchange form, which is an outer one here";
+}
+
+/// Certificates that are given prove the answer about the exported form, in rational arithmetic. Bounds hold up to the rounding
+/// of the export. `none` and `structure` carry no numbers; then there is nothing to check.
+Verdict check_certificates(const Context& context, const TestCase& test) {
+  const Pair pair = import_pair(context, test);
+  const Set &X = *pair.X.set, &Y = *pair.Y.set;
+  const LineForm &FX = pair.X.form, &FY = pair.Y.form;
+  const Index n = X.dim();
+  Certificate why;
+  const auto numeric = [&] { return why.kind != Certificate::Kind::none && why.kind != Certificate::Kind::structure; };
+  const auto wrong = [&](const std::string& answer) {
+    Verdict verdict = Verdict::fails("the certificate does not prove \"" + answer + "\"");
+    verdict.derived.emplace_back("certificate", std::string(to_string(why.kind)) + " " + describe_vector(why.data));
+    return show_pair(std::move(verdict), pair);
+  };
+  const Answer empty = context.tally(X.is_empty(&why));
+  if (empty == Answer::yes && numeric() && !proves_empty(FX, why)) return wrong("X is empty");
+  if (empty == Answer::no && numeric() && !proves_not_empty(FX, why)) return wrong("X is not empty");
+  for (const Vector& x : {pair.X.points.front(), pair.Y.points.back()}) {
+    why = {};
+    const Answer inside = context.tally(X.contains(x, &why));
+    if (inside == Answer::yes && numeric() && !proves_contains(FX, x, why)) return wrong("X holds " + describe_vector(x));
+    if (inside == Answer::no && numeric() && !proves_excludes(FX, x, why)) return wrong("X does not hold " + describe_vector(x));
+  }
+  why = {};
+  const Answer disjoint = context.tally(X.is_disjoint_from(Y, &why));
+  if (disjoint == Answer::yes && numeric() && !proves_disjoint(FX, FY, why)) return wrong("X and Y are disjoint");
+  if (disjoint == Answer::no && numeric() && !proves_meet(FX, FY, why)) return wrong("X and Y meet");
+  Reference reference(FX, {}, pair.X.size);
+  Random random(test.seed);
+  for (const Vector& d : directions({FX}, n, random, 2)) {
+    why = {};
+    const double h = X.support(d, &why);
+    if (!numeric() || h == infinity) continue;
+    const double bound = h == -infinity ? h : h + reference.tolerance(d);
+    if (!proves_support(FX, d, bound, why)) return wrong("h(d) ≤ " + describe(h) + " for d = " + describe_vector(d));
+  }
+  return {};
+}
+
 // ---- unknown ----
 
 /// Boxes and points far inside or outside them: nothing is near a tolerance.
@@ -349,6 +396,14 @@ void add_questions(LawList& list) {
   list.push_back({{"questions.is_subset", "is_subset_of is right"}, generate_pair, check_is_subset, {}, 1, 1, 3, {true, 4, 1}});
   list.push_back({{"questions.is_bounded", "is_bounded is right"}, one_set, check_is_bounded});
   list.push_back({{"questions.agree", "no two answers about the same sets contradict each other"}, generate_pair, check_agree});
+  list.push_back({{"questions.certificates", "a certificate proves its answer, checked in rational arithmetic"},
+                  generate_pair,
+                  check_certificates,
+                  needs_exact_exchange,
+                  0.5,
+                  1,
+                  3,
+                  {true, 4, 1}});
   list.push_back(
       {{"questions.unknown_rate", "clear-cut questions about boxes are answered rightly or with unknown, which is counted"},
        generate_clear,

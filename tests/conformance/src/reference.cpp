@@ -7,6 +7,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "cordon/solvers/exact_questions.hpp"
 
 namespace cordon::conformance {
 
@@ -28,12 +29,12 @@ double size_of(const LineForm& X) {
 }
 
 Reference::Reference(const LineForm& X, std::vector<Vector> known, double terms, double row_terms)
-    : Reference(eliminate_lines_with_magnitude(X, Vector(0)), std::move(known), std::max(terms, size_of(X)), row_terms) {}
+    : Reference(eliminate_lines_traced(X, Vector(0)), std::move(known), std::max(terms, size_of(X)), row_terms) {}
 
 Reference::Reference(LinesEliminated eliminated, std::vector<Vector> known, double terms, double row_terms)
     : X_(std::move(eliminated.set)),
       row_magnitude_(std::move(eliminated.row_magnitude)),
-      program_(X_.A, X_.b, row_magnitude_),
+      program_(X_.A, X_.b, {row_magnitude_, {}}),
       known_(std::move(known)),
       terms_(std::max(terms, size_of(X_))),
       row_terms_(row_terms) {}
@@ -63,10 +64,16 @@ double Reference::lower(VectorIn d) {
     return !known_.empty() || program_.is_empty() == Answer::no ? infinity : -infinity;
   }
   if (line == Along::unclear) return value;
-  const BoxedProgram::Bound bound = solve(d);
-  if (!bound.xi) return value;
-  const double reached = program_.attained(linalg::product(X_.G.transpose(), d), *bound.xi);
-  return std::max(value, d.dot(X_.c) + reached);
+  double reached = -infinity;
+  if (const BoxedProgram::Bound bound = solve(d); bound.xi) {
+    reached = program_.attained(linalg::product(X_.G.transpose(), d), *bound.xi);
+  }
+  if (reached > -infinity) return std::max(value, d.dot(X_.c) + reached);
+  // dependent rows, or a set without interior: floating point proves nothing, rational arithmetic does where it is affordable
+  if (X_.generators() > 16 || X_.constraints() > 8) return value;
+  // +inf here is a direction that misses being normal to a line by its own rounding
+  const double exact = exact::support(X_, d).lower;
+  return exact < infinity ? std::max(value, exact) : value;
 }
 
 double Reference::upper(VectorIn d) {
