@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cordon/solvers/set_questions.hpp"
 #include "operations.hpp"
 
 namespace cordon::conformance {
@@ -60,10 +61,11 @@ TestCase generate_with_empty(const Setting& s) {
   return test;
 }
 
-/// Premise of the laws about ∅: the held operand is empty, whatever the import claims.
+/// Premise of the laws about ∅: the held operand is empty, by what it says or by an exact import.
 std::optional<Enclosure> import_empty(const Context& context, const TestSet& E) {
   const Enclosure empty = context.backend->import(E.form);
-  if (context.tally(empty->is_empty()) != Answer::yes) return std::nullopt;
+  const bool known = empty.tightness == Tightness::exact && is_empty(E.form) == Answer::yes;
+  if (context.tally(empty->is_empty()) != Answer::yes && !known) return std::nullopt;
   return Enclosure{empty.set, Tightness::exact};
 }
 
@@ -205,6 +207,17 @@ Verdict check_import_of_line_form(const Context& context, const TestCase& test) 
   Truth truth = truth_of(X.form, X.size);
   Verdict verdict = encloses(context, again, truth, X.points, test.tame() && X.sure, test.seed);
   if (!verdict.failed() && X.equal) verdict = stays_within(context, again, truth, test.seed);
+  if (verdict.failed() || !X.equal) return verdict;
+  // the form equals the set, so it does not exceed the set's own bounds
+  Random random(test.seed);
+  for (const Vector& d : directions({X.form}, X.form.dim(), random, 4)) {
+    const double reached = truth.lower(d), bound = X.set->support(d);
+    if (reached <= bound || (bound == -std::numeric_limits<double>::infinity() && !truth.robust())) continue;
+    if (!(reached <= bound + truth.tolerance(d))) {
+      return Verdict::fails("in direction d = " + describe_vector(d) + " the exchange form reaches " + describe(reached) +
+                            ", the set itself at most " + describe(bound));
+    }
+  }
   return verdict;
 }
 

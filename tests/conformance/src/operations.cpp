@@ -10,6 +10,8 @@ namespace cordon::conformance {
 
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 double largest(const Matrix& A) { return A.size() ? A.cwiseAbs().maxCoeff() : 0.0; }
 /// Largest row sum: how far a map can stretch the size of coordinates.
 double stretch(const Matrix& A) { return A.size() ? A.cwiseAbs().rowwise().sum().maxCoeff() : 0.0; }
@@ -337,6 +339,8 @@ Verdict encloses(const Context& context, const Enclosure& result, Truth& truth, 
   for (const Vector& d : directions(truth.forms(), n, random, 4)) {
     const double found = result->support(d), needed = truth.lower(d);
     if (found >= needed) continue;
+    // a set that touches itself empty may be lost in rounding
+    if (found == -infinity && !sure && !truth.robust()) continue;
     const double tolerance = std::isinf(needed) ? 0 : truth.tolerance(d);
     if (!(found >= needed - tolerance)) {
       return Verdict::fails("in direction d = " + describe_vector(d) + " the exact result reaches " + describe(needed) +

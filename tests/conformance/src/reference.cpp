@@ -18,6 +18,10 @@ constexpr double nominal = 1e-9;
 /// Outward rounding of a zero.
 constexpr double underflow = 1e-290;
 
+bool is_moderate(const Matrix& A) {
+  return A.size() == 0 || ((A.array() == 0) || (A.array().abs() > 1e-4 && A.array().abs() < 1e4)).all();
+}
+
 }  // namespace
 
 double size_of(const LineForm& X) {
@@ -37,7 +41,8 @@ Reference::Reference(LinesEliminated eliminated, std::vector<Vector> known, doub
       program_(X_.A, X_.b, {row_magnitude_, {}}),
       known_(std::move(known)),
       terms_(std::max(terms, size_of(X_))),
-      row_terms_(row_terms) {}
+      row_terms_(row_terms),
+      moderate_(is_moderate(X_.G) && is_moderate(X_.A) && is_moderate(X_.c) && is_moderate(X_.b) && row_terms < 1e4) {}
 
 Reference::Along Reference::along(VectorIn d) const {
   double share = 0;
@@ -70,7 +75,7 @@ double Reference::lower(VectorIn d) {
   }
   if (reached > -infinity) return std::max(value, d.dot(X_.c) + reached);
   // dependent rows, or a set without interior: floating point proves nothing, rational arithmetic does where it is affordable
-  if (X_.generators() > 16 || X_.constraints() > 8) return value;
+  if (!moderate_ || X_.generators() > 16 || X_.constraints() > 8) return value;
   // +inf here is a direction that misses being normal to a line by its own rounding
   const double exact = exact::support(X_, d).lower;
   return exact < infinity ? std::max(value, exact) : value;
@@ -94,6 +99,19 @@ double Reference::tolerance(VectorIn d) {
     }
   }
   return nominal * size + underflow;
+}
+
+bool Reference::robust() {
+  if (X_.constraints() == 0) return true;
+  const auto xi = program_.central_point();
+  if (!xi) return false;
+  const double slack = 1 - xi->cwiseAbs().maxCoeff();
+  for (Index i = 0; i < X_.constraints(); ++i) {
+    const double reach = X_.generators() ? X_.A.row(i).cwiseAbs().sum() : 0.0;
+    const double magnitude = i < row_magnitude_.size() ? row_magnitude_[i] : 0.0;
+    if (!(slack * reach > nominal * (std::abs(X_.b[i]) + row_terms_ + magnitude + reach))) return false;
+  }
+  return true;
 }
 
 std::optional<Vector> Reference::maximizer(VectorIn d) {
@@ -122,6 +140,10 @@ double Truth::tolerance(VectorIn d) {
   double value = 0;
   for (const auto& part : parts_) value = std::max(value, part->tolerance(d));
   return value;
+}
+
+bool Truth::robust() {
+  return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->robust(); });
 }
 
 std::vector<Vector> directions(const std::vector<LineForm>& forms, Index n, Random& random, int count) {

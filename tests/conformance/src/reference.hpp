@@ -30,6 +30,8 @@ class Reference {
   double tolerance(VectorIn d);
 
   bool bounded() const { return X_.lines() == 0; }
+  /// Not empty by so much that rounding errors cannot change it: some factors keep a distance from their bounds.
+  bool robust();
   /// A proposal of a point in which h(d) is attained; not proven.
   std::optional<Vector> maximizer(VectorIn d);
 
@@ -45,6 +47,7 @@ class Reference {
   BoxedProgram program_;
   std::vector<Vector> known_;
   double terms_, row_terms_;
+  bool moderate_;  ///< no number is so large or small that rounding errors of one swallow another
   Vector asked_;
   BoxedProgram::Bound bound_;
 };
@@ -61,6 +64,7 @@ class Truth {
   double lower(VectorIn d);
   double upper(VectorIn d);
   double tolerance(VectorIn d);
+  bool robust();  ///< of one part
   const std::vector<LineForm>& forms() const { return forms_; }
 
  private:
