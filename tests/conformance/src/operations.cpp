@@ -316,7 +316,8 @@ Operand import_operand(const Context& context, const TestSet& X) {
   Operand operand;
   operand.set = context.backend->import(X.form);
   const bool plain = X.form.constraints() == 0 && X.form.lines() == 0;
-  operand.sure = operand.set.tightness == Tightness::exact && (plain || describe(operand.set->line_form()) == describe(X.form));
+  operand.sure =
+      !X.empty && operand.set.tightness == Tightness::exact && (plain || describe(operand.set->line_form()) == describe(X.form));
   operand.set.tightness = Tightness::exact;
   operand.equal = context.exact_exchange();
   operand.form = operand.equal ? operand.set->line_form() : X.form;
