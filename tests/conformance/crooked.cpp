@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Backends that break one law each, for the test of the command: `lossy` loses a generator of every sum, `crashing` ends the
 // process on points, `hanging` never returns from a hull.
+#include <chrono>
 #include <csignal>
 #include <memory>
 #include <thread>
@@ -33,16 +34,18 @@ class Crooked final : public SetBackend {
     return {std::make_unique<Form>(*this, X), Tightness::exact};
   }
   Made do_predict(const Set& X, const Predict& p) const override {
-    Made made = SetBackend::do_predict(X, p);
-    if (defect_ != Defect::lossy || p.terms.empty()) return made;
-    LineForm form = made.set->line_form();
-    const Index g = form.generators();
-    if (g > 0) form.G.col(g - 1).setZero();
-    return {std::make_unique<Form>(*this, form), Tightness::exact};
+    LineForm sum = cordon::affine_map(X.line_form(), p.A, p.f);
+    for (const Term& term : p.terms) {
+      sum = minkowski_sum(sum, cordon::affine_map(term.set->line_form(), term.T, Vector::Zero(p.A.rows())));
+    }
+    if (defect_ == Defect::lossy && !p.terms.empty() && sum.generators() > 0) sum.G.rightCols(1).setZero();
+    return {std::make_unique<Form>(*this, sum), Tightness::exact};
   }
   Made do_convex_hull(const Set& X, const Set& Y) const override {
     while (defect_ == Defect::hanging) std::this_thread::sleep_for(std::chrono::seconds(1));
-    return SetBackend::do_convex_hull(X, Y);
+    const LineForm A = X.line_form(), B = Y.line_form();
+    return {std::make_unique<Form>(*this, cordon::convex_hull(A, B)),
+            A.lines() + B.lines() > 0 ? Tightness::outer : Tightness::exact};
   }
 
   Defect defect_;
