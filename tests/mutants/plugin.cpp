@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One plugin with the reference and all mutants. The summary of a mutant says what has to be noticed, and by which laws:
+// "breaks LAW …: defect", "crashes LAW: …", "hangs LAW: …".
+#include "cordon/registry/plugin.hpp"
+
+#include <string>
+
+#include "reference.hpp"
+
+namespace {
+
+using namespace cordon;
+using mutants::Mutant;
+
+void add(Registrar& registrar, const Mutant& mutant) {
+  BackendInfo info;
+  info.name = mutant.name;
+  info.unbounded = true;
+  info.intersections = true;
+  info.summary = std::string(mutant.verdict) + " " + mutant.laws + ": " + mutant.defect;
+  registrar.backend({{info.name, info.summary, "", {}}, [info, create = mutant.create](const Params&) { return create(info); }});
+}
+
+void register_components(Registrar& registrar) {
+  const BackendInfo info{
+      .name = "reference", .unbounded = true, .intersections = true, .summary = "exchange forms", .citation = ""};
+  registrar.backend(
+      {{info.name, info.summary, "", {}}, [info](const Params&) { return std::make_unique<mutants::Reference>(info); }});
+  for (const auto& group : {mutants::mutants_of_operations(), mutants::mutants_of_claims(), mutants::mutants_of_questions(),
+                            mutants::mutants_of_contract()}) {
+    for (const Mutant& mutant : group) add(registrar, mutant);
+  }
+}
+
+}  // namespace
+
+CORDON_PLUGIN("mutants", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "backends with one defect each", register_components)
