@@ -30,6 +30,15 @@ class SumBoxesTerms final : public Reference {
   }
 };
 
+/// Sums of many generators are cut down on the way.
+class LongSumsAreBoxed final : public Reference {
+  using Reference::Reference;
+  Made do_predict(const Set& X, const Predict& p) const override {
+    const LineForm sum = predicted(X, p);
+    return {make(!p.terms.empty() && form(X).generators() > 4 ? hull_of(sum) : sum), Tightness::exact};
+  }
+};
+
 class MapBoxes final : public Reference {
   using Reference::Reference;
   Made do_predict(const Set& X, const Predict& p) const override { return {make(hull_of(predicted(X, p))), Tightness::exact}; }
@@ -109,8 +118,10 @@ std::vector<Mutant> mutants_of_claims() {
       {"import_boxes", "tightness.import", "an imported set is its interval hull", create<ImportBoxes>},
       {"sum_boxes_terms", "tightness.sum algebra.sum_commutes", "the second operand of a sum is replaced by its hull",
        create<SumBoxesTerms>},
-      {"map_boxes", "tightness.affine_map tightness.predict algebra.map_composes", "the image of a map is its hull",
-       create<MapBoxes>},
+      {"long_sums_are_boxed", "algebra.sum_associates", "a sum is its hull where the first operand has many generators",
+       create<LongSumsAreBoxed>},
+      {"map_boxes", "tightness.affine_map tightness.predict algebra.map_composes algebra.map_distributes",
+       "the image of a map is its hull", create<MapBoxes>},
       {"product_boxes", "tightness.product", "a product is its hull", create<ProductBoxes>},
       {"intersection_of_hulls", "tightness.intersection", "the second operand is replaced by its hull",
        create<IntersectionOfHulls>},

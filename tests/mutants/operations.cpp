@@ -51,6 +51,18 @@ class PredictForgetsTranslation final : public Reference {
   }
 };
 
+class PredictForgetsMap final : public Reference {
+  using Reference::Reference;
+  Made do_predict(const Set& X, const Predict& p) const override {
+    LineForm sum = cordon::affine_map(form(X), p.A, p.f);
+    for (const Term& term : p.terms) {
+      const Matrix T = ones(term.T.rows(), term.T.cols());
+      sum = minkowski_sum(sum, cordon::affine_map(form(*term.set), T, Vector::Zero(p.A.rows())));
+    }
+    return {make(sum), Tightness::exact};
+  }
+};
+
 class ProductSwapsBlocks final : public Reference {
   using Reference::Reference;
   Made do_predict(const Set& X, const Predict& p) const override {
@@ -159,6 +171,7 @@ std::vector<Mutant> mutants_of_operations() {
       {"sum_drops_generator", "soundness.sum", "the last generator of a sum is lost", create<SumDropsGenerator>},
       {"map_of_one_sign", "soundness.affine_map", "negative entries of a map count as zero", create<MapOfOneSign>},
       {"predict_forgets_translation", "soundness.predict", "f of A X + f is forgotten", create<PredictForgetsTranslation>},
+      {"predict_forgets_map", "soundness.predict", "T of T S is the identity", create<PredictForgetsMap>},
       {"product_swaps_blocks", "soundness.product", "X × Y is Y × X", create<ProductSwapsBlocks>},
       {"intersection_forgets_map", "soundness.intersection", "R of R x ∈ Y is the identity", create<IntersectionForgetsMap>},
       {"correct_forgets_noise_map", "soundness.correct", "z - C x ∈ V instead of T V", create<CorrectForgetsNoiseMap>},

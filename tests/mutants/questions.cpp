@@ -109,6 +109,16 @@ class ContainsForgetsRows final : public LineSet {
   }
 };
 
+/// Membership is tested against the set without its boundary.
+class ContainsInterior final : public LineSet {
+  using LineSet::LineSet;
+  Answer do_contains(VectorIn x, Certificate* why) const override {
+    LineForm X = form();
+    X.G *= 1 - 1e-6;
+    return X.constraints() > 0 ? LineSet::do_contains(x, why) : cordon::contains(X, x, why);
+  }
+};
+
 class BoundedAlways final : public LineSet {
   using LineSet::LineSet;
   Answer do_is_bounded() const override { return Answer::yes; }
@@ -182,6 +192,7 @@ std::vector<Mutant> mutants_of_questions() {
       {"contains_neighbours", "questions.contains", "points up to a millionth outside are inside",
        create<With<ContainsNeighbours>>},
       {"contains_forgets_rows", "questions.contains", "constraints do not count", create<With<ContainsForgetsRows>>},
+      {"contains_interior", "questions.contains", "points of the boundary are outside", create<With<ContainsInterior>>},
       {"bounded_always", "questions.is_bounded", "a set with lines is bounded", create<With<BoundedAlways>>},
       {"support_disagrees", "questions.agree", "a set with constraints has the support of the empty set",
        create<With<HullDisagrees>>},
