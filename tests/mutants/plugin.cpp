@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One plugin with the reference and all mutants. The summary of a mutant says what has to be noticed, and by which laws:
-// "breaks LAW …: defect", "crashes LAW: …", "hangs LAW: …".
+// "breaks LAW …: defect", "crashes LAW: …", "hangs LAW: …", or "keeps all laws: …".
 #include "cordon/registry/plugin.hpp"
 
 #include <string>
@@ -22,12 +22,8 @@ void add(Registrar& registrar, const Mutant& mutant) {
 }
 
 void register_components(Registrar& registrar) {
-  const BackendInfo info{
-      .name = "reference", .unbounded = true, .intersections = true, .summary = "exchange forms", .citation = ""};
-  registrar.backend(
-      {{info.name, info.summary, "", {}}, [info](const Params&) { return std::make_unique<mutants::Reference>(info); }});
-  for (const auto& group : {mutants::mutants_of_operations(), mutants::mutants_of_claims(), mutants::mutants_of_questions(),
-                            mutants::mutants_of_contract()}) {
+  for (const auto& group : {mutants::controls(), mutants::mutants_of_operations(), mutants::mutants_of_claims(),
+                            mutants::mutants_of_questions(), mutants::mutants_of_contract()}) {
     for (const Mutant& mutant : group) add(registrar, mutant);
   }
 }

@@ -73,7 +73,7 @@ struct Mutant {
   const char* laws;
   const char* defect;
   std::unique_ptr<SetBackend> (*create)(BackendInfo info);
-  const char* verdict = "breaks";  ///< the laws; or "crashes", "hangs" while they are checked
+  const char* verdict = "breaks";  ///< the laws; or "crashes", "hangs" while they are checked; or "keeps" all
 };
 
 template <class Backend>
@@ -81,6 +81,7 @@ std::unique_ptr<SetBackend> create(BackendInfo info) {
   return std::make_unique<Backend>(std::move(info));
 }
 
+std::vector<Mutant> controls();
 std::vector<Mutant> mutants_of_operations();
 std::vector<Mutant> mutants_of_claims();
 std::vector<Mutant> mutants_of_questions();
