@@ -53,7 +53,8 @@ class Coarse final : public SetBackend {
     Box hull = cordon::interval_hull(X);
     if (!hull.is_empty()) {
       if (!hull.is_bounded()) throw Error(Errc::unsupported, "boxes hold bounded sets only");
-      const Vector margin = (hull.upper - hull.lower) / 64;
+      // wide enough for what nominal operations round
+      const Vector margin = (hull.upper - hull.lower) / 64 + 1e-6 * (hull.upper.cwiseAbs() + hull.lower.cwiseAbs());
       hull.lower -= margin;
       hull.upper += margin;
     }
