@@ -27,6 +27,14 @@ class Padded final : public Reference {
   }
 };
 
+/// Says unknown wherever that is allowed.
+class SilentSet final : public LineSet {
+  using LineSet::LineSet;
+  Answer do_is_empty(Certificate*) const override { return Answer::unknown; }
+  Answer do_contains(VectorIn, Certificate*) const override { return Answer::unknown; }
+  Answer do_is_bounded() const override { return Answer::unknown; }
+};
+
 /// The least that a plugin writes: two functions of the set, one of the backend. Boxes a little larger than need be, with an
 /// exchange form that is called outer.
 class CoarseSet final : public Set {
@@ -68,6 +76,7 @@ std::vector<Mutant> controls() {
   return {
       {"reference", "all laws", "exchange forms, exact where they can be", create<Reference>, "keeps"},
       {"padded", "all laws", "exchange forms with factors and rows that say nothing", create<Padded>, "keeps"},
+      {"silent", "all laws", "exchange forms that answer no question", create<With<SilentSet>>, "keeps"},
       {"coarse", "all laws", "outer boxes by the framework's defaults", create<Coarse>, "keeps"},
   };
 }

@@ -168,7 +168,7 @@ class NominalButOutward final : public Reference {
 std::vector<Mutant> mutants_of_operations() {
   return {
       {"import_drops_generator", "soundness.import", "the last generator is lost", create<ImportDropsGenerator>},
-      {"sum_drops_generator", "soundness.sum", "the last generator of a sum is lost", create<SumDropsGenerator>},
+      {"sum_drops_generator", "soundness.sum algebra.monotone", "the last generator of a sum is lost", create<SumDropsGenerator>},
       {"map_of_one_sign", "soundness.affine_map", "negative entries of a map count as zero", create<MapOfOneSign>},
       {"predict_forgets_translation", "soundness.predict", "f of A X + f is forgotten", create<PredictForgetsTranslation>},
       {"predict_forgets_map", "soundness.predict", "T of T S is the identity", create<PredictForgetsMap>},

@@ -141,11 +141,9 @@ class EmptyWithoutProof final : public LineSet {
   }
 };
 
-class NeverKnows final : public LineSet {
+class AnswersSwapped final : public LineSet {
   using LineSet::LineSet;
-  Answer do_is_empty(Certificate*) const override { return Answer::unknown; }
-  Answer do_contains(VectorIn, Certificate*) const override { return Answer::unknown; }
-  Answer do_is_bounded() const override { return Answer::unknown; }
+  Answer do_contains(VectorIn x, Certificate* why) const override { return negate(LineSet::do_contains(x, why)); }
 };
 
 class VolumeOfHull final : public LineSet {
@@ -197,10 +195,10 @@ std::vector<Mutant> mutants_of_questions() {
       {"support_disagrees", "questions.agree", "a set with constraints has the support of the empty set",
        create<With<HullDisagrees>>},
       {"empty_without_proof", "questions.certificates", "a certificate has the wrong sign", create<With<EmptyWithoutProof>>},
-      {"never_knows", "questions.unknown_rate", "every answer is unknown", create<With<NeverKnows>>},
+      {"answers_swapped", "questions.unknown_rate", "yes and no are exchanged", create<With<AnswersSwapped>>},
       {"volume_of_hull", "soundness.volume", "the volume of the hull is called exact", create<With<VolumeOfHull>>},
       {"nan_hull", "contract.no_nan", "the hull of a flat set is not a number", create<With<NanHull>>},
-      {"empty_hull_is_point", "algebra.empty_hull", "the hull of the empty set is the origin", create<With<EmptyHullIsPoint>>},
+      {"empty_hull_is_point", "questions.agree", "the hull of the empty set is the origin", create<With<EmptyHullIsPoint>>},
   };
 }
 
