@@ -154,14 +154,16 @@ class VolumeOfHull final : public LineSet {
   }
 };
 
-/// A width relative to itself.
+/// A width relative to itself, in single precision.
 class NanHull final : public LineSet {
   using LineSet::LineSet;
   Box do_interval_hull(std::vector<Certificate>* why) const override {
     Box hull = LineSet::do_interval_hull(why);
     if (hull.is_empty() || !hull.is_bounded()) return hull;
-    const Vector width = hull.upper - hull.lower;
-    hull.upper = hull.lower + width.cwiseProduct(width.cwiseQuotient(width));
+    for (Index i = 0; i < dim(); ++i) {
+      const float width = static_cast<float>(hull.upper[i]) - static_cast<float>(hull.lower[i]);
+      hull.upper[i] += hull.upper[i] * static_cast<double>(width / width - 1);
+    }
     return hull;
   }
 };
