@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "cordon/core/error.hpp"
 #include "cordon/core/line_form.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "reference.hpp"
@@ -130,6 +131,17 @@ class Hangs final : public Reference {
   }
 };
 
+/// Offers a value that nobody wrote the code for.
+std::unique_ptr<SetBackend> create_half(BackendInfo info, const Params& params) {
+  if (params.text("reduction") == "best") throw Error(Errc::invalid, "no such reduction");
+  return std::make_unique<Reference>(std::move(info));
+}
+ParamSchema schema_of_half() {
+  ParamSchema schema;
+  schema.choice("reduction", "how sets are reduced", {"box", "best"}, "box");
+  return schema;
+}
+
 /// A map keeps as many coordinates as its operand has.
 class WrongDimension final : public Reference {
   using Reference::Reference;
@@ -151,6 +163,8 @@ std::vector<Mutant> mutants_of_contract() {
        create<ThrowsOutOfRange>},
       {"throws_number", "contract.only_cordon_errors", "throws a number", create<ThrowsNumber>},
       {"wrong_dimension", "soundness.affine_map", "a map never adds coordinates", create<WrongDimension>},
+      {"parameter_without_code", "contract.parameters_documented", "a value that a parameter allows is refused", create_half,
+       "breaks", schema_of_half()},
       {"lends_forms", "lifetime.set_outlives_handle", "a result needs its operand", create<LendsForms>},
       {"keeps_itself", "lifetime.unload", "the backend is never let go", create<KeepsItself>},
       {"crashes_in_one_dimension", "soundness.affine_map", "a segmentation fault for n = 1", create<CrashesInOneDimension>,

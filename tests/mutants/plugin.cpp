@@ -18,7 +18,8 @@ void add(Registrar& registrar, const Mutant& mutant) {
   info.unbounded = true;
   info.intersections = true;
   info.summary = std::string(mutant.verdict) + " " + mutant.laws + ": " + mutant.defect;
-  registrar.backend({{info.name, info.summary, "", {}}, [info, create = mutant.create](const Params&) { return create(info); }});
+  registrar.backend({{info.name, info.summary, "", mutant.schema},
+                     [info, create = mutant.create](const Params& params) { return create(info, params); }});
 }
 
 void register_components(Registrar& registrar) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cordon/interfaces/backend.hpp"
+#include "cordon/registry/schema.hpp"
 
 namespace mutants {
 
@@ -72,12 +73,13 @@ struct Mutant {
   const char* name;
   const char* laws;
   const char* defect;
-  std::unique_ptr<SetBackend> (*create)(BackendInfo info);
+  std::unique_ptr<SetBackend> (*create)(BackendInfo info, const Params& params);
   const char* verdict = "breaks";  ///< the laws; or "crashes", "hangs" while they are checked; or "keeps" all
+  ParamSchema schema = {};
 };
 
 template <class Backend>
-std::unique_ptr<SetBackend> create(BackendInfo info) {
+std::unique_ptr<SetBackend> create(BackendInfo info, const Params&) {
   return std::make_unique<Backend>(std::move(info));
 }
 
