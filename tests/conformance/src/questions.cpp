@@ -135,6 +135,17 @@ TestCase generate_pair_or_empty(const Setting& s) {
   return test;
 }
 
+/// Also points in Y or a little outside: their exchange form is hard to get wrong, so that a wrong form of Y shows.
+TestCase generate_inclusion(const Setting& s) {
+  TestCase test = generate_pair(s);
+  if (!s.random.chance(0.3)) return test;
+  TestSet& X = test.sets.front();
+  X.form = make_point(X.form.c);
+  X.delta = X.xi = Vector(0);
+  for (double& entry : test.vectors.front().value) entry = static_cast<double>(s.random.between(-12, 12)) / 4;
+  return test;
+}
+
 struct Pair {
   Operand X, Y;
   bool common = false;  ///< the first point of X lies in both
@@ -411,12 +422,13 @@ void add_questions(LawList& list) {
       {{"questions.contains", "contains is right about points next to the boundary, on either side"}, one_set, check_contains});
   list.push_back({{"questions.is_disjoint", "is_disjoint_from is right, and symmetric"}, generate_pair, check_is_disjoint});
   // a proof may visit every facet of the lifted zonotope: small sets
-  list.push_back({{"questions.is_subset", "is_subset_of is right"}, generate_pair, check_is_subset, {}, 1, 1, 3, {true, 4, 1}});
+  list.push_back(
+      {{"questions.is_subset", "is_subset_of is right"}, generate_inclusion, check_is_subset, {}, 1, 1, 3, {true, 4, 1}});
   list.push_back({{"questions.is_bounded", "is_bounded is right"}, one_set, check_is_bounded});
   list.push_back(
       {{"questions.agree", "no two answers about the same sets contradict each other"}, generate_pair_or_empty, check_agree});
   list.push_back({{"questions.certificates", "a certificate proves its answer, checked in rational arithmetic"},
-                  generate_pair,
+                  generate_inclusion,
                   check_certificates,
                   needs_exact_exchange,
                   0.5,
