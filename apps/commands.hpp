@@ -26,5 +26,6 @@ void add_list(CLI::App& app, Program& program);
 void add_info(CLI::App& app, Program& program);
 void add_schema(CLI::App& app, Program& program);
 void add_doctor(CLI::App& app, Program& program);
+void add_conform(CLI::App& app, Program& program);
 
 }  // namespace cordon::apps

@@ -50,6 +50,7 @@ Exit run(int argc, char** argv) {
   add_info(app, program);
   add_schema(app, program);
   add_doctor(app, program);
+  add_conform(app, program);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& outcome) {

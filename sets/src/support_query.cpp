@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support_query.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +12,8 @@ namespace cordon::sets {
 
 namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
+/// A number of this size is the outward rounding of 0; its inverse would overflow.
+constexpr double underflow = 1e-290;
 }
 
 ScaledSet::ScaledSet(const SupportOracle& X, Index n, const char* operation)
@@ -28,9 +31,9 @@ ScaledSet::ScaledSet(const SupportOracle& X, Index n, const char* operation)
     const double width = above.h + below.h, magnitude = std::abs(above.h) + std::abs(below.h);
     center_[i] = above.h / 2 - below.h / 2;
     // a width at rounding level counts as none: scaled up, it would show nothing but noise
-    const bool none = !(width > 1e-14 * magnitude);
+    const bool none = !(width > std::max(1e-14 * magnitude, underflow));
     flat_ |= none;
-    if (!none || magnitude > 0) width_[i] = none ? magnitude : width / 2;
+    if (!none || magnitude > underflow) width_[i] = none ? magnitude : width / 2;
   }
 }
 

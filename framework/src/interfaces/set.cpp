@@ -86,9 +86,10 @@ Volume Set::volume() const {
   for (Index i = 0; i < dim_; ++i) {
     const double edge = hull.upper[i] - hull.lower[i];
     if (edge == 0) return {0.0, true};  // flat in a coordinate
-    value *= edge;
+    if (edge < infinity) value *= edge;
   }
-  return {value, false};
+  // the product of tiny edges may be 0, and 0 · inf no number
+  return {hull.is_bounded() ? value : infinity, false};
 }
 
 Answer Set::do_is_empty(Certificate* why) const {

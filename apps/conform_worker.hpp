@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs laws in a child process, where a backend may crash or hang.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cordon/conformance/conformance.hpp"
+
+namespace cordon::apps {
+
+/// A backend of a plugin with its parameters, as JSON text ("{}" for the defaults).
+struct Candidate {
+  std::string backend, params = "{}";
+};
+
+/// What a plugin's file offers.
+struct Discovery {
+  std::string plugin, version;
+  std::vector<Candidate> candidates;  ///< a backend that can round in several ways stands once for each
+  std::string problem;                ///< refused, crashed or wrong parameters: why; then there are no candidates
+  bool invalid = false;               ///< the problem is one of the command line
+};
+/// Loads the plugin in a child process. `backend` "" stands for all; `params` must fit each of them.
+Discovery discover(const std::filesystem::path& library, const std::string& backend, const std::string& params);
+
+/// What became of a law.
+struct LawReport {
+  enum class State { passed, failed, skipped, crashed, timed_out };
+  State state = State::passed;
+  conformance::Result result;
+  double seconds = 0;
+};
+std::string_view to_string(LawReport::State state) noexcept;
+
+struct ConformRequest {
+  std::filesystem::path library;
+  Candidate candidate;
+  conformance::Options options;
+  double timeout_s = 20;  ///< of one case
+  std::string command;    ///< of the replay line
+};
+/// Checks the laws one by one; after a crash or a hang the next law runs in a new process.
+std::vector<LawReport> check_in_child(
+    const ConformRequest& request,
+    const std::function<void(std::size_t law, std::size_t laws, const std::string& name)>& progress);
+
+}  // namespace cordon::apps

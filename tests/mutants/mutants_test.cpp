@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The conformance kit is tested by backends that are known to be broken: each has to be caught by the laws that its summary
+// names, with a witness and a command that repeats the failure. Backends without a defect have to pass every law.
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <set>
+#include <sstream>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+using nlohmann::json;
+
+namespace {
+
+struct Outcome {
+  int code = -1;
+  json report;  ///< discarded if the output was no JSON
+};
+
+/// Runs a command line of cordon, given without the program, and reads its JSON.
+Outcome cordon_json(const std::string& arguments) {
+  std::FILE* pipe = popen(("\"" CORDON_PROGRAM "\" " + arguments + " --json 2>/dev/null").c_str(), "r");
+  if (!pipe) return {};
+  std::string text;
+  char block[4096];
+  for (std::size_t size = std::fread(block, 1, sizeof block, pipe); size > 0; size = std::fread(block, 1, sizeof block, pipe)) {
+    text.append(block, size);
+  }
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, json::parse(text, nullptr, false)};
+}
+
+/// The entry of one law in the report about one backend; null if there is none.
+json entry_of(const Outcome& outcome, const std::string& law) {
+  if (!outcome.report.is_object() || outcome.report.value("backends", json::array()).size() != 1) return nullptr;
+  for (const json& entry : outcome.report["backends"][0]["laws"]) {
+    if (entry["law"] == law) return entry;
+  }
+  return nullptr;
+}
+
+/// One backend with one law that has to catch it.
+struct Trial {
+  std::string backend, verdict, law, defect;
+  Outcome found, replayed;
+};
+
+/// What the plugin says about its mutants: "VERDICT LAW …: defect".
+std::vector<Trial> all_trials() {
+  std::vector<Trial> trials;
+  const Outcome list = cordon_json("--plugins \"" CORDON_MUTANTS_DIRECTORY "\" list");
+  REQUIRE(list.code == 0);
+  for (const json& component : list.report.at("components")) {
+    if (component.at("plugin") != "mutants") continue;
+    const std::string summary = component.at("summary");
+    const std::size_t colon = summary.find(": ");
+    std::istringstream words(summary.substr(0, colon));
+    std::string verdict, law;
+    words >> verdict;
+    if (verdict == "keeps") continue;
+    while (words >> law) trials.push_back({component.at("name"), verdict, law, summary.substr(colon + 2), {}, {}});
+  }
+  return trials;
+}
+
+/// Finds the failure, and repeats it by the command that the report names.
+void run(Trial& trial) {
+  const std::string seconds = trial.verdict == "hangs" ? " --timeout 1" : "";
+  trial.found = cordon_json("conform \"" CORDON_MUTANTS_DIRECTORY "/mutants.so\" --backend " + trial.backend + " --law " +
+                            trial.law + seconds);
+  const json entry = entry_of(trial.found, trial.law);
+  const std::string replay = entry.is_object() ? entry.value("replay", "") : "", program = "cordon ";
+  if (replay.starts_with(program)) trial.replayed = cordon_json(replay.substr(program.size()) + seconds);
+}
+
+void run_all(std::vector<Trial>& trials) {
+  std::atomic<std::size_t> next{0};
+  std::vector<std::jthread> workers;
+  for (unsigned k = 0; k < std::max(2U, std::thread::hardware_concurrency()); ++k) {
+    workers.emplace_back([&] {
+      for (std::size_t i = next++; i < trials.size(); i = next++) run(trials[i]);
+    });
+  }
+}
+
+/// Laws that no plugin can break, because the framework's public functions keep them for all.
+const std::set<std::string> kept_by_the_framework{"tightness.claims_meet", "algebra.empty_hull", "contract.dimension_errors",
+                                                  "contract.not_finite_errors"};
+
+}  // namespace
+
+TEST_CASE("backends without a defect pass every law") {
+  for (const std::string backend : {"reference", "padded", "silent", "coarse"}) {
+    CAPTURE(backend);
+    const Outcome outcome = cordon_json("conform \"" CORDON_MUTANTS_DIRECTORY "/mutants.so\" --backend " + backend);
+    CHECK(outcome.code == 0);
+    REQUIRE(outcome.report.is_object());
+    for (const json& entry : outcome.report.at("backends").at(0).at("laws")) {
+      CAPTURE(entry.dump(1));
+      // all but the two that say little have something to check by every law except the one about backends that round outward
+      const bool skipped = entry.at("status") == "skipped";
+      CHECK((skipped || entry.at("status") == "passed"));
+      CHECK((!skipped || backend == "coarse" || backend == "silent" || entry.at("law") == "soundness.rational"));
+    }
+  }
+}
+
+TEST_CASE("every mutant is caught by its laws, with a witness and a replay") {
+  std::vector<Trial> trials = all_trials();
+  CHECK(trials.size() >= 50);
+  run_all(trials);
+  for (const Trial& trial : trials) {
+    CAPTURE(trial.backend);
+    CAPTURE(trial.defect);
+    CAPTURE(trial.law);
+    const json entry = entry_of(trial.found, trial.law);
+    if (!entry.is_object()) {
+      FAIL_CHECK("no report about the law");
+      continue;
+    }
+    CAPTURE(entry.dump(1));
+    const bool violation = trial.verdict == "breaks";
+    const std::string status = violation ? "failed" : trial.verdict == "crashes" ? "crashed" : "timed_out";
+    CHECK(entry.at("status") == status);
+    CHECK(trial.found.code == (violation ? 4 : 3));
+    CHECK_FALSE(entry.value("witness", "").empty());
+    CHECK_FALSE(entry.value("reason", "").empty());
+    const json again = entry_of(trial.replayed, trial.law);
+    CHECK(trial.replayed.code == trial.found.code);
+    CHECK((again.is_object() && again.at("status") == status));
+  }
+}
+
+TEST_CASE("laws go on after a crash") {
+  const Outcome outcome = cordon_json("conform \"" CORDON_MUTANTS_DIRECTORY
+                                      "/mutants.so\" --backend crashes_in_one_dimension --law 'soundness.*' --cases 9");
+  CHECK(outcome.code != 0);
+  REQUIRE(outcome.report.is_object());
+  const json& laws = outcome.report.at("backends").at(0).at("laws");
+  const auto count = [&](const char* status) {
+    return std::count_if(laws.begin(), laws.end(), [&](const json& entry) { return entry.at("status") == status; });
+  };
+  CHECK(count("crashed") >= 2);
+  CHECK(count("passed") >= 5);
+  CHECK(entry_of(outcome, "soundness.affine_map").at("status") == "crashed");
+  CHECK(entry_of(outcome, "soundness.line_form").at("status") == "passed");
+}
+
+TEST_CASE("every law has a mutant, or is kept by the framework") {
+  const Outcome list = cordon_json("conform --list");
+  REQUIRE(list.code == 0);
+  std::set<std::string> laws, tested = kept_by_the_framework;
+  for (const json& entry : list.report.at("laws")) laws.insert(entry.at("law").get<std::string>());
+  for (const Trial& trial : all_trials()) {
+    if (trial.verdict == "breaks") tested.insert(trial.law);
+  }
+  for (const std::string& law : laws) {
+    CAPTURE(law);
+    CHECK(tested.contains(law));
+  }
+  for (const std::string& law : tested) {
+    CAPTURE(law);
+    CHECK(laws.contains(law));
+  }
+}
