@@ -30,14 +30,14 @@ Truth truth_of(const LineForm& X, double terms) {
 }
 
 /// Two ways to the same set: if both are exact, neither exceeds the other.
-Verdict same(const Context& context, const Enclosure& left, const Enclosure& right, double terms, std::uint64_t seed) {
+Verdict same(const Context& context, const Enclosure& left, const Enclosure& right, double terms, const TestCase& test) {
   if (left->dim() != right->dim()) return Verdict::fails("the two sides have different dimensions");
   if (!context.exact_exchange() || left.tightness != Tightness::exact || right.tightness != Tightness::exact) {
     return Verdict::inapplicable();
   }
   Truth of_left = truth_of(left->line_form(), terms), of_right = truth_of(right->line_form(), terms);
-  Verdict verdict = stays_within(context, left, of_right, seed);
-  if (!verdict.failed()) verdict = stays_within(context, right, of_left, seed);
+  Verdict verdict = stays_within(context, left, of_right, test);
+  if (!verdict.failed()) verdict = stays_within(context, right, of_left, test);
   if (verdict.failed()) {
     verdict.derived.emplace_back("one side", describe(left->line_form()));
     verdict.derived.emplace_back("other side", describe(right->line_form()));
@@ -123,7 +123,7 @@ Verdict check_empty_hull(const Context& context, const TestCase& test) {
     const Enclosure hull = first ? context.backend->convex_hull(X.set, *E) : context.backend->convex_hull(*E, X.set);
     Truth truth = truth_of(X.form, X.size);
     Verdict verdict = encloses(context, hull, truth, X.points, test.tame() && X.sure, test.seed);
-    if (!verdict.failed() && X.equal) verdict = stays_within(context, hull, truth, test.seed);
+    if (!verdict.failed() && X.equal) verdict = stays_within(context, hull, truth, test);
     if (verdict.failed()) return verdict;
   }
   return {};
@@ -137,20 +137,20 @@ Verdict check_zero_neutral(const Context& context, const TestCase& test) {
   const Enclosure sum = context.backend->sum(X.set, zero);
   Truth truth = truth_of(X.form, X.size);
   Verdict verdict = encloses(context, sum, truth, X.points, test.tame() && X.sure, test.seed);
-  if (!verdict.failed() && X.equal && zero.tightness == Tightness::exact) verdict = stays_within(context, sum, truth, test.seed);
+  if (!verdict.failed() && X.equal && zero.tightness == Tightness::exact) verdict = stays_within(context, sum, truth, test);
   return verdict;
 }
 
 Verdict check_sum_commutes(const Context& context, const TestCase& test) {
   const Operand X = import_operand(context, test.set(0)), Y = import_operand(context, test.set(1));
-  return same(context, context.backend->sum(X.set, Y.set), context.backend->sum(Y.set, X.set), sizes({&X, &Y}), test.seed);
+  return same(context, context.backend->sum(X.set, Y.set), context.backend->sum(Y.set, X.set), sizes({&X, &Y}), test);
 }
 
 Verdict check_sum_associates(const Context& context, const TestCase& test) {
   const SetBackend& b = *context.backend;
   const Operand X = import_operand(context, test.set(0)), Y = import_operand(context, test.set(1)),
                 Z = import_operand(context, test.set(2));
-  return same(context, b.sum(b.sum(X.set, Y.set), Z.set), b.sum(X.set, b.sum(Y.set, Z.set)), sizes({&X, &Y, &Z}), test.seed);
+  return same(context, b.sum(b.sum(X.set, Y.set), Z.set), b.sum(X.set, b.sum(Y.set, Z.set)), sizes({&X, &Y, &Z}), test);
 }
 
 // ---- maps ----
@@ -179,7 +179,7 @@ Verdict check_map_composes(const Context& context, const TestCase& test) {
   for (const Enclosure* side : {&two, &one}) {
     if (Verdict verdict = encloses(context, *side, image, points, sure, test.seed); verdict.failed()) return verdict;
   }
-  return same(context, two, one, terms, test.seed);
+  return same(context, two, one, terms, test);
 }
 
 TestCase generate_map_of_sum(const Setting& s) {
@@ -196,7 +196,7 @@ Verdict check_map_distributes(const Context& context, const TestCase& test) {
   const Vector zero = Vector::Zero(T.rows());
   const Enclosure whole = b.affine_map(b.sum(X.set, Y.set), T, zero);
   const Enclosure parts = b.sum(b.affine_map(X.set, T, zero), b.affine_map(Y.set, T, zero));
-  return same(context, whole, parts, stretch(T) * sizes({&X, &Y}), test.seed);
+  return same(context, whole, parts, stretch(T) * sizes({&X, &Y}), test);
 }
 
 // ---- exchange, order, reduction ----
@@ -206,7 +206,7 @@ Verdict check_import_of_line_form(const Context& context, const TestCase& test) 
   const Enclosure again = context.backend->import(X.set->line_form());
   Truth truth = truth_of(X.form, X.size);
   Verdict verdict = encloses(context, again, truth, X.points, test.tame() && X.sure, test.seed);
-  if (!verdict.failed() && X.equal) verdict = stays_within(context, again, truth, test.seed);
+  if (!verdict.failed() && X.equal) verdict = stays_within(context, again, truth, test);
   if (verdict.failed() || !X.equal) return verdict;
   // the form equals the set, so it does not exceed the set's own bounds
   Random random(test.seed);
@@ -335,7 +335,7 @@ Verdict check_self_intersection(const Context& context, const TestCase& test) {
   Truth truth;
   truth.add(X.form, X.points, X.size, X.size);
   Verdict verdict = encloses(context, cut, truth, X.points, test.tame() && X.sure, test.seed);
-  if (!verdict.failed() && X.equal) verdict = stays_within(context, cut, truth, test.seed);
+  if (!verdict.failed() && X.equal) verdict = stays_within(context, cut, truth, test);
   return verdict;
 }
 

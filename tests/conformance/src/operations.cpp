@@ -378,11 +378,11 @@ std::vector<Vector> facet_normals(const std::vector<LineForm>& forms) {
   return normals;
 }
 
-Verdict stays_within(const Context& context, const Enclosure& result, Truth& truth, std::uint64_t seed) {
+Verdict stays_within(const Context& context, const Enclosure& result, Truth& truth, const TestCase& test) {
   if (result.tightness != Tightness::exact || !context.exact_exchange()) return Verdict::inapplicable();
   const LineForm form = result->line_form();
   Reference found(form);
-  Random random(seed);
+  Random random(test.seed);
   std::vector<LineForm> forms = truth.forms();
   forms.push_back(form);
   std::vector<Vector> along = directions(forms, truth.dim(), random, 4);
@@ -393,6 +393,8 @@ Verdict stays_within(const Context& context, const Enclosure& result, Truth& tru
     if (std::isinf(allowed) && allowed > 0) continue;
     const double reached = found.lower(d);
     if (reached <= allowed) continue;
+    // empty by a hair, after terms that cancelled: with other numbers than tame ones that is rounding
+    if (allowed == -infinity && !test.tame()) continue;
     const double tolerance = std::isinf(allowed) ? 0 : truth.tolerance(d) + found.tolerance(d);
     if (!(reached <= allowed + tolerance)) {
       return Verdict::fails("the claim is exact, but in direction d = " + describe_vector(d) + " the result reaches " +

@@ -45,6 +45,6 @@ Operand import_operand(const Context& context, const TestSet& X);
 Verdict encloses(const Context& context, const Enclosure& result, Truth& truth, const std::vector<Vector>& points, bool sure,
                  std::uint64_t seed);
 /// The set that the result's exchange form describes does not leave `truth`.
-Verdict stays_within(const Context& context, const Enclosure& result, Truth& truth, std::uint64_t seed);
+Verdict stays_within(const Context& context, const Enclosure& result, Truth& truth, const TestCase& test);
 
 }  // namespace cordon::conformance

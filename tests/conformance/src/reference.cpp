@@ -83,6 +83,7 @@ double Reference::lower(VectorIn d) {
 
 double Reference::upper(VectorIn d) {
   if (along(d) != Along::bounded) return infinity;
+  if (solve(d).upper == -infinity) return -infinity;
   const double gradient_error = rounding::product_error(X_.G.transpose(), d).sum();
   return rounding::up(d.dot(X_.c) + solve(d).upper) + gradient_error;
 }

@@ -74,7 +74,7 @@ void add_tightness(LawList& list) {
                     [&operation](const Context& context, const TestCase& test) {
                       Applied applied = operation.apply(context, test);
                       if (!applied.complete) return Verdict::inapplicable();
-                      Verdict verdict = stays_within(context, applied.result, applied.truth, test.seed);
+                      Verdict verdict = stays_within(context, applied.result, applied.truth, test);
                       verdict.derived.insert(verdict.derived.end(), applied.derived.begin(), applied.derived.end());
                       return verdict;
                     },
