@@ -26,15 +26,9 @@ ConstrainedForm::Result made(sets::Reduced result) {
 
 }  // namespace
 
-Answer ConstrainedForm::is_empty(const Value& X, Certificate* why) const {
-  return outward ? cordon::outward::is_empty(X, why) : cordon::is_empty(X, why);
-}
-Answer ConstrainedForm::contains(const Value& X, VectorIn x, Certificate* why) const {
-  return outward ? cordon::outward::contains(X, x, why) : cordon::contains(X, x, why);
-}
-Answer ConstrainedForm::is_bounded(const Value& X) const {
-  return outward ? cordon::outward::is_bounded(X) : cordon::is_bounded(X);
-}
+Answer ConstrainedForm::is_empty(const Value& X, Certificate* why) const { return cordon::is_empty(X, why); }
+Answer ConstrainedForm::contains(const Value& X, VectorIn x, Certificate* why) const { return cordon::contains(X, x, why); }
+Answer ConstrainedForm::is_bounded(const Value& X) const { return cordon::is_bounded(X); }
 double ConstrainedForm::support(const Value& X, VectorIn d, Certificate* why) const {
   return outward ? cordon::outward::support(X, d, why) : cordon::support(X, d, why);
 }

@@ -11,7 +11,6 @@
 #include "cordon/sets/generator_reduction.hpp"
 #include "cordon/sets/outward.hpp"
 #include "cordon/sets/strip.hpp"
-#include "cordon/solvers/outward_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "rounding_parameter.hpp"
 
@@ -55,9 +54,7 @@ struct Zonotopes {
     if (why) *why = {Certificate::Kind::structure, Vector(0), 0};
     return X.Z ? Answer::no : Answer::yes;
   }
-  Answer contains(const Value& X, VectorIn x, Certificate* why) const {
-    return outward ? cordon::outward::contains(line_form(X), x, why) : cordon::contains(line_form(X), x, why);
-  }
+  Answer contains(const Value& X, VectorIn x, Certificate* why) const { return cordon::contains(line_form(X), x, why); }
   Answer is_bounded(const Value&) const { return Answer::yes; }
   double support(const Value& X, VectorIn d, Certificate*) const { return X.Z ? sets::support(*X.Z, d) : -infinity; }
   Box interval_hull(const Value& X, std::vector<Certificate>* why) const {
@@ -79,11 +76,11 @@ struct Zonotopes {
   }
 
   static Result import_outward(const LineForm& X) {
-    if (X.constraints() > 0 && cordon::outward::is_empty(X) == Answer::yes) return empty(X.dim());
+    if (X.constraints() > 0 && cordon::is_empty(X) == Answer::yes) return empty(X.dim());
     const sets::Reduced Y = sets::outward::enclose_without_lines(X);
     if (Y.set.lines() > 0) refuse_lines();
     sets::Reduced Z = sets::outward::eliminate_constraints(Y.set, 0, {.rescale = true});
-    if (Z.set.constraints() > 0 && cordon::outward::is_empty(Z.set) == Answer::yes) return empty(X.dim());
+    if (Z.set.constraints() > 0 && cordon::is_empty(Z.set) == Answer::yes) return empty(X.dim());
     Z.exact = Z.exact && Y.exact && Z.set.constraints() == 0;
     return result(Z);
   }

@@ -60,8 +60,7 @@ Answer Set::is_subset_of(const Set& other, Certificate* why) const {
 
 Answer Set::is_disjoint_from(const Set& other, Certificate* why) const {
   require_same(*this, other, "is_disjoint_from");
-  const Answer answer = is_outward(*this) || is_outward(other) ? outward::is_disjoint(line_form(), other.line_form(), why)
-                                                               : is_disjoint(line_form(), other.line_form(), why);
+  const Answer answer = is_disjoint(line_form(), other.line_form(), why);
   return exact_exchange() && other.exact_exchange() ? answer : only(Answer::yes, answer);
 }
 
@@ -98,17 +97,17 @@ Volume Set::volume() const {
 }
 
 Answer Set::do_is_empty(Certificate* why) const {
-  const Answer answer = is_outward(*this) ? outward::is_empty(do_line_form(), why) : cordon::is_empty(do_line_form(), why);
+  const Answer answer = cordon::is_empty(do_line_form(), why);
   return exact_exchange() ? answer : only(Answer::yes, answer);
 }
 
 Answer Set::do_contains(VectorIn x, Certificate* why) const {
-  const Answer answer = is_outward(*this) ? outward::contains(do_line_form(), x, why) : cordon::contains(do_line_form(), x, why);
+  const Answer answer = cordon::contains(do_line_form(), x, why);
   return exact_exchange() ? answer : only(Answer::no, answer);
 }
 
 Answer Set::do_is_bounded() const {
-  const Answer answer = is_outward(*this) ? outward::is_bounded(do_line_form()) : cordon::is_bounded(do_line_form());
+  const Answer answer = cordon::is_bounded(do_line_form());
   return exact_exchange() ? answer : only(Answer::yes, answer);
 }
 
