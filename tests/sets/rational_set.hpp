@@ -4,16 +4,18 @@
 #pragma once
 
 #include <cmath>
+#include <gmpxx.h>
 #include <stdexcept>
 #include <vector>
 
-#include <setoper.h>
-
-#include <cdd.h>
-#include <gmpxx.h>
-
 #include "cordon/core/box.hpp"
 #include "cordon/core/line_form.hpp"
+
+// cdd.h needs setoper.h before it
+// clang-format off
+#include <setoper.h>
+#include <cdd.h>
+// clang-format on
 
 namespace cordon::test {
 
