@@ -13,6 +13,10 @@ namespace cordon::sets::outward {
 
 namespace {
 
+/// A right-hand side that cancels to this share of its terms may owe the rest to the rounding of the caller's data. It must not
+/// become a statement, such as 0 = 1e-17: it goes to the radius of its row.
+constexpr double data_noise = 1e-14;
+
 bool is_exact(const Vector& radius) { return radius.size() == 0 || (radius.array() == 0).all(); }
 
 bool product_is_exact(MatrixIn T, MatrixIn M) {
@@ -111,8 +115,17 @@ Reduced strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, Matrix
   Y.A.bottomRows(p) << tracked_product(C, x.X.G, radius), tracked_product(T, v.X.G, radius);
   for (Index i = 0; i < p; ++i) {
     Tracked right{z[i], 0};
-    for (Index k = 0; k < C.cols(); ++k) right.subtract_product(C(i, k), x.X.c[k]);
-    for (Index k = 0; k < T.cols(); ++k) right.subtract_product(T(i, k), v.X.c[k]);
+    double terms = std::abs(z[i]);
+    const auto subtract = [&](double factor, double value) {
+      right.subtract_product(factor, value);
+      terms += std::abs(factor * value);
+    };
+    for (Index k = 0; k < C.cols(); ++k) subtract(C(i, k), x.X.c[k]);
+    for (Index k = 0; k < T.cols(); ++k) subtract(T(i, k), v.X.c[k]);
+    if (std::abs(right.value) <= data_noise * terms) {
+      right.widen(std::abs(right.value));
+      right.value = 0;
+    }
     Y.b[above + i] = right.value;
     radius[i] = plus_up(radius[i], right.error);
   }

@@ -40,15 +40,19 @@ struct Seen {
 
 struct Strip {
   double d, sigma;  ///< |ρᵀx - d| ≤ σ
+  double terms;     ///< size of what d was computed from
 };
 
 /// The strip z - C_i x ∈ T_i V.
 Strip strip_of(double z, VectorIn row, const Zonotope& V) {
   Tracked d{z, 0};
-  double sigma = 0;
-  for (Index k = 0; k < row.size(); ++k) d.subtract_product(row[k], V.c[k]);
+  double sigma = 0, terms = std::abs(z);
+  for (Index k = 0; k < row.size(); ++k) {
+    d.subtract_product(row[k], V.c[k]);
+    terms += std::abs(row[k] * V.c[k]);
+  }
   for (Index j = 0; j < V.generators(); ++j) sigma = plus_up(sigma, tracked_dot(row, V.G.col(j)).magnitude());
-  return {d.value, plus_up(sigma, d.error)};
+  return {d.value, plus_up(sigma, d.error), terms};
 }
 
 /// Z(λ) = c + λ(d - ρᵀc) + (I - λρᵀ)Gξ + σλη, an enclosure for the λ that is stored; false if the intersection is proven empty.
@@ -57,7 +61,7 @@ bool intersect(Widened& X, VectorIn rho, Strip strip, StripMethod method) {
   const double spread = seen.spread();
   const double lowest = rounding::down(seen.middle.value - spread), highest = rounding::up(seen.middle.value + spread);
   const double lower = rounding::down(strip.d - strip.sigma), upper = rounding::up(strip.d + strip.sigma);
-  const double doubt = data_error * (std::abs(strip.d) + rho.cwiseAbs().dot(X.Z.c.cwiseAbs()) + spread);
+  const double doubt = data_error * (strip.terms + strip.sigma + rho.cwiseAbs().dot(X.Z.c.cwiseAbs()) + spread);
   if (lowest - upper > doubt || lower - highest > doubt) return false;
   if (lower <= lowest && highest <= upper) return true;
   if (lowest > lower || highest < upper) {  // the part of the strip that Z meets; they may cross by less than the doubt

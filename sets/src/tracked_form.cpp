@@ -41,8 +41,11 @@ TrackedForm::TrackedForm(LineForm X)
     : X_(std::move(X)),
       row_radius_(Vector::Zero(X_.constraints())),
       state_radius_(Vector::Zero(X_.dim())),
+      row_terms_(X_.constraints()),
       live_(at(X_.constraints()), true),
-      free_(at(X_.generators()), true) {}
+      free_(at(X_.generators()), true) {
+  for (Index i = 0; i < rows(); ++i) row_terms_[i] = scale(i);
+}
 
 double TrackedForm::scale(Index row) const {
   const double largest = factors() ? X_.A.row(row).cwiseAbs().maxCoeff() : 0.0;
@@ -51,6 +54,7 @@ double TrackedForm::scale(Index row) const {
 
 void TrackedForm::subtract_multiple(Index i, Index row, double factor) {
   combine(X_.A.row(i), factor, X_.A.row(row), row_radius_[i]);
+  row_terms_[i] = std::max(row_terms_[i], std::abs(factor) * row_terms_[row]);
   Tracked right{X_.b[i], 0};
   right.subtract_product(factor, X_.b[row]);
   X_.b[i] = right.value;
@@ -104,7 +108,11 @@ bool TrackedForm::best_pivot(const std::vector<Index>& among_rows, const std::ve
 
 void TrackedForm::drop_vague_rows() {
   for (Index i = 0; i < rows(); ++i) {
-    if (is_live(i) && !has_lines(i) && (row_radius_[i] > 1e-9 * scale(i) || scale(i) == 0)) drop(i);
+    if (!is_live(i) || has_lines(i)) continue;
+    const double size = scale(i);
+    if (size > 0 && row_radius_[i] <= 1e-9 * size && size > 1e-12 * row_terms_[i]) continue;
+    drop(i);
+    row_radius_[i] = plus_up(row_radius_[i], size);  // something was forgotten
   }
 }
 

@@ -34,8 +34,8 @@ class TrackedForm {
   void eliminate(Index row, Index col);
   /// Of the live rows and the factors given, the pair with the largest coefficient relative to its row; false if all are zero.
   bool best_pivot(const std::vector<Index>& among_rows, const std::vector<Index>& among_factors, Index& row, Index& col) const;
-  /// Drops rows without lines that say nothing (the radius covers them) or little (it exceeds 1e-9 of the coefficients, so that a
-  /// pivot there would spread it).
+  /// Drops rows without lines that say nothing (0 = 0) or little: the radius exceeds 1e-9 of the coefficients, so that a pivot
+  /// there would spread it, or the row cancelled to 1e-12 of its terms, where the caller's data may have been rounded.
   void drop_vague_rows();
   /// Factors are rescaled to what the rows leave of [-1,1]; false if they leave nothing: the set is proven empty.
   bool rescale();
@@ -51,6 +51,7 @@ class TrackedForm {
 
   LineForm X_;
   Vector row_radius_, state_radius_;
+  Vector row_terms_;  ///< largest number that took part in the row so far
   std::vector<bool> live_, free_;
 };
 

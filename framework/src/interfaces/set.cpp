@@ -53,7 +53,7 @@ Answer Set::is_subset_of(const Set& other, Certificate* why) const {
   const Answer answer = is_outward(*this) || is_outward(other) ? outward::is_subset(line_form(), other.line_form(), why)
                                                                : is_subset(line_form(), other.line_form(), why);
   // `yes` needs an exact right-hand side, `no` an exact left-hand side; an outer form of the other one only strengthens it
-  if (answer == Answer::yes && !other.exact_exchange()) return Answer::unknown;
+  if (answer == Answer::yes && !other.exact_exchange() && is_empty() != Answer::yes) return Answer::unknown;
   if (answer == Answer::no && !exact_exchange()) return Answer::unknown;
   return answer;
 }
