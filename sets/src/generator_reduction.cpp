@@ -225,7 +225,7 @@ class BasisReduction {
 
 ReductionSplit split_generators(const Matrix& G, Index max_generators, GeneratorReduction method) {
   if (method == GeneratorReduction::yang_scott) return BasisReduction(G).split(max_generators);
-  const Index n = G.rows(), kept = max_generators - n;
+  const Index n = G.rows(), kept = std::min(max_generators - n, G.cols());
   const Matrix sorted = sorted_by_size(G, kept, method == GeneratorReduction::combastel ? Size::norm_2 : Size::norm_1_minus_max);
   const Matrix small = sorted.rightCols(sorted.cols() - kept);
   if (method != GeneratorReduction::pca) return {sorted.leftCols(kept), small, Matrix::Identity(n, n)};

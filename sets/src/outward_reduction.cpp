@@ -64,26 +64,33 @@ Matrix without_zero_columns(const Matrix& G) {
   return kept;
 }
 
-/// Columns of rounding errors in the same coordinate are added up: the same set but for the rounding of the sum.
-Matrix with_merged_rounding_columns(const Matrix& G) {
-  const Vector sums = G.cwiseAbs().rowwise().sum();
-  Vector radius = Vector::Zero(G.rows());
-  Matrix kept(G.rows(), G.cols() + G.rows());
-  Index count = 0;
-  for (Index j = 0; j < G.cols(); ++j) {
-    Index row = 0;
-    const double largest = G.col(j).cwiseAbs().maxCoeff(&row);
-    if ((G.col(j).array() != 0).count() == 1 && largest <= rounding_share * sums[row]) {
-      radius[row] = plus_up(radius[row], largest);
-    } else {
-      kept.col(count++) = G.col(j);
+/// G apart: columns of rounding errors, added up per coordinate (the same set but for the rounding of the sum), and the others.
+/// The nominal methods then choose among the columns that they would see without rounding errors.
+struct Columns {
+  Matrix others;
+  Vector radius;
+
+  explicit Columns(const Matrix& G) : others(G.rows(), G.cols()), radius(Vector::Zero(G.rows())) {
+    const Vector sums = G.cwiseAbs().rowwise().sum();
+    Index count = 0;
+    for (Index j = 0; j < G.cols(); ++j) {
+      Index row = 0;
+      const double largest = G.col(j).cwiseAbs().maxCoeff(&row);
+      if ((G.col(j).array() != 0).count() == 1 && largest <= rounding_share * sums[row]) {
+        radius[row] = plus_up(radius[row], largest);
+      } else {
+        others.col(count++) = G.col(j);
+      }
     }
+    others.conservativeResize(Eigen::NoChange, count);
   }
-  for (Index i = 0; i < G.rows(); ++i) {
-    if (radius[i] > 0) kept.col(count++) = Vector::Unit(G.rows(), i) * radius[i];
+  Index count() const { return others.cols() + (radius.array() > 0).count(); }
+  Matrix beside(const Matrix& columns) const {
+    Matrix both(radius.size(), columns.cols() + radius.size());
+    both << columns, radius.asDiagonal().toDenseMatrix();
+    return both;
   }
-  return kept.leftCols(count);
-}
+};
 
 /// Carries out the proposal for the rows without lines.
 void follow_plan(TrackedForm& form, Index max_constraints, const ConstraintElimination& options) {
@@ -140,6 +147,23 @@ void reduce_rows(TrackedForm& form, Index most, const ConstraintElimination& opt
   }
 }
 
+/// Kept columns, and a frame around those replaced and the radii.
+Matrix reduce_columns(const Columns& columns, Index max_generators, GeneratorReduction method) {
+  const ReductionSplit split = split_generators(columns.others, max_generators, method);
+  const Matrix replaced = columns.beside(split.replaced);
+  const bool box = method == GeneratorReduction::girard || method == GeneratorReduction::combastel;
+  const std::optional<Matrix> frame = box ? std::nullopt : enclosing_frame(replaced, split.frame);
+  const Matrix replacement = frame ? *frame : Matrix(enclosing_radii(replaced).asDiagonal());
+  Matrix reduced(replaced.rows(), split.kept.cols() + replacement.cols());
+  // the order of the nominal method, on which its later choices among equals depend
+  if (method == GeneratorReduction::yang_scott) {
+    reduced << replacement, split.kept;
+  } else {
+    reduced << split.kept, replacement;
+  }
+  return reduced;
+}
+
 Matrix lifted_generators(const LineForm& X) {
   Matrix lifted(X.dim() + X.constraints(), X.generators());
   lifted << X.G, X.A;
@@ -160,20 +184,17 @@ Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction me
                                    "; allow at least " + std::to_string(G.rows()));
   }
   require_finite(G, "generator reduction", "the generator matrix");
-  Matrix kept = without_zero_columns(G);
-  if (kept.cols() > max_generators) kept = with_merged_rounding_columns(kept);
-  if (kept.cols() <= max_generators) return kept;
+  const Matrix all = without_zero_columns(G);
+  if (all.cols() <= max_generators) return all;
   std::vector<Index> rows;
-  for (Index i = 0; i < kept.rows(); ++i) {
-    if (!kept.row(i).isZero(0)) rows.push_back(i);
+  for (Index i = 0; i < all.rows(); ++i) {
+    if (!all.row(i).isZero(0)) rows.push_back(i);
   }
-  Matrix dense(static_cast<Index>(rows.size()), kept.cols());
-  for (Index i = 0; i < dense.rows(); ++i) dense.row(i) = kept.row(rows[at(i)]);
-  const ReductionSplit split = split_generators(dense, max_generators, method);
-  const bool box = method == GeneratorReduction::girard || method == GeneratorReduction::combastel;
-  const std::optional<Matrix> frame = box ? std::nullopt : enclosing_frame(split.replaced, split.frame);
-  Matrix reduced(dense.rows(), split.kept.cols() + dense.rows());
-  reduced << split.kept, (frame ? *frame : Matrix(enclosing_radii(split.replaced).asDiagonal()));
+  Matrix dense(static_cast<Index>(rows.size()), all.cols());
+  for (Index i = 0; i < dense.rows(); ++i) dense.row(i) = all.row(rows[at(i)]);
+  const Columns columns(dense);
+  const Matrix reduced =
+      columns.count() <= max_generators ? columns.beside(columns.others) : reduce_columns(columns, max_generators, method);
   Matrix H = Matrix::Zero(G.rows(), reduced.cols());
   for (Index i = 0; i < dense.rows(); ++i) H.row(rows[at(i)]) = reduced.row(i);
   if (!H.allFinite()) throw Error(Errc::not_finite, "generator reduction: overflow; scale the problem");

@@ -12,8 +12,7 @@ struct ReductionSplit {
   Matrix frame;     ///< n×n: directions of the parallelotope that replaces them
 };
 
-/// The split of `reduce_generators` for a G without zero rows, with more than max_generators ≥ n columns: kept and frame have at
-/// most max_generators together.
+/// The split of `reduce_generators` for max_generators ≥ n: kept and frame have at most max_generators columns together.
 ReductionSplit split_generators(const Matrix& G, Index max_generators, GeneratorReduction method);
 
 /// Half widths of the interval hull of {Gξ}, rounded up.

@@ -182,7 +182,7 @@ struct RationalSet {
     for (std::size_t j = 0; j < variables(); ++j) mpq_set(P->rowvec[j + 1], objective.coefficients[j].get_mpq_t());
     dd_ErrorType error = dd_NoError;
     dd_LPPtr lp = dd_Matrix2LP(P, &error);
-    dd_LPSolve(lp, dd_DualSimplex, &error);
+    dd_LPSolve0(lp, dd_DualSimplex, &error);  // without the floating-point solve that dd_LPSolve tries first: it corrupts memory
     Support h;
     const dd_LPStatusType status = lp->LPS;
     h.value = mpq_class(lp->optvalue);
