@@ -339,7 +339,7 @@ TEST_CASE("the examples are valid, and their resolved texts read back") {
     expect_round_trip(study, scratch.folder());
     ++studies;
   }
-  CHECK(studies == 3);
+  CHECK(studies == 4);
 }
 
 TEST_CASE("the recorded walk keeps its bounds") {
