@@ -78,7 +78,7 @@ TEST_CASE("lines that no rows determine stay, and their directions are unbounded
                    Matrix{{1, 0.1}},         Matrix{{-1.0}},     Vector::Zero(1)};
   CHECK(bound_lines(X).set.lines() == 2);
   CHECK(cordon::outward::support(X, Vector{{0, 1}}) == infinity);
-  CHECK(cordon::outward::support(X, Vector{{1, 0}}) == infinity);  // 1 in truth: an enclosure all the same
+  CHECK(cordon::outward::support(X, Vector{{1, 0}}) == 1);
   // dᵀM cancels in double arithmetic, not in truth: (0.1, -1) · (3, 0.3) is 1.7e-17
   const LineForm line{Matrix{{3.0}, {0.1 * 3}}, Matrix(2, 0), Vector::Zero(2), Matrix(0, 1), Matrix(0, 0), Vector(0)};
   CHECK(cordon::outward::support(line, Vector{{0.1, -1}}) == infinity);

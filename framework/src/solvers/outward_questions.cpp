@@ -8,6 +8,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_bounds.hpp"
 #include "cordon/core/rounding.hpp"
+#include "cordon/solvers/exact_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
 
 namespace cordon::outward {
@@ -15,6 +16,9 @@ namespace cordon::outward {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Rational arithmetic takes milliseconds up to here.
+constexpr Index exact_columns = 60;
 
 /// X with lines bounded where that is proven, and a superset of it in which the other lines meet no row.
 struct Relaxed {
@@ -31,6 +35,14 @@ struct Relaxed {
     }
     larger.M.resize(set.dim(), 0);
     larger.S.resize(set.constraints(), 0);
+  }
+
+  /// h(d) with the rows that were forgotten, where there are any and rational arithmetic can take them all; else +inf. A set that
+  /// is empty by the last bits of its numbers gives +inf too: emptiness is left to the question for it, with its margin.
+  double exact_support(VectorIn d) const {
+    if (forgotten.empty() || set.lines() + set.generators() > exact_columns || set.constraints() > exact_columns) return infinity;
+    const double h = exact::support(set, d).upper;
+    return h == -infinity ? infinity : h;
   }
 
   bool bounded_along(VectorIn d) const {
@@ -79,6 +91,10 @@ double support(const LineForm& X, VectorIn d, Certificate* why) {
   if (d.size() != X.dim()) throw Error(Errc::dimension, "support: the direction has another dimension than the set");
   if (!d.allFinite()) throw Error(Errc::not_finite, "support: the direction has a NaN or infinite entry");
   const Relaxed relaxed(X);
+  if (const double h = relaxed.exact_support(d); h < infinity) {
+    if (why) *why = {};
+    return h;
+  }
   if (!relaxed.bounded_along(d)) return cordon::is_empty(X, why) == Answer::yes ? -infinity : infinity;
   const double h = cordon::support(relaxed.larger, d, why);
   if (why) relaxed.complete(*why);
@@ -92,8 +108,9 @@ Box interval_hull(const LineForm& X, std::vector<Certificate>* why) {
   if (relaxed.set.lines() == 0 || X.dim() == 0 || hull.is_empty()) return hull;
   for (Index i = 0; i < X.dim(); ++i) {
     if (relaxed.set.M.row(i).isZero(0)) continue;
-    hull.lower[i] = -infinity;
-    hull.upper[i] = infinity;
+    const Vector d = Vector::Unit(X.dim(), i);
+    hull.lower[i] = -relaxed.exact_support(-d);
+    hull.upper[i] = relaxed.exact_support(d);
     if (why) (*why)[static_cast<std::size_t>(2 * i)] = (*why)[static_cast<std::size_t>(2 * i + 1)] = {};
   }
   return cordon::is_empty(X) == Answer::yes ? Box::empty(X.dim()) : hull;
