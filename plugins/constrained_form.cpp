@@ -9,17 +9,32 @@
 #include "cordon/core/line_elimination.hpp"
 #include "cordon/sets/constrained_zonotope.hpp"
 #include "cordon/sets/interval.hpp"
+#include "cordon/sets/outward.hpp"
 #include "cordon/sets/vertices.hpp"
 #include "cordon/solvers/boxed_program.hpp"
+#include "cordon/solvers/outward_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "rounding_parameter.hpp"
 
 namespace cordon::plugins {
+
+namespace {
+
+ConstrainedForm::Result made(sets::Reduced result) {
+  return {std::move(result.set), result.exact ? Tightness::exact : Tightness::outer};
+}
+
+}  // namespace
 
 Answer ConstrainedForm::is_empty(const Value& X, Certificate* why) const { return cordon::is_empty(X, why); }
 Answer ConstrainedForm::contains(const Value& X, VectorIn x, Certificate* why) const { return cordon::contains(X, x, why); }
 Answer ConstrainedForm::is_bounded(const Value& X) const { return cordon::is_bounded(X); }
-double ConstrainedForm::support(const Value& X, VectorIn d, Certificate* why) const { return cordon::support(X, d, why); }
-Box ConstrainedForm::interval_hull(const Value& X, std::vector<Certificate>* why) const { return cordon::interval_hull(X, why); }
+double ConstrainedForm::support(const Value& X, VectorIn d, Certificate* why) const {
+  return outward ? cordon::outward::support(X, d, why) : cordon::support(X, d, why);
+}
+Box ConstrainedForm::interval_hull(const Value& X, std::vector<Certificate>* why) const {
+  return outward ? cordon::outward::interval_hull(X, why) : cordon::interval_hull(X, why);
+}
 
 double ConstrainedForm::exact_volume(const Value& X) const {
   const LineForm Y = eliminate_lines(X);
@@ -52,9 +67,13 @@ double ConstrainedForm::exact_volume(const Value& X) const {
 
 ConstrainedForm::Result ConstrainedForm::import(const LineForm& X) const {
   if (lines || X.lines() == 0) return {X, Tightness::exact};
-  const auto Z = sets::to_constrained_zonotope(X);
-  if (Z) return {sets::line_form(*Z), Tightness::exact};
-  if (cordon::is_empty(X) == Answer::yes) return {make_empty(X.dim()), Tightness::exact};
+  if (outward) {
+    sets::Reduced without = sets::outward::enclose_without_lines(X);
+    if (without.set.lines() == 0) return made(std::move(without));
+  } else if (const auto Z = sets::to_constrained_zonotope(X)) {
+    return {sets::line_form(*Z), Tightness::exact};
+  }
+  if (is_empty(X, nullptr) == Answer::yes) return {make_empty(X.dim()), Tightness::exact};
   throw Error(
       Errc::unsupported,
       "constrained_zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
@@ -65,14 +84,24 @@ ConstrainedForm::Result ConstrainedForm::predict(const Value& X, MatrixIn A, Vec
   std::vector<sets::Summand> summands;
   summands.reserve(operands.size());
   for (const auto& operand : operands) summands.push_back({operand.T, operand.value});
+  if (outward) return made(sets::outward::affine_sum(X, A, f, summands));
   return {sets::affine_sum(X, A, f, summands), Tightness::exact};
 }
 
 ConstrainedForm::Result ConstrainedForm::correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {
+  if (outward) return made(sets::outward::strip_intersection(X, C, z, noise.T, noise.value));
   return {sets::strip_intersection(X, C, z, noise.T, noise.value), Tightness::exact};
 }
 
 ConstrainedForm::Result ConstrainedForm::interval_map(const Value& X, const IntervalMatrix& A) const {
+  if (outward) {
+    const Box hull = A.is_exact() ? Box::space(X.dim()) : interval_hull(X, nullptr);
+    if (!A.is_exact() && X.dim() > 0 && hull.is_empty()) return {make_empty(A.rows()), Tightness::exact};
+    sets::Reduced image = sets::outward::interval_map(X, A, hull);
+    if (!lines && image.set.lines() > 0)
+      throw Error(Errc::unsupported, "constrained_zonotope: the image under the interval matrix has no proven bound");
+    return made(std::move(image));
+  }
   // A x = mid(A) x + Δ x with |Δ x| ≤ rad(A) |x|, |x| bounded by the interval hull
   const LineForm mapped = cordon::affine_map(X, A.center, Vector::Zero(A.rows()));
   if (A.is_exact()) return {mapped, Tightness::exact};
@@ -85,27 +114,33 @@ ConstrainedForm::Result ConstrainedForm::interval_map(const Value& X, const Inte
 }
 
 ConstrainedForm::Result ConstrainedForm::intersection(const Value& X, MatrixIn R, const Value& Y) const {
+  if (outward) return made(sets::outward::intersection(X, R, Y));
   return {cordon::intersection(X, R, Y), Tightness::exact};
 }
 
 ConstrainedForm::Result ConstrainedForm::convex_hull(const Value& X, const Value& Y) const {
+  if (outward) return made(sets::outward::convex_hull(X, Y));
   return {cordon::convex_hull(X, Y), X.lines() + Y.lines() > 0 ? Tightness::outer : Tightness::exact};
 }
 
 std::optional<ConstrainedForm::Result> ConstrainedForm::reduce(const Value& X, Budget budget) const {
+  if (outward) return made(sets::outward::reduce(X, budget.generators, budget.constraints, reduction));
   const sets::Reduced reduced = sets::reduce(X, budget.generators, budget.constraints, reduction);
   return Result{reduced.set, reduced.exact ? Tightness::exact : Tightness::outer};
 }
 
-ParamSchema reduction_schema() {
+ParamSchema constrained_schema() {
   ParamSchema schema;
   schema.choice("reduction", "how generators are reduced to the budget", {"yang_scott", "girard", "combastel", "pca"},
                 "yang_scott");
   schema.choice("precondition", "rows as they are, or in Gauss-Jordan form, before constraints are eliminated",
                 {"raw", "gauss_jordan"}, "raw");
   schema.flag("rescale", "tighten the factors' bounds before constraints are eliminated", false);
+  add_rounding(schema);
   return schema;
 }
+
+namespace {
 
 sets::GeneratorReduction generator_reduction_from(const std::string& name) {
   if (name == "girard") return sets::GeneratorReduction::girard;
@@ -114,9 +149,13 @@ sets::GeneratorReduction generator_reduction_from(const std::string& name) {
   return sets::GeneratorReduction::yang_scott;
 }
 
-sets::LineReduction reduction_from(const Params& params) {
-  return {generator_reduction_from(params.text("reduction")),
-          {params.flag("rescale"), params.text("precondition") == "gauss_jordan"}};
+}  // namespace
+
+ConstrainedForm constrained_form_from(const Params& params, bool lines) {
+  return {lines,
+          rounding_from(params) == Rounding::outward,
+          {generator_reduction_from(params.text("reduction")),
+           {params.flag("rescale"), params.text("precondition") == "gauss_jordan"}}};
 }
 
 }  // namespace cordon::plugins

@@ -16,6 +16,7 @@ struct ConstrainedForm {
   using Result = ResultOf<LineForm>;
 
   bool lines = true;  ///< line zonotope; else constrained zonotope
+  bool outward = false;
   sets::LineReduction reduction;
 
   Index dim(const Value& X) const { return X.dim(); }
@@ -37,9 +38,8 @@ struct ConstrainedForm {
   std::optional<Result> reduce(const Value& X, Budget budget) const;
 };
 
-/// The parameters of reduction, common to both.
-ParamSchema reduction_schema();
-sets::LineReduction reduction_from(const Params& params);
-sets::GeneratorReduction generator_reduction_from(const std::string& name);
+/// The parameters common to both.
+ParamSchema constrained_schema();
+ConstrainedForm constrained_form_from(const Params& params, bool lines);
 
 }  // namespace cordon::plugins

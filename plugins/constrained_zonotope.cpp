@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "constrained_form.hpp"
+#include "rounding_parameter.hpp"
 
 namespace {
 
@@ -11,14 +12,15 @@ std::unique_ptr<SetBackend> create(const Params& params) {
   info.name = "constrained_zonotope";
   info.unbounded = false;
   info.intersections = true;
+  info.rounding = plugins::rounding_from(params);
   info.summary = "zonotopes with linear constraints: convex polytopes, exact intersections";
   info.citation = "Scott2016";
-  return std::make_unique<plugins::ValueBackend<ConstrainedForm>>(info, ConstrainedForm{false, plugins::reduction_from(params)});
+  return std::make_unique<plugins::ValueBackend<ConstrainedForm>>(info, plugins::constrained_form_from(params, false));
 }
 
 void register_components(Registrar& registrar) {
   registrar.backend({{"constrained_zonotope", "zonotopes with linear constraints: convex polytopes, exact intersections",
-                      "Scott2016", plugins::reduction_schema()},
+                      "Scott2016", plugins::constrained_schema()},
                      create});
 }
 

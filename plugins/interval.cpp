@@ -7,7 +7,9 @@
 #include "adapter.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/registry/plugin.hpp"
+#include "cordon/solvers/outward_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "rounding_parameter.hpp"
 
 namespace {
 
@@ -28,9 +30,48 @@ bool is_plain_box(const LineForm& X) {
   return X.constraints() == 0 && axis_parallel(X.G) && axis_parallel(X.M);
 }
 
+/// The box of such a form: bounds c ± r without a detour where they are doubles, else the certified ones.
+Box plain_box(const LineForm& X, bool& exact) {
+  Box box = cordon::outward::interval_hull(X);
+  exact = true;
+  for (Index i = 0; i < X.dim(); ++i) {
+    if (!std::isfinite(box.upper[i])) continue;
+    const double radius = X.generators() ? X.G.row(i).lpNorm<Eigen::Infinity>() : 0.0;
+    const bool one = (X.G.row(i).array() != 0).count() <= 1;
+    const auto bound = [&](double r, double& place) {
+      const double s = X.c[i] + r, part = s - X.c[i];
+      const bool rounded = !one || (X.c[i] - (s - part)) + (r - part) != 0 || !std::isfinite(s);
+      exact = exact && !rounded;
+      if (!rounded) place = s;
+    };
+    bound(radius, box.upper[i]);
+    bound(-radius, box.lower[i]);
+  }
+  return box;
+}
+
+/// At most one entry per row over all matrices, each 0 or ±1: coordinates are only put elsewhere.
+bool only_places(std::span<const MatrixIn* const> maps, VectorIn f) {
+  for (Index i = 0; i < f.size(); ++i) {
+    Index entries = f[i] != 0 ? 1 : 0;
+    for (const MatrixIn* T : maps) {
+      for (Index j = 0; j < T->cols(); ++j) {
+        const double a = (*T)(i, j);
+        if (a != 0 && std::abs(a) != 1) return false;
+        entries += a != 0 ? 1 : 0;
+      }
+    }
+    if (entries > 1) return false;
+  }
+  return true;
+}
+
+/// Kernels round outward in either mode. The modes differ in what they call exact and in how the set is read from others.
 struct Intervals {
   using Value = Box;
   using Result = plugins::ResultOf<Box>;
+
+  bool outward = false;
 
   Index dim(const Box& X) const { return X.dim(); }
   LineForm line_form(const Box& X) const { return make_box(X); }
@@ -79,6 +120,12 @@ struct Intervals {
   double exact_volume(const Box& X) const { return (X.upper - X.lower).prod(); }
 
   Result import(const LineForm& X) const {
+    if (outward) {
+      if (!is_plain_box(X)) return {cordon::outward::interval_hull(X), Tightness::outer};
+      bool exact = true;
+      Box box = plain_box(X, exact);
+      return {std::move(box), exact ? Tightness::exact : Tightness::outer};
+    }
     return {cordon::interval_hull(X), is_plain_box(X) ? Tightness::exact : Tightness::outer};
   }
 
@@ -89,10 +136,15 @@ struct Intervals {
       sum = sets::minkowski_sum(sum, sets::affine_map(operand.value, operand.T, Vector::Zero(A.rows())));
       exact = exact && sets::is_monomial(operand.T);
     }
+    if (outward && exact) {
+      std::vector<const MatrixIn*> maps{&A};
+      for (const auto& operand : operands) maps.push_back(&operand.T);
+      exact = only_places(maps, f);
+    }
     return {sum, exact ? Tightness::exact : Tightness::outer};
   }
   Result correct(const Box& X, MatrixIn C, VectorIn z, const Operand<Box>& noise) const {
-    const bool exact = sets::has_monomial_rows(C) && sets::is_monomial(noise.T);
+    const bool exact = !outward && sets::has_monomial_rows(C) && sets::is_monomial(noise.T);
     return {sets::contract(X, C, z, noise.T, noise.value), exact ? Tightness::exact : Tightness::outer};
   }
   Result interval_map(const Box& X, const IntervalMatrix& A) const { return {sets::interval_map(X, A), Tightness::outer}; }
@@ -101,24 +153,33 @@ struct Intervals {
     // R x ∈ Y ⇔ 0 - R x ∈ -Y
     const Matrix minus = -Matrix::Identity(Y.dim(), Y.dim());
     return {sets::contract(X, R, Vector::Zero(Y.dim()), minus, Y),
-            sets::has_monomial_rows(R) ? Tightness::exact : Tightness::outer};
+            !outward && sets::has_monomial_rows(R) ? Tightness::exact : Tightness::outer};
   }
   Result convex_hull(const Box& X, const Box& Y) const { return {sets::convex_hull(X, Y), Tightness::outer}; }
   std::optional<Result> reduce(const Box&, Budget) const { return std::nullopt; }
 };
 
-std::unique_ptr<SetBackend> create(const Params&) {
+ParamSchema schema() {
+  ParamSchema schema;
+  plugins::add_rounding(schema);
+  return schema;
+}
+
+std::unique_ptr<SetBackend> create(const Params& params) {
   BackendInfo info;
   info.name = "interval";
   info.unbounded = true;
   info.intersections = false;
   info.summary = "axis-aligned boxes; a coordinate is bounded or free";
   info.citation = "Moore2009";
-  return std::make_unique<plugins::ValueBackend<Intervals>>(info, Intervals{});
+  info.rounding = plugins::rounding_from(params);
+  const bool outward = info.rounding == Rounding::outward;
+  info.exact_exchange = !outward;  // centre and radius of a box are rounded
+  return std::make_unique<plugins::ValueBackend<Intervals>>(info, Intervals{outward});
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"interval", "axis-aligned boxes; a coordinate is bounded or free", "Moore2009", {}}, create});
+  registrar.backend({{"interval", "axis-aligned boxes; a coordinate is bounded or free", "Moore2009", schema()}, create});
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "constrained_form.hpp"
+#include "rounding_parameter.hpp"
 
 namespace {
 
@@ -11,16 +12,17 @@ std::unique_ptr<SetBackend> create(const Params& params) {
   info.name = "line_zonotope";
   info.unbounded = true;
   info.intersections = true;
+  info.rounding = plugins::rounding_from(params);
   info.summary = "zonotopes with lines and linear constraints: polytopes and sets unbounded along subspaces, exact intersections";
   info.citation = "Rego2025";
-  return std::make_unique<plugins::ValueBackend<ConstrainedForm>>(info, ConstrainedForm{true, plugins::reduction_from(params)});
+  return std::make_unique<plugins::ValueBackend<ConstrainedForm>>(info, plugins::constrained_form_from(params, true));
 }
 
 void register_components(Registrar& registrar) {
   registrar.backend(
       {{"line_zonotope",
         "zonotopes with lines and linear constraints: polytopes and sets unbounded along subspaces, exact intersections",
-        "Rego2025", plugins::reduction_schema()},
+        "Rego2025", plugins::constrained_schema()},
        create});
 }
 

@@ -9,8 +9,10 @@
 #include "cordon/registry/plugin.hpp"
 #include "cordon/sets/constraint_elimination.hpp"
 #include "cordon/sets/generator_reduction.hpp"
+#include "cordon/sets/outward.hpp"
 #include "cordon/sets/strip.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "rounding_parameter.hpp"
 
 namespace {
 
@@ -31,12 +33,17 @@ struct Zonotopes {
 
   sets::GeneratorReduction reduction = sets::GeneratorReduction::yang_scott;
   sets::StripMethod strip = sets::StripMethod::segment;
+  bool outward = false;
 
   static Result result(sets::Zonotope Z, Tightness tightness) {
     const Index n = Z.dim();
     if (!Z.c.allFinite() || !Z.G.allFinite())
       throw Error(Errc::not_finite, "zonotope: an operation overflows; scale the problem");
     return {{n, std::move(Z)}, tightness};
+  }
+  /// Of an operation on forms without lines and constraints.
+  static Result result(const sets::Reduced& form) {
+    return result({form.set.c, form.set.G}, form.exact ? Tightness::exact : Tightness::outer);
   }
   static Result empty(Index n) { return {{n, std::nullopt}, Tightness::exact}; }
 
@@ -58,20 +65,33 @@ struct Zonotopes {
 
   /// Constraints are eliminated one by one, each forgetting one factor's bound: an outer enclosure.
   Result import(const LineForm& X) const {
+    if (outward) return import_outward(X);
     LineForm Y = eliminate_lines(X);
     if (Y.constraints() > 0 && cordon::is_empty(Y) == Answer::yes) return empty(X.dim());
-    if (Y.lines() > 0) {
-      throw Error(Errc::unsupported,
-                  "zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
-    }
+    if (Y.lines() > 0) refuse_lines();
     if (Y.constraints() == 0) return result({Y.c, Y.G}, Tightness::exact);
     const sets::Reduced reduced = sets::eliminate_constraints(Y, 0, {.rescale = true});
     return result({reduced.set.c, reduced.set.G},
                   reduced.exact && reduced.set.constraints() == 0 ? Tightness::exact : Tightness::outer);
   }
 
+  static Result import_outward(const LineForm& X) {
+    if (X.constraints() > 0 && cordon::is_empty(X) == Answer::yes) return empty(X.dim());
+    const sets::Reduced Y = sets::outward::enclose_without_lines(X);
+    if (Y.set.lines() > 0) refuse_lines();
+    sets::Reduced Z = sets::outward::eliminate_constraints(Y.set, 0, {.rescale = true});
+    if (Z.set.constraints() > 0 && cordon::is_empty(Z.set) == Answer::yes) return empty(X.dim());
+    Z.exact = Z.exact && Y.exact && Z.set.constraints() == 0;
+    return result(Z);
+  }
+  [[noreturn]] static void refuse_lines() {
+    throw Error(Errc::unsupported,
+                "zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
+  }
+
   Result predict(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
     if (!X.Z) return empty(A.rows());
+    if (outward) return predict_outward(X, A, f, operands);
     sets::Zonotope sum = sets::affine_map(*X.Z, A, f);
     for (const auto& operand : operands) {
       if (!operand.value.Z) return empty(A.rows());
@@ -79,12 +99,24 @@ struct Zonotopes {
     }
     return result(std::move(sum), Tightness::exact);
   }
+  Result predict_outward(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
+    std::vector<LineForm> forms;
+    forms.reserve(operands.size());
+    std::vector<sets::Summand> summands;
+    for (const auto& operand : operands) {
+      if (!operand.value.Z) return empty(A.rows());
+      summands.push_back({operand.T, forms.emplace_back(line_form(operand.value))});
+    }
+    return result(sets::outward::affine_sum(line_form(X), A, f, summands));
+  }
   Result correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {
     if (!X.Z || !noise.value.Z) return empty(X.n);
+    if (outward) return {{X.n, sets::outward::correct(*X.Z, C, z, noise.T, *noise.value.Z, strip)}, Tightness::outer};
     return {{X.n, sets::correct(*X.Z, C, z, noise.T, *noise.value.Z, strip)}, Tightness::outer};
   }
   Result interval_map(const Value& X, const IntervalMatrix& A) const {
     if (!X.Z) return empty(A.rows());
+    if (outward) return result(sets::outward::interval_map(line_form(X), A, sets::interval_hull(*X.Z)));
     return result(sets::interval_map(*X.Z, A), A.is_exact() ? Tightness::exact : Tightness::outer);
   }
   Result intersection(const Value& X, MatrixIn R, const Value& Y) const {
@@ -95,11 +127,14 @@ struct Zonotopes {
   Result convex_hull(const Value& X, const Value& Y) const {
     if (!X.Z) return {Y, Tightness::exact};
     if (!Y.Z) return {X, Tightness::exact};
-    return result(sets::convex_hull(*X.Z, *Y.Z), Tightness::outer);
+    return result(outward ? sets::outward::convex_hull(*X.Z, *Y.Z) : sets::convex_hull(*X.Z, *Y.Z), Tightness::outer);
   }
   std::optional<Result> reduce(const Value& X, Budget budget) const {
     if (!X.Z || X.Z->generators() <= budget.generators) return std::nullopt;
-    return result({X.Z->c, sets::reduce_generators(X.Z->G, budget.generators, reduction)}, Tightness::outer);
+    const sets::Zonotope& Z = *X.Z;
+    return result({Z.c, outward ? sets::outward::reduce_generators(Z.G, budget.generators, reduction)
+                                : sets::reduce_generators(Z.G, budget.generators, reduction)},
+                  Tightness::outer);
   }
 };
 
@@ -110,6 +145,7 @@ ParamSchema schema() {
   schema.choice("strip",
                 "how a strip is intersected: smallest F-radius, smallest volume among parallel strips, or smallest volume",
                 {"segment", "bravo", "volume"}, "segment");
+  plugins::add_rounding(schema);
   return schema;
 }
 
@@ -118,6 +154,7 @@ std::unique_ptr<SetBackend> create(const Params& params) {
   info.name = "zonotope";
   info.summary = "centrally symmetric polytopes given by generators";
   info.citation = "Combastel2003; Alamo2005";
+  info.rounding = plugins::rounding_from(params);
   Zonotopes zonotopes;
   const std::string& reduction = params.text("reduction");
   zonotopes.reduction = reduction == "girard"      ? sets::GeneratorReduction::girard
@@ -128,6 +165,7 @@ std::unique_ptr<SetBackend> create(const Params& params) {
   zonotopes.strip = strip == "bravo"    ? sets::StripMethod::bravo
                     : strip == "volume" ? sets::StripMethod::volume
                                         : sets::StripMethod::segment;
+  zonotopes.outward = info.rounding == Rounding::outward;
   return std::make_unique<plugins::ValueBackend<Zonotopes>>(info, zonotopes);
 }
 

@@ -7,6 +7,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "elimination_plan.hpp"
 
 namespace cordon::sets {
 
@@ -53,6 +54,7 @@ class Elimination {
       const double left = std::max(scale(i), std::abs(b_[i]));
       if (left > unreliable * terms) continue;
       in_row_[at(i)] = false;
+      steps_.push_back({EliminationStep::drop, i, 0});
       exact_ = exact_ && left <= noise * terms;
     }
   }
@@ -82,6 +84,7 @@ class Elimination {
       A_terms_.row(row) /= std::abs(pivot);
       b_[row] /= pivot;
       b_terms_[row] /= std::abs(pivot);
+      steps_.push_back({EliminationStep::clear_column, row, col});
       for (Index i = 0; i < rows(); ++i) {
         if (i != row && in_row_[at(i)]) subtract_row(i, row, A_(i, col), col);
       }
@@ -214,6 +217,7 @@ class Elimination {
 
   /// Solves `row` for ξ_col and drops both.
   void eliminate(Index row, Index col) {
+    steps_.push_back({EliminationStep::eliminate, row, col});
     const Eigen::RowVectorXd pivot_row = A_.row(row) / A_(row, col);
     const double right = b_[row] / A_(row, col);
     const Vector out = G_.col(col);
@@ -229,6 +233,8 @@ class Elimination {
     free_[at(col)] = false;
     update_scores(col);
   }
+
+  const std::vector<EliminationStep>& steps() const { return steps_; }
 
   LineForm result(const Matrix& M) const {
     std::vector<Index> rows_left, factors_left;
@@ -313,6 +319,7 @@ class Elimination {
   Matrix A_terms_;  ///< size of the terms each coefficient was computed from
   Vector b_terms_;
   bool exact_ = true;
+  std::vector<EliminationStep> steps_;
   std::vector<bool> in_row_, free_;
   Vector lower_, upper_, allowed_lower_, allowed_upper_;
   Matrix F_, Q_;
@@ -320,15 +327,10 @@ class Elimination {
   Vector diagonal_;
 };
 
-}  // namespace
-
-Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
-  if (max_constraints < 0) throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
-  if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0))
-    throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
-  Elimination work(X);
+/// Eliminates down to `max_constraints`; is what was forgotten implied by the rest?
+bool run(Elimination& work, Index max_constraints, const ConstraintElimination& options) {
   work.drop_unreliable_rows();
-  if (work.live_rows() <= max_constraints) return {work.result(X.M), work.exact()};
+  if (work.live_rows() <= max_constraints) return work.exact();
   if (options.gauss_jordan) work.to_gauss_jordan();
   if (options.rescale) {
     work.tighten();
@@ -346,7 +348,24 @@ Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const Co
     work.drop_unreliable_rows();
     work.bound_factors();
   }
-  return {work.result(X.M), exact && work.exact()};
+  return exact && work.exact();
+}
+
+}  // namespace
+
+Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
+  if (max_constraints < 0) throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
+  if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0))
+    throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
+  Elimination work(X);
+  const bool exact = run(work, max_constraints, options);
+  return {work.result(X.M), exact};
+}
+
+std::vector<EliminationStep> plan_elimination(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
+  Elimination work(X);
+  run(work, max_constraints, options);
+  return work.steps();
 }
 
 }  // namespace cordon::sets

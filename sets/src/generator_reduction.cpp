@@ -9,6 +9,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "reduction_split.hpp"
 #include "require.hpp"
 #include "row_scales.hpp"
 
@@ -68,14 +69,20 @@ Matrix box_reduction(const Matrix& G, Index max_generators, Size size) {
   return with_frame(sorted, kept, radii.asDiagonal().toDenseMatrix());
 }
 
-/// The box is taken along the left singular vectors of the small generators. Where the rows' scales differ by more than
-/// 2¹⁶ they are made equal first: the rounding errors of the rotation would swamp the smallest coordinates otherwise.
+/// Where the rows' scales differ by more than 2¹⁶ they are made equal before their principal axes are sought: the rounding errors
+/// of the rotation would swamp the smallest coordinates otherwise.
+Vector scales_of_axes(MatrixIn small) {
+  Vector scale = row_scales(small);
+  if (scale.maxCoeff() <= std::ldexp(scale.minCoeff(), 16)) scale.setOnes();
+  return scale;
+}
+
+/// The box is taken along the left singular vectors of the small generators.
 Matrix pca_reduction(const Matrix& G, Index max_generators) {
   const Index kept = max_generators - G.rows();
   const Matrix sorted = sorted_by_size(G, kept, Size::norm_1_minus_max);
   Matrix small = sorted.rightCols(sorted.cols() - kept);
-  Vector scale = row_scales(small);
-  if (scale.maxCoeff() <= std::ldexp(scale.minCoeff(), 16)) scale.setOnes();
+  const Vector scale = scales_of_axes(small);
   small = scale.asDiagonal() * small;
   const Matrix U = linalg::svd(small).U;
   Vector radii = box_radii(linalg::product(U.transpose(), small));
@@ -97,20 +104,36 @@ class BasisReduction {
     const Index n = W_.rows(), g = W_.cols();
     Index slacks = 0;
     for (Index i = rank_; i < n; ++i) slacks += W_.row(i).tail(g - rank_).lpNorm<Eigen::Infinity>() > noise ? 1 : 0;
+    return assemble(absorb_cheapest(max_generators - slacks));
+  }
+
+  /// Every row without a pivot is given a unit vector, so that the frame is square.
+  ReductionSplit split(Index max_generators) {
+    const Index n = W_.rows(), g = W_.cols(), last = absorb_cheapest(max_generators - (n - rank_));
+    ReductionSplit parts{G_.middleCols(rank_, last - rank_), Matrix(n, rank_ + g - last), Matrix::Zero(n, n)};
+    parts.replaced << G_.leftCols(rank_), G_.rightCols(g - last);
+    parts.frame.leftCols(rank_) = G_.leftCols(rank_);
+    for (Index i = rank_; i < n; ++i) parts.frame(row_[static_cast<std::size_t>(i)], i) = 1;
+    return parts;
+  }
+
+ private:
+  /// Absorbs columns until `most` are left, and returns how many are.
+  Index absorb_cheapest(Index most) {
+    const Index n = W_.rows(), g = W_.cols();
     growth_ = Vector::Ones(rank_);
     slack_ = Vector::Zero(n - rank_);
     Index last = g;  // columns rank_ … last-1 are left in V
-    while (last + slacks > max_generators) {
+    while (last > most) {
       const Index cheapest = cheapest_column(last);
       absorb(cheapest, last);
       --last;
       W_.col(cheapest).swap(W_.col(last));
       G_.col(cheapest).swap(G_.col(last));
     }
-    return assemble(last);
+    return last;
   }
 
- private:
   /// W = [I R; 0 E] by Gauss-Jordan steps with pivots over the whole remaining block; rows and columns are swapped along.
   void eliminate() {
     const Index n = W_.rows(), g = W_.cols();
@@ -199,6 +222,18 @@ class BasisReduction {
 };
 
 }  // namespace
+
+ReductionSplit split_generators(const Matrix& G, Index max_generators, GeneratorReduction method) {
+  if (method == GeneratorReduction::yang_scott) return BasisReduction(G).split(max_generators);
+  const Index n = G.rows(), kept = std::min(max_generators - n, G.cols());
+  const Matrix sorted = sorted_by_size(G, kept, method == GeneratorReduction::combastel ? Size::norm_2 : Size::norm_1_minus_max);
+  const Matrix small = sorted.rightCols(sorted.cols() - kept);
+  if (method != GeneratorReduction::pca) return {sorted.leftCols(kept), small, Matrix::Identity(n, n)};
+  const Vector scale = scales_of_axes(small);
+  return {sorted.leftCols(kept), small, scale.cwiseInverse().asDiagonal() * linalg::svd(scale.asDiagonal() * small).U};
+}
+
+Vector enclosing_radii(MatrixIn G) { return box_radii(G); }
 
 Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction method) {
   if (max_generators < G.rows()) {

@@ -12,6 +12,7 @@
 #include "determinant.hpp"
 #include "require.hpp"
 #include "row_scales.hpp"
+#include "strip_gain.hpp"
 #include "subsets.hpp"
 
 namespace cordon::sets {
@@ -162,6 +163,10 @@ Zonotope member_of_family(const Zonotope& Z, VectorIn rho, double shift, double 
 
 }  // namespace
 
+Vector strip_gain(MatrixIn G, VectorIn rho, double sigma, StripMethod method) {
+  return method == StripMethod::segment ? segment_gain(G, rho, sigma) : volume_gain_in_range(G, rho, sigma, method);
+}
+
 std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double d, double sigma, StripMethod method) {
   constexpr const char* name = "strip intersection";
   check(Z, name);
@@ -189,8 +194,7 @@ std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double 
       middle.lower == middle.upper ? rounding::Range{d - middle.lower, d - middle.lower} : rounding::subtract({d, d}, middle);
   const double shift = difference.lower / 2 + difference.upper / 2;
   sigma += difference.upper / 2 - difference.lower / 2;
-  const Vector lambda =
-      method == StripMethod::segment ? segment_gain(Z.G, rho, sigma) : volume_gain_in_range(Z.G, rho, sigma, method);
+  const Vector lambda = strip_gain(Z.G, rho, sigma, method);
   if (lambda.isZero(0) || !lambda.allFinite()) return Z;
   return member_of_family(Z, rho, shift, sigma, lambda);
 }

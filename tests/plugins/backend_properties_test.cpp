@@ -79,9 +79,22 @@ Sampled random_set(Index n, bool lines_allowed, bool constraints_allowed) {
 struct Case {
   std::string name;
   bool lines, constraints;  ///< what it is given; every backend must enclose what it accepts
+  std::string rounding = "nominal";
+
+  std::shared_ptr<const SetBackend> backend(const Plugins& plugins) const {
+    Params params;
+    params.set("rounding", rounding);
+    return plugins.backend(name, params);
+  }
 };
-const std::vector<Case> cases{
-    {"interval", false, true}, {"zonotope", false, true}, {"constrained_zonotope", false, true}, {"line_zonotope", true, true}};
+const std::vector<Case> cases{{"interval", false, true},
+                              {"zonotope", false, true},
+                              {"constrained_zonotope", false, true},
+                              {"line_zonotope", true, true},
+                              {"interval", false, true, "outward"},
+                              {"zonotope", false, true, "outward"},
+                              {"constrained_zonotope", false, true, "outward"},
+                              {"line_zonotope", true, true, "outward"}};
 
 void assert_contains(const Enclosure& X, const Vector& x, double scale, const char* what) {
   RC_LOG() << what << "\n";
@@ -117,7 +130,8 @@ TEST_CASE("operations enclose and keep their claims") {
   const Plugins plugins;
   for (const Case& c : cases) {
     CAPTURE(c.name);
-    const auto backend = plugins.backend(c.name);
+    CAPTURE(c.rounding);
+    const auto backend = c.backend(plugins);
     CHECK(rc::check(c.name, [&] {
       const Index n = *rc::gen::inRange<Index>(1, 4), p = *rc::gen::inRange<Index>(1, 4);
       const Sampled X = random_set(n, c.lines, c.constraints), Y = random_set(p, c.lines, c.constraints);
@@ -172,7 +186,8 @@ TEST_CASE("the empty set absorbs, and is neutral in the hull") {
   const Plugins plugins;
   for (const Case& c : cases) {
     CAPTURE(c.name);
-    const auto backend = plugins.backend(c.name);
+    CAPTURE(c.rounding);
+    const auto backend = c.backend(plugins);
     const Enclosure X = backend->box(cube(2, 1)), none = backend->empty(2);
     const Matrix I = Matrix::Identity(2, 2);
     CHECK(none->is_empty() == Answer::yes);
@@ -199,7 +214,8 @@ TEST_CASE("unbounded sets: lines and boxes hold them, the others refuse") {
   const Plugins plugins;
   for (const Case& c : cases) {
     CAPTURE(c.name);
-    const auto backend = plugins.backend(c.name);
+    CAPTURE(c.rounding);
+    const auto backend = c.backend(plugins);
     if (!backend->info().unbounded) {
       CHECK_THROWS_AS(backend->space(2), Error);
       continue;
@@ -222,7 +238,8 @@ TEST_CASE("dimension 0, points and unlike operands") {
   const auto interval = plugins.backend("interval");
   for (const Case& c : cases) {
     CAPTURE(c.name);
-    const auto backend = plugins.backend(c.name);
+    CAPTURE(c.rounding);
+    const auto backend = c.backend(plugins);
     const Enclosure nothing = backend->point(Vector(0));
     CHECK(nothing->dim() == 0);
     CHECK(nothing->is_empty() == Answer::no);

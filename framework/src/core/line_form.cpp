@@ -65,6 +65,12 @@ Vector denoised_difference(VectorIn x, VectorIn y, VectorIn magnitude) {
   return (d.array().abs() <= product_noise * magnitude.array()).select(0.0, d);
 }
 
+/// a + b ≥ x for the sum without rounding [Ogita2005].
+bool sum_reaches(double a, double b, double x) {
+  const double s = a + b, part = s - a;
+  return s > x || (s == x && (a - (s - part)) + (b - part) >= 0);
+}
+
 bool has_false_row(const LineForm& X) {
   for (Index i = 0; i < X.constraints(); ++i) {
     if (X.b[i] != 0 && X.S.row(i).isZero(0) && X.A.row(i).isZero(0)) return true;
@@ -133,7 +139,8 @@ LineForm make_box(const Box& box) {
     } else {
       const double center = lower / 2 + upper / 2;
       double radius = std::max(upper - center, center - lower);
-      if (center + radius < upper || center - radius > lower) radius = rounding::up(radius);
+      // the larger of two differences, each rounded to the nearest: the next double is above both
+      if (!sum_reaches(center, radius, upper) || !sum_reaches(-center, radius, -lower)) radius = rounding::up(radius);
       X.c[i] = center;
       X.G(i, generator++) = radius;
     }

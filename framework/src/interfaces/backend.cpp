@@ -29,6 +29,23 @@ void require_vector(VectorIn t, Index size, const char* what) {
   if (!t.allFinite()) throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
 }
 
+/// a + b = s without rounding? [Ogita2005]
+bool is_sum(double a, double b, double s) {
+  const double part = s - a;
+  return a + b == s && (a - (s - part)) + (b - part) == 0;
+}
+
+/// Has the box X, made from `box`, exactly its bounds?
+bool has_bounds(const LineForm& X, const Box& box) {
+  if (box.is_empty()) return true;
+  for (Index i = 0; i < X.dim(); ++i) {
+    if (!std::isfinite(box.lower[i])) continue;
+    const double radius = X.generators() ? X.G.row(i).cwiseAbs().maxCoeff() : 0.0;
+    if (!is_sum(X.c[i], radius, box.upper[i]) || !is_sum(X.c[i], -radius, box.lower[i])) return false;
+  }
+  return true;
+}
+
 const Set& require_set(const Enclosure& X, const char* what) {
   if (!X.set) throw Error(Errc::invalid, std::string(what) + ": no set was given");
   return *X.set;
@@ -57,7 +74,12 @@ Enclosure SetBackend::import(const Enclosure& X) const {
   return import(set.line_form(), meet(X.tightness, exchange));
 }
 
-Enclosure SetBackend::box(const Box& box) const { return import(make_box(box)); }
+Enclosure SetBackend::box(const Box& box) const {
+  const LineForm X = make_box(box);
+  // with outward rounding, a box whose centre or radius was rounded is enclosed only
+  const bool rounded = info_.rounding == Rounding::outward && !has_bounds(X, box);
+  return import(X, rounded ? Tightness::outer : Tightness::exact);
+}
 Enclosure SetBackend::point(VectorIn x) const { return import(make_point(x)); }
 Enclosure SetBackend::space(Index n) const { return import(make_space(n)); }
 Enclosure SetBackend::empty(Index n) const { return import(make_empty(n)); }

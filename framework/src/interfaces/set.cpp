@@ -6,6 +6,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/interfaces/backend.hpp"
+#include "cordon/solvers/outward_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
 
 namespace cordon {
@@ -28,6 +29,9 @@ void require_same(const Set& X, const Set& Y, const char* what) {
               std::string(what) + ": dimensions " + std::to_string(X.dim()) + " and " + std::to_string(Y.dim()) + " differ");
 }
 
+/// Must answers hold for the numbers as stored?
+bool is_outward(const Set& X) { return X.backend().info().rounding != Rounding::nominal; }
+
 Answer only(Answer allowed, Answer answer) { return answer == allowed ? answer : Answer::unknown; }
 
 }  // namespace
@@ -46,9 +50,10 @@ Answer Set::contains(VectorIn x, Certificate* why) const {
 Answer Set::is_subset_of(const Set& other, Certificate* why) const {
   require_same(*this, other, "is_subset_of");
   if (this == &other) return Answer::yes;
-  const Answer answer = is_subset(line_form(), other.line_form(), why);
+  const Answer answer = is_outward(*this) || is_outward(other) ? outward::is_subset(line_form(), other.line_form(), why)
+                                                               : is_subset(line_form(), other.line_form(), why);
   // `yes` needs an exact right-hand side, `no` an exact left-hand side; an outer form of the other one only strengthens it
-  if (answer == Answer::yes && !other.exact_exchange()) return Answer::unknown;
+  if (answer == Answer::yes && !other.exact_exchange() && is_empty() != Answer::yes) return Answer::unknown;
   if (answer == Answer::no && !exact_exchange()) return Answer::unknown;
   return answer;
 }
@@ -107,8 +112,12 @@ Answer Set::do_is_bounded() const {
   return exact_exchange() ? answer : only(Answer::yes, answer);
 }
 
-double Set::do_support(VectorIn d, Certificate* why) const { return cordon::support(do_line_form(), d, why); }
+double Set::do_support(VectorIn d, Certificate* why) const {
+  return is_outward(*this) ? outward::support(do_line_form(), d, why) : cordon::support(do_line_form(), d, why);
+}
 
-Box Set::do_interval_hull(std::vector<Certificate>* why) const { return cordon::interval_hull(do_line_form(), why); }
+Box Set::do_interval_hull(std::vector<Certificate>* why) const {
+  return is_outward(*this) ? outward::interval_hull(do_line_form(), why) : cordon::interval_hull(do_line_form(), why);
+}
 
 }  // namespace cordon

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "cordon/sets/constraint_elimination.hpp"
+
+namespace cordon::sets {
+
+/// One step of `eliminate_constraints`, by the places of row and factor in X. Each is an enclosure whatever row and factor it
+/// names, so that the steps can be repeated in another arithmetic.
+struct EliminationStep {
+  enum Kind {
+    drop,          ///< forget the row
+    clear_column,  ///< subtract multiples of the row from the others, so that the factor is left in it alone
+    eliminate      ///< solve the row for the factor, put it in everywhere, forget both
+  };
+  Kind kind;
+  Index row, col;
+};
+
+/// The steps that `eliminate_constraints` takes, but for the rescaling of factors. X has no lines.
+std::vector<EliminationStep> plan_elimination(const LineForm& X, Index max_constraints, const ConstraintElimination& options);
+
+}  // namespace cordon::sets
