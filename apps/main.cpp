@@ -48,6 +48,7 @@ Exit run(int argc, char** argv) {
   add_list(app, program);
   add_info(app, program);
   add_schema(app, program);
+  add_new(app, program);
   add_doctor(app, program);
   try {
     app.parse(argc, argv);
