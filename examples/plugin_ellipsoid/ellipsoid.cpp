@@ -164,7 +164,9 @@ Ellipsoid shrunk(const Ellipsoid& X, const Vector& g, const Slab& slab, Criterio
   result.r = X.r + (shift + e) * spread + (std::abs(m) + std::abs(a - b) * length) * v_error;
   result.r += 8 * unit * (X.c.cwiseAbs() + spread) + (e + 8 * unit) * (b * row_sums(X.L) + std::abs(a - b) * length * spread);
   result.r *= enlarge;
-  return is_finite(result) ? result : X;
+  // of a strip that is thinner than its own uncertainty the guards may outweigh the gain
+  const bool worse = criterion == Criterion::trace && result.L.stableNorm() >= X.L.stableNorm();
+  return is_finite(result) && !worse ? result : X;
 }
 
 }  // namespace
