@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
@@ -139,6 +140,7 @@ std::string prefix_option(bool& installed) {
 }
 
 Exit new_plugin(const Program& program, const std::string& name, const fs::path& wanted) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file size is an error of write, not the end of the process
   require_free_name(program, name);
   const fs::path shown = wanted.empty() ? fs::path(name) : wanted;
   fs::path target = fs::absolute(shown).lexically_normal();
