@@ -13,6 +13,12 @@ install(TARGETS cordon cordon_sets cordon_app EXPORT cordon
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/framework/include/cordon" "${PROJECT_BINARY_DIR}/framework/include/cordon"
   "${PROJECT_SOURCE_DIR}/sets/include/cordon" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.hpp")
 
+if(TARGET cordon_conformance)
+  set_target_properties(cordon_conformance PROPERTIES EXPORT_NAME conformance)
+  install(TARGETS cordon_conformance EXPORT cordon ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/tests/conformance/include/cordon" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.hpp")
+endif()
+
 install(EXPORT cordon FILE cordonTargets.cmake NAMESPACE cordon:: DESTINATION "${CORDON_PACKAGE_DESTINATION}")
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/cordonConfig.cmake.in" "${PROJECT_BINARY_DIR}/package/cordonConfig.cmake"
   INSTALL_DESTINATION "${CORDON_PACKAGE_DESTINATION}" NO_SET_AND_CHECK_MACRO)
