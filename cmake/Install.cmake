@@ -26,3 +26,4 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/cordonConfig.cmake.in
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/package/cordonConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/package/cordonConfig.cmake" "${PROJECT_BINARY_DIR}/package/cordonConfigVersion.cmake"
   "${PROJECT_SOURCE_DIR}/cmake/CordonPlugin.cmake" "${PROJECT_SOURCE_DIR}/cmake/plugin.map" DESTINATION "${CORDON_PACKAGE_DESTINATION}")
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

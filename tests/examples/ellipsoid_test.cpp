@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
@@ -122,6 +123,26 @@ TEST_CASE("segments and lines of one dimension are exact, boxes are enclosed, un
   CHECK(support(box.set, Vector{{1, 0}}) == doctest::Approx(std::sqrt(2)));
   CHECK_THROWS_AS(enclose(cordon::make_space(2), Criterion::trace), cordon::Error);
   CHECK(enclose(cordon::make_empty(2), Criterion::trace).set.empty);
+}
+
+TEST_CASE("the rounding box holds what double arithmetic loses") {
+  // orbits of a point and of the end of a half axis, in long double beside the ellipsoid's own arithmetic
+  const double cosine = .6, sine = .8;
+  const Matrix T{{cosine, -sine}, {sine, cosine}};
+  Ellipsoid X{Vector{{1.0 / 3, .1}}, Matrix{{.7}, {1.0 / 7}}, Vector::Zero(2)};
+  long double x = 1.0 / 3, y = .1, u = .7, v = 1.0 / 7;
+  bool was_needed = false;
+  for (int k = 0; k < 50; ++k) {
+    X = affine_map(X, T, Vector::Zero(2));
+    std::tie(x, y) = std::pair{cosine * x - sine * y, sine * x + cosine * y};
+    std::tie(u, v) = std::pair{cosine * u - sine * v, sine * u + cosine * v};
+    const long double lost[] = {std::abs(x + u - X.c[0] - X.L(0, 0)), std::abs(y + v - X.c[1] - X.L(1, 0))};
+    for (Index i = 0; i < 2; ++i) {
+      CHECK(lost[i] <= X.r[i]);
+      was_needed = was_needed || lost[i] > 0;
+    }
+  }
+  CHECK(was_needed);
 }
 
 TEST_CASE("every operation keeps the points it must keep") {
