@@ -25,6 +25,7 @@ void add_verify(CLI::App& app, Program& program);
 void add_list(CLI::App& app, Program& program);
 void add_info(CLI::App& app, Program& program);
 void add_schema(CLI::App& app, Program& program);
+void add_new(CLI::App& app, Program& program);
 void add_doctor(CLI::App& app, Program& program);
 void add_conform(CLI::App& app, Program& program);
 

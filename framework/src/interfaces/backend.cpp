@@ -51,6 +51,13 @@ const Set& require_set(const Enclosure& X, const char* what) {
   return *X.set;
 }
 
+/// What is computed on exchange forms that enclose their sets is outer, whatever the import of the result claims.
+template <class Made>
+Made through_exchange(const BackendInfo& info, Made made) {
+  if (!info.exact_exchange) made.tightness = Tightness::outer;
+  return made;
+}
+
 }  // namespace
 
 /// Control blocks are made here, so that no code of a plugin runs after its library has gone: the deleter destroys the set, then
@@ -163,19 +170,19 @@ SetBackend::Made SetBackend::do_predict(const Set& X, const Predict& p) const {
   for (const Term& term : p.terms) {
     sum = minkowski_sum(sum, cordon::affine_map(term.set->line_form(), term.T, Vector::Zero(p.A.rows())));
   }
-  return do_import(sum);
+  return through_exchange(info_, do_import(sum));
 }
 
 SetBackend::Made SetBackend::do_correct(const Set& X, const Correct& c) const {
   // z - C x ∈ T V  ⇔  C x ∈ z ⊕ (-T V)
   const LineForm target = cordon::affine_map(c.noise.set->line_form(), -c.noise.T, c.z);
-  return do_import(cordon::intersection(X.line_form(), c.C, target));
+  return through_exchange(info_, do_import(cordon::intersection(X.line_form(), c.C, target)));
 }
 
 SetBackend::Made SetBackend::do_interval_map(const Set& X, const IntervalMatrix& A) const {
   // A x = mid(A) x + Δ x with |Δ x| ≤ rad(A) |x|, |x| bounded by the interval hull
   const LineForm mapped = cordon::affine_map(X.line_form(), A.center, Vector::Zero(A.rows()));
-  if (A.is_exact()) return do_import(mapped);
+  if (A.is_exact()) return through_exchange(info_, do_import(mapped));
   const Box hull = X.interval_hull();
   if (hull.is_empty()) return do_import(make_empty(A.rows()));
   Box spread{Vector::Zero(A.rows()), Vector::Zero(A.rows())};
@@ -193,12 +200,12 @@ SetBackend::Made SetBackend::do_interval_map(const Set& X, const IntervalMatrix&
 }
 
 SetBackend::Made SetBackend::do_intersection(const Set& X, MatrixIn R, const Set& Y) const {
-  return do_import(cordon::intersection(X.line_form(), R, Y.line_form()));
+  return through_exchange(info_, do_import(cordon::intersection(X.line_form(), R, Y.line_form())));
 }
 
 SetBackend::Made SetBackend::do_convex_hull(const Set& X, const Set& Y) const {
   const LineForm A = X.line_form(), B = Y.line_form();
-  Made made = do_import(cordon::convex_hull(A, B));
+  Made made = through_exchange(info_, do_import(cordon::convex_hull(A, B)));
   if (A.lines() > 0 || B.lines() > 0) made.tightness = Tightness::outer;
   return made;
 }
