@@ -14,7 +14,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// A number of this size is the outward rounding of 0; its inverse would overflow.
 constexpr double underflow = 1e-290;
-}
+}  // namespace
 
 ScaledSet::ScaledSet(const SupportOracle& X, Index n, const char* operation)
     : oracle_(X),
