@@ -4,6 +4,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
+#include "false_row.hpp"
 
 namespace cordon::sets {
 
@@ -63,13 +64,6 @@ LineZonotope drop_zero_generators(LineZonotope X) {
   return X;
 }
 
-bool has_false_row(const LineZonotope& X) {
-  for (Index i = 0; i < X.constraints(); ++i) {
-    if (X.b[i] != 0 && X.S.row(i).isZero(0) && X.A.row(i).isZero(0)) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraints, const LineReduction& how) {
@@ -80,7 +74,6 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
   }
   Reduced reduced = eliminate_constraints(eliminate_lines(X), max_constraints, how.constraints);
   reduced.set = drop_zero_generators(std::move(reduced.set));
-  // no elimination removes a row 0 = b ≠ 0, and more rows than a budget allows would be left
   if (has_false_row(reduced.set)) return {make_empty(n), true};
   if (reduced.set.generators() <= max_generators) return reduced;
   if (n + reduced.set.constraints() > max_generators) {

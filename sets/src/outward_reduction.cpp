@@ -9,6 +9,7 @@
 #include "cordon/sets/outward.hpp"
 #include "elimination_plan.hpp"
 #include "error_free.hpp"
+#include "false_row.hpp"
 #include "reduction_split.hpp"
 #include "require.hpp"
 #include "row_scales.hpp"
@@ -236,6 +237,7 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
     set_lifted_generators(Y, without_zero_columns(lifted_generators(Y)));
   };
   eliminate(max_constraints);
+  if (has_false_row(Y)) return {make_empty(n), true};
   if (n + Y.constraints() > max_generators && !fits()) eliminate(max_generators - n);
   if (!fits()) set_lifted_generators(Y, outward::reduce_generators(lifted_generators(Y), max_generators, how.generators));
   reduced.exact = false;

@@ -246,6 +246,17 @@ TEST_CASE("dimension 0, points and unlike operands") {
     const Enclosure point = backend->point(Vector{{1, 2}});
     CHECK(backend->product(point, nothing)->dim() == 2);
     CHECK(point->contains(Vector{{1, 2}}) == Answer::yes);
+    // coordinates that are flat but for outward rounding: their product underflows
+    CHECK(backend->product(point, point)->volume().value == doctest::Approx(0));
+    CHECK(backend->product(nothing, backend->point(Vector{{0, 0}}))->volume().value == doctest::Approx(0));
+    if (backend->info().unbounded) {
+      const Volume thin =
+          backend
+              ->product(backend->affine_map(backend->point(Vector{{0, 0}}), Matrix::Identity(2, 2), Vector{{0, 0}}),
+                        backend->space(1))
+              ->volume();
+      CHECK(thin.value >= 0);
+    }
     // an operand of another backend is imported
     const Enclosure sum = backend->sum(point, interval->box(cube(2, 1)));
     CHECK(&sum->backend() == backend.get());

@@ -7,6 +7,7 @@
 #include <rapidcheck.h>
 
 #include "cordon/sets/line_zonotope.hpp"
+#include "cordon/sets/outward.hpp"
 #include "cordon/solvers/set_questions.hpp"
 
 using namespace cordon;
@@ -81,6 +82,10 @@ TEST_CASE("an empty set stays empty, an infeasible row is kept") {
   X.b = Vector{{5.0}};
   X.S.resize(1, 0);
   CHECK(is_empty(sets::reduce(X, 5, 5).set) == Answer::yes);
+  // the false row is no dimension that the generators would have to span
+  const LineForm stretched{Matrix(1, 0), Matrix{{1, 1, 1}}, Vector{{0}}, Matrix(1, 0), Matrix::Zero(1, 3), Vector{{1}}};
+  CHECK(is_empty(sets::reduce(stretched, 1, 0).set) == Answer::yes);
+  CHECK(is_empty(sets::outward::reduce(stretched, 1, 0).set) == Answer::yes);
 }
 
 TEST_CASE("a factor is forgotten without loss only if one row bounds it by itself") {
