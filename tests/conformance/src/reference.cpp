@@ -33,7 +33,9 @@ double size_of(const LineForm& X) {
 }
 
 Reference::Reference(const LineForm& X, std::vector<Vector> known, double terms, double row_terms)
-    : Reference(eliminate_lines_traced(X, Vector(0)), std::move(known), std::max(terms, size_of(X)), row_terms) {}
+    : Reference(eliminate_lines_traced(X, Vector(0)), std::move(known), std::max(terms, size_of(X)), row_terms) {
+  trusted_ = X.lines() == 0 || (is_moderate(X.M) && is_moderate(X.S));
+}
 
 Reference::Reference(LinesEliminated eliminated, std::vector<Vector> known, double terms, double row_terms)
     : X_(std::move(eliminated.set)),
@@ -45,6 +47,7 @@ Reference::Reference(LinesEliminated eliminated, std::vector<Vector> known, doub
       moderate_(is_moderate(X_.G) && is_moderate(X_.A) && is_moderate(X_.c) && is_moderate(X_.b) && row_terms < 1e4) {}
 
 Reference::Along Reference::along(VectorIn d) const {
+  if (!trusted_) return Along::unclear;
   double share = 0;
   for (Index j = 0; j < X_.lines(); ++j) {
     const double size = X_.M.col(j).cwiseAbs().dot(d.cwiseAbs());

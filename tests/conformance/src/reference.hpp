@@ -47,6 +47,8 @@ class Reference {
   BoxedProgram program_;
   std::vector<Vector> known_;
   double terms_, row_terms_;
+  /// Eliminating lines of very different size takes small coordinates for rounding: then nothing is said of directions.
+  bool trusted_ = true;
   bool moderate_;  ///< no number is so large or small that rounding errors of one swallow another
   Vector asked_;
   BoxedProgram::Bound bound_;
