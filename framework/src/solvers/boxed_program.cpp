@@ -168,13 +168,13 @@ Answer BoxedProgram::is_empty(Certificate* why) {
   return Answer::unknown;
 }
 
-std::optional<Vector> BoxedProgram::central_point() {
+std::optional<Vector> BoxedProgram::central_point(double beyond) {
   State& s = *state_;
   if (s.A.rows() == 0) return Vector(Vector::Zero(s.A.cols()));
   const LinearProgram::Solution solution = s.scaled();
   if (solution.status != LinearProgram::Status::optimal || solution.objective <= 0) return std::nullopt;
   const Vector xi = solution.x.head(s.A.cols()) / solution.objective;
-  if (!xi.allFinite() || (xi.size() && xi.cwiseAbs().maxCoeff() > 1 + 1e-9)) return std::nullopt;
+  if (!xi.allFinite() || (xi.size() && xi.cwiseAbs().maxCoeff() > 1 + beyond)) return std::nullopt;
   return xi;
 }
 

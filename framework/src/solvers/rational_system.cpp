@@ -154,7 +154,7 @@ bool has_solution_near(const System& s, VectorIn data) {
   start.tail(s.factors()) = start.tail(s.factors()).cwiseMax(-1.0).cwiseMin(1.0);
   preference.head(s.lines).setConstant(1e6);  // lines have no bound to keep
   // a factor at its bound can move inward only: the last choice
-  preference.tail(s.factors()) = (1 - start.tail(s.factors()).array().abs()).max(1e-12);
+  preference.tail(s.factors()) = (1 - start.tail(s.factors()).array().abs()).max(1e-60);
   const RationalVector point = exact(start);
   RationalVector gap = s.r;
   bool holds = true;

@@ -46,8 +46,8 @@ class BoxedProgram {
   Answer is_empty(Certificate* why = nullptr);
 
   /// A point well inside P where there is one: ξ with the smallest ‖ξ‖∞ that satisfies the rows (up to rounding).
-  /// Nothing when the solver found none; nothing is proven by that.
-  std::optional<Vector> central_point();
+  /// Nothing when the solver found none with ‖ξ‖∞ ≤ 1 + beyond; nothing is proven by that.
+  std::optional<Vector> central_point(double beyond = 1e-9);
 
   /// h with gᵀξ ≥ h for some point ξ proven to lie in P near `xi`; -inf when no such proof succeeds.
   double attained(VectorIn g, VectorIn xi);

@@ -41,15 +41,17 @@ class StepCheck {
   void emptiness_proof();
   void bound_proof(Index i, bool upper);
   void contains_vertex(const Vector& x);
+  bool holds_nearby(const Vector& x);
   void contains_direction(const Vector& d, bool line);
   void within(const Vector& normal, double h, const Polytope& F);
   bool reported_empty() const { return step_.consistent == Answer::no; }
 
   const RecordedStep& step_;
   const RecordedSet& row_;
-  Vector size_;       ///< of each coordinate
-  double tolerance_;  ///< relative to it
-  LineForm widened_;  ///< X_k ⊕ the tolerance
+  Vector size_;                                  ///< of each coordinate
+  double tolerance_;                             ///< relative to it
+  LineForm widened_;                             ///< X_k ⊕ the tolerance
+  std::optional<std::optional<Vector>> center_;  ///< factors of a point well inside X_k, once asked for
   std::optional<Finding> violation_;
   std::int64_t proofs_ = 0, undecided_ = 0;
   std::string first_undecided_;
