@@ -55,7 +55,7 @@ struct VerifyOutcome {
 ///      beyond, or where polytopes grow too large, by support functions of the successors of X_{k-1} that are consistent with the
 ///      samples k-1 and k, in the coordinates' and in seeded random directions, with rationally checked bounds.
 ///   2. Every proof that is stored with the step holds in rational arithmetic: emptiness or non-emptiness, and the hull's bounds.
-///   3. Where the step claims `exact`: X_k ⊆ F_k.
+///   3. Where the step claims `exact`: X_k ⊆ F_k (in directions: X_k ⊆ those successors, which contain F_k).
 /// Tolerance: 1e-9 of each coordinate's size for nominal rounding, 1e-14 for outward (a vertex is rounded to doubles).
 /// Throws InputError for files that are missing or wrong, with place and reason.
 VerifyOutcome verify_run(const std::filesystem::path& directory, const VerifyOptions& options = {});

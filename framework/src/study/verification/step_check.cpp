@@ -24,7 +24,7 @@ constexpr double nominal_tolerance = 1e-9, outward_tolerance = 1e-14;
 
 std::string text(VectorIn x) {
   std::string out = "(";
-  for (Index i = 0; i < x.size(); ++i) out += fmt::format("{}{}", i ? ", " : "", x[i]);
+  for (Index i = 0; i < x.size(); ++i) out += fmt::format("{}{}", i ? ", " : "", x[i] + 0.0);
   return out + ")";
 }
 
@@ -189,6 +189,7 @@ void StepCheck::against(const Polytope& F) {
 }
 
 void StepCheck::against(const LineForm& successors, const Matrix& directions) {
+  const bool claims = step_.tightness == Tightness::exact && !reported_empty() && row_.exact_exchange;
   for (Index j = 0; j < directions.cols() && !violation_; ++j) {
     const Vector d = directions.col(j);
     const double slack = tolerance_ * d.cwiseAbs().dot(size_);
@@ -200,11 +201,19 @@ void StepCheck::against(const LineForm& successors, const Matrix& directions) {
     const double hull = !coordinate ? infinity : d[i] > 0 ? d[i] * step_.hull.upper[i] : d[i] * step_.hull.lower[i];
     const double set = reported_empty() ? -infinity : support(row_.set, d),
                  reached = reported_empty() ? -infinity : attained(row_.set, d);
+    if (claims && reached > needed + slack) {
+      violated(
+          fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where no successor of the set before that is "
+                      "consistent with the data lies beyond {:.17g}",
+                      reached, text(d), needed),
+          true);
+      continue;
+    }
     const double allowed = std::min(hull, set);
     // nothing beyond: a rational proof that the successors keep below a value that the set is proven to reach
     if (allowed == infinity && needed == infinity && row_.set.lines() > 0) continue;
     const bool shown = needed == -infinity || proves_support(successors, d, needed + 0.5 * slack, why);
-    if (shown && needed + 0.5 * slack <= std::min(hull, std::max(reached, -infinity)) + slack) continue;
+    if (shown && needed + 0.5 * slack <= std::min(hull, reached) + slack) continue;
     try {
       const rounding::Range exact = exact::support(successors, d);
       if (exact.lower > allowed + slack) {
@@ -221,6 +230,7 @@ void StepCheck::against(const LineForm& successors, const Matrix& directions) {
     }
     open(fmt::format("whether the reported set reaches as far along {} as the successors of the set before", text(d)));
   }
+  exact_holds_ = claims && !violation_;
 }
 
 }  // namespace cordon::verification
