@@ -62,16 +62,35 @@ TEST_CASE("an empty set is proven empty, and the proof can be checked") {
 TEST_CASE("known traps do not make a set empty") {
   // coefficients of 1e-80 and zero rows
   LineForm X = constrained(Matrix{{1.0, 1e-80}}, Matrix{{1.0, 1e-80}, {0.0, 1e-80}}, Vector{{.5, 0.0}});
-  CHECK(is_empty(X) != Answer::yes);
+  CHECK(is_empty(X) == Answer::no);
+  CHECK(contains(X, Vector{{.5}}) == Answer::yes);
   X = constrained(Matrix{{1.0, 0.0}}, Matrix{{1.0, .5}, {0.0, 0.0}}, Vector{{.5, 0.0}});
   CHECK(is_empty(X) == Answer::no);
-  // dependent rows, up to rounding
+  // dependent rows: exactly, up to rounding (as stored they have one solution), and contradicting each other in the last place
+  X = constrained(Matrix{{1.0, 1.0}}, Matrix{{.25, .5}, {.75, 1.5}}, Vector{{.0625, .1875}});
+  CHECK(is_empty(X) == Answer::no);
   X = constrained(Matrix{{1.0, 1.0}}, Matrix{{.1, .2}, {.3, .6}}, Vector{{.05, .15}});
-  CHECK(is_empty(X) != Answer::yes);
+  CHECK(is_empty(X) == Answer::no);
+  X = constrained(Matrix{{1.0, 1.0}}, Matrix{{.1, .2}, {.1, .2}}, Vector{{.05, std::nextafter(.05, 1.0)}});
+  CHECK(is_empty(X) == Answer::unknown);
   // a set that touches at one point
   X = constrained(Matrix{{1.0, 1.0}}, Matrix{{1.0, 1.0}}, Vector{{2.0}});
-  CHECK(is_empty(X) != Answer::yes);
+  CHECK(is_empty(X) == Answer::no);
+  CHECK(contains(X, Vector{{2.0}}) == Answer::yes);
   CHECK(is_empty(constrained(Matrix{{1.0, 1.0}}, Matrix{{1.0, 1.0}}, Vector{{2.0 + 1e-6}})) == Answer::yes);
+  // X ⊕ ∅, and blocks of 0 rows or columns
+  const LineForm box = make_box({Vector{{-1.0, -1.0}}, Vector{{1.0, 1.0}}});
+  CHECK(is_empty(minkowski_sum(box, make_empty(2))) == Answer::yes);
+  CHECK(is_empty(cartesian_product(make_empty(1), make_space(0))) == Answer::yes);
+  CHECK(is_empty(intersection(box, Matrix(0, 2), make_space(0))) == Answer::no);
+  CHECK(is_empty(affine_map(box, Matrix(0, 2), Vector(0))) == Answer::no);
+  CHECK(contains(make_point(Vector(0)), Vector(0)) == Answer::yes);
+  // a flat zonotope cut by a strip, through it and beside it
+  const LineForm flat = make_zonotope(Vector{{0.0, 1.0}}, Matrix{{1.0, 2.0}, {0.0, 0.0}});
+  CHECK(is_empty(intersection(flat, Matrix{{0.0, 1.0}}, make_point(Vector{{1.0}}))) == Answer::no);
+  CHECK(is_empty(intersection(flat, Matrix{{0.0, 1.0}}, make_box({Vector{{1.0}}, Vector{{2.0}}}))) == Answer::no);
+  CHECK(is_empty(intersection(flat, Matrix{{1.0, 0.0}}, make_box({Vector{{3.0}}, Vector{{4.0}}}))) == Answer::no);
+  CHECK(is_empty(intersection(flat, Matrix{{0.0, 1.0}}, make_box({Vector{{1.5}}, Vector{{2.0}}}))) == Answer::yes);
   // coefficients over sixteen decades
   X = constrained(Matrix{{1.0, 1.0, 1.0}}, Matrix{{1e8, 1.0, 1e-8}, {1.0, 1e-8, 1e8}}, Vector{{1e7, 1e6}});
   CHECK(is_empty(X) == Answer::no);
