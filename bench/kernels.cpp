@@ -8,32 +8,12 @@
 #include "cordon/sets/strip.hpp"
 #include "cordon/sets/zonotope.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "random_sets.hpp"
 
 namespace {
 
 using namespace cordon;
-
-struct Size {
-  Index n, g, m;
-};
-
-Size size(const benchmark::State& state) { return {state.range(0), state.range(1), state.range(2)}; }
-
-Matrix random_matrix(std::mt19937_64& engine, Index rows, Index cols) {
-  Matrix A(rows, cols);
-  for (Index k = 0; k < A.size(); ++k) A.data()[k] = static_cast<double>(engine() >> 11) * 0x1p-52 - 1;
-  return A;
-}
-
-/// Feasible by construction: b = A ξ for a ξ inside the box.
-LineForm random_set(Size s, std::uint64_t seed = 1) {
-  std::mt19937_64 engine(seed);
-  LineForm X = make_zonotope(random_matrix(engine, s.n, 1), random_matrix(engine, s.n, s.g));
-  X.A = random_matrix(engine, s.m, s.g);
-  X.b = X.A * (0.7 * random_matrix(engine, s.g, 1));
-  X.S.resize(s.m, 0);
-  return X;
-}
+using namespace cordon::bench;
 
 void affine_map_of_set(benchmark::State& state) {
   const LineForm X = random_set(size(state));
@@ -100,10 +80,6 @@ void strip_of_zonotope(benchmark::State& state) {
   const sets::Zonotope Z{X.c, X.G};
   const Vector rho = Vector::Ones(X.dim());
   for (auto _ : state) benchmark::DoNotOptimize(sets::intersect_strip(Z, rho, rho.dot(Z.c), .1));
-}
-
-void sizes(benchmark::internal::Benchmark* b) {
-  b->Args({3, 30, 5})->Args({10, 100, 20})->Args({20, 200, 50})->Repetitions(7)->Unit(benchmark::kMicrosecond)->MinTime(.05);
 }
 
 BENCHMARK(affine_map_of_set)->Apply(sizes);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prints the median of every benchmark, in microseconds. Options are those of Google Benchmark (--benchmark_filter=REGEX, …).
+// Prints the median of every benchmark, in microseconds, and those of its counters. Options are those of Google Benchmark
+// (--benchmark_filter=REGEX, …).
 #include <cstdio>
 #include <string>
 
@@ -21,7 +22,9 @@ class MedianReporter final : public benchmark::BenchmarkReporter {
       for (const char* suffix : {"/repeats:7", "/manual_time", "/min_time:0.050"}) {
         if (const auto at = name.find(suffix); at != std::string::npos) name.erase(at, std::string(suffix).size());
       }
-      std::printf("%-52s %9.2f µs\n", name.c_str(), run.GetAdjustedRealTime());
+      std::printf("%-52s %9.2f µs", name.c_str(), run.GetAdjustedRealTime());
+      for (const auto& [counter, value] : run.counters) std::printf("  %s %.3g", counter.c_str(), value.value);
+      std::printf("\n");
       std::fflush(stdout);
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step (predict, correct, reduce; and the certified hull apart) of every pipeline of the main study, through plugins as in a
-// run.
+// One step (predict, correct, reduce; and the certified hull apart) of every pipeline of the main study, with nominal and with
+// outward rounding, through plugins as in a run.
 #include <memory>
 
 #include <benchmark/benchmark.h>
@@ -14,10 +14,11 @@ using namespace cordon;
 
 struct Fixture {
   Registry registry;
-  Study study;
+  Study nominal, outward;
   Fixture() {
     registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
-    study = read_study(CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
+    nominal = read_study(CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
+    outward = read_study(CORDON_SOURCE_DIR "/examples/studies/descriptor_outward_rounding.json", registry);
   }
 };
 
@@ -29,12 +30,12 @@ const Fixture& fixture() {
 /// Runs a pipeline over and over its data up to k = 20 (all pipelines are consistent there); each iteration is one step from k =
 /// 2 on.
 template <class Work>
-void steps(benchmark::State& state, const PipelineSpec& pipeline, Work work) {
-  const Fixture& f = fixture();
-  const auto backend = f.registry.make_backend(pipeline.backend.type, pipeline.backend.params);
-  const auto observer = f.registry.make_observer(pipeline.observer.type, {f.study.model, backend}, pipeline.observer.params);
+void steps(benchmark::State& state, const Study& study, const PipelineSpec& pipeline, Work work) {
+  const Registry& registry = fixture().registry;
+  const auto backend = registry.make_backend(pipeline.backend.type, pipeline.backend.params);
+  const auto observer = registry.make_observer(pipeline.observer.type, {study.model, backend}, pipeline.observer.params);
   std::vector<Sample> samples;
-  for (const auto source = open_data(f.study); samples.size() <= 20;) samples.push_back(source->next()->sample);
+  for (const auto source = open_data(study); samples.size() <= 20;) samples.push_back(source->next()->sample);
   std::size_t k = samples.size();
   for (auto _ : state) {
     if (k >= samples.size()) {
@@ -54,21 +55,26 @@ double hull_time(const Estimate& estimate) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
 }
 
-const int registered = [] {
-  for (const PipelineSpec& pipeline : fixture().study.pipelines) {
-    const auto add = [&](const std::string& what, double (*work)(const Observer&, const Estimate&)) {
-      benchmark::RegisterBenchmark((what + "/" + pipeline.name).c_str(),
-                                   [&pipeline, work](benchmark::State& state) { steps(state, pipeline, work); })
+void add(const std::string& rounding, const Study& study) {
+  for (const PipelineSpec& pipeline : study.pipelines) {
+    const auto measure = [&](const std::string& what, double (*work)(const Observer&, const Estimate&)) {
+      benchmark::RegisterBenchmark((what + rounding + "/" + pipeline.name).c_str(),
+                                   [&study, &pipeline, work](benchmark::State& state) { steps(state, study, pipeline, work); })
           ->UseManualTime()
           ->Repetitions(7)
           ->Unit(benchmark::kMicrosecond)
           ->MinTime(.05);
     };
-    add("step", [](const Observer& observer, const Estimate&) { return observer.times().step(); });
-    add("step_with_question",
-        [](const Observer& observer, const Estimate&) { return observer.times().step() + observer.times().question; });
-    add("step_with_hull", [](const Observer& observer, const Estimate& e) { return observer.times().step() + hull_time(e); });
+    measure("step", [](const Observer& observer, const Estimate&) { return observer.times().step(); });
+    measure("step_with_question",
+            [](const Observer& observer, const Estimate&) { return observer.times().step() + observer.times().question; });
+    measure("step_with_hull", [](const Observer& observer, const Estimate& e) { return observer.times().step() + hull_time(e); });
   }
+}
+
+const int registered = [] {
+  add("", fixture().nominal);
+  add("_outward", fixture().outward);
   return 0;
 }();
 
