@@ -139,14 +139,13 @@ class BasisReduction {
     const Index n = W_.rows(), g = W_.cols();
     row_.resize(static_cast<std::size_t>(n));
     std::iota(row_.begin(), row_.end(), Index{0});
-    Vector pivot_column(n);
     for (rank_ = 0; rank_ < std::min(n, g); ++rank_) {
       const Index k = rank_;
       Index i = 0, j = 0;
       const double largest = W_.bottomRightCorner(n - k, g - k).cwiseAbs().maxCoeff(&i, &j);
       if (!(largest > rank_tolerance)) break;
       swap(k, k + i, k + j);
-      pivot_column = W_.col(k);
+      Vector pivot_column = W_.col(k);
       const double pivot = pivot_column[k];
       pivot_column[k] = 0;
       for (Index column = k + 1; column < g; ++column) {

@@ -76,8 +76,9 @@ LineForm rows_only(LineForm X) {
   return X;
 }
 
-/// Would the answer change if all factors or all rows moved by 1e-9 of their size?
-bool is_near_boundary(const LineForm& X, bool empty) {
+/// Would the answer change if all factors or all rows moved by 1e-9 of their size? `terms`: what the last rows' right-hand sides
+/// are differences of, x - c or c_Y - c_X, whose size counts.
+bool is_near_boundary(const LineForm& X, bool empty, const Vector& terms = Vector(0)) {
   LineForm moved = X;
   if (!empty) {
     moved.A *= 1 - near;
@@ -87,7 +88,9 @@ bool is_near_boundary(const LineForm& X, bool empty) {
   const Index m = X.constraints(), g = X.generators();
   moved.A = Matrix::Zero(m, g + m);
   moved.A.leftCols(g) = X.A;
-  for (Index i = 0; i < m; ++i) moved.A(i, g + i) = near * (X.A.row(i).lpNorm<1>() + X.S.row(i).lpNorm<1>() + std::abs(X.b[i]));
+  Vector right = X.b.cwiseAbs();
+  right.tail(terms.size()) = right.tail(terms.size()).cwiseMax(terms);
+  for (Index i = 0; i < m; ++i) moved.A(i, g + i) = near * (X.A.row(i).lpNorm<1>() + X.S.row(i).lpNorm<1>() + right[i]);
   moved.G = Matrix::Zero(X.dim(), g + m);
   return exact::is_empty(rows_only(moved)) == Answer::no;
 }
@@ -143,11 +146,13 @@ TEST_CASE("answers agree with rational arithmetic") {
                                    : draw.vector(X.generators(), Draw::Manner::continuous));
     }
     const Answer inside = exact::contains(X, x);
-    member.count(contains(X, x), inside, is_near_boundary(point_rows(X, x), inside == Answer::no), i, "contains");
+    member.count(contains(X, x), inside, is_near_boundary(point_rows(X, x), inside == Answer::no, x.cwiseAbs() + X.c.cwiseAbs()),
+                 i, "contains");
 
     const LineForm both = intersection(X, Matrix::Identity(n, n), Y);
     const Answer apart = exact::is_empty(both);
-    disjoint.count(is_disjoint(X, Y), apart, is_near_boundary(both, apart == Answer::yes), i, "is_disjoint");
+    disjoint.count(is_disjoint(X, Y), apart, is_near_boundary(both, apart == Answer::yes, X.c.cwiseAbs() + Y.c.cwiseAbs()), i,
+                   "is_disjoint");
 
     if (truth == Answer::no) {
       Answer bound = Answer::yes;
