@@ -51,7 +51,8 @@ class RowContractor {
  public:
   explicit RowContractor(Index n) : after_(static_cast<std::size_t>(n) + 1) {}
 
-  Progress contract(Box& X, const Row& row, Range y) {
+  /// `size`: of the terms that y was computed from.
+  Progress contract(Box& X, const Row& row, Range y, double size) {
     const Index n = X.dim();
     Index free = -1, frees = 0;
     for (Index j = 0; j < n; ++j) {
@@ -61,7 +62,7 @@ class RowContractor {
     }
     if (frees > 1) return Progress::none;
     after(n) = {0, 0};
-    double terms = largest(y);
+    double terms = std::max(size, largest(y));
     for (Index j = n - 1; j >= 0; --j) {
       const Range own = term(X, row, j);
       after(j) = directed::plus(after(j + 1), own);
@@ -225,8 +226,12 @@ Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V) {
   require_finite(z, name, "z");
   if (X.is_empty() || V.is_empty()) return Box::empty(X.dim());
   std::vector<Range> y(static_cast<std::size_t>(C.rows()));
+  Vector size = z.cwiseAbs();  // z - T V cancels where the sets touch
   for (Index i = 0; i < C.rows(); ++i) {
     const Range noise = image_row(V, T, i);
+    for (Index j = 0; j < T.cols(); ++j) {
+      if (T(i, j) != 0) size[i] += std::abs(T(i, j)) * std::max(std::abs(V.lower[j]), std::abs(V.upper[j]));
+    }
     y[static_cast<std::size_t>(i)] = directed::is_finite(noise) ? directed::minus(Range{z[i], z[i]}, noise) : noise;
   }
   Box Y = X;
@@ -236,7 +241,7 @@ Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V) {
     for (Index i = 0; i < C.rows(); ++i) {
       const Range range = y[static_cast<std::size_t>(i)];
       if (!directed::is_finite(range)) continue;
-      const Progress step = rows.contract(Y, C.row(i), range);
+      const Progress step = rows.contract(Y, C.row(i), range, size[i]);
       if (step == Progress::empty) return Box::empty(X.dim());
       progress |= step == Progress::some;
     }

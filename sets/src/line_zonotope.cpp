@@ -8,6 +8,12 @@
 
 namespace cordon::sets {
 
+namespace {
+
+constexpr double product_noise = 1e-14;  ///< cancelled to this share of its terms, a value is zero
+
+}  // namespace
+
 LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands) {
   LineZonotope Y = affine_map(X, A, f);
   if (summands.empty()) return Y;
@@ -43,7 +49,13 @@ LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span
 }
 
 LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T, const LineZonotope& V) {
-  return intersection(X, C, affine_map(V, -T, z));
+  LineZonotope Y = intersection(X, C, affine_map(V, -T, z));
+  // z - T c_V - C c_X cancels where the sets touch: a residue is no statement
+  const Vector terms =
+      z.cwiseAbs() + linalg::product(T.cwiseAbs(), V.c.cwiseAbs()) + linalg::product(C.cwiseAbs(), X.c.cwiseAbs());
+  auto right = Y.b.tail(z.size());
+  right = (right.array().abs() <= product_noise * terms.array()).select(0.0, right).eval();
+  return Y;
 }
 
 namespace {

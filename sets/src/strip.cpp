@@ -161,13 +161,8 @@ Zonotope member_of_family(const Zonotope& Z, VectorIn rho, double shift, double 
   return drop_zero_generators({Z.c + lambda * shift, std::move(G)});
 }
 
-}  // namespace
-
-Vector strip_gain(MatrixIn G, VectorIn rho, double sigma, StripMethod method) {
-  return method == StripMethod::segment ? segment_gain(G, rho, sigma) : volume_gain_in_range(G, rho, sigma, method);
-}
-
-std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double d, double sigma, StripMethod method) {
+/// `terms`: the size of what d was computed from.
+std::optional<Zonotope> intersect(const Zonotope& Z, VectorIn rho, double d, double sigma, double terms, StripMethod method) {
   constexpr const char* name = "strip intersection";
   check(Z, name);
   require_size(rho.size(), Z.dim(), name, "the normal");
@@ -180,7 +175,7 @@ std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double 
   const double spread = Z.generators() == 0 ? 0.0 : rounding::residual_norm_1(Vector::Zero(Z.generators()), Z.G, rho);
   const double lowest = rounding::down(middle.lower - spread), highest = rounding::up(middle.upper + spread);
   const double lower = rounding::down(d - sigma), upper = rounding::up(d + sigma);
-  const double margin = nominal_error * (std::abs(d) + rho.cwiseAbs().dot(Z.c.cwiseAbs()) + spread);
+  const double margin = nominal_error * (terms + rho.cwiseAbs().dot(Z.c.cwiseAbs()) + spread);
   if (lowest - upper > margin || lower - highest > margin) return std::nullopt;
   if (lower <= lowest && highest <= upper) return Z;
   // The strip is narrowed to what Z meets of it: the same intersection, a better enclosure.
@@ -197,6 +192,16 @@ std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double 
   const Vector lambda = strip_gain(Z.G, rho, sigma, method);
   if (lambda.isZero(0) || !lambda.allFinite()) return Z;
   return member_of_family(Z, rho, shift, sigma, lambda);
+}
+
+}  // namespace
+
+Vector strip_gain(MatrixIn G, VectorIn rho, double sigma, StripMethod method) {
+  return method == StripMethod::segment ? segment_gain(G, rho, sigma) : volume_gain_in_range(G, rho, sigma, method);
+}
+
+std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double d, double sigma, StripMethod method) {
+  return intersect(Z, rho, d, sigma, std::abs(d), method);
 }
 
 std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, MatrixIn T, const Zonotope& V, StripMethod method) {
@@ -218,7 +223,8 @@ std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, Matri
       d = offset.lower / 2 + offset.upper / 2;
       sigma = rounding::up(sigma + rounding::up(std::max(offset.upper - d, d - offset.lower)));
     }
-    result = intersect_strip(*result, C.row(i).transpose(), d, sigma, method);
+    const double terms = std::abs(z[i]) + row.cwiseAbs().dot(V.c.cwiseAbs()) + sigma;
+    result = intersect(*result, C.row(i).transpose(), d, sigma, terms, method);
   }
   return result;
 }

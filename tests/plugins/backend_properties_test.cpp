@@ -266,3 +266,84 @@ TEST_CASE("dimension 0, points and unlike operands") {
     CHECK_THROWS_AS(point->contains(Vector{{1.0}}), Error);
   }
 }
+
+namespace {
+
+/// Hands out sets of dimension 1 whatever is asked for; everything else is left to the framework.
+class Shrinking final : public SetBackend {
+ public:
+  explicit Shrinking(Index kept) : SetBackend(info_of()), kept_(kept) {}
+
+ private:
+  class Held final : public Set {
+   public:
+    Held(const SetBackend& backend, LineForm form) : Set(backend, form.dim()), form_(std::move(form)) {}
+
+   private:
+    Complexity do_complexity() const override { return {form_.generators(), form_.lines(), form_.constraints()}; }
+    LineForm do_line_form() const override { return form_; }
+    LineForm form_;
+  };
+  static BackendInfo info_of() {
+    BackendInfo info;
+    info.name = "shrinking";
+    info.unbounded = true;
+    return info;
+  }
+  Made do_import(const LineForm& X) const override {
+    const Index n = std::min(kept_, X.dim());
+    return {std::make_unique<Held>(*this, cordon::affine_map(X, Matrix::Identity(n, X.dim()), Vector::Zero(n))),
+            Tightness::exact};
+  }
+  Index kept_;
+};
+
+/// The framework's own operations on exchange forms.
+std::shared_ptr<const SetBackend> defaults() { return std::make_shared<Shrinking>(100); }
+
+}  // namespace
+
+TEST_CASE("a result of another dimension is the plugin's error") {
+  const auto backend = std::make_shared<Shrinking>(1);
+  const Enclosure X = backend->point(Vector{{1}});
+  const auto refused = [&](const auto& operation, const std::string& name) {
+    try {
+      operation();
+    } catch (const Error& error) {
+      CHECK(error.code() == Errc::plugin);
+      CHECK(std::string(error.what()).find("backend shrinking, " + name) != std::string::npos);
+      return;
+    }
+    FAIL_CHECK(name << " was accepted");
+  };
+  refused([&] { backend->point(Vector{{1, 2}}); }, "import");
+  refused([&] { backend->affine_map(X, Matrix{{1}, {2}}, Vector{{0, 0}}); }, "predict");
+  refused([&] { backend->product(X, X); }, "predict");
+  refused([&] { backend->interval_map(X, IntervalMatrix(Matrix{{1}, {2}})); }, "interval map");
+}
+
+TEST_CASE("sets that touch where z - T c - C x cancels are not called empty") {
+  const Plugins plugins;
+  std::vector<std::shared_ptr<const SetBackend>> backends{defaults()};
+  for (const Case& c : cases) backends.push_back(c.backend(plugins));
+  const double ulp = 0x1p-52;
+  for (const auto& backend : backends) {
+    CAPTURE(backend->info().name);
+    CAPTURE(backend->info().rounding == Rounding::outward);
+    const auto correct = [&](const Enclosure& X, const Matrix& C, const Vector& z, const Matrix& T, const Enclosure& V) {
+      return backend->correct(X, {C, z, {T, V}})->is_empty();
+    };
+    const Enclosure origin = backend->point(Vector{{0}});
+    CHECK(correct(origin, Matrix{{0}}, Vector{{.3}}, Matrix{{3}}, backend->point(Vector{{.1}})) != Answer::yes);
+    CHECK(correct(origin, Matrix{{0}}, Vector{{.30000000000000004}}, Matrix{{3}}, backend->point(Vector{{.1}})) != Answer::yes);
+    const Enclosure one = backend->box({Vector{{1 - ulp}}, Vector{{1 + 2 * ulp}}});
+    const Enclosure zero = backend->box({Vector{{-ulp}}, Vector{{ulp}}});
+    const Matrix C{{0}, {0}}, T{{1}, {-3}};
+    CHECK(correct(zero, C, Vector{{1, -3}}, T, one) != Answer::yes);
+    CHECK(correct(origin, C, Vector{{1, -3 * (1 + ulp)}}, T, backend->point(Vector{{1}})) != Answer::yes);
+    CHECK(correct(origin, C, Vector{{1e-9, -3e-9}}, T, backend->point(Vector{{1e-9}})) != Answer::yes);
+    // what does not cancel stays a statement, however small
+    CHECK(correct(origin, Matrix{{0}}, Vector{{1e-9}}, Matrix{{3}}, backend->point(Vector{{1e-12}})) == Answer::yes);
+    CHECK(correct(origin, Matrix{{0}}, Vector{{.3001}}, Matrix{{3}}, backend->point(Vector{{.1}})) == Answer::yes);
+  }
+}

@@ -12,6 +12,8 @@ namespace cordon {
 
 namespace {
 
+constexpr double product_noise = 1e-14;  ///< cancelled to this share of its terms, a value is zero
+
 void require(bool fits, const std::string& message) {
   if (!fits) throw Error(Errc::dimension, message);
 }
@@ -51,6 +53,18 @@ const Set& require_set(const Enclosure& X, const char* what) {
   return *X.set;
 }
 
+/// Later code takes a result's dimension for granted, also in arithmetic without checks of its own.
+template <class Made>
+Made fitting(Made made, Index dim, const BackendInfo& info, const char* operation) {
+  const std::string who = "backend " + info.name + ", " + operation + ": ";
+  if (!made.set) throw Error(Errc::plugin, who + "returned no set");
+  if (made.set->dim() != dim) {
+    throw Error(Errc::plugin,
+                who + "returned a set of dimension " + std::to_string(made.set->dim()) + ", must be " + std::to_string(dim));
+  }
+  return made;
+}
+
 /// What is computed on exchange forms that enclose their sets is outer, whatever the import of the result claims.
 template <class Made>
 Made through_exchange(const BackendInfo& info, Made made) {
@@ -63,7 +77,6 @@ Made through_exchange(const BackendInfo& info, Made made) {
 /// Control blocks are made here, so that no code of a plugin runs after its library has gone: the deleter destroys the set, then
 /// lets go of the backend.
 Enclosure SetBackend::adopt(Made made, Tightness inputs) const {
-  if (!made.set) throw Error(Errc::plugin, "backend " + info_.name + " returned no set");
   const Set* raw = made.set.release();
   SetPtr set(raw, [keep = shared_from_this()](const Set* dying) { delete dying; });
   return {std::move(set), meet(made.tightness, inputs)};
@@ -71,7 +84,7 @@ Enclosure SetBackend::adopt(Made made, Tightness inputs) const {
 
 Enclosure SetBackend::import(const LineForm& X, Tightness claim) const {
   check(X, "import into " + info_.name);
-  return adopt(do_import(X), claim);
+  return adopt(fitting(do_import(X), X.dim(), info_, "import"), claim);
 }
 
 Enclosure SetBackend::import(const Enclosure& X) const {
@@ -106,7 +119,7 @@ Enclosure SetBackend::predict(const Enclosure& X, const Predict& p) const {
     inputs = meet(inputs, imported.back().tightness);
     terms.push_back({term.T, imported.back()});
   }
-  return adopt(do_predict(*own.set, {p.A, p.f, terms}), inputs);
+  return adopt(fitting(do_predict(*own.set, {p.A, p.f, terms}), p.A.rows(), info_, "predict"), inputs);
 }
 
 Enclosure SetBackend::correct(const Enclosure& X, const Correct& c) const {
@@ -114,14 +127,16 @@ Enclosure SetBackend::correct(const Enclosure& X, const Correct& c) const {
   require_map(c.C, c.C.rows(), own->dim(), "correct: C");
   require_vector(c.z, c.C.rows(), "correct: z");
   require_map(c.noise.T, c.C.rows(), noise->dim(), "correct: T");
-  return adopt(do_correct(*own.set, {c.C, c.z, {c.noise.T, noise}}), meet(own.tightness, noise.tightness));
+  return adopt(fitting(do_correct(*own.set, {c.C, c.z, {c.noise.T, noise}}), own->dim(), info_, "correct"),
+               meet(own.tightness, noise.tightness));
 }
 
 Enclosure SetBackend::reduce(const Enclosure& X, Budget budget) const {
   if (budget.generators < 0 || budget.constraints < 0) throw Error(Errc::invalid, "reduce: a negative budget");
   const Enclosure own = import(X);
   Made made = do_reduce(*own.set, budget);
-  return made.set ? adopt(std::move(made), own.tightness) : own;
+  if (!made.set) return own;
+  return adopt(fitting(std::move(made), own->dim(), info_, "reduce"), own.tightness);
 }
 
 Enclosure SetBackend::affine_map(const Enclosure& X, MatrixIn T, VectorIn t) const { return predict(X, {T, t, {}}); }
@@ -131,7 +146,7 @@ Enclosure SetBackend::interval_map(const Enclosure& X, const IntervalMatrix& A) 
   require_map(A.center, A.center.rows(), own->dim(), "interval map: centre");
   require_map(A.radius, A.center.rows(), own->dim(), "interval map: radius");
   if (A.radius.size() && A.radius.minCoeff() < 0) throw Error(Errc::invalid, "interval map: a negative radius");
-  return adopt(do_interval_map(*own.set, A), own.tightness);
+  return adopt(fitting(do_interval_map(*own.set, A), A.rows(), info_, "interval map"), own.tightness);
 }
 
 Enclosure SetBackend::sum(const Enclosure& X, const Enclosure& Y) const {
@@ -154,7 +169,8 @@ Enclosure SetBackend::product(const Enclosure& X, const Enclosure& Y) const {
 Enclosure SetBackend::intersection(const Enclosure& X, MatrixIn R, const Enclosure& Y) const {
   const Enclosure own = import(X), other = import(Y);
   require_map(R, other->dim(), own->dim(), "intersection: R");
-  return adopt(do_intersection(*own.set, R, *other.set), meet(own.tightness, other.tightness));
+  return adopt(fitting(do_intersection(*own.set, R, *other.set), own->dim(), info_, "intersection"),
+               meet(own.tightness, other.tightness));
 }
 
 Enclosure SetBackend::convex_hull(const Enclosure& X, const Enclosure& Y) const {
@@ -162,7 +178,8 @@ Enclosure SetBackend::convex_hull(const Enclosure& X, const Enclosure& Y) const 
   require(own->dim() == other->dim(), "convex hull: dimensions differ");
   if (own->is_empty() == Answer::yes) return {other.set, meet(own.tightness, other.tightness)};
   if (other->is_empty() == Answer::yes) return {own.set, meet(own.tightness, other.tightness)};
-  return adopt(do_convex_hull(*own.set, *other.set), meet(own.tightness, other.tightness));
+  return adopt(fitting(do_convex_hull(*own.set, *other.set), own->dim(), info_, "convex hull"),
+               meet(own.tightness, other.tightness));
 }
 
 SetBackend::Made SetBackend::do_predict(const Set& X, const Predict& p) const {
@@ -175,8 +192,14 @@ SetBackend::Made SetBackend::do_predict(const Set& X, const Predict& p) const {
 
 SetBackend::Made SetBackend::do_correct(const Set& X, const Correct& c) const {
   // z - C x ∈ T V  ⇔  C x ∈ z ⊕ (-T V)
-  const LineForm target = cordon::affine_map(c.noise.set->line_form(), -c.noise.T, c.z);
-  return through_exchange(info_, do_import(cordon::intersection(X.line_form(), c.C, target)));
+  const LineForm state = X.line_form(), noise = c.noise.set->line_form();
+  LineForm kept = cordon::intersection(state, c.C, cordon::affine_map(noise, -c.noise.T, c.z));
+  // z - T c_V - C c_X cancels where the sets touch: a residue is no statement
+  const Vector terms = c.z.cwiseAbs() + linalg::product(c.noise.T.cwiseAbs(), noise.c.cwiseAbs()) +
+                       linalg::product(c.C.cwiseAbs(), state.c.cwiseAbs());
+  auto right = kept.b.tail(c.z.size());
+  right = (right.array().abs() <= product_noise * terms.array()).select(0.0, right).eval();
+  return through_exchange(info_, do_import(kept));
 }
 
 SetBackend::Made SetBackend::do_interval_map(const Set& X, const IntervalMatrix& A) const {
