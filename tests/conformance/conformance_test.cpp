@@ -2,6 +2,7 @@
 // The kit's own parts: names, patterns, seeds, shrinking, generators.
 #include "cordon/conformance/conformance.hpp"
 
+#include <cmath>
 #include <set>
 
 #include <doctest/doctest.h>
@@ -119,4 +120,15 @@ TEST_CASE("a case shrinks to what matters") {
   CHECK(small.matrices[0].value.size() == 1);
   // known points stay members
   for (const TestSet& X : small.sets) CHECK(exact::contains(X.form, X.point()) == Answer::yes);
+}
+
+TEST_CASE("no bound across a line that is normal to the direction up to rounding only") {
+  const Matrix lines{{1, 0}, {1, 2.5}, {-3.023047528084315, -7.557618820210788}};
+  const LineForm X{lines, Matrix(3, 0), Vector::Zero(3), Matrix(0, 2), Matrix(0, 0), Vector(0)};
+  const Vector d{{1.1102230246251565e-16, -1.889404705052697, -0.625}};
+  CHECK(std::isinf(exact::support(X, d).upper));
+  CHECK(std::isinf(Reference(X).upper(d)));
+  CHECK(Reference(make_space(3)).upper(Vector::Zero(3)) == 0);
+  const LineForm strip{Matrix{{1}, {1}}, Matrix{{1}, {0}}, Vector{{1, 2}}, Matrix(0, 1), Matrix(0, 1), Vector(0)};
+  CHECK(Reference(strip).upper(Vector{{1, -1}}) == 0);
 }

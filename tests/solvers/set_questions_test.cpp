@@ -8,6 +8,7 @@
 #include <rapidcheck.h>
 
 #include "cordon/core/error.hpp"
+#include "cordon/solvers/certificate.hpp"
 
 using namespace cordon;
 
@@ -239,4 +240,13 @@ TEST_CASE("the convex hull contains both sets and their mixtures") {
     const double expected = std::max(support(X, d), support(Y, d)), got = support(H, d);
     RC_ASSERT(std::abs(got - expected) <= 1e-7 * (1 + std::abs(expected) + d.lpNorm<1>()));
   }));
+}
+
+TEST_CASE("a direction that is normal to a line up to rounding only has no finite bound without a proof") {
+  const LineForm X{Matrix{{3}, {2.125}}, Matrix{{1}, {0}}, Vector{{1, 1}}, Matrix(0, 1), Matrix(0, 1), Vector(0)};
+  const Vector d{{0.7083333333333334, -1}};
+  Certificate why;
+  CHECK(support(X, d, &why) == inf);
+  CHECK(support(X, Vector{{2.125, -3}}, &why) == 2.125 + 2.125 - 3);
+  CHECK(proves_support(X, Vector{{2.125, -3}}, 1.25, why));
 }

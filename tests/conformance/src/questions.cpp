@@ -352,8 +352,11 @@ Verdict check_certificates(const Context& context, const TestCase& test) {
   if (disjoint == Answer::no && numeric() && !proves_meet(FX, FY, why)) return wrong("X and Y meet");
   Reference reference(FX, {}, pair.X.size);
   Random random(test.seed);
-  // a normal to a generator may be one to a line up to rounding only, where the exact value is +inf: plain directions
-  for (const Vector& d : directions({}, n, random, 4)) {
+  // normals to lines too: up to rounding only, the exact value is +inf there, and a finite one has no proof
+  LineForm columns = FX;
+  columns.G.resize(n, FX.generators() + FX.lines());
+  columns.G << FX.G, FX.M;
+  for (const Vector& d : directions({columns}, n, random, 4)) {
     why = {};
     const double h = X.support(d, &why);
     if (!numeric() || h == infinity) continue;

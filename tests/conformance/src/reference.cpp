@@ -8,6 +8,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/solvers/exact_questions.hpp"
+#include "cordon/solvers/set_questions.hpp"
 
 namespace cordon::conformance {
 
@@ -35,6 +36,7 @@ double size_of(const LineForm& X) {
 Reference::Reference(const LineForm& X, std::vector<Vector> known, double terms, double row_terms)
     : Reference(eliminate_lines_traced(X, Vector(0)), std::move(known), std::max(terms, size_of(X)), row_terms) {
   trusted_ = X.lines() == 0 || (is_moderate(X.M) && is_moderate(X.S));
+  if (X.lines() > 0) whole_ = X;
 }
 
 Reference::Reference(LinesEliminated eliminated, std::vector<Vector> known, double terms, double row_terms)
@@ -86,6 +88,7 @@ double Reference::lower(VectorIn d) {
 
 double Reference::upper(VectorIn d) {
   if (along(d) != Along::bounded) return infinity;
+  if (whole_) return cordon::support(*whole_, d);  // with lines, what rational arithmetic makes of it
   if (solve(d).upper == -infinity) return -infinity;
   const double gradient_error = rounding::product_error(X_.G.transpose(), d).sum();
   return rounding::up(d.dot(X_.c) + solve(d).upper) + gradient_error;

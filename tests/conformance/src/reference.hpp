@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cordon/core/line_elimination.hpp"
@@ -21,7 +22,8 @@ class Reference {
 
   Index dim() const { return X_.dim(); }
   /// Values between which h(d) lies: attained by a point of the set (+inf along a line; -inf without a proof), and a certified
-  /// bound. Both hold up to `tolerance`.
+  /// bound. Both hold up to `tolerance`. `upper` is +inf unless d is proven to be normal to all lines, without rounding: a line
+  /// leaves no tolerance.
   double lower(VectorIn d);
   double upper(VectorIn d);
   /// Rounding errors that nominal arithmetic may make in h(d), with room: 1e-9 of the terms dᵀ(|c| + |G|1) and yᵀ(|b| + |A|1),
@@ -42,6 +44,7 @@ class Reference {
 
   explicit Reference(LinesEliminated eliminated, std::vector<Vector> known, double terms, double row_terms);
 
+  std::optional<LineForm> whole_;  ///< before the elimination, if there were lines
   LineForm X_;
   Vector row_magnitude_;
   BoxedProgram program_;
