@@ -250,3 +250,18 @@ TEST_CASE("a direction that is normal to a line up to rounding only has no finit
   CHECK(support(X, Vector{{2.125, -3}}, &why) == 2.125 + 2.125 - 3);
   CHECK(proves_support(X, Vector{{2.125, -3}}, 1.25, why));
 }
+
+TEST_CASE("through lines, points and inclusions are proven for the numbers as stored") {
+  // two rows that disagree by one unit in the last place: no point, hence none that attains anything
+  const LineForm none{Matrix{{1}}, Matrix(1, 0), Vector::Zero(1), Matrix{{1}, {1}}, Matrix(2, 0), Vector{{1, 1 + 0x1p-52}}};
+  CHECK(attained(none, Vector{{1}}) == -inf);
+  const LineForm line{Matrix{{1}, {1}}, Matrix(2, 0), Vector::Zero(2), Matrix(0, 1), Matrix(0, 0), Vector(0)};
+  CHECK(attained(line, Vector{{1, -1}}) == 0);
+  CHECK(attained(line, Vector{{1, 0}}) == inf);
+  // almost parallel lines
+  const LineForm strip{Matrix{{1}, {1 + 0x1p-52}}, Matrix{{1}, {0}}, Vector::Zero(2), Matrix(0, 1), Matrix(0, 1), Vector(0)};
+  CHECK(is_subset(line, strip) != Answer::yes);
+  CHECK(is_subset(make_box({Vector{{-.1, -.1}}, Vector{{.1, .1}}}), strip) == Answer::yes);
+  // nothing lies in a set that is empty as stored, however little is missing
+  CHECK(is_subset(make_point(Vector{{1}}), none) != Answer::yes);
+}

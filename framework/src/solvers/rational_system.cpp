@@ -148,14 +148,14 @@ std::optional<Rational> dual_bound(const System& s, const RationalVector& t, con
   return Rational(dot(s.r, *moved) + distance(s, g, *moved));
 }
 
-bool has_solution_near(const System& s, VectorIn data) {
-  if (data.size() != s.K.cols() || !data.allFinite()) return false;
+std::optional<RationalVector> solution_near(const System& s, VectorIn data) {
+  if (data.size() != s.K.cols() || !data.allFinite()) return std::nullopt;
   Vector start = data, preference(s.K.cols());
   start.tail(s.factors()) = start.tail(s.factors()).cwiseMax(-1.0).cwiseMin(1.0);
   preference.head(s.lines).setConstant(1e6);  // lines have no bound to keep
   // a factor at its bound can move inward only: the last choice
   preference.tail(s.factors()) = (1 - start.tail(s.factors()).array().abs()).max(1e-60);
-  const RationalVector point = exact(start);
+  RationalVector point = exact(start);
   RationalVector gap = s.r;
   bool holds = true;
   for (Index i = 0; i < s.K.rows(); ++i) {
@@ -164,13 +164,15 @@ bool has_solution_near(const System& s, VectorIn data) {
     }
     holds = holds && sgn(gap[at(i)]) == 0;
   }
-  if (holds) return true;
+  if (holds) return point;
   const auto change = solve(s.K, std::move(gap), preference);
-  if (!change) return false;
-  for (Index j = s.lines; j < s.K.cols(); ++j) {
-    if (sgn((*change)[at(j)]) != 0 && abs(point[at(j)] + (*change)[at(j)]) > 1) return false;
+  if (!change) return std::nullopt;
+  for (Index j = 0; j < s.K.cols(); ++j) {
+    if (sgn((*change)[at(j)]) == 0) continue;
+    point[at(j)] += (*change)[at(j)];
+    if (j >= s.lines && abs(point[at(j)]) > 1) return std::nullopt;
   }
-  return true;
+  return point;
 }
 
 Finding settle(const Rows& rows) {

@@ -33,8 +33,9 @@ std::optional<Rational> farkas_margin(const System& s, VectorIn y);
 /// gᵀξ + tᵀδ ≤ bᵀy + ‖g - Aᵀy‖₁ for the y nearby with Lᵀy = t: that bound.
 std::optional<Rational> dual_bound(const System& s, const RationalVector& t, const RationalVector& g, VectorIn y);
 
-/// Is there a solution at the point, moved onto the rows?
-bool has_solution_near(const System& s, VectorIn point);
+/// The point (δ, ξ), moved onto the rows; nothing if it leaves the bounds then.
+std::optional<RationalVector> solution_near(const System& s, VectorIn point);
+inline bool has_solution_near(const System& s, VectorIn point) { return solution_near(s, point).has_value(); }
 
 /// What the exact simplex method finds: a solution (δ, ξ), or multipliers of the largest gap to a solution, each rounded to
 /// doubles. A proof only after one of the checks above.

@@ -8,6 +8,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/line_bounds.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/certificate.hpp"
@@ -96,17 +97,21 @@ struct Questioned {
     return xi ? point({Certificate::Kind::point, *xi, 0}) : Certificate{};
   }
 
+  /// (δ, ξ) of the set before the elimination.
+  Vector with_lines(const Vector& xi) const {
+    Vector both(eliminated.lines_offset.size() + xi.size());
+    both << eliminated.lines_offset + linalg::product(eliminated.lines_by_factors, xi), xi;
+    return both;
+  }
+
  private:
   Certificate farkas(const Certificate& own) const {
     return {own.kind, linalg::product(eliminated.rows.transpose(), own.data), own.margin};
   }
 
   Certificate point(const Certificate& own) const {
-    const Index l = eliminated.lines_offset.size(), g = X.generators();
-    const Vector xi = own.kind == Certificate::Kind::structure ? Vector(Vector::Zero(g)) : own.data;
-    Vector both(l + g);
-    both << eliminated.lines_offset + linalg::product(eliminated.lines_by_factors, xi), xi;
-    return {Certificate::Kind::point, std::move(both), own.margin};
+    const Vector xi = own.kind == Certificate::Kind::structure ? Vector(Vector::Zero(X.generators())) : own.data;
+    return {Certificate::Kind::point, with_lines(xi), own.margin};
   }
 };
 
@@ -298,6 +303,101 @@ Answer within_box(const LineForm& X, const LineForm& Y) {
   return Answer::yes;
 }
 
+/// A step of this length towards the middle gives slack in every coordinate.
+constexpr double step_inward = 1e-7;
+
+/// dᵀx for x = c + Mδ + Gξ, rounded down.
+double value_at(const LineForm& X, VectorIn d, const rational::RationalVector& both) {
+  rational::Rational sum = rational::dot(rational::exact(d), rational::exact(X.c));
+  for (Index j = 0; j < X.lines() + X.generators(); ++j) {
+    const Vector column = j < X.lines() ? X.M.col(j) : X.G.col(j - X.lines());
+    sum += both[static_cast<std::size_t>(j)] * rational::dot(rational::exact(d), rational::exact(column));
+  }
+  return rational::enclose(sum).lower;
+}
+
+/// No bound of rounding errors covers the elimination of lines: the proposed points are moved onto the rows exactly.
+double attained_through_lines(const LineForm& X, VectorIn d) {
+  check(X, "attained");
+  if (!is_small(X.constraints(), X.lines() + X.generators())) return -infinity;
+  if (!proven_support(X, d, Vector::Zero(X.constraints()))) return is_empty(X) == Answer::no ? infinity : -infinity;
+  Questioned q(X);
+  const BoxedProgram::Bound bound = q.program.maximum(linalg::product(q.X.G.transpose(), d));
+  if (!bound.xi) return -infinity;
+  const rational::System rows(rows_of(X));
+  if (const auto point = rational::solution_near(rows, q.with_lines(*bound.xi))) return value_at(X, d, *point);
+  const auto center = q.program.central_point();
+  if (!center) return -infinity;
+  const auto point = rational::solution_near(rows, q.with_lines((1 - step_inward) * *bound.xi + step_inward * *center));
+  return point ? value_at(X, d, *point) : -infinity;
+}
+
+/// Are all of X's lines among those of Y? Rational: nothing covers a line that is almost another one.
+bool lines_within(const LineForm& X, const LineForm& Y) {
+  if (X.lines() == 0) return true;
+  const Matrix rows = Y.M.transpose(), lines = X.M.transpose();
+  return !has_lineality(
+      {lines, Matrix(X.lines(), 0), Vector::Zero(X.lines()), rows, Matrix(Y.lines(), 0), Vector::Zero(Y.lines())});
+}
+
+/// Two sets without lines, seen across the lines of Y.
+struct Across {
+  Matrix normal;  ///< a basis of the directions normal to these lines; n×n identity where there are none
+  LineForm X, Y;
+};
+std::optional<Across> across_lines(const LineForm& X, const LineForm& Y) {
+  Across seen{Matrix::Identity(X.dim(), X.dim()), X, Y};
+  if (Y.lines() > 0) {
+    seen.normal = linalg::null_space(Y.M.transpose());
+    const Vector zero = Vector::Zero(seen.normal.cols());
+    seen.X = affine_map(X, seen.normal.transpose(), zero);
+    seen.Y = affine_map(Y, seen.normal.transpose(), zero);
+    seen.Y.M.resize(zero.size(), 0);
+    seen.Y.S.resize(seen.Y.constraints(), 0);
+  }
+  if (seen.X.lines() > 0) {
+    if (!seen.X.M.isZero(0)) return std::nullopt;
+    seen.X.M.resize(seen.X.dim(), 0);
+    seen.X.S.resize(seen.X.constraints(), 0);
+  }
+  return seen;
+}
+
+/// X × {0} ⊆ {(c + Mδ + Gξ, Sδ + Aξ - b)} of Y, so that no rows hold Y's lines.
+Answer within_lifted(const LineForm& X, const LineForm& Y) {
+  const Index n = Y.dim(), all = n + Y.constraints();
+  if (X.lines() > 0 && !X.S.isZero(0)) return Answer::unknown;
+  LineForm lifted{Matrix(all, Y.lines()), Matrix(all, Y.generators()), Vector(all),
+                  Matrix(0, Y.lines()),   Matrix(0, Y.generators()),   Vector(0)};
+  lifted.M << Y.M, Y.S;
+  lifted.G << Y.G, Y.A;
+  lifted.c << Y.c, -Y.b;
+  const LineForm level = affine_map(X, Matrix::Identity(all, n), Vector::Zero(all));
+  if (!lines_within(level, lifted)) return Answer::unknown;
+  const auto seen = across_lines(level, lifted);
+  if (!seen) return Answer::unknown;
+  if (seen->normal.cols() == 0) return is_empty(Y) == Answer::no ? Answer::yes : Answer::unknown;
+  return within_facets(seen->X, seen->Y);
+}
+
+/// X ⊆ Y refuted along the normals of Y's facets? Eliminated forms propose the directions.
+bool refuted_by_facets(const LineForm& X, const LineForm& Y, Certificate* why) {
+  const LineForm left = eliminate_lines(X), right = eliminate_lines(Y);
+  const auto seen = across_lines(left, right);
+  if (!seen || seen->normal.cols() == 0 || seen->Y.constraints() > 0 || linalg::rank(seen->Y.G) < seen->Y.dim()) return false;
+  const auto normals = facet_normals(seen->Y.G);
+  if (!normals) return false;
+  const bool lines = X.lines() + Y.lines() > 0;
+  for (const Vector& facet : *normals) {
+    const Vector d = linalg::product(seen->normal, facet);
+    for (const double sign : {1.0, -1.0}) {
+      if (lines && !refuted(seen->X, seen->Y, sign * facet, nullptr)) continue;
+      if (refuted(X, Y, sign * d, why)) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Answer is_empty(const LineForm& X, Certificate* why) {
@@ -320,15 +420,15 @@ double support(const LineForm& X, VectorIn d, Certificate* why) {
 }
 
 double attained(const LineForm& X, VectorIn d) {
+  if (X.lines() > 0) return attained_through_lines(X, d);
   Questioned q(X);
-  if (q.unbounded_along(d)) return q.is_empty(nullptr) == Answer::no ? infinity : -infinity;
   const Vector g = linalg::product(q.X.G.transpose(), d);
   const BoxedProgram::Bound bound = q.program.maximum(g);
   if (!bound.xi) return -infinity;
   double value = q.program.attained(g, *bound.xi);
   if (value == -infinity) {  // a degenerate vertex: a step towards the middle has slack in every coordinate
     if (const auto center = q.program.central_point()) {
-      value = q.program.attained(g, (1 - 1e-7) * *bound.xi + 1e-7 * *center);
+      value = q.program.attained(g, (1 - step_inward) * *bound.xi + step_inward * *center);
     }
   }
   if (value == -infinity) return value;
@@ -374,42 +474,15 @@ Answer is_disjoint(const LineForm& X, const LineForm& Y, Certificate* why) {
 
 Answer is_subset(const LineForm& X_in, const LineForm& Y_in, Certificate* why) {
   if (X_in.dim() != Y_in.dim()) throw Error(Errc::dimension, "is_subset: the dimensions differ");
-  const LineForm X = X_in.lines() ? eliminate_lines(X_in) : X_in, Y = Y_in.lines() ? eliminate_lines(Y_in) : Y_in;
-  const Index n = X.dim();
-  if (is_empty(X, why) == Answer::yes) return Answer::yes;
+  if (is_empty(X_in, why) == Answer::yes) return Answer::yes;
+  const LineForm X = bound_lines(X_in).set, Y = bound_lines(Y_in).set;  // the same sets
   if (is_plain_box(Y) && within_box(X, Y) == Answer::yes) return Answer::yes;
-
-  // Directions that may refute: coordinates, and the normals to Y's lines along X's generators.
-  for (Index i = 0; i < n; ++i) {
+  for (Index i = 0; i < X.dim(); ++i) {
     for (const double sign : {1.0, -1.0}) {
-      if (refuted(X, Y, sign * Vector::Unit(n, i), why)) return Answer::no;
+      if (refuted(X, Y, sign * Vector::Unit(X.dim(), i), why)) return Answer::no;
     }
   }
-  // Both are seen across Y's lines; X must not have others.
-  LineForm across_X = X, across_Y = Y;
-  if (Y.lines() > 0) {
-    const Matrix normal = linalg::null_space(Y.M.transpose());
-    if (normal.cols() == 0) return is_empty(Y) == Answer::no ? Answer::yes : Answer::unknown;
-    across_X = affine_map(X, normal.transpose(), Vector::Zero(normal.cols()));
-    across_Y = affine_map(Y, normal.transpose(), Vector::Zero(normal.cols()));
-    across_Y.M.resize(normal.cols(), 0);
-    across_Y.S.resize(across_Y.constraints(), 0);
-  }
-  if (across_X.lines() > 0) {
-    if (!across_X.M.isZero(0)) return Answer::unknown;
-    across_X.M.resize(across_X.dim(), 0);
-    across_X.S.resize(across_X.constraints(), 0);
-  }
-  if (within_facets(across_X, across_Y) == Answer::yes) return Answer::yes;
-  if (across_Y.constraints() == 0 && linalg::rank(across_Y.G) == across_Y.dim()) {
-    if (const auto normals = facet_normals(across_Y.G)) {
-      for (const Vector& d : *normals) {
-        const Vector full = Y.lines() > 0 ? Vector(linalg::product(linalg::null_space(Y.M.transpose()), d)) : d;
-        if (refuted(X, Y, full, why) || refuted(X, Y, -full, why)) return Answer::no;
-      }
-    }
-  }
-  return Answer::unknown;
+  return within_lifted(X, Y) == Answer::yes ? Answer::yes : refuted_by_facets(X, Y, why) ? Answer::no : Answer::unknown;
 }
 
 }  // namespace cordon
