@@ -264,4 +264,11 @@ TEST_CASE("through lines, points and inclusions are proven for the numbers as st
   CHECK(is_subset(make_box({Vector{{-.1, -.1}}, Vector{{.1, .1}}}), strip) == Answer::yes);
   // nothing lies in a set that is empty as stored, however little is missing
   CHECK(is_subset(make_point(Vector{{1}}), none) != Answer::yes);
+  const LineForm dependent{Matrix{{1, 1, -1}},
+                           Matrix{{1, -2, -1, -2, 1, 2}},
+                           Vector{{1}},
+                           Matrix{{-2, -2, -1}, {1, -1, 2}, {-1, -3, 1}},
+                           Matrix{{-1, -1, 1, 1, 0, 1}, {2, 0, 0, 1, 1, 0}, {1, -1, 1, 2, 1, 1}},
+                           Vector{{-2.3311131516157939, 8.7077147535231774, 6.3766016019073826}}};
+  CHECK(is_subset(make_point(Vector{{1}}), dependent) != Answer::yes);
 }

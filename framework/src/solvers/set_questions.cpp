@@ -239,8 +239,8 @@ bool refuted(const LineForm& X, const LineForm& Y, VectorIn d, Certificate* why)
 }
 
 /// All of X's points satisfy the facets of the lifted zonotope {(Gξ, Aξ - b)} of Y at its section by 0, with a margin that covers
-/// the rounding errors of the normals.
-Answer within_facets(const LineForm& X, const LineForm& Y) {
+/// the rounding errors of the normals. `terms`: size of the numbers that both were computed from.
+Answer within_facets(const LineForm& X, const LineForm& Y, double terms) {
   const Index n = Y.dim(), m = Y.constraints();
   Matrix lifted(n + m, Y.generators());
   lifted.topRows(n) = Y.G;
@@ -256,7 +256,7 @@ Answer within_facets(const LineForm& X, const LineForm& Y) {
       const double reach =
           rounding::down(rounding::dot(d, center).lower + rounding::norm_1(linalg::product(lifted.transpose(), d)).lower);
       const double needed = support(X, d.head(n));
-      const double scale = center.cwiseAbs().maxCoeff() + lifted.cwiseAbs().rowwise().sum().maxCoeff() + std::abs(needed);
+      const double scale = center.cwiseAbs().maxCoeff() + lifted.cwiseAbs().rowwise().sum().maxCoeff() + std::abs(needed) + terms;
       if (!(needed <= reach - 1e-12 * scale)) return Answer::unknown;
     }
   }
@@ -363,6 +363,13 @@ std::optional<Across> across_lines(const LineForm& X, const LineForm& Y) {
   return seen;
 }
 
+/// Largest entry of |c| + |G|1.
+double size_of(const LineForm& X) {
+  if (X.dim() == 0) return 0;
+  const Vector size = X.c.cwiseAbs() + linalg::product(X.G.cwiseAbs(), Vector::Ones(X.generators()));
+  return size.maxCoeff();
+}
+
 /// X × {0} ⊆ {(c + Mδ + Gξ, Sδ + Aξ - b)} of Y, so that no rows hold Y's lines.
 Answer within_lifted(const LineForm& X, const LineForm& Y) {
   const Index n = Y.dim(), all = n + Y.constraints();
@@ -377,7 +384,9 @@ Answer within_lifted(const LineForm& X, const LineForm& Y) {
   const auto seen = across_lines(level, lifted);
   if (!seen) return Answer::unknown;
   if (seen->normal.cols() == 0) return is_empty(Y) == Answer::no ? Answer::yes : Answer::unknown;
-  return within_facets(seen->X, seen->Y);
+  // products with the normals may cancel to mere noise
+  const double terms = size_of(level) + size_of(lifted);
+  return within_facets(seen->X, seen->Y, Y.lines() > 0 ? terms : 0.0);
 }
 
 /// X ⊆ Y refuted along the normals of Y's facets? Eliminated forms propose the directions.
