@@ -9,6 +9,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/solvers/certificate.hpp"
+#include "cordon/solvers/exact_questions.hpp"
 
 using namespace cordon;
 
@@ -271,4 +272,22 @@ TEST_CASE("through lines, points and inclusions are proven for the numbers as st
                            Matrix{{-1, -1, 1, 1, 0, 1}, {2, 0, 0, 1, 1, 0}, {1, -1, 1, 2, 1, 1}},
                            Vector{{-2.3311131516157939, 8.7077147535231774, 6.3766016019073826}}};
   CHECK(is_subset(make_point(Vector{{1}}), dependent) != Answer::yes);
+}
+
+TEST_CASE("a hull is empty only on a proof for the numbers as stored") {
+  // rows of very different size: their nominal elimination leaves a false row
+  CHECK(rc::check("dependent rows with lines", [] {
+    const auto tenth = [] { return 0.1 * *rc::gen::inRange(-2, 3); };
+    const auto small = [&] { return *rc::gen::inRange(0, 3) == 0 ? 1e-15 * *rc::gen::inRange(-9, 10) : tenth(); };
+    LineForm X{Matrix(1, 3), Matrix(1, 0), Vector::Zero(1), Matrix(3, 3), Matrix(3, 0), Vector(3)};
+    for (double& x : X.M.reshaped()) x = small();
+    for (double& x : X.S.reshaped()) x = small();
+    for (double& x : X.b) x = tenth();
+    if (exact::is_empty(X) == Answer::no) {
+      RC_ASSERT(!interval_hull(X).is_empty());
+      RC_ASSERT(attained(X, Vector{{1}}) <= exact::support(X, Vector{{1}}).upper);
+    } else {
+      RC_ASSERT(attained(X, Vector{{1}}) == -inf);
+    }
+  }));
 }

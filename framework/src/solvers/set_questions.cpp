@@ -460,7 +460,7 @@ Box interval_hull(const LineForm& X, std::vector<Certificate>* why) {
     asked = true;
     if (hull.upper[i] == -infinity || hull.lower[i] == infinity) return Box::empty(n);
   }
-  if (!asked && n > 0 && q.is_empty(nullptr) == Answer::yes) return Box::empty(n);
+  if (!asked && n > 0 && is_empty(X) == Answer::yes) return Box::empty(n);
   // Bounds of a set that is flat up to rounding may cross: both are kept, an empty box would need a proof.
   for (Index i = 0; i < n; ++i) {
     if (hull.lower[i] > hull.upper[i]) std::swap(hull.lower[i], hull.upper[i]);
