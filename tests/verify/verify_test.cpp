@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `cordon verify` on one short run: falsified results end with code 4 and name the place, damaged files with code 2 and a
+// message.
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int unharmed = 0, refused = 2, violated = 4;
+
+struct Outcome {
+  int exit = -1;
+  std::string out;
+};
+
+Outcome cordon(const std::string& arguments) {
+  Outcome outcome;
+  const std::string plugins = std::string(CORDON_BINARY_DIR) + "/lib/cordon/plugins-v1";
+  std::FILE* pipe = popen(
+      (std::string("CORDON_PLUGIN_PATH= ") + CORDON_PROGRAM + " --plugins " + plugins + " " + arguments + " 2>&1").c_str(), "r");
+  REQUIRE(pipe);
+  std::array<char, 4096> chunk{};
+  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), pipe)) outcome.out.append(chunk.data(), got);
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) outcome.exit = WEXITSTATUS(status);
+  return outcome;
+}
+
+std::string read(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+Json pipeline(const std::string& backend, const std::string& rounding) {
+  return {{"name", backend + " " + rounding},
+          {"backend", {{"type", backend}, {"rounding", rounding}}},
+          {"observer", {{"type", "prediction_correction"}}}};
+}
+
+/// A run of four steps that every test copies.
+class Run {
+ public:
+  Run() : home_(fs::temp_directory_path() / ("cordon_verify_" + std::to_string(::getpid()))) {
+    fs::remove_all(home_);
+    fs::create_directories(home_);
+    const auto box = [](const Json& lower, const Json& upper) {
+      return Json{{"type", "box"}, {"lower", lower}, {"upper", upper}};
+    };
+    Json study{{"cordon", 1}, {"title", "two states"}};
+    study["system"] = {{"type", "lti"},
+                       {"A", {{0.9, 0.2}, {0.0, 0.8}}},
+                       {"Bw", {{1.0, 0.0}, {0.0, 1.0}}},
+                       {"C", Json::array({{1.0, 0.0}})},
+                       {"Dv", Json::array({Json::array({1.0})})},
+                       {"X0", box({-1, -1}, {1, 1})},
+                       {"W", box({-.1, -.1}, {.1, .1})},
+                       {"V", box(Json::array({-.2}), Json::array({.2}))}};
+    study["data"]["simulate"] = {{"steps", 3}, {"seed", 1}, {"noise", "uniform"}, {"x0", {.5, .5}}};
+    for (const char* backend : {"line_zonotope", "constrained_zonotope", "zonotope", "interval"}) {
+      study["pipelines"].push_back(pipeline(backend, "nominal"));
+    }
+    write(home_ / "study.json", study.dump());
+    const Outcome outcome = cordon("run --quiet --out " + original().string() + " " + (home_ / "study.json").string());
+    CAPTURE(outcome.out);
+    REQUIRE(outcome.exit == 0);
+  }
+  ~Run() { fs::remove_all(home_); }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  fs::path original() const { return home_ / "original"; }
+
+  /// What `verify` says of a copy after `change`.
+  Outcome verify(const std::function<void(const fs::path&)>& change) const {
+    const fs::path copy = home_ / "copy";
+    fs::remove_all(copy);
+    fs::copy(original(), copy, fs::copy_options::recursive);
+    change(copy);
+    return cordon("verify " + copy.string());
+  }
+  Outcome with_results(const std::function<void(Json&)>& change) const {
+    return verify([&](const fs::path& copy) {
+      Json results = Json::parse(read(copy / "results.json"));
+      change(results);
+      write(copy / "results.json", results.dump());
+    });
+  }
+  Outcome with_set(std::size_t line, const std::function<void(Json&)>& change) const {
+    return verify([&](const fs::path& copy) {
+      std::istringstream lines(read(copy / "sets.jsonl"));
+      std::string all, text;
+      for (std::size_t i = 0; std::getline(lines, text); ++i) {
+        Json set = Json::parse(text);
+        if (i == line) change(set);
+        all += set.dump() + "\n";
+      }
+      write(copy / "sets.jsonl", all);
+    });
+  }
+  Outcome with_text(const char* file, const std::string& old, const std::string& now) const {
+    return verify([&](const fs::path& copy) {
+      std::string text = read(copy / file);
+      const std::size_t at = text.find(old);
+      REQUIRE(at != std::string::npos);
+      write(copy / file, text.replace(at, old.size(), now));
+    });
+  }
+
+ private:
+  fs::path home_;
+};
+
+const Run& run() {
+  static const Run one;
+  return one;
+}
+
+bool names(const Outcome& outcome, const std::string& text) { return outcome.out.find(text) != std::string::npos; }
+
+constexpr std::size_t pipelines = 4, steps = 4;
+
+}  // namespace
+
+TEST_CASE("a run that was not touched is verified") {
+  const Outcome outcome = run().verify([](const fs::path&) {});
+  CAPTURE(outcome.out);
+  CHECK(outcome.exit == unharmed);
+}
+
+TEST_CASE("a bound moved inward by 1e-6 is found, for every backend and coordinate") {
+  for (std::size_t p = 0; p < pipelines; ++p) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (const std::string side : {"lower", "upper"}) {
+        const Outcome outcome = run().with_results([&](Json& results) {
+          Json& bound = results["pipelines"][p]["steps"][steps - 1]["hull"][side][i];
+          bound = bound.get<double>() + (side == "lower" ? 1e-6 : -1e-6);
+        });
+        CAPTURE(p);
+        CAPTURE(i);
+        CAPTURE(side);
+        CAPTURE(outcome.out);
+        CHECK(outcome.exit == violated);
+        CHECK(names(outcome, "/pipelines/" + std::to_string(p) + "/steps/3/hull"));
+      }
+    }
+  }
+}
+
+TEST_CASE("falsified sets, answers, claims and proofs are found where they stand") {
+  const auto found = [](const Outcome& outcome, const std::string& place) {
+    CAPTURE(outcome.out);
+    CHECK(outcome.exit == violated);
+    CHECK(names(outcome, place));
+  };
+  for (const std::size_t p : {std::size_t{0}, std::size_t{1}}) {
+    const std::size_t last = p * steps + steps - 1;
+    const std::string line = "sets.jsonl:" + std::to_string(last + 1), hull = "/pipelines/" + std::to_string(p) + "/steps/3/hull";
+    found(run().with_set(last,
+                         [](Json& set) {
+                           for (Json& row : set["G"]) {
+                             for (Json& entry : row) entry = 0.98 * entry.get<double>();
+                           }
+                         }),
+          hull);  // its stored proofs are about other generators
+    found(run().with_set(last,
+                         [](Json& set) {
+                           set["proof"] = {{"kind", "farkas"}, {"margin", 1.0}, {"data", Json::array()}};
+                         }),
+          line);
+    found(run().with_results([&](Json& results) { results["pipelines"][p]["steps"][steps - 1]["consistent"] = "no"; }), line);
+  }
+  // zonotopes enclose the strip's intersection only
+  const std::size_t zonotope = 2;
+  found(run().with_results([&](Json& results) { results["pipelines"][zonotope]["steps"][steps - 1]["tightness"] = "exact"; }),
+        "sets.jsonl:12");
+  // a measurement that the model does not allow for the sets that were recorded
+  found(run().verify([](const fs::path& copy) {
+    std::istringstream lines(read(copy / "data.csv"));
+    std::string all, text;
+    for (int row = 0; std::getline(lines, text); ++row) {
+      if (row == 3) {
+        const std::size_t comma = text.find(','), next = text.find(',', comma + 1);
+        const double y = std::stod(text.substr(comma + 1, next - comma - 1));
+        text = text.substr(0, comma + 1) + std::to_string(y + 0.05) + text.substr(next);
+      }
+      all += text + "\n";
+    }
+    write(copy / "data.csv", all);
+  }),
+        "/pipelines/0/steps/2/hull");
+}
+
+TEST_CASE("damaged files are refused with their place") {
+  const auto refuses = [](const Outcome& outcome, const std::string& place) {
+    CAPTURE(outcome.out);
+    CHECK(outcome.exit == refused);
+    CHECK(names(outcome, place));
+  };
+  for (const char* file : {"results.json", "sets.jsonl", "data.csv"}) {
+    CAPTURE(file);
+    refuses(run().verify([&](const fs::path& copy) { fs::remove(copy / file); }), file);
+    refuses(run().verify([&](const fs::path& copy) { write(copy / file, ""); }), file);
+    refuses(run().verify([&](const fs::path& copy) {
+      const std::string text = read(copy / file);
+      write(copy / file, text.substr(0, text.size() / 2));
+    }),
+            file);
+  }
+  refuses(run().with_text("sets.jsonl", "\"dim\": 2", "\"dim\": 3"), "line 1");
+  refuses(run().with_text("sets.jsonl", "\"generators\": 3", "\"generators\": 1e300"), "line 1");
+  refuses(run().with_text("sets.jsonl", "\"c\": [0, 0]", "\"c\": [0, NaN]"), "/c/1");
+  refuses(run().with_text("sets.jsonl", "\"c\": [0, 0]", "\"c\": [0, 1e999]"), "/c/1");
+  refuses(run().with_text("sets.jsonl", "\"k\": 0", "\"k\": 0, \"k\": 0"), "repeated");
+  refuses(run().with_text("sets.jsonl", "\"k\": 0", "\"k\": 1"), "k = 0");
+  refuses(run().verify([](const fs::path& copy) {
+    const std::string text = read(copy / "sets.jsonl");
+    const std::size_t first = text.find('\n') + 1, second = text.find('\n', first) + 1;
+    write(copy / "sets.jsonl", text.substr(first, second - first) + text.substr(0, first) + text.substr(second));
+  }),
+          "line 1");
+  refuses(run().with_text("data.csv", "y_1", "w_1"), "y_1");
+  refuses(run().verify([](const fs::path& copy) {
+    const std::string text = read(copy / "data.csv");
+    write(copy / "data.csv", text.substr(0, text.find('\n', text.find('\n') + 1) + 1));
+  }),
+          "k = 1");
+}
+
+TEST_CASE("numbers at the ends of the range end in a verdict, not in a crash") {
+  for (const char* huge : {"1e308", "-1e308", "1e-320", "1e150"}) {
+    CAPTURE(huge);
+    for (const Outcome& outcome : {run().with_text("sets.jsonl", "\"c\": [0", "\"c\": [" + std::string(huge)),
+                                   run().with_text("sets.jsonl", "\"A\": [[1", "\"A\": [[" + std::string(huge)),
+                                   run().with_text("sets.jsonl", "\"data\": [1", "\"data\": [" + std::string(huge))}) {
+      CAPTURE(outcome.out);
+      CHECK((outcome.exit == unharmed || outcome.exit == refused || outcome.exit == violated || outcome.exit == 5));
+    }
+  }
+}
