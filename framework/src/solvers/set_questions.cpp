@@ -25,10 +25,22 @@ constexpr double nominal_tolerance = 1e-10;
 /// Candidates for facets that `is_subset` tries before it answers `unknown`.
 constexpr Index max_facets = 20'000;
 
-/// Rational arithmetic above this many operations, about a second, is not worth an answer.
-bool is_small(Index rows, Index columns) {
-  const double m = static_cast<double>(rows);
-  return m * m * static_cast<double>(columns) <= 3e5;
+/// Rational arithmetic beyond about a second is not worth an answer. Numbers grow with the spread of the exponents.
+bool is_small(MatrixIn S, MatrixIn A) {
+  double smallest = infinity, largest = 0;
+  for (const MatrixIn* block : {&S, &A}) {
+    for (Index j = 0; j < block->cols(); ++j) {
+      for (Index i = 0; i < block->rows(); ++i) {
+        const double entry = std::abs((*block)(i, j));
+        if (entry == 0) continue;
+        smallest = std::min(smallest, entry);
+        largest = std::max(largest, entry);
+      }
+    }
+  }
+  const double m = static_cast<double>(A.rows()), columns = static_cast<double>(S.cols() + A.cols());
+  const double words = largest > 0 ? 1 + (std::log2(largest) - std::log2(smallest)) / 53 : 1;
+  return m * m * columns * words * words <= 3e5;
 }
 
 /// The part of X in ξ alone: lines eliminated, directions with lines known. `error` bounds that of X.b.
@@ -66,7 +78,7 @@ struct Questioned {
     const double gradient_error = rounding::product_error(X.G.transpose(), d).sum();
     double h = rounding::up(rounding::up(rounding::dot(d, X.c).upper + bound.upper) + gradient_error);
     const Vector y = linalg::product(eliminated.rows.transpose(), bound.y) - linalg::product(eliminated.outputs.transpose(), d);
-    if (whole.lines() > 0 && is_small(whole.constraints(), whole.lines() + whole.generators())) {
+    if (whole.lines() > 0 && is_small(whole.S, whole.A)) {
       const auto proven = proven_support(whole, d, y);
       if (!proven) return beyond(whole, why);
       h = *proven;
@@ -133,9 +145,7 @@ void difference(VectorIn x, VectorIn y, Vector& value, Vector& error) {
 class Infeasibility {
  public:
   explicit Infeasibility(rational::Rows rows)
-      : rows_(std::move(rows)),
-        lines_(rows_.S.cols() > 0 && !rows_.S.isZero(0)),
-        small_(is_small(rows_.plus.size(), rows_.S.cols() + rows_.A.cols())) {
+      : rows_(std::move(rows)), lines_(rows_.S.cols() > 0 && !rows_.S.isZero(0)), small_(is_small(rows_.S, rows_.A)) {
     difference(rows_.plus, rows_.minus, b_, error_);
     magnitude_ = (rows_.minus.array() == 0).select(0.0, rows_.plus.cwiseAbs() + rows_.minus.cwiseAbs());
   }
@@ -319,7 +329,7 @@ double value_at(const LineForm& X, VectorIn d, const rational::RationalVector& b
 /// No bound of rounding errors covers the elimination of lines: the proposed points are moved onto the rows exactly.
 double attained_through_lines(const LineForm& X, VectorIn d) {
   check(X, "attained");
-  if (!is_small(X.constraints(), X.lines() + X.generators())) return -infinity;
+  if (!is_small(X.S, X.A)) return -infinity;
   if (!proven_support(X, d, Vector::Zero(X.constraints()))) return is_empty(X) == Answer::no ? infinity : -infinity;
   Questioned q(X);
   const BoxedProgram::Bound bound = q.program.maximum(linalg::product(q.X.G.transpose(), d));
