@@ -23,9 +23,20 @@ thread_local unsigned environment = 0;  ///< grows when the thread's environment
 
 void leave(void*) { std::longjmp(escape, 1); }
 
+/// GLPK frees nothing when a thread ends. Problems that outlive it are lost with its environment, and know it by the counter.
+struct Reclaim {
+  void keep() const {}
+  ~Reclaim() {
+    glp_free_env();
+    ++environment;
+  }
+};
+thread_local Reclaim reclaim;
+
 /// Runs plain C calls (no object with a destructor may live in `work`); false if GLPK broke down.
 template <class Work>
 bool guarded(Work work) {
+  reclaim.keep();  // made with the thread's first call
   glp_error_hook(leave, nullptr);
   if (setjmp(escape) != 0) {
     glp_error_hook(nullptr, nullptr);
