@@ -323,7 +323,7 @@ TEST_CASE("exchange form and back") {
       ++exact;
     }
   }));
-  CHECK(exact > 100);
+  CHECK(exact > 10);
 }
 
 TEST_CASE("rounding a line sets its coordinates free") {

@@ -152,6 +152,12 @@ TEST_CASE("operations that overflow throw") {
   CHECK_THROWS_AS(intersection(line, Matrix{{1e200}}, make_point(Vector{{5.0}})), Error);
 }
 
+TEST_CASE("a support beyond the range of doubles is infinite") {
+  const LineForm X = make_zonotope(Vector{{0.0}}, Matrix{{1e200, -1e200}});
+  CHECK(support(X, Vector{{1e200}}) == inf);
+  CHECK(attained(X, Vector{{1e200}}) < inf);
+}
+
 TEST_CASE("a singleton contains its point, and nothing is said within rounding errors") {
   const Vector x{{.1, .2, .3}};
   CHECK(contains(make_point(x), x) == Answer::yes);

@@ -234,6 +234,7 @@ TEST_CASE("damaged files are refused with their place") {
   }),
           "line 1");
   refuses(run().with_text("data.csv", "y_1", "w_1"), "y_1");
+  refuses(run().with_text("data.csv", "\n1,", "\n7,"), "k = 1");
   refuses(run().verify([](const fs::path& copy) {
     const std::string text = read(copy / "data.csv");
     write(copy / "data.csv", text.substr(0, text.find('\n', text.find('\n') + 1) + 1));

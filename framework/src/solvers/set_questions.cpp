@@ -67,6 +67,7 @@ struct Questioned {
     if (why) *why = {};
     if (unbounded_along(d)) return beyond(whole, why);
     const Vector g = linalg::product(X.G.transpose(), d);
+    if (!g.allFinite()) return beyond(whole, why);  // an overflow
     const BoxedProgram::Bound bound = program.maximum(g);
     if (bound.upper == -infinity) {
       const Certificate proof{Certificate::Kind::farkas, linalg::product(eliminated.rows.transpose(), bound.y),
@@ -442,6 +443,7 @@ double attained(const LineForm& X, VectorIn d) {
   if (X.lines() > 0) return attained_through_lines(X, d);
   Questioned q(X);
   const Vector g = linalg::product(q.X.G.transpose(), d);
+  if (!g.allFinite()) return -infinity;  // an overflow
   const BoxedProgram::Bound bound = q.program.maximum(g);
   if (!bound.xi) return -infinity;
   double value = q.program.attained(g, *bound.xi);

@@ -22,10 +22,26 @@ class Names {
   }
 
  private:
-  std::set<std::string> taken_{
-      "pipeline",          "backend",      "observer",   "rounding",     "k",         "hull",  "consistent",
-      "tightness",         "steps",        "time_us",    "inconsistent", "undecided", "error", "inconsistent_from",
-      "assumptions_until", "outside_from", "violated_at"};
+  std::set<std::string> taken_{"pipeline",
+                               "backend",
+                               "observer",
+                               "rounding",
+                               "k",
+                               "hull",
+                               "consistent",
+                               "tightness",
+                               "steps",
+                               "time_us",
+                               "inconsistent",
+                               "undecided",
+                               "error",
+                               "inconsistent_from",
+                               "assumptions_until",
+                               "outside_from",
+                               "violated_at",
+                               "answers",
+                               "answers_proven",
+                               "answers_unknown"};
 };
 
 }  // namespace

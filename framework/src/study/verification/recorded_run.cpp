@@ -133,6 +133,18 @@ CsvSpec data_of(const std::filesystem::path& directory, const LinearModel& model
   return spec;
 }
 
+/// The first column of data.csv counts the rows from 0: estimates are matched with samples by it.
+void check_times(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string row;
+  std::getline(stream, row);
+  for (std::int64_t k = 0; std::getline(stream, row); ++k) {
+    if (row.substr(0, row.find(',')) == std::to_string(k)) continue;
+    throw InputError(file.string(), {{"", "must tell of k = " + std::to_string(k) + " in its first column", mend(),
+                                      static_cast<int>(std::min<std::int64_t>(k + 2, 1'000'000'000))}});
+  }
+}
+
 }  // namespace
 
 RecordedRun read_run(const std::filesystem::path& directory) {
@@ -162,6 +174,7 @@ RecordedRun read_run(const std::filesystem::path& directory) {
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());
   run.data = data_of(directory, run.model.linear);
+  check_times(run.data.file);
   return run;
 }
 
