@@ -116,6 +116,23 @@ TEST_CASE("a certified bound of the support holds exactly, and nothing below the
   }
 }
 
+TEST_CASE("a bound through lines is proven for large sets too") {
+  const Index n = 3, l = 3, g = 150, m = 50;
+  LineForm X{Matrix(n, l), Matrix(n, g), Vector::Zero(n), Matrix(m, l), Matrix(m, g), Vector::Zero(m)};
+  double value = 0;
+  for (Matrix* block : {&X.M, &X.G, &X.S, &X.A}) {
+    for (double& entry : block->reshaped()) {
+      value += 1;
+      entry = std::sin(value * value);
+    }
+  }
+  const Vector d{{1.0, -.3, .7}};
+  Certificate why;
+  const double h = support(X, d, &why);
+  REQUIRE(h < inf);
+  CHECK(proven_support(X, d, why.data).value_or(inf) == h);  // what the multipliers prove, not what was computed
+}
+
 TEST_CASE("lineality is a matter of ranks") {
   CHECK(has_lineality(make_space(2)));
   CHECK_FALSE(has_lineality(make_point(Vector{{1.0}})));
