@@ -176,7 +176,9 @@ void require_laws(const std::string& pattern) {
     if (conformance::matches(pattern, law.name)) return;
     names.push_back(law.name);
   }
-  throw Error(Errc::invalid, fmt::format("no law matches \"{}\"; {}", pattern, suggest(pattern, names)));
+  const std::string near = nearest(pattern, names);
+  throw Error(Errc::invalid, fmt::format("no law matches \"{}\"; {}\"cordon conform --list\" shows all", pattern,
+                                         near.empty() ? std::string() : "did you mean \"" + near + "\"? "));
 }
 
 Exit conform(const Program& program, const Arguments& arguments) {

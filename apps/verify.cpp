@@ -100,7 +100,7 @@ void add_verify(CLI::App& app, Program& program) {
   command->add_option("DIR", arguments->directory, "Directory that \"cordon run\" wrote")->required();
   command->add_option("--every", arguments->options.every, "Check every M-th step")
       ->option_text("M [1]")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
   command->add_option("--directions", arguments->options.directions, "Random directions where exact polytopes are too large")
       ->option_text("N [32]")
       ->check(CLI::Range(0, 100000));
