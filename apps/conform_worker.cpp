@@ -171,9 +171,12 @@ Params::Value value_from(const Json& json, const ParamSpec& spec) {
       return A;
     }
     case ParamKind::set:
+    case ParamKind::matrices:
+    case ParamKind::component:
       break;
   }
-  throw Error(Errc::invalid, fmt::format("--params: \"{}\" is a set, which cannot be given here", spec.name));
+  throw Error(Errc::invalid,
+              fmt::format("--params: \"{}\" is a {}, which cannot be given here", spec.name, to_string(spec.kind)));
 }
 
 /// Throws InputError or Errc::invalid for parameters that do not fit the schema.

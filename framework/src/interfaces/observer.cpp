@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "cordon/core/error.hpp"
+#include "interfaces/sample_check.hpp"
 
 namespace cordon {
 
@@ -11,17 +12,6 @@ namespace {
 
 long long now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-void check(const Sample& sample, const LinearModel& model) {
-  if (sample.u.size() != model.inputs() || sample.y.size() != model.outputs()) {
-    throw Error(Errc::dimension, "sample " + std::to_string(sample.k) + " has " + std::to_string(sample.u.size()) +
-                                     " inputs and " + std::to_string(sample.y.size()) + " outputs, the model has " +
-                                     std::to_string(model.inputs()) + " and " + std::to_string(model.outputs()));
-  }
-  if (!sample.u.allFinite() || !sample.y.allFinite()) {
-    throw Error(Errc::not_finite, "sample " + std::to_string(sample.k) + " has a NaN or infinite value");
-  }
 }
 
 }  // namespace
@@ -42,11 +32,7 @@ void Observer::start(std::optional<Enclosure> X0) {
 }
 
 Estimate Observer::step(const Sample& now) {
-  check(now, model_.linear);
-  if (before_ && now.k != before_->k + 1) {
-    throw Error(Errc::invalid, "sample " + std::to_string(now.k) + " follows sample " + std::to_string(before_->k) +
-                                   "; samples come one time after another");
-  }
+  detail::check_sample(now, before_, model_.linear);
   times_ = {};
   Estimate estimate{now.k, {}, Answer::unknown, {}};
   if (inconsistent_) {

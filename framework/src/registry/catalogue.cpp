@@ -28,6 +28,8 @@ void Catalogue::remove(std::string_view plugin) {
   remove_from(backends, plugin);
   remove_from(observers, plugin);
   remove_from(metrics, plugin);
+  remove_from(diagnosers, plugin);
+  remove_from(plants, plugin);
 }
 
 template <class Entry>
@@ -52,11 +54,15 @@ void Batch::add(Shelf<Entry>& mine, const Shelf<Entry>& known, const std::string
 void Batch::backend(BackendEntry entry) { add(mine_.backends, known_.backends, "backend", std::move(entry)); }
 void Batch::observer(ObserverEntry entry) { add(mine_.observers, known_.observers, "observer", std::move(entry)); }
 void Batch::metric(MetricEntry entry) { add(mine_.metrics, known_.metrics, "metric", std::move(entry)); }
+void Batch::diagnoser(DiagnoserEntry entry) { add(mine_.diagnosers, known_.diagnosers, "diagnoser", std::move(entry)); }
+void Batch::plant(PlantEntry entry) { add(mine_.plants, known_.plants, "plant", std::move(entry)); }
 
 void Batch::commit(Catalogue& catalogue) {
   catalogue.backends.merge(mine_.backends);
   catalogue.observers.merge(mine_.observers);
   catalogue.metrics.merge(mine_.metrics);
+  catalogue.diagnosers.merge(mine_.diagnosers);
+  catalogue.plants.merge(mine_.plants);
 }
 
 }  // namespace cordon::registry

@@ -23,6 +23,8 @@ struct Catalogue {
   Shelf<BackendEntry> backends;
   Shelf<ObserverEntry> observers;
   Shelf<MetricEntry> metrics;
+  Shelf<DiagnoserEntry> diagnosers;
+  Shelf<PlantEntry> plants;
 
   void remove(std::string_view plugin);
 };
@@ -35,6 +37,8 @@ class Batch final : public Registrar {
   void backend(BackendEntry entry) override;
   void observer(ObserverEntry entry) override;
   void metric(MetricEntry entry) override;
+  void diagnoser(DiagnoserEntry entry) override;
+  void plant(PlantEntry entry) override;
 
   const std::vector<std::string>& problems() const { return problems_; }  ///< broken rules; none: may be committed
   bool collides() const { return collides_; }  ///< one of the problems is a name that somebody else has

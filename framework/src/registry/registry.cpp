@@ -110,6 +110,28 @@ std::shared_ptr<T> make(const Provided<Entry>& provided, const std::string& kind
   return pin(std::move(made), std::move(library));
 }
 
+/// The registry as components see it.
+class RegistryFactory final : public Factory {
+ public:
+  explicit RegistryFactory(const Registry& registry) : registry_(registry) {}
+  std::vector<Diagnostic> check_observer(const ComponentSpec& spec, const ObserverContext& context) const override {
+    return registry_.check_observer(spec.type, context, spec.params);
+  }
+  std::shared_ptr<Observer> make_observer(const ComponentSpec& spec, const ObserverContext& context) const override {
+    return registry_.make_observer(spec.type, context, spec.params);
+  }
+
+ private:
+  const Registry& registry_;
+};
+
+/// A model with ranges, given to an observer that would take them for exact values, would give wrong sets in silence.
+std::vector<Diagnostic> refuse_ranges(const ObserverEntry& entry, const Model& model) {
+  if (entry.takes_ranges || !model.linear.has_ranges()) return {};
+  return {{"/type", fmt::format("\"{}\" does not take models whose effectiveness is known by a range only", entry.info.name),
+           "use another observer, or give exact numbers"}};
+}
+
 }  // namespace
 
 namespace {
@@ -214,16 +236,22 @@ const std::vector<PluginReport>& Registry::reports() const { return state_->repo
 std::vector<std::string> Registry::backends() const { return names(state_->catalogue.backends); }
 std::vector<std::string> Registry::observers() const { return names(state_->catalogue.observers); }
 std::vector<std::string> Registry::metrics() const { return names(state_->catalogue.metrics); }
+std::vector<std::string> Registry::diagnosers() const { return names(state_->catalogue.diagnosers); }
+std::vector<std::string> Registry::plants() const { return names(state_->catalogue.plants); }
 const ComponentInfo* Registry::backend_info(std::string_view name) const { return info(state_->catalogue.backends, name); }
 const ComponentInfo* Registry::observer_info(std::string_view name) const { return info(state_->catalogue.observers, name); }
 const ComponentInfo* Registry::metric_info(std::string_view name) const { return info(state_->catalogue.metrics, name); }
+const ComponentInfo* Registry::diagnoser_info(std::string_view name) const { return info(state_->catalogue.diagnosers, name); }
+const ComponentInfo* Registry::plant_info(std::string_view name) const { return info(state_->catalogue.plants, name); }
 
 std::string Registry::plugin_of(std::string_view kind, std::string_view name) const {
   if (kind == "backend") return provider(state_->catalogue.backends, name);
   if (kind == "observer") return provider(state_->catalogue.observers, name);
   if (kind == "metric") return provider(state_->catalogue.metrics, name);
-  throw Error(Errc::invalid,
-              fmt::format("no kind of component \"{}\"; {}", kind, suggest(kind, {"backend", "observer", "metric"})));
+  if (kind == "diagnoser") return provider(state_->catalogue.diagnosers, name);
+  if (kind == "plant") return provider(state_->catalogue.plants, name);
+  throw Error(Errc::invalid, fmt::format("no kind of component \"{}\"; {}", kind,
+                                         suggest(kind, {"backend", "observer", "metric", "diagnoser", "plant"})));
 }
 
 const PluginReport* Registry::refused_provider(std::string_view component) const {
@@ -255,6 +283,8 @@ std::vector<Diagnostic> Registry::check_observer(std::string_view name, const Ob
   const std::string component = fmt::format("observer \"{}\"", name);
   Params complete = params;
   std::vector<Diagnostic> problems = provided.entry.info.schema.complete(complete);
+  if (!problems.empty()) return problems;
+  problems = refuse_ranges(provided.entry, context.model);
   if (!problems.empty() || !provided.entry.check) return problems;
   return guarded(provided.plugin, component, [&] { return provided.entry.check(context, complete); });
 }
@@ -262,6 +292,9 @@ std::vector<Diagnostic> Registry::check_observer(std::string_view name, const Ob
 std::shared_ptr<Observer> Registry::make_observer(std::string_view name, const ObserverContext& context,
                                                   const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.observers, "observer", name);
+  if (auto problems = refuse_ranges(provided.entry, context.model); !problems.empty()) {
+    throw InputError(fmt::format("observer \"{}\"", name), std::move(problems));
+  }
   return make<Observer>(provided, "observer", params, state_->library(provided.plugin),
                         [&](const ObserverEntry& entry, const Params& p) { return entry.create(context, p); });
 }
@@ -270,6 +303,33 @@ std::shared_ptr<Metric> Registry::make_metric(std::string_view name, const Param
   const auto& provided = require(*this, state_->catalogue.metrics, "metric", name);
   return make<Metric>(provided, "metric", params, state_->library(provided.plugin),
                       [](const MetricEntry& entry, const Params& p) { return entry.create(p); });
+}
+
+std::vector<Diagnostic> Registry::check_diagnoser(std::string_view name, const ModeBank& bank,
+                                                  std::shared_ptr<const SetBackend> backend, const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.diagnosers, "diagnoser", name);
+  const std::string component = fmt::format("diagnoser \"{}\"", name);
+  Params complete = params;
+  std::vector<Diagnostic> problems = provided.entry.info.schema.complete(complete);
+  if (!problems.empty() || !provided.entry.check) return problems;
+  const RegistryFactory factory(*this);
+  return guarded(provided.plugin, component, [&] { return provided.entry.check({bank, std::move(backend), factory}, complete); });
+}
+
+std::shared_ptr<Diagnoser> Registry::make_diagnoser(std::string_view name, const ModeBank& bank,
+                                                    std::shared_ptr<const SetBackend> backend, const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.diagnosers, "diagnoser", name);
+  const RegistryFactory factory(*this);
+  return make<Diagnoser>(provided, "diagnoser", params, state_->library(provided.plugin),
+                         [&](const DiagnoserEntry& entry, const Params& p) {
+                           return entry.create({bank, std::move(backend), factory}, p);
+                         });
+}
+
+std::shared_ptr<Plant> Registry::make_plant(std::string_view name, const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.plants, "plant", name);
+  return make<Plant>(provided, "plant", params, state_->library(provided.plugin),
+                     [](const PlantEntry& entry, const Params& p) { return entry.create(p); });
 }
 
 void Registry::add(void (*register_components)(Registrar&)) {

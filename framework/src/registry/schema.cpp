@@ -13,7 +13,8 @@ namespace {
 constexpr std::int64_t exact_limit = std::int64_t{1} << 53;  // every integer up to here is a double
 
 /// In the order of Params::Value.
-constexpr const char* type_names[] = {"an integer", "a real number", "true or false", "a text", "a vector", "a matrix", "a set"};
+constexpr const char* type_names[] = {"an integer", "a real number", "true or false",      "a text",     "a vector",
+                                      "a matrix",   "a set",         "a list of matrices", "a component"};
 
 template <class T>
 const T& get(const Params& params, std::string_view name) {
@@ -42,6 +43,10 @@ const char* expected(ParamKind kind) {
       return type_names[5];
     case ParamKind::set:
       return type_names[6];
+    case ParamKind::matrices:
+      return type_names[7];
+    case ParamKind::component:
+      return type_names[8];
   }
   return "";
 }
@@ -130,6 +135,21 @@ Problem check_set(const ParamSpec& spec, const Params::Value& value) {
   return {};
 }
 
+Problem check_matrices(const ParamSpec& spec, const Params::Value& value) {
+  const auto* list = std::get_if<std::vector<Matrix>>(&value);
+  if (!list) return wrong_type(spec, value);
+  for (const Matrix& A : *list) {
+    if (!A.allFinite()) return {"has a NaN or infinite entry", ""};
+  }
+  return {};
+}
+
+Problem check_component(const ParamSpec& spec, const Params::Value& value) {
+  const auto* component = std::get_if<std::shared_ptr<const ComponentSpec>>(&value);
+  if (!component) return wrong_type(spec, value);
+  return *component ? Problem{} : Problem{"is no component", "give the name of one"};
+}
+
 Problem check_value(const ParamSpec& spec, Params::Value& value) {
   switch (spec.kind) {
     case ParamKind::integer:
@@ -148,6 +168,10 @@ Problem check_value(const ParamSpec& spec, Params::Value& value) {
       return check_array<Matrix>(spec, value);
     case ParamKind::set:
       return check_set(spec, value);
+    case ParamKind::matrices:
+      return check_matrices(spec, value);
+    case ParamKind::component:
+      return check_component(spec, value);
   }
   return {};
 }
@@ -168,6 +192,10 @@ const std::string& Params::text(std::string_view name) const { return get<std::s
 const Vector& Params::vector(std::string_view name) const { return get<Vector>(*this, name); }
 const Matrix& Params::matrix(std::string_view name) const { return get<Matrix>(*this, name); }
 const LineForm& Params::set_form(std::string_view name) const { return get<LineForm>(*this, name); }
+const std::vector<Matrix>& Params::matrices(std::string_view name) const { return get<std::vector<Matrix>>(*this, name); }
+const ComponentSpec& Params::component(std::string_view name) const {
+  return *get<std::shared_ptr<const ComponentSpec>>(*this, name);
+}
 
 std::string_view to_string(ParamKind kind) noexcept {
   switch (kind) {
@@ -187,6 +215,10 @@ std::string_view to_string(ParamKind kind) noexcept {
       return "matrix";
     case ParamKind::set:
       return "set";
+    case ParamKind::matrices:
+      return "matrices";
+    case ParamKind::component:
+      return "component";
   }
   return "text";
 }
@@ -209,7 +241,12 @@ ParamSchema& ParamSchema::add(ParamSpec spec) {
 
 ParamSchema& ParamSchema::integer(std::string name, std::string doc, std::optional<std::int64_t> fallback, std::int64_t lowest,
                                   std::int64_t highest) {
-  ParamSpec spec{.name = std::move(name), .kind = ParamKind::integer, .doc = std::move(doc), .fallback = {}, .choices = {}};
+  ParamSpec spec{.name = std::move(name),
+                 .kind = ParamKind::integer,
+                 .doc = std::move(doc),
+                 .fallback = {},
+                 .choices = {},
+                 .component_kind = {}};
   if (fallback) spec.fallback = *fallback;
   spec.lowest = static_cast<double>(lowest);
   spec.highest = static_cast<double>(highest);
@@ -217,7 +254,12 @@ ParamSchema& ParamSchema::integer(std::string name, std::string doc, std::option
 }
 
 ParamSchema& ParamSchema::real(std::string name, std::string doc, std::optional<double> fallback, double lowest, double highest) {
-  ParamSpec spec{.name = std::move(name), .kind = ParamKind::real, .doc = std::move(doc), .fallback = {}, .choices = {}};
+  ParamSpec spec{.name = std::move(name),
+                 .kind = ParamKind::real,
+                 .doc = std::move(doc),
+                 .fallback = {},
+                 .choices = {},
+                 .component_kind = {}};
   if (fallback) spec.fallback = *fallback;
   spec.lowest = lowest;
   spec.highest = highest;
@@ -225,7 +267,12 @@ ParamSchema& ParamSchema::real(std::string name, std::string doc, std::optional<
 }
 
 ParamSchema& ParamSchema::flag(std::string name, std::string doc, bool fallback) {
-  return add({.name = std::move(name), .kind = ParamKind::flag, .doc = std::move(doc), .fallback = fallback, .choices = {}});
+  return add({.name = std::move(name),
+              .kind = ParamKind::flag,
+              .doc = std::move(doc),
+              .fallback = fallback,
+              .choices = {},
+              .component_kind = {}});
 }
 
 ParamSchema& ParamSchema::choice(std::string name, std::string doc, std::vector<std::string> choices, std::string fallback) {
@@ -233,25 +280,64 @@ ParamSchema& ParamSchema::choice(std::string name, std::string doc, std::vector<
               .kind = ParamKind::choice,
               .doc = std::move(doc),
               .fallback = std::move(fallback),
-              .choices = std::move(choices)});
+              .choices = std::move(choices),
+              .component_kind = {}});
 }
 
 ParamSchema& ParamSchema::text(std::string name, std::string doc, std::optional<std::string> fallback) {
-  ParamSpec spec{.name = std::move(name), .kind = ParamKind::text, .doc = std::move(doc), .fallback = {}, .choices = {}};
+  ParamSpec spec{.name = std::move(name),
+                 .kind = ParamKind::text,
+                 .doc = std::move(doc),
+                 .fallback = {},
+                 .choices = {},
+                 .component_kind = {}};
   if (fallback) spec.fallback = std::move(*fallback);
   return add(std::move(spec));
 }
 
 ParamSchema& ParamSchema::vector(std::string name, std::string doc) {
-  return add({.name = std::move(name), .kind = ParamKind::vector, .doc = std::move(doc), .fallback = {}, .choices = {}});
+  return add({.name = std::move(name),
+              .kind = ParamKind::vector,
+              .doc = std::move(doc),
+              .fallback = {},
+              .choices = {},
+              .component_kind = {}});
 }
 
 ParamSchema& ParamSchema::matrix(std::string name, std::string doc) {
-  return add({.name = std::move(name), .kind = ParamKind::matrix, .doc = std::move(doc), .fallback = {}, .choices = {}});
+  return add({.name = std::move(name),
+              .kind = ParamKind::matrix,
+              .doc = std::move(doc),
+              .fallback = {},
+              .choices = {},
+              .component_kind = {}});
 }
 
 ParamSchema& ParamSchema::set(std::string name, std::string doc) {
-  return add({.name = std::move(name), .kind = ParamKind::set, .doc = std::move(doc), .fallback = {}, .choices = {}});
+  return add({.name = std::move(name),
+              .kind = ParamKind::set,
+              .doc = std::move(doc),
+              .fallback = {},
+              .choices = {},
+              .component_kind = {}});
+}
+
+ParamSchema& ParamSchema::matrices(std::string name, std::string doc) {
+  return add({.name = std::move(name),
+              .kind = ParamKind::matrices,
+              .doc = std::move(doc),
+              .fallback = {},
+              .choices = {},
+              .component_kind = {}});
+}
+
+ParamSchema& ParamSchema::component(std::string name, std::string doc, std::string kind) {
+  return add({.name = std::move(name),
+              .kind = ParamKind::component,
+              .doc = std::move(doc),
+              .fallback = {},
+              .choices = {},
+              .component_kind = std::move(kind)});
 }
 
 ParamSchema& ParamSchema::required() {

@@ -6,9 +6,11 @@
 
 namespace cordon {
 
-std::unique_ptr<DataSource> open_data(const Study& study) {
+std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_offset) {
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
-    return std::make_unique<detail::SimulatedSource>(study.model, *simulate, study.file.string());
+    SimulateSpec spec = *simulate;
+    spec.seed += seed_offset;
+    return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string());
   }
   return std::make_unique<detail::CsvSource>(std::get<CsvSpec>(study.data), study.model.linear);
 }

@@ -43,6 +43,9 @@ std::optional<Params::Value> as_param(const ParamSpec& spec, const Cursor& at, s
       return wrap(read_matrix(at));
     case ParamKind::set:
       return wrap(read_set(at, warnings));
+    case ParamKind::matrices:
+    case ParamKind::component:
+      break;
   }
   return std::nullopt;
 }

@@ -153,4 +153,11 @@ Study read_study(const std::filesystem::path& file, Registry& registry, const Se
   return StudyReader(file, registry, path).read();
 }
 
+ModeBank bank_of(const Study& study) {
+  ModeBank bank;
+  bank.modes.push_back({study.nominal, study.model});
+  bank.modes.insert(bank.modes.end(), study.modes.begin(), study.modes.end());
+  return bank;
+}
+
 }  // namespace cordon

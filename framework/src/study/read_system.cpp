@@ -149,6 +149,7 @@ void SystemReader::read_sets(std::optional<Index> disturbances, std::optional<In
   }
   const char* w_like = system_.find("Bw") ? "the columns of /system/Bw" : "the rows of /system/A (Bw is the identity by default)";
   const char* v_like = system_.find("Dv") ? "the columns of /system/Dv" : "the rows of /system/C (Dv is the identity by default)";
+  if (sizes.inputs) part_.model.U = make_space(*sizes.inputs);
   read_bounds_set("W", disturbances, w_like, part_.model.W);
   read_bounds_set("V", noises, v_like, part_.model.V);
 }

@@ -52,6 +52,12 @@ struct ToJson {
   Json operator()(const Vector& value) const { return to_json(value); }
   Json operator()(const Matrix& value) const { return to_json(value); }
   Json operator()(const LineForm& value) const { return to_json(value); }
+  Json operator()(const std::vector<Matrix>& value) const {
+    Json list = Json::array();
+    for (const Matrix& A : value) list.push_back(to_json(A));
+    return list;
+  }
+  Json operator()(const std::shared_ptr<const ComponentSpec>& value) const { return value->type; }
 };
 
 Json to_json(const ComponentSpec& spec, const ComponentInfo& info) {

@@ -165,6 +165,12 @@ Json parameter(const ParamSpec& spec) {
     case ParamKind::set:
       schema = reference("set");
       break;
+    case ParamKind::matrices:
+      schema = list_of(reference("matrix"));
+      break;
+    case ParamKind::component:
+      schema = reference(spec.component_kind);
+      break;
   }
   if (spec.kind == ParamKind::integer || spec.kind == ParamKind::real) add_limits(schema, spec);
   if (spec.fallback) {

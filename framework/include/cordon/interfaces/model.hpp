@@ -1,29 +1,65 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "cordon/core/box.hpp"
 #include "cordon/core/line_form.hpp"
 #include "cordon/core/types.hpp"
 
 namespace cordon {
 
 /// Discrete-time linear model
-///   E x⁺ = A x + B u + Bw w,   y = C x + D u + Dv v.
-/// E is n×n and may be singular (descriptor system); an E of size 0×0 stands for the identity. Member names equal the JSON keys.
+///   E x⁺ = A x + B diag(f) u + Bw w,   y = diag(g) (C x + D diag(f) u) + Dv v,   f ∈ actuator, g ∈ sensor.
+/// E is n×n and may be singular (descriptor system); an E of size 0×0 stands for the identity. The effectiveness f of the
+/// actuators and g of the sensors lies in boxes within [0,1], 0 meaning outage and 1 health, and may change from step to step; a
+/// box of dimension 0 stands for the exact value (1, …, 1). Member names equal the JSON keys.
 struct LinearModel {
   Matrix E, A, B, Bw, C, D, Dv;
+  Box actuator = {}, sensor = {};
 
   bool is_descriptor() const { return E.size() != 0; }
+  bool has_ranges() const { return actuator.dim() != 0 || sensor.dim() != 0; }
   Index states() const { return A.rows(); }
   Index inputs() const { return B.cols(); }
   Index outputs() const { return C.rows(); }
   Index disturbances() const { return Bw.cols(); }
   Index noises() const { return Dv.cols(); }
+
+  Vector actuator_center() const { return actuator.dim() ? actuator.center() : Vector::Ones(inputs()); }
+  Vector actuator_radius() const { return actuator.dim() ? actuator.radius() : Vector::Zero(inputs()); }
+  Vector sensor_center() const { return sensor.dim() ? sensor.center() : Vector::Ones(outputs()); }
+  Vector sensor_radius() const { return sensor.dim() ? sensor.radius() : Vector::Zero(outputs()); }
 };
 
-/// A model with its bounds: x₀ ∈ X0, w_k ∈ W, v_k ∈ V for all k.
+/// The same model with the exactly known part of the effectiveness moved into B, C and D: columns of B and D are scaled by exact
+/// f_i, rows of C and D by exact g_i, and these entries become 1. Boxes without any range become empty, so that whoever ignores
+/// effectiveness still sees the right model when `has_ranges()` is false. Throws Errc::dimension, and Errc::invalid for bounds
+/// outside [0,1] or in the wrong order.
+LinearModel with_exact_effectiveness_applied(LinearModel model);
+
+/// A model with its bounds: x₀ ∈ X0, w_k ∈ W, v_k ∈ V for all k. U contains every input; Rⁿ where nothing is said of it.
+/// Observers know u and do not use U, statements made in advance rest on it.
 struct Model {
   LinearModel linear;
-  LineForm X0, W, V;
+  LineForm X0, W, V, U = {};
+};
+
+/// One way the plant can behave: healthy, or with one fault or several.
+struct Mode {
+  std::string name;
+  Model model;
+};
+
+/// The modes that a diagnoser tells apart; all have the same numbers of states, inputs and outputs. The numbers of disturbances
+/// and noises, and the sets W and V, are each mode's own.
+struct ModeBank {
+  std::vector<Mode> modes;
+  Index nominal = 0;  ///< the mode that the plant starts in
+
+  Index size() const { return static_cast<Index>(modes.size()); }
+  const Mode& operator[](Index j) const { return modes[static_cast<std::size_t>(j)]; }
 };
 
 /// What is known at time k.

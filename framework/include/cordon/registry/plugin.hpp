@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "cordon/interfaces/backend.hpp"
+#include "cordon/interfaces/diagnoser.hpp"
 #include "cordon/interfaces/metric.hpp"
 #include "cordon/interfaces/observer.hpp"
+#include "cordon/interfaces/plant.hpp"
 #include "cordon/registry/abi.hpp"
 #include "cordon/registry/schema.hpp"
 
@@ -35,6 +37,21 @@ struct ObserverContext {
   std::shared_ptr<const SetBackend> backend;
 };
 
+/// Makes components for components: a bank builds its observers by it. Parameters are completed and checked.
+class Factory {
+ public:
+  virtual ~Factory() = default;
+  virtual std::vector<Diagnostic> check_observer(const ComponentSpec& spec, const ObserverContext& context) const = 0;
+  virtual std::shared_ptr<Observer> make_observer(const ComponentSpec& spec, const ObserverContext& context) const = 0;
+};
+
+/// What a diagnoser is made for.
+struct DiagnoserContext {
+  const ModeBank& bank;
+  std::shared_ptr<const SetBackend> backend;
+  const Factory& make;
+};
+
 struct BackendEntry {
   ComponentInfo info;
   std::function<std::unique_ptr<SetBackend>(const Params&)> create;
@@ -45,6 +62,19 @@ struct ObserverEntry {
   /// `create` will succeed.
   std::function<std::vector<Diagnostic>(const ObserverContext&, const Params&)> check;
   std::function<std::unique_ptr<Observer>(const ObserverContext&, const Params&)> create;
+  /// It encloses the states of models whose effectiveness is known by ranges only. Otherwise such models are refused before
+  /// `check` is asked.
+  bool takes_ranges = false;
+};
+struct DiagnoserEntry {
+  ComponentInfo info;
+  /// As for observers. May take its time: what a diagnoser promises in advance is checked here.
+  std::function<std::vector<Diagnostic>(const DiagnoserContext&, const Params&)> check;
+  std::function<std::unique_ptr<Diagnoser>(const DiagnoserContext&, const Params&)> create;
+};
+struct PlantEntry {
+  ComponentInfo info;
+  std::function<std::unique_ptr<Plant>(const Params&)> create;
 };
 struct MetricEntry {
   ComponentInfo info;
@@ -60,6 +90,8 @@ class Registrar {
   virtual void backend(BackendEntry entry) = 0;
   virtual void observer(ObserverEntry entry) = 0;
   virtual void metric(MetricEntry entry) = 0;
+  virtual void diagnoser(DiagnoserEntry entry) = 0;
+  virtual void plant(PlantEntry entry) = 0;
 };
 
 /// Plain data, read before any code of the plugin runs. Layout changes only with `abi_version`.

@@ -59,9 +59,13 @@ class Registry {
   std::vector<std::string> backends() const;  ///< names, sorted
   std::vector<std::string> observers() const;
   std::vector<std::string> metrics() const;
+  std::vector<std::string> diagnosers() const;
+  std::vector<std::string> plants() const;
   const ComponentInfo* backend_info(std::string_view name) const;  ///< null if there is none
   const ComponentInfo* observer_info(std::string_view name) const;
   const ComponentInfo* metric_info(std::string_view name) const;
+  const ComponentInfo* diagnoser_info(std::string_view name) const;
+  const ComponentInfo* plant_info(std::string_view name) const;
   /// The plugin that a component came from; "" if registered directly.
   std::string plugin_of(std::string_view kind, std::string_view name) const;
   /// If a refused plugin probably held the component, that report: it was about to register it, is named after it, or its file
@@ -75,6 +79,11 @@ class Registry {
   std::vector<Diagnostic> check_observer(std::string_view name, const ObserverContext& context, const Params& params) const;
   std::shared_ptr<Observer> make_observer(std::string_view name, const ObserverContext& context, const Params& params) const;
   std::shared_ptr<Metric> make_metric(std::string_view name, const Params& params) const;
+  std::vector<Diagnostic> check_diagnoser(std::string_view name, const ModeBank& bank, std::shared_ptr<const SetBackend> backend,
+                                          const Params& params) const;
+  std::shared_ptr<Diagnoser> make_diagnoser(std::string_view name, const ModeBank& bank,
+                                            std::shared_ptr<const SetBackend> backend, const Params& params) const;
+  std::shared_ptr<Plant> make_plant(std::string_view name, const Params& params) const;
 
   /// Registers components of the host itself (tests, programs that embed the framework): not from a library. All or none; throws
   /// Errc::invalid where a plugin would be refused, and passes on what the function throws.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,11 +18,14 @@
 
 namespace cordon {
 
+struct ComponentSpec;
+
 /// Values by name. Asking for a name that is absent, or for another type, throws Errc::invalid: validated parameters hold every
 /// name of their schema that is required or has a default.
 class Params {
  public:
-  using Value = std::variant<std::int64_t, double, bool, std::string, Vector, Matrix, LineForm>;
+  using Value = std::variant<std::int64_t, double, bool, std::string, Vector, Matrix, LineForm, std::vector<Matrix>,
+                             std::shared_ptr<const ComponentSpec>>;
 
   Params& set(std::string name, Value value);
   bool has(std::string_view name) const;
@@ -34,12 +38,21 @@ class Params {
   const Vector& vector(std::string_view name) const;
   const Matrix& matrix(std::string_view name) const;
   const LineForm& set_form(std::string_view name) const;
+  const std::vector<Matrix>& matrices(std::string_view name) const;
+  const ComponentSpec& component(std::string_view name) const;
 
  private:
   std::map<std::string, Value, std::less<>> values_;
 };
 
-enum class ParamKind { integer, real, flag, choice, text, vector, matrix, set };
+/// A component by name, with its parameters.
+struct ComponentSpec {
+  std::string type;
+  Params params;  ///< in studies complete: every default filled in
+};
+
+/// `matrices` is a list of matrices; `component` a nested component of the kind `ParamSpec::component_kind`.
+enum class ParamKind { integer, real, flag, choice, text, vector, matrix, set, matrices, component };
 std::string_view to_string(ParamKind kind) noexcept;
 
 /// One parameter of a component.
@@ -51,6 +64,7 @@ struct ParamSpec {
   std::optional<Params::Value> fallback;  ///< value when absent; none and not required: the parameter stays absent
   double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
   std::vector<std::string> choices;
+  std::string component_kind;  ///< "observer", …
 };
 
 /// The parameters a component takes, in the order of the manual. A schema that contradicts itself (a name twice, a default
@@ -66,6 +80,9 @@ class ParamSchema {
   ParamSchema& vector(std::string name, std::string doc);
   ParamSchema& matrix(std::string name, std::string doc);
   ParamSchema& set(std::string name, std::string doc);
+  ParamSchema& matrices(std::string name, std::string doc);
+  /// Checked against its own schema by whoever makes it: the study reader, or the registry.
+  ParamSchema& component(std::string name, std::string doc, std::string kind);
   ParamSchema& required();  ///< makes the last added parameter required
 
   const std::vector<ParamSpec>& specs() const { return specs_; }

@@ -13,6 +13,7 @@ namespace cordon {
 struct Record {
   Sample sample;
   std::optional<Vector> truth;
+  std::optional<Index> mode = {};  ///< index of the true mode in the study's bank, -1: outside the bank
 };
 
 /// A stream of records. Two streams of one study give the same records bit by bit.
@@ -24,7 +25,8 @@ class DataSource {
   virtual std::optional<std::int64_t> size() const = 0;
 };
 
-/// Opens the data of a study. Throws InputError (CSV problems with their lines; an inconsistent x0).
-std::unique_ptr<DataSource> open_data(const Study& study);
+/// Opens the data of a study, simulated data with their seed + `seed_offset`. Throws InputError (CSV problems with their lines;
+/// an inconsistent x0).
+std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_offset = 0);
 
 }  // namespace cordon

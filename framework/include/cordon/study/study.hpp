@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -35,13 +37,27 @@ struct Signal {
 /// (the centre), or as sines of different frequency per factor.
 enum class Noise { uniform, vertex, zero, sine };
 
+/// A fault of simulated data: for k = from … to, x_{k+1} and y_k are made with `model`. W, V and effectiveness are drawn from its
+/// sets.
+struct FaultSpec {
+  std::int64_t from = 0;
+  std::int64_t to = std::numeric_limits<std::int64_t>::max();
+  std::string name;  ///< for people: the mode's, or the fault's own
+  Index mode = -1;   ///< index in the study's bank; -1: outside the bank
+  Model model;
+};
+
 /// Simulated data: x_{k+1}, y_k from the model, seeded and identical on every machine.
 struct SimulateSpec {
   std::int64_t steps = 0;  ///< samples k = 0 … steps
   std::uint64_t seed = 1;
   Noise noise = Noise::uniform;
-  std::optional<Vector> x0;   ///< default: the centre of X0. Descriptor systems: must meet the static rows for some w_0 ∈ W
-  std::vector<Signal> input;  ///< one per input channel
+  std::optional<Vector> x0;       ///< default: the centre of X0. Descriptor systems: must meet the static rows for some w_0 ∈ W
+  std::vector<Signal> input;      ///< one per input channel
+  std::vector<FaultSpec> faults;  ///< in order of time, without overlap; between them the plant is in the nominal mode
+  std::optional<ComponentSpec> plant;  ///< in place of the linear model
+  std::shared_ptr<const Plant> made_plant;
+  std::int64_t seeds = 1;  ///< diagnosers are tried on the seeds seed … seed + seeds - 1
 };
 
 /// Recorded data: a CSV file with a header row and named columns.
@@ -50,26 +66,28 @@ struct CsvSpec {
   std::vector<std::string> inputs, outputs, truth;  ///< column names; truth may be empty
 };
 
-struct ComponentSpec {
-  std::string type;
-  Params params;  ///< complete: every default filled in
-};
-
+/// A backend with an observer or with a diagnoser.
 struct PipelineSpec {
   std::string name;
   ComponentSpec backend, observer;
+  std::optional<ComponentSpec> diagnoser = {};  ///< if there is one, `observer` is empty
 };
 
 struct Study {
   std::filesystem::path file;
   std::string title;
-  Model model;
+  Model model;                      ///< of the nominal mode
+  std::string nominal = "healthy";  ///< its name
+  std::vector<Mode> modes;          ///< the other modes
   std::variant<SimulateSpec, CsvSpec> data;
   std::vector<PipelineSpec> pipelines;
   std::vector<ComponentSpec> metrics;
   std::vector<std::string> warnings;  ///< e.g. a refused plugin that the study does not need
   std::string resolved;               ///< the study as JSON with every default, for the results file
 };
+
+/// The nominal mode first, then the others in the order of the study.
+ModeBank bank_of(const Study& study);
 
 /// Reads, loads plugins from the directories that the study names and then from `path` (the first plugin of a name wins, so hand
 /// in a registry without plugins), validates against the registry, and resolves. Throws InputError with every problem at once

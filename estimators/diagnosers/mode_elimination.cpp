@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "diagnosers/mode_elimination.hpp"
+
+#include <algorithm>
+
+namespace cordon::estimators {
+
+ModeElimination::ModeElimination(Index modes, Index waiting_time, std::optional<Index> known)
+    : waiting_time_(waiting_time), known_(known), candidate_(static_cast<std::size_t>(modes)) {
+  start(0);
+}
+
+void ModeElimination::start(Index k) {
+  reset(k, Decision::isolating);
+  was_reset_ = false;
+  if (known_) {
+    std::fill(candidate_.begin(), candidate_.end(), false);
+    candidate_[static_cast<std::size_t>(*known_)] = true;
+  }
+  conclude(k);
+}
+
+void ModeElimination::reset(Index k, Decision decision) {
+  std::fill(candidate_.begin(), candidate_.end(), true);
+  decision_ = decision;
+  mode_ = -1;
+  since_ = k;
+  was_reset_ = true;
+}
+
+/// The decision that follows from the candidates.
+void ModeElimination::conclude(Index k) {
+  const bool waited = k - since_ >= waiting_time_;
+  const auto left = std::count(candidate_.begin(), candidate_.end(), true);
+  if (left == 1 && (decision_ != Decision::unknown_fault || waited)) {
+    decision_ = Decision::monitoring;
+    mode_ = std::find(candidate_.begin(), candidate_.end(), true) - candidate_.begin();
+  } else if (left > 1 && waited) {
+    decision_ = Decision::ambiguous;
+  }
+}
+
+bool ModeElimination::update(Index k, const std::vector<bool>& excluded) {
+  for (std::size_t j = 0; j < candidate_.size(); ++j) candidate_[j] = candidate_[j] && !excluded[j];
+  if (std::count(candidate_.begin(), candidate_.end(), true) > 0) {
+    conclude(k);
+    return false;
+  }
+  const bool switched = decision_ == Decision::monitoring && (!was_reset_ || k - since_ >= waiting_time_);
+  reset(k, switched ? Decision::isolating : Decision::unknown_fault);
+  return true;
+}
+
+}  // namespace cordon::estimators

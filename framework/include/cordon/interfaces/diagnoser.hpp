@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The diagnoser: which of the modes of a bank can the plant be in?
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cordon/interfaces/backend.hpp"
+#include "cordon/interfaces/model.hpp"
+
+namespace cordon {
+
+/// What a diagnoser makes of the data so far.
+enum class Decision {
+  monitoring,    ///< the plant is in `mode`: assumed at the start, or isolated since: the only mode that is not excluded
+  isolating,     ///< that mode is excluded, several are possible
+  ambiguous,     ///< several modes are still possible after the waiting time
+  unknown_fault  ///< every mode of the bank is excluded
+};
+std::string_view to_string(Decision decision) noexcept;
+
+/// What is known about one mode. An exclusion is a statement about the time from `Diagnosis::since` on: the plant has not been in
+/// this mode throughout. It is made on a proof only, and never taken back before `since` moves.
+struct ModeEvidence {
+  bool candidate = true;                ///< not excluded
+  Answer consistent = Answer::unknown;  ///< of this step alone; `no`: proven to contradict the mode; `yes`: proven not to
+  Certificate why;                      ///< proof of `consistent`, of the kind that the diagnoser documents
+  Box residual;                         ///< hull of what has to contain 0 (dimension 0: not offered)
+  Box reset_residual;  ///< the same of the copy that exclusions since `since` rest on (dimension 0: there is none)
+};
+
+struct Diagnosis {
+  Index k = 0;
+  Decision decision = Decision::monitoring;
+  Index mode = -1;       ///< `monitoring`: the mode, else -1
+  Index since = 0;       ///< time of the last reset, which exclusions speak of
+  Index suggested = -1;  ///< a mode that a heuristic points to, without proof; -1: none
+  std::vector<ModeEvidence> modes;
+  std::optional<Enclosure> estimate;  ///< `monitoring`: contains the state as long as the plant is in `mode`
+};
+
+/// A statement made in advance about the true mode i and the observer of mode j.
+struct PairGuarantee {
+  Index mode = 0, observer = 0;
+  Box residual;  ///< hull of R̊_ij, which contains every residual set of observer j in the steady state of mode i
+  Answer holds =
+      Answer::unknown;  ///< the FDI condition, 0 ∈ R̊_ii or 0 ∉ R̊_ij; `no`: it is proven to fail; `unknown`: not guaranteed
+};
+
+/// The set X̃ that must hold the errors of all observers whatever the modes have been, and how far it does.
+struct ErrorSetCheck {
+  LineForm set;                    ///< X̃
+  bool computed = false;           ///< made by the diagnoser: it contains the errors by construction
+  double factor = 0;               ///< all errors lie in `factor` · X̃ about its centre; above 1: too small
+  double steady_factor = 0;        ///< the same for the invariant sets S_ij alone
+  Index mode = -1, observer = -1;  ///< where `steady_factor` is attained
+};
+
+struct Guarantees {
+  std::string method;                ///< how the sets were computed, for people
+  std::vector<PairGuarantee> pairs;  ///< all (i, j), by observer, then by mode
+  Answer all = Answer::unknown;      ///< the weakest of `pairs`
+  std::optional<ErrorSetCheck> error_set;
+};
+
+/// Decides, sample by sample, which modes of a bank are possible. The base class checks samples and keeps the previous one.
+class Diagnoser {
+ public:
+  virtual ~Diagnoser() = default;
+  Diagnoser(const Diagnoser&) = delete;
+  Diagnoser& operator=(const Diagnoser&) = delete;
+
+  /// Begins anew, in the nominal mode.
+  void start();
+  /// Takes the sample of the next time; samples come in order. Sizes and finiteness are checked.
+  Diagnosis step(const Sample& now);
+
+  /// What can be said before any experiment; nothing if the method has no such statements.
+  std::optional<Guarantees> guarantees() const { return do_guarantees(); }
+
+  const ModeBank& bank() const { return bank_; }
+  /// Wall-clock time of the last step in microseconds.
+  double step_us() const { return step_us_; }
+
+ protected:
+  Diagnoser(ModeBank bank, std::shared_ptr<const SetBackend> backend) : bank_(std::move(bank)), backend_(std::move(backend)) {}
+  const SetBackend& backend() const { return *backend_; }
+  const std::shared_ptr<const SetBackend>& shared_backend() const { return backend_; }
+
+ private:
+  virtual void do_start() = 0;
+  /// `before` is null at the first sample.
+  virtual Diagnosis do_step(const Sample* before, const Sample& now) = 0;
+  virtual std::optional<Guarantees> do_guarantees() const { return std::nullopt; }
+
+  ModeBank bank_;
+  std::shared_ptr<const SetBackend> backend_;
+  std::optional<Sample> before_;
+  double step_us_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace cordon
