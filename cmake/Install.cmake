@@ -8,10 +8,11 @@ set_target_properties(cordon_app PROPERTIES INSTALL_RPATH "$ORIGIN/${libraries_f
 
 set_target_properties(cordon_app PROPERTIES EXPORT_NAME app)
 set_target_properties(cordon_sets PROPERTIES EXPORT_NAME sets)
-install(TARGETS cordon cordon_sets cordon_app EXPORT cordon
+set_target_properties(cordon_invariant PROPERTIES EXPORT_NAME invariant)
+install(TARGETS cordon cordon_sets cordon_invariant cordon_app EXPORT cordon
   RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/framework/include/cordon" "${PROJECT_BINARY_DIR}/framework/include/cordon"
-  "${PROJECT_SOURCE_DIR}/sets/include/cordon" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.hpp")
+  "${PROJECT_SOURCE_DIR}/sets/include/cordon" "${PROJECT_SOURCE_DIR}/estimators/invariant/include/cordon" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.hpp")
 
 if(TARGET cordon_conformance)
   set_target_properties(cordon_conformance PROPERTIES EXPORT_NAME conformance)
