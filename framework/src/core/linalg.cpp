@@ -94,6 +94,13 @@ Eigen::VectorXcd eigenvalues(MatrixIn A) {
   return solver.eigenvalues();
 }
 
+ComplexEigen complex_eigen(MatrixIn A) {
+  if (A.rows() == 0) return {Eigen::VectorXcd(0), Eigen::MatrixXcd(0, 0)};
+  const Eigen::EigenSolver<Matrix> solver(A, true);
+  if (solver.info() != Eigen::Success) throw Error(Errc::solver, "eigenvalues did not converge");
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
 double determinant(MatrixIn A) { return A.rows() == 0 ? 1.0 : Matrix(A).determinant(); }
 
 Matrix product(MatrixIn A, MatrixIn B) {

@@ -50,6 +50,14 @@ SymmetricEigen symmetric_eigen(MatrixIn A);
 /// Eigenvalues of a square matrix.
 Eigen::VectorXcd eigenvalues(MatrixIn A);
 
+/// Eigenvalues with eigenvectors of length 1 (columns). Pairs of conjugates stand side by side, the upper half plane first. A matrix
+/// without a basis of eigenvectors shows in their condition.
+struct ComplexEigen {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;
+};
+ComplexEigen complex_eigen(MatrixIn A);
+
 double determinant(MatrixIn A);
 
 /// A B through one compiled kernel (Eigen's product templates are expensive to compile in every file).
