@@ -92,12 +92,13 @@ struct Zonotopes {
   Result predict(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
     if (!X.Z) return empty(A.rows());
     if (outward) return predict_outward(X, A, f, operands);
-    sets::Zonotope sum = sets::affine_map(*X.Z, A, f);
+    std::vector<sets::MappedZonotope> summands;
+    summands.reserve(operands.size());
     for (const auto& operand : operands) {
       if (!operand.value.Z) return empty(A.rows());
-      sum = sets::minkowski_sum(sum, sets::affine_map(*operand.value.Z, operand.T, Vector::Zero(A.rows())));
+      summands.push_back({operand.T, *operand.value.Z});
     }
-    return result(std::move(sum), Tightness::exact);
+    return result(sets::affine_sum(*X.Z, A, f, summands), Tightness::exact);
   }
   Result predict_outward(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
     std::vector<LineForm> forms;

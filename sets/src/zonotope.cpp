@@ -80,6 +80,35 @@ Zonotope minkowski_sum(const Zonotope& X, const Zonotope& Y) {
   return {X.c + Y.c, beside(X.G, Y.G)};
 }
 
+Zonotope affine_sum(const Zonotope& Z, MatrixIn A, VectorIn f, std::span<const MappedZonotope> summands) {
+  constexpr const char* name = "sum of mapped zonotopes";
+  check(Z, name);
+  require_map(A, Z.dim(), name, "the matrix");
+  require_size(f.size(), A.rows(), name, "the translation");
+  require_finite(f, name, "the translation");
+  Index columns = Z.generators();
+  for (const MappedZonotope& summand : summands) {
+    check(summand.set, name);
+    require_map(summand.T, summand.set.dim(), name, "a summand's matrix");
+    require_size(summand.T.rows(), A.rows(), name, "the rows of a summand's matrix");
+    columns += summand.set.generators();
+  }
+  Zonotope sum{f, Matrix(A.rows(), columns)};
+  Index at = 0;
+  const auto add = [&](MatrixIn T, const Zonotope& X) {
+    if (X.dim() == 0) {
+      sum.G.middleCols(at, X.generators()).setZero();
+    } else {
+      sum.c += linalg::product(T, X.c);
+      if (X.generators() > 0) sum.G.middleCols(at, X.generators()) = linalg::product(T, X.G);
+    }
+    at += X.generators();
+  };
+  add(A, Z);
+  for (const MappedZonotope& summand : summands) add(summand.T, summand.set);
+  return sum;
+}
+
 Zonotope cartesian_product(const Zonotope& X, const Zonotope& Y) {
   check(X, "product of zonotopes");
   check(Y, "product of zonotopes");

@@ -19,15 +19,19 @@ void require(bool fits, const std::string& message) {
 }
 
 void require_map(MatrixIn T, Index rows, Index cols, const char* what) {
-  require(T.rows() == rows && T.cols() == cols, std::string(what) + ": the matrix is " + std::to_string(T.rows()) + " x " +
-                                                    std::to_string(T.cols()) + ", must be " + std::to_string(rows) + " x " +
-                                                    std::to_string(cols));
+  if (T.rows() != rows || T.cols() != cols) {  // texts are made for errors only: a step of an observer asks this often
+    throw Error(Errc::dimension, std::string(what) + ": the matrix is " + std::to_string(T.rows()) + " x " +
+                                     std::to_string(T.cols()) + ", must be " + std::to_string(rows) + " x " +
+                                     std::to_string(cols));
+  }
   if (!T.allFinite()) throw Error(Errc::not_finite, std::string(what) + ": the matrix has a NaN or infinite entry");
 }
 
 void require_vector(VectorIn t, Index size, const char* what) {
-  require(t.size() == size,
-          std::string(what) + ": the vector has size " + std::to_string(t.size()) + ", must be " + std::to_string(size));
+  if (t.size() != size) {
+    throw Error(Errc::dimension,
+                std::string(what) + ": the vector has size " + std::to_string(t.size()) + ", must be " + std::to_string(size));
+  }
   if (!t.allFinite()) throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
 }
 
@@ -56,13 +60,11 @@ const Set& require_set(const Enclosure& X, const char* what) {
 /// Later code takes a result's dimension for granted, also in arithmetic without checks of its own.
 template <class Made>
 Made fitting(Made made, Index dim, const BackendInfo& info, const char* operation) {
+  if (made.set && made.set->dim() == dim) return made;
   const std::string who = "backend " + info.name + ", " + operation + ": ";
   if (!made.set) throw Error(Errc::plugin, who + "returned no set");
-  if (made.set->dim() != dim) {
-    throw Error(Errc::plugin,
-                who + "returned a set of dimension " + std::to_string(made.set->dim()) + ", must be " + std::to_string(dim));
-  }
-  return made;
+  throw Error(Errc::plugin,
+              who + "returned a set of dimension " + std::to_string(made.set->dim()) + ", must be " + std::to_string(dim));
 }
 
 /// What is computed on exchange forms that enclose their sets is outer, whatever the import of the result claims.

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "cordon/core/box.hpp"
 #include "cordon/core/interval_matrix.hpp"
@@ -30,6 +31,15 @@ Zonotope affine_map(const Zonotope& Z, MatrixIn T, VectorIn t);
 
 /// X ⊕ Y = <c_X + c_Y, [G_X G_Y]>; exact. O(n g).
 Zonotope minkowski_sum(const Zonotope& X, const Zonotope& Y);
+
+/// The summand T·set of `affine_sum`; a view.
+struct MappedZonotope {
+  MatrixIn T;
+  const Zonotope& set;
+};
+
+/// A Z ⊕ {f} ⊕ Σ Tᵢ Zᵢ; exact, assembled without temporaries. A is m×n, Tᵢ is m×dim Zᵢ. O(m Σ nᵢ gᵢ).
+Zonotope affine_sum(const Zonotope& Z, MatrixIn A, VectorIn f, std::span<const MappedZonotope> summands);
 
 /// X × Y; exact. O(n g).
 Zonotope cartesian_product(const Zonotope& X, const Zonotope& Y);
