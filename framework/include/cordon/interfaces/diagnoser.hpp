@@ -21,21 +21,23 @@ enum class Decision {
 };
 std::string_view to_string(Decision decision) noexcept;
 
-/// What is known about one mode. An exclusion is a statement about the time from `Diagnosis::since` on: the plant has not been in
-/// this mode throughout. It is made on a proof only, and never taken back before `since` moves.
+/// What is known about one mode. An exclusion is a statement about the time from `Diagnosis::since` to k: the plant has not been
+/// in this mode throughout. It is made on a proof only.
 struct ModeEvidence {
-  bool candidate = true;                ///< not excluded
-  Answer consistent = Answer::unknown;  ///< of this step alone; `no`: proven to contradict the mode; `yes`: proven not to
-  Certificate why;                      ///< proof of `consistent`, of the kind that the diagnoser documents
-  Box residual;                         ///< hull of what has to contain 0 (dimension 0: not offered)
-  Box reset_residual;  ///< the same of the copy that exclusions since `since` rest on (dimension 0: there is none)
+  bool candidate = true;  ///< not excluded by now; after a reset every mode is a candidate again
+  Answer consistent =
+      Answer::unknown;  ///< by the samples from `since` to k: `no`: proven to contradict the mode; `yes`: proven not to
+  Certificate why;      ///< proof of `consistent`, of the kind that the diagnoser documents
+  Box residual;         ///< hull of what has to contain 0 (dimension 0: not offered)
+  Box reset_residual;   ///< the same of the copy that was made at the last reset, on which exclusions rest (dimension 0: none)
 };
 
 struct Diagnosis {
   Index k = 0;
   Decision decision = Decision::monitoring;
   Index mode = -1;       ///< `monitoring`: the mode, else -1
-  Index since = 0;       ///< time of the last reset, which exclusions speak of
+  Index since = 0;       ///< the time from which on the evidence of this step speaks
+  bool reset = false;    ///< every mode is excluded or given up at k: all are candidates again, later evidence speaks of k on
   Index suggested = -1;  ///< a mode that a heuristic points to, without proof; -1: none
   std::vector<ModeEvidence> modes;
   std::optional<Enclosure> estimate;  ///< `monitoring`: contains the state as long as the plant is in `mode`
