@@ -6,10 +6,12 @@ namespace {
 void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_prediction_correction(registrar);
   cordon::estimators::register_descriptor(registrar);
+  cordon::estimators::register_luenberger(registrar);
+  cordon::estimators::register_observer_bank(registrar);
   cordon::estimators::register_metrics(registrar);
 }
 
 }  // namespace
 
-CORDON_PLUGIN("estimators", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "set-based observers and metrics",
+CORDON_PLUGIN("estimators", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "set-based observers, diagnosers and metrics",
               register_components)

@@ -146,8 +146,8 @@ ErrorBounds::ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& 
     const Zonotope begin = plant.size() == 1
                                ? plant[0]
                                : invariant::enclosing_zonotope(bank.modes[own].model.X0, "X0 of mode \"" + observer.name + "\"");
-    const Zonotope negative = sets::affine_map(begin, -Matrix::Identity(n, n), Vector::Zero(n));
-    for (const Zonotope& start : plant) starts.push_back(sum(start, negative));
+    for (const Zonotope& start : plant)
+      starts.push_back({start.c - begin.c, start.G});  // copies are made about the point observer
     decays_.emplace_back(observer.Ao, drive_size(drives, n), "A - L C of mode \"" + observer.name + "\"");
     if (has_ranges(observer)) {
       Vector error(observer.C.rows());

@@ -47,7 +47,9 @@ Box input_bounds(const ModeBank& bank);
 /// modes, g generators and T steps to the accuracy.
 Guarantees fdi_guarantees(const ModeBank& bank, const std::vector<Matrix>& gains, const OfflineOptions& options);
 
-/// The part of it about the error set.
+/// The part of it about the error set: it must hold x - x̂ for the point observer x̂ of every mode, which runs from the centre of
+/// the initial set with the centres of all sets. (Later errors are bounded with the sets' noise copies besides: S_ij as
+/// published.)
 ErrorSetCheck check_error_set(const ModeBank& bank, const std::vector<Matrix>& gains, const OfflineOptions& options);
 
 /// Problems of the options and the models, with pointers relative to the diagnoser's object; an error set that is too small among

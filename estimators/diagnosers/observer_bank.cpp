@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "diagnosers/observer_bank.hpp"
+
+#include <algorithm>
+
+#include "cordon/core/error.hpp"
+#include "cordon/solvers/set_questions.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr double rounding_share = 1e-10;  // of the numbers a residual is made of: what is nearer to 0 may be their rounding
+
+/// How far 0 lies outside the hull of R: the coordinate and its direction, if any is beyond rounding.
+std::optional<Certificate> separated_axis(const Box& hull, const Sample& now) {
+  std::optional<Certificate> best;
+  for (Index i = 0; i < hull.dim(); ++i) {
+    for (const double sign : {1.0, -1.0}) {
+      const double distance = sign > 0 ? hull.lower[i] : -hull.upper[i];  // 0 below the lower bound, above the upper one
+      const double size = std::abs(now.y[i]) + std::max(std::abs(hull.lower[i]), std::abs(hull.upper[i]));
+      if (!(distance > rounding_share * size) || (best && best->margin >= distance)) continue;
+      Vector d = Vector::Zero(hull.dim());
+      d[i] = -sign;
+      best = Certificate{Certificate::Kind::direction, std::move(d), distance};
+    }
+  }
+  return best;
+}
+
+/// Is 0 ∈ R? In one dimension the hull is the set, and needs no program.
+void ask(const Enclosure& R, const Box& hull, const Sample& now, ModeEvidence& evidence) {
+  if (auto proof = separated_axis(hull, now)) {
+    evidence.consistent = Answer::no;
+    evidence.why = std::move(*proof);
+  } else if (hull.dim() > 1) {
+    evidence.consistent = R->contains(Vector::Zero(hull.dim()), &evidence.why);
+  }
+}
+
+}  // namespace
+
+ObserverBank::ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> backend, ObserverBankOptions options)
+    : Diagnoser(std::move(bank), std::move(backend)),
+      options_(std::move(options)),
+      elimination_(Diagnoser::bank().size(), options_.waiting_time, Diagnoser::bank().nominal),
+      workers_(options_.threads) {
+  const ModeBank& all = Diagnoser::bank();
+  for (Index j = 0; j < all.size(); ++j) {
+    members_.emplace_back(all[j].model, options_.gains[static_cast<std::size_t>(j)], shared_backend(), options_.budget);
+  }
+  inputs_ = input_bounds(all);
+  error_set_ = this->backend().import(check_error_set(all, options_.gains, options_.offline).set);
+}
+
+void ObserverBank::do_start() {
+  was_reset_ = false;
+  suggested_ = suggesting_since_ = -1;
+  for (Member& m : members_) {
+    m.copy.reset();
+    m.bound.reset();
+    m.evidence = {};
+  }
+}
+
+/// What was promised in advance rests on U.
+void ObserverBank::expect_input(const Sample& now) const {
+  if (inputs_.contains(now.u)) return;
+  throw Error(Errc::invalid,
+              "u at k = " + std::to_string(now.k) +
+                  " lies outside the interval hull of the input set U, on which the bank's error set rests; widen /system/U");
+}
+
+void ObserverBank::advance(Index j, const Sample& before) {
+  Member& m = member(j);
+  if (m.bound) m.bound = m.recursion.reduced(m.recursion.next_bound(*m.bound, m.X, before));
+  if (m.copy) m.copy = m.recursion.reduced(m.recursion.next(*m.copy, before));
+  m.X = m.recursion.reduced(m.recursion.next(m.X, before));
+  m.center = m.recursion.next(m.center, before);
+}
+
+/// Residual sets at k, and what those of candidates prove.
+void ObserverBank::judge(Index j, const Sample& now) {
+  Member& m = member(j);
+  m.residual = m.recursion.residual(m.X, now);
+  m.evidence = {};
+  m.evidence.residual = m.residual->interval_hull();
+  if (m.copy) {
+    const Enclosure copy = m.recursion.residual(*m.copy, now);
+    m.evidence.reset_residual = copy->interval_hull();
+    ask(copy, m.evidence.reset_residual, now, m.evidence);
+  } else if (!was_reset_ && elimination_.is_candidate(j)) {
+    ask(m.residual, m.evidence.residual, now, m.evidence);
+  }
+  if (m.bound) {
+    const Enclosure allowed = m.recursion.residual_bound(*m.bound, m.X, now);
+    const Box own = m.evidence.residual, all = allowed->interval_hull();
+    const double size = now.y.cwiseAbs().maxCoeff() + std::max(own.lower.cwiseAbs().maxCoeff(), own.upper.cwiseAbs().maxCoeff());
+    const double slack = rounding_share * size;
+    m.bound_violated =
+        (own.lower.array() < all.lower.array() - slack).any() || (own.upper.array() > all.upper.array() + slack).any();
+    if (!m.bound_violated && own.dim() > 1) m.bound_violated = m.residual->is_subset_of(*allowed) == Answer::no;
+  }
+}
+
+void ObserverBank::reset(Index j, const Sample& now) {
+  Member& m = member(j);
+  const Matrix* gain = options_.strip_gain ? &*options_.strip_gain : nullptr;
+  const Index n = m.center.size();
+  const Enclosure errors = m.recursion.errors_within(error_set_, m.recursion.explained_outputs(error_set_, m.center, now), gain);
+  m.copy = m.recursion.reduced(backend().affine_map(errors, Matrix::Identity(n, n), m.center));
+  const Enclosure strips = backend().box(m.residual->interval_hull());
+  m.bound = m.recursion.reduced(m.recursion.errors_within(error_set_, strips, gain));
+}
+
+Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
+  expect_input(now);
+  const Index modes = bank().size();
+  if (!before) {
+    elimination_.start(now.k);
+    for (Index j = 0; j < modes; ++j) {
+      member(j).X = member(j).recursion.reduced(backend().import(options_.initial_set));
+      member(j).center = invariant::enclosing_zonotope(options_.initial_set).c;
+    }
+  }
+  workers_.for_each(modes, [&](Index j) {
+    if (before) advance(j, *before);
+    judge(j, now);
+  });
+  std::vector<bool> excluded;
+  for (Member& m : members_) excluded.push_back(m.evidence.consistent == Answer::no);
+  const Index known = elimination_.mode(), since = elimination_.since();
+  const bool is_reset = elimination_.update(now.k, excluded);
+  if (is_reset) {
+    was_reset_ = true;
+    workers_.for_each(modes, [&](Index j) { reset(j, now); });
+    begin_suggestion(known);
+  } else {
+    suggest(now);
+  }
+  for (Index j = 0; was_reset_ && j < modes; ++j) {
+    if (!elimination_.is_candidate(j)) member(j).copy.reset();
+  }
+  Diagnosis diagnosis = report(now);
+  diagnosis.since = since;
+  diagnosis.reset = is_reset;
+  return diagnosis;
+}
+
+/// The published algorithm considers all modes but the one that has just been given up.
+void ObserverBank::begin_suggestion(Index from) {
+  suggested_ = -1;
+  suggesting_since_ = elimination_.since();
+  if (from >= 0) member(from).bound.reset();
+}
+
+void ObserverBank::suggest(const Sample& now) {
+  if (suggesting_since_ < 0) return;
+  const bool waited = now.k - suggesting_since_ >= options_.waiting_time;
+  Index left = 0, last = -1;
+  for (Index j = 0; j < bank().size(); ++j) {
+    Member& m = member(j);
+    if (!m.bound) continue;
+    if (m.bound_violated || (waited && separated_axis(m.evidence.residual, now))) {
+      m.bound.reset();
+    } else {
+      ++left;
+      last = j;
+    }
+  }
+  if (left > 1 && !waited) return;
+  suggested_ = left == 1 ? last : -1;
+  suggesting_since_ = -1;
+  for (Member& m : members_) m.bound.reset();
+}
+
+Diagnosis ObserverBank::report(const Sample& now) const {
+  Diagnosis diagnosis;
+  diagnosis.k = now.k;
+  diagnosis.decision = elimination_.decision();
+  diagnosis.mode = elimination_.mode();
+  diagnosis.suggested = suggested_;
+  for (Index j = 0; j < bank().size(); ++j) {
+    diagnosis.modes.push_back(member(j).evidence);
+    diagnosis.modes.back().candidate = elimination_.is_candidate(j);
+  }
+  if (diagnosis.mode >= 0) {
+    const Member& m = member(diagnosis.mode);
+    diagnosis.estimate = m.copy ? *m.copy : m.X;
+  }
+  return diagnosis;
+}
+
+std::optional<Guarantees> ObserverBank::do_guarantees() const { return fdi_guarantees(bank(), options_.gains, options_.offline); }
+
+}  // namespace cordon::estimators

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A bank of Luenberger observers on sets, one per mode. [Xu2014, Xu2013]
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "cordon/interfaces/diagnoser.hpp"
+#include "cordon/invariant/zonotope_enclosure.hpp"
+#include "diagnosers/fdi_conditions.hpp"
+#include "diagnosers/mode_elimination.hpp"
+#include "diagnosers/mode_workers.hpp"
+#include "observers/luenberger_recursion.hpp"
+
+namespace cordon::estimators {
+
+struct ObserverBankOptions {
+  std::vector<Matrix> gains;  ///< one per mode
+  Budget budget;
+  LineForm initial_set;
+  Index waiting_time = 0;
+  std::optional<Matrix> strip_gain;
+  OfflineOptions offline;
+  Index threads = 1;
+};
+
+/// Every observer j runs from the start; its residual set R_j contains 0 as long as the plant is in mode j and always was. What
+/// is excluded is excluded by resets alone:
+///   reset at k   X̂'_j := {x̂_j} ⊕ {e ∈ X̃ : y_k - C_j (x̂_j + e) is explained by the noise}   for every mode j,
+///   afterwards   the same recursion; 0 ∉ R'_j proves that the plant has not been in mode j throughout from k on.
+/// It rests on x - x̂_j ∈ X̃ (the point observers' errors, whatever the modes have been), which is checked in advance. Before the
+/// first reset R_j of the nominal mode takes that place. `ModeElimination` turns exclusions into decisions. `suggested` follows
+/// the published algorithm: at the reset Ř_j := C X̌_j ⊕ V ⊕ (-V) starts from X̌_j, the part of X̃ in the strips of R_j; a mode goes
+/// when R_j ⊄ Ř_j is certified, and after the waiting time when 0 ∉ R_j. It names the one that is left. Not a proof: R_j carries
+/// errors of the earlier mode, and loses containment by its reductions.
+class ObserverBank final : public Diagnoser {
+ public:
+  ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> backend, ObserverBankOptions options);
+
+ private:
+  /// The observer of one mode.
+  struct Member {
+    Member(const Model& model, const Matrix& L, const std::shared_ptr<const SetBackend>& backend, Budget budget)
+        : recursion(model, L, backend, budget) {}
+    LuenbergerRecursion recursion;
+    Enclosure X, residual;           ///< X̂, R
+    Vector center;                   ///< x̂
+    std::optional<Enclosure> copy;   ///< X̂', while the mode is a candidate
+    std::optional<Enclosure> bound;  ///< X̌, while the mode is among those that the published algorithm keeps
+    bool bound_violated = false;     ///< R ⊄ Ř
+    ModeEvidence evidence;
+  };
+
+  void do_start() override;
+  Diagnosis do_step(const Sample* before, const Sample& now) override;
+  std::optional<Guarantees> do_guarantees() const override;
+
+  void expect_input(const Sample& now) const;
+  void advance(Index j, const Sample& before);
+  void judge(Index j, const Sample& now);
+  void reset(Index j, const Sample& now);
+  void suggest(const Sample& now);
+  void begin_suggestion(Index from);
+  Diagnosis report(const Sample& now) const;
+  Member& member(Index j) { return members_[static_cast<std::size_t>(j)]; }
+  const Member& member(Index j) const { return members_[static_cast<std::size_t>(j)]; }
+
+  ObserverBankOptions options_;
+  Box inputs_;
+  std::vector<Member> members_;
+  Enclosure error_set_;
+  ModeElimination elimination_;
+  ModeWorkers workers_;
+  bool was_reset_ = false;
+  Index suggested_ = -1, suggesting_since_ = -1;
+};
+
+}  // namespace cordon::estimators

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parameters of diagnoser "observer_bank", and their problems.
+#include <cmath>
+
+#include "components.hpp"
+#include "cordon/core/error.hpp"
+#include "diagnosers/observer_bank.hpp"
+#include "observers/luenberger_gain.hpp"
+#include "observers/observer_parameters.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr std::int64_t most_steps = 100'000;
+
+ParamSchema parameters() {
+  ParamSchema schema = common_parameters();
+  schema
+      .integer("waiting_time",
+               "T: a mode lasts at least so many steps; decides between ambiguous and isolated, switch and unknown fault", {}, 1,
+               most_steps)
+      .required();
+  schema.matrix("gain",
+                "L of all modes, a row per state and a column per output; absent, and without gains: designed for each mode");
+  schema.matrices("gains", "L of each mode in place of gain, the nominal mode first");
+  schema.set(
+      "error_set",
+      "X̃, a set that holds the error x - x̂ of every observer whatever the modes have been; checked in advance; absent: computed");
+  schema.matrix(
+      "strip_gain",
+      "λ, a row per state and a column per output: X̃ is cut by (I - λ C) X̃ ⊕ λ (...); absent: the backend's intersection");
+  schema.choice("invariant",
+                "sets behind the FDI conditions: limits (mrpi), steps from an invariant set (rpi), or from start_set (iterate)",
+                {"mrpi", "rpi", "iterate"}, "mrpi");
+  schema.vector("iterations", "steps for rpi and iterate: one number, or one per observer; 30 if absent");
+  schema.integer("max_columns", "most generators of these sets after each step; 0: no limit", 0, 0, most_steps);
+  schema.real("accuracy", "relative accuracy of the limits", 1e-9, 1e-14, 1);
+  schema.choice("input_copies",
+                "the input in the error: one value for plant and observer (joint), or two independent ones (separate)",
+                {"joint", "separate"}, "joint");
+  schema.set("start_set", "first error set for iterate; absent: the origin");
+  schema.set("state_set",
+             "a set that holds the state at all times, needed where modes have different A; absent: computed if A is stable");
+  schema.integer("threads", "threads for the observers; 0: one per core; decisions do not depend on it", 1, 0, 1024);
+  return schema;
+}
+
+/// One per mode, as given or designed.
+std::vector<Matrix> gains_of(const ModeBank& bank, const Params& params) {
+  if (params.has("gains")) return params.matrices("gains");
+  std::vector<Matrix> gains;
+  for (const Mode& mode : bank.modes) gains.push_back(params.has("gain") ? params.matrix("gain") : designed_gain(mode.model));
+  return gains;
+}
+
+std::optional<LineForm> set_or_none(const Params& params, const char* name) {
+  return params.has(name) ? std::optional(params.set_form(name)) : std::nullopt;
+}
+
+OfflineOptions offline_options(const ModeBank& bank, const Params& params) {
+  OfflineOptions options;
+  const std::string& invariant = params.text("invariant");
+  options.invariant = invariant == "rpi"       ? OfflineOptions::Invariant::rpi
+                      : invariant == "iterate" ? OfflineOptions::Invariant::iterate
+                                               : OfflineOptions::Invariant::mrpi;
+  options.iterations = {30};
+  if (params.has("iterations")) {
+    options.iterations.clear();
+    for (const double steps : params.vector("iterations")) options.iterations.push_back(static_cast<Index>(steps));
+  }
+  options.max_columns = params.integer("max_columns");
+  options.accuracy = params.real("accuracy");
+  options.separate_inputs = params.text("input_copies") == "separate";
+  options.start_set = set_or_none(params, "start_set");
+  options.error_set = set_or_none(params, "error_set");
+  options.state_set = set_or_none(params, "state_set");
+  options.initial_set = initial_set_from(bank[bank.nominal].model, params);
+  return options;
+}
+
+ObserverBankOptions options_of(const ModeBank& bank, const Params& params) {
+  ObserverBankOptions options;
+  options.gains = gains_of(bank, params);
+  options.budget = budget_from(params);
+  options.initial_set = initial_set_from(bank[bank.nominal].model, params);
+  options.waiting_time = params.integer("waiting_time");
+  if (params.has("strip_gain")) options.strip_gain = params.matrix("strip_gain");
+  options.offline = offline_options(bank, params);
+  options.threads = params.integer("threads");
+  return options;
+}
+
+std::string shape_problem(const Matrix& A, Index rows, Index cols) {
+  if (A.rows() == rows && A.cols() == cols) return "";
+  return "is " + std::to_string(A.rows()) + " × " + std::to_string(A.cols()) + ", must be " + std::to_string(rows) + " × " +
+         std::to_string(cols);
+}
+
+void check_gains(const ModeBank& bank, const Params& params, std::vector<Diagnostic>& problems) {
+  const bool shared = params.has("gain"), listed = params.has("gains");
+  if (shared && listed) problems.push_back({"/gains", "stands beside \"gain\"", "remove one of the two"});
+  const auto* list = listed ? &params.matrices("gains") : nullptr;
+  if (list && static_cast<Index>(list->size()) != bank.size()) {
+    problems.push_back(
+        {"/gains", "holds " + std::to_string(list->size()) + " matrices, the bank has " + std::to_string(bank.size()) + " modes",
+         "give one per mode, the nominal mode first"});
+    return;
+  }
+  for (Index j = 0; j < bank.size(); ++j) {
+    const Matrix* given = list ? &(*list)[static_cast<std::size_t>(j)] : shared ? &params.matrix("gain") : nullptr;
+    const std::size_t before = problems.size();
+    check_gain(bank[j].model, given, list ? "/gains/" + std::to_string(j) : "/gain", " of mode \"" + bank[j].name + "\"",
+               problems);
+    if (shared && problems.size() > before && given->rows() != bank[j].model.linear.states()) return;  // the same for every mode
+  }
+}
+
+void check_shapes(const ModeBank& bank, const Params& params, std::vector<Diagnostic>& problems) {
+  const LinearModel& m = bank[bank.nominal].model.linear;
+  if (params.has("strip_gain")) {
+    if (const std::string wrong = shape_problem(params.matrix("strip_gain"), m.states(), m.outputs()); !wrong.empty()) {
+      problems.push_back({"/strip_gain", wrong, "a row per state, a column per output"});
+    }
+  }
+  if (params.has("iterations")) {
+    for (const double steps : params.vector("iterations")) {
+      if (steps >= 1 && steps <= static_cast<double>(most_steps) && steps == std::floor(steps)) continue;
+      problems.push_back({"/iterations", "must hold whole numbers from 1 to 100000", ""});
+      break;
+    }
+  }
+  for (const char* name : {"error_set", "start_set", "state_set"}) {
+    if (params.has(name) && params.set_form(name).dim() != m.states()) {
+      problems.push_back(
+          {std::string("/") + name,
+           "has dimension " + std::to_string(params.set_form(name).dim()) + ", the state has " + std::to_string(m.states()), ""});
+    }
+  }
+}
+
+std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& params) {
+  const ModeBank& bank = context.bank;
+  std::vector<Diagnostic> problems;
+  for (const Mode& mode : bank.modes) {
+    if (!mode.model.linear.is_descriptor()) continue;
+    problems.push_back({"/type", "\"observer_bank\" takes modes of type \"lti\"; \"" + mode.name + "\" has an E",
+                        "use the diagnoser \"consistency_bank\" with the observer \"descriptor\""});
+    return problems;
+  }
+  problems = check_common({bank[bank.nominal].model, context.backend}, params);
+  check_gains(bank, params, problems);
+  check_shapes(bank, params, problems);
+  if (!problems.empty()) return problems;
+  return check_offline(bank, gains_of(bank, params), offline_options(bank, params));
+}
+
+}  // namespace
+
+void register_observer_bank(Registrar& registrar) {
+  registrar.diagnoser({{"observer_bank", "a bank of Luenberger observers on sets, with conditions checked in advance",
+                        "Xu2014; Xu2013", parameters()},
+                       check,
+                       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
+                         if (auto problems = check(context, params); !problems.empty()) {
+                           throw InputError("diagnoser \"observer_bank\"", std::move(problems));
+                         }
+                         return std::make_unique<ObserverBank>(context.bank, context.backend, options_of(context.bank, params));
+                       }});
+}
+
+}  // namespace cordon::estimators

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Luenberger recursion on sets, for one model and one gain. [Xu2014, (6)-(7), (13)-(14)]
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "cordon/interfaces/backend.hpp"
+#include "cordon/interfaces/model.hpp"
+
+namespace cordon::estimators {
+
+/// For x⁺ = A x + B f u + Bw w, y = g (C x + D f u) + Dv v with f, g in diagonal ranges around f̄, ḡ, and C̄ = ḡ C, D̄ = ḡ D:
+///   X̂⁺ = (A - L C̄) X̂ ⊕ {L y + (B - L D̄) f̄ u} ⊕ P,   P = (B - L D̄) rad(f) diag(u) [-1,1]^p ⊕ (-L Dv) V ⊕ Bw W ⊕ (-L) Δ
+///   R   = {y - D̄ f̄ u} ⊕ (-C̄) X̂ ⊕ Q,                 Q = D̄ rad(f) diag(u) [-1,1]^p ⊕ (-Dv) V ⊕ Δ
+/// Δ is the box with half widths rad(g) |C x + D f u|, x ∈ X̂; it is {0} for exactly known sensors. x ∈ X̂ implies x⁺ ∈ X̂⁺ and
+/// 0 ∈ R. A diag per input: a single column rad(f) u would tie the inputs to each other. Models with E are not taken. Immutable;
+/// used from several threads.
+class LuenbergerRecursion {
+ public:
+  /// L is n×n_y. Throws Errc::dimension.
+  LuenbergerRecursion(const Model& model, Matrix L, std::shared_ptr<const SetBackend> backend, Budget budget);
+
+  const SetBackend& backend() const { return *backend_; }
+
+  /// X̂⁺ before reduction, from X̂ and the sample of the same time.
+  Enclosure next(const Enclosure& X, const Sample& now) const;
+  Enclosure reduced(const Enclosure& X) const { return backend_->reduce(X, budget_); }
+  /// R, in the space of outputs.
+  Enclosure residual(const Enclosure& X, const Sample& now) const;
+
+  /// The point observer, centres in place of sets: the same numbers on every backend.
+  Vector next(VectorIn x, const Sample& now) const;
+  Vector residual(VectorIn x, const Sample& now) const;
+
+  /// {C̄ e : some noise explains now.y if the state is x̂ + e}, e ∈ E needed for Δ: an enclosure of it.
+  Enclosure explained_outputs(const Enclosure& E, VectorIn x, const Sample& now) const;
+  /// {e ∈ E : C̄ e ∈ outputs}, or an enclosure of it: given λ (n×n_y), (I - λ C̄) E ⊕ λ outputs; else the backend's intersection.
+  Enclosure errors_within(const Enclosure& E, const Enclosure& outputs, const Matrix* strip_gain) const;
+
+  /// Bounds of the matched error set {x} ⊕ (-X̂) and its residual: (A - L C̄) E ⊕ P ⊕ (-P) and C̄ E ⊕ Q ⊕ (-Q), P and Q moved to the
+  /// origin; X̂ is needed for Δ.
+  Enclosure next_bound(const Enclosure& E, const Enclosure& X, const Sample& now) const;
+  Enclosure residual_bound(const Enclosure& E, const Enclosure& X, const Sample& now) const;
+
+ private:
+  /// Summands T S that are made for one sample, and the terms that view them.
+  struct Summands {
+    Matrix inputs;
+    Enclosure sensors;
+    std::vector<Term> terms;
+  };
+  void add_ranges(Summands& to, const Matrix& ranges, const Matrix& sensors, const Enclosure& X, VectorIn u, bool twice) const;
+  Enclosure sensor_box(const Enclosure& X, VectorIn u) const;
+
+  std::shared_ptr<const SetBackend> backend_;
+  Budget budget_;
+  Matrix L_, Ao_, C_, minus_C_;
+  Matrix input_, output_input_;    ///< (B - L D̄) f̄, D̄ f̄
+  std::vector<Index> ranged_;      ///< inputs with rad(f) > 0
+  Matrix ranges_, output_ranges_;  ///< their columns of (B - L D̄) rad(f) and D̄ rad(f)
+  Matrix Bw_, minus_Bw_, Dv_, minus_Dv_, LDv_, minus_LDv_, minus_L_, unit_map_;
+  Enclosure W_, V_, W0_, V0_;  ///< W0, V0: moved by -w̄, -v̄
+  Enclosure unit_;             ///< [-1,1] to the power of `ranged_`
+  Vector w_, v_;               ///< Bw w̄ - L Dv v̄ and Dv v̄
+  Matrix raw_C_, raw_D_;       ///< C and |D| max f, for Δ
+  Vector sensor_radius_;       ///< no entries: exact sensors
+};
+
+}  // namespace cordon::estimators
