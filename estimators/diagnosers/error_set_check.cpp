@@ -143,11 +143,10 @@ ErrorBounds::ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& 
       drives.push_back(std::move(drive));
     }
     const auto own = static_cast<std::size_t>(&observer - modes.data());
-    const Zonotope begin = plant.size() == 1
-                               ? plant[0]
-                               : invariant::enclosing_zonotope(bank.modes[own].model.X0, "X0 of mode \"" + observer.name + "\"");
-    for (const Zonotope& start : plant)
-      starts.push_back({start.c - begin.c, start.G});  // copies are made about the point observer
+    const Vector center = options.initial_set
+                              ? plant[0].c
+                              : invariant::enclosing_zonotope(bank.modes[own].model.X0, "X0 of mode \"" + observer.name + "\"").c;
+    for (const Zonotope& start : plant) starts.push_back({start.c - center, start.G});
     decays_.emplace_back(observer.Ao, drive_size(drives, n), "A - L C of mode \"" + observer.name + "\"");
     if (has_ranges(observer)) {
       Vector error(observer.C.rows());

@@ -18,6 +18,7 @@ PairDynamics steady_pair(const ModeDynamics& plant, const ModeDynamics& observer
 Vector drive_size(const std::vector<sets::Zonotope>& drives, Index n);
 
 /// Bounds of the errors of all observers, whatever modes the plant goes through, and of the invariant sets of each pair.
+/// Observers start at the centre of their initial set.
 class ErrorBounds {
  public:
   /// Throws Errc::invalid if modes differ in how the state acts on errors and nothing bounds the state, Errc::unsupported for

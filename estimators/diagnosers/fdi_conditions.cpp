@@ -193,7 +193,7 @@ std::string describe(const OfflineOptions& options, Index fallbacks) {
   std::string steps;
   for (const Index count : options.iterations) steps += (steps.empty() ? "" : ", ") + std::to_string(count);
   if (options.iterations.empty()) steps = "0";
-  if (options.iterations.size() > 1) steps = "(" + steps + ")";
+  if (options.iterations.size() > 1) steps.append(" (by observer)");
   std::string text = options.invariant == Invariant::rpi
                          ? "closed-form invariant sets and " + steps + " iterations"
                          : steps + " iterations from " + (options.start_set ? "the start set" : "0");

@@ -47,9 +47,10 @@ Box input_bounds(const ModeBank& bank);
 /// modes, g generators and T steps to the accuracy.
 Guarantees fdi_guarantees(const ModeBank& bank, const std::vector<Matrix>& gains, const OfflineOptions& options);
 
-/// The part of it about the error set: it must hold x - x̂ for the point observer x̂ of every mode, which runs from the centre of
-/// the initial set with the centres of all sets. (Later errors are bounded with the sets' noise copies besides: S_ij as
-/// published.)
+/// The part of it about the error set: S_ij ⊆ X̃ for the invariant sets S_ij of e, and x - x̂_j ∈ X̃ at all times, whatever modes
+/// the plant goes through, for the point observers x̂_j that start at the centre of the initial set (or of X0 of mode j) and for
+/// every choice of w̌, v̌ and f_j, their centres among them. If modes differ in A or C̄, or sensors have ranges, x is bounded by
+/// `state_set`, or, where all modes have the same Schur A, by its own supports from X0 on.
 ErrorSetCheck check_error_set(const ModeBank& bank, const std::vector<Matrix>& gains, const OfflineOptions& options);
 
 /// Problems of the options and the models, with pointers relative to the diagnoser's object; an error set that is too small among

@@ -40,8 +40,8 @@ struct RealBasis {
 /// Generators that keep |λ| / cos(π/2k) so far below 1 that the polygon stays near to the disc.
 void choose_polygon(Block& block) {
   const double wanted = block.modulus / (1 - polygon_share * (1 - block.modulus));
-  const double angle = std::acos(std::min(wanted, std::cos(std::numbers::pi / 8)));
-  block.edges = std::max<Index>(4, static_cast<Index>(std::ceil(std::numbers::pi / (2 * angle))));
+  const double angle = std::acos(std::max(wanted, std::cos(std::numbers::pi / 8)));
+  block.edges = static_cast<Index>(std::ceil(std::numbers::pi / (2 * angle)));
   block.corner = 1 / std::cos(std::numbers::pi / (2 * static_cast<double>(block.edges)));
 }
 

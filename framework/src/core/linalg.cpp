@@ -21,6 +21,25 @@ Index count_above(const Vector& sigma, double relative_tolerance) {
   return (sigma.array() > relative_tolerance * sigma[0]).count();
 }
 
+/// S⁻¹ A S with powers of two in S, so that rows and columns have like norms: eigenvalues of states in unlike units would drown
+/// in the rounding errors of the largest entries.
+Matrix balanced(Matrix A) {
+  const Index n = A.rows();
+  for (int sweep = 0, changed = 1; changed && sweep < 100; ++sweep) {
+    changed = 0;
+    for (Index i = 0; i < n; ++i) {
+      const double own = std::abs(A(i, i)), row = A.row(i).cwiseAbs().sum() - own, col = A.col(i).cwiseAbs().sum() - own;
+      if (!(row > 0 && col > 0) || !std::isfinite(row) || !std::isfinite(col)) continue;
+      const int power = static_cast<int>(std::lround(0.5 * (std::log2(row) - std::log2(col))));
+      if (power == 0) continue;
+      A.col(i) *= std::ldexp(1.0, power);
+      A.row(i) *= std::ldexp(1.0, -power);
+      changed = 1;
+    }
+  }
+  return A;
+}
+
 }  // namespace
 
 Svd svd(MatrixIn A) {
@@ -89,7 +108,7 @@ SymmetricEigen symmetric_eigen(MatrixIn A) {
 
 Eigen::VectorXcd eigenvalues(MatrixIn A) {
   if (A.rows() == 0) return Eigen::VectorXcd(0);
-  const Eigen::EigenSolver<Matrix> solver(A, false);
+  const Eigen::EigenSolver<Matrix> solver(balanced(A), false);
   if (solver.info() != Eigen::Success) throw Error(Errc::solver, "eigenvalues did not converge");
   return solver.eigenvalues();
 }
