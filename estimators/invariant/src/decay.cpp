@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
@@ -13,12 +16,24 @@ namespace {
 
 using linalg::product;
 
-constexpr int most_squarings = 50;
-constexpr double smallest_weight = 1e-9;  // relative to the largest
+constexpr int most_levels = 12;
+constexpr std::size_t terms_per_level = 16;
 constexpr double enough = 0.5;
 
 /// A nonnegative sum of n terms, each with a few roundings, made an upper bound.
 double raised(double value, Index n) { return value * (1 + 2 * rounding::gamma(n + 8)); }
+
+/// A matrix that is known up to an error.
+struct Bounded {
+  Matrix value, error;
+  Matrix bound() const { return value.cwiseAbs() + error; }
+};
+
+Bounded multiplied(const Bounded& X, const Bounded& Y) {
+  const Matrix error =
+      product(X.error, Y.bound()) + product(X.value.cwiseAbs(), Y.error) + rounding::product_error(X.value, Y.value);
+  return {product(X.value, Y.value), error * (1 + 2 * rounding::gamma(2 * X.value.rows() + 16))};
+}
 
 }  // namespace
 
@@ -30,9 +45,10 @@ Vector decay_weights(MatrixIn A, VectorIn size) {
     power = product(power, A);
     weights += product(power.cwiseAbs(), size);
   }
-  const double largest = n == 0 ? 0.0 : weights.maxCoeff();
-  if (!(largest > 0) || !weights.allFinite()) return Vector::Ones(n);
-  return weights.cwiseMax(smallest_weight * largest);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const double w : weights) smallest = w > 0 ? std::min(smallest, w) : smallest;
+  if (!std::isfinite(smallest) || !weights.allFinite()) return Vector::Ones(n);
+  return (weights.array() > 0).select(weights, smallest);
 }
 
 Decay::Decay(MatrixIn A, VectorIn size, const std::string& what) : A_(A) {
@@ -43,21 +59,23 @@ Decay::Decay(MatrixIn A, VectorIn size, const std::string& what) : A_(A) {
   weights_ = decay_weights(A_, size.cwiseAbs());
   magnitude_ = product(A_.cwiseAbs(), weights_);
   if (n == 0) return;
-  Matrix power = A_, error = Matrix::Zero(n, n);
-  for (int squarings = 0; squarings < most_squarings; ++squarings) {
-    const Matrix bound = power.cwiseAbs() + error;
-    const double norm = raised((product(bound, weights_).array() / weights_.array()).maxCoeff(), n);
-    if (!std::isfinite(norm)) break;
-    if (norm <= enough) {
-      sum_ = raised(sum_ / (1 - norm), 8);
-      return;
+  // Σ_k ‖Aᵏ‖ over k = a + 16 b + 256 c + …, one factor per digit
+  Bounded base{A_, Matrix::Zero(n, n)};
+  for (int level = 0; level < most_levels; ++level) {
+    double terms = 1;                         // ‖I‖
+    std::vector<Bounded> powers{base, base};  // by exponent; 0 is not used. Halving exponents keeps errors small
+    for (std::size_t k = 1; k < terms_per_level; ++k) {
+      const double norm = raised((product(powers[k].bound(), weights_).array() / weights_.array()).maxCoeff(), n);
+      if (norm <= enough) {
+        sum_ = raised(sum_ * terms / (1 - norm), 64);
+        return;
+      }
+      terms = raised(terms + norm, 8);
+      powers.push_back(multiplied(powers[(k + 1) / 2], powers[(k + 1) - (k + 1) / 2]));
     }
-    sum_ = raised(sum_ * (1 + norm), 8);
-    const Matrix magnitude = power.cwiseAbs();
-    error =
-        (product(magnitude, error) + product(error, magnitude) + product(error, error) + rounding::product_error(power, power)) *
-        (1 + 2 * rounding::gamma(2 * n + 16));
-    power = product(power, power);
+    sum_ = raised(sum_ * terms, 8);
+    if (!std::isfinite(sum_)) break;
+    base = powers.back();
   }
   throw Error(Errc::unsupported,
               "no decay of the powers of " + what + " can be proven: its largest eigenvalue is too near to the unit circle");

@@ -140,21 +140,22 @@ Zonotope rpi_set(MatrixIn A, const Zonotope& D) {
   require_schur(A, "the matrix");
   const Index n = A.rows();
   if (n == 0) return {D.c, Matrix(0, 0)};
-  const std::optional<Matrix> center = linalg::solve(Matrix::Identity(n, n) - A, D.c);
-  if (!center) throw Error(Errc::invalid, "the matrix has an eigenvalue too near to 1");
-  if (D.G.cols() == 0 || D.G.isZero(0)) return {*center, Matrix(n, 0)};
-  // units of the states must not decide what is defective
-  Vector scale = decay_weights(A, D.G.cwiseAbs().rowwise().sum());
+  // units of the states must decide neither what is defective nor what is singular
+  Vector scale = decay_weights(A, D.c.cwiseAbs() + D.G.cwiseAbs().rowwise().sum());
   for (double& x : scale) x = std::ldexp(1.0, std::ilogb(x));
   const Vector inverse = scale.cwiseInverse();
   const Matrix scaled = inverse.asDiagonal() * Matrix(A) * scale.asDiagonal();
+  const std::optional<Matrix> solution = linalg::solve(Matrix::Identity(n, n) - scaled, inverse.cwiseProduct(D.c));
+  if (!solution) throw Error(Errc::invalid, "the matrix has an eigenvalue too near to 1");
+  const Vector center = scale.cwiseProduct(solution->col(0));
+  if (D.G.cols() == 0 || D.G.isZero(0)) return {center, Matrix(n, 0)};
   const RealBasis basis = real_basis(scaled);
   require_eigenvectors(basis.T);
   const std::optional<Matrix> W = linalg::solve(basis.T, Matrix::Identity(n, n));
   if (!W) throw Error(Errc::internal, "a well-conditioned basis of eigenvectors has no inverse");
   const Matrix N = product(*W, product(scaled, basis.T));
   const Vector radii = block_radii(basis.blocks, N, product(*W, inverse.asDiagonal() * D.G));
-  return {*center, scale.asDiagonal() * block_shape(basis, radii)};
+  return {center, scale.asDiagonal() * block_shape(basis, radii)};
 }
 
 Zonotope iterate(MatrixIn A, const Zonotope& D, const Zonotope& start, Index steps, Index max_columns) {

@@ -12,14 +12,14 @@
 namespace cordon::invariant {
 
 /// Proof that the powers of A decay: σ ≥ Σ_k ‖Aᵏ‖ in the norm ‖r‖ = Σ |r_i| p_i of row vectors, for weights p > 0. It rests on
-/// ‖A^m‖ ≤ 1/2 for a power m = 2ˢ, computed by squaring with bounded rounding errors:
-///   Σ_{k<2m} ‖Aᵏ‖ ≤ (1 + ‖A^m‖) Σ_{k<m} ‖Aᵏ‖,   Σ_k ‖Aᵏ‖ ≤ Σ_{k<m} ‖Aᵏ‖ / (1 - ‖A^m‖).
+/// a power with ‖A^m‖ ≤ 1/2, computed with bounded rounding errors; m grows by powers of 16, and with B = A¹⁶
+///   Σ_{k<m} ‖Aᵏ‖ ≤ (Σ_{k<16} ‖Aᵏ‖) (Σ_{k<m/16} ‖Bᵏ‖),   Σ_k ‖Aᵏ‖ ≤ Σ_{k<m} ‖Aᵏ‖ / (1 - ‖A^m‖).
 /// A may be defective. Immutable.
 class Decay {
  public:
   /// `size` ≥ 0 (n) is what disturbances have in each coordinate; it decides about p only. Errors: Errc::invalid if A is not
-  /// Schur, with the eigenvalue; Errc::unsupported if no power is found (an eigenvalue within about 1e-12 of the unit circle);
-  /// Errc::dimension, Errc::not_finite. O(n³ s).
+  /// Schur, with the eigenvalue, named `what`; Errc::unsupported if no power is found (an eigenvalue within about 1e-12 of the
+  /// unit circle); Errc::dimension, Errc::not_finite. O(n³ log m).
   Decay(MatrixIn A, VectorIn size, const std::string& what = "the matrix");
 
   const Matrix& matrix() const { return A_; }
