@@ -41,6 +41,29 @@ class FakeObserver final : public Observer {
   void do_replace(const Enclosure&) override {}
 };
 
+class FakeDiagnoser final : public Diagnoser {
+ public:
+  explicit FakeDiagnoser(const DiagnoserContext& context) : Diagnoser(context.bank, context.backend) {}
+
+ private:
+  void do_start() override {}
+  Diagnosis do_step(const Sample*, const Sample&) override { return {}; }
+};
+
+/// x1⁺ = x1/2 + u, x2⁺ = tempo x1², y = x2.
+class FakePlant final : public Plant {
+ public:
+  explicit FakePlant(double tempo) : tempo_(tempo) {}
+  Index states() const override { return 2; }
+  Index inputs() const override { return 1; }
+  Index outputs() const override { return 1; }
+  Vector next(Index, VectorIn x, VectorIn u) const override { return Vector{{x[0] / 2 + u[0], tempo_ * x[0] * x[0]}}; }
+  Vector output(Index, VectorIn x, VectorIn) const override { return Vector{{x[1]}}; }
+
+ private:
+  double tempo_;
+};
+
 class FakeMetric final : public Metric {
  public:
   std::vector<MetricValue> step(const StepView&) override { return {}; }
@@ -83,10 +106,29 @@ ParamSchema observer_schema() {
   return schema;
 }
 
+/// All but `descriptor` take models with ranges.
 void add_observer(Registrar& registrar, const std::string& name, const ParamSchema& schema) {
-  registrar.observer({{name, "a fake", "", schema}, check_sets, [](const ObserverContext& context, const Params&) {
-                        return std::make_unique<FakeObserver>(context);
-                      }});
+  registrar.observer({{name, "a fake", "", schema},
+                      check_sets,
+                      [](const ObserverContext& context, const Params&) { return std::make_unique<FakeObserver>(context); },
+                      name != "descriptor"});
+}
+
+/// The observer inside is asked about every mode.
+std::vector<Diagnostic> check_bank(const DiagnoserContext& context, const Params& params) {
+  for (const Mode& mode : context.bank.modes) {
+    auto problems = context.make.check_observer(params.component("observer"), {mode.model, context.backend});
+    for (Diagnostic& d : problems) d.pointer = "/observer" + d.pointer;
+    if (!problems.empty()) return problems;
+  }
+  return {};
+}
+
+void add_diagnoser(Registrar& registrar, const std::string& name, const ParamSchema& schema,
+                   decltype(DiagnoserEntry::check) check) {
+  registrar.diagnoser({{name, "a fake", "", schema}, std::move(check), [](const DiagnoserContext& context, const Params&) {
+                         return std::make_unique<FakeDiagnoser>(context);
+                       }});
 }
 
 void add_metric(Registrar& registrar, const std::string& name, const ParamSchema& schema = {}) {
@@ -112,6 +154,17 @@ void register_fakes(Registrar& registrar) {
   add_observer(registrar, "all_kinds", kinds);
   for (const char* name : {"radius", "volume", "contains_truth", "complexity", "step_time", "tightness"})
     add_metric(registrar, name);
+  ParamSchema bank;
+  bank.component("observer", "of every mode", "observer").required();
+  bank.matrices("gains", "one per mode").integer("waiting_time", "in steps", {}, 1, 1000000).required();
+  add_diagnoser(registrar, "observer_bank", bank, check_bank);
+  ParamSchema committee;
+  committee.component("member", "the one that is asked", "diagnoser");
+  add_diagnoser(registrar, "committee", committee, nullptr);
+  ParamSchema reactor;
+  reactor.real("tempo", "of the reaction", 0.25, 0, 1);
+  registrar.plant({{"reactor", "a fake", "", reactor},
+                   [](const Params& params) { return std::make_unique<FakePlant>(params.real("tempo")); }});
   ParamSchema quantile;
   quantile.real("level", "between 0 and 1", {}, 0, 1).required();
   add_metric(registrar, "quantile", quantile);
@@ -171,6 +224,53 @@ const char* const valid_study = R"({
 }
 ],
 "metrics": ["radius", {"type": "quantile", "level": 0.5}]
+}
+)";
+
+const char* const diagnosis_study = R"({
+"cordon": 1,
+"title": "a diagnosis",
+"system": {
+"type": "lti",
+"A": [[0.5, 0.1], [0, 0.8]],
+"B": [[1, 0], [0.5, 2]],
+"C": [[1, 0]],
+"D": [[0.25, 0]],
+"X0": {"type": "box", "lower": [-2, -2], "upper": [2, 2]},
+"U": {"type": "box", "lower": [-1, 0], "upper": [1, 3]},
+"W": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
+"V": {"type": "box", "lower": [-0.3], "upper": [0.3]},
+"nominal": "well",
+"modes": [
+{"name": "weak", "actuator": [0.3, [0.1, 0.7]]},
+{"name": "deaf", "sensor": [0.5], "W": {"type": "point", "center": [0, 0.125]}, "V": {"type": "box", "lower": [-0.2], "upper": [0.2]}},
+{"name": "leak", "additive": {"F": [[1], [0.5]], "Fy": [[0.1]], "f": {"type": "box", "lower": [0.2], "upper": [0.4]}}},
+{"name": "other", "actuator": [[0.25, 0.5], 1], "system": {"type": "lti", "A": [[0.7, 0], [0, 0.8]], "B": [[1, 0], [0, 1]], "Bw": [[1], [1]], "C": [[0, 1]], "W": {"type": "point", "center": [0.5]}, "V": {"type": "point", "center": [0]}}}
+]
+},
+"data": {
+"simulate": {
+"steps": 20,
+"seeds": 3,
+"x0": [0.5, 0.25],
+"input": [{"type": "constant", "offset": 1}, {"type": "constant", "offset": 2}],
+"faults": [
+{"mode": "weak", "from": 3, "to": 5, "actuator": [0.3, [0.2, 0.5]]},
+{"mode": "deaf", "from": 6, "to": 9},
+{"name": "both", "from": 12, "actuator": [1, 0.9], "sensor": [[0.7, 0.8]]}
+]
+}
+},
+"pipelines": [
+{
+"backend": "zonotope",
+"diagnoser": {"type": "observer_bank", "observer": {"type": "prediction_correction", "max_generators": 25}, "waiting_time": 12}
+},
+{
+"backend": "line_zonotope",
+"observer": "prediction_correction"
+}
+]
 }
 )";
 

@@ -12,7 +12,8 @@
 namespace study_test {
 
 /// Backends interval, zonotope, constrained_zonotope, line_zonotope; observers prediction_correction, descriptor and `all_kinds`
-/// (one parameter of every kind); the metrics of the shipped plugin and `quantile` with a required parameter.
+/// (one parameter of every kind); the metrics of the shipped plugin and `quantile` with a required parameter; the diagnosers
+/// `observer_bank` (with an observer inside) and `committee` (with a diagnoser inside); the plant `reactor` with two states.
 void register_fakes(cordon::Registrar& registrar);
 
 /// A directory of its own that is removed in the end.
@@ -31,6 +32,9 @@ class Scratch {
 
 /// A valid study, one member per line, in which the tests exchange pieces.
 extern const char* const valid_study;
+
+/// The same for a study with modes, faults and diagnosers.
+extern const char* const diagnosis_study;
 
 /// `text` with its only occurrence of `from` exchanged. Throws std::logic_error if there is none or more than one.
 std::string exchanged(std::string text, const std::string& from, const std::string& to);

@@ -19,10 +19,12 @@ bool same(const LineForm& a, const LineForm& b) {
   return a.M == b.M && a.G == b.G && a.c == b.c && a.S == b.S && a.A == b.A && a.b == b.b;
 }
 
+bool same(const Box& a, const Box& b) { return a.lower == b.lower && a.upper == b.upper; }
+
 bool same(const Model& a, const Model& b) {
   const LinearModel &p = a.linear, &q = b.linear;
   return p.E == q.E && p.A == q.A && p.B == q.B && p.Bw == q.Bw && p.C == q.C && p.D == q.D && p.Dv == q.Dv && same(a.X0, b.X0) &&
-         same(a.W, b.W) && same(a.V, b.V);
+         same(a.W, b.W) && same(a.V, b.V) && same(a.U, b.U) && same(p.actuator, q.actuator) && same(p.sensor, q.sensor);
 }
 
 bool same(const ComponentSpec& a, const ComponentSpec& b) {
@@ -34,6 +36,8 @@ bool same(const ComponentSpec& a, const ComponentSpec& b) {
       const auto& y = std::get<std::decay_t<decltype(x)>>(other->second);
       if constexpr (std::is_same_v<std::decay_t<decltype(x)>, LineForm>) {
         return same(x, y);
+      } else if constexpr (std::is_same_v<std::decay_t<decltype(x)>, std::shared_ptr<const ComponentSpec>>) {
+        return same(*x, *y);
       } else {
         return x == y;
       }
@@ -48,20 +52,36 @@ bool same(const Signal& a, const Signal& b) {
          a.from == b.from && a.period == b.period && a.seed == b.seed && a.values == b.values;
 }
 
+bool same(const FaultSpec& a, const FaultSpec& b) {
+  return a.from == b.from && a.to == b.to && a.name == b.name && a.mode == b.mode && same(a.model, b.model) &&
+         same(a.actuator, b.actuator) && same(a.sensor, b.sensor);
+}
+
+bool same(const std::optional<ComponentSpec>& a, const std::optional<ComponentSpec>& b) {
+  return a.has_value() == b.has_value() && (!a || same(*a, *b));
+}
+
 bool same(const Study& a, const Study& b) {
+  const auto modes = [](const Mode& p, const Mode& q) { return p.name == q.name && same(p.model, q.model); };
+  if (a.nominal != b.nominal || !std::equal(a.modes.begin(), a.modes.end(), b.modes.begin(), b.modes.end(), modes)) return false;
   if (a.title != b.title || !same(a.model, b.model) || a.data.index() != b.data.index()) return false;
   if (const auto* s = std::get_if<SimulateSpec>(&a.data)) {
     const auto& t = std::get<SimulateSpec>(b.data);
     if (s->steps != t.steps || s->seed != t.seed || s->noise != t.noise || s->x0 != t.x0) return false;
+    if (s->seeds != t.seeds || !same(s->plant, t.plant) || !s->made_plant != !t.made_plant) return false;
+    if (!std::equal(s->faults.begin(), s->faults.end(), t.faults.begin(), t.faults.end(),
+                    [](auto& x, auto& y) { return same(x, y); }))
+      return false;
     if (!std::equal(s->input.begin(), s->input.end(), t.input.begin(), t.input.end(),
                     [](auto& x, auto& y) { return same(x, y); }))
       return false;
   } else {
     const auto &c = std::get<CsvSpec>(a.data), &d = std::get<CsvSpec>(b.data);
-    if (c.file != d.file || c.inputs != d.inputs || c.outputs != d.outputs || c.truth != d.truth) return false;
+    if (c.file != d.file || c.inputs != d.inputs || c.outputs != d.outputs || c.truth != d.truth || c.mode != d.mode)
+      return false;
   }
   const auto pipelines = [](const PipelineSpec& p, const PipelineSpec& q) {
-    return p.name == q.name && same(p.backend, q.backend) && same(p.observer, q.observer);
+    return p.name == q.name && same(p.backend, q.backend) && same(p.observer, q.observer) && same(p.diagnoser, q.diagnoser);
   };
   return std::equal(a.pipelines.begin(), a.pipelines.end(), b.pipelines.begin(), b.pipelines.end(), pipelines) &&
          std::equal(a.metrics.begin(), a.metrics.end(), b.metrics.begin(), b.metrics.end(),
@@ -192,6 +212,26 @@ TEST_CASE("the resolved text reads back as an equal study") {
       valid_study, "{\"type\": \"descriptor\", \"max_generators\": 30}",
       R"({"type": "all_kinds", "order": 3, "weight": 0.1, "fast": true, "norm": "two", "poles": [1e-308, 0.30000000000000004, -0.0],
       "gain": [[123456789.12345678, 5e-324]], "note": "\"é\n", "safe_set": {"type": "polytope", "lower": [-1, 0], "upper": [1, 3.3], "H": [[1, 0.7]], "h": [0.1]}})");
+  expect_round_trip(read_text(awkward), scratch.folder());
+}
+
+TEST_CASE("the resolved text of a diagnosis reads back as an equal study") {
+  const Scratch scratch;
+  const Study study = read_text(diagnosis_study);
+  CHECK(study.modes.size() == 4);
+  expect_round_trip(study, scratch.folder());
+  const auto json = nlohmann::json::parse(study.resolved);
+  CHECK(json["system"]["modes"][0] == nlohmann::json({{"name", "weak"}, {"actuator", {0.3, {0.1, 0.7}}}}));
+  CHECK(json["data"]["simulate"]["faults"][1] == nlohmann::json({{"mode", "deaf"}, {"from", 6}, {"to", 9}}));
+  CHECK(json["pipelines"][0]["diagnoser"]["observer"]["max_constraints"] == 20);
+  // awkward numbers, lists of matrices, components in components, the default name of a fault
+  std::string awkward = exchanged(diagnosis_study, "[0.3, [0.1, 0.7]]", "[0.30000000000000004, [5e-324, 0.7]]");
+  awkward = exchanged(awkward, "\"actuator\": [0.3, [0.2, 0.5]]", "\"actuator\": [0.30000000000000004, 5e-324]");
+  awkward = exchanged(awkward, "\"waiting_time\": 12", "\"waiting_time\": 12, \"gains\": [[[0.1], [-0.0]], [], [[1e-308, 3]]]");
+  awkward = exchanged(awkward, "\"name\": \"both\", ", "\"to\": 13, ");
+  awkward =
+      exchanged(awkward, "\"observer\": \"prediction_correction\"",
+                "\"diagnoser\": {\"type\": \"committee\", \"member\": {\"type\": \"committee\", \"member\": \"committee\"}}");
   expect_round_trip(read_text(awkward), scratch.folder());
 }
 

@@ -10,6 +10,7 @@ namespace {
 
 using Kind = Value::Kind;
 constexpr double max_steps = 1e9;
+constexpr double max_seeds = 1e5;
 
 void real(const Cursor& signal, std::string_view key, double& out) {
   if (const auto at = signal.find(key)) out = read_number(*at).value_or(0);
@@ -69,13 +70,16 @@ void expect_bounded(const Cursor& data, const LineForm& X, const char* key) {
              "bound " + std::string(key) + ", or use recorded data: \"csv\"");
 }
 
-SimulateSpec read_simulate(const Cursor& at, const SystemPart& system) {
+SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const ComponentContext& context,
+                           std::vector<WrittenFault>& written_faults) {
   SimulateSpec spec;
-  if (!at.expect_keys({"steps", "seed", "noise", "x0", "input"}, "key of simulated data", "{\"steps\": 100, \"input\": [...]}"))
+  if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults"}, "key of simulated data",
+                      "{\"steps\": 100, \"input\": [...]}"))
     return spec;
   if (const auto steps = at.need("steps", "the number of steps: samples k = 0 ... steps"))
     spec.steps = read_integer(*steps, 1, max_steps).value_or(0);
   if (const auto seed = at.find("seed")) spec.seed = static_cast<std::uint64_t>(read_integer(*seed, 0, max_integer).value_or(0));
+  if (const auto seeds = at.find("seeds")) spec.seeds = read_integer(*seeds, 1, max_seeds).value_or(1);
   if (const auto noise = at.find("noise")) {
     if (const auto name = read_choice(*noise, noise_names())) {
       spec.noise = static_cast<Noise>(std::find(noise_names().begin(), noise_names().end(), *name) - noise_names().begin());
@@ -86,10 +90,13 @@ SimulateSpec read_simulate(const Cursor& at, const SystemPart& system) {
     if (spec.x0 && system.sizes.states) expect_size(*x0, *spec.x0, *system.sizes.states, "the rows of /system/A");
   }
   read_input(at, system.sizes.inputs, spec.input);
+  const auto plant = at.find("plant"), faults = at.find("faults");
+  if (plant) read_plant(*plant, system, spec, context);
   if (system.good) {
-    expect_bounded(at, system.model.W, "W");
+    if (!plant) expect_bounded(at, system.model.W, "W");
     expect_bounded(at, system.model.V, "V");
   }
+  if (faults) read_faults(*faults, system, spec, written_faults, context.warnings);
   return spec;
 }
 
@@ -110,7 +117,7 @@ std::vector<std::string> read_columns(const Cursor& csv, const char* key, std::o
 DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::path& folder) {
   DataPart part;
   CsvSpec spec;
-  if (!at.expect_keys({"file", "inputs", "outputs", "truth"}, "key of recorded data",
+  if (!at.expect_keys({"file", "inputs", "outputs", "truth", "mode"}, "key of recorded data",
                       "{\"file\": \"data.csv\", \"outputs\": [\"y\"]}"))
     return part;
   const auto file_at = at.need("file", "the CSV file, relative to the folder of the study");
@@ -128,6 +135,7 @@ DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::p
   spec.inputs = read_columns(at, "inputs", sizes.inputs, "the columns of /system/B", true);
   spec.outputs = read_columns(at, "outputs", sizes.outputs, "the rows of /system/C", true);
   spec.truth = read_columns(at, "truth", sizes.states, "the rows of /system/A", false);
+  if (const auto mode = at.find("mode")) spec.mode = read_text(*mode, 4096).value_or("");
   part.data = std::move(spec);
   return part;
 }
@@ -167,7 +175,8 @@ std::size_t required_signal_keys(Signal::Type type) {
   return type == Signal::Type::constant || type == Signal::Type::prbs || type == Signal::Type::table ? 1 : 2;
 }
 
-DataPart read_data(const Cursor& data, const SystemPart& system, const std::filesystem::path& folder) {
+DataPart read_data(const Cursor& data, const SystemPart& system, const std::filesystem::path& folder,
+                   const ComponentContext& context) {
   const std::size_t before = data.problems().count();
   if (!data.expect_keys({"simulate", "csv"}, "kind of data", "{\"simulate\": {...}} or {\"csv\": {...}}")) return {};
   const auto simulate = data.find("simulate"), csv = data.find("csv");
@@ -178,7 +187,9 @@ DataPart read_data(const Cursor& data, const SystemPart& system, const std::file
   } else if (csv) {
     return read_csv(*csv, system.sizes, folder);
   } else {
-    return {read_simulate(*simulate, system), ""};
+    DataPart part;
+    part.data = read_simulate(*simulate, system, context, part.written_faults);
+    return part;
   }
   return {};
 }

@@ -34,7 +34,7 @@ class StudyReader {
   const SearchPath& path_;
   Problems problems_;
   std::vector<Diagnostic> refusals_;
-  WrittenPaths paths_;
+  Written written_;
   Study study_;
 };
 
@@ -59,9 +59,9 @@ void StudyReader::read_title(const Cursor& root) {
 void StudyReader::load_plugins(const Cursor& root) {
   SearchPath path;
   if (const auto at = root.find("plugins")) {
-    paths_.plugins = read_names(*at, "directory").value_or(std::vector<std::string>{});
-    for (std::size_t i = 0; i < paths_.plugins.size(); ++i) {
-      path.directories.push_back(folder() / paths_.plugins[i]);
+    written_.plugins = read_names(*at, "directory").value_or(std::vector<std::string>{});
+    for (std::size_t i = 0; i < written_.plugins.size(); ++i) {
+      path.directories.push_back(folder() / written_.plugins[i]);
       std::error_code failure;
       if (!std::filesystem::is_directory(path.directories.back(), failure)) {
         at->item(i).error("no such directory: " + in_quotes(path.directories.back().string(), 1000),
@@ -85,15 +85,29 @@ void StudyReader::read_sections(const Cursor& root) {
   SystemPart system;
   if (const auto at = root.need("system", "the plant: {\"type\": \"lti\", ...}")) system = read_system(*at, study_.warnings);
   if (const auto at = root.need("data", "{\"simulate\": {...}} or {\"csv\": {...}}")) {
-    DataPart part = read_data(*at, system, folder());
+    DataPart part = read_data(*at, system, folder(), context);
     study_.data = std::move(part.data);
-    paths_.csv_file = std::move(part.written_file);
+    written_.faults = std::move(part.written_faults);
+    written_.csv_file = std::move(part.written_file);
   }
   if (const auto at = root.need("pipelines", "a list of pipelines: [{\"backend\": ..., \"observer\": ...}]")) {
     study_.pipelines = read_pipelines(*at, system, context);
   }
   if (const auto at = root.find("metrics")) study_.metrics = read_metrics(*at, context);
   study_.model = std::move(system.model);
+  study_.nominal = std::move(system.nominal);
+  study_.modes = std::move(system.modes);
+  written_.modes = std::move(system.written);
+}
+
+/// The parameters that hold a set to start from, of the component or of one inside it; null: it starts from X0.
+const Params* starting_params(const ComponentSpec& spec) {
+  if (spec.params.has("initial_set")) return &spec.params;
+  for (const auto& [name, value] : spec.params.values()) {
+    const auto* inner = std::get_if<std::shared_ptr<const ComponentSpec>>(&value);
+    if (const Params* found = inner ? starting_params(**inner) : nullptr) return found;
+  }
+  return nullptr;
 }
 
 /// A simulation that starts outside the set an observer starts from would break its guarantee by construction.
@@ -104,16 +118,20 @@ void StudyReader::check_start(const Cursor& root) {
   const auto outside = [&](const LineForm& set) { return set.dim() == x0.size() && contains(set, x0) == Answer::no; };
   const Cursor at = *root.find("data")->find("simulate")->find("x0");
   bool own = false;  // does a pipeline start from the system's X0?
-  for (std::size_t i = 0; i < study_.pipelines.size(); ++i) {
-    const Params& params = study_.pipelines[i].observer.params;
-    if (!params.has("initial_set")) {
+  for (const PipelineSpec& pipeline : study_.pipelines) {
+    const Params* params = starting_params(pipeline.diagnoser ? *pipeline.diagnoser : pipeline.observer);
+    if (!params) {
       own = true;
-    } else if (outside(params.set_form("initial_set"))) {
-      at.error("lies outside the initial_set of pipeline " + in_quotes(study_.pipelines[i].name),
-               "choose x0 inside, or widen the set");
+    } else if (outside(params->set_form("initial_set"))) {
+      at.error("lies outside the initial_set of pipeline " + in_quotes(pipeline.name), "choose x0 inside, or widen the set");
     }
   }
-  if (own && outside(study_.model.X0)) at.error("lies outside X0", "choose x0 inside /system/X0, or widen that set");
+  if (own && outside(study_.model.X0)) {
+    at.error("lies outside X0", "choose x0 inside /system/X0, or widen that set");
+  } else if (!spec->faults.empty() && spec->faults.front().from == 0 && outside(spec->faults.front().model.X0)) {
+    at.error("lies outside X0 of the fault that acts from the beginning: " + in_quotes(spec->faults.front().name),
+             "choose x0 inside, or widen that set");
+  }
 }
 
 void StudyReader::add_plugin_warnings() {
@@ -143,7 +161,7 @@ Study StudyReader::read() {
   check_start(root);
   finish();
   add_plugin_warnings();
-  study_.resolved = resolve(study_, paths_, registry_);
+  study_.resolved = resolve(study_, written_, registry_);
   return std::move(study_);
 }
 

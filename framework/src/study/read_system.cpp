@@ -10,8 +10,9 @@ namespace {
 /// leaves the sizes it would have fixed unknown, and what depends on them unchecked.
 class SystemReader {
  public:
-  SystemReader(const Cursor& system, std::vector<std::string>& warnings)
-      : system_(system), warnings_(warnings), before_(system.problems().met()) {}
+  /// `nominal`: the system is that of a mode.
+  SystemReader(const Cursor& system, const SystemPart* nominal, std::vector<std::string>& warnings)
+      : system_(system), nominal_(nominal), warnings_(warnings), before_(system.problems().met()) {}
 
   SystemPart read();
 
@@ -24,10 +25,13 @@ class SystemReader {
   void read_descriptor_matrix();
   void read_outputs();
   void read_sets(std::optional<Index> disturbances, std::optional<Index> noises);
-  void read_bounds_set(const char* key, std::optional<Index> dim, const char* like, LineForm& out);
+  void read_bounds_set(const char* key, std::optional<Index> dim, const std::string& like, LineForm& out);
+  void compare_with_nominal();
+  void compare(const char* key, std::optional<Index> size, std::optional<Index> wanted, const char* noun);
   std::string place(const char* key) const { return child(system_.pointer(), key); }
 
   const Cursor& system_;
+  const SystemPart* nominal_;
   std::vector<std::string>& warnings_;
   std::size_t before_;
   SystemPart part_;
@@ -124,7 +128,7 @@ void SystemReader::read_outputs() {
   }
 }
 
-void SystemReader::read_bounds_set(const char* key, std::optional<Index> dim, const char* like, LineForm& out) {
+void SystemReader::read_bounds_set(const char* key, std::optional<Index> dim, const std::string& like, LineForm& out) {
   if (!system_.find(key) && dim == Index{0}) {
     out = make_point(Vector(0));
     return;
@@ -143,15 +147,37 @@ void SystemReader::read_bounds_set(const char* key, std::optional<Index> dim, co
 void SystemReader::read_sets(std::optional<Index> disturbances, std::optional<Index> noises) {
   const Sizes& sizes = part_.sizes;
   if (system_.find("X0")) {
-    read_bounds_set("X0", sizes.states, ("the rows of " + place("A")).c_str(), part_.model.X0);
+    read_bounds_set("X0", sizes.states, "the rows of " + place("A"), part_.model.X0);
+  } else if (nominal_) {
+    part_.model.X0 = nominal_->model.X0;
   } else if (sizes.states) {
     part_.model.X0 = make_space(*sizes.states);
   }
-  const char* w_like = system_.find("Bw") ? "the columns of /system/Bw" : "the rows of /system/A (Bw is the identity by default)";
-  const char* v_like = system_.find("Dv") ? "the columns of /system/Dv" : "the rows of /system/C (Dv is the identity by default)";
-  if (sizes.inputs) part_.model.U = make_space(*sizes.inputs);
+  const std::string w_like =
+      system_.find("Bw") ? "the columns of " + place("Bw") : "the rows of " + place("A") + " (Bw is the identity by default)";
+  const std::string v_like =
+      system_.find("Dv") ? "the columns of " + place("Dv") : "the rows of " + place("C") + " (Dv is the identity by default)";
+  if (system_.find("U") && !nominal_) {
+    read_bounds_set("U", sizes.inputs, "the columns of " + place("B"), part_.model.U);
+  } else if (sizes.inputs) {
+    part_.model.U = make_space(*sizes.inputs);
+  }
   read_bounds_set("W", disturbances, w_like, part_.model.W);
   read_bounds_set("V", noises, v_like, part_.model.V);
+}
+
+void SystemReader::compare(const char* key, std::optional<Index> size, std::optional<Index> wanted, const char* noun) {
+  if (!size || !wanted || size == wanted) return;
+  const auto at = system_.find(key);
+  (at ? *at : system_)
+      .error("has " + counted(*size, noun) + ", /system has " + std::to_string(*wanted),
+             "all modes have the same numbers of states, inputs and outputs");
+}
+
+void SystemReader::compare_with_nominal() {
+  compare("A", part_.sizes.states, nominal_->sizes.states, "state");
+  compare("B", part_.sizes.inputs, nominal_->sizes.inputs, "input");
+  compare("C", part_.sizes.outputs, nominal_->sizes.outputs, "output");
 }
 
 SystemPart SystemReader::read() {
@@ -159,15 +185,18 @@ SystemPart SystemReader::read() {
   const auto type_at = system_.need("type", "\"lti\", or \"descriptor\" with E");
   const auto type = type_at ? read_choice(*type_at, system_types()) : std::nullopt;
   std::vector<std::string> keys{"type", "E", "A", "B", "Bw", "C", "D", "Dv", "X0", "W", "V"};
+  if (!nominal_) keys.insert(keys.end(), {"U", "nominal", "modes"});
   if (type == "lti") {
     if (const auto E = system_.find("E"))
       E->error("belongs to descriptor systems", "write \"type\": \"descriptor\", or remove E");
   }
-  system_.expect_keys(keys, "key of a system", "");
+  system_.expect_keys(keys, nominal_ ? "key of a mode's system" : "key of a system", "");
   read_dynamics(type == "descriptor");
   read_outputs();
   read_sets(disturbances_, noises_);
+  if (nominal_) compare_with_nominal();
   part_.good = system_.problems().met() == before_;
+  if (!nominal_) read_modes(system_, part_, warnings_);
   return std::move(part_);
 }
 
@@ -178,6 +207,12 @@ const std::vector<std::string>& system_types() {
   return names;
 }
 
-SystemPart read_system(const Cursor& system, std::vector<std::string>& warnings) { return SystemReader(system, warnings).read(); }
+SystemPart read_system(const Cursor& system, std::vector<std::string>& warnings) {
+  return SystemReader(system, nullptr, warnings).read();
+}
+
+SystemPart read_mode_system(const Cursor& system, const SystemPart& nominal, std::vector<std::string>& warnings) {
+  return SystemReader(system, &nominal, warnings).read();
+}
 
 }  // namespace cordon::json

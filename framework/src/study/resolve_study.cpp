@@ -23,11 +23,15 @@ Json to_json(const Matrix& A) {
   return rows;
 }
 
+bool is_whole_space(const LineForm& X) {
+  return X.constraints() == 0 && X.generators() == 0 && X.lines() == X.dim() && X.M.isIdentity(0) && X.c.isZero(0);
+}
+
 /// The simplest type that holds the blocks as they are.
 Json to_json(const LineForm& X) {
   const bool lines = X.lines() > 0, constraints = X.constraints() > 0;
   Json set;
-  if (!constraints && X.generators() == 0 && lines && X.lines() == X.dim() && X.M.isIdentity(0) && X.c.isZero(0)) {
+  if (lines && is_whole_space(X)) {
     set["type"] = "space";
     set["dim"] = X.dim();
     return set;
@@ -44,7 +48,12 @@ Json to_json(const LineForm& X) {
   return set;
 }
 
+Json to_json(const ComponentSpec& spec, const std::string& kind, const Registry& registry);
+
 struct ToJson {
+  const ParamSpec& param;
+  const Registry& registry;
+
   Json operator()(std::int64_t value) const { return value; }
   Json operator()(double value) const { return value; }
   Json operator()(bool value) const { return value; }
@@ -57,15 +66,17 @@ struct ToJson {
     for (const Matrix& A : value) list.push_back(to_json(A));
     return list;
   }
-  Json operator()(const std::shared_ptr<const ComponentSpec>& value) const { return value->type; }
+  Json operator()(const std::shared_ptr<const ComponentSpec>& value) const {
+    return to_json(*value, param.component_kind, registry);
+  }
 };
 
-Json to_json(const ComponentSpec& spec, const ComponentInfo& info) {
+Json to_json(const ComponentSpec& spec, const std::string& kind, const Registry& registry) {
   Json object;
   object["type"] = spec.type;
-  for (const ParamSpec& param : info.schema.specs()) {
+  for (const ParamSpec& param : (registry.*shelf_of(kind)->info)(spec.type)->schema.specs()) {
     const auto found = spec.params.values().find(param.name);
-    if (found != spec.params.values().end()) object[param.name] = std::visit(ToJson{}, found->second);
+    if (found != spec.params.values().end()) object[param.name] = std::visit(ToJson{param, registry}, found->second);
   }
   return object;
 }
@@ -87,6 +98,54 @@ Json to_json(const Model& model) {
   return system;
 }
 
+/// Effectiveness: a number where it is exact, else a range.
+Json to_json(const Box& box) {
+  Json list = Json::array();
+  for (Index i = 0; i < box.dim(); ++i) {
+    list.push_back(box.lower[i] == box.upper[i] ? Json(box.lower[i]) : Json{box.lower[i], box.upper[i]});
+  }
+  return list;
+}
+
+/// The keys of a mode, without its name.
+void add(Json& object, const WrittenMode& mode) {
+  if (mode.actuator) object["actuator"] = to_json(*mode.actuator);
+  if (mode.sensor) object["sensor"] = to_json(*mode.sensor);
+  if (mode.additive) {
+    Json& additive = object["additive"];
+    if (mode.additive->F) additive["F"] = to_json(*mode.additive->F);
+    if (mode.additive->Fy) additive["Fy"] = to_json(*mode.additive->Fy);
+    additive["f"] = to_json(mode.additive->f);
+  }
+  if (mode.W) object["W"] = to_json(*mode.W);
+  if (mode.V) object["V"] = to_json(*mode.V);
+  if (mode.system) object["system"] = to_json(*mode.system);
+}
+
+/// U, the name of the nominal mode and the modes, where there are any.
+void add_modes(Json& system, const Study& study, const Written& written) {
+  const LineForm& U = study.model.U;
+  if (!is_whole_space(U)) system["U"] = to_json(U);
+  if (written.modes.empty() && study.nominal == Study{}.nominal) return;
+  system["nominal"] = study.nominal;
+  system["modes"] = Json::array();
+  for (const WrittenMode& mode : written.modes) {
+    Json object;
+    object["name"] = mode.name;
+    add(object, mode);
+    system["modes"].push_back(std::move(object));
+  }
+}
+
+Json to_json(const FaultSpec& fault, const WrittenFault& written) {
+  Json object;
+  object[written.mode.empty() ? "name" : "mode"] = fault.name;
+  object["from"] = fault.from;
+  if (fault.to != FaultSpec{}.to) object["to"] = fault.to;
+  add(object, written.own);
+  return object;
+}
+
 Json to_json(const Signal& signal) {
   Json object;
   object["type"] = signal_types()[static_cast<std::size_t>(signal.type)];
@@ -103,14 +162,17 @@ Json to_json(const Signal& signal) {
   return object;
 }
 
-Json to_json(const SimulateSpec& spec) {
+Json to_json(const SimulateSpec& spec, const Written& written, const Registry& registry) {
   Json object;
   object["steps"] = spec.steps;
   object["seed"] = spec.seed;
+  if (spec.seeds != 1) object["seeds"] = spec.seeds;
   object["noise"] = noise_names()[static_cast<std::size_t>(spec.noise)];
   if (spec.x0) object["x0"] = to_json(*spec.x0);
   object["input"] = Json::array();
   for (const Signal& signal : spec.input) object["input"].push_back(to_json(signal));
+  if (spec.plant) object["plant"] = to_json(*spec.plant, "plant", registry);
+  for (std::size_t i = 0; i < spec.faults.size(); ++i) object["faults"].push_back(to_json(spec.faults[i], written.faults[i]));
   return object;
 }
 
@@ -120,6 +182,7 @@ Json to_json(const CsvSpec& spec, const std::string& written_file) {
   object["inputs"] = spec.inputs;
   object["outputs"] = spec.outputs;
   if (!spec.truth.empty()) object["truth"] = spec.truth;
+  if (!spec.mode.empty()) object["mode"] = spec.mode;
   return object;
 }
 
@@ -145,27 +208,32 @@ void print(const Json& value, const std::string& indent, std::string& out) {
 
 }  // namespace
 
-std::string resolve(const Study& study, const WrittenPaths& paths, const Registry& registry) {
+std::string resolve(const Study& study, const Written& written, const Registry& registry) {
   Json root;
   root["cordon"] = 1;
   root["title"] = study.title;
-  if (!paths.plugins.empty()) root["plugins"] = paths.plugins;
+  if (!written.plugins.empty()) root["plugins"] = written.plugins;
   root["system"] = to_json(study.model);
+  add_modes(root["system"], study, written);
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
-    root["data"]["simulate"] = to_json(*simulate);
+    root["data"]["simulate"] = to_json(*simulate, written, registry);
   } else {
-    root["data"]["csv"] = to_json(std::get<CsvSpec>(study.data), paths.csv_file);
+    root["data"]["csv"] = to_json(std::get<CsvSpec>(study.data), written.csv_file);
   }
   root["pipelines"] = Json::array();
   for (const PipelineSpec& spec : study.pipelines) {
     Json pipeline;
     pipeline["name"] = spec.name;
-    pipeline["backend"] = to_json(spec.backend, *registry.backend_info(spec.backend.type));
-    pipeline["observer"] = to_json(spec.observer, *registry.observer_info(spec.observer.type));
+    pipeline["backend"] = to_json(spec.backend, "backend", registry);
+    if (spec.diagnoser) {
+      pipeline["diagnoser"] = to_json(*spec.diagnoser, "diagnoser", registry);
+    } else {
+      pipeline["observer"] = to_json(spec.observer, "observer", registry);
+    }
     root["pipelines"].push_back(std::move(pipeline));
   }
   root["metrics"] = Json::array();
-  for (const ComponentSpec& spec : study.metrics) root["metrics"].push_back(to_json(spec, *registry.metric_info(spec.type)));
+  for (const ComponentSpec& spec : study.metrics) root["metrics"].push_back(to_json(spec, "metric", registry));
   std::string text;
   print(root, "", text);
   return text + "\n";

@@ -38,13 +38,16 @@ struct Signal {
 enum class Noise { uniform, vertex, zero, sine };
 
 /// A fault of simulated data: for k = from … to, x_{k+1} and y_k are made with `model`. W, V and effectiveness are drawn from its
-/// sets.
+/// sets. Of a descriptor system the equation E x_{k+1} = …, static rows included, is the fault's.
 struct FaultSpec {
   std::int64_t from = 0;
   std::int64_t to = std::numeric_limits<std::int64_t>::max();
   std::string name;  ///< for people: the mode's, or the fault's own
   Index mode = -1;   ///< index in the study's bank; -1: outside the bank
   Model model;
+  /// The whole effectiveness, of which `model` has the exact part in its matrices: what a `plant` is simulated with. Dimension 0:
+  /// exactly 1.
+  Box actuator = {}, sensor = {};
 };
 
 /// Simulated data: x_{k+1}, y_k from the model, seeded and identical on every machine.
@@ -64,6 +67,7 @@ struct SimulateSpec {
 struct CsvSpec {
   std::filesystem::path file;                       ///< absolute, or relative to the study's folder (resolved when read)
   std::vector<std::string> inputs, outputs, truth;  ///< column names; truth may be empty
+  std::string mode = {};                            ///< column with the names of the true modes; empty: not known
 };
 
 /// A backend with an observer or with a diagnoser.
