@@ -146,8 +146,8 @@ class DiagnosisPipeline {
 
 }  // namespace
 
-std::optional<PipelineOutcome> run_diagnosis(const Study& study, std::size_t index, const Registry& registry,
-                                             const RunOptions& options, Results* results) {
+std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study, std::size_t index,
+                                             const Registry& registry, const RunOptions& options, Results* results) {
   const PipelineSpec& spec = study.pipelines[index];
   const Clock::time_point begin = Clock::now();
   DiagnosisPipeline pipeline(study, spec);
@@ -157,7 +157,7 @@ std::optional<PipelineOutcome> run_diagnosis(const Study& study, std::size_t ind
   std::int64_t total = 0;
   Clock::time_point told = begin;
   for (std::int64_t offset = 0; offset < seeds && !pipeline.failed(); ++offset) {
-    const std::unique_ptr<DataSource> data = open_data(study, static_cast<std::uint64_t>(offset));
+    const std::unique_ptr<DataSource> data = open(static_cast<std::uint64_t>(offset));
     total = seeds * data->size().value_or(0);
     Results* const writer = offset == 0 ? results : nullptr;
     pipeline.begin_run(offset);

@@ -4,11 +4,12 @@
 
 #include "cordon/study/run.hpp"
 #include "study/results.hpp"
+#include "study/run_on.hpp"
 
 namespace cordon::detail {
 
 /// Over all seeds of the study, the first of which is written. Nothing: stopped from outside.
-std::optional<PipelineOutcome> run_diagnosis(const Study& study, std::size_t index, const Registry& registry,
-                                             const RunOptions& options, Results* results);
+std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study, std::size_t index,
+                                             const Registry& registry, const RunOptions& options, Results* results);
 
 }  // namespace cordon::detail

@@ -214,8 +214,8 @@ bool run_pipeline(const Study& study, std::size_t index, const Registry& registr
 
 }  // namespace
 
-RunOutcome run_study(const Study& study, const Registry& registry, const RunOptions& options) {
-  std::unique_ptr<DataSource> data = open_data(study);  // first: bad data leave no trace on the disk
+RunOutcome detail::run_on(const OpenData& open, const Study& study, const Registry& registry, const RunOptions& options) {
+  std::unique_ptr<DataSource> data = open(0);  // first: bad data leave no trace on the disk
   std::optional<Results> results;
   if (!options.out.empty()) results.emplace(study, registry, options.out);
   Results* const writer = results ? &*results : nullptr;
@@ -223,11 +223,11 @@ RunOutcome run_study(const Study& study, const Registry& registry, const RunOpti
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
     bool done = true;
     if (study.pipelines[i].diagnoser) {
-      std::optional<PipelineOutcome> found = detail::run_diagnosis(study, i, registry, options, writer);
+      std::optional<PipelineOutcome> found = detail::run_diagnosis(open, study, i, registry, options, writer);
       done = found.has_value();
       if (found) outcome.pipelines.push_back(std::move(*found));
     } else {
-      if (i > 0) data = open_data(study);
+      if (i > 0) data = open(0);
       done = run_pipeline(study, i, registry, options, *data, writer, outcome);
     }
     if (!done) {
@@ -241,6 +241,10 @@ RunOutcome run_study(const Study& study, const Registry& registry, const RunOpti
     outcome.files = writer->commit(outcome);
   }
   return outcome;
+}
+
+RunOutcome run_study(const Study& study, const Registry& registry, const RunOptions& options) {
+  return detail::run_on([&](std::uint64_t seed_offset) { return open_data(study, seed_offset); }, study, registry, options);
 }
 
 }  // namespace cordon
