@@ -89,7 +89,9 @@ Rows statistics(const DiagnosisOutcome& found) {
   const bool outside = std::any_of(found.statistics.begin(), found.statistics.end(), [](const auto& m) { return m.mode < 0; });
   Rows rows{{"TRUE MODE", "TIMES", "DETECTED", "ISOLATED", "MISSED", "WRONG MODE", "DETECTION DELAY", "ISOLATION DELAY"}};
   if (outside) rows[0].insert(rows[0].begin() + 6, "UNKNOWN FAULT");
-  for (const ModeStatistics& counts : found.statistics) {
+  std::vector<ModeStatistics> all = found.statistics;
+  std::stable_partition(all.begin(), all.end(), [](const ModeStatistics& counts) { return counts.mode >= 0; });
+  for (const ModeStatistics& counts : all) {
     const bool inside = counts.mode >= 0;
     rows.push_back({name_of(found.modes, counts.mode), fmt::format("{}", counts.segments), fmt::format("{}", counts.detected),
                     inside ? fmt::format("{}", counts.isolated) : "-", inside ? fmt::format("{}", counts.missed) : "-",
@@ -116,10 +118,10 @@ std::string score_text(const DiagnosisOutcome& found, const Paint& paint) {
     text += paint.yellow(fmt::format("A wrong mode: in {} of {}", found.runs_with_wrong_mode, runs_text(found.runs))) + "\n";
   }
   if (const auto& excluded = found.true_mode_excluded) {
-    text +=
-        paint.red(fmt::format("True mode excluded: {} at k = {}, although true since k = {} (seed {} of the study)",
-                              name_of(found.modes, excluded->mode), excluded->k, excluded->since, excluded->seed_offset + 1)) +
-        "\n";
+    text += paint.red(fmt::format("True mode excluded: {} at k = {}, although true since k = {} (run {} of {})",
+                                  name_of(found.modes, excluded->mode), excluded->k, excluded->since, excluded->seed_offset + 1,
+                                  found.runs)) +
+            "\n";
   } else {
     text += "True mode excluded: never\n";
   }
