@@ -2,6 +2,8 @@
 // What the files hold of pipelines with a diagnoser.
 #include "study/results_diagnosis.hpp"
 
+#include <fmt/format.h>
+
 #include "study/diagnosis_json.hpp"
 #include "study/results.hpp"
 #include "study/results_parts.hpp"
@@ -76,11 +78,11 @@ void Results::begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> 
 void Results::write_diagnosis_header(std::size_t modes) {
   std::vector<std::string> names{"pipeline", "k", "decision", "mode", "truth", "since", "suggested"};
   for (std::size_t j = 0; j < modes; ++j) {
-    const std::string of_mode = "_" + std::to_string(j);
+    const std::string of_mode = fmt::format("_{}", j);
     names.push_back("candidate" + of_mode);
     names.push_back("consistent" + of_mode);
     for (const char* bound : {"lower", "upper"}) {
-      for (Index i = 1; i <= study_.model.linear.outputs(); ++i) names.push_back(bound + of_mode + "_" + std::to_string(i));
+      for (Index i = 1; i <= study_.model.linear.outputs(); ++i) names.push_back(fmt::format("{}{}_{}", bound, of_mode, i));
     }
   }
   diagnosis_file_->write(joined(names));
