@@ -92,9 +92,16 @@ std::string Paint::wrap(const char* code, const std::string& text) const {
 
 namespace {
 
-/// Number of code points: every byte that does not continue one.
+/// Number of code points, every byte that does not continue one, without the combining marks U+0300 … U+036F.
 std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : '\0');
+    const bool combining = byte == 0xCC || (byte == 0xCD && next <= 0xAF);
+    count += (byte & 0xC0) != 0x80 && !combining;
+  }
+  return count;
 }
 
 }  // namespace

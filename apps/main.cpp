@@ -46,6 +46,7 @@ Exit run(int argc, char** argv) {
   add_run(app, program);
   add_validate(app, program);
   add_verify(app, program);
+  add_guarantees(app, program);
   add_list(app, program);
   add_info(app, program);
   add_schema(app, program);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "diagnosis_report.hpp"
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
 #include "run_report.hpp"
@@ -38,7 +39,9 @@ void complain_about(const RunOutcome& outcome) {
     if (!pipeline.error.empty()) {
       complain(fmt::format("pipeline \"{}\" stopped after {} steps: {}", pipeline.name, pipeline.steps, pipeline.error));
     }
-    if (pipeline.violated_at >= 0) {
+    if (pipeline.violated_at >= 0 && pipeline.diagnosis) {
+      complain(diagnosis_violation(pipeline));
+    } else if (pipeline.violated_at >= 0) {
       complain(fmt::format(
           "pipeline \"{}\" violates its guarantee: at k = {} the true state is proven outside the estimate. This is a "
           "defect of its backend or observer, or x0 lies outside X0",
@@ -79,10 +82,11 @@ void add_run(CLI::App& app, Program& program) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("STUDY", arguments->study, "Study file (JSON)")->required()->option_text(" ");
   command->add_option("--out", arguments->out, "Directory for the results [results/<name of the study>]")->option_text("DIR");
-  command->add_flag("--json", arguments->json, "Print JSON for programs instead of the table");
+  command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->footer(
-      "Results appear when all are complete: results.json, sets.jsonl, data.csv, steps.csv, summary.csv, run.json.\n"
+      "Results appear when all are complete: results.json, sets.jsonl, data.csv, steps.csv, summary.csv, run.json, and\n"
+      "diagnosis.csv where there are diagnosers: they are tried on all seeds of the study, and the first is written.\n"
       "SIGINT or SIGTERM ends the run with exit code 130 and leaves earlier results as they were; a second one kills.");
   command->callback([&program, arguments] { program.exit = run(program, *arguments); });
 }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common.hpp"
+#include "diagnosis_report.hpp"
 
 namespace cordon::apps {
 
@@ -96,6 +97,17 @@ std::vector<Column> columns(const RunOutcome& outcome) {
   return found;
 }
 
+std::string observer_table(const RunOutcome& outcome, const Paint& paint) {
+  const std::vector<Column> shown = columns(outcome);
+  std::vector<std::vector<std::string>> rows(1);
+  for (const Column& column : shown) rows[0].push_back(column.header);
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    rows.emplace_back();
+    for (const Column& column : shown) rows.back().push_back(column.cell(pipeline));
+  }
+  return table(rows, paint);
+}
+
 ordered_json number(double value) {
   if (std::isnan(value)) return nullptr;
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -104,7 +116,25 @@ ordered_json number(double value) {
 
 ordered_json time_or_null(std::int64_t k) { return k < 0 ? ordered_json(nullptr) : ordered_json(k); }
 
+ordered_json error_of(const PipelineOutcome& p) { return p.error.empty() ? ordered_json(nullptr) : ordered_json(p.error); }
+
+ordered_json json_of_diagnosis(const PipelineOutcome& p) {
+  const auto& guarantees = p.diagnosis->guarantees;
+  return {
+      {"name", p.name},
+      {"backend", p.backend},
+      {"diagnoser", p.diagnoser},
+      {"modes", p.diagnosis->modes},
+      {"steps", p.steps},
+      {"violated_at", time_or_null(p.violated_at)},
+      {"error", error_of(p)},
+      {"guarantees", guarantees ? ordered_json::parse(cordon::json_of(*guarantees, p.diagnosis->modes)) : ordered_json(nullptr)},
+      {"diagnosis", ordered_json::parse(cordon::json_of(*p.diagnosis))},
+      {"median_step_us", p.median_step_us}};
+}
+
 ordered_json json_of(const PipelineOutcome& p) {
+  if (p.diagnosis) return json_of_diagnosis(p);
   ordered_json metrics = ordered_json::object();
   for (const MetricValue& metric : p.summary) {
     if (const auto* value = std::get_if<double>(&metric.value)) {
@@ -124,7 +154,7 @@ ordered_json json_of(const PipelineOutcome& p) {
           {"assumptions_until", time_or_null(p.assumptions_until)},
           {"outside_from", time_or_null(p.outside_from)},
           {"violated_at", time_or_null(p.violated_at)},
-          {"error", p.error.empty() ? ordered_json(nullptr) : ordered_json(p.error)},
+          {"error", error_of(p)},
           {"metrics", std::move(metrics)},
           {"median_step_us", p.median_step_us},
           {"median_hull_us", p.median_hull_us}};
@@ -133,16 +163,19 @@ ordered_json json_of(const PipelineOutcome& p) {
 }  // namespace
 
 std::string report_text(const Study& study, const RunOutcome& outcome, const std::filesystem::path& out) {
-  const std::vector<Column> shown = columns(outcome);
-  std::vector<std::vector<std::string>> rows(1);
-  for (const Column& column : shown) rows[0].push_back(column.header);
-  for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    rows.emplace_back();
-    for (const Column& column : shown) rows.back().push_back(column.cell(pipeline));
-  }
+  RunOutcome observed;  // pipelines with a diagnoser have nothing to tell in the columns of this table
+  std::string diagnoses;
   const Paint paint(stdout);
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    if (pipeline.diagnosis) {
+      diagnoses += diagnosis_text(study, pipeline, paint) + "\n";
+    } else {
+      observed.pipelines.push_back(pipeline);
+    }
+  }
   const std::string title = study.title.empty() ? "" : paint.bold(study.title) + "\n\n";
-  return title + table(rows, paint) + "\nResults are in " + out.string() + "\n";
+  const std::string comparison = observed.pipelines.empty() && !diagnoses.empty() ? "" : observer_table(observed, paint) + "\n";
+  return title + comparison + diagnoses + "Results are in " + out.string() + "\n";
 }
 
 std::string report_json(const RunOutcome& outcome) {

@@ -9,7 +9,7 @@
 
 namespace cordon::apps {
 
-/// A table with one row per pipeline, then where the results are.
+/// A table with one row per pipeline with an observer, a timeline for each with a diagnoser, then where the results are.
 std::string report_text(const Study& study, const RunOutcome& outcome, const std::filesystem::path& out);
 std::string report_json(const RunOutcome& outcome);
 

@@ -41,7 +41,8 @@ std::string describe(const Study& study) {
                                  paint.green("ok"), study.title, describe_system(study.model.linear), describe_data(study));
   const char* label = "pipelines";
   for (const PipelineSpec& pipeline : study.pipelines) {
-    text += fmt::format("  {:<9} {}: {}, {}\n", label, pipeline.name, pipeline.backend.type, pipeline.observer.type);
+    text += fmt::format("  {:<9} {}: {}, {}\n", label, pipeline.name, pipeline.backend.type,
+                        pipeline.diagnoser ? pipeline.diagnoser->type : pipeline.observer.type);
     label = "";
   }
   std::vector<std::string> metrics;

@@ -3,6 +3,7 @@
 // observers that misbehave, and metrics.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <stdexcept>
 
@@ -134,6 +135,56 @@ class Fickle final : public Metric {
   std::vector<MetricValue> summary() const override { return {}; }
 };
 
+/// Says what its script tells it, whatever the data are: `excludes` is contradicted, and the nominal mode left, at `at`, one step
+/// later each time it is started again, and `mode` is isolated at the step after. Breaks down at k = 5 of run number `breaks`.
+class Scripted final : public Diagnoser {
+ public:
+  Scripted(const DiagnoserContext& context, const Params& script)
+      : Diagnoser(context.bank, context.backend),
+        at_(script.integer("at")),
+        mode_(script.integer("mode")),
+        excludes_(script.integer("excludes")),
+        breaks_(script.integer("breaks")),
+        promises_(script.flag("promises")) {}
+
+ private:
+  void do_start() override { ++runs_; }
+  Diagnosis do_step(const Sample*, const Sample& now) override {
+    if (runs_ == breaks_ && now.k == 5) throw Error(Errc::unsupported, "out of order");
+    const Index at = at_ < 0 ? std::numeric_limits<Index>::max() - 1 : at_ + runs_ - 1;
+    Diagnosis says{now.k, Decision::monitoring, bank().nominal, 0, -1, {}, {}};
+    says.modes.resize(static_cast<std::size_t>(bank().size()));
+    for (ModeEvidence& evidence : says.modes) {
+      evidence.candidate = now.k == at;
+      evidence.residual = {Vector::Constant(now.y.size(), -.25), Vector::Constant(now.y.size(), .5)};
+    }
+    if (now.k >= at) {
+      says.since = at;
+      says.decision = now.k == at ? Decision::isolating : Decision::monitoring;
+      says.mode = now.k == at ? -1 : mode_;
+      says.suggested = now.k == at ? mode_ : -1;
+    }
+    if (says.mode >= 0 && says.mode < bank().size()) says.modes[static_cast<std::size_t>(says.mode)].candidate = true;
+    if (now.k == at) {
+      ModeEvidence& first = says.modes[static_cast<std::size_t>(excludes_)];
+      first.consistent = Answer::no;
+      first.residual = {Vector::Constant(now.y.size(), .125), Vector::Constant(now.y.size(), .5)};
+      first.why = {Certificate::Kind::farkas, Vector::Ones(1), .125};
+    }
+    return says;
+  }
+  std::optional<Guarantees> do_guarantees() const override {
+    if (!promises_) return std::nullopt;
+    const Box inside{-Vector::Ones(1), Vector::Ones(1)}, outside{Vector::Ones(1), 2 * Vector::Ones(1)};
+    Guarantees found{"by hand", {{0, 0, inside, Answer::yes}, {1, 0, outside, Answer::unknown}}, Answer::unknown, {}};
+    found.error_set = ErrorSetCheck{make_box(inside), false, .5, .25, 1, 0};
+    return found;
+  }
+
+  Index at_, mode_, excludes_, breaks_, runs_ = 0;
+  bool promises_;
+};
+
 inline void register_all(Registrar& registrar) {
   registrar.backend({{"box", "boxes", "", {}}, [](const Params&) { return std::make_unique<BoxBackend>(); }});
   const auto no_problem = [](const ObserverContext&, const Params&) { return std::vector<Diagnostic>{}; };
@@ -151,6 +202,16 @@ inline void register_all(Registrar& registrar) {
   registrar.observer({{"claiming", "claims a box", "", claim}, no_problem, [](const ObserverContext& c, const Params& p) {
                         return std::make_unique<Claiming>(c, p.real("radius"), p.real("admissible"));
                       }});
+  ParamSchema script;
+  script.integer("at", "first k of the exclusion; -1: never", 10, -1, 1000000);
+  script.integer("mode", "that is isolated", 1, 0, 100);
+  script.integer("excludes", "mode that is contradicted", 0, 0, 2);
+  script.integer("breaks", "number of the run that breaks down; 0: none", 0, 0, 1000);
+  script.flag("promises", "makes statements in advance", true);
+  const auto no_diagnoser_problem = [](const DiagnoserContext&, const Params&) { return std::vector<Diagnostic>{}; };
+  registrar.diagnoser({{"scripted", "says what it is told", "", script},
+                       no_diagnoser_problem,
+                       [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Scripted>(c, p); }});
   registrar.metric({{"radius", "half the longest edge", "", {}}, [](const Params&) { return std::make_unique<Radius>(); }});
   registrar.metric({{"time", "of a step", "", {}}, [](const Params&) { return std::make_unique<Time>(); }});
   registrar.metric({{"fickle", "changes its names", "", {}}, [](const Params&) { return std::make_unique<Fickle>(); }});
@@ -158,6 +219,10 @@ inline void register_all(Registrar& registrar) {
 
 inline PipelineSpec pipeline(std::string name, std::string observer = "recursive", Params params = {}) {
   return {std::move(name), {"box", {}}, {std::move(observer), std::move(params)}};
+}
+
+inline PipelineSpec diagnosis(std::string name, Params params = {}) {
+  return {std::move(name), {"box", {}}, {}, ComponentSpec{"scripted", std::move(params)}};
 }
 
 /// A stable system of two states; its input drives the state away from the origin.

@@ -142,6 +142,42 @@ TEST_CASE("a run that was not touched is verified") {
   CHECK(outcome.exit == unharmed);
 }
 
+TEST_CASE("diagnoses are passed over and named; what surrounds them is checked") {
+  const Json diagnosis{{"name", "bank of observers"},
+                       {"backend", "zonotope"},
+                       {"diagnoser", "observer_bank"},
+                       {"rounding", "nominal"},
+                       {"steps", {{{"k", 0}, {"decision", "monitoring"}}}}};
+  const auto amid = [&](Json& results) {
+    Json& all = results["pipelines"];
+    all.insert(all.begin() + 1, diagnosis);
+  };
+  Outcome outcome = run().with_results(amid);
+  CAPTURE(outcome.out);
+  CHECK(outcome.exit == unharmed);
+  CHECK(names(outcome, "not re-checked: bank of observers"));
+  CHECK(names(outcome, "Every claim that was checked holds."));
+  outcome = run().with_results([&](Json& results) {
+    amid(results);
+    Json& bound = results["pipelines"][4]["steps"][2]["hull"]["upper"][0];
+    bound = bound.get<double>() - 1e-6;
+  });
+  CHECK(outcome.exit == violated);
+  CHECK(names(outcome, "/pipelines/4/steps/2/hull"));
+  outcome = run().verify([&](const fs::path& copy) {
+    Json results = Json::parse(read(copy / "results.json"));
+    results["pipelines"] = {diagnosis};
+    write(copy / "results.json", results.dump());
+    write(copy / "sets.jsonl", "");
+  });
+  CHECK(outcome.exit == unharmed);
+  CHECK(names(outcome, "not re-checked: bank of observers"));
+  CHECK_FALSE(names(outcome, "Every claim"));
+  Json damaged = diagnosis;
+  damaged["rounding"] = "sideways";
+  CHECK(run().with_results([&](Json& results) { results["pipelines"].push_back(damaged); }).exit == refused);
+}
+
 TEST_CASE("a bound moved inward by 1e-6 is found, for every backend and coordinate") {
   for (std::size_t p = 0; p < pipelines; ++p) {
     for (std::size_t i = 0; i < 2; ++i) {

@@ -7,6 +7,8 @@
 #include "cordon/registry/build.hpp"
 #include "study/host.hpp"
 #include "study/numbers.hpp"
+#include "study/results_diagnosis.hpp"
+#include "study/results_parts.hpp"
 
 namespace cordon::detail {
 
@@ -19,33 +21,10 @@ void write(JsonWriter& json, const MetricValue& metric) {
   std::visit([&](const auto& value) { json.value(value); }, metric.value);
 }
 
-/// RFC 4180: quoted where needed.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
-std::string csv_number(double value) { return std::isnan(value) ? "" : to_text(value); }
-
 std::string csv_value(const MetricValue& metric) {
   if (const auto* number = std::get_if<double>(&metric.value)) return csv_number(*number);
   if (const auto* integer = std::get_if<Index>(&metric.value)) return std::to_string(*integer);
   return csv_field(std::get<std::string>(metric.value));
-}
-
-/// A time index that may not exist.
-std::string csv_time(std::int64_t k) { return k < 0 ? "" : std::to_string(k); }
-void write_time(JsonWriter& json, std::string_view name, std::int64_t k) {
-  json.key(name);
-  k < 0 ? json.null() : json.value(k);
-}
-
-std::string joined(const std::vector<std::string>& fields) {
-  std::string row;
-  for (std::size_t i = 0; i < fields.size(); ++i) row += (i == 0 ? "" : ",") + fields[i];
-  return row + '\n';
 }
 
 /// FNV-1a with 64 bits, to tell studies apart.
@@ -55,27 +34,6 @@ std::string fingerprint(std::string_view text) {
   std::string digits(16, '0');
   for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
   return "fnv1a64:" + digits;
-}
-
-/// The blocks of an exchange form; the object stays open.
-void write_blocks(JsonWriter& json, const LineForm& X) {
-  json.member("dim", X.dim())
-      .member("lines", X.lines())
-      .member("generators", X.generators())
-      .member("constraints", X.constraints());
-  json.key("M").matrix(X.M).key("G").matrix(X.G).member("c", X.c).key("S").matrix(X.S).key("A").matrix(X.A).member("b", X.b);
-}
-
-void write(JsonWriter& json, const LineForm& X) {
-  json.begin_object();
-  write_blocks(json, X);
-  json.end_object();
-}
-
-void write(JsonWriter& json, const Certificate& why) {
-  json.begin_object().member("kind", to_string(why.kind));
-  if (why.data.size() > 0) json.member("margin", why.margin).member("data", why.data);
-  json.end_object();
 }
 
 void write(JsonWriter& json, std::string_view name, const AnswerCount& count) {
@@ -88,6 +46,11 @@ void write_times(JsonWriter& json, const PhaseTimes& times, double hull_us) {
   json.member("question", times.question).member("hull", hull_us).end_object();
 }
 
+bool has_diagnosers(const Study& study) {
+  return std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                     [](const PipelineSpec& p) { return p.diagnoser.has_value(); });
+}
+
 }  // namespace
 
 // run.json and results.json come last: where a results.json is new, the other files are new too.
@@ -98,6 +61,7 @@ Results::Results(const Study& study, const Registry& registry, const std::filesy
       sets_file_(directory_.create("sets.jsonl")),
       steps_file_(directory_.create("steps.csv")),
       summary_file_(directory_.create("summary.csv")),
+      diagnosis_file_(has_diagnosers(study) ? &directory_.create("diagnosis.csv") : nullptr),
       run_file_(directory_.create("run.json")),
       results_file_(directory_.create("results.json")),
       results_(results_file_),
@@ -174,12 +138,15 @@ void Results::data(const Record& record) {
     for (const auto& [name, part] : parts) {
       for (Index i = 1; part && i <= part->size(); ++i) names.push_back(name + std::to_string(i));
     }
+    with_mode_ = record.mode.has_value();
+    if (with_mode_) names.push_back("mode");
     data_file_.write(joined(names));
   }
   std::vector<std::string> row{std::to_string(record.sample.k)};
   for (const auto& [name, part] : parts) {
     for (Index i = 0; part && i < part->size(); ++i) row.push_back(to_text((*part)[i]));
   }
+  if (with_mode_) row.push_back(record.mode ? std::to_string(*record.mode) : "");
   data_file_.write(joined(row));
   last_sample_ = record.sample.k;
 }
@@ -304,9 +271,13 @@ void Results::write_summaries() {
   std::vector<std::string> names{"pipeline",     "backend",      "observer",       "rounding",          "steps",
                                  "consistent",   "inconsistent", "undecided",      "inconsistent_from", "assumptions_until",
                                  "outside_from", "violated_at",  "answers_proven", "answers_unknown",   "error"};
+  const std::size_t more = diagnosis_file_ ? diagnosis_summary_columns().size() : 0;
+  if (more > 0) names.insert(names.end(), diagnosis_summary_columns().begin(), diagnosis_summary_columns().end());
   for (const std::string& name : summary_columns_) names.push_back(csv_field(name));
   summary_file_.write(joined(names));
   for (Summary& summary : summaries_) {
+    summary.diagnosis.resize(more);
+    summary.fields.insert(summary.fields.end(), summary.diagnosis.begin(), summary.diagnosis.end());
     for (const std::string& name : summary_columns_) summary.fields.push_back(summary.metrics[name]);
     summary_file_.write(joined(summary.fields));
   }
@@ -314,6 +285,7 @@ void Results::write_summaries() {
 
 std::vector<std::filesystem::path> Results::commit(const RunOutcome& outcome) {
   if (!header_written_) write_header(study_.model.linear.states());
+  if (diagnosis_file_ && !diagnosis_header_written_) write_diagnosis_header(study_.modes.size() + 1);
   write_summaries();
   results_.end_array().end_object();
   results_file_.write("\n");

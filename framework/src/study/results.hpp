@@ -35,6 +35,7 @@ struct Assumptions {
 ///                 hull's bounds
 ///   data.csv      the samples, and the truth where it is known
 ///   steps.csv, summary.csv   the same numbers as tables (∞ as inf, absent values as empty fields)
+///   diagnosis.csv the steps of pipelines with a diagnoser, if there are any (their steps[] in results.json hold decisions)
 ///   run.json      host, times, and what else differs from run to run
 /// Nothing is visible under its name before `commit`.
 class Results {
@@ -49,6 +50,11 @@ class Results {
   void step(const StepResult& result);
   void end_pipeline(const PipelineOutcome& outcome, const MetricValues& summary);
 
+  /// The same of a pipeline with a diagnoser.
+  void begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> rounding, const DiagnosisOutcome& outcome);
+  void diagnosis(const Diagnosis& diagnosis, const std::optional<Index>& truth, double step_us);
+  void end_diagnosis(const PipelineOutcome& outcome);
+
   std::vector<std::filesystem::path> commit(const RunOutcome& outcome);
 
  private:
@@ -57,6 +63,7 @@ class Results {
   void write_set(const StepResult& result);
   void write_row(const StepResult& result);
   void write_header(Index states);
+  void write_diagnosis_header(std::size_t modes);
   void write_summaries();
 
   const Study& study_;
@@ -65,17 +72,20 @@ class Results {
   OutputFile& sets_file_;
   OutputFile& steps_file_;
   OutputFile& summary_file_;
+  OutputFile* diagnosis_file_ = nullptr;  ///< if there are diagnosers
   OutputFile& run_file_;
   OutputFile& results_file_;
   JsonWriter results_, run_;
   std::string pipeline_;  ///< name of the current one, as a CSV field
   std::string pipeline_json_;
   std::optional<std::vector<std::string>> columns_;  ///< of metrics in steps.csv, from the first step
-  bool header_written_ = false;
+  bool header_written_ = false, diagnosis_header_written_ = false, with_mode_ = false;
+  std::vector<std::string> modes_;    ///< names, in a diagnosis
   std::optional<Index> last_sample_;  ///< the last k in data.csv
   struct Summary {
     std::vector<std::string> fields;  ///< what every pipeline has
     std::map<std::string, std::string> metrics;
+    std::vector<std::string> diagnosis;  ///< none of pipelines without a diagnoser
   };
   std::vector<Summary> summaries_;
   std::vector<std::string> summary_columns_;

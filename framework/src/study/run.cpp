@@ -5,7 +5,9 @@
 #include <cmath>
 #include <deque>
 
+#include "study/diagnosis_run.hpp"
 #include "study/median.hpp"
+#include "study/pipeline_guard.hpp"
 #include "study/results.hpp"
 
 namespace cordon {
@@ -42,11 +44,18 @@ struct Medians {
   }
 };
 
+constexpr Index nominal_mode = 0;  // in bank_of(study)
+
+/// Data that come from the study's model with all its bounds, as long as there is no fault.
+bool is_own_model(const Study& study) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  return simulate && !simulate->plant && !simulate->made_plant;
+}
+
 /// One pipeline: its components, and what became of it so far.
 class Pipeline {
  public:
-  Pipeline(const Study& study, const PipelineSpec& spec)
-      : study_(study), simulated_(std::holds_alternative<SimulateSpec>(study.data)) {
+  Pipeline(const Study& study, const PipelineSpec& spec) : study_(study), own_model_(is_own_model(study)) {
     outcome_.name = spec.name;
     outcome_.backend = spec.backend.type;
     outcome_.observer = spec.observer.type;
@@ -72,6 +81,7 @@ class Pipeline {
     Box hull;
     const MetricValues* values = nullptr;
     double hull_us = 0;
+    nominal_ = nominal_ && record.mode.value_or(nominal_mode) == nominal_mode;
     guarded([&] {
       estimate = observer_->step(record.sample);
       const Clock::time_point begin = Clock::now();
@@ -79,7 +89,8 @@ class Pipeline {
                                                 : estimate->set->interval_hull(results ? &hull_proofs_ : nullptr);
       hull_us = seconds_since(begin) * 1e6;
       const Vector* truth = judge(record, *estimate);
-      values = &board_->step({*estimate, hull, truth, outcome_.assumptions_until < 0, observer_->times()});
+      const bool assumptions_hold = nominal_ && outcome_.assumptions_until < 0;
+      values = &board_->step({*estimate, hull, truth, assumptions_hold, observer_->times()});
       if (results) results->check_columns(*values);
     });
     if (!outcome_.error.empty()) return false;
@@ -105,24 +116,9 @@ class Pipeline {
   bool failed() const { return !outcome_.error.empty(); }
 
  private:
-  /// Runs code of components: what it throws stops this pipeline and no other.
   template <class Work>
   void guarded(Work&& work) {
-    try {
-      work();
-    } catch (const Error& error) {
-      stop(error.code(), error.what());
-    } catch (const std::exception& error) {
-      stop(Errc::plugin, error.what());
-    } catch (...) {
-      stop(Errc::plugin, "an exception of unknown type");
-    }
-  }
-
-  void stop(Errc code, const std::string& message) {
-    if (failed()) return;
-    outcome_.error_code = code;
-    outcome_.error = message.empty() ? std::string(to_string(code)) : message;
+    detail::guarded(outcome_, std::forward<Work>(work));
   }
 
   /// Keeps count of assumptions and containment; returns the truth at the estimate's time, if the data have it.
@@ -140,7 +136,7 @@ class Pipeline {
     if (still_inside && (estimate.consistent == Answer::no ||
                          (holds(*estimate.set, truth) == Answer::no && clearly_outside(*estimate.set, truth)))) {
       outcome_.outside_from = estimate.k;
-      if (simulated_ && outcome_.assumptions_until < 0) outcome_.violated_at = estimate.k;
+      if (own_model_ && nominal_ && outcome_.assumptions_until < 0) outcome_.violated_at = estimate.k;
     }
     return &truth;
   }
@@ -176,7 +172,8 @@ class Pipeline {
   }
 
   const Study& study_;
-  bool simulated_;
+  bool own_model_;
+  bool nominal_ = true;  ///< the plant has had no fault so far, as far as the data tell
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Observer> observer_;
   std::optional<Assumptions> assumptions_;
@@ -217,15 +214,23 @@ bool run_pipeline(const Study& study, std::size_t index, const Registry& registr
 
 }  // namespace
 
-RunOutcome run_study(const Study& study, const Registry& registry, const RunOptions& options) {
-  std::unique_ptr<DataSource> data = open_data(study);  // first: bad data leave no trace on the disk
+RunOutcome detail::run_on(const OpenData& open, const Study& study, const Registry& registry, const RunOptions& options) {
+  std::unique_ptr<DataSource> data = open(0);  // first: bad data leave no trace on the disk
   std::optional<Results> results;
   if (!options.out.empty()) results.emplace(study, registry, options.out);
   Results* const writer = results ? &*results : nullptr;
   RunOutcome outcome;
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
-    if (i > 0) data = open_data(study);
-    if (!run_pipeline(study, i, registry, options, *data, writer, outcome)) {
+    bool done = true;
+    if (study.pipelines[i].diagnoser) {
+      std::optional<PipelineOutcome> found = detail::run_diagnosis(open, study, i, registry, options, writer);
+      done = found.has_value();
+      if (found) outcome.pipelines.push_back(std::move(*found));
+    } else {
+      if (i > 0) data = open(0);
+      done = run_pipeline(study, i, registry, options, *data, writer, outcome);
+    }
+    if (!done) {
       outcome.interrupted = true;
       return outcome;
     }
@@ -236,6 +241,10 @@ RunOutcome run_study(const Study& study, const Registry& registry, const RunOpti
     outcome.files = writer->commit(outcome);
   }
   return outcome;
+}
+
+RunOutcome run_study(const Study& study, const Registry& registry, const RunOptions& options) {
+  return detail::run_on([&](std::uint64_t seed_offset) { return open_data(study, seed_offset); }, study, registry, options);
 }
 
 }  // namespace cordon

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cordon/study/data.hpp"
@@ -27,14 +28,91 @@ struct AnswerCount {
   void add(bool is_proven) { ++(is_proven ? proven : unknown); }
 };
 
+/// Something that changed at time k: in the plant, or in what a diagnoser says of it.
+struct DiagnosisEvent {
+  enum class Kind {
+    truth,         ///< the plant is in `mode` from k on (-1: outside the bank)
+    starts,        ///< the first decision; `mode` if it is `monitoring`
+    detected,      ///< `mode` was monitored, and is excluded
+    excluded,      ///< so is `mode`
+    isolated,      ///< `mode` is monitored from now on
+    isolating,     ///< several modes are possible again
+    ambiguous,     ///< several are left after the waiting time
+    unknown_fault  ///< none is
+  };
+  Index k = 0;
+  Kind what = Kind::truth;
+  Index mode = -1;        ///< index in the bank
+  ModeEvidence evidence;  ///< detected, excluded: of that mode at k
+};
+std::string_view to_string(DiagnosisEvent::Kind kind) noexcept;
+
+/// A stretch of time with one true mode, and what the diagnoser made of it. Times are -1 where nothing of the kind happened. A
+/// segment in a mode of the bank without `isolated_at` is missed, whether it ends with another mode or with the data.
+struct DiagnosisSegment {
+  Index mode = -1;  ///< the true mode; -1: outside the bank
+  Index from = 0, to = 0;
+  bool scored = true;                   ///< false: the first one, if the diagnoser starts by monitoring a mode
+  Index detected_at = -1;               ///< first k at which the mode that was monitored before `from` is given up
+  Index isolated_at = -1;               ///< first k at which the true mode is monitored
+  Index unknown_fault_at = -1;          ///< first k with `unknown_fault`
+  Index wrong_at = -1;                  ///< first k, from `detected_at` on, at which another mode is monitored
+  Decision last = Decision::isolating;  ///< the decision at `to`
+
+  bool missed() const { return mode >= 0 && isolated_at < 0; }
+};
+
+/// How long something took, in steps, over all segments where it happened.
+struct DelayStatistics {
+  std::int64_t count = 0, min = 0, max = 0;
+  double median = 0;  ///< the mean of the two in the middle, if their number is even
+};
+
+/// All scored segments of one true mode, over all seeds.
+struct ModeStatistics {
+  Index mode = -1;  ///< -1: outside the bank
+  std::int64_t segments = 0, detected = 0, isolated = 0, missed = 0, wrong = 0, unknown_fault = 0;
+  DelayStatistics detection, isolation;  ///< from the beginning of the segment; outside the bank `isolation` is to unknown_fault
+};
+
+/// An exclusion that the truth contradicts: the plant has been in `mode` throughout from `since` to k.
+struct TrueModeExcluded {
+  Index k = 0, since = 0, mode = 0;
+  std::int64_t seed_offset = 0;
+};
+
+/// What a diagnosis pipeline has found: in full for the first seed, counted over all.
+struct DiagnosisOutcome {
+  std::vector<std::string> modes;  ///< names, in the order of the bank
+  std::optional<Guarantees> guarantees;
+  std::vector<DiagnosisEvent> events;      ///< first seed
+  std::vector<DiagnosisSegment> segments;  ///< first seed; none if the data do not tell the true mode
+  std::int64_t left_out = 0;               ///< events and segments beyond the first 10,000 of each
+  std::int64_t runs = 0;                   ///< seeds that were tried to their end
+  std::int64_t steps = 0;                  ///< of all of them
+  std::int64_t false_alarms = 0;           ///< a monitored mode was given up although the truth was in it all the time
+  std::int64_t runs_with_false_alarm = 0;
+  std::int64_t runs_with_wrong_mode = 0;               ///< some segment, the first included, has `wrong_at`
+  bool truth_known = false;                            ///< the data tell the true mode: what follows can be said
+  std::vector<ModeStatistics> statistics;              ///< modes that occurred, by index
+  std::optional<TrueModeExcluded> true_mode_excluded;  ///< the first; makes `violated_at` for simulated data of a linear model
+};
+
+/// The same as JSON objects (docs/results_format.md).
+std::string json_of(const DiagnosisOutcome& outcome);
+std::string json_of(const Guarantees& guarantees, const std::vector<std::string>& modes);
+
 struct PipelineOutcome {
   std::string name, backend, observer;
+  std::string diagnoser;                      ///< if there is one, `observer` is empty
+  std::optional<DiagnosisOutcome> diagnosis;  ///< and this tells what it found; the counts of sets below stay 0
   std::int64_t steps = 0;
   std::int64_t consistent = 0, inconsistent = 0, undecided = 0;  ///< answers to "is the estimate non-empty?"
   std::int64_t inconsistent_from = -1;                           ///< first k with an estimate proven empty
   std::int64_t assumptions_until = -1;  ///< first k at which the truth is proven outside the pipeline's own assumptions
   std::int64_t outside_from = -1;  ///< first k with the truth proven outside the estimate, by more than rounding (1e-9 relative)
-  std::int64_t violated_at = -1;   ///< `outside_from` where all assumptions hold, which is known of simulated data only: a defect
+  std::int64_t violated_at = -1;   ///< a defect: `outside_from` where all assumptions hold, which is known of simulated data only
+                                   ///< (in the nominal mode so far, and not of a Plant); or the true mode excluded
   AnswerCount emptiness;           ///< of every estimate
   AnswerCount containment;         ///< of the truth in estimates and admissible sets
   AnswerCount bounds;              ///< of interval hulls; unknown: infinite although the estimate is not proven unbounded
@@ -53,7 +131,8 @@ struct RunOutcome {
   std::vector<std::filesystem::path> files;
 };
 
-/// Runs all pipelines, one after another. `out` receives results.json, sets.jsonl, data.csv, steps.csv, summary.csv (the same
+/// Runs all pipelines, one after another; those with a diagnoser on all seeds of simulated data, of which the first is written.
+/// `out` receives results.json, sets.jsonl, data.csv, steps.csv, summary.csv, diagnosis.csv if there are diagnosers (the same
 /// bytes whenever the run is repeated) and run.json (host, times). They are written beside the old ones, renamed at the end, and
 /// removed if the run fails or is interrupted. Throws InputError for bad data, Errc::io when results cannot be written: old ones
 /// are left as they were. An exception of a component ends its pipeline only. Memory does not depend on the number of steps.

@@ -34,6 +34,7 @@ struct Violation {
 struct VerifiedPipeline {
   std::string name, backend;
   Rounding rounding = Rounding::nominal;
+  bool checked = true;            ///< false: a diagnosis, of which no sets are stored
   std::int64_t steps = 0;         ///< checked
   std::int64_t by_polytopes = 0;  ///< of them against the exact feasible set
   std::int64_t by_supports = 0;   ///< of them against the successors of the set before, in directions

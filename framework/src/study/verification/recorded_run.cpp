@@ -100,18 +100,27 @@ std::optional<RecordedStep> read_step(const Cursor& at, Index n) {
   return RecordedStep{*k, {std::move(*lower), std::move(*upper)}, *consistent, *tightness};
 }
 
+std::optional<Rounding> read_rounding(const Cursor& pipeline) {
+  return read_word(pipeline, "rounding", {Rounding::nominal, Rounding::outward, Rounding::rational});
+}
+
 std::optional<RecordedPipeline> read_pipeline(const Cursor& at, Index n) {
   if (!at.expect(Kind::object, mend())) return std::nullopt;
   RecordedPipeline pipeline;
-  const auto name = at.need("name", mend()), backend = at.need("backend", mend()), assumed = at.need("assumptions", mend()),
-             steps = at.need("steps", mend());
-  if (!name || !backend || !assumed || !steps || !steps->expect(Kind::array, mend())) return std::nullopt;
+  const auto name = at.need("name", mend()), backend = at.need("backend", mend());
+  if (!name || !backend) return std::nullopt;
   pipeline.name = read_text(*name, 1000).value_or("");
   pipeline.backend = read_text(*backend, 1000).value_or("");
-  if (assumed->is(Kind::null) && steps->size() == 0) return pipeline;  // stopped before its first step
-  if (const auto rounding = read_word(at, "rounding", {Rounding::nominal, Rounding::outward, Rounding::rational})) {
-    pipeline.rounding = *rounding;
+  if (at.find("diagnoser")) {
+    pipeline.is_diagnosis = true;
+    if (const auto rounding = at.find("rounding"); rounding && !rounding->is(Kind::null))
+      pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);
+    return pipeline;
   }
+  const auto assumed = at.need("assumptions", mend()), steps = at.need("steps", mend());
+  if (!assumed || !steps || !steps->expect(Kind::array, mend())) return std::nullopt;
+  if (assumed->is(Kind::null) && steps->size() == 0) return pipeline;  // stopped before its first step
+  pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);
   if (!assumed->expect(Kind::object, mend())) return std::nullopt;
   if (const auto initial = assumed->need("initial_set", mend())) {
     if (auto form = read_form(*initial, n)) pipeline.initial_set = std::move(*form);

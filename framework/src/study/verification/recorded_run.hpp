@@ -24,6 +24,7 @@ struct RecordedStep {
 
 struct RecordedPipeline {
   std::string name, backend;
+  bool is_diagnosis = false;  ///< of a diagnoser: nothing else is read, no sets are stored
   Rounding rounding = Rounding::nominal;
   LineForm initial_set;
   std::optional<LineForm> admissible_set;

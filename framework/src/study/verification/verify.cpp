@@ -92,13 +92,15 @@ class Verification {
     std::optional<FeasibleSequence> feasible;
     for (std::size_t p = 0; p < run_.pipelines.size(); ++p) {
       const RecordedPipeline& pipeline = run_.pipelines[p];
-      if (!feasible || !feasible->serves(pipeline) || !feasible->complete(pipeline.steps.size())) {
-        feasible.emplace(run_.model, pipeline);
-      }
       outcome_.pipelines.push_back({});
       outcome_.pipelines.back().name = pipeline.name;
       outcome_.pipelines.back().backend = pipeline.backend;
       outcome_.pipelines.back().rounding = pipeline.rounding;
+      outcome_.pipelines.back().checked = !pipeline.is_diagnosis;
+      if (pipeline.is_diagnosis) continue;
+      if (!feasible || !feasible->serves(pipeline) || !feasible->complete(pipeline.steps.size())) {
+        feasible.emplace(run_.model, pipeline);
+      }
       check(p, *feasible);
       if (outcome_.violation || outcome_.interrupted) return std::move(outcome_);
     }

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is printed about pipelines with a diagnoser.
+#pragma once
+
+#include <string>
+
+#include "common.hpp"
+#include "cordon/study/run.hpp"
+
+namespace cordon::apps {
+
+/// [a, b], for several coordinates [a, b] × [c, d]; ∅ for an empty box.
+std::string box_text(const Box& box);
+
+/// The timeline of the first seed, then delays and counts over all seeds.
+std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint);
+
+/// What to say of a pipeline that has excluded the true mode (`violated_at`).
+std::string diagnosis_violation(const PipelineOutcome& pipeline);
+
+/// Statements made in advance: a table, one row per observer and true mode.
+std::string guarantees_text(const Guarantees& guarantees, const std::vector<std::string>& modes, const Paint& paint);
+
+}  // namespace cordon::apps

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Diagnoses beside the true mode: what changed, what it took, and what was wrong. Knows no sets.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "cordon/study/run.hpp"
+
+namespace cordon::detail {
+
+/// What of a diagnosis its successor is compared with.
+struct DiagnosisBefore {
+  explicit DiagnosisBefore(const Diagnosis& diagnosis);
+  bool monitors() const { return decision == Decision::monitoring; }
+  /// Is the mode that was monitored here given up in `now`? A reset gives it up too, even if it is isolated again at once.
+  bool is_given_up_in(const Diagnosis& now) const;
+
+  Decision decision;
+  Index mode, since;
+  std::vector<bool> candidate;
+};
+
+/// Follows one run. The true mode at k is the one that makes y_k and x_{k+1}: a mode has been active throughout from s to k if it
+/// is the true one at s, …, k.
+class DiagnosisScore {
+ public:
+  /// `ended` receives each segment when it is over.
+  explicit DiagnosisScore(std::function<void(const DiagnosisSegment&)> ended) : ended_(std::move(ended)) {}
+
+  /// Steps come in order. No `truth`: it is not known.
+  void step(const std::optional<Index>& truth, const Diagnosis& now);
+  /// Ends the last segment.
+  void finish();
+
+  std::int64_t false_alarms() const { return false_alarms_; }
+  bool wrong_mode() const { return wrong_mode_; }
+  /// The first exclusion that contradicts the truth. `seed_offset` is left to the caller.
+  const std::optional<TrueModeExcluded>& true_mode_excluded() const { return excluded_; }
+
+ private:
+  void follow(const std::optional<Index>& truth, const Diagnosis& now);
+  void judge_segment(const Diagnosis& now);
+  void judge_exclusions(const Diagnosis& now);
+  bool throughout(Index mode, Index since) const;
+
+  std::function<void(const DiagnosisSegment&)> ended_;
+  std::optional<DiagnosisSegment> segment_;
+  std::optional<DiagnosisBefore> before_;
+  std::optional<DiagnosisBefore> watched_;  ///< what monitored another mode when the segment began
+  std::int64_t false_alarms_ = 0;
+  bool wrong_mode_ = false;
+  std::optional<TrueModeExcluded> excluded_;
+};
+
+/// Makes events of what changes from step to step.
+class DiagnosisTimeline {
+ public:
+  void step(const std::optional<Index>& truth, const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell);
+
+ private:
+  void exclusions(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell) const;
+
+  std::optional<DiagnosisBefore> before_;
+  std::optional<Index> truth_;
+};
+
+/// Counts scored segments by their true mode. Memory depends on the number of different delays only.
+class DiagnosisTally {
+ public:
+  void add(const DiagnosisSegment& segment);
+  std::vector<ModeStatistics> statistics() const;
+
+ private:
+  using Delays = std::map<std::int64_t, std::int64_t>;  ///< how often each delay occurred
+  struct Entry {
+    ModeStatistics counts;
+    Delays detection, isolation;
+  };
+  static DelayStatistics summary(const Delays& delays);
+
+  std::map<Index, Entry> entries_;
+};
+
+}  // namespace cordon::detail

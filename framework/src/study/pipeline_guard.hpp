@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "cordon/study/run.hpp"
+
+namespace cordon::detail {
+
+/// Ends a pipeline with an error; the first one is kept.
+inline void stop(PipelineOutcome& outcome, Errc code, const std::string& message) {
+  if (!outcome.error.empty()) return;
+  outcome.error_code = code;
+  outcome.error = message.empty() ? std::string(to_string(code)) : message;
+}
+
+/// Runs code of components: what it throws stops this pipeline and no other.
+template <class Work>
+void guarded(PipelineOutcome& outcome, Work&& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    stop(outcome, error.code(), error.what());
+  } catch (const std::exception& error) {
+    stop(outcome, Errc::plugin, error.what());
+  } catch (...) {
+    stop(outcome, Errc::plugin, "an exception of unknown type");
+  }
+}
+
+}  // namespace cordon::detail

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is printed about diagnoses and about statements made in advance.
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "diagnosis_report.hpp"
+#include "run/components.hpp"
+#include "run_report.hpp"
+
+using namespace cordon;
+using nlohmann::json;
+
+namespace {
+
+using Kind = DiagnosisEvent::Kind;
+
+Box interval(double lower, double upper) { return {Vector{{lower}}, Vector{{upper}}}; }
+
+ModeEvidence contradicted(Box residual, Box reset) {
+  return {false, Answer::no, {Certificate::Kind::farkas, Vector::Ones(1), .0125}, std::move(residual), std::move(reset)};
+}
+
+PipelineOutcome diagnosis() {
+  PipelineOutcome p;
+  p.name = "Bank of zonotopes";
+  p.backend = "zonotope";
+  p.diagnoser = "observer_bank";
+  p.steps = 161;
+  p.median_step_us = 12.34;
+  DiagnosisOutcome d;
+  d.modes = {"healthy", "fault 1", "fault 2"};
+  d.truth_known = true;
+  d.runs = 60;
+  d.events = {{0, Kind::truth, 0, {}},
+              {0, Kind::starts, 0, {}},
+              {50, Kind::truth, 1, {}},
+              {51, Kind::detected, 0, contradicted(interval(.0125, .5), {})},
+              {52, Kind::excluded, 2, contradicted(interval(-1, 1), interval(-.75, -.25))},
+              {52, Kind::isolated, 1, {}},
+              {100, Kind::truth, 0, {}},
+              {120, Kind::truth, -1, {}},
+              {123, Kind::unknown_fault, -1, {}}};
+  ModeStatistics one{1, 60, 59, 58, 2, 1, 0, {59, 1, 3, 1.5}, {58, 2, 9, 2}};
+  ModeStatistics outside{-1, 60, 60, 0, 0, 0, 57, {60, 1, 1, 1}, {57, 3, 4, 3}};
+  d.statistics = {outside, one};
+  d.false_alarms = 3;
+  d.runs_with_false_alarm = 2;
+  p.diagnosis = std::move(d);
+  return p;
+}
+
+Study study() {
+  Study s = fakes::study({});
+  FaultSpec leak;
+  leak.from = 120;
+  leak.name = "leak";
+  std::get<SimulateSpec>(s.data).faults = {leak};
+  return s;
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("the timeline: one line per event, with its evidence") {
+  const std::string text = apps::diagnosis_text(study(), diagnosis(), apps::Paint(stdout));
+  CHECK(text ==
+        "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step\n"
+        "\n"
+        "k    EVENT          MODE                    EVIDENCE\n"
+        "0    starts         healthy\n"
+        "50   fault begins   fault 1\n"
+        "51   detected       healthy                 residual [0.0125, 0.5], 0 is 0.0125 outside, proof farkas, margin 0.0125\n"
+        "52   excluded       fault 2                 residual since the reset [-0.75, -0.25], 0 is 0.25 outside, proof farkas, "
+        "margin 0.0125\n"
+        "52   isolated       fault 1\n"
+        "100  fault ends     healthy\n"
+        "120  fault begins   leak, outside the bank\n"
+        "123  unknown_fault\n"
+        "\n"
+        "Over 60 runs (delays in steps: smallest / median / largest)\n"
+        "TRUE MODE         TIMES  DETECTED  ISOLATED  MISSED  WRONG MODE  UNKNOWN FAULT  DETECTION DELAY  ISOLATION DELAY\n"
+        "fault 1           60     59        58        2       1           0              1 / 1.5 / 3      2 / 2 / 9\n"
+        "outside the bank  60     60        -         -       0           57             1 / 1 / 1        3 / 3 / 4\n"
+        "\n"
+        "False alarms: 3 in 2 of 60 runs\n"
+        "True mode excluded: never\n");
+}
+
+TEST_CASE("a run of diagnosers only has no table of observers, a mixed one has both") {
+  RunOutcome outcome;
+  outcome.pipelines = {diagnosis()};
+  CHECK_FALSE(has(apps::report_text(study(), outcome, "out"), "BACKEND"));
+  outcome.pipelines.push_back({});
+  outcome.pipelines.back().name = "Observer";
+  const std::string text = apps::report_text(study(), outcome, "out");
+  CHECK(has(text, "BACKEND"));
+  CHECK(has(text, "Observer"));
+  CHECK(text.find("Bank of zonotopes") == text.rfind("Bank of zonotopes"));
+  CHECK(has(text, "Results are in out\n"));
+}
+
+TEST_CASE("an excluded true mode, data without modes, and a pipeline that stopped are said") {
+  PipelineOutcome p = diagnosis();
+  p.diagnosis->true_mode_excluded = TrueModeExcluded{77, 52, 1, 4};
+  const apps::Paint paint(stdout);
+  CHECK(has(apps::diagnosis_text(study(), p, paint),
+            "True mode excluded: fault 1 at k = 77, although true since k = 52 (run 5 of 60)"));
+  CHECK(has(apps::diagnosis_violation(p), "\"fault 1\""));
+  CHECK(has(apps::diagnosis_violation(p), "k = 77"));
+  p.diagnosis->runs_with_wrong_mode = 4;
+  CHECK(has(apps::diagnosis_text(study(), p, paint), "A wrong mode: in 4 of 60 runs"));
+  p.diagnosis->truth_known = false;
+  CHECK(has(apps::diagnosis_text(study(), p, paint), "nothing is scored"));
+  CHECK_FALSE(has(apps::diagnosis_text(study(), p, paint), "False alarms"));
+  p.error = "out of order";
+  CHECK(has(apps::diagnosis_text(study(), p, paint), "Stopped: out of order"));
+}
+
+TEST_CASE("a long timeline is cut, and says so") {
+  PipelineOutcome p = diagnosis();
+  for (Index k = 200; k < 300; ++k) p.diagnosis->events.push_back({k, Kind::ambiguous, -1, {}});
+  const std::string text = apps::diagnosis_text(study(), p, apps::Paint(stdout));
+  CHECK(has(text, "… and 48 more, in results.json"));
+}
+
+TEST_CASE("JSON for programs has it all") {
+  RunOutcome outcome;
+  outcome.pipelines = {diagnosis()};
+  const json p = json::parse(apps::report_json(outcome))["pipelines"][0];
+  CHECK(p["diagnoser"] == "observer_bank");
+  CHECK_FALSE(p.contains("observer"));
+  CHECK(p["guarantees"].is_null());
+  CHECK(p["diagnosis"]["events"].size() == 9);
+  CHECK(p["diagnosis"]["events"][4]["evidence"]["reset_residual"]["upper"] == json{-.25});
+  CHECK(p["diagnosis"]["events"][7]["mode"].is_null());
+  CHECK(p["diagnosis"]["scores"]["modes"][1]["missed_rate"] == doctest::Approx(2. / 60));
+  CHECK(p["diagnosis"]["scores"]["modes"][0]["unknown_fault_rate"] == .95);
+}
+
+TEST_CASE("statements in advance: the table, the error set, the answer") {
+  Guarantees g{"outer iteration, 30 steps",
+               {{0, 0, interval(-.3, .3), Answer::yes},
+                {1, 0, interval(-.83254, -.29374), Answer::yes},
+                {0, 1, interval(-.01, .8), Answer::unknown},
+                {1, 1, interval(1, 2), Answer::no}},
+               Answer::no,
+               {}};
+  const std::vector<std::string> modes{"healthy", "fault 1"};
+  const apps::Paint paint(stdout);
+  std::string text = apps::guarantees_text(g, modes, paint);
+  CHECK(text ==
+        "Method: outer iteration, 30 steps\n"
+        "OBSERVER  TRUE MODE  RESIDUALS                 CONDITION  HOLDS\n"
+        "healthy   healthy    R̊00 = [-0.3, 0.3]         0 inside   yes\n"
+        "healthy   fault 1    R̊10 = [-0.8325, -0.2937]  0 outside  yes\n"
+        "fault 1   healthy    R̊01 = [-0.01, 0.8]        0 outside  not guaranteed\n"
+        "fault 1   fault 1    R̊11 = [1, 2]              0 inside   no\n"
+        "The condition fails: some modes are proven not to meet it\n");
+  g.all = Answer::yes;
+  g.error_set = ErrorSetCheck{make_box(interval(-1, 1)), false, .86, .5, 1, 0};
+  text = apps::guarantees_text(g, modes, paint);
+  CHECK(has(text,
+            "all errors lie in 0.86 times the set; in steady state 0.5, attained in mode \"fault 1\" by the observer of "
+            "\"healthy\": large enough\n"));
+  CHECK(has(text, "Guaranteed: "));
+  g.all = Answer::unknown;
+  g.error_set->factor = 1.163;
+  CHECK(has(apps::guarantees_text(g, modes, paint), "too small"));
+  CHECK(has(apps::guarantees_text(g, modes, paint), "Not guaranteed: "));
+  g.error_set->computed = true;
+  CHECK(has(apps::guarantees_text(g, modes, paint), "by construction"));
+  CHECK(apps::box_text({Vector{{-1., 0.}}, Vector{{1., 2.5}}}) == "[-1, 1] × [0, 2.5]");
+  CHECK(apps::box_text(Box::empty(2)) == "∅");
+  const json data = json::parse(json_of(g, modes));
+  CHECK(data["pairs"].size() == 4);
+  CHECK(data["pairs"][2]["observer"] == "fault 1");
+  CHECK(data["pairs"][2]["holds"] == "unknown");
+  CHECK(data["error_set"]["computed"] == true);
+  CHECK(data["error_set"]["set"]["generators"] == 1);
+}
