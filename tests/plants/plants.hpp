@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "cordon/registry/registry.hpp"
+
+namespace cordon::test {
+
+/// A registry with the plugins of this build.
+struct Plugins {
+  Plugins() { registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}}); }
+  std::shared_ptr<Plant> stirred_tank(const Params& params = {}) const { return registry.make_plant("stirred_tank", params); }
+  Registry registry;
+};
+
+}  // namespace cordon::test
