@@ -13,12 +13,17 @@
 // Other backends [Wang2018a]: with [T N] = [E; C]⁺ it holds T E + N C = I, so
 //   x_k = (T A - L C) x_{k-1} + T B u_{k-1} + T Bw w_{k-1} + L (y_{k-1} - D u_{k-1} - Dv v_{k-1}) + N (y_k - D u_k - Dv v_k)
 // for every gain L; L_k = T A P Cᵀ (C P Cᵀ + Q)⁻¹ with P = G Gᵀ of the estimate and Q = Dv Gv Gvᵀ Dvᵀ minimises the F-radius.
+// Outputs whose sensors can fail altogether are left out there: y_k enters before anything is known of x_k.
+//
+// Ranges of effectiveness: effectiveness.hpp. An input with a range that enters dynamic rows, static rows or outputs alike has
+// its factor taken once for each, which makes the recursion an outer one.
 #include <cmath>
 
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "observer_parameters.hpp"
+#include "observers/effectiveness.hpp"
 
 namespace cordon::estimators {
 
@@ -100,12 +105,16 @@ class SingularValueObserver final : public Observer {
         static_at_start_(params.flag("static_at_start")),
         X0_(initial_set_from(model(), params)),
         W_(backend().import(model().W)),
-        V_(backend().import(model().V)),
+        effectiveness_(model(), backend()),
+        static_W_(effectiveness_.has_input_ranges() ? backend().product(W_, effectiveness_.input_factors()) : W_),
         measured_(linalg::product(model().linear.C, transformed_.T)) {
     const Index n = model().linear.states(), free = transformed_.static_rows();
     // Without the static rows of k = 0 every estimate is that of a larger initial set.
     const bool whole = transformed_.static_rows() == 0 || static_at_start_;
     recursion_ = whole && !shares_disturbances(transformed_, model().W) ? Tightness::exact : Tightness::outer;
+    recursion_ = meet(recursion_, effectiveness_.recursion({&transformed_.B, &transformed_.static_B, &model().linear.D}));
+    stacked_B_ = Matrix::Zero(n, transformed_.B.cols());
+    stacked_B_.topRows(transformed_.rank()) = transformed_.B;
     stacked_A_ = Matrix::Zero(n, n);
     stacked_A_.topRows(transformed_.rank()) = transformed_.A;
     stacked_Bw_ = Matrix::Zero(n, transformed_.Bw.cols());
@@ -134,11 +143,11 @@ class SingularValueObserver final : public Observer {
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const Enclosure predicted = timed(Phase::predict, [&] {
-      Vector f = Vector::Zero(model().linear.states());
-      f.head(transformed_.rank()) = linalg::product(transformed_.B, before.u);
-      const Term terms[]{{stacked_Bw_, W_}, {transformed_.free_part, free_}};
-      const std::size_t count = transformed_.static_rows() > 0 ? 2 : 1;
-      Enclosure Z = backend().predict(Z_, {stacked_A_, f, {terms, count}});
+      const Matrix spread = effectiveness_.input_spread(stacked_B_, before.u);
+      std::vector<Term> terms{{stacked_Bw_, W_}};
+      if (transformed_.static_rows() > 0) terms.push_back({transformed_.free_part, free_});
+      if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
+      Enclosure Z = backend().predict(Z_, {stacked_A_, effectiveness_.input(stacked_B_, before.u), terms});
       Z.tightness = meet(Z.tightness, recursion_);
       return with_static_rows(Z, now.u);
     });
@@ -149,33 +158,55 @@ class SingularValueObserver final : public Observer {
 
   Enclosure to_z(const Enclosure& X) const { return backend().affine_map(X, transformed_.T.transpose(), Vector::Zero(X->dim())); }
 
-  /// 0 = Ǎ z + B̌ u + B̌w w with a fresh w ∈ W.
+  /// 0 = Ǎ z + B̌ diag(f) u + B̌w w with a fresh w ∈ W.
   Enclosure with_static_rows(const Enclosure& Z, VectorIn u) const {
     if (transformed_.static_rows() == 0) return Z;
-    return backend().correct(Z,
-                             {transformed_.static_A, -linalg::product(transformed_.static_B, u), {transformed_.static_Bw, W_}});
+    Matrix entries(transformed_.static_rows(), static_W_->dim());
+    entries << transformed_.static_Bw, effectiveness_.input_spread(transformed_.static_B, u);
+    return backend().correct(Z, {transformed_.static_A, -effectiveness_.input(transformed_.static_B, u), {entries, static_W_}});
   }
 
   Enclosure finish(const Enclosure& predicted, const Sample& now) {
-    const LinearModel& m = model().linear;
-    const Enclosure corrected = timed(Phase::correct, [&] {
-      return m.outputs() == 0 ? predicted
-                              : backend().correct(predicted, {measured_, now.y - linalg::product(m.D, now.u), {m.Dv, V_}});
-    });
+    const Enclosure corrected = timed(Phase::correct, [&] { return effectiveness_.correct(predicted, measured_, now); });
     Z_ = timed(Phase::reduce, [&] { return backend().reduce(corrected, budget_); });
-    return backend().affine_map(Z_, transformed_.T, Vector::Zero(m.states()));
+    return backend().affine_map(Z_, transformed_.T, Vector::Zero(predicted->dim()));
   }
 
   Transformed transformed_;
   Budget budget_;
   bool static_at_start_;
   LineForm X0_;
-  Enclosure W_, V_;
-  Matrix measured_;  ///< C T
-  Matrix stacked_A_, stacked_Bw_;
+  Enclosure W_;
+  Effectiveness effectiveness_;
+  Enclosure static_W_;  ///< W × factors of inputs
+  Matrix measured_;     ///< C T
+  Matrix stacked_A_, stacked_B_, stacked_Bw_;
   Tightness recursion_ = Tightness::exact;
   Enclosure admissible_, free_, Z_;
 };
+
+/// Outputs that the measurement itself bounds, weighted by the middle of their effectiveness; the others have rows of zeros.
+LinearModel with_bounded_outputs(LinearModel m) {
+  const Vector g = m.sensor_center();
+  for (Index i = 0; i < m.outputs(); ++i) {
+    if (Effectiveness::is_bounded_by_measurement(m, i)) {
+      m.C.row(i) *= g[i];
+      m.D.row(i) *= g[i];
+    } else {
+      m.C.row(i).setZero();
+      m.D.row(i).setZero();
+      m.Dv.row(i).setZero();
+    }
+  }
+  return m;
+}
+
+/// [E; C].
+Matrix stacked_E_C(const LinearModel& m) {
+  Matrix stacked(m.states() + m.outputs(), m.states());
+  stacked << (m.is_descriptor() ? m.E : Matrix(Matrix::Identity(m.states(), m.states()))), m.C;
+  return stacked;
+}
 
 class PseudoInverseObserver final : public Observer {
  public:
@@ -184,19 +215,20 @@ class PseudoInverseObserver final : public Observer {
         budget_(budget_from(params)),
         X0_(initial_set_from(model(), params)),
         W_(backend().import(model().W)),
-        V_(backend().import(model().V)) {
-    const LinearModel& m = model().linear;
-    const Index n = m.states();
-    Matrix stacked(n + m.outputs(), n);
-    stacked << (m.is_descriptor() ? m.E : Matrix(Matrix::Identity(n, n))), m.C;
-    const Matrix inverse = linalg::pseudo_inverse(stacked);
-    T_ = inverse.leftCols(n);
-    N_ = inverse.rightCols(m.outputs());
-    TA_ = linalg::product(T_, m.A);
-    TBw_ = linalg::product(T_, m.Bw);
-    minus_NDv_ = -linalg::product(N_, m.Dv);
-    const Matrix noise = linalg::product(m.Dv, model().V.G);
-    Q_ = linalg::product(noise, noise.transpose());
+        V_(backend().import(model().V)),
+        effectiveness_(model(), backend()),
+        used_(with_bounded_outputs(model().linear)),
+        is_used_(used_.outputs()) {
+    const Index n = used_.states();
+    for (Index i = 0; i < is_used_.size(); ++i) is_used_[i] = Effectiveness::is_bounded_by_measurement(model().linear, i);
+    const Matrix inverse = linalg::pseudo_inverse(stacked_E_C(used_));
+    const Matrix T = inverse.leftCols(n);
+    N_ = inverse.rightCols(used_.outputs());
+    TA_ = linalg::product(T, used_.A);
+    TB_ = linalg::product(T, used_.B);
+    TBw_ = linalg::product(T, used_.Bw);
+    minus_ND_ = -linalg::product(N_, used_.D);
+    minus_NDv_ = -linalg::product(N_, used_.Dv);
   }
 
   LineForm initial_set() const override { return X0_; }
@@ -209,15 +241,27 @@ class PseudoInverseObserver final : public Observer {
   }
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
-    const LinearModel& m = model().linear;
     const Enclosure predicted = timed(Phase::predict, [&] {
-      const Matrix L = gain();
-      const Matrix minus_LDv = -linalg::product(L, m.Dv);
-      const Vector f = linalg::product(T_, linalg::product(m.B, before.u)) +
-                       linalg::product(L, before.y - linalg::product(m.D, before.u)) +
-                       linalg::product(N_, now.y - linalg::product(m.D, now.u));
-      const Term terms[]{{TBw_, W_}, {minus_LDv, V_}, {minus_NDv_, V_}};
-      return backend().predict(X_, {TA_ - linalg::product(L, m.C), f, terms});
+      const Matrix spread_before = output_spread(before, true), spread_now = output_spread(now, false);
+      const Matrix L = gain(spread_before);
+      const Matrix minus_LDv = -linalg::product(L, used_.Dv);
+      const Matrix from_u = TB_ - linalg::product(L, used_.D);
+      const Matrix inputs_before = effectiveness_.input_spread(from_u, before.u);
+      const Matrix inputs_now = effectiveness_.input_spread(minus_ND_, now.u);
+      const Matrix outputs_before = linalg::product(L, spread_before), outputs_now = linalg::product(N_, spread_now);
+      std::vector<Term> terms{{TBw_, W_}, {minus_LDv, V_}, {minus_NDv_, V_}};
+      if (effectiveness_.has_input_ranges()) {
+        terms.push_back({inputs_before, effectiveness_.input_factors()});
+        terms.push_back({inputs_now, effectiveness_.input_factors()});
+      }
+      if (effectiveness_.has_output_ranges()) {
+        terms.push_back({outputs_before, effectiveness_.output_factors()});
+        terms.push_back({outputs_now, effectiveness_.output_factors()});
+      }
+      const Vector f = effectiveness_.input(TB_, before.u) +
+                       linalg::product(L, is_used_.cwiseProduct(before.y) - effectiveness_.input(used_.D, before.u)) +
+                       linalg::product(N_, is_used_.cwiseProduct(now.y) - effectiveness_.input(used_.D, now.u));
+      return backend().predict(X_, {TA_ - linalg::product(L, used_.C), f, terms});
     });
     X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
     X_.tightness = Tightness::outer;  // the measurement enters by a gain, and v_{k-1} twice
@@ -226,12 +270,23 @@ class PseudoInverseObserver final : public Observer {
 
   void do_replace(const Enclosure& X) override { X_ = X; }
 
-  /// Minimises the F-radius of the next estimate.
-  Matrix gain() const {
-    const LinearModel& m = model().linear;
+  /// What ranges of sensors add to y; X_ holds the state of that sample, or not.
+  Matrix output_spread(const Sample& sample, bool state_is_known) const {
+    if (!effectiveness_.has_output_ranges()) return Matrix::Zero(used_.outputs(), 0);
+    std::optional<Box> reach;
+    if (state_is_known) {
+      reach = backend().affine_map(X_, model().linear.C, Vector::Zero(used_.outputs()))->interval_hull();
+    }
+    return is_used_.asDiagonal() * effectiveness_.output_spread(effectiveness_.output_bound(sample, reach ? &*reach : nullptr));
+  }
+
+  /// Minimises the F-radius of the next estimate, as far as the last measurement decides it.
+  Matrix gain(const Matrix& spread) const {
+    const Matrix noise = linalg::product(used_.Dv, model().V.G);
+    const Matrix Q = linalg::product(noise, noise.transpose()) + linalg::product(spread, spread.transpose());
     const Matrix G = X_->line_form().G;
-    const Matrix CG = linalg::product(m.C, G);
-    const Matrix S = linalg::product(CG, CG.transpose()) + Q_;
+    const Matrix CG = linalg::product(used_.C, G);
+    const Matrix S = linalg::product(CG, CG.transpose()) + Q;
     const Matrix cross = linalg::product(linalg::product(TA_, G), CG.transpose());
     if (const auto solved = linalg::solve_spd(S, cross.transpose())) return solved->transpose();
     return linalg::product(cross, linalg::pseudo_inverse(S));
@@ -240,7 +295,10 @@ class PseudoInverseObserver final : public Observer {
   Budget budget_;
   LineForm X0_;
   Enclosure W_, V_, X_;
-  Matrix T_, N_, TA_, TBw_, minus_NDv_, Q_;
+  Effectiveness effectiveness_;
+  LinearModel used_;  ///< weighted by the sensors' effectiveness
+  Vector is_used_;    ///< per output: 1 or 0
+  Matrix N_, TA_, TB_, TBw_, minus_ND_, minus_NDv_;
 };
 
 bool by_singular_values(const SetBackend& backend) { return backend.info().intersections; }
@@ -279,10 +337,11 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
     problems.push_back(
         {"/static_at_start", "needs exact intersections, which the backend \"" + info.name + "\" does not have", "leave it out"});
   }
-  Matrix stacked(m.states() + m.outputs(), m.states());
-  stacked << (m.is_descriptor() ? m.E : Matrix(Matrix::Identity(m.states(), m.states()))), m.C;
-  if (linalg::rank(stacked, rank_tolerance) < m.states()) {
-    problems.push_back({"", "[E; C] does not have full column rank, so that no T, N with T E + N C = I exist",
+  if (linalg::rank(stacked_E_C(with_bounded_outputs(m)), rank_tolerance) < m.states()) {
+    problems.push_back({"",
+                        std::string("[E; C] does not have full column rank") +
+                            (m.sensor.dim() ? " without the outputs whose sensors can fail altogether" : "") +
+                            ", so that no T, N with T E + N C = I exist",
                         "measure more, or use \"line_zonotope\""});
   }
   return problems;
@@ -300,7 +359,8 @@ void register_descriptor(Registrar& registrar) {
                       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
                         if (by_singular_values(*context.backend)) return std::make_unique<SingularValueObserver>(context, params);
                         return std::make_unique<PseudoInverseObserver>(context, params);
-                      }});
+                      },
+                      true});
 }
 
 }  // namespace cordon::estimators

@@ -2,11 +2,12 @@
 // Prediction and correction for x⁺ = A x + B u + Bw w, y = C x + D u + Dv v on any backend:
 //   X̂_0 = {x ∈ X0 : y_0 - D u_0 - C x ∈ Dv V}
 //   X̄_k = A X̂_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W,   X̂_k = {x ∈ X̄_k : y_k - D u_k - C x ∈ Dv V}, reduced to the budget.
+// Ranges of effectiveness: effectiveness.hpp.
 // Exact with constrained and line zonotopes until a reduction bites; zonotopes intersect strip by strip, intervals contract.
 #include "components.hpp"
 #include "cordon/core/error.hpp"
-#include "cordon/core/linalg.hpp"
 #include "observer_parameters.hpp"
+#include "observers/effectiveness.hpp"
 
 namespace cordon::estimators {
 
@@ -19,7 +20,8 @@ class PredictionCorrection final : public Observer {
         budget_(budget_from(params)),
         X0_(initial_set_from(model(), params)),
         W_(backend().import(model().W)),
-        V_(backend().import(model().V)) {}
+        effectiveness_(model(), backend()),
+        recursion_(effectiveness_.recursion({&model().linear.B, &model().linear.D})) {}
 
   LineForm initial_set() const override { return X0_; }
 
@@ -31,8 +33,10 @@ class PredictionCorrection final : public Observer {
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const LinearModel& m = model().linear;
     const Enclosure predicted = timed(Phase::predict, [&] {
-      const Term term{m.Bw, W_};
-      return backend().predict(X_, {m.A, linalg::product(m.B, before.u), {&term, 1}});
+      const Matrix spread = effectiveness_.input_spread(m.B, before.u);
+      const Term terms[]{{m.Bw, W_}, {spread, effectiveness_.input_factors()}};
+      const std::size_t count = effectiveness_.has_input_ranges() ? 2 : 1;
+      return backend().predict(X_, {m.A, effectiveness_.input(m.B, before.u), {terms, count}});
     });
     return X_ = corrected(predicted, now);
   }
@@ -40,16 +44,16 @@ class PredictionCorrection final : public Observer {
   void do_replace(const Enclosure& X) override { X_ = X; }
 
   Enclosure corrected(const Enclosure& X, const Sample& now) {
-    const LinearModel& m = model().linear;
-    const Enclosure narrowed = timed(Phase::correct, [&] {
-      return m.outputs() == 0 ? X : backend().correct(X, {m.C, now.y - linalg::product(m.D, now.u), {m.Dv, V_}});
-    });
+    Enclosure narrowed = timed(Phase::correct, [&] { return effectiveness_.correct(X, model().linear.C, now); });
+    narrowed.tightness = meet(narrowed.tightness, recursion_);
     return timed(Phase::reduce, [&] { return backend().reduce(narrowed, budget_); });
   }
 
   Budget budget_;
   LineForm X0_;
-  Enclosure W_, V_, X_;
+  Enclosure W_, X_;
+  Effectiveness effectiveness_;
+  Tightness recursion_;
 };
 
 std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
@@ -69,7 +73,8 @@ void register_prediction_correction(Registrar& registrar) {
        check,
        [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
          return std::make_unique<PredictionCorrection>(context, params);
-       }});
+       },
+       true});
 }
 
 }  // namespace cordon::estimators

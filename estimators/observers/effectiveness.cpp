@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observers/effectiveness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/rounding.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+std::vector<Index> positive(const Vector& radii) {
+  std::vector<Index> found;
+  for (Index i = 0; i < radii.size(); ++i) {
+    if (radii[i] > 0) found.push_back(i);
+  }
+  return found;
+}
+
+Enclosure unit_box(const SetBackend& backend, std::size_t n) {
+  const Vector ones = Vector::Ones(static_cast<Index>(n));
+  return backend.box({-ones, ones});
+}
+
+double upwards(double value, Index terms) { return rounding::up(value * (1 + rounding::gamma(2 * terms + 4))); }
+
+}  // namespace
+
+Effectiveness::Effectiveness(const Model& model, const SetBackend& backend)
+    : model_(model),
+      backend_(backend),
+      V_(backend.import(model.V)),
+      f_(model.linear.actuator_center()),
+      f_radius_(model.linear.actuator_radius()),
+      g_(model.linear.sensor_center()),
+      g_radius_(model.linear.sensor_radius()),
+      ranged_inputs_(positive(f_radius_)),
+      ranged_outputs_(positive(g_radius_)) {
+  const LinearModel& m = model.linear;
+  bool by_input = false;
+  for (const Index j : ranged_inputs_) by_input = by_input || !m.D.col(j).isZero(0);
+  plain_outputs_ = m.sensor.dim() == 0 && !by_input;
+  input_factors_ = unit_box(backend, ranged_inputs_.size());
+  output_factors_ = unit_box(backend, ranged_outputs_.size());
+  if (plain_outputs_) return;
+  noise_ = backend.product(backend.product(V_, input_factors_), output_factors_);
+  noise_hull_ = backend.affine_map(V_, m.Dv, Vector::Zero(m.outputs()))->interval_hull();
+}
+
+Vector Effectiveness::input(MatrixIn B, VectorIn u) const {
+  return model_.linear.actuator.dim() == 0 ? Vector(linalg::product(B, u)) : Vector(linalg::product(B, f_.cwiseProduct(u)));
+}
+
+Matrix Effectiveness::input_spread(MatrixIn B, VectorIn u) const {
+  Matrix spread(B.rows(), static_cast<Index>(ranged_inputs_.size()));
+  for (Index column = 0; column < spread.cols(); ++column) {
+    const Index j = ranged_inputs_[static_cast<std::size_t>(column)];
+    spread.col(column) = B.col(j) * (f_radius_[j] * u[j]);
+  }
+  return spread;
+}
+
+Vector Effectiveness::output_bound(const Sample& now, const Box* reach) const {
+  const LinearModel& m = model_.linear;
+  Vector zeta = Vector::Zero(m.outputs());
+  if (ranged_outputs_.empty()) return zeta;
+  const Vector through = input(m.D, now.u);
+  const Vector spread = input_spread(m.D, now.u).cwiseAbs().rowwise().sum();
+  const Vector terms = linalg::product(m.D.cwiseAbs(), now.u.cwiseAbs());  // at least the size of those of D diag(f) u
+  for (const Index i : ranged_outputs_) {
+    double bound = infinite;
+    if (reach && !reach->is_empty()) {
+      const double size = std::max(std::abs(reach->lower[i] + through[i]), std::abs(reach->upper[i] + through[i])) + spread[i];
+      bound = upwards(size, m.inputs()) + rounding::gamma(2 * m.inputs() + 4) * terms[i];
+    }
+    const double least = m.sensor.lower[i];
+    if (least > 0 && !noise_hull_.is_empty()) {
+      const double size = std::max(std::abs(now.y[i] - noise_hull_.lower[i]), std::abs(now.y[i] - noise_hull_.upper[i]));
+      bound = std::min(bound, upwards(size / least, 2));
+    }
+    zeta[i] = std::isnan(bound) ? infinite : bound;
+  }
+  return zeta;
+}
+
+Matrix Effectiveness::output_spread(VectorIn zeta) const {
+  Matrix spread = Matrix::Zero(zeta.size(), static_cast<Index>(ranged_outputs_.size()));
+  for (Index column = 0; column < spread.cols(); ++column) {
+    const Index i = ranged_outputs_[static_cast<std::size_t>(column)];
+    if (std::isfinite(zeta[i])) spread(i, column) = g_radius_[i] * zeta[i];
+  }
+  return spread;
+}
+
+Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& now) const {
+  const LinearModel& m = model_.linear;
+  if (m.outputs() == 0) return X;
+  if (plain_outputs_) return backend_.correct(X, {C, now.y - input(m.D, now.u), {m.Dv, V_}});
+
+  Vector zeta = Vector::Zero(m.outputs());
+  if (has_output_ranges()) {
+    const Matrix rows = C(ranged_outputs_, Eigen::all);
+    const Box ranged = backend_.affine_map(X, rows, Vector::Zero(rows.rows()))->interval_hull();
+    Box reach = Box::space(m.outputs());
+    reach.lower(ranged_outputs_) = ranged.lower;
+    reach.upper(ranged_outputs_) = ranged.upper;
+    zeta = output_bound(now, &reach);
+  }
+  std::vector<Index> used;
+  for (Index i = 0; i < m.outputs(); ++i) {
+    if (std::isfinite(zeta[i])) used.push_back(i);
+  }
+  if (used.empty()) return X;
+  Matrix T(m.outputs(), noise_->dim());
+  T << m.Dv, g_.asDiagonal() * input_spread(m.D, now.u), output_spread(zeta);
+  const Vector z = now.y - g_.cwiseProduct(input(m.D, now.u));
+  const Matrix scaled = g_.asDiagonal() * C;
+  Enclosure corrected = backend_.correct(X, {scaled(used, Eigen::all), z(used), {T(used, Eigen::all), noise_}});
+  if (has_output_ranges()) corrected.tightness = Tightness::outer;
+  return corrected;
+}
+
+Tightness Effectiveness::recursion(std::initializer_list<const Matrix*> entries) const {
+  for (const Index j : ranged_inputs_) {
+    Index places = 0;
+    for (const Matrix* entry : entries) places += entry->rows() > 0 && !entry->col(j).isZero(0);
+    if (places > 1) return Tightness::outer;
+  }
+  return Tightness::exact;
+}
+
+bool Effectiveness::is_bounded_by_measurement(const LinearModel& model, Index i) {
+  return model.sensor.dim() == 0 || model.sensor.lower[i] > 0 || model.sensor.upper[i] == model.sensor.lower[i];
+}
+
+}  // namespace cordon::estimators

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Actuators and sensors whose effectiveness is known by ranges f ∈ f̂ ± f̌, g ∈ ĝ ± ǧ and may change from step to step:
+//   B diag(f) u = B diag(f̂) u + B diag(f̌) diag(u) φ,                                      ‖φ‖∞ ≤ 1, a factor per input
+//   y = diag(ĝ) (C x + D diag(f̂) u + D diag(f̌) diag(u) φ) + diag(ǧ) diag(ζ) γ + Dv v,    ‖γ‖∞ ≤ 1, a factor per output
+// with ζ ≥ |C x + D diag(f) u|. A bound of ζ_i comes from the set that x is known to lie in, and, if the sensor cannot fail
+// altogether (ĝ_i > ǧ_i), from the measurement: |y_i - (Dv v)_i| / (ĝ_i - ǧ_i). The smaller one is used; an output without a
+// finite one says nothing about x in that step, and is left out.
+// Models without ranges give the expressions of the plain model.
+#pragma once
+
+#include <initializer_list>
+#include <vector>
+
+#include "cordon/interfaces/backend.hpp"
+#include "cordon/interfaces/model.hpp"
+
+namespace cordon::estimators {
+
+class Effectiveness {
+ public:
+  /// Model and backend outlive the object. V is imported: the backend's errors pass through.
+  Effectiveness(const Model& model, const SetBackend& backend);
+
+  bool has_input_ranges() const { return !ranged_inputs_.empty(); }
+  bool has_output_ranges() const { return !ranged_outputs_.empty(); }
+
+  /// B diag(f̂) u.
+  Vector input(MatrixIn B, VectorIn u) const;
+  /// B diag(f̌) diag(u), the columns of inputs with a range only.
+  Matrix input_spread(MatrixIn B, VectorIn u) const;
+  /// The set of φ: a unit box with one coordinate per input with a range.
+  const Enclosure& input_factors() const { return input_factors_; }
+
+  /// ζ, up to rounding outwards; 0 for outputs without a range, infinite where nothing bounds it. `reach` contains C x (null: not
+  /// known).
+  Vector output_bound(const Sample& now, const Box* reach) const;
+  /// diag(ǧ) diag(ζ), the columns of outputs with a range only; 0 where ζ is infinite.
+  Matrix output_spread(VectorIn zeta) const;
+  /// The set of γ: a unit box with one coordinate per output with a range.
+  const Enclosure& output_factors() const { return output_factors_; }
+
+  /// The part of X ∋ x that the measurement allows; C is the model's in the coordinates of X. Outer if sensors have ranges.
+  Enclosure correct(const Enclosure& X, MatrixIn C, const Sample& now) const;
+
+  /// The claim of a recursion in which inputs enter by these matrices at the same time or one step after the other: the factors φ
+  /// of one time are then taken twice, which is exact only if every input with a range enters by one of them alone.
+  Tightness recursion(std::initializer_list<const Matrix*> entries) const;
+
+  /// May output i be used where nothing is known of x? Not if its sensor can fail altogether.
+  static bool is_bounded_by_measurement(const LinearModel& model, Index i);
+
+ private:
+  const Model& model_;
+  const SetBackend& backend_;
+  Enclosure V_;
+  Vector f_, f_radius_, g_, g_radius_;
+  std::vector<Index> ranged_inputs_, ranged_outputs_;
+  bool plain_outputs_ = true;  ///< no range enters y
+  Enclosure input_factors_, output_factors_;
+  Enclosure noise_;  ///< V × factors of inputs × factors of outputs
+  Box noise_hull_;   ///< of Dv V
+};
+
+}  // namespace cordon::estimators
