@@ -83,9 +83,16 @@ TEST_CASE("several candidates after the waiting time are ambiguous, and may stil
   }
   logic.update(15, none());
   CHECK(logic.decision() == Decision::ambiguous);
-  logic.update(16, these({2}));
-  CHECK(logic.decision() == Decision::monitoring);
-  CHECK(logic.mode() == 1);
+  SUBCASE("one is left") {
+    logic.update(16, these({2}));
+    CHECK(logic.decision() == Decision::monitoring);
+    CHECK(logic.mode() == 1);
+  }
+  SUBCASE("none is left: after that time the mode may have changed") {
+    REQUIRE(logic.update(16, these({1, 2})));
+    CHECK(logic.decision() == Decision::isolating);
+    CHECK(logic.since() == 16);
+  }
 }
 
 TEST_CASE("no candidate left is an unknown fault, which ends when one mode has lasted") {
