@@ -10,6 +10,7 @@ void register_prediction_correction(Registrar& registrar);
 void register_descriptor(Registrar& registrar);
 void register_luenberger(Registrar& registrar);
 void register_observer_bank(Registrar& registrar);
+void register_consistency_bank(Registrar& registrar);
 void register_metrics(Registrar& registrar);
 
 }  // namespace cordon::estimators
