@@ -132,6 +132,11 @@ TEST_CASE("the published error set of the reactor is too small, an enlarged one 
   CHECK(enlarged.factor <= 1);
   CHECK(enlarged.factor == doctest::Approx(.9061).epsilon(1e-3));
   CHECK(check_offline(reactor(), reactor_gains(), options).empty());
+  // a start that reaches further than all that comes later
+  options.initial_set = box_around(Vector::Zero(2), Vector{{.3, 0}});
+  const ErrorSetCheck start = check_error_set(reactor(), reactor_gains(), options);
+  CHECK(start.factor == doctest::Approx(2));
+  CHECK(start.steady_factor == doctest::Approx(enlarged.steady_factor));
 }
 
 namespace {
