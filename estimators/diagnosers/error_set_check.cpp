@@ -7,6 +7,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/invariant/schur.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "cordon/solvers/polytope.hpp"
 
@@ -114,6 +115,10 @@ SensorSlack steady_slack(const ModeDynamics& plant, const ModeDynamics& observer
 }
 
 PairDynamics steady_pair(const ModeDynamics& plant, const ModeDynamics& observer, const OfflineOptions& options) {
+  if (is_coupled(plant, observer)) {
+    invariant::require_schur(plant.A, "A of mode \"" + plant.name +
+                                          "\", whose state acts on the error of the observer of mode \"" + observer.name + "\",");
+  }
   return pair_dynamics(plant, observer, options.separate_inputs, steady_slack(plant, observer, options));
 }
 

@@ -15,6 +15,12 @@ inline LineForm box_around(const Vector& center, const Vector& radius) {
   return make_zonotope(center, Matrix(radius.asDiagonal()));
 }
 
+inline std::string mode_name(Index i) {
+  std::string name = "mode_";
+  name += std::to_string(i);
+  return name;
+}
+
 inline Model model_of(const Matrix& A, const Matrix& B, const Matrix& C) {
   Model model;
   const Index n = A.rows();
@@ -39,7 +45,7 @@ inline ModeBank reactor(bool literal = false) {
     model.W = literal ? box_around(r, c) : box_around(c, r);
     if (i == 1) model.linear.actuator = {Vector{{.1}}, Vector{{.3}}};
     if (i == 2) model.linear.actuator = {Vector{{.5}}, Vector{{.7}}};
-    bank.modes.push_back({"mode_" + std::to_string(i), model});
+    bank.modes.push_back({mode_name(i), model});
   }
   return bank;
 }
@@ -54,7 +60,7 @@ inline ModeBank blade() {
     model.X0 = box_around(Vector::Constant(2, .1), Vector::Constant(2, .5));
     model.V = box_around(Vector{{.3}}, Vector{{.03}});
     model.U = box_around(Vector{{3}}, Vector{{.3}});
-    bank.modes.push_back({"mode_" + std::to_string(bank.size()), model});
+    bank.modes.push_back({mode_name(bank.size()), model});
   }
   return bank;
 }

@@ -132,6 +132,11 @@ TEST_CASE("the published error set of the reactor is too small, an enlarged one 
   CHECK(enlarged.factor <= 1);
   CHECK(enlarged.factor == doctest::Approx(.9061).epsilon(1e-3));
   CHECK(check_offline(reactor(), reactor_gains(), options).empty());
+  // a start that reaches further than all that comes later
+  options.initial_set = box_around(Vector::Zero(2), Vector{{.3, 0}});
+  const ErrorSetCheck start = check_error_set(reactor(), reactor_gains(), options);
+  CHECK(start.factor == doctest::Approx(2));
+  CHECK(start.steady_factor == doctest::Approx(enlarged.steady_factor));
 }
 
 namespace {
@@ -174,7 +179,7 @@ Random random_bank(Index modes, Index n, Index p, Index q, Differ what, unsigned
     if (what == Differ::sensors) model.linear.C *= 1 - .1 * static_cast<double>(i);
     if (what == Differ::models) model.linear.A += draw_matrix(draw, n, n, .1 / static_cast<double>(n));
     if (what == Differ::ranges) model.linear.sensor = {Vector::Constant(q, .8), Vector::Constant(q, .9)};
-    random.bank.modes.push_back({"m" + std::to_string(i), model});
+    random.bank.modes.push_back({mode_name(i), model});
     random.gains.push_back(L + draw_matrix(draw, n, q, .02));
   }
   return random;
@@ -262,4 +267,184 @@ TEST_CASE("simulated residuals and errors stay in their sets") {
     for (Index j = 1; j < 3; ++j) random.bank.modes[static_cast<std::size_t>(j)].model.X0 = make_point(Vector::Constant(2, .1));
     check_errors_by_sampling(random, options);
   }
+}
+
+TEST_CASE("equal gains and no transient: R̊_ij = -R̊_ji") {
+  for (const bool separate : {false, true}) {
+    OfflineOptions options;
+    options.separate_inputs = separate;
+    Random random = random_bank(3, 3, 2, 1, Differ::inputs, 4);
+    for (Index j = 0; j < 3; ++j) {
+      random.gains[static_cast<std::size_t>(j)] = random.gains[0];
+      random.bank.modes[static_cast<std::size_t>(j)].model.linear.D = random.bank[0].model.linear.D;
+    }
+    const Guarantees all = fdi_guarantees(random.bank, random.gains, options);
+    for (Index i = 0; i < 3; ++i) {
+      for (Index j = 0; j < 3; ++j) {
+        const Box &a = pair(all, i, j).residual, &b = pair(all, j, i).residual;
+        CHECK(a.lower[0] == doctest::Approx(-b.upper[0]).epsilon(1e-8));
+        CHECK(pair(all, i, i).holds == Answer::yes);
+      }
+    }
+  }
+}
+
+TEST_CASE("inputs shared by plant and observer give smaller sets than independent ones") {
+  OfflineOptions options;
+  const Guarantees joint = fdi_guarantees(reactor(), reactor_gains(), options);
+  options.separate_inputs = true;
+  const Guarantees separate = fdi_guarantees(reactor(), reactor_gains(), options);
+  for (std::size_t k = 0; k < 9; ++k) {
+    const double inner = joint.pairs[k].residual.radius()[0], outer = separate.pairs[k].residual.radius()[0];
+    CHECK(inner < outer);
+    CHECK(joint.pairs[k].holds == Answer::yes);
+  }
+}
+
+TEST_CASE("two outputs: a separation that no axis shows, and its failure") {
+  // e⁺ = d with d on the segment (1,-1) ξ: apart from 0 by its centre in the direction (1, 1) only
+  ModeBank bank;
+  for (const double offset : {0.0, .2, .02}) {
+    Model model = model_of(Matrix::Zero(2, 2), Matrix(2, 0), Matrix::Identity(2, 2));
+    model.U = make_point(Vector(0));
+    model.W = make_zonotope(Vector::Constant(2, offset), Matrix{{1, .02, 0}, {-1, 0, .02}});
+    bank.modes.push_back({mode_name(bank.size()), model});
+  }
+  const std::vector<Matrix> gains(3, Matrix::Zero(2, 2));
+  for (const Invariant invariant : {Invariant::mrpi, Invariant::rpi}) {
+    OfflineOptions options;
+    options.invariant = invariant;
+    if (invariant == Invariant::rpi) options.iterations = {1};  // the closed form is a box here
+    const Guarantees all = fdi_guarantees(bank, gains, options);
+    const Box& R = pair(all, 1, 0).residual;
+    CHECK(R.contains(Vector::Zero(2)));
+    CHECK(R.upper[0] == doctest::Approx(2.24));
+    CHECK(pair(all, 1, 0).holds == Answer::yes);
+    CHECK(pair(all, 0, 1).holds == Answer::yes);
+    CHECK(pair(all, 2, 0).holds == Answer::no);
+    CHECK(pair(all, 1, 1).holds == Answer::yes);
+    CHECK(all.all == Answer::no);
+  }
+}
+
+TEST_CASE("iterations that do not contain the limit promise nothing by themselves") {
+  // no step at all: the residual is that of e = 1 and misses 0, the limit does not
+  ModeBank bank;
+  for (int i = 0; i < 2; ++i) {
+    Model model = model_of(Matrix{{.5}}, Matrix{{1}}, Matrix{{1}});
+    model.W = box_around(Vector{{0}}, Vector{{.1}});
+    bank.modes.push_back({mode_name(i), model});
+  }
+  OfflineOptions options;
+  options.invariant = Invariant::iterate;
+  options.iterations = {0};
+  options.start_set = make_point(Vector{{1}});
+  const Guarantees all = fdi_guarantees(bank, {Matrix{{0}}, Matrix{{0}}}, options);
+  CHECK(pair(all, 1, 0, 2).residual.lower[0] == doctest::Approx(1));
+  CHECK(pair(all, 1, 0, 2).holds == Answer::no);
+  CHECK(pair(all, 0, 0, 2).holds == Answer::no);
+}
+
+TEST_CASE("error sets of other shapes") {
+  Random random = random_bank(2, 3, 1, 2, Differ::inputs, 8);
+  const ErrorSetCheck computed = check_error_set(random.bank, random.gains, {});
+  const Box box = interval_hull(computed.set);
+  OfflineOptions options;
+  const Matrix widths = box.radius().asDiagonal();
+  Matrix more(3, 4);
+  more << .9 * widths, .1 * box.radius();  // not larger than the box, not a box
+  options.error_set = make_zonotope(box.center(), more);
+  const ErrorSetCheck zonotope = check_error_set(random.bank, random.gains, options);
+  CHECK(zonotope.factor >= computed.factor);
+  CHECK(zonotope.factor < 1.3);
+  options.error_set = make_zonotope(box.center(), 2 * more);
+  CHECK(check_error_set(random.bank, random.gains, options).factor == doctest::Approx(zonotope.factor / 2));
+  options.error_set = make_zonotope(box.center(), Matrix(more.leftCols(2)));
+  CHECK(std::isinf(check_error_set(random.bank, random.gains, options).factor));
+  CHECK(check_offline(random.bank, random.gains, options).at(0).message.find("flat") != std::string::npos);
+  // many generators in many dimensions: facets are not enumerated, the bound stays one
+  Random large = random_bank(2, 8, 1, 1, Differ::inputs, 9);
+  const ErrorSetCheck around = check_error_set(large.bank, large.gains, {});
+  Matrix many(8, 40);
+  Draw draw{std::mt19937_64(2)};
+  many << 1.2 * around.set.G, draw_matrix(draw, 8, 32, .01);
+  options.error_set = make_zonotope(around.set.c, many);
+  const double factor = check_error_set(large.bank, large.gains, options).factor;
+  CHECK(factor <= 1 / 1.19);
+  CHECK(factor > .2);
+}
+
+TEST_CASE("problems of models and options") {
+  const auto problem = [](const ModeBank& bank, const std::vector<Matrix>& gains, const OfflineOptions& options) {
+    const std::vector<Diagnostic> found = check_offline(bank, gains, options);
+    REQUIRE(found.size() >= 1);
+    return found[0];
+  };
+  const auto says = [](const Diagnostic& found, const char* pointer, const char* text) {
+    CHECK(found.pointer == pointer);
+    CHECK(found.message.find(text) != std::string::npos);
+    if (found.message.find(text) == std::string::npos) MESSAGE(found.message);
+  };
+  OfflineOptions options;
+  CHECK(check_offline(reactor(), reactor_gains(), options).empty());
+  options.invariant = Invariant::rpi;
+  CHECK(check_offline(reactor(), reactor_gains(), options).empty());
+  options.iterations = {1, 2};
+  says(problem(reactor(), reactor_gains(), options), "/iterations", "2 entries for 3 observers");
+  options.iterations = {-1};
+  says(problem(reactor(), reactor_gains(), options), "/iterations", "negative");
+  options = {};
+  options.max_columns = 1;
+  says(problem(reactor(), reactor_gains(), options), "/max_columns", "at least 2");
+  options = {};
+  options.accuracy = 0;
+  says(problem(reactor(), reactor_gains(), options), "/accuracy", "between 0 and 1");
+  options = {};
+  options.error_set = make_point(Vector{{1}});
+  says(problem(reactor(), reactor_gains(), options), "/error_set", "1 dimensions, the models have 2 states");
+  options.error_set = make_strip(Vector{{1, 0}}, 0, 1);
+  says(problem(reactor(), reactor_gains(), options), "/error_set", "zonotope");
+  options = {};
+  ModeBank bank = reactor();
+  bank.modes[1].model.U = make_space(1);
+  const Diagnostic unbounded = problem(bank, reactor_gains(), options);
+  says(unbounded, "", "bounded inputs");
+  CHECK(unbounded.suggestion.find("/system/U") != std::string::npos);
+  CHECK_FALSE(input_bounds(reactor()).contains(Vector{{20.1}}));
+  CHECK(input_bounds(reactor()).contains(Vector{{20}}));
+  bank = reactor();
+  bank.modes[1].model.W = make_space(2);
+  says(problem(bank, reactor_gains(), options), "", "W of mode \"mode_1\" is unbounded");
+  std::vector<Matrix> gains = reactor_gains();
+  gains[2] = Matrix{{-1}, {0}};
+  says(problem(reactor(), gains, options), "", "A - L C of mode \"mode_2\" is not Schur: it has the eigenvalue 1.8");
+  CHECK_THROWS_AS(fdi_guarantees(reactor(), gains, options), Error);
+  gains.pop_back();
+  says(problem(reactor(), gains, options), "", "one gain per mode");
+  // an unstable plant is no obstacle as long as its state does not act on the errors
+  bank = reactor();
+  for (Mode& mode : bank.modes) mode.model.linear.A(0, 0) = 1.02;
+  gains = std::vector<Matrix>(3, Matrix{{.28}, {11.6106}});
+  CHECK(check_offline(bank, gains, options).empty());
+  bank.modes[1].model.linear.C *= .5;
+  says(problem(bank, gains, options), "/state_set", "nothing bounds it");
+  options.state_set = box_around(Vector::Zero(2), Vector::Constant(2, 1));
+  CHECK_THROWS_AS(fdi_guarantees(bank, gains, options), Error);
+  says(problem(bank, gains, options), "",
+       "A of mode \"mode_1\", whose state acts on the error of the observer of mode \"mode_0\", is not Schur");
+}
+
+TEST_CASE("ranges of sensors that are too wide for a bounded error are refused") {
+  Random random = random_bank(2, 1, 1, 1, Differ::ranges, 3);
+  for (Mode& mode : random.bank.modes) {
+    mode.model.linear.A = Matrix{{.9}};
+    mode.model.linear.C = Matrix{{1}};
+    mode.model.linear.sensor = {Vector{{0}}, Vector{{1}}};
+  }
+  random.gains.assign(2, Matrix{{1.6}});  // A - L C̄ = .1, K = .5 · 1.6 / .9
+  CHECK(check_offline(random.bank, random.gains, {}).empty());
+  random.gains.assign(2, Matrix{{3.2}});  // A - L C̄ = -.7, K = .5 · 3.2 / .3
+  const auto found = check_offline(random.bank, random.gains, {});
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].message.find("too wide") != std::string::npos);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A program that uses set operations and invariant sets without the framework's objects; headers.hpp includes every installed header.
+// A program that uses set operations and invariant sets without the framework's objects; headers.hpp includes every installed
+// header.
 #include <iostream>
 
 #include "headers.hpp"

@@ -50,8 +50,8 @@ SymmetricEigen symmetric_eigen(MatrixIn A);
 /// Eigenvalues of a square matrix.
 Eigen::VectorXcd eigenvalues(MatrixIn A);
 
-/// Eigenvalues with eigenvectors of length 1 (columns). Pairs of conjugates stand side by side, the upper half plane first. A matrix
-/// without a basis of eigenvectors shows in their condition.
+/// Eigenvalues with eigenvectors of length 1 (columns). Pairs of conjugates stand side by side, the upper half plane first. A
+/// matrix without a basis of eigenvectors shows in their condition.
 struct ComplexEigen {
   Eigen::VectorXcd values;
   Eigen::MatrixXcd vectors;
