@@ -11,8 +11,8 @@
 // ends as `unknown_fault` once no mode is left.
 //
 // What is excluded is decided by the observers: exact sets (constrained and line zonotopes with large budgets) exclude all that
-// the samples contradict, outer ones less, and those whose estimates are never empty (the pseudo-inverse form of `descriptor` on
-// zonotopes and intervals) nothing. The decisions do not depend on the number of threads.
+// the samples contradict, outer ones less, and those whose estimates are never empty (`luenberger`; `descriptor` on zonotopes and
+// intervals) nothing. The decisions do not depend on the number of threads.
 #include <algorithm>
 #include <optional>
 
