@@ -152,14 +152,17 @@ class Scripted final : public Diagnoser {
   Diagnosis do_step(const Sample*, const Sample& now) override {
     if (runs_ == breaks_ && now.k == 5) throw Error(Errc::unsupported, "out of order");
     const Index at = at_ < 0 ? std::numeric_limits<Index>::max() - 1 : at_ + runs_ - 1;
-    Diagnosis says{now.k, Decision::monitoring, bank().nominal, 0, -1, {}, {}};
+    Diagnosis says;
+    says.k = now.k;
+    says.mode = bank().nominal;
     says.modes.resize(static_cast<std::size_t>(bank().size()));
     for (ModeEvidence& evidence : says.modes) {
       evidence.candidate = now.k == at;
       evidence.residual = {Vector::Constant(now.y.size(), -.25), Vector::Constant(now.y.size(), .5)};
     }
     if (now.k >= at) {
-      says.since = at;
+      says.reset = now.k == at;
+      says.since = says.reset ? 0 : at;
       says.decision = now.k == at ? Decision::isolating : Decision::monitoring;
       says.mode = now.k == at ? -1 : mode_;
       says.suggested = now.k == at ? mode_ : -1;

@@ -181,7 +181,8 @@ TEST_CASE("the files of a diagnosis") {
   CHECK(detection["decision"] == "isolating");
   CHECK(detection["mode"].is_null());
   CHECK(detection["suggested"] == "stuck \"valve\"");
-  CHECK(detection["since"] == 10);
+  CHECK(detection["since"] == 0);
+  CHECK(detection["reset"] == true);
   CHECK(detection["true_mode"] == "stuck \"valve\"");
   CHECK(detection["modes"][0]["consistent"] == "no");
   CHECK(detection["modes"][0]["residual"]["lower"] == json{.125});
@@ -204,7 +205,7 @@ TEST_CASE("the files of a diagnosis") {
   CHECK(rows[0] ==
         "pipeline,k,decision,mode,truth,since,suggested,candidate_0,consistent_0,lower_0_1,upper_0_1,candidate_1,consistent_1,"
         "lower_1_1,upper_1_1,candidate_2,consistent_2,lower_2_1,upper_2_1");
-  CHECK(rows[11] == "\"a, b\",10,isolating,,1,10,1,1,no,0.125,0.5,1,unknown,-0.25,0.5,1,unknown,-0.25,0.5");
+  CHECK(rows[11] == "\"a, b\",10,isolating,,1,0,1,1,no,0.125,0.5,1,unknown,-0.25,0.5,1,unknown,-0.25,0.5");
   CHECK(lines(bytes_of(scratch / "one" / "data.csv"))[0] == "k,u_1,y_1,x_1,x_2,mode");
   CHECK(lines(bytes_of(scratch / "one" / "data.csv"))[16].ends_with(",-1"));
   const std::vector<std::string> summaries = lines(bytes_of(scratch / "one" / "summary.csv"));

@@ -124,7 +124,7 @@ void write(JsonWriter& json, const Diagnosis& diagnosis, const std::optional<Ind
   json.begin_object().member("k", diagnosis.k).member("decision", to_string(diagnosis.decision));
   write_mode(json, "mode", modes, diagnosis.mode);
   if (truth) write_mode(json, "true_mode", modes, *truth);
-  json.member("since", diagnosis.since);
+  json.member("since", diagnosis.since).member("reset", diagnosis.reset);
   write_mode(json, "suggested", modes, diagnosis.suggested);
   json.key("modes").begin_array();
   for (const ModeEvidence& evidence : diagnosis.modes) write(json, evidence);

@@ -11,18 +11,17 @@ void first_at(Index& time, Index k) {
 
 }  // namespace
 
-DiagnosisBefore::DiagnosisBefore(const Diagnosis& diagnosis)
-    : decision(diagnosis.decision), mode(diagnosis.mode), since(diagnosis.since) {
+DiagnosisBefore::DiagnosisBefore(const Diagnosis& diagnosis) : decision(diagnosis.decision), mode(diagnosis.mode) {
   for (const ModeEvidence& evidence : diagnosis.modes) candidate.push_back(evidence.candidate);
 }
 
 bool DiagnosisBefore::is_given_up_in(const Diagnosis& now) const {
-  return monitors() && !(now.decision == Decision::monitoring && now.mode == mode && now.since == since);
+  return monitors() && (now.reset || now.decision != Decision::monitoring || now.mode != mode);
 }
 
 void DiagnosisScore::step(const std::optional<Index>& truth, const Diagnosis& now) {
   follow(truth, now);
-  if (before_ && before_->is_given_up_in(now) && throughout(before_->mode, before_->since)) ++false_alarms_;
+  if (before_ && before_->is_given_up_in(now) && throughout(before_->mode, now.since)) ++false_alarms_;
   if (segment_) judge_segment(now);
   judge_exclusions(now);
   before_.emplace(now);
@@ -43,19 +42,21 @@ void DiagnosisScore::follow(const std::optional<Index>& truth, const Diagnosis& 
   segment_->mode = *truth;
   segment_->from = now.k;
   segment_->scored = before_ || now.decision != Decision::monitoring;
-  watched_.reset();
-  if (before_ && before_->monitors() && before_->mode != *truth) watched_ = before_;
+  watching_ = before_ && before_->monitors() && before_->mode != *truth;
 }
 
 void DiagnosisScore::judge_segment(const Diagnosis& now) {
   segment_->to = now.k;
   segment_->last = now.decision;
-  if (watched_ && watched_->is_given_up_in(now)) first_at(segment_->detected_at, now.k);
+  if (watching_ && before_->is_given_up_in(now)) {
+    segment_->detected_at = now.k;
+    watching_ = false;
+  }
   if (now.decision == Decision::unknown_fault) first_at(segment_->unknown_fault_at, now.k);
   if (now.decision != Decision::monitoring) return;
   if (now.mode == segment_->mode) {
     first_at(segment_->isolated_at, now.k);
-  } else if (!watched_ || segment_->detected_at >= 0) {
+  } else if (!watching_) {
     first_at(segment_->wrong_at, now.k);
   }
 }
@@ -65,20 +66,13 @@ bool DiagnosisScore::throughout(Index mode, Index since) const {
   return segment_ && segment_->mode == mode && segment_->from <= since;
 }
 
-// What a step proves, it proves of the time since the reset that was the last one when the step began; a candidate that is gone
-// afterwards is excluded since the reset that is the last one now. Modes that are no candidates at the first step are none by
-// assumption, without proof.
+// Modes that are no candidates at the first step are none by assumption, without proof.
 void DiagnosisScore::judge_exclusions(const Diagnosis& now) {
-  const Index since = before_ ? before_->since : now.since;
-  const bool reset = now.since != since;
   for (std::size_t j = 0; j < now.modes.size() && !excluded_; ++j) {
     const auto mode = static_cast<Index>(j);
-    const bool was_candidate = before_ && (reset || before_->candidate[j]);
-    if (now.modes[j].consistent == Answer::no && throughout(mode, since)) {
-      excluded_ = {now.k, since, mode, 0};
-    } else if (was_candidate && !now.modes[j].candidate && throughout(mode, now.since)) {
-      excluded_ = {now.k, now.since, mode, 0};
-    }
+    const bool dropped = before_ && before_->candidate[j] && !now.modes[j].candidate;
+    if (!dropped && now.modes[j].consistent != Answer::no) continue;
+    if (throughout(mode, now.since)) excluded_ = {now.k, now.since, mode, 0};
   }
 }
 
@@ -115,16 +109,16 @@ void DiagnosisTimeline::step(const std::optional<Index>& truth, const Diagnosis&
 
 void DiagnosisTimeline::exclusions(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell) const {
   using Kind = DiagnosisEvent::Kind;
-  const bool given_up = before_->is_given_up_in(now), reset = now.since != before_->since;
+  const bool given_up = before_->is_given_up_in(now);
   const auto of = [&](std::size_t j) { return j < now.modes.size() ? now.modes[j] : ModeEvidence{}; };
   if (given_up) tell({now.k, Kind::detected, before_->mode, of(static_cast<std::size_t>(before_->mode))});
   // outside the bank all modes are excluded again and again: said once
   if (before_->decision == Decision::unknown_fault && now.decision == Decision::unknown_fault) return;
   for (std::size_t j = 0; j < now.modes.size(); ++j) {
     if (given_up && static_cast<Index>(j) == before_->mode) continue;
-    const bool gone = !now.modes[j].candidate && (reset || before_->candidate[j]);
-    const bool gone_before_reset = reset && before_->candidate[j] && now.modes[j].consistent == Answer::no;
-    if (gone || gone_before_reset) tell({now.k, Kind::excluded, static_cast<Index>(j), now.modes[j]});
+    // after a reset all modes are candidates again: what it rests on is told by the evidence
+    const bool gone = now.reset ? now.modes[j].consistent == Answer::no : !now.modes[j].candidate;
+    if (gone && before_->candidate[j]) tell({now.k, Kind::excluded, static_cast<Index>(j), now.modes[j]});
   }
 }
 

@@ -15,11 +15,12 @@ namespace cordon::detail {
 struct DiagnosisBefore {
   explicit DiagnosisBefore(const Diagnosis& diagnosis);
   bool monitors() const { return decision == Decision::monitoring; }
-  /// Is the mode that was monitored here given up in `now`? A reset gives it up too, even if it is isolated again at once.
+  /// Is the mode that was monitored here given up in `now`, the next diagnosis? A reset gives it up too, even if it is isolated
+  /// again at once.
   bool is_given_up_in(const Diagnosis& now) const;
 
   Decision decision;
-  Index mode, since;
+  Index mode;
   std::vector<bool> candidate;
 };
 
@@ -49,7 +50,7 @@ class DiagnosisScore {
   std::function<void(const DiagnosisSegment&)> ended_;
   std::optional<DiagnosisSegment> segment_;
   std::optional<DiagnosisBefore> before_;
-  std::optional<DiagnosisBefore> watched_;  ///< what monitored another mode when the segment began
+  bool watching_ = false;  ///< another mode was monitored when the segment began, and has not been given up
   std::int64_t false_alarms_ = 0;
   bool wrong_mode_ = false;
   std::optional<TrueModeExcluded> excluded_;
