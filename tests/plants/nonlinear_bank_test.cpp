@@ -16,7 +16,7 @@ namespace {
 struct Outcome {
   int true_mode_excluded = 0;   ///< steps
   int wrong_mode = 0;           ///< steps at which another mode is reported than since the last reset was true throughout
-  int changes = 0, missed = 0;  /// of the mode; missed: not isolated before the next change
+  int changes = 0, missed = 0;  ///< of the mode; missed: not isolated before the next change
 };
 
 /// A diagnosis speaks of the time since its last reset. It is judged where one mode was true all that time.
