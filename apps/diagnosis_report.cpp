@@ -2,6 +2,7 @@
 #include "diagnosis_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -74,6 +75,7 @@ Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& l
       continue;
     }
     std::string mode = event.mode >= 0 ? name_of(found.modes, event.mode) : "";
+    if (event.what == Kind::starts && event.mode < 0) mode = "any";
     if (event.what == Kind::truth && event.mode < 0) mode = outside_name(study, event.k);
     rows.push_back({fmt::format("{}", event.k), event_name(event, before), mode, evidence_text(event.evidence)});
   }
@@ -143,11 +145,14 @@ std::string error_set_text(const ErrorSetCheck& check, const Names& modes) {
 
 }  // namespace
 
-std::string box_text(const Box& box) {
+std::string box_text(const Box& box, Digits digits) {
   if (box.is_empty()) return "∅";
   std::string text;
   for (Index i = 0; i < box.dim(); ++i) {
-    text += fmt::format("{}[{:.4g}, {:.4g}]", i == 0 ? "" : " × ", box.lower[i], box.upper[i]);
+    const double lower = box.lower[i], upper = box.upper[i], largest = std::max(std::abs(lower), std::abs(upper));
+    const bool fixed = digits == Digits::decimals && largest >= 0.01 && largest < 1e4;
+    text += i == 0 ? "" : " × ";
+    text += fixed ? fmt::format("[{:.4f}, {:.4f}]", lower, upper) : fmt::format("[{:.4g}, {:.4g}]", lower, upper);
   }
   return text;
 }
@@ -177,7 +182,7 @@ std::string guarantees_text(const Guarantees& guarantees, const Names& modes, co
   Rows rows{{"OBSERVER", "TRUE MODE", "RESIDUALS", "CONDITION", "HOLDS"}};
   for (const PairGuarantee& pair : guarantees.pairs) {
     rows.push_back({name_of(modes, pair.observer), name_of(modes, pair.mode),
-                    fmt::format("R̊{}{} = {}", pair.mode, pair.observer, box_text(pair.residual)),
+                    fmt::format("R̊{}{} = {}", pair.mode, pair.observer, box_text(pair.residual, Digits::decimals)),
                     pair.mode == pair.observer ? "0 inside" : "0 outside", answer_text(pair.holds)});
   }
   std::string text = fmt::format("Method: {}\n{}", guarantees.method, table(rows, paint));

@@ -9,8 +9,10 @@
 
 namespace cordon::apps {
 
-/// [a, b], for several coordinates [a, b] × [c, d]; ∅ for an empty box.
-std::string box_text(const Box& box);
+/// [a, b], for several coordinates [a, b] × [c, d]; ∅ for an empty box. Numbers with 4 significant digits, or, for tables, with 4
+/// decimals if that shows them well.
+enum class Digits { significant, decimals };
+std::string box_text(const Box& box, Digits digits = Digits::significant);
 
 /// The timeline of the first seed, then delays and counts over all seeds.
 std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint);

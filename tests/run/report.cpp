@@ -152,10 +152,10 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
   CHECK(text ==
         "Method: outer iteration, 30 steps\n"
         "OBSERVER  TRUE MODE  RESIDUALS                 CONDITION  HOLDS\n"
-        "healthy   healthy    R̊00 = [-0.3, 0.3]         0 inside   yes\n"
+        "healthy   healthy    R̊00 = [-0.3000, 0.3000]   0 inside   yes\n"
         "healthy   fault 1    R̊10 = [-0.8325, -0.2937]  0 outside  yes\n"
-        "fault 1   healthy    R̊01 = [-0.01, 0.8]        0 outside  not guaranteed\n"
-        "fault 1   fault 1    R̊11 = [1, 2]              0 inside   no\n"
+        "fault 1   healthy    R̊01 = [-0.0100, 0.8000]   0 outside  not guaranteed\n"
+        "fault 1   fault 1    R̊11 = [1.0000, 2.0000]    0 inside   no\n"
         "The condition fails: some modes are proven not to meet it\n");
   g.all = Answer::yes;
   g.error_set = ErrorSetCheck{make_box(interval(-1, 1)), false, .86, .5, 1, 0};
@@ -172,6 +172,7 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
   CHECK(has(apps::guarantees_text(g, modes, paint), "by construction"));
   CHECK(apps::box_text({Vector{{-1., 0.}}, Vector{{1., 2.5}}}) == "[-1, 1] × [0, 2.5]");
   CHECK(apps::box_text(Box::empty(2)) == "∅");
+  CHECK(apps::box_text(interval(-2e-5, 1e-5), apps::Digits::decimals) == "[-2e-05, 1e-05]");
   const json data = json::parse(json_of(g, modes));
   CHECK(data["pairs"].size() == 4);
   CHECK(data["pairs"][2]["observer"] == "fault 1");
