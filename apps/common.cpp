@@ -135,13 +135,15 @@ void warn_refused(const Registry& registry) {
 
 std::vector<Component> components(const Registry& registry) {
   std::vector<Component> found;
-  for (const auto& name : registry.backends())
-    found.push_back({"backend", registry.backend_info(name), registry.plugin_of("backend", name)});
-  for (const auto& name : registry.observers()) {
-    found.push_back({"observer", registry.observer_info(name), registry.plugin_of("observer", name)});
-  }
-  for (const auto& name : registry.metrics())
-    found.push_back({"metric", registry.metric_info(name), registry.plugin_of("metric", name)});
+  const auto add = [&](const char* kind, const std::vector<std::string>& names,
+                       const ComponentInfo* (Registry::*info)(std::string_view) const) {
+    for (const std::string& name : names) found.push_back({kind, (registry.*info)(name), registry.plugin_of(kind, name)});
+  };
+  add("backend", registry.backends(), &Registry::backend_info);
+  add("observer", registry.observers(), &Registry::observer_info);
+  add("diagnoser", registry.diagnosers(), &Registry::diagnoser_info);
+  add("metric", registry.metrics(), &Registry::metric_info);
+  add("plant", registry.plants(), &Registry::plant_info);
   return found;
 }
 
@@ -156,6 +158,7 @@ std::string default_text(const ParamSpec& spec) {
 }
 
 std::string range_text(const ParamSpec& spec) {
+  if (spec.kind == ParamKind::component) return spec.component_kind;
   if (spec.kind == ParamKind::choice) return fmt::format("{}", fmt::join(spec.choices, " | "));
   if (spec.kind != ParamKind::integer && spec.kind != ParamKind::real) return "";
   const bool whole = spec.kind == ParamKind::integer;

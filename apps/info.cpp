@@ -32,6 +32,7 @@ Json as_json(const ParamSpec& spec) {
     json["highest"] = number(spec.highest);
   }
   if (spec.kind == ParamKind::choice) json["choices"] = spec.choices;
+  if (spec.kind == ParamKind::component) json["kind"] = spec.component_kind;
   return json;
 }
 
@@ -99,7 +100,8 @@ void add_info(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("info", "Explain a component and its parameters");
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("COMPONENT", *name, "Name of a backend, observer or metric (see `cordon list`)")->required();
+  command->add_option("COMPONENT", *name, "Name of a backend, observer, diagnoser, metric or plant (see `cordon list`)")
+      ->required();
   command->add_flag("--json", *json, "Print JSON for programs");
   command->callback([&program, name, json] { program.exit = info(program, *name, *json); });
 }

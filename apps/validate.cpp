@@ -30,15 +30,42 @@ std::string describe_system(const LinearModel& model) {
 
 std::string describe_data(const Study& study) {
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
-    return fmt::format("simulated, {}, seed {}", count(simulate->steps, "step"), simulate->seed);
+    const std::string by = simulate->plant ? " by " + simulate->plant->type : "";
+    const std::uint64_t first = simulate->seed, last = first + static_cast<std::uint64_t>(simulate->seeds) - 1;
+    const std::string seeds = last == first ? fmt::format("seed {}", first) : fmt::format("seeds {} to {}", first, last);
+    return fmt::format("simulated{}, {}, {}", by, count(simulate->steps, "step"), seeds);
   }
   return "recorded, " + std::get<CsvSpec>(study.data).file.string();
+}
+
+/// "weak from k = 3 to 5"; the last one may have no end.
+std::string describe_fault(const FaultSpec& fault, std::int64_t steps) {
+  const std::string until = fault.to < steps ? fmt::format(" to {}", fault.to) : "";
+  return fmt::format("{} from k = {}{}{}", fault.name, fault.from, until, fault.mode < 0 ? " (not in the bank)" : "");
+}
+
+std::string describe_modes(const Study& study) {
+  std::string text;
+  if (!study.modes.empty()) {
+    std::vector<std::string> names{study.nominal};
+    for (const Mode& mode : study.modes) names.push_back(mode.name);
+    text += fmt::format("  modes     {}\n", fmt::join(names, ", "));
+  }
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  if (!simulate) return text;
+  const char* label = "faults";
+  for (const FaultSpec& fault : simulate->faults) {
+    text += fmt::format("  {:<9} {}\n", label, describe_fault(fault, simulate->steps));
+    label = "";
+  }
+  return text;
 }
 
 std::string describe(const Study& study) {
   const Paint paint(stdout);
   std::string text = fmt::format("{}: {}\n  title     {}\n  system    {}\n  data      {}\n", study.file.string(),
                                  paint.green("ok"), study.title, describe_system(study.model.linear), describe_data(study));
+  text += describe_modes(study);
   const char* label = "pipelines";
   for (const PipelineSpec& pipeline : study.pipelines) {
     text += fmt::format("  {:<9} {}: {}, {}\n", label, pipeline.name, pipeline.backend.type,

@@ -222,3 +222,34 @@ TEST_CASE("numbers: shortest text reads back") {
   CHECK(detail::to_text(1e300) == "1e+300");
   CHECK(detail::to_text(-HUGE_VAL) == "-inf");
 }
+
+TEST_CASE("the true modes may be recorded") {
+  const auto study = [](const std::filesystem::path& file) {
+    Study one = study_of(file);
+    one.modes = {{"leak", one.model}, {"stuck, closed", one.model}};
+    std::get<CsvSpec>(one.data).mode = "state of health";
+    return one;
+  };
+  const File file("u,y,state of health\n1,2,healthy\n1,2, leak \n1,2,\n1,2,\"stuck, closed\"\n");
+  const auto data = open_data(study(file.path()));
+  for (const Index mode : {0, 1, -1, 2}) CHECK(data->next()->mode == mode);
+  CHECK_FALSE(data->next());
+  CHECK_FALSE(open_data(study_of(file.path()))->next()->mode);  // not asked for
+  const auto first_problem = [&](const std::string& bytes) {
+    const File bad(bytes);
+    try {
+      open_data(study(bad.path()));
+    } catch (const InputError& e) {
+      CHECK(e.diagnostics().size() == 1);
+      return e.diagnostics()[0];
+    }
+    return Diagnostic{};
+  };
+  const Diagnostic unknown = first_problem("u,y,state of health\n1,2,healthy\n1,2,leek\n");
+  CHECK(unknown.line == 3);
+  CHECK(unknown.message == "column \"state of health\": there is no mode \"leek\"");
+  CHECK(unknown.suggestion == "did you mean \"leak\"?");
+  const Diagnostic absent = first_problem("u,y,health\n1,2,healthy\n");
+  CHECK(absent.pointer == "/data/csv/mode");
+  CHECK(absent.message == "there is no column \"state of health\" in the header");
+}

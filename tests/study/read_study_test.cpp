@@ -434,6 +434,16 @@ TEST_CASE("the JSON Schema knows sections, components and limits") {
   CHECK(find(defs["system"]["oneOf"], "descriptor")["required"] == nlohmann::json({"type", "E", "A", "C"}));
   CHECK(defs["set"]["oneOf"].size() == 9);  // eight types, the polytope in two forms
   CHECK(defs["signal"]["oneOf"].size() == 7);
+  CHECK(find(defs["system"]["oneOf"], "lti")["properties"]["modes"]["items"]["$ref"] == "#/$defs/mode");
+  CHECK_FALSE(find(defs["mode_system"]["oneOf"], "lti")["properties"].contains("modes"));
+  CHECK(defs["mode"]["required"] == nlohmann::json({"name"}));
+  CHECK(defs["fault"]["oneOf"].size() == 2);
+  const auto bank = find(defs["diagnoser"]["oneOf"], "observer_bank");
+  CHECK(bank["properties"]["observer"]["$ref"] == "#/$defs/observer");
+  CHECK(bank["properties"]["gains"]["items"]["$ref"] == "#/$defs/matrix");
+  CHECK(bank["required"] == nlohmann::json({"type", "observer", "waiting_time"}));
+  CHECK(find(defs["plant"]["oneOf"], "reactor")["properties"]["tempo"]["default"] == 0.25);
+  CHECK(defs["pipeline"]["oneOf"].size() == 2);
   // every reference leads somewhere
   const std::string text = schema.dump(), mark = "#/$defs/";
   for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1)) {

@@ -38,11 +38,14 @@ void require_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-CsvSource::CsvSource(const CsvSpec& spec, const LinearModel& model)
+CsvSource::CsvSource(const CsvSpec& spec, const LinearModel& model, std::vector<std::string> modes)
     : file_(spec.file),
       inputs_{spec.inputs, {}, "/data/csv/inputs"},
       outputs_{spec.outputs, {}, "/data/csv/outputs"},
-      truth_{spec.truth, {}, "/data/csv/truth"} {
+      truth_{spec.truth, {}, "/data/csv/truth"},
+      mode_{{}, {}, "/data/csv/mode"},
+      modes_(std::move(modes)) {
+  if (!spec.mode.empty()) mode_.names.push_back(spec.mode);
   check_sizes(spec, model);
   require_file(file_);
   validate();
@@ -113,7 +116,7 @@ void CsvSource::locate(const CsvRow& row) {
     if (name.empty() || seen.insert(name).second || !told.insert(name).second) continue;
     report("/data/csv/file", row.line, "the column " + shown(name) + " appears more than once", "rename one of them");
   }
-  for (Columns* columns : {&inputs_, &outputs_, &truth_}) find_columns(*columns, header);
+  for (Columns* columns : {&inputs_, &outputs_, &truth_, &mode_}) find_columns(*columns, header);
 }
 
 void CsvSource::find_columns(Columns& columns, const std::vector<std::string>& header) {
@@ -125,8 +128,8 @@ void CsvSource::find_columns(Columns& columns, const std::vector<std::string>& h
     for (const std::string& name : header) {
       if (candidates.size() < 30 && name.size() <= 60) candidates.push_back(name);
     }
-    report(columns.pointer + "/" + std::to_string(i), 1, "there is no column " + shown(columns.names[i]) + " in the header",
-           suggest(columns.names[i], candidates));
+    report(&columns == &mode_ ? columns.pointer : columns.pointer + "/" + std::to_string(i), 1,
+           "there is no column " + shown(columns.names[i]) + " in the header", suggest(columns.names[i], candidates));
   }
 }
 
@@ -139,6 +142,7 @@ void CsvSource::check_row(const CsvRow& row) {
                ", the header " + std::to_string(width_));
   } else {
     for (const Columns* columns : {&inputs_, &outputs_, &truth_}) numbers(row, *columns);
+    mode(row);
   }
 }
 
@@ -157,19 +161,35 @@ std::optional<Vector> CsvSource::numbers(const CsvRow& row, const Columns& colum
   return good ? std::optional<Vector>(std::move(values)) : std::nullopt;
 }
 
+/// The mode of a row, -1 for an empty field: outside the bank; nothing if it is not recorded, or after reporting what is wrong.
+std::optional<Index> CsvSource::mode(const CsvRow& row) {
+  if (mode_.at.empty() || mode_.at.front() == missing) return std::nullopt;
+  const std::string& field = row.fields[mode_.at.front()];
+  const std::string name = trimmed(field);
+  if (name.empty()) return -1;
+  const auto found = std::find_if(modes_.begin(), modes_.end(), [&](const std::string& m) { return m == field || m == name; });
+  if (found != modes_.end()) return static_cast<Index>(found - modes_.begin());
+  report("/data/csv/file", row.line, "column " + shown(mode_.names.front()) + ": there is no mode " + shown(name),
+         suggest(name.substr(0, 200), modes_));
+  return std::nullopt;
+}
+
 std::optional<Record> CsvSource::next() {
   CsvRow row;
   if (!reader_->next(row)) return std::nullopt;
   std::optional<Vector> u, y, truth;
+  std::optional<Index> true_mode;
   if (row.problem.empty() && row.fields.size() == width_) {
     u = numbers(row, inputs_);
     y = numbers(row, outputs_);
     truth = numbers(row, truth_);
+    true_mode = mode(row);
   }
-  if (!u || !y || !truth)
+  if (!u || !y || !truth || (!true_mode && !mode_.names.empty()))
     throw Error(Errc::io, file_.string() + " was changed while it was read (line " + std::to_string(row.line) + ")");
-  Record record{{static_cast<Index>(k_++), std::move(*u), std::move(*y)}, std::nullopt};
+  Record record{{static_cast<Index>(k_++), std::move(*u), std::move(*y)}, std::nullopt, std::nullopt};
   if (!truth_.names.empty()) record.truth = std::move(truth);
+  record.mode = true_mode;
   return record;
 }
 

@@ -12,10 +12,12 @@ namespace cordon::detail {
 
 /// Samples in the order of rows, k = row index from 0. The constructor reads the whole file once and throws InputError (file: the
 /// CSV file) with up to 20 problems and their lines: missing or repeated columns, ragged rows, text or non-finite values in a
-/// number of a column that is used, no header, no rows. Afterwards rows are read again one by one; memory is constant.
+/// number of a column that is used, a mode that there is not, no header, no rows. Afterwards rows are read again one by one;
+/// memory is constant.
 class CsvSource final : public DataSource {
  public:
-  CsvSource(const CsvSpec& spec, const LinearModel& model);
+  /// `modes`: the names that the column of modes may hold, in the order of the bank.
+  CsvSource(const CsvSpec& spec, const LinearModel& model, std::vector<std::string> modes = {});
 
   std::optional<Record> next() override;
   std::optional<std::int64_t> size() const override { return rows_; }
@@ -33,12 +35,14 @@ class CsvSource final : public DataSource {
   void locate(const CsvRow& header);
   void find_columns(Columns& columns, const std::vector<std::string>& header);
   std::optional<Vector> numbers(const CsvRow& row, const Columns& columns);
+  std::optional<Index> mode(const CsvRow& row);
   void check_row(const CsvRow& row);
   void report(std::string pointer, std::int64_t line, std::string message, std::string mend = "");
   bool too_many() const { return problems_.size() >= 20; }
 
   std::filesystem::path file_;
-  Columns inputs_, outputs_, truth_;
+  Columns inputs_, outputs_, truth_, mode_;
+  std::vector<std::string> modes_;
   std::size_t width_ = 0;
   std::int64_t rows_ = 0;
   std::vector<Diagnostic> problems_;

@@ -2,6 +2,7 @@
 #include "cordon/study/data.hpp"
 
 #include "study/csv_source.hpp"
+#include "study/plant_source.hpp"
 #include "study/simulate.hpp"
 
 namespace cordon {
@@ -10,9 +11,12 @@ std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_off
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
     SimulateSpec spec = *simulate;
     spec.seed += seed_offset;
+    if (spec.made_plant) return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string());
     return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string());
   }
-  return std::make_unique<detail::CsvSource>(std::get<CsvSpec>(study.data), study.model.linear);
+  std::vector<std::string> modes{study.nominal};
+  for (const Mode& mode : study.modes) modes.push_back(mode.name);
+  return std::make_unique<detail::CsvSource>(std::get<CsvSpec>(study.data), study.model.linear, std::move(modes));
 }
 
 }  // namespace cordon

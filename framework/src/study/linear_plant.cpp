@@ -10,10 +10,10 @@ namespace {
 constexpr double rank_tolerance = 1e-10;
 }
 
-LinearPlant::LinearPlant(const LinearModel& model, const std::string& file) : model_(model) {
+LinearPlant::LinearPlant(const LinearModel& model, const std::string& file, const std::string& pointer) : model_(model) {
   const Index n = model.states();
   if (model.is_descriptor()) {
-    split(file);
+    split(file, pointer);
   } else {
     V_ = Matrix::Identity(n, n);
     dynamic_A_ = model.A;
@@ -26,7 +26,7 @@ LinearPlant::LinearPlant(const LinearModel& model, const std::string& file) : mo
   z_ = Vector::Zero(dynamic_A_.rows());
 }
 
-void LinearPlant::split(const std::string& file) {
+void LinearPlant::split(const std::string& file, const std::string& pointer) {
   Vector units = linalg::row_scales(model_.E);  // the rank of E must not depend on the units of its rows
   const Vector of_A = linalg::row_scales(model_.A);
   for (Index i = 0; i < units.size(); ++i) {
@@ -51,7 +51,7 @@ void LinearPlant::split(const std::string& file) {
   const Vector sizes = linalg::svd(block).sigma;
   const double scale = linalg::svd(static_A_).sigma[0];
   if (sizes[sizes.size() - 1] <= rank_tolerance * scale) {
-    throw InputError(file, {{"/system/E",
+    throw InputError(file, {{pointer,
                              "the descriptor system has an index above 1: its static rows do not determine the static states, "
                              "so that x_k would depend on later inputs and disturbances",
                              "use recorded data, or a model of index 1"}});
@@ -70,12 +70,17 @@ Vector LinearPlant::state(VectorIn u, VectorIn w) const {
   return x + linalg::product(V_.rightCols(n - r), linalg::product(solve_, rest));
 }
 
-LinearPlant::Output LinearPlant::step(VectorIn u, VectorIn w, VectorIn v) {
+LinearPlant::Output LinearPlant::step(VectorIn u, VectorIn w, VectorIn v, VectorIn sensor) {
   Output now;
   now.x = state(u, w);
-  now.y = linalg::product(model_.C, now.x) + linalg::product(model_.D, u) + linalg::product(model_.Dv, v);
+  const Vector shown = linalg::product(model_.C, now.x) + linalg::product(model_.D, u);
+  now.y = shown.cwiseProduct(sensor) + linalg::product(model_.Dv, v);
   z_ = linalg::product(dynamic_A_, now.x) + linalg::product(dynamic_B_, u) + linalg::product(dynamic_Bw_, w);
   return now;
+}
+
+bool same_descriptor(const LinearModel& a, const LinearModel& b) {
+  return a.E.rows() == b.E.rows() && a.E.cols() == b.E.cols() && a.E == b.E;
 }
 
 }  // namespace cordon::detail

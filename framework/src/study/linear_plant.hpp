@@ -17,16 +17,21 @@ namespace cordon::detail {
 /// r = n: no static rows, any E of full rank. One step is O(n (n + n_u + n_w + n_y)).
 class LinearPlant {
  public:
-  LinearPlant(const LinearModel& model, const std::string& file);
+  /// `pointer`: where the model stands in the study.
+  LinearPlant(const LinearModel& model, const std::string& file, const std::string& pointer = "/system/E");
 
   /// Sets z̃_0 from a state; its static part is found by the first step.
   void start(VectorIn x0);
+  /// Goes on from z̃_k of a plant of the same E, whose z̃ means the same.
+  void resume(const LinearPlant& other) { z_ = other.z_; }
 
   struct Output {
     Vector x, y;
   };
-  /// x_k and y_k for the current k, then moves on to k + 1.
-  Output step(VectorIn u, VectorIn w, VectorIn v);
+  /// x_k and y_k for the current k, then moves on to k + 1. u is what the actuators do; the sensors show diag(sensor) (C x + D
+  /// u).
+  Output step(VectorIn u, VectorIn w, VectorIn v, VectorIn sensor);
+  Output step(VectorIn u, VectorIn w, VectorIn v) { return step(u, w, v, Vector::Ones(model_.outputs())); }
 
   /// The state that belongs to z̃_k, u_k and w_k.
   Vector state(VectorIn u, VectorIn w) const;
@@ -37,7 +42,7 @@ class LinearPlant {
   const Matrix& static_Bw() const { return static_Bw_; }
 
  private:
-  void split(const std::string& file);
+  void split(const std::string& file, const std::string& pointer);
 
   LinearModel model_;
   Matrix V_;                                   ///< n×n: (Ṽ, V̌)
@@ -46,5 +51,8 @@ class LinearPlant {
   Matrix solve_;                               ///< -(Ǔᵀ A V̌)⁻¹
   Vector z_;                                   ///< z̃_k
 };
+
+/// Have both models the same E? Then the state of one can be carried over to the other.
+bool same_descriptor(const LinearModel& a, const LinearModel& b);
 
 }  // namespace cordon::detail

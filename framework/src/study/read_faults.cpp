@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "cordon/solvers/set_questions.hpp"
+#include "study/linear_plant.hpp"
 #include "study/numbers.hpp"
 #include "study/read_parts.hpp"
 
@@ -195,14 +196,12 @@ void FaultReader::check_order(const std::vector<std::pair<Cursor, FaultSpec>>& a
 
 /// Between models with another E the state cannot be carried over.
 void FaultReader::check_descriptors(const std::vector<std::pair<Cursor, FaultSpec>>& all) {
-  const Matrix* E = nullptr;  // of the models before
-  bool first = true;
-  std::int64_t next = 0;  // first time that no fault before has taken
-  const auto differs = [&](const Matrix& other) {
-    const bool same = first || (E->rows() == other.rows() && *E == other);
-    E = &other;
-    first = false;
-    return !same;
+  const LinearModel* last = nullptr;  // the model that acts before
+  std::int64_t next = 0;              // first time after the faults before
+  const auto differs = [&](const LinearModel& model) {
+    const bool different = last && !detail::same_descriptor(*last, model);
+    last = &model;
+    return different;
   };
   const auto report = [](const Cursor& at, const char* how) {
     at.error(
@@ -211,12 +210,12 @@ void FaultReader::check_descriptors(const std::vector<std::pair<Cursor, FaultSpe
   };
   for (const auto& [at, fault] : all) {
     if (fault.from > spec_.steps) break;
-    if (fault.from > next && differs(system_.model.linear.E)) report(at, "the nominal mode before it has");
-    if (differs(fault.model.linear.E)) report(at, "it has");
+    if (fault.from > next && differs(system_.model.linear)) report(at, "the nominal mode before it has");
+    if (differs(fault.model.linear)) report(at, "it has");
     if (fault.to >= spec_.steps) return;
     next = fault.to + 1;
   }
-  if (!all.empty() && differs(system_.model.linear.E)) report(all.back().first, "the nominal mode after it has");
+  if (!all.empty() && differs(system_.model.linear)) report(all.back().first, "the nominal mode after it has");
 }
 
 std::optional<FaultReader::Fault> FaultReader::read_fault(const Cursor& at) {

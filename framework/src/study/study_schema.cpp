@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include <nlohmann/json.hpp>
@@ -90,7 +89,8 @@ Json signals() {
   return {{"oneOf", all}};
 }
 
-Json systems() {
+/// The matrices and sets of a model, without "type" and E.
+Json model_properties() {
   const Json matrix = reference("matrix"), set = reference("set");
   Json properties;
   properties["A"] = described(matrix, "n × n");
@@ -99,15 +99,69 @@ Json systems() {
   properties["C"] = described(matrix, "outputs × n");
   properties["D"] = described(matrix, "outputs × inputs; zero by default");
   properties["Dv"] = described(matrix, "outputs × noises; the identity by default");
-  properties["X0"] = described(set, "contains the initial state; the whole space by default");
+  properties["X0"] = described(set, "contains the initial state; the whole space by default, in a mode the nominal one");
   properties["W"] = described(set, "contains every disturbance w; may be absent only if Bw has no columns");
   properties["V"] = described(set, "contains every measurement noise v; may be absent only if Dv has no columns");
+  return properties;
+}
+
+Json systems(const Json& more) {
+  Json properties = model_properties();
+  properties.update(more);
   Json lti = typed("lti", properties, {"A", "C"});
-  properties["E"] = described(matrix, "n × n, may be singular");
+  properties["E"] = described(reference("matrix"), "n × n, may be singular");
   Json descriptor = typed("descriptor", properties, {"E", "A", "C"});
   return {{"oneOf",
            {described(lti, "x⁺ = A x + B u + Bw w, y = C x + D u + Dv v"),
             described(descriptor, "E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v")}}};
+}
+
+Json effectiveness() {
+  const Json share{{"type", "number"}, {"minimum", 0}, {"maximum", 1}};
+  const Json range{{"type", "array"}, {"items", share}, {"minItems", 2}, {"maxItems", 2}};
+  return described(list_of({{"anyOf", {share, range}}}), "0: outage, 1: health; a number, or a range [low, high]");
+}
+
+/// What is different in a mode or a fault.
+Json mode_properties() {
+  const Json set = reference("set");
+  Json additive = object({{"F", described(reference("matrix"), "n × values of f")},
+                          {"Fy", described(reference("matrix"), "outputs × values of f")},
+                          {"f", described(set, "contains f at every step")}},
+                         {"f"});
+  additive["anyOf"] = {{{"required", {"F"}}}, {{"required", {"Fy"}}}};
+  Json properties;
+  properties["actuator"] = described(reference("effectiveness"), "one entry per column of B");
+  properties["sensor"] = described(reference("effectiveness"), "one entry per row of C");
+  properties["additive"] = described(additive, "F f is added to the state's equation, Fy f to the outputs");
+  properties["W"] = described(set, "in place of the system's W");
+  properties["V"] = described(set, "in place of the system's V");
+  properties["system"] = described(reference("mode_system"), "another model; in place of additive, W and V");
+  return properties;
+}
+
+Json modes() {
+  Json properties{{"name", text(200)}};
+  properties.update(mode_properties());
+  return object(properties, {"name"});
+}
+
+Json faults() {
+  const Json time = integer(0, static_cast<std::int64_t>(json::max_integer));
+  Json times;
+  times["from"] = described(time, "the first k whose y_k and x_{k+1} are made with the fault");
+  times["from"]["default"] = 0;
+  times["to"] = described(time, "the last such k; the end by default");
+  Json inside{{"mode", described(text(200), "name of a mode")}};
+  inside.update(times);
+  for (const char* key : {"actuator", "sensor"})
+    inside[key] = described(reference("effectiveness"), "inside the range of the mode; its range by default");
+  Json outside{{"name", described(text(200), "for people")}};
+  outside.update(times);
+  outside.update(mode_properties());
+  return {
+      {"oneOf",
+       {described(object(inside, {"mode"}), "a mode of the bank"), described(object(outside, {}), "a fault outside the bank")}}};
 }
 
 Json data() {
@@ -115,16 +169,21 @@ Json data() {
   simulate["steps"] = described(integer(1, 1'000'000'000), "samples k = 0 ... steps");
   simulate["seed"] = integer(0, static_cast<std::int64_t>(json::max_integer));
   simulate["seed"]["default"] = 1;
+  simulate["seeds"] = described(integer(1, 100'000), "diagnosers are tried on so many seeds, from seed on");
+  simulate["seeds"]["default"] = 1;
   simulate["noise"] = one_of(json::noise_names());
   simulate["noise"]["default"] = "uniform";
   simulate["x0"] = described(reference("vector"), "initial state; the centre of X0 by default");
   simulate["input"] = described(list_of(reference("signal")), "one signal per column of B");
+  simulate["plant"] = described(reference("plant"), "makes the data in place of the system");
+  simulate["faults"] = described(list_of(reference("fault")), "in the order of time, without overlap");
   const Json names{{"type", "array"}, {"items", text(4096)}, {"uniqueItems", true}};
   Json csv;
   csv["file"] = described(text(4096), "relative to the folder of the study");
   csv["inputs"] = described(names, "columns of u, one per column of B");
   csv["outputs"] = described(names, "columns of y, one per row of C");
   csv["truth"] = described(names, "columns of the true state, one per row of A");
+  csv["mode"] = described(text(4096), "column with the name of the true mode, empty outside the bank");
   return {{"oneOf",
            {object({{"simulate", object(simulate, {"steps"})}}, {"simulate"}),
             object({{"csv", object(csv, {"file", "outputs"})}}, {"csv"})}}};
@@ -183,11 +242,12 @@ Json parameter(const ParamSpec& spec) {
 }
 
 /// Components of one kind: the name alone where no parameter is required, or an object by "type".
-Json components(const std::vector<std::string>& names, const std::function<const ComponentInfo*(const std::string&)>& info) {
+Json components(const Registry& registry, const char* kind) {
+  const json::Shelf& shelf = *json::shelf_of(kind);
   Json all = Json::array();
   std::vector<std::string> plain;
-  for (const std::string& name : names) {
-    const ComponentInfo& component = *info(name);
+  for (const std::string& name : (registry.*shelf.names)()) {
+    const ComponentInfo& component = *(registry.*shelf.info)(name);
     Json properties = Json::object();
     std::vector<std::string> required;
     for (const ParamSpec& spec : component.schema.specs()) {
@@ -209,15 +269,23 @@ Json definitions(const Registry& registry) {
   defs["bounds"] = list_of({{"anyOf", {{{"type", "number"}}, one_of({"inf", "-inf"})}}});
   defs["set"] = sets();
   defs["signal"] = signals();
-  defs["system"] = systems();
+  defs["system"] = systems({{"U", described(reference("set"), "contains every input u; the whole space by default")},
+                            {"nominal", described(text(200), "name of the nominal mode; \"healthy\" by default")},
+                            {"modes", described(Json{{"type", "array"}, {"items", reference("mode")}, {"maxItems", 1000}},
+                                                "the faults that diagnosers tell apart")}});
+  defs["mode_system"] = systems(Json::object());
+  defs["effectiveness"] = effectiveness();
+  defs["mode"] = modes();
+  defs["fault"] = faults();
   defs["data"] = data();
-  defs["backend"] = components(registry.backends(), [&](const std::string& name) { return registry.backend_info(name); });
-  defs["observer"] = components(registry.observers(), [&](const std::string& name) { return registry.observer_info(name); });
-  defs["metric"] = components(registry.metrics(), [&](const std::string& name) { return registry.metric_info(name); });
-  defs["pipeline"] = object({{"name", described(text(200), "unique; the backend's name by default")},
-                             {"backend", reference("backend")},
-                             {"observer", reference("observer")}},
-                            {"backend", "observer"});
+  for (const char* kind : {"backend", "observer", "metric", "diagnoser", "plant"}) defs[kind] = components(registry, kind);
+  Json pipeline = object({{"name", described(text(200), "unique; the backend's name by default")},
+                          {"backend", reference("backend")},
+                          {"observer", reference("observer")},
+                          {"diagnoser", reference("diagnoser")}},
+                         {"backend"});
+  pipeline["oneOf"] = {{{"required", {"observer"}}}, {{"required", {"diagnoser"}}}};
+  defs["pipeline"] = pipeline;
   return defs;
 }
 
