@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Studies with modes, faults, diagnosers and plants.
 #include <algorithm>
-#include <fstream>
+#include <cmath>
 
 #include <doctest/doctest.h>
 
+#include "cordon/study/data.hpp"
 #include "study/fakes.hpp"
 
 using namespace cordon;
@@ -303,4 +304,74 @@ TEST_CASE("too many modes, and modes that would not fit into memory") {
   REQUIRE(!problems.empty());
   CHECK(problems[0].pointer == "/system/modes");
   CHECK(problems[0].message.find("too long for a system of this size") != std::string::npos);
+}
+
+TEST_CASE("a plant makes the data") {
+  const std::string text = exchanged(diagnosis_study, "\"seeds\": 3", "\"plant\": {\"type\": \"reactor\"}");
+  const Study study = read_text(text);
+  const auto& data = std::get<SimulateSpec>(study.data);
+  REQUIRE(data.plant);
+  CHECK(data.plant->params.real("tempo") == 0.25);
+  REQUIRE(data.made_plant);
+  CHECK(data.made_plant->states() == 2);
+  const auto source = open_data(study);
+  Vector x = *source->next()->truth;
+  CHECK(x == Vector{{0.5, 0.25}});
+  for (int k = 1; k <= 12; ++k) {
+    const Record record = *source->next();
+    CHECK((*record.truth)[1] == 0.25 * x[0] * x[0]);
+    if (k == 7 || k == 8) {  // the sensor of the mode "deaf" shows half
+      CHECK(std::abs(record.sample.y[0] - (*record.truth)[1] / 2) <= 0.2);
+      CHECK(record.mode == 2);
+    }
+    x = *record.truth;
+  }
+  // W is not drawn
+  CHECK(problems_of(exchanged(text, "\"W\": {\"type\": \"box\", \"lower\": [-0.1, -0.1], \"upper\": [0.1, 0.1]}",
+                              "\"W\": {\"type\": \"space\", \"dim\": 2}"))
+            .empty());
+
+  struct Wrong {
+    std::string from, to, pointer, message;
+  };
+  for (const auto& [from, to, pointer, message] : std::initializer_list<Wrong>{
+           {fault_0, "{\"mode\": \"leak\", \"to\": 5}", "/data/simulate/faults/0", "its \"additive\" is about the linear model"},
+           {fault_0, "{\"mode\": \"other\", \"to\": 5}", "/data/simulate/faults/0", "its \"system\" is about the linear model"},
+           {fault_0, "{\"to\": 5, \"W\": {\"type\": \"point\", \"center\": [0, 0]}}", "/data/simulate/faults/0", "its \"W\""},
+           {"\"reactor\"", "\"reaktor\"", "/data/simulate/plant/type", "no plant \"reaktor\""},
+           {"\"reactor\"", "\"reactor\", \"tempo\": 2", "/data/simulate/plant/tempo", "is 2, must lie in [0, 1]"},
+           {"{\"type\": \"reactor\"}", "3", "/data/simulate/plant", "is a number, must be a text or an object"}}) {
+    CAPTURE(to);
+    const auto problems = problems_of(exchanged(text, from, to));
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].pointer == pointer);
+    CHECK(problems[0].message.find(message) != std::string::npos);
+    CHECK(!problems[0].suggestion.empty());
+  }
+  const auto problems = problems_of(exchanged(valid_study, "\"seed\": 7", "\"plant\": \"reactor\""));
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].pointer == "/data/simulate/plant");
+  CHECK(problems[0].message == "has 2 inputs, /system has 1");
+}
+
+TEST_CASE("models of another E cannot follow each other") {
+  const std::string fault = "{\"name\": \"both\", \"from\": 12, \"actuator\": [1, 0.9], \"sensor\": [[0.7, 0.8]]}";
+  const std::string stiff =
+      ", \"system\": {\"type\": \"descriptor\", \"E\": [[1, 0], [0, 2]], \"A\": [[1, 0], [0, 1]], \"B\": [[1, 0], [0, 1]], "
+      "\"Bw\": [[], []], \"C\": [[1, 0]], \"Dv\": [[]]}}";
+  auto problems = problems_of(exchanged(diagnosis_study, fault, "{\"from\": 12" + stiff));
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].pointer == "/data/simulate/faults/2");
+  CHECK(problems[0].message.find("the nominal mode before it has another E") != std::string::npos);
+  CHECK(problems[0].suggestion.find("from k = 0 to the end") != std::string::npos);
+  const std::string two = exchanged(exchanged(diagnosis_study, fault_0 + ",", ""), fault_1 + ",", "");
+  CHECK(problems_of(exchanged(two, fault, "{\"from\": 0" + stiff)).empty());
+  CHECK(problems_of(exchanged(two, fault, "{\"from\": 0, \"to\": 20" + stiff)).empty());
+  problems = problems_of(exchanged(two, fault, "{\"to\": 19" + stiff));
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].message.find("the nominal mode after it has another E") != std::string::npos);
+  problems =
+      problems_of(exchanged(diagnosis_study, fault_1, "{\"from\": 6" + stiff.substr(0, stiff.size() - 1) + ", \"to\": 9}"));
+  REQUIRE(problems.size() >= 1);
+  CHECK(problems[0].pointer == "/data/simulate/faults/1");
 }

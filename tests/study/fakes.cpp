@@ -50,14 +50,14 @@ class FakeDiagnoser final : public Diagnoser {
   Diagnosis do_step(const Sample*, const Sample&) override { return {}; }
 };
 
-/// x1⁺ = x1/2 + u, x2⁺ = tempo x1², y = x2.
+/// x1⁺ = x1/2 + u1 + u2, x2⁺ = tempo x1², y = x2.
 class FakePlant final : public Plant {
  public:
   explicit FakePlant(double tempo) : tempo_(tempo) {}
   Index states() const override { return 2; }
-  Index inputs() const override { return 1; }
+  Index inputs() const override { return 2; }
   Index outputs() const override { return 1; }
-  Vector next(Index, VectorIn x, VectorIn u) const override { return Vector{{x[0] / 2 + u[0], tempo_ * x[0] * x[0]}}; }
+  Vector next(Index, VectorIn x, VectorIn u) const override { return Vector{{x[0] / 2 + u[0] + u[1], tempo_ * x[0] * x[0]}}; }
   Vector output(Index, VectorIn x, VectorIn) const override { return Vector{{x[1]}}; }
 
  private:

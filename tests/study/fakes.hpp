@@ -13,7 +13,8 @@ namespace study_test {
 
 /// Backends interval, zonotope, constrained_zonotope, line_zonotope; observers prediction_correction, descriptor and `all_kinds`
 /// (one parameter of every kind); the metrics of the shipped plugin and `quantile` with a required parameter; the diagnosers
-/// `observer_bank` (with an observer inside) and `committee` (with a diagnoser inside); the plant `reactor` with two states.
+/// `observer_bank` (with an observer inside) and `committee` (with a diagnoser inside); the plant `reactor` with two states, two
+/// inputs and one output.
 void register_fakes(cordon::Registrar& registrar);
 
 /// A directory of its own that is removed in the end.

@@ -224,6 +224,8 @@ TEST_CASE("the resolved text of a diagnosis reads back as an equal study") {
   CHECK(json["system"]["modes"][0] == nlohmann::json({{"name", "weak"}, {"actuator", {0.3, {0.1, 0.7}}}}));
   CHECK(json["data"]["simulate"]["faults"][1] == nlohmann::json({{"mode", "deaf"}, {"from", 6}, {"to", 9}}));
   CHECK(json["pipelines"][0]["diagnoser"]["observer"]["max_constraints"] == 20);
+  expect_round_trip(read_text(exchanged(diagnosis_study, "\"steps\": 20", "\"steps\": 20, \"plant\": \"reactor\"")),
+                    scratch.folder());
   // awkward numbers, lists of matrices, components in components, the default name of a fault
   std::string awkward = exchanged(diagnosis_study, "[0.3, [0.1, 0.7]]", "[0.30000000000000004, [5e-324, 0.7]]");
   awkward = exchanged(awkward, "\"actuator\": [0.3, [0.2, 0.5]]", "\"actuator\": [0.30000000000000004, 5e-324]");
@@ -297,11 +299,12 @@ TEST_CASE("recorded data: the file is looked for beside the study") {
       "\"sine\", \"amplitude\": 1, \"omega\": 0.5}]\n}";
   const auto with = [&](const std::string& csv) { return exchanged(valid_study, from, "\"csv\": " + csv); };
   scratch.write("d.csv", "a,b\n");
-  const Study study =
-      read_file(scratch.write("s.json", with(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "truth": ["x", "y"]})")));
+  const Study study = read_file(
+      scratch.write("s.json", with(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "truth": ["x", "y"], "mode": "m"})")));
   const auto& csv = std::get<CsvSpec>(study.data);
   CHECK(csv.file == scratch.folder() / "d.csv");
   CHECK(csv.truth == std::vector<std::string>{"x", "y"});
+  CHECK(csv.mode == "m");
   expect_round_trip(study, scratch.folder());
   CHECK(nlohmann::json::parse(study.resolved)["data"]["csv"]["file"] == "d.csv");
 
@@ -319,6 +322,7 @@ TEST_CASE("recorded data: the file is looked for beside the study") {
          "names 2 columns, must name 1 like the rows of /system/C");
   expect(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "truth": ["x", "x"]})", "/data/csv/truth/1",
          "repeats the column");
+  expect(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "mode": ["m"]})", "/data/csv/mode", "is a list, must be a text");
   expect(R"({"file": "d.csv", "inputs": ["a"], "outputs": "b"})", "/data/csv/outputs", "is a text, must be a list");
 }
 
