@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <set>
 #include <sys/wait.h>
 
 #include <doctest/doctest.h>
@@ -77,6 +78,35 @@ TEST_CASE("a refused plugin that the study needs is exit code 3") {
   const Outcome outcome = run("--plugins " + scratch.folder().string() + " validate " + study, "2>&1");
   CHECK(outcome.exit == 3);
   CHECK(outcome.out.find("ellipsoid.so was refused") != std::string::npos);
+}
+
+TEST_CASE("modes, faults, plants and diagnosers are described, and resolved texts are valid again") {
+  const Outcome outcome = run("validate " + examples + "cstr_actuator_faults.json " + examples + "cstr_nonlinear.json", "2>&1");
+  CHECK(outcome.exit == 0);
+  for (const char* part : {"modes     healthy, fault 1, fault 2", "faults    fault 1 from k = 50 to 99",
+                           "zonotope, observer_bank", "simulated by stirred_tank"}) {
+    CAPTURE(part);
+    CHECK(outcome.out.find(part) != std::string::npos);
+  }
+  const Scratch scratch;
+  for (const char* name : {"cstr_nonlinear.json", "consistency_four_models.json"}) {
+    const auto first = nlohmann::ordered_json::parse(run("validate --json " + examples + name, "2>/dev/null").out);
+    const std::string resolved = first["studies"][0]["study"].dump();
+    const std::string file = scratch.write("resolved.json", resolved).string();
+    const auto second = nlohmann::ordered_json::parse(run("validate --json " + file, "2>/dev/null").out);
+    CHECK(second["studies"][0]["study"].dump() == resolved);
+  }
+}
+
+TEST_CASE("list and info know every kind of component") {
+  const auto list = nlohmann::json::parse(run("list --json", "2>/dev/null").out);
+  std::set<std::string> kinds;
+  for (const auto& component : list["components"]) kinds.insert(component["kind"]);
+  CHECK(kinds == std::set<std::string>{"backend", "observer", "diagnoser", "metric", "plant"});
+  const auto info = nlohmann::json::parse(run("info --json consistency_bank", "2>/dev/null").out);
+  CHECK(info["components"][0]["kind"] == "diagnoser");
+  CHECK(info["components"][0]["params"][0]["kind"] == "observer");
+  CHECK(run("info consistency_bank", "2>/dev/null").out.find("component  (required)  observer") != std::string::npos);
 }
 
 TEST_CASE("schema prints JSON with the components of this build") {

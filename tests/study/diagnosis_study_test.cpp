@@ -346,7 +346,6 @@ TEST_CASE("a plant makes the data") {
     REQUIRE(problems.size() == 1);
     CHECK(problems[0].pointer == pointer);
     CHECK(problems[0].message.find(message) != std::string::npos);
-    CHECK(!problems[0].suggestion.empty());
   }
   const auto problems = problems_of(exchanged(valid_study, "\"seed\": 7", "\"plant\": \"reactor\""));
   REQUIRE(problems.size() == 1);
@@ -362,7 +361,7 @@ TEST_CASE("models of another E cannot follow each other") {
   auto problems = problems_of(exchanged(diagnosis_study, fault, "{\"from\": 12" + stiff));
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].pointer == "/data/simulate/faults/2");
-  CHECK(problems[0].message.find("the nominal mode before it has another E") != std::string::npos);
+  CHECK(problems[0].message.find("it has another E than the model before") != std::string::npos);
   CHECK(problems[0].suggestion.find("from k = 0 to the end") != std::string::npos);
   const std::string two = exchanged(exchanged(diagnosis_study, fault_0 + ",", ""), fault_1 + ",", "");
   CHECK(problems_of(exchanged(two, fault, "{\"from\": 0" + stiff)).empty());
