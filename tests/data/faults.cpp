@@ -121,6 +121,14 @@ TEST_CASE("a fault makes y_k and x_{k+1} from its first step to its last") {
   }
 }
 
+TEST_CASE("the true mode is told where there are several") {
+  CHECK_FALSE(all(study_of({}))[0].mode);
+  CHECK(all(study_of({fault(40, 50, 1, healthy())}))[0].mode == Index(0));
+  Study study = study_of({});
+  study.modes = {{"leak", healthy()}};
+  CHECK(all(study)[0].mode == Index(0));
+}
+
 TEST_CASE("faults do not change what is drawn for the healthy plant") {
   const auto plain = all(study_of({}));
   const auto faulty = all(study_of({fault(5, 9, 1, healthy(), half), fault(12, 12, -1, healthy(), weak)}));

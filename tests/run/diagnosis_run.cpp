@@ -17,12 +17,13 @@ namespace {
 /// The true mode from k on; none: the data do not tell it.
 using Truth = std::vector<std::pair<Index, Index>>;
 
-/// The study's own data, with the given true modes beside them.
+/// The study's own data, with the given true modes in place of their own.
 class WithModes final : public DataSource {
  public:
   WithModes(std::unique_ptr<DataSource> data, Truth truth) : data_(std::move(data)), truth_(std::move(truth)) {}
   std::optional<Record> next() override {
     std::optional<Record> record = data_->next();
+    if (record) record->mode.reset();
     for (const auto& [from, mode] : truth_) {
       if (record && record->sample.k >= from) record->mode = mode;
     }

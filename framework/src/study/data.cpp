@@ -11,8 +11,9 @@ std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_off
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
     SimulateSpec spec = *simulate;
     spec.seed += seed_offset;
-    if (spec.made_plant) return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string());
-    return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string());
+    const bool modes = !study.modes.empty() || !spec.faults.empty();  // with one mode there is nothing to tell
+    if (spec.made_plant) return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string(), modes);
+    return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string(), modes);
   }
   std::vector<std::string> modes{study.nominal};
   for (const Mode& mode : study.modes) modes.push_back(mode.name);

@@ -6,9 +6,10 @@
 
 namespace cordon::detail {
 
-PlantSource::PlantSource(const Model& model, const SimulateSpec& spec, std::string file)
+PlantSource::PlantSource(const Model& model, const SimulateSpec& spec, std::string file, bool modes)
     : spec_(spec),
       file_(std::move(file)),
+      modes_(modes),
       Dv_((check_simulation(model, spec, file_), model.linear.Dv)),
       timeline_(spec_.faults, file_),
       nominal_(model, spec_, file_),
@@ -66,7 +67,7 @@ std::optional<Record> PlantSource::next() {
   record.sample.k = static_cast<Index>(k);
   record.sample.u = inputs_.at(k);
   record.truth = x_;
-  record.mode = fault ? fault->mode : 0;
+  if (modes_) record.mode = fault ? fault->mode : 0;
   const Vector u = draw.effectiveness.actuator.cwiseProduct(record.sample.u);
   const Vector y = ask("output", &Plant::output, draw.effectiveness.sensor.size(), k, u);
   record.sample.y = y.cwiseProduct(draw.effectiveness.sensor) + linalg::product(fault ? fault->model.linear.Dv : Dv_, draw.v);

@@ -15,7 +15,8 @@ namespace cordon::detail {
 /// size.
 class PlantSource final : public DataSource {
  public:
-  PlantSource(const Model& model, const SimulateSpec& spec, std::string file);
+  /// `modes`: the records name the true mode.
+  PlantSource(const Model& model, const SimulateSpec& spec, std::string file, bool modes = true);
 
   std::optional<Record> next() override;
   std::optional<std::int64_t> size() const override { return spec_.steps + 1; }
@@ -27,6 +28,7 @@ class PlantSource final : public DataSource {
 
   SimulateSpec spec_;
   std::string file_;
+  bool modes_;
   Matrix Dv_;  ///< of the nominal model
   FaultTimeline timeline_;
   DrawSource nominal_;

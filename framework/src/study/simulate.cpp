@@ -17,9 +17,10 @@ double largest(const Matrix& A) { return A.size() == 0 ? 0.0 : A.cwiseAbs().maxC
 
 }  // namespace
 
-SimulatedSource::SimulatedSource(const Model& model, const SimulateSpec& spec, std::string file)
+SimulatedSource::SimulatedSource(const Model& model, const SimulateSpec& spec, std::string file, bool modes)
     : spec_(spec),
       file_(std::move(file)),
+      modes_(modes),
       timeline_((check_simulation(model, spec, file_), spec_.faults), file_),
       nominal_{LinearPlant(model.linear, file_), DrawSource(model, spec_, file_)},
       inputs_(spec_.input) {
@@ -152,7 +153,7 @@ std::optional<Record> SimulatedSource::next() {
   }
   record.sample.y = std::move(now.y);
   record.truth = std::move(now.x);
-  record.mode = acting_ < 0 ? 0 : spec_.faults[static_cast<std::size_t>(acting_)].mode;
+  if (modes_) record.mode = acting_ < 0 ? 0 : spec_.faults[static_cast<std::size_t>(acting_)].mode;
   return record;
 }
 

@@ -23,7 +23,8 @@ namespace cordon::detail {
 /// explains (with the residual).
 class SimulatedSource final : public DataSource {
  public:
-  SimulatedSource(const Model& model, const SimulateSpec& spec, std::string file);
+  /// `modes`: the records name the true mode.
+  SimulatedSource(const Model& model, const SimulateSpec& spec, std::string file, bool modes = true);
 
   std::optional<Record> next() override;
   std::optional<std::int64_t> size() const override { return spec_.steps + 1; }
@@ -48,6 +49,7 @@ class SimulatedSource final : public DataSource {
 
   SimulateSpec spec_;
   std::string file_;
+  bool modes_;
   FaultTimeline timeline_;
   Regime nominal_;
   Index acting_ = -1;            ///< the fault that acts, -1: none
