@@ -19,6 +19,7 @@ Study study_of(const std::string& name) {
 
 DiagnosisOutcome run_first_pipeline(Study study) {
   study.pipelines.resize(1);
+  std::get<SimulateSpec>(study.data).seeds = 60;
   const RunOutcome outcome = run_study(study, banks::registry(), {});
   REQUIRE(outcome.pipelines.size() == 1);
   REQUIRE(outcome.pipelines[0].error.empty());
