@@ -13,9 +13,8 @@ namespace cordon::estimators {
 /// Exclusions are statements about the time from `since()` on; a reset begins a new time and makes every mode a candidate again.
 /// - monitoring m: m excluded: reset, then `isolating`. But `unknown_fault` if m was isolated since a reset less than the waiting
 ///   time ago: every mode of the bank is then excluded over a time shorter than any mode lasts.
-/// - isolating: one candidate left: `monitoring` it. None left: reset, `unknown_fault`, for the same reason. Several left after
-/// the
-///   waiting time: `ambiguous`.
+/// - isolating: one candidate left: `monitoring` it. None left: reset, `unknown_fault`, for the same reason. Several left
+///   after the waiting time: `ambiguous`.
 /// - ambiguous: one candidate left: `monitoring` it. None left: reset, `isolating`, as the mode may have changed in that time.
 /// - unknown_fault: none left: reset again. One left after the waiting time: `monitoring` it; several: `ambiguous`.
 class ModeElimination {

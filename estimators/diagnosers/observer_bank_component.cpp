@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parameters of diagnoser "observer_bank", and their problems.
+#include <algorithm>
 #include <cmath>
 
 #include "components.hpp"
@@ -109,10 +110,13 @@ void check_gains(const ModeBank& bank, const Params& params, std::vector<Diagnos
   }
   for (Index j = 0; j < bank.size(); ++j) {
     const Matrix* given = list ? &(*list)[static_cast<std::size_t>(j)] : shared ? &params.matrix("gain") : nullptr;
-    const std::size_t before = problems.size();
+    const auto same_loop = [&](const Mode& earlier) {  // whose problem with the shared gain has been told
+      const LinearModel &m = bank[j].model.linear, &other = earlier.model.linear;
+      return !list && m.A == other.A && m.C == other.C && m.sensor_center() == other.sensor_center();
+    };
+    if (std::any_of(bank.modes.begin(), bank.modes.begin() + j, same_loop)) continue;
     check_gain(bank[j].model, given, list ? "/gains/" + std::to_string(j) : "/gain", " of mode \"" + bank[j].name + "\"",
                problems);
-    if (shared && problems.size() > before && given->rows() != bank[j].model.linear.states()) return;  // the same for every mode
   }
 }
 
