@@ -246,7 +246,7 @@ TEST_CASE("what is wrong with a bank is said before it runs") {
   Params p = reactor_parameters();
   p.set("gain", Matrix{{2.5}, {0}});
   CHECK(has(problems(p), "/gain", "-1.6"));  // the eigenvalue
-  CHECK(problems(p).size() == 1);  // one gain, one loop: told once
+  CHECK(problems(p).size() == 1);            // one gain, one loop: told once
   p = reactor_parameters().set("gain", Matrix{{.1582, 11.6106}});
   CHECK(has(problems(p), "/gain", "is 1 × 2, must be 2 × 1"));
   p = reactor_parameters().set("gains", std::vector<Matrix>{Matrix{{.1582}, {11.6106}}});
