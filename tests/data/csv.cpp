@@ -6,8 +6,8 @@
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
-#include "study/csv_source.hpp"
-#include "study/numbers.hpp"
+#include "study/data/csv_source.hpp"
+#include "study/results/numbers.hpp"
 
 using namespace cordon;
 

@@ -7,8 +7,8 @@
 #include <doctest/doctest.h>
 
 #include "data/published.hpp"
-#include "study/plant_source.hpp"
-#include "study/simulate.hpp"
+#include "study/data/plant_source.hpp"
+#include "study/data/simulate.hpp"
 
 using namespace cordon;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/signals.hpp"
+#include "study/data/signals.hpp"
 
 #include <cmath>
 #include <set>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/simulate.hpp"
+#include "study/data/simulate.hpp"
 
 #include <bit>
 #include <cmath>

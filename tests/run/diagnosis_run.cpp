@@ -7,7 +7,7 @@
 
 #include "run/components.hpp"
 #include "run/scratch.hpp"
-#include "study/run_on.hpp"
+#include "study/running/run_on.hpp"
 
 using namespace cordon;
 using nlohmann::json;

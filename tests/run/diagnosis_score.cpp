@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hand-made timelines: what is a delay, a miss, a false alarm, an exclusion of the true mode.
-#include "study/diagnosis_score.hpp"
+#include "study/running/diagnosis_score.hpp"
 
 #include <doctest/doctest.h>
 

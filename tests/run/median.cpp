@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/median.hpp"
+#include "study/results/median.hpp"
 
 #include <cmath>
 
 #include <doctest/doctest.h>
 
-#include "study/random.hpp"
+#include "study/data/random.hpp"
 
 using cordon::detail::Median;
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "study/read_parts.hpp"
+#include "study/reading/read_parts.hpp"
 
 namespace cordon::verification {
 

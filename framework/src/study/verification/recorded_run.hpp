@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cordon/study/study.hpp"
-#include "study/json_cursor.hpp"
+#include "study/reading/json_cursor.hpp"
 
 namespace cordon::verification {
 

@@ -7,7 +7,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/study/data.hpp"
-#include "study/random.hpp"
+#include "study/data/random.hpp"
 #include "study/verification/feasible_set.hpp"
 #include "study/verification/recorded_run.hpp"
 #include "study/verification/step_check.hpp"

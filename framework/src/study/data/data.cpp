@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/data.hpp"
+
+#include "study/data/csv_source.hpp"
+#include "study/data/plant_source.hpp"
+#include "study/data/simulate.hpp"
+
+namespace cordon {
+
+std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_offset) {
+  if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
+    SimulateSpec spec = *simulate;
+    spec.seed += seed_offset;
+    const bool modes = !study.modes.empty() || !spec.faults.empty();  // with one mode there is nothing to tell
+    if (spec.made_plant) return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string(), modes);
+    return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string(), modes);
+  }
+  std::vector<std::string> modes{study.nominal};
+  for (const Mode& mode : study.modes) modes.push_back(mode.name);
+  return std::make_unique<detail::CsvSource>(std::get<CsvSpec>(study.data), study.model.linear, std::move(modes));
+}
+
+}  // namespace cordon

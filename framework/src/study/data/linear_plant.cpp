@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/data/linear_plant.hpp"
+
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+
+namespace cordon::detail {
+
+namespace {
+constexpr double rank_tolerance = 1e-10;
+}
+
+LinearPlant::LinearPlant(const LinearModel& model, const std::string& file, const std::string& pointer) : model_(model) {
+  const Index n = model.states();
+  if (model.is_descriptor()) {
+    split(file, pointer);
+  } else {
+    V_ = Matrix::Identity(n, n);
+    dynamic_A_ = model.A;
+    dynamic_B_ = model.B;
+    dynamic_Bw_ = model.Bw;
+    static_A_ = Matrix(0, n);
+    static_B_ = Matrix(0, model.inputs());
+    static_Bw_ = Matrix(0, model.disturbances());
+  }
+  z_ = Vector::Zero(dynamic_A_.rows());
+}
+
+void LinearPlant::split(const std::string& file, const std::string& pointer) {
+  Vector units = linalg::row_scales(model_.E);  // the rank of E must not depend on the units of its rows
+  const Vector of_A = linalg::row_scales(model_.A);
+  for (Index i = 0; i < units.size(); ++i) {
+    if (model_.E.row(i).isZero(0)) units[i] = of_A[i];
+  }
+  const linalg::Svd svd = linalg::svd(units.asDiagonal() * model_.E);
+  const Index n = model_.states();
+  Index r = 0;
+  while (r < svd.sigma.size() && svd.sigma[r] > rank_tolerance * svd.sigma[0]) ++r;
+  V_ = svd.V;
+  const Matrix rows = svd.U.transpose() * units.asDiagonal();
+  Matrix scaled = rows.topRows(r);
+  for (Index i = 0; i < r; ++i) scaled.row(i) /= svd.sigma[i];
+  dynamic_A_ = linalg::product(scaled, model_.A);
+  dynamic_B_ = linalg::product(scaled, model_.B);
+  dynamic_Bw_ = linalg::product(scaled, model_.Bw);
+  static_A_ = linalg::product(rows.bottomRows(n - r), model_.A);
+  static_B_ = linalg::product(rows.bottomRows(n - r), model_.B);
+  static_Bw_ = linalg::product(rows.bottomRows(n - r), model_.Bw);
+  if (r == n) return;
+  const Matrix block = linalg::product(static_A_, V_.rightCols(n - r));
+  const Vector sizes = linalg::svd(block).sigma;
+  const double scale = linalg::svd(static_A_).sigma[0];
+  if (sizes[sizes.size() - 1] <= rank_tolerance * scale) {
+    throw InputError(file, {{pointer,
+                             "the descriptor system has an index above 1: its static rows do not determine the static states, "
+                             "so that x_k would depend on later inputs and disturbances",
+                             "use recorded data, or a model of index 1"}});
+  }
+  solve_ = -linalg::pseudo_inverse(block);
+}
+
+void LinearPlant::start(VectorIn x0) { z_ = linalg::product(V_.leftCols(z_.size()).transpose(), x0); }
+
+Vector LinearPlant::state(VectorIn u, VectorIn w) const {
+  const Index r = z_.size(), n = V_.rows();
+  if (!model_.is_descriptor()) return z_;
+  const Vector x = linalg::product(V_.leftCols(r), z_);
+  if (r == n) return x;
+  const Vector rest = linalg::product(static_A_, x) + linalg::product(static_B_, u) + linalg::product(static_Bw_, w);
+  return x + linalg::product(V_.rightCols(n - r), linalg::product(solve_, rest));
+}
+
+LinearPlant::Output LinearPlant::step(VectorIn u, VectorIn w, VectorIn v, VectorIn sensor) {
+  Output now;
+  now.x = state(u, w);
+  const Vector shown = linalg::product(model_.C, now.x) + linalg::product(model_.D, u);
+  now.y = shown.cwiseProduct(sensor) + linalg::product(model_.Dv, v);
+  z_ = linalg::product(dynamic_A_, now.x) + linalg::product(dynamic_B_, u) + linalg::product(dynamic_Bw_, w);
+  return now;
+}
+
+bool same_descriptor(const LinearModel& a, const LinearModel& b) {
+  return a.E.rows() == b.E.rows() && a.E.cols() == b.E.cols() && a.E == b.E;
+}
+
+}  // namespace cordon::detail

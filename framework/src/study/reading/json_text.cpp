@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/reading/json_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+namespace cordon::json {
+
+namespace {
+
+constexpr std::size_t max_problems = 1000;
+
+std::string escaped(std::string_view word, std::size_t limit) {
+  std::string text;
+  std::size_t i = 0;
+  for (; i < word.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(word[i]);
+    if (text.size() >= limit && (byte & 0xC0u) != 0x80u) break;  // never inside a character
+    if (byte < 0x20 || byte == 0x7F) {
+      std::array<char, 8> code{};
+      std::snprintf(code.data(), code.size(), "\\u%04x", byte);
+      text += code.data();
+    } else {
+      text += word[i];
+    }
+  }
+  if (i < word.size()) text += "...";
+  return text;
+}
+
+[[noreturn]] void refuse(const std::string& file, std::string message, std::string suggestion) {
+  throw InputError(escaped(file, 4096), {Diagnostic{"", std::move(message), std::move(suggestion), 0}});
+}
+
+const Parts& no_parts() {
+  static const Parts none;
+  return none;
+}
+
+}  // namespace
+
+const std::string& Value::text() const { return parts ? parts->text : no_parts().text; }
+const std::vector<Value>& Value::items() const { return parts ? parts->items : no_parts().items; }
+const std::vector<std::string>& Value::keys() const { return parts ? parts->keys : no_parts().keys; }
+
+const Value* Value::find(std::string_view key) const {
+  const auto& all = keys();
+  const auto at = std::find(all.begin(), all.end(), key);
+  return at == all.end() ? nullptr : &items()[static_cast<std::size_t>(at - all.begin())];
+}
+
+std::string_view kind_name(Value::Kind kind) noexcept {
+  switch (kind) {
+    case Value::Kind::null:
+      return "null";
+    case Value::Kind::boolean:
+      return "true or false";
+    case Value::Kind::number:
+      return "a number";
+    case Value::Kind::text:
+      return "a text";
+    case Value::Kind::array:
+      return "a list";
+    case Value::Kind::object:
+      return "an object";
+    case Value::Kind::broken:
+      return "broken";
+  }
+  return "broken";
+}
+
+std::string in_quotes(std::string_view word, std::size_t limit) { return '"' + escaped(word, limit) + '"'; }
+
+std::string child(std::string_view pointer, std::string_view key) {
+  std::string text(pointer);
+  text += '/';
+  for (const char c : key) {
+    if (c == '~') {
+      text += "~0";
+    } else if (c == '/') {
+      text += "~1";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string child(std::string_view pointer, std::size_t index) { return std::string(pointer) + '/' + std::to_string(index); }
+
+void Problems::add(std::string pointer, int line, std::string message, std::string suggestion) {
+  if (++count_ > max_problems) return;
+  found_.push_back({escaped(pointer, 300), std::move(message), std::move(suggestion), line});
+}
+
+std::vector<Diagnostic> Problems::sorted() const {
+  std::vector<Diagnostic> result = found_;
+  std::stable_sort(result.begin(), result.end(), [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });
+  if (count_ > max_problems) {
+    result.push_back({"", "and " + std::to_string(count_ - max_problems) + " more problems", "mend these first", 0});
+  }
+  return result;
+}
+
+std::string read_file(const std::string& file) {
+  std::error_code failure;
+  const auto status = std::filesystem::status(file, failure);
+  if (status.type() == std::filesystem::file_type::not_found)
+    refuse(file, "no such file", "check the name and the working directory");
+  if (std::filesystem::is_directory(status)) refuse(file, "is a directory", "name the JSON file inside it");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
+  if (!stream) refuse(file, std::string("cannot be opened: ") + std::strerror(errno), "check its permissions");
+  std::string text;
+  std::array<char, 1 << 16> chunk{};
+  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), stream.get())) {
+    text.append(chunk.data(), got);
+    if (text.size() > max_bytes) refuse(file, "is larger than 64 MB", "recorded data belong into a CSV file");
+  }
+  if (std::ferror(stream.get()) != 0)
+    refuse(file, std::string("cannot be read: ") + std::strerror(errno), "check the file system");
+  return text;
+}
+
+}  // namespace cordon::json

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <map>
+
+#include "study/reading/read_parts.hpp"
+#include "study/reading/read_sets.hpp"
+
+namespace cordon::json {
+
+namespace {
+
+using Kind = Value::Kind;
+constexpr std::size_t max_text = 65536;
+constexpr std::size_t max_pipelines = 1000;
+constexpr int max_nesting = 8;  // of components
+
+const char* article(std::string_view kind) { return kind == "observer" ? "an " : "a "; }
+
+std::optional<std::vector<Matrix>> read_matrices(const Cursor& at) {
+  if (!at.expect(Kind::array, "a list of matrices: [[[1, 2], [3, 4]], [[5, 6], [7, 8]]]")) return std::nullopt;
+  std::vector<Matrix> all;
+  bool good = true;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    auto A = read_matrix(at.item(i));
+    good = good && A.has_value();
+    if (A) all.push_back(std::move(*A));
+  }
+  return good ? std::optional<std::vector<Matrix>>(std::move(all)) : std::nullopt;
+}
+
+std::optional<ComponentSpec> read_nested(const Cursor& at, const Shelf& shelf, const ComponentContext& context, int depth);
+
+std::optional<Params::Value> read_inner(const Cursor& at, const std::string& kind, const ComponentContext& context, int depth) {
+  const Shelf* shelf = shelf_of(kind);
+  if (!shelf) {
+    context.refusals.push_back({at.pointer(), "asks for a component of the kind " + in_quotes(kind) + ", which does not exist",
+                                "report this to the author of the plugin", at.value().line});
+    return std::nullopt;
+  }
+  if (depth == max_nesting) {
+    at.error("components are nested more than " + std::to_string(max_nesting) + " deep", "use one with fewer components inside");
+    return std::nullopt;
+  }
+  auto spec = read_nested(at, *shelf, context, depth + 1);
+  if (!spec) return std::nullopt;
+  return Params::Value(std::make_shared<const ComponentSpec>(std::move(*spec)));
+}
+
+std::optional<Params::Value> as_param(const ParamSpec& spec, const Cursor& at, const ComponentContext& context, int depth) {
+  const auto wrap = [](auto&& read) { return read ? std::optional<Params::Value>(std::move(*read)) : std::nullopt; };
+  switch (spec.kind) {
+    case ParamKind::integer:
+      return wrap(read_integer(at, spec.lowest, spec.highest));
+    case ParamKind::real:
+      return wrap(read_number(at));
+    case ParamKind::flag:
+      return wrap(read_flag(at));
+    case ParamKind::choice:
+      return wrap(read_choice(at, spec.choices));
+    case ParamKind::text:
+      return wrap(read_text(at, max_text));
+    case ParamKind::vector:
+      return wrap(read_vector(at));
+    case ParamKind::matrix:
+      return wrap(read_matrix(at));
+    case ParamKind::set:
+      return wrap(read_set(at, context.warnings));
+    case ParamKind::matrices:
+      return wrap(read_matrices(at));
+    case ParamKind::component:
+      return read_inner(at, spec.component_kind, context, depth);
+  }
+  return std::nullopt;
+}
+
+/// The value that a relative pointer ("/name/0") leads to, or the last one on the way; "/type" is cut off
+/// `relative` where a component is written as its name alone.
+const Value& target(const Cursor& at, std::string& relative) {
+  const Value* value = &at.value();
+  for (std::size_t begin = 1; begin <= relative.size();) {
+    const std::size_t end = std::min(relative.find('/', begin), relative.size());
+    const std::string step = relative.substr(begin, end - begin);
+    const Value* next = value->find(step);
+    if (value->kind == Kind::array && !step.empty() && step.size() < 8 &&
+        step.find_first_not_of("0123456789") == std::string::npos) {
+      const std::size_t index = std::stoul(step);
+      if (index < value->items().size()) next = &value->items()[index];
+    }
+    if (!next) {
+      if (value->kind == Kind::text && step == "type") relative.resize(begin - 1);
+      break;
+    }
+    value = next;
+    begin = end + 1;
+  }
+  return *value;
+}
+
+void report(const Cursor& at, const Diagnostic& relative) {
+  std::string pointer = relative.pointer;
+  const int line = target(at, pointer).line;
+  at.problems().add(at.pointer() + pointer, line, relative.message, relative.suggestion);
+}
+
+void read_params(const Cursor& at, const ParamSchema& schema, const std::string& component, const ComponentContext& context,
+                 int depth, Params& params) {
+  std::vector<std::string> names = schema.names();
+  names.insert(names.begin(), "type");
+  if (at.is(Kind::object)) at.expect_keys(names, "parameter of " + component, "");
+  std::vector<std::string> wrong;
+  for (const ParamSpec& spec : schema.specs()) {
+    const auto value_at = at.find(spec.name);
+    if (!value_at || spec.name == "type") continue;
+    if (auto value = as_param(spec, *value_at, context, depth)) {
+      params.set(spec.name, std::move(*value));
+    } else {
+      wrong.push_back(child("", spec.name));
+    }
+  }
+  for (const Diagnostic& problem : schema.complete(params)) {
+    if (std::find(wrong.begin(), wrong.end(), problem.pointer) == wrong.end()) report(at, problem);
+  }
+}
+
+void report_unknown(const Cursor& type_at, const Shelf& shelf, const std::string& type, const ComponentContext& context) {
+  const std::string what = std::string("no ") + shelf.kind + " " + in_quotes(type);
+  if (const PluginReport* refused = context.registry.refused_provider(type)) {
+    const std::string reason = what + ": its plugin " + refused->file.string() + " was refused: " + refused->reason;
+    context.refusals.push_back({type_at.pointer(), reason, refused->fix, type_at.value().line});
+    return;
+  }
+  const std::vector<std::string> names = (context.registry.*shelf.names)();
+  const std::string near = nearest(type, names), doctor = "`cordon doctor` tells which plugins were found where";
+  if (!names.empty()) {
+    type_at.error(what, near.empty() ? suggest("", names) + "; " + doctor : "did you mean " + in_quotes(near) + "?");
+    return;
+  }
+  const std::string none = what + ": no plugin of any " + shelf.kind + " was found";  // one cause, told once
+  const auto told = [&](const Diagnostic& d) { return d.message.ends_with(none.substr(what.size())); };
+  if (std::none_of(context.refusals.begin(), context.refusals.end(), told)) {
+    context.refusals.push_back({type_at.pointer(), none, doctor, type_at.value().line});
+  }
+}
+
+std::optional<ComponentSpec> read_nested(const Cursor& at, const Shelf& shelf, const ComponentContext& context, int depth) {
+  const std::string form =
+      std::string("write the name of ") + article(shelf.kind) + shelf.kind + ", or {\"type\": name, ...parameters}";
+  if (at.is(Kind::broken)) return std::nullopt;
+  if (!at.is(Kind::object) && !at.is(Kind::text)) {
+    at.error("is " + std::string(kind_name(at.value().kind)) + ", must be a text or an object", form);
+    return std::nullopt;
+  }
+  const auto type_at = at.is(Kind::text) ? std::optional<Cursor>(at) : at.need("type", form);
+  const auto type = type_at ? read_text(*type_at, max_name) : std::nullopt;
+  if (!type) return std::nullopt;
+  const ComponentInfo* info = (context.registry.*shelf.info)(*type);
+  if (!info) {
+    report_unknown(*type_at, shelf, *type, context);
+    return std::nullopt;
+  }
+  const std::size_t before = at.problems().met();
+  ComponentSpec spec{*type, {}};
+  read_params(at, info->schema, std::string(shelf.kind) + " " + in_quotes(*type), context, depth, spec.params);
+  return at.problems().met() == before ? std::optional<ComponentSpec>(std::move(spec)) : std::nullopt;
+}
+
+/// What making or asking a component threw becomes a problem of its place: of the installation if the plugin is at fault.
+void report_failure(const Cursor& at, const Error& error, const ComponentContext& context) {
+  if (error.code() == Errc::plugin) {
+    context.refusals.push_back({at.pointer(), error.what(), "report this to the author of the plugin", at.value().line});
+  } else {
+    at.error(error.what(), "");
+  }
+}
+
+/// Makes the backend and asks the observer or the diagnoser whether it can work with it on this model, or on these modes.
+void check_together(const Cursor& pipeline, const PipelineSpec& spec, const SystemPart& system, const ModeBank& bank,
+                    const ComponentContext& context) {
+  std::shared_ptr<const SetBackend> backend;
+  try {
+    backend = context.registry.make_backend(spec.backend.type, spec.backend.params);
+  } catch (const Error& error) {
+    return report_failure(*pipeline.find("backend"), error, context);
+  }
+  const Cursor at = *pipeline.find(spec.diagnoser ? "diagnoser" : "observer");
+  try {
+    const auto problems =
+        spec.diagnoser ? context.registry.check_diagnoser(spec.diagnoser->type, bank, backend, spec.diagnoser->params)
+                       : context.registry.check_observer(spec.observer.type, {system.model, backend}, spec.observer.params);
+    for (const Diagnostic& problem : problems) report(at, problem);
+  } catch (const InputError& error) {  // of a nested component
+    for (const Diagnostic& problem : error.diagnostics()) report(at, problem);
+  } catch (const Error& error) {
+    report_failure(at, error, context);
+  }
+}
+
+/// The observer or the diagnoser of a pipeline; false if there is not exactly one that is right.
+bool read_algorithm(const Cursor& at, const SystemPart& system, const ComponentContext& context, PipelineSpec& spec) {
+  const auto observer_at = at.find("observer"), diagnoser_at = at.find("diagnoser");
+  if (observer_at && diagnoser_at) {
+    at.error("holds both \"observer\" and \"diagnoser\"", "remove one of the two, or make two pipelines");
+    return false;
+  }
+  if (observer_at) {
+    auto observer = read_component(*observer_at, "observer", context);
+    if (observer) spec.observer = std::move(*observer);
+    return observer.has_value();
+  }
+  if (!diagnoser_at) {
+    at.error("holds neither \"observer\" nor \"diagnoser\"",
+             "name the algorithm: \"observer\" estimates the state, \"diagnoser\" finds out the mode");
+    return false;
+  }
+  spec.diagnoser = read_component(*diagnoser_at, "diagnoser", context);
+  if (system.modes_good && system.modes.empty()) {
+    diagnoser_at->error("there are no modes to tell apart",
+                        "a diagnoser needs at least two: describe the faults in /system/modes");
+    return false;
+  }
+  return spec.diagnoser.has_value();
+}
+
+PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const ModeBank& bank, const ComponentContext& context) {
+  PipelineSpec spec;
+  const std::string form = "{\"name\": ..., \"backend\": {\"type\": ...}, \"observer\": {\"type\": ...}}";
+  if (!at.expect_keys({"name", "backend", "observer", "diagnoser"}, "key of a pipeline", form)) return spec;
+  const auto backend_at = at.need("backend", "the set representation: {\"type\": ...}");
+  const auto backend = backend_at ? read_component(*backend_at, "backend", context) : std::nullopt;
+  const bool algorithm = read_algorithm(at, system, context, spec);
+  if (const auto name_at = at.find("name")) {
+    spec.name = read_text(*name_at, max_name).value_or("");
+  } else if (backend) {
+    spec.name = backend->type;
+  }
+  if (!backend || !algorithm) return spec;
+  spec.backend = *backend;
+  if (spec.diagnoser ? system.modes_good : system.good) check_together(at, spec, system, bank, context);
+  return spec;
+}
+
+}  // namespace
+
+const Shelf* shelf_of(std::string_view kind) {
+  static constexpr Shelf shelves[] = {{"backend", &Registry::backend_info, &Registry::backends},
+                                      {"observer", &Registry::observer_info, &Registry::observers},
+                                      {"metric", &Registry::metric_info, &Registry::metrics},
+                                      {"diagnoser", &Registry::diagnoser_info, &Registry::diagnosers},
+                                      {"plant", &Registry::plant_info, &Registry::plants}};
+  const auto found = std::find_if(std::begin(shelves), std::end(shelves), [&](const Shelf& shelf) { return kind == shelf.kind; });
+  return found == std::end(shelves) ? nullptr : found;
+}
+
+std::optional<ComponentSpec> read_component(const Cursor& at, std::string_view kind, const ComponentContext& context) {
+  return read_nested(at, *shelf_of(kind), context, 1);
+}
+
+void read_plant(const Cursor& at, const SystemPart& system, SimulateSpec& spec, const ComponentContext& context) {
+  spec.plant = read_component(at, "plant", context);
+  if (!spec.plant) return;
+  try {
+    spec.made_plant = context.registry.make_plant(spec.plant->type, spec.plant->params);
+    const Plant& plant = *spec.made_plant;
+    const auto compare = [&](Index size, std::optional<Index> wanted, const char* noun) {
+      if (!wanted || size == *wanted) return;
+      at.error("has " + counted(size, noun) + ", /system has " + std::to_string(*wanted),
+               "the linear model is one of this plant: the same states, inputs and outputs");
+    };
+    compare(plant.states(), system.sizes.states, "state");
+    compare(plant.inputs(), system.sizes.inputs, "input");
+    compare(plant.outputs(), system.sizes.outputs, "output");
+  } catch (const Error& error) {
+    report_failure(at, error, context);
+  }
+}
+
+std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& system, const ComponentContext& context) {
+  std::vector<PipelineSpec> specs;
+  if (!at.expect(Kind::array, "a list of pipelines: [{\"backend\": ..., \"observer\": ...}]")) return specs;
+  if (at.size() == 0) at.error("is an empty list", "give at least one pipeline");
+  if (at.size() > max_pipelines) {
+    at.error("holds more than " + std::to_string(max_pipelines) + " pipelines");
+    return specs;
+  }
+  ModeBank bank;
+  if (system.modes_good) bank.modes.push_back({system.nominal, system.model});
+  bank.modes.insert(bank.modes.end(), system.modes.begin(), system.modes.end());
+  std::map<std::string, std::size_t> seen;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Cursor item = at.item(i);
+    specs.push_back(read_pipeline(item, system, bank, context));
+    const std::string& name = specs.back().name;
+    if (name.empty()) continue;
+    const auto [first, fresh] = seen.emplace(name, i);
+    if (fresh) continue;
+    const std::string other = child(at.pointer(), first->second);
+    if (const auto name_at = item.find("name")) {
+      name_at->error("repeats the name of " + other, "names of pipelines are unique");
+    } else {
+      item.error("has the same name as " + other + ": " + in_quotes(name) + ", by default that of its backend",
+                 "give it a \"name\"");
+    }
+  }
+  return specs;
+}
+
+std::vector<ComponentSpec> read_metrics(const Cursor& at, const ComponentContext& context) {
+  std::vector<ComponentSpec> specs;
+  if (!at.expect(Kind::array, "a list of metrics: [\"radius\", ...]")) return specs;
+  std::map<std::string, std::size_t> seen;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    auto spec = read_component(at.item(i), "metric", context);
+    if (!spec) continue;
+    const auto [first, fresh] = seen.emplace(spec->type, i);
+    if (!fresh) at.item(i).error("repeats " + child(at.pointer(), first->second), "remove one of the two");
+    specs.push_back(std::move(*spec));
+  }
+  return specs;
+}
+
+}  // namespace cordon::json

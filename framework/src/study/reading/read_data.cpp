@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "cordon/solvers/set_questions.hpp"
+#include "study/reading/read_parts.hpp"
+
+namespace cordon::json {
+
+namespace {
+
+using Kind = Value::Kind;
+constexpr double max_steps = 1e9;
+constexpr double max_seeds = 1e5;
+
+void real(const Cursor& signal, std::string_view key, double& out) {
+  if (const auto at = signal.find(key)) out = read_number(*at).value_or(0);
+}
+
+void integer(const Cursor& signal, std::string_view key, double lowest, std::int64_t& out) {
+  if (const auto at = signal.find(key)) out = read_integer(*at, lowest, max_integer).value_or(0);
+}
+
+Signal read_signal(const Cursor& at) {
+  Signal signal;
+  if (!at.expect(Kind::object, "write a signal: {\"type\": \"constant\", \"offset\": 1}")) return signal;
+  const auto type_at = at.need("type", suggest("", signal_types()));
+  const auto name = type_at ? read_choice(*type_at, signal_types()) : std::nullopt;
+  if (!name) return signal;
+  signal.type =
+      static_cast<Signal::Type>(std::find(signal_types().begin(), signal_types().end(), *name) - signal_types().begin());
+  std::vector<std::string> keys = signal_keys(signal.type);
+  for (std::size_t i = 0; i < required_signal_keys(signal.type); ++i)
+    at.need(keys[i], "needed by a signal of type " + in_quotes(*name));
+  keys.insert(keys.begin(), "type");
+  at.expect_keys(keys, "key of a signal of type " + in_quotes(*name), "");
+  real(at, "offset", signal.offset);
+  real(at, "amplitude", signal.amplitude);
+  real(at, "omega", signal.omega);
+  real(at, "phase", signal.phase);
+  integer(at, "from", 0, signal.from);
+  integer(at, "period", 1, signal.period);
+  integer(at, "seed", 0, signal.seed);
+  if (const auto values = at.find("values"); values && signal.type == Signal::Type::table) {
+    signal.values = read_vector(*values).value_or(Vector(0));
+    if (values->is(Kind::array) && values->size() == 0)
+      values->error("is an empty list", "give at least one value; the last one is held");
+  }
+  return signal;
+}
+
+void read_input(const Cursor& simulate, std::optional<Index> inputs, std::vector<Signal>& out) {
+  const auto at = simulate.find("input");
+  if (!at) {
+    if (inputs && *inputs > 0)
+      simulate.need("input", "a list of " + counted(*inputs, "signal") + ", one per column of /system/B");
+    return;
+  }
+  if (!at->expect(Kind::array, "a list of signals, one per column of /system/B")) return;
+  if (inputs && static_cast<Index>(at->size()) != *inputs) {
+    at->error("has " + counted(static_cast<Index>(at->size()), "signal") + ", must have " + std::to_string(*inputs) +
+              " like the columns of /system/B");
+  }
+  for (std::size_t i = 0; i < at->size(); ++i) out.push_back(read_signal(at->item(i)));
+}
+
+/// Disturbances are drawn from bounded sets only.
+void expect_bounded(const Cursor& data, const LineForm& X, const char* key) {
+  if (X.lines() == 0 || is_bounded(X) == Answer::yes) return;
+  data.error(std::string("cannot be simulated: /system/") + key + " is unbounded",
+             "bound " + std::string(key) + ", or use recorded data: \"csv\"");
+}
+
+SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const ComponentContext& context,
+                           std::vector<WrittenFault>& written_faults) {
+  SimulateSpec spec;
+  if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults"}, "key of simulated data",
+                      "{\"steps\": 100, \"input\": [...]}"))
+    return spec;
+  if (const auto steps = at.need("steps", "the number of steps: samples k = 0 ... steps"))
+    spec.steps = read_integer(*steps, 1, max_steps).value_or(0);
+  if (const auto seed = at.find("seed")) spec.seed = static_cast<std::uint64_t>(read_integer(*seed, 0, max_integer).value_or(0));
+  if (const auto seeds = at.find("seeds")) spec.seeds = read_integer(*seeds, 1, max_seeds).value_or(1);
+  if (const auto noise = at.find("noise")) {
+    if (const auto name = read_choice(*noise, noise_names())) {
+      spec.noise = static_cast<Noise>(std::find(noise_names().begin(), noise_names().end(), *name) - noise_names().begin());
+    }
+  }
+  if (const auto x0 = at.find("x0")) {
+    spec.x0 = read_vector(*x0, max_dimension);
+    if (spec.x0 && system.sizes.states) expect_size(*x0, *spec.x0, *system.sizes.states, "the rows of /system/A");
+  }
+  read_input(at, system.sizes.inputs, spec.input);
+  const auto plant = at.find("plant"), faults = at.find("faults");
+  if (plant) read_plant(*plant, system, spec, context);
+  if (system.good) {
+    if (!plant) expect_bounded(at, system.model.W, "W");
+    expect_bounded(at, system.model.V, "V");
+  }
+  if (faults) read_faults(*faults, system, spec, written_faults, context.warnings);
+  return spec;
+}
+
+std::vector<std::string> read_columns(const Cursor& csv, const char* key, std::optional<Index> size, const char* like,
+                                      bool needed) {
+  const bool absent = !csv.find(key);
+  if (absent && (!needed || size == Index{0})) return {};
+  const auto at = csv.need(key, "a list of column names");
+  if (!at) return {};
+  auto names = read_names(*at, "column");
+  if (names && size && static_cast<Index>(names->size()) != *size) {
+    at->error("names " + counted(static_cast<Index>(names->size()), "column") + ", must name " + std::to_string(*size) +
+              " like " + like);
+  }
+  return names.value_or(std::vector<std::string>{});
+}
+
+DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::path& folder) {
+  DataPart part;
+  CsvSpec spec;
+  if (!at.expect_keys({"file", "inputs", "outputs", "truth", "mode"}, "key of recorded data",
+                      "{\"file\": \"data.csv\", \"outputs\": [\"y\"]}"))
+    return part;
+  const auto file_at = at.need("file", "the CSV file, relative to the folder of the study");
+  if (const auto file = file_at ? read_text(*file_at, 4096) : std::nullopt) {
+    part.written_file = *file;
+    spec.file = folder / *file;  // an absolute path replaces the folder
+    std::error_code failure;
+    const auto status = std::filesystem::status(spec.file, failure);
+    if (!std::filesystem::exists(status)) {
+      file_at->error("no such file: " + in_quotes(spec.file.string(), 1000), "the path is relative to the folder of the study");
+    } else if (std::filesystem::is_directory(status)) {
+      file_at->error("is a directory: " + in_quotes(spec.file.string(), 1000), "name the CSV file inside it");
+    }
+  }
+  spec.inputs = read_columns(at, "inputs", sizes.inputs, "the columns of /system/B", true);
+  spec.outputs = read_columns(at, "outputs", sizes.outputs, "the rows of /system/C", true);
+  spec.truth = read_columns(at, "truth", sizes.states, "the rows of /system/A", false);
+  if (const auto mode = at.find("mode")) spec.mode = read_text(*mode, 4096).value_or("");
+  part.data = std::move(spec);
+  return part;
+}
+
+}  // namespace
+
+const std::vector<std::string>& signal_types() {
+  static const std::vector<std::string> names{"constant", "sine", "cosine", "step", "square", "prbs", "table"};
+  return names;
+}
+
+const std::vector<std::string>& noise_names() {
+  static const std::vector<std::string> names{"uniform", "vertex", "zero", "sine"};
+  return names;
+}
+
+std::vector<std::string> signal_keys(Signal::Type type) {
+  switch (type) {
+    case Signal::Type::constant:
+      return {"offset"};
+    case Signal::Type::sine:
+    case Signal::Type::cosine:
+      return {"amplitude", "omega", "phase", "offset"};
+    case Signal::Type::step:
+      return {"amplitude", "from", "offset"};
+    case Signal::Type::square:
+      return {"amplitude", "period", "offset"};
+    case Signal::Type::prbs:
+      return {"amplitude", "period", "seed", "offset"};
+    case Signal::Type::table:
+      return {"values"};
+  }
+  return {};
+}
+
+std::size_t required_signal_keys(Signal::Type type) {
+  return type == Signal::Type::constant || type == Signal::Type::prbs || type == Signal::Type::table ? 1 : 2;
+}
+
+DataPart read_data(const Cursor& data, const SystemPart& system, const std::filesystem::path& folder,
+                   const ComponentContext& context) {
+  const std::size_t before = data.problems().count();
+  if (!data.expect_keys({"simulate", "csv"}, "kind of data", "{\"simulate\": {...}} or {\"csv\": {...}}")) return {};
+  const auto simulate = data.find("simulate"), csv = data.find("csv");
+  if (simulate && csv) {
+    data.error("holds both \"simulate\" and \"csv\"", "remove one of the two");
+  } else if (!simulate && !csv) {
+    if (data.problems().count() == before) data.error("holds neither \"simulate\" nor \"csv\"", "give one of the two");
+  } else if (csv) {
+    return read_csv(*csv, system.sizes, folder);
+  } else {
+    DataPart part;
+    part.data = read_simulate(*simulate, system, context, part.written_faults);
+    return part;
+  }
+  return {};
+}
+
+}  // namespace cordon::json

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/reading/read_parts.hpp"
+#include "study/reading/read_sets.hpp"
+
+namespace cordon::json {
+
+namespace {
+
+/// Reads the matrices of a model one after another and compares their shapes with those read before. A matrix that is wrong
+/// leaves the sizes it would have fixed unknown, and what depends on them unchecked.
+class SystemReader {
+ public:
+  /// `nominal`: the system is that of a mode.
+  SystemReader(const Cursor& system, const SystemPart* nominal, std::vector<std::string>& warnings)
+      : system_(system), nominal_(nominal), warnings_(warnings), before_(system.problems().met()) {}
+
+  SystemPart read();
+
+ private:
+  std::optional<Matrix> matrix(const char* key);
+  std::optional<Matrix> needed_matrix(const char* key, const std::string& suggestion);
+  bool has_rows(const char* key, const std::optional<Matrix>& A, std::optional<Index> rows, const char* like);
+  bool has_cols(const char* key, const std::optional<Matrix>& A, std::optional<Index> cols, const char* like);
+  void read_dynamics(bool descriptor);
+  void read_descriptor_matrix();
+  void read_outputs();
+  void read_sets(std::optional<Index> disturbances, std::optional<Index> noises);
+  void read_bounds_set(const char* key, std::optional<Index> dim, const std::string& like, LineForm& out);
+  void compare_with_nominal();
+  void compare(const char* key, std::optional<Index> size, std::optional<Index> wanted, const char* noun);
+  std::string place(const char* key) const { return child(system_.pointer(), key); }
+
+  const Cursor& system_;
+  const SystemPart* nominal_;
+  std::vector<std::string>& warnings_;
+  std::size_t before_;
+  SystemPart part_;
+  std::optional<Index> disturbances_, noises_;
+};
+
+std::optional<Matrix> SystemReader::matrix(const char* key) {
+  const auto at = system_.find(key);
+  return at ? read_matrix(*at) : std::nullopt;
+}
+
+std::optional<Matrix> SystemReader::needed_matrix(const char* key, const std::string& suggestion) {
+  const auto at = system_.need(key, suggestion);
+  return at ? read_matrix(*at) : std::nullopt;
+}
+
+bool SystemReader::has_rows(const char* key, const std::optional<Matrix>& A, std::optional<Index> rows, const char* like) {
+  if (!A || !rows || A->rows() == *rows) return A.has_value();
+  system_.find(key)->error("is " + shape(A->rows(), A->cols()) + ", must have " + counted(*rows, "row") + " like " + place(like));
+  return false;
+}
+
+bool SystemReader::has_cols(const char* key, const std::optional<Matrix>& A, std::optional<Index> cols, const char* like) {
+  if (!A || !cols || A->cols() == *cols) return A.has_value();
+  system_.find(key)->error("is " + shape(A->rows(), A->cols()) + ", must have " + counted(*cols, "column") + " like " +
+                           place(like));
+  return false;
+}
+
+void SystemReader::read_dynamics(bool descriptor) {
+  LinearModel& model = part_.model.linear;
+  std::optional<Index>& n = part_.sizes.states;
+  if (const auto A = needed_matrix("A", "the matrix of x⁺ = A x + B u + Bw w, n × n")) {
+    if (A->rows() != A->cols() || A->rows() == 0 || A->rows() > max_dimension) {
+      system_.find("A")->error("is " + shape(A->rows(), A->cols()) +
+                               (A->rows() == A->cols() ? ", must have 1 to 1000 rows" : ", must be square"));
+    } else {
+      n = A->rows();
+      model.A = *A;
+    }
+  }
+  if (descriptor) read_descriptor_matrix();
+  if (system_.find("B")) {
+    const auto B = matrix("B");
+    if (has_rows("B", B, n, "A")) part_.sizes.inputs = B->cols(), model.B = *B;
+  } else {
+    part_.sizes.inputs = 0;
+    model.B = Matrix(n.value_or(0), 0);
+  }
+  if (system_.find("Bw")) {
+    const auto Bw = matrix("Bw");
+    if (has_rows("Bw", Bw, n, "A")) disturbances_ = Bw->cols(), model.Bw = *Bw;
+  } else if (n) {
+    disturbances_ = n;
+    model.Bw = Matrix::Identity(*n, *n);
+  }
+}
+
+void SystemReader::read_descriptor_matrix() {
+  const auto E = needed_matrix("E", "the matrix of E x⁺ = A x + B u + Bw w, n × n; without one the type is \"lti\"");
+  if (!E) return;
+  if (E->rows() != E->cols()) {
+    system_.find("E")->error("is " + shape(E->rows(), E->cols()) + ", must be square");
+  } else if (has_rows("E", E, part_.sizes.states, "A")) {
+    part_.model.linear.E = *E;
+  }
+}
+
+void SystemReader::read_outputs() {
+  LinearModel& model = part_.model.linear;
+  const Sizes& sizes = part_.sizes;
+  std::optional<Index>& p = part_.sizes.outputs;
+  const auto C = needed_matrix("C", "the matrix of y = C x + D u + Dv v");
+  if (C && (C->rows() == 0 || C->rows() > max_dimension)) {
+    system_.find("C")->error("is " + shape(C->rows(), C->cols()) + ", must have 1 to 1000 rows",
+                             "an observer needs at least one output");
+  } else if (C) {
+    p = C->rows();
+    if (has_cols("C", C, sizes.states, "A")) model.C = *C;
+  }
+  if (system_.find("D")) {
+    const auto D = matrix("D");
+    const bool rows = has_rows("D", D, p, "C"), cols = has_cols("D", D, sizes.inputs, "B");
+    if (rows && cols) model.D = *D;
+  } else if (p && sizes.inputs) {
+    model.D = Matrix::Zero(*p, *sizes.inputs);
+  }
+  if (system_.find("Dv")) {
+    const auto Dv = matrix("Dv");
+    if (has_rows("Dv", Dv, p, "C")) noises_ = Dv->cols(), model.Dv = *Dv;
+  } else if (p) {
+    noises_ = p;
+    model.Dv = Matrix::Identity(*p, *p);
+  }
+}
+
+void SystemReader::read_bounds_set(const char* key, std::optional<Index> dim, const std::string& like, LineForm& out) {
+  if (!system_.find(key) && dim == Index{0}) {
+    out = make_point(Vector(0));
+    return;
+  }
+  const auto at =
+      system_.need(key, "the set of all values it can take, for example {\"type\": \"box\", \"lower\": [...], \"upper\": [...]}");
+  auto X = at ? read_set(*at, warnings_) : std::nullopt;
+  if (!X) return;
+  if (dim && X->dim() != *dim) {
+    at->error("has dimension " + std::to_string(X->dim()) + ", must have " + std::to_string(*dim) + " like " + like);
+    return;
+  }
+  out = std::move(*X);
+}
+
+void SystemReader::read_sets(std::optional<Index> disturbances, std::optional<Index> noises) {
+  const Sizes& sizes = part_.sizes;
+  if (system_.find("X0")) {
+    read_bounds_set("X0", sizes.states, "the rows of " + place("A"), part_.model.X0);
+  } else if (nominal_) {
+    part_.model.X0 = nominal_->model.X0;
+  } else if (sizes.states) {
+    part_.model.X0 = make_space(*sizes.states);
+  }
+  const std::string w_like =
+      system_.find("Bw") ? "the columns of " + place("Bw") : "the rows of " + place("A") + " (Bw is the identity by default)";
+  const std::string v_like =
+      system_.find("Dv") ? "the columns of " + place("Dv") : "the rows of " + place("C") + " (Dv is the identity by default)";
+  if (system_.find("U") && !nominal_) {
+    read_bounds_set("U", sizes.inputs, "the columns of " + place("B"), part_.model.U);
+  } else if (sizes.inputs) {
+    part_.model.U = make_space(*sizes.inputs);
+  }
+  read_bounds_set("W", disturbances, w_like, part_.model.W);
+  read_bounds_set("V", noises, v_like, part_.model.V);
+}
+
+void SystemReader::compare(const char* key, std::optional<Index> size, std::optional<Index> wanted, const char* noun) {
+  if (!size || !wanted || size == wanted) return;
+  const auto at = system_.find(key);
+  (at ? *at : system_)
+      .error("has " + counted(*size, noun) + ", /system has " + std::to_string(*wanted),
+             "all modes have the same numbers of states, inputs and outputs");
+}
+
+void SystemReader::compare_with_nominal() {
+  compare("A", part_.sizes.states, nominal_->sizes.states, "state");
+  compare("B", part_.sizes.inputs, nominal_->sizes.inputs, "input");
+  compare("C", part_.sizes.outputs, nominal_->sizes.outputs, "output");
+}
+
+SystemPart SystemReader::read() {
+  if (!system_.expect(Value::Kind::object, "{\"type\": \"lti\", \"A\": [[...]], ...}")) return {};
+  const auto type_at = system_.need("type", "\"lti\", or \"descriptor\" with E");
+  const auto type = type_at ? read_choice(*type_at, system_types()) : std::nullopt;
+  std::vector<std::string> keys{"type", "E", "A", "B", "Bw", "C", "D", "Dv", "X0", "W", "V"};
+  if (!nominal_) keys.insert(keys.end(), {"U", "nominal", "modes"});
+  if (type == "lti") {
+    if (const auto E = system_.find("E"))
+      E->error("belongs to descriptor systems", "write \"type\": \"descriptor\", or remove E");
+  }
+  system_.expect_keys(keys, nominal_ ? "key of a mode's system" : "key of a system", "");
+  read_dynamics(type == "descriptor");
+  read_outputs();
+  read_sets(disturbances_, noises_);
+  if (nominal_) compare_with_nominal();
+  part_.good = system_.problems().met() == before_;
+  if (!nominal_) read_modes(system_, part_, warnings_);
+  return std::move(part_);
+}
+
+}  // namespace
+
+const std::vector<std::string>& system_types() {
+  static const std::vector<std::string> names{"lti", "descriptor"};
+  return names;
+}
+
+SystemPart read_system(const Cursor& system, std::vector<std::string>& warnings) {
+  return SystemReader(system, nullptr, warnings).read();
+}
+
+SystemPart read_mode_system(const Cursor& system, const SystemPart& nominal, std::vector<std::string>& warnings) {
+  return SystemReader(system, &nominal, warnings).read();
+}
+
+}  // namespace cordon::json

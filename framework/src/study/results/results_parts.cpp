@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/results/results_parts.hpp"
+
+#include <cmath>
+
+#include "study/results/numbers.hpp"
+
+namespace cordon::detail {
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+std::string csv_number(double value) { return std::isnan(value) ? "" : to_text(value); }
+
+std::string csv_time(std::int64_t k) { return k < 0 ? "" : std::to_string(k); }
+
+std::string joined(const std::vector<std::string>& fields) {
+  std::string row;
+  for (std::size_t i = 0; i < fields.size(); ++i) row += (i == 0 ? "" : ",") + fields[i];
+  return row + '\n';
+}
+
+void write_time(JsonWriter& json, std::string_view name, std::int64_t k) {
+  json.key(name);
+  k < 0 ? json.null() : json.value(k);
+}
+
+void write_blocks(JsonWriter& json, const LineForm& X) {
+  json.member("dim", X.dim())
+      .member("lines", X.lines())
+      .member("generators", X.generators())
+      .member("constraints", X.constraints());
+  json.key("M").matrix(X.M).key("G").matrix(X.G).member("c", X.c).key("S").matrix(X.S).key("A").matrix(X.A).member("b", X.b);
+}
+
+void write(JsonWriter& json, const LineForm& X) {
+  json.begin_object();
+  write_blocks(json, X);
+  json.end_object();
+}
+
+void write(JsonWriter& json, const Certificate& why) {
+  json.begin_object().member("kind", to_string(why.kind));
+  if (why.data.size() > 0) json.member("margin", why.margin).member("data", why.data);
+  json.end_object();
+}
+
+}  // namespace cordon::detail

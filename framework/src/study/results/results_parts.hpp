@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the files of a run write single values.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cordon/core/answer.hpp"
+#include "cordon/core/line_form.hpp"
+#include "study/results/json_writer.hpp"
+
+namespace cordon::detail {
+
+/// RFC 4180: quoted where needed.
+std::string csv_field(const std::string& text);
+std::string csv_number(double value);                        ///< NaN: empty
+std::string csv_time(std::int64_t k);                        ///< a time index that may not exist: negative ones are empty
+std::string joined(const std::vector<std::string>& fields);  ///< one row with its line end
+
+void write_time(JsonWriter& json, std::string_view name, std::int64_t k);  ///< negative: null
+void write_blocks(JsonWriter& json, const LineForm& X);  ///< the members of an exchange form, inside an open object
+void write(JsonWriter& json, const LineForm& X);
+void write(JsonWriter& json, const Certificate& why);
+
+}  // namespace cordon::detail

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/running/diagnosis_run.hpp"
+
+#include <chrono>
+
+#include "cordon/solvers/set_questions.hpp"
+#include "study/results/median.hpp"
+#include "study/running/diagnosis_score.hpp"
+#include "study/running/pipeline_guard.hpp"
+
+namespace cordon::detail {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t most_kept = 10'000;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Simulated by a linear model, so that a proven exclusion of the true mode is a defect.
+bool is_own_model(const Study& study) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  return simulate && !simulate->plant && !simulate->made_plant;
+}
+
+std::int64_t seeds_of(const Study& study) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  return simulate ? std::max<std::int64_t>(1, simulate->seeds) : 1;
+}
+
+/// A diagnoser with what it has found so far.
+class DiagnosisPipeline {
+ public:
+  DiagnosisPipeline(const Study& study, const PipelineSpec& spec)
+      : bank_(bank_of(study)), own_model_(is_own_model(study)), seeds_(seeds_of(study)) {
+    outcome_.name = spec.name;
+    outcome_.backend = spec.backend.type;
+    outcome_.diagnoser = spec.diagnoser->type;
+    for (const Mode& mode : bank_.modes) found_.modes.push_back(mode.name);
+  }
+
+  void make(const PipelineSpec& spec, const Registry& registry) {
+    guarded(outcome_, [&] {
+      backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
+      diagnoser_ = registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
+      found_.guarantees = diagnoser_->guarantees();
+    });
+  }
+
+  std::optional<Rounding> rounding() const { return backend_ ? std::optional(backend_->info().rounding) : std::nullopt; }
+  const DiagnosisOutcome& found() const { return found_; }
+  bool failed() const { return !outcome_.error.empty(); }
+  bool violated() const { return outcome_.violated_at >= 0; }
+
+  void begin_run(std::int64_t seed_offset) {
+    seed_offset_ = seed_offset;
+    start_holds_ = true;
+    timeline_ = {};
+    score_.emplace([this](const DiagnosisSegment& segment) {
+      tally_.add(segment);
+      if (seed_offset_ == 0) keep(found_.segments, segment);
+    });
+    guarded(outcome_, [&] { diagnoser_->start(); });
+  }
+
+  void step(const Record& record, Results* results) {
+    std::optional<Diagnosis> diagnosis;
+    guarded(outcome_, [&] {
+      diagnosis = diagnoser_->step(record.sample);
+      check(*diagnosis);
+    });
+    if (failed()) return;
+    if (found_.steps == 0 && record.mode) found_.truth_known = true;
+    if (record.mode && record.truth && record.sample.k == 0) check_start(*record.mode, *record.truth);
+    ++found_.steps;
+    if (seed_offset_ == 0) {
+      ++outcome_.steps;
+      timeline_.step(record.mode, *diagnosis, [&](DiagnosisEvent event) { keep(found_.events, std::move(event)); });
+    }
+    median_.add(diagnoser_->step_us());
+    score_->step(record.mode, *diagnosis);
+    if (results) results->diagnosis(*diagnosis, record.mode, diagnoser_->step_us());
+  }
+
+  void end_run() {
+    score_->finish();
+    found_.runs += !failed();
+    found_.false_alarms += score_->false_alarms();
+    found_.runs_with_false_alarm += score_->false_alarms() > 0;
+    found_.runs_with_wrong_mode += score_->wrong_mode();
+    auto excluded = score_->true_mode_excluded();
+    if (excluded && !found_.true_mode_excluded) {
+      excluded->seed_offset = seed_offset_;
+      found_.true_mode_excluded = excluded;
+      if (own_model_ && (start_holds_ || excluded->since > 0)) outcome_.violated_at = excluded->k;
+    }
+    if (failed() && seeds_ > 1)
+      outcome_.error += " (seed " + std::to_string(seed_offset_ + 1) + " of " + std::to_string(seeds_) + ")";
+  }
+
+  PipelineOutcome finish(double wall_s) {
+    outcome_.median_step_us = median_.value();
+    outcome_.wall_s = wall_s;
+    found_.statistics = tally_.statistics();
+    outcome_.diagnosis = std::move(found_);
+    return std::move(outcome_);
+  }
+
+ private:
+  /// What the rest of the program relies on.
+  void check(const Diagnosis& diagnosis) const {
+    const bool mode_fits =
+        diagnosis.decision == Decision::monitoring ? diagnosis.mode >= 0 && diagnosis.mode < bank_.size() : diagnosis.mode == -1;
+    if (static_cast<Index>(diagnosis.modes.size()) == bank_.size() && mode_fits) return;
+    throw Error(Errc::plugin, "the diagnoser \"" + outcome_.diagnoser +
+                                  "\" gave a diagnosis that does not fit its bank at k = " + std::to_string(diagnosis.k));
+  }
+
+  /// A statement about a mode since the first sample rests on that mode's X0.
+  void check_start(Index mode, const Vector& x0) {
+    if (mode >= 0 && mode != bank_.nominal) start_holds_ = contains(bank_[mode].model.X0, x0) != Answer::no;
+  }
+
+  template <class Item>
+  void keep(std::vector<Item>& items, Item item) {
+    if (items.size() < most_kept) {
+      items.push_back(std::move(item));
+    } else {
+      ++found_.left_out;
+    }
+  }
+
+  ModeBank bank_;
+  bool own_model_, start_holds_ = true;
+  std::int64_t seeds_, seed_offset_ = 0;
+  std::shared_ptr<const SetBackend> backend_;
+  std::shared_ptr<Diagnoser> diagnoser_;
+  DiagnosisTimeline timeline_;
+  std::optional<DiagnosisScore> score_;
+  DiagnosisTally tally_;
+  Median median_;
+  DiagnosisOutcome found_;
+  PipelineOutcome outcome_;
+};
+
+}  // namespace
+
+std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study, std::size_t index,
+                                             const Registry& registry, const RunOptions& options, Results* results) {
+  const PipelineSpec& spec = study.pipelines[index];
+  const Clock::time_point begin = Clock::now();
+  DiagnosisPipeline pipeline(study, spec);
+  pipeline.make(spec, registry);
+  if (results) results->begin_diagnosis(spec, pipeline.rounding(), pipeline.found());
+  const std::int64_t seeds = seeds_of(study);
+  std::int64_t total = 0;
+  Clock::time_point told = begin;
+  for (std::int64_t offset = 0; offset < seeds && !pipeline.failed(); ++offset) {
+    const std::unique_ptr<DataSource> data = open(static_cast<std::uint64_t>(offset));
+    total = seeds * data->size().value_or(0);
+    Results* const writer = offset == 0 ? results : nullptr;
+    pipeline.begin_run(offset);
+    while (!pipeline.failed()) {
+      if (options.stop && options.stop->load()) return std::nullopt;
+      const std::optional<Record> record = data->next();
+      if (!record) break;
+      if (writer) writer->data(*record);
+      pipeline.step(*record, writer);
+      if (options.progress && seconds_since(told) > 0.05) {
+        options.progress(index, pipeline.found().steps, total);
+        told = Clock::now();
+      }
+    }
+    pipeline.end_run();
+  }
+  if (options.progress) options.progress(index, pipeline.found().steps, total);
+  PipelineOutcome outcome = pipeline.finish(seconds_since(begin));
+  if (results) results->end_diagnosis(outcome);
+  return outcome;
+}
+
+}  // namespace cordon::detail

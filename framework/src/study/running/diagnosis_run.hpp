@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs one pipeline with a diagnoser.
+#pragma once
+
+#include "cordon/study/run.hpp"
+#include "study/results/results.hpp"
+#include "study/running/run_on.hpp"
+
+namespace cordon::detail {
+
+/// Over all seeds of the study, the first of which is written. Nothing: stopped from outside.
+std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study, std::size_t index,
+                                             const Registry& registry, const RunOptions& options, Results* results);
+
+}  // namespace cordon::detail

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/running/diagnosis_score.hpp"
+
+namespace cordon::detail {
+
+namespace {
+
+void first_at(Index& time, Index k) {
+  if (time < 0) time = k;
+}
+
+}  // namespace
+
+DiagnosisBefore::DiagnosisBefore(const Diagnosis& diagnosis) : decision(diagnosis.decision), mode(diagnosis.mode) {
+  for (const ModeEvidence& evidence : diagnosis.modes) candidate.push_back(evidence.candidate);
+}
+
+bool DiagnosisBefore::is_given_up_in(const Diagnosis& now) const {
+  return monitors() && (now.reset || now.decision != Decision::monitoring || now.mode != mode);
+}
+
+void DiagnosisScore::step(const std::optional<Index>& truth, const Diagnosis& now) {
+  follow(truth, now);
+  if (before_ && before_->is_given_up_in(now) && throughout(before_->mode, now.since)) ++false_alarms_;
+  if (segment_) judge_segment(now);
+  judge_exclusions(now);
+  before_.emplace(now);
+}
+
+void DiagnosisScore::finish() {
+  if (!segment_) return;
+  if (segment_->wrong_at >= 0) wrong_mode_ = true;
+  ended_(*segment_);
+  segment_.reset();
+}
+
+void DiagnosisScore::follow(const std::optional<Index>& truth, const Diagnosis& now) {
+  if (segment_ && truth && segment_->mode == *truth) return;
+  finish();
+  if (!truth) return;
+  segment_.emplace();
+  segment_->mode = *truth;
+  segment_->from = now.k;
+  segment_->scored = before_ || now.decision != Decision::monitoring;
+  watching_ = before_ && before_->monitors() && before_->mode != *truth;
+}
+
+void DiagnosisScore::judge_segment(const Diagnosis& now) {
+  segment_->to = now.k;
+  segment_->last = now.decision;
+  if (watching_ && before_->is_given_up_in(now)) {
+    segment_->detected_at = now.k;
+    watching_ = false;
+  }
+  if (now.decision == Decision::unknown_fault) first_at(segment_->unknown_fault_at, now.k);
+  if (now.decision != Decision::monitoring) return;
+  if (now.mode == segment_->mode) {
+    first_at(segment_->isolated_at, now.k);
+  } else if (!watching_) {
+    first_at(segment_->wrong_at, now.k);
+  }
+}
+
+/// Was the plant in `mode` at all times from `since` to now?
+bool DiagnosisScore::throughout(Index mode, Index since) const {
+  return segment_ && segment_->mode == mode && segment_->from <= since;
+}
+
+// Modes that are no candidates at the first step are none by assumption, without proof.
+void DiagnosisScore::judge_exclusions(const Diagnosis& now) {
+  for (std::size_t j = 0; j < now.modes.size() && !excluded_; ++j) {
+    const auto mode = static_cast<Index>(j);
+    const bool dropped = before_ && before_->candidate[j] && !now.modes[j].candidate;
+    if (!dropped && now.modes[j].consistent != Answer::no) continue;
+    if (throughout(mode, now.since)) excluded_ = {now.k, now.since, mode, 0};
+  }
+}
+
+void DiagnosisTimeline::step(const std::optional<Index>& truth, const Diagnosis& now,
+                             const std::function<void(DiagnosisEvent)>& tell) {
+  using Kind = DiagnosisEvent::Kind;
+  if (truth && truth_ != truth) tell({now.k, Kind::truth, *truth, {}});
+  truth_ = truth;
+  if (!before_) {
+    tell({now.k, Kind::starts, now.mode, {}});
+    before_.emplace(now);
+    return;
+  }
+  exclusions(now, tell);
+  const bool given_up = before_->is_given_up_in(now);
+  if (given_up || now.decision != before_->decision) {
+    switch (now.decision) {
+      case Decision::monitoring:
+        tell({now.k, Kind::isolated, now.mode, {}});
+        break;
+      case Decision::isolating:
+        if (!given_up) tell({now.k, Kind::isolating, -1, {}});  // else it is what `detected` says
+        break;
+      case Decision::ambiguous:
+        tell({now.k, Kind::ambiguous, -1, {}});
+        break;
+      case Decision::unknown_fault:
+        tell({now.k, Kind::unknown_fault, -1, {}});
+        break;
+    }
+  }
+  before_.emplace(now);
+}
+
+void DiagnosisTimeline::exclusions(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell) const {
+  using Kind = DiagnosisEvent::Kind;
+  const bool given_up = before_->is_given_up_in(now);
+  const auto of = [&](std::size_t j) { return j < now.modes.size() ? now.modes[j] : ModeEvidence{}; };
+  if (given_up) tell({now.k, Kind::detected, before_->mode, of(static_cast<std::size_t>(before_->mode))});
+  // outside the bank all modes are excluded again and again: said once
+  if (before_->decision == Decision::unknown_fault && now.decision == Decision::unknown_fault) return;
+  for (std::size_t j = 0; j < now.modes.size(); ++j) {
+    if (given_up && static_cast<Index>(j) == before_->mode) continue;
+    // after a reset all modes are candidates again: what it rests on is told by the evidence
+    const bool gone = now.reset ? now.modes[j].consistent == Answer::no : !now.modes[j].candidate;
+    if (gone && before_->candidate[j]) tell({now.k, Kind::excluded, static_cast<Index>(j), now.modes[j]});
+  }
+}
+
+void DiagnosisTally::add(const DiagnosisSegment& segment) {
+  if (!segment.scored) return;
+  Entry& entry = entries_[segment.mode];
+  ModeStatistics& counts = entry.counts;
+  counts.mode = segment.mode;
+  ++counts.segments;
+  counts.detected += segment.detected_at >= 0;
+  counts.isolated += segment.isolated_at >= 0;
+  counts.missed += segment.missed();
+  counts.wrong += segment.wrong_at >= 0;
+  counts.unknown_fault += segment.unknown_fault_at >= 0;
+  if (segment.detected_at >= 0) ++entry.detection[segment.detected_at - segment.from];
+  const Index found = segment.mode >= 0 ? segment.isolated_at : segment.unknown_fault_at;
+  if (found >= 0) ++entry.isolation[found - segment.from];
+}
+
+std::vector<ModeStatistics> DiagnosisTally::statistics() const {
+  std::vector<ModeStatistics> all;
+  for (const auto& [mode, entry] : entries_) {
+    all.push_back(entry.counts);
+    all.back().detection = summary(entry.detection);
+    all.back().isolation = summary(entry.isolation);
+  }
+  return all;
+}
+
+DelayStatistics DiagnosisTally::summary(const Delays& delays) {
+  DelayStatistics found;
+  if (delays.empty()) return found;
+  for (const auto& [delay, times] : delays) found.count += times;
+  found.min = delays.begin()->first;
+  found.max = delays.rbegin()->first;
+  std::int64_t seen = 0;
+  std::optional<std::int64_t> lower;
+  for (const auto& [delay, times] : delays) {
+    seen += times;
+    if (!lower && 2 * seen >= found.count) lower = delay;
+    if (2 * seen > found.count) {
+      found.median = 0.5 * static_cast<double>(*lower + delay);
+      break;
+    }
+  }
+  return found;
+}
+
+}  // namespace cordon::detail

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/run.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <deque>
+
+#include "study/results/median.hpp"
+#include "study/results/results.hpp"
+#include "study/running/diagnosis_run.hpp"
+#include "study/running/pipeline_guard.hpp"
+
+namespace cordon {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using detail::Assumptions;
+using detail::Median;
+using detail::MetricBoard;
+using detail::MetricValues;
+using detail::Results;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Is x, which is not in X, outside by more than the rounding errors of its own simulation? A box of relative size 1e-9 around x
+/// is proven disjoint from X.
+bool clearly_outside(const Set& X, const Vector& x) {
+  const double margin = 1e-9 * std::max(1.0, x.size() ? x.cwiseAbs().maxCoeff() : 0.0);
+  const Enclosure around = X.backend().box({x.array() - margin, x.array() + margin});
+  return X.is_disjoint_from(*around) == Answer::yes;
+}
+
+struct Medians {
+  Median predict, correct, reduce, question, hull, step;
+
+  void add(const PhaseTimes& times, double hull_us) {
+    predict.add(times.predict);
+    correct.add(times.correct);
+    reduce.add(times.reduce);
+    question.add(times.question);
+    hull.add(hull_us);
+    step.add(times.step());
+  }
+};
+
+constexpr Index nominal_mode = 0;  // in bank_of(study)
+
+/// Data that come from the study's model with all its bounds, as long as there is no fault.
+bool is_own_model(const Study& study) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  return simulate && !simulate->plant && !simulate->made_plant;
+}
+
+/// One pipeline: its components, and what became of it so far.
+class Pipeline {
+ public:
+  Pipeline(const Study& study, const PipelineSpec& spec) : study_(study), own_model_(is_own_model(study)) {
+    outcome_.name = spec.name;
+    outcome_.backend = spec.backend.type;
+    outcome_.observer = spec.observer.type;
+  }
+
+  std::optional<Rounding> rounding() const { return backend_ ? std::optional(backend_->info().rounding) : std::nullopt; }
+  const std::optional<Assumptions>& assumptions() const { return assumptions_; }
+
+  void make(const PipelineSpec& spec, const Registry& registry) {
+    guarded([&] {
+      backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
+      observer_ = registry.make_observer(spec.observer.type, {study_.model, backend_}, spec.observer.params);
+      board_.emplace(study_.metrics, registry);
+      observer_->start();
+      assumptions_ = {observer_->initial_set(), std::nullopt};
+      if (const Set* admissible = observer_->admissible_set()) assumptions_->admissible_set = admissible->line_form();
+    });
+  }
+
+  /// False once the pipeline has stopped with an error.
+  bool step(const Record& record, Results* results) {
+    std::optional<Estimate> estimate;
+    Box hull;
+    const MetricValues* values = nullptr;
+    double hull_us = 0;
+    nominal_ = nominal_ && record.mode.value_or(nominal_mode) == nominal_mode;
+    guarded([&] {
+      estimate = observer_->step(record.sample);
+      const Clock::time_point begin = Clock::now();
+      hull = estimate->consistent == Answer::no ? Box::empty(estimate->set->dim())
+                                                : estimate->set->interval_hull(results ? &hull_proofs_ : nullptr);
+      hull_us = seconds_since(begin) * 1e6;
+      const Vector* truth = judge(record, *estimate);
+      const bool assumptions_hold = nominal_ && outcome_.assumptions_until < 0;
+      values = &board_->step({*estimate, hull, truth, assumptions_hold, observer_->times()});
+      if (results) results->check_columns(*values);
+    });
+    if (!outcome_.error.empty()) return false;
+    if (outcome_.inconsistent_from < 0) medians_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
+    count(*estimate, hull);
+    if (results) results->step({*estimate, hull, hull_proofs_, *values, observer_->times(), hull_us});
+    return true;
+  }
+
+  PipelineOutcome finish(Results* results, double wall_s) {
+    MetricValues summary;
+    if (board_) guarded([&] { summary = board_->summary(); });
+    outcome_.summary = summary.reproducible;
+    outcome_.summary.insert(outcome_.summary.end(), summary.measured.begin(), summary.measured.end());
+    outcome_.median_us = {medians_.predict.value(), medians_.correct.value(), medians_.reduce.value(), medians_.question.value()};
+    outcome_.median_hull_us = medians_.hull.value();
+    outcome_.median_step_us = medians_.step.value();
+    outcome_.wall_s = wall_s;
+    if (results) results->end_pipeline(outcome_, summary);
+    return std::move(outcome_);
+  }
+
+  bool failed() const { return !outcome_.error.empty(); }
+
+ private:
+  template <class Work>
+  void guarded(Work&& work) {
+    detail::guarded(outcome_, std::forward<Work>(work));
+  }
+
+  /// Keeps count of assumptions and containment; returns the truth at the estimate's time, if the data have it.
+  const Vector* judge(const Record& record, const Estimate& estimate) {
+    if (!record.truth) return nullptr;
+    truths_.emplace_back(record.sample.k, *record.truth);
+    const Set* admissible = observer_->admissible_set();
+    if (outcome_.assumptions_until < 0 && admissible && holds(*admissible, *record.truth) == Answer::no) {
+      outcome_.assumptions_until = record.sample.k;
+    }
+    while (!truths_.empty() && truths_.front().first < estimate.k) truths_.pop_front();  // estimates may lag behind the samples
+    if (truths_.empty() || truths_.front().first != estimate.k) return nullptr;
+    const Vector& truth = truths_.front().second;
+    const bool still_inside = outcome_.outside_from < 0;
+    if (still_inside && (estimate.consistent == Answer::no ||
+                         (holds(*estimate.set, truth) == Answer::no && clearly_outside(*estimate.set, truth)))) {
+      outcome_.outside_from = estimate.k;
+      if (own_model_ && nominal_ && outcome_.assumptions_until < 0) outcome_.violated_at = estimate.k;
+    }
+    return &truth;
+  }
+
+  Answer holds(const Set& X, const Vector& x) {
+    const Answer answer = X.contains(x);
+    outcome_.containment.add(answer != Answer::unknown);
+    return answer;
+  }
+
+  void count(const Estimate& estimate, const Box& hull) {
+    ++outcome_.steps;
+    outcome_.emptiness.add(estimate.consistent != Answer::unknown);
+    if (estimate.consistent != Answer::no) {
+      const bool all = hull.is_bounded() || estimate.set->is_bounded() == Answer::no;
+      for (Index i = 0; i < hull.dim(); ++i) {
+        outcome_.bounds.add(all || std::isfinite(hull.upper[i]));
+        outcome_.bounds.add(all || std::isfinite(hull.lower[i]));
+      }
+    }
+    switch (estimate.consistent) {
+      case Answer::yes:
+        ++outcome_.consistent;
+        break;
+      case Answer::unknown:
+        ++outcome_.undecided;
+        break;
+      case Answer::no:
+        ++outcome_.inconsistent;
+        if (outcome_.inconsistent_from < 0) outcome_.inconsistent_from = estimate.k;
+        break;
+    }
+  }
+
+  const Study& study_;
+  bool own_model_;
+  bool nominal_ = true;  ///< the plant has had no fault so far, as far as the data tell
+  std::shared_ptr<const SetBackend> backend_;
+  std::shared_ptr<Observer> observer_;
+  std::optional<Assumptions> assumptions_;
+  std::optional<MetricBoard> board_;
+  std::deque<std::pair<Index, Vector>> truths_;
+  std::vector<Certificate> hull_proofs_;
+  Medians medians_;
+  PipelineOutcome outcome_;
+};
+
+/// Runs one pipeline over its own stream of the data. False: stopped from outside.
+bool run_pipeline(const Study& study, std::size_t index, const Registry& registry, const RunOptions& options, DataSource& data,
+                  Results* results, RunOutcome& outcome) {
+  const PipelineSpec& spec = study.pipelines[index];
+  const Clock::time_point begin = Clock::now();
+  const std::int64_t total = data.size().value_or(0);
+  Pipeline pipeline(study, spec);
+  pipeline.make(spec, registry);
+  if (results) results->begin_pipeline(spec, pipeline.rounding(), pipeline.assumptions());
+  std::int64_t done = 0;
+  Clock::time_point told = begin;
+  while (!pipeline.failed()) {
+    if (options.stop && options.stop->load()) return false;
+    const std::optional<Record> record = data.next();
+    if (!record) break;
+    if (results) results->data(*record);
+    if (!pipeline.step(*record, results)) break;
+    ++done;
+    if (options.progress && seconds_since(told) > 0.05) {
+      options.progress(index, done, total);
+      told = Clock::now();
+    }
+  }
+  if (options.progress) options.progress(index, done, total);
+  outcome.pipelines.push_back(pipeline.finish(results, seconds_since(begin)));
+  return true;
+}
+
+}  // namespace
+
+RunOutcome detail::run_on(const OpenData& open, const Study& study, const Registry& registry, const RunOptions& options) {
+  std::unique_ptr<DataSource> data = open(0);  // first: bad data leave no trace on the disk
+  std::optional<Results> results;
+  if (!options.out.empty()) results.emplace(study, registry, options.out);
+  Results* const writer = results ? &*results : nullptr;
+  RunOutcome outcome;
+  for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
+    bool done = true;
+    if (study.pipelines[i].diagnoser) {
+      std::optional<PipelineOutcome> found = detail::run_diagnosis(open, study, i, registry, options, writer);
+      done = found.has_value();
+      if (found) outcome.pipelines.push_back(std::move(*found));
+    } else {
+      if (i > 0) data = open(0);
+      done = run_pipeline(study, i, registry, options, *data, writer, outcome);
+    }
+    if (!done) {
+      outcome.interrupted = true;
+      return outcome;
+    }
+  }
+  if (options.stop && options.stop->load()) {
+    outcome.interrupted = true;
+  } else if (writer) {
+    outcome.files = writer->commit(outcome);
+  }
+  return outcome;
+}
+
+RunOutcome run_study(const Study& study, const Registry& registry, const RunOptions& options) {
+  return detail::run_on([&](std::uint64_t seed_offset) { return open_data(study, seed_offset); }, study, registry, options);
+}
+
+}  // namespace cordon
