@@ -46,6 +46,7 @@ class ObserverBank final : public Diagnoser {
     LuenbergerRecursion recursion;
     Enclosure X, residual;           ///< X̂, R
     Vector center;                   ///< x̂
+    Vector size, residual_size;      ///< of the numbers that x̂ and its residual are made of
     std::optional<Enclosure> copy;   ///< X̂', while the mode is a candidate
     std::optional<Enclosure> bound;  ///< X̌, while the mode is among those that the published algorithm keeps
     bool bound_violated = false;     ///< R ⊄ Ř
