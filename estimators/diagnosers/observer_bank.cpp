@@ -65,7 +65,7 @@ ObserverBank::ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> back
 }
 
 void ObserverBank::do_start() {
-  was_reset_ = false;
+  was_reset_ = unfinished_ = false;
   suggested_ = suggesting_since_ = -1;
   for (Member& m : members_) {
     m.copy.reset();
@@ -127,7 +127,9 @@ void ObserverBank::reset(Index j, const Sample& now) {
 }
 
 Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
+  if (unfinished_) throw Error(Errc::invalid, "the last step ended with an error, and left sets of different times; start anew");
   expect_input(now);
+  unfinished_ = true;
   const Index modes = bank().size();
   if (!before) {
     elimination_.start(now.k);
@@ -158,6 +160,7 @@ Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
   Diagnosis diagnosis = report(now);
   diagnosis.since = since;
   diagnosis.reset = is_reset;
+  unfinished_ = false;
   return diagnosis;
 }
 

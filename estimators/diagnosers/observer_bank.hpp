@@ -74,6 +74,7 @@ class ObserverBank final : public Diagnoser {
   ModeElimination elimination_;
   ModeWorkers workers_;
   bool was_reset_ = false;
+  bool unfinished_ = false;  ///< a step ended with an error half way
   Index suggested_ = -1, suggesting_since_ = -1;
 };
 
