@@ -54,10 +54,13 @@ class ConsistencyBank final : public Diagnoser {
 
   void do_start() override {
     for (const auto& observer : observers_) observer->start();
-    ended_ = false;
+    ended_ = unfinished_ = false;
   }
 
   Diagnosis do_step(const Sample* before, const Sample& now) override {
+    if (unfinished_)
+      throw Error(Errc::invalid, "the last step ended with an error, and left estimates of different times; start anew");
+    unfinished_ = true;
     if (!before) elimination_.start(now.k);
     if (!ended_) since_ = elimination_.since();
     const Estimates estimates = advance(now);
@@ -69,6 +72,7 @@ class ConsistencyBank final : public Diagnoser {
       for (const auto& observer : observers_) observer->start(restart_);
       advance(now);  // what this sample alone excludes stays excluded, and is told with the next one
     }
+    unfinished_ = false;
     return result;
   }
 
@@ -121,8 +125,9 @@ class ConsistencyBank final : public Diagnoser {
   ModeElimination elimination_;
   std::vector<std::shared_ptr<Observer>> observers_;
   std::optional<Enclosure> restart_;
-  Index since_ = 0;     ///< first sample of the estimates
-  bool ended_ = false;  ///< no mode is left and none can begin anew
+  Index since_ = 0;          ///< first sample of the estimates
+  bool ended_ = false;       ///< no mode is left and none can begin anew
+  bool unfinished_ = false;  ///< a step ended with an error half way
   ModeWorkers workers_;
 };
 

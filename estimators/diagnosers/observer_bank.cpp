@@ -10,16 +10,21 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr double rounding_share = 1e-10;  // of the numbers a residual is made of: what is nearer to 0 may be their rounding
+constexpr double rounding_share = 1e-10;
+
+/// What is nearer to 0 than this may be rounding: a share of the numbers that a residual was made of, and of its own bounds.
+Vector rounding_slack(const Box& hull, const Vector& size) {
+  return rounding_share * (size + hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs()));
+}
 
 /// How far 0 lies outside the hull of R: the coordinate and its direction, if any is beyond rounding.
-std::optional<Certificate> separated_axis(const Box& hull, const Sample& now) {
+std::optional<Certificate> separated_axis(const Box& hull, const Vector& size) {
+  const Vector slack = rounding_slack(hull, size);
   std::optional<Certificate> best;
   for (Index i = 0; i < hull.dim(); ++i) {
     for (const double sign : {1.0, -1.0}) {
       const double distance = sign > 0 ? hull.lower[i] : -hull.upper[i];  // 0 below the lower bound, above the upper one
-      const double size = std::abs(now.y[i]) + std::max(std::abs(hull.lower[i]), std::abs(hull.upper[i]));
-      if (!(distance > rounding_share * size) || (best && best->margin >= distance)) continue;
+      if (!(distance > slack[i]) || (best && best->margin >= distance)) continue;
       Vector d = Vector::Zero(hull.dim());
       d[i] = -sign;
       best = Certificate{Certificate::Kind::direction, std::move(d), distance};
@@ -28,13 +33,19 @@ std::optional<Certificate> separated_axis(const Box& hull, const Sample& now) {
   return best;
 }
 
-/// Is 0 ∈ R? In one dimension the hull is the set, and needs no program.
-void ask(const Enclosure& R, const Box& hull, const Sample& now, ModeEvidence& evidence) {
-  if (auto proof = separated_axis(hull, now)) {
+/// Is 0 ∈ R? In one dimension the hull is the set, and needs no program. What the sets answer bounds no rounding errors of the
+/// numbers behind R, so that `no` has to hold for a neighbourhood of 0.
+void ask(const SetBackend& backend, const Enclosure& R, const Box& hull, const Vector& size, ModeEvidence& evidence) {
+  if (auto proof = separated_axis(hull, size)) {
     evidence.consistent = Answer::no;
     evidence.why = std::move(*proof);
   } else if (hull.dim() > 1) {
     evidence.consistent = R->contains(Vector::Zero(hull.dim()), &evidence.why);
+    if (evidence.consistent != Answer::no) return;
+    const Vector slack = rounding_slack(hull, size);
+    if (backend.sum(R, backend.box({-slack, slack}))->contains(Vector::Zero(hull.dim())) == Answer::no) return;
+    evidence.consistent = Answer::unknown;
+    evidence.why = {};
   }
 }
 
@@ -54,7 +65,7 @@ ObserverBank::ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> back
 }
 
 void ObserverBank::do_start() {
-  was_reset_ = false;
+  was_reset_ = unfinished_ = false;
   suggested_ = suggesting_since_ = -1;
   for (Member& m : members_) {
     m.copy.reset();
@@ -76,6 +87,7 @@ void ObserverBank::advance(Index j, const Sample& before) {
   if (m.bound) m.bound = m.recursion.reduced(m.recursion.next_bound(*m.bound, m.X, before));
   if (m.copy) m.copy = m.recursion.reduced(m.recursion.next(*m.copy, before));
   m.X = m.recursion.reduced(m.recursion.next(m.X, before));
+  m.size = m.recursion.next_size(m.center, before);
   m.center = m.recursion.next(m.center, before);
 }
 
@@ -83,14 +95,15 @@ void ObserverBank::advance(Index j, const Sample& before) {
 void ObserverBank::judge(Index j, const Sample& now) {
   Member& m = member(j);
   m.residual = m.recursion.residual(m.X, now);
+  m.residual_size = m.recursion.residual_size(m.size, now);
   m.evidence = {};
   m.evidence.residual = m.residual->interval_hull();
   if (m.copy) {
     const Enclosure copy = m.recursion.residual(*m.copy, now);
     m.evidence.reset_residual = copy->interval_hull();
-    ask(copy, m.evidence.reset_residual, now, m.evidence);
+    ask(backend(), copy, m.evidence.reset_residual, m.residual_size, m.evidence);
   } else if (!was_reset_ && elimination_.is_candidate(j)) {
-    ask(m.residual, m.evidence.residual, now, m.evidence);
+    ask(backend(), m.residual, m.evidence.residual, m.residual_size, m.evidence);
   }
   if (m.bound) {
     const Enclosure allowed = m.recursion.residual_bound(*m.bound, m.X, now);
@@ -114,13 +127,16 @@ void ObserverBank::reset(Index j, const Sample& now) {
 }
 
 Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
+  if (unfinished_) throw Error(Errc::invalid, "the last step ended with an error, and left sets of different times; start anew");
   expect_input(now);
+  unfinished_ = true;
   const Index modes = bank().size();
   if (!before) {
     elimination_.start(now.k);
     for (Index j = 0; j < modes; ++j) {
       member(j).X = member(j).recursion.reduced(backend().import(options_.initial_set));
       member(j).center = invariant::enclosing_zonotope(options_.initial_set).c;
+      member(j).size = member(j).center.cwiseAbs();
     }
   }
   workers_.for_each(modes, [&](Index j) {
@@ -144,6 +160,7 @@ Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
   Diagnosis diagnosis = report(now);
   diagnosis.since = since;
   diagnosis.reset = is_reset;
+  unfinished_ = false;
   return diagnosis;
 }
 
@@ -161,7 +178,7 @@ void ObserverBank::suggest(const Sample& now) {
   for (Index j = 0; j < bank().size(); ++j) {
     Member& m = member(j);
     if (!m.bound) continue;
-    if (m.bound_violated || (waited && separated_axis(m.evidence.residual, now))) {
+    if (m.bound_violated || (waited && separated_axis(m.evidence.residual, m.residual_size))) {
       m.bound.reset();
     } else {
       ++left;

@@ -18,6 +18,7 @@
 // Ranges of effectiveness: effectiveness.hpp. An input with a range that enters dynamic rows, static rows or outputs alike has
 // its factor taken once for each, which makes the recursion an outer one.
 #include <cmath>
+#include <limits>
 
 #include "components.hpp"
 #include "cordon/core/error.hpp"
@@ -282,9 +283,13 @@ class PseudoInverseObserver final : public Observer {
 
   /// Minimises the F-radius of the next estimate, as far as the last measurement decides it.
   Matrix gain(const Matrix& spread) const {
-    const Matrix noise = linalg::product(used_.Dv, model().V.G);
-    const Matrix Q = linalg::product(noise, noise.transpose()) + linalg::product(spread, spread.transpose());
-    const Matrix G = X_->line_form().G;
+    Matrix noise = linalg::product(used_.Dv, model().V.G), G = X_->line_form().G, free = spread;
+    double largest = 0;  // squares of sets that shrink to a point underflow: L does not depend on the unit
+    for (const Matrix* M : {&noise, &G, &free}) largest = M->size() == 0 ? largest : std::max(largest, M->cwiseAbs().maxCoeff());
+    if (largest < std::numeric_limits<double>::min()) return Matrix::Zero(TA_.rows(), used_.outputs());
+    const double unit = std::ldexp(1.0, -std::ilogb(largest));
+    for (Matrix* M : {&noise, &G, &free}) *M *= unit;
+    const Matrix Q = linalg::product(noise, noise.transpose()) + linalg::product(free, free.transpose());
     const Matrix CG = linalg::product(used_.C, G);
     const Matrix S = linalg::product(CG, CG.transpose()) + Q;
     const Matrix cross = linalg::product(linalg::product(TA_, G), CG.transpose());

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/luenberger_gain.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/invariant/schur.hpp"
@@ -12,6 +15,8 @@ namespace {
 
 constexpr int most_steps = 100'000;
 constexpr double tolerance = 1e-13;  // relative change of P
+constexpr double settled = 1e-6;     // a change that is still above the tolerance, but is rounding: it has stopped decreasing
+constexpr int patience = 50;
 constexpr double floor_share = 1e-6;
 
 Matrix covariance(const Matrix& T, const LineForm& X) {
@@ -33,6 +38,8 @@ Matrix designed_gain(const Model& model) {
   Q += extra * Matrix::Identity(n, n);
   R += extra * Matrix::Identity(p, p);
   Matrix P = Q;
+  double least = std::numeric_limits<double>::infinity();
+  int waited = 0;
   for (int step = 0; step < most_steps; ++step) {
     const Matrix PCt = linalg::product(P, C.transpose());
     const Matrix S = linalg::product(C, PCt) + R;
@@ -43,9 +50,11 @@ Matrix designed_gain(const Model& model) {
         linalg::product(linalg::product(m.A, P), m.A.transpose()) + Q - linalg::product(linalg::product(L, S), L.transpose());
     next = 0.5 * (next + next.transpose()).eval();
     if (!next.allFinite()) break;
-    const bool done = largest(next - P) <= tolerance * largest(next);
+    const double change = largest(next - P), scale = largest(next);
+    waited = change < least ? 0 : waited + 1;
+    least = std::min(least, change);
     P = next;
-    if (done) return L;
+    if (change <= tolerance * scale || (waited >= patience && change <= settled * scale)) return L;
   }
   throw Error(Errc::invalid, "no gain was found: the pair (A, C) is not detectable, or nearly so");
 }

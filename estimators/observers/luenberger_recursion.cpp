@@ -118,6 +118,14 @@ Vector LuenbergerRecursion::residual(VectorIn x, const Sample& now) const {
   return now.y - product(output_input_, now.u) - product(C_, x) - v_;
 }
 
+Vector LuenbergerRecursion::next_size(VectorIn x, const Sample& now) const {
+  return Ao_.cwiseAbs() * x.cwiseAbs() + L_.cwiseAbs() * now.y.cwiseAbs() + input_.cwiseAbs() * now.u.cwiseAbs() + w_.cwiseAbs();
+}
+
+Vector LuenbergerRecursion::residual_size(VectorIn s, const Sample& now) const {
+  return now.y.cwiseAbs() + output_input_.cwiseAbs() * now.u.cwiseAbs() + C_.cwiseAbs() * s + v_.cwiseAbs();
+}
+
 Enclosure LuenbergerRecursion::explained_outputs(const Enclosure& E, VectorIn x, const Sample& now) const {
   Summands summands;
   summands.terms.reserve(2);

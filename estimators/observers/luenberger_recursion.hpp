@@ -33,6 +33,11 @@ class LuenbergerRecursion {
   Vector next(VectorIn x, const Sample& now) const;
   Vector residual(VectorIn x, const Sample& now) const;
 
+  /// Sizes of the numbers that x̂⁺ and r are made of, before they cancel: |Ao| |x̂| + |L| |y| + …, and |y| + … + |C̄| s for x̂ of
+  /// size s. What rounding leaves in X̂⁺ and R is a share of them, however small these come out.
+  Vector next_size(VectorIn x, const Sample& now) const;
+  Vector residual_size(VectorIn s, const Sample& now) const;
+
   /// {C̄ e : some noise explains now.y if the state is x̂ + e}, e ∈ E needed for Δ: an enclosure of it.
   Enclosure explained_outputs(const Enclosure& E, VectorIn x, const Sample& now) const;
   /// {e ∈ E : C̄ e ∈ outputs}, or an enclosure of it: given λ (n×n_y), (I - λ C̄) E ⊕ λ outputs; else the backend's intersection.

@@ -91,6 +91,7 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
   if (n + reduced.set.constraints() > max_generators) {
     Reduced fewer = eliminate_constraints(reduced.set, max_generators - n, how.constraints);
     reduced = {drop_zero_generators(std::move(fewer.set)), reduced.exact && fewer.exact};
+    if (has_false_row(reduced.set)) return {make_empty(n), true};
     if (reduced.set.generators() <= max_generators) return reduced;
   }
   LineZonotope& Y = reduced.set;

@@ -222,6 +222,18 @@ Reduced eliminate_constraints(const LineZonotope& X, Index max_constraints, cons
   return {form.result(), false};
 }
 
+namespace {
+
+/// A row that no factors satisfy. Rounding errors of an elimination give a false row generators of their own.
+bool has_row_out_of_reach(const LineForm& X) {
+  for (Index i = 0; i < X.constraints(); ++i) {
+    if (X.S.row(i).isZero(0) && std::abs(X.b[i]) > rounding::norm_1(X.A.row(i).transpose()).upper) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraints, const LineReduction& how) {
   const Index n = X.dim();
   if (max_generators < n) {
@@ -238,7 +250,10 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
   };
   eliminate(max_constraints);
   if (has_false_row(Y)) return {make_empty(n), true};
-  if (n + Y.constraints() > max_generators && !fits()) eliminate(max_generators - n);
+  if (n + Y.constraints() > max_generators && !fits()) {
+    eliminate(max_generators - n);
+    if (has_false_row(Y) || has_row_out_of_reach(Y)) return {make_empty(n), true};
+  }
   if (!fits()) set_lifted_generators(Y, outward::reduce_generators(lifted_generators(Y), max_generators, how.generators));
   reduced.exact = false;
   return reduced;

@@ -122,6 +122,23 @@ TEST_CASE("a designed gain stabilises an unstable plant, and is refused where no
   CHECK(problems[0].message.find("detectable") != std::string::npos);
 }
 
+TEST_CASE("a stable plant always has a designed gain, however ill-conditioned its noises make it") {
+  Model model = reactor()[0].model;
+  LinearModel& m = model.linear;
+  m.A = Matrix{{.22, -.04}, {-.07, .06}};
+  m.C = Matrix{{-1, .4}, {-1, -.02}};
+  m.D = Matrix::Zero(2, 1);
+  m.Dv = Matrix{{1}, {1}};
+  model.W = make_point(Vector::Zero(2));
+  Draw draw{std::mt19937_64(1)};
+  for (int k = 0; k < 300; ++k) {
+    m.C += Matrix{{.1 * draw(), .1 * draw()}, {.1 * draw(), .1 * draw()}};
+    m.Dv = Matrix{{draw()}, {draw()}};
+    model.V = box_around(Vector::Zero(1), Vector::Constant(1, std::pow(10, draw())));
+    CHECK(registry().check_observer("luenberger", {model, backend("zonotope")}, {}).empty());
+  }
+}
+
 TEST_CASE("the designed gain is the steady zonotopic Kalman gain") {
   Model model;
   LinearModel& m = model.linear;

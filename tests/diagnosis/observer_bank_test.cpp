@@ -278,3 +278,15 @@ TEST_CASE("an input outside U ends the diagnosis: the error set rests on it") {
   const auto bank = reactor_bank("zonotope");
   CHECK_THROWS_WITH_AS(bank->step({0, Vector::Constant(1, 21), Vector::Zero(1)}), doctest::Contains("widen /system/U"), Error);
 }
+
+TEST_CASE("a step that ended with an error is not taken twice") {
+  const auto bank = reactor_bank("zonotope");
+  const Vector u = Vector::Zero(1), y = Vector::Zero(1);
+  bank->step({0, u, y});
+  CHECK_THROWS_AS(bank->step({1, Vector::Constant(1, 21), y}), Error);  // nothing has happened yet
+  bank->step({1, u, Vector::Constant(1, 1e308)});                       // its consequences overflow half way through the next one
+  CHECK_THROWS_AS(bank->step({2, u, y}), Error);
+  CHECK_THROWS_WITH_AS(bank->step({2, u, y}), doctest::Contains("start anew"), Error);
+  bank->start();
+  CHECK(bank->step({0, u, y}).mode == 0);
+}

@@ -86,6 +86,11 @@ TEST_CASE("an empty set stays empty, an infeasible row is kept") {
   const LineForm stretched{Matrix(1, 0), Matrix{{1, 1, 1}}, Vector{{0}}, Matrix(1, 0), Matrix::Zero(1, 3), Vector{{1}}};
   CHECK(is_empty(sets::reduce(stretched, 1, 0).set) == Answer::yes);
   CHECK(is_empty(sets::outward::reduce(stretched, 1, 0).set) == Answer::yes);
+  // rows that contradict each other show it when there is no room for either
+  const LineForm contradiction{
+      Matrix(1, 0), Matrix{{1, 1, 1, 1}}, Vector{{0}}, Matrix(2, 0), Matrix{{1, 1, 0, 0}, {1, 1, 0, 0}}, Vector{{.1, .9}}};
+  CHECK(is_empty(sets::reduce(contradiction, 1, 5).set) == Answer::yes);
+  CHECK(is_empty(sets::outward::reduce(contradiction, 1, 5).set) == Answer::yes);
 }
 
 TEST_CASE("a factor is forgotten without loss only if one row bounds it by itself") {
