@@ -56,7 +56,7 @@ class DiagnosisPipeline {
   void begin_run(std::int64_t seed_offset) {
     seed_offset_ = seed_offset;
     start_holds_ = true;
-    timeline_ = {};
+    timeline_.emplace();
     score_.emplace([this](const DiagnosisSegment& segment) {
       tally_.add(segment);
       if (seed_offset_ == 0) keep(found_.segments, segment);
@@ -76,7 +76,7 @@ class DiagnosisPipeline {
     ++found_.steps;
     if (seed_offset_ == 0) {
       ++outcome_.steps;
-      timeline_.step(record.mode, *diagnosis, [&](DiagnosisEvent event) { keep(found_.events, std::move(event)); });
+      timeline_->step(record.mode, *diagnosis, [&](DiagnosisEvent event) { keep(found_.events, std::move(event)); });
     }
     median_.add(diagnoser_->step_us());
     score_->step(record.mode, *diagnosis);
@@ -136,7 +136,7 @@ class DiagnosisPipeline {
   std::int64_t seeds_, seed_offset_ = 0;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Diagnoser> diagnoser_;
-  DiagnosisTimeline timeline_;
+  std::optional<DiagnosisTimeline> timeline_;
   std::optional<DiagnosisScore> score_;
   DiagnosisTally tally_;
   Median median_;
