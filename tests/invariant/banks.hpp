@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "diagnosers/fdi_conditions.hpp"
+#include "diagnosers/observer_bank/fdi_conditions.hpp"
 
 namespace fdi_test {
 

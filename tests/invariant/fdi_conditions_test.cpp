@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "diagnosers/fdi_conditions.hpp"
+#include "diagnosers/observer_bank/fdi_conditions.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "diagnosers/error_set_check.hpp"
+#include "diagnosers/observer_bank/error_set_check.hpp"
 
 #include <algorithm>
 #include <cmath>

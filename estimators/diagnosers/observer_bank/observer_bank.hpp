@@ -8,9 +8,9 @@
 
 #include "cordon/interfaces/diagnoser.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
-#include "diagnosers/fdi_conditions.hpp"
 #include "diagnosers/mode_elimination.hpp"
 #include "diagnosers/mode_workers.hpp"
+#include "diagnosers/observer_bank/fdi_conditions.hpp"
 #include "observers/luenberger_recursion.hpp"
 
 namespace cordon::estimators {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "diagnosers/state_bounds.hpp"
+#include "diagnosers/observer_bank/state_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "diagnosers/fdi_conditions.hpp"
+#include "diagnosers/observer_bank/fdi_conditions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "cordon/invariant/rpi.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "cordon/solvers/set_questions.hpp"
-#include "diagnosers/error_set_check.hpp"
+#include "diagnosers/observer_bank/error_set_check.hpp"
 
 namespace cordon::estimators {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "diagnosers/observer_bank.hpp"
+#include "diagnosers/observer_bank/observer_bank.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "diagnosers/error_dynamics.hpp"
+#include "diagnosers/observer_bank/error_dynamics.hpp"
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"

@@ -5,7 +5,7 @@
 
 #include "components.hpp"
 #include "cordon/core/error.hpp"
-#include "diagnosers/observer_bank.hpp"
+#include "diagnosers/observer_bank/observer_bank.hpp"
 #include "observers/luenberger_gain.hpp"
 #include "observers/observer_parameters.hpp"
 

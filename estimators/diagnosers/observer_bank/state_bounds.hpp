@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cordon/invariant/minimal.hpp"
-#include "diagnosers/error_dynamics.hpp"
-#include "diagnosers/fdi_conditions.hpp"
+#include "diagnosers/observer_bank/error_dynamics.hpp"
+#include "diagnosers/observer_bank/fdi_conditions.hpp"
 
 namespace cordon::estimators {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "diagnosers/fdi_conditions.hpp"
-#include "diagnosers/state_bounds.hpp"
+#include "diagnosers/observer_bank/fdi_conditions.hpp"
+#include "diagnosers/observer_bank/state_bounds.hpp"
 
 namespace cordon::estimators {
 
