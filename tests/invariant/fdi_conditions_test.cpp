@@ -448,3 +448,26 @@ TEST_CASE("ranges of sensors that are too wide for a bounded error are refused")
   REQUIRE(found.size() == 1);
   CHECK(found[0].message.find("too wide") != std::string::npos);
 }
+
+TEST_CASE("every actuator with a range varies on its own") {
+  Model model = model_of(Matrix::Zero(2, 2), Matrix::Identity(2, 2), Matrix{{1, -1}});
+  model.linear.actuator = {Vector{{.5, .5}}, Vector{{1, 1}}};
+  model.U = make_point(Vector{{4, 4}});
+  const Guarantees all = fdi_guarantees({{{"mode", model}}, 0}, {Matrix::Zero(2, 1)}, {});
+  const Box& R = pair(all, 0, 0, 1).residual;  // both of plant and observer: f_1 - f_2 in ±.5, four times, twice
+  CHECK(R.upper[0] == doctest::Approx(4));
+  CHECK(R.lower[0] == doctest::Approx(-4));
+}
+
+TEST_CASE("observers that start elsewhere than the plant start with an error") {
+  ModeBank bank;
+  for (const double start : {0.0, 5.0}) {
+    Model model = model_of(Matrix::Zero(1, 1), Matrix(1, 0), Matrix{{1}});
+    model.U = make_point(Vector(0));
+    model.X0 = make_point(Vector::Constant(1, start));
+    bank.modes.push_back({mode_name(bank.size()), model});
+  }
+  const Box box = interval_hull(check_error_set(bank, {Matrix::Zero(1, 1), Matrix::Zero(1, 1)}, {}).set);
+  CHECK(box.lower[0] == doctest::Approx(-5));
+  CHECK(box.upper[0] == doctest::Approx(5));
+}
