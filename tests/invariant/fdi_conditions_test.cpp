@@ -471,3 +471,25 @@ TEST_CASE("observers that start elsewhere than the plant start with an error") {
   CHECK(box.lower[0] == doctest::Approx(-5));
   CHECK(box.upper[0] == doctest::Approx(5));
 }
+
+TEST_CASE("two outputs: noise counts in a separation, and a coarse sum proves no overlap") {
+  const auto holds = [](double decay, double offset, double noise, double accuracy) {
+    ModeBank bank;
+    for (const double center : {0.0, offset}) {
+      Model model = model_of(decay * Matrix::Identity(2, 2), Matrix(2, 0), Matrix::Identity(2, 2));
+      model.U = make_point(Vector(0));
+      model.W = make_zonotope(Vector::Constant(2, center), Matrix{{1, .02, 0}, {-1, 0, .02}});
+      model.V = box_around(Vector::Zero(2), Vector::Constant(2, noise));
+      bank.modes.push_back({mode_name(bank.size()), model});
+    }
+    OfflineOptions options;
+    options.accuracy = accuracy;
+    return pair(fdi_guarantees(bank, {Matrix::Zero(2, 2), Matrix::Zero(2, 2)}, options), 1, 0, 2).holds;
+  };
+  // along (1, 1): the centre at 2 · offset / (1 - decay), half widths .08 / (1 - decay) + 4 · noise
+  CHECK(holds(0, .2, .07, 1e-9) == Answer::yes);
+  CHECK(holds(0, .2, .09, 1e-9) == Answer::no);
+  CHECK(holds(.5, .05, .005, 1e-9) == Answer::yes);
+  CHECK(holds(.5, .05, .015, 1e-9) == Answer::no);
+  CHECK(holds(.5, .05, .005, .5) == Answer::unknown);
+}
