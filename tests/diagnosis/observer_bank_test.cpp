@@ -205,6 +205,21 @@ TEST_CASE("every backend runs the same diagnosis") {
   }
 }
 
+TEST_CASE("evidence is offered about candidates alone") {
+  const auto bank = reactor_bank("zonotope");
+  Vector x = Vector::Zero(2);
+  Draw draw{std::mt19937_64(1)};
+  for (Index k = 0; k <= 70; ++k) {
+    const Vector u = sine(k), y = simulate(bank->bank()[k >= 50 ? 1 : 0].model, x, u, draw);
+    const Diagnosis diagnosis = bank->step({k, u, y});
+    for (std::size_t j = 0; j < 3; ++j) {
+      const bool expected = k <= 51 ? j == 0 : k == 52 || j == 1;  // detected at 51, isolated at 52
+      if (!expected) CHECK(diagnosis.modes[j].consistent == Answer::unknown);
+      CHECK((diagnosis.modes[j].reset_residual.dim() > 0) == (k > 51 && expected));
+    }
+  }
+}
+
 TEST_CASE("an exclusion carries its proof") {
   const auto bank = reactor_bank("zonotope");
   Vector x = Vector::Zero(2);
@@ -272,6 +287,16 @@ TEST_CASE("the published error set is too small, and refused with the factor") {
   const auto found = problems(p);
   CHECK(has(found, "/error_set", "1.16"));
   CHECK_THROWS_AS(reactor_bank("zonotope", p), InputError);
+}
+
+TEST_CASE("an input has to lie in the U of every mode") {
+  for (const std::size_t narrow : {0, 2}) {
+    ModeBank modes = reactor();
+    modes.modes[narrow].model.U = box_around(Vector::Zero(1), Vector::Constant(1, 10));
+    const auto bank = registry().make_diagnoser("observer_bank", modes, backend("zonotope"), reactor_parameters());
+    for (const double u : {-15.0, 15.0}) CHECK_THROWS_AS(bank->step({0, Vector::Constant(1, u), Vector::Zero(1)}), Error);
+    CHECK(bank->step({0, Vector::Constant(1, 10), Vector::Zero(1)}).mode == 0);
+  }
 }
 
 TEST_CASE("an input outside U ends the diagnosis: the error set rests on it") {

@@ -274,7 +274,7 @@ TEST_CASE("numbers that cancel leave rounding errors, which exclude nothing") {
   model.W = model.V = make_point(Vector(0));
   model.U = box_around(Vector::Constant(1, 1e6), Vector::Constant(1, 1e6));
   ModeBank bank{{{"healthy", model}, {"fault", model}}, 0};
-  bank.modes[1].model.linear.B = Matrix{{1}, {.5}};
+  bank.modes[1].model.linear.B = Matrix{{1}, {1 - 1e-5}};  // small, but beyond rounding
   Params params;
   params.set("gain", Matrix{{.3}, {-.1}}).set("waiting_time", std::int64_t{5});
   for (const bool two_outputs : {false, true}) {

@@ -448,3 +448,48 @@ TEST_CASE("ranges of sensors that are too wide for a bounded error are refused")
   REQUIRE(found.size() == 1);
   CHECK(found[0].message.find("too wide") != std::string::npos);
 }
+
+TEST_CASE("every actuator with a range varies on its own") {
+  Model model = model_of(Matrix::Zero(2, 2), Matrix::Identity(2, 2), Matrix{{1, -1}});
+  model.linear.actuator = {Vector{{.5, .5}}, Vector{{1, 1}}};
+  model.U = make_point(Vector{{4, 4}});
+  const Guarantees all = fdi_guarantees({{{"mode", model}}, 0}, {Matrix::Zero(2, 1)}, {});
+  const Box& R = pair(all, 0, 0, 1).residual;  // both of plant and observer: f_1 - f_2 in ±.5, four times, twice
+  CHECK(R.upper[0] == doctest::Approx(4));
+  CHECK(R.lower[0] == doctest::Approx(-4));
+}
+
+TEST_CASE("observers that start elsewhere than the plant start with an error") {
+  ModeBank bank;
+  for (const double start : {0.0, 5.0}) {
+    Model model = model_of(Matrix::Zero(1, 1), Matrix(1, 0), Matrix{{1}});
+    model.U = make_point(Vector(0));
+    model.X0 = make_point(Vector::Constant(1, start));
+    bank.modes.push_back({mode_name(bank.size()), model});
+  }
+  const Box box = interval_hull(check_error_set(bank, {Matrix::Zero(1, 1), Matrix::Zero(1, 1)}, {}).set);
+  CHECK(box.lower[0] == doctest::Approx(-5));
+  CHECK(box.upper[0] == doctest::Approx(5));
+}
+
+TEST_CASE("two outputs: noise counts in a separation, and a coarse sum proves no overlap") {
+  const auto holds = [](double decay, double offset, double noise, double accuracy) {
+    ModeBank bank;
+    for (const double center : {0.0, offset}) {
+      Model model = model_of(decay * Matrix::Identity(2, 2), Matrix(2, 0), Matrix::Identity(2, 2));
+      model.U = make_point(Vector(0));
+      model.W = make_zonotope(Vector::Constant(2, center), Matrix{{1, .02, 0}, {-1, 0, .02}});
+      model.V = box_around(Vector::Zero(2), Vector::Constant(2, noise));
+      bank.modes.push_back({mode_name(bank.size()), model});
+    }
+    OfflineOptions options;
+    options.accuracy = accuracy;
+    return pair(fdi_guarantees(bank, {Matrix::Zero(2, 2), Matrix::Zero(2, 2)}, options), 1, 0, 2).holds;
+  };
+  // along (1, 1): the centre at 2 · offset / (1 - decay), half widths .08 / (1 - decay) + 4 · noise
+  CHECK(holds(0, .2, .07, 1e-9) == Answer::yes);
+  CHECK(holds(0, .2, .09, 1e-9) == Answer::no);
+  CHECK(holds(.5, .05, .005, 1e-9) == Answer::yes);
+  CHECK(holds(.5, .05, .015, 1e-9) == Answer::no);
+  CHECK(holds(.5, .05, .005, .5) == Answer::unknown);
+}
