@@ -493,3 +493,19 @@ TEST_CASE("two outputs: noise counts in a separation, and a coarse sum proves no
   CHECK(holds(.5, .05, .015, 1e-9) == Answer::no);
   CHECK(holds(.5, .05, .005, .5) == Answer::unknown);
 }
+
+TEST_CASE("the state acts on the error by both matrices") {
+  // x = 1 / (1 - a), e = .25 e + (a - .5 - .5 (1 - .5)) x, r = .5 e + (1 - .5) x
+  for (const double a : {.5, .6}) {
+    ModeBank bank{{{"plant", model_of(Matrix{{a}}, Matrix{{1}}, Matrix{{1}})},
+                   {"observer", model_of(Matrix{{.5}}, Matrix{{1}}, Matrix{{.5}})}},
+                  0};
+    for (Mode& mode : bank.modes) mode.model.U = make_point(Vector{{1}});
+    OfflineOptions options;
+    options.state_set = box_around(Vector{{0}}, Vector{{3}});
+    const Guarantees all = fdi_guarantees(bank, {Matrix{{.5}}, Matrix{{.5}}}, options);
+    const double x = 1 / (1 - a), e = (a - .75) * x / .75;
+    CHECK(pair(all, 0, 1, 2).residual.lower[0] == doctest::Approx(.5 * e + .5 * x));
+    CHECK(pair(all, 0, 1, 2).residual.upper[0] == doctest::Approx(.5 * e + .5 * x));
+  }
+}
