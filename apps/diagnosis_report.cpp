@@ -189,7 +189,10 @@ std::string guarantees_text(const Guarantees& guarantees, const Names& modes, co
   if (guarantees.error_set) text += error_set_text(*guarantees.error_set, modes);
   switch (guarantees.all) {
     case Answer::yes:
-      return text + paint.green("Guaranteed: every mode is told from every other, in steady state") + "\n";
+      return text +
+             paint.green(
+                 "Guaranteed in steady state: every mode is told from every other, where no reduction enlarges the sets") +
+             "\n";
     case Answer::no:
       return text + paint.yellow("The condition fails: some modes are proven not to meet it") + "\n";
     case Answer::unknown:
