@@ -315,3 +315,20 @@ TEST_CASE("a step that ended with an error is not taken twice") {
   bank->start();
   CHECK(bank->step({0, u, y}).mode == 0);
 }
+
+TEST_CASE("a measurement that no error explains empties the copies, and the proof says so") {
+  const auto bank = reactor_bank("constrained_zonotope", [] {
+    Params p;  // no strip gain: the backend intersects exactly
+    p.set("gain", Matrix{{.1582}, {11.6106}}).set("waiting_time", std::int64_t{20});
+    return p;
+  }());
+  const Vector u = Vector::Zero(1);
+  bank->step({0, u, Vector::Constant(1, 100)});  // far outside: the healthy mode is excluded, and nothing in the error set fits
+  const Diagnosis next = bank->step({1, u, Vector::Zero(1)});
+  for (const ModeEvidence& evidence : next.modes) {
+    CHECK(evidence.consistent == Answer::no);
+    CHECK(evidence.why.kind == Certificate::Kind::farkas);
+    CHECK(evidence.reset_residual.dim() == 0);
+  }
+  CHECK(next.decision == Decision::unknown_fault);
+}

@@ -36,7 +36,9 @@ std::optional<Certificate> separated_axis(const Box& hull, const Vector& size) {
 /// Is 0 ∈ R? In one dimension the hull is the set, and needs no program. What the sets answer bounds no rounding errors of the
 /// numbers behind R, so that `no` has to hold for a neighbourhood of 0.
 void ask(const SetBackend& backend, const Enclosure& R, const Box& hull, const Vector& size, ModeEvidence& evidence) {
-  if (auto proof = separated_axis(hull, size)) {
+  if (hull.is_empty()) {  // no error in X̃ explains the sample of the reset
+    evidence.consistent = negate(R->is_empty(&evidence.why));
+  } else if (auto proof = separated_axis(hull, size)) {
     evidence.consistent = Answer::no;
     evidence.why = std::move(*proof);
   } else if (hull.dim() > 1) {
@@ -102,6 +104,7 @@ void ObserverBank::judge(Index j, const Sample& now) {
     const Enclosure copy = m.recursion.residual(*m.copy, now);
     m.evidence.reset_residual = copy->interval_hull();
     ask(backend(), copy, m.evidence.reset_residual, m.residual_size, m.evidence);
+    if (m.evidence.reset_residual.is_empty()) m.evidence.reset_residual = {};
   } else if (!was_reset_ && elimination_.is_candidate(j)) {
     ask(backend(), m.residual, m.evidence.residual, m.residual_size, m.evidence);
   }

@@ -29,6 +29,8 @@ struct ObserverBankOptions {
 /// is excluded is excluded by resets alone:
 ///   reset at k   X̂'_j := {x̂_j} ⊕ {e ∈ X̃ : y_k - C_j (x̂_j + e) is explained by the noise}   for every mode j,
 ///   afterwards   the same recursion; 0 ∉ R'_j proves that the plant has not been in mode j throughout from k on.
+/// `ModeEvidence::why` is a direction that separates 0 from the residual set, or the proof that the copy is empty: no error in X̃
+/// explains the sample of the reset.
 /// It rests on x - x̂_j ∈ X̃ (the point observers' errors, whatever the modes have been), which is checked in advance. Before the
 /// first reset R_j of the nominal mode takes that place. `ModeElimination` turns exclusions into decisions. `suggested` follows
 /// the published algorithm: at the reset Ř_j := C X̌_j ⊕ V ⊕ (-V) starts from X̌_j, the part of X̃ in the strips of R_j; a mode goes
