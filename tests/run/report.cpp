@@ -17,7 +17,7 @@ using Kind = DiagnosisEvent::Kind;
 Box interval(double lower, double upper) { return {Vector{{lower}}, Vector{{upper}}}; }
 
 ModeEvidence contradicted(Box residual, Box reset) {
-  return {false, Answer::no, {Certificate::Kind::farkas, Vector::Ones(1), .0125}, std::move(residual), std::move(reset)};
+  return {false, Answer::no, {Certificate::Kind::direction, Vector::Ones(1), .0125}, std::move(residual), std::move(reset)};
 }
 
 PipelineOutcome diagnosis() {
@@ -64,27 +64,28 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 TEST_CASE("the timeline: one line per event, with its evidence") {
   const std::string text = apps::diagnosis_text(study(), diagnosis(), apps::Paint(stdout));
-  CHECK(text ==
-        "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step\n"
-        "\n"
-        "k    EVENT          MODE                    EVIDENCE\n"
-        "0    starts         healthy\n"
-        "50   fault begins   fault 1\n"
-        "51   detected       healthy                 residual [0.0125, 0.5], 0 is 0.0125 outside, proof farkas, margin 0.0125\n"
-        "52   excluded       fault 2                 residual since the reset [-0.75, -0.25], 0 is 0.25 outside, proof farkas, "
-        "margin 0.0125\n"
-        "52   isolated       fault 1\n"
-        "100  fault ends     healthy\n"
-        "120  fault begins   leak, outside the bank\n"
-        "123  unknown_fault\n"
-        "\n"
-        "Over 60 runs (delays in steps: smallest / median / largest)\n"
-        "TRUE MODE         TIMES  DETECTED  ISOLATED  MISSED  WRONG MODE  UNKNOWN FAULT  DETECTION DELAY  ISOLATION DELAY\n"
-        "fault 1           60     59        58        2       1           0              1 / 1.5 / 3      2 / 2 / 9\n"
-        "outside the bank  60     60        -         -       0           57             1 / 1 / 1        3 / 3 / 4\n"
-        "\n"
-        "False alarms: 3 in 2 of 60 runs\n"
-        "True mode excluded: never\n");
+  CHECK(
+      text ==
+      "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step\n"
+      "\n"
+      "k    EVENT          MODE                    EVIDENCE\n"
+      "0    starts         healthy\n"
+      "50   fault begins   fault 1\n"
+      "51   detected       healthy                 residual [0.0125, 0.5], 0 is 0.0125 outside, proof direction, margin 0.0125\n"
+      "52   excluded       fault 2                 residual since the reset [-0.75, -0.25], 0 is 0.25 outside, proof direction, "
+      "margin 0.0125\n"
+      "52   isolated       fault 1\n"
+      "100  fault ends     healthy\n"
+      "120  fault begins   leak, outside the bank\n"
+      "123  unknown_fault\n"
+      "\n"
+      "Over 60 runs (delays in steps: smallest / median / largest)\n"
+      "TRUE MODE         TIMES  DETECTED  ISOLATED  MISSED  WRONG MODE  UNKNOWN FAULT  DETECTION DELAY  ISOLATION DELAY\n"
+      "fault 1           60     59        58        2       1           0              1 / 1.5 / 3      2 / 2 / 9\n"
+      "outside the bank  60     60        -         -       0           57             1 / 1 / 1        3 / 3 / 4\n"
+      "\n"
+      "False alarms: 3 in 2 of 60 runs\n"
+      "True mode excluded: never\n");
 }
 
 TEST_CASE("a run of diagnosers only has no table of observers, a mixed one has both") {
@@ -163,7 +164,7 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
   CHECK(has(text,
             "all errors lie in 0.86 times the set; in steady state 0.5, attained in mode \"fault 1\" by the observer of "
             "\"healthy\": large enough\n"));
-  CHECK(has(text, "Guaranteed: "));
+  CHECK(has(text, "Guaranteed in steady state: "));
   g.all = Answer::unknown;
   g.error_set->factor = 1.163;
   CHECK(has(apps::guarantees_text(g, modes, paint), "too small"));
