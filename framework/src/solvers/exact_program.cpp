@@ -204,9 +204,9 @@ ExactProgram::Result ExactProgram::maximum() const {
     for (std::size_t i = 0; i < tableau.basis().size(); ++i) {
       const mpz_class value = tableau.basic_value(i, at), excess = abs(value) - tableau.scale();
       if (excess <= 0) continue;
-      const bool first = side == 0;
-      const bool better = pivots < fast_pivots ? excess > violation : tableau.basis()[i] < tableau.basis()[leaving];
-      if (first || better) leaving = i, violation = excess, side = sgn(value);
+      const bool first = side == 0;  // there is no leaving row yet to compare with
+      const bool better = first || (pivots < fast_pivots ? excess > violation : tableau.basis()[i] < tableau.basis()[leaving]);
+      if (better) leaving = i, violation = excess, side = sgn(value);
     }
     if (side == 0) {
       if (tableau.objective_has_lines()) return {Status::unbounded, 0};
