@@ -46,12 +46,14 @@ struct Diagnosis {
 /// A statement made in advance about the true mode i and the observer of mode j.
 struct PairGuarantee {
   Index mode = 0, observer = 0;
-  Box residual;  ///< hull of R̊_ij, which contains every residual set of observer j in the steady state of mode i
+  Box residual;  ///< hull of R̊_ij, which contains the residual sets of observer j in the steady state of mode i, but for what
+                 ///< reductions and coarser representations add to them
   Answer holds =
       Answer::unknown;  ///< the FDI condition, 0 ∈ R̊_ii or 0 ∉ R̊_ij; `no`: it is proven to fail; `unknown`: not guaranteed
 };
 
-/// The set X̃ that must hold the errors of all observers whatever the modes have been, and how far it does.
+/// The set X̃ that must hold the errors of the point observers, centres in place of sets, whatever the modes have been, and how
+/// far it does.
 struct ErrorSetCheck {
   LineForm set;                    ///< X̃
   bool computed = false;           ///< made by the diagnoser: it contains the errors by construction
