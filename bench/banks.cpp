@@ -7,20 +7,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include "cordon/registry/registry.hpp"
+#include "registry.hpp"
 
 namespace {
 
 using namespace cordon;
-
-const Registry& registry() {
-  static const std::unique_ptr<const Registry> instance = [] {
-    auto made = std::make_unique<Registry>();
-    made->load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
-    return made;
-  }();
-  return *instance;
-}
 
 LineForm box(const Vector& center, double radius) {
   return make_zonotope(center, radius * Matrix::Identity(center.size(), center.size()));

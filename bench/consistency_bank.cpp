@@ -1,58 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One step of a consistency bank of the four descriptor models of [Rego2025, sec. 6.2], through plugins as in a run: while all of
 // them are candidates, and while one is monitored and the others cost nothing.
+#include <algorithm>
 #include <array>
-#include <memory>
 
 #include <benchmark/benchmark.h>
 
-#include "cordon/registry/registry.hpp"
+#include "cordon/study/study.hpp"
+#include "registry.hpp"
 
 namespace {
 
 using namespace cordon;
 
-const Registry& registry() {
-  static const std::unique_ptr<const Registry> instance = [] {
-    auto made = std::make_unique<Registry>();
-    made->load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
-    return made;
+/// The study of the example: its bank, and its observers for each backend.
+const Study& study() {
+  static const Study instance = [] {
+    Registry plugins;
+    plugins.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+    return read_study(CORDON_SOURCE_DIR "/examples/studies/consistency_four_models.json", plugins, {});
   }();
-  return *instance;
-}
-
-LineForm cube(Index n, double radius) { return make_zonotope(Vector::Zero(n), radius * Matrix::Identity(n, n)); }
-
-ModeBank four_models() {
-  LinearModel m;
-  m.E = Vector{{1, 1, 0}}.asDiagonal();
-  m.A = Matrix{{.5, 0, 0}, {.8, .95, 0}, {-1, .5, 1}};
-  m.B = Matrix{{1, 0}, {0, 1}, {0, 0}};
-  m.Bw = Vector{{.1, 1.5, .6}}.asDiagonal();
-  m.C = Matrix{{1, -1, 0}};
-  m.D = Matrix::Zero(1, 2);
-  m.Dv = Matrix{{.5}};
-  std::array<LinearModel, 4> models{m, m, m, m};
-  models[1].A(0, 2) = .5;
-  models[2].B = Matrix{{1, 0}, {0, .9}, {-.1, 0}};
-  models[3].C(0, 2) = .1;
-  const LineForm X0 = make_zonotope(Vector{{.5, .5, .25}}, Vector{{.1, 1.5, .6}}.asDiagonal().toDenseMatrix());
-  ModeBank bank;
-  for (const LinearModel& linear : models) {
-    bank.modes.push_back({"model_" + std::to_string(bank.modes.size() + 1), {linear, X0, cube(3, .1), cube(1, .1)}});
-  }
-  return bank;
+  return instance;
 }
 
 /// Four samples of model 1 without disturbances, over and over: under the separating input model 1 is the only one left with the
 /// last of them, under the constant reference input none is excluded.
 void steps(benchmark::State& state, const std::string& backend_name, bool separating, std::int64_t threads) {
-  Params observer, parameters;
-  observer.set("max_generators", std::int64_t{30}).set("max_constraints", std::int64_t{8}).set("static_at_start", true);
-  if (backend_name == "constrained_zonotope") observer.set("admissible_set", cube(3, 50));
-  parameters.set("observer", std::make_shared<const ComponentSpec>(ComponentSpec{"descriptor", observer}));
-  parameters.set("waiting_time", std::int64_t{4}).set("threads", threads);
-  const ModeBank bank = four_models();
+  const auto pipeline = std::find_if(study().pipelines.begin(), study().pipelines.end(),
+                                     [&](const PipelineSpec& p) { return p.backend.type == backend_name; });
+  Params parameters = pipeline->diagnoser->params;
+  parameters.set("threads", threads);
+  const ModeBank bank = bank_of(study());
   const auto backend = registry().make_backend(backend_name, {});
   const auto diagnoser = registry().make_diagnoser("consistency_bank", bank, backend, parameters);
   const std::array<Vector, 4> inputs =

@@ -332,3 +332,14 @@ TEST_CASE("a measurement that no error explains empties the copies, and the proo
   }
   CHECK(next.decision == Decision::unknown_fault);
 }
+
+TEST_CASE("samples that are not numbers, not of the model or out of order are refused, and change nothing") {
+  const auto bank = reactor_bank("zonotope");
+  const Vector u = Vector::Zero(1), y = Vector::Zero(1);
+  bank->step({0, u, y});
+  CHECK_THROWS_AS(bank->step({1, u, Vector::Constant(1, std::nan(""))}), Error);
+  CHECK_THROWS_AS(bank->step({1, Vector::Constant(1, INFINITY), y}), Error);
+  CHECK_THROWS_AS(bank->step({1, u, Vector::Zero(2)}), Error);
+  CHECK_THROWS_AS(bank->step({3, u, y}), Error);
+  CHECK(bank->step({1, u, y}).decision == Decision::monitoring);
+}

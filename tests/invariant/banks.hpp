@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The banks of the published examples and random ones, and plants with their observers, simulated point by point.
+// Banks with the gains of their observers, and both simulated point by point.
 #pragma once
 
-#include <random>
-
 #include "diagnosers/observer_bank/fdi_conditions.hpp"
+#include "diagnosis/plants.hpp"
 
 namespace fdi_test {
 
 using namespace cordon;
 using namespace cordon::estimators;
-
-inline LineForm box_around(const Vector& center, const Vector& radius) {
-  return make_zonotope(center, Matrix(radius.asDiagonal()));
-}
+using namespace banks;
 
 inline std::string mode_name(Index i) {
   std::string name = "mode_";
@@ -33,65 +29,13 @@ inline Model model_of(const Matrix& A, const Matrix& B, const Matrix& C) {
   return model;
 }
 
-/// The reactor of [Xu2014, sec. 6]; `literal` takes centre and radius of ω as they are printed, the wrong way round.
-inline ModeBank reactor(bool literal = false) {
-  Model model = model_of(Matrix{{.8976, -.0002}, {-.4894, .7606}}, Matrix{{0}, {.0024}}, Matrix{{1, 0}});
-  model.X0 = make_zonotope(Vector::Zero(2), Matrix{{.05, 0, 0, .05}, {.05, 0, .05, 0}});
-  model.U = box_around(Vector{{0}}, Vector{{20}});
-  ModeBank bank;
-  const double centers[] = {0, .015, .03}, radii[] = {.001, .002, .003};
-  for (Index i = 0; i < 3; ++i) {
-    const Vector c = Vector::Constant(2, centers[i]), r = Vector::Constant(2, radii[i]);
-    model.W = literal ? box_around(r, c) : box_around(c, r);
-    if (i == 1) model.linear.actuator = {Vector{{.1}}, Vector{{.3}}};
-    if (i == 2) model.linear.actuator = {Vector{{.5}}, Vector{{.7}}};
-    bank.modes.push_back({mode_name(i), model});
-  }
-  return bank;
-}
-
 inline std::vector<Matrix> reactor_gains() { return std::vector<Matrix>(3, Matrix{{.1582}, {11.6106}}); }
 
-/// The second blade of [Xu2013, sec. VII.1].
-inline ModeBank blade() {
-  ModeBank bank;
-  for (const double f : {1.0, .1, .5}) {
-    Model model = model_of(Matrix{{.8667, -1.2343}, {.01, 1}}, Matrix{{.01 * f}, {0}}, Matrix{{0, 123.4321}});
-    model.X0 = box_around(Vector::Constant(2, .1), Vector::Constant(2, .5));
-    model.V = box_around(Vector{{.3}}, Vector{{.03}});
-    model.U = box_around(Vector{{3}}, Vector{{.3}});
-    bank.modes.push_back({mode_name(bank.size()), model});
-  }
-  return bank;
-}
-
-inline std::vector<Matrix> blade_gains() {
-  return std::vector<Matrix>(3, Matrix{{-0.0009917274355698454}, {0.0029708641431199826}});
-}
+inline std::vector<Matrix> blade_gains() { return std::vector<Matrix>(3, banks::blade_gain()); }
 
 inline const PairGuarantee& pair(const Guarantees& all, Index mode, Index observer, Index modes = 3) {
   return all.pairs[static_cast<std::size_t>(observer * modes + mode)];
 }
-
-/// Draws factors in [-1,1], uniform or at the ends.
-struct Draw {
-  std::mt19937_64 engine;
-  bool vertex = false;
-  double operator()() {
-    const double x = std::uniform_real_distribution<double>(-1, 1)(engine);
-    return vertex ? (x < 0 ? -1.0 : 1.0) : x;
-  }
-  Vector from(const LineForm& Z) {
-    Vector x = Z.c;
-    for (Index i = 0; i < Z.generators(); ++i) x += (*this)() * Z.G.col(i);
-    return x;
-  }
-  Vector from(const Vector& center, const Vector& radius) {
-    Vector x = center;
-    for (Index i = 0; i < x.size(); ++i) x[i] += (*this)() * radius[i];
-    return x;
-  }
-};
 
 /// A point of the plant and a point of the set of every observer, driven by noises of their own.
 class Simulation {
