@@ -144,6 +144,7 @@ std::vector<Component> components(const Registry& registry) {
   add("diagnoser", registry.diagnosers(), &Registry::diagnoser_info);
   add("metric", registry.metrics(), &Registry::metric_info);
   add("plant", registry.plants(), &Registry::plant_info);
+  add("gain", registry.gains(), &Registry::gain_info);
   return found;
 }
 
@@ -158,7 +159,7 @@ std::string default_text(const ParamSpec& spec) {
 }
 
 std::string range_text(const ParamSpec& spec) {
-  if (spec.kind == ParamKind::component) return spec.component_kind;
+  if (spec.kind == ParamKind::component) return spec.component_kind + (spec.matrix_type.empty() ? "" : ", or a matrix");
   if (spec.kind == ParamKind::choice) return fmt::format("{}", fmt::join(spec.choices, " | "));
   if (spec.kind != ParamKind::integer && spec.kind != ParamKind::real) return "";
   const bool whole = spec.kind == ParamKind::integer;

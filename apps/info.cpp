@@ -33,6 +33,7 @@ Json as_json(const ParamSpec& spec) {
   }
   if (spec.kind == ParamKind::choice) json["choices"] = spec.choices;
   if (spec.kind == ParamKind::component) json["kind"] = spec.component_kind;
+  if (!spec.matrix_type.empty()) json["matrix_type"] = spec.matrix_type;
   return json;
 }
 
@@ -44,6 +45,7 @@ Json as_json(const Component& component) {
           {"plugin", component.plugin},
           {"summary", component.info->summary},
           {"citation", component.info->citation},
+          {"details", component.info->details},
           {"params", std::move(params)}};
 }
 
@@ -51,6 +53,7 @@ std::string as_text(const Component& component, const Paint& paint) {
   const ComponentInfo& info = *component.info;
   std::string text = paint.bold(component.kind + " " + info.name) + " (plugin " + component.plugin + ")\n" + info.summary + "\n";
   if (!info.citation.empty()) text += "Source: " + info.citation + "\n";
+  if (!info.details.empty()) text += "\n" + info.details + (info.details.ends_with('\n') ? "\n" : "\n\n");
   if (info.schema.specs().empty()) return text + "It takes no parameters.\n";
   std::vector<std::vector<std::string>> rows{{"PARAMETER", "TYPE", "DEFAULT", "RANGE", "MEANING"}};
   for (const ParamSpec& spec : info.schema.specs()) {
@@ -100,7 +103,7 @@ void add_info(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("info", "Explain a component and its parameters");
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("COMPONENT", *name, "Name of a backend, observer, diagnoser, metric or plant (see `cordon list`)")
+  command->add_option("COMPONENT", *name, "Name of a backend, observer, diagnoser, metric, plant or gain (see `cordon list`)")
       ->required();
   command->add_flag("--json", *json, "Print JSON for programs");
   command->callback([&program, name, json] { program.exit = info(program, *name, *json); });

@@ -42,12 +42,14 @@ LinearModel with_exact_effectiveness_applied(LinearModel model) {
     const Vector f = take_exact(model.actuator);
     model.B = model.B * f.asDiagonal();
     model.D = model.D * f.asDiagonal();
+    if (model.B_radius.size() != 0) model.B_radius = model.B_radius * f.asDiagonal();
   }
   if (model.sensor.dim() != 0) {
     check(model.sensor, model.outputs(), "sensors");
     const Vector g = take_exact(model.sensor);
     model.C = g.asDiagonal() * model.C;
     model.D = g.asDiagonal() * model.D;
+    if (model.C_radius.size() != 0) model.C_radius = g.asDiagonal() * model.C_radius;
   }
   return model;
 }

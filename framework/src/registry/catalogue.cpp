@@ -30,6 +30,7 @@ void Catalogue::remove(std::string_view plugin) {
   remove_from(metrics, plugin);
   remove_from(diagnosers, plugin);
   remove_from(plants, plugin);
+  remove_from(gains, plugin);
 }
 
 template <class Entry>
@@ -56,6 +57,7 @@ void Batch::observer(ObserverEntry entry) { add(mine_.observers, known_.observer
 void Batch::metric(MetricEntry entry) { add(mine_.metrics, known_.metrics, "metric", std::move(entry)); }
 void Batch::diagnoser(DiagnoserEntry entry) { add(mine_.diagnosers, known_.diagnosers, "diagnoser", std::move(entry)); }
 void Batch::plant(PlantEntry entry) { add(mine_.plants, known_.plants, "plant", std::move(entry)); }
+void Batch::gain(GainEntry entry) { add(mine_.gains, known_.gains, "gain", std::move(entry)); }
 
 void Batch::commit(Catalogue& catalogue) {
   catalogue.backends.merge(mine_.backends);
@@ -63,6 +65,7 @@ void Batch::commit(Catalogue& catalogue) {
   catalogue.metrics.merge(mine_.metrics);
   catalogue.diagnosers.merge(mine_.diagnosers);
   catalogue.plants.merge(mine_.plants);
+  catalogue.gains.merge(mine_.gains);
 }
 
 }  // namespace cordon::registry

@@ -25,6 +25,7 @@ struct Catalogue {
   Shelf<MetricEntry> metrics;
   Shelf<DiagnoserEntry> diagnosers;
   Shelf<PlantEntry> plants;
+  Shelf<GainEntry> gains;
 
   void remove(std::string_view plugin);
 };
@@ -39,6 +40,7 @@ class Batch final : public Registrar {
   void metric(MetricEntry entry) override;
   void diagnoser(DiagnoserEntry entry) override;
   void plant(PlantEntry entry) override;
+  void gain(GainEntry entry) override;
 
   const std::vector<std::string>& problems() const { return problems_; }  ///< broken rules; none: may be committed
   bool collides() const { return collides_; }  ///< one of the problems is a name that somebody else has

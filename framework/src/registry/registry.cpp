@@ -114,6 +114,12 @@ std::shared_ptr<T> make(const Provided<Entry>& provided, const std::string& kind
 class RegistryFactory final : public Factory {
  public:
   explicit RegistryFactory(const Registry& registry) : registry_(registry) {}
+  std::vector<Diagnostic> check_gain(const ComponentSpec& spec, const GainContext& context) const override {
+    return registry_.check_gain(spec.type, context, spec.params);
+  }
+  std::shared_ptr<const GainDesigner> make_gain(const ComponentSpec& spec) const override {
+    return registry_.make_gain(spec.type, spec.params);
+  }
   std::vector<Diagnostic> check_observer(const ComponentSpec& spec, const ObserverContext& context) const override {
     return registry_.check_observer(spec.type, context, spec.params);
   }
@@ -127,9 +133,37 @@ class RegistryFactory final : public Factory {
 
 /// A model with ranges, given to an observer that would take them for exact values, would give wrong sets in silence.
 std::vector<Diagnostic> refuse_ranges(const ObserverEntry& entry, const Model& model) {
-  if (entry.takes_ranges || !model.linear.has_ranges()) return {};
-  return {{"/type", fmt::format("\"{}\" does not take models whose effectiveness is known by a range only", entry.info.name),
-           "use another observer, or give exact numbers"}};
+  std::vector<Diagnostic> problems;
+  if (!entry.takes_ranges && model.linear.has_ranges()) {
+    problems.push_back({"/type",
+                        fmt::format("\"{}\" does not take models whose effectiveness is known by a range only", entry.info.name),
+                        "use another observer, or give exact numbers"});
+  }
+  if (!entry.takes_uncertainty && model.linear.is_uncertain()) {
+    problems.push_back({"/type", fmt::format("\"{}\" does not take models with interval matrices", entry.info.name),
+                        "use an observer that does, such as \"zonotope_uncertain\", or give exact matrices"});
+  }
+  return problems;
+}
+
+std::vector<Diagnostic> refuse_bank(const DiagnoserEntry& entry, const ModeBank& bank) {
+  std::vector<Diagnostic> problems;
+  for (const Mode& mode : bank.modes) {
+    if (entry.takes_uncertainty || !mode.model.linear.is_uncertain()) continue;
+    problems.push_back(
+        {"/type", fmt::format("\"{}\" does not take models with interval matrices, which \"{}\" has", entry.info.name, mode.name),
+         "use another diagnoser, or give exact matrices"});
+    break;
+  }
+  if (entry.needs_modes && bank.size() < 2) {
+    problems.push_back(
+        {"", "there are no modes to tell apart", "this diagnoser needs at least two: describe the faults in /system/modes"});
+  }
+  if (!entry.needs_modes && (bank.size() == 0 || bank[bank.nominal].model.linear.faults() == 0)) {
+    problems.push_back({"", "there are no faults to find: the system has no F",
+                        "give the directions of additive faults in /system/F, in a column each"});
+  }
+  return problems;
 }
 
 }  // namespace
@@ -238,11 +272,18 @@ std::vector<std::string> Registry::observers() const { return names(state_->cata
 std::vector<std::string> Registry::metrics() const { return names(state_->catalogue.metrics); }
 std::vector<std::string> Registry::diagnosers() const { return names(state_->catalogue.diagnosers); }
 std::vector<std::string> Registry::plants() const { return names(state_->catalogue.plants); }
+std::vector<std::string> Registry::gains() const { return names(state_->catalogue.gains); }
 const ComponentInfo* Registry::backend_info(std::string_view name) const { return info(state_->catalogue.backends, name); }
 const ComponentInfo* Registry::observer_info(std::string_view name) const { return info(state_->catalogue.observers, name); }
 const ComponentInfo* Registry::metric_info(std::string_view name) const { return info(state_->catalogue.metrics, name); }
 const ComponentInfo* Registry::diagnoser_info(std::string_view name) const { return info(state_->catalogue.diagnosers, name); }
 const ComponentInfo* Registry::plant_info(std::string_view name) const { return info(state_->catalogue.plants, name); }
+const ComponentInfo* Registry::gain_info(std::string_view name) const { return info(state_->catalogue.gains, name); }
+
+const DiagnoserEntry* Registry::diagnoser_entry(std::string_view name) const {
+  const auto found = state_->catalogue.diagnosers.find(name);
+  return found == state_->catalogue.diagnosers.end() ? nullptr : &found->second.entry;
+}
 
 std::string Registry::plugin_of(std::string_view kind, std::string_view name) const {
   if (kind == "backend") return provider(state_->catalogue.backends, name);
@@ -250,8 +291,9 @@ std::string Registry::plugin_of(std::string_view kind, std::string_view name) co
   if (kind == "metric") return provider(state_->catalogue.metrics, name);
   if (kind == "diagnoser") return provider(state_->catalogue.diagnosers, name);
   if (kind == "plant") return provider(state_->catalogue.plants, name);
+  if (kind == "gain") return provider(state_->catalogue.gains, name);
   throw Error(Errc::invalid, fmt::format("no kind of component \"{}\"; {}", kind,
-                                         suggest(kind, {"backend", "observer", "metric", "diagnoser", "plant"})));
+                                         suggest(kind, {"backend", "observer", "metric", "diagnoser", "plant", "gain"})));
 }
 
 const PluginReport* Registry::refused_provider(std::string_view component) const {
@@ -286,7 +328,9 @@ std::vector<Diagnostic> Registry::check_observer(std::string_view name, const Ob
   if (!problems.empty()) return problems;
   problems = refuse_ranges(provided.entry, context.model);
   if (!problems.empty() || !provided.entry.check) return problems;
-  return guarded(provided.plugin, component, [&] { return provided.entry.check(context, complete); });
+  const RegistryFactory factory(*this);
+  const ObserverContext with_factory{context.model, context.backend, &factory};
+  return guarded(provided.plugin, component, [&] { return provided.entry.check(with_factory, complete); });
 }
 
 std::shared_ptr<Observer> Registry::make_observer(std::string_view name, const ObserverContext& context,
@@ -296,7 +340,10 @@ std::shared_ptr<Observer> Registry::make_observer(std::string_view name, const O
     throw InputError(fmt::format("observer \"{}\"", name), std::move(problems));
   }
   return make<Observer>(provided, "observer", params, state_->library(provided.plugin),
-                        [&](const ObserverEntry& entry, const Params& p) { return entry.create(context, p); });
+                        [&](const ObserverEntry& entry, const Params& p) {
+                          const RegistryFactory factory(*this);
+                          return entry.create({context.model, context.backend, &factory}, p);
+                        });
 }
 
 std::shared_ptr<Metric> Registry::make_metric(std::string_view name, const Params& params) const {
@@ -311,6 +358,7 @@ std::vector<Diagnostic> Registry::check_diagnoser(std::string_view name, const M
   const std::string component = fmt::format("diagnoser \"{}\"", name);
   Params complete = params;
   std::vector<Diagnostic> problems = provided.entry.info.schema.complete(complete);
+  if (problems.empty()) problems = refuse_bank(provided.entry, bank);
   if (!problems.empty() || !provided.entry.check) return problems;
   const RegistryFactory factory(*this);
   return guarded(provided.plugin, component, [&] { return provided.entry.check({bank, std::move(backend), factory}, complete); });
@@ -319,6 +367,9 @@ std::vector<Diagnostic> Registry::check_diagnoser(std::string_view name, const M
 std::shared_ptr<Diagnoser> Registry::make_diagnoser(std::string_view name, const ModeBank& bank,
                                                     std::shared_ptr<const SetBackend> backend, const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.diagnosers, "diagnoser", name);
+  if (auto problems = refuse_bank(provided.entry, bank); !problems.empty()) {
+    throw InputError(fmt::format("diagnoser \"{}\"", name), std::move(problems));
+  }
   const RegistryFactory factory(*this);
   return make<Diagnoser>(provided, "diagnoser", params, state_->library(provided.plugin),
                          [&](const DiagnoserEntry& entry, const Params& p) {
@@ -330,6 +381,25 @@ std::shared_ptr<Plant> Registry::make_plant(std::string_view name, const Params&
   const auto& provided = require(*this, state_->catalogue.plants, "plant", name);
   return make<Plant>(provided, "plant", params, state_->library(provided.plugin),
                      [](const PlantEntry& entry, const Params& p) { return entry.create(p); });
+}
+
+std::vector<Diagnostic> Registry::check_gain(std::string_view name, const GainContext& context, const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.gains, "gain", name);
+  const std::string component = fmt::format("gain \"{}\"", name);
+  Params complete = params;
+  std::vector<Diagnostic> problems = provided.entry.info.schema.complete(complete);
+  if (!problems.empty()) return problems;
+  if (context.model.linear.is_descriptor()) {
+    return {{"/type", fmt::format("\"{}\" designs gains for systems without E", name), "use a system of type \"lti\""}};
+  }
+  if (!provided.entry.check) return problems;
+  return guarded(provided.plugin, component, [&] { return provided.entry.check(context, complete); });
+}
+
+std::shared_ptr<const GainDesigner> Registry::make_gain(std::string_view name, const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.gains, "gain", name);
+  return make<GainDesigner>(provided, "gain", params, state_->library(provided.plugin),
+                            [](const GainEntry& entry, const Params& p) { return entry.create(p); });
 }
 
 void Registry::add(void (*register_components)(Registrar&)) {

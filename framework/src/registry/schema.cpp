@@ -340,6 +340,14 @@ ParamSchema& ParamSchema::component(std::string name, std::string doc, std::stri
               .component_kind = std::move(kind)});
 }
 
+ParamSchema& ParamSchema::or_matrix(std::string type) {
+  if (specs_.empty() || specs_.back().kind != ParamKind::component) {
+    throw Error(Errc::invalid, "schema: or_matrix() stands behind something that is no component");
+  }
+  specs_.back().matrix_type = std::move(type);
+  return *this;
+}
+
 ParamSchema& ParamSchema::required() {
   if (specs_.empty()) throw Error(Errc::invalid, "schema: required() stands before the first parameter");
   if (specs_.back().fallback) {
@@ -375,6 +383,9 @@ std::vector<Diagnostic> ParamSchema::complete(Params& params) const {
       continue;
     }
     Params::Value value = given->second;
+    if (const auto* A = std::get_if<Matrix>(&value); A && !spec.matrix_type.empty()) {
+      value = std::make_shared<const ComponentSpec>(ComponentSpec{spec.matrix_type, Params().set("matrix", *A)});
+    }
     Problem problem = check_value(spec, value);
     if (problem.message.empty()) {
       params.set(spec.name, std::move(value));

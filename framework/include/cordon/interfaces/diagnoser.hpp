@@ -32,6 +32,14 @@ struct ModeEvidence {
   Box reset_residual;   ///< the same of the copy that was made at the last reset, on which exclusions rest (dimension 0: none)
 };
 
+/// Bounds of one additive fault at one time, proven by the samples up to now.
+struct FaultBound {
+  Index fault = 0;  ///< column of F
+  Index at = 0;     ///< the time of n(at), which lies behind that of the sample by the fault's delay
+  double lower = 0, upper = 0;
+  double estimate = 0;  ///< inside
+};
+
 struct Diagnosis {
   Index k = 0;
   Decision decision = Decision::monitoring;
@@ -40,6 +48,7 @@ struct Diagnosis {
   bool reset = false;    ///< every mode is excluded or given up at k: all are candidates again, later evidence speaks of k on
   Index suggested = -1;  ///< a mode that a heuristic points to, without proof; -1: none
   std::vector<ModeEvidence> modes;
+  std::vector<FaultBound> faults;     ///< additive faults that can be bounded at k; one that excludes 0 excludes every mode
   std::optional<Enclosure> estimate;  ///< `monitoring`: contains the state as long as the plant is in `mode`
 };
 
@@ -62,11 +71,19 @@ struct ErrorSetCheck {
   Index mode = -1, observer = -1;  ///< where `steady_factor` is attained
 };
 
+/// A statement made in advance about the bounds of one additive fault.
+struct FaultGuarantee {
+  Index fault = 0;
+  Index delay = 0;        ///< n(k - delay) is bounded at k
+  double half_width = 0;  ///< of the bounds in the steady state, whatever the data are; infinite: they grow without limit
+};
+
 struct Guarantees {
   std::string method;                ///< how the sets were computed, for people
   std::vector<PairGuarantee> pairs;  ///< all (i, j), by observer, then by mode
   Answer all = Answer::unknown;      ///< the weakest of `pairs`
   std::optional<ErrorSetCheck> error_set;
+  std::vector<FaultGuarantee> faults = {};
 };
 
 /// Decides, sample by sample, which modes of a bank are possible. The base class checks samples and keeps the previous one.

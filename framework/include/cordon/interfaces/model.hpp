@@ -5,38 +5,60 @@
 #include <vector>
 
 #include "cordon/core/box.hpp"
+#include "cordon/core/interval_matrix.hpp"
 #include "cordon/core/line_form.hpp"
 #include "cordon/core/types.hpp"
 
 namespace cordon {
 
 /// Discrete-time linear model
-///   E x⁺ = A x + B diag(f) u + Bw w,   y = diag(g) (C x + D diag(f) u) + Dv v,   f ∈ actuator, g ∈ sensor.
+///   E x⁺ = A x + B diag(f) u + Bw w + F n,   y = diag(g) (C x + D diag(f) u) + Dv v,   f ∈ actuator, g ∈ sensor.
 /// E is n×n and may be singular (descriptor system); an E of size 0×0 stands for the identity. The effectiveness f of the
 /// actuators and g of the sensors lies in boxes within [0,1], 0 meaning outage and 1 health, and may change from step to step; a
-/// box of dimension 0 stands for the exact value (1, …, 1). Member names equal the JSON keys.
+/// box of dimension 0 stands for the exact value (1, …, 1).
+///
+/// Parametric uncertainty: A, B and C are the centres of interval matrices, the true ones lie within ± A_radius, ± B_radius and
+/// ± C_radius entrywise and may change from step to step as well; a radius of size 0×0 stands for 0.
+///
+/// F (n×n_f) holds the directions of additive faults n, in a column each; n = 0 in every mode, so that only who looks for n reads
+/// F. 0 columns or 0×0: there are none. Member names equal the JSON keys, but for the radii, which JSON holds with their centres.
 struct LinearModel {
   Matrix E, A, B, Bw, C, D, Dv;
   Box actuator = {}, sensor = {};
+  Matrix A_radius = {}, B_radius = {}, C_radius = {};
+  Matrix F = {};
 
   bool is_descriptor() const { return E.size() != 0; }
+  /// Is a matrix known by an interval only?
+  bool is_uncertain() const { return is_positive(A_radius) || is_positive(B_radius) || is_positive(C_radius); }
   bool has_ranges() const { return actuator.dim() != 0 || sensor.dim() != 0; }
   Index states() const { return A.rows(); }
   Index inputs() const { return B.cols(); }
   Index outputs() const { return C.rows(); }
   Index disturbances() const { return Bw.cols(); }
   Index noises() const { return Dv.cols(); }
+  Index faults() const { return F.cols(); }
+
+  IntervalMatrix interval_A() const { return interval(A, A_radius); }
+  IntervalMatrix interval_B() const { return interval(B, B_radius); }
+  IntervalMatrix interval_C() const { return interval(C, C_radius); }
 
   Vector actuator_center() const { return actuator.dim() ? actuator.center() : Vector::Ones(inputs()); }
   Vector actuator_radius() const { return actuator.dim() ? actuator.radius() : Vector::Zero(inputs()); }
   Vector sensor_center() const { return sensor.dim() ? sensor.center() : Vector::Ones(outputs()); }
   Vector sensor_radius() const { return sensor.dim() ? sensor.radius() : Vector::Zero(outputs()); }
+
+ private:
+  static bool is_positive(const Matrix& radius) { return radius.size() != 0 && radius.maxCoeff() > 0; }
+  static IntervalMatrix interval(const Matrix& center, const Matrix& radius) {
+    return radius.size() == 0 ? IntervalMatrix(center) : IntervalMatrix(center, radius);
+  }
 };
 
 /// The same model with the exactly known part of the effectiveness moved into B, C and D: columns of B and D are scaled by exact
-/// f_i, rows of C and D by exact g_i, and these entries become 1. Boxes without any range become empty, so that whoever ignores
-/// effectiveness still sees the right model when `has_ranges()` is false. Throws Errc::dimension, and Errc::invalid for bounds
-/// outside [0,1] or in the wrong order.
+/// f_i, rows of C and D by exact g_i (radii as their centres), and these entries become 1. Boxes without any range become empty,
+/// so that whoever ignores effectiveness still sees the right model when `has_ranges()` is false. Throws Errc::dimension, and
+/// Errc::invalid for bounds outside [0,1] or in the wrong order.
 LinearModel with_exact_effectiveness_applied(LinearModel model);
 
 /// A model with its bounds: x₀ ∈ X0, w_k ∈ W, v_k ∈ V for all k. U contains every input; Rⁿ where nothing is said of it.

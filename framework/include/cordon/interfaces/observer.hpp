@@ -2,8 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "cordon/interfaces/backend.hpp"
+#include "cordon/interfaces/gain_designer.hpp"
 #include "cordon/interfaces/model.hpp"
 
 namespace cordon {
@@ -46,6 +48,13 @@ class Observer {
   /// A set that the observer assumes to contain the true state at all times (beyond the model's bounds), or none. Guarantees hold
   /// while it does.
   virtual const Set* admissible_set() const { return nullptr; }
+
+  /// The gains it works with, with what is known about them; of gains that vary in time those of the steady state.
+  virtual std::vector<Gain> gains() const { return {}; }
+
+  /// A box inside the hull of the last estimate, made of trajectories that the observer must enclose: what is left between the
+  /// two is the price of the enclosure. Never an enclosure itself. Nothing: not offered.
+  virtual std::optional<Box> inner_estimate() const { return std::nullopt; }
 
  protected:
   Observer(Model model, std::shared_ptr<const SetBackend> backend) : model_(std::move(model)), backend_(std::move(backend)) {}

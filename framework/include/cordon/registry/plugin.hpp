@@ -14,6 +14,7 @@
 
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/interfaces/diagnoser.hpp"
+#include "cordon/interfaces/gain_designer.hpp"
 #include "cordon/interfaces/metric.hpp"
 #include "cordon/interfaces/observer.hpp"
 #include "cordon/interfaces/plant.hpp"
@@ -28,19 +29,31 @@ struct ComponentInfo {
   std::string summary;   ///< one sentence
   std::string citation;  ///< bibliography key, may be empty
   ParamSchema schema;
+  std::string details = {};  ///< further paragraphs for `cordon info`, lines of at most 100 characters: what is computed, and how
 };
+
+class Factory;
 
 /// What an observer is made for. `check` functions see the same, so that impossible combinations are reported with all other
 /// errors.
 struct ObserverContext {
   const Model& model;
   std::shared_ptr<const SetBackend> backend;
+  const Factory* make = nullptr;  ///< never null in `check` and `create`: the registry puts itself there
 };
 
-/// Makes components for components: a bank builds its observers by it. Parameters are completed and checked.
+/// What a gain is designed for.
+struct GainContext {
+  const Model& model;
+};
+
+/// Makes components for components: a bank builds its observers by it, an observer its gain. Parameters are completed and
+/// checked.
 class Factory {
  public:
   virtual ~Factory() = default;
+  virtual std::vector<Diagnostic> check_gain(const ComponentSpec& spec, const GainContext& context) const = 0;
+  virtual std::shared_ptr<const GainDesigner> make_gain(const ComponentSpec& spec) const = 0;
   virtual std::vector<Diagnostic> check_observer(const ComponentSpec& spec, const ObserverContext& context) const = 0;
   virtual std::shared_ptr<Observer> make_observer(const ComponentSpec& spec, const ObserverContext& context) const = 0;
 };
@@ -65,12 +78,25 @@ struct ObserverEntry {
   /// It encloses the states of models whose effectiveness is known by ranges only. Otherwise such models are refused before
   /// `check` is asked.
   bool takes_ranges = false;
+  /// The same of models with parametric uncertainty.
+  bool takes_uncertainty = false;
 };
 struct DiagnoserEntry {
   ComponentInfo info;
   /// As for observers. May take its time: what a diagnoser promises in advance is checked here.
   std::function<std::vector<Diagnostic>(const DiagnoserContext&, const Params&)> check;
   std::function<std::unique_ptr<Diagnoser>(const DiagnoserContext&, const Params&)> create;
+  /// Its exclusions hold for models with parametric uncertainty. Otherwise such banks are refused before `check` is asked.
+  bool takes_uncertainty = false;
+  /// It tells modes apart, and is of no use for one alone. False: it finds additive faults, and is refused where there is no F.
+  bool needs_modes = true;
+};
+struct GainEntry {
+  ComponentInfo info;
+  /// Problems of this combination of model and parameters, as for observers; models with E are refused before. What the design
+  /// itself finds out is told by `design`.
+  std::function<std::vector<Diagnostic>(const GainContext&, const Params&)> check;
+  std::function<std::unique_ptr<GainDesigner>(const Params&)> create;
 };
 struct PlantEntry {
   ComponentInfo info;
@@ -92,6 +118,7 @@ class Registrar {
   virtual void metric(MetricEntry entry) = 0;
   virtual void diagnoser(DiagnoserEntry entry) = 0;
   virtual void plant(PlantEntry entry) = 0;
+  virtual void gain(GainEntry entry) = 0;
 };
 
 /// Plain data, read before any code of the plugin runs. Layout changes only with `abi_version`.

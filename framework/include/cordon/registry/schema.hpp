@@ -65,6 +65,8 @@ struct ParamSpec {
   double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
   std::vector<std::string> choices;
   std::string component_kind;  ///< "observer", …
+  /// A component that may be written as a matrix: the component of this type with the matrix as the parameter "matrix".
+  std::string matrix_type = {};
 };
 
 /// The parameters a component takes, in the order of the manual. A schema that contradicts itself (a name twice, a default
@@ -83,6 +85,8 @@ class ParamSchema {
   ParamSchema& matrices(std::string name, std::string doc);
   /// Checked against its own schema by whoever makes it: the study reader, or the registry.
   ParamSchema& component(std::string name, std::string doc, std::string kind);
+  /// The last added component may be written as a matrix, which stands for {type, "matrix": …}.
+  ParamSchema& or_matrix(std::string type);
   ParamSchema& required();  ///< makes the last added parameter required
 
   const std::vector<ParamSpec>& specs() const { return specs_; }

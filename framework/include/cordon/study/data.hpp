@@ -13,7 +13,8 @@ namespace cordon {
 struct Record {
   Sample sample;
   std::optional<Vector> truth;
-  std::optional<Index> mode = {};  ///< index of the true mode in the study's bank, -1: outside the bank
+  std::optional<Index> mode = {};    ///< index of the true mode in the study's bank, -1: outside the bank
+  std::optional<Vector> fault = {};  ///< n_k, one entry per column of F; while one is not 0, the mode is -1
 };
 
 /// A stream of records. Two streams of one study give the same records bit by bit.

@@ -81,6 +81,25 @@ struct TrueModeExcluded {
   std::int64_t seed_offset = 0;
 };
 
+/// The bounds of one additive fault over all seeds, beside its true values where the data tell them.
+struct FaultStatistics {
+  Index fault = 0;              ///< column of F
+  Index delay = -1;             ///< sample time - time of the bounded value, of the last bound; -1: there was none
+  std::int64_t bounds = 0;      ///< times that it was bounded
+  std::int64_t checked = 0;     ///< of these, with the true value known
+  std::int64_t outside = 0;     ///< of these, with the true value outside by more than rounding (1e-9 relative)
+  std::int64_t excluded_0 = 0;  ///< bounds that do not hold 0: the fault is proven
+  double mean_half_width = 0, last_half_width = 0;  ///< the last one of the first seed
+  double rms_error = 0;                             ///< of the estimate, where checked
+  double largest_share = 0;                         ///< largest |estimate - truth| / half width, where checked
+};
+
+/// A true value of an additive fault outside its bounds.
+struct FaultOutside {
+  Index k = 0, at = 0, fault = 0;
+  std::int64_t seed_offset = 0;
+};
+
 /// What a diagnosis pipeline has found: in full for the first seed, counted over all.
 struct DiagnosisOutcome {
   std::vector<std::string> modes;  ///< names, in the order of the bank
@@ -96,6 +115,8 @@ struct DiagnosisOutcome {
   bool truth_known = false;                            ///< the data tell the true mode: what follows can be said
   std::vector<ModeStatistics> statistics;              ///< modes that occurred, by index
   std::optional<TrueModeExcluded> true_mode_excluded;  ///< the first; makes `violated_at` for simulated data of a linear model
+  std::vector<FaultStatistics> faults;                 ///< of diagnosers that bound additive faults
+  std::optional<FaultOutside> fault_outside;           ///< the first; makes `violated_at` as well
 };
 
 /// The same as JSON objects (docs/results_format.md).
@@ -118,6 +139,11 @@ struct PipelineOutcome {
   AnswerCount bounds;              ///< of interval hulls; unknown: infinite although the estimate is not proven unbounded
   std::string error;               ///< the pipeline stopped with this error; the others go on
   std::optional<Errc> error_code;
+  std::vector<Gain> gains;          ///< of the observer
+  Box last_hull;                    ///< of the last estimate; dimension 0: there is none
+  std::int64_t inner_steps = 0;     ///< steps with an inner estimate
+  std::int64_t inner_outside = -1;  ///< first k at which it leaves the hull by more than rounding (1e-9 relative): a defect
+  double inner_share = 0;           ///< mean width of the inner estimate / width of the hull over steps and states
   std::vector<MetricValue> summary;
   PhaseTimes median_us;       ///< medians over the steps up to the first estimate proven empty, phase by phase
   double median_step_us = 0;  ///< median of predict + correct + reduce

@@ -50,6 +50,22 @@ struct FaultSpec {
   Box actuator = {}, sensor = {};
 };
 
+/// An additive fault of simulated data: for k = from … to, n_k of the fault is the signal's value at k, to which other entries of
+/// the same fault add theirs; it is 0 otherwise. F n_k acts on E x_{k+1} = …, static rows included.
+struct AdditiveFaultSpec {
+  Index fault = 0;  ///< column of F; in studies counted from 1
+  std::int64_t from = 0;
+  std::int64_t to = std::numeric_limits<std::int64_t>::max();
+  Signal signal = {};
+};
+
+/// What the matrices of an uncertain model are in a simulation; drawn by the kind of its noise: uniform in their intervals, at
+/// vertices, or in the middle (zero, sine).
+enum class ParameterDraw {
+  constant,  ///< drawn once: parameters that do not change
+  varying    ///< drawn anew at every step
+};
+
 /// Simulated data: x_{k+1}, y_k from the model, seeded and identical on every machine.
 struct SimulateSpec {
   std::int64_t steps = 0;  ///< samples k = 0 … steps
@@ -60,6 +76,8 @@ struct SimulateSpec {
   std::vector<FaultSpec> faults;  ///< in order of time, without overlap; between them the plant is in the nominal mode
   std::optional<ComponentSpec> plant;  ///< in place of the linear model
   std::shared_ptr<const Plant> made_plant;
+  std::vector<AdditiveFaultSpec> additive_faults = {};
+  ParameterDraw parameters = ParameterDraw::constant;
   std::int64_t seeds = 1;  ///< diagnosers are tried on the seeds seed … seed + seeds - 1
 };
 

@@ -68,6 +68,7 @@ std::optional<Params::Value> as_param(const ParamSpec& spec, const Cursor& at, c
     case ParamKind::matrices:
       return wrap(read_matrices(at));
     case ParamKind::component:
+      if (!spec.matrix_type.empty() && at.is(Kind::array)) return wrap(read_matrix(at));  // `complete` makes a component of it
       return read_inner(at, spec.component_kind, context, depth);
   }
   return std::nullopt;
@@ -213,11 +214,6 @@ bool read_algorithm(const Cursor& at, const SystemPart& system, const ComponentC
     return false;
   }
   spec.diagnoser = read_component(*diagnoser_at, "diagnoser", context);
-  if (system.modes_good && system.modes.empty()) {
-    diagnoser_at->error("there are no modes to tell apart",
-                        "a diagnoser needs at least two: describe the faults in /system/modes");
-    return false;
-  }
   return spec.diagnoser.has_value();
 }
 
@@ -242,11 +238,10 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
 }  // namespace
 
 const Shelf* shelf_of(std::string_view kind) {
-  static constexpr Shelf shelves[] = {{"backend", &Registry::backend_info, &Registry::backends},
-                                      {"observer", &Registry::observer_info, &Registry::observers},
-                                      {"metric", &Registry::metric_info, &Registry::metrics},
-                                      {"diagnoser", &Registry::diagnoser_info, &Registry::diagnosers},
-                                      {"plant", &Registry::plant_info, &Registry::plants}};
+  static constexpr Shelf shelves[] = {
+      {"backend", &Registry::backend_info, &Registry::backends}, {"observer", &Registry::observer_info, &Registry::observers},
+      {"metric", &Registry::metric_info, &Registry::metrics},    {"diagnoser", &Registry::diagnoser_info, &Registry::diagnosers},
+      {"plant", &Registry::plant_info, &Registry::plants},       {"gain", &Registry::gain_info, &Registry::gains}};
   const auto found = std::find_if(std::begin(shelves), std::end(shelves), [&](const Shelf& shelf) { return kind == shelf.kind; });
   return found == std::end(shelves) ? nullptr : found;
 }

@@ -229,6 +229,7 @@ Json parameter(const ParamSpec& spec) {
       break;
     case ParamKind::component:
       schema = reference(spec.component_kind);
+      if (!spec.matrix_type.empty()) schema = {{"anyOf", {reference("matrix"), schema}}};
       break;
   }
   if (spec.kind == ParamKind::integer || spec.kind == ParamKind::real) add_limits(schema, spec);
@@ -278,7 +279,8 @@ Json definitions(const Registry& registry) {
   defs["mode"] = modes();
   defs["fault"] = faults();
   defs["data"] = data();
-  for (const char* kind : {"backend", "observer", "metric", "diagnoser", "plant"}) defs[kind] = components(registry, kind);
+  for (const char* kind : {"backend", "observer", "metric", "diagnoser", "plant", "gain"})
+    defs[kind] = components(registry, kind);
   Json pipeline = object({{"name", described(text(200), "unique; the backend's name by default")},
                           {"backend", reference("backend")},
                           {"observer", reference("observer")},
