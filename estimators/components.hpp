@@ -14,6 +14,7 @@ void register_consistency_bank(Registrar& registrar);
 void register_given_gain(Registrar& registrar);
 void register_kalman_gain(Registrar& registrar);
 void register_peak_gain(Registrar& registrar);
+void register_poles_gain(Registrar& registrar);
 void register_metrics(Registrar& registrar);
 
 }  // namespace cordon::estimators

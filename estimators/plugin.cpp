@@ -12,6 +12,7 @@ void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_given_gain(registrar);
   cordon::estimators::register_kalman_gain(registrar);
   cordon::estimators::register_peak_gain(registrar);
+  cordon::estimators::register_poles_gain(registrar);
   cordon::estimators::register_metrics(registrar);
 }
 
