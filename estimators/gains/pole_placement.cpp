@@ -10,7 +10,7 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr int sweeps = 30, rounds = 4;
+constexpr int sweeps = 30;
 constexpr double dependent = 1e-12;  // σ_n / σ_1 of eigenvectors
 constexpr double perpendicular = 1e-6;
 
@@ -82,7 +82,9 @@ Matrix eigenvectors(Index n, const std::vector<Block>& blocks) {
   Matrix best = X;
   double most = independence(X);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (const Block& block : blocks) turn(X, block);
+    for (const Block& block : blocks) {
+      if (block.space.cols() > block.size) turn(X, block);  // else it has no choice
+    }
     if (const double now = independence(X); now > most) {
       most = now;
       best = X;
@@ -91,7 +93,7 @@ Matrix eigenvectors(Index n, const std::vector<Block>& blocks) {
   return best;
 }
 
-/// Lᵀ with Aᵀ - Cᵀ Lᵀ = X F X⁻¹.
+/// L with Aᵀ - Cᵀ Lᵀ = X F X⁻¹.
 std::optional<Matrix> gain(const Matrix& A, const Matrix& C, const std::vector<std::complex<double>>& poles) {
   const Index n = A.rows();
   const std::vector<Block> blocks = blocks_of(A, C, poles);
@@ -121,17 +123,9 @@ double placement_error(const Matrix& closed, const std::vector<std::complex<doub
 }  // namespace
 
 std::optional<PlacedPoles> placed_poles(const Matrix& A, const Matrix& C, const std::vector<std::complex<double>>& poles) {
-  std::optional<PlacedPoles> best;
-  Matrix L = Matrix::Zero(A.rows(), C.rows());
-  for (int round = 0; round < rounds; ++round) {
-    const std::optional<Matrix> step = gain(A - linalg::product(L, C), C, poles);
-    if (!step || !step->allFinite()) break;
-    L += *step;
-    const double error = placement_error(A - linalg::product(L, C), poles);
-    if (best && error >= best->error) break;
-    best = PlacedPoles{L, error};
-  }
-  return best;
+  const std::optional<Matrix> L = gain(A, C, poles);
+  if (!L || !L->allFinite()) return std::nullopt;
+  return PlacedPoles{*L, placement_error(A - linalg::product(*L, C), poles)};
 }
 
 }  // namespace cordon::estimators

@@ -25,6 +25,7 @@ void register_odd(Registrar& registrar) {
   const auto add = [&](const char* name, const GainDesign& answer) {
     registrar.gain({{name, "a test", "", {}}, {}, [=](const Params&) { return std::make_unique<Fixed>(answer); }});
   };
+  add("fixed", matrix(Matrix{{0}, {.9}}));
   add("of_wrong_shape", matrix(Matrix{{1}}));
   add("of_no_number", matrix(Matrix{{NAN}, {0}}));
   add("unstable", matrix(Matrix{{-5}, {0}}));
@@ -70,6 +71,9 @@ TEST_CASE("an observer tells its gain, by whom and under which name") {
     CHECK(gains[0].certificate.spectral_radius < 1);
     CHECK(gains[0].certificate.norm_upper > 0);
   }
+  const Gain renamed = observer(designer("fixed"))->gains()[0];
+  CHECK(renamed.name == "gain");
+  CHECK(renamed.type == "fixed");
 }
 
 TEST_CASE("a designed gain is the one that is used") {
@@ -94,6 +98,7 @@ TEST_CASE("problems of a gain are told at their place") {
   only(designer("poles", Params().set("poles", Vector{{.5}})), "/gain/poles", "holds 1 numbers", tanks);
   only(designer("poles", Params().set("poles", Vector{{.5, .5}})), "/gain", "asked for 2 times", tanks);
   only(designer("given", Params().set("matrix", Matrix{{1, 0}})), "/gain", "is 1 × 2, must be 2 × 1", tanks);
+  only(designer("given", Params().set("matrix", Matrix{{0}, {.9}}).set("other", true)), "/gain/other", "unknown", tanks);
   only(Params().set("gain", Matrix{{1, 0}}), "/gain", "is 1 × 2, must be 2 × 1", tanks);
   only(designer("peak"), "/gain", "column 2 of C is zero and A(1,2) < 0", interval_plants::three_states(-.1));
   only(designer("of_wrong_shape"), "/gain", "\"of_wrong_shape\" designed is 1 × 1, must be 2 × 1", tanks);

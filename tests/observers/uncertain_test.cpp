@@ -107,6 +107,8 @@ TEST_CASE("interval matrices and ranges of effectiveness by hand") {
   model.linear.sensor = Box{Vector{{0}}, Vector{{1}}};
   // by the set |C x| ≤ 6 + .3: x_0 ∈ -2 ± .5 · 6.3 ± .5 · .3, x_0 ≤ 1.3
   check_interval(second_hull(model, -2, 0), -1.5, -1.35);
+  model.X0 = make_box({Vector{{-3}}, Vector{{-1}}});
+  check_interval(second_hull(model, 2, 0), -2.65, -2.5);  // x_0 ≥ -1.3
   model = scalar();
   model.linear.B_radius = Matrix{{.1}};
   model.linear.actuator = Box{Vector{{.5}}, Vector{{1}}};
