@@ -12,5 +12,6 @@ void register_luenberger(Registrar& registrar);
 void register_observer_bank(Registrar& registrar);
 void register_consistency_bank(Registrar& registrar);
 void register_metrics(Registrar& registrar);
+void register_weighted_radius(Registrar& registrar);
 
 }  // namespace cordon::estimators
