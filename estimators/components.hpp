@@ -12,7 +12,9 @@ void register_luenberger(Registrar& registrar);
 void register_observer_bank(Registrar& registrar);
 void register_consistency_bank(Registrar& registrar);
 void register_given_gain(Registrar& registrar);
+void register_kalman_gain(Registrar& registrar);
 void register_peak_gain(Registrar& registrar);
+void register_poles_gain(Registrar& registrar);
 void register_metrics(Registrar& registrar);
 void register_weighted_radius(Registrar& registrar);
 

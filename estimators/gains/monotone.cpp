@@ -15,7 +15,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double equal = 1e-10, margin = 1e-8, noise = 1e-9;
-constexpr int most_rounds = 30;
+constexpr int most_rounds = 10;
 
 std::string direction(const Vector& x) {
   std::string text = "(";
@@ -107,18 +107,22 @@ std::optional<std::string> no_monotone_gain(const Matrix& A, const Matrix& C) {
 Matrix raised_to_monotone(const Matrix& A, const Matrix& C, Matrix L) {
   if (A.size() == 0 || L.cols() == 0) return L;
   const double size = A.cwiseAbs().maxCoeff();
-  double extra = std::numeric_limits<double>::epsilon() * size / 4;
-  for (int round = 0; round < most_rounds && extra <= noise * size; ++round, extra *= 2) {
-    const Matrix closed = A - linalg::product(L, C);
-    if ((closed.array() >= 0).all()) break;
-    for (Index i = 0; i < A.rows(); ++i) {
+  for (Index i = 0; i < A.rows(); ++i) {
+    double extra = std::numeric_limits<double>::epsilon() * size / 4;
+    Matrix row = L.row(i), closed = A.row(i) - linalg::product(row, C);
+    double best = closed.minCoeff();
+    for (int round = 0; round < most_rounds && best < 0; ++round, extra *= 2) {
       std::vector<Index> low;
       for (Index j = 0; j < A.cols(); ++j) {
-        if (closed(i, j) <= 0 && closed(i, j) >= -noise * size && !C.col(j).isZero(0)) low.push_back(j);
+        if (closed(0, j) <= extra && closed(0, j) >= -noise * size && !C.col(j).isZero(0)) low.push_back(j);
       }
-      if (low.empty() || (closed.row(i).array() >= 0).all()) continue;
-      const Vector lift = (-closed.row(i)(low).transpose()).array() + extra;
-      L.row(i) -= linalg::product(lift.transpose(), linalg::pseudo_inverse(C(Eigen::all, low)));
+      if (low.empty()) break;
+      const Vector lift = (-closed(0, low).transpose()).array() + extra;
+      row -= linalg::product(lift.transpose(), linalg::pseudo_inverse(C(Eigen::all, low)));
+      closed = A.row(i) - linalg::product(row, C);
+      if (closed.minCoeff() <= best) continue;
+      best = closed.minCoeff();
+      L.row(i) = row;
     }
   }
   return L;
