@@ -15,6 +15,7 @@ void register_given_gain(Registrar& registrar);
 void register_kalman_gain(Registrar& registrar);
 void register_peak_gain(Registrar& registrar);
 void register_poles_gain(Registrar& registrar);
+void register_fault_estimation_filter(Registrar& registrar);
 void register_metrics(Registrar& registrar);
 void register_weighted_radius(Registrar& registrar);
 

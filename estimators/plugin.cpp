@@ -13,6 +13,7 @@ void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_kalman_gain(registrar);
   cordon::estimators::register_peak_gain(registrar);
   cordon::estimators::register_poles_gain(registrar);
+  cordon::estimators::register_fault_estimation_filter(registrar);
   cordon::estimators::register_metrics(registrar);
   cordon::estimators::register_weighted_radius(registrar);
 }
