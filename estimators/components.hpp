@@ -11,6 +11,7 @@ void register_descriptor(Registrar& registrar);
 void register_luenberger(Registrar& registrar);
 void register_observer_bank(Registrar& registrar);
 void register_consistency_bank(Registrar& registrar);
+void register_given_gain(Registrar& registrar);
 void register_metrics(Registrar& registrar);
 
 }  // namespace cordon::estimators

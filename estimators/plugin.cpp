@@ -9,6 +9,7 @@ void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_luenberger(registrar);
   cordon::estimators::register_observer_bank(registrar);
   cordon::estimators::register_consistency_bank(registrar);
+  cordon::estimators::register_given_gain(registrar);
   cordon::estimators::register_metrics(registrar);
 }
 
