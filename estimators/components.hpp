@@ -12,6 +12,7 @@ void register_luenberger(Registrar& registrar);
 void register_observer_bank(Registrar& registrar);
 void register_consistency_bank(Registrar& registrar);
 void register_given_gain(Registrar& registrar);
+void register_peak_gain(Registrar& registrar);
 void register_metrics(Registrar& registrar);
 
 }  // namespace cordon::estimators
