@@ -13,6 +13,9 @@ void register_observer_bank(Registrar& registrar);
 void register_consistency_bank(Registrar& registrar);
 void register_given_gain(Registrar& registrar);
 void register_peak_gain(Registrar& registrar);
+void register_h_infinity_gain(Registrar& registrar);
+void register_h_infinity_monotone_gain(Registrar& registrar);
+void register_w_radius_gain(Registrar& registrar);
 void register_metrics(Registrar& registrar);
 
 }  // namespace cordon::estimators

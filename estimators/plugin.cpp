@@ -11,6 +11,9 @@ void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_consistency_bank(registrar);
   cordon::estimators::register_given_gain(registrar);
   cordon::estimators::register_peak_gain(registrar);
+  cordon::estimators::register_h_infinity_gain(registrar);
+  cordon::estimators::register_h_infinity_monotone_gain(registrar);
+  cordon::estimators::register_w_radius_gain(registrar);
   cordon::estimators::register_metrics(registrar);
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "solvers/sdp_proposal.hpp"
@@ -193,7 +195,8 @@ SdpSolution assess(const SemidefiniteProgram& program, const ScaledProgram& scal
   } else if (!feasible) {
     s.why = "the solver's point violates the inequalities (" + proposal.phase + ")";
   } else if (!(gap <= taken * (1 + program.cost.cwiseAbs().dot(x.cwiseAbs())))) {
-    s.why = "value and bound differ (" + proposal.phase + ")";
+    s.why = fmt::format("value {:.10g} and bound {:.10g} differ, or the dual residual {:.2g} is too large ({})", s.value, s.bound,
+                        s.dual_residual, proposal.phase);
   } else {
     s.status = SdpStatus::solved;
     s.x = std::move(x);
