@@ -14,6 +14,9 @@ void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_peak_gain(registrar);
   cordon::estimators::register_poles_gain(registrar);
   cordon::estimators::register_fault_estimation_filter(registrar);
+  cordon::estimators::register_h_infinity_gain(registrar);
+  cordon::estimators::register_h_infinity_monotone_gain(registrar);
+  cordon::estimators::register_w_radius_gain(registrar);
   cordon::estimators::register_metrics(registrar);
   cordon::estimators::register_weighted_radius(registrar);
 }
