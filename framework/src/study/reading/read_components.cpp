@@ -197,7 +197,7 @@ void check_together(const Cursor& pipeline, const PipelineSpec& spec, const Syst
 }
 
 /// The observer or the diagnoser of a pipeline; false if there is not exactly one that is right.
-bool read_algorithm(const Cursor& at, const SystemPart& system, const ComponentContext& context, PipelineSpec& spec) {
+bool read_algorithm(const Cursor& at, const ComponentContext& context, PipelineSpec& spec) {
   const auto observer_at = at.find("observer"), diagnoser_at = at.find("diagnoser");
   if (observer_at && diagnoser_at) {
     at.error("holds both \"observer\" and \"diagnoser\"", "remove one of the two, or make two pipelines");
@@ -223,7 +223,7 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   if (!at.expect_keys({"name", "backend", "observer", "diagnoser"}, "key of a pipeline", form)) return spec;
   const auto backend_at = at.need("backend", "the set representation: {\"type\": ...}");
   const auto backend = backend_at ? read_component(*backend_at, "backend", context) : std::nullopt;
-  const bool algorithm = read_algorithm(at, system, context, spec);
+  const bool algorithm = read_algorithm(at, context, spec);
   if (const auto name_at = at.find("name")) {
     spec.name = read_text(*name_at, max_name).value_or("");
   } else if (backend) {
