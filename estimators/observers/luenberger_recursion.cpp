@@ -3,6 +3,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/rounding.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 
 namespace cordon::estimators {
@@ -17,88 +18,126 @@ LineForm moved(const LineForm& X, const Vector& t) {
   return Y;
 }
 
+bool is_positive(const Matrix& radius) { return radius.size() != 0 && radius.maxCoeff() > 0; }
+
+Vector largest_entries(const Box& box) { return box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()); }
+
+/// rad(A) s, where a zero keeps an infinite entry of s out; 0 of the size `rows` for radii of size 0×0. Rounded upwards.
+Vector spread(const Matrix& radius, const Vector& s, Index rows) {
+  Vector sum = Vector::Zero(rows);
+  for (Index j = 0; j < radius.cols(); ++j) {
+    for (Index i = 0; i < rows; ++i) {
+      if (radius(i, j) > 0) sum[i] += radius(i, j) * s[j];
+    }
+  }
+  return sum * (1 + rounding::gamma(radius.cols() + 3));
+}
+
 }  // namespace
 
 LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L, std::shared_ptr<const SetBackend> backend, Budget budget)
-    : backend_(std::move(backend)), budget_(budget), L_(std::move(L)) {
+    : backend_(std::move(backend)), budget_(budget) {
   const LinearModel& m = model.linear;
   const Index n = m.states(), p = m.outputs();
   if (m.is_descriptor()) throw Error(Errc::unsupported, "a Luenberger observer takes systems without E");
-  if (L_.rows() != n || L_.cols() != p)
-    throw Error(Errc::dimension, "the gain must have a row per state and a column per output");
-  const Vector g = m.sensor_center(), f = m.actuator_center(), rad = m.actuator_radius();
+  const Vector g = m.sensor_center(), rad = m.actuator_radius();
+  f_ = m.actuator_center();
+  A_ = m.A;
+  B_ = m.B;
   C_ = g.asDiagonal() * m.C;
   minus_C_ = -C_;
-  Ao_ = m.A - product(L_, C_);
-  const Matrix D = g.asDiagonal() * m.D, B = m.B - product(L_, D);
-  input_ = B * f.asDiagonal();
-  output_input_ = D * f.asDiagonal();
+  D_ = g.asDiagonal() * m.D;
+  output_input_ = D_ * f_.asDiagonal();
   for (Index i = 0; i < rad.size(); ++i) {
     if (rad[i] > 0) ranged_.push_back(i);
   }
-  ranges_ = Matrix(n, static_cast<Index>(ranged_.size()));
-  output_ranges_ = Matrix(p, ranges_.cols());
-  for (Index i = 0; i < ranges_.cols(); ++i) {
-    const Index input = ranged_[static_cast<std::size_t>(i)];
-    ranges_.col(i) = rad[input] * B.col(input);
-    output_ranges_.col(i) = rad[input] * D.col(input);
-  }
+  ranged_radius_ = rad(ranged_);
+  output_ranges_ = D_(Eigen::all, ranged_) * ranged_radius_.asDiagonal();
   Bw_ = m.Bw;
   minus_Bw_ = -Bw_;
   Dv_ = m.Dv;
   minus_Dv_ = -Dv_;
-  LDv_ = product(L_, Dv_);
-  minus_LDv_ = -LDv_;
-  minus_L_ = -L_;
-  unit_map_ = Matrix::Identity(p, p);
+  state_unit_ = Matrix::Identity(n, n);
+  output_unit_ = Matrix::Identity(p, p);
   const Vector w = invariant::enclosing_zonotope(model.W).c, v = invariant::enclosing_zonotope(model.V).c;
+  state_drift_ = product(Bw_, w);
+  v_ = product(Dv_, v);
   W_ = backend_->import(model.W);
   V_ = backend_->import(model.V);
   W0_ = backend_->import(moved(model.W, -w));
   V0_ = backend_->import(moved(model.V, -v));
-  const Vector ones = Vector::Ones(ranges_.cols());
+  const Vector ones = Vector::Ones(ranged_radius_.size());
   unit_ = backend_->box({-ones, ones});
-  w_ = product(Bw_, w) - product(LDv_, v);
-  v_ = product(Dv_, v);
+  most_f_ = f_ + rad;
   if (m.sensor.dim() != 0) {
     sensor_radius_ = m.sensor_radius();
     raw_C_ = m.C;
-    raw_D_ = m.D.cwiseAbs() * (f + rad).asDiagonal();
+    raw_D_ = m.D.cwiseAbs() * most_f_.asDiagonal();
   }
+  if (is_positive(m.A_radius)) A_radius_ = m.A_radius;
+  if (is_positive(m.B_radius)) B_radius_ = m.B_radius;
+  if (is_positive(m.C_radius)) C_radius_ = (g + m.sensor_radius()).asDiagonal() * m.C_radius;
+  use_gain(std::move(L));
 }
 
-/// Δ.
-Enclosure LuenbergerRecursion::sensor_box(const Enclosure& X, VectorIn u) const {
-  const Box outputs = backend_->affine_map(X, raw_C_, Vector::Zero(raw_C_.rows()))->interval_hull();
-  const Vector largest = outputs.lower.cwiseAbs().cwiseMax(outputs.upper.cwiseAbs());
-  const Vector widths = sensor_radius_.array() * (largest + product(raw_D_, u.cwiseAbs())).array();
-  if (!widths.allFinite()) {
-    throw Error(Errc::unsupported, "a range of sensor effectiveness needs a bounded set of states: give a bounded initial set");
+void LuenbergerRecursion::use_gain(Matrix L) {
+  if (L.rows() != A_.rows() || L.cols() != C_.rows())
+    throw Error(Errc::dimension, "the gain must have a row per state and a column per output");
+  L_ = std::move(L);
+  Ao_ = A_ - product(L_, C_);
+  const Matrix B = B_ - product(L_, D_);
+  input_ = B * f_.asDiagonal();
+  ranges_ = B(Eigen::all, ranged_) * ranged_radius_.asDiagonal();
+  minus_LDv_ = -product(L_, Dv_);
+  minus_L_ = -L_;
+  w_ = state_drift_ - product(L_, v_);
+}
+
+/// Δ, the part of y that ranges of sensors and the radii of C leave open.
+Enclosure LuenbergerRecursion::output_box(const Enclosure& X, const Vector& largest, VectorIn u) const {
+  Vector widths = spread(C_radius_, largest, C_.rows());
+  if (sensor_radius_.size() != 0) {
+    const Vector outputs = largest_entries(backend_->affine_map(X, raw_C_, Vector::Zero(raw_C_.rows()))->interval_hull());
+    widths.array() += sensor_radius_.array() * (outputs + product(raw_D_, u.cwiseAbs())).array();
   }
+  return bounded_box(widths, "a range of sensor effectiveness or an interval matrix C");
+}
+
+Enclosure LuenbergerRecursion::bounded_box(const Vector& widths, const std::string& cause) const {
+  if (!widths.allFinite()) throw Error(Errc::unsupported, cause + " needs a bounded set of states: give a bounded initial set");
   return backend_->box({-widths, widths});
 }
 
-void LuenbergerRecursion::add_ranges(Summands& to, const Matrix& ranges, const Matrix& sensors, const Enclosure& X, VectorIn u,
-                                     bool twice) const {
+void LuenbergerRecursion::add_open(Summands& to, Target target, const Enclosure& X, VectorIn u, bool twice) const {
+  const bool state = target == Target::state;
+  const auto add = [&](const Matrix& T, const Enclosure& set) {
+    to.terms.push_back({T, set});
+    if (twice) to.terms.push_back({T, set});
+  };
   if (!ranged_.empty()) {
-    to.inputs = ranges;
-    for (Index i = 0; i < ranges.cols(); ++i) to.inputs.col(i) *= u[ranged_[static_cast<std::size_t>(i)]];
-    to.terms.push_back({to.inputs, unit_});
-    if (twice) to.terms.push_back({to.inputs, unit_});
+    to.inputs = (state ? ranges_ : output_ranges_) * u(ranged_).asDiagonal();
+    add(to.inputs, unit_);
   }
-  if (sensor_radius_.size() != 0) {
-    to.sensors = sensor_box(X, u);
-    to.terms.push_back({sensors, to.sensors});
-    if (twice) to.terms.push_back({sensors, to.sensors});
+  const bool by_A = state && A_radius_.size() != 0, by_B = state && B_radius_.size() != 0, by_C = C_radius_.size() != 0;
+  const Vector largest = by_A || by_C ? largest_entries(X->interval_hull()) : Vector(X->dim());
+  if (by_A || by_B) {
+    const Vector inputs = most_f_.cwiseProduct(u.cwiseAbs());
+    to.parameters =
+        bounded_box(spread(A_radius_, largest, A_.rows()) + spread(B_radius_, inputs, A_.rows()), "an interval matrix A");
+    add(state_unit_, to.parameters);
+  }
+  if (by_C || sensor_radius_.size() != 0) {
+    to.outputs = output_box(X, largest, u);
+    add(state ? minus_L_ : output_unit_, to.outputs);
   }
 }
 
 Enclosure LuenbergerRecursion::next(const Enclosure& X, const Sample& now) const {
   Summands summands;
-  summands.terms.reserve(4);
+  summands.terms.reserve(5);
   summands.terms.push_back({minus_LDv_, V_});
   summands.terms.push_back({Bw_, W_});
-  add_ranges(summands, ranges_, minus_L_, X, now.u, false);
+  add_open(summands, Target::state, X, now.u, false);
   return backend_->predict(X, {Ao_, product(L_, now.y) + product(input_, now.u), summands.terms});
 }
 
@@ -106,7 +145,7 @@ Enclosure LuenbergerRecursion::residual(const Enclosure& X, const Sample& now) c
   Summands summands;
   summands.terms.reserve(3);
   summands.terms.push_back({minus_Dv_, V_});
-  add_ranges(summands, output_ranges_, unit_map_, X, now.u, false);
+  add_open(summands, Target::output, X, now.u, false);
   return backend_->predict(X, {minus_C_, now.y - product(output_input_, now.u), summands.terms});
 }
 
@@ -129,8 +168,9 @@ Vector LuenbergerRecursion::residual_size(VectorIn s, const Sample& now) const {
 Enclosure LuenbergerRecursion::explained_outputs(const Enclosure& E, VectorIn x, const Sample& now) const {
   Summands summands;
   summands.terms.reserve(2);
-  const Enclosure X = sensor_radius_.size() == 0 ? E : backend_->affine_map(E, Matrix::Identity(E->dim(), E->dim()), x);
-  add_ranges(summands, output_ranges_, unit_map_, X, now.u, false);
+  const bool needs_X = sensor_radius_.size() != 0 || C_radius_.size() != 0;
+  const Enclosure X = needs_X ? backend_->affine_map(E, state_unit_, x) : E;
+  add_open(summands, Target::output, X, now.u, false);
   return backend_->predict(V0_, {minus_Dv_, residual(x, now), summands.terms});
 }
 
@@ -147,10 +187,11 @@ Enclosure LuenbergerRecursion::errors_within(const Enclosure& E, const Enclosure
 
 Enclosure LuenbergerRecursion::next_bound(const Enclosure& E, const Enclosure& X, const Sample& now) const {
   Summands summands;
-  summands.terms.reserve(8);
-  for (const Matrix* T : {&LDv_, &minus_LDv_}) summands.terms.push_back({*T, V0_});
+  summands.terms.reserve(10);
+  const Matrix LDv = -minus_LDv_;
+  for (const Matrix* T : {&LDv, &minus_LDv_}) summands.terms.push_back({*T, V0_});
   for (const Matrix* T : {&Bw_, &minus_Bw_}) summands.terms.push_back({*T, W0_});
-  add_ranges(summands, ranges_, minus_L_, X, now.u, true);
+  add_open(summands, Target::state, X, now.u, true);
   return backend_->predict(E, {Ao_, Vector::Zero(Ao_.rows()), summands.terms});
 }
 
@@ -158,7 +199,7 @@ Enclosure LuenbergerRecursion::residual_bound(const Enclosure& E, const Enclosur
   Summands summands;
   summands.terms.reserve(6);
   for (const Matrix* T : {&Dv_, &minus_Dv_}) summands.terms.push_back({*T, V0_});
-  add_ranges(summands, output_ranges_, unit_map_, X, now.u, true);
+  add_open(summands, Target::output, X, now.u, true);
   return backend_->predict(E, {C_, Vector::Zero(C_.rows()), summands.terms});
 }
 

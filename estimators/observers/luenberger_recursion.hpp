@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "cordon/interfaces/backend.hpp"
@@ -10,16 +11,20 @@
 
 namespace cordon::estimators {
 
-/// For x⁺ = A x + B f u + Bw w, y = g (C x + D f u) + Dv v with f, g in diagonal ranges around f̄, ḡ, and C̄ = ḡ C, D̄ = ḡ D:
-///   X̂⁺ = (A - L C̄) X̂ ⊕ {L y + (B - L D̄) f̄ u} ⊕ P,   P = (B - L D̄) rad(f) diag(u) [-1,1]^p ⊕ (-L Dv) V ⊕ Bw W ⊕ (-L) Δ
+/// For x⁺ = A x + B f u + Bw w, y = g (C x + D f u) + Dv v with f, g in diagonal ranges around f̄, ḡ and A, B, C in interval
+/// matrices (A, B, C their centres from here on), and C̄ = ḡ C, D̄ = ḡ D:
+///   X̂⁺ = (A - L C̄) X̂ ⊕ {L y + (B - L D̄) f̄ u} ⊕ P,   P = (B - L D̄) rad(f) diag(u) [-1,1]^p ⊕ (-L Dv) V ⊕ Bw W ⊕ Π ⊕ (-L) Δ
 ///   R   = {y - D̄ f̄ u} ⊕ (-C̄) X̂ ⊕ Q,                 Q = D̄ rad(f) diag(u) [-1,1]^p ⊕ (-Dv) V ⊕ Δ
-/// Δ is the box with half widths rad(g) |C x + D f u|, x ∈ X̂; it is {0} for exactly known sensors. x ∈ X̂ implies x⁺ ∈ X̂⁺ and
-/// 0 ∈ R. A diag per input: a single column rad(f) u would tie the inputs to each other. Models with E are not taken. Immutable;
-/// used from several threads.
+/// Π and Δ are boxes with the half widths rad(A) |x| + rad(B) |max f u| and rad(g) |C x + D f u| + max g rad(C) |x|, x ∈ X̂; they
+/// are {0} for exact matrices and exactly known sensors. x ∈ X̂ implies x⁺ ∈ X̂⁺ and 0 ∈ R. A diag per input: a single column
+/// rad(f) u would tie the inputs to each other. Models with E are not taken. Constant functions may be used from several threads.
 class LuenbergerRecursion {
  public:
   /// L is n×n_y. Throws Errc::dimension.
   LuenbergerRecursion(const Model& model, Matrix L, std::shared_ptr<const SetBackend> backend, Budget budget);
+
+  /// The gain from now on; n×n_y. Throws Errc::dimension.
+  void use_gain(Matrix L);
 
   const SetBackend& backend() const { return *backend_; }
 
@@ -52,24 +57,31 @@ class LuenbergerRecursion {
   /// Summands T S that are made for one sample, and the terms that view them.
   struct Summands {
     Matrix inputs;
-    Enclosure sensors;
+    Enclosure parameters, outputs;
     std::vector<Term> terms;
   };
-  void add_ranges(Summands& to, const Matrix& ranges, const Matrix& sensors, const Enclosure& X, VectorIn u, bool twice) const;
-  Enclosure sensor_box(const Enclosure& X, VectorIn u) const;
+  enum class Target { state, output };
+  /// Adds what ranges and interval matrices leave open in X̂⁺ or in R.
+  void add_open(Summands& to, Target target, const Enclosure& X, VectorIn u, bool twice) const;
+  Enclosure output_box(const Enclosure& X, const Vector& largest, VectorIn u) const;
+  Enclosure bounded_box(const Vector& widths, const std::string& cause) const;
 
   std::shared_ptr<const SetBackend> backend_;
   Budget budget_;
-  Matrix L_, Ao_, C_, minus_C_;
-  Matrix input_, output_input_;    ///< (B - L D̄) f̄, D̄ f̄
-  std::vector<Index> ranged_;      ///< inputs with rad(f) > 0
-  Matrix ranges_, output_ranges_;  ///< their columns of (B - L D̄) rad(f) and D̄ rad(f)
-  Matrix Bw_, minus_Bw_, Dv_, minus_Dv_, LDv_, minus_LDv_, minus_L_, unit_map_;
-  Enclosure W_, V_, W0_, V0_;  ///< W0, V0: moved by -w̄, -v̄
-  Enclosure unit_;             ///< [-1,1] to the power of `ranged_`
-  Vector w_, v_;               ///< Bw w̄ - L Dv v̄ and Dv v̄
-  Matrix raw_C_, raw_D_;       ///< C and |D| max f, for Δ
-  Vector sensor_radius_;       ///< no entries: exact sensors
+  Matrix L_, minus_L_, Ao_, A_, B_, C_, minus_C_, D_;  ///< C and D: C̄ and D̄
+  Vector f_, most_f_;                                  ///< f̄, max f
+  Matrix input_, output_input_;                        ///< (B - L D̄) f̄, D̄ f̄
+  std::vector<Index> ranged_;                          ///< inputs with rad(f) > 0
+  Vector ranged_radius_;                               ///< their radii
+  Matrix ranges_, output_ranges_;                      ///< their columns of (B - L D̄) rad(f) and D̄ rad(f)
+  Matrix Bw_, minus_Bw_, Dv_, minus_Dv_, minus_LDv_;
+  Matrix state_unit_, output_unit_;
+  Enclosure W_, V_, W0_, V0_;              ///< W0, V0: moved by -w̄, -v̄
+  Enclosure unit_;                         ///< [-1,1] to the power of `ranged_`
+  Vector state_drift_, w_, v_;             ///< Bw w̄, Bw w̄ - L Dv v̄, Dv v̄
+  Matrix raw_C_, raw_D_;                   ///< C and |D| max f, for Δ
+  Vector sensor_radius_;                   ///< no entries: exact sensors
+  Matrix A_radius_, B_radius_, C_radius_;  ///< 0×0: exact; of C: max g rad(C)
 };
 
 }  // namespace cordon::estimators

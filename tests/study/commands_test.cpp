@@ -102,7 +102,7 @@ TEST_CASE("list and info know every kind of component") {
   const auto list = nlohmann::json::parse(run("list --json", "2>/dev/null").out);
   std::set<std::string> kinds;
   for (const auto& component : list["components"]) kinds.insert(component["kind"]);
-  CHECK(kinds == std::set<std::string>{"backend", "observer", "diagnoser", "metric", "plant"});
+  CHECK(kinds == std::set<std::string>{"backend", "observer", "diagnoser", "metric", "plant", "gain"});
   const auto info = nlohmann::json::parse(run("info --json consistency_bank", "2>/dev/null").out);
   CHECK(info["components"][0]["kind"] == "diagnoser");
   CHECK(info["components"][0]["params"][0]["kind"] == "observer");

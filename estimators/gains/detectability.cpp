@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gains/detectability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstdio>
+
+#include "cordon/core/linalg.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr double tolerance = 1e-10;
+constexpr double least_unstable = 1 - 1e-12;  // 1, up to the rounding of eigenvalues
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", x == 0 ? 0.0 : x);
+  return text;
+}
+
+std::string number(std::complex<double> z) {
+  if (z.imag() == 0) return number(z.real());
+  return number(z.real()) + (z.imag() < 0 ? " - " : " + ") + number(std::abs(z.imag())) + "i";
+}
+
+/// v with its largest entry scaled to 1 and noise beside it removed.
+std::string direction(Eigen::VectorXcd v) {
+  Index largest = 0;
+  v.cwiseAbs().maxCoeff(&largest);
+  v /= std::complex<double>(v[largest]);
+  std::string text = "(";
+  for (Index i = 0; i < v.size(); ++i) {
+    const auto clean = [](double x) { return std::abs(x) < 1e-9 ? 0.0 : x; };
+    text += (i ? ", " : "") + number({clean(v[i].real()), clean(v[i].imag())});
+  }
+  return text + ")";
+}
+
+/// v ≠ 0 with A v = λ v and C v = 0, or nothing. [X -Y; Y X] stands for the complex matrix X + iY.
+std::optional<Eigen::VectorXcd> hidden(const Matrix& A, const Matrix& C, std::complex<double> lambda) {
+  const Index n = A.rows(), p = C.rows();
+  const auto scaled = [](const Matrix& M) {
+    const double size = M.size() == 0 ? 0.0 : M.cwiseAbs().maxCoeff();
+    return size > 0 ? Matrix(M / size) : M;
+  };
+  const double size = std::max(std::abs(lambda), A.cwiseAbs().maxCoeff());
+  const Matrix X = size > 0 ? Matrix((lambda.real() * Matrix::Identity(n, n) - A) / size) : Matrix(Matrix::Zero(n, n));
+  const Matrix Y = size > 0 ? Matrix(lambda.imag() / size * Matrix::Identity(n, n)) : Matrix(Matrix::Zero(n, n));
+  const Matrix outputs = scaled(C), none = Matrix::Zero(p, n);
+  Matrix M(2 * (n + p), 2 * n);
+  M << X, -Y, Y, X, outputs, none, none, outputs;
+  const linalg::Svd svd = linalg::svd(M);
+  if (svd.sigma[2 * n - 1] > tolerance * svd.sigma[0]) return std::nullopt;
+  const Vector v = svd.V.col(2 * n - 1);
+  Eigen::VectorXcd found(n);
+  for (Index i = 0; i < n; ++i) found[i] = {v[i], v[n + i]};
+  return found;
+}
+
+std::optional<std::string> hidden_mode(const Matrix& A, const Matrix& C, double least_modulus) {
+  if (A.rows() == 0) return std::nullopt;
+  const Eigen::VectorXcd values = linalg::eigenvalues(A);
+  for (const std::complex<double>& value : values) {
+    if (std::abs(value) < least_modulus || value.imag() < 0) continue;  // of a pair the upper one
+    const auto v = hidden(A, C, value);
+    if (v) {
+      return "the mode " + number(value) + " of A, along " + direction(*v) + ", does not show in the outputs";
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> undetectable_mode(const Matrix& A, const Matrix& C) { return hidden_mode(A, C, least_unstable); }
+
+std::optional<std::string> unobservable_mode(const Matrix& A, const Matrix& C) { return hidden_mode(A, C, 0); }
+
+}  // namespace cordon::estimators

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The gain as a matrix of the study. What is told about it is found out here as for every other.
+#include "components.hpp"
+#include "gains/gain_certificate.hpp"
+#include "gains/theta.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr const char* mend = "a row per state, a column per output, with A - L C stable";
+
+class Given final : public GainDesigner {
+ public:
+  explicit Given(Matrix L) : L_(std::move(L)) {}
+
+  GainDesign design(const Model& model) const override {
+    if (std::string problem = gain_problem(model, L_); !problem.empty()) {
+      return {Answer::no, {}, "the gain " + std::move(problem), mend};
+    }
+    Gain gain;
+    gain.L = L_;
+    gain.certificate = certify(model, L_, theta_of(model));
+    return {Answer::yes, std::move(gain)};
+  }
+
+ private:
+  Matrix L_;
+};
+
+std::vector<Diagnostic> check(const GainContext& context, const Params& params) {
+  if (std::string problem = gain_problem(context.model, params.matrix("matrix")); !problem.empty()) {
+    return {{"/matrix", std::move(problem), mend}};
+  }
+  return {};
+}
+
+}  // namespace
+
+void register_given_gain(Registrar& registrar) {
+  ParamSchema schema;
+  schema.matrix("matrix", "L, a row per state and a column per output, with A - L C stable").required();
+  registrar.gain(
+      {{"given", "a matrix that is given; where a gain is asked for, the matrix alone may stand as well", "", std::move(schema)},
+       check,
+       [](const Params& params) { return std::make_unique<Given>(params.matrix("matrix")); }});
+}
+
+}  // namespace cordon::estimators

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gains/monotone.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include "cordon/core/linalg.hpp"
+#include "cordon/solvers/lp.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double equal = 1e-10, margin = 1e-8, noise = 1e-9;
+constexpr int most_rounds = 10;
+
+std::string direction(const Vector& x) {
+  std::string text = "(";
+  for (Index i = 0; i < x.size(); ++i) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%s%.4g", i ? ", " : "", x[i]);
+    text += number;
+  }
+  return text + ")";
+}
+
+bool is_zero(const Matrix& C, const Vector& x) {
+  return ((C * x).cwiseAbs().array() <= equal * (C.cwiseAbs() * x.cwiseAbs()).array()).all();
+}
+
+std::optional<std::string> by_structure(const Matrix& A, const Matrix& C) {
+  for (Index j = 0; j < A.cols(); ++j) {
+    if (!C.col(j).isZero(0)) continue;
+    for (Index i = 0; i < A.rows(); ++i) {
+      if (A(i, j) >= 0) continue;
+      const std::string row = std::to_string(i + 1), column = std::to_string(j + 1);
+      return "column " + column + " of C is zero and A(" + row + "," + column + ") < 0";
+    }
+  }
+  return std::nullopt;
+}
+
+/// Entries are scaled to 1, and what is below `noise` of that is none.
+Vector cleaned(const Vector& x) {
+  const double size = x.cwiseAbs().maxCoeff();
+  if (!(size > 0)) return x;
+  return (x / size).unaryExpr([](double value) { return value < noise ? 0.0 : value; });
+}
+
+std::optional<std::string> by_row(const Matrix& A, const Matrix& C) {
+  const Index n = A.rows();
+  LinearProgram program(C, Vector::Zero(C.rows()), Vector::Zero(n), Vector::Ones(n));
+  for (Index i = 0; i < n; ++i) {
+    const Vector row = A.row(i).transpose();
+    const LinearProgram::Solution solution = program.maximize(-row);
+    if (solution.status != LinearProgram::Status::optimal || !(solution.objective > 0)) continue;
+    const Vector mu = cleaned(solution.x);
+    if (!(row.dot(mu) < -margin * row.cwiseAbs().dot(mu)) || !is_zero(C, mu)) continue;
+    return "the outputs do not show the direction " + direction(mu) + ", and row " + std::to_string(i + 1) +
+           " of A makes a negative number of it";
+  }
+  return std::nullopt;
+}
+
+/// Variables x, y_1, …, y_n and a slack per row: A_i x - A_i y_i - x_i - s_i = 0, C x - C y_i = 0.
+std::optional<std::string> by_growth(const Matrix& A, const Matrix& C) {
+  const Index n = A.rows(), p = C.rows(), columns = n + n * n + n;
+  Matrix M = Matrix::Zero(n + n * p, columns);
+  for (Index i = 0; i < n; ++i) {
+    M.block(i, 0, 1, n) = A.row(i);
+    M(i, i) -= 1;
+    M.block(i, n + i * n, 1, n) = -A.row(i);
+    M(i, n + n * n + i) = -1;
+    M.block(n + i * p, 0, p, n) = C;
+    M.block(n + i * p, n + i * n, p, n) = -C;
+  }
+  Vector upper = Vector::Constant(columns, infinite), objective = Vector::Zero(columns);
+  upper.head(n).setOnes();
+  objective.head(n).setOnes();
+  LinearProgram program(M, Vector::Zero(M.rows()), Vector::Zero(columns), upper);
+  const LinearProgram::Solution solution = program.maximize(objective);
+  if (solution.status != LinearProgram::Status::optimal) return std::nullopt;
+  const Vector x = solution.x.head(n).cwiseMax(0);
+  if (!(x.maxCoeff() > margin)) return std::nullopt;
+  for (Index i = 0; i < n; ++i) {
+    const Vector y = solution.x.segment(n + i * n, n).cwiseMax(0), size = x + y;
+    if (((C * (x - y)).cwiseAbs().array() > equal * (C.cwiseAbs() * size).array()).any()) return std::nullopt;
+    const double terms = x[i] + A.row(i).cwiseAbs().dot(size);
+    if (A.row(i).dot(x - y) < x[i] - equal * terms) return std::nullopt;
+  }
+  return "every monotone A - L C leaves the states " + direction(cleaned(x)) + " as large as they are, and is not stable";
+}
+
+}  // namespace
+
+std::optional<std::string> no_monotone_gain(const Matrix& A, const Matrix& C) {
+  std::optional<std::string> why = by_structure(A, C);
+  if (!why) why = by_row(A, C);
+  if (!why) why = by_growth(A, C);
+  if (why) why = "no monotone gain exists: " + *why;
+  return why;
+}
+
+Matrix raised_to_monotone(const Matrix& A, const Matrix& C, Matrix L) {
+  if (A.size() == 0 || L.cols() == 0) return L;
+  const double size = A.cwiseAbs().maxCoeff();
+  for (Index i = 0; i < A.rows(); ++i) {
+    double extra = std::numeric_limits<double>::epsilon() * size / 4;
+    Matrix row = L.row(i), closed = A.row(i) - linalg::product(row, C);
+    double best = closed.minCoeff();
+    for (int round = 0; round < most_rounds && best < 0; ++round, extra *= 2) {
+      std::vector<Index> low;
+      for (Index j = 0; j < A.cols(); ++j) {
+        if (closed(0, j) <= extra && closed(0, j) >= -noise * size && !C.col(j).isZero(0)) low.push_back(j);
+      }
+      if (low.empty()) break;
+      const Vector lift = (-closed(0, low).transpose()).array() + extra;
+      row -= linalg::product(lift.transpose(), linalg::pseudo_inverse(C(Eigen::all, low)));
+      closed = A.row(i) - linalg::product(row, C);
+      if (closed.minCoeff() <= best) continue;
+      best = closed.minCoeff();
+      L.row(i) = row;
+    }
+  }
+  return L;
+}
+
+}  // namespace cordon::estimators

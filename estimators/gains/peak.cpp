@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The gain of least steady widths among those that make A - L C̄ monotone: a linear program.
+#include <cmath>
+#include <limits>
+
+#include "components.hpp"
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/invariant/zonotope_enclosure.hpp"
+#include "cordon/solvers/lp.hpp"
+#include "gains/gain_certificate.hpp"
+#include "gains/monotone.hpp"
+#include "gains/theta.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double dual_tolerance = 1e-7;
+
+constexpr const char* details =
+    "Where A - L C ≥ 0, bounds of the state by intervals settle at the half widths h = (I - (A - L C))⁻¹ (r + |L Ev| 1),\n"
+    "r = |Eω| 1 + |Eθ| 1, with Eω = Bw G_W and Ev = Dv G_V for zonotopes around W and V. Their sum 1ᵀh is least for\n"
+    "L = diag(λ)⁻¹ Z, where λ, Z and S solve the linear program\n"
+    "  minimise λᵀr + 1ᵀS 1   subject to   -S ≤ Z Ev ≤ S,\n"
+    "  diag(λ) A - Z C ≥ 0,   λᵀ - 1ᵀ(diag(λ) A - Z C) ≥ 1ᵀ,\n"
+    "which is feasible if and only if some gain makes A - L C monotone and stable: λᵀ is then a bound of 1ᵀ(I - (A - L C))⁻¹.\n"
+    "That there is none is said on a proof only.";
+
+/// Variables: λ (n), Z (n×p by rows), S (n×q by rows), and a slack per inequality.
+struct Program {
+  Matrix M;
+  Vector b, lower, upper, objective;
+};
+
+Program program(const Matrix& A, const Matrix& C, const Vector& r, const Matrix& Ev) {
+  const Index n = A.rows(), p = C.rows(), q = Ev.cols();
+  const Index at_S = n + n * p, at_slack = at_S + n * q, rows = n * n + n + 2 * n * q;
+  Program made{Matrix::Zero(rows, at_slack + rows), Vector::Zero(rows), Vector::Zero(at_slack + rows),
+               Vector::Constant(at_slack + rows, infinite), Vector::Zero(at_slack + rows)};
+  made.lower.segment(n, n * p).setConstant(-infinite);
+  made.objective.head(n) = -r;
+  made.objective.segment(at_S, n * q).setConstant(-1);
+  made.M.rightCols(rows) = -Matrix::Identity(rows, rows);
+  Index row = 0;
+  for (Index i = 0; i < n; ++i) {  // λ_i A_ij - Z_i C_j ≥ 0
+    for (Index j = 0; j < n; ++j, ++row) {
+      made.M(row, i) = A(i, j);
+      made.M.block(row, n + i * p, 1, p) = -C.col(j).transpose();
+    }
+  }
+  for (Index j = 0; j < n; ++j, ++row) {  // λ_j - Σ_i (λ_i A_ij - Z_i C_j) ≥ 1
+    for (Index i = 0; i < n; ++i) {
+      made.M(row, i) = -A(i, j);
+      made.M.block(row, n + i * p, 1, p) = C.col(j).transpose();
+    }
+    made.M(row, j) += 1;
+    made.b[row] = 1;
+  }
+  for (Index i = 0; i < n; ++i) {  // S_ij ± Z_i Ev_j ≥ 0
+    for (Index j = 0; j < q; ++j) {
+      for (const double sign : {1.0, -1.0}) {
+        made.M(row, at_S + i * q + j) = 1;
+        made.M.block(row++, n + i * p, 1, p) = sign * Ev.col(j).transpose();
+      }
+    }
+  }
+  return made;
+}
+
+/// The lower bound of the least sum by the multipliers y, if they keep the signs that it needs.
+double dual_bound(const Program& program, const Vector& y) {
+  const Vector reduced = program.objective - program.M.transpose() * y;
+  const double size = 1 + y.cwiseAbs().maxCoeff();
+  for (Index j = 0; j < reduced.size(); ++j) {
+    const double wrong = program.lower[j] == 0 ? reduced[j] : std::abs(reduced[j]);
+    if (!(wrong <= dual_tolerance * size)) return GainCertificate::none;
+  }
+  return -program.b.dot(y);
+}
+
+class Peak final : public GainDesigner {
+ public:
+  explicit Peak(std::optional<Matrix> theta) : theta_(std::move(theta)) {}
+
+  GainDesign design(const Model& model) const override {
+    const LinearModel& m = model.linear;
+    const Matrix C = mean_outputs(m), theta = theta_of(model, theta_);
+    Matrix Ew, Ev;
+    try {
+      Ew = linalg::product(m.Bw, invariant::enclosing_zonotope(model.W, "W").G);
+      Ev = linalg::product(m.Dv, invariant::enclosing_zonotope(model.V, "V").G);
+    } catch (const Error& error) {
+      return {Answer::unknown, {}, error.what(), "give bounded sets W and V"};
+    }
+    const std::string otherwise = "use a designer that does not ask for a monotone A - L C, such as \"kalman\"";
+    if (auto why = no_monotone_gain(m.A, C)) return {Answer::no, {}, std::move(*why), otherwise};
+    const Vector r = Ew.cwiseAbs().rowwise().sum() + theta.cwiseAbs().rowwise().sum();
+    const Program made = program(m.A, C, r, Ev);
+    const LinearProgram::Solution solution = LinearProgram(made.M, made.b, made.lower, made.upper).maximize(made.objective);
+    if (solution.status != LinearProgram::Status::optimal) {
+      return {Answer::unknown, {}, "the linear program was not solved", otherwise};
+    }
+    const Index n = m.states(), p = m.outputs();
+    Matrix L(n, p);
+    for (Index i = 0; i < n; ++i) L.row(i) = solution.x.segment(n + i * p, p).transpose() / solution.x[i];
+    L = raised_to_monotone(m.A, C, std::move(L));
+    if (std::string problem = gain_problem(model, L); !problem.empty()) {
+      return {Answer::unknown, {}, "the solution of the linear program " + std::move(problem), otherwise};
+    }
+    Gain gain;
+    gain.certificate = certify(model, L, theta);
+    gain.certificate.objective = "sum of half widths";
+    gain.certificate.optimum = -solution.objective;
+    gain.certificate.optimum_bound = dual_bound(made, solution.y);
+    gain.L = std::move(L);
+    return {Answer::yes, std::move(gain)};
+  }
+
+ private:
+  std::optional<Matrix> theta_;
+};
+
+std::vector<Diagnostic> check(const GainContext& context, const Params& params) {
+  std::vector<Diagnostic> problems;
+  check_theta(context.model, params, problems);
+  return problems;
+}
+
+}  // namespace
+
+void register_peak_gain(Registrar& registrar) {
+  ParamSchema schema;
+  add_theta_parameter(schema);
+  registrar.gain(
+      {{"peak", "least sum of steady widths with A - L C ≥ 0 in every entry; a linear program", "", std::move(schema), details},
+       check,
+       [](const Params& params) { return std::make_unique<Peak>(theta_from(params)); }});
+}
+
+}  // namespace cordon::estimators

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Gains as parameters of observers: a nested component of the kind "gain", or a matrix.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cordon/registry/plugin.hpp"
+
+namespace cordon::estimators {
+
+/// Adds the component parameter `name` of kind "gain" that may be written as a matrix.
+void add_gain_parameter(ParamSchema& schema, const std::string& name, const std::string& doc);
+
+/// The designer and its gain.
+struct ObserverGain {
+  std::shared_ptr<const GainDesigner> designer;
+  Gain gain;
+};
+
+/// The gain by the parameter `name`, or by `absent` where it is not given. Throws InputError with the reason if there is none.
+ObserverGain observer_gain(const ObserverContext& context, const Params& params, const std::string& name,
+                           const ComponentSpec& absent);
+
+/// Adds the problems of that gain: at "/name" or, of its own parameters, below it; at "" if the parameter is not given.
+void check_observer_gain(const ObserverContext& context, const Params& params, const std::string& name,
+                         const ComponentSpec& absent, std::vector<Diagnostic>& problems);
+
+}  // namespace cordon::estimators

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include "published/study_models.hpp"
+
+using namespace cordon;
+
+namespace {
+
+Model model() {
+  Model made;
+  LinearModel& m = made.linear;
+  m.A = Matrix{{1, .1}, {0, .8}};
+  m.B = Matrix(2, 0);
+  m.Bw = Matrix{{1}, {0}};
+  m.C = Matrix{{1, 0}};
+  m.D = Matrix(1, 0);
+  m.Dv = Matrix{{2}};
+  made.X0 = make_box(cube(2, 1));
+  made.W = make_box(cube(1, .3));
+  made.V = make_box(cube(1, .2));
+  return made;
+}
+
+Params matrix(const Matrix& L) { return Params().set("matrix", L); }
+
+}  // namespace
+
+TEST_CASE("a given gain is told with what it is worth") {
+  const Plugins plugins;
+  Model made = model();
+  const auto designer = plugins.registry.make_gain("given", matrix(Matrix{{.5}, {0}}));
+  CHECK_FALSE(designer->is_time_varying());
+  const GainDesign design = designer->design(made);
+  REQUIRE(design.feasible == Answer::yes);
+  const GainCertificate& c = design.gain.certificate;
+  CHECK(c.spectral_radius == doctest::Approx(.8));
+  CHECK(c.monotone);
+  // (zI - [.5 .1; 0 .8])⁻¹ (.3, -.2; 0 0): √(.09 + .04) / .5 at ω = 0
+  CHECK(c.norm_upper == doctest::Approx(std::sqrt(.13) / .5).epsilon(1e-8));
+  CHECK(c.norm_lower <= c.norm_upper);
+  CHECK(c.objective.empty());
+
+  made.linear.A_radius = Matrix{{.01, .02}, {0, 0}};  // Eθ = diag(.03, 0)
+  const double wider = designer->design(made).gain.certificate.norm_upper;
+  CHECK(wider == doctest::Approx(std::sqrt(.13 + .0009) / .5).epsilon(1e-8));
+
+  made.linear.A(0, 1) = -.1;
+  CHECK_FALSE(designer->design(made).gain.certificate.monotone);
+
+  made.W = make_space(1);
+  const GainCertificate without = designer->design(made).gain.certificate;
+  CHECK(std::isnan(without.norm_upper));
+  CHECK(without.spectral_radius == doctest::Approx(.8));
+}
+
+TEST_CASE("effectiveness of sensors known by ranges enters by its middle") {
+  const Plugins plugins;
+  Model made = model();
+  made.linear.sensor = Box{Vector{{.2}}, Vector{{1}}};  // mid .6: A - L C̄ has 1 - .3
+  const GainCertificate c = plugins.registry.make_gain("given", matrix(Matrix{{.5}, {0}}))->design(made).gain.certificate;
+  CHECK(c.spectral_radius == doctest::Approx(.8));
+  made.linear.A(1, 1) = .1;
+  CHECK(plugins.registry.make_gain("given", matrix(Matrix{{.5}, {0}}))->design(made).gain.certificate.spectral_radius ==
+        doctest::Approx(.7));
+}
+
+TEST_CASE("a gain of another shape and one that does not stabilise are refused") {
+  const Plugins plugins;
+  const Model made = model();
+  for (const auto& [L, words] : {std::pair<Matrix, const char*>{Matrix{{.5, 0}}, "is 1 × 2, must be 2 × 1"},
+                                 {Matrix{{-.1}, {0}}, "not Schur: it has the eigenvalue 1.1"}}) {
+    const auto problems = plugins.registry.check_gain("given", {made}, matrix(L));
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].pointer == "/matrix");
+    CHECK(problems[0].message.find(words) != std::string::npos);
+    const GainDesign design = plugins.registry.make_gain("given", matrix(L))->design(made);
+    CHECK(design.feasible == Answer::no);
+    CHECK(design.reason.find(words) != std::string::npos);
+  }
+  CHECK_THROWS_AS(plugins.registry.make_gain("given", {}), InputError);
+}
