@@ -214,6 +214,19 @@ TEST_CASE("sets with constraints are taken by the boxes around them") {
   for (std::size_t i = 0; i < 2; ++i) CHECK(a->faults[i].half_width == doctest::Approx(b->faults[i].half_width).epsilon(1e-9));
 }
 
+TEST_CASE("generators of W and V scale Bw and Dv") {
+  Model model = published();
+  model.linear.Bw *= .5;
+  model.linear.Dv *= .25;
+  model.W.G *= 2;
+  model.V.G *= 4;
+  for (const char* coupling : couplings) {
+    const Guarantees a = *filter(model, published_parameters(coupling))->guarantees();
+    const Guarantees b = *filter(published(), published_parameters(coupling))->guarantees();
+    for (std::size_t i = 0; i < 2; ++i) CHECK(a.faults[i].half_width == b.faults[i].half_width);
+  }
+}
+
 TEST_CASE("systems without E") {
   Model model = published();
   LinearModel& m = model.linear;
@@ -271,6 +284,27 @@ TEST_CASE("what is within rounding of 0 excludes nothing") {
   run(*diagnoser, source, none, 200, [&](const Diagnosis& now) {
     CHECK(now.decision == Decision::monitoring);
     for (const FaultBound& b : now.faults) moved = moved || b.estimate != 0;
+  });
+  CHECK(moved);
+}
+
+TEST_CASE("nor what is left of large numbers that cancel") {
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = Matrix{{.5}};
+  m.F = Matrix{{1}};
+  m.C = Matrix{{1}};
+  m.B = Matrix{{.1, -.3}};
+  m.D = Matrix::Zero(1, 2);
+  m.Bw = m.Dv = Matrix(1, 0);
+  model.X0 = make_point(Vector::Zero(1));
+  model.W = model.V = make_point(Vector(0));
+  const Signal none = [](Index) { return Vector::Zero(1); };
+  const Signal large = [](Index k) { return Vector(Vector{{3e8, 1e8}} * std::sin(.3 * static_cast<double>(k))); };
+  bool moved = false;
+  run(*filter(model, {}), {model, large, none, Draw{std::mt19937_64(1), Noise::none}}, none, 100, [&](const Diagnosis& now) {
+    CHECK(now.decision == Decision::monitoring);
+    for (const FaultBound& b : now.faults) moved = moved || std::abs(b.estimate) > 1e-9;
   });
   CHECK(moved);
 }

@@ -135,6 +135,14 @@ TEST_CASE("designs of random systems satisfy their equations") {
   });
 }
 
+TEST_CASE("a weak response is one, if no larger numbers cancel in it") {
+  Matrix shift = Matrix::Zero(4, 4);
+  for (Index i = 0; i + 1 < 4; ++i) shift(i + 1, i) = 1e-6;
+  Matrix C = Matrix::Zero(1, 4);
+  C(0, 3) = 1;
+  CHECK(design(lti(shift, Matrix::Identity(4, 4).col(0), C)).delays == std::vector<Index>{4});
+}
+
 TEST_CASE("units of outputs and faults do not matter") {
   Draw draw{std::mt19937_64(7)};
   LinearModel m = lti(draw.matrix(4, 4), draw.matrix(4, 2), draw.matrix(3, 4));
@@ -156,6 +164,13 @@ TEST_CASE("systems without a filter, in words") {
     CHECK(says(p, "rank [E; C] is 2, the state has 3"));
     CHECK((says(p, "direction (0, 0, 1)") || says(p, "direction (0, 0, -1)")));
     CHECK(p.pointer == "/type");
+  }
+  SUBCASE("[E; C] near to a smaller rank") {
+    Draw draw{std::mt19937_64(1)};
+    LinearModel m = lti(A, one.col(0), one.topRows(1));
+    m.E = draw.matrix(3, 3) * Vector{{1, 1, 3e-9}}.asDiagonal() * draw.matrix(3, 3);
+    m.C = m.E.topRows(1);
+    CHECK(says(problem(m), "cannot be solved in doubles"));
   }
   SUBCASE("faults that never show") {
     CHECK(says(problem(lti(A, one, one.topRows(1))), "faults 2 and 3 never show in the outputs"));

@@ -57,6 +57,15 @@ TEST_CASE("unbounded sets and ranges, all at once") {
   CHECK(tells(all, "/type", "effectiveness is known by ranges"));
 }
 
+TEST_CASE("the nominal mode counts, not the others") {
+  ModeBank bank = alone(published());
+  bank.modes.push_back(bank.modes[0]);
+  bank.modes[0].model.X0 = make_space(4);
+  CHECK(problems(bank, {}).size() == 1);
+  bank.nominal = 1;
+  CHECK(problems(bank, {}).empty());
+}
+
 TEST_CASE("outward rounding") {
   Params outward;
   outward.set("rounding", std::string("outward"));

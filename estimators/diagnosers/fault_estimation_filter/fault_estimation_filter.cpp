@@ -155,10 +155,11 @@ class FaultEstimationFilter final : public Diagnoser {
 
   std::optional<Guarantees> do_guarantees() const override {
     Guarantees result;
-    result.method = "bounds of the filter, whose gains and error sets do not depend on the data, after they have settled to 1e-9";
-    const Vector settled = settled_half_widths(recursion_, model_.X0.G);
-    for (Index i = 0; i < settled.size(); ++i) {
-      result.faults.push_back({i, design_.delays[static_cast<std::size_t>(i)], settled[i]});
+    result.method =
+        "the filter's own recursion of gains and error sets, which does not depend on the data, until its bounds no longer grow";
+    const Vector widths = lasting_half_widths(recursion_, model_.X0.G);
+    for (Index i = 0; i < widths.size(); ++i) {
+      result.faults.push_back({i, design_.delays[static_cast<std::size_t>(i)], widths[i]});
     }
     return result;
   }

@@ -16,6 +16,8 @@ namespace {
 
 /// S̃ is kept so far from singular, relative to the terms of its diagonal: Ḡ is free, and must not be rounding noise.
 constexpr double regularisation = 1e-13;
+/// Squares below this have no digits left.
+constexpr double smallest_square = 1e-280;
 
 }  // namespace
 
@@ -56,7 +58,7 @@ void FilterRecursion::find_gain() {
   Matrix S = product(seen_, seen_.transpose()) + rest_noise_;
   const Vector states = R_.rowwise().squaredNorm();
   const Vector terms = product(Omega_C_.cwiseAbs2(), states) + rest_noise_.diagonal();
-  for (Index i = 0; i < S.rows(); ++i) S(i, i) += terms[i] > 0 ? regularisation * terms[i] : 1.0;
+  for (Index i = 0; i < S.rows(); ++i) S(i, i) += terms[i] > smallest_square ? regularisation * terms[i] : 1.0;
   const auto solved = linalg::solve_spd(S, product(seen_, image_.transpose()) - gain_noise_.transpose());
   if (!solved) throw Error(Errc::not_finite, "the error bounds of the fault estimation filter have outgrown the numbers");
   reduced_gain_ = solved->transpose();
@@ -93,28 +95,25 @@ void FilterRecursion::find_half_widths() {
   }
 }
 
-Vector settled_half_widths(FilterRecursion recursion, const Matrix& H) {
-  constexpr double infinity = std::numeric_limits<double>::infinity(), tolerance = 1e-9;
-  constexpr Index window = 100;
+Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H) {
+  constexpr double infinity = std::numeric_limits<double>::infinity(), same = 1e-9, grown = .01;
   recursion.start(H);
-  Vector largest = Vector::Constant(recursion.half_widths().size(), infinity);
-  Vector settled = largest;  // infinite entries: have not
-  for (Index windows = recursion.is_reduced() ? 200 : 10; windows > 0 && !settled.allFinite(); --windows) {
-    const Vector before = std::exchange(largest, Vector::Zero(settled.size()));
+  Vector largest = Vector::Constant(recursion.half_widths().size(), infinity), before;
+  const Index last = recursion.is_reduced() ? 12'800 : 400;
+  for (Index steps = 50; steps <= last; steps *= 2) {
+    before = std::exchange(largest, Vector::Zero(largest.size()));
     try {
-      for (Index k = 0; k < window; ++k) {
+      for (Index k = 0; k < steps; ++k) {
         recursion.advance();
         largest = largest.cwiseMax(recursion.half_widths());
       }
     } catch (const Error& error) {
       if (error.code() != Errc::not_finite) throw;
-      return Vector::Constant(settled.size(), infinity);  // so would the filter end
+      return Vector::Constant(largest.size(), infinity);  // so would the filter end
     }
-    for (Index i = 0; i < settled.size(); ++i) {
-      settled[i] = std::abs(largest[i] - before[i]) <= tolerance * largest[i] ? largest[i] : infinity;
-    }
+    if (((largest - before).cwiseAbs().array() <= same * largest.array()).all()) return largest;
   }
-  return settled;
+  return (largest.array() <= (1 + grown) * before.array()).select(largest, infinity);
 }
 
 }  // namespace cordon::estimators
