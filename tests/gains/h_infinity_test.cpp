@@ -208,7 +208,7 @@ TEST_CASE("random plants: the gain keeps γ*, and no other does better") {
     }
     ++solved;
     const GainCertificate& c = found.gain.certificate;
-    RC_ASSERT(c.norm_upper <= c.optimum * (1 + 1e-4));
+    RC_ASSERT(c.norm_lower <= c.optimum * (1 + 1e-4));
     std::normal_distribution<double> normal;
     for (const double size : {1e-2, .3}) {
       const Matrix other = found.gain.L + Matrix::NullaryExpr(n, p, [&] { return size * normal(engine); });
@@ -217,7 +217,7 @@ TEST_CASE("random plants: the gain keeps γ*, and no other does better") {
     }
   });
   INFO(solved, " of ", all);
-  CHECK(solved >= .98 * all);
+  CHECK(solved == all);
 }
 
 TEST_CASE("random plants: a monotone gain is monotone, and not better than the best of all") {
@@ -240,10 +240,10 @@ TEST_CASE("random plants: a monotone gain is monotone, and not better than the b
     const double size = model.linear.A.cwiseAbs().maxCoeff() + found.gain.L.cwiseAbs().maxCoeff();
     RC_ASSERT(after.minCoeff() >= -1e-12 * size);
     const GainCertificate& c = found.gain.certificate;
-    RC_ASSERT(c.norm_upper <= c.optimum * (1 + 1e-4));
+    RC_ASSERT(c.norm_lower <= c.optimum * (1 + 1e-4));
     const GainDesign best = design("h_infinity", model);
     if (best.feasible == Answer::yes) RC_ASSERT(c.optimum >= best.gain.certificate.optimum * (1 - 1e-5));
   });
   INFO(solved, " of ", possible);
-  CHECK(solved >= .95 * possible);
+  CHECK(solved == possible);
 }

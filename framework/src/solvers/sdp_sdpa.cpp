@@ -23,11 +23,33 @@ extern "C" {
 [[noreturn, gnu::visibility("hidden")]] void __wrap_exit(int) { throw GaveUp{}; }
 [[noreturn, gnu::visibility("hidden")]] void __wrap_abort() { throw GaveUp{}; }
 [[gnu::visibility("hidden")]] std::ostream __wrap__ZSt4cout(nullptr);
+// OpenBLAS, if the BLAS is that.
+[[gnu::weak]] int openblas_get_num_threads();
+[[gnu::weak]] void openblas_set_num_threads(int threads);
 }
 
 namespace cordon {
 
 namespace {
+
+/// Threads of OpenBLAS cost more than they give at these sizes: they wait by spinning.
+class OneBlasThread {
+ public:
+  OneBlasThread() {
+    if (openblas_get_num_threads && openblas_set_num_threads) {
+      before_ = openblas_get_num_threads();
+      openblas_set_num_threads(1);
+    }
+  }
+  ~OneBlasThread() {
+    if (before_ > 0) openblas_set_num_threads(before_);
+  }
+  OneBlasThread(const OneBlasThread&) = delete;
+  OneBlasThread& operator=(const OneBlasThread&) = delete;
+
+ private:
+  int before_ = 0;
+};
 
 void input_matrix(SDPA& problem, int k, int block, const Matrix& F, double sign) {
   for (Index j = 0; j < F.cols(); ++j) {
@@ -84,6 +106,7 @@ SdpProposal output(SDPA& problem, const SemidefiniteProgram& program) {
 SdpProposal run_sdpa(const SemidefiniteProgram& program, double accuracy, int iterations, const SdpTuning& tuning) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
+  const OneBlasThread one_thread;
   try {
     SDPA problem;
     problem.setDisplay(nullptr);
