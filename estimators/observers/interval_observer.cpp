@@ -93,10 +93,10 @@ bool check_interval_observer(const ObserverContext& context, const Params& param
     problems.push_back({"/type", "interval observers take systems of type \"lti\"", "use the observer \"descriptor\""});
     return false;
   }
-  const std::size_t before = problems.size();
   check_bounded_start(context, params, problems);
   check_noises(context, problems);
-  if (problems.size() == before) InnerEnvelope::check(context, params, problems);
+  if (!problems.empty()) return false;  // gains are designed for these sets
+  InnerEnvelope::check(context, params, problems);
   return true;
 }
 

@@ -41,8 +41,8 @@ class IntervalObserver final : public Observer {
   Box hull_;
 };
 
-/// Problems of model, initial set and inner estimate; the gain is checked apart. False if the model is none for an interval
-/// observer, so that further checks say nothing.
+/// Problems of model, initial set, noises and inner estimate; the gain is checked apart. False if no gain can be designed for
+/// what is wrong.
 bool check_interval_observer(const ObserverContext& context, const Params& params, std::vector<Diagnostic>& problems);
 
 /// initial_set, inner_samples, inner_seed.

@@ -78,10 +78,10 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   }
   if (problems.empty() && m.is_uncertain()) check_bounded_start(context, params, problems);
   check_noises(context, problems);
-  const bool sets_fit = problems.empty();
+  if (!problems.empty()) return problems;  // gains are designed for these sets
   check_observer_gain(context, params, "gain", absent(), problems);
   if (!problems.empty() || params.integer("inner_samples") == 0) return problems;
-  if (sets_fit) InnerEnvelope::check(context, params, problems);
+  InnerEnvelope::check(context, params, problems);
   if (observer_gain(context, params, "gain", absent()).designer->is_time_varying()) {
     problems.push_back({"/inner_samples", "an inner estimate is made for a gain that does not vary in time",
                         "leave it out, or give another gain"});

@@ -40,6 +40,34 @@ inline Vector input(const std::string& plant, Index k) {
   return Vector::Constant(1, plant == "72" ? 1.0 : std::sin(3 * std::numbers::pi * static_cast<double>(k) / 200));
 }
 
+/// A plant with constant parameters: the entries of A, or the θ of the two tanks.
+class Truth {
+ public:
+  Truth(const std::string& name, banks::Draw draw) : name_(name), model_(plant(name)), draw_(std::move(draw)) {
+    LinearModel& m = model_.linear;
+    for (Index i = 0; i < m.A_radius.size(); ++i) m.A(i) += m.A_radius(i) * draw_();
+    theta_ = draw_();
+    x = draw_.from(model_.X0);
+  }
+  Vector x;
+
+  /// y_k, and x moves on to k + 1.
+  Vector step(const Vector& u) {
+    const LinearModel& m = model_.linear;
+    const Vector y = m.C * x + m.Dv * draw_.from(model_.V);
+    Vector w = draw_.from(model_.W);
+    if (name_ == "72") w[2] = theta_;
+    x = m.A * x + m.B * u + m.Bw * w;
+    return y;
+  }
+
+ private:
+  std::string name_;
+  Model model_;
+  banks::Draw draw_;
+  double theta_;
+};
+
 inline Params with_gain(const Matrix& L, const std::string& name = "gain") {
   return Params().set(name, std::make_shared<const ComponentSpec>(ComponentSpec{"given", Params().set("matrix", L)}));
 }
