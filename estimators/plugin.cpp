@@ -7,6 +7,9 @@ void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_prediction_correction(registrar);
   cordon::estimators::register_descriptor(registrar);
   cordon::estimators::register_luenberger(registrar);
+  cordon::estimators::register_zonotope_uncertain(registrar);
+  cordon::estimators::register_interval_trajectory(registrar);
+  cordon::estimators::register_integrated(registrar);
   cordon::estimators::register_observer_bank(registrar);
   cordon::estimators::register_consistency_bank(registrar);
   cordon::estimators::register_given_gain(registrar);

@@ -6,8 +6,10 @@
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/line_elimination.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observer_parameters.hpp"
+#include "observers/interval_spread.hpp"
 #include "observers/luenberger_recursion.hpp"
 #include "observers/observer_gain.hpp"
 
@@ -21,11 +23,9 @@ class Luenberger final : public Observer {
  public:
   Luenberger(const ObserverContext& context, const Params& params)
       : Observer(context.model, context.backend),
-        shared_backend_(context.backend),
-        budget_(budget_from(params)),
         X0_(initial_set_from(model(), params)),
         gain_(observer_gain(context, params, "gain", steady_kalman())),
-        recursion_(model(), gain_.gain.L, context.backend, budget_) {}
+        recursion_(model(), gain_.gain.L, context.backend, budget_from(params)) {}
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override { return {gain_.gain}; }
@@ -37,14 +37,12 @@ class Luenberger final : public Observer {
   }
   Enclosure do_step(const Sample& before, const Sample&) override {
     const Enclosure next = timed(Phase::predict, [&] {
-      if (gain_.designer->is_time_varying()) use_gain(gain_of_set());
+      if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_of_set());
       return recursion_.next(X_, before);
     });
     return X_ = timed(Phase::reduce, [&] { return recursion_.reduced(next); });
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
-
-  void use_gain(Matrix L) { recursion_ = LuenbergerRecursion(model(), std::move(L), shared_backend_, budget_); }
 
   /// The gain for X̂; the steady one where no zonotope contains X̂.
   Matrix gain_of_set() const {
@@ -57,8 +55,6 @@ class Luenberger final : public Observer {
     }
   }
 
-  std::shared_ptr<const SetBackend> shared_backend_;
-  Budget budget_;
   LineForm X0_;
   ObserverGain gain_;
   LuenbergerRecursion recursion_;
@@ -71,6 +67,12 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   if (m.is_descriptor()) {
     problems.push_back({"/type", "\"luenberger\" takes systems of type \"lti\"", "use the observer \"descriptor\""});
     return problems;
+  }
+  if ((has_spread(m.A_radius) || has_spread(m.C_radius)) &&
+      eliminate_lines(initial_set_from(context.model, params)).lines() > 0) {
+    problems.push_back({params.has("initial_set") ? "/initial_set" : "",
+                        "the initial set is unbounded, which interval matrices A and C make no finite statement of",
+                        "give a bounded initial set, or use the observer \"prediction_correction\""});
   }
   check_observer_gain(context, params, "gain", steady_kalman(), problems);
   return problems;
@@ -89,6 +91,7 @@ void register_luenberger(Registrar& registrar) {
        [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
          return std::make_unique<Luenberger>(context, params);
        },
+       true,
        true});
 }
 
