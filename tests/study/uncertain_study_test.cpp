@@ -191,6 +191,39 @@ TEST_CASE("what is written with a radius stays an interval matrix, what is not a
   expect_round_trip(exact);
 }
 
+TEST_CASE("one interval matrix makes a system uncertain, whichever it is") {
+  const std::string only_B = exchanged(uncertain_study, A, "[[1, 0], [0, 1]]"),
+                    only_A = exchanged(uncertain_study, B, "[[1], [1]]");
+  const std::string only_C =
+      exchanged(exchanged(only_B, B, "[[1], [1]]"), C, "\"C\": {\"center\": [[1, 0], [0, 1]], \"radius\": [[0, 0.1], [0, 0]]}");
+  for (const std::string& text : {only_A, only_B, only_C}) {
+    const Study study = read_text(text);
+    CHECK(study.model.linear.is_uncertain());
+    CHECK(nlohmann::json::parse(study.resolved)["system"]["type"] == "interval_lti");
+    expect_round_trip(study);
+  }
+}
+
+TEST_CASE("bounds are enclosed by centre and radius") {
+  CHECK(rc::check("lower and upper", [] {
+    const int exponent = *rc::gen::inRange(-1100, 900);
+    const auto any = rc::gen::map(rc::gen::inRange<std::int64_t>(-(std::int64_t{1} << 53), std::int64_t{1} << 53),
+                                  [=](std::int64_t mantissa) { return std::ldexp(static_cast<double>(mantissa), exponent); });
+    double low = *any;
+    double high = *rc::gen::oneOf(any, rc::gen::just(low), rc::gen::just(std::nextafter(low, 1e300)), rc::gen::just(low / 1024));
+    if (low > high) std::swap(low, high);
+    const auto text = [](double x) { return nlohmann::json(x).dump(); };
+    const Study study = read_text(
+        exchanged(uncertain_study, B, "{\"lower\": [[" + text(low) + "], [0]], \"upper\": [[" + text(high) + "], [0]]}"));
+    const double center = study.model.linear.B(0, 0), radius = study.model.linear.B_radius(0, 0);
+    // on long doubles, whose rounding is monotone, so that a true enclosure never fails
+    RC_ASSERT(static_cast<long double>(center) - radius <= low);
+    RC_ASSERT(static_cast<long double>(center) + radius >= high);
+    RC_ASSERT(radius <= (high / 2 - low / 2) * (1 + 1e-15) + std::abs(center) * 3e-16 + 5e-324);
+    if (low == high) RC_ASSERT(center == low && radius == 0);
+  }));
+}
+
 TEST_CASE("descriptor systems and systems of modes may be uncertain, F is the nominal one") {
   const std::string modes =
       ", \"modes\": [{\"name\": \"weak\", \"actuator\": [0.5]}, {\"name\": \"other\", \"system\": {\"type\": \"interval_lti\", "
