@@ -106,18 +106,20 @@ inline Vector additive_faults(Index k) { return Vector{{k % 20 >= 9 && k % 20 < 
 /// The study's own data with the additive faults that the fake diagnoser knows of.
 class WithFaults final : public DataSource {
  public:
-  explicit WithFaults(std::unique_ptr<DataSource> data) : data_(std::move(data)) {}
+  /// Faults in the nominal mode are what a diagnoser would never meet: excluding it is then false.
+  explicit WithFaults(std::unique_ptr<DataSource> data, bool nominal = false) : data_(std::move(data)), nominal_(nominal) {}
   std::optional<Record> next() override {
     std::optional<Record> record = data_->next();
     if (!record) return record;
     record->fault = additive_faults(record->sample.k);
-    record->mode = (*record->fault)[0] == 0 ? 0 : -1;  // as if fault 2 were part of the nominal mode
+    record->mode = nominal_ || (*record->fault)[0] == 0 ? 0 : -1;  // as if fault 2 were part of the nominal mode
     return record;
   }
   std::optional<std::int64_t> size() const override { return data_->size(); }
 
  private:
   std::unique_ptr<DataSource> data_;
+  bool nominal_;
 };
 
 /// Monitors the nominal mode as long as its bounds hold 0: fault 1 at k - 1 and fault 2 at k - 3, ± .25, with an estimate that is

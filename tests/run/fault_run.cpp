@@ -117,6 +117,19 @@ TEST_CASE("a true fault outside its bounds violates the guarantee of simulated d
   }
 }
 
+TEST_CASE("the first violation of a run counts, whichever it is") {
+  Registry registry;
+  registry.add(fakes::register_all);
+  const Study study = study_of(crooked(1));
+  const auto open = [&](std::uint64_t offset) { return std::make_unique<fakes::WithFaults>(open_data(study, offset), true); };
+  const PipelineOutcome outcome = detail::run_on(open, study, registry, {}).pipelines.at(0);
+  REQUIRE(outcome.diagnosis->true_mode_excluded);
+  CHECK(outcome.diagnosis->true_mode_excluded->k == 10);
+  CHECK(outcome.diagnosis->true_mode_excluded->since == 7);  // that of fault 2, the earliest bound without 0
+  CHECK(outcome.diagnosis->fault_outside->k == 12);
+  CHECK(outcome.violated_at == 10);
+}
+
 TEST_CASE("bounds that are none stop their pipeline") {
   for (const char* how : {"order", "estimate", "nan", "future", "before", "twice", "index"}) {
     CAPTURE(how);

@@ -149,3 +149,14 @@ TEST_CASE("schema prints JSON with the components of this build") {
   const auto schema = nlohmann::json::parse(outcome.out);
   CHECK(schema["$defs"]["backend"]["oneOf"].size() == 5);  // four, and their names alone
 }
+
+TEST_CASE("info shows a component as text without colours, and as JSON with its details") {
+  const Outcome text = run("info luenberger", "2>/dev/null");
+  CHECK(text.exit == 0);
+  CHECK(text.out.starts_with("observer luenberger (plugin estimators)\n"));
+  CHECK(text.out.find("\nPARAMETER ") != std::string::npos);
+  CHECK(text.out.find('\x1b') == std::string::npos);
+  const auto json = nlohmann::json::parse(run("info luenberger --json", "2>/dev/null").out);
+  CHECK(json["components"][0]["kind"] == "observer");
+  CHECK(json["components"][0]["details"].is_string());
+}

@@ -128,7 +128,6 @@ void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> r
   }
   write(results_, gains);
   results_.key("steps").begin_array(Layout::lines);
-  last_estimate_ = -1;
   run_.begin_object(Layout::lines).member("name", spec.name).key("steps").begin_array(Layout::lines);
 }
 

@@ -94,7 +94,7 @@ class Results {
   bool header_written_ = false, diagnosis_header_written_ = false, with_mode_ = false;
   std::vector<std::string> modes_;    ///< names, in a diagnosis
   std::optional<Index> last_sample_;  ///< the last k in data.csv
-  Index last_estimate_ = -1;          ///< the last k of the current pipeline
+  Index last_estimate_ = 0;           ///< k of the last step
   struct Summary {
     std::vector<std::string> fields;  ///< what every pipeline has
     std::map<std::string, std::string> metrics;
