@@ -2,6 +2,7 @@
 #include "observer_parameters.hpp"
 
 #include "cordon/core/line_elimination.hpp"
+#include "cordon/invariant/zonotope_enclosure.hpp"
 
 namespace cordon::estimators {
 
@@ -54,6 +55,31 @@ std::vector<Diagnostic> check_common(const ObserverContext& context, const Param
          "give X0 in the system or \"initial_set\" here, or use a backend with lines such as \"line_zonotope\""});
   }
   return problems;
+}
+
+void check_bounded_start(const ObserverContext& context, const Params& params, std::vector<Diagnostic>& problems) {
+  const bool own = params.has("initial_set");
+  const LineForm& X0 = initial_set_from(context.model, params);
+  const Index n = context.model.linear.states();
+  if (X0.dim() != n) {
+    check_set(context, X0, own ? "/initial_set" : "", problems);
+  } else if (eliminate_lines(X0).lines() > 0) {
+    problems.push_back({own ? "/initial_set" : "",
+                        own ? "is unbounded, and this observer needs bounds from the first step on"
+                            : "the system's X0 is unbounded or not given, and this observer needs bounds from the first step on",
+                        own ? "give a bounded set" : "give a bounded X0 in the system or \"initial_set\" here"});
+  }
+}
+
+void check_noises(const ObserverContext& context, std::vector<Diagnostic>& problems) {
+  const Model& model = context.model;
+  for (const auto& [set, name] : {std::pair(&model.W, "W"), std::pair(&model.V, "V")}) {
+    try {
+      invariant::enclosing_zonotope(*set, std::string("the system's ") + name);
+    } catch (const Error& error) {
+      problems.push_back({"", error.what(), std::string("give a bounded ") + name + " that is not empty"});
+    }
+  }
 }
 
 }  // namespace cordon::estimators

@@ -25,4 +25,10 @@ std::vector<Diagnostic> check_common(const ObserverContext& context, const Param
 void check_set(const ObserverContext& context, const LineForm& set, const std::string& pointer,
                std::vector<Diagnostic>& problems);
 
+/// A problem if the set of initial states is unbounded, or has another dimension than the state.
+void check_bounded_start(const ObserverContext& context, const Params& params, std::vector<Diagnostic>& problems);
+
+/// Problems of W and V that no zonotope encloses.
+void check_noises(const ObserverContext& context, std::vector<Diagnostic>& problems);
+
 }  // namespace cordon::estimators

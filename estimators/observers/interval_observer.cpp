@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observers/interval_observer.hpp"
+
+#include "cordon/core/rounding.hpp"
+#include "observer_parameters.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+constexpr double margin = 1e-10;  // of a proof of emptiness, as a share of the terms of its numbers
+}
+
+IntervalObserver::IntervalObserver(const ObserverContext& context, const Params& params, Gain upper, std::optional<Gain> lower)
+    : Observer(context.model, context.backend),
+      X0_(initial_set_from(model(), params)),
+      upper_gain_(std::move(upper)),
+      lower_gain_(std::move(lower)),
+      upper_(model(), upper_gain_.L),
+      inner_(model(), upper_gain_.L, params) {
+  if (lower_gain_) lower_.emplace(model(), lower_gain_->L);
+  const Index n = model().linear.states();
+  for (Vector* v : {&c_, &r_, &c_next_, &r_next_, &c_low_, &r_low_, &hull_.lower, &hull_.upper}) v->resize(n);
+}
+
+std::vector<Gain> IntervalObserver::gains() const {
+  return lower_gain_ ? std::vector<Gain>{upper_gain_, *lower_gain_} : std::vector<Gain>{upper_gain_};
+}
+
+void IntervalObserver::set(const Box& hull) {
+  if (!hull.is_empty() && !hull.is_bounded())
+    throw Error(Errc::unsupported, "an interval observer needs a bounded set of initial states");
+  hull_ = hull;
+  std::tie(c_, r_) = around(hull);
+}
+
+/// Claimed outer: what the measurement of the same time says is left out.
+Enclosure IntervalObserver::estimate(const Box& box) const { return {backend().box(box).set, Tightness::outer}; }
+
+Enclosure IntervalObserver::do_start(const std::optional<Enclosure>& X0, const Sample&) {
+  const Enclosure start = X0 ? *X0 : backend().import(X0_);
+  set(start->interval_hull());
+  if (!X0) {
+    inner_.start(X0_);
+  } else if (start->backend().info().exact_exchange) {
+    inner_.start(start->line_form());
+  } else {
+    inner_.end();
+  }
+  return estimate(hull_);
+}
+
+void IntervalObserver::do_replace(const Enclosure& X) {
+  set(X->interval_hull());
+  inner_.end();
+}
+
+Enclosure IntervalObserver::do_step(const Sample& before, const Sample&) {
+  Enclosure result = timed(Phase::predict, [&] {
+    upper_.next(c_, r_, before, c_next_, r_next_);
+    if (lower_) lower_->next(c_, r_, before, c_low_, r_low_);
+    const Vector& c_low = lower_ ? c_low_ : c_next_;
+    const Vector& r_low = lower_ ? r_low_ : r_next_;
+    for (Index i = 0; i < c_.size(); ++i) {
+      hull_.upper[i] = rounding::up(c_next_[i] + r_next_[i]);
+      hull_.lower[i] = rounding::down(c_low[i] - r_low[i]);
+    }
+    if (!lower_) {
+      c_.swap(c_next_);
+      r_.swap(r_next_);
+      return estimate(hull_);
+    }
+    const bool empty = settle_crossing();
+    std::tie(c_, r_) = around(hull_);
+    return empty ? backend().empty(c_.size()) : estimate(hull_);
+  });
+  inner_.step(before);
+  return result;
+}
+
+bool IntervalObserver::settle_crossing() {
+  bool proven = false;
+  for (Index i = 0; i < c_.size(); ++i) {
+    const double by = hull_.lower[i] - hull_.upper[i];
+    if (by <= 0) continue;
+    proven = proven || by > margin * (upper_.size()[i] + lower_->size()[i]);
+    std::swap(hull_.lower[i], hull_.upper[i]);
+  }
+  return proven;
+}
+
+bool check_interval_observer(const ObserverContext& context, const Params& params, std::vector<Diagnostic>& problems) {
+  if (context.model.linear.is_descriptor()) {
+    problems.push_back({"/type", "interval observers take systems of type \"lti\"", "use the observer \"descriptor\""});
+    return false;
+  }
+  check_bounded_start(context, params, problems);
+  check_noises(context, problems);
+  if (!problems.empty()) return false;  // gains are designed for these sets
+  InnerEnvelope::check(context, params, problems);
+  return true;
+}
+
+void add_interval_parameters(ParamSchema& schema) {
+  schema.set("initial_set", "set of initial states in place of the system's X0");
+  InnerEnvelope::add_parameters(schema);
+}
+
+}  // namespace cordon::estimators

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The set-based observer of uncertain systems: the recursion of luenberger_recursion.hpp, whose sets are reduced before they are
+// mapped, so that estimates are not. [Pourasghar2021, Proposition 3.1] (As printed, (7b) leaves out the absolute value of the
+// centre in diag(rad(A) |c|), and loses the truth.)
+#include "components.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/invariant/zonotope_enclosure.hpp"
+#include "observer_parameters.hpp"
+#include "observers/inner_envelope.hpp"
+#include "observers/luenberger_recursion.hpp"
+#include "observers/observer_gain.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+ComponentSpec absent() { return {"kalman", Params().set("steady", true)}; }
+
+class ZonotopeUncertain final : public Observer {
+ public:
+  ZonotopeUncertain(const ObserverContext& context, const Params& params, ObserverGain gain)
+      : Observer(context.model, context.backend),
+        X0_(initial_set_from(model(), params)),
+        gain_(std::move(gain)),
+        recursion_(model(), gain_.gain.L, context.backend, budget_from(params)),
+        inner_(model(), gain_.gain.L, params) {}
+
+  LineForm initial_set() const override { return X0_; }
+  std::vector<Gain> gains() const override { return {gain_.gain}; }
+  std::optional<Box> inner_estimate() const override {
+    return inner_.is_on() && X_.set ? inner_.within(X_->interval_hull()) : std::nullopt;
+  }
+
+ private:
+  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
+    X_ = X0 ? *X0 : backend().import(X0_);
+    if (!X0) {
+      inner_.start(X0_);
+    } else if (backend().info().exact_exchange) {
+      inner_.start(X_->line_form());
+    } else {
+      inner_.end();
+    }
+    return estimate();
+  }
+  Enclosure do_step(const Sample& before, const Sample&) override {
+    const Enclosure carried = timed(Phase::reduce, [&] { return recursion_.reduced(X_); });
+    X_ = timed(Phase::predict, [&] {
+      if (gain_.designer->is_time_varying()) {
+        const Matrix R = invariant::enclosing_zonotope(carried->line_form()).G;
+        recursion_.use_gain(gain_.designer->update(model(), linalg::product(R, R.transpose())));
+      }
+      return recursion_.next(carried, before);
+    });
+    inner_.step(before);
+    return estimate();
+  }
+  void do_replace(const Enclosure& X) override {
+    X_ = X;
+    inner_.end();
+  }
+  /// Claimed outer: what the measurement of the same time says is left out.
+  Enclosure estimate() const { return {X_.set, Tightness::outer}; }
+
+  LineForm X0_;
+  ObserverGain gain_;
+  LuenbergerRecursion recursion_;
+  InnerEnvelope inner_;
+  Enclosure X_;
+};
+
+std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
+  std::vector<Diagnostic> problems = check_common(context, params);
+  const LinearModel& m = context.model.linear;
+  if (m.is_descriptor()) {
+    problems.push_back({"/type", "\"zonotope_uncertain\" takes systems of type \"lti\"", "use the observer \"descriptor\""});
+    return problems;
+  }
+  if (problems.empty() && m.is_uncertain()) check_bounded_start(context, params, problems);
+  check_noises(context, problems);
+  if (!problems.empty()) return problems;  // gains are designed for these sets
+  check_observer_gain(context, params, "gain", absent(), problems);
+  if (!problems.empty() || params.integer("inner_samples") == 0) return problems;
+  InnerEnvelope::check(context, params, problems);
+  if (observer_gain(context, params, "gain", absent()).designer->is_time_varying()) {
+    problems.push_back({"/inner_samples", "an inner estimate is made for a gain that does not vary in time",
+                        "leave it out, or give another gain"});
+  }
+  return problems;
+}
+
+constexpr const char* details =
+    "A zonotope <c, R>, reduced to <c, Ř> with max_generators columns, becomes\n"
+    "    c⁺ = (A - L C) c + B u + L y,\n"
+    "    R⁺ = [(A - L C) Ř, diag(rad(A) (|c| + |Ř| 1) + rad(B) |u|), Bw W, -L Dv V, -L diag(rad(C) (|c| + |Ř| 1))];\n"
+    "other representations follow the same sum of sets. The estimate is this set before the next reduction, so that\n"
+    "the budget bounds what is carried from step to step. It uses outputs up to k - 1.";
+
+}  // namespace
+
+void register_zonotope_uncertain(Registrar& registrar) {
+  ParamSchema schema = common_parameters();
+  add_gain_parameter(schema, "gain", "output gain, with A - L C stable; absent: the steady gain \"kalman\"");
+  InnerEnvelope::add_parameters(schema);
+  registrar.observer({{"zonotope_uncertain", "set recursion with an output gain; standard linear systems with interval matrices",
+                       "Pourasghar2021", std::move(schema), details},
+                      check,
+                      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+                        return std::make_unique<ZonotopeUncertain>(context, params,
+                                                                   observer_gain(context, params, "gain", absent()));
+                      },
+                      true,
+                      true});
+}
+
+}  // namespace cordon::estimators
