@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -44,14 +45,27 @@ std::string evidence_text(const ModeEvidence& evidence) {
   return text;
 }
 
-/// The name of a fault outside the bank that begins at k, as the study calls it.
+/// What makes the plant leave the bank at k, as the study calls it.
 std::string outside_name(const Study& study, Index k) {
-  if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
-    for (const FaultSpec& fault : simulate->faults) {
-      if (fault.mode < 0 && fault.from <= k && k <= fault.to && !fault.name.empty()) return fault.name + ", outside the bank";
-    }
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  if (!simulate) return "outside the bank";
+  for (const FaultSpec& fault : simulate->faults) {
+    if (fault.mode < 0 && fault.from <= k && k <= fault.to && !fault.name.empty()) return fault.name + ", outside the bank";
   }
-  return "outside the bank";
+  std::set<Index> additive;
+  for (const AdditiveFaultSpec& fault : simulate->additive_faults) {
+    if (fault.from <= k && k <= fault.to) additive.insert(fault.fault + 1);
+  }
+  if (additive.empty()) return "outside the bank";
+  return fmt::format("additive fault{} {}", additive.size() > 1 ? "s" : "", fmt::join(additive, ", "));
+}
+
+/// What a true mode of -1 is in this study.
+std::string outside_label(const Study& study) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  if (!simulate || simulate->additive_faults.empty()) return "outside the bank";
+  const bool others = std::any_of(simulate->faults.begin(), simulate->faults.end(), [](const auto& f) { return f.mode < 0; });
+  return others ? "outside the bank" : "additive fault";
 }
 
 std::string event_name(const DiagnosisEvent& event, std::optional<Index> truth_before) {
@@ -89,7 +103,7 @@ std::string delay_text(const DelayStatistics& delays) {
   return fmt::format("{} / {} / {}", delays.min, delays.median, delays.max);
 }
 
-Rows statistics(const DiagnosisOutcome& found) {
+Rows statistics(const Study& study, const DiagnosisOutcome& found) {
   const bool outside = std::any_of(found.statistics.begin(), found.statistics.end(), [](const auto& m) { return m.mode < 0; });
   Rows rows{{"TRUE MODE", "TIMES", "DETECTED", "ISOLATED", "MISSED", "WRONG MODE", "DETECTION DELAY", "ISOLATION DELAY"}};
   if (outside) rows[0].insert(rows[0].begin() + 6, "UNKNOWN FAULT");
@@ -97,9 +111,10 @@ Rows statistics(const DiagnosisOutcome& found) {
   std::stable_partition(all.begin(), all.end(), [](const ModeStatistics& counts) { return counts.mode >= 0; });
   for (const ModeStatistics& counts : all) {
     const bool inside = counts.mode >= 0;
-    rows.push_back({name_of(found.modes, counts.mode), fmt::format("{}", counts.segments), fmt::format("{}", counts.detected),
-                    inside ? fmt::format("{}", counts.isolated) : "-", inside ? fmt::format("{}", counts.missed) : "-",
-                    fmt::format("{}", counts.wrong), delay_text(counts.detection), delay_text(counts.isolation)});
+    rows.push_back({inside ? name_of(found.modes, counts.mode) : outside_label(study), fmt::format("{}", counts.segments),
+                    fmt::format("{}", counts.detected), inside ? fmt::format("{}", counts.isolated) : "-",
+                    inside ? fmt::format("{}", counts.missed) : "-", fmt::format("{}", counts.wrong),
+                    delay_text(counts.detection), delay_text(counts.isolation)});
     if (outside) rows.back().insert(rows.back().begin() + 6, fmt::format("{}", counts.unknown_fault));
   }
   return rows;
@@ -107,12 +122,12 @@ Rows statistics(const DiagnosisOutcome& found) {
 
 std::string runs_text(std::int64_t runs) { return fmt::format("{} run{}", runs, runs == 1 ? "" : "s"); }
 
-std::string score_text(const DiagnosisOutcome& found, const Paint& paint) {
+std::string score_text(const Study& study, const DiagnosisOutcome& found, const Paint& paint) {
   if (!found.truth_known) return "The data do not tell the true mode: nothing is scored.\n";
   std::string text;
   if (!found.statistics.empty()) {
     text = fmt::format("Over {} (delays in steps: smallest / median / largest)\n{}\n", runs_text(found.runs),
-                       table(statistics(found), paint));
+                       table(statistics(study, found), paint));
   }
   text += found.false_alarms == 0 ? fmt::format("False alarms: none in {}\n", runs_text(found.runs))
                                   : paint.yellow(fmt::format("False alarms: {} in {} of {}", found.false_alarms,
@@ -132,6 +147,33 @@ std::string score_text(const DiagnosisOutcome& found, const Paint& paint) {
   return text;
 }
 
+/// Like the widths of observers: as many digits as it takes to compare.
+std::string number_text(double value) {
+  if (std::isnan(value)) return "-";
+  return std::isinf(value) ? "unbounded" : fmt::format("{:.6g}", value);
+}
+
+std::string faults_text(const DiagnosisOutcome& found, const Paint& paint) {
+  if (found.faults.empty()) return "";
+  Rows rows{{"FAULT", "DELAY", "BOUNDS", "WITHOUT 0", "OUTSIDE", "HALF WIDTH: LAST", "MEAN", "RMS ERROR", "LARGEST SHARE"}};
+  for (const FaultStatistics& counts : found.faults) {
+    const bool any = counts.bounds > 0, checked = counts.checked > 0;
+    rows.push_back({fmt::format("{}", counts.fault + 1), any ? fmt::format("{}", counts.delay) : "-",
+                    fmt::format("{}", counts.bounds), fmt::format("{}", counts.excluded_0),
+                    checked ? fmt::format("{} of {}", counts.outside, counts.checked) : "-",
+                    any ? number_text(counts.last_half_width) : "-", any ? number_text(counts.mean_half_width) : "-",
+                    checked ? number_text(counts.rms_error) : "-", checked ? number_text(counts.largest_share) : "-"});
+  }
+  std::string text = fmt::format("\nAdditive faults over {} (share: error of the estimate / half width)\n{}",
+                                 runs_text(found.runs), table(rows, paint));
+  if (const auto& outside = found.fault_outside) {
+    text += paint.red(fmt::format("True fault outside its bounds: fault {} of k = {}, bounded at k = {} (run {} of {})",
+                                  outside->fault + 1, outside->at, outside->k, outside->seed_offset + 1, found.runs)) +
+            "\n";
+  }
+  return text;
+}
+
 std::string answer_text(Answer answer) { return answer == Answer::unknown ? "not guaranteed" : std::string(to_string(answer)); }
 
 std::string error_set_text(const ErrorSetCheck& check, const Names& modes) {
@@ -143,6 +185,16 @@ std::string error_set_text(const ErrorSetCheck& check, const Names& modes) {
   if (check.computed) return fmt::format("Error set: computed; contains the errors by construction{}\n", steady);
   return fmt::format("Error set: given; all errors lie in {:.4g} times the set{}: {}\n", check.factor, steady,
                      check.factor <= 1 ? "large enough" : "too small");
+}
+
+std::string fault_guarantees_text(const Guarantees& guarantees, const Paint& paint) {
+  if (guarantees.faults.empty()) return "";
+  Rows rows{{"ADDITIVE FAULT", "DELAY", "HALF WIDTH IN STEADY STATE"}};
+  for (const FaultGuarantee& fault : guarantees.faults) {
+    const std::string width = std::isinf(fault.half_width) ? "grows without limit" : fmt::format("{:.6g}", fault.half_width);
+    rows.push_back({fmt::format("{}", fault.fault + 1), fmt::format("{}", fault.delay), width});
+  }
+  return table(rows, paint);
 }
 
 }  // namespace
@@ -161,18 +213,25 @@ std::string box_text(const Box& box, Digits digits) {
 
 std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint) {
   const DiagnosisOutcome& found = *pipeline.diagnosis;
-  std::string text = fmt::format("{}  {}, {}, {} modes, {:.1f} µs/step\n\n", paint.bold(pipeline.name), pipeline.backend,
-                                 pipeline.diagnoser, found.modes.size(), pipeline.median_step_us);
+  std::string text =
+      fmt::format("{}  {}, {}, {} mode{}, {:.1f} µs/step\n\n", paint.bold(pipeline.name), pipeline.backend, pipeline.diagnoser,
+                  found.modes.size(), found.modes.size() == 1 ? "" : "s", pipeline.median_step_us);
   std::int64_t left = 0;
   const Rows rows = timeline(study, found, left);
   if (rows.size() > 1) text += table(rows, paint);
   if (left > 0) text += fmt::format("… and {} more, in results.json\n", left);
   text += "\n";
   if (!pipeline.error.empty()) return text + paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
-  return text + score_text(found, paint);
+  return text + score_text(study, found, paint) + faults_text(found, paint);
 }
 
 std::string diagnosis_violation(const PipelineOutcome& pipeline) {
+  if (const auto& outside = pipeline.diagnosis->fault_outside; outside && outside->k == pipeline.violated_at) {
+    return fmt::format(
+        "pipeline \"{}\" violates its guarantee: at k = {} the true additive fault {} of k = {} lies outside its bounds (seed "
+        "offset {}). This is a defect of its backend or diagnoser, or x0 lies outside X0",
+        pipeline.name, outside->k, outside->fault + 1, outside->at, outside->seed_offset);
+  }
   const TrueModeExcluded& excluded = *pipeline.diagnosis->true_mode_excluded;
   return fmt::format(
       "pipeline \"{}\" violates its guarantee: at k = {} it excludes the mode \"{}\", in which the plant has been since k = {} "
@@ -187,7 +246,9 @@ std::string guarantees_text(const Guarantees& guarantees, const Names& modes, co
                     fmt::format("R̊{}{} = {}", pair.mode, pair.observer, box_text(pair.residual, Digits::decimals)),
                     pair.mode == pair.observer ? "0 inside" : "0 outside", answer_text(pair.holds)});
   }
-  std::string text = fmt::format("Method: {}\n{}", guarantees.method, table(rows, paint));
+  std::string text = fmt::format("Method: {}\n", guarantees.method) + fault_guarantees_text(guarantees, paint);
+  if (guarantees.pairs.empty() && !guarantees.faults.empty()) return text;
+  text += table(rows, paint);
   if (guarantees.error_set) text += error_set_text(*guarantees.error_set, modes);
   switch (guarantees.all) {
     case Answer::yes:

@@ -14,13 +14,13 @@ namespace cordon::apps {
 enum class Digits { significant, decimals };
 std::string box_text(const Box& box, Digits digits = Digits::significant);
 
-/// The timeline of the first seed, then delays and counts over all seeds.
+/// The timeline of the first seed, then delays and counts over all seeds, of modes and of additive faults.
 std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint);
 
-/// What to say of a pipeline that has excluded the true mode (`violated_at`).
+/// What to say of a pipeline that has excluded the true mode, or bounds without the true fault (`violated_at`).
 std::string diagnosis_violation(const PipelineOutcome& pipeline);
 
-/// Statements made in advance: a table, one row per observer and true mode.
+/// Statements made in advance: tables, one row per additive fault, and one per observer and true mode.
 std::string guarantees_text(const Guarantees& guarantees, const std::vector<std::string>& modes, const Paint& paint);
 
 }  // namespace cordon::apps

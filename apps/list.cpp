@@ -43,7 +43,8 @@ Exit list(const Program& program, bool json) {
 }  // namespace
 
 void add_list(CLI::App& app, Program& program) {
-  CLI::App* command = app.add_subcommand("list", "List backends, observers, diagnosers, metrics and plants with their plugins");
+  CLI::App* command =
+      app.add_subcommand("list", "List backends, observers, diagnosers, metrics, plants and gains with their plugins");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON for programs");
   command->callback([&program, json] { program.exit = list(program, *json); });

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
-#include "diagnosis_report.hpp"
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
 #include "run_report.hpp"
@@ -23,32 +22,6 @@ struct Arguments {
   std::filesystem::path study, out;
   bool json = false, quiet = false;
 };
-
-/// The code of the worst outcome: a violated guarantee before errors of pipelines.
-Exit exit_of(const RunOutcome& outcome) {
-  Exit exit = Exit::done;
-  for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    if (pipeline.violated_at >= 0) return Exit::violated;
-    if (exit == Exit::done && !pipeline.error.empty()) exit = exit_for(pipeline.error_code.value_or(Errc::internal));
-  }
-  return exit;
-}
-
-void complain_about(const RunOutcome& outcome) {
-  for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    if (!pipeline.error.empty()) {
-      complain(fmt::format("pipeline \"{}\" stopped after {} steps: {}", pipeline.name, pipeline.steps, pipeline.error));
-    }
-    if (pipeline.violated_at >= 0 && pipeline.diagnosis) {
-      complain(diagnosis_violation(pipeline));
-    } else if (pipeline.violated_at >= 0) {
-      complain(fmt::format(
-          "pipeline \"{}\" violates its guarantee: at k = {} the true state is proven outside the estimate. This is a "
-          "defect of its backend or observer, or x0 lies outside X0",
-          pipeline.name, pipeline.violated_at));
-    }
-  }
-}
 
 Exit run(const Program& program, const Arguments& arguments) {
   Registry registry;
@@ -71,7 +44,7 @@ Exit run(const Program& program, const Arguments& arguments) {
     return interrupted;
   }
   if (!arguments.quiet) print(arguments.json ? report_json(outcome) : report_text(study, outcome, options.out));
-  complain_about(outcome);
+  for (const std::string& complaint : complaints(outcome)) complain(complaint);
   return exit_of(outcome);
 }
 

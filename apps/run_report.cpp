@@ -10,6 +10,7 @@
 
 #include "common.hpp"
 #include "diagnosis_report.hpp"
+#include "observer_report.hpp"
 
 namespace cordon::apps {
 
@@ -47,6 +48,7 @@ std::string contained(const PipelineOutcome& pipeline) {
 std::string consistency(const PipelineOutcome& pipeline) {
   if (!pipeline.error.empty()) return fmt::format("error after {} steps", pipeline.steps);
   if (pipeline.violated_at >= 0) return fmt::format("VIOLATED at k = {}", pipeline.violated_at);
+  if (pipeline.inner_outside >= 0) return fmt::format("VIOLATED at k = {}", pipeline.inner_outside);
   if (pipeline.inconsistent_from >= 0) return fmt::format("empty from k = {}", pipeline.inconsistent_from);
   if (pipeline.undecided > 0) return fmt::format("undecided at {} steps", pipeline.undecided);
   return "consistent";
@@ -108,12 +110,6 @@ std::string observer_table(const RunOutcome& outcome, const Paint& paint) {
   return table(rows, paint);
 }
 
-ordered_json number(double value) {
-  if (std::isnan(value)) return nullptr;
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return value;
-}
-
 ordered_json time_or_null(std::int64_t k) { return k < 0 ? ordered_json(nullptr) : ordered_json(k); }
 
 ordered_json error_of(const PipelineOutcome& p) { return p.error.empty() ? ordered_json(nullptr) : ordered_json(p.error); }
@@ -138,7 +134,7 @@ ordered_json json_of(const PipelineOutcome& p) {
   ordered_json metrics = ordered_json::object();
   for (const MetricValue& metric : p.summary) {
     if (const auto* value = std::get_if<double>(&metric.value)) {
-      metrics[metric.name] = number(*value);
+      metrics[metric.name] = json_number(*value);
     } else {
       std::visit([&](const auto& other) { metrics[metric.name] = other; }, metric.value);
     }
@@ -154,6 +150,11 @@ ordered_json json_of(const PipelineOutcome& p) {
           {"assumptions_until", time_or_null(p.assumptions_until)},
           {"outside_from", time_or_null(p.outside_from)},
           {"violated_at", time_or_null(p.violated_at)},
+          {"inner_steps", p.inner_steps},
+          {"inner_share", p.inner_steps > 0 ? json_number(p.inner_share) : ordered_json(nullptr)},
+          {"inner_outside", time_or_null(p.inner_outside)},
+          {"gains", gains_json(p)},
+          {"last", last_json(p)},
           {"error", error_of(p)},
           {"metrics", std::move(metrics)},
           {"median_step_us", p.median_step_us},
@@ -175,7 +176,8 @@ std::string report_text(const Study& study, const RunOutcome& outcome, const std
   }
   const std::string title = study.title.empty() ? "" : paint.bold(study.title) + "\n\n";
   const std::string comparison = observed.pipelines.empty() && !diagnoses.empty() ? "" : observer_table(observed, paint) + "\n";
-  return title + comparison + diagnoses + "Results are in " + out.string() + "\n";
+  const std::string details = gains_text(observed, paint) + widths_text(observed, paint) + inner_text(observed, paint);
+  return title + comparison + details + diagnoses + "Results are in " + out.string() + "\n";
 }
 
 std::string report_json(const RunOutcome& outcome) {
@@ -184,6 +186,39 @@ std::string report_json(const RunOutcome& outcome) {
   for (const std::filesystem::path& file : outcome.files) files.push_back(file.string());
   const ordered_json report{{"pipelines", std::move(pipelines)}, {"files", std::move(files)}};
   return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::string> complaints(const RunOutcome& outcome) {
+  std::vector<std::string> found;
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    if (!pipeline.error.empty()) {
+      found.push_back(fmt::format("pipeline \"{}\" stopped after {} steps: {}", pipeline.name, pipeline.steps, pipeline.error));
+    }
+    if (pipeline.violated_at >= 0 && pipeline.diagnosis) {
+      found.push_back(diagnosis_violation(pipeline));
+    } else if (pipeline.violated_at >= 0) {
+      found.push_back(fmt::format(
+          "pipeline \"{}\" violates its guarantee: at k = {} the true state is proven outside the estimate. This is a "
+          "defect of its backend or observer, or x0 lies outside X0",
+          pipeline.name, pipeline.violated_at));
+    }
+    if (pipeline.inner_outside >= 0) {
+      found.push_back(fmt::format(
+          "pipeline \"{}\" violates its guarantee: at k = {} its inner estimate, of trajectories that it must enclose, "
+          "leaves the hull of its estimate. This is a defect of its backend or observer",
+          pipeline.name, pipeline.inner_outside));
+    }
+  }
+  return found;
+}
+
+Exit exit_of(const RunOutcome& outcome) {
+  Exit exit = Exit::done;
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    if (pipeline.violated_at >= 0 || pipeline.inner_outside >= 0) return Exit::violated;
+    if (exit == Exit::done && !pipeline.error.empty()) exit = exit_for(pipeline.error_code.value_or(Errc::internal));
+  }
+  return exit;
 }
 
 }  // namespace cordon::apps

@@ -23,9 +23,11 @@ struct Arguments {
 std::string count(Index number, const char* noun) { return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s"); }
 
 std::string describe_system(const LinearModel& model) {
-  return fmt::format("{}, {}, {}, {}, {}, {}", model.is_descriptor() ? "descriptor" : "lti", count(model.states(), "state"),
-                     count(model.inputs(), "input"), count(model.outputs(), "output"), count(model.disturbances(), "disturbance"),
-                     count(model.noises(), "noise"));
+  const std::string faults = model.faults() > 0 ? ", " + count(model.faults(), "additive fault") : "";
+  return fmt::format("{}{}, {}, {}, {}, {}, {}{}", model.is_uncertain() ? "uncertain " : "",
+                     model.is_descriptor() ? "descriptor" : "lti", count(model.states(), "state"), count(model.inputs(), "input"),
+                     count(model.outputs(), "output"), count(model.disturbances(), "disturbance"), count(model.noises(), "noise"),
+                     faults);
 }
 
 std::string describe_data(const Study& study) {
@@ -56,6 +58,12 @@ std::string describe_modes(const Study& study) {
   const char* label = "faults";
   for (const FaultSpec& fault : simulate->faults) {
     text += fmt::format("  {:<9} {}\n", label, describe_fault(fault, simulate->steps));
+    label = "";
+  }
+  label = "additive";
+  for (const AdditiveFaultSpec& fault : simulate->additive_faults) {
+    const std::string until = fault.to < simulate->steps ? fmt::format(" to {}", fault.to) : "";
+    text += fmt::format("  {:<9} fault {} from k = {}{}\n", label, fault.fault + 1, fault.from, until);
     label = "";
   }
   return text;

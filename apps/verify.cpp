@@ -37,12 +37,20 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
                     std::to_string(p.by_polytopes), std::to_string(p.by_supports), std::to_string(p.proofs),
                     std::to_string(p.exact_claims), std::to_string(p.undecided)});
   }
+  if (outcome.by_samples) {
+    passed_over +=
+        "matrices are known by intervals only: checked for some drawn from them, not for all; claims of \"exact\" are not "
+        "checked\n";
+  }
   return (rows.size() > 1 || passed_over.empty() ? table(rows, paint) : "") + passed_over;
 }
 
 std::string report_json(const VerifyOutcome& outcome) {
   using Json = nlohmann::ordered_json;
-  Json report{{"verified", !outcome.violation.has_value()}, {"pipelines", Json::array()}, {"violation", nullptr}};
+  Json report{{"verified", !outcome.violation.has_value()},
+              {"by_samples", outcome.by_samples},
+              {"pipelines", Json::array()},
+              {"violation", nullptr}};
   for (const VerifiedPipeline& p : outcome.pipelines) {
     report["pipelines"].push_back({{"name", p.name},
                                    {"backend", p.backend},

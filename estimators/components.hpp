@@ -15,7 +15,14 @@ void register_integrated(Registrar& registrar);
 void register_observer_bank(Registrar& registrar);
 void register_consistency_bank(Registrar& registrar);
 void register_given_gain(Registrar& registrar);
+void register_kalman_gain(Registrar& registrar);
 void register_peak_gain(Registrar& registrar);
+void register_poles_gain(Registrar& registrar);
+void register_fault_estimation_filter(Registrar& registrar);
+void register_h_infinity_gain(Registrar& registrar);
+void register_h_infinity_monotone_gain(Registrar& registrar);
+void register_w_radius_gain(Registrar& registrar);
 void register_metrics(Registrar& registrar);
+void register_weighted_radius(Registrar& registrar);
 
 }  // namespace cordon::estimators

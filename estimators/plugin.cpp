@@ -13,8 +13,15 @@ void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_observer_bank(registrar);
   cordon::estimators::register_consistency_bank(registrar);
   cordon::estimators::register_given_gain(registrar);
+  cordon::estimators::register_kalman_gain(registrar);
   cordon::estimators::register_peak_gain(registrar);
+  cordon::estimators::register_poles_gain(registrar);
+  cordon::estimators::register_fault_estimation_filter(registrar);
+  cordon::estimators::register_h_infinity_gain(registrar);
+  cordon::estimators::register_h_infinity_monotone_gain(registrar);
+  cordon::estimators::register_w_radius_gain(registrar);
   cordon::estimators::register_metrics(registrar);
+  cordon::estimators::register_weighted_radius(registrar);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "observers/interval_spread.hpp"
 
 namespace cordon::estimators {
 
@@ -27,6 +28,12 @@ Enclosure unit_box(const SetBackend& backend, std::size_t n) {
   return backend.box({-ones, ones});
 }
 
+/// The largest magnitudes of the points of X.
+Vector magnitudes(const Enclosure& X) {
+  const Box hull = X->interval_hull();
+  return hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs());
+}
+
 double upwards(double value, Index terms) { return rounding::up(value * (1 + rounding::gamma(2 * terms + 4))); }
 
 }  // namespace
@@ -44,11 +51,16 @@ Effectiveness::Effectiveness(const Model& model, const SetBackend& backend)
   const LinearModel& m = model.linear;
   bool by_input = false;
   for (const Index j : ranged_inputs_) by_input = by_input || !m.D.col(j).isZero(0);
-  plain_outputs_ = m.sensor.dim() == 0 && !by_input;
+  for (Index i = 0; i < m.C_radius.rows(); ++i) {
+    if (m.C_radius.row(i).maxCoeff() > 0) interval_outputs_.push_back(i);
+  }
+  open_states_ = has_spread(m.A_radius) || has_spread(m.B_radius);
+  plain_outputs_ = m.sensor.dim() == 0 && !by_input && interval_outputs_.empty();
   input_factors_ = unit_box(backend, ranged_inputs_.size());
   output_factors_ = unit_box(backend, ranged_outputs_.size());
   if (plain_outputs_) return;
-  noise_ = backend.product(backend.product(V_, input_factors_), output_factors_);
+  noise_ = backend.product(backend.product(backend.product(V_, input_factors_), output_factors_),
+                           unit_box(backend, interval_outputs_.size()));
   noise_hull_ = backend.affine_map(V_, m.Dv, Vector::Zero(m.outputs()))->interval_hull();
 }
 
@@ -63,6 +75,14 @@ Matrix Effectiveness::input_spread(MatrixIn B, VectorIn u) const {
     spread.col(column) = B.col(j) * (f_radius_[j] * u[j]);
   }
   return spread;
+}
+
+Enclosure Effectiveness::open_states(const Enclosure& X, VectorIn u) const {
+  const LinearModel& m = model_.linear;
+  const Vector s = has_spread(m.A_radius) ? magnitudes(X) : Vector(Vector::Zero(m.states()));
+  const Vector widths = interval_spread(m.A_radius, s, m.states()) +
+                        interval_spread(m.B_radius, (f_ + f_radius_).cwiseProduct(u.cwiseAbs()), m.states());
+  return backend_.box({-widths, widths});
 }
 
 Vector Effectiveness::output_bound(const Sample& now, const Box* reach) const {
@@ -97,31 +117,41 @@ Matrix Effectiveness::output_spread(VectorIn zeta) const {
   return spread;
 }
 
+Matrix Effectiveness::interval_columns(const Vector& open) const {
+  Matrix columns = Matrix::Zero(open.size(), static_cast<Index>(interval_outputs_.size()));
+  for (Index column = 0; column < columns.cols(); ++column) {
+    const Index i = interval_outputs_[static_cast<std::size_t>(column)];
+    if (std::isfinite(open[i])) columns(i, column) = g_[i] * open[i];
+  }
+  return columns;
+}
+
 Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& now) const {
   const LinearModel& m = model_.linear;
   if (m.outputs() == 0) return X;
   if (plain_outputs_) return backend_.correct(X, {C, now.y - input(m.D, now.u), {m.Dv, V_}});
 
-  Vector zeta = Vector::Zero(m.outputs());
+  Vector open = Vector::Zero(m.outputs()), zeta = open;
+  if (!interval_outputs_.empty()) open = interval_spread(m.C_radius, magnitudes(X), m.outputs());
   if (has_output_ranges()) {
     const Matrix rows = C(ranged_outputs_, Eigen::all);
     const Box ranged = backend_.affine_map(X, rows, Vector::Zero(rows.rows()))->interval_hull();
     Box reach = Box::space(m.outputs());
-    reach.lower(ranged_outputs_) = ranged.lower;
-    reach.upper(ranged_outputs_) = ranged.upper;
+    reach.lower(ranged_outputs_) = ranged.lower - open(ranged_outputs_);
+    reach.upper(ranged_outputs_) = ranged.upper + open(ranged_outputs_);
     zeta = output_bound(now, &reach);
   }
   std::vector<Index> used;
   for (Index i = 0; i < m.outputs(); ++i) {
-    if (std::isfinite(zeta[i])) used.push_back(i);
+    if (std::isfinite(zeta[i]) && std::isfinite(open[i])) used.push_back(i);
   }
   if (used.empty()) return X;
   Matrix T(m.outputs(), noise_->dim());
-  T << m.Dv, g_.asDiagonal() * input_spread(m.D, now.u), output_spread(zeta);
+  T << m.Dv, g_.asDiagonal() * input_spread(m.D, now.u), output_spread(zeta), interval_columns(open);
   const Vector z = now.y - g_.cwiseProduct(input(m.D, now.u));
   const Matrix scaled = g_.asDiagonal() * C;
   Enclosure corrected = backend_.correct(X, {scaled(used, Eigen::all), z(used), {T(used, Eigen::all), noise_}});
-  if (has_output_ranges()) corrected.tightness = Tightness::outer;
+  if (has_output_ranges() || !interval_outputs_.empty()) corrected.tightness = Tightness::outer;
   return corrected;
 }
 

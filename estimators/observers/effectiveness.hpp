@@ -5,7 +5,10 @@
 // with ζ ≥ |C x + D diag(f) u|. A bound of ζ_i comes from the set that x is known to lie in, and, if the sensor cannot fail
 // altogether (ĝ_i > ǧ_i), from the measurement: |y_i - (Dv v)_i| / (ĝ_i - ǧ_i). The smaller one is used; an output without a
 // finite one says nothing about x in that step, and is left out.
-// Models without ranges give the expressions of the plain model.
+// Interval matrices A, B, C of radii Ř add, with the magnitudes |x| of the set that x is known to lie in,
+//   box(Ř_A |x| + Ř_B diag(f̂ + f̌) |u|) to x⁺, and diag(ĝ) diag(Ř_C |x|) κ, ‖κ‖∞ ≤ 1, a factor per output, to y,
+// and ζ ≥ |C x + D diag(f) u| holds for every C of the interval. An output for which Ř_C |x| is infinite is left out as well.
+// Models without ranges and with exact matrices give the expressions of the plain model.
 #pragma once
 
 #include <initializer_list>
@@ -31,15 +34,21 @@ class Effectiveness {
   /// The set of φ: a unit box with one coordinate per input with a range.
   const Enclosure& input_factors() const { return input_factors_; }
 
+  /// Does A or B have a radius?
+  bool has_open_states() const { return open_states_; }
+  /// The box that interval matrices A and B add to x⁺ for x ∈ X; coordinates that nothing bounds are free.
+  Enclosure open_states(const Enclosure& X, VectorIn u) const;
+
   /// ζ, up to rounding outwards; 0 for outputs without a range, infinite where nothing bounds it. `reach` contains C x (null: not
-  /// known).
+  /// known) for every C of the interval.
   Vector output_bound(const Sample& now, const Box* reach) const;
   /// diag(ǧ) diag(ζ), the columns of outputs with a range only; 0 where ζ is infinite.
   Matrix output_spread(VectorIn zeta) const;
   /// The set of γ: a unit box with one coordinate per output with a range.
   const Enclosure& output_factors() const { return output_factors_; }
 
-  /// The part of X ∋ x that the measurement allows; C is the model's in the coordinates of X. Outer if sensors have ranges.
+  /// The part of X ∋ x that the measurement allows; C is the model's in the coordinates of X, which are the model's own where C
+  /// is an interval matrix. Outer if sensors have ranges, or C is one.
   Enclosure correct(const Enclosure& X, MatrixIn C, const Sample& now) const;
 
   /// The claim of a recursion in which inputs enter by these matrices at the same time or one step after the other: the factors φ
@@ -50,14 +59,19 @@ class Effectiveness {
   static bool is_bounded_by_measurement(const LinearModel& model, Index i);
 
  private:
+  /// diag(ĝ) diag(open), the columns of rows of C with a radius; 0 where it is infinite.
+  Matrix interval_columns(const Vector& open) const;
+
   const Model& model_;
   const SetBackend& backend_;
   Enclosure V_;
   Vector f_, f_radius_, g_, g_radius_;
   std::vector<Index> ranged_inputs_, ranged_outputs_;
-  bool plain_outputs_ = true;  ///< no range enters y
+  std::vector<Index> interval_outputs_;  ///< rows of C with a radius
+  bool open_states_ = false;
+  bool plain_outputs_ = true;  ///< no range and no radius enters y
   Enclosure input_factors_, output_factors_;
-  Enclosure noise_;  ///< V × factors of inputs × factors of outputs
+  Enclosure noise_;  ///< V × factors of inputs × factors of outputs × factors of rows of C
   Box noise_hull_;   ///< of Dv V
 };
 

@@ -1,25 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Luenberger observer on sets, for x⁺ = A x + B f u + Bw w on any backend: X̂_0 = X0, then the recursion of
-// luenberger_recursion.hpp, reduced to the budget. Its estimate at k uses the outputs up to k - 1 and is never empty; that an
-// output contradicts it shows in the residual set, which the diagnoser "observer_bank" watches.
+// luenberger_recursion.hpp, reduced to the budget, with one gain for all times or with one for the covariation of each X̂_k. Its
+// estimate at k uses the outputs up to k - 1 and is never empty; that an output contradicts it shows in the residual set, which
+// the diagnoser "observer_bank" watches.
 #include "components.hpp"
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/line_elimination.hpp"
+#include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observer_parameters.hpp"
-#include "observers/luenberger_gain.hpp"
+#include "observers/interval_spread.hpp"
 #include "observers/luenberger_recursion.hpp"
+#include "observers/observer_gain.hpp"
 
 namespace cordon::estimators {
 
 namespace {
+
+ComponentSpec steady_kalman() { return {"kalman", Params().set("steady", true)}; }
 
 class Luenberger final : public Observer {
  public:
   Luenberger(const ObserverContext& context, const Params& params)
       : Observer(context.model, context.backend),
         X0_(initial_set_from(model(), params)),
-        recursion_(model(), params.has("gain") ? params.matrix("gain") : designed_gain(model()), context.backend,
-                   budget_from(params)) {}
+        gain_(observer_gain(context, params, "gain", steady_kalman())),
+        recursion_(model(), gain_.gain.L, context.backend, budget_from(params)) {}
 
   LineForm initial_set() const override { return X0_; }
+  std::vector<Gain> gains() const override { return {gain_.gain}; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
@@ -27,12 +36,27 @@ class Luenberger final : public Observer {
     return X_ = timed(Phase::reduce, [&] { return recursion_.reduced(start); });
   }
   Enclosure do_step(const Sample& before, const Sample&) override {
-    const Enclosure next = timed(Phase::predict, [&] { return recursion_.next(X_, before); });
+    const Enclosure next = timed(Phase::predict, [&] {
+      if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_of_set());
+      return recursion_.next(X_, before);
+    });
     return X_ = timed(Phase::reduce, [&] { return recursion_.reduced(next); });
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
 
+  /// The gain for X̂; the steady one where no zonotope contains X̂.
+  Matrix gain_of_set() const {
+    try {
+      const Matrix R = invariant::enclosing_zonotope(X_->line_form(), "the estimate").G;
+      return gain_.designer->update(model(), linalg::product(R, R.transpose()));
+    } catch (const Error& error) {
+      if (error.code() != Errc::unsupported && error.code() != Errc::invalid) throw;
+      return gain_.gain.L;
+    }
+  }
+
   LineForm X0_;
+  ObserverGain gain_;
   LuenbergerRecursion recursion_;
   Enclosure X_;
 };
@@ -44,7 +68,13 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
     problems.push_back({"/type", "\"luenberger\" takes systems of type \"lti\"", "use the observer \"descriptor\""});
     return problems;
   }
-  check_gain(context.model, params.has("gain") ? &params.matrix("gain") : nullptr, "/gain", "", problems);
+  if ((has_spread(m.A_radius) || has_spread(m.C_radius)) &&
+      eliminate_lines(initial_set_from(context.model, params)).lines() > 0) {
+    problems.push_back({params.has("initial_set") ? "/initial_set" : "",
+                        "the initial set is unbounded, which interval matrices A and C make no finite statement of",
+                        "give a bounded initial set, or use the observer \"prediction_correction\""});
+  }
+  check_observer_gain(context, params, "gain", steady_kalman(), problems);
   return problems;
 }
 
@@ -52,16 +82,17 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
 
 void register_luenberger(Registrar& registrar) {
   ParamSchema schema = common_parameters();
-  schema.matrix(
-      "gain",
-      "L, a row per state and a column per output, with A - L C stable; absent: the steady gain of the zonotopic Kalman filter");
-  registrar.observer({{"luenberger", "set recursion with a fixed output gain; standard linear systems, any backend", "Xu2014",
-                       std::move(schema)},
-                      check,
-                      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
-                        return std::make_unique<Luenberger>(context, params);
-                      },
-                      true});
+  add_gain_parameter(schema, "gain",
+                     "L, a matrix with a row per state and a column per output that makes A - L C stable, or a designer of one; "
+                     "absent: \"kalman\" with \"steady\"");
+  registrar.observer(
+      {{"luenberger", "set recursion with an output gain; standard linear systems, any backend", "Xu2014", std::move(schema)},
+       check,
+       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+         return std::make_unique<Luenberger>(context, params);
+       },
+       true,
+       true});
 }
 
 }  // namespace cordon::estimators

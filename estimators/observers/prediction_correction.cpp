@@ -2,7 +2,7 @@
 // Prediction and correction for x⁺ = A x + B u + Bw w, y = C x + D u + Dv v on any backend:
 //   X̂_0 = {x ∈ X0 : y_0 - D u_0 - C x ∈ Dv V}
 //   X̄_k = A X̂_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W,   X̂_k = {x ∈ X̄_k : y_k - D u_k - C x ∈ Dv V}, reduced to the budget.
-// Ranges of effectiveness: effectiveness.hpp.
+// Ranges of effectiveness and interval matrices: effectiveness.hpp.
 // Exact with constrained and line zonotopes until a reduction bites; zonotopes intersect strip by strip, intervals contract.
 #include "components.hpp"
 #include "cordon/core/error.hpp"
@@ -33,10 +33,14 @@ class PredictionCorrection final : public Observer {
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const LinearModel& m = model().linear;
     const Enclosure predicted = timed(Phase::predict, [&] {
-      const Matrix spread = effectiveness_.input_spread(m.B, before.u);
-      const Term terms[]{{m.Bw, W_}, {spread, effectiveness_.input_factors()}};
-      const std::size_t count = effectiveness_.has_input_ranges() ? 2 : 1;
-      return backend().predict(X_, {m.A, effectiveness_.input(m.B, before.u), {terms, count}});
+      const Matrix spread = effectiveness_.input_spread(m.B, before.u), unit = Matrix::Identity(m.states(), m.states());
+      const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
+      std::vector<Term> terms{{m.Bw, W_}};
+      if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
+      if (effectiveness_.has_open_states()) terms.push_back({unit, open});
+      Enclosure next = backend().predict(X_, {m.A, effectiveness_.input(m.B, before.u), terms});
+      if (effectiveness_.has_open_states()) next.tightness = Tightness::outer;
+      return next;
     });
     return X_ = corrected(predicted, now);
   }
@@ -74,6 +78,7 @@ void register_prediction_correction(Registrar& registrar) {
        [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
          return std::make_unique<PredictionCorrection>(context, params);
        },
+       true,
        true});
 }
 

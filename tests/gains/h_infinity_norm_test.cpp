@@ -66,6 +66,11 @@ TEST_CASE("norms that are known") {
   check_norm(Matrix{{.9}}, Matrix{{2e-200}}, 20e-200);
 }
 
+TEST_CASE("a narrow peak between the first frequencies is not missed beside a wide one") {
+  const double omega = 6.5 * pi / 16, r = .9999, c = r * std::cos(omega), s = r * std::sin(omega);
+  check_norm(Matrix{{c, -s, 0}, {s, c, 0}, {0, 0, .99}}, Matrix::Identity(3, 3), 1e4, 5e-9);
+}
+
 TEST_CASE("nothing goes in, or nothing is there") {
   CHECK(h_infinity_norm(Matrix{{.5}}, Matrix{{0}}).upper == 0);
   CHECK(h_infinity_norm(Matrix{{.5}}, Matrix(1, 0)).upper == 0);

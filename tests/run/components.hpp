@@ -63,6 +63,122 @@ class Recursive : public Observer {
   Enclosure W_, V_, X_;
 };
 
+/// Offers two gains, and from k = 2 on an inner estimate: the hull of its estimate scaled by `scale`, from k = 7 on by `later`;
+/// of one state too few if `cut`.
+class Offering final : public Recursive {
+ public:
+  Offering(const ObserverContext& context, const Params& p)
+      : Recursive(context), scale_(p.real("scale")), later_(p.real("later")), cut_(p.flag("cut")) {}
+
+  std::vector<Gain> gains() const override {
+    Gain designed{"upper_gain", "designed", Matrix{{.5}, {-.25}}, {}}, given{"gain", "given", Matrix{{.5}, {0}}, {}};
+    designed.certificate = {.75, true, 2.5, 2.5, "γ", 2.5, 2.4375, .001};
+    given.certificate.spectral_radius = 1.25;
+    given.certificate.norm_lower = given.certificate.norm_upper = std::numeric_limits<double>::infinity();
+    return {designed, given};
+  }
+  std::optional<Box> inner_estimate() const override {
+    if (k_ < 2) return std::nullopt;
+    const Box hull = X_.set->interval_hull();
+    const Vector center = hull.center(), radius = (k_ < 7 ? scale_ : later_) * hull.radius();
+    const Index n = hull.dim() - (cut_ ? 1 : 0);
+    return Box{(center - radius).head(n), (center + radius).head(n)};
+  }
+
+ private:
+  Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
+    return X_ = Recursive::do_start(X0, first);
+  }
+  Enclosure do_step(const Sample& before, const Sample& now) override {
+    k_ = now.k;
+    return X_ = Recursive::do_step(before, now);
+  }
+
+  double scale_, later_;
+  bool cut_;
+  Index k_ = 0;
+  Enclosure X_;
+};
+
+/// The additive faults of the tests' data.
+inline Vector additive_faults(Index k) { return Vector{{k % 20 >= 9 && k % 20 < 14 ? 1. : 0., -.5}}; }
+
+/// The study's own data with the additive faults that the fake diagnoser knows of.
+class WithFaults final : public DataSource {
+ public:
+  /// Faults in the nominal mode are what a diagnoser would never meet: excluding it is then false.
+  explicit WithFaults(std::unique_ptr<DataSource> data, bool nominal = false) : data_(std::move(data)), nominal_(nominal) {}
+  std::optional<Record> next() override {
+    std::optional<Record> record = data_->next();
+    if (!record) return record;
+    record->fault = additive_faults(record->sample.k);
+    record->mode = nominal_ || (*record->fault)[0] == 0 ? 0 : -1;  // as if fault 2 were part of the nominal mode
+    return record;
+  }
+  std::optional<std::int64_t> size() const override { return data_->size(); }
+
+ private:
+  std::unique_ptr<DataSource> data_;
+  bool nominal_;
+};
+
+/// Monitors the nominal mode as long as its bounds hold 0: fault 1 at k - 1 and fault 2 at k - 3, ± .25, with an estimate that is
+/// off by .125. From k = 12 of run number `crooked` on the bounds of fault 2 are off by `off`. `broken` bounds are none.
+class Bounding final : public Diagnoser {
+ public:
+  Bounding(const DiagnoserContext& context, const Params& p)
+      : Diagnoser(context.bank, context.backend),
+        crooked_(p.integer("crooked")),
+        off_(p.real("off")),
+        broken_(p.text("broken")) {}
+
+ private:
+  void do_start() override { ++runs_; }
+  Diagnosis do_step(const Sample*, const Sample& now) override {
+    Diagnosis says;
+    says.k = now.k;
+    says.since = now.k;  // of the bounds it is their own time
+    says.mode = bank().nominal;
+    says.modes.resize(static_cast<std::size_t>(bank().size()));
+    for (ModeEvidence& evidence : says.modes) evidence.candidate = true;
+    if (now.k >= 1) says.faults.push_back(bound(0, now.k - 1, 0));
+    if (now.k >= 3) says.faults.push_back(bound(1, now.k - 3, runs_ == crooked_ && now.k >= 12 ? off_ : 0));
+    if (now.k == 4) spoil(says);
+    // fault 2 is there at all times: only fault 1 decides
+    if (now.k >= 1 && says.faults[0].lower > 0) {
+      says.decision = Decision::unknown_fault;
+      says.mode = -1;
+      says.modes[0].candidate = false;
+      says.modes[0].consistent = Answer::no;
+    }
+    return says;
+  }
+  static FaultBound bound(Index fault, Index at, double off) {
+    const double middle = additive_faults(at)[fault] + off;
+    return {fault, at, middle - .25, middle + .25, middle + .125};
+  }
+  void spoil(Diagnosis& says) const {
+    FaultBound& first = says.faults[0];
+    if (broken_ == "order") std::swap(first.lower, first.upper);
+    if (broken_ == "estimate") first.estimate = first.upper + 1;
+    if (broken_ == "nan") first.lower = std::nan("");
+    if (broken_ == "future") first.at = says.k + 1;
+    if (broken_ == "before") first.at = -1;
+    if (broken_ == "twice") first.fault = 1;
+    if (broken_ == "index") first.fault = 2;
+  }
+  std::optional<Guarantees> do_guarantees() const override {
+    Guarantees found;
+    found.method = "by hand";
+    found.faults = {{0, 1, .25}, {1, 3, std::numeric_limits<double>::infinity()}};
+    return found;
+  }
+
+  Index crooked_, runs_ = 0;
+  double off_;
+  std::string broken_;
+};
+
 /// Breaks down at k = 5, in one of several ways.
 class Breaking final : public Observer {
  public:
@@ -199,6 +315,13 @@ inline void register_all(Registrar& registrar) {
   registrar.observer({{"breaking", "breaks down", "", how}, no_problem, [](const ObserverContext& c, const Params& p) {
                         return std::make_unique<Breaking>(c, p.text("how"));
                       }});
+  ParamSchema offer;
+  offer.real("scale", "of the inner estimate", .5, 0, 10);
+  offer.real("later", "the same from k = 7 on", .5, 0, 10);
+  offer.flag("cut", "leaves out a state", false);
+  registrar.observer({{"offering", "offers gains and an inner estimate", "", offer},
+                      no_problem,
+                      [](const ObserverContext& c, const Params& p) { return std::make_unique<Offering>(c, p); }});
   ParamSchema claim;
   claim.real("radius", "of the claimed box", 1e-3, -1, 1e9);
   claim.real("admissible", "radius of the admissible set; 0: none", 0, 0, 1e9);
@@ -215,6 +338,16 @@ inline void register_all(Registrar& registrar) {
   registrar.diagnoser({{"scripted", "says what it is told", "", script},
                        no_diagnoser_problem,
                        [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Scripted>(c, p); }});
+  ParamSchema bounds;
+  bounds.integer("crooked", "number of the run with false bounds; 0: none", 0, 0, 1000);
+  bounds.real("off", "by how much they are off", .5, -10, 10);
+  bounds.choice("broken", "what is wrong with a bound",
+                {"nothing", "order", "estimate", "nan", "future", "before", "twice", "index"}, "nothing");
+  registrar.diagnoser({{"bounding", "bounds additive faults", "", bounds},
+                       no_diagnoser_problem,
+                       [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Bounding>(c, p); },
+                       true,
+                       false});
   registrar.metric({{"radius", "half the longest edge", "", {}}, [](const Params&) { return std::make_unique<Radius>(); }});
   registrar.metric({{"time", "of a step", "", {}}, [](const Params&) { return std::make_unique<Time>(); }});
   registrar.metric({{"fickle", "changes its names", "", {}}, [](const Params&) { return std::make_unique<Fickle>(); }});
@@ -250,6 +383,13 @@ inline Study study(std::vector<PipelineSpec> pipelines, std::int64_t steps = 20)
   s.pipelines = std::move(pipelines);
   s.metrics = {{"radius", {}}, {"time", {}}};
   s.resolved = R"({"cordon": 1, "title": "two states"})";
+  return s;
+}
+
+/// The same with two additive faults and the diagnoser that knows of them.
+inline Study study_with_faults(Params params, std::int64_t steps = 20) {
+  Study s = study({{"filter", {"box", {}}, {}, ComponentSpec{"bounding", std::move(params)}}}, steps);
+  s.model.linear.F = Matrix::Identity(2, 2);
   return s;
 }
 

@@ -181,3 +181,138 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
   CHECK(data["error_set"]["computed"] == true);
   CHECK(data["error_set"]["set"]["generators"] == 1);
 }
+
+TEST_CASE("gains, widths at the end and inner estimates have a table each, and only where there are any") {
+  RunOutcome outcome;
+  outcome.pipelines.resize(2);
+  PipelineOutcome &plain = outcome.pipelines[0], &offers = outcome.pipelines[1];
+  plain.name = "plain";
+  offers.name = "offers";
+  std::string text = apps::report_text(study(), outcome, "out");
+  for (const char* title : {"Gains", "Widths", "Inner"}) CHECK_FALSE(has(text, title));
+
+  plain.last_hull = {Vector{{-1., -std::numeric_limits<double>::infinity()}}, Vector{{1 + 6e-7, 3.}}};
+  offers.last_hull = {Vector{{.25, 0.}}, Vector{{.25, 1.5e-5}}};
+  Gain designed{"upper_gain", "h_infinity", Matrix{{.5, 1. / 3}, {-.25, 0}}, {}},
+      given{"gain", "given", Matrix::Ones(6, 6) / 3, {}};
+  designed.certificate = {.75, true, 2.49999999, 2.5, "γ", 2.5, 2.4375, .001};
+  given.certificate.spectral_radius = .5;
+  given.certificate.norm_lower = 1;
+  given.certificate.norm_upper = std::numeric_limits<double>::infinity();
+  offers.gains = {designed, given};
+  offers.inner_steps = 19;
+  offers.inner_share = .875;
+  text = apps::report_text(study(), outcome, "out");
+  CHECK(has(text,
+            "Gains\n"
+            "PIPELINE  PARAMETER   GAIN        L                      SPECTRAL RADIUS  MONOTONE  ‖G‖∞    OPTIMUM\n"
+            "offers    upper_gain  h_infinity  [0.5 0.3333; -0.25 0]  0.75             yes       2.5     γ = 2.5\n"
+            "offers    gain        given       6×6                    0.5              no        [1, ∞]  -\n"
+            "\n"
+            "Widths at the last step\n"
+            "PIPELINE  x1        x2\n"
+            "plain     2.000001  unbounded\n"
+            "offers    0.000000  1.500000e-05\n"
+            "\n"
+            "Inner estimates\n"
+            "PIPELINE  STEPS  MEAN SHARE OF THE WIDTH  INSIDE THE HULL\n"
+            "offers    19     0.875                    always\n"
+            "\n"));
+  const json p = json::parse(apps::report_json(outcome))["pipelines"];
+  CHECK(p[0]["gains"].empty());
+  CHECK(p[0]["inner_steps"] == 0);
+  CHECK(p[0]["inner_share"].is_null());
+  CHECK(p[0]["last"]["width"][1] == "inf");
+  CHECK(p[0]["last"]["hull"]["lower"][1] == "-inf");
+  CHECK(p[1]["gains"][0]["matrix"] == json{{.5, 1. / 3}, {-.25, 0.}});
+  CHECK(p[1]["gains"][0]["optimum_bound"] == 2.4375);
+  CHECK(p[1]["gains"][1]["norm"]["upper"] == "inf");
+  CHECK_FALSE(p[1]["gains"][1].contains("objective"));
+  CHECK(p[1]["inner_share"] == .875);
+  CHECK(p[1]["inner_outside"].is_null());
+
+  plain.last_hull = Box::empty(2);
+  text = apps::report_text(study(), outcome, "out");
+  CHECK(has(text, "plain     empty     empty\n"));
+  CHECK(json::parse(apps::report_json(outcome))["pipelines"][0]["last"]["width"].is_null());
+  plain.last_hull = offers.last_hull = {-Vector::Ones(8), Vector::Ones(8)};
+  CHECK(has(apps::report_text(study(), outcome, "out"), "x8\n"));
+  plain.last_hull = offers.last_hull = {-Vector::Ones(9), Vector::Ones(9)};
+  CHECK_FALSE(has(apps::report_text(study(), outcome, "out"), "Widths"));
+}
+
+TEST_CASE("an inner estimate outside the hull is a violated guarantee") {
+  RunOutcome outcome;
+  outcome.pipelines.resize(2);
+  CHECK(apps::exit_of(outcome) == apps::Exit::done);
+  CHECK(apps::complaints(outcome).empty());
+  outcome.pipelines[0].error = "out of order";
+  outcome.pipelines[0].error_code = Errc::solver;
+  CHECK(apps::exit_of(outcome) == apps::Exit::unanswered);
+  PipelineOutcome& crooked = outcome.pipelines[1];
+  crooked.name = "crooked";
+  crooked.inner_steps = 3;
+  crooked.inner_outside = 0;
+  CHECK(apps::exit_of(outcome) == apps::Exit::violated);
+  REQUIRE(apps::complaints(outcome).size() == 2);
+  CHECK(has(apps::complaints(outcome)[1], "\"crooked\" violates its guarantee: at k = 0 its inner estimate"));
+  CHECK(has(apps::report_text(study(), outcome, "out"), "VIOLATED at k = 0"));
+  CHECK(has(apps::report_text(study(), outcome, "out"), "NOT at k = 0"));
+  crooked = {};
+  crooked.violated_at = 0;
+  CHECK(apps::exit_of(outcome) == apps::Exit::violated);
+  CHECK(has(apps::complaints(outcome)[1], "the true state is proven outside"));
+}
+
+TEST_CASE("additive faults: names in the timeline, a table, and what is outside its bounds") {
+  PipelineOutcome p = diagnosis();
+  p.diagnosis->modes = {"healthy"};
+  p.diagnosis->statistics = {p.diagnosis->statistics[0]};
+  p.diagnosis->events = {{0, Kind::truth, 0, {}}, {0, Kind::starts, 0, {}}, {7, Kind::truth, -1, {}}, {30, Kind::truth, -1, {}}};
+  Study s = fakes::study({});
+  auto& simulate = std::get<SimulateSpec>(s.data);
+  simulate.additive_faults = {{1, 5, 29, {}}, {0, 6, 8, {}}, {1, 7, 9, {}}, {0, 30, 40, {}}};
+  FaultStatistics first{0, 2, 100, 90, 3, 40, .25, .125, .0625, 1.5}, second;
+  second.fault = 1;
+  p.diagnosis->faults = {first, second};
+  const apps::Paint paint(stdout);
+  std::string text = apps::diagnosis_text(s, p, paint);
+  CHECK(has(text, "zonotope, observer_bank, 1 mode, 12.3"));
+  CHECK(has(text, "7   fault begins   additive faults 1, 2\n"));
+  CHECK(has(text, "30  fault changes  additive fault 1\n"));
+  CHECK(has(text, "\nadditive fault  60 "));
+  CHECK(has(text,
+            "\nAdditive faults over 60 runs (share: error of the estimate / half width)\n"
+            "FAULT  DELAY  BOUNDS  WITHOUT 0  OUTSIDE  HALF WIDTH: LAST  MEAN  RMS ERROR  LARGEST SHARE\n"
+            "1      2      100     40         3 of 90  0.125             0.25  0.0625     1.5\n"
+            "2      -      0       0          -        -                 -     -          -\n"));
+  CHECK_FALSE(has(text, "True fault"));
+  p.diagnosis->fault_outside = FaultOutside{12, 9, 1, 4};
+  p.violated_at = 12;
+  CHECK(
+      has(apps::diagnosis_text(s, p, paint), "True fault outside its bounds: fault 2 of k = 9, bounded at k = 12 (run 5 of 60)"));
+  CHECK(
+      has(apps::diagnosis_violation(p), "at k = 12 the true additive fault 2 of k = 9 lies outside its bounds (seed offset 4)"));
+  p.diagnosis->true_mode_excluded = TrueModeExcluded{11, 10, 0, 0};
+  p.violated_at = 11;
+  CHECK(has(apps::diagnosis_violation(p), "it excludes the mode \"healthy\""));
+  simulate.faults = {{120, 130, "leak", -1, {}, {}, {}}};
+  CHECK(has(apps::diagnosis_text(s, p, paint), "\noutside the bank  60 "));
+}
+
+TEST_CASE("statements in advance about additive faults") {
+  Guarantees g;
+  g.method = "recursion of the error sets";
+  g.faults = {{0, 1, .1234567}, {1, 4, std::numeric_limits<double>::infinity()}};
+  const apps::Paint paint(stdout);
+  const std::string table =
+      "Method: recursion of the error sets\n"
+      "ADDITIVE FAULT  DELAY  HALF WIDTH IN STEADY STATE\n"
+      "1               1      0.123457\n"
+      "2               4      grows without limit\n";
+  CHECK(apps::guarantees_text(g, {"healthy"}, paint) == table);
+  g.pairs = {{0, 0, interval(-1, 1), Answer::yes}};
+  CHECK(has(apps::guarantees_text(g, {"healthy"}, paint), table + "OBSERVER"));
+  const json data = json::parse(json_of(g, {"healthy"}));
+  CHECK(data["faults"][1] == json{{"fault", 2}, {"delay", 4}, {"half_width", "inf"}});
+}

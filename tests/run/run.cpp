@@ -96,7 +96,7 @@ TEST_CASE("unbounded hulls are written as words") {
   CHECK(results["pipelines"][0]["steps"][0]["hull"]["lower"] == json::array({"-inf", "-inf"}));
   CHECK(results["pipelines"][0]["steps"][0]["hull"]["upper"] == json::array({"inf", "inf"}));
   CHECK(results["pipelines"][0]["steps"][0]["radius"] == "inf");
-  CHECK(lines(bytes_of(scratch / "steps.csv"))[1] == "unbounded,0,yes,outer,-inf,-inf,inf,inf,inf,7,yes,");
+  CHECK(lines(bytes_of(scratch / "steps.csv"))[1] == "unbounded,0,yes,outer,-inf,-inf,inf,inf,inf,7,yes,,,,,");
 }
 
 TEST_CASE("sets.jsonl holds the exchange form of each estimate") {
@@ -147,7 +147,9 @@ TEST_CASE("the tables hold the same numbers") {
   run(fakes::study({fakes::pipeline("a,b"), fakes::pipeline("q")}), scratch.path());
   const auto steps = lines(bytes_of(scratch / "steps.csv"));
   REQUIRE(steps.size() == 43);
-  CHECK(steps[0] == "pipeline,k,consistent,tightness,lower_1,lower_2,upper_1,upper_2,radius,radius_k,assumed,missing");
+  CHECK(steps[0] ==
+        "pipeline,k,consistent,tightness,lower_1,lower_2,upper_1,upper_2,radius,radius_k,assumed,missing,"
+        "inner_lower_1,inner_lower_2,inner_upper_1,inner_upper_2");
   CHECK(steps[1].starts_with("\"a,b\",0,yes,outer,"));
   const json results = json::parse(bytes_of(scratch / "results.json"));
   std::istringstream last(steps.back());
@@ -370,7 +372,9 @@ TEST_CASE("a study without pipelines or without metrics still gives whole files"
   run(study, scratch.path());
   CHECK(json::parse(bytes_of(scratch / "results.json"))["pipelines"].empty());
   CHECK(json::parse(bytes_of(scratch / "run.json"))["pipelines"].empty());
-  CHECK(bytes_of(scratch / "steps.csv") == "pipeline,k,consistent,tightness,lower_1,lower_2,upper_1,upper_2\n");
+  CHECK(bytes_of(scratch / "steps.csv") ==
+        "pipeline,k,consistent,tightness,lower_1,lower_2,upper_1,upper_2,"
+        "inner_lower_1,inner_lower_2,inner_upper_1,inner_upper_2\n");
   study = fakes::study({fakes::pipeline("p")});
   study.metrics.clear();
   run(study, scratch.path());

@@ -7,6 +7,7 @@
 
 #include "run/components.hpp"
 #include "run/scratch.hpp"
+#include "study/running/run_on.hpp"
 
 using namespace cordon;
 
@@ -21,9 +22,8 @@ double resident() {
   return 0;
 }
 
-}  // namespace
-
-TEST_CASE("memory stays flat over 100,000 steps") {
+/// MB by which the memory of a run grows after its first steps.
+double growth_of(const Study& study, const detail::OpenData& open) {
   const Scratch scratch;
   Registry registry;
   registry.add(fakes::register_all);
@@ -34,9 +34,22 @@ TEST_CASE("memory stays flat over 100,000 steps") {
     if (early == 0 && done > 500) early = resident();
     late = resident();
   };
-  const RunOutcome outcome = run_study(fakes::study({fakes::pipeline("p")}, 100000), registry, options);
+  const RunOutcome outcome = detail::run_on(open, study, registry, options);
   REQUIRE(outcome.pipelines[0].steps == 100001);
   REQUIRE(early > 0);
   MESSAGE("resident memory grew by " << late - early << " MB");
-  CHECK(late - early < 20);
+  return late - early;
+}
+
+}  // namespace
+
+TEST_CASE("memory stays flat over 100,000 steps") {
+  const Study study = fakes::study({fakes::pipeline("p", "offering")}, 100000);
+  CHECK(growth_of(study, [&](std::uint64_t offset) { return open_data(study, offset); }) < 20);
+}
+
+TEST_CASE("memory of a diagnosis with bounds of additive faults stays flat over 100,000 steps") {
+  const Study study = fakes::study_with_faults({}, 100000);
+  CHECK(growth_of(study, [&](std::uint64_t offset) { return std::make_unique<fakes::WithFaults>(open_data(study, offset)); }) <
+        20);
 }

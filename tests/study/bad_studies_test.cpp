@@ -59,7 +59,10 @@ const Mistake systems[] = {
     {"\"type\": \"descriptor\",\n\"E\"", "\"E\"", "/system/type", "is missing", "\"lti\"", 4},
     {"\"type\": \"descriptor\",\n", "\"type\": \"descripter\",\n", "/system/type", "unknown choice \"descripter\"",
      "did you mean \"descriptor\"?"},
-    {"\"type\": \"descriptor\",\n", "\"type\": \"interval_lti\",\n", "/system/type", "unknown choice", "\"lti\", \"descriptor\""},
+    {"\"type\": \"descriptor\",\n", "\"type\": \"nonlinear\",\n", "/system/type", "unknown choice",
+     "\"lti\", \"interval_lti\", \"descriptor\""},
+    {"\"type\": \"descriptor\",\n", "\"type\": \"interval_lti\",\n", "/system/E", "belongs to descriptor systems",
+     "\"descriptor\"", 6},
     {"\"type\": \"descriptor\",\n", "\"type\": \"lti\",\n", "/system/E", "belongs to descriptor systems", "\"descriptor\"", 6},
     {"\"E\": [[1, 0], [0, 0]]", "\"E\": [[1, 0]]", "/system/E", "is 1 × 2, must be square", ""},
     {"\"E\": [[1, 0], [0, 0]]", "\"E\": [[1]]", "/system/E", "is 1 × 1, must have 2 rows like /system/A", ""},
@@ -83,7 +86,8 @@ const Mistake systems[] = {
     {"\"C\": [[1, 0]],\n", "", "/system/C", "is missing", "y = C x", 4},
     {"\"D\": [[0.25]]", "\"D\": [[0.25, 1]]", "/system/D", "is 1 × 2, must have 1 column like /system/B", ""},
     {"\"Dv\": [[1]]", "\"Dv\": [[1], [1]]", "/system/Dv", "is 2 × 1, must have 1 row like /system/C", ""},
-    {"\"Dv\": [[1]]", "\"F\": [[1]]", "/system/F", "unknown key of a system", "\"E\""},
+    {"\"Dv\": [[1]]", "\"F\": [[1]]", "/system/F", "is 1 × 1, must have 2 rows like /system/A", ""},
+    {"\"Dv\": [[1]]", "\"G\": [[1]]", "/system/G", "unknown key of a system", "\"E\""},
 };
 
 const Mistake sets[] = {

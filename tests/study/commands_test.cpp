@@ -58,6 +58,40 @@ TEST_CASE("errors go to stderr, exit code 2, the other studies are looked at all
   CHECK(json["studies"][1]["study"]["pipelines"].size() == 4);
 }
 
+TEST_CASE("the manual of study files shows valid studies, and every component of this build") {
+  std::ifstream file(std::string(CORDON_SOURCE_DIR) + "/docs/study_format.md");
+  const std::string manual(std::istreambuf_iterator<char>(file), {}), fence = "```json\n";
+  const Scratch scratch;
+  int studies = 0, pieces = 0;
+  for (std::size_t at = 0; (at = manual.find(fence, at)) != std::string::npos;) {
+    at += fence.size();
+    const std::string block = manual.substr(at, manual.find("```", at) - at);
+    CAPTURE(block);
+    if (block.front() == '{') {
+      const Outcome outcome = run("validate " + scratch.write("s.json", block).string(), "2>&1");
+      CAPTURE(outcome.out);
+      CHECK(outcome.exit == 0);
+      if (block.find("interval_lti") != std::string::npos) {
+        CHECK(outcome.out.find("uncertain lti, 2 states, 1 input, 1 output, 2 disturbances, 1 noise, 2 additive faults") !=
+              std::string::npos);
+        CHECK(outcome.out.find("additive  fault 1 from k = 20 to 40\n") != std::string::npos);
+      }
+      ++studies;
+    } else {
+      CHECK(nlohmann::json::accept("{" + block + "}"));
+      ++pieces;
+    }
+  }
+  CHECK(studies == 2);
+  CHECK(pieces == 4);
+  const auto list = nlohmann::json::parse(run("list --json", "2>/dev/null").out);
+  for (const auto& component : list["components"]) {
+    const std::string name = component["name"];
+    CAPTURE(name);
+    CHECK(manual.find("`" + name + "`") != std::string::npos);
+  }
+}
+
 TEST_CASE("bad rows of recorded data are found by validate") {
   const Scratch scratch;
   std::ifstream study(examples + "recorded_walk.json");
@@ -114,4 +148,15 @@ TEST_CASE("schema prints JSON with the components of this build") {
   CHECK(outcome.exit == 0);
   const auto schema = nlohmann::json::parse(outcome.out);
   CHECK(schema["$defs"]["backend"]["oneOf"].size() == 5);  // four, and their names alone
+}
+
+TEST_CASE("info shows a component as text without colours, and as JSON with its details") {
+  const Outcome text = run("info luenberger", "2>/dev/null");
+  CHECK(text.exit == 0);
+  CHECK(text.out.starts_with("observer luenberger (plugin estimators)\n"));
+  CHECK(text.out.find("\nPARAMETER ") != std::string::npos);
+  CHECK(text.out.find('\x1b') == std::string::npos);
+  const auto json = nlohmann::json::parse(run("info luenberger --json", "2>/dev/null").out);
+  CHECK(json["components"][0]["kind"] == "observer");
+  CHECK(json["components"][0]["details"].is_string());
 }

@@ -64,6 +64,11 @@ class FakePlant final : public Plant {
   double tempo_;
 };
 
+class FakeGain final : public GainDesigner {
+ public:
+  GainDesign design(const Model&) const override { return {}; }
+};
+
 class FakeMetric final : public Metric {
  public:
   std::vector<MetricValue> step(const StepView&) override { return {}; }
@@ -106,12 +111,47 @@ ParamSchema observer_schema() {
   return schema;
 }
 
-/// All but `descriptor` take models with ranges.
+/// All but `descriptor` take models with ranges and interval matrices.
 void add_observer(Registrar& registrar, const std::string& name, const ParamSchema& schema) {
   registrar.observer({{name, "a fake", "", schema},
                       check_sets,
                       [](const ObserverContext& context, const Params&) { return std::make_unique<FakeObserver>(context); },
+                      name != "descriptor",
                       name != "descriptor"});
+}
+
+/// The gain inside is asked about the model.
+void add_luenberger(Registrar& registrar) {
+  ParamSchema schema;
+  schema.component("gain", "of the observer", "gain").or_matrix("given");
+  const auto check = [](const ObserverContext& context, const Params& params) {
+    if (!params.has("gain")) return std::vector<Diagnostic>{};
+    auto problems = context.make->check_gain(params.component("gain"), {context.model});
+    for (Diagnostic& d : problems) d.pointer = "/gain" + d.pointer;
+    return problems;
+  };
+  registrar.observer({{"luenberger", "a fake", "", schema},
+                      check,
+                      [](const ObserverContext& context, const Params&) { return std::make_unique<FakeObserver>(context); },
+                      true,
+                      true});
+}
+
+void add_gains(Registrar& registrar) {
+  const auto create = [](const Params&) { return std::make_unique<FakeGain>(); };
+  ParamSchema given;
+  given.matrix("matrix", "the gain").required();
+  const auto check = [](const GainContext& context, const Params& params) {
+    const Matrix& L = params.matrix("matrix");
+    std::vector<Diagnostic> problems;
+    if (L.rows() != context.model.linear.states()) problems.push_back({"/matrix", "has a wrong number of rows", "one per state"});
+    if (L(0, 0) < 0) problems.push_back({"/matrix/0/0", "is negative", ""});
+    return problems;
+  };
+  registrar.gain({{"given", "a fake", "", given}, check, create});
+  ParamSchema optimal;
+  optimal.real("weight", "of the noise", 0.5, 0, 1).matrix("theta", "directions");
+  registrar.gain({{"optimal", "a fake", "", optimal}, nullptr, create});
 }
 
 /// The observer inside is asked about every mode.
@@ -152,6 +192,8 @@ void register_fakes(Registrar& registrar) {
   kinds.choice("norm", "which one", {"one", "two"}, "one").vector("poles", "poles").matrix("gain", "a gain").required();
   kinds.set("safe_set", "a set").text("note", "any text", "none");
   add_observer(registrar, "all_kinds", kinds);
+  add_luenberger(registrar);
+  add_gains(registrar);
   for (const char* name : {"radius", "volume", "contains_truth", "complexity", "step_time", "tightness"})
     add_metric(registrar, name);
   ParamSchema bank;
@@ -161,6 +203,11 @@ void register_fakes(Registrar& registrar) {
   ParamSchema committee;
   committee.component("member", "the one that is asked", "diagnoser");
   add_diagnoser(registrar, "committee", committee, nullptr);
+  registrar.diagnoser({{"fault_filter", "a fake", "", {}},
+                       nullptr,
+                       [](const DiagnoserContext& context, const Params&) { return std::make_unique<FakeDiagnoser>(context); },
+                       true,
+                       false});
   ParamSchema reactor;
   reactor.real("tempo", "of the reaction", 0.25, 0, 1);
   registrar.plant({{"reactor", "a fake", "", reactor},
@@ -269,6 +316,43 @@ const char* const diagnosis_study = R"({
 {
 "backend": "line_zonotope",
 "observer": "prediction_correction"
+}
+]
+}
+)";
+
+const char* const uncertain_study = R"({
+"cordon": 1,
+"title": "an uncertain plant",
+"system": {
+"type": "interval_lti",
+"A": {"center": [[0.5, 0.25], [0, 0.75]], "radius": [[0.125, 0], [0, 0.0625]]},
+"B": {"lower": [[0.9], [1]], "upper": [[1.1], [1]]},
+"C": [[1, 0], [0, 1]],
+"F": [[1, 0.5], [0, 2]],
+"X0": {"type": "box", "lower": [-1, -1], "upper": [1, 1]},
+"W": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
+"V": {"type": "box", "lower": [-0.3, -0.3], "upper": [0.3, 0.3]}
+},
+"data": {
+"simulate": {
+"steps": 20,
+"parameters": "varying",
+"input": [{"type": "constant", "offset": 1}],
+"additive_faults": [
+{"fault": 2, "from": 3, "to": 9, "signal": {"type": "sine", "amplitude": 1, "omega": 0.5}},
+{"fault": 1, "signal": {"type": "table", "values": [0, 0.5, 0]}}
+]
+}
+},
+"pipelines": [
+{
+"backend": "zonotope",
+"observer": {"type": "luenberger", "gain": [[0.5, 0], [0, 0.25]]}
+},
+{
+"backend": "interval",
+"diagnoser": "fault_filter"
 }
 ]
 }

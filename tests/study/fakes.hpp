@@ -13,8 +13,9 @@ namespace study_test {
 
 /// Backends interval, zonotope, constrained_zonotope, line_zonotope; observers prediction_correction, descriptor and `all_kinds`
 /// (one parameter of every kind); the metrics of the shipped plugin and `quantile` with a required parameter; the diagnosers
-/// `observer_bank` (with an observer inside) and `committee` (with a diagnoser inside); the plant `reactor` with two states, two
-/// inputs and one output.
+/// `observer_bank` (with an observer inside), `committee` (with a diagnoser inside) and `fault_filter` (for additive faults); the
+/// observer `luenberger` with a gain that may be written as a matrix, the gains `given` and `optimal`; the plant `reactor` with
+/// two states, two inputs and one output. All observers but `descriptor`, and `fault_filter`, take uncertain models.
 void register_fakes(cordon::Registrar& registrar);
 
 /// A directory of its own that is removed in the end.
@@ -36,6 +37,9 @@ extern const char* const valid_study;
 
 /// The same for a study with modes, faults and diagnosers.
 extern const char* const diagnosis_study;
+
+/// The same with interval matrices, additive faults and a gain.
+extern const char* const uncertain_study;
 
 /// `text` with its only occurrence of `from` exchanged. Throws std::logic_error if there is none or more than one.
 std::string exchanged(std::string text, const std::string& from, const std::string& to);

@@ -6,7 +6,8 @@
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "diagnosers/observer_bank/observer_bank.hpp"
-#include "observers/luenberger_gain.hpp"
+#include "gains/gain_certificate.hpp"
+#include "observers/observer_gain.hpp"
 #include "observers/observer_parameters.hpp"
 
 namespace cordon::estimators {
@@ -22,8 +23,10 @@ ParamSchema parameters() {
                "T: a mode lasts at least so many steps; decides between ambiguous and isolated, switch and unknown fault", {}, 1,
                most_steps)
       .required();
-  schema.matrix("gain",
-                "L of all modes, a row per state and a column per output; absent, and without gains: designed for each mode");
+  add_gain_parameter(
+      schema, "gain",
+      "L of all modes, a matrix with a row per state and a column per output, or a designer, asked for each mode and "
+      "for the steady state; absent, and without gains: \"kalman\"");
   schema.matrices("gains", "L of each mode in place of gain, the nominal mode first");
   schema.set(
       "error_set",
@@ -47,13 +50,23 @@ ParamSchema parameters() {
   return schema;
 }
 
+ComponentSpec default_gain() { return {"kalman", {}}; }
+
+ObserverContext context_of(const DiagnoserContext& context, const Mode& mode) {
+  return {mode.model, context.backend, &context.make};
+}
+
 /// One per mode, as given or designed.
-std::vector<Matrix> gains_of(const ModeBank& bank, const Params& params) {
+std::vector<Matrix> gains_of(const DiagnoserContext& context, const Params& params) {
   if (params.has("gains")) return params.matrices("gains");
   std::vector<Matrix> gains;
-  for (const Mode& mode : bank.modes) gains.push_back(params.has("gain") ? params.matrix("gain") : designed_gain(mode.model));
+  for (const Mode& mode : context.bank.modes) {
+    gains.push_back(observer_gain(context_of(context, mode), params, "gain", default_gain()).gain.L);
+  }
   return gains;
 }
+
+std::string of_mode(const Mode& mode) { return " (mode \"" + mode.name + "\")"; }
 
 std::optional<LineForm> set_or_none(const Params& params, const char* name) {
   return params.has(name) ? std::optional(params.set_form(name)) : std::nullopt;
@@ -80,9 +93,10 @@ OfflineOptions offline_options(const ModeBank& bank, const Params& params) {
   return options;
 }
 
-ObserverBankOptions options_of(const ModeBank& bank, const Params& params) {
+ObserverBankOptions options_of(const DiagnoserContext& context, const Params& params) {
+  const ModeBank& bank = context.bank;
   ObserverBankOptions options;
-  options.gains = gains_of(bank, params);
+  options.gains = gains_of(context, params);
   options.budget = budget_from(params);
   options.initial_set = initial_set_from(bank[bank.nominal].model, params);
   options.waiting_time = params.integer("waiting_time");
@@ -98,25 +112,37 @@ std::string shape_problem(const Matrix& A, Index rows, Index cols) {
          std::to_string(cols);
 }
 
-void check_gains(const ModeBank& bank, const Params& params, std::vector<Diagnostic>& problems) {
-  const bool shared = params.has("gain"), listed = params.has("gains");
-  if (shared && listed) problems.push_back({"/gains", "stands beside \"gain\"", "remove one of the two"});
-  const auto* list = listed ? &params.matrices("gains") : nullptr;
-  if (list && static_cast<Index>(list->size()) != bank.size()) {
+/// One per mode, in the order of the modes.
+void check_list(const ModeBank& bank, const std::vector<Matrix>& gains, std::vector<Diagnostic>& problems) {
+  if (static_cast<Index>(gains.size()) != bank.size()) {
     problems.push_back(
-        {"/gains", "holds " + std::to_string(list->size()) + " matrices, the bank has " + std::to_string(bank.size()) + " modes",
+        {"/gains", "holds " + std::to_string(gains.size()) + " matrices, the bank has " + std::to_string(bank.size()) + " modes",
          "give one per mode, the nominal mode first"});
     return;
   }
+  for (std::size_t j = 0; j < gains.size(); ++j) {
+    const Mode& mode = bank.modes[j];
+    const std::string problem = gain_problem(mode.model, gains[j]);
+    if (problem.empty()) continue;
+    problems.push_back(
+        {"/gains/" + std::to_string(j), problem + of_mode(mode), "a row per state, a column per output, with A - L C stable"});
+  }
+}
+
+void check_gains(const DiagnoserContext& context, const Params& params, std::vector<Diagnostic>& problems) {
+  const ModeBank& bank = context.bank;
+  const bool listed = params.has("gains");
+  if (listed && params.has("gain")) problems.push_back({"/gains", "stands beside \"gain\"", "remove one of the two"});
+  if (listed) return check_list(bank, params.matrices("gains"), problems);
   for (Index j = 0; j < bank.size(); ++j) {
-    const Matrix* given = list ? &(*list)[static_cast<std::size_t>(j)] : shared ? &params.matrix("gain") : nullptr;
-    const auto same_loop = [&](const Mode& earlier) {  // whose problem with the shared gain has been told
+    const auto same_loop = [&](const Mode& earlier) {  // whose problem with the gain has been told
       const LinearModel &m = bank[j].model.linear, &other = earlier.model.linear;
-      return !list && m.A == other.A && m.C == other.C && m.sensor_center() == other.sensor_center();
+      return m.A == other.A && m.C == other.C && m.sensor_center() == other.sensor_center();
     };
     if (std::any_of(bank.modes.begin(), bank.modes.begin() + j, same_loop)) continue;
-    check_gain(bank[j].model, given, list ? "/gains/" + std::to_string(j) : "/gain", " of mode \"" + bank[j].name + "\"",
-               problems);
+    const std::size_t before = problems.size();
+    check_observer_gain(context_of(context, bank[j]), params, "gain", default_gain(), problems);
+    for (std::size_t i = before; i < problems.size(); ++i) problems[i].message += of_mode(bank[j]);
   }
 }
 
@@ -153,10 +179,10 @@ std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& par
     return problems;
   }
   problems = check_common({bank[bank.nominal].model, context.backend}, params);
-  check_gains(bank, params, problems);
+  check_gains(context, params, problems);
   check_shapes(bank, params, problems);
   if (!problems.empty()) return problems;
-  return check_offline(bank, gains_of(bank, params), offline_options(bank, params));
+  return check_offline(bank, gains_of(context, params), offline_options(bank, params));
 }
 
 }  // namespace
@@ -169,7 +195,7 @@ void register_observer_bank(Registrar& registrar) {
                          if (auto problems = check(context, params); !problems.empty()) {
                            throw InputError("diagnoser \"observer_bank\"", std::move(problems));
                          }
-                         return std::make_unique<ObserverBank>(context.bank, context.backend, options_of(context.bank, params));
+                         return std::make_unique<ObserverBank>(context.bank, context.backend, options_of(context, params));
                        }});
 }
 

@@ -46,6 +46,7 @@ struct VerifiedPipeline {
 
 struct VerifyOutcome {
   bool interrupted = false;
+  bool by_samples = false;  ///< matrices are known by intervals only: checked for some of them, not for all
   std::vector<VerifiedPipeline> pipelines;
   std::optional<Violation> violation;  ///< the first; the check ends there
 };
@@ -57,8 +58,10 @@ struct VerifyOutcome {
 ///      samples k-1 and k, in the coordinates' and in seeded random directions, with rationally checked bounds.
 ///   2. Every proof that is stored with the step holds in rational arithmetic: emptiness or non-emptiness, and the hull's bounds.
 ///   3. Where the step claims `exact`: X_k ⊆ F_k (in directions: X_k ⊆ those successors, which contain F_k).
-/// Tolerance: 1e-9 of each coordinate's size for nominal rounding, 1e-14 for outward (a vertex is rounded to doubles).
-/// Throws InputError for files that are missing or wrong, with place and reason.
+/// Of a model with interval matrices, F_k is computed for matrices drawn from them, anew at every step: a subset of the states
+/// that are consistent, so that whatever lies outside is a violation, but an estimate that holds F_k may still miss others.
+/// Claims of `exact` stay undecided there. Tolerance: 1e-9 of each coordinate's size for nominal rounding, 1e-14 for outward (a
+/// vertex is rounded to doubles). Throws InputError for files that are missing or wrong, with place and reason.
 VerifyOutcome verify_run(const std::filesystem::path& directory, const VerifyOptions& options = {});
 
 }  // namespace cordon

@@ -13,7 +13,8 @@ std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_off
     spec.seed += seed_offset;
     const bool modes = !study.modes.empty() || !spec.faults.empty();  // with one mode there is nothing to tell
     if (spec.made_plant) return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string(), modes);
-    return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string(), modes);
+    const bool additive = study.model.linear.faults() > 0;
+    return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string(), modes || additive);
   }
   std::vector<std::string> modes{study.nominal};
   for (const Mode& mode : study.modes) modes.push_back(mode.name);

@@ -18,6 +18,25 @@ const Box& sensor_of(const FaultSpec& fault, const SimulateSpec& spec) {
   return spec.made_plant ? fault.sensor : fault.model.linear.sensor;
 }
 
+void check_radius(const Matrix& A, const Matrix& radius, const std::string& pointer, std::vector<Diagnostic>& problems) {
+  if (radius.size() == 0) return;
+  if (radius.rows() != A.rows() || radius.cols() != A.cols()) {
+    problems.push_back({pointer, "has a radius of another size", ""});
+  } else if (!radius.allFinite() || radius.minCoeff() < 0) {
+    problems.push_back({pointer, "has a radius that is negative or not finite", ""});
+  }
+}
+
+void check_additive_faults(const SimulateSpec& spec, Index faults, std::vector<Diagnostic>& problems) {
+  for (std::size_t i = 0; i < spec.additive_faults.size(); ++i) {
+    const AdditiveFaultSpec& fault = spec.additive_faults[i];
+    const std::string place = "/data/simulate/additive_faults/" + std::to_string(i);
+    if (fault.fault < 0 || fault.fault >= faults) problems.push_back({place + "/fault", "is no column of /system/F", ""});
+    if (fault.from < 0 || fault.to < fault.from) problems.push_back({place, "ends before it begins, or begins before k = 0", ""});
+    for (Diagnostic& d : problems_of(fault.signal, place + "/signal")) problems.push_back(std::move(d));
+  }
+}
+
 }  // namespace
 
 void check_simulation(const Model& model, const SimulateSpec& spec, const std::string& file) {
@@ -37,6 +56,15 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
     for (Diagnostic& d : problems_of(spec.input[i], "/data/simulate/input/" + std::to_string(i)))
       problems.push_back(std::move(d));
   }
+  check_radius(linear.A, linear.A_radius, "/system/A", problems);
+  check_radius(linear.B, linear.B_radius, "/system/B", problems);
+  check_radius(linear.C, linear.C_radius, "/system/C", problems);
+  if (linear.faults() > 0) require(linear.F.rows(), linear.states(), "/system/F", "the rows of /system/A");
+  check_additive_faults(spec, linear.faults(), problems);
+  if (spec.made_plant && !spec.additive_faults.empty()) {
+    problems.push_back(
+        {"/data/simulate/additive_faults", "cannot be simulated with a plant: they are about the linear model", ""});
+  }
   for (std::size_t i = 0; i < spec.faults.size(); ++i) {
     const Model& fault = spec.faults[i].model;
     require(fault.linear.states(), linear.states(), place_of_fault(i), "the states of /system");
@@ -44,6 +72,12 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
     require(fault.linear.outputs(), linear.outputs(), place_of_fault(i), "the outputs of /system");
     require(fault.W.dim(), fault.linear.disturbances(), place_of_fault(i), "the columns of its Bw");
     require(fault.V.dim(), fault.linear.noises(), place_of_fault(i), "the columns of its Dv");
+    require(fault.linear.faults(), linear.faults(), place_of_fault(i), "the columns of /system/F");
+    for (const auto& [A, radius] :
+         {std::pair(&fault.linear.A, &fault.linear.A_radius), std::pair(&fault.linear.B, &fault.linear.B_radius),
+          std::pair(&fault.linear.C, &fault.linear.C_radius)}) {
+      check_radius(*A, *radius, place_of_fault(i), problems);
+    }
   }
   if (!problems.empty()) throw InputError(file, std::move(problems));
 }
@@ -56,6 +90,49 @@ Vector InputSource::at(std::int64_t k) {
   Vector u(static_cast<Index>(signals_.size()));
   for (Index i = 0; i < u.size(); ++i) u[i] = signals_[static_cast<std::size_t>(i)].at(k);
   return u;
+}
+
+AdditiveFaultSource::AdditiveFaultSource(const std::vector<AdditiveFaultSpec>& specs, Index faults) : faults_(faults) {
+  for (std::size_t i = 0; i < specs.size(); ++i)
+    entries_.push_back({specs[i], SignalSource(specs[i].signal, i, Purpose::additive_fault)});
+}
+
+Vector AdditiveFaultSource::at(std::int64_t k) {
+  Vector n = Vector::Zero(faults_);
+  for (Entry& entry : entries_) {
+    if (k >= entry.spec.from && k <= entry.spec.to) n[entry.spec.fault] += entry.signal.at(k);
+  }
+  return n;
+}
+
+ParameterSource::ParameterSource(const LinearModel& model, Noise noise, ParameterDraw draw, RandomStream stream)
+    : A_(model.interval_A()),
+      B_(model.interval_B()),
+      C_(model.interval_C()),
+      noise_(noise),
+      pending_(model.is_uncertain() && (noise == Noise::uniform || noise == Noise::vertex)),
+      again_(pending_ && draw == ParameterDraw::varying),
+      stream_(stream) {}
+
+/// Row by row; numbers are taken for entries with a radius only.
+Matrix ParameterSource::drawn(const IntervalMatrix& A) {
+  Matrix inside = A.center;
+  for (Index i = 0; i < A.rows(); ++i) {
+    for (Index j = 0; j < A.cols(); ++j) {
+      if (A.radius(i, j) > 0) inside(i, j) += A.radius(i, j) * (noise_ == Noise::vertex ? stream_.sign() : stream_.symmetric());
+    }
+  }
+  return inside;
+}
+
+std::optional<DrawnMatrices> ParameterSource::next() {
+  if (!pending_) return std::nullopt;
+  pending_ = again_;
+  DrawnMatrices matrices;
+  matrices.A = drawn(A_);
+  matrices.B = drawn(B_);
+  matrices.C = drawn(C_);
+  return matrices;
 }
 
 DrawSource::DrawSource(const Model& model, const SimulateSpec& spec, const std::string& file)
@@ -72,13 +149,15 @@ DrawSource::DrawSource(const Model& model, const Box& actuator, const Box& senso
       noise_(model.V, spec.noise, RandomStream(spec.seed, Purpose::noise, stream), disturbance_.factors(), file, place.V),
       effectiveness_(actuator, sensor, model.linear.inputs(), model.linear.outputs(), spec.noise,
                      RandomStream(spec.seed, Purpose::effectiveness, stream), disturbance_.factors() + noise_.factors(), file,
-                     place.effectiveness) {}
+                     place.effectiveness),
+      parameters_(model.linear, spec.noise, spec.parameters, RandomStream(spec.seed, Purpose::parameters, stream)) {}
 
 Draw DrawSource::at(std::int64_t k) {
   Draw draw;
   draw.w = disturbance_.at(k);
   draw.v = noise_.at(k);
   draw.effectiveness = effectiveness_.at(k);
+  draw.matrices = parameters_.next();
   return draw;
 }
 

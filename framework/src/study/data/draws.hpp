@@ -2,6 +2,7 @@
 // What a simulation draws and feeds at every step.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,10 +27,49 @@ class InputSource {
   std::vector<SignalSource> signals_;
 };
 
-/// w_k, v_k and the effectiveness of actuators and sensors at time k.
+/// The additive faults n_k: of each the sum of its entries that act at k.
+class AdditiveFaultSource {
+ public:
+  AdditiveFaultSource(const std::vector<AdditiveFaultSpec>& specs, Index faults);
+  /// k must not decrease from call to call.
+  Vector at(std::int64_t k);
+
+ private:
+  struct Entry {
+    AdditiveFaultSpec spec;
+    SignalSource signal;
+  };
+  std::vector<Entry> entries_;
+  Index faults_;
+};
+
+/// Matrices within the intervals of a model.
+struct DrawnMatrices {
+  Matrix A, B, C;
+};
+
+/// Draws the matrices of an uncertain model, entry by entry: uniform in their intervals, or at one of their ends (`vertex`). For
+/// `zero` and `sine` they stay in the middle, as those of an exact model do.
+class ParameterSource {
+ public:
+  ParameterSource(const LinearModel& model, Noise noise, ParameterDraw draw, RandomStream stream);
+  /// The matrices from this step on; nothing if they stay as they are. To be called once per step.
+  std::optional<DrawnMatrices> next();
+
+ private:
+  Matrix drawn(const IntervalMatrix& A);
+
+  IntervalMatrix A_, B_, C_;
+  Noise noise_;
+  bool pending_, again_;  ///< to be drawn at the next step; and at every later one
+  RandomStream stream_;
+};
+
+/// w_k, v_k, the effectiveness of actuators and sensors at time k, and the matrices where they change.
 struct Draw {
   Vector w, v;
   Effectiveness::Value effectiveness;
+  std::optional<DrawnMatrices> matrices = {};
 };
 
 /// Draws for one model: the nominal one, or that of a fault. Each has its own streams of random numbers: what is drawn for one
@@ -53,6 +93,7 @@ class DrawSource {
 
   Disturbance disturbance_, noise_;
   Effectiveness effectiveness_;
+  ParameterSource parameters_;
 };
 
 }  // namespace cordon::detail

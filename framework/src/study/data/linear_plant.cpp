@@ -7,56 +7,82 @@
 namespace cordon::detail {
 
 namespace {
+
 constexpr double rank_tolerance = 1e-10;
+
+Matrix beside(const Matrix& A, const Matrix& B) {
+  if (B.cols() == 0) return A;
+  Matrix both(A.rows(), A.cols() + B.cols());
+  both << A, B;
+  return both;
 }
 
-LinearPlant::LinearPlant(const LinearModel& model, const std::string& file, const std::string& pointer) : model_(model) {
+}  // namespace
+
+LinearPlant::LinearPlant(const LinearModel& model, const std::string& file, const std::string& pointer)
+    : model_(model), file_(file), pointer_(pointer) {
   const Index n = model.states();
+  model_.B = beside(model.B, model.F);
+  model_.D = beside(model.D, Matrix::Zero(model.outputs(), model.faults()));
   if (model.is_descriptor()) {
-    split(file, pointer);
+    split_E();
   } else {
     V_ = Matrix::Identity(n, n);
-    dynamic_A_ = model.A;
-    dynamic_B_ = model.B;
-    dynamic_Bw_ = model.Bw;
     static_A_ = Matrix(0, n);
-    static_B_ = Matrix(0, model.inputs());
+    static_B_ = Matrix(0, model_.inputs());
     static_Bw_ = Matrix(0, model.disturbances());
   }
+  split_rows();
   z_ = Vector::Zero(dynamic_A_.rows());
 }
 
-void LinearPlant::split(const std::string& file, const std::string& pointer) {
+void LinearPlant::split_E() {
   Vector units = linalg::row_scales(model_.E);  // the rank of E must not depend on the units of its rows
   const Vector of_A = linalg::row_scales(model_.A);
   for (Index i = 0; i < units.size(); ++i) {
     if (model_.E.row(i).isZero(0)) units[i] = of_A[i];
   }
   const linalg::Svd svd = linalg::svd(units.asDiagonal() * model_.E);
-  const Index n = model_.states();
   Index r = 0;
   while (r < svd.sigma.size() && svd.sigma[r] > rank_tolerance * svd.sigma[0]) ++r;
   V_ = svd.V;
   const Matrix rows = svd.U.transpose() * units.asDiagonal();
-  Matrix scaled = rows.topRows(r);
-  for (Index i = 0; i < r; ++i) scaled.row(i) /= svd.sigma[i];
-  dynamic_A_ = linalg::product(scaled, model_.A);
-  dynamic_B_ = linalg::product(scaled, model_.B);
-  dynamic_Bw_ = linalg::product(scaled, model_.Bw);
-  static_A_ = linalg::product(rows.bottomRows(n - r), model_.A);
-  static_B_ = linalg::product(rows.bottomRows(n - r), model_.B);
-  static_Bw_ = linalg::product(rows.bottomRows(n - r), model_.Bw);
-  if (r == n) return;
-  const Matrix block = linalg::product(static_A_, V_.rightCols(n - r));
+  dynamic_ = rows.topRows(r);
+  for (Index i = 0; i < r; ++i) dynamic_.row(i) /= svd.sigma[i];
+  static_ = rows.bottomRows(model_.states() - r);
+}
+
+void LinearPlant::split_rows() {
+  if (!model_.is_descriptor()) {
+    dynamic_A_ = model_.A;
+    dynamic_B_ = model_.B;
+    dynamic_Bw_ = model_.Bw;
+    return;
+  }
+  dynamic_A_ = linalg::product(dynamic_, model_.A);
+  dynamic_B_ = linalg::product(dynamic_, model_.B);
+  dynamic_Bw_ = linalg::product(dynamic_, model_.Bw);
+  static_A_ = linalg::product(static_, model_.A);
+  static_B_ = linalg::product(static_, model_.B);
+  static_Bw_ = linalg::product(static_, model_.Bw);
+  if (static_.rows() == 0) return;
+  const Matrix block = linalg::product(static_A_, V_.rightCols(static_.rows()));
   const Vector sizes = linalg::svd(block).sigma;
   const double scale = linalg::svd(static_A_).sigma[0];
   if (sizes[sizes.size() - 1] <= rank_tolerance * scale) {
-    throw InputError(file, {{pointer,
-                             "the descriptor system has an index above 1: its static rows do not determine the static states, "
-                             "so that x_k would depend on later inputs and disturbances",
-                             "use recorded data, or a model of index 1"}});
+    throw InputError(file_, {{pointer_,
+                              "the descriptor system has an index above 1: its static rows do not determine the static states, "
+                              "so that x_k would depend on later inputs and disturbances",
+                              "use recorded data, or a model of index 1"}});
   }
   solve_ = -linalg::pseudo_inverse(block);
+}
+
+void LinearPlant::exchange(const Matrix& A, const Matrix& B, const Matrix& C) {
+  model_.A = A;
+  model_.B = beside(B, model_.F);
+  model_.C = C;
+  split_rows();
 }
 
 void LinearPlant::start(VectorIn x0) { z_ = linalg::product(V_.leftCols(z_.size()).transpose(), x0); }

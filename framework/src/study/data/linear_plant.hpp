@@ -8,7 +8,8 @@
 
 namespace cordon::detail {
 
-/// E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with E singular of index 1, regular, or the identity.
+/// E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with E singular of index 1, regular, or the identity. Additive faults n are
+/// further inputs: (u, n) and [B F] take the places of u and B from here on, and the outputs do not show n.
 ///
 /// With E = U Σ Vᵀ (rank r by singular values above 1e-10 σ₁), z = Vᵀx = (z̃, ž) and Uᵀ splits the rows [Rego2025, (13)]:
 ///   z̃⁺ = Σ̃⁻¹ Ũᵀ(A x + B u + Bw w)     (r dynamic rows)
@@ -22,14 +23,16 @@ class LinearPlant {
 
   /// Sets z̃_0 from a state; its static part is found by the first step.
   void start(VectorIn x0);
+  /// Exchanges A, B and C; z̃ keeps its meaning, which depends on E only. Throws as the constructor does.
+  void exchange(const Matrix& A, const Matrix& B, const Matrix& C);
   /// Goes on from z̃_k of a plant of the same E, whose z̃ means the same.
   void resume(const LinearPlant& other) { z_ = other.z_; }
 
   struct Output {
     Vector x, y;
   };
-  /// x_k and y_k for the current k, then moves on to k + 1. u is what the actuators do; the sensors show diag(sensor) (C x + D
-  /// u).
+  /// x_k and y_k for the current k, then moves on to k + 1. u is what the actuators do, and n; the sensors show diag(sensor)
+  /// (C x + D u).
   Output step(VectorIn u, VectorIn w, VectorIn v, VectorIn sensor);
   Output step(VectorIn u, VectorIn w, VectorIn v) { return step(u, w, v, Vector::Ones(model_.outputs())); }
 
@@ -42,10 +45,13 @@ class LinearPlant {
   const Matrix& static_Bw() const { return static_Bw_; }
 
  private:
-  void split(const std::string& file, const std::string& pointer);
+  void split_E();
+  void split_rows();
 
-  LinearModel model_;
+  LinearModel model_;  ///< with [B F] and [D 0]
+  std::string file_, pointer_;
   Matrix V_;                                   ///< n×n: (Ṽ, V̌)
+  Matrix dynamic_, static_;                    ///< Σ̃⁻¹ Ũᵀ, Ǔᵀ
   Matrix dynamic_A_, dynamic_B_, dynamic_Bw_;  ///< Σ̃⁻¹ Ũᵀ (A, B, Bw)
   Matrix static_A_, static_B_, static_Bw_;     ///< Ǔᵀ (A, B, Bw)
   Matrix solve_;                               ///< -(Ǔᵀ A V̌)⁻¹

@@ -9,7 +9,15 @@
 namespace cordon::detail {
 
 /// What a stream is drawn for. Each purpose has its own stream, so that one never depends on how much of another was drawn.
-enum class Purpose : std::uint64_t { disturbance = 1, noise = 2, prbs = 3, direction = 4, effectiveness = 5 };
+enum class Purpose : std::uint64_t {
+  disturbance = 1,
+  noise = 2,
+  prbs = 3,
+  direction = 4,
+  effectiveness = 5,
+  parameters = 6,
+  additive_fault = 7
+};
 
 class RandomStream {
  public:

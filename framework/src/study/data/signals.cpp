@@ -35,8 +35,8 @@ std::vector<Diagnostic> problems_of(const Signal& signal, const std::string& poi
   return problems;
 }
 
-SignalSource::SignalSource(Signal signal, std::size_t channel)
-    : signal_(std::move(signal)), stream_(static_cast<std::uint64_t>(signal_.seed), Purpose::prbs, channel) {}
+SignalSource::SignalSource(Signal signal, std::size_t channel, Purpose purpose)
+    : signal_(std::move(signal)), stream_(static_cast<std::uint64_t>(signal_.seed), purpose, channel) {}
 
 double SignalSource::at(std::int64_t k) {
   const Signal& s = signal_;

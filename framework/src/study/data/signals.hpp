@@ -18,11 +18,11 @@ double cosine(double omega, std::int64_t k, double phase);
 /// Problems of a signal: an empty table, a period below 1, a NaN or infinite number. Pointers start with `pointer`.
 std::vector<Diagnostic> problems_of(const Signal& signal, const std::string& pointer);
 
-/// One channel over time. `prbs` draws from the signal's own seed and the channel's index, so that equal signals
+/// One channel over time. `prbs` draws from the signal's own seed, the purpose and the channel's index, so that equal signals
 /// on two channels are unrelated, and nothing else of a study changes them.
 class SignalSource {
  public:
-  SignalSource(Signal signal, std::size_t channel);
+  SignalSource(Signal signal, std::size_t channel, Purpose purpose = Purpose::prbs);
   /// The value at k ≥ 0; k must not decrease from call to call. O(1).
   double at(std::int64_t k);
 

@@ -23,7 +23,8 @@ SimulatedSource::SimulatedSource(const Model& model, const SimulateSpec& spec, s
       modes_(modes),
       timeline_((check_simulation(model, spec, file_), spec_.faults), file_),
       nominal_{LinearPlant(model.linear, file_), DrawSource(model, spec_, file_)},
-      inputs_(spec_.input) {
+      inputs_(spec_.input),
+      additive_(spec_.additive_faults, model.linear.faults()) {
   check_faults(model.linear);
   enter(0);
   first_ = draw(0);
@@ -74,13 +75,25 @@ void SimulatedSource::enter(std::int64_t k) {
 }
 
 Draw SimulatedSource::draw(std::int64_t k) {
-  Draw draw = nominal_.draws.at(k);
-  if (fault_) draw = fault_->draws.at(k);
+  const auto draw_for = [k](Regime& regime) {
+    Draw draw = regime.draws.at(k);
+    if (draw.matrices) regime.plant.exchange(draw.matrices->A, draw.matrices->B, draw.matrices->C);
+    return draw;
+  };
+  Draw draw = draw_for(nominal_);
+  if (fault_) draw = draw_for(*fault_);
   return draw;
 }
 
+/// What acts on the plant: the inputs as the actuators pass them on, and the additive faults.
+Vector SimulatedSource::pushed(const Draw& draw, const Vector& u, const Vector& n) const {
+  Vector both(u.size() + n.size());
+  both << draw.effectiveness.actuator.cwiseProduct(u), n;
+  return both;
+}
+
 void SimulatedSource::start(const Model& model) {
-  const Vector u0 = first_.effectiveness.actuator.cwiseProduct(inputs_.at(0));
+  const Vector u0 = pushed(first_, inputs_.at(0), additive_.at(0));
   if (!spec_.x0) {
     start_from_center(model, u0);
     return;
@@ -95,7 +108,7 @@ void SimulatedSource::start(const Model& model) {
        "leaves a "
        "residual of " +
            to_text(largest(open)),
-       "choose x0 with 0 = A x0 + B u_0 + Bw w_0 in the static rows, or leave x0 out");
+       "choose x0 with 0 = A x0 + B u_0 + Bw w_0 + F n_0 in the static rows, or leave x0 out");
 }
 
 /// Least-squares correction of the drawn w_0 on the static rows; true if the result lies in W as far as can be told.
@@ -145,7 +158,9 @@ std::optional<Record> SimulatedSource::next() {
   Record record;
   record.sample.k = static_cast<Index>(k);
   record.sample.u = inputs_.at(k);
-  const Vector u = draw.effectiveness.actuator.cwiseProduct(record.sample.u);
+  const Vector n = additive_.at(k);
+  if (!n.allFinite()) fail("/data/simulate/additive_faults", "overflow at k = " + std::to_string(k), "give smaller signals");
+  const Vector u = pushed(draw, record.sample.u, n);
   LinearPlant::Output now = plant().step(u, draw.w, draw.v, draw.effectiveness.sensor);
   if (!now.x.allFinite() || !now.y.allFinite()) {
     fail("/data/simulate/steps", "the simulated state overflows at k = " + std::to_string(k),
@@ -154,6 +169,8 @@ std::optional<Record> SimulatedSource::next() {
   record.sample.y = std::move(now.y);
   record.truth = std::move(now.x);
   if (modes_) record.mode = acting_ < 0 ? 0 : spec_.faults[static_cast<std::size_t>(acting_)].mode;
+  if (modes_ && !n.isZero(0)) record.mode = -1;
+  if (n.size() > 0) record.fault = n;
   return record;
 }
 

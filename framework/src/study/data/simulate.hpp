@@ -11,16 +11,16 @@
 
 namespace cordon::detail {
 
-/// Samples k = 0 … steps with the true state and mode. Memory is constant.
+/// Samples k = 0 … steps with the true state, mode and additive faults. Memory is constant.
 ///
 /// At every k one model makes y_k and x_{k+1}: that of the fault that acts at k, else the nominal one. The draws of the nominal
-/// model go on unseen during a fault, so that faults do not change what comes after them.
+/// model go on unseen during a fault, so that faults do not change what comes after them. Additive faults act on all models.
 ///
-/// Start of a system with static rows: x0 must satisfy them for some w_0 ∈ W. The drawn w_0 is corrected by least squares on the
-/// static rows; where that leaves W, a central point of {w ∈ W : static rows} replaces it. Without x0, the dynamic part of the
-/// centre of X0 is taken and the static part follows from w_0; where that state leaves X0, a central pair (x_0, w_0) is taken.
-/// Throws InputError: sizes, unbounded W or V, index above 1, models of different E one after another, an x0 that no w_0 ∈ W
-/// explains (with the residual).
+/// Start of a system with static rows: x0 must satisfy them, F n_0 included, for some w_0 ∈ W. The drawn w_0 is corrected by
+/// least squares on the static rows; where that leaves W, a central point of {w ∈ W : static rows} replaces it. Without x0, the
+/// dynamic part of the centre of X0 is taken and the static part follows from w_0; where that state leaves X0, a central pair
+/// (x_0, w_0) is taken. Throws InputError: sizes, unbounded W or V, index above 1, models of different E one after another, an x0
+/// that no w_0 ∈ W explains (with the residual).
 class SimulatedSource final : public DataSource {
  public:
   /// `modes`: the records name the true mode.
@@ -39,6 +39,7 @@ class SimulatedSource final : public DataSource {
   void check_faults(const LinearModel& nominal) const;
   void enter(std::int64_t k);
   Draw draw(std::int64_t k);
+  Vector pushed(const Draw& draw, const Vector& u, const Vector& n) const;
   LinearPlant& plant() { return fault_ ? fault_->plant : nominal_.plant; }
 
   void start(const Model& model);
@@ -55,6 +56,7 @@ class SimulatedSource final : public DataSource {
   Index acting_ = -1;            ///< the fault that acts, -1: none
   std::optional<Regime> fault_;  ///< of that fault
   InputSource inputs_;
+  AdditiveFaultSource additive_;
   Draw first_;  ///< of k = 0
   std::int64_t k_ = 0;
 };

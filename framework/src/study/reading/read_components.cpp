@@ -29,8 +29,12 @@ std::optional<std::vector<Matrix>> read_matrices(const Cursor& at) {
 }
 
 std::optional<ComponentSpec> read_nested(const Cursor& at, const Shelf& shelf, const ComponentContext& context, int depth);
+std::optional<ComponentSpec> read_as_matrix(const Cursor& at, const std::string& type, const Shelf& shelf,
+                                            const ComponentContext& context);
 
-std::optional<Params::Value> read_inner(const Cursor& at, const std::string& kind, const ComponentContext& context, int depth) {
+/// A component inside another one, as the parameter `param`.
+std::optional<Params::Value> read_inner(const Cursor& at, const ParamSpec& param, const ComponentContext& context, int depth) {
+  const std::string& kind = param.component_kind;
   const Shelf* shelf = shelf_of(kind);
   if (!shelf) {
     context.refusals.push_back({at.pointer(), "asks for a component of the kind " + in_quotes(kind) + ", which does not exist",
@@ -41,7 +45,13 @@ std::optional<Params::Value> read_inner(const Cursor& at, const std::string& kin
     at.error("components are nested more than " + std::to_string(max_nesting) + " deep", "use one with fewer components inside");
     return std::nullopt;
   }
-  auto spec = read_nested(at, *shelf, context, depth + 1);
+  const bool short_form = !param.matrix_type.empty(), matrix = short_form && at.is(Kind::array);
+  if (short_form && !matrix && !at.is(Kind::object) && !at.is(Kind::text) && !at.is(Kind::broken)) {
+    at.error("is " + std::string(kind_name(at.value().kind)) + ", must be a matrix, a text or an object",
+             std::string("write a matrix, the name of ") + article(kind) + kind + ", or {\"type\": name, ...parameters}");
+    return std::nullopt;
+  }
+  auto spec = matrix ? read_as_matrix(at, param.matrix_type, *shelf, context) : read_nested(at, *shelf, context, depth + 1);
   if (!spec) return std::nullopt;
   return Params::Value(std::make_shared<const ComponentSpec>(std::move(*spec)));
 }
@@ -68,14 +78,13 @@ std::optional<Params::Value> as_param(const ParamSpec& spec, const Cursor& at, c
     case ParamKind::matrices:
       return wrap(read_matrices(at));
     case ParamKind::component:
-      if (!spec.matrix_type.empty() && at.is(Kind::array)) return wrap(read_matrix(at));  // `complete` makes a component of it
-      return read_inner(at, spec.component_kind, context, depth);
+      return read_inner(at, spec, context, depth);
   }
   return std::nullopt;
 }
 
-/// The value that a relative pointer ("/name/0") leads to, or the last one on the way; "/type" is cut off
-/// `relative` where a component is written as its name alone.
+/// The value that a relative pointer ("/name/0") leads to, or the last one on the way. What the file does not hold is cut out of
+/// `relative`: "/type" where a component is written as its name alone or as a matrix, "/matrix" where it is written as one.
 const Value& target(const Cursor& at, std::string& relative) {
   const Value* value = &at.value();
   for (std::size_t begin = 1; begin <= relative.size();) {
@@ -88,8 +97,11 @@ const Value& target(const Cursor& at, std::string& relative) {
       if (index < value->items().size()) next = &value->items()[index];
     }
     if (!next) {
-      if (value->kind == Kind::text && step == "type") relative.resize(begin - 1);
-      break;
+      const bool short_form = value->kind == Kind::text || value->kind == Kind::array;
+      if (short_form && step == "type") relative.resize(begin - 1);
+      if (value->kind != Kind::array || step != "matrix") break;
+      relative.erase(begin - 1, step.size() + 1);
+      continue;
     }
     value = next;
     begin = end + 1;
@@ -141,6 +153,22 @@ void report_unknown(const Cursor& type_at, const Shelf& shelf, const std::string
   if (std::none_of(context.refusals.begin(), context.refusals.end(), told)) {
     context.refusals.push_back({type_at.pointer(), none, doctor, type_at.value().line});
   }
+}
+
+/// The component `type`, of which only its matrix is written.
+std::optional<ComponentSpec> read_as_matrix(const Cursor& at, const std::string& type, const Shelf& shelf,
+                                            const ComponentContext& context) {
+  auto A = read_matrix(at);
+  if (!A) return std::nullopt;
+  const ComponentInfo* info = (context.registry.*shelf.info)(type);
+  if (!info) {
+    report_unknown(at, shelf, type, context);
+    return std::nullopt;
+  }
+  ComponentSpec spec{type, Params().set("matrix", std::move(*A))};
+  const std::vector<Diagnostic> problems = info->schema.complete(spec.params);
+  for (const Diagnostic& problem : problems) report(at, problem);
+  return problems.empty() ? std::optional<ComponentSpec>(std::move(spec)) : std::nullopt;
 }
 
 std::optional<ComponentSpec> read_nested(const Cursor& at, const Shelf& shelf, const ComponentContext& context, int depth) {
@@ -197,7 +225,7 @@ void check_together(const Cursor& pipeline, const PipelineSpec& spec, const Syst
 }
 
 /// The observer or the diagnoser of a pipeline; false if there is not exactly one that is right.
-bool read_algorithm(const Cursor& at, const SystemPart& system, const ComponentContext& context, PipelineSpec& spec) {
+bool read_algorithm(const Cursor& at, const ComponentContext& context, PipelineSpec& spec) {
   const auto observer_at = at.find("observer"), diagnoser_at = at.find("diagnoser");
   if (observer_at && diagnoser_at) {
     at.error("holds both \"observer\" and \"diagnoser\"", "remove one of the two, or make two pipelines");
@@ -223,7 +251,7 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   if (!at.expect_keys({"name", "backend", "observer", "diagnoser"}, "key of a pipeline", form)) return spec;
   const auto backend_at = at.need("backend", "the set representation: {\"type\": ...}");
   const auto backend = backend_at ? read_component(*backend_at, "backend", context) : std::nullopt;
-  const bool algorithm = read_algorithm(at, system, context, spec);
+  const bool algorithm = read_algorithm(at, context, spec);
   if (const auto name_at = at.find("name")) {
     spec.name = read_text(*name_at, max_name).value_or("");
   } else if (backend) {

@@ -11,6 +11,8 @@ namespace {
 using Kind = Value::Kind;
 constexpr double max_steps = 1e9;
 constexpr double max_seeds = 1e5;
+constexpr std::size_t max_additive_faults = 10'000;
+constexpr const char* additive_fault_form = "{\"fault\": 1, \"from\": 50, \"signal\": {\"type\": \"constant\", \"offset\": 1}}";
 
 void real(const Cursor& signal, std::string_view key, double& out) {
   if (const auto at = signal.find(key)) out = read_number(*at).value_or(0);
@@ -63,6 +65,56 @@ void read_input(const Cursor& simulate, std::optional<Index> inputs, std::vector
   for (std::size_t i = 0; i < at->size(); ++i) out.push_back(read_signal(at->item(i)));
 }
 
+/// Reads the additive faults of a simulation; `faults`: columns of F, if known.
+class AdditiveFaultReader {
+ public:
+  AdditiveFaultReader(SimulateSpec& spec, std::optional<Index> faults, std::vector<std::string>& warnings)
+      : spec_(spec), faults_(faults), warnings_(warnings) {}
+
+  void read(const Cursor& list);
+
+ private:
+  void read_one(const Cursor& at);
+
+  SimulateSpec& spec_;
+  std::optional<Index> faults_;
+  std::vector<std::string>& warnings_;
+};
+
+void AdditiveFaultReader::read_one(const Cursor& at) {
+  if (!at.expect_keys({"fault", "from", "to", "signal"}, "key of an additive fault", additive_fault_form)) return;
+  AdditiveFaultSpec fault;
+  const auto number_at = at.need("fault", "the number of a column of /system/F, from 1 on");
+  const auto number = number_at ? read_integer(*number_at, 1, max_integer) : std::nullopt;
+  if (number && faults_ && *number > *faults_) {
+    number_at->error("there is no fault " + std::to_string(*number) + ": /system/F has " + counted(*faults_, "column"),
+                     "faults are counted from 1");
+  }
+  fault.fault = static_cast<Index>(number.value_or(1)) - 1;
+  if (const auto signal = at.need("signal", "the fault over time: {\"type\": \"constant\", \"offset\": 1}"))
+    fault.signal = read_signal(*signal);
+  read_times(at, spec_.steps, fault.from, fault.to, warnings_);
+  spec_.additive_faults.push_back(std::move(fault));
+}
+
+void AdditiveFaultReader::read(const Cursor& list) {
+  if (spec_.plant) {
+    list.error("cannot be simulated with a plant: F is about the linear model", "remove them, or the plant");
+    return;
+  }
+  if (!list.expect(Kind::array, std::string("a list of additive faults: [") + additive_fault_form + "]")) return;
+  if (faults_ == Index{0} && list.size() > 0) {
+    list.error("there is no such fault: the system has no F",
+               "give the directions of additive faults in /system/F, in a column each");
+    return;
+  }
+  if (list.size() > max_additive_faults) {
+    list.error("holds more than " + std::to_string(max_additive_faults) + " additive faults");
+    return;
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) read_one(list.item(i));
+}
+
 /// Disturbances are drawn from bounded sets only.
 void expect_bounded(const Cursor& data, const LineForm& X, const char* key) {
   if (X.lines() == 0 || is_bounded(X) == Answer::yes) return;
@@ -73,8 +125,8 @@ void expect_bounded(const Cursor& data, const LineForm& X, const char* key) {
 SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const ComponentContext& context,
                            std::vector<WrittenFault>& written_faults) {
   SimulateSpec spec;
-  if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults"}, "key of simulated data",
-                      "{\"steps\": 100, \"input\": [...]}"))
+  if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults", "additive_faults", "parameters"},
+                      "key of simulated data", "{\"steps\": 100, \"input\": [...]}"))
     return spec;
   if (const auto steps = at.need("steps", "the number of steps: samples k = 0 ... steps"))
     spec.steps = read_integer(*steps, 1, max_steps).value_or(0);
@@ -83,6 +135,13 @@ SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const Com
   if (const auto noise = at.find("noise")) {
     if (const auto name = read_choice(*noise, noise_names())) {
       spec.noise = static_cast<Noise>(std::find(noise_names().begin(), noise_names().end(), *name) - noise_names().begin());
+    }
+  }
+  if (const auto parameters = at.find("parameters")) {
+    if (at.find("plant")) {
+      parameters->error("cannot stand beside \"plant\", which takes the place of the model", "remove one of the two");
+    } else if (const auto name = read_choice(*parameters, parameter_draw_names())) {
+      spec.parameters = *name == "varying" ? ParameterDraw::varying : ParameterDraw::constant;
     }
   }
   if (const auto x0 = at.find("x0")) {
@@ -97,6 +156,8 @@ SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const Com
     expect_bounded(at, system.model.V, "V");
   }
   if (faults) read_faults(*faults, system, spec, written_faults, context.warnings);
+  if (const auto additive = at.find("additive_faults"))
+    AdditiveFaultReader(spec, system.sizes.faults, context.warnings).read(*additive);
   return spec;
 }
 
@@ -149,6 +210,11 @@ const std::vector<std::string>& signal_types() {
 
 const std::vector<std::string>& noise_names() {
   static const std::vector<std::string> names{"uniform", "vertex", "zero", "sine"};
+  return names;
+}
+
+const std::vector<std::string>& parameter_draw_names() {
+  static const std::vector<std::string> names{"constant", "varying"};
   return names;
 }
 

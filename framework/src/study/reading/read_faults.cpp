@@ -28,7 +28,6 @@ class FaultReader {
     FaultSpec spec;
     WrittenFault written;
   };
-  bool read_times(const Cursor& at, FaultSpec& fault);
   std::optional<Fault> read_fault(const Cursor& at);
   bool read_mode_fault(const Cursor& at, Fault& fault);
   bool read_outside_fault(const Cursor& at, Fault& fault);
@@ -46,24 +45,6 @@ class FaultReader {
   SimulateSpec& spec_;
   std::vector<std::string>& warnings_;
 };
-
-bool FaultReader::read_times(const Cursor& at, FaultSpec& fault) {
-  const std::size_t before = at.problems().met();
-  const auto from_at = at.find("from"), to_at = at.find("to");
-  if (from_at) fault.from = read_integer(*from_at, 0, max_integer).value_or(0);
-  if (to_at) fault.to = read_integer(*to_at, 0, max_integer).value_or(the_end);
-  if (at.problems().met() != before) return false;
-  if (fault.to < fault.from) {
-    to_at->error("is below \"from\": " + std::to_string(fault.to) + " < " + std::to_string(fault.from),
-                 "the fault acts for k = from ... to");
-    return false;
-  }
-  if (spec_.steps > 0 && fault.from > spec_.steps) {
-    warnings_.push_back(at.pointer() + ": never happens, from k = " + std::to_string(fault.from) +
-                        " on; the data end at k = " + std::to_string(spec_.steps));
-  }
-  return true;
-}
 
 bool FaultReader::refuse(const Cursor& at, const std::vector<std::string>& keys, const std::string& reason,
                          const std::string& mend) {
@@ -223,7 +204,7 @@ std::optional<FaultReader::Fault> FaultReader::read_fault(const Cursor& at) {
   keys.insert(keys.begin(), {"mode", "name", "from", "to"});
   if (!at.expect_keys(keys, "key of a fault", "{\"mode\": ..., \"from\": 50, \"to\": 99}")) return std::nullopt;
   Fault fault;
-  if (!read_times(at, fault.spec)) return std::nullopt;
+  if (!read_times(at, spec_.steps, fault.spec.from, fault.spec.to, warnings_)) return std::nullopt;
   if (!system_.good || !system_.modes_good) return std::nullopt;  // what is wrong there is reported there
   if (!(at.find("mode") ? read_mode_fault(at, fault) : read_outside_fault(at, fault))) return std::nullopt;
   if (spec_.plant) check_plant(at, fault);
@@ -248,6 +229,23 @@ void FaultReader::read(std::vector<WrittenFault>& written) {
 }
 
 }  // namespace
+
+bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::int64_t& to, std::vector<std::string>& warnings) {
+  const std::size_t before = at.problems().met();
+  const auto from_at = at.find("from"), to_at = at.find("to");
+  if (from_at) from = read_integer(*from_at, 0, max_integer).value_or(0);
+  if (to_at) to = read_integer(*to_at, 0, max_integer).value_or(the_end);
+  if (at.problems().met() != before) return false;
+  if (to < from) {
+    to_at->error("is below \"from\": " + std::to_string(to) + " < " + std::to_string(from), "the fault acts for k = from ... to");
+    return false;
+  }
+  if (steps > 0 && from > steps) {
+    warnings.push_back(at.pointer() + ": never happens, from k = " + std::to_string(from) +
+                       " on; the data end at k = " + std::to_string(steps));
+  }
+  return true;
+}
 
 void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& spec, std::vector<WrittenFault>& written,
                  std::vector<std::string>& warnings) {

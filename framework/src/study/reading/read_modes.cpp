@@ -21,7 +21,8 @@ std::size_t entries(const LineForm& X) {
 std::size_t entries(const Model& model) {
   const LinearModel& linear = model.linear;
   const Index matrices = linear.E.size() + linear.A.size() + linear.B.size() + linear.Bw.size() + linear.C.size() +
-                         linear.D.size() + linear.Dv.size();
+                         linear.D.size() + linear.Dv.size() + linear.A_radius.size() + linear.B_radius.size() +
+                         linear.C_radius.size() + linear.F.size();
   return static_cast<std::size_t>(matrices) + entries(model.X0) + entries(model.W) + entries(model.V) + entries(model.U);
 }
 
@@ -116,6 +117,7 @@ class Names {
 Model model_of(const WrittenMode& mode, const Model& nominal) {
   Model model = mode.system ? *mode.system : nominal;
   model.U = nominal.U;
+  model.linear.F = nominal.linear.F;
   if (mode.W) model.W = *mode.W;
   if (mode.V) model.V = *mode.V;
   if (mode.additive && mode.additive->F) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cordon/core/interval_matrix.hpp"
 #include "cordon/registry/registry.hpp"
 #include "cordon/study/study.hpp"
 #include "study/reading/json_cursor.hpp"
@@ -17,7 +18,12 @@ namespace cordon::json {
 /// Sizes that are known; nothing for those whose matrices are wrong: what depends on them is not checked.
 struct Sizes {
   std::optional<Index> states, inputs, outputs;
+  std::optional<Index> faults;  ///< columns of F
 };
+
+/// A matrix, which has a radius of size 0×0, or {"center", "radius"} or {"lower", "upper"}. Centre and radius enclose the bounds
+/// that were written, in exact arithmetic.
+std::optional<IntervalMatrix> read_interval_matrix(const Cursor& at);
 
 inline constexpr std::size_t max_name = 200;  ///< bytes of a name
 
@@ -37,7 +43,7 @@ struct WrittenMode {
 };
 
 /// The model that a mode stands for: `system` or the nominal one, W and V exchanged, the additive fault appended to w and v, the
-/// exact part of the effectiveness applied.
+/// exact part of the effectiveness applied. F and U are the nominal ones.
 Model model_of(const WrittenMode& mode, const Model& nominal);
 
 struct SystemPart {
@@ -52,7 +58,7 @@ struct SystemPart {
 const std::vector<std::string>& system_types();
 /// A system with its modes.
 SystemPart read_system(const Cursor& system, std::vector<std::string>& warnings);
-/// A model inside a mode: without modes and U; X0 is that of `nominal` where it is absent. It has the sizes of /system.
+/// A model inside a mode: without modes, U and F; X0 is that of `nominal` where it is absent. It has the sizes of /system.
 SystemPart read_mode_system(const Cursor& system, const SystemPart& nominal, std::vector<std::string>& warnings);
 
 /// The keys that describe what is different in a mode.
@@ -80,6 +86,7 @@ struct DataPart {
 };
 const std::vector<std::string>& signal_types();
 const std::vector<std::string>& noise_names();
+const std::vector<std::string>& parameter_draw_names();
 std::vector<std::string> signal_keys(Signal::Type type);  ///< without "type"; the required ones first
 std::size_t required_signal_keys(Signal::Type type);      ///< how many of them are required
 struct ComponentContext {
@@ -101,6 +108,9 @@ std::optional<ComponentSpec> read_component(const Cursor& at, std::string_view k
 
 DataPart read_data(const Cursor& data, const SystemPart& system, const std::filesystem::path& folder,
                    const ComponentContext& context);
+/// Reads "from" and "to" of something that acts for k = from … to; warns where data of so many steps (0: not known) end before.
+/// False: reported.
+bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::int64_t& to, std::vector<std::string>& warnings);
 /// Reads /data/simulate/faults.
 void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& spec, std::vector<WrittenFault>& written,
                  std::vector<std::string>& warnings);

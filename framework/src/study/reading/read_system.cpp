@@ -18,12 +18,13 @@ class SystemReader {
 
  private:
   std::optional<Matrix> matrix(const char* key);
-  std::optional<Matrix> needed_matrix(const char* key, const std::string& suggestion);
+  std::optional<Matrix> interval_matrix(const char* key, Matrix& radius);
   bool has_rows(const char* key, const std::optional<Matrix>& A, std::optional<Index> rows, const char* like);
   bool has_cols(const char* key, const std::optional<Matrix>& A, std::optional<Index> cols, const char* like);
   void read_dynamics(bool descriptor);
   void read_descriptor_matrix();
   void read_outputs();
+  void read_faults();
   void read_sets(std::optional<Index> disturbances, std::optional<Index> noises);
   void read_bounds_set(const char* key, std::optional<Index> dim, const std::string& like, LineForm& out);
   void compare_with_nominal();
@@ -34,18 +35,30 @@ class SystemReader {
   const SystemPart* nominal_;
   std::vector<std::string>& warnings_;
   std::size_t before_;
+  bool exact_ = false;  ///< interval matrices are refused
   SystemPart part_;
   std::optional<Index> disturbances_, noises_;
 };
 
 std::optional<Matrix> SystemReader::matrix(const char* key) {
   const auto at = system_.find(key);
-  return at ? read_matrix(*at) : std::nullopt;
+  if (!at || (at->is(Value::Kind::object) && !at->expect(Value::Kind::array, "only A, B and C can be known by an interval")))
+    return std::nullopt;
+  return read_matrix(*at);
 }
 
-std::optional<Matrix> SystemReader::needed_matrix(const char* key, const std::string& suggestion) {
-  const auto at = system_.need(key, suggestion);
-  return at ? read_matrix(*at) : std::nullopt;
+/// The centre; the radius of an exact matrix stays as it is.
+std::optional<Matrix> SystemReader::interval_matrix(const char* key, Matrix& radius) {
+  const auto at = system_.find(key);
+  if (!at) return std::nullopt;
+  if (exact_ && at->is(Value::Kind::object)) {
+    at->error("is an interval matrix, in a system of type \"lti\"", "write \"type\": \"interval_lti\"");
+    return std::nullopt;
+  }
+  auto read = read_interval_matrix(*at);
+  if (!read) return std::nullopt;
+  radius = std::move(read->radius);
+  return std::move(read->center);
 }
 
 bool SystemReader::has_rows(const char* key, const std::optional<Matrix>& A, std::optional<Index> rows, const char* like) {
@@ -64,7 +77,8 @@ bool SystemReader::has_cols(const char* key, const std::optional<Matrix>& A, std
 void SystemReader::read_dynamics(bool descriptor) {
   LinearModel& model = part_.model.linear;
   std::optional<Index>& n = part_.sizes.states;
-  if (const auto A = needed_matrix("A", "the matrix of x⁺ = A x + B u + Bw w, n × n")) {
+  system_.need("A", "the matrix of x⁺ = A x + B u + Bw w, n × n");
+  if (const auto A = interval_matrix("A", model.A_radius)) {
     if (A->rows() != A->cols() || A->rows() == 0 || A->rows() > max_dimension) {
       system_.find("A")->error("is " + shape(A->rows(), A->cols()) +
                                (A->rows() == A->cols() ? ", must have 1 to 1000 rows" : ", must be square"));
@@ -75,7 +89,7 @@ void SystemReader::read_dynamics(bool descriptor) {
   }
   if (descriptor) read_descriptor_matrix();
   if (system_.find("B")) {
-    const auto B = matrix("B");
+    const auto B = interval_matrix("B", model.B_radius);
     if (has_rows("B", B, n, "A")) part_.sizes.inputs = B->cols(), model.B = *B;
   } else {
     part_.sizes.inputs = 0;
@@ -91,7 +105,8 @@ void SystemReader::read_dynamics(bool descriptor) {
 }
 
 void SystemReader::read_descriptor_matrix() {
-  const auto E = needed_matrix("E", "the matrix of E x⁺ = A x + B u + Bw w, n × n; without one the type is \"lti\"");
+  system_.need("E", "the matrix of E x⁺ = A x + B u + Bw w, n × n; without one the type is \"lti\"");
+  const auto E = matrix("E");
   if (!E) return;
   if (E->rows() != E->cols()) {
     system_.find("E")->error("is " + shape(E->rows(), E->cols()) + ", must be square");
@@ -104,7 +119,8 @@ void SystemReader::read_outputs() {
   LinearModel& model = part_.model.linear;
   const Sizes& sizes = part_.sizes;
   std::optional<Index>& p = part_.sizes.outputs;
-  const auto C = needed_matrix("C", "the matrix of y = C x + D u + Dv v");
+  system_.need("C", "the matrix of y = C x + D u + Dv v");
+  const auto C = interval_matrix("C", model.C_radius);
   if (C && (C->rows() == 0 || C->rows() > max_dimension)) {
     system_.find("C")->error("is " + shape(C->rows(), C->cols()) + ", must have 1 to 1000 rows",
                              "an observer needs at least one output");
@@ -126,6 +142,27 @@ void SystemReader::read_outputs() {
     noises_ = p;
     model.Dv = Matrix::Identity(*p, *p);
   }
+}
+
+/// The directions of additive faults.
+void SystemReader::read_faults() {
+  const auto at = system_.find("F");
+  if (at && nominal_) {
+    at->error("belongs to /system: additive faults have the same directions in all modes", "remove it here");
+    return;
+  }
+  if (!at) {
+    part_.sizes.faults = 0;
+    return;
+  }
+  const auto F = matrix("F");
+  if (!has_rows("F", F, part_.sizes.states, "A")) return;
+  if (F->cols() > max_dimension) {
+    at->error("is " + shape(F->rows(), F->cols()) + ", must have at most " + std::to_string(max_dimension) + " columns");
+    return;
+  }
+  part_.sizes.faults = F->cols();
+  if (F->cols() > 0) part_.model.linear.F = *F;
 }
 
 void SystemReader::read_bounds_set(const char* key, std::optional<Index> dim, const std::string& like, LineForm& out) {
@@ -182,17 +219,19 @@ void SystemReader::compare_with_nominal() {
 
 SystemPart SystemReader::read() {
   if (!system_.expect(Value::Kind::object, "{\"type\": \"lti\", \"A\": [[...]], ...}")) return {};
-  const auto type_at = system_.need("type", "\"lti\", or \"descriptor\" with E");
+  const auto type_at = system_.need("type", "\"lti\", \"interval_lti\", or \"descriptor\" with E");
   const auto type = type_at ? read_choice(*type_at, system_types()) : std::nullopt;
-  std::vector<std::string> keys{"type", "E", "A", "B", "Bw", "C", "D", "Dv", "X0", "W", "V"};
+  std::vector<std::string> keys{"type", "E", "A", "B", "Bw", "C", "D", "Dv", "F", "X0", "W", "V"};
   if (!nominal_) keys.insert(keys.end(), {"U", "nominal", "modes"});
-  if (type == "lti") {
+  exact_ = type == "lti";
+  if (type && type != "descriptor") {
     if (const auto E = system_.find("E"))
       E->error("belongs to descriptor systems", "write \"type\": \"descriptor\", or remove E");
   }
   system_.expect_keys(keys, nominal_ ? "key of a mode's system" : "key of a system", "");
   read_dynamics(type == "descriptor");
   read_outputs();
+  read_faults();
   read_sets(disturbances_, noises_);
   if (nominal_) compare_with_nominal();
   part_.good = system_.problems().met() == before_;
@@ -203,7 +242,7 @@ SystemPart SystemReader::read() {
 }  // namespace
 
 const std::vector<std::string>& system_types() {
-  static const std::vector<std::string> names{"lti", "descriptor"};
+  static const std::vector<std::string> names{"lti", "interval_lti", "descriptor"};
   return names;
 }
 

@@ -23,6 +23,12 @@ Json to_json(const Matrix& A) {
   return rows;
 }
 
+/// A matrix, with its radius where it has one.
+Json to_json(const Matrix& center, const Matrix& radius) {
+  if (radius.size() == 0) return to_json(center);
+  return {{"center", to_json(center)}, {"radius", to_json(radius)}};
+}
+
 bool is_whole_space(const LineForm& X) {
   return X.constraints() == 0 && X.generators() == 0 && X.lines() == X.dim() && X.M.isIdentity(0) && X.c.isZero(0);
 }
@@ -84,14 +90,16 @@ Json to_json(const ComponentSpec& spec, const std::string& kind, const Registry&
 Json to_json(const Model& model) {
   const LinearModel& linear = model.linear;
   Json system;
-  system["type"] = linear.is_descriptor() ? "descriptor" : "lti";
+  const bool intervals = linear.A_radius.size() > 0 || linear.B_radius.size() > 0 || linear.C_radius.size() > 0;
+  system["type"] = linear.is_descriptor() ? "descriptor" : intervals ? "interval_lti" : "lti";
   if (linear.is_descriptor()) system["E"] = to_json(linear.E);
-  system["A"] = to_json(linear.A);
-  system["B"] = to_json(linear.B);
+  system["A"] = to_json(linear.A, linear.A_radius);
+  system["B"] = to_json(linear.B, linear.B_radius);
   system["Bw"] = to_json(linear.Bw);
-  system["C"] = to_json(linear.C);
+  system["C"] = to_json(linear.C, linear.C_radius);
   system["D"] = to_json(linear.D);
   system["Dv"] = to_json(linear.Dv);
+  if (linear.faults() > 0) system["F"] = to_json(linear.F);
   system["X0"] = to_json(model.X0);
   system["W"] = to_json(model.W);
   system["V"] = to_json(model.V);
@@ -162,17 +170,29 @@ Json to_json(const Signal& signal) {
   return object;
 }
 
-Json to_json(const SimulateSpec& spec, const Written& written, const Registry& registry) {
+Json to_json(const AdditiveFaultSpec& fault) {
+  Json object;
+  object["fault"] = fault.fault + 1;
+  object["from"] = fault.from;
+  if (fault.to != AdditiveFaultSpec{}.to) object["to"] = fault.to;
+  object["signal"] = to_json(fault.signal);
+  return object;
+}
+
+Json to_json(const SimulateSpec& spec, const LinearModel& model, const Written& written, const Registry& registry) {
   Json object;
   object["steps"] = spec.steps;
   object["seed"] = spec.seed;
   if (spec.seeds != 1) object["seeds"] = spec.seeds;
   object["noise"] = noise_names()[static_cast<std::size_t>(spec.noise)];
+  if (spec.parameters != ParameterDraw::constant || (model.is_uncertain() && !spec.plant))
+    object["parameters"] = parameter_draw_names()[static_cast<std::size_t>(spec.parameters)];
   if (spec.x0) object["x0"] = to_json(*spec.x0);
   object["input"] = Json::array();
   for (const Signal& signal : spec.input) object["input"].push_back(to_json(signal));
   if (spec.plant) object["plant"] = to_json(*spec.plant, "plant", registry);
   for (std::size_t i = 0; i < spec.faults.size(); ++i) object["faults"].push_back(to_json(spec.faults[i], written.faults[i]));
+  for (const AdditiveFaultSpec& fault : spec.additive_faults) object["additive_faults"].push_back(to_json(fault));
   return object;
 }
 
@@ -216,7 +236,7 @@ std::string resolve(const Study& study, const Written& written, const Registry& 
   root["system"] = to_json(study.model);
   add_modes(root["system"], study, written);
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
-    root["data"]["simulate"] = to_json(*simulate, written, registry);
+    root["data"]["simulate"] = to_json(*simulate, study.model.linear, written, registry);
   } else {
     root["data"]["csv"] = to_json(std::get<CsvSpec>(study.data), written.csv_file);
   }

@@ -89,14 +89,21 @@ Json signals() {
   return {{"oneOf", all}};
 }
 
-/// The matrices and sets of a model, without "type" and E.
-Json model_properties() {
-  const Json matrix = reference("matrix"), set = reference("set");
+Json interval_matrix() {
+  const Json matrix = reference("matrix");
+  return {{"anyOf",
+           {matrix, object({{"center", matrix}, {"radius", described(matrix, "at least 0")}}, {"center", "radius"}),
+            object({{"lower", matrix}, {"upper", matrix}}, {"lower", "upper"})}}};
+}
+
+/// The matrices and sets of a model, without "type" and E; A, B and C are exact or `general`.
+Json model_properties(const std::string& general) {
+  const Json matrix = reference("matrix"), set = reference("set"), interval = reference(general);
   Json properties;
-  properties["A"] = described(matrix, "n × n");
-  properties["B"] = described(matrix, "n × inputs; absent: no inputs");
+  properties["A"] = described(interval, "n × n");
+  properties["B"] = described(interval, "n × inputs; absent: no inputs");
   properties["Bw"] = described(matrix, "n × disturbances; the identity by default");
-  properties["C"] = described(matrix, "outputs × n");
+  properties["C"] = described(interval, "outputs × n");
   properties["D"] = described(matrix, "outputs × inputs; zero by default");
   properties["Dv"] = described(matrix, "outputs × noises; the identity by default");
   properties["X0"] = described(set, "contains the initial state; the whole space by default, in a mode the nominal one");
@@ -106,13 +113,15 @@ Json model_properties() {
 }
 
 Json systems(const Json& more) {
-  Json properties = model_properties();
-  properties.update(more);
-  Json lti = typed("lti", properties, {"A", "C"});
-  properties["E"] = described(reference("matrix"), "n × n, may be singular");
-  Json descriptor = typed("descriptor", properties, {"E", "A", "C"});
+  Json exact = model_properties("matrix"), general = model_properties("interval_matrix");
+  exact.update(more);
+  general.update(more);
+  const Json lti = typed("lti", exact, {"A", "C"}), interval_lti = typed("interval_lti", general, {"A", "C"});
+  general["E"] = described(reference("matrix"), "n × n, may be singular");
+  const Json descriptor = typed("descriptor", general, {"E", "A", "C"});
   return {{"oneOf",
            {described(lti, "x⁺ = A x + B u + Bw w, y = C x + D u + Dv v"),
+            described(interval_lti, "the same with A, B and C known by intervals"),
             described(descriptor, "E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v")}}};
 }
 
@@ -164,6 +173,17 @@ Json faults() {
        {described(object(inside, {"mode"}), "a mode of the bank"), described(object(outside, {}), "a fault outside the bank")}}};
 }
 
+Json additive_faults() {
+  const Json time = integer(0, static_cast<std::int64_t>(json::max_integer));
+  Json properties;
+  properties["fault"] = described(integer(1, json::max_dimension), "number of a column of F, from 1 on");
+  properties["from"] = described(time, "the first k at which the fault acts");
+  properties["from"]["default"] = 0;
+  properties["to"] = described(time, "the last such k; the end by default");
+  properties["signal"] = described(reference("signal"), "the value at k; entries of the same fault add up");
+  return list_of(object(properties, {"fault", "signal"}));
+}
+
 Json data() {
   Json simulate;
   simulate["steps"] = described(integer(1, 1'000'000'000), "samples k = 0 ... steps");
@@ -173,10 +193,14 @@ Json data() {
   simulate["seeds"]["default"] = 1;
   simulate["noise"] = one_of(json::noise_names());
   simulate["noise"]["default"] = "uniform";
+  simulate["parameters"] =
+      described(one_of(json::parameter_draw_names()), "whether uncertain matrices are drawn once or at every step");
+  simulate["parameters"]["default"] = "constant";
   simulate["x0"] = described(reference("vector"), "initial state; the centre of X0 by default");
   simulate["input"] = described(list_of(reference("signal")), "one signal per column of B");
   simulate["plant"] = described(reference("plant"), "makes the data in place of the system");
   simulate["faults"] = described(list_of(reference("fault")), "in the order of time, without overlap");
+  simulate["additive_faults"] = described(additive_faults(), "values of the faults in the directions of F; 0 otherwise");
   const Json names{{"type", "array"}, {"items", text(4096)}, {"uniqueItems", true}};
   Json csv;
   csv["file"] = described(text(4096), "relative to the folder of the study");
@@ -267,10 +291,12 @@ Json definitions(const Registry& registry) {
   Json defs;
   defs["vector"] = list_of({{"type", "number"}});
   defs["matrix"] = described(list_of(reference("vector")), "a list of rows of equal length");
+  defs["interval_matrix"] = interval_matrix();
   defs["bounds"] = list_of({{"anyOf", {{{"type", "number"}}, one_of({"inf", "-inf"})}}});
   defs["set"] = sets();
   defs["signal"] = signals();
-  defs["system"] = systems({{"U", described(reference("set"), "contains every input u; the whole space by default")},
+  defs["system"] = systems({{"F", described(reference("matrix"), "n × faults: directions of additive faults, a column each")},
+                            {"U", described(reference("set"), "contains every input u; the whole space by default")},
                             {"nominal", described(text(200), "name of the nominal mode; \"healthy\" by default")},
                             {"modes", described(Json{{"type", "array"}, {"items", reference("mode")}, {"maxItems", 1000}},
                                                 "the faults that diagnosers tell apart")}});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/results/diagnosis_json.hpp"
 
+#include <limits>
+
 #include "study/results/results_parts.hpp"
 
 namespace cordon::detail {
@@ -15,11 +17,6 @@ class StringSink final : public Sink {
   void write(std::string_view bytes) override { text += bytes; }
   std::string text;
 };
-
-void write_box(JsonWriter& json, std::string_view key, const Box& box) {
-  if (box.dim() == 0) return;
-  json.key(key).begin_object().member("lower", box.lower).member("upper", box.upper).end_object();
-}
 
 void write(JsonWriter& json, const DiagnosisEvent& event, const Names& modes) {
   using Kind = DiagnosisEvent::Kind;
@@ -77,6 +74,31 @@ void write_list(JsonWriter& json, std::string_view key, const Items& items, cons
   json.end_array();
 }
 
+void write(JsonWriter& json, const JudgedBound& judged) {
+  const FaultBound& bound = judged.bound;
+  json.begin_object().member("fault", bound.fault + 1).member("at", bound.at).member("lower", bound.lower);
+  json.member("upper", bound.upper).member("estimate", bound.estimate);
+  if (judged.truth) json.member("truth", *judged.truth);
+  json.end_object();
+}
+
+void write(JsonWriter& json, const FaultStatistics& counts) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  json.begin_object().member("fault", counts.fault + 1);
+  write_time(json, "delay", counts.delay);
+  json.member("bounds", counts.bounds).member("checked", counts.checked).member("outside", counts.outside);
+  json.member("excluded_0", counts.excluded_0);
+  json.member("mean_half_width", counts.bounds > 0 ? counts.mean_half_width : none);
+  json.member("last_half_width", counts.bounds > 0 ? counts.last_half_width : none);
+  json.member("rms_error", counts.checked > 0 ? counts.rms_error : none);
+  json.member("largest_share", counts.checked > 0 ? counts.largest_share : none).end_object();
+}
+
+void write(JsonWriter& json, const FaultGuarantee& guarantee) {
+  json.begin_object().member("fault", guarantee.fault + 1).member("delay", guarantee.delay);
+  json.member("half_width", guarantee.half_width).end_object();
+}
+
 /// What can be said only where the data tell the true mode.
 void write_scores(JsonWriter& json, const DiagnosisOutcome& outcome) {
   json.key("scores");
@@ -111,8 +133,8 @@ void write_mode(JsonWriter& json, std::string_view key, const Names& modes, Inde
 
 void write(JsonWriter& json, const ModeEvidence& evidence) {
   json.begin_object().member("candidate", evidence.candidate).member("consistent", to_string(evidence.consistent));
-  write_box(json, "residual", evidence.residual);
-  write_box(json, "reset_residual", evidence.reset_residual);
+  if (evidence.residual.dim() > 0) write_box(json, "residual", evidence.residual);
+  if (evidence.reset_residual.dim() > 0) write_box(json, "reset_residual", evidence.reset_residual);
   if (evidence.why.kind != Certificate::Kind::none) {
     json.key("proof");
     write(json, evidence.why);
@@ -120,7 +142,8 @@ void write(JsonWriter& json, const ModeEvidence& evidence) {
   json.end_object();
 }
 
-void write(JsonWriter& json, const Diagnosis& diagnosis, const std::optional<Index>& truth, const Names& modes) {
+void write(JsonWriter& json, const Diagnosis& diagnosis, const std::optional<Index>& truth,
+           const std::vector<JudgedBound>& faults, const Names& modes) {
   json.begin_object().member("k", diagnosis.k).member("decision", to_string(diagnosis.decision));
   write_mode(json, "mode", modes, diagnosis.mode);
   if (truth) write_mode(json, "true_mode", modes, *truth);
@@ -128,7 +151,13 @@ void write(JsonWriter& json, const Diagnosis& diagnosis, const std::optional<Ind
   write_mode(json, "suggested", modes, diagnosis.suggested);
   json.key("modes").begin_array();
   for (const ModeEvidence& evidence : diagnosis.modes) write(json, evidence);
-  json.end_array().end_object();
+  json.end_array();
+  if (!faults.empty()) {
+    json.key("faults").begin_array();
+    for (const JudgedBound& judged : faults) write(json, judged);
+    json.end_array();
+  }
+  json.end_object();
 }
 
 void write_members(JsonWriter& json, const DiagnosisOutcome& outcome) {
@@ -137,6 +166,15 @@ void write_members(JsonWriter& json, const DiagnosisOutcome& outcome) {
   write_list(json, "segments", outcome.segments, outcome.modes);
   json.member("left_out", outcome.left_out);
   write_scores(json, outcome);
+  json.key("faults").begin_array(outcome.faults.empty() ? Layout::line : Layout::lines);
+  for (const FaultStatistics& counts : outcome.faults) write(json, counts);
+  json.end_array().key("fault_outside");
+  if (const auto& outside = outcome.fault_outside) {
+    json.begin_object().member("k", outside->k).member("at", outside->at).member("fault", outside->fault + 1);
+    json.member("seed_offset", outside->seed_offset).end_object();
+  } else {
+    json.null();
+  }
 }
 
 void write(JsonWriter& json, const Guarantees& guarantees, const Names& modes) {
@@ -146,7 +184,7 @@ void write(JsonWriter& json, const Guarantees& guarantees, const Names& modes) {
     json.begin_object();
     write_mode(json, "observer", modes, pair.observer);
     write_mode(json, "true_mode", modes, pair.mode);
-    json.key("residual").begin_object().member("lower", pair.residual.lower).member("upper", pair.residual.upper).end_object();
+    write_box(json, "residual", pair.residual);
     json.member("holds", to_string(pair.holds)).end_object();
   }
   json.end_array().key("error_set");
@@ -161,7 +199,9 @@ void write(JsonWriter& json, const Guarantees& guarantees, const Names& modes) {
   } else {
     json.null();
   }
-  json.end_object();
+  json.key("faults").begin_array();
+  for (const FaultGuarantee& guarantee : guarantees.faults) write(json, guarantee);
+  json.end_array().end_object();
 }
 
 }  // namespace cordon::detail

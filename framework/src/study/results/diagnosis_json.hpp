@@ -10,6 +10,12 @@
 
 namespace cordon::detail {
 
+/// A bound of an additive fault with the true value, where that is known.
+struct JudgedBound {
+  FaultBound bound;
+  std::optional<double> truth;
+};
+
 /// The name of a mode as a value; null for -1.
 void write_mode(JsonWriter& json, std::string_view key, const std::vector<std::string>& modes, Index mode);
 
@@ -18,7 +24,7 @@ void write(JsonWriter& json, const ModeEvidence& evidence);
 
 /// One step of results.json.
 void write(JsonWriter& json, const Diagnosis& diagnosis, const std::optional<Index>& truth,
-           const std::vector<std::string>& modes);
+           const std::vector<JudgedBound>& faults, const std::vector<std::string>& modes);
 
 /// The members of a summary, inside an open object.
 void write_members(JsonWriter& json, const DiagnosisOutcome& outcome);

@@ -7,6 +7,7 @@
 #include "cordon/registry/build.hpp"
 #include "study/results/host.hpp"
 #include "study/results/numbers.hpp"
+#include "study/results/outcome_json.hpp"
 #include "study/results/results_diagnosis.hpp"
 #include "study/results/results_parts.hpp"
 
@@ -105,7 +106,7 @@ void Results::begin_run(const Registry& registry) {
 }
 
 void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding,
-                             const std::optional<Assumptions>& assumptions) {
+                             const std::optional<Assumptions>& assumptions, const std::vector<Gain>& gains) {
   pipeline_ = csv_field(spec.name);
   pipeline_json_ = json_string(spec.name);
   rounding_ = rounding;
@@ -125,14 +126,17 @@ void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> r
   } else {
     results_.null();
   }
+  write(results_, gains);
   results_.key("steps").begin_array(Layout::lines);
   run_.begin_object(Layout::lines).member("name", spec.name).key("steps").begin_array(Layout::lines);
 }
 
 void Results::data(const Record& record) {
   if (last_sample_ && record.sample.k <= *last_sample_) return;
-  const std::pair<const char*, const Vector*> parts[]{
-      {"u_", &record.sample.u}, {"y_", &record.sample.y}, {"x_", record.truth ? &*record.truth : nullptr}};
+  const std::pair<const char*, const Vector*> parts[]{{"u_", &record.sample.u},
+                                                      {"y_", &record.sample.y},
+                                                      {"x_", record.truth ? &*record.truth : nullptr},
+                                                      {"n_", record.fault ? &*record.fault : nullptr}};
   if (!last_sample_) {
     std::vector<std::string> names{"k"};
     for (const auto& [name, part] : parts) {
@@ -165,7 +169,8 @@ void Results::check_columns(const MetricValues& metrics) {
 void Results::step(const StepResult& result) {
   const Estimate& estimate = result.estimate;
   results_.begin_object().member("k", estimate.k);
-  results_.key("hull").begin_object().member("lower", result.hull.lower).member("upper", result.hull.upper).end_object();
+  write_box(results_, "hull", result.hull);
+  if (result.inner) write_box(results_, "inner", *result.inner);
   results_.member("consistent", to_string(estimate.consistent)).member("tightness", to_string(estimate.set.tightness));
   for (const MetricValue& metric : result.metrics.reproducible) write(results_, metric);
   results_.end_object();
@@ -175,6 +180,7 @@ void Results::step(const StepResult& result) {
   run_.end_object();
   write_row(result);
   write_set(result);
+  last_estimate_ = estimate.k;
 }
 
 void Results::write_header(Index states) {
@@ -184,6 +190,9 @@ void Results::write_header(Index states) {
   }
   if (columns_) {
     for (const std::string& name : *columns_) names.push_back(csv_field(name));
+  }
+  for (const char* bound : {"inner_lower_", "inner_upper_"}) {
+    for (Index i = 1; i <= states; ++i) names.push_back(bound + std::to_string(i));
   }
   steps_file_.write(joined(names));
   header_written_ = true;
@@ -197,6 +206,13 @@ void Results::write_row(const StepResult& result) {
     for (const double x : *bound) row.push_back(csv_number(x));
   }
   for (const MetricValue& metric : result.metrics.reproducible) row.push_back(csv_value(metric));
+  if (result.inner) {
+    for (const Vector* bound : {&result.inner->lower, &result.inner->upper}) {
+      for (const double x : *bound) row.push_back(csv_number(x));
+    }
+  } else {
+    row.resize(row.size() + static_cast<std::size_t>(2 * result.hull.dim()));
+  }
   steps_file_.write(joined(row));
 }
 
@@ -222,13 +238,16 @@ void Results::write_set(const StepResult& result) {
 }
 
 void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& summary) {
-  results_.end_array().key("summary").begin_object(Layout::lines);
+  results_.end_array();
+  write_last(results_, last_estimate_, outcome.last_hull);
+  results_.key("summary").begin_object(Layout::lines);
   results_.member("steps", outcome.steps).member("consistent", outcome.consistent).member("inconsistent", outcome.inconsistent);
   results_.member("undecided", outcome.undecided);
   write_time(results_, "inconsistent_from", outcome.inconsistent_from);
   write_time(results_, "assumptions_until", outcome.assumptions_until);
   write_time(results_, "outside_from", outcome.outside_from);
   write_time(results_, "violated_at", outcome.violated_at);
+  write_inner(results_, outcome);
   results_.key("answers").begin_object();
   write(results_, "emptiness", outcome.emptiness);
   write(results_, "containment", outcome.containment);

@@ -7,6 +7,7 @@
 
 #include "cordon/study/run.hpp"
 #include "study/results/atomic_directory.hpp"
+#include "study/results/diagnosis_json.hpp"
 #include "study/results/json_writer.hpp"
 #include "study/results/metric_board.hpp"
 
@@ -17,9 +18,18 @@ struct StepResult {
   const Estimate& estimate;
   const Box& hull;
   const std::vector<Certificate>& hull_proofs;  ///< two per coordinate: of the upper and of the lower bound
+  const std::optional<Box>& inner;              ///< if the observer offers one
   const MetricValues& metrics;
   const PhaseTimes& times;
   double hull_us;
+};
+
+/// The same of a diagnosis.
+struct DiagnosisResult {
+  const Diagnosis& diagnosis;
+  const std::optional<Index>& truth;  ///< the true mode
+  const std::vector<JudgedBound>& faults;
+  double step_us;
 };
 
 /// What a pipeline takes for granted beyond the model's W and V.
@@ -29,7 +39,8 @@ struct Assumptions {
 };
 
 /// Writes into `out`:
-///   results.json  resolved study, versions, and per pipeline steps[] {k, hull, consistent, tightness, metrics} and summary
+///   results.json  resolved study, versions, and per pipeline gains, steps[] {k, hull, consistent, tightness, metrics}, last
+///                 and summary
 ///   sets.jsonl    one line per step and pipeline: the estimate's exchange form, the proofs of its emptiness or non-emptiness and
 ///   of its
 ///                 hull's bounds
@@ -42,7 +53,8 @@ class Results {
  public:
   Results(const Study& study, const Registry& registry, const std::filesystem::path& out);
 
-  void begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding, const std::optional<Assumptions>& assumptions);
+  void begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding, const std::optional<Assumptions>& assumptions,
+                      const std::vector<Gain>& gains);
   /// Every pipeline hands over its records; each is written once.
   void data(const Record& record);
   /// Throws Errc::plugin, before anything is written, if the metrics have names that they had not in an earlier pipeline.
@@ -52,7 +64,7 @@ class Results {
 
   /// The same of a pipeline with a diagnoser.
   void begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> rounding, const DiagnosisOutcome& outcome);
-  void diagnosis(const Diagnosis& diagnosis, const std::optional<Index>& truth, double step_us);
+  void diagnosis(const DiagnosisResult& result);
   void end_diagnosis(const PipelineOutcome& outcome);
 
   std::vector<std::filesystem::path> commit(const RunOutcome& outcome);
@@ -82,6 +94,7 @@ class Results {
   bool header_written_ = false, diagnosis_header_written_ = false, with_mode_ = false;
   std::vector<std::string> modes_;    ///< names, in a diagnosis
   std::optional<Index> last_sample_;  ///< the last k in data.csv
+  Index last_estimate_ = 0;           ///< k of the last step
   struct Summary {
     std::vector<std::string> fields;  ///< what every pipeline has
     std::map<std::string, std::string> metrics;

@@ -37,6 +37,20 @@ std::vector<std::string> summary_fields(const PipelineOutcome& outcome) {
   return fields;
 }
 
+/// Five fields per additive fault, empty where there is no bound.
+std::vector<std::string> fault_fields(const std::vector<JudgedBound>& faults, Index count) {
+  std::vector<std::string> fields(static_cast<std::size_t>(5 * count));
+  for (const auto& [bound, truth] : faults) {
+    std::string* field = &fields[static_cast<std::size_t>(5 * bound.fault)];
+    *field++ = std::to_string(bound.at);
+    *field++ = csv_number(bound.lower);
+    *field++ = csv_number(bound.estimate);
+    *field++ = csv_number(bound.upper);
+    *field++ = truth ? csv_number(*truth) : "";
+  }
+  return fields;
+}
+
 }  // namespace
 
 const std::vector<std::string>& diagnosis_summary_columns() {
@@ -85,19 +99,23 @@ void Results::write_diagnosis_header(std::size_t modes) {
       for (Index i = 1; i <= study_.model.linear.outputs(); ++i) names.push_back(fmt::format("{}{}_{}", bound, of_mode, i));
     }
   }
+  for (Index i = 1; i <= study_.model.linear.faults(); ++i) {
+    for (const char* name : {"at", "lower", "estimate", "upper", "truth"}) names.push_back(fmt::format("fault_{}_{}", name, i));
+  }
   diagnosis_file_->write(joined(names));
   diagnosis_header_written_ = true;
 }
 
-void Results::diagnosis(const Diagnosis& diagnosis, const std::optional<Index>& truth, double step_us) {
-  write(results_, diagnosis, truth, modes_);
-  run_.begin_object().member("k", diagnosis.k).member("step_us", step_us).end_object();
+void Results::diagnosis(const DiagnosisResult& result) {
+  const Diagnosis& diagnosis = result.diagnosis;
+  write(results_, diagnosis, result.truth, result.faults, modes_);
+  run_.begin_object().member("k", diagnosis.k).member("step_us", result.step_us).end_object();
   if (!diagnosis_header_written_) write_diagnosis_header(modes_.size());
   std::vector<std::string> row{pipeline_,
                                std::to_string(diagnosis.k),
                                std::string(to_string(diagnosis.decision)),
                                mode_field(diagnosis.mode),
-                               truth ? std::to_string(*truth) : "",
+                               result.truth ? std::to_string(*result.truth) : "",
                                std::to_string(diagnosis.since),
                                mode_field(diagnosis.suggested)};
   const auto outputs = static_cast<std::size_t>(study_.model.linear.outputs());
@@ -112,6 +130,8 @@ void Results::diagnosis(const Diagnosis& diagnosis, const std::optional<Index>& 
       row.insert(row.end(), fields.begin(), fields.end());
     }
   }
+  const std::vector<std::string> faults = fault_fields(result.faults, study_.model.linear.faults());
+  row.insert(row.end(), faults.begin(), faults.end());
   diagnosis_file_->write(joined(row));
 }
 

@@ -29,6 +29,10 @@ void write_time(JsonWriter& json, std::string_view name, std::int64_t k) {
   k < 0 ? json.null() : json.value(k);
 }
 
+void write_box(JsonWriter& json, std::string_view key, const Box& box) {
+  json.key(key).begin_object().member("lower", box.lower).member("upper", box.upper).end_object();
+}
+
 void write_blocks(JsonWriter& json, const LineForm& X) {
   json.member("dim", X.dim())
       .member("lines", X.lines())

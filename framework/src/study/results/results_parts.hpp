@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cordon/core/answer.hpp"
+#include "cordon/core/box.hpp"
 #include "cordon/core/line_form.hpp"
 #include "study/results/json_writer.hpp"
 
@@ -20,6 +21,7 @@ std::string joined(const std::vector<std::string>& fields);  ///< one row with i
 
 void write_time(JsonWriter& json, std::string_view name, std::int64_t k);  ///< negative: null
 void write_blocks(JsonWriter& json, const LineForm& X);  ///< the members of an exchange form, inside an open object
+void write_box(JsonWriter& json, std::string_view key, const Box& box);  ///< {lower, upper}
 void write(JsonWriter& json, const LineForm& X);
 void write(JsonWriter& json, const Certificate& why);
 

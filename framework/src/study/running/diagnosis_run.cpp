@@ -2,10 +2,12 @@
 #include "study/running/diagnosis_run.hpp"
 
 #include <chrono>
+#include <limits>
 
 #include "cordon/solvers/set_questions.hpp"
 #include "study/results/median.hpp"
 #include "study/running/diagnosis_score.hpp"
+#include "study/running/fault_score.hpp"
 #include "study/running/pipeline_guard.hpp"
 
 namespace cordon::detail {
@@ -24,6 +26,12 @@ bool is_own_model(const Study& study) {
   return simulate && !simulate->plant && !simulate->made_plant;
 }
 
+/// The first k at which simulated data leave the nominal model otherwise than by additive faults.
+Index first_other_fault(const Study& study) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  return simulate && !simulate->faults.empty() ? simulate->faults.front().from : std::numeric_limits<Index>::max();
+}
+
 std::int64_t seeds_of(const Study& study) {
   const auto* simulate = std::get_if<SimulateSpec>(&study.data);
   return simulate ? std::max<std::int64_t>(1, simulate->seeds) : 1;
@@ -33,7 +41,11 @@ std::int64_t seeds_of(const Study& study) {
 class DiagnosisPipeline {
  public:
   DiagnosisPipeline(const Study& study, const PipelineSpec& spec)
-      : bank_(bank_of(study)), own_model_(is_own_model(study)), seeds_(seeds_of(study)) {
+      : bank_(bank_of(study)),
+        own_model_(is_own_model(study)),
+        first_other_fault_(first_other_fault(study)),
+        seeds_(seeds_of(study)),
+        fault_score_(study.model.linear.faults()) {
     outcome_.name = spec.name;
     outcome_.backend = spec.backend.type;
     outcome_.diagnoser = spec.diagnoser->type;
@@ -51,11 +63,11 @@ class DiagnosisPipeline {
   std::optional<Rounding> rounding() const { return backend_ ? std::optional(backend_->info().rounding) : std::nullopt; }
   const DiagnosisOutcome& found() const { return found_; }
   bool failed() const { return !outcome_.error.empty(); }
-  bool violated() const { return outcome_.violated_at >= 0; }
 
   void begin_run(std::int64_t seed_offset) {
     seed_offset_ = seed_offset;
     start_holds_ = true;
+    fault_score_.begin_run(seed_offset);
     timeline_.emplace();
     score_.emplace([this](const DiagnosisSegment& segment) {
       tally_.add(segment);
@@ -66,9 +78,11 @@ class DiagnosisPipeline {
 
   void step(const Record& record, Results* results) {
     std::optional<Diagnosis> diagnosis;
+    std::vector<JudgedBound> faults;
     guarded(outcome_, [&] {
       diagnosis = diagnoser_->step(record.sample);
       check(*diagnosis);
+      faults = fault_score_.step(record.sample.k < first_other_fault_ ? record.fault : std::nullopt, *diagnosis);
     });
     if (failed()) return;
     if (found_.steps == 0 && record.mode) found_.truth_known = true;
@@ -80,7 +94,7 @@ class DiagnosisPipeline {
     }
     median_.add(diagnoser_->step_us());
     score_->step(record.mode, *diagnosis);
-    if (results) results->diagnosis(*diagnosis, record.mode, diagnoser_->step_us());
+    if (results) results->diagnosis({*diagnosis, record.mode, faults, diagnoser_->step_us()});
   }
 
   void end_run() {
@@ -89,12 +103,7 @@ class DiagnosisPipeline {
     found_.false_alarms += score_->false_alarms();
     found_.runs_with_false_alarm += score_->false_alarms() > 0;
     found_.runs_with_wrong_mode += score_->wrong_mode();
-    auto excluded = score_->true_mode_excluded();
-    if (excluded && !found_.true_mode_excluded) {
-      excluded->seed_offset = seed_offset_;
-      found_.true_mode_excluded = excluded;
-      if (own_model_ && (start_holds_ || excluded->since > 0)) outcome_.violated_at = excluded->k;
-    }
+    judge_run();
     if (failed() && seeds_ > 1)
       outcome_.error += " (seed " + std::to_string(seed_offset_ + 1) + " of " + std::to_string(seeds_) + ")";
   }
@@ -103,6 +112,7 @@ class DiagnosisPipeline {
     outcome_.median_step_us = median_.value();
     outcome_.wall_s = wall_s;
     found_.statistics = tally_.statistics();
+    found_.faults = fault_score_.statistics();
     outcome_.diagnosis = std::move(found_);
     return std::move(outcome_);
   }
@@ -115,6 +125,27 @@ class DiagnosisPipeline {
     if (static_cast<Index>(diagnosis.modes.size()) == bank_.size() && mode_fits) return;
     throw Error(Errc::plugin, "the diagnoser \"" + outcome_.diagnoser +
                                   "\" gave a diagnosis that does not fit its bank at k = " + std::to_string(diagnosis.k));
+  }
+
+  /// The first exclusion of a true mode, and the first bounds without the true fault.
+  void judge_run() {
+    auto excluded = score_->true_mode_excluded();
+    if (excluded && !found_.true_mode_excluded) {
+      excluded->seed_offset = seed_offset_;
+      found_.true_mode_excluded = excluded;
+      if (start_holds_ || excluded->since > 0) blame(excluded->k);
+    }
+    if (fault_score_.outside() && !found_.fault_outside) {
+      found_.fault_outside = fault_score_.outside();
+      blame(found_.fault_outside->k);
+    }
+    if (violated_in_run_ && outcome_.violated_at < 0) outcome_.violated_at = *violated_in_run_;
+    violated_in_run_.reset();
+  }
+
+  /// A statement that is proven false: a defect where the data are made by the model itself.
+  void blame(Index k) {
+    if (own_model_) violated_in_run_ = std::min(k, violated_in_run_.value_or(k));
   }
 
   /// A statement about a mode since the first sample rests on that mode's X0.
@@ -133,12 +164,15 @@ class DiagnosisPipeline {
 
   ModeBank bank_;
   bool own_model_, start_holds_ = true;
+  Index first_other_fault_;
   std::int64_t seeds_, seed_offset_ = 0;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Diagnoser> diagnoser_;
   std::optional<DiagnosisTimeline> timeline_;
   std::optional<DiagnosisScore> score_;
   DiagnosisTally tally_;
+  FaultScore fault_score_;
+  std::optional<Index> violated_in_run_;
   Median median_;
   DiagnosisOutcome found_;
   PipelineOutcome outcome_;

@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/running/diagnosis_score.hpp"
 
+#include <algorithm>
+
 namespace cordon::detail {
 
 namespace {
 
 void first_at(Index& time, Index k) {
   if (time < 0) time = k;
+}
+
+/// The time from which on the exclusions of this step speak. Bounds of additive faults speak of a time that may lie before.
+Index since_of(const Diagnosis& now) {
+  Index since = now.since;
+  for (const FaultBound& bound : now.faults) {
+    if (bound.lower > 0 || bound.upper < 0) since = std::min(since, bound.at);
+  }
+  return since;
 }
 
 }  // namespace
@@ -21,7 +32,7 @@ bool DiagnosisBefore::is_given_up_in(const Diagnosis& now) const {
 
 void DiagnosisScore::step(const std::optional<Index>& truth, const Diagnosis& now) {
   follow(truth, now);
-  if (before_ && before_->is_given_up_in(now) && throughout(before_->mode, now.since)) ++false_alarms_;
+  if (before_ && before_->is_given_up_in(now) && throughout(before_->mode, since_of(now))) ++false_alarms_;
   if (segment_) judge_segment(now);
   judge_exclusions(now);
   before_.emplace(now);
@@ -68,11 +79,12 @@ bool DiagnosisScore::throughout(Index mode, Index since) const {
 
 // Modes that are no candidates at the first step are none by assumption, without proof.
 void DiagnosisScore::judge_exclusions(const Diagnosis& now) {
+  const Index since = since_of(now);
   for (std::size_t j = 0; j < now.modes.size() && !excluded_; ++j) {
     const auto mode = static_cast<Index>(j);
     const bool dropped = before_ && before_->candidate[j] && !now.modes[j].candidate;
     if (!dropped && now.modes[j].consistent != Answer::no) continue;
-    if (throughout(mode, now.since)) excluded_ = {now.k, now.since, mode, 0};
+    if (throughout(mode, since)) excluded_ = {now.k, since, mode, 0};
   }
 }
 

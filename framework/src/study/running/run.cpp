@@ -8,6 +8,7 @@
 #include "study/results/median.hpp"
 #include "study/results/results.hpp"
 #include "study/running/diagnosis_run.hpp"
+#include "study/running/inner_check.hpp"
 #include "study/running/pipeline_guard.hpp"
 
 namespace cordon {
@@ -16,6 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using detail::Assumptions;
+using detail::InnerCheck;
 using detail::Median;
 using detail::MetricBoard;
 using detail::MetricValues;
@@ -63,6 +65,7 @@ class Pipeline {
 
   std::optional<Rounding> rounding() const { return backend_ ? std::optional(backend_->info().rounding) : std::nullopt; }
   const std::optional<Assumptions>& assumptions() const { return assumptions_; }
+  const std::vector<Gain>& gains() const { return outcome_.gains; }
 
   void make(const PipelineSpec& spec, const Registry& registry) {
     guarded([&] {
@@ -72,6 +75,7 @@ class Pipeline {
       observer_->start();
       assumptions_ = {observer_->initial_set(), std::nullopt};
       if (const Set* admissible = observer_->admissible_set()) assumptions_->admissible_set = admissible->line_form();
+      outcome_.gains = observer_->gains();
     });
   }
 
@@ -79,6 +83,7 @@ class Pipeline {
   bool step(const Record& record, Results* results) {
     std::optional<Estimate> estimate;
     Box hull;
+    std::optional<Box> inner;
     const MetricValues* values = nullptr;
     double hull_us = 0;
     nominal_ = nominal_ && record.mode.value_or(nominal_mode) == nominal_mode;
@@ -88,6 +93,8 @@ class Pipeline {
       hull = estimate->consistent == Answer::no ? Box::empty(estimate->set->dim())
                                                 : estimate->set->interval_hull(results ? &hull_proofs_ : nullptr);
       hull_us = seconds_since(begin) * 1e6;
+      inner = observer_->inner_estimate();
+      if (inner) inner_.step(estimate->k, *inner, hull);
       const Vector* truth = judge(record, *estimate);
       const bool assumptions_hold = nominal_ && outcome_.assumptions_until < 0;
       values = &board_->step({*estimate, hull, truth, assumptions_hold, observer_->times()});
@@ -96,7 +103,8 @@ class Pipeline {
     if (!outcome_.error.empty()) return false;
     if (outcome_.inconsistent_from < 0) medians_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
     count(*estimate, hull);
-    if (results) results->step({*estimate, hull, hull_proofs_, *values, observer_->times(), hull_us});
+    if (results) results->step({*estimate, hull, hull_proofs_, inner, *values, observer_->times(), hull_us});
+    outcome_.last_hull = std::move(hull);
     return true;
   }
 
@@ -109,6 +117,9 @@ class Pipeline {
     outcome_.median_hull_us = medians_.hull.value();
     outcome_.median_step_us = medians_.step.value();
     outcome_.wall_s = wall_s;
+    outcome_.inner_steps = inner_.steps();
+    outcome_.inner_outside = inner_.outside();
+    if (inner_.steps() > 0) outcome_.inner_share = inner_.share();
     if (results) results->end_pipeline(outcome_, summary);
     return std::move(outcome_);
   }
@@ -181,6 +192,7 @@ class Pipeline {
   std::deque<std::pair<Index, Vector>> truths_;
   std::vector<Certificate> hull_proofs_;
   Medians medians_;
+  InnerCheck inner_;
   PipelineOutcome outcome_;
 };
 
@@ -192,7 +204,7 @@ bool run_pipeline(const Study& study, std::size_t index, const Registry& registr
   const std::int64_t total = data.size().value_or(0);
   Pipeline pipeline(study, spec);
   pipeline.make(spec, registry);
-  if (results) results->begin_pipeline(spec, pipeline.rounding(), pipeline.assumptions());
+  if (results) results->begin_pipeline(spec, pipeline.rounding(), pipeline.assumptions(), pipeline.gains());
   std::int64_t done = 0;
   Clock::time_point told = begin;
   while (!pipeline.failed()) {

@@ -3,11 +3,15 @@
 
 #include <vector>
 
+#include "study/data/random.hpp"
+
 namespace cordon::verification {
 
 namespace {
 
 constexpr int steps_between_rounding = 8;
+constexpr int most_draws = 6;
+constexpr double almost_all = 0.999;  // of a radius: no rounding leads out of the interval
 
 Vector zero(Index n) { return Vector::Zero(n); }
 
@@ -124,28 +128,49 @@ FeasibleSets::FeasibleSets(const Model& model, const LineForm& initial_set, cons
       minus_noise_(Polytope::from(model.V).affine_map(-model.linear.Dv, zero(model.linear.outputs()))) {}
 
 /// C x ∈ {y} ⊕ {-D u} ⊕ (-Dv V).
-Polytope FeasibleSets::measured(const Polytope& X, const Sample& now) const {
-  if (model_.outputs() == 0) return X;
-  const Polytope target = minus_noise_.minkowski_sum(Polytope::from_generators(now.y)).minkowski_sum(image(-model_.D, now.u));
-  return X.intersection(model_.C, target);
+Polytope FeasibleSets::measured(const LinearModel& m, const Polytope& X, const Sample& now) const {
+  if (m.outputs() == 0) return X;
+  const Polytope target = minus_noise_.minkowski_sum(Polytope::from_generators(now.y)).minkowski_sum(image(-m.D, now.u));
+  return X.intersection(m.C, target);
+}
+
+/// P_k with the matrices of `m`.
+Polytope FeasibleSets::reached(const LinearModel& m, const Sample& now) const {
+  const Index n = m.states();
+  Polytope P = initial_;
+  if (P_) {
+    const Polytope next = P_->affine_map(m.A, zero(n)).minkowski_sum(image(m.B, before_->u)).minkowski_sum(disturbance_);
+    P = m.is_descriptor() ? next.preimage(m.E, zero(n)) : next;
+  }
+  if (admissible_) P = P.intersection(*admissible_);
+  return measured(m, P, now);
 }
 
 Polytope FeasibleSets::step(const Sample& now) {
   const Index n = model_.states();
-  Polytope P = initial_;
-  if (P_) {
-    const Polytope reached =
-        P_->affine_map(model_.A, zero(n)).minkowski_sum(image(model_.B, before_->u)).minkowski_sum(disturbance_);
-    P = model_.is_descriptor() ? reached.preimage(model_.E, zero(n)) : reached;
+  Polytope P = reached(drawn(model_, now.k, 0), now);
+  for (int draw = 1; model_.is_uncertain() && draw < most_draws && P.is_empty(); ++draw) {
+    P = reached(drawn(model_, now.k, draw), now);
   }
-  if (admissible_) P = P.intersection(*admissible_);
-  P_ = measured(P, now);
+  P_ = std::move(P);
   if (++steps_ % steps_between_rounding == 0) P_ = with_short_numbers(*P_);
   before_ = now;
   if (!model_.is_descriptor()) return *P_;
   const Polytope range = Polytope::from_generators(zero(n), Matrix(n, 0), model_.E);
   const Polytope target = minus_disturbance_.minkowski_sum(image(-model_.B, now.u)).minkowski_sum(range);
   return P_->intersection(model_.A, target);
+}
+
+LinearModel drawn(const LinearModel& model, Index k, int draw) {
+  LinearModel m = model;
+  if (!model.is_uncertain() || model.is_descriptor() || draw == 1) return m;
+  detail::RandomStream random(static_cast<std::uint64_t>(draw), detail::Purpose::direction, static_cast<std::uint64_t>(k));
+  for (const auto& [center, radius] : {std::pair(&m.A, &model.A_radius), {&m.B, &model.B_radius}, {&m.C, &model.C_radius}}) {
+    for (Index j = 0; j < radius->cols(); ++j) {
+      for (Index i = 0; i < radius->rows(); ++i) (*center)(i, j) += random.sign() * almost_all * (*radius)(i, j);
+    }
+  }
+  return m;
 }
 
 LineForm successors(const Model& model, const LineForm& X, const std::optional<LineForm>& admissible_set,

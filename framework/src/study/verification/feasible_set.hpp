@@ -14,8 +14,10 @@ namespace cordon::verification {
 /// Rⁿ:
 ///   P_0 = X_0 ∩ X_A ∩ Y_0,   P_k = {x : E x ∈ A P_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W} ∩ X_A ∩ Y_k,
 ///   F_k = {x ∈ P_k : A x + B u_k ∈ E Rⁿ ⊕ (-Bw W)},   Y_k = {x : y_k - D u_k - C x ∈ Dv V}.
-/// Every few steps the numbers are rounded outward to doubles, a few units in the last place: otherwise they grow without bound.
-/// Throws Errc::unsupported where polyhedra grow too large.
+/// Where A, B and C are interval matrices, those of every step are drawn from them: F_k then holds some of the consistent states,
+/// and is of use as long as it is not empty. Of several draws the first that leaves a state is taken. Every few steps the numbers
+/// are rounded outward to doubles, a few units in the last place: otherwise they grow without bound. Throws Errc::unsupported
+/// where polyhedra grow too large.
 class FeasibleSets {
  public:
   FeasibleSets(const Model& model, const LineForm& initial_set, const std::optional<LineForm>& admissible_set);
@@ -24,7 +26,8 @@ class FeasibleSets {
   Polytope step(const Sample& now);
 
  private:
-  Polytope measured(const Polytope& X, const Sample& now) const;
+  Polytope reached(const LinearModel& m, const Sample& now) const;
+  Polytope measured(const LinearModel& m, const Polytope& X, const Sample& now) const;
 
   const LinearModel& model_;
   Polytope initial_;
@@ -33,6 +36,10 @@ class FeasibleSets {
   std::optional<Sample> before_;
   int steps_ = 0;
 };
+
+/// The model with A, B and C drawn from their intervals, by k and the number of the draw: close to vertices, or in the middle for
+/// draw 1. Of exact and of descriptor models, the model itself.
+LinearModel drawn(const LinearModel& model, Index k, int draw);
 
 /// {x_k : x_{k-1} ∈ X_{k-1} is consistent with sample k-1, and x_k is a successor of it that is consistent with sample k}: an
 /// exchange form whose rows hold the numbers of model and data as they are, so that nothing is rounded. Without `before`: X ∩ X_A

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "observers/luenberger_gain.hpp"
+#include "gains/kalman_gain.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
-#include "cordon/invariant/schur.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
+#include "gains/gain_certificate.hpp"
 
 namespace cordon::estimators {
 
@@ -18,23 +18,38 @@ constexpr double tolerance = 1e-13;  // relative change of P
 constexpr double settled = 1e-6;     // a change that is still above the tolerance, but is rounding: it has stopped decreasing
 constexpr int patience = 50;
 constexpr double floor_share = 1e-6;
+constexpr double least_condition = 1e-12;  // below this share of its largest eigenvalue, the smallest one of S is rounding
 
-Matrix covariance(const Matrix& T, const LineForm& X) {
-  const Matrix shape = linalg::product(T, invariant::enclosing_zonotope(X).G);
+Matrix covariation(const Matrix& T, const LineForm& X, const char* name) {
+  const Matrix shape = linalg::product(T, invariant::enclosing_zonotope(X, name).G);
   return linalg::product(shape, shape.transpose());
 }
 
 double largest(const Matrix& A) { return A.size() == 0 ? 0.0 : A.cwiseAbs().maxCoeff(); }
 
+/// The part of it that R and Q are enlarged by.
+double floor_of(double size) { return floor_share * (size > 0 ? size : 1.0); }
+
 }  // namespace
 
-Matrix designed_gain(const Model& model) {
+Matrix kalman_gain(const Model& model, MatrixIn P) {
+  const LinearModel& m = model.linear;
+  if (m.outputs() == 0) return Matrix(m.states(), 0);
+  const Matrix C = mean_outputs(m), PCt = linalg::product(P, C.transpose());
+  Matrix S = linalg::product(C, PCt) + covariation(m.Dv, model.V, "V");
+  const Vector values = linalg::symmetric_eigen(S).values;
+  if (!(values[0] > least_condition * values[values.size() - 1])) S.diagonal().array() += floor_of(largest(S));
+  const std::optional<Matrix> gain = linalg::solve_spd(S, linalg::product(m.A, PCt).transpose());
+  if (!gain || !gain->allFinite()) throw Error(Errc::not_finite, "no Kalman gain: the set of states is too large");
+  return gain->transpose();
+}
+
+Matrix steady_kalman_gain(const Model& model) {
   const LinearModel& m = model.linear;
   const Index n = m.states(), p = m.outputs();
-  const Matrix C = m.sensor_center().asDiagonal() * m.C;
-  Matrix Q = covariance(m.Bw, model.W), R = covariance(m.Dv, model.V);
-  const double size = std::max(largest(Q), largest(R));
-  const double extra = floor_share * (size > 0 ? size : 1.0);
+  const Matrix C = mean_outputs(m);
+  Matrix Q = covariation(m.Bw, model.W, "W"), R = covariation(m.Dv, model.V, "V");
+  const double extra = floor_of(std::max(largest(Q), largest(R)));
   Q += extra * Matrix::Identity(n, n);
   R += extra * Matrix::Identity(p, p);
   Matrix P = Q;
@@ -57,28 +72,6 @@ Matrix designed_gain(const Model& model) {
     if (change <= tolerance * scale || (waited >= patience && change <= settled * scale)) return L;
   }
   throw Error(Errc::invalid, "no gain was found: the pair (A, C) is not detectable, or nearly so");
-}
-
-void check_gain(const Model& model, const Matrix* given, const std::string& pointer, const std::string& of_mode,
-                std::vector<Diagnostic>& problems) {
-  const LinearModel& m = model.linear;
-  const Index n = m.states(), p = m.outputs();
-  if (given && (given->rows() != n || given->cols() != p)) {
-    problems.push_back({pointer,
-                        "is " + std::to_string(given->rows()) + " × " + std::to_string(given->cols()) + ", must be " +
-                            std::to_string(n) + " × " + std::to_string(p) + of_mode,
-                        "a row per state, a column per output"});
-    return;
-  }
-  try {
-    const Matrix L = given ? *given : designed_gain(model);
-    const Matrix closed = m.A - L * (m.sensor_center().asDiagonal() * m.C);
-    invariant::require_schur(closed, "A - L C" + of_mode);
-  } catch (const Error& error) {
-    problems.push_back(
-        {given ? pointer : "", error.what(),
-         given ? "choose a gain that makes A - L C stable, or leave it out to have one designed" : "give \"gain\""});
-  }
 }
 
 }  // namespace cordon::estimators

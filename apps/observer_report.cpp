@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observer_report.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace cordon::apps {
+
+namespace {
+
+using nlohmann::ordered_json;
+using Rows = std::vector<std::vector<std::string>>;
+
+constexpr Index most_states = 8;
+constexpr std::size_t longest_matrix = 60;
+
+std::string titled(const std::string& title, const Rows& rows, const Paint& paint) {
+  return rows.size() < 2 ? "" : title + "\n" + table(rows, paint) + "\n";
+}
+
+/// Six decimals where they show the number well.
+std::string width_text(double width) {
+  if (std::isinf(width)) return "unbounded";
+  const bool fixed = width == 0 || (width >= 1e-2 && width < 1e7);
+  return fixed ? fmt::format("{:.6f}", width) : fmt::format("{:.6e}", width);
+}
+
+/// [a b; c d], row by row; the size of a matrix that is too long for that.
+std::string matrix_text(const Matrix& L) {
+  std::string text = "[";
+  for (Index i = 0; i < L.rows(); ++i) {
+    text += i > 0 ? "; " : "";
+    for (Index j = 0; j < L.cols(); ++j) text += fmt::format("{}{:.4g}", j > 0 ? " " : "", L(i, j) + 0.0);
+  }
+  return text.size() < longest_matrix ? text + "]" : fmt::format("{}×{}", L.rows(), L.cols());
+}
+
+std::string number_text(double value) {
+  if (std::isnan(value)) return "-";
+  return std::isinf(value) ? "∞" : fmt::format("{:.5g}", value);
+}
+
+/// Both bounds of a norm as one number where they agree in the digits that are shown.
+std::string norm_text(const GainCertificate& known) {
+  const std::string lower = number_text(known.norm_lower), upper = number_text(known.norm_upper);
+  return lower == upper ? lower : fmt::format("[{}, {}]", lower, upper);
+}
+
+std::string objective_text(const GainCertificate& known) {
+  return known.objective.empty() ? "-" : fmt::format("{} = {}", known.objective, number_text(known.optimum));
+}
+
+ordered_json numbers(const Vector& values) {
+  ordered_json all = ordered_json::array();
+  for (const double value : values) all.push_back(json_number(value));
+  return all;
+}
+
+}  // namespace
+
+std::string gains_text(const RunOutcome& outcome, const Paint& paint) {
+  Rows rows{{"PIPELINE", "PARAMETER", "GAIN", "L", "SPECTRAL RADIUS", "MONOTONE", "‖G‖∞", "OPTIMUM"}};
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    for (const Gain& gain : pipeline.gains) {
+      const GainCertificate& known = gain.certificate;
+      rows.push_back({pipeline.name, gain.name, gain.type, matrix_text(gain.L), number_text(known.spectral_radius),
+                      known.monotone ? "yes" : "no", norm_text(known), objective_text(known)});
+    }
+  }
+  return titled("Gains", rows, paint);
+}
+
+std::string widths_text(const RunOutcome& outcome, const Paint& paint) {
+  Rows rows{{"PIPELINE"}};
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    const Box& hull = pipeline.last_hull;
+    if (hull.dim() == 0 || hull.dim() > most_states) continue;
+    for (Index i = static_cast<Index>(rows[0].size()); i <= hull.dim(); ++i) rows[0].push_back(fmt::format("x{}", i));
+    rows.push_back({pipeline.name});
+    for (Index i = 0; i < hull.dim(); ++i) {
+      rows.back().push_back(hull.is_empty() ? "empty" : width_text(hull.upper[i] - hull.lower[i]));
+    }
+  }
+  return titled("Widths at the last step", rows, paint);
+}
+
+std::string inner_text(const RunOutcome& outcome, const Paint& paint) {
+  Rows rows{{"PIPELINE", "STEPS", "MEAN SHARE OF THE WIDTH", "INSIDE THE HULL"}};
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    if (pipeline.inner_steps == 0) continue;
+    const bool inside = pipeline.inner_outside < 0;
+    rows.push_back({pipeline.name, fmt::format("{}", pipeline.inner_steps), number_text(pipeline.inner_share),
+                    inside ? "always" : fmt::format("NOT at k = {}", pipeline.inner_outside)});
+  }
+  return titled("Inner estimates", rows, paint);
+}
+
+ordered_json json_number(double value) {
+  if (std::isnan(value)) return nullptr;
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+ordered_json gains_json(const PipelineOutcome& pipeline) {
+  ordered_json all = ordered_json::array();
+  for (const Gain& gain : pipeline.gains) {
+    const GainCertificate& known = gain.certificate;
+    ordered_json matrix = ordered_json::array();
+    for (Index i = 0; i < gain.L.rows(); ++i) matrix.push_back(numbers(gain.L.row(i).transpose()));
+    const bool has_norm = !std::isnan(known.norm_lower) || !std::isnan(known.norm_upper);
+    const ordered_json norm{{"lower", json_number(known.norm_lower)}, {"upper", json_number(known.norm_upper)}};
+    ordered_json one{{"name", gain.name},           {"type", gain.type},
+                     {"matrix", std::move(matrix)}, {"spectral_radius", json_number(known.spectral_radius)},
+                     {"monotone", known.monotone},  {"norm", has_norm ? norm : ordered_json(nullptr)}};
+    if (!known.objective.empty()) {
+      one["objective"] = known.objective;
+      one["optimum"] = json_number(known.optimum);
+      one["optimum_bound"] = json_number(known.optimum_bound);
+      one["margin"] = json_number(known.margin);
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+ordered_json last_json(const PipelineOutcome& pipeline) {
+  const Box& hull = pipeline.last_hull;
+  if (hull.dim() == 0) return nullptr;
+  return {{"hull", {{"lower", numbers(hull.lower)}, {"upper", numbers(hull.upper)}}},
+          {"width", hull.is_empty() ? ordered_json(nullptr) : numbers(hull.upper - hull.lower)}};
+}
+
+}  // namespace cordon::apps

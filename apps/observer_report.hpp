@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is printed about pipelines with an observer beside their comparison: gains, widths at the end, inner estimates.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "common.hpp"
+#include "cordon/study/run.hpp"
+
+namespace cordon::apps {
+
+// Tables with a title and an empty line behind; "" where no pipeline has anything to tell.
+
+/// One row per gain.
+std::string gains_text(const RunOutcome& outcome, const Paint& paint);
+/// One row per pipeline, one column per state, up to eight states.
+std::string widths_text(const RunOutcome& outcome, const Paint& paint);
+/// One row per pipeline that offers an inner estimate.
+std::string inner_text(const RunOutcome& outcome, const Paint& paint);
+
+/// The number, null for NaN, "inf" and "-inf".
+nlohmann::ordered_json json_number(double value);
+/// The same as in results.json.
+nlohmann::ordered_json gains_json(const PipelineOutcome& pipeline);
+/// {hull, width}; null if there was no step.
+nlohmann::ordered_json last_json(const PipelineOutcome& pipeline);
+
+}  // namespace cordon::apps

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gains/h_infinity_lmi.hpp"
+
+#include <limits>
+
+#include "cordon/core/linalg.hpp"
+#include "cordon/solvers/lp.hpp"
+#include "gains/gain_certificate.hpp"
+#include "gains/monotone.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+struct HInfinityProgram {
+  MatrixVariable P, M;
+  SemidefiniteProgram program;
+};
+
+/// P A - M C ≥ 0 with diagonal P, entry by entry.
+void add_monotonicity(const ErrorDynamics& errors, HInfinityProgram& design) {
+  const Index n = errors.A.rows(), p = errors.C.rows();
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = 0; i < n; ++i) {
+      MatrixInequality entry{Matrix::Zero(1, 1), {}};
+      if (errors.A(i, j) != 0) entry.terms.emplace_back(design.P.first + i, Matrix::Constant(1, 1, errors.A(i, j)));
+      for (Index k = 0; k < p; ++k) {
+        if (errors.C(k, j) != 0) entry.terms.emplace_back(design.M.first + k * n + i, Matrix::Constant(1, 1, -errors.C(k, j)));
+      }
+      if (!entry.terms.empty()) design.program.inequalities.push_back(std::move(entry));
+    }
+  }
+}
+
+/// In coordinates z = T e; the norm is that of e.
+HInfinityProgram h_infinity_program(const ErrorDynamics& errors, const Matrix& T, const Matrix& T_inverse, bool monotone) {
+  const Index n = errors.A.rows(), e = errors.E.cols(), v = errors.N.cols();
+  const ErrorDynamics z{linalg::product(linalg::product(T, errors.A), T_inverse), linalg::product(errors.C, T_inverse),
+                        linalg::product(T, errors.E), errors.N, errors.unit};
+  HInfinityProgram design;
+  design.P = monotone ? diagonal_variable(0, n) : symmetric_variable(0, n);
+  design.M = full_variable(design.P.end(), n, z.C.rows());
+  const MatrixVariable gamma_e{design.M.end(), {Matrix::Identity(e, e)}}, gamma_v{design.M.end(), {Matrix::Identity(v, v)}},
+      gamma_n{design.M.end(), {Matrix::Identity(n, n)}};
+  design.program.cost = Vector::Unit(gamma_n.end(), gamma_n.first);
+  const Matrix I = Matrix::Identity(n, n);
+  BlockInequality lmi({n, n, e, v, n});
+  lmi.add(0, 0, design.P, I);
+  lmi.add(0, 1, design.P, z.A);
+  lmi.add(0, 1, design.M, -z.C);
+  lmi.add(0, 2, design.P, z.E);
+  lmi.add(0, 3, design.M, -z.N);
+  lmi.add(1, 1, design.P, I);
+  lmi.add(1, 4, T_inverse.transpose());
+  lmi.add(2, 2, gamma_e, Matrix::Identity(e, e));
+  lmi.add(3, 3, gamma_v, Matrix::Identity(v, v));
+  lmi.add(4, 4, gamma_n, I);
+  design.program.inequalities.push_back(std::move(lmi).finish());
+  if (monotone) add_monotonicity(z, design);
+  return design;
+}
+
+/// The gain nearest to L, row by row, with A - L C ≥ 0: ‖d‖₁ least with A_i - (L_i + d) C ≥ 0. In units of the violation, since
+/// the tolerances of linear programs are absolute; entries that are far from 0 in them do not matter.
+Matrix projected(const ErrorDynamics& errors, Matrix L) {
+  const Index n = errors.A.rows(), p = errors.C.rows();
+  Matrix rows(n, 2 * p + n);
+  rows << errors.C.transpose(), -errors.C.transpose(), Matrix::Identity(n, n);
+  const Vector lower = Vector::Zero(2 * p + n), upper = Vector::Constant(2 * p + n, std::numeric_limits<double>::infinity());
+  Vector cost = Vector::Zero(2 * p + n);
+  cost.head(2 * p).setConstant(-1);
+  for (Index i = 0; i < n; ++i) {
+    const Vector closed = (errors.A.row(i) - L.row(i) * errors.C).transpose();
+    const double violation = -closed.minCoeff();
+    if (violation <= 0) continue;
+    LinearProgram program(rows, (closed / violation).cwiseMin(1e6), lower, upper);
+    const LinearProgram::Solution s = program.maximize(cost);
+    if (s.status != LinearProgram::Status::optimal) continue;
+    L.row(i) += violation * (s.x.head(p) - s.x.segment(p, p)).transpose();
+  }
+  return L;
+}
+
+/// A - L C ≥ 0 up to 1e-12 of its terms.
+bool is_monotone(const ErrorDynamics& errors, const Matrix& L) {
+  const Matrix closed = errors.A - linalg::product(L, errors.C);
+  const Matrix terms = errors.A.cwiseAbs() + linalg::product(L.cwiseAbs(), errors.C.cwiseAbs());
+  return (closed.array() >= -1e-12 * terms.array()).all();
+}
+
+/// What the solution is worth: its gain with the certificate, or why it is not accepted. `P` is that of e.
+GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics& errors, bool monotone, const SdpSolution& s,
+                    const Matrix& P, const Matrix& PL) {
+  const std::optional<Matrix> solved = linalg::solve_spd(P, PL);
+  if (!solved) return no_gain(Answer::unknown, "the matrix P of the solution is not positive definite");
+  Matrix L = monotone ? raised_to_monotone(errors.A, errors.C, projected(errors, *solved)) : *solved;
+  if (monotone && !is_monotone(errors, L)) {
+    return no_gain(Answer::unknown, "the gain of the matrix inequality is monotone up to the solver's errors only");
+  }
+  if (const std::string problem = gain_problem(model, L); !problem.empty()) {
+    return no_gain(Answer::unknown, "the gain of the matrix inequality " + problem);
+  }
+  GainDesign design;
+  design.gain.certificate = certify(model, L, theta);
+  design.gain.L = std::move(L);
+  GainCertificate& c = design.gain.certificate;
+  c.objective = "γ";
+  c.optimum = errors.unit * s.value;
+  c.optimum_bound = errors.unit * s.bound;
+  c.margin = s.least_eigenvalue[0];
+  if (!(c.norm_lower <= c.optimum * (1 + 1e-4))) {
+    return no_gain(Answer::unknown, "the gain of the matrix inequality does not keep what the inequality promises: its norm is " +
+                                        std::to_string(c.norm_lower) + " at least, not " + std::to_string(c.optimum));
+  }
+  design.feasible = Answer::yes;
+  return design;
+}
+
+}  // namespace
+
+GainDesign h_infinity_design(const Model& model, const Matrix& theta, const ErrorDynamics& errors, bool monotone) {
+  constexpr double accuracy = 1e-8, coarse = 1e-3;
+  constexpr int rounds = 3;
+  Matrix T = Matrix::Identity(errors.A.rows(), errors.A.rows()), T_inverse = T;
+  GainDesign design;
+  for (int round = 0; round < rounds; ++round) {
+    const HInfinityProgram program = h_infinity_program(errors, T, T_inverse, monotone);
+    SdpSolution s = solve(program.program, {accuracy});
+    GainDesign found = unsolved(s);
+    if (s.status == SdpStatus::solved) {
+      // P and PL of e are TᵀPT and TᵀPL of z.
+      const Matrix P = linalg::product(T.transpose(), linalg::product(program.P.value(s.x), T));
+      found = accepted(model, theta, errors, monotone, s, P, linalg::product(T.transpose(), program.M.value(s.x)));
+    }
+    if (found.feasible == Answer::yes || round == 0) design = std::move(found);
+    if (design.feasible == Answer::yes) break;
+    if (s.status != SdpStatus::solved) s = solve(program.program, {coarse});
+    if (s.status != SdpStatus::solved) break;
+    const std::optional<Matrix> root = linalg::cholesky(program.P.value(s.x));
+    if (!root) break;
+    T = linalg::product(root->transpose(), T);
+    const std::optional<Matrix> inverse = linalg::solve(T, Matrix::Identity(T.rows(), T.cols()));
+    if (!inverse) break;
+    T_inverse = *inverse;
+  }
+  return design;
+}
+
+}  // namespace cordon::estimators

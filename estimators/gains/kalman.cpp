@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "components.hpp"
+#include "cordon/core/error.hpp"
+#include "gains/detectability.hpp"
+#include "gains/gain_certificate.hpp"
+#include "gains/kalman_gain.hpp"
+#include "gains/theta.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr const char* details =
+    "For a set of states whose zonotope has the generators R, and zonotopes with the shapes G_W and G_V around W and V,\n"
+    "  L = A P C' (C P C' + Dv G_V G_V' Dv')⁻¹,   P = R R',\n"
+    "minimises the F-radius of the next set: tr P⁺, P⁺ = (A - L C) P (A - L C)' + L Dv G_V G_V' Dv' L' + Bw G_W G_W' Bw'. P is\n"
+    "that of the reduced set, so that the gain follows what reductions add. Steady, and where an observer keeps one gain for "
+    "all\n"
+    "times: the limit of this recursion, both covariations enlarged by 1e-6 of their largest entry so that it exists wherever\n"
+    "(A, C) is detectable.";
+
+class Kalman final : public GainDesigner {
+ public:
+  explicit Kalman(bool steady) : steady_(steady) {}
+
+  GainDesign design(const Model& model) const override {
+    const std::string mend = "measure what is unstable, or use an observer without a gain";
+    if (auto hidden = undetectable_mode(model.linear.A, mean_outputs(model.linear))) {
+      return {Answer::no, {}, "no gain exists, the pair (A, C) is not detectable: " + std::move(*hidden), mend};
+    }
+    Gain gain;
+    try {
+      gain.L = steady_kalman_gain(model);
+    } catch (const Error& error) {
+      return {Answer::unknown, {}, error.what(), ""};
+    }
+    if (std::string problem = gain_problem(model, gain.L); !problem.empty()) {
+      return {Answer::unknown, {}, "the limit of the Kalman recursion does not serve: " + std::move(problem), mend};
+    }
+    gain.certificate = certify(model, gain.L, theta_of(model));
+    return {Answer::yes, std::move(gain)};
+  }
+
+  bool is_time_varying() const override { return !steady_; }
+  Matrix update(const Model& model, MatrixIn P) const override { return kalman_gain(model, P); }
+
+ private:
+  bool steady_;
+};
+
+}  // namespace
+
+void register_kalman_gain(Registrar& registrar) {
+  ParamSchema schema;
+  schema.flag("steady", "the gain of the steady state at all times, in place of one that follows the set", false);
+  registrar.gain(
+      {{"kalman", "the zonotopic Kalman gain, of least F-radius at every step", "Combastel2015", std::move(schema), details},
+       {},
+       [](const Params& params) { return std::make_unique<Kalman>(params.flag("steady")); }});
+}
+
+}  // namespace cordon::estimators
