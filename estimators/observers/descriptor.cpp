@@ -17,6 +17,10 @@
 //
 // Ranges of effectiveness: effectiveness.hpp. An input with a range that enters dynamic rows, static rows or outputs alike has
 // its factor taken once for each, which makes the recursion an outer one.
+//
+// Interval matrices A and B add a box to every equation, of the size that effectiveness.hpp tells for the states before: to the
+// dynamic rows that of the last estimate, to the static rows that of the predicted set. A static row that holds a state without a
+// bound says nothing then. C may be an interval matrix where intersections are exact; else y_k enters before x_k is bounded.
 #include <cmath>
 #include <limits>
 
@@ -25,6 +29,7 @@
 #include "cordon/core/linalg.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
+#include "observers/interval_spread.hpp"
 
 namespace cordon::estimators {
 
@@ -51,6 +56,7 @@ struct Transformed {
   Matrix T;                              ///< x = T z
   Matrix A, B, Bw;                       ///< dynamic rows, n_z of them, divided by the singular values
   Matrix static_A, static_B, static_Bw;  ///< static rows
+  Matrix rows, static_rows_map;          ///< what makes the dynamic and the static rows of those of the model
   Matrix free_part;                      ///< [0; I]: where ž enters
   Vector sigma;                          ///< singular values of the scaled E
 
@@ -72,6 +78,8 @@ struct Transformed {
     static_A = all_A.bottomRows(n - rank);
     static_B = all_B.bottomRows(n - rank);
     static_Bw = all_Bw.bottomRows(n - rank);
+    rows = left.topRows(rank);
+    static_rows_map = left.bottomRows(n - rank);
     free_part = Matrix::Zero(n, n - rank);
     free_part.bottomRows(n - rank).setIdentity();
   }
@@ -120,6 +128,9 @@ class SingularValueObserver final : public Observer {
     stacked_A_.topRows(transformed_.rank()) = transformed_.A;
     stacked_Bw_ = Matrix::Zero(n, transformed_.Bw.cols());
     stacked_Bw_.topRows(transformed_.rank()) = transformed_.Bw;
+    stacked_rows_ = Matrix::Zero(n, n);
+    stacked_rows_.topRows(transformed_.rank()) = transformed_.rows;
+    if (model().linear.is_uncertain()) recursion_ = Tightness::outer;
     if (params.has("admissible_set")) {
       recursion_ = Tightness::outer;  // of the set only the part that E does not determine is used
       admissible_ = backend().import(params.set_form("admissible_set"));
@@ -148,6 +159,8 @@ class SingularValueObserver final : public Observer {
       std::vector<Term> terms{{stacked_Bw_, W_}};
       if (transformed_.static_rows() > 0) terms.push_back({transformed_.free_part, free_});
       if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
+      const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(to_x(Z_), before.u) : Enclosure{};
+      if (effectiveness_.has_open_states()) terms.push_back({stacked_rows_, open});
       Enclosure Z = backend().predict(Z_, {stacked_A_, effectiveness_.input(stacked_B_, before.u), terms});
       Z.tightness = meet(Z.tightness, recursion_);
       return with_static_rows(Z, now.u);
@@ -158,19 +171,28 @@ class SingularValueObserver final : public Observer {
   void do_replace(const Enclosure& X) override { Z_ = to_z(X); }
 
   Enclosure to_z(const Enclosure& X) const { return backend().affine_map(X, transformed_.T.transpose(), Vector::Zero(X->dim())); }
+  Enclosure to_x(const Enclosure& Z) const { return backend().affine_map(Z, transformed_.T, Vector::Zero(Z->dim())); }
 
   /// 0 = Ǎ z + B̌ diag(f) u + B̌w w with a fresh w ∈ W.
   Enclosure with_static_rows(const Enclosure& Z, VectorIn u) const {
     if (transformed_.static_rows() == 0) return Z;
+    const Vector f = -effectiveness_.input(transformed_.static_B, u);
     Matrix entries(transformed_.static_rows(), static_W_->dim());
     entries << transformed_.static_Bw, effectiveness_.input_spread(transformed_.static_B, u);
-    return backend().correct(Z, {transformed_.static_A, -effectiveness_.input(transformed_.static_B, u), {entries, static_W_}});
+    if (!effectiveness_.has_open_states()) return backend().correct(Z, {transformed_.static_A, f, {entries, static_W_}});
+    const Enclosure noise = backend().product(static_W_, effectiveness_.open_states(to_x(Z), u));
+    Matrix open_entries(entries.rows(), noise->dim());
+    open_entries << entries, transformed_.static_rows_map;
+    return backend().correct(Z, {transformed_.static_A, f, {open_entries, noise}});
   }
 
   Enclosure finish(const Enclosure& predicted, const Sample& now) {
-    const Enclosure corrected = timed(Phase::correct, [&] { return effectiveness_.correct(predicted, measured_, now); });
+    const Enclosure corrected = timed(Phase::correct, [&] {
+      if (!has_spread(model().linear.C_radius)) return effectiveness_.correct(predicted, measured_, now);
+      return to_z(effectiveness_.correct(to_x(predicted), model().linear.C, now));
+    });
     Z_ = timed(Phase::reduce, [&] { return backend().reduce(corrected, budget_); });
-    return backend().affine_map(Z_, transformed_.T, Vector::Zero(predicted->dim()));
+    return to_x(Z_);
   }
 
   Transformed transformed_;
@@ -181,7 +203,7 @@ class SingularValueObserver final : public Observer {
   Effectiveness effectiveness_;
   Enclosure static_W_;  ///< W × factors of inputs
   Matrix measured_;     ///< C T
-  Matrix stacked_A_, stacked_B_, stacked_Bw_;
+  Matrix stacked_A_, stacked_B_, stacked_Bw_, stacked_rows_;
   Tightness recursion_ = Tightness::exact;
   Enclosure admissible_, free_, Z_;
 };
@@ -223,11 +245,11 @@ class PseudoInverseObserver final : public Observer {
     const Index n = used_.states();
     for (Index i = 0; i < is_used_.size(); ++i) is_used_[i] = Effectiveness::is_bounded_by_measurement(model().linear, i);
     const Matrix inverse = linalg::pseudo_inverse(stacked_E_C(used_));
-    const Matrix T = inverse.leftCols(n);
+    T_ = inverse.leftCols(n);
     N_ = inverse.rightCols(used_.outputs());
-    TA_ = linalg::product(T, used_.A);
-    TB_ = linalg::product(T, used_.B);
-    TBw_ = linalg::product(T, used_.Bw);
+    TA_ = linalg::product(T_, used_.A);
+    TB_ = linalg::product(T_, used_.B);
+    TBw_ = linalg::product(T_, used_.Bw);
     minus_ND_ = -linalg::product(N_, used_.D);
     minus_NDv_ = -linalg::product(N_, used_.Dv);
   }
@@ -259,6 +281,8 @@ class PseudoInverseObserver final : public Observer {
         terms.push_back({outputs_before, effectiveness_.output_factors()});
         terms.push_back({outputs_now, effectiveness_.output_factors()});
       }
+      const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
+      if (effectiveness_.has_open_states()) terms.push_back({T_, open});
       const Vector f = effectiveness_.input(TB_, before.u) +
                        linalg::product(L, is_used_.cwiseProduct(before.y) - effectiveness_.input(used_.D, before.u)) +
                        linalg::product(N_, is_used_.cwiseProduct(now.y) - effectiveness_.input(used_.D, now.u));
@@ -303,7 +327,7 @@ class PseudoInverseObserver final : public Observer {
   Effectiveness effectiveness_;
   LinearModel used_;  ///< weighted by the sensors' effectiveness
   Vector is_used_;    ///< per output: 1 or 0
-  Matrix N_, TA_, TB_, TBw_, minus_ND_, minus_NDv_;
+  Matrix T_, N_, TA_, TB_, TBw_, minus_ND_, minus_NDv_;
 };
 
 bool by_singular_values(const SetBackend& backend) { return backend.info().intersections; }
@@ -342,6 +366,12 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
     problems.push_back(
         {"/static_at_start", "needs exact intersections, which the backend \"" + info.name + "\" does not have", "leave it out"});
   }
+  if (has_spread(m.C_radius)) {
+    problems.push_back(
+        {"/type",
+         "takes an interval matrix C with exact intersections only, which the backend \"" + info.name + "\" does not have",
+         "use \"constrained_zonotope\" or \"line_zonotope\", or give an exact C"});
+  }
   if (linalg::rank(stacked_E_C(with_bounded_outputs(m)), rank_tolerance) < m.states()) {
     problems.push_back({"",
                         std::string("[E; C] does not have full column rank") +
@@ -365,6 +395,7 @@ void register_descriptor(Registrar& registrar) {
                         if (by_singular_values(*context.backend)) return std::make_unique<SingularValueObserver>(context, params);
                         return std::make_unique<PseudoInverseObserver>(context, params);
                       },
+                      true,
                       true});
 }
 
