@@ -133,7 +133,8 @@ std::string score_text(const Study& study, const DiagnosisOutcome& found, const 
                                   : paint.yellow(fmt::format("False alarms: {} in {} of {}", found.false_alarms,
                                                              found.runs_with_false_alarm, runs_text(found.runs))) +
                                         "\n";
-  if (found.runs_with_wrong_mode > 0) {
+  // With one mode only, it is monitored whenever no fault is proven, also while one acts that is too small to be.
+  if (found.runs_with_wrong_mode > 0 && found.modes.size() > 1) {
     text += paint.yellow(fmt::format("A wrong mode: in {} of {}", found.runs_with_wrong_mode, runs_text(found.runs))) + "\n";
   }
   if (const auto& excluded = found.true_mode_excluded) {

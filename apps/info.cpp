@@ -53,8 +53,8 @@ std::string as_text(const Component& component, const Paint& paint) {
   const ComponentInfo& info = *component.info;
   std::string text = paint.bold(component.kind + " " + info.name) + " (plugin " + component.plugin + ")\n" + info.summary + "\n";
   if (!info.citation.empty()) text += "Source: " + info.citation + "\n";
-  if (!info.details.empty()) text += "\n" + info.details + (info.details.ends_with('\n') ? "\n" : "\n\n");
-  if (info.schema.specs().empty()) return text + "It takes no parameters.\n";
+  if (!info.details.empty()) text += "\n" + info.details + (info.details.ends_with('\n') ? "" : "\n");
+  if (info.schema.specs().empty()) return text + (info.details.empty() ? "" : "\n") + "It takes no parameters.\n";
   std::vector<std::vector<std::string>> rows{{"PARAMETER", "TYPE", "DEFAULT", "RANGE", "MEANING"}};
   for (const ParamSpec& spec : info.schema.specs()) {
     rows.push_back({spec.name, std::string(to_string(spec.kind)), default_text(spec), range_text(spec), spec.doc});

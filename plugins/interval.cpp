@@ -7,6 +7,7 @@
 #include "adapter.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/registry/plugin.hpp"
+#include "cordon/sets/zonotope.hpp"
 #include "cordon/solvers/outward_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "rounding_parameter.hpp"
@@ -126,7 +127,9 @@ struct Intervals {
       Box box = plain_box(X, exact);
       return {std::move(box), exact ? Tightness::exact : Tightness::outer};
     }
-    return {cordon::interval_hull(X), is_plain_box(X) ? Tightness::exact : Tightness::outer};
+    const Tightness tightness = is_plain_box(X) ? Tightness::exact : Tightness::outer;
+    if (X.lines() == 0 && X.constraints() == 0) return {sets::interval_hull(sets::Zonotope{X.c, X.G}), tightness};
+    return {cordon::interval_hull(X), tightness};
   }
 
   Result predict(const Box& X, MatrixIn A, VectorIn f, std::span<const Operand<Box>> operands) const {

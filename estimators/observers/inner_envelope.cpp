@@ -98,11 +98,4 @@ std::optional<Box> InnerEnvelope::hull() const {
   return hull;
 }
 
-std::optional<Box> InnerEnvelope::within(const Box& hull) const {
-  const std::optional<Box> own = this->hull();
-  if (!own || hull.is_empty()) return std::nullopt;
-  const Box cut{own->lower.cwiseMax(hull.lower), own->upper.cwiseMin(hull.upper)};
-  return cut.is_empty() ? std::nullopt : std::optional(cut);
-}
-
 }  // namespace cordon::estimators

@@ -32,8 +32,7 @@ class InnerEnvelope {
   void end() { running_ = false; }
   /// Moves on by the sample of the time that it stands at.
   void step(const Sample& before);
-  /// The hull of all x̂_k, cut to the hull of the estimate, which it exceeds by rounding only; nothing if it has ended.
-  std::optional<Box> within(const Box& hull) const;
+  /// The hull of all x̂_k, which exceeds that of the estimate by rounding only; nothing if it has ended.
   std::optional<Box> hull() const;
 
  private:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/interval_observer.hpp"
 
-#include "cordon/core/rounding.hpp"
 #include "observer_parameters.hpp"
 
 namespace cordon::estimators {
@@ -60,10 +59,8 @@ Enclosure IntervalObserver::do_step(const Sample& before, const Sample&) {
     if (lower_) lower_->next(c_, r_, before, c_low_, r_low_);
     const Vector& c_low = lower_ ? c_low_ : c_next_;
     const Vector& r_low = lower_ ? r_low_ : r_next_;
-    for (Index i = 0; i < c_.size(); ++i) {
-      hull_.upper[i] = rounding::up(c_next_[i] + r_next_[i]);
-      hull_.lower[i] = rounding::down(c_low[i] - r_low[i]);
-    }
+    hull_.upper = c_next_ + r_next_;
+    hull_.lower = c_low - r_low;
     if (!lower_) {
       c_.swap(c_next_);
       r_.swap(r_next_);

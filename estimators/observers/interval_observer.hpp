@@ -19,7 +19,7 @@ class IntervalObserver final : public Observer {
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override;
-  std::optional<Box> inner_estimate() const override { return inner_.within(hull_); }
+  std::optional<Box> inner_estimate() const override { return inner_.hull(); }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override;

@@ -61,9 +61,9 @@ IntervalRecursion::IntervalRecursion(const Model& model, const Matrix& L) : L_(L
   }
   input_size_ += inputs_;
   noise_size_.array() += underflow;
-  // operations one after the other in any entry: products made in advance, then the sum of all products of a step
+  // operations one after the other in any entry: products made in advance, then the sum of all products of a step, and c ± r
   const Index noises = std::max(m.disturbances() + W.generators(), m.noises() + V.generators());
-  rounding_ = rounding::gamma(2 * n + inputs + 4 * p + noises + 12);
+  rounding_ = rounding::gamma(2 * n + inputs + 4 * p + noises + 14);
   x_size_.resize(n);
   u_size_.resize(inputs);
   y_size_.resize(p);

@@ -17,8 +17,8 @@ namespace cordon::estimators {
 /// of zonotopes around W and V. In bounds lo = c - r, hi = c + r and with Ao = Ao⁺ - Ao⁻ this is
 ///   hi⁺ = Ao⁺ hi - Ao⁻ lo + … + ξ,   lo⁺ = Ao⁺ lo - Ao⁻ hi + … - ξ,   ξ the terms of r⁺ behind the first.
 /// (The printed recursion subtracts L Dv V's share from both bounds, and leaves out the splitting; it loses the truth.)
-/// r⁺ includes the rounding errors of c⁺ and of its own, also of products such as L C̄ that are made in advance: of arithmetic in
-/// real numbers the statement holds for the doubles as stored. O(n² + n (n_y + n_u)) per step, without allocations.
+/// r⁺ includes the rounding errors of c⁺, of its own and of c⁺ ± r⁺, also those of products such as L C̄ that are made in advance:
+/// the statement holds for the doubles as stored, in real arithmetic. O(n² + n (n_y + n_u)) per step, without allocations.
 class IntervalRecursion {
  public:
   /// L is n×n_y; W and V are bounded. Throws Errc::dimension, and the errors of invariant::enclosing_zonotope.

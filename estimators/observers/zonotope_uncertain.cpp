@@ -27,9 +27,7 @@ class ZonotopeUncertain final : public Observer {
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override { return {gain_.gain}; }
-  std::optional<Box> inner_estimate() const override {
-    return inner_.is_on() && X_.set ? inner_.within(X_->interval_hull()) : std::nullopt;
-  }
+  std::optional<Box> inner_estimate() const override { return inner_.hull(); }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {

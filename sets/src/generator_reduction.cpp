@@ -49,18 +49,15 @@ Vector norms(MatrixIn G) {
   return G.colwise().stableNorm().transpose();
 }
 
-/// [large | small] with `large` columns first; the small ones are the smallest by `size` (the first of equal ones).
-Matrix sorted_by_size(MatrixIn G, Index large, Size size) {
+/// [large | small], the largest first by `size`; of equal ones the first stays first.
+Matrix sorted_by_size(MatrixIn G, Size size) {
   const Vector key =
       size == Size::norm_2 ? norms(G) : Vector((G.colwise().lpNorm<1>() - G.colwise().lpNorm<Eigen::Infinity>()).transpose());
   std::vector<Index> order(static_cast<std::size_t>(G.cols()));
   std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return key[a] < key[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return key[a] > key[b]; });
   Matrix sorted(G.rows(), G.cols());
-  const Index small = G.cols() - large;
-  for (Index k = 0; k < G.cols(); ++k) {
-    sorted.col(k < small ? large + k : k - small) = G.col(order[static_cast<std::size_t>(k)]);
-  }
+  for (Index k = 0; k < G.cols(); ++k) sorted.col(k) = G.col(order[static_cast<std::size_t>(k)]);
   return sorted;
 }
 
@@ -73,7 +70,7 @@ Matrix with_frame(const Matrix& sorted, Index kept, MatrixIn frame) {
 
 Matrix box_reduction(const Matrix& G, Index max_generators, Size size) {
   const Index kept = max_generators - G.rows();
-  const Matrix sorted = sorted_by_size(G, kept, size);
+  const Matrix sorted = sorted_by_size(G, size);
   const Vector radii = box_radii(sorted.rightCols(sorted.cols() - kept));
   return with_frame(sorted, kept, radii.asDiagonal().toDenseMatrix());
 }
@@ -89,7 +86,7 @@ Vector scales_of_axes(MatrixIn small) {
 /// The box is taken along the left singular vectors of the small generators.
 Matrix pca_reduction(const Matrix& G, Index max_generators) {
   const Index kept = max_generators - G.rows();
-  const Matrix sorted = sorted_by_size(G, kept, Size::norm_1_minus_max);
+  const Matrix sorted = sorted_by_size(G, Size::norm_1_minus_max);
   Matrix small = sorted.rightCols(sorted.cols() - kept);
   const Vector scale = scales_of_axes(small);
   small = scale.asDiagonal() * small;
@@ -234,7 +231,7 @@ class BasisReduction {
 ReductionSplit split_generators(const Matrix& G, Index max_generators, GeneratorReduction method) {
   if (method == GeneratorReduction::yang_scott) return BasisReduction(G).split(max_generators);
   const Index n = G.rows(), kept = std::min(max_generators - n, G.cols());
-  const Matrix sorted = sorted_by_size(G, kept, method == GeneratorReduction::combastel ? Size::norm_2 : Size::norm_1_minus_max);
+  const Matrix sorted = sorted_by_size(G, method == GeneratorReduction::combastel ? Size::norm_2 : Size::norm_1_minus_max);
   const Matrix small = sorted.rightCols(sorted.cols() - kept);
   if (method != GeneratorReduction::pca) return {sorted.leftCols(kept), small, Matrix::Identity(n, n)};
   const Vector scale = scales_of_axes(small);

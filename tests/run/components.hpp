@@ -103,6 +103,23 @@ class Offering final : public Recursive {
 /// The additive faults of the tests' data.
 inline Vector additive_faults(Index k) { return Vector{{k % 20 >= 9 && k % 20 < 14 ? 1. : 0., -.5}}; }
 
+/// Data that tell neither additive faults nor modes.
+class WithoutFaults final : public DataSource {
+ public:
+  explicit WithoutFaults(std::unique_ptr<DataSource> data) : data_(std::move(data)) {}
+  std::optional<Record> next() override {
+    std::optional<Record> record = data_->next();
+    if (!record) return record;
+    record->fault.reset();
+    record->mode.reset();
+    return record;
+  }
+  std::optional<std::int64_t> size() const override { return data_->size(); }
+
+ private:
+  std::unique_ptr<DataSource> data_;
+};
+
 /// The study's own data with the additive faults that the fake diagnoser knows of.
 class WithFaults final : public DataSource {
  public:

@@ -26,7 +26,7 @@ PipelineOutcome run(const Study& study, const std::filesystem::path& out = {}, b
   RunOptions options;
   options.out = out;
   const auto open = [&](std::uint64_t offset) -> std::unique_ptr<DataSource> {
-    if (!with_faults) return open_data(study, offset);
+    if (!with_faults) return std::make_unique<fakes::WithoutFaults>(open_data(study, offset));
     return std::make_unique<fakes::WithFaults>(open_data(study, offset));
   };
   return detail::run_on(open, study, registry, options).pipelines.at(0);

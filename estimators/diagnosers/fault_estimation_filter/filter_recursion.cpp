@@ -48,8 +48,7 @@ void FilterRecursion::start(const Matrix& H) {
 
 void FilterRecursion::reduce(Matrix& columns) const {
   if (max_columns_ == 0) return;
-  const Matrix newest_first = columns.rowwise().reverse();  // of columns of one length, the first go into the box
-  columns = sets::reduce_generators(newest_first, max_columns_, sets::GeneratorReduction::combastel);
+  columns = sets::reduce_generators(columns, max_columns_, sets::GeneratorReduction::combastel);
 }
 
 void FilterRecursion::find_gain() {

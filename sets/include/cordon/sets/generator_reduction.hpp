@@ -6,7 +6,7 @@
 
 namespace cordon::sets {
 
-/// Which generators are replaced, and by what.
+/// Which generators are replaced, and by what. Of equally small ones the last are replaced first.
 enum class GeneratorReduction {
   girard,     ///< the smallest by ‖g‖₁ - ‖g‖∞, by their interval hull [Girard2005]
   combastel,  ///< the smallest by ‖g‖₂, by their interval hull [Combastel2003]
