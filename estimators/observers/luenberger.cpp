@@ -6,7 +6,6 @@
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
-#include "cordon/core/line_elimination.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observer_parameters.hpp"
 #include "observers/interval_spread.hpp"
@@ -68,12 +67,8 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
     problems.push_back({"/type", "\"luenberger\" takes systems of type \"lti\"", "use the observer \"descriptor\""});
     return problems;
   }
-  if ((has_spread(m.A_radius) || has_spread(m.C_radius)) &&
-      eliminate_lines(initial_set_from(context.model, params)).lines() > 0) {
-    problems.push_back({params.has("initial_set") ? "/initial_set" : "",
-                        "the initial set is unbounded, which interval matrices A and C make no finite statement of",
-                        "give a bounded initial set, or use the observer \"prediction_correction\""});
-  }
+  const bool grows = has_spread(m.A_radius) || has_spread(m.C_radius);  // with the magnitudes of the states
+  if (problems.empty() && grows) check_bounded_start(context, params, problems);
   check_observer_gain(context, params, "gain", steady_kalman(), problems);
   return problems;
 }

@@ -172,7 +172,7 @@ TEST_CASE("a Luenberger observer says in advance that interval matrices need a b
     *radius = Matrix{{.1}};
     const auto problems = registry().check_observer("luenberger", {model, backend("line_zonotope")}, {});
     REQUIRE(problems.size() == 1);
-    CHECK(problems[0].message.find("initial set is unbounded") != std::string::npos);
+    CHECK(problems[0].message.find("X0 is unbounded") != std::string::npos);
     *radius = Matrix{};
   }
   model.linear.A_radius = Matrix{{.1}};
