@@ -3,8 +3,8 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
-#include "cordon/core/rounding.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
+#include "observers/interval_spread.hpp"
 
 namespace cordon::estimators {
 
@@ -18,20 +18,7 @@ LineForm moved(const LineForm& X, const Vector& t) {
   return Y;
 }
 
-bool is_positive(const Matrix& radius) { return radius.size() != 0 && radius.maxCoeff() > 0; }
-
 Vector largest_entries(const Box& box) { return box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()); }
-
-/// rad(A) s, where a zero keeps an infinite entry of s out; 0 of the size `rows` for radii of size 0×0. Rounded upwards.
-Vector spread(const Matrix& radius, const Vector& s, Index rows) {
-  Vector sum = Vector::Zero(rows);
-  for (Index j = 0; j < radius.cols(); ++j) {
-    for (Index i = 0; i < rows; ++i) {
-      if (radius(i, j) > 0) sum[i] += radius(i, j) * s[j];
-    }
-  }
-  return sum * (1 + rounding::gamma(radius.cols() + 3));
-}
 
 }  // namespace
 
@@ -74,9 +61,9 @@ LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L, std::shar
     raw_C_ = m.C;
     raw_D_ = m.D.cwiseAbs() * most_f_.asDiagonal();
   }
-  if (is_positive(m.A_radius)) A_radius_ = m.A_radius;
-  if (is_positive(m.B_radius)) B_radius_ = m.B_radius;
-  if (is_positive(m.C_radius)) C_radius_ = (g + m.sensor_radius()).asDiagonal() * m.C_radius;
+  if (has_spread(m.A_radius)) A_radius_ = m.A_radius;
+  if (has_spread(m.B_radius)) B_radius_ = m.B_radius;
+  if (has_spread(m.C_radius)) C_radius_ = (g + m.sensor_radius()).asDiagonal() * m.C_radius;
   use_gain(std::move(L));
 }
 
@@ -95,7 +82,7 @@ void LuenbergerRecursion::use_gain(Matrix L) {
 
 /// Δ, the part of y that ranges of sensors and the radii of C leave open.
 Enclosure LuenbergerRecursion::output_box(const Enclosure& X, const Vector& largest, VectorIn u) const {
-  Vector widths = spread(C_radius_, largest, C_.rows());
+  Vector widths = interval_spread(C_radius_, largest, C_.rows());
   if (sensor_radius_.size() != 0) {
     const Vector outputs = largest_entries(backend_->affine_map(X, raw_C_, Vector::Zero(raw_C_.rows()))->interval_hull());
     widths.array() += sensor_radius_.array() * (outputs + product(raw_D_, u.cwiseAbs())).array();
@@ -122,8 +109,8 @@ void LuenbergerRecursion::add_open(Summands& to, Target target, const Enclosure&
   const Vector largest = by_A || by_C ? largest_entries(X->interval_hull()) : Vector(X->dim());
   if (by_A || by_B) {
     const Vector inputs = most_f_.cwiseProduct(u.cwiseAbs());
-    to.parameters =
-        bounded_box(spread(A_radius_, largest, A_.rows()) + spread(B_radius_, inputs, A_.rows()), "an interval matrix A");
+    to.parameters = bounded_box(interval_spread(A_radius_, largest, A_.rows()) + interval_spread(B_radius_, inputs, A_.rows()),
+                                "an interval matrix A");
     add(state_unit_, to.parameters);
   }
   if (by_C || sensor_radius_.size() != 0) {
