@@ -19,15 +19,15 @@ only if there are P = Pᵀ ≻ 0 and M with
   [  *    *        *      *         -γI           0  ]
   [  *    *        *      *          *           -γI ]
 
-and then L = P⁻¹M is such a gain. γ is minimised. G_W and G_V are the generators of zonotopes around W
-and V, C is taken with the middle of the sensors' effectiveness.
+and then L = P⁻¹M is such a gain. γ is minimised. G_W and G_V are the generators of zonotopes
+around W and V, C is taken with the middle of the sensors' effectiveness.
 
 (19), (22) and (23) of the paper print +γI, with which the inequality has no solution.
 
-γ* is unique, L need not be. Where γ* is approached only as P grows without bound, the gain of a large P
-is returned. The gain is checked afterwards, without P: A - L C must be stable, and a gain is refused whose
-norm is above γ* (1 + 1e-4) for certain. A pair (A, C) that is not detectable is refused with the mode that
-does not show.
+γ* is unique, L need not be. Where γ* is approached only as P grows without bound, the gain of a
+large P is returned. The gain is checked afterwards, without P: A - L C must be stable, and a gain
+is refused whose norm is above γ* (1 + 1e-4) for certain. A pair (A, C) that is not detectable is
+refused with the mode that does not show.
 )";
 
 class HInfinity final : public GainDesigner {

@@ -14,16 +14,17 @@ constexpr const char* details =
 
   PA - MC ≥ 0 in every entry,
 
-so that L = P⁻¹M makes A - L C ≥ 0: an upper and a lower bound of the state then evolve each on its own.
-γ is minimised; it bounds the norm of the gain, and γ* is the best bound that a diagonal P proves.
+so that L = P⁻¹M makes A - L C ≥ 0: an upper and a lower bound of the state then evolve each on
+its own. γ is minimised; it bounds the norm of the gain, and γ* is the best bound that a diagonal
+P proves.
 
-The paper asks for the same inequality (54), (55) with a full P, which does not make A - L C ≥ 0; and it
-prints +γI in (54a) and (55a), with which there is no solution.
+The paper asks for the same inequality (54), (55) with a full P, which does not make A - L C ≥ 0;
+and it prints +γI in (54a) and (55a), with which there is no solution.
 
-Entries of PA - MC that are zero for every M and P have no interior and are left out. Where no gain makes
-A - L C monotone and stable, which linear programs decide, that is the answer, with the reason; such as
-"column 2 of C is zero and A(1,2) < 0". The gain that is found is moved by the solver's errors, so that
-A - L C ≥ 0 holds for the numbers themselves where that is possible.
+Entries of PA - MC that are zero for every M and P have no interior and are left out. Where no
+gain makes A - L C monotone and stable, which linear programs decide, that is the answer, with the
+reason; such as "column 2 of C is zero and A(1,2) < 0". The gain that is found is moved by the
+solver's errors, so that A - L C ≥ 0 holds for the numbers themselves where that is possible.
 )";
 
 class HInfinityMonotone final : public GainDesigner {

@@ -14,8 +14,9 @@ namespace cordon::estimators {
 namespace {
 
 constexpr const char* details =
-    R"(The W-radius of a zonotope of errors is max eᵀWe over its elements. It obeys ι⁺ ≤ ρ ι + 1 - ρ for the
-errors e⁺ = (A - L C) e + Eθ θ + Bw w - L Dv v if there are W = Wᵀ, Y and diagonal Γ, Υ and Ω with
+    R"(The W-radius of a zonotope of errors is max eᵀWe over its elements. It obeys ι⁺ ≤ ρ ι + 1 - ρ for
+the errors e⁺ = (A - L C) e + Eθ θ + Bw w - L Dv v if there are W = Wᵀ, Y and diagonal Γ, Υ and Ω
+with
 
   [ ρW        *         *          *     *  ]
   [ 0         Γ         *          *     *  ]
@@ -23,13 +24,14 @@ errors e⁺ = (A - L C) e + Eθ θ + Bw w - L Dv v if there are W = Wᵀ, Y and 
   [ 0         0         0          Ω     *  ]
   [ WA - YC   W Bw G_W  -Y Dv G_V  W Eθ  W  ]
 
-and then L = W⁻¹Y. τ is maximised: the errors stay in the ellipsoid eᵀWe ≤ 1 once they are there, whose
-longest half axis is 1/√τ at most, and come to it by a factor ρ per step (of eᵀWe). G_W and G_V are the
-generators of zonotopes around W and V, C is taken with the middle of the sensors' effectiveness.
+and then L = W⁻¹Y. τ is maximised: the errors stay in the ellipsoid eᵀWe ≤ 1 once they are there,
+whose longest half axis is 1/√τ at most, and come to it by a factor ρ per step (of eᵀWe). G_W and
+G_V are the generators of zonotopes around W and V, C is taken with the middle of the sensors'
+effectiveness.
 
-Theorem 3.5 of the paper leaves ε free where 1 - ρ stands here, and asks for no least W: any solution may
-then be divided by any number, and says nothing about the size. ρ is the caller's: near 1 for slow plants,
-whose modes that do not show in the outputs must decay faster than √ρ.
+Theorem 3.5 of the paper leaves ε free where 1 - ρ stands here, and asks for no least W: any
+solution may then be divided by any number, and says nothing about the size. ρ is the caller's:
+near 1 for slow plants, whose modes that do not show in the outputs must decay faster than √ρ.
 )";
 
 struct WRadiusProgram {

@@ -175,7 +175,10 @@ TEST_CASE("a variable that nothing depends on is 0; one that lowers the cost wit
   CHECK_FALSE(free.why.empty());
   CHECK(solve({Vector::Ones(1), {{scalar(1), {}}}}).status == SdpStatus::unknown);
   CHECK(solve({Vector::Zero(1), {{scalar(1), {}}}}).status == SdpStatus::solved);
-  check_proof({Vector::Ones(1), {{scalar(-1), {}}}}, solve({Vector::Ones(1), {{scalar(-1), {}}}}), 1e8);
+  for (const double cost : {0., 1.}) {
+    const SemidefiniteProgram impossible{Vector{{cost}}, {{scalar(-1), {}}}};
+    check_proof(impossible, solve(impossible), 1e8);
+  }
 }
 
 TEST_CASE("variables that act alike are no obstacle") {
@@ -192,6 +195,24 @@ TEST_CASE("infeasible programs are proven infeasible") {
   // [x 1; 1 -x] ⪰ 0 is impossible.
   const SemidefiniteProgram program{Vector::Ones(1), {{Matrix{{0, 1}, {1, 0}}, {{0, Matrix{{1, 0}, {0, -1}}}}}}};
   check_proof(program, solve(program), 1e8);
+}
+
+TEST_CASE("proofs on a face: Y is semidefinite for the numbers themselves") {
+  std::mt19937_64 engine(5);
+  for (int i = 0; i < 40; ++i) {
+    // [x 1; 1 -x] ⪰ 0 in other coordinates, beside what is always met.
+    const Index n = 2 + i % 4;
+    Matrix constant = Matrix::Identity(n, n), term = Matrix::Zero(n, n);
+    constant.topLeftCorner(2, 2) = Matrix{{0, 1}, {1, 0}};
+    term.topLeftCorner(2, 2) = Matrix{{1, 0}, {0, -1}};
+    const Matrix V = random_symmetric(n, engine);
+    const auto turned = [&](const Matrix& F) {
+      const Matrix product = V * F * V;
+      return Matrix((product + product.transpose()) / 2);
+    };
+    const SemidefiniteProgram program{Vector::Ones(1), {{turned(constant), {{0, turned(term)}}}}};
+    check_proof(program, solve(program), 1e8);
+  }
 }
 
 TEST_CASE("what holds beyond the bound of x only is neither solved nor infeasible without a proof for the bound") {
@@ -250,6 +271,24 @@ TEST_CASE("too few iterations are no answer") {
   const SdpSolution s = solve(largest_eigenvalue(Matrix{{2, 1}, {1, 2}}), {1e-9, 1e8, 2});
   CHECK(s.status == SdpStatus::unknown);
   CHECK_FALSE(s.why.empty());
+}
+
+TEST_CASE("a solver that stops early proves nothing about a program that has a solution") {
+  std::mt19937_64 engine(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int iterations = 1; iterations <= 15; ++iterations) {
+    for (int i = 0; i < 5; ++i) {
+      // aᵀx = b as two inequalities: no point that the solver passes through is feasible.
+      const Vector a = Vector::NullaryExpr(3, [&] { return uniform(engine); });
+      const double b = uniform(engine);
+      SemidefiniteProgram program{Vector::Ones(3), {{scalar(-b), {}}, {scalar(b), {}}}};
+      for (Index k = 0; k < 3; ++k) {
+        program.inequalities[0].terms.emplace_back(k, scalar(a[k]));
+        program.inequalities[1].terms.emplace_back(k, scalar(-a[k]));
+      }
+      CHECK(solve(program, {1e-9, 1e8, iterations}).status != SdpStatus::infeasible);
+    }
+  }
 }
 
 TEST_CASE("the solver prints nothing, whatever it is given") {
