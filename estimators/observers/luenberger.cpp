@@ -4,9 +4,6 @@
 // estimate at k uses the outputs up to k - 1 and is never empty; that an output contradicts it shows in the residual set, which
 // the diagnoser "observer_bank" watches.
 #include "components.hpp"
-#include "cordon/core/error.hpp"
-#include "cordon/core/linalg.hpp"
-#include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observer_parameters.hpp"
 #include "observers/interval_spread.hpp"
 #include "observers/luenberger_recursion.hpp"
@@ -36,23 +33,12 @@ class Luenberger final : public Observer {
   }
   Enclosure do_step(const Sample& before, const Sample&) override {
     const Enclosure next = timed(Phase::predict, [&] {
-      if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_of_set());
+      if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_for(gain_, model(), X_));
       return recursion_.next(X_, before);
     });
     return X_ = timed(Phase::reduce, [&] { return recursion_.reduced(next); });
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
-
-  /// The gain for X̂; the steady one where no zonotope contains X̂.
-  Matrix gain_of_set() const {
-    try {
-      const Matrix R = invariant::enclosing_zonotope(X_->line_form(), "the estimate").G;
-      return gain_.designer->update(model(), linalg::product(R, R.transpose()));
-    } catch (const Error& error) {
-      if (error.code() != Errc::unsupported && error.code() != Errc::invalid) throw;
-      return gain_.gain.L;
-    }
-  }
 
   LineForm X0_;
   ObserverGain gain_;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/observer_gain.hpp"
 
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/invariant/zonotope_enclosure.hpp"
 #include "gains/gain_certificate.hpp"
 
 namespace cordon::estimators {
@@ -52,6 +55,17 @@ ObserverGain observer_gain(const ObserverContext& context, const Params& params,
   ObserverGain made = designed(context, params, name, absent, problems);
   if (!problems.empty()) throw InputError("the gain of an observer", std::move(problems));
   return made;
+}
+
+Matrix gain_for(const ObserverGain& gain, const Model& model, const Enclosure& X) {
+  if (!gain.designer->is_time_varying()) return gain.gain.L;
+  try {
+    const Matrix R = invariant::enclosing_zonotope(X->line_form(), "the estimate").G;
+    return gain.designer->update(model, linalg::product(R, R.transpose()));
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported && error.code() != Errc::invalid) throw;
+    return gain.gain.L;
+  }
 }
 
 void check_observer_gain(const ObserverContext& context, const Params& params, const std::string& name,

@@ -7,6 +7,7 @@
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observer_parameters.hpp"
 #include "observers/inner_envelope.hpp"
+#include "observers/interval_spread.hpp"
 #include "observers/luenberger_recursion.hpp"
 #include "observers/observer_gain.hpp"
 
@@ -44,10 +45,7 @@ class ZonotopeUncertain final : public Observer {
   Enclosure do_step(const Sample& before, const Sample&) override {
     const Enclosure carried = timed(Phase::reduce, [&] { return recursion_.reduced(X_); });
     X_ = timed(Phase::predict, [&] {
-      if (gain_.designer->is_time_varying()) {
-        const Matrix R = invariant::enclosing_zonotope(carried->line_form()).G;
-        recursion_.use_gain(gain_.designer->update(model(), linalg::product(R, R.transpose())));
-      }
+      if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_for(gain_, model(), carried));
       return recursion_.next(carried, before);
     });
     inner_.step(before);
@@ -74,7 +72,7 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
     problems.push_back({"/type", "\"zonotope_uncertain\" takes systems of type \"lti\"", "use the observer \"descriptor\""});
     return problems;
   }
-  if (problems.empty() && m.is_uncertain()) check_bounded_start(context, params, problems);
+  if (problems.empty() && (has_spread(m.A_radius) || has_spread(m.C_radius))) check_bounded_start(context, params, problems);
   check_noises(context, problems);
   if (!problems.empty()) return problems;  // gains are designed for these sets
   check_observer_gain(context, params, "gain", absent(), problems);
@@ -92,7 +90,8 @@ constexpr const char* details =
     "    c⁺ = (A - L C) c + B u + L y,\n"
     "    R⁺ = [(A - L C) Ř, diag(rad(A) (|c| + |Ř| 1) + rad(B) |u|), Bw W, -L Dv V, -L diag(rad(C) (|c| + |Ř| 1))];\n"
     "other representations follow the same sum of sets. The estimate is this set before the next reduction, so that\n"
-    "the budget bounds what is carried from step to step. It uses outputs up to k - 1.";
+    "the budget bounds what is carried from step to step. It uses outputs up to k - 1. A gain that varies in time is\n"
+    "that for <c, Ř>.";
 
 }  // namespace
 

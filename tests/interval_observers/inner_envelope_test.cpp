@@ -89,6 +89,8 @@ TEST_CASE("exact matrices and a monotone gain: the inner estimate is the estimat
         const Box hull = observer->step({k, u, truth.step(u)}).set->interval_hull();
         const auto inner = observer->inner_estimate();
         REQUIRE(inner.has_value());
+        CHECK(hull.contains(inner->lower));
+        CHECK(hull.contains(inner->upper));
         CHECK(distance(*inner, hull) <= 1e-12 * (1 + hull.upper.cwiseAbs().maxCoeff() + hull.lower.cwiseAbs().maxCoeff()));
       }
     }
@@ -193,6 +195,14 @@ TEST_CASE("it is offered where it is asked for and where the sets have generator
     observer->step(first);
     CHECK_FALSE(observer->inner_estimate().has_value());
 
+    const auto outward = registry().make_backend("interval", Params().set("rounding", std::string("outward")));
+    const auto rounded = registry().make_observer(name, {model, outward}, with_samples(params, 3));
+    rounded->step(first);
+    CHECK(rounded->inner_estimate().has_value());
+    rounded->start(outward->box({Vector::Constant(3, 2), Vector::Constant(3, 3)}));  // whose exchange form encloses it
+    rounded->step(first);
+    CHECK_FALSE(rounded->inner_estimate().has_value());
+
     Model cut = model;
     cut.X0.A = Matrix{{1, 1, 0}};
     cut.X0.b = Vector::Zero(1);
@@ -201,4 +211,16 @@ TEST_CASE("it is offered where it is asked for and where the sets have generator
     CHECK(problems[0].pointer == "/inner_samples");
     CHECK(registry().check_observer(name, {cut, sets}, params).empty());
   }
+}
+
+TEST_CASE("what exceeds the hull by rounding is cut off") {
+  InnerEnvelope inner(comparison::plant("68"), Matrix{{.3}, {.2}, {.8}}, samples(1));
+  inner.start(comparison::plant("68").X0);
+  const auto cube = [](double low, double high) { return Box{Vector::Constant(3, low), Vector::Constant(3, high)}; };
+  CHECK(inner.within(cube(-.05, .2))->lower == Vector::Constant(3, -.05));
+  CHECK(inner.within(cube(-.05, .2))->upper == Vector::Constant(3, .1));
+  CHECK(inner.within(cube(-1, .05))->lower == Vector::Constant(3, -.1));
+  CHECK(inner.within(cube(-1, .05))->upper == Vector::Constant(3, .05));
+  CHECK_FALSE(inner.within(cube(.2, .3)).has_value());
+  CHECK_FALSE(inner.within(Box::empty(3)).has_value());
 }

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "comparison_plants.hpp"
+#include "observers/interval_recursion.hpp"
 #include "uncertain_models.hpp"
 
 using namespace uncertain;
@@ -44,6 +45,8 @@ std::pair<Model, Matrix> monotone_model() {
   for (LineForm* set : {&model.X0, &model.W, &model.V}) set->G = set->G.cwiseAbs();
   return {model, L};
 }
+
+using Long = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
 
 double largest(const Vector& v) { return v.cwiseAbs().maxCoeff(); }
 
@@ -165,7 +168,6 @@ TEST_CASE("ranges of sensors and actuators, one step by hand") {
 /// Without noise and uncertainty the box has the width of its rounding errors: the exact trajectory, computed with longer
 /// numbers, is inside without any slack.
 TEST_CASE("rounding errors are inside the bounds") {
-  using Long = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
   CHECK(rc::check("the exact trajectory is inside", [] {
     Model model = random_model(false);
     LinearModel& m = model.linear;
@@ -186,4 +188,51 @@ TEST_CASE("rounding errors are inside the bounds") {
       x = (m.A.cast<long double>() * x + m.B.cast<long double>() * u.cast<long double>()).eval();
     }
   }));
+}
+
+TEST_CASE("rounding errors of the radii are inside the bounds") {
+  CHECK(rc::check("products of radii and inputs", [] {
+    Model model = random_model(false);
+    LinearModel& m = model.linear;
+    const Index n = m.states();
+    m.A.setZero();
+    m.B.setZero();
+    m.A_radius = m.C_radius = {};
+    m.B_radius = random_matrix(n, m.inputs(), .1).cwiseAbs();
+    model.W = model.V = make_point(Vector::Zero(2));
+    const Vector u = random_matrix(m.inputs(), 1, 1).col(0);
+    cordon::estimators::IntervalRecursion recursion(model, Matrix::Zero(n, m.outputs()));
+    Vector c(n), r(n);
+    recursion.next(Vector::Zero(n), Vector::Zero(n), {0, u, Vector::Zero(m.outputs())}, c, r);
+    const Long most = m.B_radius.cast<long double>() * u.cwiseAbs().cast<long double>();
+    for (Index i = 0; i < n; ++i) RC_ASSERT(r[i] >= most[i] && r[i] <= (1 + 1e-13L) * most[i] + 1e-300L);
+  }));
+  CHECK(rc::check("a box by centre and radius", [] {
+    const double a = number(-3, 3), b = a + number(0, 1e-3);
+    const auto [c, r] = cordon::estimators::around({Vector::Constant(1, std::min(a, b)), Vector::Constant(1, std::max(a, b))});
+    const long double center = c[0], radius = r[0];
+    RC_ASSERT(center - radius <= a && b <= center + radius);
+  }));
+}
+
+TEST_CASE("a set that replaces the estimate is where the observer goes on from") {
+  const Model model = comparison::plant("68");
+  const Params params = with_gain(Matrix{{.3}, {.2}, {.8}});
+  for (const char* name : {"interval_trajectory", "integrated", "zonotope_uncertain"}) {
+    CAPTURE(name);
+    const auto sets = backend("zonotope");
+    const auto replaced = registry().make_observer(name, {model, sets}, params),
+               begun = registry().make_observer(name, {model, sets}, params);
+    const Enclosure X = sets->box({Vector{{2, 3, 4}}, Vector{{3, 5, 4.5}}});
+    const auto sample = [](Index k) { return Sample{k, Vector::Constant(1, .5), Vector::Constant(1, 4.2)}; };
+    replaced->step(sample(0));
+    replaced->replace(X);
+    begun->start(X);
+    CHECK(begun->step(sample(0)).set->interval_hull().upper[1] == doctest::Approx(5));
+    const Box a = replaced->step(sample(1)).set->interval_hull(), b = begun->step(sample(1)).set->interval_hull();
+    CHECK(a.lower == b.lower);
+    CHECK(a.upper == b.upper);
+    begun->start();
+    CHECK(begun->step(sample(0)).set->interval_hull().upper[1] == doctest::Approx(.1));
+  }
 }

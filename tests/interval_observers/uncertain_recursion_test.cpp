@@ -25,7 +25,14 @@ void expect_enclosures(const std::string& name) {
   const Matrix one = Matrix::Identity(X->dim(), X->dim());
   Enclosure E = sets->affine_map(X, -one, truth.x);  // {x} ⊕ (-X̂)
   for (Index k = 0; k < 6; ++k) {
-    if (k == 3) recursion.use_gain(random_gain(m));
+    if (k == 3) {
+      const Matrix L = random_gain(m);
+      recursion.use_gain(L);
+      const Sample any{k, random_matrix(m.inputs(), 1, 3).col(0), random_matrix(m.outputs(), 1, 3).col(0)};
+      const LuenbergerRecursion fresh(model, L, sets, {});
+      RC_ASSERT(recursion.next(truth.x, any) == fresh.next(truth.x, any));
+      RC_ASSERT(recursion.next_size(truth.x, any) == fresh.next_size(truth.x, any));
+    }
     const Vector u = random_matrix(m.inputs(), 1, 3).col(0), x = truth.x;
     const Sample now{k, u, truth.step(u)};
     const Enclosure R = recursion.residual(X, now);
