@@ -212,15 +212,3 @@ TEST_CASE("it is offered where it is asked for and where the sets have generator
     CHECK(registry().check_observer(name, {cut, sets}, params).empty());
   }
 }
-
-TEST_CASE("what exceeds the hull by rounding is cut off") {
-  InnerEnvelope inner(comparison::plant("68"), Matrix{{.3}, {.2}, {.8}}, samples(1));
-  inner.start(comparison::plant("68").X0);
-  const auto cube = [](double low, double high) { return Box{Vector::Constant(3, low), Vector::Constant(3, high)}; };
-  CHECK(inner.within(cube(-.05, .2))->lower == Vector::Constant(3, -.05));
-  CHECK(inner.within(cube(-.05, .2))->upper == Vector::Constant(3, .1));
-  CHECK(inner.within(cube(-1, .05))->lower == Vector::Constant(3, -.1));
-  CHECK(inner.within(cube(-1, .05))->upper == Vector::Constant(3, .05));
-  CHECK_FALSE(inner.within(cube(.2, .3)).has_value());
-  CHECK_FALSE(inner.within(Box::empty(3)).has_value());
-}

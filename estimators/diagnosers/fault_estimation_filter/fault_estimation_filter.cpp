@@ -4,10 +4,12 @@
 //   x̂_{k+1} = TA x̂_k + T (B u_k + Bw w̄) + G_k (ỹ_k - C x̂_k) + N ỹ_{k+1},   r_k = M (ỹ_k - C x̂_k)
 //   n_i(k - ρ_i) ∈ r_{k,i} ± h_{k,i}
 // G_k and h_k are those of filter_recursion.hpp and do not depend on the data. The bounds are widened by the project's share of
-// rounding, 1e-10 of the numbers that r is made of. They hold for any faults, past ones included; bounds that exclude 0 prove
-// that the plant has not been in the nominal mode, where n = 0, at the time k - ρ_i. `ModeEvidence::why` is then the direction, a
-// unit vector with its sign in the space of faults, that separates 0 from the box of these bounds, and the margin its distance.
-// A step that excludes is a reset: the next one is judged anew, on its own bounds.
+// rounding, 1e-10 of the numbers that r is made of, and by what the rounding of earlier steps can have grown to. They hold for
+// any faults, past ones included; bounds that exclude 0 prove that the plant has not been in the nominal mode, where n = 0, at
+// the time k - ρ_i. `ModeEvidence::why` is then the direction, a unit vector with its sign in the space of faults, that separates
+// 0 from the box of these bounds, and the margin its distance. A step that excludes is a reset: the next one is judged anew, on
+// its own bounds. In a bank of several modes the filter cannot tell which of them the plant is in after that: the decision is
+// "ambiguous" as long as the bounds hold 0.
 #include <limits>
 #include <string>
 
@@ -15,6 +17,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
+#include "cordon/sets/generator_reduction.hpp"
 #include "diagnosers/fault_estimation_filter/filter_recursion.hpp"
 
 namespace cordon::estimators {
@@ -23,7 +26,9 @@ using linalg::product;
 
 namespace {
 
-constexpr double rounding_share = 1e-10;
+constexpr double rounding_share = 1e-10;    // of the numbers of the last step
+constexpr double rounding_of_step = 1e-14;  // of those of any step; what it leaves in x̂ goes on by TA - G C
+constexpr Index rounding_columns_per_state = 4;
 
 /// A model with zonotopes around its sets.
 struct FilterModel {
@@ -68,6 +73,7 @@ class FaultEstimationFilter final : public Diagnoser {
     D_size_ = m.D.cwiseAbs();
     N_size_ = design_.N.cwiseAbs();
     M_size_ = design_.M.cwiseAbs();
+    MC_ = product(design_.M, m.C);
   }
 
  private:
@@ -76,7 +82,7 @@ class FaultEstimationFilter final : public Diagnoser {
     Vector value, size;
   };
 
-  void do_start() override { unfinished_ = false; }
+  void do_start() override { unfinished_ = excluded_ = false; }
 
   Diagnosis do_step(const Sample* before, const Sample& now) override {
     if (unfinished_) throw Error(Errc::invalid, "the last step ended with an error, and left the filter half way; start anew");
@@ -87,6 +93,7 @@ class FaultEstimationFilter final : public Diagnoser {
     } else {
       x_ = model_.X0.c;
       size_ = x_.cwiseAbs();
+      rounding_ = Matrix(x_.size(), 0);
       recursion_.start(model_.X0.G);
       first_ = since_ = now.k;
     }
@@ -109,12 +116,22 @@ class FaultEstimationFilter final : public Diagnoser {
     const Vector residual_size = y_.size + product(C_size_, x_.cwiseAbs());
     size_ = product(TA_size_, x_.cwiseAbs()) + product(TB_size_, before.u.cwiseAbs()) + Tw_.cwiseAbs() +
             product(G.cwiseAbs(), residual_size) + product(N_size_, y.size);
+    keep_rounding();
     x_ = product(TA_, x_) + product(TB_, before.u) + Tw_ + product(G, residual) + product(design_.N, y.value);
+  }
+
+  /// The rounding errors of all steps so far, as generators.
+  void keep_rounding() {
+    const Index n = x_.size(), old = rounding_.cols();
+    Matrix next(n, old + n);
+    next << product(recursion_.error_map(), rounding_), (rounding_of_step * size_).asDiagonal().toDenseMatrix();
+    rounding_ = sets::reduce_generators(next, rounding_columns_per_state * n, sets::GeneratorReduction::combastel);
   }
 
   std::vector<FaultBound> bounds(Index k) const {
     const Vector r = product(design_.M, y_.value - product(model_.linear.C, x_));
-    const Vector slack = rounding_share * product(M_size_, y_.size + product(C_size_, size_));
+    const Vector slack =
+        rounding_share * product(M_size_, y_.size + product(C_size_, size_)) + product(MC_, rounding_).cwiseAbs().rowwise().sum();
     const Vector half = recursion_.half_widths() + slack;
     if (!(r + half).allFinite()) throw Error(Errc::not_finite, "the estimate of a fault has outgrown the numbers");
     std::vector<FaultBound> all;
@@ -143,7 +160,13 @@ class FaultEstimationFilter final : public Diagnoser {
       direction[bound.fault] = bound.lower > 0 ? -1 : 1;
       nominal.why = {Certificate::Kind::direction, std::move(direction), distance};
     }
-    if (!result.reset) return result;
+    if (!result.reset) {
+      if (!excluded_ || bank().size() == 1) return result;
+      result.mode = -1;
+      result.decision = Decision::ambiguous;
+      return result;
+    }
+    excluded_ = true;
     nominal.candidate = false;
     nominal.consistent = Answer::no;
     result.mode = -1;
@@ -170,9 +193,11 @@ class FaultEstimationFilter final : public Diagnoser {
   Matrix TA_, TB_;
   Vector Tw_, v_;                                                 ///< T Bw w̄, Dv v̄
   Matrix TA_size_, TB_size_, C_size_, D_size_, N_size_, M_size_;  ///< entries by magnitude
+  Matrix MC_, rounding_;                                          ///< M C; generators of what rounding has left in x̂
   Vector x_, size_;                                               ///< x̂, and the size of the numbers that it is made of
   Output y_;                                                      ///< of the last sample
   Index first_ = 0, since_ = 0;
+  bool excluded_ = false;    ///< the nominal mode has been, once
   bool unfinished_ = false;  ///< a step ended with an error half way
 };
 
@@ -248,7 +273,8 @@ constexpr const char* details =
     "published example that halves the bounds. Neither depends on the data.\n"
     "\n"
     "Bounds that exclude 0 exclude the nominal mode, and speak of the time k - ρ_i. In a bank of several\n"
-    "modes the decision is then \"isolating\", since another mode may be the reason; of one, \"unknown_fault\".\n"
+    "modes the decision is then \"isolating\", since another mode may be the reason, and \"ambiguous\" later; of one,\n"
+    "\"unknown_fault\", and \"monitoring\" again where no bound excludes 0.\n"
     "The filter's sets are its own: of the pipeline's backend it uses nothing.\n"
     "\n"
     "As printed, the paper omits a row of its T (row 3 is (0 0 .5 0)) and the square root of ‖·‖_F, and\n"

@@ -60,11 +60,11 @@ struct Response {
 /// After n steps of silence there is never a response.
 std::optional<Response> first_response(const Matrix& T, const Matrix& TA, const Matrix& C, VectorIn f) {
   Vector state = product(T, f);
-  Vector size = Vector::Constant(state.size(), T.cwiseAbs().rowwise().sum().maxCoeff() * f.cwiseAbs().maxCoeff());
-  const Vector rows = C.cwiseAbs().rowwise().sum();
+  Vector size = product(T.cwiseAbs(), f.cwiseAbs());
   for (Index delay = 1; delay <= state.size(); ++delay) {
     const Vector response = product(C, state);
-    if ((response.cwiseAbs().array() > response_tolerance * size.maxCoeff() * rows.array()).any()) return Response{delay, state};
+    if ((response.cwiseAbs().array() > response_tolerance * product(C.cwiseAbs(), size).array()).any())
+      return Response{delay, state};
     state = product(TA, state);
     size = product(TA.cwiseAbs(), size);
   }

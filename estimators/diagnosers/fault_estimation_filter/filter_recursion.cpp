@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/invariant/schur.hpp"
 #include "cordon/sets/generator_reduction.hpp"
 
 namespace cordon::estimators {
@@ -18,6 +19,14 @@ namespace {
 constexpr double regularisation = 1e-13;
 /// Squares below this have no digits left.
 constexpr double smallest_square = 1e-280;
+/// Ω annihilates what its outputs have in common up to this: the rest is rounding, and no gain may rest on it.
+constexpr double annihilated = 1e-13;
+
+/// A B without the entries that have cancelled.
+Matrix without_noise(const Matrix& A, const Matrix& B) {
+  const Matrix C = product(A, B);
+  return (C.array().abs() <= annihilated * product(A.cwiseAbs(), B.cwiseAbs()).array()).select(0.0, C);
+}
 
 }  // namespace
 
@@ -26,10 +35,10 @@ FilterRecursion::FilterRecursion(const FilterDesign& design, const LinearModel& 
     : max_columns_(max_columns), coupling_(coupling), C_(model.C), N_(design.N), Dv_(std::move(noise.Dv)), Omega_(design.Omega) {
   base_gain_ = product(design.Phi, design.M);
   base_ = product(design.T, model.A) - product(base_gain_, C_);
-  Omega_C_ = product(Omega_, C_);
+  Omega_C_ = without_noise(Omega_, C_);
   TDw_ = product(design.T, noise.Dw);
   NDv_ = product(N_, Dv_);
-  const Matrix rest = product(Omega_, Dv_);
+  const Matrix rest = without_noise(Omega_, Dv_);
   gain_noise_ = product(product(base_gain_, Dv_), rest.transpose());
   rest_noise_ = product(rest, rest.transpose());
   MC_ = product(design.M, C_);
@@ -76,12 +85,14 @@ void FilterRecursion::advance() {
   find_half_widths();
 }
 
+Matrix FilterRecursion::error_map() const { return base_ - product(reduced_gain_, Omega_C_); }
+
 void FilterRecursion::advance_shared() {
-  const Matrix error_map = base_ - product(reduced_gain_, Omega_C_);
+  const Matrix map = error_map();
   Matrix own = product(G_, Dv_);
-  if (!first_) own += product(error_map, NDv_);
+  if (!first_) own += product(map, NDv_);
   Matrix next(A_.rows(), A_.cols() + TDw_.cols() + own.cols());
-  next << product(error_map, A_), TDw_, -own;
+  next << product(map, A_), TDw_, -own;
   A_ = std::move(next);
   reduce(A_);
 }
@@ -95,7 +106,7 @@ void FilterRecursion::find_half_widths() {
 }
 
 Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H) {
-  constexpr double infinity = std::numeric_limits<double>::infinity(), same = 1e-9, grown = .01;
+  constexpr double infinity = std::numeric_limits<double>::infinity(), same = 1e-9, grown = .01, least_decay = 1e-9;
   recursion.start(H);
   Vector largest = Vector::Constant(recursion.half_widths().size(), infinity), before;
   const Index last = recursion.is_reduced() ? 12'800 : 400;
@@ -110,8 +121,9 @@ Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H) {
       if (error.code() != Errc::not_finite) throw;
       return Vector::Constant(largest.size(), infinity);  // so would the filter end
     }
-    if (((largest - before).cwiseAbs().array() <= same * largest.array()).all()) return largest;
+    if (((largest - before).cwiseAbs().array() <= same * largest.array()).all()) break;
   }
+  if (invariant::spectral_radius(recursion.error_map()) >= 1 - least_decay) return Vector::Constant(largest.size(), infinity);
   return (largest.array() <= (1 + grown) * before.array()).select(largest, infinity);
 }
 

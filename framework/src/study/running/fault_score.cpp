@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t most_remembered = 1000;
 
 bool is_outside(double truth, const FaultBound& bound) {
-  const double margin = 1e-9 * std::max(1.0, std::abs(truth));
+  const double margin = 1e-9 * std::max({std::abs(truth), std::abs(bound.lower), std::abs(bound.upper)});
   return truth < bound.lower - margin || truth > bound.upper + margin;
 }
 
