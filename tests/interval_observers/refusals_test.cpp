@@ -161,6 +161,20 @@ TEST_CASE("where no gain is given") {
   }
 }
 
+TEST_CASE("integrated designs a monotone gain, or tells why there is none") {
+  for (const char* name : {"68", "72"}) {
+    const Model model = plant(name);
+    CHECK(check("integrated", model, {}).empty());
+    const auto observer = registry().make_observer("integrated", {model, backend("interval")}, {});
+    CHECK(observer->gains()[0].type == "h_infinity_monotone");
+    CHECK((model.linear.A - observer->gains()[0].L * model.linear.C).minCoeff() >= -1e-9);
+  }
+  expect_one(check("integrated", plant("70"), {}), "", "no monotone gain exists: column 2 of C is zero and A(1,2) < 0");
+  const auto peak = std::make_shared<const ComponentSpec>(ComponentSpec{"peak", {}});
+  CHECK(check("integrated", plant("68"), Params().set("gain", peak)).empty());
+  expect_one(check("integrated", plant("70"), Params().set("gain", peak)), "/gain", "no monotone gain exists");
+}
+
 TEST_CASE("a gain that varies in time is the one for the carried set") {
   const Model model = plant("68");
   const auto kalman = std::make_shared<const ComponentSpec>(ComponentSpec{"kalman", {}});
