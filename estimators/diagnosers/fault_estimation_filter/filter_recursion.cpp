@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "cordon/core/linalg.hpp"
-#include "cordon/invariant/schur.hpp"
 #include "cordon/sets/generator_reduction.hpp"
 
 namespace cordon::estimators {
@@ -85,6 +85,8 @@ void FilterRecursion::advance() {
   find_half_widths();
 }
 
+Vector FilterRecursion::seen(const Matrix& errors) const { return product(MC_, errors).cwiseAbs().rowwise().sum(); }
+
 Matrix FilterRecursion::error_map() const { return base_ - product(reduced_gain_, Omega_C_); }
 
 void FilterRecursion::advance_shared() {
@@ -99,14 +101,37 @@ void FilterRecursion::advance_shared() {
 
 void FilterRecursion::find_half_widths() {
   const Matrix& errors = coupling_ == NoiseCoupling::shared ? A_ : R_;
-  half_width_ = own_noise_ + product(MC_, errors).cwiseAbs().rowwise().sum();
+  half_width_ = own_noise_ + seen(errors);
   if (!half_width_.allFinite()) {
     throw Error(Errc::not_finite, "the error bounds of the fault estimation filter have outgrown the numbers");
   }
 }
 
+namespace {
+
+/// For each fault: does what an error of any direction adds to it die out, from here on? Compared are two stretches of 200 steps.
+std::vector<bool> forgets_errors(FilterRecursion recursion) {
+  constexpr double least_decay = 1e-6;
+  const Index n = recursion.error_map().rows();
+  Matrix errors = Matrix::Identity(n, n);
+  Vector largest[2];
+  for (Vector& stretch : largest) {
+    stretch = Vector::Zero(recursion.half_widths().size());
+    for (int k = 0; k < 200; ++k) {
+      recursion.advance();
+      errors = product(recursion.error_map(), errors);
+      stretch = stretch.cwiseMax(recursion.seen(errors));
+    }
+  }
+  std::vector<bool> forgets;
+  for (Index i = 0; i < largest[0].size(); ++i) forgets.push_back(largest[1][i] <= (1 - least_decay) * largest[0][i]);
+  return forgets;
+}
+
+}  // namespace
+
 Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H) {
-  constexpr double infinity = std::numeric_limits<double>::infinity(), same = 1e-9, grown = .01, least_decay = 1e-9;
+  constexpr double infinity = std::numeric_limits<double>::infinity(), same = 1e-9, grown = .01;
   recursion.start(H);
   Vector largest = Vector::Constant(recursion.half_widths().size(), infinity), before;
   const Index last = recursion.is_reduced() ? 12'800 : 400;
@@ -123,8 +148,12 @@ Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H) {
     }
     if (((largest - before).cwiseAbs().array() <= same * largest.array()).all()) break;
   }
-  if (invariant::spectral_radius(recursion.error_map()) >= 1 - least_decay) return Vector::Constant(largest.size(), infinity);
-  return (largest.array() <= (1 + grown) * before.array()).select(largest, infinity);
+  largest = (largest.array() <= (1 + grown) * before.array()).select(largest, infinity);
+  const std::vector<bool> forgets = forgets_errors(std::move(recursion));
+  for (Index i = 0; i < largest.size(); ++i) {
+    if (!forgets[static_cast<std::size_t>(i)]) largest[i] = infinity;
+  }
+  return largest;
 }
 
 }  // namespace cordon::estimators

@@ -35,6 +35,7 @@ class FilterRecursion {
   bool is_reduced() const { return max_columns_ > 0; }
   const Matrix& gain() const { return G_; }                  ///< G_k of the last `advance`
   Matrix error_map() const;                                  ///< TA - G_k C
+  Vector seen(const Matrix& errors) const;                   ///< row sums of |M C errors|
   const Matrix& errors() const { return R_; }                ///< R̄
   const Vector& half_widths() const { return half_width_; }  ///< of the faults that are bounded at this time
 
@@ -63,7 +64,7 @@ class FilterRecursion {
 /// For each fault the largest half width of a long run, once it is past the start: reductions choose columns, so that half widths
 /// may go round in circles. Stretches of 50, 100, 200, … steps are compared until their largest values agree to 1e-9; infinite
 /// where the last stretch, of 12 800 steps (400, if the columns are not reduced), has still grown by a hundredth, or where
-/// TA - G C is not stable in the end: what has not been stirred up yet would grow.
+/// errors that the run has not stirred up, rounding among them, would not die out of the fault's estimate.
 Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H);
 
 }  // namespace cordon::estimators
