@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What rounding can do to the filter: systems in which it grows, cancels or decides.
+#include <cmath>
+
+#include "fault_estimation/filters.hpp"
+
+using namespace faults;
+
+namespace {
+
+Model lti(const Matrix& A, const Matrix& C, const Matrix& F) {
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = A;
+  m.B = Matrix::Zero(A.rows(), 1);
+  m.C = C;
+  m.D = Matrix::Zero(C.rows(), 1);
+  m.F = F;
+  m.Bw = Matrix(A.rows(), 0);
+  m.Dv = Matrix(C.rows(), 0);
+  model.X0 = make_point(Vector::Zero(A.rows()));
+  model.W = make_point(Vector(0));
+  model.V = make_point(Vector(0));
+  return model;
+}
+
+double promised(const Model& model) { return filter(model, parameters("shared"))->guarantees()->faults[0].half_width; }
+
+}  // namespace
+
+TEST_CASE("rounding errors of earlier steps grow with an unstable error map") {
+  // the zero 1.2 of the fault's transfer function is an eigenvalue of TA - G C
+  Model model = lti(Matrix{{-.5, 1}, {-.7, 1.2}}, Matrix{{1, 0}}, Matrix{{1}, {0}});
+  model.linear.B = Matrix{{1}, {1}};
+  model.linear.Bw = Matrix{{1}, {0}};
+  model.X0 = make_point(Vector{{.3, .7}});
+  model.W = make_zonotope(Vector::Zero(1), .1 * Matrix::Identity(1, 1));
+  const auto diagnoser = filter(model, parameters("shared"));
+  const auto input = [](Index k) { return Vector(Vector::Constant(1, std::sin(.3 * static_cast<double>(k)))); };
+  const Signal none = [](Index) { return Vector(Vector::Zero(1)); };
+  const FaultyRun plant(model, input, none, Draw{std::mt19937_64(1), Noise::uniform});
+  CHECK(run(*diagnoser, plant, none, 400, [](const Diagnosis& now) { CHECK(now.modes[0].candidate); }) == 400);
+  CHECK(std::isinf(promised(model)));
+}
+
+TEST_CASE("a transient that has passed leaves its rounding errors behind") {
+  Model model = lti(Matrix{{-.5, 1}, {-.495, .99}}, Matrix{{1, 0}}, Matrix{{1}, {0}});  // a zero at .99
+  const auto diagnoser = filter(model, parameters("shared"));
+  const Signal pulse = [](Index k) { return Vector(Vector::Constant(1, k == 20 ? 1e9 : 0)); };
+  const FaultyRun plant(
+      model, [](Index) { return Vector(Vector::Zero(1)); }, pulse, Draw{std::mt19937_64(1), Noise::none});
+  run(*diagnoser, plant, pulse, 400);
+}
+
+TEST_CASE("outputs that repeat each other give no gain made of rounding") {
+  Model model = lti(Matrix{{.5, .5}, {.3, -.6}}, Matrix{{1, .3}, {.37, .111}}, Matrix{{1}, {.5}});
+  model.linear.Bw = Matrix::Identity(2, 2);
+  model.X0 = make_zonotope(Vector::Zero(2), .1 * Matrix::Identity(2, 2));
+  model.W = make_zonotope(Vector::Zero(2), .01 * Matrix::Identity(2, 2));
+  const Signal step = [](Index k) { return Vector(Vector::Constant(1, k < 50 ? 0 : 1)); };
+  for (const bool noise : {false, true}) {
+    if (noise) {
+      model.linear.Dv = Matrix{{1}, {.37}};
+      model.V = make_zonotope(Vector::Zero(1), .01 * Matrix::Identity(1, 1));
+    }
+    const FaultyRun plant(
+        model, [](Index) { return Vector(Vector::Zero(1)); }, step, Draw{std::mt19937_64(1), Noise::uniform});
+    double widest = 0;
+    run(*filter(model, parameters("shared")), plant, step, 1000, [&](const Diagnosis& now) {
+      for (const FaultBound& bound : now.faults) widest = std::max(widest, (bound.upper - bound.lower) / 2);
+    });
+    CHECK(widest < .5);
+    CHECK(promised(model) <= widest * (1 + 1e-6));
+    CHECK(promised(model) > .01);
+  }
+}
+
+TEST_CASE("no promise where errors stay or grow slowly") {
+  Model model = lti(Matrix{{.5, 1}, {0, 1}}, Matrix{{1, 0}}, Matrix{{1}, {0}});
+  model.linear.Bw = Matrix::Identity(2, 2);
+  model.linear.Dv = Matrix{{.001}};
+  model.X0 = make_zonotope(Vector::Zero(2), Matrix{{.1, 0}, {0, .5}});
+  model.W = make_zonotope(Vector::Zero(2), Matrix{{.001, 0}, {0, 1e-7}});
+  model.V = make_zonotope(Vector::Zero(1), Matrix::Identity(1, 1));
+  CHECK(std::isinf(promised(model)));
+  model.linear.A = Matrix{{-.5, 1}, {-.7, 1.02}};  // grows from almost nothing
+  model.X0 = make_zonotope(Vector::Zero(2), Matrix{{.1, 0}, {0, 1e-30}});
+  model.W = make_zonotope(Vector::Zero(2), Matrix{{.001}, {0}});
+  CHECK(std::isinf(promised(model)));
+}
+
+TEST_CASE("whether a fault shows does not depend on units") {
+  // f acts on the measured state by 1e-13 of what it does to the other, and is seen a step later
+  Model model = lti(Matrix{{.5, 0}, {1, .5}}, Matrix{{0, 1}}, Matrix{{1}, {1e-13}});
+  const auto seen = [](const Model& of) { return filter(of, parameters("shared"))->guarantees()->faults[0].delay; };
+  CHECK(seen(model) == 1);
+  model.linear.F = Matrix{{1}, {0}};
+  CHECK(seen(model) == 2);
+  model.linear.A = .5 * Matrix::Identity(2, 2);
+  model.linear.F = Matrix{{1e13}, {1}};
+  CHECK(seen(model) == 1);
+  Model small = published();
+  small.linear.E *= 1e-9;
+  small.linear.A *= 1e-9;
+  small.linear.B *= 1e-9;
+  small.linear.F *= 1e-9;
+  small.linear.Bw *= 1e-9;
+  const auto problems =
+      banks::registry().check_diagnoser("fault_estimation_filter", alone(small), zonotopes(), parameters("shared"));
+  for (const Diagnostic& problem : problems) CHECK(problem.message.find("never show") == std::string::npos);
+}
+
+TEST_CASE("among several modes the filter does not come back to one of them") {
+  Model model = published();
+  ModeBank bank = alone(model);
+  bank.modes.push_back({"other", model});
+  const auto diagnoser = banks::registry().make_diagnoser("fault_estimation_filter", bank, zonotopes(), parameters("shared"));
+  const Signal pulse = [](Index k) { return Vector(Vector{{k >= 20 && k < 30 ? 1.0 : 0.0, 0.0}}); };
+  const FaultyRun plant(
+      model, [](Index) { return Vector(Vector::Zero(2)); }, pulse, Draw{std::mt19937_64(1), Noise::uniform});
+  run(*diagnoser, plant, pulse, 60, [](const Diagnosis& now) {
+    const Decision expected = now.k <= 20 ? Decision::monitoring : now.k <= 30 ? Decision::isolating : Decision::ambiguous;
+    CHECK(now.decision == expected);
+    CHECK(now.mode == (now.k <= 20 ? 0 : -1));
+  });
+}
