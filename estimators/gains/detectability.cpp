@@ -13,6 +13,8 @@ namespace cordon::estimators {
 namespace {
 
 constexpr double tolerance = 1e-10;
+constexpr double cleaned = 1e-9;              // entries of a direction below this share of the largest are noise
+constexpr double row_tolerance = 1e-8;        // above what cleaning can leave in a row
 constexpr double least_unstable = 1 - 1e-12;  // 1, up to the rounding of eigenvalues
 
 std::string number(double x) {
@@ -57,7 +59,14 @@ std::optional<Eigen::VectorXcd> hidden(const Matrix& A, const Matrix& C, std::co
   const Vector v = svd.V.col(2 * n - 1);
   Eigen::VectorXcd found(n);
   for (Index i = 0; i < n; ++i) found[i] = {v[i], v[n + i]};
-  return found;
+  const double largest = found.cwiseAbs().maxCoeff();
+  found = (found.array().abs() <= cleaned * largest).select(0.0, found);
+  // Small against the largest entry is not enough: every row must cancel against its own terms.
+  const Vector entries = found.cwiseAbs(), shown = (C.cast<std::complex<double>>() * found).cwiseAbs();
+  const Vector moved = (A.cast<std::complex<double>>() * found - lambda * found).cwiseAbs();
+  const bool silent = (shown.array() <= row_tolerance * (C.cwiseAbs() * entries).array()).all();
+  const bool stays = (moved.array() <= row_tolerance * (A.cwiseAbs() * entries + std::abs(lambda) * entries).array()).all();
+  return silent && stays ? std::optional(found) : std::nullopt;
 }
 
 std::optional<std::string> hidden_mode(const Matrix& A, const Matrix& C, double least_modulus) {

@@ -45,3 +45,9 @@ TEST_CASE("a mode is hidden exactly where it was hidden on purpose") {
     RC_ASSERT(undetectable_mode(A, C).has_value() == !connected);
   }));
 }
+
+TEST_CASE("a mode that shows by a small entry is no hidden one") {
+  // the second state is seen by 1e-8 beside 1e8: badly scaled, and detectable
+  CHECK_FALSE(undetectable_mode(Matrix{{.5, 0}, {0, 2}}, Matrix{{1e8, 1e-8}}).has_value());
+  CHECK(undetectable_mode(Matrix{{.5, 0}, {0, 2}}, Matrix{{1e8, 0}}).has_value());
+}
