@@ -31,6 +31,7 @@ void Catalogue::remove(std::string_view plugin) {
   remove_from(diagnosers, plugin);
   remove_from(plants, plugin);
   remove_from(gains, plugin);
+  remove_from(designers, plugin);
 }
 
 template <class Entry>
@@ -58,6 +59,7 @@ void Batch::metric(MetricEntry entry) { add(mine_.metrics, known_.metrics, "metr
 void Batch::diagnoser(DiagnoserEntry entry) { add(mine_.diagnosers, known_.diagnosers, "diagnoser", std::move(entry)); }
 void Batch::plant(PlantEntry entry) { add(mine_.plants, known_.plants, "plant", std::move(entry)); }
 void Batch::gain(GainEntry entry) { add(mine_.gains, known_.gains, "gain", std::move(entry)); }
+void Batch::designer(DesignerEntry entry) { add(mine_.designers, known_.designers, "designer", std::move(entry)); }
 
 void Batch::commit(Catalogue& catalogue) {
   catalogue.backends.merge(mine_.backends);
@@ -66,6 +68,7 @@ void Batch::commit(Catalogue& catalogue) {
   catalogue.diagnosers.merge(mine_.diagnosers);
   catalogue.plants.merge(mine_.plants);
   catalogue.gains.merge(mine_.gains);
+  catalogue.designers.merge(mine_.designers);
 }
 
 }  // namespace cordon::registry

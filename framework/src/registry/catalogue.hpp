@@ -26,6 +26,7 @@ struct Catalogue {
   Shelf<DiagnoserEntry> diagnosers;
   Shelf<PlantEntry> plants;
   Shelf<GainEntry> gains;
+  Shelf<DesignerEntry> designers;
 
   void remove(std::string_view plugin);
 };
@@ -41,6 +42,7 @@ class Batch final : public Registrar {
   void diagnoser(DiagnoserEntry entry) override;
   void plant(PlantEntry entry) override;
   void gain(GainEntry entry) override;
+  void designer(DesignerEntry entry) override;
 
   const std::vector<std::string>& problems() const { return problems_; }  ///< broken rules; none: may be committed
   bool collides() const { return collides_; }  ///< one of the problems is a name that somebody else has

@@ -146,6 +146,23 @@ std::vector<Diagnostic> refuse_ranges(const ObserverEntry& entry, const Model& m
   return problems;
 }
 
+Diagnostic no_modes(const std::string& kind) {
+  return {"", "there are no modes to tell apart", "this " + kind + " needs at least two: describe the faults in /system/modes"};
+}
+
+/// Tubes are affine in the input for exactly known matrices only.
+std::vector<Diagnostic> refuse_design(const ModeBank& bank) {
+  std::vector<Diagnostic> problems;
+  for (const Mode& mode : bank.modes) {
+    if (!mode.model.linear.is_uncertain() && !mode.model.linear.has_ranges()) continue;
+    const char* what = mode.model.linear.is_uncertain() ? "interval matrices" : "an effectiveness known by a range only";
+    problems.push_back(
+        {"", fmt::format("input designers do not take models with {}, which \"{}\" has", what, mode.name), "give exact numbers"});
+  }
+  if (bank.size() < 2) problems.push_back(no_modes("designer"));
+  return problems;
+}
+
 std::vector<Diagnostic> refuse_bank(const DiagnoserEntry& entry, const ModeBank& bank) {
   std::vector<Diagnostic> problems;
   for (const Mode& mode : bank.modes) {
@@ -155,10 +172,7 @@ std::vector<Diagnostic> refuse_bank(const DiagnoserEntry& entry, const ModeBank&
          "use another diagnoser, or give exact matrices"});
     break;
   }
-  if (entry.needs_modes && bank.size() < 2) {
-    problems.push_back(
-        {"", "there are no modes to tell apart", "this diagnoser needs at least two: describe the faults in /system/modes"});
-  }
+  if (entry.needs_modes && bank.size() < 2) problems.push_back(no_modes("diagnoser"));
   if (!entry.needs_modes && (bank.size() == 0 || bank[bank.nominal].model.linear.faults() == 0)) {
     problems.push_back({"", "there are no faults to find: the system has no F",
                         "give the directions of additive faults in /system/F, in a column each"});
@@ -273,12 +287,14 @@ std::vector<std::string> Registry::metrics() const { return names(state_->catalo
 std::vector<std::string> Registry::diagnosers() const { return names(state_->catalogue.diagnosers); }
 std::vector<std::string> Registry::plants() const { return names(state_->catalogue.plants); }
 std::vector<std::string> Registry::gains() const { return names(state_->catalogue.gains); }
+std::vector<std::string> Registry::designers() const { return names(state_->catalogue.designers); }
 const ComponentInfo* Registry::backend_info(std::string_view name) const { return info(state_->catalogue.backends, name); }
 const ComponentInfo* Registry::observer_info(std::string_view name) const { return info(state_->catalogue.observers, name); }
 const ComponentInfo* Registry::metric_info(std::string_view name) const { return info(state_->catalogue.metrics, name); }
 const ComponentInfo* Registry::diagnoser_info(std::string_view name) const { return info(state_->catalogue.diagnosers, name); }
 const ComponentInfo* Registry::plant_info(std::string_view name) const { return info(state_->catalogue.plants, name); }
 const ComponentInfo* Registry::gain_info(std::string_view name) const { return info(state_->catalogue.gains, name); }
+const ComponentInfo* Registry::designer_info(std::string_view name) const { return info(state_->catalogue.designers, name); }
 
 const DiagnoserEntry* Registry::diagnoser_entry(std::string_view name) const {
   const auto found = state_->catalogue.diagnosers.find(name);
@@ -292,8 +308,10 @@ std::string Registry::plugin_of(std::string_view kind, std::string_view name) co
   if (kind == "diagnoser") return provider(state_->catalogue.diagnosers, name);
   if (kind == "plant") return provider(state_->catalogue.plants, name);
   if (kind == "gain") return provider(state_->catalogue.gains, name);
-  throw Error(Errc::invalid, fmt::format("no kind of component \"{}\"; {}", kind,
-                                         suggest(kind, {"backend", "observer", "metric", "diagnoser", "plant", "gain"})));
+  if (kind == "designer") return provider(state_->catalogue.designers, name);
+  throw Error(Errc::invalid,
+              fmt::format("no kind of component \"{}\"; {}", kind,
+                          suggest(kind, {"backend", "observer", "metric", "diagnoser", "plant", "gain", "designer"})));
 }
 
 const PluginReport* Registry::refused_provider(std::string_view component) const {
@@ -400,6 +418,30 @@ std::shared_ptr<const GainDesigner> Registry::make_gain(std::string_view name, c
   const auto& provided = require(*this, state_->catalogue.gains, "gain", name);
   return make<GainDesigner>(provided, "gain", params, state_->library(provided.plugin),
                             [](const GainEntry& entry, const Params& p) { return entry.create(p); });
+}
+
+std::vector<Diagnostic> Registry::check_designer(std::string_view name, const ModeBank& bank,
+                                                 std::shared_ptr<const SetBackend> backend, const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.designers, "designer", name);
+  const std::string component = fmt::format("designer \"{}\"", name);
+  Params complete = params;
+  std::vector<Diagnostic> problems = provided.entry.info.schema.complete(complete);
+  if (problems.empty()) problems = refuse_design(bank);
+  if (!problems.empty() || !provided.entry.check) return problems;
+  return guarded(provided.plugin, component, [&] { return provided.entry.check({bank, std::move(backend)}, complete); });
+}
+
+std::shared_ptr<const InputDesigner> Registry::make_designer(std::string_view name, const ModeBank& bank,
+                                                             std::shared_ptr<const SetBackend> backend,
+                                                             const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.designers, "designer", name);
+  if (auto problems = refuse_design(bank); !problems.empty()) {
+    throw InputError(fmt::format("designer \"{}\"", name), std::move(problems));
+  }
+  return make<InputDesigner>(provided, "designer", params, state_->library(provided.plugin),
+                             [&](const DesignerEntry& entry, const Params& p) {
+                               return entry.create({bank, std::move(backend)}, p);
+                             });
 }
 
 void Registry::add(void (*register_components)(Registrar&)) {

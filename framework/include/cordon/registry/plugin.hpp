@@ -15,6 +15,7 @@
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/interfaces/diagnoser.hpp"
 #include "cordon/interfaces/gain_designer.hpp"
+#include "cordon/interfaces/input_designer.hpp"
 #include "cordon/interfaces/metric.hpp"
 #include "cordon/interfaces/observer.hpp"
 #include "cordon/interfaces/plant.hpp"
@@ -65,6 +66,12 @@ struct DiagnoserContext {
   const Factory& make;
 };
 
+/// What an input is designed for.
+struct DesignerContext {
+  const ModeBank& bank;
+  std::shared_ptr<const SetBackend> backend;
+};
+
 struct BackendEntry {
   ComponentInfo info;
   std::function<std::unique_ptr<SetBackend>(const Params&)> create;
@@ -98,6 +105,12 @@ struct GainEntry {
   std::function<std::vector<Diagnostic>(const GainContext&, const Params&)> check;
   std::function<std::unique_ptr<GainDesigner>(const Params&)> create;
 };
+struct DesignerEntry {
+  ComponentInfo info;
+  /// As for observers. Banks with fewer than two modes, ranges of effectiveness or interval matrices are refused before.
+  std::function<std::vector<Diagnostic>(const DesignerContext&, const Params&)> check;
+  std::function<std::unique_ptr<InputDesigner>(const DesignerContext&, const Params&)> create;
+};
 struct PlantEntry {
   ComponentInfo info;
   std::function<std::unique_ptr<Plant>(const Params&)> create;
@@ -119,6 +132,7 @@ class Registrar {
   virtual void diagnoser(DiagnoserEntry entry) = 0;
   virtual void plant(PlantEntry entry) = 0;
   virtual void gain(GainEntry entry) = 0;
+  virtual void designer(DesignerEntry entry) = 0;
 };
 
 /// Plain data, read before any code of the plugin runs. Layout changes only with `abi_version`.

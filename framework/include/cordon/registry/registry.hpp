@@ -62,12 +62,14 @@ class Registry {
   std::vector<std::string> diagnosers() const;
   std::vector<std::string> plants() const;
   std::vector<std::string> gains() const;
+  std::vector<std::string> designers() const;
   const ComponentInfo* backend_info(std::string_view name) const;  ///< null if there is none
   const ComponentInfo* observer_info(std::string_view name) const;
   const ComponentInfo* metric_info(std::string_view name) const;
   const ComponentInfo* diagnoser_info(std::string_view name) const;
   const ComponentInfo* plant_info(std::string_view name) const;
   const ComponentInfo* gain_info(std::string_view name) const;
+  const ComponentInfo* designer_info(std::string_view name) const;
   /// Null if there is none.
   const DiagnoserEntry* diagnoser_entry(std::string_view name) const;
   /// The plugin that a component came from; "" if registered directly.
@@ -90,6 +92,10 @@ class Registry {
   std::shared_ptr<Plant> make_plant(std::string_view name, const Params& params) const;
   std::vector<Diagnostic> check_gain(std::string_view name, const GainContext& context, const Params& params) const;
   std::shared_ptr<const GainDesigner> make_gain(std::string_view name, const Params& params) const;
+  std::vector<Diagnostic> check_designer(std::string_view name, const ModeBank& bank, std::shared_ptr<const SetBackend> backend,
+                                         const Params& params) const;
+  std::shared_ptr<const InputDesigner> make_designer(std::string_view name, const ModeBank& bank,
+                                                     std::shared_ptr<const SetBackend> backend, const Params& params) const;
 
   /// Registers components of the host itself (tests, programs that embed the framework): not from a library. All or none; throws
   /// Errc::invalid where a plugin would be refused, and passes on what the function throws.

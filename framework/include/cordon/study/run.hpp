@@ -123,10 +123,22 @@ struct DiagnosisOutcome {
 std::string json_of(const DiagnosisOutcome& outcome);
 std::string json_of(const Guarantees& guarantees, const std::vector<std::string>& modes);
 
+/// The experiments with one true mode and the designed input: as many as the study has seeds.
+struct ExperimentRow {
+  Index mode = 0;  ///< the true one
+  std::int64_t runs = 0;
+  std::vector<std::int64_t> possible;  ///< per mode of the bank: runs at whose end it was not excluded
+  std::int64_t isolated = 0, wrong = 0, unknown_fault = 0, undecided = 0;  ///< runs by the last decision
+  DelayStatistics isolation = {};                                          ///< k of the first decision for the true mode
+};
+
 struct PipelineOutcome {
   std::string name, backend, observer;
   std::string diagnoser;                      ///< if there is one, `observer` is empty
   std::optional<DiagnosisOutcome> diagnosis;  ///< and this tells what it found; the counts of sets below stay 0
+  std::string designer;                       ///< if there is one, `observer` is empty
+  std::optional<DesignOutcome> design;        ///< and this is what it designed
+  std::vector<ExperimentRow> experiments;     ///< by true mode, if the pipeline has a diagnoser too
   std::int64_t steps = 0;
   std::int64_t consistent = 0, inconsistent = 0, undecided = 0;  ///< answers to "is the estimate non-empty?"
   std::int64_t inconsistent_from = -1;                           ///< first k with an estimate proven empty

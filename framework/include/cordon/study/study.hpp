@@ -71,6 +71,9 @@ struct SimulateSpec {
   std::int64_t steps = 0;  ///< samples k = 0 … steps
   std::uint64_t seed = 1;
   Noise noise = Noise::uniform;
+  /// In place of x0: it is drawn from this set, by the kind of the noise and the seed. Of a descriptor system the part of the
+  /// draw that E determines is taken, and draws are repeated until the whole state lies in the set.
+  std::optional<LineForm> x0_set = {};
   std::optional<Vector> x0;       ///< default: the centre of X0. Descriptor systems: must meet the static rows for some w_0 ∈ W
   std::vector<Signal> input;      ///< one per input channel
   std::vector<FaultSpec> faults;  ///< in order of time, without overlap; between them the plant is in the nominal mode
@@ -88,20 +91,21 @@ struct CsvSpec {
   std::string mode = {};                            ///< column with the names of the true modes; empty: not known
 };
 
-/// A backend with an observer or with a diagnoser.
+/// A backend with an observer, with a diagnoser, or with an input designer and perhaps a diagnoser for its experiment.
 struct PipelineSpec {
   std::string name;
   ComponentSpec backend, observer;
   std::optional<ComponentSpec> diagnoser = {};  ///< if there is one, `observer` is empty
+  std::optional<ComponentSpec> designer = {};   ///< likewise; the pipeline has an input of its own then
 };
 
 struct Study {
   std::filesystem::path file;
   std::string title;
-  Model model;                      ///< of the nominal mode
-  std::string nominal = "healthy";  ///< its name
-  std::vector<Mode> modes;          ///< the other modes
-  std::variant<SimulateSpec, CsvSpec> data;
+  Model model;                               ///< of the nominal mode
+  std::string nominal = "healthy";           ///< its name
+  std::vector<Mode> modes;                   ///< the other modes
+  std::variant<SimulateSpec, CsvSpec> data;  ///< pipelines with a designer take seed, seeds, noise and start of simulated data
   std::vector<PipelineSpec> pipelines;
   std::vector<ComponentSpec> metrics;
   std::vector<std::string> warnings;  ///< e.g. a refused plugin that the study does not need

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The facet designer: exact search over the facets of the sets of inputs that do not separate.
+#pragma once
+
+#include "designers/separation_problem.hpp"
+
+namespace cordon::designers {
+
+struct FacetLimits {
+  double gap = 1e-9;         ///< relative: the search ends when the cost is proven up to this share
+  double time_limit = 60;    ///< seconds
+  Index max_facets = 10000;  ///< per pair; more make the search end without an answer
+};
+
+/// With R and L the range and left null space of N, the inputs that do not separate a pair are those with R N u in
+///   Q = {RGξ + Rc : LGξ = -Lc, ‖ξ‖∞ ≤ 1 + ε}  in r = rank N dimensions,
+/// so that separating means h·(R N u) ≥ k for a facet (h, k) of Q. Best first: a node is the linear program over U with the
+/// facets chosen so far; the violated pair with the fewest facets is branched on, a child per facet; the first node that violates
+/// nothing is optimal. Bounds of nodes are proven by their multipliers.
+SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control);
+
+}  // namespace cordon::designers
