@@ -23,9 +23,7 @@ inline Vector numbers(std::initializer_list<double> entries) {
   return v;
 }
 
-inline LineForm cube(Index n, double radius) {
-  return make_box({Vector::Constant(n, -radius), Vector::Constant(n, radius)});
-}
+inline LineForm cube(Index n, double radius) { return make_box({Vector::Constant(n, -radius), Vector::Constant(n, radius)}); }
 
 /// Four descriptor models of [Rego2025, sec. 6.2].
 inline ModeBank four_descriptor_models() {
