@@ -169,6 +169,13 @@ TEST_CASE("without data, designers have the defaults") {
   expect_round_trip(read_text(exchanged(design_study, data_text, "\"data\": {\"simulate\": {}},")));
 }
 
+TEST_CASE("there are no data where every pipeline has a designer") {
+  const auto none = open_data(read_text(design_study));
+  CHECK(none->size() == 0);
+  CHECK_FALSE(none->next());
+  CHECK(open_data(read_text(mixed()))->size() == 10);
+}
+
 TEST_CASE("resolved studies with designers are studies again") {
   expect_round_trip(read_text(design_study));
   expect_round_trip(read_text(mixed()));
