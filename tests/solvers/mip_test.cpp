@@ -138,6 +138,10 @@ TEST_CASE("random knapsacks agree with enumeration") {
     RC_ASSERT(solution.bound <= solution.objective + 1e-9);
     RC_ASSERT((k.weight * solution.x - k.capacity).maxCoeff() <= 1e-6);
     RC_ASSERT((solution.x.array() == solution.x.array().round()).all());
+    MipOptions options;
+    options.cuts = false;
+    for (Index j = k.worth.size() - 1; j >= 0; j -= 2) options.branching.push_back(j);
+    RC_ASSERT(std::abs(solve(k.as_program(), options).objective - solution.objective) < 1e-6);
   }));
 }
 
@@ -260,6 +264,15 @@ TEST_CASE("broken programs are refused") {
   options = {};
   options.time_limit = not_a_number;
   CHECK(refused(good, Errc::invalid, options));
+  options = {};
+  options.branching = {0, 3};
+  CHECK(refused(good, Errc::invalid, options));
+  options.branching = {-1};
+  CHECK(refused(good, Errc::invalid, options));
+  p = good;
+  p.integer[0] = false;
+  options.branching = {0};
+  CHECK(refused(p, Errc::invalid, options));
   options = {};
   options.gap = -1;
   CHECK(refused(good, Errc::invalid, options));

@@ -53,6 +53,10 @@ void check(const MixedIntegerProgram& p, const MipOptions& options) {
   }
   require(!std::isnan(options.time_limit) && options.gap >= 0, Errc::invalid, "a time limit or gap that is no number");
   require(!options.start || options.start->size() == n, Errc::dimension, "a start of another size");
+  for (const Index column : options.branching) {
+    require(column >= 0 && column < n && p.integer[static_cast<std::size_t>(column)], Errc::invalid,
+            "a column to branch on that is not whole");
+  }
 }
 
 /// Does x satisfy the program up to 1e-6 of each row's terms?
@@ -111,6 +115,13 @@ void call_back(glp_tree* tree, void* info) {
   int total = 0;
   glp_ios_tree_size(tree, nullptr, nullptr, &total);
   search.nodes = total;
+  if (glp_ios_reason(tree) == GLP_IBRANCH) {
+    for (const Index column : search.options->branching) {
+      if (glp_ios_can_branch(tree, static_cast<int>(column) + 1) == 0) continue;
+      glp_ios_branch_upon(tree, static_cast<int>(column) + 1, GLP_UP_BRNCH);
+      break;
+    }
+  }
   glp_prob* const problem = glp_ios_get_prob(tree);
   if (glp_mip_status(problem) == GLP_FEAS) search.best = glp_mip_obj_val(problem);
   if (const int node = glp_ios_best_node(tree); node != 0) {
@@ -165,7 +176,7 @@ int branch_and_cut(glp_prob* problem, int milliseconds, Search& search) {
   control.msg_lev = GLP_MSG_OFF;
   control.tm_lim = milliseconds;
   control.mip_gap = search.options->gap;
-  control.gmi_cuts = control.mir_cuts = control.cov_cuts = control.clq_cuts = GLP_ON;
+  if (search.options->cuts) control.gmi_cuts = control.mir_cuts = control.cov_cuts = control.clq_cuts = GLP_ON;
   control.cb_func = call_back;
   control.cb_info = &search;
   return glp_intopt(problem, &control);

@@ -45,8 +45,12 @@ struct MipSolution {
 struct MipOptions {
   double time_limit = 60;  ///< seconds; 0: the relaxation is not even begun
   double gap = 1e-6;       ///< relative: where best and bound are this near, the search ends
+  bool cuts = true;        ///< cutting planes of all kinds
   /// A solution to begin with. One that misses rows or bounds by more than 1e-6 of their terms is not used.
   std::optional<Vector> start = {};
+  /// Columns in the order in which they are branched on; those that are not named come last, as the solver likes. Empty: the
+  /// solver's own order.
+  std::vector<Index> branching = {};
   /// Called at every node with the best objective (+inf: none) and the bound; `true` ends the search. It must not call a
   /// solver. What it throws is passed on.
   std::function<bool(double best, double bound)> watch = {};
