@@ -186,6 +186,22 @@ TEST_CASE("Without a solution nothing is claimed but what is proven") {
     CHECK(none.reason.find("as GLPK says") != std::string::npos);
     CHECK(none.suggestion.find("facets") != std::string::npos);
   }
+  SUBCASE("pairs that exclude each other") {
+    SeparationProblem problem = scalar_problem();
+    const auto away_from = [](double centre, double radius) {  // |u_1 - centre| > radius
+      PairProgram pair{0, 1, Matrix::Constant(1, 1, radius), numbers({centre}), Matrix::Zero(1, 4), numbers({0})};
+      pair.N(0, 1) = 1;
+      return pair;
+    };
+    problem.pairs = {away_from(0, 1.5), away_from(2, .6), away_from(-2, .6)};
+    const SearchResult none = search(problem, generators(3));
+    CHECK(none.status == DesignStatus::unknown);
+    CHECK_FALSE(none.u);
+    CHECK(none.lower_bound == -infinity);  // 1.5 is the first pair's, but GLPK's word
+    CHECK(none.reason.find("as GLPK says") != std::string::npos);
+    problem.pairs.pop_back();
+    check_found(problem, search(problem, generators(3)), 1.5 * (1 + 1e-4));
+  }
   SUBCASE("no row") {
     const SeparationProblem problem =
         examples::separation_problem(examples::three_scalar_models(), 0, 2, Vector::Zero(1), Vector(0));

@@ -135,7 +135,7 @@ TEST_CASE("random knapsacks agree with enumeration") {
     const MipSolution solution = solve(k.as_program());
     RC_ASSERT(solution.status == MipStatus::optimal);
     RC_ASSERT(std::abs(solution.objective + k.by_enumeration()) < 1e-6);
-    RC_ASSERT(solution.bound <= solution.objective + 1e-9);
+    RC_ASSERT(std::abs(solution.bound - solution.objective) <= 1e-6 * (1 + std::abs(solution.objective)));
     RC_ASSERT((k.weight * solution.x - k.capacity).maxCoeff() <= 1e-6);
     RC_ASSERT((solution.x.array() == solution.x.array().round()).all());
     MipOptions options;
@@ -204,13 +204,43 @@ TEST_CASE("a start is used where it is a solution") {
   CHECK(given.status == MipStatus::feasible);
   CHECK(given.objective == Approx(best.objective));
   CHECK(given.bound == -infinity);
-  for (const double wrong : {1.5, 1.0 / 3, not_a_number}) {  // outside its bounds, not whole, no number
+  for (const double wrong : {2.0, -1.0, 1.0 / 3, not_a_number}) {  // outside its bounds, not whole, no number
     options.start = best.x;
     (*options.start)[0] = wrong;
     CHECK(solve(k.as_program(), options).status == MipStatus::limit);
   }
   options.start = all(12, 1);  // too heavy
   CHECK(solve(k.as_program(), options).status == MipStatus::limit);
+}
+
+TEST_CASE("the search begins with its start") {
+  const MixedIntegerProgram p = long_program();
+  MipOptions options;
+  options.start = Vector::Zero(p.cost.size());  // nothing on one side: the slack is all
+  options.start->segment(30, 4) = p.row_lower;
+  double first = infinity;
+  options.watch = [&](double best, double) {
+    first = std::min(first, best);
+    return best < infinity;
+  };
+  const MipSolution solution = solve(p, options);
+  CHECK(solution.status == MipStatus::feasible);
+  CHECK(first == Approx(p.row_lower.sum()));
+  CHECK(solution.objective == Approx(p.row_lower.sum()));
+}
+
+TEST_CASE("the gap ends the search") {
+  const MixedIntegerProgram p = knapsack(40, 2).as_program();
+  MipOptions options;
+  options.cuts = false;
+  options.gap = 0;
+  const MipSolution exact = solve(p, options);
+  options.gap = .05;
+  const MipSolution near = solve(p, options);
+  CHECK(near.status == MipStatus::optimal);
+  CHECK(near.nodes < exact.nodes);
+  CHECK(near.bound <= exact.objective + 1e-9);
+  CHECK(near.objective - near.bound <= .06 * std::abs(near.objective));
 }
 
 TEST_CASE("broken programs are refused") {
