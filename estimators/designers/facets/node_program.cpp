@@ -7,6 +7,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/solvers/lp.hpp"
+#include "designers/facets/quadratic_minimum.hpp"
 
 namespace cordon::designers {
 
@@ -15,7 +16,6 @@ using linalg::product;
 namespace {
 
 constexpr double row_rounding = 1e-14;  ///< of the terms of a row, from computing its coefficients
-constexpr double same_tangent = 1e-13;
 
 /// A bound of one of the variables or slacks, with room for rounding: a larger one is a bound as well.
 double roomy(double bound) { return bound * (1 + 1e-9) + 1e-300; }
@@ -103,12 +103,12 @@ void NodeProgram::add_cost() {
   const Vector spread = U.G.cwiseAbs().rowwise().sum();
   reach_ = apart.cwiseAbs() + spread;
   column_.assign(static_cast<std::size_t>(n), -1);
-  tangents_at_.resize(static_cast<std::size_t>(n));
 
   Vector price = cost.weights.cwiseProduct(reach_);
   if (cost.kind == Cost::Kind::quadratic) price = price.cwiseProduct(reach_);
   unit_ = n > 0 && price.maxCoeff() > 0 ? price.maxCoeff() : 1;
   price /= unit_;
+  price_ = price;
   double least = 0;  // of what does not change
   for (Index i = 0; i < n; ++i) {
     if (spread[i] == 0) least = cost.kind == Cost::Kind::norm_inf ? std::max(least, price[i]) : least + price[i];
@@ -146,41 +146,22 @@ void NodeProgram::add_cost() {
         break;
       case Cost::Kind::quadratic:
         column_[k] = full_.add_column(0, 1 + 1e-9, price[i]);
-        for (const double at : {-1.0, -.5, .5, 1.0}) add_tangent(i, at);
+        for (const double at : {-1.0, -.5, .5, 1.0}) touch(full_, i, at);
         break;
     }
   }
 }
 
 /// t_i - 2 τ (G_i ζ)/σ_i ≥ 2 τ (c_i - r_i)/σ_i - τ²
-void NodeProgram::add_tangent(Index i, double at) {
+void NodeProgram::touch(BoundedProgram& program, Index i, double at) const {
   const InputSequences& U = problem_.U;
-  const auto k = static_cast<std::size_t>(i);
-  Vector row = Vector::Zero(full_.lower.size());
+  Vector row = Vector::Zero(program.lower.size());
   row.head(U.G.cols()) = -2 * at / reach_[i] * U.G.row(i).transpose();
-  row[column_[k]] = 1;
-  full_.add_row_above(row, 2 * at * (U.c[i] - problem_.cost.reference[i]) / reach_[i] - at * at, row_rounding, 5);
-  tangents_at_[k].push_back(at);
-  ++tangents_;
+  row[column_[static_cast<std::size_t>(i)]] = 1;
+  program.add_row_above(row, 2 * at * (U.c[i] - problem_.cost.reference[i]) / reach_[i] - at * at, row_rounding, 5);
 }
 
-bool NodeProgram::refine(VectorIn u) {
-  if (problem_.cost.kind != Cost::Kind::quadratic) return false;
-  bool any = false;
-  for (Index i = 0; i < u.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (column_[k] < 0) continue;
-    const double at = (u[i] - problem_.cost.reference[i]) / reach_[i];
-    const bool known = std::any_of(tangents_at_[k].begin(), tangents_at_[k].end(),
-                                   [&](double other) { return std::abs(other - at) <= same_tangent; });
-    if (known) continue;
-    add_tangent(i, at);
-    any = true;
-  }
-  return any;
-}
-
-NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>& chosen) {
+NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>& chosen, const std::vector<Vector>& touched) {
   Answer answer;
   for (const SeparatingFacet* facet : chosen) {
     if (rounding::norm_1(facet->a).upper < facet->in) answer.impossible = true;
@@ -188,24 +169,73 @@ NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>
   if (answer.impossible) return answer;
 
   BoundedProgram program = full_;
+  for (const Vector& u : touched) {
+    for (Index i = 0; i < u.size(); ++i) {
+      if (column_[static_cast<std::size_t>(i)] >= 0) touch(program, i, (u[i] - problem_.cost.reference[i]) / reach_[i]);
+    }
+  }
   for (const SeparatingFacet* facet : chosen) {
     program.add_row_above(facet->a, facet->out, 0, facet->a.cwiseAbs().sum() - facet->in);
   }
   ++programs_;
   const LinearProgram::Solution solution =
       LinearProgram(program.A, program.b, program.lower, program.upper).maximize(-program.cost);
-  if (solution.status == LinearProgram::Status::optimal) {
-    const auto rows = static_cast<Index>(chosen.size());
-    for (Index f = 0; f < rows; ++f) {
-      program.b[program.b.size() - rows + f] = chosen[static_cast<std::size_t>(f)]->in;
-    }
-    const double bound = proven_minimum(program, -solution.y);
-    if (std::isfinite(bound)) answer.bound = std::max(0.0, rounding::down(constant_ + rounding::down(unit_ * bound)));
-    answer.zeta = solution.x.head(problem_.U.G.cols()).cwiseMax(-1.0).cwiseMin(1.0);
-  } else if (proven_impossible(chosen)) {
-    answer.impossible = true;
+  if (solution.status != LinearProgram::Status::optimal) {
+    answer.impossible = proven_impossible(chosen);
+    return answer;
   }
+  const auto rows = static_cast<Index>(chosen.size());
+  for (Index f = 0; f < rows; ++f) program.b[program.b.size() - rows + f] = chosen[static_cast<std::size_t>(f)]->in;
+  answer.bound = in_cost(proven_minimum(program, -solution.y));
+  answer.zeta = solution.x.head(problem_.U.G.cols()).cwiseMax(-1.0).cwiseMin(1.0);
+  const auto multipliers = (-unit_ * solution.y.tail(rows)).cwiseMax(0.0);
+  for (Index f = 0; f < rows; ++f) answer.multipliers.push_back(multipliers[f]);
+  if (problem_.cost.kind == Cost::Kind::quadratic) polish(program, chosen, solution.x, answer);
   return answer;
+}
+
+double NodeProgram::in_cost(double value) const {
+  const double cost = rounding::down(constant_ + rounding::down(unit_ * value));
+  return std::isfinite(cost) ? std::max(0.0, cost) : 0;
+}
+
+/// The minimum of the true cost near x. With tangents there its multipliers prove a lower bound.
+void NodeProgram::polish(const BoundedProgram& program, const std::vector<const SeparatingFacet*>& chosen, const Vector& x,
+                         Answer& answer) {
+  const InputSequences& U = problem_.U;
+  const Index n = hard_.lower.size(), zetas = U.G.cols();
+  const auto k = static_cast<Index>(chosen.size());
+  std::vector<Index> inputs;
+  for (Index i = 0; i < U.c.size(); ++i) {
+    if (column_[static_cast<std::size_t>(i)] >= 0) inputs.push_back(i);
+  }
+  const auto q = static_cast<Index>(inputs.size());
+  QuadraticProgram exact{Matrix::Zero(q, n), Vector(q), Vector(q), hard_.A, hard_.b, Matrix::Zero(k, n), Vector(k)};
+  for (Index row = 0; row < q; ++row) {
+    const Index i = inputs[static_cast<std::size_t>(row)];
+    exact.D.row(row).head(zetas) = U.G.row(i) / reach_[i];
+    exact.o[row] = (U.c[i] - problem_.cost.reference[i]) / reach_[i];
+    exact.price[row] = price_[i];
+  }
+  for (Index f = 0; f < k; ++f) {
+    exact.F.row(f).head(zetas) = chosen[static_cast<std::size_t>(f)]->a.transpose();
+    exact.e[f] = chosen[static_cast<std::size_t>(f)]->out;
+  }
+  const std::optional<QuadraticMinimum> found = quadratic_minimum(exact, x.head(n));
+  if (!found) return;
+
+  BoundedProgram touched = program;
+  const Vector at = exact.o + product(exact.D, found->z);
+  for (Index row = 0; row < q; ++row) touch(touched, inputs[static_cast<std::size_t>(row)], at[row]);
+  Vector y = Vector::Zero(touched.b.size());
+  y.head(hard_.b.size()) = found->of_A;
+  y.segment(program.b.size() - k, k) = found->of_F;
+  y.tail(q) = exact.price;
+  const double bound = in_cost(proven_minimum(touched, y));
+  if (bound <= answer.bound) return;
+  answer.bound = bound;
+  answer.zeta = found->z.head(zetas).cwiseMax(-1.0).cwiseMin(1.0);
+  for (Index f = 0; f < k; ++f) answer.multipliers[static_cast<std::size_t>(f)] = unit_ * std::max(0.0, found->of_F[f]);
 }
 
 /// The least sum of what the rows miss is positive.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "cordon/core/linalg.hpp"
+#include "designers/facets/facet_dual.hpp"
 #include "designers/facets/node_program.hpp"
 
 namespace cordon::designers {
@@ -31,9 +32,16 @@ struct OpenPair {
 struct Node {
   std::vector<Index> facet;  ///< per open pair: the chosen facet, -1 none
   double bound = 0;
-  Vector zeta;
-  std::int64_t tangents = 0;  ///< that its bound was computed with
-  int refinements = 0;
+  bool solved = false;  ///< its program was; else the bound is its parent's, or follows from its parent's multipliers
+  Vector zeta = {};
+  FacetDual::Parent multipliers = {};
+  std::vector<Vector> touched = {};  ///< input sequences with tangents of a quadratic cost
+};
+
+/// A pair to branch on, and the bounds of the children by the multipliers of their parent.
+struct Branching {
+  std::size_t pair;
+  std::vector<double> bounds;  ///< by facet
 };
 
 std::string who(const PairProgram& pair) { return fmt::format("modes {} and {}", pair.i + 1, pair.j + 1); }
@@ -45,7 +53,11 @@ bool is_beyond(const SeparatingFacet& facet, const Vector& zeta, double toleranc
 class Search {
  public:
   Search(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control)
-      : problem_(problem), limits_(limits), watch_(control, problem.horizon, limits.time_limit), program_(problem) {}
+      : problem_(problem),
+        limits_(limits),
+        watch_(control, problem.horizon, limits.time_limit),
+        program_(problem),
+        dual_(problem) {}
 
   SearchResult run() {
     if (find_facets()) branch_and_bound();
@@ -57,12 +69,12 @@ class Search {
   bool find_facets();
   void branch_and_bound();
   void visit(Node node);
-  void branch(const Node& node, std::size_t pair);
+  void branch(const Node& node, const Branching& branching);
   bool evaluate(Node& node);
   std::optional<Node> take();
   void keep(Node node) { open_.emplace(node.bound, std::move(node)); }
   void close(double bound) { closed_ = std::min(closed_, bound); }
-  std::optional<std::size_t> violated(const Node& node) const;
+  std::optional<Branching> violated(const Node& node) const;
   double lower_bound() const { return open_.empty() ? closed_ : std::min(closed_, open_.begin()->first); }
   bool good_enough(double bound) const { return result_.u && bound >= result_.cost - limits_.gap * result_.cost; }
   void conclude();
@@ -73,6 +85,7 @@ class Search {
   FacetLimits limits_;
   Watch watch_;
   NodeProgram program_;
+  FacetDual dual_;
   SearchResult result_;
   std::vector<OpenPair> pairs_;
 
@@ -86,6 +99,14 @@ bool Search::find_facets() {
     ForbiddenSet set = forbidden_set(pair, problem_.U, problem_.epsilon, limits_.max_facets, watch_);
     result_.programs += set.programs;
     result_.facets += static_cast<std::int64_t>(set.facets.size());
+    std::erase_if(set.facets,
+                  [](const SeparatingFacet& facet) { return facet.a.lpNorm<1>() < facet.in - 1e-9 * std::abs(facet.in); });
+    if (set.kind == ForbiddenSet::Kind::facets && set.facets.empty()) {
+      result_.status = DesignStatus::infeasible;
+      result_.reason = "no input of the input set separates " + who(pair);
+      result_.suggestion = more_room;
+      return false;
+    }
     switch (set.kind) {
       case ForbiddenSet::Kind::never:
         result_.status = DesignStatus::infeasible;
@@ -111,14 +132,13 @@ bool Search::find_facets() {
 void Search::branch_and_bound() {
   Node root;
   root.facet.assign(pairs_.size(), -1);
-  if (evaluate(root)) keep(std::move(root));
+  keep(std::move(root));
   while (std::optional<Node> node = take()) {
     if (watch_.over() || good_enough(node->bound)) {
       result_.stopped = !good_enough(node->bound);
       keep(std::move(*node));
       break;
     }
-    ++result_.nodes;
     visit(std::move(*node));
     watch_.progress(result_.u ? result_.cost : infinity, lower_bound());
   }
@@ -136,52 +156,61 @@ std::optional<Node> Search::take() {
 }
 
 void Search::visit(Node node) {
-  if (node.tangents < program_.tangents()) {
+  if (!node.solved) {
     if (!evaluate(node)) return;
-    if (!open_.empty() && node.bound > open_.begin()->first) return keep(std::move(node));
+    if (result_.u && !open_.empty() && node.bound > open_.begin()->first) return keep(std::move(node));
   }
+  ++result_.nodes;
   const Vector u = problem_.U.c + linalg::product(problem_.U.G, node.zeta);
   const double cost = problem_.cost.at(u);
-  const std::optional<std::size_t> pair = violated(node);
-  if (!pair && !(result_.u && result_.cost <= cost)) {
+  const std::optional<Branching> branching = violated(node);
+  if (branching) return branch(node, *branching);
+  if (!result_.u || cost < result_.cost) {
     result_.u = u;
     result_.cost = cost;
   }
-  const bool loose = cost - node.bound > (pair ? coarse_gap : limits_.gap) * cost;
-  if (loose && node.refinements < most_refinements && program_.refine(u)) {
-    ++node.refinements;
+  const bool loose = cost - node.bound > limits_.gap * cost;
+  if (loose && problem_.cost.kind == Cost::Kind::quadratic && static_cast<int>(node.touched.size()) < most_refinements) {
+    node.touched.push_back(u);
+    node.solved = false;
     return keep(std::move(node));
   }
-  if (!pair) return close(node.bound);
-  branch(node, *pair);
+  close(node.bound);
 }
 
-/// Of the pairs that the input of the node does not separate, the one with the fewest facets.
-std::optional<std::size_t> Search::violated(const Node& node) const {
-  std::optional<std::size_t> least;
+/// Of the pairs that the input of the node does not separate, the one whose cheapest child costs most by what the parent's
+/// multipliers say; of equal ones that with the fewest facets.
+std::optional<Branching> Search::violated(const Node& node) const {
+  std::optional<Branching> best;
+  double most = 0;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
     const auto& facets = pairs_[q].set.facets;
-    if (node.facet[q] >= 0 || (least && facets.size() >= pairs_[*least].set.facets.size())) continue;
-    if (std::none_of(facets.begin(), facets.end(), [&](const auto& facet) { return is_beyond(facet, node.zeta, 0); })) least = q;
+    if (node.facet[q] >= 0) continue;
+    if (std::any_of(facets.begin(), facets.end(), [&](const auto& facet) { return is_beyond(facet, node.zeta, 0); })) continue;
+    Branching here{q, {}};
+    for (const SeparatingFacet& facet : facets)
+      here.bounds.push_back(dual_.usable() ? std::max(node.bound, dual_.bound(node.multipliers, facet)) : node.bound);
+    const double least = *std::min_element(here.bounds.begin(), here.bounds.end());
+    if (best && (least < most || (least == most && facets.size() >= best->bounds.size()))) continue;
+    best = std::move(here);
+    most = least;
   }
-  return least;
+  return best;
 }
 
-void Search::branch(const Node& node, std::size_t pair) {
-  std::optional<Node> best;
-  for (std::size_t f = 0; f < pairs_[pair].set.facets.size(); ++f) {
-    if (watch_.over()) return keep(node);
-    Node child{node.facet, node.bound, {}, 0, 0};
-    child.facet[pair] = static_cast<Index>(f);
-    if (!evaluate(child)) continue;
-    if (best && best->bound <= child.bound) {
-      keep(std::move(child));
-    } else {
-      if (best) keep(std::move(*best));
-      best = std::move(child);
-    }
+void Search::branch(const Node& node, const Branching& branching) {
+  std::vector<Node> children;
+  for (std::size_t f = 0; f < branching.bounds.size(); ++f) {
+    Node child{node.facet, branching.bounds[f]};
+    child.touched = node.touched;
+    child.facet[branching.pair] = static_cast<Index>(f);
+    children.push_back(std::move(child));
   }
-  next_ = std::move(best);
+  const auto cheapest =
+      std::min_element(children.begin(), children.end(), [](const Node& a, const Node& b) { return a.bound < b.bound; });
+  if (!result_.u) std::swap(*cheapest, children.back());
+  for (std::size_t f = 0; f + 1 < children.size(); ++f) keep(std::move(children[f]));
+  next_ = std::move(children.back());
 }
 
 /// The bound and the input of a node; false if it is proven impossible or has to be put aside.
@@ -190,16 +219,17 @@ bool Search::evaluate(Node& node) {
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
     if (node.facet[q] >= 0) chosen.push_back(&pairs_[q].set.facets[static_cast<std::size_t>(node.facet[q])]);
   }
-  NodeProgram::Answer answer = program_.solve(chosen);
+  NodeProgram::Answer answer = program_.solve(chosen, node.touched);
   if (answer.impossible) return false;
   node.bound = std::max(node.bound, answer.bound);
-  node.tangents = program_.tangents();
+  node.solved = true;
   const auto met = [&](const SeparatingFacet* facet) { return is_beyond(*facet, *answer.zeta, met_tolerance); };
   if (!answer.zeta || !std::all_of(chosen.begin(), chosen.end(), met)) {
     close(node.bound);
     return false;
   }
   node.zeta = std::move(*answer.zeta);
+  if (dual_.usable()) node.multipliers = dual_.parent(chosen, answer.multipliers);
   return true;
 }
 
