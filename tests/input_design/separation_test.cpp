@@ -85,6 +85,23 @@ TEST_CASE("κ agrees with the rational emptiness of the intersection, with boxes
   CHECK(meeting > 0);
 }
 
+TEST_CASE("κ of random models agrees with the rational emptiness of the intersection") {
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 12; ++trial) {
+    ModeBank bank;
+    for (const char* name : {"a", "b"}) bank.modes.push_back({name, examples::random_model(random)});
+    const std::vector<OutputTube> tubes = tubes_of(bank, 1);
+    const Vector u = Vector::NullaryExpr(4, [&] { return std::uniform_real_distribution<double>(-20, 20)(random); });
+    const PairSeparation found = separation(pair_program(0, tubes[0], 1, tubes[1]), u);
+    for (const double share : {1 - 1e-6, 1 + 1e-6}) {
+      LineForm both = intersection(tubes[0].at(u), Matrix::Identity(4, 4), tubes[1].at(u));
+      both.G *= share * (1 + found.kappa);
+      both.A *= share * (1 + found.kappa);
+      CHECK(exact::is_empty(both) == (share < 1 ? Answer::yes : Answer::no));
+    }
+  }
+}
+
 TEST_CASE("κ is convex in the inputs") {
   const std::vector<PairProgram> pairs = pair_programs(tubes_of(examples::four_descriptor_models(), 3));
   std::mt19937 random(4);

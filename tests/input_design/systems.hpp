@@ -2,6 +2,8 @@
 // The published examples of input design.
 #pragma once
 
+#include <random>
+
 #include "cordon/interfaces/model.hpp"
 
 namespace cordon::examples {
@@ -62,6 +64,21 @@ inline ModeBank three_scalar_models() {
     bank.modes.push_back({name, std::move(model)});
   }
   return bank;
+}
+
+/// Three states, two inputs, disturbances and outputs, one noise; all bounded.
+inline Model random_model(std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto matrix = [&](Index rows, Index cols) {
+    return Matrix(Matrix::NullaryExpr(rows, cols, [&] { return uniform(random); }));
+  };
+  Model model;
+  model.linear = {{}, matrix(3, 3), matrix(3, 2), matrix(3, 2), matrix(2, 3), matrix(2, 2), matrix(2, 1)};
+  model.X0 = make_zonotope(matrix(3, 1).col(0), matrix(3, 4));
+  model.W = make_zonotope(matrix(2, 1).col(0), matrix(2, 2));
+  model.V = cube(1, .3);
+  model.U = cube(2, 1);
+  return model;
 }
 
 inline Vector reference_input() { return numbers({.5, -1, .5, -1, .5, -1, .5, -1}); }
