@@ -17,9 +17,9 @@ FacetDual::FacetDual(const SeparationProblem& problem) {
   const InputSequences& U = problem.U;
   const Cost& cost = problem.cost;
   quadratic_ = cost.kind == Cost::Kind::quadratic;
-  const bool own_factors =
-      (U.G.array() != 0).rowwise().count().maxCoeff() <= 1 && (U.G.array() != 0).colwise().count().maxCoeff() <= 1;
-  usable_ = cost.kind != Cost::Kind::norm_inf && own_factors;
+  const Matrix enters = (U.G.array() != 0).cast<double>();
+  const double most = enters.size() ? std::max(enters.rowwise().sum().maxCoeff(), enters.colwise().sum().maxCoeff()) : 0;
+  usable_ = cost.kind != Cost::Kind::norm_inf && most <= 1;
   if (!usable_) return;
   weight_ = centre_ = Vector::Zero(U.G.cols());
   for (Index i = 0; i < U.c.size(); ++i) {

@@ -231,9 +231,7 @@ void NodeProgram::polish(const BoundedProgram& program, const std::vector<const 
   y.head(hard_.b.size()) = found->of_A;
   y.segment(program.b.size() - k, k) = found->of_F;
   y.tail(q) = exact.price;
-  const double bound = in_cost(proven_minimum(touched, y));
-  if (bound <= answer.bound) return;
-  answer.bound = bound;
+  answer.bound = std::max(answer.bound, in_cost(proven_minimum(touched, y)));
   answer.zeta = found->z.head(zetas).cwiseMax(-1.0).cwiseMin(1.0);
   for (Index f = 0; f < k; ++f) answer.multipliers[static_cast<std::size_t>(f)] = unit_ * std::max(0.0, found->of_F[f]);
 }
