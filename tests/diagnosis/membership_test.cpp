@@ -124,11 +124,15 @@ TEST_CASE("membership agrees with rational arithmetic, and its proofs hold there
       REQUIRE(why.kind == Certificate::Kind::point);
       REQUIRE(why.data.size() == tube.S.cols() + tube.A.cols());
       proofs += proves_contains(tube.at(all.u), all.y, why);
+      const Vector delta = why.data.head(tube.S.cols()), xi = why.data.tail(tube.A.cols());
+      const LineForm Y = tube.at(all.u);
+      CHECK((Y.S * delta + Y.A * xi - Y.b).cwiseAbs().sum() < 1e-9);
+      CHECK((Y.c + Y.M * delta + Y.G * xi - all.y).cwiseAbs().sum() < 1e-9);
     }
   }
   CHECK(inside >= 400);
   CHECK(outside >= 400);
-  CHECK(open <= 200);   // solutions that touch their bounds, and rows that depend on each other
+  CHECK(open <= 200);  // solutions that touch their bounds, and rows that depend on each other
   CHECK(missed == 0);
   CHECK(proofs >= inside - inside / 20);
 }
@@ -143,6 +147,27 @@ TEST_CASE("a mode without outputs that could differ is never excluded") {
   CHECK(diagnosers::membership(tube, Vector{{1, 2, 3}}, Vector{{1e6, -1e6, 5}}, &why) == Answer::yes);
   CHECK(why.kind == Certificate::Kind::point);
   CHECK(proves_contains(tube.at(Vector{{1, 2, 3}}), Vector{{1e6, -1e6, 5}}, why));
+}
+
+TEST_CASE("what may stem from rounding of large numbers excludes nothing") {
+  const auto answer = [](double input, double offset, double gain, double first, double output) {
+    Model model;
+    model.linear = {{}, Matrix{{1}}, Matrix{{gain}}, Matrix{{1}}, Matrix{{1}}, Matrix{{1}}, Matrix{{1}}};
+    model.X0 = model.W = box(1, .1);
+    model.V = make_zonotope(Vector{{offset}}, Matrix{{.1}});
+    const auto tube = designers::output_tube(model, *examples::backend("zonotope"), {1});
+    return diagnosers::membership(tube, Vector{{input, 0}}, Vector{{input + offset + first, output}});
+  };
+  CHECK(answer(0, 0, 1, 0, 0) == Answer::yes);
+  CHECK(answer(0, 0, 1, .5, 0) == Answer::no);
+  CHECK(answer(0, 0, 1, 0, .5) == Answer::no);
+  // y_0 = x_0 + u_0 + v_0 and y_1 = x_0 + w_0 + B u_0 + v_1, with large terms in u_0 or in v
+  CHECK(answer(1e10, 0, 0, .5, 0) == Answer::unknown);
+  CHECK(answer(1e10, 0, 0, 50, 0) == Answer::no);
+  CHECK(answer(0, 1e10, 0, 0, 1e10 + .5) == Answer::unknown);
+  CHECK(answer(0, 1e10, 0, 0, 1e10 + 50) == Answer::no);
+  CHECK(answer(1e10, 0, 1, 0, 1e10 + .5) == Answer::unknown);
+  CHECK(answer(1e10, 0, 1, 0, 1e10 + 50) == Answer::no);
 }
 
 TEST_CASE("numbers that overflow are an error, not an answer") {

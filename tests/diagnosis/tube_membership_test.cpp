@@ -104,6 +104,19 @@ TEST_CASE("under the separating input the true model is left, on any backend tha
   }
 }
 
+TEST_CASE("an admissible set is assumed") {
+  // No state keeps within the unit box under the published input: every model contradicts itself.
+  Params unit = horizon(3);
+  unit.set("admissible_set", make_box(cube(3, 1)));
+  for (const std::string backend : {"line_zonotope", "constrained_zonotope"}) {
+    const auto diagnoser = make(four_models(), backend, unit);
+    for (const Mode& mode : diagnoser->bank().modes) {
+      const Run found = run(*diagnoser, samples_of(simulate(mode.model, separating_input(), 1, false)));
+      CHECK(found.steps.back().decision == Decision::unknown_fault);
+    }
+  }
+}
+
 TEST_CASE("a model is excluded at the first sample that contradicts it, and stays excluded") {
   const auto diagnoser = make(four_models(), "line_zonotope", horizon(3));
   const ModeBank& bank = diagnoser->bank();
@@ -246,20 +259,48 @@ TEST_CASE("systems without E need neither lines nor intersections") {
 TEST_CASE("a tube that the backend widens tells no consistency, and excludes less") {
   ModeBank bank = examples::three_scalar_models();
   for (Mode& mode : bank.modes) {
-    LineForm W = make_box(cube(1, 2));  // ξ = 1/2 by its row, which a zonotope does not keep
-    W.S = Matrix(1, 0);
-    W.A = Matrix{{1}};
-    W.b = Vector{{.5}};
-    mode.model.W = W;
+    mode.model.linear.Bw = Matrix{{1, -1}};
+    mode.model.W = make_zonotope(Vector::Zero(2), Matrix{{1}, {1}});  // both are equal: they cancel
     mode.model.X0 = make_point(Vector{{0}});
   }
-  const std::vector<Sample> samples{{0, Vector{{0}}, Vector{{0}}}, {1, Vector{{0}}, Vector{{-1}}}};
-  const Run exact = run(*make(bank, "constrained_zonotope", horizon(3)), samples);
+  const std::vector<Sample> samples{{0, Vector{{0}}, Vector{{0}}}, {1, Vector{{0}}, Vector{{1.5}}}};
+  const Run exact = run(*make(bank, "zonotope", horizon(3)), samples);
   CHECK(exact.steps[0].modes[0].consistent == Answer::yes);
   CHECK(exact.steps[1].decision == Decision::unknown_fault);
   const Run outer = run(*make(bank, "interval", horizon(3)), samples);
-  if (outer.steps[1].decision == Decision::unknown_fault) return;  // a backend may find the hull
   CHECK(outer.steps[0].modes[0].consistent == Answer::unknown);
+  CHECK(outer.steps[1].decision == Decision::isolating);
+}
+
+namespace {
+
+/// Zonotopes whose exchange form is said to be larger than the set.
+class Loose final : public SetBackend {
+ public:
+  Loose() : SetBackend({"loose", true, true, false, Rounding::nominal, "for a test", ""}) {}
+
+ private:
+  class Held final : public Set {
+   public:
+    Held(const SetBackend& backend, LineForm form) : Set(backend, form.dim()), form_(std::move(form)) {}
+
+   private:
+    Complexity do_complexity() const override { return {}; }
+    LineForm do_line_form() const override { return form_; }
+    LineForm form_;
+  };
+
+  Made do_import(const LineForm& X) const override { return {std::make_unique<Held>(*this, X), Tightness::exact}; }
+};
+
+}  // namespace
+
+TEST_CASE("an exchange form that encloses tells no consistency") {
+  const ModeBank bank = examples::three_scalar_models();
+  const auto diagnoser = plugins().registry.make_diagnoser("tube_membership", bank, std::make_shared<Loose>(), horizon(1));
+  const Run found = run(*diagnoser, {{0, Vector{{2}}, Vector{{0}}}, {1, Vector{{0}}, Vector{{2}}}});
+  CHECK(found.steps[0].modes[0].candidate);
+  CHECK(found.steps[0].modes[0].consistent == Answer::unknown);
 }
 
 TEST_CASE("a step that ends with an error leaves the experiment as it was") {
