@@ -22,6 +22,9 @@ void register_fault_estimation_filter(Registrar& registrar);
 void register_h_infinity_gain(Registrar& registrar);
 void register_h_infinity_monotone_gain(Registrar& registrar);
 void register_w_radius_gain(Registrar& registrar);
+void register_facets_designer(Registrar& registrar);
+void register_given_designer(Registrar& registrar);
+void register_milp_designer(Registrar& registrar);
 void register_metrics(Registrar& registrar);
 void register_weighted_radius(Registrar& registrar);
 

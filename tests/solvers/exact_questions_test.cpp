@@ -10,20 +10,13 @@
 #include "cordon/core/error.hpp"
 #include "cordon/solvers/polytope.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "solvers/constrained.hpp"
 
 using namespace cordon;
 
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
-
-LineForm constrained(const Matrix& G, const Matrix& A, const Vector& b) {
-  LineForm X = make_zonotope(Vector::Zero(G.rows()), G);
-  X.A = A;
-  X.b = b;
-  X.S.resize(b.size(), 0);
-  return X;
-}
 
 double number() { return *rc::gen::inRange(-20, 21) / 10.0; }
 

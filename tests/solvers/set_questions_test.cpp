@@ -10,20 +10,13 @@
 #include "cordon/core/error.hpp"
 #include "cordon/solvers/certificate.hpp"
 #include "cordon/solvers/exact_questions.hpp"
+#include "solvers/constrained.hpp"
 
 using namespace cordon;
 
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
-
-LineForm constrained(const Matrix& G, const Matrix& A, const Vector& b) {
-  LineForm X = make_zonotope(Vector::Zero(G.rows()), G);
-  X.A = A;
-  X.b = b;
-  X.S.resize(b.size(), 0);
-  return X;
-}
 
 /// A random constrained set that contains `inside` by construction.
 LineForm random_set(Index n, Index g, Index m, Index lines, Vector& inside, double spread) {

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "designers/designer_parameters.hpp"
+
+#include <fmt/format.h>
+
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/line_elimination.hpp"
+#include "cordon/solvers/set_questions.hpp"
+
+namespace cordon::designers {
+
+namespace {
+
+constexpr std::int64_t most_horizon = 100;
+constexpr double most_entries = 4e6;  ///< of the rows of a pair, before elimination
+
+Index inputs_of(const ModeBank& bank) { return bank[0].model.linear.inputs(); }
+
+/// Rⁿ, as far as it shows: a set without lines left out.
+bool is_space(const LineForm& X) { return X.dim() > 0 && X.constraints() == 0 && X.lines() == X.dim(); }
+
+void check_schedule(const Params& params, const char* name, Index inputs, bool weights, std::vector<Diagnostic>& problems) {
+  if (!params.has(name)) return;
+  const Matrix& rows = params.matrix(name);
+  if (rows.rows() == 0 || rows.cols() != inputs) {
+    problems.push_back({fmt::format("/{}", name),
+                        fmt::format("is {} × {}, must have {} columns, one per input", rows.rows(), rows.cols(), inputs),
+                        "a row per time k = 0, 1, …; the last row stands for all later times"});
+  } else if (weights && rows.minCoeff() < 0) {
+    problems.push_back({fmt::format("/{}", name), "holds a negative weight", "weights are 0 or more"});
+  }
+}
+
+/// Row k of a table whose last row stands for all later times, for k = 0 … N, stacked.
+Vector scheduled(const Params& params, const char* name, Index inputs, Index horizon, double otherwise) {
+  Vector all = Vector::Constant(inputs * (horizon + 1), otherwise);
+  if (!params.has(name)) return all;
+  const Matrix& rows = params.matrix(name);
+  for (Index k = 0; k <= horizon; ++k) all.segment(k * inputs, inputs) = rows.row(std::min(k, rows.rows() - 1)).transpose();
+  return all;
+}
+
+void check_backend(const DesignerContext& context, const Params& params, std::vector<Diagnostic>& problems) {
+  const BackendInfo& info = context.backend->info();
+  bool descriptor = false;
+  for (const Mode& mode : context.bank.modes) descriptor = descriptor || mode.model.linear.is_descriptor();
+  if (descriptor && !info.intersections) {
+    problems.push_back({"", fmt::format("\"{}\" cannot hold the static rows of a descriptor system", info.name),
+                        "use the backend \"line_zonotope\" or \"constrained_zonotope\""});
+  } else if (descriptor && !info.unbounded && !params.has("admissible_set")) {
+    problems.push_back({"/admissible_set",
+                        fmt::format("is missing: with \"{}\" what E does not determine must be bounded", info.name),
+                        "give a set that holds the state at all times, or use the backend \"line_zonotope\", which needs none"});
+  }
+}
+
+void check_sets(const DesignerContext& context, std::vector<Diagnostic>& problems) {
+  for (const Mode& mode : context.bank.modes) {
+    const std::pair<const char*, const LineForm*> sets[] = {{"X0", &mode.model.X0}, {"W", &mode.model.W}, {"V", &mode.model.V}};
+    for (const auto& [name, set] : sets) {
+      try {
+        context.backend->import(*set);
+      } catch (const Error& error) {
+        if (error.code() != Errc::unsupported) throw;
+        problems.push_back({"", fmt::format("{} of mode \"{}\" cannot be held: {}", name, mode.name, error.what()),
+                            "use a backend that can hold it, such as \"line_zonotope\""});
+      }
+    }
+  }
+}
+
+void check_input_set(const ModeBank& bank, const Params& params, std::vector<Diagnostic>& problems) {
+  const Index inputs = inputs_of(bank);
+  const bool own = params.has("input_set");
+  const LineForm U = input_set_from(bank, params);
+  if (U.dim() != inputs || (!own && is_space(U))) {
+    if (own) {
+      problems.push_back({"/input_set", fmt::format("is of dimension {}, the number of inputs is {}", U.dim(), inputs), ""});
+    } else {
+      problems.push_back({"/input_set", "is missing", "give the set that every u_k is taken from, here or as /system/U"});
+    }
+    return;
+  }
+  const std::string at = own ? "/input_set" : "";
+  const std::string what = own ? "" : "/system/U ";
+  if (is_empty(U) == Answer::yes) {
+    problems.push_back({at, what + "is empty", "no input may be applied at all: widen the set"});
+  } else if (is_bounded(U) != Answer::yes) {
+    problems.push_back({at, what + "is not bounded", "inputs of any size separate what can be separated at all: bound them"});
+  } else if (params.has("first_input") && params.vector("first_input").size() == inputs &&
+             contains(U, params.vector("first_input")) == Answer::no) {
+    problems.push_back({"/first_input", "lies outside the input set", "choose it inside, or widen the set"});
+  }
+}
+
+/// Rows of the largest pair at the largest horizon, so that a study cannot ask for more than the memory holds.
+void check_size(const DesignerContext& context, const Params& params, std::vector<Diagnostic>& problems) {
+  double rows = 0, columns = 0;
+  const double times = static_cast<double>(horizons_from(params).last) + 1;
+  for (const Mode& mode : context.bank.modes) {
+    const Model& m = mode.model;
+    rows = std::max(rows,
+                    times * static_cast<double>(m.linear.states() + m.linear.outputs() + m.W.constraints() + m.V.constraints()));
+    columns = std::max(columns, times * static_cast<double>(m.linear.states() + m.W.generators() + m.W.lines() +
+                                                            m.V.generators() + m.V.lines() + m.linear.inputs()) +
+                                    static_cast<double>(m.X0.generators() + m.X0.lines()));
+  }
+  if (4 * rows * columns <= most_entries) return;
+  problems.push_back({params.has("horizon") ? "/horizon" : "/max_horizon",
+                      fmt::format("makes programs of {:.0f} rows and {:.0f} columns for a pair of modes", 2 * rows, 2 * columns),
+                      fmt::format("rows times columns may be {:.0f}: choose a shorter horizon", most_entries)});
+}
+
+/// Does some input of the set leave the model an output at all?
+void check_tubes(const DesignerContext& context, const Params& params, std::vector<Diagnostic>& problems) {
+  const Index horizon = horizons_from(params).last;
+  const InputSequences U = inputs_from(context.bank, params, horizon);
+  for (const Mode& mode : context.bank.modes) {
+    const TubeConditions rows = conditions_of(output_tube(mode.model, *context.backend, span_from(params, horizon)));
+    if (rows.b.size() == 0) continue;
+    // A ξ - Ω G_u ξ_u = b + Ω c_u,  A_u ξ_u = b_u
+    const Index m = rows.b.size(), m_u = U.b.size(), g = rows.A.cols(), g_u = U.G.cols();
+    Matrix A = Matrix::Zero(m + m_u, g + g_u);
+    A.topLeftCorner(m, g) = rows.A;
+    A.topRightCorner(m, g_u) = -linalg::product(rows.Omega, U.G);
+    A.bottomRightCorner(m_u, g_u) = U.A;
+    Vector b(m + m_u);
+    b << rows.b + linalg::product(rows.Omega, U.c), U.b;
+    const LineForm joint{Matrix(0, 0), Matrix(0, g + g_u), Vector(0), Matrix(m + m_u, 0), std::move(A), std::move(b)};
+    if (is_empty(joint) != Answer::yes) continue;
+    problems.push_back({"", fmt::format("the output tube of mode \"{}\" is empty for every input", mode.name),
+                        params.has("admissible_set") ? "its equations contradict the admissible set: widen it, or check X0 and W"
+                                                     : "its static rows contradict X0 and W: check them"});
+  }
+}
+
+}  // namespace
+
+ParamSchema& add_statement_parameters(ParamSchema& schema) {
+  return schema
+      .real("epsilon",
+            "ε: every pair of modes is asked to be apart by κ ≥ ε, which leaves room for (1 + ε) times the disturbances", 1e-4, 0,
+            1e6)
+      .choice("outputs", "which outputs tell the modes apart: those of all times, or the last one only", {"all", "last"}, "all")
+      .set("admissible_set",
+           "a set that holds the state of descriptor systems at all times, as far as E does not determine it; the "
+           "results rest on it")
+      .choice("cost", "what is minimised, of u - r with weights ω: Σ ω|u - r|, max ω|u - r| or Σ ω(u - r)²",
+              {"norm_1", "norm_inf", "quadratic"}, "norm_1")
+      .matrix("weights",
+              "weights ω ≥ 0, a row per time k = 0, 1, … and a column per input; the last row stands for all later times "
+              "(absent: 1)")
+      .matrix("reference", "the sequence r that is wanted, rows as in \"weights\" (absent: 0)");
+}
+
+ParamSchema& add_search_parameters(ParamSchema& schema) {
+  return schema
+      .integer("horizon", "N: inputs u_0 … u_N, outputs y_0 … y_N (absent: the smallest that works, up to \"max_horizon\")",
+               std::nullopt, 1, most_horizon)
+      .integer("max_horizon", "largest horizon that is tried if none is given", 6, 1, most_horizon)
+      .set("input_set", "the set that every u_k is taken from: a box or another bounded polytope (absent: /system/U)")
+      .vector("first_input", "u_0, if it is decided already (absent: it is designed like the others)")
+      .real("time_limit", "seconds until the search at one horizon ends with what it has", 60, 0.001, 1e6);
+}
+
+std::vector<Diagnostic> check_statement(const DesignerContext& context, const Params& params) {
+  std::vector<Diagnostic> problems;
+  const Index inputs = inputs_of(context.bank), states = context.bank[0].model.linear.states();
+  if (inputs == 0) problems.push_back({"", "the system has no input", "there is nothing to design"});
+  check_schedule(params, "weights", inputs, true, problems);
+  check_schedule(params, "reference", inputs, false, problems);
+  if (params.has("admissible_set")) {
+    const LineForm& XA = params.set_form("admissible_set");
+    if (XA.dim() != states) {
+      problems.push_back(
+          {"/admissible_set", fmt::format("is of dimension {}, the number of states is {}", XA.dim(), states), ""});
+    } else if (is_empty(XA) == Answer::yes) {
+      problems.push_back({"/admissible_set", "is empty", "no state is admissible: widen the set"});
+    }
+  }
+  for (const Mode& mode : context.bank.modes) {
+    if (mode.model.linear.outputs() == context.bank[0].model.linear.outputs()) continue;
+    problems.push_back({"",
+                        fmt::format("mode \"{}\" has {} outputs, \"{}\" has {}", mode.name, mode.model.linear.outputs(),
+                                    context.bank[0].name, context.bank[0].model.linear.outputs()),
+                        "modes are compared by their outputs: all need the same"});
+  }
+  check_backend(context, params, problems);
+  check_sets(context, problems);
+  return problems;
+}
+
+std::vector<Diagnostic> check_search(const DesignerContext& context, const Params& params) {
+  std::vector<Diagnostic> problems = check_statement(context, params);
+  const Index inputs = inputs_of(context.bank);
+  if (params.has("first_input") && params.vector("first_input").size() != inputs) {
+    problems.push_back({"/first_input",
+                        fmt::format("has {} entries, the number of inputs is {}", params.vector("first_input").size(), inputs),
+                        ""});
+  }
+  if (inputs > 0) check_input_set(context.bank, params, problems);
+  check_size(context, params, problems);
+  if (problems.empty()) check_tubes(context, params, problems);
+  return problems;
+}
+
+TubeSpan span_from(const Params& params, Index horizon) {
+  TubeSpan span{horizon, params.text("outputs") == "last", std::nullopt};
+  if (params.has("admissible_set")) span.admissible_set = params.set_form("admissible_set");
+  return span;
+}
+
+Cost cost_from(const Params& params, Index inputs, Index horizon) {
+  const std::string& name = params.text("cost");
+  const Cost::Kind kind = name == "norm_1"     ? Cost::Kind::norm_1
+                          : name == "norm_inf" ? Cost::Kind::norm_inf
+                                               : Cost::Kind::quadratic;
+  return {kind, scheduled(params, "weights", inputs, horizon, 1), scheduled(params, "reference", inputs, horizon, 0)};
+}
+
+LineForm input_set_from(const ModeBank& bank, const Params& params) {
+  return eliminate_lines(params.has("input_set") ? params.set_form("input_set") : bank[bank.nominal].model.U);
+}
+
+InputSequences inputs_from(const ModeBank& bank, const Params& params, Index horizon) {
+  const LineForm U = input_set_from(bank, params);
+  const Index inputs = U.dim(), m = U.constraints(), g = U.generators();
+  const bool first = params.has("first_input");
+  const Index free = first ? horizon : horizon + 1;
+  InputSequences all{Vector(inputs * (horizon + 1)), Matrix::Zero(inputs * (horizon + 1), g * free),
+                     Matrix::Zero(m * free, g * free), Vector(m * free)};
+  for (Index k = 0, place = 0; k <= horizon; ++k) {
+    if (k == 0 && first) {
+      all.c.head(inputs) = params.vector("first_input");
+      continue;
+    }
+    all.c.segment(k * inputs, inputs) = U.c;
+    all.G.block(k * inputs, place * g, inputs, g) = U.G;
+    all.A.block(place * m, place * g, m, g) = U.A;
+    all.b.segment(place * m, m) = U.b;
+    ++place;
+  }
+  return all;
+}
+
+Horizons horizons_from(const Params& params) {
+  if (params.has("horizon")) return {params.integer("horizon"), params.integer("horizon")};
+  if (params.has("max_horizon")) return {1, params.integer("max_horizon")};
+  return {params.matrix("input").rows() - 1, params.matrix("input").rows() - 1};  // of an input that is given
+}
+
+}  // namespace cordon::designers

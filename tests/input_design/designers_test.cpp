@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all designers check and report, tried with the one that is given its input.
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "input_design/plugins.hpp"
+#include "input_design/systems.hpp"
+
+using namespace cordon;
+using examples::backend;
+using examples::numbers;
+using examples::registry;
+
+namespace {
+
+Matrix by_time(const Vector& u, Index inputs) {
+  return Eigen::Map<const Matrix>(u.data(), inputs, u.size() / inputs).transpose();
+}
+
+DesignOutcome judged(const ModeBank& bank, const char* backend_name, const Params& params) {
+  REQUIRE(registry().check_designer("given", bank, backend(backend_name), params).empty());
+  DesignControl control;
+  return registry().make_designer("given", bank, backend(backend_name), params)->design(control);
+}
+
+std::vector<Diagnostic> problems(const char* designer, const ModeBank& bank, const char* backend_name, const Params& params) {
+  return registry().check_designer(designer, bank, backend(backend_name), params);
+}
+
+bool mentions(const std::vector<Diagnostic>& problems, const std::string& pointer, const std::string& text) {
+  return std::any_of(problems.begin(), problems.end(), [&](const Diagnostic& problem) {
+    return problem.pointer == pointer && problem.message.find(text) != std::string::npos;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("A given input is judged: cost, pairs, tubes") {
+  const ModeBank bank = examples::four_descriptor_models();
+  Params params = Params()
+                      .set("input", by_time(examples::published_line_input(), 2))
+                      .set("reference", Matrix((Matrix(1, 2) << .5, -1).finished()));
+  DesignOutcome outcome = judged(bank, "line_zonotope", params);
+  CHECK(outcome.status == DesignStatus::given);
+  CHECK(outcome.horizon == 3);
+  REQUIRE(outcome.best);
+  CHECK(outcome.best->cost == doctest::Approx(3.9399 + .5854 + 6.0632).epsilon(1e-12));
+  CHECK(outcome.best->separates() == Answer::yes);
+  CHECK(outcome.reason.empty());
+  CHECK(outcome.best->pairs.size() == 6);
+  CHECK(outcome.best->outputs[0].upper[3] == doctest::Approx(11.46462));
+  CHECK(outcome.best->u(2, 1) == -7.0632);
+
+  params.set("cost", std::string("norm_inf"));
+  CHECK(judged(bank, "line_zonotope", params).best->cost == doctest::Approx(6.0632).epsilon(1e-12));
+  params.set("cost", std::string("quadratic")).set("weights", Matrix((Matrix(3, 2) << 1, 1, 2, 1, 1, 3).finished()));
+  CHECK(judged(bank, "line_zonotope", params).best->cost ==
+        doctest::Approx(2 * 3.9399 * 3.9399 + .5854 * .5854 + 3 * 6.0632 * 6.0632).epsilon(1e-12));
+
+  params.set("input", by_time(examples::published_constrained_input(), 2));
+  outcome = judged(bank, "line_zonotope", params);
+  CHECK(outcome.best->separates() == Answer::no);
+  CHECK(outcome.reason == "the outputs of \"1\" and \"3\" can be the same");
+}
+
+TEST_CASE("An empty tube is a modelling error, and no separation") {
+  const ModeBank bank = examples::four_descriptor_models();
+  for (const Vector& u : {examples::published_line_input(), examples::published_constrained_input()}) {
+    const Params params = Params().set("input", by_time(u, 2)).set("admissible_set", examples::cube(3, 1));
+    const DesignOutcome outcome = judged(bank, "constrained_zonotope", params);
+    for (const PairSeparation& pair : outcome.best->pairs) CHECK(pair.disjoint == Answer::yes);  // of nothing
+    CHECK(std::count(outcome.best->empty.begin(), outcome.best->empty.end(), Answer::yes) == 4);
+    CHECK(outcome.best->separates() == Answer::unknown);
+    CHECK(outcome.reason.find("is empty: its model contradicts itself") != std::string::npos);
+    CHECK(outcome.admissible_set.has_value());
+  }
+}
+
+TEST_CASE("Tubes that touch are not separated") {
+  const ModeBank bank = examples::three_scalar_models();
+  const Params params = Params().set("input", by_time(numbers({0, .9, 0, 0}), 1));
+  const DesignOutcome outcome = judged(bank, "line_zonotope", params);
+  CHECK(outcome.best->separates() != Answer::yes);
+  CHECK(outcome.reason.find("touch") != std::string::npos);
+}
+
+TEST_CASE("What makes no sense is refused, all of it at once") {
+  const ModeBank bank = examples::four_descriptor_models();
+  const Matrix input = by_time(examples::reference_input(), 2);
+  SUBCASE("shapes") {
+    const auto found = problems("given", bank, "line_zonotope",
+                                Params()
+                                    .set("input", input)
+                                    .set("weights", Matrix(Matrix::Ones(1, 3)))
+                                    .set("reference", Matrix(Matrix::Ones(2, 1)))
+                                    .set("admissible_set", examples::cube(2, 1)));
+    CHECK(mentions(found, "/weights", "1 × 3"));
+    CHECK(mentions(found, "/reference", "2 × 1"));
+    CHECK(mentions(found, "/admissible_set", "dimension 2"));
+  }
+  SUBCASE("input") {
+    CHECK(
+        mentions(problems("given", bank, "line_zonotope", Params().set("input", Matrix(Matrix::Ones(4, 3)))), "/input", "4 × 3"));
+    CHECK(
+        mentions(problems("given", bank, "line_zonotope", Params().set("input", Matrix(Matrix::Ones(1, 2)))), "/input", "1 × 2"));
+  }
+  SUBCASE("values") {
+    Params params = Params().set("input", input).set("weights", Matrix(-Matrix::Ones(1, 2)));
+    CHECK(mentions(problems("given", bank, "line_zonotope", params), "/weights", "negative"));
+    params = Params().set("input", input).set("admissible_set", make_empty(3));
+    CHECK(mentions(problems("given", bank, "line_zonotope", params), "/admissible_set", "empty"));
+    CHECK(mentions(problems("given", bank, "line_zonotope", Params().set("input", input).set("epsilon", -.1)), "/epsilon", ""));
+  }
+  SUBCASE("backends") {
+    const Params params = Params().set("input", input);
+    CHECK(mentions(problems("given", bank, "constrained_zonotope", params), "/admissible_set", "is missing"));
+    CHECK(mentions(problems("given", bank, "zonotope", params), "", "static rows"));
+    const Params scalar = Params().set("input", Matrix(Matrix::Ones(3, 1)));
+    CHECK(mentions(problems("given", examples::three_scalar_models(), "zonotope", scalar), "", "X0 of mode \"slow\""));
+  }
+  SUBCASE("modes") {
+    ModeBank other = bank;
+    other.modes[2].model.linear.C = Matrix::Ones(2, 3);
+    other.modes[2].model.linear.D = Matrix::Zero(2, 2);
+    other.modes[2].model.linear.Dv = Matrix::Ones(2, 1);
+    CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "",
+                   "mode \"3\" has 2 outputs, \"1\" has 1"));
+    other = bank;
+    other.modes.resize(1);
+    CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "", "no modes to tell apart"));
+    other = bank;
+    other.modes[1].model.linear.A_radius = Matrix::Constant(3, 3, .1);
+    CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "", "interval matrices"));
+    other = bank;
+    other.modes[1].model.linear.actuator = {Vector::Constant(2, .5), Vector::Ones(2)};
+    CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "", "range"));
+  }
+}
