@@ -51,6 +51,9 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
   require(model.V.dim(), linear.noises(), "/system/V", "the columns of /system/Dv");
   if (spec.x0) require(spec.x0->size(), linear.states(), "/data/simulate/x0", "the rows of /system/A");
   if (spec.x0 && !spec.x0->allFinite()) problems.push_back({"/data/simulate/x0", "has a NaN or infinite number", ""});
+  if (spec.x0_set) require(spec.x0_set->dim(), linear.states(), "/data/simulate/x0", "the rows of /system/A");
+  if (spec.x0 && spec.x0_set)
+    problems.push_back({"/data/simulate/x0", "is both a state and a set of states", "give one of them"});
   if (spec.steps < 0) problems.push_back({"/data/simulate/steps", "is negative", ""});
   for (std::size_t i = 0; i < spec.input.size(); ++i) {
     for (Diagnostic& d : problems_of(spec.input[i], "/data/simulate/input/" + std::to_string(i)))
@@ -80,6 +83,10 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
     }
   }
   if (!problems.empty()) throw InputError(file, std::move(problems));
+}
+
+Disturbance start_draws(const SimulateSpec& spec, const std::string& file) {
+  return {*spec.x0_set, spec.noise, RandomStream(spec.seed, Purpose::start), 0, file, "/data/simulate/x0"};
 }
 
 InputSource::InputSource(const std::vector<Signal>& signals) {

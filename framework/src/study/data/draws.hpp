@@ -16,6 +16,9 @@ namespace cordon::detail {
 /// Throws InputError with all problems: sizes of sets, signals and x0 that do not fit the model, numbers that are not finite.
 void check_simulation(const Model& model, const SimulateSpec& spec, const std::string& file);
 
+/// Draws of x_0 from the x0_set of `spec`, in a sequence of their own. Throws InputError if the set is unbounded.
+Disturbance start_draws(const SimulateSpec& spec, const std::string& file);
+
 /// The inputs u_k.
 class InputSource {
  public:

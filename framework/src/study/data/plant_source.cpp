@@ -19,10 +19,11 @@ PlantSource::PlantSource(const Model& model, const SimulateSpec& spec, std::stri
   if (plant.states() != linear.states() || plant.inputs() != linear.inputs() || plant.outputs() != linear.outputs())
     fail("/data/simulate/plant", "has other numbers of states, inputs or outputs than /system", "");
   for (std::size_t i = 0; i < spec_.faults.size(); ++i) DrawSource(spec_, i, file_);
-  const std::optional<Vector> center = spec_.x0 ? spec_.x0 : central_point(model.X0);
-  if (!center)
+  std::optional<Vector> start = spec_.x0;
+  if (!start) start = spec_.x0_set ? start_draws(spec_, file_).at(0) : central_point(model.X0);
+  if (!start)
     fail("/system/X0", "no point of the set was found to start from", "check its constraints, or give /data/simulate/x0");
-  x_ = *center;
+  x_ = *start;
 }
 
 void PlantSource::fail(const std::string& pointer, const std::string& message, const std::string& mend) const {

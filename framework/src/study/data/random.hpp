@@ -16,7 +16,8 @@ enum class Purpose : std::uint64_t {
   direction = 4,
   effectiveness = 5,
   parameters = 6,
-  additive_fault = 7
+  additive_fault = 7,
+  start = 8
 };
 
 class RandomStream {

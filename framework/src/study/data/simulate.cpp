@@ -12,6 +12,7 @@ namespace cordon::detail {
 namespace {
 
 constexpr double consistency_tolerance = 1e-9;  // relative to the largest summand of the static rows
+constexpr std::int64_t most_draws = 100;        // of x0
 
 double largest(const Matrix& A) { return A.size() == 0 ? 0.0 : A.cwiseAbs().maxCoeff(); }
 
@@ -94,10 +95,8 @@ Vector SimulatedSource::pushed(const Draw& draw, const Vector& u, const Vector& 
 
 void SimulatedSource::start(const Model& model) {
   const Vector u0 = pushed(first_, inputs_.at(0), additive_.at(0));
-  if (!spec_.x0) {
-    start_from_center(model, u0);
-    return;
-  }
+  if (spec_.x0_set) return start_from_draws(model, u0);
+  if (!spec_.x0) return start_from_center(model, u0);
   plant().start(*spec_.x0);
   if (plant().static_A().rows() == 0 || start_near_given(model, *spec_.x0, u0)) return;
   if (start_from_joint_set(make_point(*spec_.x0), model.W, u0)) return;
@@ -135,19 +134,49 @@ void SimulatedSource::start_from_center(const Model& model, const Vector& u0) {
        "check X0, or give /data/simulate/x0");
 }
 
-/// A central point of {(x,w) ∈ X0 × W : 0 = Ǎ x + B̌ u_0 + B̌w w}.
-bool SimulatedSource::start_from_joint_set(const LineForm& X0, const LineForm& W, const Vector& u0) {
-  const Index n = X0.dim(), rows = plant().static_A().rows();
-  Matrix R(rows, n + W.dim());
+void SimulatedSource::start_from_draws(const Model& model, const Vector& u0) {
+  const LineForm& X0 = *spec_.x0_set;
+  Disturbance states = start_draws(spec_, file_);
+  if (plant().static_A().rows() == 0) return plant().start(states.at(0));
+  Disturbance disturbances(model.W, spec_.noise, RandomStream(spec_.seed, Purpose::start, 1), states.factors(), file_,
+                           "/system/W");
+  for (std::int64_t k = 0; k < most_draws; ++k) {
+    if (k > 0) first_.w = disturbances.at(k);
+    plant().start(states.at(k));
+    if (contains(X0, plant().state(u0, first_.w)) != Answer::no) return;
+  }
+  const LineForm joint = joint_set(X0, model.W, u0);
+  if (central_point(joint)) {
+    Disturbance pairs(joint, spec_.noise, RandomStream(spec_.seed, Purpose::start, 2), 0, file_, "/data/simulate/x0");
+    if (start_from_pair(pairs.at(0), u0)) return;
+  }
+  fail("/data/simulate/x0", "no state of the set was found that meets the static rows of the descriptor system for some w_0 in W",
+       "widen the set, or leave x0 out");
+}
+
+/// {(x,w) ∈ X0 × W : 0 = Ǎ x + B̌ u_0 + B̌w w}.
+LineForm SimulatedSource::joint_set(const LineForm& X0, const LineForm& W, const Vector& u0) {
+  Matrix R(plant().static_A().rows(), X0.dim() + W.dim());
   R << plant().static_A(), plant().static_Bw();
-  const Vector target = -linalg::product(plant().static_B(), u0);
-  const std::optional<Vector> pair = central_point(intersection(cartesian_product(X0, W), R, make_point(target)));
-  if (!pair) return false;
-  const double scale = std::max({1.0, largest(target), largest(R) * largest(*pair)});
-  if (largest(linalg::product(R, *pair) - target) > consistency_tolerance * scale) return false;
-  plant().start(pair->head(n));
-  first_.w = pair->tail(W.dim());
+  return intersection(cartesian_product(X0, W), R, make_point(-linalg::product(plant().static_B(), u0)));
+}
+
+/// Takes (x_0, w_0) if it meets the static rows.
+bool SimulatedSource::start_from_pair(const Vector& pair, const Vector& u0) {
+  const Vector x = pair.head(plant().static_A().cols()), w = pair.tail(plant().static_Bw().cols());
+  const Matrix &A = plant().static_A(), &Bw = plant().static_Bw();
+  const Vector bu = linalg::product(plant().static_B(), u0);
+  const double scale = std::max({1.0, largest(bu), std::max(largest(A), largest(Bw)) * largest(pair)});
+  if (largest(linalg::product(A, x) + bu + linalg::product(Bw, w)) > consistency_tolerance * scale) return false;
+  plant().start(x);
+  first_.w = w;
   return true;
+}
+
+/// Starts from a central point of the joint set.
+bool SimulatedSource::start_from_joint_set(const LineForm& X0, const LineForm& W, const Vector& u0) {
+  const std::optional<Vector> pair = central_point(joint_set(X0, W, u0));
+  return pair && start_from_pair(*pair, u0);
 }
 
 std::optional<Record> SimulatedSource::next() {

@@ -19,8 +19,10 @@ namespace cordon::detail {
 /// Start of a system with static rows: x0 must satisfy them, F n_0 included, for some w_0 ∈ W. The drawn w_0 is corrected by
 /// least squares on the static rows; where that leaves W, a central point of {w ∈ W : static rows} replaces it. Without x0, the
 /// dynamic part of the centre of X0 is taken and the static part follows from w_0; where that state leaves X0, a central pair
-/// (x_0, w_0) is taken. Throws InputError: sizes, unbounded W or V, index above 1, models of different E one after another, an x0
-/// that no w_0 ∈ W explains (with the residual).
+/// (x_0, w_0) is taken. With x0_set, the same is tried with draws of x0 and, after the first, of w_0 from sequences of their own;
+/// where none of a hundred states lies in the set, a pair is drawn from {(x,w) ∈ x0_set × W : static rows}. Throws InputError:
+/// sizes, unbounded W or V, index above 1, models of different E one after another, an x0 that no w_0 ∈ W explains (with the
+/// residual).
 class SimulatedSource final : public DataSource {
  public:
   /// `modes`: the records name the true mode.
@@ -45,6 +47,9 @@ class SimulatedSource final : public DataSource {
   void start(const Model& model);
   bool start_near_given(const Model& model, const Vector& x0, const Vector& u0);
   void start_from_center(const Model& model, const Vector& u0);
+  void start_from_draws(const Model& model, const Vector& u0);
+  LineForm joint_set(const LineForm& X0, const LineForm& W, const Vector& u0);
+  bool start_from_pair(const Vector& pair, const Vector& u0);
   bool start_from_joint_set(const LineForm& X0, const LineForm& W, const Vector& u0);
   [[noreturn]] void fail(const std::string& pointer, const std::string& message, const std::string& mend) const;
 
