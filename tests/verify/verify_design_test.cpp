@@ -9,6 +9,8 @@
 #include "cordon/solvers/exact_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "cordon/study/design.hpp"
+#include "input_design/plugins.hpp"
+#include "input_design/systems.hpp"
 #include "study/verification/common_runs.hpp"
 
 using namespace cordon;
@@ -37,28 +39,6 @@ ModeBank signs() {
   return bank;
 }
 
-/// Four models of a descriptor system [Rego2025, sec. 6.2].
-ModeBank published() {
-  Model model;
-  LinearModel& m = model.linear;
-  m.E = Vector{{1., 1., 0.}}.asDiagonal();
-  m.A = Matrix{{.5, 0, 0}, {.8, .95, 0}, {-1, .5, 1}};
-  m.B = Matrix{{1., 0}, {0, 1}, {0, 0}};
-  m.Bw = Vector{{.1, 1.5, .6}}.asDiagonal();
-  m.C = Matrix{{1., -1, 0}};
-  m.D = Matrix::Zero(1, 2);
-  m.Dv = Matrix{{.5}};
-  model.X0 = make_zonotope(Vector{{.5, .5, .25}}, Matrix(Vector{{.1, 1.5, .6}}.asDiagonal()));
-  model.W = make_box({Vector::Constant(3, -.1), Vector::Constant(3, .1)});
-  model.V = make_box({Vector{{-.1}}, Vector{{.1}}});
-  ModeBank bank;
-  for (int i = 1; i <= 4; ++i) bank.modes.push_back({"model " + std::to_string(i), model});
-  bank.modes[1].model.linear.A(0, 2) = .5;
-  bank.modes[2].model.linear.B = Matrix{{1., 0}, {0, .9}, {-.1, 0}};
-  bank.modes[3].model.linear.C(0, 2) = .1;
-  return bank;
-}
-
 DesignOutcome given(Matrix u) {
   DesignOutcome outcome;
   outcome.status = DesignStatus::given;
@@ -78,14 +58,17 @@ void check_tubes(const ExactSeparation& found, Answer empty) {
   for (const Answer answer : found.empty) CHECK(answer == empty);
 }
 
-const Matrix by_lines{{.5, -1}, {-3.4399, -1}, {1.0854, -7.0632}, {.5, -1}};
-const Matrix by_constrained{{.5, -1}, {2.9286, -1}, {3.1628, -1}, {.5, -1}};
-const Matrix reference{{.5, -1}, {.5, -1}, {.5, -1}, {.5, -1}};
+/// Inputs by time, stacked, as rows.
+Matrix rows_of(const Vector& u, Index inputs) { return u.reshaped(inputs, u.size() / inputs).transpose(); }
+
+const Matrix by_lines = rows_of(examples::published_line_input(), 2);
+const Matrix by_constrained = rows_of(examples::published_constrained_input(), 2);
+const Matrix reference = rows_of(examples::reference_input(), 2);
 
 }  // namespace
 
 TEST_CASE("the published inputs: every pair, with its distance") {
-  const ModeBank bank = published();
+  const ModeBank bank = examples::four_descriptor_models();
   const ExactSeparation lines = verify_design(bank, given(by_lines));
   check_pairs(lines, "yyyyyy");
   check_tubes(lines, Answer::no);
@@ -112,7 +95,7 @@ TEST_CASE("the published bounded states leave no output at all") {
   for (const Matrix& u : {by_lines, by_constrained}) {
     DesignOutcome outcome = given(u);
     outcome.admissible_set = make_box({-Vector::Ones(3), Vector::Ones(3)});
-    const ExactSeparation found = verify_design(published(), outcome);
+    const ExactSeparation found = verify_design(examples::four_descriptor_models(), outcome);
     check_tubes(found, Answer::yes);
     check_pairs(found, "yyyyyy");
     CHECK(found.separates() == Answer::unknown);
@@ -120,7 +103,7 @@ TEST_CASE("the published bounded states leave no output at all") {
 }
 
 TEST_CASE("a scalar system with any initial state: separated by .99, not by 0") {
-  const ModeBank bank{{scalar(1, .1), scalar(.2, .1), scalar(-.5, .1)}, 0};
+  const ModeBank bank = examples::three_scalar_models();
   Matrix u = Matrix::Zero(4, 1);
   check_pairs(verify_design(bank, given(u)), "nnn");
   u(1, 0) = .99;
@@ -218,7 +201,7 @@ TEST_CASE("the static row of the last input counts") {
 }
 
 TEST_CASE("a regular E is the same as its inverse on the other side") {
-  ModeBank plain = published();
+  ModeBank plain = examples::four_descriptor_models();
   for (Mode& mode : plain.modes) {
     LinearModel& m = mode.model.linear;
     m.E = Matrix();
@@ -394,4 +377,36 @@ TEST_CASE("random modes: the same answers and distances as by the tubes themselv
   });
   CHECK(apart > 30);
   CHECK(together > 30);
+}
+
+TEST_CASE("the same answers as those of a designer") {
+  const auto judged = [](const ModeBank& bank, const Matrix& u) {
+    Params params;
+    params.set("input", u);
+    DesignControl control;
+    return examples::registry().make_designer("given", bank, examples::backend("line_zonotope"), params)->design(control);
+  };
+  std::vector<std::pair<ModeBank, Matrix>> cases{{examples::four_descriptor_models(), by_lines},
+                                                 {examples::four_descriptor_models(), by_constrained}};
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-2, 2);
+  for (int i = 0; i < 40; ++i) {
+    const ModeBank bank{{{"a", examples::random_model(random)}, {"b", examples::random_model(random)}}, 0};
+    cases.emplace_back(bank, Matrix::NullaryExpr(3, 2, [&] { return uniform(random); }));
+  }
+  int apart = 0, together = 0;
+  for (const auto& [bank, u] : cases) {
+    const DesignOutcome outcome = judged(bank, u);
+    const ExactSeparation exact = verify_design(bank, outcome);
+    REQUIRE(outcome.best->pairs.size() == exact.pairs.size());
+    for (std::size_t q = 0; q < exact.pairs.size(); ++q) {
+      CHECK(outcome.best->pairs[q].disjoint == exact.pairs[q].disjoint);
+      (exact.pairs[q].disjoint == Answer::yes ? apart : together) += 1;
+      if (exact.pairs[q].disjoint != Answer::yes) continue;
+      CHECK(exact.pairs[q].kappa_lower == doctest::Approx(outcome.best->pairs[q].kappa).epsilon(1e-6));
+    }
+    CHECK(exact.empty == outcome.best->empty);
+  }
+  CHECK(apart > 12);
+  CHECK(together > 12);
 }
