@@ -145,6 +145,7 @@ std::vector<Component> components(const Registry& registry) {
   add("metric", registry.metrics(), &Registry::metric_info);
   add("plant", registry.plants(), &Registry::plant_info);
   add("gain", registry.gains(), &Registry::gain_info);
+  add("designer", registry.designers(), &Registry::designer_info);
   return found;
 }
 

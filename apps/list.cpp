@@ -44,7 +44,7 @@ Exit list(const Program& program, bool json) {
 
 void add_list(CLI::App& app, Program& program) {
   CLI::App* command =
-      app.add_subcommand("list", "List backends, observers, diagnosers, metrics, plants and gains with their plugins");
+      app.add_subcommand("list", "List backends, observers, diagnosers, metrics, plants, gains and designers with their plugins");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON for programs");
   command->callback([&program, json] { program.exit = list(program, *json); });

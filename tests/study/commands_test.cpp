@@ -82,8 +82,8 @@ TEST_CASE("the manual of study files shows valid studies, and every component of
       ++pieces;
     }
   }
-  CHECK(studies == 2);
-  CHECK(pieces == 4);
+  CHECK(studies == 3);
+  CHECK(pieces == 6);
   const auto list = nlohmann::json::parse(run("list --json", "2>/dev/null").out);
   for (const auto& component : list["components"]) {
     const std::string name = component["name"];
@@ -136,7 +136,7 @@ TEST_CASE("list and info know every kind of component") {
   const auto list = nlohmann::json::parse(run("list --json", "2>/dev/null").out);
   std::set<std::string> kinds;
   for (const auto& component : list["components"]) kinds.insert(component["kind"]);
-  CHECK(kinds == std::set<std::string>{"backend", "observer", "diagnoser", "metric", "plant", "gain"});
+  CHECK(kinds == std::set<std::string>{"backend", "observer", "diagnoser", "metric", "plant", "gain", "designer"});
   const auto info = nlohmann::json::parse(run("info --json consistency_bank", "2>/dev/null").out);
   CHECK(info["components"][0]["kind"] == "diagnoser");
   CHECK(info["components"][0]["params"][0]["kind"] == "observer");

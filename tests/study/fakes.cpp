@@ -50,6 +50,14 @@ class FakeDiagnoser final : public Diagnoser {
   Diagnosis do_step(const Sample*, const Sample&) override { return {}; }
 };
 
+class FakeDesigner final : public InputDesigner {
+ public:
+  explicit FakeDesigner(const DesignerContext& context) : InputDesigner(context.bank, context.backend) {}
+
+ private:
+  DesignOutcome do_design(DesignControl&) const override { return {}; }
+};
+
 /// x1⁺ = x1/2 + u1 + u2, x2⁺ = tempo x1², y = x2.
 class FakePlant final : public Plant {
  public:
@@ -171,6 +179,28 @@ void add_diagnoser(Registrar& registrar, const std::string& name, const ParamSch
                        }});
 }
 
+/// The sequence fits the inputs of the bank, and an input set holds one of them.
+std::vector<Diagnostic> check_input(const DesignerContext& context, const Params& params) {
+  const Index inputs = context.bank[0].model.linear.inputs();
+  std::vector<Diagnostic> problems;
+  if (params.has("input_set") && params.set_form("input_set").dim() != inputs)
+    problems.push_back({"/input_set", "has the wrong dimension", "use the number of inputs"});
+  if (params.has("u") && params.matrix("u").cols() != inputs) problems.push_back({"/u", "has the wrong width", "a row per time"});
+  if (!context.backend->info().unbounded) problems.push_back({"", "needs lines, which the backend has not", "use line_zonotope"});
+  return problems;
+}
+
+void add_designers(Registrar& registrar) {
+  const auto create = [](const DesignerContext& context, const Params&) { return std::make_unique<FakeDesigner>(context); };
+  ParamSchema search;
+  search.integer("horizon", "N", 3, 0, 1000).real("epsilon", "separation", 1e-4, 0, 1).set("input_set", "of each time");
+  search.matrix("weights", "a row per time").choice("outputs", "which", {"all", "last"}, "all");
+  registrar.designer({{"search", "a fake", "", search}, check_input, create});
+  ParamSchema given;
+  given.matrix("u", "a row per time").required();
+  registrar.designer({{"given", "a fake", "", given}, check_input, create});
+}
+
 void add_metric(Registrar& registrar, const std::string& name, const ParamSchema& schema = {}) {
   registrar.metric({{name, "a fake", "", schema}, [](const Params&) { return std::make_unique<FakeMetric>(); }});
 }
@@ -208,6 +238,7 @@ void register_fakes(Registrar& registrar) {
                        [](const DiagnoserContext& context, const Params&) { return std::make_unique<FakeDiagnoser>(context); },
                        true,
                        false});
+  add_designers(registrar);
   ParamSchema reactor;
   reactor.real("tempo", "of the reaction", 0.25, 0, 1);
   registrar.plant({{"reactor", "a fake", "", reactor},
@@ -353,6 +384,49 @@ const char* const uncertain_study = R"({
 {
 "backend": "interval",
 "diagnoser": "fault_filter"
+}
+]
+}
+)";
+
+const char* const design_study = R"({
+"cordon": 1,
+"title": "a design",
+"system": {
+"type": "descriptor",
+"E": [[1, 0], [0, 0]],
+"A": [[0.5, 1], [0, 2]],
+"B": [[1], [0]],
+"Bw": [[1, 0, 0], [0, 1, 1]],
+"C": [[1, 0]],
+"X0": {"type": "zonotope", "center": [0, 1], "generators": [[1, 0.5], [0, 1]]},
+"U": {"type": "box", "lower": [-5], "upper": [5]},
+"W": {"type": "box", "lower": [-1, -1, -1], "upper": [1, 1, 1]},
+"V": {"type": "box", "lower": [-0.1], "upper": [0.1]},
+"modes": [
+{"name": "weak", "actuator": [0.5]},
+{"name": "other", "system": {"type": "lti", "A": [[0.7, 0], [0, 0.8]], "B": [[1], [0]], "Bw": [[1], [1]], "C": [[0, 1]], "X0": {"type": "box", "lower": [-1, 0], "upper": [1, 2]}, "W": {"type": "point", "center": [0.5]}, "V": {"type": "point", "center": [0]}}}
+]
+},
+"data": {
+"simulate": {
+"seed": 7,
+"seeds": 20,
+"noise": "vertex",
+"x0": {"type": "box", "lower": [-0.5, 0.75], "upper": [0.5, 1.25]}
+}
+},
+"pipelines": [
+{
+"name": "designed",
+"backend": "line_zonotope",
+"designer": {"type": "search", "horizon": 4, "input_set": {"type": "box", "lower": [-1], "upper": [1]}, "weights": [[1], [2]]},
+"diagnoser": "committee"
+},
+{
+"name": "by hand",
+"backend": "line_zonotope",
+"designer": {"type": "given", "u": [[1], [2], [-1]]}
 }
 ]
 }

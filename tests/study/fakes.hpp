@@ -15,7 +15,8 @@ namespace study_test {
 /// (one parameter of every kind); the metrics of the shipped plugin and `quantile` with a required parameter; the diagnosers
 /// `observer_bank` (with an observer inside), `committee` (with a diagnoser inside) and `fault_filter` (for additive faults); the
 /// observer `luenberger` with a gain that may be written as a matrix, the gains `given` and `optimal`; the plant `reactor` with
-/// two states, two inputs and one output. All observers but `descriptor`, and `fault_filter`, take uncertain models.
+/// two states, two inputs and one output; the designers `search` and `given`. All observers but `descriptor`, and `fault_filter`,
+/// take uncertain models.
 void register_fakes(cordon::Registrar& registrar);
 
 /// A directory of its own that is removed in the end.
@@ -40,6 +41,9 @@ extern const char* const diagnosis_study;
 
 /// The same with interval matrices, additive faults and a gain.
 extern const char* const uncertain_study;
+
+/// The same with designers, a diagnoser for experiments and an x0 that is drawn from a set.
+extern const char* const design_study;
 
 /// `text` with its only occurrence of `from` exchanged. Throws std::logic_error if there is none or more than one.
 std::string exchanged(std::string text, const std::string& from, const std::string& to);

@@ -328,7 +328,7 @@ TEST_CASE("the JSON Schema knows sections, components and limits") {
   const auto schema = nlohmann::json::parse(study_json_schema(registry));
   CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
   CHECK(schema["additionalProperties"] == false);
-  CHECK(schema["required"] == nlohmann::json({"cordon", "system", "data", "pipelines"}));
+  CHECK(schema["required"] == nlohmann::json({"cordon", "system", "pipelines"}));
   const auto& defs = schema["$defs"];
   const auto find = [](const nlohmann::json& list, const std::string& type) {
     const auto found = std::find_if(list.begin(), list.end(), [&](const auto& s) {

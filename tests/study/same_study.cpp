@@ -81,7 +81,8 @@ bool same(const Study& a, const Study& b) {
   if (const auto* s = std::get_if<SimulateSpec>(&a.data)) {
     const auto& t = std::get<SimulateSpec>(b.data);
     if (s->steps != t.steps || s->seed != t.seed || s->noise != t.noise || s->x0 != t.x0) return false;
-    if (s->parameters != t.parameters) return false;
+    if (s->parameters != t.parameters || s->x0_set.has_value() != t.x0_set.has_value()) return false;
+    if (s->x0_set && !same(*s->x0_set, *t.x0_set)) return false;
     if (!std::equal(s->additive_faults.begin(), s->additive_faults.end(), t.additive_faults.begin(), t.additive_faults.end(),
                     [](auto& x, auto& y) { return same(x, y); }))
       return false;
@@ -98,7 +99,8 @@ bool same(const Study& a, const Study& b) {
       return false;
   }
   const auto pipelines = [](const PipelineSpec& p, const PipelineSpec& q) {
-    return p.name == q.name && same(p.backend, q.backend) && same(p.observer, q.observer) && same(p.diagnoser, q.diagnoser);
+    return p.name == q.name && same(p.backend, q.backend) && same(p.observer, q.observer) && same(p.diagnoser, q.diagnoser) &&
+           same(p.designer, q.designer);
   };
   return std::equal(a.pipelines.begin(), a.pipelines.end(), b.pipelines.begin(), b.pipelines.end(), pipelines) &&
          std::equal(a.metrics.begin(), a.metrics.end(), b.metrics.begin(), b.metrics.end(),

@@ -1,13 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/data.hpp"
 
+#include <algorithm>
+
 #include "study/data/csv_source.hpp"
 #include "study/data/plant_source.hpp"
 #include "study/data/simulate.hpp"
 
 namespace cordon {
 
+namespace {
+
+/// Of studies whose pipelines all have inputs of their own.
+class NoData final : public DataSource {
+ public:
+  std::optional<Record> next() override { return std::nullopt; }
+  std::optional<std::int64_t> size() const override { return 0; }
+};
+
+bool all_designed(const Study& study) {
+  return !study.pipelines.empty() && std::all_of(study.pipelines.begin(), study.pipelines.end(),
+                                                 [](const PipelineSpec& pipeline) { return pipeline.designer.has_value(); });
+}
+
+}  // namespace
+
 std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_offset) {
+  if (all_designed(study)) return std::make_unique<NoData>();
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
     SimulateSpec spec = *simulate;
     spec.seed += seed_offset;

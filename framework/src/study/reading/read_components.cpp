@@ -202,21 +202,11 @@ void report_failure(const Cursor& at, const Error& error, const ComponentContext
   }
 }
 
-/// Makes the backend and asks the observer or the diagnoser whether it can work with it on this model, or on these modes.
-void check_together(const Cursor& pipeline, const PipelineSpec& spec, const SystemPart& system, const ModeBank& bank,
-                    const ComponentContext& context) {
-  std::shared_ptr<const SetBackend> backend;
+/// Asks a component what it says to its pipeline, and reports it at its place.
+template <class Ask>
+void ask(const Cursor& at, const ComponentContext& context, Ask&& check) {
   try {
-    backend = context.registry.make_backend(spec.backend.type, spec.backend.params);
-  } catch (const Error& error) {
-    return report_failure(*pipeline.find("backend"), error, context);
-  }
-  const Cursor at = *pipeline.find(spec.diagnoser ? "diagnoser" : "observer");
-  try {
-    const auto problems =
-        spec.diagnoser ? context.registry.check_diagnoser(spec.diagnoser->type, bank, backend, spec.diagnoser->params)
-                       : context.registry.check_observer(spec.observer.type, {system.model, backend}, spec.observer.params);
-    for (const Diagnostic& problem : problems) report(at, problem);
+    for (const Diagnostic& problem : check()) report(at, problem);
   } catch (const InputError& error) {  // of a nested component
     for (const Diagnostic& problem : error.diagnostics()) report(at, problem);
   } catch (const Error& error) {
@@ -224,11 +214,37 @@ void check_together(const Cursor& pipeline, const PipelineSpec& spec, const Syst
   }
 }
 
-/// The observer or the diagnoser of a pipeline; false if there is not exactly one that is right.
+/// Makes the backend and asks the algorithms whether they can work with it on this model, or on these modes.
+void check_together(const Cursor& pipeline, const PipelineSpec& spec, const SystemPart& system, const ModeBank& bank,
+                    const ComponentContext& context) {
+  const Registry& registry = context.registry;
+  std::shared_ptr<const SetBackend> backend;
+  try {
+    backend = registry.make_backend(spec.backend.type, spec.backend.params);
+  } catch (const Error& error) {
+    return report_failure(*pipeline.find("backend"), error, context);
+  }
+  if (spec.designer) {
+    ask(*pipeline.find("designer"), context,
+        [&] { return registry.check_designer(spec.designer->type, bank, backend, spec.designer->params); });
+  }
+  if (spec.diagnoser) {
+    ask(*pipeline.find("diagnoser"), context,
+        [&] { return registry.check_diagnoser(spec.diagnoser->type, bank, backend, spec.diagnoser->params); });
+  }
+  if (!spec.designer && !spec.diagnoser) {
+    ask(*pipeline.find("observer"), context, [&] {
+      return registry.check_observer(spec.observer.type, {system.model, backend}, spec.observer.params);
+    });
+  }
+}
+
+/// The observer, or the designer and the diagnoser of a pipeline; false if they are not right.
 bool read_algorithm(const Cursor& at, const ComponentContext& context, PipelineSpec& spec) {
-  const auto observer_at = at.find("observer"), diagnoser_at = at.find("diagnoser");
-  if (observer_at && diagnoser_at) {
-    at.error("holds both \"observer\" and \"diagnoser\"", "remove one of the two, or make two pipelines");
+  const auto observer_at = at.find("observer"), diagnoser_at = at.find("diagnoser"), designer_at = at.find("designer");
+  if (observer_at && (diagnoser_at || designer_at)) {
+    at.error(std::string("holds both \"observer\" and ") + (designer_at ? "\"designer\"" : "\"diagnoser\""),
+             "remove one of the two, or make two pipelines");
     return false;
   }
   if (observer_at) {
@@ -236,19 +252,22 @@ bool read_algorithm(const Cursor& at, const ComponentContext& context, PipelineS
     if (observer) spec.observer = std::move(*observer);
     return observer.has_value();
   }
-  if (!diagnoser_at) {
-    at.error("holds neither \"observer\" nor \"diagnoser\"",
-             "name the algorithm: \"observer\" estimates the state, \"diagnoser\" finds out the mode");
+  if (!diagnoser_at && !designer_at) {
+    at.error(
+        "holds neither \"observer\" nor \"diagnoser\" nor \"designer\"",
+        "name the algorithm: \"observer\" estimates the state, \"diagnoser\" finds out the mode, \"designer\" designs an input "
+        "that shows it");
     return false;
   }
-  spec.diagnoser = read_component(*diagnoser_at, "diagnoser", context);
-  return spec.diagnoser.has_value();
+  if (designer_at) spec.designer = read_component(*designer_at, "designer", context);
+  if (diagnoser_at) spec.diagnoser = read_component(*diagnoser_at, "diagnoser", context);
+  return spec.designer.has_value() == designer_at.has_value() && spec.diagnoser.has_value() == diagnoser_at.has_value();
 }
 
 PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const ModeBank& bank, const ComponentContext& context) {
   PipelineSpec spec;
   const std::string form = "{\"name\": ..., \"backend\": {\"type\": ...}, \"observer\": {\"type\": ...}}";
-  if (!at.expect_keys({"name", "backend", "observer", "diagnoser"}, "key of a pipeline", form)) return spec;
+  if (!at.expect_keys({"name", "backend", "observer", "diagnoser", "designer"}, "key of a pipeline", form)) return spec;
   const auto backend_at = at.need("backend", "the set representation: {\"type\": ...}");
   const auto backend = backend_at ? read_component(*backend_at, "backend", context) : std::nullopt;
   const bool algorithm = read_algorithm(at, context, spec);
@@ -259,17 +278,21 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   }
   if (!backend || !algorithm) return spec;
   spec.backend = *backend;
-  if (spec.diagnoser ? system.modes_good : system.good) check_together(at, spec, system, bank, context);
+  const bool bank_wide = spec.diagnoser || spec.designer;
+  if (bank_wide ? system.modes_good : system.good) check_together(at, spec, system, bank, context);
   return spec;
 }
 
 }  // namespace
 
 const Shelf* shelf_of(std::string_view kind) {
-  static constexpr Shelf shelves[] = {
-      {"backend", &Registry::backend_info, &Registry::backends}, {"observer", &Registry::observer_info, &Registry::observers},
-      {"metric", &Registry::metric_info, &Registry::metrics},    {"diagnoser", &Registry::diagnoser_info, &Registry::diagnosers},
-      {"plant", &Registry::plant_info, &Registry::plants},       {"gain", &Registry::gain_info, &Registry::gains}};
+  static constexpr Shelf shelves[] = {{"backend", &Registry::backend_info, &Registry::backends},
+                                      {"observer", &Registry::observer_info, &Registry::observers},
+                                      {"metric", &Registry::metric_info, &Registry::metrics},
+                                      {"diagnoser", &Registry::diagnoser_info, &Registry::diagnosers},
+                                      {"plant", &Registry::plant_info, &Registry::plants},
+                                      {"gain", &Registry::gain_info, &Registry::gains},
+                                      {"designer", &Registry::designer_info, &Registry::designers}};
   const auto found = std::find_if(std::begin(shelves), std::end(shelves), [&](const Shelf& shelf) { return kind == shelf.kind; });
   return found == std::end(shelves) ? nullptr : found;
 }

@@ -3,6 +3,7 @@
 
 #include "cordon/solvers/set_questions.hpp"
 #include "study/reading/read_parts.hpp"
+#include "study/reading/read_sets.hpp"
 
 namespace cordon::json {
 
@@ -50,11 +51,11 @@ Signal read_signal(const Cursor& at) {
   return signal;
 }
 
-void read_input(const Cursor& simulate, std::optional<Index> inputs, std::vector<Signal>& out) {
+void read_input(const Cursor& simulate, std::optional<Index> inputs, const DataUse& use, std::vector<Signal>& out) {
   const auto at = simulate.find("input");
   if (!at) {
     if (inputs && *inputs > 0)
-      simulate.need("input", "a list of " + counted(*inputs, "signal") + ", one per column of /system/B");
+      simulate.need("input", "a list of " + counted(*inputs, "signal") + ", one per column of /system/B" + use.reason());
     return;
   }
   if (!at->expect(Kind::array, "a list of signals, one per column of /system/B")) return;
@@ -122,21 +123,29 @@ void expect_bounded(const Cursor& data, const LineForm& X, const char* key) {
              "bound " + std::string(key) + ", or use recorded data: \"csv\"");
 }
 
-SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const ComponentContext& context,
-                           std::vector<WrittenFault>& written_faults) {
-  SimulateSpec spec;
-  if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults", "additive_faults", "parameters"},
-                      "key of simulated data", "{\"steps\": 100, \"input\": [...]}"))
-    return spec;
-  if (const auto steps = at.need("steps", "the number of steps: samples k = 0 ... steps"))
-    spec.steps = read_integer(*steps, 1, max_steps).value_or(0);
-  if (const auto seed = at.find("seed")) spec.seed = static_cast<std::uint64_t>(read_integer(*seed, 0, max_integer).value_or(0));
-  if (const auto seeds = at.find("seeds")) spec.seeds = read_integer(*seeds, 1, max_seeds).value_or(1);
-  if (const auto noise = at.find("noise")) {
-    if (const auto name = read_choice(*noise, noise_names())) {
-      spec.noise = static_cast<Noise>(std::find(noise_names().begin(), noise_names().end(), *name) - noise_names().begin());
-    }
+/// Where a simulation starts: a state, or a bounded set that it is drawn from.
+void read_start(const Cursor& at, const Sizes& sizes, SimulateSpec& spec, std::vector<std::string>& warnings) {
+  if (!at.is(Kind::object)) {
+    if (!at.expect(Kind::array, "write a state, or a bounded set that it is drawn from: {\"type\": \"box\", ...}")) return;
+    spec.x0 = read_vector(at, max_dimension);
+    if (spec.x0 && sizes.states) expect_size(at, *spec.x0, *sizes.states, "the rows of /system/A");
+    return;
   }
+  spec.x0_set = read_set(at, warnings);
+  if (!spec.x0_set) return;
+  if (sizes.states && spec.x0_set->dim() != *sizes.states) {
+    at.error("has dimension " + std::to_string(spec.x0_set->dim()) + ", must have " + std::to_string(*sizes.states) +
+             " like the rows of /system/A");
+  } else if (is_bounded(*spec.x0_set) != Answer::yes) {
+    at.error("is unbounded: no state can be drawn from it", "give a bounded set, or one state");
+  }
+}
+
+/// What pipelines without a designer need: how long, with which inputs, and what goes wrong meanwhile.
+void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use, const ComponentContext& context,
+                 SimulateSpec& spec, std::vector<WrittenFault>& written_faults) {
+  if (const auto steps = at.need("steps", "the number of steps: samples k = 0 ... steps" + use.reason()))
+    spec.steps = read_integer(*steps, 1, max_steps).value_or(0);
   if (const auto parameters = at.find("parameters")) {
     if (at.find("plant")) {
       parameters->error("cannot stand beside \"plant\", which takes the place of the model", "remove one of the two");
@@ -144,20 +153,52 @@ SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const Com
       spec.parameters = *name == "varying" ? ParameterDraw::varying : ParameterDraw::constant;
     }
   }
-  if (const auto x0 = at.find("x0")) {
-    spec.x0 = read_vector(*x0, max_dimension);
-    if (spec.x0 && system.sizes.states) expect_size(*x0, *spec.x0, *system.sizes.states, "the rows of /system/A");
-  }
-  read_input(at, system.sizes.inputs, spec.input);
-  const auto plant = at.find("plant"), faults = at.find("faults");
+  read_input(at, system.sizes.inputs, use, spec.input);
+  const auto plant = at.find("plant");
   if (plant) read_plant(*plant, system, spec, context);
   if (system.good) {
     if (!plant) expect_bounded(at, system.model.W, "W");
     expect_bounded(at, system.model.V, "V");
   }
-  if (faults) read_faults(*faults, system, spec, written_faults, context.warnings);
+  if (const auto faults = at.find("faults")) read_faults(*faults, system, spec, written_faults, context.warnings);
   if (const auto additive = at.find("additive_faults"))
     AdditiveFaultReader(spec, system.sizes.faults, context.warnings).read(*additive);
+}
+
+/// All pipelines have a designer.
+void refuse_stream(const Cursor& at) {
+  for (const char* key : {"steps", "input"}) {
+    if (const auto found = at.find(key))
+      found->error("belongs to the designer, which every pipeline has",
+                   "remove it: horizon and inputs are parameters of designers");
+  }
+  for (const char* key : {"parameters", "plant", "faults", "additive_faults"}) {
+    if (const auto found = at.find(key)) {
+      found->error("has no meaning where every pipeline has a designer",
+                   "remove it: designed inputs are tried on every mode of the system, by its model");
+    }
+  }
+}
+
+SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const DataUse& use, const ComponentContext& context,
+                           std::vector<WrittenFault>& written_faults) {
+  SimulateSpec spec;
+  if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults", "additive_faults", "parameters"},
+                      "key of simulated data", "{\"steps\": 100, \"input\": [...]}"))
+    return spec;
+  if (const auto seed = at.find("seed")) spec.seed = static_cast<std::uint64_t>(read_integer(*seed, 0, max_integer).value_or(0));
+  if (const auto seeds = at.find("seeds")) spec.seeds = read_integer(*seeds, 1, max_seeds).value_or(1);
+  if (const auto noise = at.find("noise")) {
+    if (const auto name = read_choice(*noise, noise_names())) {
+      spec.noise = static_cast<Noise>(std::find(noise_names().begin(), noise_names().end(), *name) - noise_names().begin());
+    }
+  }
+  if (const auto x0 = at.find("x0")) read_start(*x0, system.sizes, spec, context.warnings);
+  if (use.streamed()) {
+    read_stream(at, system, use, context, spec, written_faults);
+  } else {
+    refuse_stream(at);
+  }
   return spec;
 }
 
@@ -241,7 +282,21 @@ std::size_t required_signal_keys(Signal::Type type) {
   return type == Signal::Type::constant || type == Signal::Type::prbs || type == Signal::Type::table ? 1 : 2;
 }
 
-DataPart read_data(const Cursor& data, const SystemPart& system, const std::filesystem::path& folder,
+DataUse data_use(const Cursor& root) {
+  DataUse use;
+  const auto pipelines = root.find("pipelines");
+  for (std::size_t i = 0; pipelines && pipelines->is(Kind::array) && i < pipelines->size(); ++i) {
+    const Cursor pipeline = pipelines->item(i);
+    if (pipeline.find("designer")) {
+      use.designed = true;
+    } else if (use.by.empty()) {
+      use.by = pipeline.pointer();
+    }
+  }
+  return use;
+}
+
+DataPart read_data(const Cursor& data, const SystemPart& system, const DataUse& use, const std::filesystem::path& folder,
                    const ComponentContext& context) {
   const std::size_t before = data.problems().count();
   if (!data.expect_keys({"simulate", "csv"}, "kind of data", "{\"simulate\": {...}} or {\"csv\": {...}}")) return {};
@@ -251,10 +306,14 @@ DataPart read_data(const Cursor& data, const SystemPart& system, const std::file
   } else if (!simulate && !csv) {
     if (data.problems().count() == before) data.error("holds neither \"simulate\" nor \"csv\"", "give one of the two");
   } else if (csv) {
+    if (use.designed) {
+      csv->error("cannot stand beside a pipeline with a designer, whose inputs are tried in simulations",
+                 "use simulated data, or make two studies");
+    }
     return read_csv(*csv, system.sizes, folder);
   } else {
     DataPart part;
-    part.data = read_simulate(*simulate, system, context, part.written_faults);
+    part.data = read_simulate(*simulate, system, use, context, part.written_faults);
     return part;
   }
   return {};

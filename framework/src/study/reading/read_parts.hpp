@@ -106,7 +106,17 @@ const Shelf* shelf_of(std::string_view kind);  ///< null if there is no such kin
 /// A component of a kind that there is: its name, or an object of "type" and parameters, components inside components included.
 std::optional<ComponentSpec> read_component(const Cursor& at, std::string_view kind, const ComponentContext& context);
 
-DataPart read_data(const Cursor& data, const SystemPart& system, const std::filesystem::path& folder,
+/// Who takes the data of a study: pipelines without a designer. Those with one need seed, noise and start at most.
+struct DataUse {
+  bool designed = false;  ///< a pipeline has a designer
+  std::string by;         ///< the first pipeline without one
+  bool streamed() const { return !designed || !by.empty(); }
+  /// For suggestions, where some pipelines have a designer: "; /pipelines/1 has no designer".
+  std::string reason() const { return designed && !by.empty() ? "; " + by + " has no designer" : ""; }
+};
+/// By the keys of the pipelines alone.
+DataUse data_use(const Cursor& root);
+DataPart read_data(const Cursor& data, const SystemPart& system, const DataUse& use, const std::filesystem::path& folder,
                    const ComponentContext& context);
 /// Reads "from" and "to" of something that acts for k = from … to; warns where data of so many steps (0: not known) end before.
 /// False: reported.
@@ -118,6 +128,10 @@ void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& s
 void read_plant(const Cursor& plant, const SystemPart& system, SimulateSpec& spec, const ComponentContext& context);
 std::vector<PipelineSpec> read_pipelines(const Cursor& pipelines, const SystemPart& system, const ComponentContext& context);
 std::vector<ComponentSpec> read_metrics(const Cursor& metrics, const ComponentContext& context);
+
+/// Do simulations start where pipelines assume it, and can the experiments of designers be simulated? For studies that have no
+/// other problem.
+void check_study(const Cursor& root, const Study& study);
 
 /// What the resolved text needs besides the study itself: texts and models as they are written.
 struct Written {

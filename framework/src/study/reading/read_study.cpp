@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cordon/solvers/set_questions.hpp"
 #include "cordon/study/study.hpp"
 #include "study/reading/read_parts.hpp"
 
@@ -24,7 +23,6 @@ class StudyReader {
   void read_version(const Cursor& root);
   void read_title(const Cursor& root);
   void load_plugins(const Cursor& root);
-  void check_start(const Cursor& root);
   void add_plugin_warnings();
   std::filesystem::path folder() const;
   void finish();
@@ -84,8 +82,11 @@ void StudyReader::read_sections(const Cursor& root) {
   const ComponentContext context{registry_, study_.warnings, refusals_};
   SystemPart system;
   if (const auto at = root.need("system", "the plant: {\"type\": \"lti\", ...}")) system = read_system(*at, study_.warnings);
-  if (const auto at = root.need("data", "{\"simulate\": {...}} or {\"csv\": {...}}")) {
-    DataPart part = read_data(*at, system, folder(), context);
+  const DataUse use = data_use(root);
+  const auto data =
+      use.streamed() ? root.need("data", "{\"simulate\": {...}} or {\"csv\": {...}}" + use.reason()) : root.find("data");
+  if (data) {
+    DataPart part = read_data(*data, system, use, folder(), context);
     study_.data = std::move(part.data);
     written_.faults = std::move(part.written_faults);
     written_.csv_file = std::move(part.written_file);
@@ -98,40 +99,6 @@ void StudyReader::read_sections(const Cursor& root) {
   study_.nominal = std::move(system.nominal);
   study_.modes = std::move(system.modes);
   written_.modes = std::move(system.written);
-}
-
-/// The parameters that hold a set to start from, of the component or of one inside it; null: it starts from X0.
-const Params* starting_params(const ComponentSpec& spec) {
-  if (spec.params.has("initial_set")) return &spec.params;
-  for (const auto& [name, value] : spec.params.values()) {
-    const auto* inner = std::get_if<std::shared_ptr<const ComponentSpec>>(&value);
-    if (const Params* found = inner ? starting_params(**inner) : nullptr) return found;
-  }
-  return nullptr;
-}
-
-/// A simulation that starts outside the set an observer starts from would break its guarantee by construction.
-void StudyReader::check_start(const Cursor& root) {
-  const auto* spec = std::get_if<SimulateSpec>(&study_.data);
-  if (problems_.any() || !spec || !spec->x0) return;
-  const Vector& x0 = *spec->x0;
-  const auto outside = [&](const LineForm& set) { return set.dim() == x0.size() && contains(set, x0) == Answer::no; };
-  const Cursor at = *root.find("data")->find("simulate")->find("x0");
-  bool own = false;  // does a pipeline start from the system's X0?
-  for (const PipelineSpec& pipeline : study_.pipelines) {
-    const Params* params = starting_params(pipeline.diagnoser ? *pipeline.diagnoser : pipeline.observer);
-    if (!params) {
-      own = true;
-    } else if (outside(params->set_form("initial_set"))) {
-      at.error("lies outside the initial_set of pipeline " + in_quotes(pipeline.name), "choose x0 inside, or widen the set");
-    }
-  }
-  if (own && outside(study_.model.X0)) {
-    at.error("lies outside X0", "choose x0 inside /system/X0, or widen that set");
-  } else if (!spec->faults.empty() && spec->faults.front().from == 0 && outside(spec->faults.front().model.X0)) {
-    at.error("lies outside X0 of the fault that acts from the beginning: " + in_quotes(spec->faults.front().name),
-             "choose x0 inside, or widen that set");
-  }
 }
 
 void StudyReader::add_plugin_warnings() {
@@ -158,7 +125,7 @@ Study StudyReader::read() {
   const Value tree = parse(text, problems_);
   const Cursor root(tree, "", problems_);
   read_sections(root);
-  check_start(root);
+  if (!problems_.any()) check_study(root, study_);
   finish();
   add_plugin_warnings();
   study_.resolved = resolve(study_, written_, registry_);

@@ -179,15 +179,19 @@ Json to_json(const AdditiveFaultSpec& fault) {
   return object;
 }
 
-Json to_json(const SimulateSpec& spec, const LinearModel& model, const Written& written, const Registry& registry) {
+/// What pipelines without a designer need is left out where all have one: `streamed` is false.
+Json to_json(const SimulateSpec& spec, const LinearModel& model, bool streamed, const Written& written,
+             const Registry& registry) {
   Json object;
-  object["steps"] = spec.steps;
+  if (streamed) object["steps"] = spec.steps;
   object["seed"] = spec.seed;
   if (spec.seeds != 1) object["seeds"] = spec.seeds;
   object["noise"] = noise_names()[static_cast<std::size_t>(spec.noise)];
+  if (spec.x0) object["x0"] = to_json(*spec.x0);
+  if (spec.x0_set) object["x0"] = to_json(*spec.x0_set);
+  if (!streamed) return object;
   if (spec.parameters != ParameterDraw::constant || (model.is_uncertain() && !spec.plant))
     object["parameters"] = parameter_draw_names()[static_cast<std::size_t>(spec.parameters)];
-  if (spec.x0) object["x0"] = to_json(*spec.x0);
   object["input"] = Json::array();
   for (const Signal& signal : spec.input) object["input"].push_back(to_json(signal));
   if (spec.plant) object["plant"] = to_json(*spec.plant, "plant", registry);
@@ -236,7 +240,9 @@ std::string resolve(const Study& study, const Written& written, const Registry& 
   root["system"] = to_json(study.model);
   add_modes(root["system"], study, written);
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
-    root["data"]["simulate"] = to_json(*simulate, study.model.linear, written, registry);
+    const bool streamed =
+        std::any_of(study.pipelines.begin(), study.pipelines.end(), [](const PipelineSpec& p) { return !p.designer; });
+    root["data"]["simulate"] = to_json(*simulate, study.model.linear, streamed, written, registry);
   } else {
     root["data"]["csv"] = to_json(std::get<CsvSpec>(study.data), written.csv_file);
   }
@@ -245,11 +251,9 @@ std::string resolve(const Study& study, const Written& written, const Registry& 
     Json pipeline;
     pipeline["name"] = spec.name;
     pipeline["backend"] = to_json(spec.backend, "backend", registry);
-    if (spec.diagnoser) {
-      pipeline["diagnoser"] = to_json(*spec.diagnoser, "diagnoser", registry);
-    } else {
-      pipeline["observer"] = to_json(spec.observer, "observer", registry);
-    }
+    if (spec.designer) pipeline["designer"] = to_json(*spec.designer, "designer", registry);
+    if (spec.diagnoser) pipeline["diagnoser"] = to_json(*spec.diagnoser, "diagnoser", registry);
+    if (!spec.designer && !spec.diagnoser) pipeline["observer"] = to_json(spec.observer, "observer", registry);
     root["pipelines"].push_back(std::move(pipeline));
   }
   root["metrics"] = Json::array();

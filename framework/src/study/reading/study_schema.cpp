@@ -196,7 +196,8 @@ Json data() {
   simulate["parameters"] =
       described(one_of(json::parameter_draw_names()), "whether uncertain matrices are drawn once or at every step");
   simulate["parameters"]["default"] = "constant";
-  simulate["x0"] = described(reference("vector"), "initial state; the centre of X0 by default");
+  simulate["x0"] = described(Json{{"anyOf", {reference("vector"), reference("set")}}},
+                             "initial state, or a bounded set that it is drawn from; the centre of X0 by default");
   simulate["input"] = described(list_of(reference("signal")), "one signal per column of B");
   simulate["plant"] = described(reference("plant"), "makes the data in place of the system");
   simulate["faults"] = described(list_of(reference("fault")), "in the order of time, without overlap");
@@ -209,7 +210,7 @@ Json data() {
   csv["truth"] = described(names, "columns of the true state, one per row of A");
   csv["mode"] = described(text(4096), "column with the name of the true mode, empty outside the bank");
   return {{"oneOf",
-           {object({{"simulate", object(simulate, {"steps"})}}, {"simulate"}),
+           {object({{"simulate", object(simulate, {})}}, {"simulate"}),
             object({{"csv", object(csv, {"file", "outputs"})}}, {"csv"})}}};
 }
 
@@ -305,16 +306,38 @@ Json definitions(const Registry& registry) {
   defs["mode"] = modes();
   defs["fault"] = faults();
   defs["data"] = data();
-  for (const char* kind : {"backend", "observer", "metric", "diagnoser", "plant", "gain"})
+  for (const char* kind : {"backend", "observer", "metric", "diagnoser", "plant", "gain", "designer"})
     defs[kind] = components(registry, kind);
   Json pipeline = object({{"name", described(text(200), "unique; the backend's name by default")},
                           {"backend", reference("backend")},
                           {"observer", reference("observer")},
-                          {"diagnoser", reference("diagnoser")}},
+                          {"diagnoser", reference("diagnoser")},
+                          {"designer", reference("designer")}},
                          {"backend"});
-  pipeline["oneOf"] = {{{"required", {"observer"}}}, {{"required", {"diagnoser"}}}};
+  const Json bank_wide{{"anyOf", {{{"required", {"diagnoser"}}}, {{"required", {"designer"}}}}}};
+  pipeline["oneOf"] = {{{"required", {"observer"}}}, bank_wide};
   defs["pipeline"] = pipeline;
   return defs;
+}
+
+Json with_simulate(Json properties, const std::vector<std::string>& required) {
+  Json simulate{{"properties", std::move(properties)}};
+  if (!required.empty()) simulate["required"] = required;
+  return {{"properties", {{"data", {{"properties", {{"simulate", simulate}}}}}}}};
+}
+
+/// Data are for pipelines without a designer; beside one with a designer they are not recorded.
+Json conditions() {
+  const Json designer{{"required", {"designer"}}};
+  Json all_designed{{"properties", {{"pipelines", {{"items", designer}}}}}};
+  Json refused;
+  for (const char* key : {"steps", "input", "parameters", "plant", "faults", "additive_faults"}) refused[key] = false;
+  Json streamed = with_simulate(Json::object(), {"steps"});
+  streamed["required"] = {"data"};
+  Json one_designed{{"properties", {{"pipelines", {{"contains", designer}}}}}};
+  Json simulated{{"properties", {{"data", {{"properties", {{"csv", false}}}}}}}};
+  return {{{"if", all_designed}, {"then", with_simulate(refused, {})}, {"else", streamed}},
+          {{"if", one_designed}, {"then", simulated}}};
 }
 
 }  // namespace
@@ -330,7 +353,8 @@ std::string study_json_schema(const Registry& registry) {
   properties["pipelines"] = {{"type", "array"}, {"items", reference("pipeline")}, {"minItems", 1}, {"maxItems", 1000}};
   properties["metrics"] = list_of(reference("metric"));
   Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Cordon study"}};
-  root.update(object(properties, {"cordon", "system", "data", "pipelines"}));
+  root.update(object(properties, {"cordon", "system", "pipelines"}));
+  root["allOf"] = conditions();
   root["$defs"] = definitions(registry);
   return root.dump(2) + "\n";
 }
