@@ -57,7 +57,7 @@ std::string status_text(const DesignOutcome& outcome, const Paint& paint) {
       return paint.green("Optimal") + fmt::format(": cost {}, {}", number(cost), bound_text(outcome));
     case DesignStatus::feasible: {
       const std::string gap = std::isfinite(outcome.gap()) ? fmt::format(" with gap {:.3g} %", 100 * outcome.gap()) : "";
-      return paint.yellow("Feasible" + gap) + fmt::format(": cost {}, {}", number(cost), bound_text(outcome));
+      return paint.yellow(fmt::format("Feasible{}", gap)) + fmt::format(": cost {}, {}", number(cost), bound_text(outcome));
     }
     case DesignStatus::infeasible:
       return paint.yellow("Proven infeasible") + ": no input of the input set separates the modes";
@@ -127,8 +127,8 @@ std::string horizon_text(const DesignOutcome& outcome) {
 }
 
 std::string reason_text(const DesignOutcome& outcome) {
-  std::string text = outcome.reason.empty() ? "" : outcome.reason + "\n";
-  if (!outcome.suggestion.empty()) text += "To try: " + outcome.suggestion + "\n";
+  std::string text = outcome.reason.empty() ? "" : fmt::format("{}\n", outcome.reason);
+  if (!outcome.suggestion.empty()) text += fmt::format("To try: {}\n", outcome.suggestion);
   return text;
 }
 
@@ -161,14 +161,14 @@ std::string design_text(const Names& modes, const PipelineDesign& design, const 
     text += status_text(outcome, paint) + "\n" + horizon_text(outcome) + reason_text(outcome);
     if (outcome.best) {
       const ExactSeparation* exact = design.exact ? &*design.exact : nullptr;
-      text += "\n" + inputs_table(outcome.best->u, paint) + "\n" + pairs_table(modes, *outcome.best, exact, paint) + "\n";
+      text += fmt::format("\n{}\n{}\n", inputs_table(outcome.best->u, paint), pairs_table(modes, *outcome.best, exact, paint));
       const Names empty = empty_modes(modes, outcome.best->empty, exact);
       if (!empty.empty()) text += paint.red("Modelling error") + ": " + empty_text(empty) + "\n";
       if (exact) text += exact_text(modes, *exact, paint);
     }
     text += search_text(outcome, design.design_s);
   }
-  if (!design.error.empty()) text += paint.red("Stopped: " + design.error) + "\n";
+  if (!design.error.empty()) text += paint.red(fmt::format("Stopped: {}", design.error)) + "\n";
   return text;
 }
 
@@ -185,7 +185,8 @@ std::string experiments_text(const Names& modes, const std::vector<ExperimentRow
     }
     rows.back().push_back(row.isolation.count > 0 ? fmt::format("{}", row.isolation.median) : "-");
   }
-  return "Experiments with every mode: at their ends, how often each mode is possible (k: the median)\n" + table(rows, paint);
+  return fmt::format("Experiments with every mode: at their ends, how often each mode is possible (k: the median)\n{}",
+                     table(rows, paint));
 }
 
 /// What the design claims and the exact proof refutes. That tubes meet is claimed up to rounding only.
@@ -214,7 +215,10 @@ bool open(const PipelineDesign& design) {
 std::string designs_text(const Study& study, const std::vector<PipelineDesign>& designs, const Paint& paint) {
   const Names modes = mode_names(study);
   std::string text = study.title.empty() ? "" : paint.bold(study.title) + "\n";
-  for (const PipelineDesign& design : designs) text += (text.empty() ? "" : "\n") + design_text(modes, design, paint);
+  for (const PipelineDesign& design : designs) {
+    if (!text.empty()) text += '\n';
+    text += design_text(modes, design, paint);
+  }
   return text;
 }
 
@@ -273,13 +277,13 @@ std::vector<std::string> empty_tubes(const Study& study, const DesignOutcome& ou
 
 std::string design_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint) {
   const Names modes = mode_names(study);
-  const std::string diagnoser = pipeline.diagnoser.empty() ? "" : ", " + pipeline.diagnoser;
+  const std::string diagnoser = pipeline.diagnoser.empty() ? "" : fmt::format(", {}", pipeline.diagnoser);
   std::string text = fmt::format("{}  {}, {}{}\n", paint.bold(pipeline.name), pipeline.backend, pipeline.designer, diagnoser);
   if (pipeline.design) {
     const DesignOutcome& outcome = *pipeline.design;
     text += status_text(outcome, paint) + "\n" + horizon_text(outcome) + reason_text(outcome);
     if (outcome.best) {
-      text += "\n" + inputs_table(outcome.best->u, paint) + "\n" + pairs_table(modes, *outcome.best, nullptr, paint);
+      text += fmt::format("\n{}\n{}", inputs_table(outcome.best->u, paint), pairs_table(modes, *outcome.best, nullptr, paint));
       const Names empty = empty_tubes(study, outcome);
       if (!empty.empty()) text += paint.red("Modelling error") + ": " + empty_text(empty) + "\n";
       if (pipeline.diagnoser.empty())
@@ -288,8 +292,8 @@ std::string design_text(const Study& study, const PipelineOutcome& pipeline, con
       text += "No experiments: there is no input to try\n";
     }
   }
-  if (!pipeline.experiments.empty()) text += "\n" + experiments_text(modes, pipeline.experiments, paint);
-  if (!pipeline.error.empty()) text += paint.red("Stopped: " + pipeline.error) + "\n";
+  if (!pipeline.experiments.empty()) text += fmt::format("\n{}", experiments_text(modes, pipeline.experiments, paint));
+  if (!pipeline.error.empty()) text += paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
   return text;
 }
 
