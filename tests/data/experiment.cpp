@@ -167,6 +167,15 @@ TEST_CASE("a drawn start takes nothing from the other sequences, and repeats") {
   }
 }
 
+TEST_CASE("the start is not in step with w_0") {
+  Study study = data_study(unit_box(2));
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const auto records = all(*open_data(study, seed));
+    const Vector w = *records[1].truth - study.model.linear.A * *records[0].truth;
+    CHECK((w - *records[0].truth).norm() > 1e-6);
+  }
+}
+
 TEST_CASE("x0 lies in a set with constraints") {
   LineForm triangle = unit_box(2);  // x1 + x2 ≤ 0, as a row with a slack
   triangle.G.conservativeResizeLike(Matrix::Zero(2, 3));
@@ -238,6 +247,18 @@ TEST_CASE("sets that no draw meets are drawn together with w_0") {
   CHECK_THROWS_WITH_AS(open_data(nowhere),
                        doctest::Contains("/data/simulate/x0: no state of the set was found that meets the static rows"),
                        InputError);
+}
+
+TEST_CASE("pairs that are drawn together heed u_0") {
+  const LineForm flat = make_zonotope(Vector{{.5, .5, .25}}, Matrix{{.1, 0.}, {0., 1.5}, {0., 0.}});
+  Study study = descriptor_study(flat);
+  study.model.linear.B(2, 0) = 1;  // in the static row
+  std::get<SimulateSpec>(study.data).input[0] = {};
+  std::get<SimulateSpec>(study.data).input[0].offset = .5;
+  for (const Vector& x : starts(study, 20)) {
+    CHECK(contains(flat, x) != Answer::no);
+    CHECK(std::abs((x[0] - .5 * x[1] - x[2] - .5) / .6) <= 1 + 1e-12);
+  }
 }
 
 TEST_CASE("what no state can be drawn from is refused") {

@@ -206,6 +206,12 @@ TEST_CASE("a pipeline without a designer needs data, and is named") {
   CHECK(problems[0].message == "is missing");
   CHECK(problems[0].suggestion.find("/pipelines/1 has no designer") != std::string::npos);
 
+  // of two, the first one
+  problems = problems_of(exchanged(exchanged(text, data_text, ""), "\"pipelines\": [",
+                                   "\"pipelines\": [{\"name\": \"new\", \"backend\": \"zonotope\", " + observer + "},"));
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].suggestion.find("/pipelines/0 has no designer") != std::string::npos);
+
   // without any designer nobody is named
   problems = problems_of(exchanged(valid_study, "\"steps\": 20,", ""));
   REQUIRE(problems.size() == 1);
@@ -319,6 +325,19 @@ TEST_CASE("the start of designers and of observers is compared with where each b
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].pointer == "/data/simulate/x0");
   CHECK(problems[0].message == "does not lie inside the initial_set of pipeline \"designed\"");
+}
+
+TEST_CASE("an initial_set beside a designer does not take the place of X0") {
+  const std::string text = design_study;
+  const std::size_t begin = text.find(",\n{\n\"name\": \"by hand\"");
+  std::string alone = text.substr(0, begin) + "\n]\n}\n";
+  alone = exchanged(alone, "\"committee\"",
+                    "{\"type\": \"observer_bank\", \"waiting_time\": 1, \"observer\": {\"type\": \"prediction_correction\", "
+                    "\"initial_set\": {\"type\": \"box\", \"lower\": [-9, -9], \"upper\": [9, 9]}}}");
+  CHECK(problems_of(alone).empty());
+  const auto problems = problems_of(exchanged(alone, start, "[5, 5]"));
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].message == "lies outside X0");
 }
 
 TEST_CASE("observers start in a set too") {
