@@ -31,16 +31,9 @@ std::string pair_name(const Names& modes, Index i, Index j) {
   return modes[static_cast<std::size_t>(i)] + ", " + modes[static_cast<std::size_t>(j)];
 }
 
-std::string separation(Answer disjoint, const Paint& paint) {
-  switch (disjoint) {
-    case Answer::yes:
-      return paint.green("disjoint (proven)");
-    case Answer::no:
-      return paint.red("meet (proven)");
-    case Answer::unknown:
-      break;
-  }
-  return paint.yellow("not decided");
+/// Without colours: cells of a table are aligned by their length.
+std::string separation(Answer disjoint) {
+  return disjoint == Answer::yes ? "disjoint (proven)" : disjoint == Answer::no ? "meet (proven)" : "not decided";
 }
 
 /// What is known of the cost of every separating input.
@@ -90,11 +83,11 @@ std::string pairs_table(const Names& modes, const InputDesign& design, const Exa
     const PairSeparation& pair = design.pairs[q];
     const bool apart = pair.disjoint == Answer::yes;
     rows.push_back({pair_name(modes, pair.i, pair.j), number(pair.kappa), apart ? number(pair.kappa_lower) : "-",
-                    separation(pair.disjoint, paint)});
+                    separation(pair.disjoint)});
     if (!exact) continue;
     const ExactPair& proven = exact->pairs[q];
     rows.back().push_back(proven.disjoint == Answer::yes ? number(proven.kappa_lower) : "-");
-    rows.back().push_back(separation(proven.disjoint, paint));
+    rows.back().push_back(separation(proven.disjoint));
   }
   return table(rows, paint);
 }
