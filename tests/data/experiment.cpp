@@ -13,9 +13,11 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "data/published.hpp"
+#include "data/records.hpp"
 #include "study/data/simulate.hpp"
 
 using namespace cordon;
+using namespace data_test;
 using detail::open_experiment;
 
 namespace {
@@ -62,12 +64,6 @@ Study descriptor_study(LineForm x0_set) {
   spec.input = published::descriptor_input();
   study.data = std::move(spec);
   return study;
-}
-
-std::vector<Record> all(DataSource& data) {
-  std::vector<Record> records;
-  while (std::optional<Record> record = data.next()) records.push_back(std::move(*record));
-  return records;
 }
 
 std::vector<Record> run(const Study& study, Index mode, const Matrix& u, std::uint64_t seed_offset = 0) {

@@ -7,38 +7,13 @@
 
 #include "cordon/study/data.hpp"
 #include "study/fakes.hpp"
+#include "study/mistake.hpp"
 #include "study/same_study.hpp"
 
 using namespace cordon;
 using namespace study_test;
 
 namespace {
-
-/// The text with one piece exchanged has exactly one problem, on the line of the new piece (or on the given one).
-struct Mistake {
-  std::string from, to, pointer, message, suggestion;
-  int line = 0;
-};
-
-int line_of(const std::string& text, const std::string& piece) {
-  const std::size_t at = text.find(piece);
-  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-}
-
-void expect_reported(const std::string& study, const Mistake& mistake) {
-  const std::string text = exchanged(study, mistake.from, mistake.to);
-  CAPTURE(mistake.to);
-  const auto problems = problems_of(text);
-  for (const Diagnostic& d : problems) INFO(d.pointer << ": " << d.message);
-  REQUIRE(problems.size() == 1);
-  CHECK(problems[0].pointer == mistake.pointer);
-  CAPTURE(problems[0].message);
-  CAPTURE(problems[0].suggestion);
-  CHECK(problems[0].message.find(mistake.message) != std::string::npos);
-  CHECK(problems[0].suggestion.find(mistake.suggestion) != std::string::npos);
-  if (mistake.suggestion.empty()) CHECK(problems[0].suggestion.empty());
-  CHECK(problems[0].line == (mistake.line > 0 ? mistake.line : line_of(text, mistake.to)));
-}
 
 const std::string designer = "\"designer\": {\"type\": \"given\", \"u\": [[1], [2], [-1]]}";
 const std::string start = "{\"type\": \"box\", \"lower\": [-0.5, 0.75], \"upper\": [0.5, 1.25]}";
