@@ -42,7 +42,7 @@ Json descriptor_study() {
       "C": [[0, 1]], "Dv": [[1]], "W": {"type": "box", "lower": [0, 0], "upper": [0, 0]}, "V": {"type": "box", "lower": [-1], "upper": [1]}}}]})");
   const Json unit = Json::parse(R"({"type": "box", "lower": [-1, -1], "upper": [1, 1]})");
   study["pipelines"] = Json::parse(R"([
-    {"name": "fits", "backend": "line_zonotope", "designer": {"type": "given", "input": [[2], [1]], "outputs": "last"}},
+    {"name": "fits", "backend": "line_zonotope", "designer": {"type": "given", "input": [[2], [0.5]], "outputs": "last"}},
     {"name": "empty", "backend": "line_zonotope", "designer": {"type": "given", "input": [[0], [2]]}}])");
   for (Json& pipeline : study["pipelines"]) pipeline["designer"]["admissible_set"] = unit;
   return study;
