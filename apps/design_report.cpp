@@ -241,7 +241,11 @@ std::vector<std::string> complaints(const Study& study, const std::vector<Pipeli
       found.push_back(fmt::format("{} violates its guarantee: {}. This is a defect of its backend or designer", name, claim));
     }
     if (!design.outcome) continue;
-    if (design.outcome->status == DesignStatus::unknown) found.push_back(name + ": no input was found within the limit");
+    if (design.outcome->status == DesignStatus::unknown) {
+      found.push_back(name + ": no input was found within the limit");
+    } else if (open(design)) {
+      found.push_back(name + ": the exact proof leaves a question open");
+    }
     if (!design.outcome->best) continue;
     const Names empty = empty_modes(modes, design.outcome->best->empty, design.exact ? &*design.exact : nullptr);
     if (!empty.empty()) found.push_back(fmt::format("{}: {}", name, empty_text(empty)));

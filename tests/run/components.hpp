@@ -325,7 +325,8 @@ class Scripted final : public Diagnoser {
 /// breaks down; `bounded` assumes a state that is far away. `waits` until it is stopped.
 class Designing final : public InputDesigner {
  public:
-  Designing(const DesignerContext& context, const Params& params) : InputDesigner(context.bank, context.backend), params_(params) {}
+  Designing(const DesignerContext& context, const Params& params)
+      : InputDesigner(context.bank, context.backend), params_(params) {}
 
  private:
   DesignOutcome do_design(DesignControl& control) const override {
@@ -342,7 +343,9 @@ class Designing final : public InputDesigner {
     outcome.programs = 7;
     outcome.reason = says == "unknown" ? "the time is over" : "";
     outcome.stopped = says == "unknown";
-    outcome.status = says == "infeasible" ? DesignStatus::infeasible : says == "unknown" ? DesignStatus::unknown : DesignStatus::feasible;
+    outcome.status = says == "infeasible" ? DesignStatus::infeasible
+                     : says == "unknown"  ? DesignStatus::unknown
+                                          : DesignStatus::feasible;
     if (outcome.status == DesignStatus::feasible) outcome.best = design(says);
     if (outcome.best) outcome.lower_bound = 4;
     if (says == "bounded") outcome.admissible_set = make_point(Vector::Constant(bank()[0].model.linear.states(), 100));
@@ -455,7 +458,8 @@ inline void register_all(Registrar& registrar) {
                        true,
                        false});
   ParamSchema outcome;
-  outcome.choice("says", "what becomes of the search", {"found", "empty", "bounded", "infeasible", "unknown", "throws", "waits"}, "found");
+  outcome.choice("says", "what becomes of the search", {"found", "empty", "bounded", "infeasible", "unknown", "throws", "waits"},
+                 "found");
   registrar.designer({{"designing", "designs what it is told", "", outcome},
                       [](const DesignerContext&, const Params&) { return std::vector<Diagnostic>{}; },
                       [](const DesignerContext& c, const Params& p) { return std::make_unique<Designing>(c, p); }});

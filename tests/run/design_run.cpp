@@ -128,17 +128,18 @@ TEST_CASE("a diagnoser that breaks down, and a mode that cannot be simulated") {
 }
 
 TEST_CASE("what the files hold") {
-  Scratch scratch("design_run");
-  const Study study = study_of({fakes::pipeline("observer"), fakes::design("a, b", "found", "truth"), fakes::design("none", "unknown")});
-  const RunOutcome outcome = run(study, scratch.path() / "one");
-  run(study, scratch.path() / "two");
+  const Scratch scratch;
+  const Study study =
+      study_of({fakes::pipeline("observer"), fakes::design("a, b", "found", "truth"), fakes::design("none", "unknown")});
+  const RunOutcome outcome = run(study, scratch / "one");
+  run(study, scratch / "two");
   CHECK(outcome.files.size() == 7);
   for (const char* name : {"results.json", "inputs.csv", "summary.csv", "data.csv", "steps.csv", "sets.jsonl"}) {
-    CHECK(read(scratch.path() / "one" / name) == read(scratch.path() / "two" / name));
+    CHECK(bytes_of(scratch / "one" / name) == bytes_of(scratch / "two" / name));
   }
-  CHECK_FALSE(std::filesystem::exists(scratch.path() / "one/diagnosis.csv"));
-  CHECK(read(scratch.path() / "one/inputs.csv") == "pipeline,k,u_1\n\"a, b\",0,1\n\"a, b\",1,1\n\"a, b\",2,1\n");
-  const json results = json::parse(read(scratch.path() / "one/results.json"));
+  CHECK_FALSE(std::filesystem::exists(scratch / "one/diagnosis.csv"));
+  CHECK(bytes_of(scratch / "one/inputs.csv") == "pipeline,k,u_1\n\"a, b\",0,1\n\"a, b\",1,1\n\"a, b\",2,1\n");
+  const json results = json::parse(bytes_of(scratch / "one/results.json"));
   const json& found = results["pipelines"][1];
   CHECK(found["designer"] == "designing");
   CHECK(found["diagnoser"] == "telling");
@@ -175,12 +176,12 @@ TEST_CASE("what the files hold") {
   CHECK(none["gap"].is_null());
   CHECK(none["stopped"] == true);
   CHECK(none["reason"] == "the time is over");
-  const std::string summary = read(scratch.path() / "one/summary.csv");
+  const std::string summary = bytes_of(scratch / "one/summary.csv");
   CHECK(summary.find("designer,experiment_diagnoser,design_status,horizon,cost,lower_bound,separates,experiments,"
                      "experiments_isolated,experiments_wrong") != std::string::npos);
   CHECK(summary.find("designing,telling,feasible,2,5,4,yes,6,6,0") != std::string::npos);
   CHECK(summary.find("designing,,unknown,2,,-inf,,,,") != std::string::npos);
-  CHECK(json::parse(read(scratch.path() / "one/run.json"))["pipelines"].size() == 3);
+  CHECK(json::parse(bytes_of(scratch / "one/run.json"))["pipelines"].size() == 3);
 }
 
 TEST_CASE("data are asked for only where they are used") {
@@ -191,19 +192,19 @@ TEST_CASE("data are asked for only where they are used") {
 }
 
 TEST_CASE("a stop ends the search and leaves nothing behind") {
-  Scratch scratch("design_stop");
+  const Scratch scratch;
   std::atomic<bool> stop = false;
   RunOptions options;
   options.stop = &stop;
   options.progress = [&](std::size_t, std::int64_t, std::int64_t) { stop = true; };
-  const RunOutcome outcome = run(study_of({fakes::design("AFD", "waits")}), scratch.path() / "out", options);
+  const RunOutcome outcome = run(study_of({fakes::design("AFD", "waits")}), scratch / "out", options);
   CHECK(outcome.interrupted);
-  CHECK_FALSE(std::filesystem::exists(scratch.path() / "out/results.json"));
+  CHECK_FALSE(std::filesystem::exists(scratch / "out/results.json"));
 }
 
 TEST_CASE("designs without a run") {
-  const Study study =
-      study_of({fakes::pipeline("observer"), fakes::design("one"), fakes::design("two", "throws"), fakes::design("three", "infeasible")});
+  const Study study = study_of(
+      {fakes::pipeline("observer"), fakes::design("one"), fakes::design("two", "throws"), fakes::design("three", "infeasible")});
   DesignOptions options;
   std::vector<std::size_t> told;
   options.progress = [&](std::size_t pipeline, Index horizon, double best, double bound) {

@@ -22,7 +22,8 @@ struct DesignFindings {
 };
 
 /// "disjoint", bounds of κ, "meet" and "empty" by `verify_design`. A claim that tubes meet is made up to rounding: it is false
-/// only if κ exceeds 1e-9. Bounds of κ have to be proven up to 1e-9 of 1 + κ.
+/// only if κ exceeds 1e-9. Bounds of κ have to be proven up to 1e-9 of 1 + κ, and up to
+/// 1e9.
 DesignFindings check_design(const ModeBank& bank, const DesignOutcome& outcome, const std::atomic<bool>* stop);
 
 }  // namespace cordon::verification
