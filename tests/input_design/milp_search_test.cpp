@@ -207,7 +207,7 @@ TEST_CASE("Without a solution nothing is claimed but what is proven") {
         examples::separation_problem(examples::three_scalar_models(), 0, 2, Vector::Zero(1), Vector(0));
     const SearchResult none = search(problem, generators(3));
     CHECK(none.status == DesignStatus::infeasible);
-    CHECK(none.reason.find("modes 0 and 1") != std::string::npos);
+    CHECK(none.reason.find("modes 1 and 2") != std::string::npos);
     CHECK(none.suggestion == "a longer horizon");
   }
   SUBCASE("too few generators") {

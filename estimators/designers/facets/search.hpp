@@ -12,11 +12,13 @@ struct FacetLimits {
   Index max_facets = 10000;  ///< per pair; more make the search end without an answer
 };
 
-/// With R and L the range and left null space of N, the inputs that do not separate a pair are those with R N u in
-///   Q = {RGξ + Rc : LGξ = -Lc, ‖ξ‖∞ ≤ 1 + ε}  in r = rank N dimensions,
-/// so that separating means h·(R N u) ≥ k for a facet (h, k) of Q. Best first: a node is the linear program over U with the
-/// facets chosen so far; the violated pair with the fewest facets is branched on, a child per facet; the first node that violates
-/// nothing is optimal. Bounds of nodes are proven by their multipliers.
+/// With R and L the range and left null space of N, the inputs that do not separate a pair are those with RᵀN u in
+///   Q = {RᵀGξ + Rᵀc : LᵀGξ = -Lᵀc, ‖ξ‖∞ ≤ 1 + ε}  in r = rank N dimensions,
+/// so that separating means h·(RᵀN u) ≥ k for a facet (h, k) of Q. Best first: a node is the linear program over U with the
+/// facets chosen so far; of the pairs that its input does not separate, the one whose children cost most is branched on, a child
+/// per facet; the first node that violates nothing is optimal. What children cost at least follows from the multipliers of their
+/// parent, without a program, as far as possible; ties go to the pair with the fewest facets. All bounds are proven by
+/// multipliers.
 SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control);
 
 }  // namespace cordon::designers

@@ -23,8 +23,6 @@ constexpr double tolerance = 1e-6;                                  ///< of κ, 
 constexpr double zero = 1e-9;                                       ///< multipliers below are 0
 constexpr double closed_tangents = 1e-9;  ///< a quadratic cost is met where tangents miss it by this share
 
-std::string name_of(const PairProgram& pair) { return fmt::format("of modes {} and {}", pair.i, pair.j); }
-
 class Search {
  public:
   Search(const SeparationProblem& problem, const MilpLimits& limits, DesignControl& control)
@@ -84,8 +82,8 @@ bool Search::settled(const PairProgram& pair) {
   if (apart.disjoint == Answer::yes && apart.kappa >= problem_.epsilon) return true;
   const bool exactly = (pair.N.array() == 0).all() && apart.disjoint == Answer::no;
   result_.status = exactly ? DesignStatus::infeasible : DesignStatus::unknown;
-  result_.reason = fmt::format("no input changes how far the outputs {} are apart, and that is not enough (κ = {:.4g})",
-                               name_of(pair), apart.kappa);
+  result_.reason = fmt::format("no input changes how far the outputs of {} are apart, and that is not enough (κ = {:.4g})",
+                               modes_of(problem_, pair), apart.kappa);
   result_.suggestion = "a longer horizon";
   return false;
 }
@@ -94,8 +92,8 @@ bool Search::reduce() {
   for (const PairProgram& pair : problem_.pairs) {
     if (pair.rows() > 0) continue;
     result_.status = DesignStatus::infeasible;
-    result_.reason =
-        fmt::format("the outputs {} can be the same under every input: no equation is left that could fail", name_of(pair));
+    result_.reason = fmt::format("the outputs of {} can be the same under every input: no equation is left that could fail",
+                                 modes_of(problem_, pair));
     result_.suggestion = "a longer horizon";
     return false;
   }
@@ -110,8 +108,8 @@ bool Search::reduce() {
     }
     std::optional<PairProgram> reduced = reduce_pair(pair, problem_.U, limits_.max_generators, limits_.max_constraints);
     if (!reduced) {
-      result_.reason = fmt::format("{} generators cannot enclose the pair {}, which the inputs enter in more dimensions",
-                                   limits_.max_generators, name_of(pair));
+      result_.reason = fmt::format("{} generators cannot enclose the difference of {}, which the inputs enter in more dimensions",
+                                   limits_.max_generators, modes_of(problem_, pair));
       result_.suggestion = "a larger \"max_generators\"";
       return false;
     }

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "components.hpp"
+#include "designers/facets/search.hpp"
+#include "designers/tube_designer.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+class Facets final : public designers::TubeDesigner {
+ public:
+  using TubeDesigner::TubeDesigner;
+
+ private:
+  designers::SearchResult search(const designers::SeparationProblem& problem, DesignControl& control) const override {
+    return designers::search_facets(problem, {params().real("gap"), params().real("time_limit"), params().integer("max_facets")},
+                                    control);
+  }
+};
+
+}  // namespace
+
+void register_facets_designer(Registrar& registrar) {
+  ParamSchema schema;
+  designers::add_search_parameters(schema);
+  designers::add_statement_parameters(schema);
+  schema.real("gap", "relative distance of cost and proven lower bound at which the search ends", 1e-9, 1e-12, 1)
+      .integer("max_facets", "largest number of facets of the inputs that do not separate a pair; more end the search", 10000, 2,
+               1000000);
+  registrar.designer(
+      {{"facets", "cheapest separating input, by exact search over facets", "Rego2025", std::move(schema),
+        "For each pair of modes the inputs that do not separate it form a polytope, seen through the few combinations of\n"
+        "inputs that tell the two apart. An input separates the pair if it lies beyond a facet. The search solves linear\n"
+        "programs over the input set with facets chosen so far, best first, and branches on the facets of a pair that is\n"
+        "still violated. Lower bounds are proven by multipliers; \"optimal\" and \"infeasible\" are never a solver's word."},
+       designers::check_search,
+       [](const DesignerContext& context, const Params& params) { return std::make_unique<Facets>(context, params); }});
+}
+
+}  // namespace cordon::estimators

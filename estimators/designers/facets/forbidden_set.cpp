@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "designers/facets/forbidden_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "cordon/core/linalg.hpp"
+#include "cordon/solvers/boxed_program.hpp"
+#include "designers/facets/growing_hull.hpp"
+
+namespace cordon::designers {
+
+using linalg::product;
+
+namespace {
+
+constexpr double rank_tolerance = 1e-11;      ///< of the terms: inputs that move a row by less do not move it
+constexpr double flat_tolerance = 1e-9;       ///< of the terms
+constexpr double flat_distance = 1e-6;        ///< of the terms, see forbidden_set
+constexpr double outer_rounding = 1e-14;      ///< of the terms: γ_n of the sums below, with room for thousands of them
+constexpr double inner_rounding = 1e-12;      ///< of the terms, see forbidden_set
+constexpr double point_accuracy = 1e-13;      ///< of the terms
+constexpr double residual_tolerance = 1e-11;  ///< of the terms
+
+/// The rows of a pair by powers of two at the size of their terms, so that 1 is the size of everything, in the factors ζ of U.
+struct ScaledPair {
+  Matrix G, N;  ///< G ξ + c = N ζ
+  Vector c;
+  Vector terms;   ///< per row, for ‖ξ‖∞ ≤ 1 + ε and ‖ζ‖∞ ≤ 1
+  double factor;  ///< 1 + ε
+
+  ScaledPair(const PairProgram& pair, const InputSequences& U, double epsilon) : factor(1 + epsilon) {
+    G = pair.G;
+    N = product(pair.N, U.G);
+    const Vector shift = product(pair.N, U.c);
+    c = pair.c - shift;
+    terms = (pair.N.cwiseAbs() * (U.c.cwiseAbs() + U.G.cwiseAbs().rowwise().sum()) + pair.c.cwiseAbs()).cwiseMax(pair.magnitude);
+    terms += factor * G.cwiseAbs().rowwise().sum();
+    for (Index i = 0; i < c.size(); ++i) {
+      const double scale = terms[i] > 0 ? std::exp2(-std::ilogb(terms[i])) : 1.0;
+      G.row(i) *= scale;
+      N.row(i) *= scale;
+      c[i] *= scale;
+      terms[i] *= scale;
+    }
+  }
+};
+
+/// The support function of Q by certified linear programs.
+class Support {
+ public:
+  struct Answer {
+    Vector y;                 ///< on the scaled rows
+    double level = 0;         ///< h_Q(d) ≤ level
+    std::optional<Vector> x;  ///< a point of Q that attains it up to rounding
+  };
+
+  Support(const ScaledPair& pair, Matrix R, Matrix L, Vector centre)
+      : pair_(pair),
+        R_(std::move(R)),
+        L_(std::move(L)),
+        c_(std::move(centre)),
+        seen_(product(R_.transpose(), pair_.G)),
+        rows_(product(L_.transpose(), pair_.G)),
+        right_(-product(L_.transpose(), c_) / pair_.factor),
+        program_(rows_, right_, {product(L_.cwiseAbs().transpose(), pair_.terms), {}}) {}
+
+  /// Is Q empty?
+  cordon::Answer empty() {
+    ++programs;
+    return program_.is_empty();
+  }
+  double terms_along(const Vector& d) const { return pair_.terms.dot(Vector(product(R_, d)).cwiseAbs()); }
+
+  Answer along(const Vector& d) {
+    ++programs;
+    const BoxedProgram::Bound bound = program_.maximum(product(seen_.transpose(), d));
+    Answer answer;
+    answer.y = product(R_, d) - product(L_, bound.y);
+    answer.level = pair_.factor * product(pair_.G.transpose(), answer.y).cwiseAbs().sum() + answer.y.dot(c_);
+    if (bound.solved && bound.xi) answer.x = point(*bound.xi);
+    return answer;
+  }
+
+  std::int64_t programs = 0;
+
+ private:
+  /// RᵀGξ + Rᵀc for a basic solution that satisfies the rows.
+  std::optional<Vector> point(Vector xi) const {
+    const Vector inside = xi.cwiseMax(-1.0).cwiseMin(1.0);
+    if (!inside.allFinite()) return std::nullopt;
+    const Vector residual = (product(rows_, inside) - right_).cwiseAbs();
+    const Vector allowed = residual_tolerance * product(L_.cwiseAbs().transpose(), pair_.terms);
+    if (residual.size() && (residual - allowed).maxCoeff() > 0) return std::nullopt;
+    return Vector(pair_.factor * product(seen_, inside) + product(R_.transpose(), c_));
+  }
+
+  const ScaledPair& pair_;
+  Matrix R_, L_;
+  Vector c_;
+  Matrix seen_, rows_;
+  Vector right_;
+  BoxedProgram program_;
+};
+
+/// The half-space of ζ that multipliers y on the scaled rows prove.
+SeparatingFacet facet_of(const ScaledPair& pair, const Vector& y, double distance, double below) {
+  SeparatingFacet facet;
+  const double terms = y.cwiseAbs().dot(pair.terms);
+  facet.a = product(pair.N.transpose(), y);
+  facet.out = pair.factor * product(pair.G.transpose(), y).cwiseAbs().sum() + y.dot(pair.c) + outer_rounding * terms;
+  facet.in = facet.out - below - inner_rounding * terms;
+  facet.out += distance * terms;
+  const double scale = facet.a.size() ? facet.a.cwiseAbs().maxCoeff() : 0;
+  if (scale > 0) {
+    facet.a /= scale;
+    facet.out /= scale;
+    facet.in /= scale;
+  }
+  return facet;
+}
+
+/// Points of Q in general position, and the directions in which it has no width.
+struct Span {
+  Matrix points;  ///< r×(q+1)
+  Matrix flat;    ///< r×(r-q), orthonormal
+};
+
+class Builder {
+ public:
+  Builder(const ScaledPair& pair, Support& support, Index r, Index max_facets, const Watch& watch)
+      : pair_(pair), support_(support), r_(r), max_facets_(max_facets), watch_(watch) {}
+
+  ForbiddenSet build() {
+    const std::optional<Span> span = this->span();
+    if (!span) return failed();
+    set_.flat = span->flat.cols() > 0;
+    if (const Index q = r_ - span->flat.cols(); q > 0 && !grow(*span)) return failed();
+    set_.kind = ForbiddenSet::Kind::facets;
+    return std::move(set_);
+  }
+
+ private:
+  ForbiddenSet failed() {
+    if (reason_.empty()) reason_ = "a linear program could not be solved";
+    ForbiddenSet set;
+    set.reason = reason_;
+    return set;
+  }
+
+  bool stopped() {
+    reason_ = "the search was stopped";
+    return false;
+  }
+
+  std::optional<Span> span() {
+    Span span{Matrix(r_, 0), Matrix(r_, 0)};
+    const auto append = [](Matrix& columns, const Vector& column) {
+      columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+      columns.col(columns.cols() - 1) = column;
+    };
+    while (std::max<Index>(0, span.points.cols() - 1) + span.flat.cols() < r_) {
+      Matrix known = span.flat;
+      for (Index p = 1; p < span.points.cols(); ++p) append(known, span.points.col(p) - span.points.col(0));
+      const Matrix rest = known.cols() ? linalg::null_space(known.transpose()) : Matrix::Identity(r_, r_);
+      if (rest.cols() == 0) return std::nullopt;
+      const Vector d = rest.col(0);
+      const Support::Answer above = support_.along(d), below = support_.along(-d);
+      if (!above.x || !below.x) return std::nullopt;
+      if (above.level + below.level <= flat_tolerance * support_.terms_along(d)) {
+        if (span.points.cols() == 0) append(span.points, *above.x);
+        const double width = std::max(0.0, above.level + below.level);
+        set_.facets.push_back(facet_of(pair_, above.y, flat_distance, width));
+        set_.facets.push_back(facet_of(pair_, below.y, flat_distance, width));
+        append(span.flat, d);
+        continue;
+      }
+      if (span.points.cols() == 0) {
+        append(span.points, *above.x);
+        append(span.points, *below.x);
+        continue;
+      }
+      const double middle = d.dot(span.points.col(0));
+      append(span.points, d.dot(*above.x) - middle > middle - d.dot(*below.x) ? *above.x : *below.x);
+    }
+    return span;
+  }
+
+  /// Facets of the hull in the directions that are not flat.
+  bool grow(const Span& span) {
+    const Matrix basis = span.flat.cols() ? linalg::null_space(span.flat.transpose()) : Matrix::Identity(r_, r_);
+    const Matrix down = basis.transpose();
+    double terms = 0;
+    for (Index i = 0; i < r_; ++i) terms = std::max(terms, support_.terms_along(Vector::Unit(r_, i)));
+    GrowingHull hull(product(down, span.points), point_accuracy * terms);
+    if (hull.facets().empty()) return false;
+    for (;;) {
+      auto& facets = hull.facets();
+      if (static_cast<Index>(facets.size()) > max_facets_) {
+        reason_ = "the set of inputs that do not separate them has more than " + std::to_string(max_facets_) + " facets";
+        return false;
+      }
+      const auto open = std::find_if(facets.begin(), facets.end(), [](const GrowingHull::Facet& f) { return !f.settled; });
+      if (open == facets.end()) break;
+      if (watch_.over()) return stopped();
+      const Support::Answer found = support_.along(product(basis, open->h.normalized()));
+      if (!found.x) return false;
+      const Vector x = product(down, *found.x);
+      if (hull.beyond(*open, x) > hull.tolerance(*open)) {
+        if (!hull.add(x, [this] { return watch_.over(); })) return stopped();
+      } else {
+        open->settled = true;
+        open->proof = found.y;
+        open->proven = found.level;
+      }
+    }
+    for (const GrowingHull::Facet& facet : hull.facets()) {
+      set_.facets.push_back(facet_of(pair_, facet.proof, 0, std::max(0.0, facet.proven - hull.level(facet))));
+    }
+    return true;
+  }
+
+  const ScaledPair& pair_;
+  Support& support_;
+  Index r_, max_facets_;
+  const Watch& watch_;
+  ForbiddenSet set_;
+  std::string reason_;
+};
+
+ForbiddenSet of_kind(ForbiddenSet::Kind kind, std::string reason = {}) {
+  ForbiddenSet set;
+  set.kind = kind;
+  set.reason = std::move(reason);
+  return set;
+}
+
+}  // namespace
+
+ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, double epsilon, Index max_facets,
+                           const Watch& watch) {
+  if (pair.rows() == 0) return of_kind(ForbiddenSet::Kind::never, "no output tells one from the other, whatever the inputs are");
+  const ScaledPair scaled(pair, U, epsilon);
+  // ζ = p + Zη: η is free but for the box.
+  const bool equations = U.b.size() > 0;
+  const Matrix Z = equations ? linalg::null_space(U.A) : Matrix::Identity(U.G.cols(), U.G.cols());
+  const Vector p = equations ? product(linalg::pseudo_inverse(U.A), U.b) : Vector::Zero(U.G.cols());
+  const linalg::Svd parts = linalg::svd(product(scaled.N, Z));
+  const Index r = (parts.sigma.array() > rank_tolerance).count(), m = pair.rows();
+  Support support(scaled, parts.U.leftCols(r), parts.U.rightCols(m - r), scaled.c - product(scaled.N, p));
+
+  const Answer empty = support.empty();
+  ForbiddenSet set;
+  if (empty == Answer::yes) {
+    set = of_kind(ForbiddenSet::Kind::separated);
+  } else if (r > 0) {
+    set = Builder(scaled, support, r, max_facets, watch).build();
+  } else if (empty == Answer::no) {
+    set = of_kind(ForbiddenSet::Kind::never, "the inputs that may be chosen have no effect on what tells one from the other");
+  } else {
+    set = of_kind(ForbiddenSet::Kind::unknown, "whether they are told apart without inputs is a matter of rounding");
+  }
+  set.programs = support.programs;
+  return set;
+}
+
+}  // namespace cordon::designers

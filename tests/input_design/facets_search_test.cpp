@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The search over facets against published optima, closed forms, and the enumeration of all choices of facets.
+#include <cmath>
+#include <optional>
+
+#include <doctest/doctest.h>
+
+#include "cordon/solvers/lp.hpp"
+#include "input_design/facets_problems.hpp"
+
+using namespace cordon;
+using namespace cordon::designers;
+using namespace cordon::examples;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// What every answer with an input has to keep.
+void check_answer(const SeparationProblem& problem, const SearchResult& found) {
+  REQUIRE(found.u);
+  CHECK(found.cost == problem.cost.at(*found.u));
+  CHECK(found.lower_bound <= found.cost);
+  for (const PairProgram& pair : problem.pairs) CHECK(separation(pair, *found.u).kappa > problem.epsilon - 1e-8);
+}
+
+void check_optimal(const SeparationProblem& problem, const SearchResult& found, double cost, double relative = 1e-7) {
+  CHECK(found.status == DesignStatus::optimal);
+  check_answer(problem, found);
+  CHECK(found.cost == doctest::Approx(cost).epsilon(relative));
+  CHECK(found.lower_bound >= found.cost * (1 - 1e-9));
+  CHECK(found.reason.empty());
+  CHECK_FALSE(found.stopped);
+}
+
+/// min Σ ω (u - r)² over rows F u ≥ e, by Hildreth's method on the multipliers; infinity if that is more than `enough`.
+double least_squares_cost(const Cost& cost, const Matrix& F, const Vector& e, double enough) {
+  Vector lambda = Vector::Zero(e.size()), u = cost.reference;
+  const Vector inverse = (2 * cost.weights).cwiseInverse();
+  for (int sweep = 0; sweep < 100000; ++sweep) {
+    double change = 0;
+    for (Index f = 0; f < e.size(); ++f) {
+      const double curvature = F.row(f).cwiseAbs2().dot(inverse);
+      if (curvature == 0) {
+        if (e[f] > 0) return infinity;
+        continue;
+      }
+      const double next = std::max(0.0, lambda[f] + (e[f] - F.row(f).dot(u)) / curvature), step = next - lambda[f];
+      lambda[f] = next;
+      u += step * inverse.cwiseProduct(F.row(f).transpose());
+      change = std::max(change, std::abs(step) * std::sqrt(curvature));
+    }
+    if (cost.at(u) + lambda.dot(e - F * u) > enough) return infinity;  // the dual value
+    if (change < 1e-11) break;
+  }
+  REQUIRE((F * u - e).minCoeff() > -1e-8);
+  return cost.at(u);
+}
+
+/// The least cost of u with rows F u ≥ e and |u_i| ≤ radius_i around `centre`, by a program in u itself; infinity if that is more
+/// than `enough` and the cost is quadratic.
+double least_cost(const Cost& cost, const Matrix& F, const Vector& e, const Vector& centre, const Vector& radius, double enough) {
+  const Index n = centre.size(), m = e.size();
+  if (cost.kind == Cost::Kind::quadratic) {
+    if (least_cost({Cost::Kind::norm_1, cost.weights, cost.reference}, F, e, centre, radius, enough) == infinity) return infinity;
+    Matrix rows(m + 2 * n, n);
+    rows << F, Matrix::Identity(n, n), -Matrix::Identity(n, n);
+    Vector levels(m + 2 * n);
+    levels << e, centre - radius, -centre - radius;
+    return least_squares_cost(cost, rows, levels, enough);
+  }
+  const bool one = cost.kind == Cost::Kind::norm_1;
+  const Index costs = one ? n : 1, slacks = m + 2 * n;
+  Matrix A = Matrix::Zero(slacks, n + costs + slacks);
+  Vector b = Vector::Zero(slacks), lower = Vector::Zero(A.cols()), upper = Vector::Constant(A.cols(), infinity);
+  lower.head(n) = centre - radius;
+  upper.head(n) = centre + radius;
+  A.topLeftCorner(m, n) = F;
+  b.head(m) = e;
+  for (Index i = 0; i < n; ++i) {
+    for (int side = 0; side < 2; ++side) {
+      const Index row = m + 2 * i + side;
+      const double sign = side ? 1 : -1;
+      A(row, n + (one ? i : 0)) = 1;
+      A(row, i) = -sign * cost.weights[i];
+      b[row] = -sign * cost.weights[i] * cost.reference[i];
+    }
+  }
+  A.rightCols(slacks) = -Matrix::Identity(slacks, slacks);
+  Vector objective = Vector::Zero(A.cols());
+  objective.segment(n, costs).setConstant(-1);
+  const LinearProgram::Solution solution = LinearProgram(A, b, lower, upper).maximize(objective);
+  return solution.status == LinearProgram::Status::optimal ? -solution.objective : infinity;
+}
+
+/// Every choice of a facet for each pair. Box-shaped input sets only.
+double enumerated(const SeparationProblem& problem) {
+  const InputSequences& U = problem.U;
+  const Index n = U.c.size();
+  // ζ as a function of u: the columns of G have one entry each.
+  Matrix inverse = Matrix::Zero(U.G.cols(), n);
+  for (Index j = 0; j < U.G.cols(); ++j) {
+    for (Index i = 0; i < n; ++i) {
+      if (U.G(i, j) != 0) inverse(j, i) = 1 / U.G(i, j);
+    }
+  }
+  std::vector<ForbiddenSet> sets;
+  for (const PairProgram& pair : problem.pairs) {
+    sets.push_back(forbidden(pair, U, problem.epsilon));
+    if (sets.back().kind == ForbiddenSet::Kind::separated) sets.pop_back();
+  }
+  const auto m = static_cast<Index>(sets.size());
+  Matrix F(m, n);
+  Vector e(m);
+  double best = infinity;
+  std::vector<std::size_t> choice(sets.size(), 0);
+  for (;;) {
+    for (Index q = 0; q < m; ++q) {
+      const SeparatingFacet& facet = sets[static_cast<std::size_t>(q)].facets[choice[static_cast<std::size_t>(q)]];
+      F.row(q) = facet.a.transpose() * inverse;
+      e[q] = facet.out + F.row(q).dot(U.c);
+    }
+    best = std::min(best, least_cost(problem.cost, F, e, U.c, U.G.cwiseAbs().rowwise().sum(), best));
+    std::size_t q = 0;
+    while (q < choice.size() && ++choice[q] == sets[q].facets.size()) choice[q++] = 0;
+    if (q == choice.size()) return best;
+  }
+}
+
+SeparationProblem random_problem(std::mt19937& random, Cost::Kind kind, int trial) {
+  const Index inputs = 4;
+  std::vector<PairProgram> pairs;
+  for (Index q = 0; q < 3; ++q) pairs.push_back(random_pair(random, q, q + 1, 3, 5, 1 + (trial + q) % 3, inputs));
+  if (trial % 5 == 4) pairs[1].N *= .1;  // hard to reach
+  SeparationProblem problem = problem_of(std::move(pairs), boxed_inputs(inputs, 1.5, trial % 2), kind, trial % 3 ? .2 : 0);
+  if (trial % 2) problem.U.c[0] = random_matrix(random, 1, 1)(0, 0);
+  problem.cost.reference = random_matrix(random, inputs, 1);
+  problem.cost.weights += .9 * random_matrix(random, inputs, 1);
+  return problem;
+}
+
+}  // namespace
+
+TEST_CASE("The published example: the optimum of the unreduced problem") {
+  for (const auto& [epsilon, cost] : {std::pair(0.0, 9.19954), {1e-4, 9.2005343602499}, {.01, 9.298976025}, {.1, 10.19390025}}) {
+    const SeparationProblem problem = published_problem(3, epsilon);
+    const SearchResult found = searched(problem);
+    check_optimal(problem, found, cost, 1e-9);
+    CHECK(found.facets >= 99);
+    CHECK(found.nodes > 6);
+  }
+  const SeparationProblem problem = published_problem(3, 1e-4);
+  const SearchResult found = searched(problem);
+  const Vector expected = numbers({.5, -1, -2.798921735, -1, 1.25099762525, -6.150615, .5, -1});
+  CHECK((*found.u - expected).cwiseAbs().maxCoeff() < 1e-7);
+}
+
+TEST_CASE("Horizons of the published example: 2 is too short, 4 is cheaper than 3") {
+  const SearchResult two = searched(published_problem(2, 1e-4));
+  CHECK(two.status == DesignStatus::infeasible);
+  CHECK(two.reason == "modes 1 and 2: the inputs that may be chosen have no effect on what tells one from the other");
+  CHECK_FALSE(two.u);
+  const SeparationProblem four = published_problem(4, 1e-4);
+  const SearchResult found = searched(four);
+  check_optimal(four, found, 8.7056961, 1e-7);
+}
+
+TEST_CASE("Scalar models from anywhere: the cheapest input costs .9 (1 + ε)") {
+  for (const double epsilon : {0.0, 1e-4, .1, 1.0}) {
+    const SeparationProblem problem = scalar_problem(epsilon);
+    check_optimal(problem, searched(problem), .9 * (1 + epsilon), 1e-9);
+  }
+  const SearchResult beyond = searched(scalar_problem(10));  // |u| ≤ 2
+  CHECK(beyond.status == DesignStatus::infeasible);
+  CHECK(beyond.reason.find("no input of the input set separates modes") == 0);
+  CHECK_FALSE(beyond.suggestion.empty());
+}
+
+TEST_CASE("All choices of facets for the published example, quadratic and largest entry") {
+  for (const auto kind : {Cost::Kind::quadratic, Cost::Kind::norm_inf}) {
+    SeparationProblem problem = published_problem(3, 1e-4, kind);
+    problem.pairs = {problem.pairs[0], problem.pairs[1], problem.pairs[2]};
+    check_optimal(problem, searched(problem), enumerated(problem));
+    SeparationProblem scalar = scalar_problem(.1);
+    scalar.cost.kind = kind;
+    check_optimal(scalar, searched(scalar), enumerated(scalar));
+  }
+}
+
+TEST_CASE("Random problems agree with the enumeration of all choices") {
+  std::mt19937 random(23);
+  int found_some = 0, found_none = 0;
+  for (int trial = 0; trial < 120; ++trial) {
+    const auto kind = static_cast<Cost::Kind>(trial % 3);
+    const SeparationProblem problem = random_problem(random, kind, trial / 3);
+    const double expected = enumerated(problem);
+    const SearchResult found = searched(problem);
+    CAPTURE(trial);
+    if (expected == infinity) {
+      CHECK(found.status == DesignStatus::infeasible);
+      ++found_none;
+      continue;
+    }
+    ++found_some;
+    check_answer(problem, found);
+    CHECK(found.cost == doctest::Approx(expected).epsilon(1e-7).scale(.01));
+    CHECK(found.lower_bound >= found.cost * (1 - 1e-9) - 1e-10);
+    CHECK((found.status == DesignStatus::optimal || found.cost < .1));  // a share of little is below rounding
+  }
+  CHECK(found_some > 80);
+  CHECK(found_none > 3);
+}
+
+TEST_CASE("More distance never costs less") {
+  std::mt19937 random(29);
+  for (int trial = 0; trial < 12; ++trial) {
+    SeparationProblem problem = random_problem(random, static_cast<Cost::Kind>(trial % 3), trial);
+    double before = 0;
+    for (const double epsilon : {0.0, .05, .3, .8}) {
+      problem.epsilon = epsilon;
+      const SearchResult found = searched(problem);
+      if (!found.u) break;
+      CHECK(found.cost >= before - 1e-9);
+      before = found.cost;
+    }
+  }
+}
+
+TEST_CASE("Nothing to separate: the reference, or the nearest admitted input") {
+  for (const auto kind : {Cost::Kind::norm_1, Cost::Kind::norm_inf, Cost::Kind::quadratic}) {
+    SeparationProblem problem = problem_of({}, boxed_inputs(3, 2), kind, 0);
+    problem.cost.reference = numbers({.5, -1, .25});
+    SearchResult found = searched(problem);
+    CHECK(found.status == DesignStatus::optimal);
+    REQUIRE(found.u);
+    CHECK((*found.u - problem.cost.reference).cwiseAbs().maxCoeff() < 1e-9);
+    CHECK(found.lower_bound >= 0);
+
+    problem.cost.reference[1] = -5;
+    problem.cost.weights[1] = 2;
+    check_optimal(problem, searched(problem), kind == Cost::Kind::quadratic ? 18 : 6);
+  }
+  SeparationProblem given = problem_of({}, boxed_inputs(2, 1, 2), Cost::Kind::norm_inf, 0);  // no input may vary
+  given.U.c = numbers({3, -4});
+  given.cost.weights = numbers({1, .5});
+  for (const auto& [kind, cost] :
+       {std::pair(Cost::Kind::norm_inf, 3.0), {Cost::Kind::norm_1, 5.0}, {Cost::Kind::quadratic, 17.0}}) {
+    given.cost.kind = kind;
+    check_optimal(given, searched(given), cost, 1e-12);
+  }
+}
+
+TEST_CASE("Inputs that cost nothing are used first") {
+  // One pair, |u_0 + u_1| > 1.
+  const PairProgram pair = pair_of(0, 1, Matrix::Ones(1, 1), numbers({0}), Matrix::Ones(1, 2));
+  for (const auto kind : {Cost::Kind::norm_1, Cost::Kind::norm_inf, Cost::Kind::quadratic}) {
+    SeparationProblem problem = problem_of({pair}, boxed_inputs(2, .75), kind, 0);
+    problem.cost.weights = numbers({0, 1});
+    check_optimal(problem, searched(problem), kind == Cost::Kind::quadratic ? .0625 : .25);
+    problem.cost.weights.setZero();
+    const SearchResult free = searched(problem);
+    CHECK(free.status == DesignStatus::optimal);
+    CHECK(free.cost == 0);
+    check_answer(problem, free);
+  }
+}
+
+TEST_CASE("A polytope of inputs") {
+  // u_0 + u_1 ≤ 1, as u_0 + u_1 + 1.5 ζ = -.5 with |u| ≤ 1: then only the negative side, or both positive at a price.
+  InputSequences U{Vector::Zero(2), Matrix::Zero(2, 3), (Matrix(1, 3) << 1, 1, 1.5).finished(), numbers({-.5})};
+  U.G.leftCols(2).setIdentity();
+  const PairProgram sum = pair_of(0, 1, Matrix::Ones(1, 1), numbers({0}), (Matrix(1, 2) << 1, 1).finished());
+  for (const auto kind : {Cost::Kind::norm_1, Cost::Kind::norm_inf, Cost::Kind::quadratic}) {
+    SeparationProblem problem = problem_of({sum}, U, kind, .2);
+    problem.cost.reference = numbers({.4, .4});
+    // Beyond +1.2 is not admitted; -1.2 costs 2 in sum, 1 in the largest entry, 2 in squares.
+    check_optimal(problem, searched(problem), kind == Cost::Kind::norm_inf ? 1 : 2);
+    problem.epsilon = 1.5;  // |u| ≤ 1 and -2.5
+    CHECK(searched(problem).status == DesignStatus::infeasible);
+  }
+}
+
+TEST_CASE("Tubes that must not be empty") {
+  // The tube has a row ξ = u_0 + .5: |u_0 + .5| ≤ 1 is needed, and |u_0| > .75 separates.
+  const PairProgram pair = pair_of(0, 1, Matrix::Constant(1, 1, .75), numbers({0}), Matrix::Ones(1, 1));
+  TubeConditions needed{Matrix::Ones(1, 1), Matrix::Ones(1, 1), numbers({.5}), numbers({1})};
+  for (const auto kind : {Cost::Kind::norm_1, Cost::Kind::norm_inf, Cost::Kind::quadratic}) {
+    SeparationProblem problem = problem_of({pair}, boxed_inputs(1, 2), kind, 0);
+    problem.cost.reference = numbers({.5});
+    check_optimal(problem, searched(problem), kind == Cost::Kind::quadratic ? .0625 : .25);
+    problem.conditions = {needed};
+    check_optimal(problem, searched(problem), kind == Cost::Kind::quadratic ? 1.5625 : 1.25);
+    problem.conditions[0].b[0] = 4;  // |u_0 + 4| ≤ 1 never
+    const SearchResult none = searched(problem);
+    CHECK(none.status == DesignStatus::infeasible);
+    CHECK(none.reason == "every input of the input set leaves the output tube of a mode empty");
+  }
+}
+
+TEST_CASE("Pairs that contradict each other") {
+  // |u_0| > 1 and |u_0| must be separated by a row that is met for |u_0 - 1.5| ≤ 2.6, and |u_0| ≤ 1.5.
+  const Matrix one = Matrix::Ones(1, 1);
+  const PairProgram far = pair_of(0, 1, one, numbers({0}), one), left = pair_of(0, 2, 2.4 * one, numbers({1.5}), one),
+                    right = pair_of(1, 2, 2.4 * one, numbers({-1.5}), one);
+  const SearchResult each = searched(problem_of({far, left, right}, boxed_inputs(1, 1.5), Cost::Kind::norm_1, 0));
+  CHECK(each.status == DesignStatus::infeasible);
+  CHECK(each.reason == "every pair alone can be separated, but not all of them at once");
+  const SearchResult one_side = searched(problem_of({far, left}, boxed_inputs(1, 1.5), Cost::Kind::norm_1, 0));
+  CHECK(one_side.status == DesignStatus::optimal);
+  CHECK((*one_side.u)[0] == doctest::Approx(-1));
+  const SearchResult hopeless = searched(problem_of({far, left}, boxed_inputs(1, .95), Cost::Kind::norm_1, 0));
+  CHECK(hopeless.reason == "no input of the input set separates modes 1 and 2");
+  InputSequences corner = boxed_inputs(2, 1);  // each reaches 1, the sum does not reach 1.9
+  corner.A = (Matrix(1, 2) << 1, -1).finished();
+  corner.b = numbers({.5});
+  const PairProgram sum = pair_of(0, 1, Matrix::Constant(1, 1, 1.9), numbers({0}), Matrix::Ones(1, 2));
+  const SearchResult together = searched(problem_of({sum}, corner, Cost::Kind::norm_1, 0));
+  CHECK(together.status == DesignStatus::infeasible);
+  CHECK(together.reason == "no input of the input set separates modes 1 and 2");
+}
+
+TEST_CASE("Without noise there is no cheapest input, and none is claimed") {
+  const PairProgram exact = pair_of(0, 1, Matrix(2, 0), numbers({.25, .5}), Matrix::Identity(2, 2));
+  SeparationProblem problem = problem_of({exact}, boxed_inputs(2, 1), Cost::Kind::norm_1, .1);
+  SearchResult found = searched(problem);
+  check_optimal(problem, found, 0);  // the reference separates
+  problem.cost.reference = numbers({.25, .5});
+  found = searched(problem);
+  CHECK(found.status == DesignStatus::feasible);
+  check_answer(problem, found);
+  CHECK(separation(exact, *found.u).disjoint == Answer::yes);
+  CHECK(found.cost > 1e-7);
+  CHECK(found.cost < 1e-5);
+  CHECK(found.lower_bound == 0);
+  CHECK(found.reason.find("without width") != std::string::npos);
+}
+
+TEST_CASE("A search that is stopped says so, and proves what it can") {
+  class Stop final : public DesignControl {
+   public:
+    explicit Stop(int after) : left_(after) {}
+    bool stop() const noexcept override { return left_-- <= 0; }
+    void progress(Index horizon, double best, double bound) override {
+      CHECK(horizon == 3);
+      CHECK(best >= bound);
+      ++reports;
+    }
+    int reports = 0;
+
+   private:
+    mutable int left_;
+  };
+  const SeparationProblem problem = published_problem(3, 1e-4);
+  const double optimum = 9.2005343602499;
+  int with_input = 0;
+  for (int after = 0; after < 400; after += 3) {
+    Stop control(after);
+    const SearchResult found = search_facets(problem, {}, control);
+    CHECK(found.lower_bound <= optimum + 1e-9);
+    if (found.status == DesignStatus::optimal) {
+      CHECK(found.cost == doctest::Approx(optimum).epsilon(1e-9));
+      continue;
+    }
+    CHECK(found.stopped);
+    CHECK_FALSE(found.reason.empty());
+    CHECK(found.status == (found.u ? DesignStatus::feasible : DesignStatus::unknown));
+    if (!found.u) continue;
+    ++with_input;
+    check_answer(problem, found);
+    CHECK(found.cost > optimum - 1e-9);
+  }
+  CHECK(with_input > 0);
+  Stop watched(1000000);
+  search_facets(problem, {}, watched);
+  CHECK(watched.reports > 0);
+
+  FacetLimits none;
+  none.time_limit = 0;
+  const SearchResult late = searched(problem, none);
+  CHECK(late.status == DesignStatus::unknown);
+  CHECK(late.stopped);
+  FacetLimits few;
+  few.max_facets = 20;
+  const SearchResult many = searched(problem, few);
+  CHECK(many.status == DesignStatus::unknown);
+  CHECK_FALSE(many.stopped);
+  CHECK(many.reason.find("modes 2 and 3: ") == 0);
+}
+
+TEST_CASE("A wide gap ends the search early, within that gap") {
+  const SeparationProblem problem = published_problem(3, 1e-4);
+  FacetLimits limits;
+  limits.gap = .3;
+  const SearchResult found = searched(problem, limits);
+  CHECK(found.status == DesignStatus::optimal);
+  CHECK(found.cost >= 9.2005343);
+  CHECK(found.cost - found.lower_bound <= .3 * found.cost);
+  CHECK(found.lower_bound <= 9.2005344);
+  CHECK(found.nodes <= searched(problem).nodes);
+}
