@@ -18,10 +18,11 @@ namespace cordon::designers {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double share_of_starts = .1, share_of_single_pairs = .2;  ///< of the time limit, ends of these parts
-constexpr double tolerance = 1e-6;                                  ///< of κ, for the solvers
-constexpr double zero = 1e-9;                                       ///< multipliers below are 0
-constexpr double closed_tangents = 1e-9;  ///< a quadratic cost is met where tangents miss it by this share
+constexpr double share_of_starts = .1, share_of_single_pairs = .2,
+                 share_of_first_start = .5;  ///< of the time limit, ends of these parts
+constexpr double tolerance = 1e-6;           ///< of κ, for the solvers
+constexpr double zero = 1e-9;                ///< multipliers below are 0
+constexpr double closed_tangents = 1e-9;     ///< a quadratic cost is met where tangents miss it by this share
 
 class Search {
  public:
@@ -32,7 +33,7 @@ class Search {
     result_.bounded_problem =
         fmt::format("the program with at most {} generators per pair, as GLPK bounds it", limits_.max_generators);
     if (!reduce()) return std::move(result_);
-    LocalSearch local(problem_, pairs_, [this] { return left(share_of_starts); });
+    LocalSearch local(problem_, pairs_, [this] { return left_to_start(); });
     look_for_starts(local);
     InputProgram inputs(problem_);
     if (result_.u) inputs.limit_cost(result_.cost);
@@ -51,6 +52,9 @@ class Search {
     if (control_.stop()) return 0;
     return share * limits_.time_limit - std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
+
+  /// The first input is worth more of the time than better ones.
+  double left_to_start() const { return left(result_.u ? share_of_starts : share_of_first_start); }
 
   bool reduce();
   bool settled(const PairProgram& pair);
@@ -137,7 +141,7 @@ void Search::offer(const Vector& u) {
 void Search::look_for_starts(LocalSearch& local) {
   std::mt19937_64 engine(1);
   const Index g = problem_.U.G.cols(), most = 8 * g + 32, most_in_vain = 4 * g + 16;
-  for (Index k = 0, in_vain = 0; k < most && in_vain < most_in_vain && left(share_of_starts) > 0; ++k) {
+  for (Index k = 0, in_vain = 0; k < most && in_vain < most_in_vain && left_to_start() > 0; ++k) {
     const double before = result_.u ? result_.cost : infinity;
     Vector corner(g);
     for (double& entry : corner) entry = (engine() >> 32) % 2 == 0 ? -1 : 1;
