@@ -23,6 +23,7 @@ void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_w_radius_gain(registrar);
   cordon::estimators::register_facets_designer(registrar);
   cordon::estimators::register_given_designer(registrar);
+  cordon::estimators::register_milp_designer(registrar);
   cordon::estimators::register_metrics(registrar);
   cordon::estimators::register_weighted_radius(registrar);
 }

@@ -185,6 +185,24 @@ TEST_CASE("decisions: isolating, then monitoring, ambiguous at the horizon, and 
   }
 }
 
+TEST_CASE("many samples of stable and unstable models") {
+  const auto diagnoser = make(four_models(), "line_zonotope", {});  // horizon 20
+  std::vector<Vector> inputs = separating_input();
+  while (inputs.size() < 21) inputs.push_back(inputs[inputs.size() - 3]);
+  for (Index truth = 0; truth < 4; ++truth) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      CAPTURE(truth);
+      CAPTURE(seed);
+      const Run found = run(*diagnoser, samples_of(simulate(diagnoser->bank()[truth].model, inputs, seed, false)));
+      for (const Diagnosis& step : found.steps) {
+        REQUIRE(step.modes[static_cast<std::size_t>(truth)].candidate);
+        REQUIRE(step.modes[static_cast<std::size_t>(truth)].consistent == Answer::yes);
+        if (step.k >= 3) REQUIRE(step.mode == truth);
+      }
+    }
+  }
+}
+
 TEST_CASE("a model outside the bank ends as unknown_fault") {
   const auto diagnoser = make(four_models(), "line_zonotope", horizon(3));
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {

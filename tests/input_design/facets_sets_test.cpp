@@ -54,7 +54,7 @@ TEST_CASE("A hull that grows by points has the facets that rational arithmetic f
     points.leftCols(r).setIdentity();
     points.col(r).setConstant(-1);
     GrowingHull hull(points.leftCols(r + 1), 0);
-    for (Index p = r + 1; p < points.cols(); ++p) hull.add(points.col(p));
+    for (Index p = r + 1; p < points.cols(); ++p) REQUIRE(hull.add(points.col(p), [] { return false; }));
     Matrix H(static_cast<Index>(hull.facets().size()), r);
     Vector h(H.rows());
     for (Index f = 0; f < h.size(); ++f) {
@@ -70,10 +70,14 @@ TEST_CASE("A hull that grows by points has the facets that rational arithmetic f
   }
 }
 
-TEST_CASE("A simplex without volume has no facets") {
+TEST_CASE("A simplex without volume has no facets; one that grows can be stopped") {
   Matrix points(2, 3);
   points << 0, 1, 2, 0, 1, 2;
   CHECK(GrowingHull(points, 0).facets().empty());
+  points(0, 2) = 1;
+  GrowingHull hull(points, 0);
+  CHECK(hull.facets().size() == 3);
+  CHECK_FALSE(hull.add(numbers({5, 5}), [] { return true; }));
 }
 
 TEST_CASE("Beyond a facet: κ ≥ ε; beyond none: κ < ε") {

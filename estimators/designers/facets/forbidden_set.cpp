@@ -149,6 +149,11 @@ class Builder {
     return set;
   }
 
+  bool stopped() {
+    reason_ = "the search was stopped";
+    return false;
+  }
+
   std::optional<Span> span() {
     Span span{Matrix(r_, 0), Matrix(r_, 0)};
     const auto append = [](Matrix& columns, const Vector& column) {
@@ -198,15 +203,12 @@ class Builder {
       }
       const auto open = std::find_if(facets.begin(), facets.end(), [](const GrowingHull::Facet& f) { return !f.settled; });
       if (open == facets.end()) break;
-      if (watch_.over()) {
-        reason_ = "the search was stopped";
-        return false;
-      }
+      if (watch_.over()) return stopped();
       const Support::Answer found = support_.along(product(basis, open->h.normalized()));
       if (!found.x) return false;
       const Vector x = product(down, *found.x);
       if (hull.beyond(*open, x) > hull.tolerance(*open)) {
-        hull.add(x);
+        if (!hull.add(x, [this] { return watch_.over(); })) return stopped();
       } else {
         open->settled = true;
         open->proof = found.y;

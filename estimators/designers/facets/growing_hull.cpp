@@ -29,31 +29,37 @@ GrowingHull::GrowingHull(const Matrix& simplex, double accuracy)
   }
 }
 
-bool GrowingHull::adjacent(const Facet& a, const Facet& b, const std::vector<Index>& common) const {
-  if (static_cast<Index>(common.size()) < centre_.size() - 1) return false;
-  return std::none_of(facets_.begin(), facets_.end(), [&](const Facet& other) {
-    return &other != &a && &other != &b && std::includes(other.on.begin(), other.on.end(), common.begin(), common.end());
-  });
-}
-
-void GrowingHull::add(VectorIn x) {
-  const Index number = points_++;
-  std::vector<double> excess(facets_.size());
-  std::vector<std::size_t> visible, hidden;
+bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
+  const Index number = points_++, ridge = centre_.size() - 1;
+  std::vector<double> excess;
+  std::vector<bool> seen(static_cast<std::size_t>(points_));  // the points of the facets that x is beyond
+  for (const Facet& facet : facets_) {
+    excess.push_back(beyond(facet, x));
+    if (excess.back() <= tolerance(facet)) continue;
+    for (const Index point : facet.on) seen[static_cast<std::size_t>(point)] = true;
+  }
+  std::vector<std::size_t> visible, near;  // those, and all that may share a ridge with them
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    excess[f] = beyond(facets_[f], x);
-    const double tolerated = tolerance(facets_[f]);
-    if (excess[f] > tolerated) visible.push_back(f);
-    if (excess[f] < -tolerated) hidden.push_back(f);
+    const auto& on = facets_[f].on;
+    if (excess[f] > tolerance(facets_[f])) visible.push_back(f);
+    if (std::count_if(on.begin(), on.end(), [&](Index point) { return seen[static_cast<std::size_t>(point)]; }) >= ridge) {
+      near.push_back(f);
+    }
   }
   std::vector<Facet> made;
   std::vector<Index> common;
   for (const std::size_t f : visible) {
-    for (const std::size_t g : hidden) {
+    if (over()) return false;
+    for (const std::size_t g : near) {
+      if (excess[g] >= -tolerance(facets_[g])) continue;
       common.clear();
       std::set_intersection(facets_[f].on.begin(), facets_[f].on.end(), facets_[g].on.begin(), facets_[g].on.end(),
                             std::back_inserter(common));
-      if (!adjacent(facets_[f], facets_[g], common)) continue;
+      const bool adjacent =
+          static_cast<Index>(common.size()) >= ridge && std::none_of(near.begin(), near.end(), [&](std::size_t k) {
+            return k != f && k != g && std::includes(facets_[k].on.begin(), facets_[k].on.end(), common.begin(), common.end());
+          });
+      if (!adjacent) continue;
       Facet facet;
       facet.h = (excess[f] * facets_[g].h - excess[g] * facets_[f].h) / (excess[f] - excess[g]);
       facet.on = common;
@@ -66,6 +72,7 @@ void GrowingHull::add(VectorIn x) {
   }
   for (auto f = visible.rbegin(); f != visible.rend(); ++f) facets_.erase(facets_.begin() + static_cast<std::ptrdiff_t>(*f));
   facets_.insert(facets_.end(), std::make_move_iterator(made.begin()), std::make_move_iterator(made.end()));
+  return true;
 }
 
 }  // namespace cordon::designers

@@ -2,6 +2,7 @@
 // The convex hull of points that become known one by one, in doubles, for a handful of dimensions.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "cordon/core/types.hpp"
@@ -28,14 +29,13 @@ class GrowingHull {
   double tolerance(const Facet& facet) const { return 1e-12 + accuracy_ * facet.h.norm(); }
   /// k in h/|h| · x ≤ k.
   double level(const Facet& facet) const { return (facet.h.dot(centre_) + 1) / facet.h.norm(); }
-  void add(VectorIn x);
+  /// False if `over` ended it half way: the hull is of no use then.
+  bool add(VectorIn x, const std::function<bool()>& over);
 
   std::vector<Facet>& facets() { return facets_; }
   const std::vector<Facet>& facets() const { return facets_; }
 
  private:
-  bool adjacent(const Facet& a, const Facet& b, const std::vector<Index>& common) const;
-
   Vector centre_;
   double accuracy_;
   Index points_ = 0;

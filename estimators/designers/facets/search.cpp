@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,22 +30,22 @@ struct OpenPair {
   ForbiddenSet set;
 };
 
+/// A node's children that wait for their turn, one for each facet of a pair, the cheapest first.
+struct Children {
+  std::size_t pair;
+  std::vector<std::pair<double, Index>> bound_and_facet;
+};
+
 struct Node {
   std::vector<Index> facet;  ///< per open pair: the chosen facet, -1 none
   double bound = 0;
   bool solved = false;  ///< its program was; else the bound is its parent's, or follows from its parent's multipliers
   Vector zeta = {};
   FacetDual::Parent multipliers = {};
-  std::vector<Vector> touched = {};  ///< input sequences with tangents of a quadratic cost
+  std::vector<Vector> touched = {};               ///< input sequences with tangents of a quadratic cost
+  std::shared_ptr<const Children> siblings = {};  ///< if set: the node stands for itself, at `place`, and for all behind it
+  std::size_t place = 0;
 };
-
-/// A pair to branch on, and the bounds of the children by the multipliers of their parent.
-struct Branching {
-  std::size_t pair;
-  std::vector<double> bounds;  ///< by facet
-};
-
-std::string who(const PairProgram& pair) { return fmt::format("modes {} and {}", pair.i + 1, pair.j + 1); }
 
 bool is_beyond(const SeparatingFacet& facet, const Vector& zeta, double tolerance) {
   return facet.a.dot(zeta) >= facet.out - tolerance;
@@ -69,13 +70,14 @@ class Search {
   bool find_facets();
   void branch_and_bound();
   void visit(Node node);
-  void branch(const Node& node, const Branching& branching);
+  void branch(const Node& node, Children children);
+  Node child(const Node& like, std::shared_ptr<const Children> children, std::size_t place) const;
   bool evaluate(Node& node);
   std::optional<Node> take();
   void keep(Node node) { open_.emplace(node.bound, std::move(node)); }
   void close(double bound) { closed_ = std::min(closed_, bound); }
-  std::optional<Branching> violated(const Node& node) const;
-  double lower_bound() const { return open_.empty() ? closed_ : std::min(closed_, open_.begin()->first); }
+  std::optional<Children> violated(const Node& node) const;
+  double lower_bound() const;
   bool good_enough(double bound) const { return result_.u && bound >= result_.cost - limits_.gap * result_.cost; }
   void conclude();
   void conclude_without_input();
@@ -103,19 +105,19 @@ bool Search::find_facets() {
                   [](const SeparatingFacet& facet) { return facet.a.lpNorm<1>() < facet.in - 1e-9 * std::abs(facet.in); });
     if (set.kind == ForbiddenSet::Kind::facets && set.facets.empty()) {
       result_.status = DesignStatus::infeasible;
-      result_.reason = "no input of the input set separates " + who(pair);
+      result_.reason = "no input of the input set separates " + modes_of(problem_, pair);
       result_.suggestion = more_room;
       return false;
     }
     switch (set.kind) {
       case ForbiddenSet::Kind::never:
         result_.status = DesignStatus::infeasible;
-        result_.reason = fmt::format("{}: {}", who(pair), set.reason);
+        result_.reason = fmt::format("{}: {}", modes_of(problem_, pair), set.reason);
         result_.suggestion = "a longer horizon, more outputs, or inputs that may be chosen";
         return false;
       case ForbiddenSet::Kind::unknown:
         result_.stopped = watch_.over();
-        result_.reason = fmt::format("{}: {}", who(pair), set.reason);
+        result_.reason = fmt::format("{}: {}", modes_of(problem_, pair), set.reason);
         result_.suggestion = "a larger time_limit or max_facets, a shorter horizon, or the designer \"milp\"";
         return false;
       case ForbiddenSet::Kind::facets:
@@ -145,14 +147,32 @@ void Search::branch_and_bound() {
   conclude();
 }
 
+double Search::lower_bound() const {
+  double bound = closed_;
+  if (!open_.empty()) bound = std::min(bound, open_.begin()->first);
+  if (next_) bound = std::min(bound, next_->bound);
+  return bound;
+}
+
 std::optional<Node> Search::take() {
-  if (next_) {
-    Node node = std::move(*std::exchange(next_, std::nullopt));
-    if (!result_.u) return node;
-    keep(std::move(node));
+  if (next_ && result_.u) keep(std::move(*std::exchange(next_, std::nullopt)));
+  if (!next_ && open_.empty()) return std::nullopt;
+  Node node = next_ ? std::move(*std::exchange(next_, std::nullopt)) : std::move(open_.extract(open_.begin()).mapped());
+  if (const auto siblings = std::exchange(node.siblings, nullptr);
+      siblings && node.place + 1 < siblings->bound_and_facet.size()) {
+    keep(child(node, siblings, node.place + 1));
   }
-  if (open_.empty()) return std::nullopt;
-  return std::move(open_.extract(open_.begin()).mapped());
+  return node;
+}
+
+Node Search::child(const Node& like, std::shared_ptr<const Children> children, std::size_t place) const {
+  const auto& [bound, facet] = children->bound_and_facet[place];
+  Node child{like.facet, bound};
+  child.facet[children->pair] = facet;
+  child.touched = like.touched;
+  child.siblings = std::move(children);
+  child.place = place;
+  return child;
 }
 
 void Search::visit(Node node) {
@@ -163,8 +183,7 @@ void Search::visit(Node node) {
   ++result_.nodes;
   const Vector u = problem_.U.c + linalg::product(problem_.U.G, node.zeta);
   const double cost = problem_.cost.at(u);
-  const std::optional<Branching> branching = violated(node);
-  if (branching) return branch(node, *branching);
+  if (std::optional<Children> children = violated(node)) return branch(node, std::move(*children));
   if (!result_.u || cost < result_.cost) {
     result_.u = u;
     result_.cost = cost;
@@ -180,37 +199,30 @@ void Search::visit(Node node) {
 
 /// Of the pairs that the input of the node does not separate, the one whose cheapest child costs most by what the parent's
 /// multipliers say; of equal ones that with the fewest facets.
-std::optional<Branching> Search::violated(const Node& node) const {
-  std::optional<Branching> best;
+std::optional<Children> Search::violated(const Node& node) const {
+  std::optional<Children> best;
   double most = 0;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
     const auto& facets = pairs_[q].set.facets;
     if (node.facet[q] >= 0) continue;
     if (std::any_of(facets.begin(), facets.end(), [&](const auto& facet) { return is_beyond(facet, node.zeta, 0); })) continue;
-    Branching here{q, {}};
-    for (const SeparatingFacet& facet : facets)
-      here.bounds.push_back(dual_.usable() ? std::max(node.bound, dual_.bound(node.multipliers, facet)) : node.bound);
-    const double least = *std::min_element(here.bounds.begin(), here.bounds.end());
-    if (best && (least < most || (least == most && facets.size() >= best->bounds.size()))) continue;
+    Children here{q, {}};
+    double least = infinity;
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      const double bound = dual_.usable() ? std::max(node.bound, dual_.bound(node.multipliers, facets[f])) : node.bound;
+      here.bound_and_facet.emplace_back(bound, static_cast<Index>(f));
+      least = std::min(least, bound);
+    }
+    if (best && (least < most || (least == most && facets.size() >= best->bound_and_facet.size()))) continue;
     best = std::move(here);
     most = least;
   }
   return best;
 }
 
-void Search::branch(const Node& node, const Branching& branching) {
-  std::vector<Node> children;
-  for (std::size_t f = 0; f < branching.bounds.size(); ++f) {
-    Node child{node.facet, branching.bounds[f]};
-    child.touched = node.touched;
-    child.facet[branching.pair] = static_cast<Index>(f);
-    children.push_back(std::move(child));
-  }
-  const auto cheapest =
-      std::min_element(children.begin(), children.end(), [](const Node& a, const Node& b) { return a.bound < b.bound; });
-  if (!result_.u) std::swap(*cheapest, children.back());
-  for (std::size_t f = 0; f + 1 < children.size(); ++f) keep(std::move(children[f]));
-  next_ = std::move(children.back());
+void Search::branch(const Node& node, Children children) {
+  std::sort(children.bound_and_facet.begin(), children.bound_and_facet.end());
+  next_ = child(node, std::make_shared<const Children>(std::move(children)), 0);
 }
 
 /// The bound and the input of a node; false if it is proven impossible or has to be put aside.
@@ -275,7 +287,7 @@ void Search::conclude_without_input() {
                                                         : "every pair alone can be separated, but not all of them at once";
   std::string hopeless;
   for (const OpenPair& open : pairs_) {
-    if (result_.nodes > 0 && is_hopeless(open)) hopeless += (hopeless.empty() ? "" : "; ") + who(*open.pair);
+    if (result_.nodes > 0 && is_hopeless(open)) hopeless += (hopeless.empty() ? "" : "; ") + modes_of(problem_, *open.pair);
   }
   if (!hopeless.empty()) result_.reason = "no input of the input set separates " + hopeless;
 }
