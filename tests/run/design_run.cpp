@@ -66,6 +66,15 @@ TEST_CASE("every mode is tried with every seed, and the confusion table counts t
   }
 }
 
+TEST_CASE("seeds are different, and the same for every mode") {
+  fakes::first_outputs().clear();
+  run_one("truth");
+  const std::vector<Vector>& y = fakes::first_outputs();
+  REQUIRE(y.size() == 6);
+  CHECK(y[0] != y[1]);
+  for (std::size_t i = 2; i < 6; ++i) CHECK(y[i] == y[i - 2]);
+}
+
 TEST_CASE("ends that are open") {
   const PipelineOutcome found = run_one("open");
   REQUIRE(found.experiments.size() == 3);

@@ -130,6 +130,21 @@ TEST_CASE("nothing is rounded: tubes that touch meet, and one unit in the last p
   CHECK(verify_design(bank, given(Matrix{{0.}, {-4.}})).pairs[0].kappa_lower == 3);
 }
 
+TEST_CASE("whatever the numbers: touching tubes meet, and bounds of κ are rounded down") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(.1, 1);
+  for (int i = 0; i < 200; ++i) {
+    ModeBank bank = signs();
+    const double d = uniform(random), u = d * (1 + uniform(random) / 2);
+    for (Mode& mode : bank.modes) mode.model.linear.Dv(0, 0) = d;
+    CHECK(verify_design(bank, given(Matrix{{d}})).pairs[0].disjoint == Answer::no);
+    const ExactPair pair = verify_design(bank, given(Matrix{{u}})).pairs[0];  // κ = u / d - 1, and u - d is a double
+    CHECK(pair.disjoint == Answer::yes);
+    CHECK(std::fma(pair.kappa_lower, d, -(u - d)) <= 0);
+    CHECK(std::fma(std::nextafter(pair.kappa_lower, 2), d, -(u - d)) >= 0);
+  }
+}
+
 TEST_CASE("two modes without disturbances are apart however far a box is widened") {
   ModeBank bank = signs();
   for (Mode& mode : bank.modes) mode.model.V = make_point(Vector{{0.}});
@@ -200,6 +215,27 @@ TEST_CASE("the static row of the last input counts") {
   }
 }
 
+TEST_CASE("an admissible set speaks of what E leaves open, whatever its rows are") {
+  // x_1 + x_2 follows an equation, x_1 - x_2 = u; of X_A, x_1 - x_2 counts only
+  Mode mode{"static", {}};
+  LinearModel& m = mode.model.linear;
+  m.E = Matrix{{1., 1}, {0, 0}};
+  m.A = Matrix{{.5, .5}, {1, -1}};
+  m.B = Matrix{{0.}, {-1}};
+  m.Bw = Matrix(2, 0);
+  m.C = Matrix{{0., 1}};
+  m.D = Matrix::Zero(1, 1);
+  m.Dv = Matrix{{1.}};
+  mode.model.X0 = make_space(2);
+  mode.model.W = make_point(Vector(0));
+  mode.model.V = make_box({Vector{{-1.}}, Vector{{1.}}});
+  DesignOutcome outcome = given(Matrix{{3.}, {.5}});
+  outcome.admissible_set = make_box({Vector{{1000., 999.}}, Vector{{1000., 1001.}}});
+  check_tubes(verify_design({{mode, mode}, 0}, outcome), Answer::no);
+  outcome.best->u(1, 0) = 2;
+  check_tubes(verify_design({{mode, mode}, 0}, outcome), Answer::yes);
+}
+
 TEST_CASE("a regular E is the same as its inverse on the other side") {
   ModeBank plain = examples::four_descriptor_models();
   for (Mode& mode : plain.modes) {
@@ -260,6 +296,22 @@ TEST_CASE("what does not fit is refused") {
   range.modes[1].model.linear.actuator = {Vector{{.5}}, Vector{{1.}}};
   CHECK(code(range, given(Matrix{{1.}})) == Errc::unsupported);
   CHECK_FALSE(code(bank, given(Matrix{{1.}})));
+}
+
+TEST_CASE("what is too large for the simplex method is decided by restored proofs") {
+  const ModeBank bank = signs();
+  const Matrix apart = Matrix::Constant(30, 1, 1.5), together = Matrix::Constant(30, 1, .5);
+  const std::vector<const Model*> both{&bank[0].model, &bank[1].model};
+  const std::optional<LineForm> none;
+  const LineForm rows = verification::common_runs(both, {apart, false, none});
+  const auto m = static_cast<double>(rows.constraints());
+  const double work = m * m * static_cast<double>(rows.lines() + rows.generators());
+  CHECK(work > 1e7);
+  CHECK(work < 1e8);
+  const ExactSeparation found = verify_design(bank, given(apart));
+  CHECK(found.separates() == Answer::yes);
+  CHECK(found.pairs[0].kappa_lower == doctest::Approx(.5));
+  CHECK(verify_design(bank, given(together)).separates() == Answer::no);
 }
 
 TEST_CASE("beyond the size limits nothing is said, with a reason") {
@@ -347,7 +399,7 @@ LineForm tube(const Model& model, const Matrix& u, double scale) {
 
 TEST_CASE("random modes: the same answers and distances as by the tubes themselves") {
   int apart = 0, together = 0;
-  rc::check([&] {
+  CHECK(rc::check([&] {
     const Index n = *rc::gen::inRange<Index>(1, 4), inputs = *rc::gen::inRange<Index>(1, 3),
                 outputs = *rc::gen::inRange<Index>(1, 3);
     const ModeBank bank{{random_mode(n, inputs, outputs), random_mode(n, inputs, outputs)}, 0};
@@ -374,7 +426,7 @@ TEST_CASE("random modes: the same answers and distances as by the tubes themselv
     if (rows.lines() + rows.generators() <= exact::max_columns && rows.constraints() <= exact::max_rows) {
       RC_ASSERT(exact::is_empty(rows) == pair.disjoint);
     }
-  });
+  }));
   CHECK(apart > 30);
   CHECK(together > 30);
 }
