@@ -119,7 +119,7 @@ TEST_CASE("delays of any length") {
 }
 
 TEST_CASE("designs of random systems satisfy their equations") {
-  rc::check([](std::uint64_t seed) {
+  CHECK(rc::check([](std::uint64_t seed) {
     Draw draw{std::mt19937_64(seed)};
     const Index n = 1 + draw.below(5), p = 1 + draw.below(n), q = 1 + draw.below(p);
     LinearModel m = lti(draw.matrix(n, n), draw.matrix(n, q), draw.matrix(p, n));
@@ -132,7 +132,7 @@ TEST_CASE("designs of random systems satisfy their equations") {
     RC_PRE(d.has_value());
     RC_PRE(d->T.cwiseAbs().maxCoeff() < 1e2 && d->M.cwiseAbs().maxCoeff() < 1e3);
     check_equations(m, *d, draw);
-  });
+  }));
 }
 
 TEST_CASE("a weak response is one, if no larger numbers cancel in it") {

@@ -104,7 +104,7 @@ Vector wave(Index k) { return Vector{{std::sin(.3 * static_cast<double>(k)), 1}}
 
 TEST_CASE("random systems") {
   Index found[4] = {0, 0, 0, 0}, descriptors = 0, fine = 0;
-  rc::check([&](std::uint64_t seed) {
+  CHECK(rc::check([&](std::uint64_t seed) {
     Draw draw{std::mt19937_64(seed)};
     System system = random_system(draw);
     RC_PRE(is_causal(system.model.linear));
@@ -140,7 +140,7 @@ TEST_CASE("random systems") {
     const FaultyRun quiet(with_start(system.model, plant.state()), wave, fault, Draw{std::mt19937_64(seed + 2), noise});
     system.model.X0 = make_zonotope(quiet.state() - 1e-6 * start * inside, 1e-6 * start);
     run(*filter(system.model, params), quiet, fault, steps);
-  });
+  }));
   for (Index delay = 1; delay <= 3; ++delay) CHECK(found[delay] > 500);
   CHECK(descriptors > 50);
   CHECK(fine > 50);

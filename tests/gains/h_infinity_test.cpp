@@ -210,7 +210,7 @@ TEST_CASE("plants whose inequality the solver does not solve in the coordinates 
 
 TEST_CASE("random plants: the gain keeps γ*, and no other does better") {
   int solved = 0, all = 0;
-  rc::check("h_infinity", [&](std::uint64_t seed) {
+  CHECK(rc::check("h_infinity", [&](std::uint64_t seed) {
     std::mt19937_64 engine(seed);
     const Index n = *rc::gen::inRange<Index>(1, 6), p = *rc::gen::inRange<Index>(1, 3);
     const Model model = random_plant(n, p, engine);
@@ -229,14 +229,14 @@ TEST_CASE("random plants: the gain keeps γ*, and no other does better") {
       if (linalg::eigenvalues(closed_loop(model, other)).cwiseAbs().maxCoeff() >= 1) continue;
       RC_ASSERT(certificate_of(model, other).norm_upper >= c.optimum * (1 - 1e-5));
     }
-  });
+  }));
   INFO(solved, " of ", all);
   CHECK(solved == all);
 }
 
 TEST_CASE("random plants: a monotone gain is monotone, and not better than the best of all") {
   int solved = 0, possible = 0;
-  rc::check("h_infinity_monotone", [&](std::uint64_t seed) {
+  CHECK(rc::check("h_infinity_monotone", [&](std::uint64_t seed) {
     std::mt19937_64 engine(seed);
     const Index n = *rc::gen::inRange<Index>(1, 5), p = *rc::gen::inRange<Index>(1, 3);
     Model model = random_plant(n, p, engine);
@@ -257,7 +257,7 @@ TEST_CASE("random plants: a monotone gain is monotone, and not better than the b
     RC_ASSERT(c.norm_lower <= c.optimum * (1 + 1e-4));
     const GainDesign best = design("h_infinity", model);
     if (best.feasible == Answer::yes) RC_ASSERT(c.optimum >= best.gain.certificate.optimum * (1 - 1e-5));
-  });
+  }));
   INFO(solved, " of ", possible);
   CHECK(solved == possible);
 }

@@ -54,7 +54,7 @@ TEST_CASE("both radii of zonotopes that can be seen") {
 }
 
 TEST_CASE("the W-radius is the largest over all vertices, or above it") {
-  rc::check([] {
+  CHECK(rc::check([] {
     const Index n = *rc::gen::inRange(1, 5), g = *rc::gen::inRange(1, 12);
     const Matrix R = random_matrix(n, g), W = random_weight(n);
     const auto found = w_radius(R, W);
@@ -62,8 +62,8 @@ TEST_CASE("the W-radius is the largest over all vertices, or above it") {
     RC_ASSERT(std::abs(found.value - by_enumeration(R, W)) <= 1e-10 * (1 + found.value));
     RC_ASSERT(f_w_radius(R, W) * f_w_radius(R, W) <=
               found.value * (1 + 1e-10));  // the mean over the vertices is at most the largest
-  });
-  rc::check([] {
+  }));
+  CHECK(rc::check([] {
     const Index n = *rc::gen::inRange(1, 5);
     const Matrix R = random_matrix(n, estimators::most_enumerated + 1), W = random_weight(n);
     const auto found = w_radius(R, W);
@@ -71,7 +71,7 @@ TEST_CASE("the W-radius is the largest over all vertices, or above it") {
     RC_ASSERT(!found.exact);
     RC_ASSERT(found.value >= exact * (1 - 1e-10));
     RC_ASSERT(found.value <= exact * 2);
-  });
+  }));
 }
 
 TEST_CASE("what cannot be measured is refused") {

@@ -152,7 +152,7 @@ TEST_CASE("questions that do not fit are refused") {
 }
 
 TEST_CASE("every answer comes with a proof that rational arithmetic confirms") {
-  rc::check("emptiness, containment, disjointness, support", [] {
+  CHECK(rc::check("emptiness, containment, disjointness, support", [] {
     const Index n = *rc::gen::inRange<Index>(0, 4);
     const LineForm X = small_set(n), Y = small_set(n);
     const Vector x = small_matrix(n, 1), d = small_matrix(n, 1);
@@ -171,5 +171,5 @@ TEST_CASE("every answer comes with a proof that rational arithmetic confirms") {
     const double h = support(X, d, &why);
     if (X.lines() == 0) RC_ASSERT(proves_support(X, d, h, why));
     if (std::isfinite(h)) RC_ASSERT(proves_support(X, d, h + 1e-12 * (1 + std::abs(h)), why));
-  });
+  }));
 }

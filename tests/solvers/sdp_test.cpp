@@ -325,7 +325,7 @@ TEST_CASE("threads get the answers that one gets alone") {
 }
 
 TEST_CASE("random programs with analytic answers") {
-  rc::check("the largest eigenvalue", [](std::uint64_t seed) {
+  CHECK(rc::check("the largest eigenvalue", [](std::uint64_t seed) {
     std::mt19937_64 engine(seed);
     const Index n = *rc::gen::inRange<Index>(1, 9);
     const double unit = std::pow(10., *rc::gen::inRange(-3, 4));
@@ -336,11 +336,11 @@ TEST_CASE("random programs with analytic answers") {
     const double exact = linalg::symmetric_eigen(A).values[n - 1];
     RC_ASSERT(std::abs(s.value - exact) <= 1e-6 * (1 + std::abs(exact)));
     RC_ASSERT(s.bound <= exact + 1e-6 * (1 + std::abs(exact)));
-  });
+  }));
 }
 
 TEST_CASE("random programs that are feasible by construction are solved, and their optimum is known") {
-  rc::check("F(x̂) and Y complement each other", [](std::uint64_t seed) {
+  CHECK(rc::check("F(x̂) and Y complement each other", [](std::uint64_t seed) {
     std::mt19937_64 engine(seed);
     std::uniform_real_distribution<double> uniform(-1, 1);
     const Index m = *rc::gen::inRange<Index>(1, 6);
@@ -382,11 +382,11 @@ TEST_CASE("random programs that are feasible by construction are solved, and the
     const double exact = program.cost.dot(x);
     RC_ASSERT(std::abs(s.value - exact) <= 1e-5 * (1 + std::abs(exact)));
     RC_ASSERT(s.bound <= exact + 1e-5 * (1 + std::abs(exact)));
-  });
+  }));
 }
 
 TEST_CASE("random programs that are infeasible by construction are proven so") {
-  rc::check("⟨F_i, Y⟩ = 0 and ⟨F_0, Y⟩ = -1 for a definite Y", [](std::uint64_t seed) {
+  CHECK(rc::check("⟨F_i, Y⟩ = 0 and ⟨F_0, Y⟩ = -1 for a definite Y", [](std::uint64_t seed) {
     std::mt19937_64 engine(seed);
     const Index m = *rc::gen::inRange<Index>(1, 6), n = *rc::gen::inRange<Index>(2, 6);
     const Matrix Y = random_definite(n, engine);
@@ -405,5 +405,5 @@ TEST_CASE("random programs that are infeasible by construction are proven so") {
     const SdpSolution s = solve(program);
     RC_ASSERT(s.status == SdpStatus::infeasible);
     check_proof(program, s, 1e8);
-  });
+  }));
 }
