@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -35,6 +36,9 @@ std::string describe_data(const Study& study) {
     const std::string by = simulate->plant ? " by " + simulate->plant->type : "";
     const std::uint64_t first = simulate->seed, last = first + static_cast<std::uint64_t>(simulate->seeds) - 1;
     const std::string seeds = last == first ? fmt::format("seed {}", first) : fmt::format("seeds {} to {}", first, last);
+    const bool designed = std::all_of(study.pipelines.begin(), study.pipelines.end(),
+                                      [](const PipelineSpec& pipeline) { return pipeline.designer.has_value(); });
+    if (designed) return "experiments with every mode and the designed inputs, " + seeds;
     return fmt::format("simulated{}, {}, {}", by, count(simulate->steps, "step"), seeds);
   }
   return "recorded, " + std::get<CsvSpec>(study.data).file.string();
@@ -69,6 +73,14 @@ std::string describe_modes(const Study& study) {
   return text;
 }
 
+std::vector<std::string> components_of(const PipelineSpec& pipeline) {
+  std::vector<std::string> names{pipeline.backend.type};
+  if (pipeline.designer) names.push_back(pipeline.designer->type);
+  if (pipeline.diagnoser) names.push_back(pipeline.diagnoser->type);
+  if (!pipeline.designer && !pipeline.diagnoser) names.push_back(pipeline.observer.type);
+  return names;
+}
+
 std::string describe(const Study& study) {
   const Paint paint(stdout);
   std::string text = fmt::format("{}: {}\n  title     {}\n  system    {}\n  data      {}\n", study.file.string(),
@@ -76,8 +88,7 @@ std::string describe(const Study& study) {
   text += describe_modes(study);
   const char* label = "pipelines";
   for (const PipelineSpec& pipeline : study.pipelines) {
-    text += fmt::format("  {:<9} {}: {}, {}\n", label, pipeline.name, pipeline.backend.type,
-                        pipeline.diagnoser ? pipeline.diagnoser->type : pipeline.observer.type);
+    text += fmt::format("  {:<9} {}: {}\n", label, pipeline.name, fmt::join(components_of(pipeline), ", "));
     label = "";
   }
   std::vector<std::string> metrics;
