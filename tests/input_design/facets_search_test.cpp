@@ -290,9 +290,9 @@ TEST_CASE("Tubes that must not be empty") {
     check_optimal(problem, searched(problem), kind == Cost::Kind::quadratic ? .0625 : .25);
     problem.conditions = {needed};
     check_optimal(problem, searched(problem), kind == Cost::Kind::quadratic ? 1.5625 : 1.25);
-    SeparationProblem shifted = problem;  // the same inputs around another centre
-    shifted.U.c[0] = -.25;
-    shifted.U.G(0, 0) = 1.75;
+    SeparationProblem shifted = problem;  // |u_0 - .5| ≤ 1.5
+    shifted.U.c[0] = .5;
+    shifted.U.G(0, 0) = 1.5;
     check_optimal(shifted, searched(shifted), kind == Cost::Kind::quadratic ? 1.5625 : 1.25);
     problem.conditions[0].b[0] = 4;  // |u_0 + 4| ≤ 1 never
     const SearchResult none = searched(problem);
