@@ -47,6 +47,7 @@ Exit run(int argc, char** argv) {
   add_validate(app, program);
   add_verify(app, program);
   add_guarantees(app, program);
+  add_design(app, program);
   add_list(app, program);
   add_info(app, program);
   add_schema(app, program);

@@ -32,14 +32,26 @@ ProgressBar::ProgressBar(std::vector<std::string> pipelines, bool visible)
     : pipelines_(std::move(pipelines)), visible_(visible), begin_(Clock::now()), drawn_at_(begin_) {}
 
 void ProgressBar::show(std::size_t pipeline, std::int64_t done, std::int64_t total) {
-  if (!visible_ || pipeline >= pipelines_.size()) return;
-  const Clock::time_point now = Clock::now();
-  if (now - begin_ < std::chrono::seconds(1) || now - drawn_at_ < std::chrono::milliseconds(100)) return;
-  drawn_at_ = now;
+  if (pipeline >= pipelines_.size() || !is_due()) return;
   const double part = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0;
   const double fraction = (static_cast<double>(pipeline) + part) / static_cast<double>(pipelines_.size());
-  const double elapsed = std::chrono::duration<double>(now - begin_).count();
-  std::fputs(("\r\x1b[K" + progress_line(pipelines_[pipeline], fraction, done, total, elapsed)).c_str(), stderr);
+  const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
+  draw(progress_line(pipelines_[pipeline], fraction, done, total, elapsed));
+}
+
+void ProgressBar::show(const std::string& line) {
+  if (is_due()) draw(line);
+}
+
+bool ProgressBar::is_due() {
+  const Clock::time_point now = Clock::now();
+  if (!visible_ || now - begin_ < std::chrono::seconds(1) || now - drawn_at_ < std::chrono::milliseconds(100)) return false;
+  drawn_at_ = now;
+  return true;
+}
+
+void ProgressBar::draw(const std::string& line) {
+  std::fputs(("\r\x1b[K" + line).c_str(), stderr);
   std::fflush(stderr);
   drawn_ = true;
 }

@@ -19,10 +19,15 @@ class ProgressBar {
 
   /// `total` 0: not known.
   void show(std::size_t pipeline, std::int64_t done, std::int64_t total);
+  /// A line of the caller's, where there is no total.
+  void show(const std::string& line);
   void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  bool is_due();
+  void draw(const std::string& line);
 
   std::vector<std::string> pipelines_;
   bool visible_, drawn_ = false;

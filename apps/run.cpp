@@ -43,8 +43,8 @@ Exit run(const Program& program, const Arguments& arguments) {
     complain(fmt::format("interrupted: nothing was written; earlier results in {} are unchanged", options.out.string()));
     return interrupted;
   }
-  if (!arguments.quiet) print(arguments.json ? report_json(outcome) : report_text(study, outcome, options.out));
-  for (const std::string& complaint : complaints(outcome)) complain(complaint);
+  if (!arguments.quiet) print(arguments.json ? report_json(study, outcome) : report_text(study, outcome, options.out));
+  for (const std::string& complaint : complaints(study, outcome)) complain(complaint);
   return exit_of(outcome);
 }
 
@@ -60,6 +60,7 @@ void add_run(CLI::App& app, Program& program) {
   command->footer(
       "Results appear when all are complete: results.json, sets.jsonl, data.csv, steps.csv, summary.csv, run.json, and\n"
       "diagnosis.csv where there are diagnosers: they are tried on all seeds of the study, and the first is written.\n"
+      "Where there are designers, inputs.csv holds what they designed; a diagnoser beside one is tried on every mode with it.\n"
       "SIGINT or SIGTERM ends the run with exit code 130 and leaves earlier results as they were; a second one kills.");
   command->callback([&program, arguments] { program.exit = run(program, *arguments); });
 }

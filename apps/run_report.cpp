@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common.hpp"
+#include "design_report.hpp"
 #include "diagnosis_report.hpp"
 #include "observer_report.hpp"
 
@@ -129,7 +130,34 @@ ordered_json json_of_diagnosis(const PipelineOutcome& p) {
       {"median_step_us", p.median_step_us}};
 }
 
-ordered_json json_of(const PipelineOutcome& p) {
+ordered_json json_of_design(const PipelineOutcome& p, const std::vector<std::string>& modes) {
+  ordered_json experiments = ordered_json::array();
+  for (const ExperimentRow& row : p.experiments) {
+    const DelayStatistics& k = row.isolation;
+    experiments.push_back({{"mode", modes[static_cast<std::size_t>(row.mode)]},
+                           {"runs", row.runs},
+                           {"possible", row.possible},
+                           {"isolated", row.isolated},
+                           {"wrong", row.wrong},
+                           {"unknown_fault", row.unknown_fault},
+                           {"undecided", row.undecided},
+                           {"isolation", k.count == 0 ? ordered_json(nullptr)
+                                                      : ordered_json{{"min", k.min}, {"median", k.median}, {"max", k.max}}}});
+  }
+  return {{"name", p.name},
+          {"backend", p.backend},
+          {"designer", p.designer},
+          {"diagnoser", p.diagnoser.empty() ? ordered_json(nullptr) : ordered_json(p.diagnoser)},
+          {"modes", modes},
+          {"violated_at", time_or_null(p.violated_at)},
+          {"error", error_of(p)},
+          {"design", p.design ? ordered_json::parse(cordon::json_of(*p.design, modes)) : ordered_json(nullptr)},
+          {"experiments", std::move(experiments)},
+          {"median_step_us", p.median_step_us}};
+}
+
+ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& modes) {
+  if (!p.designer.empty()) return json_of_design(p, modes);
   if (p.diagnosis) return json_of_diagnosis(p);
   ordered_json metrics = ordered_json::object();
   for (const MetricValue& metric : p.summary) {
@@ -164,11 +192,13 @@ ordered_json json_of(const PipelineOutcome& p) {
 }  // namespace
 
 std::string report_text(const Study& study, const RunOutcome& outcome, const std::filesystem::path& out) {
-  RunOutcome observed;  // pipelines with a diagnoser have nothing to tell in the columns of this table
+  RunOutcome observed;  // pipelines with a diagnoser or a designer have nothing to tell in the columns of this table
   std::string diagnoses;
   const Paint paint(stdout);
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    if (pipeline.diagnosis) {
+    if (!pipeline.designer.empty()) {
+      diagnoses += design_text(study, pipeline, paint) + "\n";
+    } else if (pipeline.diagnosis) {
       diagnoses += diagnosis_text(study, pipeline, paint) + "\n";
     } else {
       observed.pipelines.push_back(pipeline);
@@ -180,21 +210,38 @@ std::string report_text(const Study& study, const RunOutcome& outcome, const std
   return title + comparison + details + diagnoses + "Results are in " + out.string() + "\n";
 }
 
-std::string report_json(const RunOutcome& outcome) {
+std::string report_json(const Study& study, const RunOutcome& outcome) {
+  std::vector<std::string> modes;
+  for (const Mode& mode : bank_of(study).modes) modes.push_back(mode.name);
   ordered_json pipelines = ordered_json::array(), files = ordered_json::array();
-  for (const PipelineOutcome& pipeline : outcome.pipelines) pipelines.push_back(json_of(pipeline));
+  for (const PipelineOutcome& pipeline : outcome.pipelines) pipelines.push_back(json_of(pipeline, modes));
   for (const std::filesystem::path& file : outcome.files) files.push_back(file.string());
   const ordered_json report{{"pipelines", std::move(pipelines)}, {"files", std::move(files)}};
   return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-std::vector<std::string> complaints(const RunOutcome& outcome) {
+std::vector<std::string> complaints(const Study& study, const RunOutcome& outcome) {
   std::vector<std::string> found;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     if (!pipeline.error.empty()) {
       found.push_back(fmt::format("pipeline \"{}\" stopped after {} steps: {}", pipeline.name, pipeline.steps, pipeline.error));
     }
-    if (pipeline.violated_at >= 0 && pipeline.diagnosis) {
+    if (pipeline.design) {
+      for (const std::string& mode : empty_tubes(study, *pipeline.design)) {
+        found.push_back(fmt::format("pipeline \"{}\": no output of mode \"{}\" fits its input: the model contradicts itself",
+                                    pipeline.name, mode));
+      }
+      if (pipeline.design->status == DesignStatus::unknown) {
+        found.push_back(fmt::format("pipeline \"{}\": no input was found within the limit", pipeline.name));
+      }
+    }
+    if (pipeline.violated_at >= 0 && !pipeline.designer.empty()) {
+      found.push_back(
+          fmt::format("pipeline \"{}\" violates its guarantee: at k = {} of an experiment its diagnoser excludes the true mode. "
+                      "This is a defect "
+                      "of its backend or diagnoser",
+                      pipeline.name, pipeline.violated_at));
+    } else if (pipeline.violated_at >= 0 && pipeline.diagnosis) {
       found.push_back(diagnosis_violation(pipeline));
     } else if (pipeline.violated_at >= 0) {
       found.push_back(fmt::format(
@@ -216,7 +263,13 @@ Exit exit_of(const RunOutcome& outcome) {
   Exit exit = Exit::done;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     if (pipeline.violated_at >= 0 || pipeline.inner_outside >= 0) return Exit::violated;
-    if (exit == Exit::done && !pipeline.error.empty()) exit = exit_for(pipeline.error_code.value_or(Errc::internal));
+    const bool answered = exit != Exit::done && exit != Exit::unanswered;
+    if (!answered && !pipeline.error.empty()) exit = exit_for(pipeline.error_code.value_or(Errc::internal));
+    if (!pipeline.design || answered) continue;
+    const auto& best = pipeline.design->best;
+    const bool empty = best && std::find(best->empty.begin(), best->empty.end(), Answer::yes) != best->empty.end();
+    if (empty) exit = Exit::invalid;
+    if (pipeline.design->status == DesignStatus::unknown && exit == Exit::done) exit = Exit::unanswered;
   }
   return exit;
 }

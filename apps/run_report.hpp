@@ -12,12 +12,12 @@
 namespace cordon::apps {
 
 /// A table with one row per pipeline with an observer, then gains, widths and inner estimates where there are any, a timeline for
-/// each pipeline with a diagnoser, and where the results are.
+/// each pipeline with a diagnoser, designs with their experiments, and where the results are.
 std::string report_text(const Study& study, const RunOutcome& outcome, const std::filesystem::path& out);
-std::string report_json(const RunOutcome& outcome);
+std::string report_json(const Study& study, const RunOutcome& outcome);
 
 /// What went wrong, a sentence each: pipelines that stopped, guarantees that were violated.
-std::vector<std::string> complaints(const RunOutcome& outcome);
+std::vector<std::string> complaints(const Study& study, const RunOutcome& outcome);
 /// The code of the worst outcome: a violated guarantee before errors of pipelines.
 Exit exit_of(const RunOutcome& outcome);
 

@@ -14,6 +14,7 @@ void register_interval_trajectory(Registrar& registrar);
 void register_integrated(Registrar& registrar);
 void register_observer_bank(Registrar& registrar);
 void register_consistency_bank(Registrar& registrar);
+void register_tube_membership(Registrar& registrar);
 void register_given_gain(Registrar& registrar);
 void register_kalman_gain(Registrar& registrar);
 void register_peak_gain(Registrar& registrar);

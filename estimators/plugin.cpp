@@ -12,6 +12,7 @@ void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_integrated(registrar);
   cordon::estimators::register_observer_bank(registrar);
   cordon::estimators::register_consistency_bank(registrar);
+  cordon::estimators::register_tube_membership(registrar);
   cordon::estimators::register_given_gain(registrar);
   cordon::estimators::register_kalman_gain(registrar);
   cordon::estimators::register_peak_gain(registrar);
@@ -22,6 +23,7 @@ void register_components(cordon::Registrar& registrar) {
   cordon::estimators::register_w_radius_gain(registrar);
   cordon::estimators::register_facets_designer(registrar);
   cordon::estimators::register_given_designer(registrar);
+  cordon::estimators::register_milp_designer(registrar);
   cordon::estimators::register_metrics(registrar);
   cordon::estimators::register_weighted_radius(registrar);
 }

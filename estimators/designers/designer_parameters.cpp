@@ -12,7 +12,6 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr std::int64_t most_horizon = 100;
 constexpr double most_entries = 4e6;  ///< of the rows of a pair, before elimination
 
 Index inputs_of(const ModeBank& bank) { return bank[0].model.linear.inputs(); }
@@ -52,6 +51,19 @@ void check_backend(const DesignerContext& context, const Params& params, std::ve
     problems.push_back({"/admissible_set",
                         fmt::format("is missing: with \"{}\" what E does not determine must be bounded", info.name),
                         "give a set that holds the state at all times, or use the backend \"line_zonotope\", which needs none"});
+  }
+}
+
+void check_admissible_set(const DesignerContext& context, const LineForm& XA, std::vector<Diagnostic>& problems) {
+  const Index states = context.bank[0].model.linear.states();
+  if (XA.dim() != states) {
+    problems.push_back({"/admissible_set", fmt::format("is of dimension {}, the number of states is {}", XA.dim(), states), ""});
+  } else if (is_empty(XA) == Answer::yes) {
+    problems.push_back({"/admissible_set", "is empty", "no state is admissible: widen the set"});
+  } else if (!context.backend->info().unbounded && is_bounded(XA) != Answer::yes) {
+    problems.push_back({"/admissible_set",
+                        fmt::format("is unbounded, which the backend \"{}\" cannot hold", context.backend->info().name),
+                        "give a bounded set, or use the backend \"line_zonotope\", which needs none"});
   }
 }
 
@@ -107,8 +119,8 @@ void check_size(const DesignerContext& context, const Params& params, std::vecto
                                     static_cast<double>(m.X0.generators() + m.X0.lines()));
   }
   if (4 * rows * columns <= most_entries) return;
-  problems.push_back({params.has("horizon") ? "/horizon" : "/max_horizon",
-                      fmt::format("makes programs of {:.0f} rows and {:.0f} columns for a pair of modes", 2 * rows, 2 * columns),
+  const char* name = params.has("horizon") ? "/horizon" : params.has("max_horizon") ? "/max_horizon" : "/input";
+  problems.push_back({name, fmt::format("makes programs of up to {:.0f} rows and {:.0f} columns", 2 * rows, 2 * columns),
                       fmt::format("rows times columns may be {:.0f}: choose a shorter horizon", most_entries)});
 }
 
@@ -164,21 +176,9 @@ ParamSchema& add_search_parameters(ParamSchema& schema) {
       .real("time_limit", "seconds until the search at one horizon ends with what it has", 60, 0.001, 1e6);
 }
 
-std::vector<Diagnostic> check_statement(const DesignerContext& context, const Params& params) {
+std::vector<Diagnostic> check_tube_data(const DesignerContext& context, const Params& params) {
   std::vector<Diagnostic> problems;
-  const Index inputs = inputs_of(context.bank), states = context.bank[0].model.linear.states();
-  if (inputs == 0) problems.push_back({"", "the system has no input", "there is nothing to design"});
-  check_schedule(params, "weights", inputs, true, problems);
-  check_schedule(params, "reference", inputs, false, problems);
-  if (params.has("admissible_set")) {
-    const LineForm& XA = params.set_form("admissible_set");
-    if (XA.dim() != states) {
-      problems.push_back(
-          {"/admissible_set", fmt::format("is of dimension {}, the number of states is {}", XA.dim(), states), ""});
-    } else if (is_empty(XA) == Answer::yes) {
-      problems.push_back({"/admissible_set", "is empty", "no state is admissible: widen the set"});
-    }
-  }
+  if (params.has("admissible_set")) check_admissible_set(context, params.set_form("admissible_set"), problems);
   for (const Mode& mode : context.bank.modes) {
     if (mode.model.linear.outputs() == context.bank[0].model.linear.outputs()) continue;
     problems.push_back({"",
@@ -188,6 +188,16 @@ std::vector<Diagnostic> check_statement(const DesignerContext& context, const Pa
   }
   check_backend(context, params, problems);
   check_sets(context, problems);
+  check_size(context, params, problems);
+  return problems;
+}
+
+std::vector<Diagnostic> check_statement(const DesignerContext& context, const Params& params) {
+  std::vector<Diagnostic> problems = check_tube_data(context, params);
+  const Index inputs = inputs_of(context.bank);
+  if (inputs == 0) problems.push_back({"", "the system has no input", "there is nothing to design"});
+  check_schedule(params, "weights", inputs, true, problems);
+  check_schedule(params, "reference", inputs, false, problems);
   return problems;
 }
 
@@ -200,7 +210,6 @@ std::vector<Diagnostic> check_search(const DesignerContext& context, const Param
                         ""});
   }
   if (inputs > 0) check_input_set(context.bank, params, problems);
-  check_size(context, params, problems);
   if (problems.empty()) check_tubes(context, params, problems);
   return problems;
 }

@@ -14,6 +14,10 @@ namespace cordon::designers {
 ParamSchema& add_statement_parameters(ParamSchema& schema);
 ParamSchema& add_search_parameters(ParamSchema& schema);
 
+inline constexpr std::int64_t most_horizon = 100;
+
+/// Problems of the tubes themselves: backend, X0, W, V, admissible set, size. Reads "horizon" or what takes its place.
+std::vector<Diagnostic> check_tube_data(const DesignerContext& context, const Params& params);
 /// Problems of the statement for this bank and backend.
 std::vector<Diagnostic> check_statement(const DesignerContext& context, const Params& params);
 /// Those of a search besides.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "designers/separation_problem.hpp"
 
+#include <fmt/format.h>
+
 namespace cordon::designers {
 
 double Cost::at(VectorIn u) const {
@@ -15,6 +17,12 @@ double Cost::at(VectorIn u) const {
       return weights.dot(apart.cwiseAbs2());
   }
   return 0;
+}
+
+std::string modes_of(const SeparationProblem& problem, const PairProgram& pair) {
+  const auto& names = problem.modes;
+  if (static_cast<Index>(names.size()) <= pair.j) return fmt::format("modes {} and {}", pair.i + 1, pair.j + 1);
+  return fmt::format("\"{}\" and \"{}\"", names[static_cast<std::size_t>(pair.i)], names[static_cast<std::size_t>(pair.j)]);
 }
 
 }  // namespace cordon::designers

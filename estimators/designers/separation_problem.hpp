@@ -34,7 +34,10 @@ struct SeparationProblem {
   InputSequences U;
   Cost cost;
   double epsilon = 0;
+  std::vector<std::string> modes = {};  ///< their names, for reasons
 };
+/// The modes of a pair, for people: by their names, or by numbers from 1 where these are not given.
+std::string modes_of(const SeparationProblem& problem, const PairProgram& pair);
 
 /// What a search found. A lower bound is one of all feasible u; nothing here rests on a solver's status alone.
 struct SearchResult {

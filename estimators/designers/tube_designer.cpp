@@ -64,6 +64,7 @@ SeparationProblem problem_at(const ModeBank& bank, const SetBackend& backend, co
   for (const OutputTube& tube : tubes) problem.conditions.push_back(conditions_of(tube));
   problem.cost = cost_from(params, problem.inputs, horizon);
   problem.epsilon = params.real("epsilon");
+  for (const Mode& mode : bank.modes) problem.modes.push_back(mode.name);
   return problem;
 }
 

@@ -13,9 +13,11 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "data/published.hpp"
+#include "data/records.hpp"
 #include "study/data/simulate.hpp"
 
 using namespace cordon;
+using namespace data_test;
 using detail::open_experiment;
 
 namespace {
@@ -62,12 +64,6 @@ Study descriptor_study(LineForm x0_set) {
   spec.input = published::descriptor_input();
   study.data = std::move(spec);
   return study;
-}
-
-std::vector<Record> all(DataSource& data) {
-  std::vector<Record> records;
-  while (std::optional<Record> record = data.next()) records.push_back(std::move(*record));
-  return records;
 }
 
 std::vector<Record> run(const Study& study, Index mode, const Matrix& u, std::uint64_t seed_offset = 0) {
@@ -167,6 +163,15 @@ TEST_CASE("a drawn start takes nothing from the other sequences, and repeats") {
   }
 }
 
+TEST_CASE("the start is not in step with w_0") {
+  Study study = data_study(unit_box(2));
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const auto records = all(*open_data(study, seed));
+    const Vector w = *records[1].truth - study.model.linear.A * *records[0].truth;
+    CHECK((w - *records[0].truth).norm() > 1e-6);
+  }
+}
+
 TEST_CASE("x0 lies in a set with constraints") {
   LineForm triangle = unit_box(2);  // x1 + x2 ≤ 0, as a row with a slack
   triangle.G.conservativeResizeLike(Matrix::Zero(2, 3));
@@ -238,6 +243,18 @@ TEST_CASE("sets that no draw meets are drawn together with w_0") {
   CHECK_THROWS_WITH_AS(open_data(nowhere),
                        doctest::Contains("/data/simulate/x0: no state of the set was found that meets the static rows"),
                        InputError);
+}
+
+TEST_CASE("pairs that are drawn together heed u_0") {
+  const LineForm flat = make_zonotope(Vector{{.5, .5, .25}}, Matrix{{.1, 0.}, {0., 1.5}, {0., 0.}});
+  Study study = descriptor_study(flat);
+  study.model.linear.B(2, 0) = 1;  // in the static row
+  std::get<SimulateSpec>(study.data).input[0] = {};
+  std::get<SimulateSpec>(study.data).input[0].offset = .5;
+  for (const Vector& x : starts(study, 20)) {
+    CHECK(contains(flat, x) != Answer::no);
+    CHECK(std::abs((x[0] - .5 * x[1] - x[2] - .5) / .6) <= 1 + 1e-12);
+  }
 }
 
 TEST_CASE("what no state can be drawn from is refused") {

@@ -7,10 +7,12 @@
 #include <doctest/doctest.h>
 
 #include "data/published.hpp"
+#include "data/records.hpp"
 #include "study/data/plant_source.hpp"
 #include "study/data/simulate.hpp"
 
 using namespace cordon;
+using namespace data_test;
 
 namespace {
 
@@ -58,22 +60,6 @@ Study study_of(std::vector<FaultSpec> faults, Noise noise = Noise::uniform, Mode
   study.model = std::move(model);
   study.data = std::move(spec);
   return study;
-}
-
-std::vector<Record> all(const Study& study) {
-  std::vector<Record> records;
-  const auto data = open_data(study);
-  while (std::optional<Record> record = data->next()) records.push_back(std::move(*record));
-  return records;
-}
-
-std::string message_of(const Study& study) {
-  try {
-    open_data(study);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
 }
 
 /// x_{k+1} - A x_k of the healthy model: B diag(f) u + w.

@@ -11,8 +11,10 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "data/published.hpp"
+#include "data/records.hpp"
 
 using namespace cordon;
+using namespace data_test;
 using detail::Disturbance;
 using detail::LinearPlant;
 using detail::Purpose;
@@ -35,35 +37,6 @@ Study published_study(std::int64_t steps = 100) {
   spec.x0 = Vector{{.5, .5, .25}};
   spec.input = published::descriptor_input();
   return study_of(published::descriptor_model(), spec);
-}
-
-std::vector<Record> all(const Study& study) {
-  std::vector<Record> records;
-  const auto data = open_data(study);
-  while (std::optional<Record> record = data->next()) records.push_back(std::move(*record));
-  return records;
-}
-
-/// FNV-1a over the bit patterns.
-std::uint64_t digest(const std::vector<Record>& records) {
-  std::uint64_t hash = 14695981039346656037u;
-  const auto take = [&](double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    for (int i = 0; i < 8; ++i) hash = (hash ^ ((bits >> (8 * i)) & 255)) * 1099511628211u;
-  };
-  for (const Record& r : records) {
-    for (const Vector* part : {&r.sample.u, &r.sample.y, &*r.truth}) std::for_each(part->begin(), part->end(), take);
-  }
-  return hash;
-}
-
-std::string message_of(const Study& study) {
-  try {
-    open_data(study);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
 }
 
 LineForm unit_box(Index n) { return make_box({-Vector::Ones(n), Vector::Ones(n)}); }

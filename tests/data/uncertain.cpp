@@ -10,10 +10,12 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/study/data.hpp"
 #include "data/published.hpp"
+#include "data/records.hpp"
 #include "study/data/draws.hpp"
 #include "study/data/linear_plant.hpp"
 
 using namespace cordon;
+using namespace data_test;
 
 namespace {
 
@@ -61,36 +63,6 @@ Study study_of(Model model, Noise noise = Noise::uniform, ParameterDraw paramete
 }
 
 SimulateSpec& spec_of(Study& study) { return std::get<SimulateSpec>(study.data); }
-
-std::vector<Record> all(const Study& study) {
-  std::vector<Record> records;
-  const auto data = open_data(study);
-  while (std::optional<Record> record = data->next()) records.push_back(std::move(*record));
-  return records;
-}
-
-/// FNV-1a over the bit patterns.
-std::uint64_t digest(const std::vector<Record>& records) {
-  std::uint64_t hash = 14695981039346656037u;
-  const auto take = [&](double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    for (int i = 0; i < 8; ++i) hash = (hash ^ ((bits >> (8 * i)) & 255)) * 1099511628211u;
-  };
-  for (const Record& r : records) {
-    for (const Vector* part : {&r.sample.u, &r.sample.y, &*r.truth}) std::for_each(part->begin(), part->end(), take);
-    if (r.fault) std::for_each(r.fault->begin(), r.fault->end(), take);
-  }
-  return hash;
-}
-
-std::string message_of(const Study& study) {
-  try {
-    all(study);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
-}
 
 AdditiveFaultSpec additive(Index fault, std::int64_t from, std::int64_t to, double offset, double amplitude = 0) {
   AdditiveFaultSpec spec;

@@ -2,37 +2,18 @@
 // The four descriptor models of [Rego2025, sec. 6.2] with their inputs, and their simulation.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
 #include "cordon/sets/sampling.hpp"
+#include "input_design/systems.hpp"
 #include "published/study_models.hpp"
 
 namespace diagnosis_test {
 
 using namespace cordon;
 
-inline ModeBank four_models() {
-  LinearModel m;
-  m.E = Matrix{{1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
-  m.A = Matrix{{.5, 0, 0}, {.8, .95, 0}, {-1, .5, 1}};
-  m.B = Matrix{{1, 0}, {0, 1}, {0, 0}};
-  m.Bw = Matrix{{.1, 0, 0}, {0, 1.5, 0}, {0, 0, .6}};
-  m.C = Matrix{{1, -1, 0}};
-  m.D = Matrix::Zero(1, 2);
-  m.Dv = Matrix{{.5}};
-  std::array<LinearModel, 4> models{m, m, m, m};
-  models[1].A(0, 2) = .5;
-  models[2].B = Matrix{{1, 0}, {0, .9}, {-.1, 0}};
-  models[3].C(0, 2) = .1;
-  ModeBank bank;
-  for (const LinearModel& linear : models) {
-    const Model model{linear, bounded_start(), make_box(cube(3, .1)), make_box(cube(1, .1))};
-    bank.modes.push_back({"model_" + std::to_string(bank.modes.size() + 1), model});
-  }
-  return bank;
-}
+inline ModeBank four_models() { return examples::four_descriptor_models(); }
 
 /// u_0 … u_3, published: separates the four models at k = 3.
 inline std::vector<Vector> separating_input() {

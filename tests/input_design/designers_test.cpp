@@ -61,7 +61,7 @@ TEST_CASE("A given input is judged: cost, pairs, tubes") {
   params.set("input", by_time(examples::published_constrained_input(), 2));
   outcome = judged(bank, "line_zonotope", params);
   CHECK(outcome.best->separates() == Answer::no);
-  CHECK(outcome.reason == "the outputs of \"1\" and \"3\" can be the same");
+  CHECK(outcome.reason == "the outputs of \"model_1\" and \"model_3\" can be the same");
 }
 
 TEST_CASE("An empty tube is a modelling error, and no separation") {
@@ -125,7 +125,7 @@ TEST_CASE("What makes no sense is refused, all of it at once") {
     other.modes[2].model.linear.D = Matrix::Zero(2, 2);
     other.modes[2].model.linear.Dv = Matrix::Ones(2, 1);
     CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "",
-                   "mode \"3\" has 2 outputs, \"1\" has 1"));
+                   "mode \"model_3\" has 2 outputs, \"model_1\" has 1"));
     other = bank;
     other.modes.resize(1);
     CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "", "no modes to tell apart"));

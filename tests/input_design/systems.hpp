@@ -43,7 +43,7 @@ inline ModeBank four_descriptor_models() {
   model.V = cube(1, .1);
   model.U = cube(2, 8);
   ModeBank bank;
-  for (const char* name : {"1", "2", "3", "4"}) bank.modes.push_back({name, model});
+  for (const char* name : {"model_1", "model_2", "model_3", "model_4"}) bank.modes.push_back({name, model});
   bank.modes[1].model.linear.A(0, 2) = .5;
   bank.modes[2].model.linear.B(1, 1) = .9;
   bank.modes[2].model.linear.B(2, 0) = -.1;

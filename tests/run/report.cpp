@@ -128,7 +128,7 @@ TEST_CASE("a long timeline is cut, and says so") {
 TEST_CASE("JSON for programs has it all") {
   RunOutcome outcome;
   outcome.pipelines = {diagnosis()};
-  const json p = json::parse(apps::report_json(outcome))["pipelines"][0];
+  const json p = json::parse(apps::report_json({}, outcome))["pipelines"][0];
   CHECK(p["diagnoser"] == "observer_bank");
   CHECK_FALSE(p.contains("observer"));
   CHECK(p["guarantees"].is_null());
@@ -218,7 +218,7 @@ TEST_CASE("gains, widths at the end and inner estimates have a table each, and o
             "PIPELINE  STEPS  MEAN SHARE OF THE WIDTH  INSIDE THE HULL\n"
             "offers    19     0.875                    always\n"
             "\n"));
-  const json p = json::parse(apps::report_json(outcome))["pipelines"];
+  const json p = json::parse(apps::report_json({}, outcome))["pipelines"];
   CHECK(p[0]["gains"].empty());
   CHECK(p[0]["inner_steps"] == 0);
   CHECK(p[0]["inner_share"].is_null());
@@ -234,7 +234,7 @@ TEST_CASE("gains, widths at the end and inner estimates have a table each, and o
   plain.last_hull = Box::empty(2);
   text = apps::report_text(study(), outcome, "out");
   CHECK(has(text, "plain     empty     empty\n"));
-  CHECK(json::parse(apps::report_json(outcome))["pipelines"][0]["last"]["width"].is_null());
+  CHECK(json::parse(apps::report_json({}, outcome))["pipelines"][0]["last"]["width"].is_null());
   plain.last_hull = offers.last_hull = {-Vector::Ones(8), Vector::Ones(8)};
   CHECK(has(apps::report_text(study(), outcome, "out"), "x8\n"));
   plain.last_hull = offers.last_hull = {-Vector::Ones(9), Vector::Ones(9)};
@@ -245,7 +245,7 @@ TEST_CASE("an inner estimate outside the hull is a violated guarantee") {
   RunOutcome outcome;
   outcome.pipelines.resize(2);
   CHECK(apps::exit_of(outcome) == apps::Exit::done);
-  CHECK(apps::complaints(outcome).empty());
+  CHECK(apps::complaints({}, outcome).empty());
   outcome.pipelines[0].error = "out of order";
   outcome.pipelines[0].error_code = Errc::solver;
   CHECK(apps::exit_of(outcome) == apps::Exit::unanswered);
@@ -254,14 +254,14 @@ TEST_CASE("an inner estimate outside the hull is a violated guarantee") {
   crooked.inner_steps = 3;
   crooked.inner_outside = 0;
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);
-  REQUIRE(apps::complaints(outcome).size() == 2);
-  CHECK(has(apps::complaints(outcome)[1], "\"crooked\" violates its guarantee: at k = 0 its inner estimate"));
+  REQUIRE(apps::complaints({}, outcome).size() == 2);
+  CHECK(has(apps::complaints({}, outcome)[1], "\"crooked\" violates its guarantee: at k = 0 its inner estimate"));
   CHECK(has(apps::report_text(study(), outcome, "out"), "VIOLATED at k = 0"));
   CHECK(has(apps::report_text(study(), outcome, "out"), "NOT at k = 0"));
   crooked = {};
   crooked.violated_at = 0;
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);
-  CHECK(has(apps::complaints(outcome)[1], "the true state is proven outside"));
+  CHECK(has(apps::complaints({}, outcome)[1], "the true state is proven outside"));
 }
 
 TEST_CASE("additive faults: names in the timeline, a table, and what is outside its bounds") {

@@ -6,40 +6,11 @@
 #include <doctest/doctest.h>
 
 #include "study/fakes.hpp"
+#include "study/mistake.hpp"
 
 using namespace study_test;
 
 namespace {
-
-struct Mistake {
-  std::string from;
-  std::string to;
-  std::string pointer;
-  std::string message;
-  std::string suggestion;
-  int line = 0;  ///< 0: the line on which `to` stands
-};
-
-int line_of(const std::string& text, const std::string& piece) {
-  const std::size_t at = text.find(piece);
-  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-}
-
-void expect_reported(const Mistake& mistake) {
-  const std::string text = exchanged(valid_study, mistake.from, mistake.to);
-  CAPTURE(mistake.to);
-  const auto problems = problems_of(text);
-  REQUIRE(!problems.empty());
-  if (problems.size() > 1)
-    CHECK(problems[0].pointer + " and " + problems[1].pointer + ": " + problems[1].message == mistake.pointer);
-  CHECK(problems[0].pointer == mistake.pointer);
-  CAPTURE(problems[0].message);
-  CAPTURE(problems[0].suggestion);
-  CHECK(problems[0].message.find(mistake.message) != std::string::npos);
-  CHECK(problems[0].suggestion.find(mistake.suggestion) != std::string::npos);
-  if (mistake.suggestion.empty()) CHECK(problems[0].suggestion.empty());
-  CHECK(problems[0].line == (mistake.line > 0 ? mistake.line : line_of(text, mistake.to)));
-}
 
 const Mistake top_level[] = {
     {"\"cordon\": 1,\n", "", "/cordon", "is missing", "write \"cordon\": 1", 1},
@@ -247,20 +218,20 @@ const Mistake syntax[] = {
 TEST_CASE("the study that the mistakes are made in is valid") { CHECK(problems_of(valid_study).empty()); }
 
 TEST_CASE("mistakes at the top level") {
-  for (const Mistake& mistake : top_level) expect_reported(mistake);
+  for (const Mistake& mistake : top_level) expect_reported(valid_study, mistake);
 }
 TEST_CASE("mistakes in the system") {
-  for (const Mistake& mistake : systems) expect_reported(mistake);
+  for (const Mistake& mistake : systems) expect_reported(valid_study, mistake);
 }
 TEST_CASE("mistakes in sets") {
-  for (const Mistake& mistake : sets) expect_reported(mistake);
+  for (const Mistake& mistake : sets) expect_reported(valid_study, mistake);
 }
 TEST_CASE("mistakes in the data") {
-  for (const Mistake& mistake : data) expect_reported(mistake);
+  for (const Mistake& mistake : data) expect_reported(valid_study, mistake);
 }
 TEST_CASE("mistakes in components") {
-  for (const Mistake& mistake : components) expect_reported(mistake);
+  for (const Mistake& mistake : components) expect_reported(valid_study, mistake);
 }
 TEST_CASE("mistakes in the JSON text") {
-  for (const Mistake& mistake : syntax) expect_reported(mistake);
+  for (const Mistake& mistake : syntax) expect_reported(valid_study, mistake);
 }

@@ -7,38 +7,13 @@
 
 #include "cordon/study/data.hpp"
 #include "study/fakes.hpp"
+#include "study/mistake.hpp"
 #include "study/same_study.hpp"
 
 using namespace cordon;
 using namespace study_test;
 
 namespace {
-
-/// The text with one piece exchanged has exactly one problem, on the line of the new piece (or on the given one).
-struct Mistake {
-  std::string from, to, pointer, message, suggestion;
-  int line = 0;
-};
-
-int line_of(const std::string& text, const std::string& piece) {
-  const std::size_t at = text.find(piece);
-  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-}
-
-void expect_reported(const std::string& study, const Mistake& mistake) {
-  const std::string text = exchanged(study, mistake.from, mistake.to);
-  CAPTURE(mistake.to);
-  const auto problems = problems_of(text);
-  for (const Diagnostic& d : problems) INFO(d.pointer << ": " << d.message);
-  REQUIRE(problems.size() == 1);
-  CHECK(problems[0].pointer == mistake.pointer);
-  CAPTURE(problems[0].message);
-  CAPTURE(problems[0].suggestion);
-  CHECK(problems[0].message.find(mistake.message) != std::string::npos);
-  CHECK(problems[0].suggestion.find(mistake.suggestion) != std::string::npos);
-  if (mistake.suggestion.empty()) CHECK(problems[0].suggestion.empty());
-  CHECK(problems[0].line == (mistake.line > 0 ? mistake.line : line_of(text, mistake.to)));
-}
 
 const std::string designer = "\"designer\": {\"type\": \"given\", \"u\": [[1], [2], [-1]]}";
 const std::string start = "{\"type\": \"box\", \"lower\": [-0.5, 0.75], \"upper\": [0.5, 1.25]}";
@@ -206,6 +181,12 @@ TEST_CASE("a pipeline without a designer needs data, and is named") {
   CHECK(problems[0].message == "is missing");
   CHECK(problems[0].suggestion.find("/pipelines/1 has no designer") != std::string::npos);
 
+  // of two, the first one
+  problems = problems_of(exchanged(exchanged(text, data_text, ""), "\"pipelines\": [",
+                                   "\"pipelines\": [{\"name\": \"new\", \"backend\": \"zonotope\", " + observer + "},"));
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].suggestion.find("/pipelines/0 has no designer") != std::string::npos);
+
   // without any designer nobody is named
   problems = problems_of(exchanged(valid_study, "\"steps\": 20,", ""));
   REQUIRE(problems.size() == 1);
@@ -319,6 +300,19 @@ TEST_CASE("the start of designers and of observers is compared with where each b
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].pointer == "/data/simulate/x0");
   CHECK(problems[0].message == "does not lie inside the initial_set of pipeline \"designed\"");
+}
+
+TEST_CASE("an initial_set beside a designer does not take the place of X0") {
+  const std::string text = design_study;
+  const std::size_t begin = text.find(",\n{\n\"name\": \"by hand\"");
+  std::string alone = text.substr(0, begin) + "\n]\n}\n";
+  alone = exchanged(alone, "\"committee\"",
+                    "{\"type\": \"observer_bank\", \"waiting_time\": 1, \"observer\": {\"type\": \"prediction_correction\", "
+                    "\"initial_set\": {\"type\": \"box\", \"lower\": [-9, -9], \"upper\": [9, 9]}}}");
+  CHECK(problems_of(alone).empty());
+  const auto problems = problems_of(exchanged(alone, start, "[5, 5]"));
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].message == "lies outside X0");
 }
 
 TEST_CASE("observers start in a set too") {

@@ -7,36 +7,12 @@
 
 #include "cordon/study/data.hpp"
 #include "study/fakes.hpp"
+#include "study/mistake.hpp"
 
 using namespace cordon;
 using namespace study_test;
 
 namespace {
-
-/// The text with one piece exchanged has exactly one problem, on the line of the new piece (or on the given one).
-struct Mistake {
-  std::string from, to, pointer, message, suggestion;
-  int line = 0;
-};
-
-int line_of(const std::string& text, const std::string& piece) {
-  const std::size_t at = text.find(piece);
-  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-}
-
-void expect_reported(const Mistake& mistake) {
-  const std::string text = exchanged(diagnosis_study, mistake.from, mistake.to);
-  CAPTURE(mistake.to);
-  const auto problems = problems_of(text);
-  REQUIRE(problems.size() == 1);
-  CHECK(problems[0].pointer == mistake.pointer);
-  CAPTURE(problems[0].message);
-  CAPTURE(problems[0].suggestion);
-  CHECK(problems[0].message.find(mistake.message) != std::string::npos);
-  CHECK(problems[0].suggestion.find(mistake.suggestion) != std::string::npos);
-  if (mistake.suggestion.empty()) CHECK(problems[0].suggestion.empty());
-  CHECK(problems[0].line == (mistake.line > 0 ? mistake.line : line_of(text, mistake.to)));
-}
 
 const std::string weak = "\"actuator\": [0.3, [0.1, 0.7]]", deaf = "\"sensor\": [0.5]";
 const std::string leak = "\"F\": [[1], [0.5]], \"Fy\": [[0.1]]";
@@ -164,13 +140,13 @@ TEST_CASE("the study that the mistakes are made in is valid") {
 }
 
 TEST_CASE("mistakes in modes") {
-  for (const Mistake& mistake : modes) expect_reported(mistake);
+  for (const Mistake& mistake : modes) expect_reported(diagnosis_study, mistake);
 }
 TEST_CASE("mistakes in faults") {
-  for (const Mistake& mistake : faults) expect_reported(mistake);
+  for (const Mistake& mistake : faults) expect_reported(diagnosis_study, mistake);
 }
 TEST_CASE("mistakes in diagnosers") {
-  for (const Mistake& mistake : diagnosers) expect_reported(mistake);
+  for (const Mistake& mistake : diagnosers) expect_reported(diagnosis_study, mistake);
 }
 
 TEST_CASE("modes are what they differ in from the nominal model") {

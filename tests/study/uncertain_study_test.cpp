@@ -10,37 +10,13 @@
 
 #include "cordon/study/data.hpp"
 #include "study/fakes.hpp"
+#include "study/mistake.hpp"
 #include "study/same_study.hpp"
 
 using namespace cordon;
 using namespace study_test;
 
 namespace {
-
-/// The text with one piece exchanged has exactly one problem, on the line of the new piece (or on the given one).
-struct Mistake {
-  std::string from, to, pointer, message, suggestion;
-  int line = 0;
-};
-
-int line_of(const std::string& text, const std::string& piece) {
-  const std::size_t at = text.find(piece);
-  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-}
-
-void expect_reported(const Mistake& mistake) {
-  const std::string text = exchanged(uncertain_study, mistake.from, mistake.to);
-  CAPTURE(mistake.to);
-  const auto problems = problems_of(text);
-  REQUIRE(problems.size() == 1);
-  CHECK(problems[0].pointer == mistake.pointer);
-  CAPTURE(problems[0].message);
-  CAPTURE(problems[0].suggestion);
-  CHECK(problems[0].message.find(mistake.message) != std::string::npos);
-  CHECK(problems[0].suggestion.find(mistake.suggestion) != std::string::npos);
-  if (mistake.suggestion.empty()) CHECK(problems[0].suggestion.empty());
-  CHECK(problems[0].line == (mistake.line > 0 ? mistake.line : line_of(text, mistake.to)));
-}
 
 const std::string A = "{\"center\": [[0.5, 0.25], [0, 0.75]], \"radius\": [[0.125, 0], [0, 0.0625]]}";
 const std::string A_radius = "\"radius\": [[0.125, 0], [0, 0.0625]]";
@@ -117,7 +93,7 @@ TEST_CASE("the study that the mistakes are made in is valid") {
 }
 
 TEST_CASE("mistakes in interval matrices and F") {
-  for (const Mistake& mistake : systems) expect_reported(mistake);
+  for (const Mistake& mistake : systems) expect_reported(uncertain_study, mistake);
 }
 
 TEST_CASE("an exact system holds no interval matrix, and is told the type that does") {
@@ -139,7 +115,7 @@ TEST_CASE("a misspelt key of an interval matrix is named") {
 }
 
 TEST_CASE("mistakes in parameters and additive faults") {
-  for (const Mistake& mistake : faults) expect_reported(mistake);
+  for (const Mistake& mistake : faults) expect_reported(uncertain_study, mistake);
 }
 
 TEST_CASE("all wrong entries of an interval matrix are told, the first ones by their places") {

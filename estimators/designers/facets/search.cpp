@@ -47,8 +47,6 @@ struct Node {
   std::size_t place = 0;
 };
 
-std::string who(const PairProgram& pair) { return fmt::format("modes {} and {}", pair.i + 1, pair.j + 1); }
-
 bool is_beyond(const SeparatingFacet& facet, const Vector& zeta, double tolerance) {
   return facet.a.dot(zeta) >= facet.out - tolerance;
 }
@@ -107,19 +105,19 @@ bool Search::find_facets() {
                   [](const SeparatingFacet& facet) { return facet.a.lpNorm<1>() < facet.in - 1e-9 * std::abs(facet.in); });
     if (set.kind == ForbiddenSet::Kind::facets && set.facets.empty()) {
       result_.status = DesignStatus::infeasible;
-      result_.reason = "no input of the input set separates " + who(pair);
+      result_.reason = "no input of the input set separates " + modes_of(problem_, pair);
       result_.suggestion = more_room;
       return false;
     }
     switch (set.kind) {
       case ForbiddenSet::Kind::never:
         result_.status = DesignStatus::infeasible;
-        result_.reason = fmt::format("{}: {}", who(pair), set.reason);
+        result_.reason = fmt::format("{}: {}", modes_of(problem_, pair), set.reason);
         result_.suggestion = "a longer horizon, more outputs, or inputs that may be chosen";
         return false;
       case ForbiddenSet::Kind::unknown:
         result_.stopped = watch_.over();
-        result_.reason = fmt::format("{}: {}", who(pair), set.reason);
+        result_.reason = fmt::format("{}: {}", modes_of(problem_, pair), set.reason);
         result_.suggestion = "a larger time_limit or max_facets, a shorter horizon, or the designer \"milp\"";
         return false;
       case ForbiddenSet::Kind::facets:
@@ -289,7 +287,7 @@ void Search::conclude_without_input() {
                                       : "every pair alone can be separated, but not all of them at once";
   std::string hopeless;
   for (const OpenPair& open : pairs_) {
-    if (result_.nodes > 0 && is_hopeless(open)) hopeless += (hopeless.empty() ? "" : "; ") + who(*open.pair);
+    if (result_.nodes > 0 && is_hopeless(open)) hopeless += (hopeless.empty() ? "" : "; ") + modes_of(problem_, *open.pair);
   }
   if (!hopeless.empty()) result_.reason = "no input of the input set separates " + hopeless;
 }

@@ -134,11 +134,17 @@ System::System(const Rows& rows) : K(rows.plus.size(), rows.S.cols() + rows.A.co
   }
 }
 
-std::optional<Rational> farkas_margin(const System& s, VectorIn y) {
+std::optional<FarkasTerms> farkas_terms(const System& s, VectorIn y) {
   if (y.size() != s.K.rows() || !y.allFinite()) return std::nullopt;
   const auto moved = multipliers(s, RationalVector(at(s.lines)), y);
   if (!moved) return std::nullopt;
-  return Rational(dot(s.r, *moved) - distance(s, RationalVector(at(s.factors())), *moved));
+  return FarkasTerms{dot(s.r, *moved), distance(s, RationalVector(at(s.factors())), *moved)};
+}
+
+std::optional<Rational> farkas_margin(const System& s, VectorIn y) {
+  const auto terms = farkas_terms(s, y);
+  if (!terms) return std::nullopt;
+  return Rational(terms->gain - terms->cost);
 }
 
 std::optional<Rational> dual_bound(const System& s, const RationalVector& t, const RationalVector& g, VectorIn y) {

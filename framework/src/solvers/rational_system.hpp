@@ -26,8 +26,13 @@ struct System {
   Index factors() const { return K.cols() - lines; }
 };
 
-/// bᵀy - ‖Aᵀy‖₁ for the y nearby that solves Lᵀy = 0 exactly, L the lines' columns: positive, and the system has no solution.
-/// Nothing if there is no such y.
+/// bᵀy and ‖Aᵀy‖₁ for the y nearby that solves Lᵀy = 0 exactly, L the lines' columns: the system has no solution with ‖ξ‖∞ < bᵀy
+/// / ‖Aᵀy‖₁. Nothing if there is no such y.
+struct FarkasTerms {
+  Rational gain, cost;
+};
+std::optional<FarkasTerms> farkas_terms(const System& s, VectorIn y);
+/// Their difference: positive, and the system has no solution.
 std::optional<Rational> farkas_margin(const System& s, VectorIn y);
 
 /// gᵀξ + tᵀδ ≤ bᵀy + ‖g - Aᵀy‖₁ for the y nearby with Lᵀy = t: that bound.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "study/results/results_parts.hpp"
+#include "study/results/string_sink.hpp"
 
 namespace cordon::detail {
 
@@ -11,12 +12,6 @@ namespace {
 
 using Names = std::vector<std::string>;
 using Layout = JsonWriter::Layout;
-
-class StringSink final : public Sink {
- public:
-  void write(std::string_view bytes) override { text += bytes; }
-  std::string text;
-};
 
 void write(JsonWriter& json, const DiagnosisEvent& event, const Names& modes) {
   using Kind = DiagnosisEvent::Kind;
@@ -38,15 +33,6 @@ void write(JsonWriter& json, const DiagnosisSegment& segment, const Names& modes
   write_time(json, "unknown_fault_at", segment.unknown_fault_at);
   write_time(json, "wrong_at", segment.wrong_at);
   json.member("missed", segment.missed()).member("last", to_string(segment.last)).end_object();
-}
-
-void write_delays(JsonWriter& json, std::string_view key, const DelayStatistics& delays) {
-  json.key(key);
-  if (delays.count == 0) {
-    json.null();
-    return;
-  }
-  json.begin_object().member("min", delays.min).member("median", delays.median).member("max", delays.max).end_object();
 }
 
 void write_rate(JsonWriter& json, std::string_view key, std::int64_t count, std::int64_t all) {
@@ -129,6 +115,15 @@ void write_mode(JsonWriter& json, std::string_view key, const Names& modes, Inde
   json.key(key);
   const auto at = static_cast<std::size_t>(mode);
   mode >= 0 && at < modes.size() ? json.value(std::string_view(modes[at])) : json.null();
+}
+
+void write_delays(JsonWriter& json, std::string_view key, const DelayStatistics& delays) {
+  json.key(key);
+  if (delays.count == 0) {
+    json.null();
+    return;
+  }
+  json.begin_object().member("min", delays.min).member("median", delays.median).member("max", delays.max).end_object();
 }
 
 void write(JsonWriter& json, const ModeEvidence& evidence) {

@@ -19,6 +19,9 @@ struct JudgedBound {
 /// The name of a mode as a value; null for -1.
 void write_mode(JsonWriter& json, std::string_view key, const std::vector<std::string>& modes, Index mode);
 
+/// {min, median, max}; null if there are none.
+void write_delays(JsonWriter& json, std::string_view key, const DelayStatistics& delays);
+
 /// {candidate, consistent, residual, reset_residual, proof}; what is not offered is left out.
 void write(JsonWriter& json, const ModeEvidence& evidence);
 

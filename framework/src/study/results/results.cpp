@@ -8,6 +8,7 @@
 #include "study/results/host.hpp"
 #include "study/results/numbers.hpp"
 #include "study/results/outcome_json.hpp"
+#include "study/results/results_design.hpp"
 #include "study/results/results_diagnosis.hpp"
 #include "study/results/results_parts.hpp"
 
@@ -47,9 +48,15 @@ void write_times(JsonWriter& json, const PhaseTimes& times, double hull_us) {
   json.member("question", times.question).member("hull", hull_us).end_object();
 }
 
+/// Of designs, the diagnoser's steps are not written.
 bool has_diagnosers(const Study& study) {
   return std::any_of(study.pipelines.begin(), study.pipelines.end(),
-                     [](const PipelineSpec& p) { return p.diagnoser.has_value(); });
+                     [](const PipelineSpec& p) { return p.diagnoser && !p.designer; });
+}
+
+bool has_designers(const Study& study) {
+  return std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                     [](const PipelineSpec& p) { return p.designer.has_value(); });
 }
 
 }  // namespace
@@ -63,12 +70,14 @@ Results::Results(const Study& study, const Registry& registry, const std::filesy
       steps_file_(directory_.create("steps.csv")),
       summary_file_(directory_.create("summary.csv")),
       diagnosis_file_(has_diagnosers(study) ? &directory_.create("diagnosis.csv") : nullptr),
+      inputs_file_(has_designers(study) ? &directory_.create("inputs.csv") : nullptr),
       run_file_(directory_.create("run.json")),
       results_file_(directory_.create("results.json")),
       results_(results_file_),
       run_(run_file_) {
   begin_results(registry);
   begin_run(registry);
+  if (inputs_file_) write_inputs_header(*inputs_file_, study.model.linear.inputs());
 }
 
 void Results::begin_results(const Registry& registry) {
@@ -290,13 +299,17 @@ void Results::write_summaries() {
   std::vector<std::string> names{"pipeline",     "backend",      "observer",       "rounding",          "steps",
                                  "consistent",   "inconsistent", "undecided",      "inconsistent_from", "assumptions_until",
                                  "outside_from", "violated_at",  "answers_proven", "answers_unknown",   "error"};
-  const std::size_t more = diagnosis_file_ ? diagnosis_summary_columns().size() : 0;
-  if (more > 0) names.insert(names.end(), diagnosis_summary_columns().begin(), diagnosis_summary_columns().end());
+  const std::vector<std::string> none, &diagnosis = diagnosis_file_ ? diagnosis_summary_columns() : none,
+                                       &design = inputs_file_ ? design_summary_columns() : none;
+  names.insert(names.end(), diagnosis.begin(), diagnosis.end());
+  names.insert(names.end(), design.begin(), design.end());
   for (const std::string& name : summary_columns_) names.push_back(csv_field(name));
   summary_file_.write(joined(names));
   for (Summary& summary : summaries_) {
-    summary.diagnosis.resize(more);
+    summary.diagnosis.resize(diagnosis.size());
     summary.fields.insert(summary.fields.end(), summary.diagnosis.begin(), summary.diagnosis.end());
+    summary.design.resize(design.size());
+    summary.fields.insert(summary.fields.end(), summary.design.begin(), summary.design.end());
     for (const std::string& name : summary_columns_) summary.fields.push_back(summary.metrics[name]);
     summary_file_.write(joined(summary.fields));
   }

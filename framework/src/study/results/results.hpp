@@ -47,6 +47,7 @@ struct Assumptions {
 ///   data.csv      the samples, and the truth where it is known
 ///   steps.csv, summary.csv   the same numbers as tables (∞ as inf, absent values as empty fields)
 ///   diagnosis.csv the steps of pipelines with a diagnoser, if there are any (their steps[] in results.json hold decisions)
+///   inputs.csv    the designed inputs, if there are pipelines with a designer
 ///   run.json      host, times, and what else differs from run to run
 /// Nothing is visible under its name before `commit`.
 class Results {
@@ -67,6 +68,9 @@ class Results {
   void diagnosis(const DiagnosisResult& result);
   void end_diagnosis(const PipelineOutcome& outcome);
 
+  /// All of a pipeline with a designer.
+  void design(const PipelineSpec& spec, std::optional<Rounding> rounding, const PipelineOutcome& outcome);
+
   std::vector<std::filesystem::path> commit(const RunOutcome& outcome);
 
  private:
@@ -85,6 +89,7 @@ class Results {
   OutputFile& steps_file_;
   OutputFile& summary_file_;
   OutputFile* diagnosis_file_ = nullptr;  ///< if there are diagnosers
+  OutputFile* inputs_file_ = nullptr;     ///< if there are designers
   OutputFile& run_file_;
   OutputFile& results_file_;
   JsonWriter results_, run_;
@@ -99,6 +104,7 @@ class Results {
     std::vector<std::string> fields;  ///< what every pipeline has
     std::map<std::string, std::string> metrics;
     std::vector<std::string> diagnosis;  ///< none of pipelines without a diagnoser
+    std::vector<std::string> design;     ///< none of pipelines without a designer
   };
   std::vector<Summary> summaries_;
   std::vector<std::string> summary_columns_;

@@ -32,11 +32,6 @@ Index first_other_fault(const Study& study) {
   return simulate && !simulate->faults.empty() ? simulate->faults.front().from : std::numeric_limits<Index>::max();
 }
 
-std::int64_t seeds_of(const Study& study) {
-  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
-  return simulate ? std::max<std::int64_t>(1, simulate->seeds) : 1;
-}
-
 /// A diagnoser with what it has found so far.
 class DiagnosisPipeline {
  public:
@@ -81,7 +76,7 @@ class DiagnosisPipeline {
     std::vector<JudgedBound> faults;
     guarded(outcome_, [&] {
       diagnosis = diagnoser_->step(record.sample);
-      check(*diagnosis);
+      check_fits(*diagnosis, bank_, outcome_.diagnoser);
       faults = fault_score_.step(record.sample.k < first_other_fault_ ? record.fault : std::nullopt, *diagnosis);
     });
     if (failed()) return;
@@ -118,15 +113,6 @@ class DiagnosisPipeline {
   }
 
  private:
-  /// What the rest of the program relies on.
-  void check(const Diagnosis& diagnosis) const {
-    const bool mode_fits =
-        diagnosis.decision == Decision::monitoring ? diagnosis.mode >= 0 && diagnosis.mode < bank_.size() : diagnosis.mode == -1;
-    if (static_cast<Index>(diagnosis.modes.size()) == bank_.size() && mode_fits) return;
-    throw Error(Errc::plugin, "the diagnoser \"" + outcome_.diagnoser +
-                                  "\" gave a diagnosis that does not fit its bank at k = " + std::to_string(diagnosis.k));
-  }
-
   /// The first exclusion of a true mode, and the first bounds without the true fault.
   void judge_run() {
     auto excluded = score_->true_mode_excluded();
@@ -179,6 +165,19 @@ class DiagnosisPipeline {
 };
 
 }  // namespace
+
+std::int64_t seeds_of(const Study& study) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  return simulate ? std::max<std::int64_t>(1, simulate->seeds) : 1;
+}
+
+void check_fits(const Diagnosis& diagnosis, const ModeBank& bank, const std::string& diagnoser) {
+  const bool mode_fits =
+      diagnosis.decision == Decision::monitoring ? diagnosis.mode >= 0 && diagnosis.mode < bank.size() : diagnosis.mode == -1;
+  if (static_cast<Index>(diagnosis.modes.size()) == bank.size() && mode_fits) return;
+  throw Error(Errc::plugin, "the diagnoser \"" + diagnoser +
+                                "\" gave a diagnosis that does not fit its bank at k = " + std::to_string(diagnosis.k));
+}
 
 std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study, std::size_t index,
                                              const Registry& registry, const RunOptions& options, Results* results) {

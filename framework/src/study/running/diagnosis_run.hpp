@@ -12,4 +12,10 @@ namespace cordon::detail {
 std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study, std::size_t index,
                                              const Registry& registry, const RunOptions& options, Results* results);
 
+/// How many seeds diagnosers are tried on.
+std::int64_t seeds_of(const Study& study);
+
+/// What the program relies on in a diagnosis. Throws Errc::plugin.
+void check_fits(const Diagnosis& diagnosis, const ModeBank& bank, const std::string& diagnoser);
+
 }  // namespace cordon::detail

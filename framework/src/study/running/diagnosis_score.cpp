@@ -160,7 +160,7 @@ std::vector<ModeStatistics> DiagnosisTally::statistics() const {
   return all;
 }
 
-DelayStatistics DiagnosisTally::summary(const Delays& delays) {
+DelayStatistics summary(const Delays& delays) {
   DelayStatistics found;
   if (delays.empty()) return found;
   for (const auto& [delay, times] : delays) found.count += times;

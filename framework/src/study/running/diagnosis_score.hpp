@@ -68,6 +68,9 @@ class DiagnosisTimeline {
   std::optional<Index> truth_;
 };
 
+using Delays = std::map<std::int64_t, std::int64_t>;  ///< how often each delay occurred
+DelayStatistics summary(const Delays& delays);
+
 /// Counts scored segments by their true mode. Memory depends on the number of different delays only.
 class DiagnosisTally {
  public:
@@ -75,12 +78,10 @@ class DiagnosisTally {
   std::vector<ModeStatistics> statistics() const;
 
  private:
-  using Delays = std::map<std::int64_t, std::int64_t>;  ///< how often each delay occurred
   struct Entry {
     ModeStatistics counts;
     Delays detection, isolation;
   };
-  static DelayStatistics summary(const Delays& delays);
 
   std::map<Index, Entry> entries_;
 };

@@ -5,16 +5,17 @@
 
 namespace cordon::detail {
 
-/// Ends a pipeline with an error; the first one is kept.
-inline void stop(PipelineOutcome& outcome, Errc code, const std::string& message) {
+/// Ends a pipeline, or its design, with an error; the first one is kept.
+template <class Outcome>
+void stop(Outcome& outcome, Errc code, const std::string& message) {
   if (!outcome.error.empty()) return;
   outcome.error_code = code;
   outcome.error = message.empty() ? std::string(to_string(code)) : message;
 }
 
 /// Runs code of components: what it throws stops this pipeline and no other.
-template <class Work>
-void guarded(PipelineOutcome& outcome, Work&& work) {
+template <class Outcome, class Work>
+void guarded(Outcome& outcome, Work&& work) {
   try {
     work();
   } catch (const Error& error) {

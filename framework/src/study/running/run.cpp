@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/run.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <deque>
 
 #include "study/results/median.hpp"
 #include "study/results/results.hpp"
+#include "study/running/design_run.hpp"
 #include "study/running/diagnosis_run.hpp"
 #include "study/running/inner_check.hpp"
 #include "study/running/pipeline_guard.hpp"
@@ -227,15 +229,18 @@ bool run_pipeline(const Study& study, std::size_t index, const Registry& registr
 }  // namespace
 
 RunOutcome detail::run_on(const OpenData& open, const Study& study, const Registry& registry, const RunOptions& options) {
-  std::unique_ptr<DataSource> data = open(0);  // first: bad data leave no trace on the disk
+  const bool streams = std::any_of(study.pipelines.begin(), study.pipelines.end(), [](const auto& p) { return !p.designer; });
+  std::unique_ptr<DataSource> data = streams ? open(0) : nullptr;  // first: bad data leave no trace on the disk
   std::optional<Results> results;
   if (!options.out.empty()) results.emplace(study, registry, options.out);
   Results* const writer = results ? &*results : nullptr;
   RunOutcome outcome;
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
     bool done = true;
-    if (study.pipelines[i].diagnoser) {
-      std::optional<PipelineOutcome> found = detail::run_diagnosis(open, study, i, registry, options, writer);
+    if (study.pipelines[i].designer || study.pipelines[i].diagnoser) {
+      std::optional<PipelineOutcome> found = study.pipelines[i].designer
+                                                 ? detail::run_design(study, i, registry, options, writer)
+                                                 : detail::run_diagnosis(open, study, i, registry, options, writer);
       done = found.has_value();
       if (found) outcome.pipelines.push_back(std::move(*found));
     } else {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/verification/feasible_set.hpp"
 
-#include <vector>
-
 #include "study/data/random.hpp"
+#include "study/verification/equations.hpp"
 
 namespace cordon::verification {
 
@@ -17,93 +16,6 @@ Vector zero(Index n) { return Vector::Zero(n); }
 
 /// T x as a polytope of one point: the product is exact there.
 Polytope image(MatrixIn T, VectorIn x) { return Polytope::from_generators(x).affine_map(T, zero(T.rows())); }
-
-/// Rows of an exchange form, block by block. All variables but the sets' factors are lines.
-class Rows {
- public:
-  struct Line {
-    Index first, size;
-  };
-
-  Line line(Index size) {
-    const Line made{lines_, size};
-    lines_ += size;
-    return made;
-  }
-
-  /// A line vector that keeps to the set.
-  Line element(const LineForm& X) {
-    const Line x = line(X.dim()), delta = line(X.lines());
-    const Index xi = factors_;
-    factors_ += X.generators();
-    const Index row = add(X.dim());
-    put(row, x, Matrix::Identity(X.dim(), X.dim()));
-    put(row, delta, -X.M);
-    put_factors(row, xi, -X.G);
-    right(row, X.c);
-    const Index constraint = add(X.constraints());
-    put(constraint, delta, X.S);
-    put_factors(constraint, xi, X.A);
-    right(constraint, X.b);
-    return x;
-  }
-
-  Line constant(VectorIn value) {
-    const Line x = line(value.size());
-    const Index row = add(value.size());
-    put(row, x, Matrix::Identity(value.size(), value.size()));
-    right(row, value);
-    return x;
-  }
-
-  struct Term {
-    Line variable;
-    Matrix coefficient;
-  };
-  /// Σ coefficient · variable = 0.
-  void equation(Index rows, const std::vector<Term>& terms) {
-    const Index row = add(rows);
-    for (const Term& term : terms) put(row, term.variable, term.coefficient);
-    right(row, zero(rows));
-  }
-
-  /// The set of all values of `x`.
-  LineForm project(const Line& x) const {
-    LineForm X{Matrix::Zero(x.size, lines_), Matrix::Zero(x.size, factors_), zero(x.size),
-               Matrix::Zero(rows_, lines_),  Matrix::Zero(rows_, factors_),  b_};
-    X.M.middleCols(x.first, x.size).setIdentity();
-    for (const Entry& e : entries_) (e.factor ? X.A : X.S)(e.row, e.col) += e.value;
-    return X;
-  }
-
- private:
-  struct Entry {
-    Index row, col;
-    bool factor;
-    double value;
-  };
-
-  Index add(Index rows) {
-    const Index first = rows_;
-    rows_ += rows;
-    b_.conservativeResize(rows_);
-    return first;
-  }
-  void right(Index row, VectorIn b) { b_.segment(row, b.size()) = b; }
-  void put(Index row, const Line& variable, const Matrix& block) { put(row, variable.first, block, false); }
-  void put_factors(Index row, Index first, const Matrix& block) { put(row, first, block, true); }
-  void put(Index row, Index col, const Matrix& block, bool factor) {
-    for (Index j = 0; j < block.cols(); ++j) {
-      for (Index i = 0; i < block.rows(); ++i) {
-        if (block(i, j) != 0) entries_.push_back({row + i, col + j, factor, block(i, j)});
-      }
-    }
-  }
-
-  Index lines_ = 0, factors_ = 0, rows_ = 0;
-  Vector b_;
-  std::vector<Entry> entries_;
-};
 
 Matrix identity(Index n) { return Matrix::Identity(n, n); }
 
@@ -178,27 +90,27 @@ LineForm successors(const Model& model, const LineForm& X, const std::optional<L
   const LinearModel& m = model.linear;
   const Index n = m.states(), p = m.outputs();
   const Matrix E = m.is_descriptor() ? m.E : identity(n);
-  Rows rows;
-  const auto measured = [&](const Rows::Line& x, const Sample& sample) {
-    const Rows::Line u = rows.constant(sample.u), y = rows.constant(sample.y), v = rows.element(model.V);
-    rows.equation(p, {{y, identity(p)}, {x, -m.C}, {u, -m.D}, {v, -m.Dv}});
+  Equations rows;
+  const auto measured = [&](const Equations::Line& x, const Sample& sample) {
+    const Equations::Line u = rows.constant(sample.u), y = rows.constant(sample.y), v = rows.element(model.V);
+    rows.add(p, {{y, identity(p)}, {x, -m.C}, {u, -m.D}, {v, -m.Dv}});
     return u;
   };
-  const auto follows = [&](const Rows::Line& next, const Rows::Line& x, const Rows::Line& u) {
-    const Rows::Line w = rows.element(model.W);
-    rows.equation(n, {{next, E}, {x, -m.A}, {u, -m.B}, {w, -m.Bw}});
+  const auto follows = [&](const Equations::Line& next, const Equations::Line& x, const Equations::Line& u) {
+    const Equations::Line w = rows.element(model.W);
+    rows.add(n, {{next, E}, {x, -m.A}, {u, -m.B}, {w, -m.Bw}});
   };
-  Rows::Line x = rows.element(X);
+  Equations::Line x = rows.element(X);
   if (transition.before) {
-    const Rows::Line u = measured(x, *transition.before), next = rows.line(n);
+    const Equations::Line u = measured(x, *transition.before), next = rows.line(n);
     follows(next, x, u);
     x = next;
   }
-  const Rows::Line u = measured(x, transition.now);
+  const Equations::Line u = measured(x, transition.now);
   if (m.is_descriptor()) follows(rows.line(n), x, u);
   if (admissible_set) {
-    const Rows::Line kept = rows.element(*admissible_set);
-    rows.equation(n, {{x, identity(n)}, {kept, -identity(n)}});
+    const Equations::Line kept = rows.element(*admissible_set);
+    rows.add(n, {{x, identity(n)}, {kept, -identity(n)}});
   }
   return rows.project(x);
 }

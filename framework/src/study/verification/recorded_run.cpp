@@ -2,6 +2,7 @@
 #include "study/verification/recorded_run.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "study/reading/read_parts.hpp"
 
@@ -104,15 +105,73 @@ std::optional<Rounding> read_rounding(const Cursor& pipeline) {
   return read_word(pipeline, "rounding", {Rounding::nominal, Rounding::outward, Rounding::rational});
 }
 
-std::optional<RecordedPipeline> read_pipeline(const Cursor& at, Index n) {
+/// A bound of κ: a number or "inf".
+std::optional<double> read_kappa(const Cursor& at) {
+  if (at.is(Kind::text)) {
+    if (read_choice(at, {"inf"})) return std::numeric_limits<double>::infinity();
+    return std::nullopt;
+  }
+  return read_number(at);
+}
+
+/// "pairs" and "tubes" of a design, one after another.
+void read_claims(const Cursor& at, InputDesign& design, Index modes) {
+  const auto pairs = at.need("pairs", mend()), tubes = at.need("tubes", mend());
+  if (!pairs || !tubes || !pairs->expect(Kind::array, mend()) || !tubes->expect(Kind::array, mend())) return;
+  const auto count = static_cast<std::size_t>(modes);
+  if (pairs->size() != count * (count - 1) / 2) pairs->error("does not hold every pair of modes", mend());
+  if (tubes->size() != count) tubes->error("does not hold every mode", mend());
+  for (std::size_t q = 0; q < pairs->size(); ++q) {
+    const Cursor item = pairs->item(q);
+    if (!item.expect(Kind::object, mend())) continue;
+    PairSeparation& pair = design.pairs.emplace_back();
+    pair.disjoint = read_word(item, "disjoint", {Answer::yes, Answer::no, Answer::unknown}).value_or(Answer::unknown);
+    const auto kappa = item.need("kappa_lower", mend());
+    if (kappa && pair.disjoint == Answer::yes) pair.kappa_lower = read_kappa(*kappa).value_or(0);
+  }
+  for (std::size_t i = 0; i < tubes->size(); ++i) {
+    const Cursor item = tubes->item(i);
+    if (!item.expect(Kind::object, mend())) continue;
+    design.empty.push_back(read_word(item, "empty", {Answer::yes, Answer::no, Answer::unknown}).value_or(Answer::unknown));
+  }
+}
+
+std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& system) {
+  if (at.is(Kind::null) || !at.expect(Kind::object, mend())) return std::nullopt;
+  const auto u = at.need("u", mend()), outputs = at.need("outputs", mend()), admissible = at.need("admissible_set", mend());
+  if (!u || !outputs || !admissible || u->is(Kind::null)) return std::nullopt;
+  const LinearModel& m = system.model.linear;
+  DesignOutcome outcome;
+  outcome.status = DesignStatus::given;
+  auto inputs = read_matrix(*u);
+  if (inputs && (inputs->rows() == 0 || inputs->cols() != m.inputs())) {
+    u->error("is " + shape(inputs->rows(), inputs->cols()) + ", must have " + counted(m.inputs(), "column"), mend());
+  }
+  const auto which = read_choice(*outputs, {"all", "last"});
+  outcome.last_output_only = which && *which == "last";
+  if (!admissible->is(Kind::null)) outcome.admissible_set = read_form(*admissible, m.states());
+  if (!inputs) return std::nullopt;
+  outcome.horizon = inputs->rows() - 1;
+  outcome.best.emplace().u = std::move(*inputs);
+  read_claims(at, *outcome.best, static_cast<Index>(system.modes.size()) + 1);
+  return outcome;
+}
+
+std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart& system) {
   if (!at.expect(Kind::object, mend())) return std::nullopt;
+  const Index n = system.model.linear.states();
   RecordedPipeline pipeline;
   const auto name = at.need("name", mend()), backend = at.need("backend", mend());
   if (!name || !backend) return std::nullopt;
   pipeline.name = read_text(*name, 1000).value_or("");
   pipeline.backend = read_text(*backend, 1000).value_or("");
-  if (at.find("diagnoser")) {
+  if (at.find("designer")) {
+    pipeline.is_design = true;
+    if (const auto design = at.need("design", mend())) pipeline.design = read_design(*design, system);
+  } else if (at.find("diagnoser")) {
     pipeline.is_diagnosis = true;
+  }
+  if (pipeline.is_design || pipeline.is_diagnosis) {
     if (const auto rounding = at.find("rounding"); rounding && !rounding->is(Kind::null))
       pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);
     return pipeline;
@@ -174,11 +233,13 @@ RecordedRun read_run(const std::filesystem::path& directory) {
     SystemPart part = system ? read_system(*system, warnings) : SystemPart{};
     if (part.good && pipelines && pipelines->expect(Kind::array, mend())) {
       for (std::size_t i = 0; i < pipelines->size(); ++i) {
-        if (auto pipeline = read_pipeline(pipelines->item(i), part.model.linear.states())) {
+        if (auto pipeline = read_pipeline(pipelines->item(i), part)) {
           run.pipelines.push_back(std::move(*pipeline));
         }
       }
     }
+    run.bank.modes.push_back({std::move(part.nominal), part.model});
+    run.bank.modes.insert(run.bank.modes.end(), part.modes.begin(), part.modes.end());
     run.model = std::move(part.model);
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cordon/study/design.hpp"
 #include "cordon/study/study.hpp"
 #include "study/reading/json_cursor.hpp"
 
@@ -24,7 +25,9 @@ struct RecordedStep {
 
 struct RecordedPipeline {
   std::string name, backend;
-  bool is_diagnosis = false;  ///< of a diagnoser: nothing else is read, no sets are stored
+  bool is_diagnosis = false;                 ///< of a diagnoser: nothing else is read, no sets are stored
+  bool is_design = false;                    ///< of a designer: only `design` is read
+  std::optional<DesignOutcome> design = {};  ///< horizon, input, what is said of pairs and tubes; nothing: there is no input
   Rounding rounding = Rounding::nominal;
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
@@ -45,6 +48,7 @@ struct RecordedSet {
 struct RecordedRun {
   std::filesystem::path directory;
   Model model;
+  ModeBank bank;
   CsvSpec data;  ///< data.csv
   std::vector<RecordedPipeline> pipelines;
 };

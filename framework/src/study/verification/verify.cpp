@@ -8,6 +8,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/study/data.hpp"
 #include "study/data/random.hpp"
+#include "study/verification/design_check.hpp"
 #include "study/verification/feasible_set.hpp"
 #include "study/verification/recorded_run.hpp"
 #include "study/verification/step_check.hpp"
@@ -111,6 +112,11 @@ class Verification {
       outcome_.pipelines.back().rounding = pipeline.rounding;
       outcome_.pipelines.back().checked = !pipeline.is_diagnosis;
       if (pipeline.is_diagnosis) continue;
+      if (pipeline.is_design) {
+        if (pipeline.design) check_input(p, *pipeline.design);
+        if (outcome_.violation || outcome_.interrupted) return std::move(outcome_);
+        continue;
+      }
       if (!feasible || !feasible->serves(pipeline) || !feasible->complete(pipeline.steps.size())) {
         feasible.emplace(run_.model, pipeline);
       }
@@ -134,6 +140,23 @@ class Verification {
       refuse(row->line, fmt::format("does not hold the set of pipeline \"{}\", k = {}", pipeline.name, step.k));
     }
     return std::move(*row);
+  }
+
+  /// A design claims nothing if there is no input.
+  void check_input(std::size_t p, const DesignOutcome& design) {
+    VerifiedPipeline& found = outcome_.pipelines.back();
+    DesignFindings claims = check_design(run_.bank, design, options_.stop);
+    if (options_.stop && options_.stop->load()) {
+      outcome_.interrupted = true;
+      return;
+    }
+    found.proofs = claims.hold;
+    found.undecided = claims.undecided;
+    found.first_undecided = std::move(claims.first_undecided);
+    if (claims.refuted) {
+      outcome_.violation = {found.name, design.horizon, std::move(claims.refuted->what),
+                            fmt::format("/pipelines/{}/design{}", p, claims.refuted->pointer)};
+    }
   }
 
   void check(std::size_t p, FeasibleSequence& feasible) {

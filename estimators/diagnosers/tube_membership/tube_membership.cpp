@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Diagnosis of an experiment by the output tubes of its modes: with Y_j^k(u_0 … u_k) the outputs y_0 … y_k that mode j can show,
+//   mode j is excluded at k  ⇔  (y_0 … y_k) ∉ Y_j^k(u_0 … u_k) is proven.
+// All samples enter at once, nothing is reduced and nothing is propagated: within rounding no method excludes a mode earlier. If
+// the inputs were designed so that the tubes of all modes are disjoint at the horizon N, at most one mode is left at k = N,
+// whatever the disturbances are [Rego2025, sec. 5] [Scott2014]; most often one is left before.
+//
+// Every mode is a candidate at the first sample, and the experiment has one mode throughout: an excluded mode stays excluded, and
+// there is no reset. After N the decision stands.
+//
+// `ModeEvidence::why` proves the answer about the rows of `output_tube` for the horizon k, above those of its outputs, as
+// `contains` does: multipliers of rows where the mode is excluded, (δ, ξ) where it is not.
+#include "components.hpp"
+#include "designers/designer_parameters.hpp"
+#include "diagnosers/tube_membership/membership.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+class TubeMembership final : public Diagnoser {
+ public:
+  TubeMembership(const DiagnoserContext& context, const Params& params)
+      : Diagnoser(context.bank, context.backend), horizon_(params.integer("horizon")) {
+    if (params.has("admissible_set")) admissible_ = params.set_form("admissible_set");
+    for (const Mode& mode : bank().modes) tells_consistency_.push_back(is_exact(mode.model));
+  }
+
+ private:
+  /// Is the tube that of the mode itself, so that what lies in it does not contradict the mode?
+  bool is_exact(const Model& model) const {
+    if (admissible_ || !backend().info().exact_exchange) return false;
+    for (const LineForm* set : {&model.X0, &model.W, &model.V}) {
+      if (backend().import(*set).tightness != Tightness::exact) return false;
+    }
+    return true;
+  }
+
+  void do_start() override {
+    candidate_.assign(static_cast<std::size_t>(bank().size()), true);
+    u_ = y_ = Vector(0);
+  }
+
+  Diagnosis do_step(const Sample* before, const Sample& now) override {
+    if (!before) since_ = now.k;
+    Diagnosis result;
+    result.k = now.k;
+    result.since = since_;
+    result.modes.resize(candidate_.size());
+    if (now.k - since_ <= horizon_) examine(now, result.modes);
+    Index left = 0;
+    for (std::size_t j = 0; j < candidate_.size(); ++j) {
+      result.modes[j].candidate = candidate_[j];
+      if (!candidate_[j]) continue;
+      ++left;
+      result.mode = static_cast<Index>(j);
+    }
+    if (left != 1) result.mode = -1;
+    result.decision = left == 0                   ? Decision::unknown_fault
+                      : left == 1                 ? Decision::monitoring
+                      : now.k - since_ < horizon_ ? Decision::isolating
+                                                  : Decision::ambiguous;
+    return result;
+  }
+
+  /// Asks for every candidate whether all samples so far can be its own.
+  void examine(const Sample& now, std::vector<ModeEvidence>& modes) {
+    const Vector u = joined(u_, now.u), y = joined(y_, now.y);
+    std::vector<bool> candidate = candidate_;
+    for (std::size_t j = 0; j < candidate.size(); ++j) {
+      if (!candidate[j]) continue;
+      const designers::OutputTube tube =
+          designers::output_tube(bank().modes[j].model, backend(), {now.k - since_, false, admissible_});
+      Certificate why;
+      const Answer answer = diagnosers::membership(tube, u, y, &why);
+      candidate[j] = answer != Answer::no;
+      if (answer == Answer::unknown || (answer == Answer::yes && !tells_consistency_[j])) continue;
+      modes[j].consistent = answer;
+      modes[j].why = std::move(why);
+    }
+    u_ = u;
+    y_ = y;
+    candidate_ = std::move(candidate);
+  }
+
+  static Vector joined(const Vector& all, const Vector& next) {
+    Vector both(all.size() + next.size());
+    both << all, next;
+    return both;
+  }
+
+  Index horizon_;
+  std::optional<LineForm> admissible_;
+  std::vector<bool> tells_consistency_;  ///< by mode
+  std::vector<bool> candidate_;
+  Vector u_, y_;  ///< since the first sample
+  Index since_ = 0;
+};
+
+std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& params) {
+  std::vector<Diagnostic> problems = designers::check_tube_data({context.bank, context.backend}, params);
+  for (const Mode& mode : context.bank.modes) {
+    if (!mode.model.linear.has_ranges()) continue;
+    problems.push_back({"", "the effectiveness of mode \"" + mode.name + "\" is known by ranges only: its outputs are no tube",
+                        "give numbers, or use \"observer_bank\" or \"consistency_bank\""});
+  }
+  return problems;
+}
+
+}  // namespace
+
+void register_tube_membership(Registrar& registrar) {
+  ParamSchema schema;
+  schema.integer("horizon", "N: the samples of k = 0 … N decide; the work for each grows with k", 20, 0, designers::most_horizon);
+  schema.set("admissible_set",
+             "a set that holds the state of descriptor systems at all times, as far as E does not determine it; exclusions rest "
+             "on it. Needed with \"constrained_zonotope\"; the one that the input was designed with");
+  registrar.diagnoser({{"tube_membership",
+                        "all samples of an experiment against the output tube of every mode; a mode is excluded when they are "
+                        "proven to lie outside",
+                        "Rego2025; Scott2014", schema},
+                       check,
+                       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
+                         return std::make_unique<TubeMembership>(context, params);
+                       }});
+}
+
+}  // namespace cordon::estimators

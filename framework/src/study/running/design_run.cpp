@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/running/design_run.hpp"
+
+#include <chrono>
+
+#include "cordon/solvers/set_questions.hpp"
+#include "study/data/experiment.hpp"
+#include "study/results/median.hpp"
+#include "study/running/design.hpp"
+#include "study/running/diagnosis_run.hpp"
+#include "study/running/diagnosis_score.hpp"
+#include "study/running/pipeline_guard.hpp"
+
+namespace cordon::detail {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// A designer and a diagnoser with what they have found so far.
+class DesignPipeline {
+ public:
+  DesignPipeline(const Study& study, const PipelineSpec& spec) : study_(study), bank_(bank_of(study)) {
+    outcome_.name = spec.name;
+    outcome_.backend = spec.backend.type;
+    outcome_.designer = spec.designer->type;
+    if (spec.diagnoser) outcome_.diagnoser = spec.diagnoser->type;
+  }
+
+  void design(const PipelineSpec& spec, const Registry& registry, DesignControl& control) {
+    guarded(outcome_, [&] {
+      backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
+      outcome_.design = registry.make_designer(spec.designer->type, bank_, backend_, spec.designer->params)->design(control);
+      if (outcome_.design->best && spec.diagnoser) {
+        diagnoser_ = registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
+      }
+    });
+  }
+
+  std::optional<Rounding> rounding() const { return backend_ ? std::optional(backend_->info().rounding) : std::nullopt; }
+  bool experiments_follow() const { return diagnoser_ && outcome_.error.empty(); }
+  Index modes() const { return bank_.size(); }
+
+  void begin_mode(Index mode) {
+    outcome_.experiments.push_back({mode, 0, std::vector<std::int64_t>(static_cast<std::size_t>(bank_.size())), 0, 0, 0, 0, {}});
+    isolated_at_.clear();
+  }
+
+  /// One experiment; false if the pipeline has stopped.
+  bool run(Index mode, std::int64_t seed_offset) {
+    std::optional<Diagnosis> last;
+    std::optional<Index> isolated_at;
+    bool assumptions_hold = true;
+    DiagnosisScore score([](const DiagnosisSegment&) {});
+    guarded(outcome_, [&] {
+      const auto data = open_experiment(study_, bank_, mode, outcome_.design->best->u, static_cast<std::uint64_t>(seed_offset));
+      diagnoser_->start();
+      while (const std::optional<Record> record = data->next()) {
+        if (record->truth) assumptions_hold = assumptions_hold && may_be(mode, record->sample.k, *record->truth);
+        last = diagnoser_->step(record->sample);
+        check_fits(*last, bank_, outcome_.diagnoser);
+        score.step(mode, *last);
+        median_.add(diagnoser_->step_us());
+        ++outcome_.steps;
+        if (!isolated_at && isolates(*last, mode)) isolated_at = last->k;
+      }
+    });
+    if (!outcome_.error.empty()) {
+      outcome_.error += " (experiment with mode \"" + bank_[mode].name + "\", seed " + std::to_string(seed_offset + 1) + ")";
+      return false;
+    }
+    if (const auto& excluded = score.true_mode_excluded(); excluded && assumptions_hold && outcome_.violated_at < 0) {
+      outcome_.violated_at = excluded->k;
+    }
+    if (isolated_at) ++isolated_at_[*isolated_at];
+    if (last) count(*last);
+    return true;
+  }
+
+  void end_mode() { outcome_.experiments.back().isolation = summary(isolated_at_); }
+
+  PipelineOutcome finish(double wall_s) {
+    outcome_.median_step_us = median_.value();
+    outcome_.wall_s = wall_s;
+    return std::move(outcome_);
+  }
+
+ private:
+  static bool isolates(const Diagnosis& diagnosis, Index mode) {
+    return diagnosis.decision == Decision::monitoring && diagnosis.mode == mode;
+  }
+
+  /// Does the state keep to what the pipeline assumes of it: to X0 of the mode, later to the designer's admissible set?
+  bool may_be(Index mode, Index k, const Vector& x) const {
+    if (k == 0) return contains(bank_[mode].model.X0, x) != Answer::no;
+    const auto& admissible = outcome_.design->admissible_set;
+    return !admissible || contains(*admissible, x) != Answer::no;
+  }
+
+  /// The end of an experiment.
+  void count(const Diagnosis& last) {
+    ExperimentRow& row = outcome_.experiments.back();
+    ++row.runs;
+    for (std::size_t j = 0; j < last.modes.size(); ++j) row.possible[j] += last.modes[j].candidate;
+    switch (last.decision) {
+      case Decision::monitoring:
+        ++(last.mode == row.mode ? row.isolated : row.wrong);
+        break;
+      case Decision::unknown_fault:
+        ++row.unknown_fault;
+        break;
+      case Decision::isolating:
+      case Decision::ambiguous:
+        ++row.undecided;
+        break;
+    }
+  }
+
+  const Study& study_;
+  ModeBank bank_;
+  std::shared_ptr<const SetBackend> backend_;
+  std::shared_ptr<Diagnoser> diagnoser_;
+  Delays isolated_at_;
+  Median median_;
+  PipelineOutcome outcome_;
+};
+
+}  // namespace
+
+std::optional<PipelineOutcome> run_design(const Study& study, std::size_t index, const Registry& registry,
+                                          const RunOptions& options, Results* results) {
+  const PipelineSpec& spec = study.pipelines[index];
+  const auto stopped = [&] { return options.stop && options.stop->load(); };
+  const Clock::time_point begin = Clock::now();
+  DesignPipeline pipeline(study, spec);
+  WatchedDesign control(options.stop, [&](Index, double, double) {
+    if (options.progress) options.progress(index, 0, 0);
+  });
+  pipeline.design(spec, registry, control);
+  if (stopped()) return std::nullopt;
+  if (pipeline.experiments_follow()) {
+    const std::int64_t seeds = seeds_of(study), total = seeds * pipeline.modes();
+    Clock::time_point told = begin;
+    for (Index mode = 0; mode < pipeline.modes(); ++mode) {
+      pipeline.begin_mode(mode);
+      bool good = true;
+      for (std::int64_t offset = 0; offset < seeds && good; ++offset) {
+        if (stopped()) return std::nullopt;
+        good = pipeline.run(mode, offset);
+        if (options.progress && seconds_since(told) > 0.05) {
+          options.progress(index, mode * seeds + offset + 1, total);
+          told = Clock::now();
+        }
+      }
+      pipeline.end_mode();
+      if (!good) break;
+    }
+    if (options.progress) options.progress(index, total, total);
+  }
+  PipelineOutcome outcome = pipeline.finish(seconds_since(begin));
+  if (results) results->design(spec, pipeline.rounding(), outcome);
+  return outcome;
+}
+
+}  // namespace cordon::detail

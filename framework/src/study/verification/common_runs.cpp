@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/verification/common_runs.hpp"
+
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/solvers/lp.hpp"
+#include "solvers/rational_system.hpp"
+#include "study/verification/equations.hpp"
+
+namespace cordon::verification {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// Limits of rows² × columns: seconds to a minute for numbers of full length, far less for short ones.
+constexpr double most_to_check = 1e8, most_to_settle = 1e7;
+constexpr double largest_scale = 16;  // of the rows' right-hand side: beyond 1 it does not matter how far
+
+Matrix identity(Index n) { return Matrix::Identity(n, n); }
+
+/// The lines that models share, or none where they are not asked for.
+struct Shared {
+  std::vector<Equations::Line> u, y;  ///< by time; y of size 0 where the output does not count
+};
+
+void add_run(Equations& rows, const Model& model, const Shared& shared, const std::optional<LineForm>& admissible_set) {
+  const LinearModel& m = model.linear;
+  const Index n = m.states(), last = static_cast<Index>(shared.u.size()) - 1;
+  const Matrix E = m.is_descriptor() ? m.E : identity(n);
+  Equations::Line x = rows.element(model.X0);
+  for (Index k = 0; k <= last; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    if (k > 0 && m.is_descriptor() && admissible_set) {
+      const Equations::Line a = rows.element(*admissible_set), lambda = rows.line(n);
+      rows.add(n, {{x, identity(n)}, {a, -identity(n)}, {lambda, -E.transpose()}});
+    }
+    if (shared.y[at].size > 0) {
+      const Equations::Line v = rows.element(model.V);
+      rows.add(m.outputs(), {{shared.y[at], identity(m.outputs())}, {x, -m.C}, {shared.u[at], -m.D}, {v, -m.Dv}});
+    }
+    if (k == last && !m.is_descriptor()) break;
+    const Equations::Line w = rows.element(model.W), next = rows.line(n);
+    rows.add(n, {{next, E}, {x, -m.A}, {shared.u[at], -m.B}, {w, -m.Bw}});
+    x = next;
+  }
+}
+
+/// max τ : Sδ + Aξ = τ b, ‖ξ‖∞ ≤ 1, as the floating-point solver sees it. The rows have a solution if and only if τ ≥ 1, and -y
+/// is a Farkas vector otherwise.
+struct Proposal {
+  bool found = false;
+  double tau = 0;
+  Vector point;  ///< (δ, ξ) / τ, for τ > 0
+  Vector y;
+};
+Proposal propose(const LineForm& X) {
+  const Index l = X.lines(), g = X.generators(), m = X.constraints();
+  Matrix rows(m, l + g + 1);
+  rows << X.S, X.A, -X.b;
+  const Vector scales = linalg::row_scales(rows);
+  rows = scales.asDiagonal() * rows;
+  Vector lower = Vector::Constant(l + g + 1, -infinity), upper = -lower, cost = Vector::Zero(l + g + 1);
+  lower.segment(l, g).setConstant(-1);
+  upper.segment(l, g).setConstant(1);
+  lower[l + g] = 0;
+  upper[l + g] = largest_scale;
+  cost[l + g] = 1;
+  const LinearProgram::Solution solution = LinearProgram(rows, Vector::Zero(m), lower, upper).maximize(cost);
+  Proposal proposal;
+  if (solution.status != LinearProgram::Status::optimal || !solution.x.allFinite() || !solution.y.allFinite()) return proposal;
+  proposal.found = true;
+  proposal.tau = solution.x[l + g];
+  if (proposal.tau > 0) proposal.point = solution.x.head(l + g) / proposal.tau;
+  proposal.y = -scales.cwiseProduct(solution.y);
+  return proposal;
+}
+
+/// bᵀy / ‖Aᵀy‖₁ - 1, rounded down, if that is positive.
+std::optional<double> proven_kappa(const rational::System& system, VectorIn y) {
+  const auto terms = rational::farkas_terms(system, y);
+  if (!terms || terms->gain <= terms->cost) return std::nullopt;
+  if (sgn(terms->cost) == 0) return infinity;
+  return rational::enclose(terms->gain / terms->cost - 1).lower;
+}
+
+}  // namespace
+
+LineForm common_runs(std::span<const Model* const> models, const Experiment& experiment) {
+  Equations rows;
+  Shared shared;
+  const Index outputs = models.size() > 1 ? models[0]->linear.outputs() : 0, last = experiment.u.rows() - 1;
+  for (Index k = 0; k <= last; ++k) {
+    shared.u.push_back(rows.constant(experiment.u.row(k).transpose()));
+    shared.y.push_back(rows.line(k == last || !experiment.last_output_only ? outputs : 0));
+  }
+  for (const Model* model : models) add_run(rows, *model, shared, experiment.admissible_set);
+  return rows.project(rows.line(0));
+}
+
+ExactEmptiness exact_emptiness(const LineForm& X) {
+  const auto rows_count = static_cast<double>(X.constraints()), columns = static_cast<double>(X.lines() + X.generators());
+  const double work = rows_count * rows_count * columns;
+  const auto too_large = [&](const char* what) {
+    return ExactEmptiness{Answer::unknown, 0,
+                          fmt::format("{}: {} lines and generators with {} constraints are too many in rational arithmetic", what,
+                                      X.lines() + X.generators(), X.constraints())};
+  };
+  if (work > most_to_check) return too_large("not tried");
+  const rational::Rows rows{X.S, X.A, X.b, Vector::Zero(X.constraints())};
+  const rational::System system(rows);
+  const auto disjoint = [&](double kappa) { return ExactEmptiness{Answer::yes, kappa, {}}; };
+  const ExactEmptiness meet{Answer::no, 0, {}};
+  const Proposal proposal = propose(X);
+  if (proposal.found && proposal.tau < 1) {
+    if (const auto kappa = proven_kappa(system, proposal.y)) return disjoint(*kappa);
+  }
+  if (proposal.found && proposal.tau > 0 && rational::has_solution_near(system, proposal.point)) return meet;
+  if (work > most_to_settle) return too_large("no proof was restored from doubles");
+  const rational::Finding found = rational::settle(rows);  // its answer is exact, its data are rounded
+  if (found.feasible) return meet;
+  return disjoint(proven_kappa(system, found.data).value_or(0));
+}
+
+}  // namespace cordon::verification

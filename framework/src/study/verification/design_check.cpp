@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/verification/design_check.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace cordon::verification {
+
+namespace {
+
+constexpr double tolerance = 1e-9;
+constexpr double most_asked = 1e9;  ///< of κ: an infinite one shows as a very large bound
+
+class DesignCheck {
+ public:
+  void pair(std::size_t q, const PairSeparation& claim, const ExactPair& exact, const std::string& names) {
+    if (claim.disjoint == Answer::unknown) return;
+    const std::string tubes = "the output tubes of " + names;
+    if (exact.disjoint == Answer::unknown) return open(tubes + ": " + exact.reason);
+    const bool apart = exact.disjoint == Answer::yes;
+    if (claim.disjoint == Answer::yes) {
+      const double asked = std::min(claim.kappa_lower, most_asked);
+      if (!apart) return refute(tubes + " are called disjoint, and meet", "/pairs/", q);
+      if (exact.kappa_lower >= asked - tolerance * (1 + asked)) return holds();
+      return open(
+          fmt::format("{} are disjoint, and κ ≥ {} is proven in place of {}", tubes, exact.kappa_lower, claim.kappa_lower));
+    }
+    if (apart && exact.kappa_lower > tolerance) return refute(tubes + " are said to meet, and are disjoint", "/pairs/", q);
+    holds();
+  }
+
+  void tube(std::size_t i, Answer claim, Answer exact, const std::string& name) {
+    if (claim == Answer::unknown) return;
+    if (exact == Answer::unknown) return open("is the output tube of " + name + " empty?");
+    if (claim == exact) return holds();
+    refute(fmt::format("the output tube of {} is called {}empty, and is {}", name, claim == Answer::yes ? "" : "not ",
+                       claim == Answer::yes ? "not" : "empty"),
+           "/tubes/", i);
+  }
+
+  DesignFindings found;
+
+ private:
+  void holds() { ++found.hold; }
+  void open(std::string what) {
+    if (++found.undecided == 1) found.first_undecided = std::move(what);
+  }
+  void refute(std::string what, const char* list, std::size_t index) {
+    if (!found.refuted) found.refuted = {std::move(what), list + std::to_string(index)};
+  }
+};
+
+}  // namespace
+
+DesignFindings check_design(const ModeBank& bank, const DesignOutcome& outcome, const std::atomic<bool>* stop) {
+  const ExactSeparation exact = verify_design(bank, outcome, stop);
+  DesignCheck check;
+  for (std::size_t q = 0; q < exact.pairs.size(); ++q) {
+    const ExactPair& pair = exact.pairs[q];
+    check.pair(q, outcome.best->pairs.at(q), pair, bank[pair.i].name + " and " + bank[pair.j].name);
+  }
+  for (std::size_t i = 0; i < exact.empty.size(); ++i) {
+    check.tube(i, outcome.best->empty.at(i), exact.empty[i], bank.modes[i].name);
+  }
+  return std::move(check.found);
+}
+
+}  // namespace cordon::verification
