@@ -290,6 +290,10 @@ TEST_CASE("Tubes that must not be empty") {
     check_optimal(problem, searched(problem), kind == Cost::Kind::quadratic ? .0625 : .25);
     problem.conditions = {needed};
     check_optimal(problem, searched(problem), kind == Cost::Kind::quadratic ? 1.5625 : 1.25);
+    SeparationProblem shifted = problem;  // |u_0 - .5| ≤ 1.5
+    shifted.U.c[0] = .5;
+    shifted.U.G(0, 0) = 1.5;
+    check_optimal(shifted, searched(shifted), kind == Cost::Kind::quadratic ? 1.5625 : 1.25);
     problem.conditions[0].b[0] = 4;  // |u_0 + 4| ≤ 1 never
     const SearchResult none = searched(problem);
     CHECK(none.status == DesignStatus::infeasible);
@@ -333,6 +337,15 @@ TEST_CASE("Without noise there is no cheapest input, and none is claimed") {
   CHECK(found.cost < 1e-5);
   CHECK(found.lower_bound == 0);
   CHECK(found.reason.find("without width") != std::string::npos);
+}
+
+TEST_CASE("Inputs too near to a set without width: not found, and not denied either") {
+  SeparationProblem problem =
+      problem_of({pair_of(0, 1, Matrix(1, 0), numbers({1}), Matrix::Ones(1, 1))}, boxed_inputs(1, 1e-7), Cost::Kind::norm_1, 0);
+  problem.U.c[0] = 1;
+  const SearchResult found = searched(problem);
+  CHECK(found.status == DesignStatus::unknown);
+  CHECK(found.reason == "a linear program could not be decided");
 }
 
 TEST_CASE("A search that is stopped says so, and proves what it can") {

@@ -185,6 +185,19 @@ TEST_CASE("Forbidden sets that are no polytope with an interior") {
     CHECK(most_beyond(set, numbers({.25, .501})) > 0);
     CHECK(most_beyond(set, numbers({.249, .5})) > 0);
   }
+  SUBCASE("a triangle, whichever way it points") {
+    for (const double first : {1.0, -1.0}) {
+      for (const double second : {1.0, -1.0}) {
+        const Matrix G = (Matrix(3, 3) << first, 0, 0, 0, second, 0, 1, 1, 1).finished(), N = Matrix::Identity(3, 2);
+        const ForbiddenSet set = forbidden(pair_of(0, 1, G / 4, numbers({0, 0, .25}), N), U, 0);
+        REQUIRE(set.kind == ForbiddenSet::Kind::facets);
+        CHECK(set.facets.size() == 3);
+        CHECK(most_beyond(set, numbers({-.2 * first, -.2 * second})) < 0);
+        CHECK(most_beyond(set, numbers({.05 * first, .05 * second})) > 0);
+        CHECK(most_beyond(set, numbers({-.26 * first, 0})) > 0);
+      }
+    }
+  }
   SUBCASE("too many facets, and no time") {
     std::mt19937 random(1);
     const PairProgram pair = random_pair(random, 0, 1, 3, 12, 3, 2 + 3);
@@ -280,4 +293,29 @@ TEST_CASE("The bound of a child is below its minimum, and is it where the parent
   SeparationProblem mixed = problem_of({}, boxed_inputs(2, 1), Cost::Kind::norm_1, 0);
   mixed.U.G(0, 1) = 1;
   CHECK_FALSE(FacetDual(mixed).usable());
+}
+
+TEST_CASE("An input that only `out` denies is not proven impossible") {
+  SeparationProblem problem = problem_of({}, boxed_inputs(2, 1), Cost::Kind::norm_1, 0);
+  NodeProgram program(problem);
+  const SeparatingFacet thick{numbers({1, 0}), 1.5, .5}, thin{numbers({1, 0}), 1.5, 1.4};
+  const NodeProgram::Answer open = program.solve({&thick});
+  CHECK_FALSE(open.impossible);
+  CHECK_FALSE(open.zeta);
+  CHECK(program.solve({&thin}).impossible);
+  const SeparatingFacet left{numbers({1, .5}), .8, .7}, right{numbers({-1, .5}), .8, .7};  // together u_1 ≥ 1.6 and 1.4
+  CHECK(program.solve({&left, &right}).impossible);
+}
+
+TEST_CASE("A quadratic cost under equations is proven without further tangents") {
+  SeparationProblem problem = problem_of({}, boxed_inputs(2, 1), Cost::Kind::quadratic, 0);
+  problem.U.A = Matrix::Ones(1, 2);
+  problem.U.b = numbers({.5});
+  problem.cost.weights = numbers({1, 3});
+  problem.cost.reference = numbers({0, .1});
+  // Apart by .4, shared 3 to 1.
+  const NodeProgram::Answer answer = NodeProgram(problem).solve({});
+  REQUIRE(answer.zeta);
+  CHECK((*answer.zeta - numbers({.3, .2})).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK(answer.bound == doctest::Approx(.12).epsilon(1e-10));
 }

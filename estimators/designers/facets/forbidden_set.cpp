@@ -205,7 +205,7 @@ class Builder {
       if (open == facets.end()) break;
       if (watch_.over()) return stopped();
       const Support::Answer found = support_.along(product(basis, open->h.normalized()));
-      if (!found.x) return false;
+      if (!found.x || found.level < hull.level(*open) - residual_tolerance * terms) return false;  // a point outside Q
       const Vector x = product(down, *found.x);
       if (hull.beyond(*open, x) > hull.tolerance(*open)) {
         if (!hull.add(x, [this] { return watch_.over(); })) return stopped();

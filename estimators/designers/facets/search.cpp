@@ -283,8 +283,8 @@ void Search::conclude_without_input() {
   }
   result_.status = DesignStatus::infeasible;
   result_.suggestion = more_room;
-  result_.reason = pairs_.empty() || result_.nodes == 0 ? "every input of the input set leaves the output tube of a mode empty"
-                                                        : "every pair alone can be separated, but not all of them at once";
+  result_.reason = result_.nodes == 0 ? "every input of the input set leaves the output tube of a mode empty"
+                                      : "every pair alone can be separated, but not all of them at once";
   std::string hopeless;
   for (const OpenPair& open : pairs_) {
     if (result_.nodes > 0 && is_hopeless(open)) hopeless += (hopeless.empty() ? "" : "; ") + modes_of(problem_, *open.pair);
