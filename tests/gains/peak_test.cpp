@@ -177,3 +177,20 @@ TEST_CASE("the gain of badly scaled states is monotone, or none is given") {
   }
   CHECK(given > 300);
 }
+
+TEST_CASE("a system without outputs has a gain without columns") {
+  Model model = three_states();
+  LinearModel& m = model.linear;
+  m.A = .5 * m.A.cwiseAbs() / m.A.cwiseAbs().rowwise().sum().maxCoeff();
+  m.C = Matrix(0, 3);
+  m.D = Matrix(0, m.inputs());
+  m.Dv = Matrix(0, 0);
+  model.V = make_point(Vector(0));
+  for (const char* type : {"h_infinity", "h_infinity_monotone", "w_radius", "peak", "kalman"}) {
+    CAPTURE(type);
+    const GainDesign found = plugins().registry.make_gain(type, {})->design(model);
+    CHECK(found.feasible == Answer::yes);
+    CHECK(found.gain.L.rows() == 3);
+    CHECK(found.gain.L.cols() == 0);
+  }
+}
