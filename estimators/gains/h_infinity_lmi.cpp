@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gains/h_infinity_lmi.hpp"
 
-#include <limits>
-
 #include "cordon/core/linalg.hpp"
-#include "cordon/solvers/lp.hpp"
 #include "gains/gain_certificate.hpp"
 #include "gains/monotone.hpp"
 
@@ -60,41 +57,13 @@ HInfinityProgram h_infinity_program(const ErrorDynamics& errors, const Matrix& T
   return design;
 }
 
-/// The gain nearest to L, row by row, with A - L C ≥ 0: ‖d‖₁ least with A_i - (L_i + d) C ≥ 0. In units of the violation, since
-/// the tolerances of linear programs are absolute; entries that are far from 0 in them do not matter.
-Matrix projected(const ErrorDynamics& errors, Matrix L) {
-  const Index n = errors.A.rows(), p = errors.C.rows();
-  Matrix rows(n, 2 * p + n);
-  rows << errors.C.transpose(), -errors.C.transpose(), Matrix::Identity(n, n);
-  const Vector lower = Vector::Zero(2 * p + n), upper = Vector::Constant(2 * p + n, std::numeric_limits<double>::infinity());
-  Vector cost = Vector::Zero(2 * p + n);
-  cost.head(2 * p).setConstant(-1);
-  for (Index i = 0; i < n; ++i) {
-    const Vector closed = (errors.A.row(i) - L.row(i) * errors.C).transpose();
-    const double violation = -closed.minCoeff();
-    if (violation <= 0) continue;
-    LinearProgram program(rows, (closed / violation).cwiseMin(1e6), lower, upper);
-    const LinearProgram::Solution s = program.maximize(cost);
-    if (s.status != LinearProgram::Status::optimal) continue;
-    L.row(i) += violation * (s.x.head(p) - s.x.segment(p, p)).transpose();
-  }
-  return L;
-}
-
-/// A - L C ≥ 0 up to 1e-12 of its terms.
-bool is_monotone(const ErrorDynamics& errors, const Matrix& L) {
-  const Matrix closed = errors.A - linalg::product(L, errors.C);
-  const Matrix terms = errors.A.cwiseAbs() + linalg::product(L.cwiseAbs(), errors.C.cwiseAbs());
-  return (closed.array() >= -1e-12 * terms.array()).all();
-}
-
 /// What the solution is worth: its gain with the certificate, or why it is not accepted. `P` is that of e.
 GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics& errors, bool monotone, const SdpSolution& s,
                     const Matrix& P, const Matrix& PL) {
   const std::optional<Matrix> solved = linalg::solve_spd(P, PL);
   if (!solved) return no_gain(Answer::unknown, "the matrix P of the solution is not positive definite");
-  Matrix L = monotone ? raised_to_monotone(errors.A, errors.C, projected(errors, *solved)) : *solved;
-  if (monotone && !is_monotone(errors, L)) {
+  Matrix L = monotone ? made_monotone(errors.A, errors.C, *solved) : *solved;
+  if (monotone && !is_monotone(errors.A, errors.C, L)) {
     return no_gain(Answer::unknown, "the gain of the matrix inequality is monotone up to the solver's errors only");
   }
   if (const std::string problem = gain_problem(model, L); !problem.empty()) {

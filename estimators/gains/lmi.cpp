@@ -24,13 +24,14 @@ Matrix unit(Index rows, Index cols, Index i, Index j) {
 }  // namespace
 
 Matrix MatrixVariable::value(const Vector& x) const {
+  if (basis.empty()) return Matrix::Zero(rows, cols);
   Matrix sum = x[first] * basis[0];
   for (std::size_t k = 1; k < basis.size(); ++k) sum += x[first + static_cast<Index>(k)] * basis[k];
   return sum;
 }
 
 MatrixVariable symmetric_variable(Index first, Index n) {
-  MatrixVariable V{first, {}};
+  MatrixVariable V{first, {}, n, n};
   for (Index j = 0; j < n; ++j) {
     for (Index i = 0; i <= j; ++i) {
       Matrix one = unit(n, n, i, j);
@@ -42,13 +43,13 @@ MatrixVariable symmetric_variable(Index first, Index n) {
 }
 
 MatrixVariable diagonal_variable(Index first, Index n) {
-  MatrixVariable V{first, {}};
+  MatrixVariable V{first, {}, n, n};
   for (Index i = 0; i < n; ++i) V.basis.push_back(unit(n, n, i, i));
   return V;
 }
 
 MatrixVariable full_variable(Index first, Index rows, Index cols) {
-  MatrixVariable V{first, {}};
+  MatrixVariable V{first, {}, rows, cols};
   for (Index j = 0; j < cols; ++j) {
     for (Index i = 0; i < rows; ++i) V.basis.push_back(unit(rows, cols, i, j));
   }

@@ -15,6 +15,7 @@ namespace cordon::estimators {
 struct MatrixVariable {
   Index first = 0;
   std::vector<Matrix> basis;
+  Index rows = 0, cols = 0;  ///< of the value where the basis is empty: a gain of a system without outputs
 
   Index end() const { return first + static_cast<Index>(basis.size()); }
   Matrix value(const Vector& x) const;

@@ -104,6 +104,31 @@ std::optional<std::string> no_monotone_gain(const Matrix& A, const Matrix& C) {
   return why;
 }
 
+namespace {
+
+/// ‖d‖₁ least with A_i - (L_i + d) C ≥ 0. In units of the violation, since the tolerances of linear programs are absolute;
+/// entries that are far from 0 in them do not matter.
+Matrix projected(const Matrix& A, const Matrix& C, Matrix L) {
+  const Index n = A.rows(), p = C.rows();
+  Matrix rows(n, 2 * p + n);
+  rows << C.transpose(), -C.transpose(), Matrix::Identity(n, n);
+  const Vector lower = Vector::Zero(2 * p + n), upper = Vector::Constant(2 * p + n, infinite);
+  Vector cost = Vector::Zero(2 * p + n);
+  cost.head(2 * p).setConstant(-1);
+  for (Index i = 0; i < n; ++i) {
+    const Vector closed = (A.row(i) - L.row(i) * C).transpose();
+    const double violation = -closed.minCoeff();
+    if (violation <= 0) continue;
+    LinearProgram program(rows, (closed / violation).cwiseMin(1e6), lower, upper);
+    const LinearProgram::Solution s = program.maximize(cost);
+    if (s.status != LinearProgram::Status::optimal) continue;
+    L.row(i) += violation * (s.x.head(p) - s.x.segment(p, p)).transpose();
+  }
+  return L;
+}
+
+}  // namespace
+
 Matrix raised_to_monotone(const Matrix& A, const Matrix& C, Matrix L) {
   if (A.size() == 0 || L.cols() == 0) return L;
   const double size = A.cwiseAbs().maxCoeff();
@@ -126,6 +151,16 @@ Matrix raised_to_monotone(const Matrix& A, const Matrix& C, Matrix L) {
     }
   }
   return L;
+}
+
+Matrix made_monotone(const Matrix& A, const Matrix& C, Matrix L) {
+  return raised_to_monotone(A, C, projected(A, C, std::move(L)));
+}
+
+bool is_monotone(const Matrix& A, const Matrix& C, const Matrix& L) {
+  const Matrix closed = A - linalg::product(L, C);
+  const Matrix terms = A.cwiseAbs() + linalg::product(L.cwiseAbs(), C.cwiseAbs());
+  return (closed.array() >= -1e-12 * terms.array()).all();
 }
 
 }  // namespace cordon::estimators

@@ -20,4 +20,10 @@ std::optional<std::string> no_monotone_gain(const Matrix& A, const Matrix& C);
 /// do so; other negative entries stay.
 Matrix raised_to_monotone(const Matrix& A, const Matrix& C, Matrix L);
 
+/// The same for the gain nearest to L, row by row, with A - L C ≥ 0, where a linear program finds it: for gains of solvers.
+Matrix made_monotone(const Matrix& A, const Matrix& C, Matrix L);
+
+/// A - L C ≥ 0 up to 1e-12 of its terms.
+bool is_monotone(const Matrix& A, const Matrix& C, const Matrix& L);
+
 }  // namespace cordon::estimators

@@ -105,7 +105,10 @@ class Peak final : public GainDesigner {
     const Index n = m.states(), p = m.outputs();
     Matrix L(n, p);
     for (Index i = 0; i < n; ++i) L.row(i) = solution.x.segment(n + i * p, p).transpose() / solution.x[i];
-    L = raised_to_monotone(m.A, C, std::move(L));
+    L = made_monotone(m.A, C, std::move(L));
+    if (!is_monotone(m.A, C, L)) {
+      return {Answer::unknown, {}, "the gain of the linear program is monotone up to the solver's errors only", otherwise};
+    }
     if (std::string problem = gain_problem(model, L); !problem.empty()) {
       return {Answer::unknown, {}, "the solution of the linear program " + std::move(problem), otherwise};
     }

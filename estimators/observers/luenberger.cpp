@@ -57,7 +57,8 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
     problems.push_back({"/type", "\"luenberger\" takes systems of type \"lti\"", "use the observer \"descriptor\""});
     return problems;
   }
-  const bool grows = has_spread(m.A_radius) || has_spread(m.C_radius);  // with the magnitudes of the states
+  const bool grows =
+      has_spread(m.A_radius) || has_spread(m.C_radius) || has_spread(m.sensor_radius());  // with the magnitudes of the states
   if (problems.empty() && grows) check_bounded_start(context, params, problems);
   check_observer_gain(context, params, "gain", steady_kalman(), problems);
   return problems;

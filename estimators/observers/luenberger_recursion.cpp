@@ -56,7 +56,7 @@ LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L, std::shar
   const Vector ones = Vector::Ones(ranged_radius_.size());
   unit_ = backend_->box({-ones, ones});
   most_f_ = f_ + rad;
-  if (m.sensor.dim() != 0) {
+  if (has_spread(m.sensor_radius())) {
     sensor_radius_ = m.sensor_radius();
     raw_C_ = m.C;
     raw_D_ = m.D.cwiseAbs() * most_f_.asDiagonal();
@@ -85,7 +85,8 @@ Enclosure LuenbergerRecursion::output_box(const Enclosure& X, const Vector& larg
   Vector widths = interval_spread(C_radius_, largest, C_.rows());
   if (sensor_radius_.size() != 0) {
     const Vector outputs = largest_entries(backend_->affine_map(X, raw_C_, Vector::Zero(raw_C_.rows()))->interval_hull());
-    widths.array() += sensor_radius_.array() * (outputs + product(raw_D_, u.cwiseAbs())).array();
+    const Vector reach = outputs + product(raw_D_, u.cwiseAbs());
+    widths += (sensor_radius_.array() > 0).select(sensor_radius_.cwiseProduct(reach), 0.0).matrix();
   }
   return bounded_box(widths, "a range of sensor effectiveness or an interval matrix C");
 }

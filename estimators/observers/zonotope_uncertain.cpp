@@ -72,7 +72,9 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
     problems.push_back({"/type", "\"zonotope_uncertain\" takes systems of type \"lti\"", "use the observer \"descriptor\""});
     return problems;
   }
-  if (problems.empty() && (has_spread(m.A_radius) || has_spread(m.C_radius))) check_bounded_start(context, params, problems);
+  const bool grows =
+      has_spread(m.A_radius) || has_spread(m.C_radius) || has_spread(m.sensor_radius());  // with the magnitudes of the states
+  if (problems.empty() && grows) check_bounded_start(context, params, problems);
   check_noises(context, problems);
   if (!problems.empty()) return problems;  // gains are designed for these sets
   check_observer_gain(context, params, "gain", absent(), problems);

@@ -8,6 +8,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "elimination_plan.hpp"
+#include "residue.hpp"
 
 namespace cordon::sets {
 
@@ -30,6 +31,7 @@ class Elimination {
         b_(X.b),
         A_terms_(X.A.cwiseAbs()),
         b_terms_(X.b.cwiseAbs()),
+        state_terms_(Vector::Zero(X.dim())),
         in_row_(X.constraints(), true),
         free_(X.generators(), true) {}
 
@@ -129,6 +131,8 @@ class Elimination {
       const double mid = (lower_[j] + upper_[j]) / 2, rad = (upper_[j] - lower_[j]) / 2;
       if (mid == 0 && rad == 1) continue;
       c_ += mid * G_.col(j);
+      rescaled_ = true;
+      state_terms_ = state_terms_.cwiseMax((G_.col(j).array() != 0).select(c_.cwiseAbs() + G_.col(j).cwiseAbs(), 0.0));
       b_ -= mid * A_.col(j);
       b_terms_ = b_terms_.cwiseMax(std::abs(mid) * A_terms_.col(j));
       G_.col(j) *= rad;
@@ -221,6 +225,9 @@ class Elimination {
     const Eigen::RowVectorXd pivot_row = A_.row(row) / A_(row, col);
     const double right = b_[row] / A_(row, col);
     const Vector out = G_.col(col);
+    const double row_terms = std::max(A_terms_.row(row).maxCoeff(), b_terms_[row]) / std::abs(A_(row, col));
+    const Vector terms = c_.cwiseAbs() + G_.cwiseAbs().rowwise().maxCoeff() + row_terms * out.cwiseAbs();
+    state_terms_ = state_terms_.cwiseMax((out.array() != 0).select(terms, 0.0));
     for (Index j = 0; j < factors(); ++j) {
       if (pivot_row[j] != 0) G_.col(j) -= pivot_row[j] * out;
     }
@@ -251,7 +258,13 @@ class Elimination {
       for (Index i = 0; i < m; ++i) X.A(i, j) = A_(rows_left[at(i)], factors_left[at(j)]);
     }
     for (Index i = 0; i < m; ++i) X.b[i] = b_[rows_left[at(i)]];
-    return X;
+    if (steps_.empty() && !rescaled_) return X;
+    Vector row_terms = Vector::Zero(m);
+    for (Index i = 0; i < m; ++i) {  // a row 0 = b that was not dropped is false by more than rounding
+      const Index row = rows_left[at(i)];
+      if (scale(row) > 0) row_terms[i] = std::max(A_terms_.row(row).maxCoeff(), b_terms_[row]);
+    }
+    return with_residue(X, row_terms, state_terms_);
   }
 
  private:
@@ -318,7 +331,8 @@ class Elimination {
   Vector b_;
   Matrix A_terms_;  ///< size of the terms each coefficient was computed from
   Vector b_terms_;
-  bool exact_ = true;
+  Vector state_terms_;  ///< likewise of c and G, per coordinate
+  bool exact_ = true, rescaled_ = false;
   std::vector<EliminationStep> steps_;
   std::vector<bool> in_row_, free_;
   Vector lower_, upper_, allowed_lower_, allowed_upper_;

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/sets/line_zonotope.hpp"
 
+#include <cmath>
+#include <vector>
+
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
 #include "false_row.hpp"
+#include "residue.hpp"
 
 namespace cordon::sets {
 
 namespace {
 
-constexpr double product_noise = 1e-14;  ///< cancelled to this share of its terms, a value is zero
+/// |T| (|c| + |G| 1), the size of the terms of T X.
+Vector terms_of_map(MatrixIn T, const LineZonotope& X) {
+  const Vector reach = X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum();
+  return linalg::product(T.cwiseAbs(), reach);
+}
 
-}  // namespace
-
-LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands) {
+LineZonotope assembled_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands) {
   LineZonotope Y = affine_map(X, A, f);
   if (summands.empty()) return Y;
   Index lines = X.lines(), generators = X.generators(), constraints = X.constraints();
@@ -48,14 +54,49 @@ LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span
   return Y;
 }
 
+/// Without the rows that are not `kept`.
+LineZonotope with_rows(LineZonotope X, const std::vector<Index>& kept) {
+  if (static_cast<Index>(kept.size()) == X.constraints()) return X;
+  X.S = Matrix(X.S(kept, Eigen::all));
+  X.A = Matrix(X.A(kept, Eigen::all));
+  X.b = Vector(X.b(kept));
+  return X;
+}
+
+/// Does this row say nothing that could be told from rounding? One that misses the set by less than proofs need is such a row.
+bool is_vague(double terms, double reach, double b) {
+  return reach + std::abs(b) <= nominal_noise * terms || (std::abs(b) > reach && std::abs(b) <= nominal_margin * terms);
+}
+
+}  // namespace
+
+LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands) {
+  const LineZonotope Y = assembled_sum(X, A, f, summands);
+  if (summands.empty()) return Y;
+  Vector terms = f.cwiseAbs() + terms_of_map(A, X);
+  for (const Summand& s : summands) terms += terms_of_map(s.T, s.set);
+  return with_residue(Y, Vector::Zero(Y.constraints()), terms);
+}
+
 LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T, const LineZonotope& V) {
   LineZonotope Y = intersection(X, C, affine_map(V, -T, z));
-  // z - T c_V - C c_X cancels where the sets touch: a residue is no statement
-  const Vector terms =
+  const Vector center_terms =
       z.cwiseAbs() + linalg::product(T.cwiseAbs(), V.c.cwiseAbs()) + linalg::product(C.cwiseAbs(), X.c.cwiseAbs());
-  auto right = Y.b.tail(z.size());
-  right = (right.array().abs() <= product_noise * terms.array()).select(0.0, right).eval();
-  return Y;
+  const Vector terms = z.cwiseAbs() + terms_of_map(T, V) + terms_of_map(C, X);
+  const Index first = Y.constraints() - z.size();
+  Vector row_terms = Vector::Zero(Y.constraints());
+  std::vector<Index> kept;
+  for (Index i = 0; i < Y.constraints(); ++i) {
+    const Index k = i - first;
+    // z - T c_V - C c_X cancels where the sets touch: a residue is no statement
+    if (k >= 0 && std::abs(Y.b[i]) <= nominal_noise * center_terms[k]) Y.b[i] = 0;
+    if (k >= 0 && Y.S.row(i).isZero(0)) {
+      if (is_vague(terms[k], Y.A.row(i).lpNorm<1>(), Y.b[i])) continue;
+      row_terms[i] = terms[k];
+    }
+    kept.push_back(i);
+  }
+  return with_residue(with_rows(std::move(Y), kept), row_terms(kept), Vector::Zero(X.dim()));
 }
 
 namespace {

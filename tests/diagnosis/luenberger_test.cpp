@@ -166,3 +166,19 @@ TEST_CASE("descriptor systems and ranges are refused by those who do not take th
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].suggestion.find("descriptor") != std::string::npos);
 }
+
+TEST_CASE("a range of a sensor needs a bounded start, an exact sensor does not") {
+  Model model = reactor()[0].model;
+  model.X0 = make_space(2);
+  for (const char* type : {"luenberger", "zonotope_uncertain"}) {
+    CAPTURE(type);
+    const auto problems = [&] { return registry().check_observer(type, {model, backend("line_zonotope")}, {}); };
+    model.linear.sensor = Box{Vector{{.5}}, Vector{{1}}};
+    REQUIRE(problems().size() == 1);
+    CHECK(problems()[0].message.find("unbounded") != std::string::npos);
+    model.linear.sensor = Box{Vector{{1}}, Vector{{1}}};
+    CHECK(problems().empty());
+    const auto observer = registry().make_observer(type, {model, backend("line_zonotope")}, {});
+    for (Index k = 0; k < 3; ++k) CHECK(observer->step({k, Vector::Zero(1), Vector::Zero(1)}).consistent != Answer::no);
+  }
+}

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <random>
+
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
@@ -136,4 +139,58 @@ TEST_CASE("no random monotone gain has smaller widths") {
       RC_ASSERT(best <= half_widths(model, other, none).sum() * (1 + 1e-7));
     }
   }));
+}
+
+TEST_CASE("the gain of badly scaled states is monotone, or none is given") {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto random = [&](Index rows, Index cols) {
+    Matrix A(rows, cols);
+    for (double& entry : A.reshaped()) entry = 2 * unit(engine) - 1;
+    return A;
+  };
+  int given = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const Index n = 2 + trial % 3, p = 1 + trial % 2;
+    Matrix closed = random(n, n).cwiseMax(0);  // monotone and stable with the gain L
+    closed *= .9 / std::max(.9, closed.rowwise().sum().maxCoeff());
+    Vector scale(n);
+    for (double& s : scale) s = std::pow(10, 10 * unit(engine) - 5);
+    const Matrix T = scale.asDiagonal(), back = scale.cwiseInverse().asDiagonal(), C = random(p, n), L = random(n, p);
+    Model model;
+    LinearModel& m = model.linear;
+    m.A = T * (closed + L * C) * back;
+    m.B = Matrix(n, 0);
+    m.C = C * back;
+    m.D = Matrix(p, 0);
+    m.Bw = T;
+    m.Dv = .1 * Matrix::Identity(p, p);
+    model.X0 = model.W = make_box(cube(n, 1));
+    model.V = make_box(cube(p, 1));
+    model.U = make_space(0);
+    const GainDesign found = design(model, Matrix(.1 * T));
+    if (found.feasible != Answer::yes) continue;
+    ++given;
+    const Matrix& K = found.gain.L;
+    const Matrix left = m.A - K * m.C, terms = m.A.cwiseAbs() + K.cwiseAbs() * m.C.cwiseAbs();
+    CHECK((left.array() >= -1e-12 * terms.array()).all());
+  }
+  CHECK(given > 300);
+}
+
+TEST_CASE("a system without outputs has a gain without columns") {
+  Model model = three_states();
+  LinearModel& m = model.linear;
+  m.A = .5 * m.A.cwiseAbs() / m.A.cwiseAbs().rowwise().sum().maxCoeff();
+  m.C = Matrix(0, 3);
+  m.D = Matrix(0, m.inputs());
+  m.Dv = Matrix(0, 0);
+  model.V = make_point(Vector(0));
+  for (const char* type : {"h_infinity", "h_infinity_monotone", "w_radius", "peak", "kalman"}) {
+    CAPTURE(type);
+    const GainDesign found = plugins().registry.make_gain(type, {})->design(model);
+    CHECK(found.feasible == Answer::yes);
+    CHECK(found.gain.L.rows() == 3);
+    CHECK(found.gain.L.cols() == 0);
+  }
 }

@@ -29,6 +29,7 @@ struct Reduced {
 /// single steps, where the state's part loses nothing.
 /// r_j = 0 loses nothing. One factorisation serves all scores and is updated by rank-one terms.
 /// Rows that have become 0 = 0, or that cancelled to 1e-5 of their terms or less, are dropped; a row 0 = b ≠ 0 stays (X is ∅).
+/// Where what is left is flat, 1e-14 of the terms that it was computed from is added as factors, for coordinates and rows.
 /// O(g (n + m)² + per eliminated row g (n + m)).
 Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options = {});
 

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What rounding leaves in nominal operations. Later operations see a result and no longer the terms that it was computed from:
+// where these were much larger, errors would pass for statements about the set.
+#pragma once
+
+#include "cordon/core/line_form.hpp"
+
+namespace cordon::sets {
+
+/// Below this share of its terms, a value may stem from the rounding of nominal operations.
+constexpr double nominal_noise = 1e-14;
+/// No proof rests on less than this share of its terms.
+constexpr double nominal_margin = 1e-10;
+
+/// X, whose coordinates and rows were computed from terms of these sizes (0: not computed, hence exact). Where the lifted
+/// zonotope [G; A] is so flat that the margin of proofs does not cover 1e-14 of the terms, these get factors of their own: the
+/// set becomes larger by them.
+LineForm with_residue(const LineForm& X, const Vector& row_terms, const Vector& state_terms);
+
+}  // namespace cordon::sets
