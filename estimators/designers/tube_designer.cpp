@@ -14,10 +14,11 @@ namespace {
 constexpr double touching = 1e-7;  ///< |κ| below this
 
 Answer is_empty_under(const TubeConditions& rows, VectorIn u) {
-  if (rows.b.size() == 0) return Answer::no;
-  const Vector b = rows.b + linalg::product(rows.Omega, u);
-  const Vector magnitude = (rows.b.cwiseAbs() + rows.Omega.cwiseAbs() * u.cwiseAbs()).cwiseMax(rows.magnitude);
-  return BoxedProgram(rows.A, b, {magnitude, {}}).is_empty();
+  const Answer if_met = rows.vanished == 0 ? Answer::no : Answer::unknown;
+  if (rows.b.size() == 0) return if_met;
+  const Vector terms = rows.terms(u.cwiseAbs());
+  const Answer empty = BoxedProgram(rows.A, rows.b + linalg::product(rows.Omega, u), {terms, row_noise * terms}).is_empty();
+  return empty == Answer::no ? if_met : empty;
 }
 
 /// A solver's vertex may leave the bounds of an input by its last digits.

@@ -15,7 +15,7 @@ using linalg::product;
 
 namespace {
 
-constexpr double rank_tolerance = 1e-11;      ///< of the terms: inputs that move a row by less do not move it
+constexpr double rank_tolerance = row_noise;  ///< of the terms: what inputs move less cannot be told from rounding
 constexpr double flat_tolerance = 1e-9;       ///< of the terms
 constexpr double flat_distance = 1e-6;        ///< of the terms, see forbidden_set
 constexpr double outer_rounding = 1e-14;      ///< of the terms: γ_n of the sums below, with room for thousands of them
@@ -35,8 +35,7 @@ struct ScaledPair {
     N = product(pair.N, U.G);
     const Vector shift = product(pair.N, U.c);
     c = pair.c - shift;
-    terms = (pair.N.cwiseAbs() * (U.c.cwiseAbs() + U.G.cwiseAbs().rowwise().sum()) + pair.c.cwiseAbs()).cwiseMax(pair.magnitude);
-    terms += factor * G.cwiseAbs().rowwise().sum();
+    terms = factor * pair.terms(U.c.cwiseAbs() + U.G.cwiseAbs().rowwise().sum());
     for (Index i = 0; i < c.size(); ++i) {
       const double scale = terms[i] > 0 ? std::exp2(-std::ilogb(terms[i])) : 1.0;
       G.row(i) *= scale;
@@ -70,6 +69,12 @@ class Support {
   cordon::Answer empty() {
     ++programs;
     return program_.is_empty();
+  }
+  /// Proven: has Q a point however the rows' right-hand sides are moved by up to `effect`, and by rounding?
+  bool is_met_within(const Vector& effect) {
+    ++programs;
+    const Vector error = effect + row_noise * pair_.terms;
+    return BoxedProgram(rows_, right_, {pair_.terms, product(L_.cwiseAbs().transpose(), error)}).is_empty() == cordon::Answer::no;
   }
   double terms_along(const Vector& d) const { return pair_.terms.dot(Vector(product(R_, d)).cwiseAbs()); }
 
@@ -240,7 +245,10 @@ ForbiddenSet of_kind(ForbiddenSet::Kind kind, std::string reason = {}) {
 
 ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, double epsilon, Index max_facets,
                            const Watch& watch) {
-  if (pair.rows() == 0) return of_kind(ForbiddenSet::Kind::never, "no output tells one from the other, whatever the inputs are");
+  if (pair.rows() == 0) {
+    return pair.vanished == 0 ? of_kind(ForbiddenSet::Kind::never, "no output tells one from the other, whatever the inputs are")
+                              : of_kind(ForbiddenSet::Kind::unknown, "they differ by less than rounding allows to tell");
+  }
   const ScaledPair scaled(pair, U, epsilon);
   // ζ = p + Zη: η is free but for the box.
   const bool equations = U.b.size() > 0;
@@ -256,8 +264,10 @@ ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, dou
     set = of_kind(ForbiddenSet::Kind::separated);
   } else if (r > 0) {
     set = Builder(scaled, support, r, max_facets, watch).build();
-  } else if (empty == Answer::no) {
+  } else if (pair.vanished == 0 && support.is_met_within(product(scaled.N, Z).cwiseAbs().rowwise().sum())) {
     set = of_kind(ForbiddenSet::Kind::never, "the inputs that may be chosen have no effect on what tells one from the other");
+  } else if (empty == Answer::no) {
+    set = of_kind(ForbiddenSet::Kind::unknown, "the inputs that may be chosen have hardly more effect than rounding");
   } else {
     set = of_kind(ForbiddenSet::Kind::unknown, "whether they are told apart without inputs is a matter of rounding");
   }

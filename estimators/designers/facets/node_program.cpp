@@ -80,9 +80,7 @@ NodeProgram::NodeProgram(const SeparationProblem& problem) : problem_(problem) {
     for (Index j = 0; j < tube.A.cols(); ++j) hard_.add_column(-1, 1, 0);
     const Matrix by_zeta = product(tube.Omega, U.G);
     const Vector right = tube.b + product(tube.Omega, U.c);
-    const Vector terms = (tube.b.cwiseAbs() + tube.Omega.cwiseAbs() * (U.c.cwiseAbs() + U.G.cwiseAbs().rowwise().sum()) +
-                          tube.A.cwiseAbs().rowwise().sum())
-                             .cwiseMax(tube.magnitude);
+    const Vector terms = tube.terms(U.c.cwiseAbs() + U.G.cwiseAbs().rowwise().sum());
     for (Index i = 0; i < tube.b.size(); ++i) {
       Vector row = Vector::Zero(first + tube.A.cols());
       row.head(U.G.cols()) = -by_zeta.row(i).transpose();

@@ -84,7 +84,8 @@ bool Search::settled(const PairProgram& pair) {
   if (U.b.size() > 0) u += linalg::product(U.G, linalg::product(linalg::pseudo_inverse(U.A), U.b));
   const PairSeparation apart = separation(pair, u);
   if (apart.disjoint == Answer::yes && apart.kappa >= problem_.epsilon) return true;
-  const bool exactly = (pair.N.array() == 0).all() && apart.disjoint == Answer::no;
+  const bool untouched = (pair.N.array() == 0).all() && (pair.N_magnitude.array() == 0).all();  // by inputs, not just by rounding
+  const bool exactly = untouched && apart.disjoint == Answer::no;
   result_.status = exactly ? DesignStatus::infeasible : DesignStatus::unknown;
   result_.reason = fmt::format("no input changes how far the outputs of {} are apart, and that is not enough (κ = {:.4g})",
                                modes_of(problem_, pair), apart.kappa);
@@ -95,6 +96,10 @@ bool Search::settled(const PairProgram& pair) {
 bool Search::reduce() {
   for (const PairProgram& pair : problem_.pairs) {
     if (pair.rows() > 0) continue;
+    if (pair.vanished > 0) {
+      result_.reason = fmt::format("{} differ by less than rounding allows to tell", modes_of(problem_, pair));
+      return false;
+    }
     result_.status = DesignStatus::infeasible;
     result_.reason = fmt::format("the outputs of {} can be the same under every input: no equation is left that could fail",
                                  modes_of(problem_, pair));

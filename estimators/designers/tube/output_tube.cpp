@@ -133,13 +133,25 @@ OutputTube output_tube(const Model& model, const SetBackend& backend, const Tube
   return TubeBuilder(model, backend, span).build();
 }
 
+Vector TubeConditions::terms(VectorIn reach) const {
+  const Vector seen = b.cwiseAbs() + A.cwiseAbs().rowwise().sum() + linalg::product(Omega.cwiseAbs(), reach);
+  if (Omega_magnitude.size() == 0) return seen.cwiseMax(magnitude);
+  return seen.cwiseMax(linalg::product(Omega_magnitude, reach) + magnitude);
+}
+
 TubeConditions conditions_of(const OutputTube& tube) {
   Matrix columns(tube.b.size(), tube.A.cols() + tube.inputs());
   columns << tube.A, -tube.Omega;
   const Index all = columns.cols();
   const LinesEliminated rest = eliminate_lines_traced(
       {Matrix(0, tube.S.cols()), Matrix(0, all), Vector(0), tube.S, std::move(columns), tube.b}, Vector(0));
-  return {rest.set.A.leftCols(tube.A.cols()), -rest.set.A.rightCols(tube.inputs()), rest.set.b, rest.row_magnitude};
+  const Matrix shares = rest.rows.cwiseAbs();
+  return {rest.set.A.leftCols(tube.A.cols()),
+          -rest.set.A.rightCols(tube.inputs()),
+          rest.set.b,
+          linalg::product(shares, tube.b.cwiseAbs() + tube.A.cwiseAbs().rowwise().sum()),
+          linalg::product(shares, tube.Omega.cwiseAbs()),
+          rest.vanished};
 }
 
 }  // namespace cordon::designers

@@ -40,12 +40,20 @@ struct OutputTube {
 /// it cannot.
 OutputTube output_tube(const Model& model, const SetBackend& backend, const TubeSpan& span);
 
+/// What rounding in the elimination of lines may have changed in a row, as a share of its terms.
+inline constexpr double row_noise = 2e-13;
+
 /// The same set with the lines eliminated that constraints determine, as far as that is exact: no S is left, and Ω u stands in
-/// those rows only that no line appears in. Every u leaves the tube non-empty if no row is left.
+/// those rows only that no line appears in. Every u leaves the tube non-empty if no row is left, and none vanished.
 struct TubeConditions {
   Matrix A, Omega;  ///< A ξ = b + Ω u, m rows: the tube under u is empty if and only if there is no such ‖ξ‖∞ ≤ 1
   Vector b;
-  Vector magnitude;  ///< size of the terms that each row was computed from
+  Vector magnitude;             ///< size of the terms that A ξ - b was computed from, ‖ξ‖∞ ≤ 1
+  Matrix Omega_magnitude = {};  ///< likewise of Ω
+  Index vanished = 0;           ///< rows that became 0 = 0 up to rounding, and are left out
+
+  /// Size of the terms of A ξ - b - Ω u for |u| ≤ `reach`.
+  Vector terms(VectorIn reach) const;
 };
 TubeConditions conditions_of(const OutputTube& tube);
 

@@ -13,12 +13,16 @@ namespace cordon::designers {
 /// eliminated [Rego2025, Thm 1, Lemma 3]. Exact up to rounding. No rows: they meet for every u, and no input separates them.
 struct PairProgram {
   Index i = 0, j = 0;
-  Matrix G;          ///< m×g
-  Vector c;          ///< m
-  Matrix N;          ///< m×n_u(N+1)
-  Vector magnitude;  ///< m, size of the terms that each row was computed from: a violation is known up to a share of it only
+  Matrix G;                 ///< m×g
+  Vector c;                 ///< m
+  Matrix N;                 ///< m×n_u(N+1)
+  Vector magnitude;         ///< m, size of the terms that G ξ + c was computed from, ‖ξ‖∞ ≤ 1
+  Matrix N_magnitude = {};  ///< m×n_u(N+1), likewise of N; 0×0: nothing cancelled
+  Index vanished = 0;       ///< rows that became 0 = 0 up to rounding, and are left out: that tubes meet is not proven then
 
   Index rows() const { return c.size(); }
+  /// Size of the terms of G ξ + c - N u for ‖ξ‖∞ ≤ 1, |u| ≤ `reach`. The rows are known up to a small share of it.
+  Vector terms(VectorIn reach) const;
 };
 PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTube& Yj);
 /// All pairs i < j, by i, then by j.

@@ -36,10 +36,13 @@ Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y, Cer
       y.cwiseAbs() + tube.c.cwiseAbs() + linalg::product(tube.H.cwiseAbs(), size);
   if (!magnitude.allFinite()) throw Error(Errc::not_finite, "inputs and outputs overflow; scale the problem");
   const Index lines = S.cols(), factors = A.cols();
+  const Vector terms = magnitude + A.cwiseAbs().rowwise().sum();
   const LinesEliminated rest = eliminate_lines_traced(
       {Matrix(0, lines), Matrix(0, factors), Vector(0), std::move(S), std::move(A), std::move(b)}, magnitude);
   Certificate proof;
-  const Answer empty = BoxedProgram(rest.set.A, rest.set.b, {rest.row_magnitude, {}}).is_empty(&proof);
+  const Vector row_terms = linalg::product(rest.rows.cwiseAbs(), terms);
+  Answer empty = BoxedProgram(rest.set.A, rest.set.b, {row_terms, designers::row_noise * row_terms}).is_empty(&proof);
+  if (empty == Answer::no && rest.vanished > 0) empty = Answer::unknown;  // what vanished is not shown to hold
   if (why) *why = empty == Answer::unknown ? Certificate{} : traced(rest, proof);
   return negate(empty);
 }

@@ -153,8 +153,14 @@ LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) 
   }
 
   std::vector<Index> kept_rows, kept_lines;
+  Index vanished = 0;
   for (Index i = 0; i < tableau.rows; ++i) {
-    if (!tableau.used[static_cast<std::size_t>(i)] && !tableau.vanished(i)) kept_rows.push_back(i);
+    if (tableau.used[static_cast<std::size_t>(i)]) continue;
+    if (tableau.vanished(i)) {
+      ++vanished;
+    } else {
+      kept_rows.push_back(i);
+    }
   }
   for (Index j = 0; j < X.lines(); ++j) {
     if (!gone[static_cast<std::size_t>(j)]) kept_lines.push_back(j);
@@ -183,7 +189,8 @@ LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) 
           std::move(rows),
           Matrix(tableau.trace.bottomRows(n)),
           std::move(lines_by_factors),
-          std::move(lines_offset)};
+          std::move(lines_offset),
+          vanished};
 }
 
 }  // namespace cordon

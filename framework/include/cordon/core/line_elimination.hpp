@@ -21,6 +21,7 @@ struct LinesEliminated {
   Matrix outputs;        ///< n×m: [0 G' -c'] = [M G -c] + outputs [S A b] in the eliminated lines
   Matrix lines_by_factors;  ///< l×g and
   Vector lines_offset;      ///< l: δ = lines_offset + lines_by_factors ξ is a choice of lines that satisfies the rows used up
+  Index vanished = 0;       ///< rows that became 0 = 0, up to rounding: what they said beyond that is lost
 };
 /// `b_magnitude` (empty: none) is the size of what cancelled in b before.
 LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude);
