@@ -24,6 +24,8 @@ struct Arguments {
 };
 
 Exit design(const Program& program, Arguments& arguments) {
+  DesignOptions& options = arguments.options;
+  options.stop = stop_on_signals();  // reading checks what was read, which may take a while
   Registry registry;
   registry.load({program.plugins});
   const Study study = read_study(arguments.study, registry);
@@ -33,8 +35,6 @@ Exit design(const Program& program, Arguments& arguments) {
   std::vector<std::string> names;
   for (const PipelineSpec& pipeline : study.pipelines) names.push_back(pipeline.name);
   ProgressBar bar(names, !arguments.quiet && isatty(STDERR_FILENO) == 1);
-  DesignOptions& options = arguments.options;
-  options.stop = stop_on_signals();
   options.progress = [&](std::size_t pipeline, Index horizon, double best, double bound) {
     bar.show(design_progress(names[pipeline], horizon, best, bound));
   };

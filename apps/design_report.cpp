@@ -55,7 +55,7 @@ std::string status_text(const DesignOutcome& outcome, const Paint& paint) {
     case DesignStatus::infeasible:
       return paint.yellow("Proven infeasible") + ": no input of the input set separates the modes";
     case DesignStatus::unknown:
-      return paint.yellow("No answer within the limit") + ": " + bound_text(outcome);
+      return paint.yellow(outcome.stopped ? "No answer within the limit" : "No answer") + ": " + bound_text(outcome);
     case DesignStatus::given:
       break;
   }
@@ -242,7 +242,7 @@ std::vector<std::string> complaints(const Study& study, const std::vector<Pipeli
     }
     if (!design.outcome) continue;
     if (design.outcome->status == DesignStatus::unknown) {
-      found.push_back(name + ": no input was found within the limit");
+      found.push_back(name + (design.outcome->stopped ? ": no input was found within the limit" : ": no input was found"));
     } else if (open(design)) {
       found.push_back(name + ": the exact proof leaves a question open");
     }

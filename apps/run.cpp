@@ -24,6 +24,8 @@ struct Arguments {
 };
 
 Exit run(const Program& program, const Arguments& arguments) {
+  RunOptions options;
+  options.stop = stop_on_signals();  // reading checks what was read, which may take a while
   Registry registry;
   registry.load({program.plugins});  // the study's own directories and the usual ones follow
   const Study study = read_study(arguments.study, registry);
@@ -33,9 +35,7 @@ Exit run(const Program& program, const Arguments& arguments) {
   std::vector<std::string> names;
   for (const PipelineSpec& pipeline : study.pipelines) names.push_back(pipeline.name);
   ProgressBar bar(names, !arguments.quiet && isatty(STDERR_FILENO) == 1);
-  RunOptions options;
   options.out = arguments.out.empty() ? std::filesystem::path("results") / arguments.study.stem() : arguments.out;
-  options.stop = stop_on_signals();
   options.progress = [&](std::size_t pipeline, std::int64_t done, std::int64_t total) { bar.show(pipeline, done, total); };
   const RunOutcome outcome = run_study(study, registry, options);
   bar.clear();

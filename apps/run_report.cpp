@@ -232,7 +232,8 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
                                     pipeline.name, mode));
       }
       if (pipeline.design->status == DesignStatus::unknown) {
-        found.push_back(fmt::format("pipeline \"{}\": no input was found within the limit", pipeline.name));
+        found.push_back(fmt::format("pipeline \"{}\": no input was found{}", pipeline.name,
+                                    pipeline.design->stopped ? " within the limit" : ""));
       }
     }
     if (pipeline.violated_at >= 0 && !pipeline.designer.empty()) {

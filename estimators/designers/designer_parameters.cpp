@@ -173,7 +173,7 @@ ParamSchema& add_search_parameters(ParamSchema& schema) {
       .integer("max_horizon", "largest horizon that is tried if none is given", 6, 1, most_horizon)
       .set("input_set", "the set that every u_k is taken from: a box or another bounded polytope (absent: /system/U)")
       .vector("first_input", "u_0, if it is decided already (absent: it is designed like the others)")
-      .real("time_limit", "seconds until the search at one horizon ends with what it has", 60, 0.001, 1e6);
+      .real("time_limit", "seconds until the work on one horizon ends with what it has", 60, 0.001, 1e6);
 }
 
 std::vector<Diagnostic> check_tube_data(const DesignerContext& context, const Params& params) {

@@ -15,21 +15,24 @@ class Given final : public InputDesigner {
       : InputDesigner(context.bank, context.backend), params_(std::move(params)) {}
 
  private:
-  DesignOutcome do_design(DesignControl&) const override {
+  DesignOutcome do_design(DesignControl& control) const override {
     const Matrix& input = params_.matrix("input");
     const Index horizon = input.rows() - 1;
-    const designers::SeparationProblem problem = designers::problem_at(bank(), backend(), params_, horizon);
     const designers::TubeSpan span = designers::span_from(params_, horizon);
     const Matrix by_column = input.transpose();
+    const designers::Stop stop = [&] { return control.stop(); };
     DesignOutcome outcome;
     outcome.status = DesignStatus::given;
     outcome.horizon = horizon;
-    outcome.epsilon = problem.epsilon;
+    outcome.epsilon = params_.real("epsilon");
     outcome.last_output_only = span.last_output_only;
     outcome.admissible_set = span.admissible_set;
-    outcome.best =
-        designers::judge(bank(), backend(), params_, problem, Eigen::Map<const Vector>(by_column.data(), by_column.size()));
-    outcome.reason = designers::open_question(bank(), *outcome.best, problem.epsilon);
+    if (const auto problem = designers::problem_at(bank(), backend(), params_, horizon, stop)) {
+      outcome.best = designers::judge(bank(), backend(), params_, *problem,
+                                      Eigen::Map<const Vector>(by_column.data(), by_column.size()), stop);
+    }
+    if (!outcome.best) return designers::without_answer(std::move(outcome), "stopped before the input was judged");
+    outcome.reason = designers::open_question(bank(), *outcome.best, outcome.epsilon);
     return outcome;
   }
 

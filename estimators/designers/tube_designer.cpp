@@ -6,12 +6,14 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "designers/facets/watch.hpp"
 
 namespace cordon::designers {
 
 namespace {
 
-constexpr double touching = 1e-7;  ///< |κ| below this
+constexpr double touching = 1e-7;    ///< |κ| below this
+constexpr double least_time = 1e-3;  ///< seconds that a search is given
 
 Answer is_empty_under(const TubeConditions& rows, VectorIn u) {
   const Answer if_met = rows.vanished == 0 ? Answer::no : Answer::unknown;
@@ -55,33 +57,58 @@ std::string open_question(const ModeBank& bank, const InputDesign& design, doubl
   return {};
 }
 
-SeparationProblem problem_at(const ModeBank& bank, const SetBackend& backend, const Params& params, Index horizon) {
+std::optional<SeparationProblem> problem_at(const ModeBank& bank, const SetBackend& backend, const Params& params, Index horizon,
+                                            const Stop& stop) {
   SeparationProblem problem;
   problem.horizon = horizon;
   problem.inputs = bank[0].model.linear.inputs();
   std::vector<OutputTube> tubes;
-  for (const Mode& mode : bank.modes) tubes.push_back(output_tube(mode.model, backend, span_from(params, horizon)));
-  problem.pairs = pair_programs(tubes);
-  for (const OutputTube& tube : tubes) problem.conditions.push_back(conditions_of(tube));
+  for (const Mode& mode : bank.modes) {
+    if (stop()) return std::nullopt;
+    tubes.push_back(output_tube(mode.model, backend, span_from(params, horizon)));
+    problem.conditions.push_back(conditions_of(tubes.back()));
+  }
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    for (std::size_t j = i + 1; j < tubes.size(); ++j) {
+      if (stop()) return std::nullopt;
+      problem.pairs.push_back(pair_program(static_cast<Index>(i), tubes[i], static_cast<Index>(j), tubes[j]));
+    }
+  }
   problem.cost = cost_from(params, problem.inputs, horizon);
   problem.epsilon = params.real("epsilon");
   for (const Mode& mode : bank.modes) problem.modes.push_back(mode.name);
   return problem;
 }
 
-InputDesign judge(const ModeBank& bank, const SetBackend& backend, const Params& params, const SeparationProblem& problem,
-                  VectorIn u) {
+std::optional<InputDesign> judge(const ModeBank& bank, const SetBackend& backend, const Params& params,
+                                 const SeparationProblem& problem, VectorIn u, const Stop& stop) {
   InputDesign design;
   const Index inputs = problem.inputs;
   design.u.resize(problem.horizon + 1, inputs);
   for (Index k = 0; k <= problem.horizon; ++k) design.u.row(k) = u.segment(k * inputs, inputs).transpose();
   design.cost = problem.cost.at(u);
-  for (const PairProgram& pair : problem.pairs) design.pairs.push_back(separation(pair, u));
+  for (const PairProgram& pair : problem.pairs) {
+    if (stop()) return std::nullopt;
+    design.pairs.push_back(separation(pair, u));
+  }
   for (const TubeConditions& rows : problem.conditions) design.empty.push_back(is_empty_under(rows, u));
   for (const Mode& mode : bank.modes) {
+    if (stop()) return std::nullopt;
     design.outputs.push_back(interval_hull(output_tube(mode.model, backend, span_from(params, problem.horizon)).at(u)));
   }
   return design;
+}
+
+DesignOutcome without_answer(DesignOutcome outcome, std::string reason, std::string suggestion) {
+  outcome.status = DesignStatus::unknown;
+  outcome.best = std::nullopt;
+  outcome.lower_bound = -std::numeric_limits<double>::infinity();
+  outcome.bounded_problem.clear();
+  outcome.nodes = outcome.programs = outcome.facets = 0;
+  outcome.stopped = true;
+  outcome.reason = std::move(reason);
+  outcome.suggestion = std::move(suggestion);
+  return outcome;
 }
 
 DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
@@ -91,11 +118,16 @@ DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
   outcome.last_output_only = span_from(params_, horizons.last).last_output_only;
   outcome.admissible_set = span_from(params_, horizons.last).admissible_set;
   for (Index horizon = horizons.first; horizon <= horizons.last; ++horizon) {
-    SeparationProblem problem = problem_at(bank(), backend(), params_, horizon);
-    problem.U = inputs_from(bank(), params_, horizon);
-    SearchResult found = search(problem, control);
-    outcome.status = found.status;
     outcome.horizon = horizon;
+    const Watch watch(control, horizon, params_.real("time_limit"));
+    std::optional<SeparationProblem> problem = problem_at(bank(), backend(), params_, horizon, [&] { return watch.over(); });
+    if (!problem || watch.over()) {
+      return without_answer(std::move(outcome), "the end came while the equations of the tubes were still being solved",
+                            "a larger time_limit, a shorter horizon, or fewer modes");
+    }
+    problem->U = inputs_from(bank(), params_, horizon);
+    SearchResult found = search(*problem, std::max(watch.left(), least_time), control);
+    outcome.status = found.status;
     outcome.lower_bound = found.lower_bound;
     outcome.bounded_problem = std::move(found.bounded_problem);
     outcome.stopped = found.stopped;
@@ -105,8 +137,11 @@ DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
     outcome.programs = found.programs;
     outcome.facets = found.facets;
     if (found.u) {
-      outcome.best = judge(bank(), backend(), params_, problem, inside_bounds(problem.U, std::move(*found.u)));
-      if (std::string open = open_question(bank(), *outcome.best, problem.epsilon); !open.empty())
+      // However late it is: an input that was found is proven.
+      outcome.best = judge(bank(), backend(), params_, *problem, inside_bounds(problem->U, std::move(*found.u)),
+                           [&] { return control.stop(); });
+      if (!outcome.best) return without_answer(std::move(outcome), "the search was stopped before the input was judged");
+      if (std::string open = open_question(bank(), *outcome.best, problem->epsilon); !open.empty())
         outcome.reason = std::move(open);
       return outcome;
     }

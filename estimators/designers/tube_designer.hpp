@@ -2,16 +2,27 @@
 // What the input designers share: from a bank to programs of pairs, horizon by horizon, and from an input to its certificates.
 #pragma once
 
+#include <functional>
+#include <optional>
+
 #include "designers/designer_parameters.hpp"
 
 namespace cordon::designers {
 
-/// The problem at horizon N.
-SeparationProblem problem_at(const ModeBank& bank, const SetBackend& backend, const Params& params, Index horizon);
+/// Asked between the tubes and the pairs: is there no need to go on?
+using Stop = std::function<bool()>;
+
+/// The problem at horizon N, but for its input set; nothing if it was stopped.
+std::optional<SeparationProblem> problem_at(const ModeBank& bank, const SetBackend& backend, const Params& params, Index horizon,
+                                            const Stop& stop);
 
 /// What an input sequence (stacked) does: κ and certificate of every pair, tubes that are empty, hulls of the outputs, cost.
-InputDesign judge(const ModeBank& bank, const SetBackend& backend, const Params& params, const SeparationProblem& problem,
-                  VectorIn u);
+/// Nothing if it was stopped.
+std::optional<InputDesign> judge(const ModeBank& bank, const SetBackend& backend, const Params& params,
+                                 const SeparationProblem& problem, VectorIn u, const Stop& stop);
+
+/// Stopped, with nothing to show for it.
+DesignOutcome without_answer(DesignOutcome outcome, std::string reason, std::string suggestion = {});
 
 /// Why a design is not proven to separate, for people; empty if it is.
 std::string open_question(const ModeBank& bank, const InputDesign& design, double epsilon);
@@ -26,7 +37,8 @@ class TubeDesigner : public InputDesigner {
   const Params& params() const { return params_; }
 
  private:
-  virtual SearchResult search(const SeparationProblem& problem, DesignControl& control) const = 0;
+  /// `seconds` is what is left of the time limit, > 0.
+  virtual SearchResult search(const SeparationProblem& problem, double seconds, DesignControl& control) const = 0;
   DesignOutcome do_design(DesignControl& control) const override;
 
   Params params_;

@@ -77,6 +77,34 @@ TEST_CASE("An empty tube is a modelling error, and no separation") {
   }
 }
 
+TEST_CASE("The judgement of a given input can be stopped between tubes, pairs and hulls") {
+  class Counted final : public DesignControl {
+   public:
+    explicit Counted(int most) : most_(most) {}
+    bool stop() const noexcept override { return ++asked > most_; }
+    mutable int asked = 0;
+
+   private:
+    int most_;
+  };
+  const ModeBank bank = examples::four_descriptor_models();
+  const Params params = Params().set("input", by_time(examples::published_line_input(), 2));
+  const auto designer = registry().make_designer("given", bank, backend("line_zonotope"), params);
+  const int all = 4 + 6 + 6 + 4;
+  for (int most = 0; most < all; ++most) {
+    Counted control(most);
+    const DesignOutcome outcome = designer->design(control);
+    CHECK(outcome.status == DesignStatus::unknown);
+    CHECK(outcome.stopped);
+    CHECK_FALSE(outcome.best);
+    CHECK_FALSE(outcome.reason.empty());
+    CHECK(control.asked == most + 1);
+  }
+  Counted enough(all);
+  CHECK(designer->design(enough).status == DesignStatus::given);
+  CHECK(enough.asked == all);
+}
+
 TEST_CASE("Tubes that touch are not separated") {
   const ModeBank bank = examples::three_scalar_models();
   const Params params = Params().set("input", by_time(numbers({0, .9, 0, 0}), 1));

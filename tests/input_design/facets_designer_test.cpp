@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The designer "facets" from parameters to certificates.
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include <doctest/doctest.h>
 
@@ -54,10 +56,70 @@ TEST_CASE("With ε = 0 the tubes of the optimum touch, and it is said") {
   CHECK(outcome.reason.find("touch") != std::string::npos);
 }
 
+TEST_CASE("The time limit and a stop from outside hold before and after the search") {
+  class Slow final : public DesignControl {
+   public:
+    bool stop() const noexcept override {
+      ++asked;
+      if (delay.count() > 0) std::this_thread::sleep_for(delay);
+      return asked > most;
+    }
+    std::chrono::milliseconds delay{0};
+    mutable int asked = 0;
+    int most = 1000000;
+  };
+  for (const char* type : {"facets", "milp"}) {
+    const Params params = published_parameters().set("horizon", std::int64_t{3});
+    const auto designed_under = [&](const Params& all, DesignControl& control) {
+      const ModeBank bank = examples::four_descriptor_models();
+      return registry().make_designer(type, bank, backend("line_zonotope"), all)->design(control);
+    };
+    Slow late;
+    late.delay = std::chrono::milliseconds(3);
+    const DesignOutcome out_of_time = designed_under(Params(params).set("time_limit", .002), late);
+    CHECK(out_of_time.status == DesignStatus::unknown);
+    CHECK(out_of_time.stopped);
+    CHECK(out_of_time.horizon == 3);
+    CHECK(out_of_time.reason.find("equations of the tubes") != std::string::npos);
+    CHECK(out_of_time.suggestion.find("time_limit") != std::string::npos);
+    CHECK(late.asked < 3);
+
+    for (const int most : {0, 3, 4, 9, 10}) {  // four tubes and six pairs, then the search
+      Slow ended;
+      ended.most = most;
+      const DesignOutcome outcome = designed_under(params, ended);
+      CHECK(outcome.status == DesignStatus::unknown);
+      CHECK(outcome.stopped);
+      CHECK_FALSE(outcome.best);
+      CHECK(outcome.reason.find("equations of the tubes") != std::string::npos);
+      CHECK(ended.asked == most + 1);
+    }
+  }
+  // All that was found before the stop came is lost with it, however late that is.
+  Slow whole;
+  const ModeBank bank = examples::four_descriptor_models();
+  const Params params = published_parameters().set("horizon", std::int64_t{3});
+  const auto designer = registry().make_designer("facets", bank, backend("line_zonotope"), params);
+  REQUIRE(designer->design(whole).best);
+  for (int before_end = 1; before_end <= 10; ++before_end) {  // six pairs and four hulls
+    Slow ended;
+    ended.most = whole.asked - before_end;
+    const DesignOutcome outcome = designer->design(ended);
+    CHECK(outcome.status == DesignStatus::unknown);
+    CHECK(outcome.stopped);
+    CHECK(outcome.reason.find("judged") != std::string::npos);
+    CHECK(ended.asked == ended.most + 1);
+  }
+}
+
 TEST_CASE("Parameters of the search reach it") {
   Params params = published_parameters().set("epsilon", 1e-4).set("horizon", std::int64_t{3});
   const DesignOutcome few = designed(examples::four_descriptor_models(), Params(params).set("max_facets", std::int64_t{20}));
-  CHECK(few.status == DesignStatus::unknown);
+  CHECK(few.status == DesignStatus::feasible);
+  REQUIRE(few.best);
+  CHECK(few.best->separates() == Answer::yes);
+  CHECK(few.lower_bound <= 9.2005344);
+  CHECK_FALSE(few.stopped);
   CHECK(few.reason.find("more than 20 facets") != std::string::npos);
   const DesignOutcome wide = designed(examples::four_descriptor_models(), Params(params).set("gap", .5));
   CHECK(wide.status == DesignStatus::optimal);

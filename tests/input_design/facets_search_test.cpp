@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "cordon/solvers/lp.hpp"
+#include "designers/facets/first_input.hpp"
 #include "input_design/facets_problems.hpp"
 
 using namespace cordon;
@@ -365,8 +366,8 @@ TEST_CASE("A search that is stopped says so, and proves what it can") {
   };
   const SeparationProblem problem = published_problem(3, 1e-4);
   const double optimum = 9.2005343602499;
-  int with_input = 0;
-  for (int after = 0; after < 400; after += 3) {
+  int with_input = 0, before_the_search = 0;
+  for (int after = 0; after < 1500; after += 25) {
     Stop control(after);
     const SearchResult found = search_facets(problem, {}, control);
     CHECK(found.lower_bound <= optimum + 1e-9);
@@ -379,10 +380,12 @@ TEST_CASE("A search that is stopped says so, and proves what it can") {
     CHECK(found.status == (found.u ? DesignStatus::feasible : DesignStatus::unknown));
     if (!found.u) continue;
     ++with_input;
+    before_the_search += found.nodes == 0;
     check_answer(problem, found);
     CHECK(found.cost > optimum - 1e-9);
   }
-  CHECK(with_input > 0);
+  CHECK(with_input > before_the_search);
+  CHECK(before_the_search > 0);
   Stop watched(1000000);
   search_facets(problem, {}, watched);
   CHECK(watched.reports > 0);
@@ -392,12 +395,89 @@ TEST_CASE("A search that is stopped says so, and proves what it can") {
   const SearchResult late = searched(problem, none);
   CHECK(late.status == DesignStatus::unknown);
   CHECK(late.stopped);
+  CHECK(late.lower_bound == 0);
   FacetLimits few;
   few.max_facets = 20;
   const SearchResult many = searched(problem, few);
-  CHECK(many.status == DesignStatus::unknown);
+  CHECK(many.status == DesignStatus::feasible);
+  check_answer(problem, many);
+  CHECK(many.cost > optimum - 1e-9);
+  CHECK(many.lower_bound <= optimum + 1e-9);
+  CHECK(many.lower_bound > 0);  // by the pairs with fewer facets
   CHECK_FALSE(many.stopped);
   CHECK(many.reason.find("modes 2 and 3: ") == 0);
+  CHECK(many.suggestion.find("time_limit") == std::string::npos);
+}
+
+TEST_CASE("A pair with too many facets is left out of the search, and judged by its own κ") {
+  // |u_1| ≥ 1 by two facets; a cube in three dimensions has six.
+  const auto line = [](Index i, Index j) {
+    return pair_of(i, j, Matrix::Ones(1, 1), Vector::Zero(1), Matrix(Vector::Unit(3, 0).transpose()));
+  };
+  const auto cube = [](double radius) {
+    return pair_of(0, 2, radius * Matrix::Identity(3, 3), Vector::Zero(3), Matrix::Identity(3, 3));
+  };
+  FacetLimits few;
+  few.max_facets = 5;
+  SUBCASE("what solves the rest separates it too: optimal") {
+    const SeparationProblem problem = problem_of({cube(.5), line(0, 1)}, boxed_inputs(3, 2), Cost::Kind::norm_1, .1);
+    check_optimal(problem, searched(problem, few), 1.1);
+  }
+  SUBCASE("what solves the rest does not: a bound, and another input") {
+    const SeparationProblem problem = problem_of({cube(1.5), line(0, 1)}, boxed_inputs(3, 2), Cost::Kind::norm_1, .1);
+    const SearchResult found = searched(problem, few);
+    CHECK(found.status == DesignStatus::feasible);
+    check_answer(problem, found);
+    CHECK(found.lower_bound == doctest::Approx(1.1));
+    CHECK(found.cost >= 1.65 * (1 - 1e-9));
+    CHECK(found.reason.find("modes 1 and 3: ") == 0);
+    CHECK_FALSE(found.stopped);
+    CHECK(searched(problem).status == DesignStatus::optimal);
+  }
+  SUBCASE("nothing separates it: no answer, but a bound") {
+    const SeparationProblem problem = problem_of({cube(3), line(0, 1)}, boxed_inputs(3, 2), Cost::Kind::norm_1, .1);
+    const SearchResult found = searched(problem, few);
+    CHECK(found.status == DesignStatus::unknown);
+    CHECK(found.lower_bound == doctest::Approx(1.1));
+    CHECK(found.reason.find("modes 1 and 3: ") == 0);
+    CHECK_FALSE(found.stopped);
+  }
+  SUBCASE("the rest has no solution") {
+    const SeparationProblem problem = problem_of({cube(.5), line(0, 1)}, boxed_inputs(3, 1), Cost::Kind::norm_1, .1);
+    CHECK(searched(problem, few).status == DesignStatus::infeasible);
+  }
+}
+
+TEST_CASE("The first input separates, within the input set and not much beyond what is needed") {
+  for (const double epsilon : {0.0, 1e-4, .3}) {
+    const SeparationProblem problem = published_problem(3, epsilon);
+    NodeProgram program(problem);
+    const FirstInput found = first_input(problem, program, [] { return false; });
+    REQUIRE(found.u);
+    CHECK(found.cost == problem.cost.at(*found.u));
+    CHECK(found.bound <= found.cost);
+    for (const PairProgram& pair : problem.pairs) {
+      const PairSeparation apart = separation(pair, *found.u);
+      CHECK(apart.disjoint == Answer::yes);
+      CHECK(apart.kappa_lower >= epsilon);
+    }
+    CHECK((*found.u - problem.U.c).cwiseAbs().maxCoeff() <= 8);
+    CHECK(found.u->head(2) == problem.U.c.head(2));
+    CHECK(found.cost < 5 * 9.2);
+  }
+  // One input at one time suffices: found to the last halving.
+  const SeparationProblem single =
+      problem_of({pair_of(0, 1, Matrix::Ones(1, 1), Vector::Zero(1), Matrix(Vector::Unit(6, 4).transpose()))}, boxed_inputs(6, 4),
+                 Cost::Kind::norm_1, 0);
+  NodeProgram program(single);
+  const FirstInput found = first_input(single, program, [] { return false; });
+  REQUIRE(found.u);
+  CHECK(found.cost < 1.1);
+  CHECK(found.cost > 1);
+
+  int calls = 0;
+  CHECK_FALSE(first_input(single, program, [&] { return ++calls > 1; }).u);
+  CHECK(calls > 1);
 }
 
 TEST_CASE("A wide gap ends the search early, within that gap") {

@@ -78,6 +78,27 @@ TEST_CASE("A simplex without volume has no facets; one that grows can be stopped
   GrowingHull hull(points, 0);
   CHECK(hull.facets().size() == 3);
   CHECK_FALSE(hull.add(numbers({5, 5}), [] { return true; }));
+
+  // A pyramid over a polygon of 40 points: the point below it is beyond all but one facet, each with a ridge on the rim.
+  const auto pyramid = [] {
+    Matrix start(3, 4);
+    start << 1, -1, -1, 0, 0, 1, -1, 0, 0, 0, 0, 1;
+    GrowingHull whole(start, 0);
+    for (int k = 0; k < 40; ++k) {
+      whole.add(numbers({3 * std::cos(.157 * k), 3 * std::sin(.157 * k), 0}), [] { return false; });
+    }
+    return whole;
+  };
+  int asked = 0;
+  GrowingHull whole = pyramid();
+  const auto facets = static_cast<int>(whole.facets().size());
+  REQUIRE(whole.add(numbers({0, 0, 9}), [&] { return ++asked < 0; }));
+  CHECK(asked > facets);  // not once for each facet alone
+  for (int most = 0; most < asked; ++most) {
+    int calls = 0;
+    CHECK_FALSE(pyramid().add(numbers({0, 0, 9}), [&] { return ++calls > most; }));
+    CHECK(calls == most + 1);
+  }
 }
 
 TEST_CASE("Beyond a facet: κ ≥ ε; beyond none: κ < ε") {

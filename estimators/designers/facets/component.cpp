@@ -12,9 +12,9 @@ class Facets final : public designers::TubeDesigner {
   using TubeDesigner::TubeDesigner;
 
  private:
-  designers::SearchResult search(const designers::SeparationProblem& problem, DesignControl& control) const override {
-    return designers::search_facets(problem, {params().real("gap"), params().real("time_limit"), params().integer("max_facets")},
-                                    control);
+  designers::SearchResult search(const designers::SeparationProblem& problem, double seconds,
+                                 DesignControl& control) const override {
+    return designers::search_facets(problem, {params().real("gap"), seconds, params().integer("max_facets")}, control);
   }
 };
 

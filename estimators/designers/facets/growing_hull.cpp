@@ -55,10 +55,11 @@ bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
       common.clear();
       std::set_intersection(facets_[f].on.begin(), facets_[f].on.end(), facets_[g].on.begin(), facets_[g].on.end(),
                             std::back_inserter(common));
-      const bool adjacent =
-          static_cast<Index>(common.size()) >= ridge && std::none_of(near.begin(), near.end(), [&](std::size_t k) {
-            return k != f && k != g && std::includes(facets_[k].on.begin(), facets_[k].on.end(), common.begin(), common.end());
-          });
+      if (static_cast<Index>(common.size()) < ridge) continue;
+      if (over()) return false;
+      const bool adjacent = std::none_of(near.begin(), near.end(), [&](std::size_t k) {
+        return k != f && k != g && std::includes(facets_[k].on.begin(), facets_[k].on.end(), common.begin(), common.end());
+      });
       if (!adjacent) continue;
       Facet facet;
       facet.h = (excess[f] * facets_[g].h - excess[g] * facets_[f].h) / (excess[f] - excess[g]);
@@ -70,7 +71,15 @@ bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (std::abs(excess[f]) <= tolerance(facets_[f])) facets_[f].on.push_back(number);
   }
-  for (auto f = visible.rbegin(); f != visible.rend(); ++f) facets_.erase(facets_.begin() + static_cast<std::ptrdiff_t>(*f));
+  std::size_t kept = 0, gone = 0;
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (gone < visible.size() && visible[gone] == f) {
+      ++gone;
+    } else if (kept++ != f) {
+      facets_[kept - 1] = std::move(facets_[f]);
+    }
+  }
+  facets_.resize(kept);
   facets_.insert(facets_.end(), std::make_move_iterator(made.begin()), std::make_move_iterator(made.end()));
   return true;
 }

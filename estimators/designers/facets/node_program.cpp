@@ -192,6 +192,17 @@ NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>
   return answer;
 }
 
+std::optional<Vector> NodeProgram::farthest(const Vector& direction) {
+  Vector objective = Vector::Zero(hard_.lower.size());
+  objective.head(problem_.U.G.cols()) = product(problem_.U.G.transpose(), direction);
+  ++programs_;
+  const LinearProgram::Solution solution = LinearProgram(hard_.A, hard_.b, hard_.lower, hard_.upper).maximize(objective);
+  if (solution.status != LinearProgram::Status::optimal) return std::nullopt;
+  SeparatingFacet end{objective.head(problem_.U.G.cols())};
+  end.out = end.in = solution.objective - 1e-9 * end.a.cwiseAbs().sum();
+  return solve({&end}).zeta;
+}
+
 double NodeProgram::in_cost(double value) const {
   const double cost = rounding::down(constant_ + rounding::down(unit_ * value));
   return std::isfinite(cost) ? std::max(0.0, cost) : 0;

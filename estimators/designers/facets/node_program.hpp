@@ -46,6 +46,10 @@ class NodeProgram {
   /// For quadratic costs with tangents at `touched`, input sequences.
   Answer solve(const std::vector<const SeparatingFacet*>& chosen, const std::vector<Vector>& touched = {});
 
+  /// Of the input sequences that go farthest in a direction of u, no tube empty, the cheapest (its ζ); nothing if there is no
+  /// answer.
+  std::optional<Vector> farthest(const Vector& direction);
+
   std::int64_t programs() const { return programs_; }
 
  private:

@@ -11,6 +11,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "designers/facets/facet_dual.hpp"
+#include "designers/facets/first_input.hpp"
 #include "designers/facets/node_program.hpp"
 
 namespace cordon::designers {
@@ -21,7 +22,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double met_tolerance =
     1e-9;                             ///< by which a solver's point may miss a chosen facet; the factors of inputs are of size 1
 constexpr int most_refinements = 60;  ///< of a node; each divides the error of the tangents by 4
-constexpr double coarse_gap = .02;    ///< relative error of the tangents up to which a node is branched on
+constexpr double share_of_first_input = .05;  ///< of the time limit
+constexpr double coarse_gap = .02;            ///< relative error of the tangents up to which a node is branched on
+constexpr const char* more_facets = "a larger max_facets, a shorter horizon, or the designer \"milp\"";
 constexpr const char* more_room = "a larger input set, a longer horizon, or a smaller epsilon";
 
 /// A pair that some inputs separate and others do not.
@@ -56,11 +59,15 @@ class Search {
   Search(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control)
       : problem_(problem),
         limits_(limits),
+        control_(control),
         watch_(control, problem.horizon, limits.time_limit),
         program_(problem),
         dual_(problem) {}
 
   SearchResult run() {
+    const Watch early(control_, problem_.horizon, share_of_first_input * limits_.time_limit);
+    first_ = first_input(problem_, program_, [&] { return early.over(); });
+    watch_.progress(best_cost(), first_.bound);
     if (find_facets()) branch_and_bound();
     result_.programs += program_.programs();
     return std::move(result_);
@@ -68,6 +75,7 @@ class Search {
 
  private:
   bool find_facets();
+  bool keep_pair(const PairProgram& pair, ForbiddenSet set);
   void branch_and_bound();
   void visit(Node node);
   void branch(const Node& node, Children children);
@@ -79,56 +87,82 @@ class Search {
   std::optional<Children> violated(const Node& node) const;
   double lower_bound() const;
   bool good_enough(double bound) const { return result_.u && bound >= result_.cost - limits_.gap * result_.cost; }
+  double best_cost() const;
+  bool separates_left_out(const Vector& u) const;
   void conclude();
   void conclude_without_input();
   bool is_hopeless(const OpenPair& open);
 
   const SeparationProblem& problem_;
   FacetLimits limits_;
+  DesignControl& control_;
   Watch watch_;
   NodeProgram program_;
   FacetDual dual_;
   SearchResult result_;
+  FirstInput first_;
   std::vector<OpenPair> pairs_;
+  std::vector<const PairProgram*> left_out_;  ///< pairs whose facets are not known
+  std::string why_left_out_;                  ///< the first of them
 
   std::multimap<double, Node> open_;  ///< by their bounds
   std::optional<Node> next_;          ///< goes before those until an input is known: some input early
   double closed_ = infinity;          ///< least bound of what was put aside without being proven impossible
 };
 
+/// False if the answer is known without a search.
 bool Search::find_facets() {
   for (const PairProgram& pair : problem_.pairs) {
     ForbiddenSet set = forbidden_set(pair, problem_.U, problem_.epsilon, limits_.max_facets, watch_);
     result_.programs += set.programs;
     result_.facets += static_cast<std::int64_t>(set.facets.size());
-    std::erase_if(set.facets,
-                  [](const SeparatingFacet& facet) { return facet.a.lpNorm<1>() < facet.in - 1e-9 * std::abs(facet.in); });
-    if (set.kind == ForbiddenSet::Kind::facets && set.facets.empty()) {
-      result_.status = DesignStatus::infeasible;
-      result_.reason = "no input of the input set separates " + modes_of(problem_, pair);
-      result_.suggestion = more_room;
+    if (set.kind == ForbiddenSet::Kind::unknown && watch_.ended()) {
+      result_.stopped = true;
+      close(first_.bound);
+      conclude();
       return false;
     }
-    switch (set.kind) {
-      case ForbiddenSet::Kind::never:
-        result_.status = DesignStatus::infeasible;
-        result_.reason = fmt::format("{}: {}", modes_of(problem_, pair), set.reason);
-        result_.suggestion = "a longer horizon, more outputs, or inputs that may be chosen";
-        return false;
-      case ForbiddenSet::Kind::unknown:
-        result_.stopped = watch_.over();
-        result_.reason = fmt::format("{}: {}", modes_of(problem_, pair), set.reason);
-        result_.suggestion = "a larger time_limit or max_facets, a shorter horizon, or the designer \"milp\"";
-        return false;
-      case ForbiddenSet::Kind::facets:
-        pairs_.push_back({&pair, std::move(set)});
-        break;
-      case ForbiddenSet::Kind::separated:
-        break;
-    }
-    watch_.progress(infinity, 0);
+    if (!keep_pair(pair, std::move(set))) return false;
+    watch_.progress(best_cost(), first_.bound);
   }
   return true;
+}
+
+bool Search::keep_pair(const PairProgram& pair, ForbiddenSet set) {
+  std::erase_if(set.facets,
+                [](const SeparatingFacet& facet) { return facet.a.lpNorm<1>() < facet.in - 1e-9 * std::abs(facet.in); });
+  switch (set.kind) {
+    case ForbiddenSet::Kind::never:
+      result_.status = DesignStatus::infeasible;
+      result_.reason = fmt::format("{}: {}", modes_of(problem_, pair), set.reason);
+      result_.suggestion = "a longer horizon, more outputs, or inputs that may be chosen";
+      return false;
+    case ForbiddenSet::Kind::unknown:
+      if (left_out_.empty()) why_left_out_ = fmt::format("{}: {}", modes_of(problem_, pair), set.reason);
+      left_out_.push_back(&pair);
+      break;
+    case ForbiddenSet::Kind::facets:
+      if (set.facets.empty()) {
+        result_.status = DesignStatus::infeasible;
+        result_.reason = "no input of the input set separates " + modes_of(problem_, pair);
+        result_.suggestion = more_room;
+        return false;
+      }
+      pairs_.push_back({&pair, std::move(set)});
+      break;
+    case ForbiddenSet::Kind::separated:
+      break;
+  }
+  return true;
+}
+
+double Search::best_cost() const { return std::min(first_.u ? first_.cost : infinity, result_.u ? result_.cost : infinity); }
+
+bool Search::separates_left_out(const Vector& u) const {
+  return std::all_of(left_out_.begin(), left_out_.end(), [&](const PairProgram* pair) {
+    const PairSeparation apart = separation(*pair, u);
+    return apart.disjoint == Answer::yes && apart.kappa_lower >= problem_.epsilon;
+  });
 }
 
 void Search::branch_and_bound() {
@@ -136,13 +170,17 @@ void Search::branch_and_bound() {
   root.facet.assign(pairs_.size(), -1);
   keep(std::move(root));
   while (std::optional<Node> node = take()) {
+    if (node->bound >= closed_ && !left_out_.empty()) {  // the least cost of what is known, which the rest cannot raise
+      keep(std::move(*node));
+      break;
+    }
     if (watch_.over() || good_enough(node->bound)) {
       result_.stopped = !good_enough(node->bound);
       keep(std::move(*node));
       break;
     }
     visit(std::move(*node));
-    watch_.progress(result_.u ? result_.cost : infinity, lower_bound());
+    watch_.progress(best_cost(), std::min(lower_bound(), best_cost()));
   }
   conclude();
 }
@@ -155,7 +193,7 @@ double Search::lower_bound() const {
 }
 
 std::optional<Node> Search::take() {
-  if (next_ && result_.u) keep(std::move(*std::exchange(next_, std::nullopt)));
+  if (next_ && (result_.u || (!left_out_.empty() && closed_ < infinity))) keep(std::move(*std::exchange(next_, std::nullopt)));
   if (!next_ && open_.empty()) return std::nullopt;
   Node node = next_ ? std::move(*std::exchange(next_, std::nullopt)) : std::move(open_.extract(open_.begin()).mapped());
   if (const auto siblings = std::exchange(node.siblings, nullptr);
@@ -184,6 +222,7 @@ void Search::visit(Node node) {
   const Vector u = problem_.U.c + linalg::product(problem_.U.G, node.zeta);
   const double cost = problem_.cost.at(u);
   if (std::optional<Children> children = violated(node)) return branch(node, std::move(*children));
+  if (!separates_left_out(u)) return close(node.bound);
   if (!result_.u || cost < result_.cost) {
     result_.u = u;
     result_.cost = cost;
@@ -246,10 +285,16 @@ bool Search::evaluate(Node& node) {
 }
 
 void Search::conclude() {
+  const bool complete = !result_.stopped && left_out_.empty() && (result_.u || closed_ == infinity);
+  if (!complete && first_.u && (!result_.u || first_.cost < result_.cost)) {
+    result_.u = first_.u;
+    result_.cost = first_.cost;
+  }
   if (!result_.u) return conclude_without_input();
   result_.lower_bound = std::min(lower_bound(), result_.cost);
   if (good_enough(result_.lower_bound)) {
     result_.status = DesignStatus::optimal;
+    result_.stopped = false;
     return;
   }
   result_.status = DesignStatus::feasible;
@@ -257,6 +302,9 @@ void Search::conclude() {
   if (result_.stopped) {
     result_.reason = "the search was stopped before the cheapest input was proven";
     result_.suggestion = "a larger time_limit or gap";
+  } else if (!left_out_.empty()) {
+    result_.reason = why_left_out_;
+    result_.suggestion = more_facets;
   } else if (flat) {
     result_.reason =
         "the inputs that do not separate a pair form a set without width, from which a small distance is kept: there is no "
@@ -272,7 +320,13 @@ void Search::conclude_without_input() {
   if (result_.stopped) {
     result_.lower_bound = lower_bound();
     result_.reason = "no input was found before the search was stopped";
-    result_.suggestion = "a larger time_limit";
+    result_.suggestion = "a larger time_limit, a shorter horizon, or the designer \"milp\"";
+    return;
+  }
+  if (!left_out_.empty() && lower_bound() < infinity) {
+    result_.lower_bound = lower_bound();
+    result_.reason = why_left_out_;
+    result_.suggestion = more_facets;
     return;
   }
   if (closed_ < infinity) {
@@ -283,8 +337,9 @@ void Search::conclude_without_input() {
   }
   result_.status = DesignStatus::infeasible;
   result_.suggestion = more_room;
-  result_.reason = result_.nodes == 0 ? "every input of the input set leaves the output tube of a mode empty"
-                                      : "every pair alone can be separated, but not all of them at once";
+  result_.reason = result_.nodes == 0  ? "every input of the input set leaves the output tube of a mode empty"
+                   : left_out_.empty() ? "every pair alone can be separated, but not all of them at once"
+                                       : "not all of the pairs can be separated at once";
   std::string hopeless;
   for (const OpenPair& open : pairs_) {
     if (result_.nodes > 0 && is_hopeless(open)) hopeless += (hopeless.empty() ? "" : "; ") + modes_of(problem_, *open.pair);

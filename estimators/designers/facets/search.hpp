@@ -9,7 +9,7 @@ namespace cordon::designers {
 struct FacetLimits {
   double gap = 1e-9;         ///< relative: the search ends when the cost is proven up to this share
   double time_limit = 60;    ///< seconds
-  Index max_facets = 10000;  ///< per pair; more make the search end without an answer
+  Index max_facets = 10000;  ///< per pair; a pair with more is left out of what bounds the cost
 };
 
 /// With R and L the range and left null space of N, the inputs that do not separate a pair are those with RᵀN u in
@@ -18,7 +18,8 @@ struct FacetLimits {
 /// facets chosen so far; of the pairs that its input does not separate, the one whose children cost most is branched on, a child
 /// per facet; the first node that violates nothing is optimal. What children cost at least follows from the multipliers of their
 /// parent, without a program, as far as possible; ties go to the pair with the fewest facets. All bounds are proven by
-/// multipliers.
+/// multipliers. A pair whose facets are not known is left out: the rest bounds the cost, and an input that solves the rest is
+/// judged by the pair's own κ. What `first_input` found is the answer where the search did not come to its end.
 SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control);
 
 }  // namespace cordon::designers

@@ -14,7 +14,14 @@ class Watch {
   Watch(DesignControl& control, Index horizon, double seconds)
       : control_(control), horizon_(horizon), end_(Clock::now() + as_duration(seconds)) {}
 
-  bool over() const { return control_.stop() || Clock::now() >= end_; }
+  bool over() const {
+    ended_ = ended_ || control_.stop() || Clock::now() >= end_;
+    return ended_;
+  }
+  /// Was that so when it was asked?
+  bool ended() const { return ended_; }
+  /// Seconds until the end, 0 after it.
+  double left() const { return std::max(0.0, std::chrono::duration<double>(end_ - Clock::now()).count()); }
   /// Passed on four times per second at most.
   void progress(double best, double bound) {
     const auto now = Clock::now();
@@ -33,6 +40,7 @@ class Watch {
   DesignControl& control_;
   Index horizon_;
   Clock::time_point end_, next_ = {};
+  mutable bool ended_ = false;
 };
 
 }  // namespace cordon::designers

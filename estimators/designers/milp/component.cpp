@@ -12,11 +12,11 @@ class Milp final : public designers::TubeDesigner {
   using TubeDesigner::TubeDesigner;
 
  private:
-  designers::SearchResult search(const designers::SeparationProblem& problem, DesignControl& control) const override {
-    return designers::search_milp(problem,
-                                  {params().integer("max_generators"), params().integer("max_constraints"), params().real("gap"),
-                                   params().real("time_limit")},
-                                  control);
+  designers::SearchResult search(const designers::SeparationProblem& problem, double seconds,
+                                 DesignControl& control) const override {
+    return designers::search_milp(
+        problem, {params().integer("max_generators"), params().integer("max_constraints"), params().real("gap"), seconds},
+        control);
   }
 };
 

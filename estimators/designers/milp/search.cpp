@@ -132,6 +132,7 @@ void Search::offer(const Vector& u) {
   const double cost = problem_.cost.at(u);
   if (result_.u && !(cost < result_.cost)) return;
   for (const PairProgram& pair : problem_.pairs) {
+    if (control_.stop()) return;
     const PairSeparation apart = separation(pair, u);
     const bool proven = apart.disjoint == Answer::yes || problem_.epsilon == 0;
     if (proven && apart.kappa >= problem_.epsilon - tolerance) continue;
@@ -250,8 +251,7 @@ std::optional<Vector> Search::start(const InputProgram& whole, const std::vector
 
 void Search::conclude() {
   result_.stopped = !closed_ && !impossible_ && left(1) <= 0;
-  const std::string ended =
-      control_.stop() ? "the search was ended from outside" : fmt::format("the time limit of {:g} s is over", limits_.time_limit);
+  const std::string ended = control_.stop() ? "the search was ended from outside" : "the time limit is over";
   if (result_.u) {
     result_.status = DesignStatus::feasible;
     result_.lower_bound = std::min(result_.lower_bound, result_.cost);

@@ -10,12 +10,26 @@ namespace {
 
 constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a coefficient is zero
 
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Rows of [S A b] above rows of [M G c], with the magnitude of the terms that each entry was computed from, and the combination
-/// of the original rows [S A b] that was added to each.
+/// of the original rows [S A b] that was added to each (not kept up for rows that are used up). Rows of banded systems touch few
+/// others and in few places: only those are visited.
 struct Tableau {
+  /// The largest equilibrated entry of a row of S.
+  struct Candidate {
+    double size = 0;  ///< 0: there is none
+    Index col = 0;
+  };
+  /// Columns in a row, from `first` to before `last`.
+  struct Run {
+    Index first, last;
+  };
+
   Index lines, rows, width;
-  Matrix T, magnitude, trace;
+  RowMajor T, magnitude, trace;
   std::vector<bool> used;
+  std::vector<Candidate> candidates;  ///< of every row
 
   /// `b_magnitude`: size of what cancelled in b already; may be empty.
   Tableau(const LineForm& X, VectorIn b_magnitude)
@@ -23,7 +37,7 @@ struct Tableau {
         rows(X.constraints()),
         width(lines + X.generators() + 1),
         T(rows + X.dim(), width),
-        trace(Matrix::Identity(rows + X.dim(), rows)),
+        trace(RowMajor::Identity(rows + X.dim(), rows)),
         used(static_cast<std::size_t>(rows), false) {
     const Index g = X.generators();
     T.topLeftCorner(rows, lines) = X.S;
@@ -34,46 +48,76 @@ struct Tableau {
     T.bottomRightCorner(X.dim(), 1) = -X.c;  // so that every row is treated alike: x = Mδ + Gξ - (-c)
     magnitude = T.cwiseAbs();
     if (b_magnitude.size() > 0) magnitude.col(width - 1).head(rows) = magnitude.col(width - 1).head(rows).cwiseMax(b_magnitude);
+    for (Index i = 0; i < rows; ++i) candidates.push_back(candidate(i));
+  }
+
+  Candidate candidate(Index i) const {
+    Candidate best;
+    if (lines == 0) return best;
+    const double scale = T.row(i).head(width - 1).cwiseAbs().maxCoeff();
+    for (Index j = 0; j < lines; ++j) {
+      if (T(i, j) != 0 && std::abs(T(i, j)) / scale > best.size) best = {std::abs(T(i, j)) / scale, j};
+    }
+    return best;
   }
 
   /// The largest equilibrated entry of S among unused rows; false if none is left.
   bool find_pivot(Index& row, Index& col) const {
     double best = 0;
     for (Index i = 0; i < rows; ++i) {
-      if (used[static_cast<std::size_t>(i)]) continue;
-      const double scale = T.row(i).head(width - 1).cwiseAbs().maxCoeff();
-      for (Index j = 0; j < lines; ++j) {
-        if (T(i, j) != 0 && std::abs(T(i, j)) / scale > best) {
-          best = std::abs(T(i, j)) / scale;
-          row = i;
-          col = j;
-        }
-      }
+      const Candidate& here = candidates[static_cast<std::size_t>(i)];
+      if (used[static_cast<std::size_t>(i)] || !(here.size > best)) continue;
+      best = here.size;
+      row = i;
+      col = here.col;
     }
     return best > 0;
+  }
+
+  static std::vector<Run> nonzero(const Eigen::RowVectorXd& row) {
+    std::vector<Run> runs;
+    for (Index j = 0; j < row.size(); ++j) {
+      if (row[j] == 0) continue;
+      if (runs.empty() || runs.back().last != j) runs.push_back({j, j});
+      runs.back().last = j + 1;
+    }
+    return runs;
   }
 
   /// Terms inherit the magnitude of the pivot row: what cancelled there is noise here too.
   void eliminate(Index row, Index col) {
     used[static_cast<std::size_t>(row)] = true;
     const double divisor = T(row, col);
-    const Eigen::RowVectorXd pivot = T.row(row) / divisor, pivot_magnitude = magnitude.row(row) / std::abs(divisor);
-    trace.row(row) /= divisor;
+    const Eigen::RowVectorXd pivot = T.row(row) / divisor, pivot_magnitude = magnitude.row(row) / std::abs(divisor),
+                             pivot_trace = trace.row(row) / divisor;
+    const std::vector<Run> runs = nonzero(pivot_magnitude), trace_runs = nonzero(pivot_trace);
     for (Index i = 0; i < T.rows(); ++i) {
       const double factor = T(i, col);
       if (i == row || factor == 0) continue;
-      for (Index j = 0; j < width; ++j) {
-        if (pivot_magnitude[j] == 0) continue;
-        T(i, j) -= factor * pivot[j];
-        magnitude(i, j) = std::max(magnitude(i, j), std::abs(factor) * pivot_magnitude[j]);
-        if (std::abs(T(i, j)) <= noise * magnitude(i, j)) T(i, j) = 0;
+      for (const Run& run : runs) {
+        subtract(factor, pivot.data(), pivot_magnitude.data(), run, T.row(i).data(), magnitude.row(i).data());
       }
       T(i, col) = 0;
-      trace.row(i) -= factor * trace.row(row);
+      if (i < rows && used[static_cast<std::size_t>(i)]) continue;
+      for (const auto& [first, last] : trace_runs) {
+        trace.row(i).segment(first, last - first) -= factor * pivot_trace.segment(first, last - first);
+      }
+      if (i < rows) candidates[static_cast<std::size_t>(i)] = candidate(i);
     }
     T.row(row) = pivot;  // kept, and treated like the others from now on: it tells the line by the factors
     magnitude.row(row) = pivot_magnitude;
     T(row, col) = 1;
+  }
+
+  static void subtract(double factor, const double* pivot, const double* pivot_magnitude, Run run, double* entries,
+                       double* sizes) {
+    const double size = std::abs(factor);
+    for (Index j = run.first; j < run.last; ++j) {
+      const double entry = entries[j] - factor * pivot[j];
+      const double terms = std::max(sizes[j], size * pivot_magnitude[j]);
+      sizes[j] = terms;
+      entries[j] = std::abs(entry) <= noise * terms ? 0 : entry;
+    }
   }
 
   /// 0 = 0 up to rounding: every coefficient and the right-hand side cancelled. Dropping a row never shrinks the set.
