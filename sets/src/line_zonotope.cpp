@@ -90,16 +90,27 @@ LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, M
     const Index k = i - first;
     // z - T c_V - C c_X cancels where the sets touch: a residue is no statement
     if (k >= 0 && std::abs(Y.b[i]) <= nominal_noise * center_terms[k]) Y.b[i] = 0;
-    if (k >= 0 && Y.S.row(i).isZero(0)) {
-      if (is_vague(terms[k], Y.A.row(i).lpNorm<1>(), Y.b[i])) continue;
-      row_terms[i] = terms[k];
-    }
+    if (k >= 0 && Y.S.row(i).isZero(0) && is_vague(terms[k], Y.A.row(i).lpNorm<1>(), Y.b[i])) continue;
+    if (k >= 0) row_terms[i] = terms[k];
     kept.push_back(i);
   }
   return with_residue(with_rows(std::move(Y), kept), row_terms(kept), Vector::Zero(X.dim()));
 }
 
 namespace {
+
+/// Lines eliminated; what cancelled there counts as in a measurement.
+LineZonotope without_lines(const LineZonotope& X) {
+  if (X.lines() == 0) return X;
+  LinesEliminated made = eliminate_lines_traced(X, Vector(0));
+  std::vector<Index> kept;
+  for (Index i = 0; i < made.set.constraints(); ++i) {
+    if (!is_vague(made.row_magnitude[i], made.set.A.row(i).lpNorm<1>(), made.set.b[i])) kept.push_back(i);
+  }
+  const Vector rows = X.b.cwiseAbs() + X.A.cwiseAbs().rowwise().sum();
+  const Vector state_terms = X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum() + linalg::product(made.outputs.cwiseAbs(), rows);
+  return with_residue(with_rows(std::move(made.set), kept), made.row_magnitude(kept), state_terms);
+}
 
 /// Zero columns carry nothing, except in a set proven wrong by its rows alone, which keeps its rows.
 LineZonotope drop_zero_generators(LineZonotope X) {
@@ -125,7 +136,7 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
     throw Error(Errc::invalid, "reduce: " + std::to_string(max_generators) + " generators cannot enclose a set of dimension " +
                                    std::to_string(n) + "; give at least " + std::to_string(n));
   }
-  Reduced reduced = eliminate_constraints(eliminate_lines(X), max_constraints, how.constraints);
+  Reduced reduced = eliminate_constraints(without_lines(X), max_constraints, how.constraints);
   reduced.set = drop_zero_generators(std::move(reduced.set));
   if (has_false_row(reduced.set)) return {make_empty(n), true};
   if (reduced.set.generators() <= max_generators) return reduced;
