@@ -12,7 +12,7 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr double most_entries = 4e6;  ///< of the rows of a pair, before elimination
+constexpr double most_entries = 4e6;  ///< of the rows of a pair, and of the combinations that they come from, before elimination
 
 Index inputs_of(const ModeBank& bank) { return bank[0].model.linear.inputs(); }
 
@@ -106,7 +106,8 @@ void check_input_set(const ModeBank& bank, const Params& params, std::vector<Dia
   }
 }
 
-/// Rows of the largest pair at the largest horizon, so that a study cannot ask for more than the memory holds.
+/// The largest pair at the largest horizon, so that a study cannot ask for more than the memory holds, nor for more than a few
+/// seconds between two looks at the clock: r rows and c columns take O(r² c), and r max(r, c) ≤ 4·10⁶ makes that 8·10⁹ at most.
 void check_size(const DesignerContext& context, const Params& params, std::vector<Diagnostic>& problems) {
   double rows = 0, columns = 0;
   const double times = static_cast<double>(horizons_from(params).last) + 1;
@@ -118,10 +119,11 @@ void check_size(const DesignerContext& context, const Params& params, std::vecto
                                                             m.V.generators() + m.V.lines() + m.linear.inputs()) +
                                     static_cast<double>(m.X0.generators() + m.X0.lines()));
   }
-  if (4 * rows * columns <= most_entries) return;
+  if (4 * rows * std::max(rows, columns) <= most_entries) return;
   const char* name = params.has("horizon") ? "/horizon" : params.has("max_horizon") ? "/max_horizon" : "/input";
-  problems.push_back({name, fmt::format("makes programs of up to {:.0f} rows and {:.0f} columns", 2 * rows, 2 * columns),
-                      fmt::format("rows times columns may be {:.0f}: choose a shorter horizon", most_entries)});
+  problems.push_back(
+      {name, fmt::format("makes programs of up to {:.0f} rows and {:.0f} columns", 2 * rows, 2 * columns),
+       fmt::format("rows times columns, and rows times rows, may be {:.0f}: choose a shorter horizon", most_entries)});
 }
 
 /// Does some input of the set leave the model an output at all?

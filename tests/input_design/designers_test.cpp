@@ -140,6 +140,24 @@ TEST_CASE("What makes no sense is refused, all of it at once") {
     CHECK(mentions(problems("given", bank, "line_zonotope", params), "/admissible_set", "empty"));
     CHECK(mentions(problems("given", bank, "line_zonotope", Params().set("input", input).set("epsilon", -.1)), "/epsilon", ""));
   }
+  SUBCASE("sizes") {
+    // 4 equations and outputs and 8 columns or fewer per time and mode: the columns are the more, then the rows.
+    const ModeBank small = examples::three_scalar_models();
+    const auto judged_at = [&](const ModeBank& of, Index rows) {
+      return problems("given", of, "line_zonotope", Params().set("input", Matrix(Matrix::Ones(rows, 1))));
+    };
+    CHECK(judged_at(small, 100).empty());
+    CHECK(mentions(judged_at(small, 5000), "/input", "rows and"));
+    ModeBank tall = small;
+    for (Mode& mode : tall.modes) {
+      const LinearModel& m = mode.model.linear;
+      mode.model.linear.C = m.C.replicate(300, 1);
+      mode.model.linear.D = m.D.replicate(300, 1);
+      mode.model.linear.Dv = m.Dv.replicate(300, 1);
+    }
+    CHECK(judged_at(tall, 3).empty());
+    CHECK(mentions(judged_at(tall, 12), "/input", "rows and"));  // few columns, but the square of the rows
+  }
   SUBCASE("backends") {
     const Params params = Params().set("input", input);
     CHECK(mentions(problems("given", bank, "constrained_zonotope", params), "/admissible_set", "is missing"));

@@ -101,8 +101,12 @@ TEST_CASE("a design on paper") {
 
 TEST_CASE("designs without an input") {
   CHECK(has(text(without(DesignStatus::infeasible)), "Proven infeasible: no input of the input set separates the modes\n"));
-  const std::string unknown = text(without(DesignStatus::unknown));
-  CHECK(has(unknown, "No answer within the limit: lower bound 9.25\n"));
+  PipelineDesign open = without(DesignStatus::unknown);
+  const std::string unknown = text(open);
+  CHECK(has(unknown, "No answer: lower bound 9.25\n"));
+  CHECK_FALSE(has(unknown, "limit"));
+  open.outcome->stopped = true;
+  CHECK(has(text(open), "No answer within the limit: lower bound 9.25\n"));
   CHECK(has(unknown, "a reason\nTo try: a longer horizon\n"));
   PipelineDesign broken = design();
   broken.outcome.reset();
@@ -215,7 +219,10 @@ TEST_CASE("a design in a run, with its experiments") {
   CHECK(has(apps::complaints(study(), outcome).at(0), "no output of mode \"leak\""));
   outcome.pipelines[0].design = without(DesignStatus::unknown).outcome;
   CHECK(apps::exit_of(outcome) == apps::Exit::unanswered);
-  CHECK(has(apps::complaints(study(), outcome).at(0), "within the limit"));
+  CHECK(has(apps::complaints(study(), outcome).at(0), "no input was found"));
+  CHECK_FALSE(has(apps::complaints(study(), outcome).at(0), "limit"));
+  outcome.pipelines[0].design->stopped = true;
+  CHECK(has(apps::complaints(study(), outcome).at(0), "no input was found within the limit"));
   CHECK(has(apps::report_text(study(), outcome, "out"), "No experiments: there is no input to try\n"));
 }
 

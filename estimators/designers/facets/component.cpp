@@ -25,8 +25,9 @@ void register_facets_designer(Registrar& registrar) {
   designers::add_search_parameters(schema);
   designers::add_statement_parameters(schema);
   schema.real("gap", "relative distance of cost and proven lower bound at which the search ends", 1e-9, 1e-12, 1)
-      .integer("max_facets", "largest number of facets of the inputs that do not separate a pair; more end the search", 10000, 2,
-               1000000);
+      .integer("max_facets",
+               "largest number of facets of the inputs that do not separate a pair; one with more does not bound the cost", 10000,
+               2, 1000000);
   registrar.designer(
       {{"facets", "cheapest separating input, by exact search over facets", "Rego2025", std::move(schema),
         "For each pair of modes the inputs that do not separate it form a polytope, seen through the few combinations of\n"
