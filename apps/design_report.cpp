@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "diagnosis_report.hpp"
+
 namespace cordon::apps {
 
 namespace {
@@ -290,6 +292,7 @@ std::string design_text(const Study& study, const PipelineOutcome& pipeline, con
     }
   }
   if (!pipeline.experiments.empty()) text += fmt::format("\n{}", experiments_text(modes, pipeline.experiments, paint));
+  text += assumption_text(pipeline, paint);
   if (!pipeline.error.empty()) text += paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
   return text;
 }

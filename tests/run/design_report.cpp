@@ -206,6 +206,16 @@ TEST_CASE("a design in a run, with its experiments") {
   CHECK(report["experiments"][1]["isolation"].is_null());
   CHECK(report["modes"].size() == 2);
 
+  CHECK(report["assumptions_until"].is_null());
+  CHECK_FALSE(has(shown, "Assumption"));
+
+  outcome.pipelines[0].assumptions_until = 2;
+  CHECK(apps::exit_of(outcome) == apps::Exit::done);
+  CHECK(has(apps::report_text(study(), outcome, "out"), "Assumption failed: at k = 2 the state lies outside an admissible set"));
+  CHECK(json::parse(apps::report_json(study(), outcome))["pipelines"][0]["assumptions_until"] == 2);
+  outcome.pipelines[0].assumptions_until = 0;
+  CHECK(has(apps::report_text(study(), outcome, "out"), "Assumption failed: x_0 lies outside X0"));
+  outcome.pipelines[0] = p;
   outcome.pipelines[0].violated_at = 2;
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);
   CHECK(has(apps::complaints(study(), outcome).at(0), "at k = 2 of an experiment"));
