@@ -154,6 +154,12 @@ TEST_CASE("exit codes, and a sentence for each that is not 0") {
   expect({empty, broken, wrong}, apps::Exit::violated, "are called disjoint, and meet");
   wrong.outcome->best->pairs[0].disjoint = Answer::unknown;  // then nothing was claimed
   expect({wrong}, apps::Exit::done, "");
+  PipelineDesign apart = design();
+  apart.exact = exact(Answer::yes);
+  apart.outcome->best->pairs[0].disjoint = Answer::no;
+  expect({apart}, apps::Exit::violated, "are said to meet, and are disjoint");
+  apart.exact->pairs[0].kappa_lower = 1e-12;  // that tubes meet is said up to rounding
+  expect({apart}, apps::Exit::done, "");
 }
 
 TEST_CASE("designs for programs") {
