@@ -33,13 +33,15 @@ std::string name_of(const ModeBank& bank, Index mode) { return fmt::format("\"{}
 }  // namespace
 
 std::string open_question(const ModeBank& bank, const InputDesign& design, double epsilon) {
+  std::vector<std::string> empty;
   for (Index mode = 0; mode < bank.size(); ++mode) {
-    if (design.empty[static_cast<std::size_t>(mode)] == Answer::yes) {
-      return fmt::format(
-          "under this input the output tube of {} is empty: its model contradicts itself, and being disjoint from "
-          "nothing means nothing",
-          name_of(bank, mode));
-    }
+    if (design.empty[static_cast<std::size_t>(mode)] == Answer::yes) empty.push_back(name_of(bank, mode));
+  }
+  if (!empty.empty()) {
+    return fmt::format(
+        "under this input the output tube{} of {} {} empty: no states and disturbances that the study allows satisfy the "
+        "equations. An empty tube is disjoint from every other, and that is no separation",
+        empty.size() == 1 ? "" : "s", fmt::join(empty, ", "), empty.size() == 1 ? "is" : "are");
   }
   for (const PairSeparation& pair : design.pairs) {
     if (pair.disjoint == Answer::yes) continue;
