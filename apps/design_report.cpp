@@ -186,6 +186,20 @@ std::string experiments_text(const Names& modes, const std::vector<ExperimentRow
                      table(rows, paint));
 }
 
+/// Why experiments may have stayed open: samples after the horizon of `tube_membership` decide nothing.
+std::string unused_samples_text(const Study& study, const PipelineOutcome& pipeline) {
+  const auto spec = std::find_if(study.pipelines.begin(), study.pipelines.end(),
+                                 [&](const PipelineSpec& candidate) { return candidate.name == pipeline.name; });
+  const bool undecided = std::any_of(pipeline.experiments.begin(), pipeline.experiments.end(),
+                                     [](const ExperimentRow& row) { return row.undecided > 0; });
+  if (!undecided || spec == study.pipelines.end() || !spec->diagnoser || spec->diagnoser->type != "tube_membership") return "";
+  const Index last = spec->diagnoser->params.integer("horizon"), needed = pipeline.design->horizon;
+  if (last >= needed) return "";
+  return fmt::format(
+      "Undecided: the diagnoser takes no sample after k = {}, the input goes on to k = {}. To try: a \"horizon\" of {}\n", last,
+      needed, needed);
+}
+
 /// What the design claims and the exact proof refutes. That tubes meet is claimed up to rounding.
 std::vector<std::string> refuted(const Names& modes, const PipelineDesign& design) {
   std::vector<std::string> found;
@@ -298,7 +312,7 @@ std::string design_text(const Study& study, const PipelineOutcome& pipeline, con
     }
   }
   if (!pipeline.experiments.empty()) text += fmt::format("\n{}", experiments_text(modes, pipeline.experiments, paint));
-  text += assumption_text(pipeline, paint);
+  text += unused_samples_text(study, pipeline) + assumption_text(pipeline, paint);
   if (!pipeline.error.empty()) text += paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
   return text;
 }

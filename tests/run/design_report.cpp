@@ -235,6 +235,33 @@ TEST_CASE("a design in a run, with its experiments") {
   CHECK(has(apps::report_text(study(), outcome, "out"), "No experiments: there is no input to try\n"));
 }
 
+TEST_CASE("experiments that stay open because the diagnoser stops before the input does") {
+  Study s = study();
+  s.pipelines = {fakes::design("AFD", "found", "truth")};
+  s.pipelines[0].diagnoser->type = "tube_membership";
+  RunOutcome outcome;
+  outcome.pipelines.resize(1);
+  PipelineOutcome& p = outcome.pipelines[0];
+  p.name = "AFD";
+  p.designer = "facets";
+  p.diagnoser = "tube_membership";
+  p.design = design().outcome;  // N = 1
+  p.experiments = {{0, 5, {5, 0}, 5, 0, 0, 0, {}}, {1, 5, {0, 5}, 4, 0, 0, 1, {}}};
+  const auto hint = [&](std::int64_t horizon) {
+    s.pipelines[0].diagnoser->params.set("horizon", horizon);
+    const std::string shown = apps::report_text(s, outcome, "out");
+    CHECK(has(shown, "To try: a \"horizon\" of 1\n") == has(shown, "takes no sample after k = 0"));
+    return has(shown, "takes no sample after k");
+  };
+  CHECK(hint(0));
+  CHECK_FALSE(hint(1));
+  p.experiments[1].undecided = 0;
+  CHECK_FALSE(hint(0));
+  p.experiments[1].undecided = 1;
+  s.pipelines[0].diagnoser->type = "other";  // whose horizon is something else
+  CHECK_FALSE(hint(0));
+}
+
 TEST_CASE("how far a search is") {
   const double infinity = std::numeric_limits<double>::infinity();
   CHECK(apps::design_progress("AFD", 3, infinity, -infinity) == "AFD  N = 3");
