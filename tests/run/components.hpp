@@ -452,6 +452,7 @@ inline void register_all(Registrar& registrar) {
   script.integer("breaks", "number of the run that breaks down; 0: none", 0, 0, 1000);
   script.flag("promises", "makes statements in advance", true);
   script.set("admissible_set", "an assumption");
+  script.set("other_set", "none");
   script.component("observer", "with assumptions of its own", "observer");
   const auto no_diagnoser_problem = [](const DiagnoserContext&, const Params&) { return std::vector<Diagnostic>{}; };
   registrar.diagnoser({{"scripted", "says what it is told", "", script},

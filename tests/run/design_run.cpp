@@ -123,6 +123,7 @@ TEST_CASE("an exclusion after the diagnoser's own assumption has failed is no vi
   simulate.x0 = Vector::Zero(2);
   CHECK(with_set(1.3).assumptions_until == 2);
   CHECK(with_set(1.3).violated_at == 1);
+  CHECK(with_set(.95).assumptions_until == 1);  // with the first seed 2
   simulate.x0 = Vector::Constant(2, 5);
   CHECK(with_set(100).assumptions_until == 0);
   CHECK(with_set(100).violated_at == -1);
