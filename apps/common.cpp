@@ -15,12 +15,13 @@ namespace cordon::apps {
 
 const char* const exit_codes_help =
     "Exit codes:\n"
-    "  0  done\n"
-    "  1  internal error\n"
-    "  2  invalid input, or a file that cannot be read or written\n"
-    "  3  a plugin was refused or failed\n"
-    "  4  a claimed guarantee was violated\n"
-    "  5  a solver gave no answer in its limit\n"
+    "  0    done\n"
+    "  1    internal error\n"
+    "  2    invalid input, or a file that cannot be read or written\n"
+    "  3    a plugin was refused or failed\n"
+    "  4    a claimed guarantee was violated\n"
+    "  5    a solver gave no answer in its limit\n"
+    "  130  interrupted by SIGINT or SIGTERM\n"
     "Plugins are searched in: --plugins, the study's \"plugins\", CORDON_PLUGIN_PATH, beside the program, the installed "
     "directory.";
 

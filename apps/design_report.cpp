@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "diagnosis_report.hpp"
+
 namespace cordon::apps {
 
 namespace {
@@ -14,6 +16,8 @@ namespace {
 using Names = std::vector<std::string>;
 using Rows = std::vector<std::vector<std::string>>;
 using nlohmann::ordered_json;
+
+constexpr double touching = 1e-9;  ///< κ up to here: tubes that are said to meet may be apart by this, as for `cordon verify`
 
 Names mode_names(const Study& study) {
   Names names;
@@ -182,15 +186,33 @@ std::string experiments_text(const Names& modes, const std::vector<ExperimentRow
                      table(rows, paint));
 }
 
-/// What the design claims and the exact proof refutes. That tubes meet is claimed up to rounding only.
+/// Why experiments may have stayed open: samples after the horizon of `tube_membership` decide nothing.
+std::string unused_samples_text(const Study& study, const PipelineOutcome& pipeline) {
+  const auto spec = std::find_if(study.pipelines.begin(), study.pipelines.end(),
+                                 [&](const PipelineSpec& candidate) { return candidate.name == pipeline.name; });
+  const bool undecided = std::any_of(pipeline.experiments.begin(), pipeline.experiments.end(),
+                                     [](const ExperimentRow& row) { return row.undecided > 0; });
+  if (!undecided || spec == study.pipelines.end() || !spec->diagnoser || spec->diagnoser->type != "tube_membership") return "";
+  const Index last = spec->diagnoser->params.integer("horizon"), needed = pipeline.design->horizon;
+  if (last >= needed) return "";
+  return fmt::format(
+      "Undecided: the diagnoser takes no sample after k = {}, the input goes on to k = {}. To try: a \"horizon\" of {}\n", last,
+      needed, needed);
+}
+
+/// What the design claims and the exact proof refutes. That tubes meet is claimed up to rounding.
 std::vector<std::string> refuted(const Names& modes, const PipelineDesign& design) {
   std::vector<std::string> found;
   if (!design.exact) return found;
   const InputDesign& best = *design.outcome->best;
   for (std::size_t q = 0; q < best.pairs.size(); ++q) {
     const ExactPair& exact = design.exact->pairs[q];
-    if (best.pairs[q].disjoint != Answer::yes || exact.disjoint != Answer::no) continue;
-    found.push_back(fmt::format("the output tubes of {} are called disjoint, and meet", pair_name(modes, exact.i, exact.j)));
+    const Answer claim = best.pairs[q].disjoint;
+    const std::string tubes = "the output tubes of " + pair_name(modes, exact.i, exact.j);
+    if (claim == Answer::yes && exact.disjoint == Answer::no) found.push_back(tubes + " are called disjoint, and meet");
+    if (claim == Answer::no && exact.disjoint == Answer::yes && exact.kappa_lower > touching) {
+      found.push_back(tubes + " are said to meet, and are disjoint");
+    }
   }
   return found;
 }
@@ -290,6 +312,7 @@ std::string design_text(const Study& study, const PipelineOutcome& pipeline, con
     }
   }
   if (!pipeline.experiments.empty()) text += fmt::format("\n{}", experiments_text(modes, pipeline.experiments, paint));
+  text += unused_samples_text(study, pipeline) + assumption_text(pipeline, paint);
   if (!pipeline.error.empty()) text += paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
   return text;
 }

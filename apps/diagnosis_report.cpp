@@ -223,7 +223,19 @@ std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline, 
   if (left > 0) text += fmt::format("… and {} more, in results.json\n", left);
   text += "\n";
   if (!pipeline.error.empty()) return text + paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
-  return text + score_text(study, found, paint) + faults_text(found, paint);
+  return text + score_text(study, found, paint) + faults_text(found, paint) + assumption_text(pipeline, paint);
+}
+
+std::string assumption_text(const PipelineOutcome& pipeline, const Paint& paint) {
+  if (pipeline.assumptions_until < 0) return "";
+  return paint.yellow("Assumption failed") +
+         (pipeline.assumptions_until == 0
+              ? ": x_0 lies outside X0 of its mode, on which all exclusions rest"
+              : fmt::format(
+                    ": at k = {} the state lies outside an admissible set of the pipeline. Exclusions from then on rest on it "
+                    "and prove nothing: widen the set",
+                    pipeline.assumptions_until)) +
+         "\n";
 }
 
 std::string diagnosis_violation(const PipelineOutcome& pipeline) {

@@ -123,6 +123,7 @@ ordered_json json_of_diagnosis(const PipelineOutcome& p) {
       {"diagnoser", p.diagnoser},
       {"modes", p.diagnosis->modes},
       {"steps", p.steps},
+      {"assumptions_until", time_or_null(p.assumptions_until)},
       {"violated_at", time_or_null(p.violated_at)},
       {"error", error_of(p)},
       {"guarantees", guarantees ? ordered_json::parse(cordon::json_of(*guarantees, p.diagnosis->modes)) : ordered_json(nullptr)},
@@ -149,6 +150,7 @@ ordered_json json_of_design(const PipelineOutcome& p, const std::vector<std::str
           {"designer", p.designer},
           {"diagnoser", p.diagnoser.empty() ? ordered_json(nullptr) : ordered_json(p.diagnoser)},
           {"modes", modes},
+          {"assumptions_until", time_or_null(p.assumptions_until)},
           {"violated_at", time_or_null(p.violated_at)},
           {"error", error_of(p)},
           {"design", p.design ? ordered_json::parse(cordon::json_of(*p.design, modes)) : ordered_json(nullptr)},
@@ -239,8 +241,7 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
     if (pipeline.violated_at >= 0 && !pipeline.designer.empty()) {
       found.push_back(
           fmt::format("pipeline \"{}\" violates its guarantee: at k = {} of an experiment its diagnoser excludes the true mode. "
-                      "This is a defect "
-                      "of its backend or diagnoser",
+                      "This is a defect of its backend or diagnoser",
                       pipeline.name, pipeline.violated_at));
     } else if (pipeline.violated_at >= 0 && pipeline.diagnosis) {
       found.push_back(diagnosis_violation(pipeline));

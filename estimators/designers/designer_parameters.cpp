@@ -13,6 +13,7 @@ namespace cordon::designers {
 namespace {
 
 constexpr double most_entries = 4e6;  ///< of the rows of a pair, and of the combinations that they come from, before elimination
+constexpr double most_cost = 1e100;   ///< leaves room for the products of a search
 
 Index inputs_of(const ModeBank& bank) { return bank[0].model.linear.inputs(); }
 
@@ -24,7 +25,8 @@ void check_schedule(const Params& params, const char* name, Index inputs, bool w
   const Matrix& rows = params.matrix(name);
   if (rows.rows() == 0 || rows.cols() != inputs) {
     problems.push_back({fmt::format("/{}", name),
-                        fmt::format("is {} × {}, must have {} columns, one per input", rows.rows(), rows.cols(), inputs),
+                        fmt::format("is {} × {}, must have {} column{}, one per input", rows.rows(), rows.cols(), inputs,
+                                    inputs == 1 ? "" : "s"),
                         "a row per time k = 0, 1, …; the last row stands for all later times"});
   } else if (weights && rows.minCoeff() < 0) {
     problems.push_back({fmt::format("/{}", name), "holds a negative weight", "weights are 0 or more"});
@@ -38,6 +40,13 @@ Vector scheduled(const Params& params, const char* name, Index inputs, Index hor
   const Matrix& rows = params.matrix(name);
   for (Index k = 0; k <= horizon; ++k) all.segment(k * inputs, inputs) = rows.row(std::min(k, rows.rows() - 1)).transpose();
   return all;
+}
+
+/// Of the sequences with all u_k in a box, one that is as far from the reference as any.
+Vector farthest(const Box& box, VectorIn reference) {
+  const Index inputs = box.dim(), times = inputs > 0 ? reference.size() / inputs : 0;
+  const Vector lower = box.lower.replicate(times, 1), upper = box.upper.replicate(times, 1);
+  return ((reference - lower).array() >= (upper - reference).array()).select(lower, upper);
 }
 
 void check_backend(const DesignerContext& context, const Params& params, std::vector<Diagnostic>& problems) {
@@ -128,7 +137,7 @@ void check_size(const DesignerContext& context, const Params& params, std::vecto
 
 /// Does some input of the set leave the model an output at all?
 void check_tubes(const DesignerContext& context, const Params& params, std::vector<Diagnostic>& problems) {
-  const Index horizon = horizons_from(params).last;
+  const Index horizon = horizons_from(params).first;
   const InputSequences U = inputs_from(context.bank, params, horizon);
   for (const Mode& mode : context.bank.modes) {
     const TubeConditions rows = conditions_of(output_tube(mode.model, *context.backend, span_from(params, horizon)));
@@ -203,6 +212,20 @@ std::vector<Diagnostic> check_statement(const DesignerContext& context, const Pa
   return problems;
 }
 
+void check_cost(const Params& params, Index inputs, VectorIn u, std::vector<Diagnostic>& problems) {
+  Cost cost = cost_from(params, inputs, u.size() / inputs - 1);
+  const double worst = cost.at(u);
+  if (worst <= most_cost) return;
+  cost.reference.setZero();
+  const bool far = params.has("reference") && cost.at(u) <= most_cost;
+  const bool heavy = params.has("weights") && cost.weights.maxCoeff() > 1;
+  problems.push_back({far     ? "/reference"
+                      : heavy ? "/weights"
+                              : "/cost",
+                      fmt::format("makes costs of up to {:.3g}, at most {:.0e} can be compared", worst, most_cost),
+                      "choose weights, a reference and units of the inputs that are nearer to 1"});
+}
+
 std::vector<Diagnostic> check_search(const DesignerContext& context, const Params& params) {
   std::vector<Diagnostic> problems = check_statement(context, params);
   const Index inputs = inputs_of(context.bank);
@@ -212,6 +235,11 @@ std::vector<Diagnostic> check_search(const DesignerContext& context, const Param
                         ""});
   }
   if (inputs > 0) check_input_set(context.bank, params, problems);
+  if (problems.empty()) {
+    const Index horizon = horizons_from(params).last;
+    const Box box = interval_hull(input_set_from(context.bank, params));
+    check_cost(params, inputs, farthest(box, cost_from(params, inputs, horizon).reference), problems);
+  }
   if (problems.empty()) check_tubes(context, params, problems);
   return problems;
 }

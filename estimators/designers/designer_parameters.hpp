@@ -20,6 +20,8 @@ inline constexpr std::int64_t most_horizon = 100;
 std::vector<Diagnostic> check_tube_data(const DesignerContext& context, const Params& params);
 /// Problems of the statement for this bank and backend.
 std::vector<Diagnostic> check_statement(const DesignerContext& context, const Params& params);
+/// A cost of u_0 … u_N, stacked, that is too large to be compared.
+void check_cost(const Params& params, Index inputs, VectorIn u, std::vector<Diagnostic>& problems);
 /// Those of a search besides.
 std::vector<Diagnostic> check_search(const DesignerContext& context, const Params& params);
 

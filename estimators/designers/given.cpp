@@ -3,11 +3,28 @@
 #include <fmt/format.h>
 
 #include "components.hpp"
+#include "cordon/solvers/set_questions.hpp"
 #include "designers/tube_designer.hpp"
 
 namespace cordon::estimators {
 
 namespace {
+
+/// The sequence as it stands in problems: by time, stacked.
+Vector stacked(const Matrix& input) {
+  const Matrix by_column = input.transpose();
+  return Eigen::Map<const Vector>(by_column.data(), by_column.size());
+}
+
+/// Times at which the input is proven to lie outside the set of all inputs, as a sentence; "" if there are none.
+std::string outside_text(const LineForm& U, const Matrix& input) {
+  std::vector<Index> outside;
+  for (Index k = 0; k < input.rows(); ++k) {
+    if (U.dim() == input.cols() && contains(U, input.row(k).transpose()) == Answer::no) outside.push_back(k);
+  }
+  if (outside.empty()) return "";
+  return fmt::format("u_k lies outside /system/U, the set of all inputs, at k = {}", fmt::join(outside, ", "));
+}
 
 class Given final : public InputDesigner {
  public:
@@ -19,7 +36,6 @@ class Given final : public InputDesigner {
     const Matrix& input = params_.matrix("input");
     const Index horizon = input.rows() - 1;
     const designers::TubeSpan span = designers::span_from(params_, horizon);
-    const Matrix by_column = input.transpose();
     const designers::Stop stop = [&] { return control.stop(); };
     DesignOutcome outcome;
     outcome.status = DesignStatus::given;
@@ -28,11 +44,14 @@ class Given final : public InputDesigner {
     outcome.last_output_only = span.last_output_only;
     outcome.admissible_set = span.admissible_set;
     if (const auto problem = designers::problem_at(bank(), backend(), params_, horizon, stop)) {
-      outcome.best = designers::judge(bank(), backend(), params_, *problem,
-                                      Eigen::Map<const Vector>(by_column.data(), by_column.size()), stop);
+      outcome.best = designers::judge(bank(), backend(), params_, *problem, stacked(input), stop);
     }
     if (!outcome.best) return designers::without_answer(std::move(outcome), "stopped before the input was judged");
     outcome.reason = designers::open_question(bank(), *outcome.best, outcome.epsilon);
+    if (const std::string outside = outside_text(bank()[bank().nominal].model.U, input); !outside.empty()) {
+      outcome.reason = outcome.reason.empty() ? outside : outside + "; " + outcome.reason;
+      outcome.suggestion = "an input inside the set, or a wider set";
+    }
     return outcome;
   }
 
@@ -43,10 +62,14 @@ std::vector<Diagnostic> check(const DesignerContext& context, const Params& para
   const Matrix& input = params.matrix("input");
   const Index inputs = context.bank[0].model.linear.inputs();
   if (input.cols() != inputs || input.rows() < 2) {
-    return {{"/input", fmt::format("is {} × {}, must have {} columns and two rows at least", input.rows(), input.cols(), inputs),
-             "a row per time k = 0, 1, …, N with the inputs of that time"}};
+    return {{"/input",
+             fmt::format("is {} × {}, must have {} column{}, one per input, and two rows at least", input.rows(), input.cols(),
+                         inputs, inputs == 1 ? "" : "s"),
+             "a row per time k = 0, 1, …, N with the inputs of that time; N is 1 at least"}};
   }
-  return designers::check_statement(context, params);
+  std::vector<Diagnostic> problems = designers::check_statement(context, params);
+  if (problems.empty()) designers::check_cost(params, inputs, stacked(input), problems);
+  return problems;
 }
 
 }  // namespace

@@ -36,13 +36,15 @@ std::string name_of(const ModeBank& bank, Index mode) { return fmt::format("\"{}
 }  // namespace
 
 std::string open_question(const ModeBank& bank, const InputDesign& design, double epsilon) {
+  std::vector<std::string> empty;
   for (Index mode = 0; mode < bank.size(); ++mode) {
-    if (design.empty[static_cast<std::size_t>(mode)] == Answer::yes) {
-      return fmt::format(
-          "under this input the output tube of {} is empty: its model contradicts itself, and being disjoint from "
-          "nothing means nothing",
-          name_of(bank, mode));
-    }
+    if (design.empty[static_cast<std::size_t>(mode)] == Answer::yes) empty.push_back(name_of(bank, mode));
+  }
+  if (!empty.empty()) {
+    return fmt::format(
+        "under this input the output tube{} of {} {} empty: no states and disturbances that the study allows satisfy the "
+        "equations. An empty tube is disjoint from every other, and that is no separation",
+        empty.size() == 1 ? "" : "s", fmt::join(empty, ", "), empty.size() == 1 ? "is" : "are");
   }
   for (const PairSeparation& pair : design.pairs) {
     if (pair.disjoint == Answer::yes) continue;
@@ -141,8 +143,11 @@ DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
       outcome.best = judge(bank(), backend(), params_, *problem, inside_bounds(problem->U, std::move(*found.u)),
                            [&] { return control.stop(); });
       if (!outcome.best) return without_answer(std::move(outcome), "the search was stopped before the input was judged");
-      if (std::string open = open_question(bank(), *outcome.best, problem->epsilon); !open.empty())
+      if (std::string open = open_question(bank(), *outcome.best, problem->epsilon); !open.empty()) {
         outcome.reason = std::move(open);
+        // ε = 0 asks for a limit, which need not separate; else what is called optimal has to.
+        if (problem->epsilon > 0 && outcome.status == DesignStatus::optimal) outcome.status = DesignStatus::feasible;
+      }
       return outcome;
     }
     if (horizon == horizons.last || control.stop()) return outcome;

@@ -72,7 +72,8 @@ TEST_CASE("An empty tube is a modelling error, and no separation") {
     for (const PairSeparation& pair : outcome.best->pairs) CHECK(pair.disjoint == Answer::yes);  // of nothing
     CHECK(std::count(outcome.best->empty.begin(), outcome.best->empty.end(), Answer::yes) == 4);
     CHECK(outcome.best->separates() == Answer::unknown);
-    CHECK(outcome.reason.find("is empty: its model contradicts itself") != std::string::npos);
+    CHECK(outcome.reason.find("output tubes of \"model_1\", \"model_2\", \"model_3\", \"model_4\" are empty") !=
+          std::string::npos);
     CHECK(outcome.admissible_set.has_value());
   }
 }
@@ -105,6 +106,61 @@ TEST_CASE("The judgement of a given input can be stopped between tubes, pairs an
   CHECK(enough.asked == all);
 }
 
+TEST_CASE("A single empty tube is named") {
+  ModeBank bank = examples::three_scalar_models();
+  LinearModel& m = bank.modes[1].model.linear;  // 0 = x - 100 w besides x⁺ = …: no state of X0 and W meets it
+  m.E = Matrix::Zero(1, 1);
+  m.A = Matrix::Zero(1, 1);
+  const Params params = Params().set("input", by_time(numbers({1, 1, 1}), 1));
+  const DesignOutcome outcome = judged(bank, "line_zonotope", params);
+  CHECK(outcome.best->empty == std::vector{Answer::no, Answer::yes, Answer::no});
+  CHECK(outcome.reason.find("output tube of \"fast\" is empty") != std::string::npos);
+}
+
+TEST_CASE("A given input outside /system/U is judged, and told") {
+  ModeBank bank = examples::three_scalar_models();
+  for (Mode& mode : bank.modes) mode.model.U = examples::cube(1, 2);
+  const auto reason = [&](std::initializer_list<double> u) {
+    const DesignOutcome outcome = judged(bank, "line_zonotope", Params().set("input", by_time(numbers(u), 1)));
+    CHECK(outcome.suggestion.empty() == (outcome.reason.find("/system/U") == std::string::npos));
+    return outcome.reason;
+  };
+  CHECK(reason({0, 2, 0, -2}).empty());
+  CHECK(reason({3, 2, 0, -2.5}) == "u_k lies outside /system/U, the set of all inputs, at k = 0, 3");
+  CHECK(reason({0, 0, 2.5}).find("at k = 2; the outputs of \"slow\"") != std::string::npos);  // u_2 has no effect on y_2
+  for (Mode& mode : bank.modes) mode.model.U = make_space(1);
+  CHECK(reason({3, 2, 0, -2.5}).empty());
+}
+
+TEST_CASE("Costs that are too large to be compared are refused") {
+  ModeBank bank = examples::three_scalar_models();
+  for (Mode& mode : bank.modes) mode.model.U = make_box({numbers({-2}), numbers({3})});
+  const auto found = [&](const char* designer, double reference, double weight, const char* cost) {
+    Params params = Params()
+                        .set("reference", Matrix(Matrix::Constant(1, 1, reference)))
+                        .set("weights", Matrix(Matrix::Constant(1, 1, weight)))
+                        .set("cost", std::string(cost));
+    designer == std::string("given") ? params.set("input", by_time(numbers({0, 1}), 1)) : params.set("horizon", std::int64_t{1});
+    return problems(designer, bank, "line_zonotope", params);
+  };
+  for (const char* designer : {"given", "facets", "milp"}) {
+    CHECK(found(designer, 1e49, 1, "quadratic").empty());
+    CHECK(mentions(found(designer, 1e51, 1, "quadratic"), "/reference", "costs of up to 2e+102"));
+    CHECK(mentions(found(designer, -1e51, 1, "quadratic"), "/reference", "costs of up to 2e+102"));
+    CHECK(mentions(found(designer, 1e160, 1, "quadratic"), "/reference", "inf"));
+    CHECK(mentions(found(designer, 1e160, 0, "quadratic"), "/reference", ""));  // 0·∞
+    CHECK(found(designer, 1e51, 1, "norm_1").empty());
+    CHECK(mentions(found(designer, 1e110, 1, "norm_inf"), "/reference", ""));
+    CHECK(mentions(found(designer, 0, 1e120, "norm_1"), "/weights", ""));
+  }
+  // the farthest input of [-2, 3] from 1 is -2: (1e99 + 1e99)·3
+  CHECK(found("facets", 1, 1e99, "norm_1").empty());
+  CHECK(mentions(found("facets", 1, 2e99, "quadratic"), "/weights", "costs of up to 3.6e+100"));
+  CHECK(mentions(found("facets", 0, 1e99, "quadratic"), "/weights", "costs of up to 1.8e+100"));
+  for (Mode& mode : bank.modes) mode.model.U = examples::cube(1, 1e60);
+  CHECK(mentions(found("facets", 0, 1, "quadratic"), "/cost", "costs of up to 2e+120"));
+}
+
 TEST_CASE("Tubes that touch are not separated") {
   const ModeBank bank = examples::three_scalar_models();
   const Params params = Params().set("input", by_time(numbers({0, .9, 0, 0}), 1));
@@ -132,6 +188,9 @@ TEST_CASE("What makes no sense is refused, all of it at once") {
         mentions(problems("given", bank, "line_zonotope", Params().set("input", Matrix(Matrix::Ones(4, 3)))), "/input", "4 × 3"));
     CHECK(
         mentions(problems("given", bank, "line_zonotope", Params().set("input", Matrix(Matrix::Ones(1, 2)))), "/input", "1 × 2"));
+    CHECK(mentions(
+        problems("given", examples::three_scalar_models(), "line_zonotope", Params().set("input", Matrix(Matrix::Ones(1, 1)))),
+        "/input", "must have 1 column,"));
   }
   SUBCASE("values") {
     Params params = Params().set("input", input).set("weights", Matrix(-Matrix::Ones(1, 2)));

@@ -377,7 +377,8 @@ inline std::vector<Vector>& first_outputs() {
 
 /// Knows that experiments come in the order of three modes with two seeds each: `truth` isolates the mode at k = 1, in every
 /// second run at k = 2; `lies` is wrong in the first run, and always mode 0 later; `open` excludes the last mode only, `none`
-/// excludes all, `throws` breaks down in the third run.
+/// excludes all, `throws` breaks down in the third run; `wavers` isolates the mode at k = 1 only, in every second run at
+/// all k but 1.
 class Telling final : public Diagnoser {
  public:
   Telling(const DiagnoserContext& context, const Params& params)
@@ -392,7 +393,7 @@ class Telling final : public Diagnoser {
     says.k = now.k;
     says.decision = Decision::isolating;
     says.modes.resize(static_cast<std::size_t>(bank().size()));
-    if (now.k == 0) return says;
+    if (tells_ == "wavers" ? (now.k == 1) == (runs_ % 2 == 0) : now.k == 0) return says;
     const Index mode = tells_ == "lies" ? (runs_ == 1 ? 1 : 0) : (runs_ - 1) / 2 % 3;  // two seeds, three modes
     if (tells_ == "open") {
       says.decision = Decision::ambiguous;
@@ -401,7 +402,7 @@ class Telling final : public Diagnoser {
       says.decision = Decision::unknown_fault;
       for (Index j = 0; j < bank().size(); ++j) exclude(says, j);
     } else {
-      if (now.k == 1 && runs_ % 2 == 0) return says;  // every second run is isolated later
+      if (tells_ != "wavers" && now.k == 1 && runs_ % 2 == 0) return says;  // every second run is isolated later
       says.decision = Decision::monitoring;
       says.mode = mode;
       for (Index j = 0; j < bank().size(); ++j) {
@@ -450,6 +451,9 @@ inline void register_all(Registrar& registrar) {
   script.integer("excludes", "mode that is contradicted", 0, 0, 2);
   script.integer("breaks", "number of the run that breaks down; 0: none", 0, 0, 1000);
   script.flag("promises", "makes statements in advance", true);
+  script.set("admissible_set", "an assumption");
+  script.set("other_set", "none");
+  script.component("observer", "with assumptions of its own", "observer");
   const auto no_diagnoser_problem = [](const DiagnoserContext&, const Params&) { return std::vector<Diagnostic>{}; };
   registrar.diagnoser({{"scripted", "says what it is told", "", script},
                        no_diagnoser_problem,
@@ -471,7 +475,8 @@ inline void register_all(Registrar& registrar) {
                       [](const DesignerContext&, const Params&) { return std::vector<Diagnostic>{}; },
                       [](const DesignerContext& c, const Params& p) { return std::make_unique<Designing>(c, p); }});
   ParamSchema tells;
-  tells.choice("tells", "how it ends", {"truth", "open", "none", "lies", "throws"}, "truth");
+  tells.choice("tells", "how it ends", {"truth", "open", "none", "lies", "throws", "wavers"}, "truth");
+  tells.set("admissible_set", "an assumption");
   registrar.diagnoser({{"telling", "knows the order of experiments", "", tells},
                        no_diagnoser_problem,
                        [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Telling>(c, p); }});

@@ -158,6 +158,12 @@ TEST_CASE("exit codes, and a sentence for each that is not 0") {
   expect({empty, broken, wrong}, apps::Exit::violated, "are called disjoint, and meet");
   wrong.outcome->best->pairs[0].disjoint = Answer::unknown;  // then nothing was claimed
   expect({wrong}, apps::Exit::done, "");
+  PipelineDesign apart = design();
+  apart.exact = exact(Answer::yes);
+  apart.outcome->best->pairs[0].disjoint = Answer::no;
+  expect({apart}, apps::Exit::violated, "are said to meet, and are disjoint");
+  apart.exact->pairs[0].kappa_lower = 1e-12;  // that tubes meet is said up to rounding
+  expect({apart}, apps::Exit::done, "");
 }
 
 TEST_CASE("designs for programs") {
@@ -210,6 +216,16 @@ TEST_CASE("a design in a run, with its experiments") {
   CHECK(report["experiments"][1]["isolation"].is_null());
   CHECK(report["modes"].size() == 2);
 
+  CHECK(report["assumptions_until"].is_null());
+  CHECK_FALSE(has(shown, "Assumption"));
+
+  outcome.pipelines[0].assumptions_until = 2;
+  CHECK(apps::exit_of(outcome) == apps::Exit::done);
+  CHECK(has(apps::report_text(study(), outcome, "out"), "Assumption failed: at k = 2 the state lies outside an admissible set"));
+  CHECK(json::parse(apps::report_json(study(), outcome))["pipelines"][0]["assumptions_until"] == 2);
+  outcome.pipelines[0].assumptions_until = 0;
+  CHECK(has(apps::report_text(study(), outcome, "out"), "Assumption failed: x_0 lies outside X0"));
+  outcome.pipelines[0] = p;
   outcome.pipelines[0].violated_at = 2;
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);
   CHECK(has(apps::complaints(study(), outcome).at(0), "at k = 2 of an experiment"));
@@ -224,6 +240,33 @@ TEST_CASE("a design in a run, with its experiments") {
   outcome.pipelines[0].design->stopped = true;
   CHECK(has(apps::complaints(study(), outcome).at(0), "no input was found within the limit"));
   CHECK(has(apps::report_text(study(), outcome, "out"), "No experiments: there is no input to try\n"));
+}
+
+TEST_CASE("experiments that stay open because the diagnoser stops before the input does") {
+  Study s = study();
+  s.pipelines = {fakes::design("AFD", "found", "truth")};
+  s.pipelines[0].diagnoser->type = "tube_membership";
+  RunOutcome outcome;
+  outcome.pipelines.resize(1);
+  PipelineOutcome& p = outcome.pipelines[0];
+  p.name = "AFD";
+  p.designer = "facets";
+  p.diagnoser = "tube_membership";
+  p.design = design().outcome;  // N = 1
+  p.experiments = {{0, 5, {5, 0}, 5, 0, 0, 0, {}}, {1, 5, {0, 5}, 4, 0, 0, 1, {}}};
+  const auto hint = [&](std::int64_t horizon) {
+    s.pipelines[0].diagnoser->params.set("horizon", horizon);
+    const std::string shown = apps::report_text(s, outcome, "out");
+    CHECK(has(shown, "To try: a \"horizon\" of 1\n") == has(shown, "takes no sample after k = 0"));
+    return has(shown, "takes no sample after k");
+  };
+  CHECK(hint(0));
+  CHECK_FALSE(hint(1));
+  p.experiments[1].undecided = 0;
+  CHECK_FALSE(hint(0));
+  p.experiments[1].undecided = 1;
+  s.pipelines[0].diagnoser->type = "other";  // whose horizon is something else
+  CHECK_FALSE(hint(0));
 }
 
 TEST_CASE("how far a search is") {

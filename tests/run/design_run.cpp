@@ -105,6 +105,39 @@ TEST_CASE("a true mode that is excluded violates the guarantee") {
   }
 }
 
+TEST_CASE("an exclusion after the diagnoser's own assumption has failed is no violation, and is told") {
+  Study study = study_of({fakes::design("AFD", "found", "none")});
+  auto& simulate = std::get<SimulateSpec>(study.data);
+  const auto with_set = [&](double radius) {
+    study.pipelines[0].diagnoser->params.set("admissible_set",
+                                             make_box({-Vector::Constant(2, radius), Vector::Constant(2, radius)}));
+    return run(study).pipelines[0];
+  };
+  simulate.x0 = Vector::Ones(2);
+  CHECK(run(study).pipelines[0].assumptions_until == -1);
+  CHECK(with_set(100).violated_at == 1);
+  CHECK(with_set(100).assumptions_until == -1);
+  CHECK(with_set(.5).violated_at == -1);
+  CHECK(with_set(.5).assumptions_until == 1);  // of x_0 it is X0 that is assumed
+  // x_0 = 0, x_1 ≈ (0, 1), x_2 ≈ (.1, 1.8) up to .19: the assumption fails after the exclusion, and excuses nothing
+  simulate.x0 = Vector::Zero(2);
+  CHECK(with_set(1.3).assumptions_until == 2);
+  CHECK(with_set(1.3).violated_at == 1);
+  CHECK(with_set(.95).assumptions_until == 1);  // with the first seed 2
+  simulate.x0 = Vector::Constant(2, 5);
+  CHECK(with_set(100).assumptions_until == 0);
+  CHECK(with_set(100).violated_at == -1);
+}
+
+TEST_CASE("isolated at k: from then on until the end") {
+  const PipelineOutcome found = run_one("wavers");
+  for (const ExperimentRow& row : found.experiments) {
+    CHECK(row.isolated == 1);
+    CHECK(row.isolation.count == 1);
+    CHECK(row.isolation.min == 2);
+  }
+}
+
 TEST_CASE("without an input there are no experiments, and the other pipelines go on") {
   for (const std::string says : {"infeasible", "unknown", "throws"}) {
     const RunOutcome outcome =
@@ -178,6 +211,7 @@ TEST_CASE("what the files hold") {
   CHECK(found["experiments"][1]["possible"] == json({0, 2, 0}));
   CHECK(found["experiments"][1]["isolation"]["median"] == 1.5);
   CHECK(found["summary"]["violated_at"].is_null());
+  CHECK(found["summary"]["assumptions_until"].is_null());
   const json& none = results["pipelines"][2]["design"];
   CHECK(none["status"] == "unknown");
   CHECK(none["u"].is_null());

@@ -100,6 +100,50 @@ TEST_CASE("every seed is scored, the first is told in full") {
   CHECK(progress.back() == 5 * 21);
 }
 
+TEST_CASE("an exclusion rests on the admissible sets of the diagnoser and of what is nested in it") {
+  const auto set_of = [](double radius) { return make_box({-Vector::Constant(2, radius), Vector::Constant(2, radius)}); };
+  const auto outcome_of = [&](double own, double nested) {
+    ComponentSpec observer{"claiming", with({{"admissible_set", set_of(nested)}})};
+    const Params params = with({{"at", std::int64_t{7}},
+                                {"admissible_set", set_of(own)},
+                                {"other_set", set_of(.5)},
+                                {"observer", std::make_shared<const ComponentSpec>(std::move(observer))}});
+    return run(study_of({fakes::diagnosis("bank", params)}, 3), {{0, 0}, {9, 1}}).pipelines[0];
+  };
+  PipelineOutcome outcome = outcome_of(1e3, 1e3);
+  CHECK(outcome.violated_at == 7);
+  CHECK(outcome.assumptions_until == -1);
+  for (const bool own : {true, false}) {
+    outcome = own ? outcome_of(.5, 1e3) : outcome_of(1e3, .5);
+    CHECK(outcome.violated_at == -1);
+    CHECK(outcome.diagnosis->true_mode_excluded);
+    CHECK(outcome.assumptions_until == 1);
+  }
+  outcome = outcome_of(1e3, 4.1);  // x_2 tends to 5 ± .5
+  CHECK(outcome.assumptions_until > 7);
+  CHECK(outcome.violated_at == 7);
+
+  // an exclusion at the k at which the assumption fails; of x_0 it is X0 that is assumed
+  Study study = study_of({fakes::diagnosis("bank", with({{"at", std::int64_t{1}}, {"admissible_set", set_of(.5)}}))});
+  std::get<SimulateSpec>(study.data).x0 = Vector::Ones(2);
+  outcome = run(study, {{0, 0}}).pipelines[0];
+  CHECK(outcome.assumptions_until == 1);
+  CHECK(outcome.diagnosis->true_mode_excluded->k == 1);
+  CHECK(outcome.violated_at == -1);
+
+  // each run for itself: the first one leaves the set at k = 11, the second one later than its exclusion at k = 12
+  study = study_of({fakes::diagnosis("bank", with({{"admissible_set", set_of(4.56)}}))}, 2);
+  std::get<SimulateSpec>(study.data).seed = 2;
+  outcome = run(study, {{0, 1}, {10, 2}, {11, 0}}).pipelines[0];
+  CHECK(outcome.assumptions_until == 11);
+  CHECK(outcome.violated_at == 12);
+  // the second run leaves it first
+  study = study_of({fakes::diagnosis("bank", with({{"admissible_set", set_of(4.68)}}))}, 2);
+  outcome = run(study, {{0, 1}, {10, 2}, {11, 0}}).pipelines[0];
+  CHECK(outcome.assumptions_until == 12);
+  CHECK(outcome.violated_at == -1);
+}
+
 TEST_CASE("excluding the true mode violates the guarantee of simulated data of a linear model") {
   Study study = study_of({fakes::diagnosis("bank", with({{"at", std::int64_t{7}}}))}, 3);
   PipelineOutcome outcome = run(study, {{0, 0}, {9, 1}}).pipelines[0];

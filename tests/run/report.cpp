@@ -118,6 +118,17 @@ TEST_CASE("an excluded true mode, data without modes, and a pipeline that stoppe
   CHECK(has(apps::diagnosis_text(study(), p, paint), "Stopped: out of order"));
 }
 
+TEST_CASE("an assumption that failed is told") {
+  PipelineOutcome p = diagnosis();
+  CHECK_FALSE(has(apps::diagnosis_text(study(), p, apps::Paint(stdout)), "Assumption"));
+  p.assumptions_until = 3;
+  CHECK(has(apps::diagnosis_text(study(), p, apps::Paint(stdout)),
+            "Assumption failed: at k = 3 the state lies outside an admissible set"));
+  RunOutcome outcome;
+  outcome.pipelines = {p};
+  CHECK(json::parse(apps::report_json({}, outcome))["pipelines"][0]["assumptions_until"] == 3);
+}
+
 TEST_CASE("a long timeline is cut, and says so") {
   PipelineOutcome p = diagnosis();
   for (Index k = 200; k < 300; ++k) p.diagnosis->events.push_back({k, Kind::ambiguous, -1, {}});

@@ -18,6 +18,13 @@ const Mistake top_level[] = {
     {"\"cordon\": 1", "\"cordon\": \"1\"", "/cordon", "is a text, must be a number", "without quotes"},
     {"\"title\": \"a study\"", "\"titl\": \"a study\"", "/titl", "unknown key of a study", "did you mean \"title\"?"},
     {"\"title\": \"a study\"", "\"title\": \"\"", "/title", "empty text", ""},
+    {"\"title\": \"a study\"", "\"title\": \"a\\u0000\"", "/title", "holds a NUL character", ""},
+    {"\"title\": \"a study\"", "\"title\": \"a\\nb\"", "/title", "holds a control character", "in one line"},
+    {"\"title\": \"a study\"", "\"title\": \"\\u001b[2J\"", "/title", "holds a control character", "in one line"},
+    {"\"title\": \"a study\"", "\"title\": \"\\u001f\"", "/title", "holds a control character", "in one line"},
+    {"\"title\": \"a study\"", "\"title\": \"\\u007f\"", "/title", "holds a control character", "in one line"},
+    {"\"title\": \"a study\"", "\"title\": \"\\u0080\"", "/title", "holds a control character", "in one line"},
+    {"\"title\": \"a study\"", "\"title\": \"\\u009f\"", "/title", "holds a control character", "in one line"},
     {"\"title\": \"a study\"", "\"plugins\": [\"nowhere\"]", "/plugins/0", "no such directory", "relative to the folder"},
     {"\"title\": \"a study\"", "\"plugins\": \"nowhere\"", "/plugins", "is a text, must be a list", "list of texts"},
     {"\"title\": \"a study\"", "\"sweep\": []", "/sweep", "unknown key of a study", "\"system\""},
@@ -216,6 +223,12 @@ const Mistake syntax[] = {
 }  // namespace
 
 TEST_CASE("the study that the mistakes are made in is valid") { CHECK(problems_of(valid_study).empty()); }
+
+TEST_CASE("what is no control character may stand in a text") {
+  for (const std::string good : {" ", "~", "\\u00a0", "\\u0100", "é€😀"}) {
+    CHECK(problems_of(exchanged(valid_study, "\"a study\"", "\"" + good + "\"")).empty());
+  }
+}
 
 TEST_CASE("mistakes at the top level") {
   for (const Mistake& mistake : top_level) expect_reported(valid_study, mistake);

@@ -31,6 +31,8 @@ std::string mixed() {
 }
 
 const Mistake pipelines[] = {
+    {"\"name\": \"by hand\"", "\"name\": \"by\\thand\"", "/pipelines/1/name", "holds a control character", "in one line"},
+    {"\"name\": \"other\"", "\"name\": \"ot\\u001bher\"", "/system/modes/1/name", "holds a control character", "in one line"},
     {designer, designer + ", " + observer, "/pipelines/1", "holds both \"observer\" and \"designer\"", "two pipelines", 35},
     {designer, designer + ", " + observer + ", \"diagnoser\": \"committee\"", "/pipelines/1",
      "holds both \"observer\" and \"designer\"", "two pipelines", 35},

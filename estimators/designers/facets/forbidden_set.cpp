@@ -166,6 +166,10 @@ class Builder {
       columns.col(columns.cols() - 1) = column;
     };
     while (std::max<Index>(0, span.points.cols() - 1) + span.flat.cols() < r_) {
+      if (watch_.over()) {
+        stopped();
+        return std::nullopt;
+      }
       Matrix known = span.flat;
       for (Index p = 1; p < span.points.cols(); ++p) append(known, span.points.col(p) - span.points.col(0));
       const Matrix rest = known.cols() ? linalg::null_space(known.transpose()) : Matrix::Identity(r_, r_);

@@ -82,6 +82,13 @@ bool correct(const QuadraticProgram& p, const QuadraticMinimum& found, Active& a
   return changed;
 }
 
+/// Bounds that are fixed against the rows leave a point that no row is met at.
+bool is_feasible(const QuadraticProgram& p, const Vector& z) {
+  const Vector missed = (product(p.A, z) - p.b).cwiseAbs();
+  const Vector allowed = tolerance * (p.b.cwiseAbs() + p.A.cwiseAbs().rowwise().sum());
+  return (missed.array() <= allowed.array()).all() && (z.size() == 0 || z.cwiseAbs().maxCoeff() <= 1 + tolerance);
+}
+
 }  // namespace
 
 std::optional<QuadraticMinimum> quadratic_minimum(const QuadraticProgram& p, Vector z) {
@@ -96,7 +103,7 @@ std::optional<QuadraticMinimum> quadratic_minimum(const QuadraticProgram& p, Vec
   for (int guess = 0; guess < most_guesses; ++guess) {
     std::optional<QuadraticMinimum> found = stationary(p, active, z);
     if (!found) return std::nullopt;
-    if (!correct(p, *found, active, z)) return found;
+    if (!correct(p, *found, active, z)) return is_feasible(p, found->z) ? found : std::nullopt;
   }
   return std::nullopt;
 }

@@ -29,8 +29,8 @@ Answer InputDesign::separates() const {
     return std::any_of(pairs.begin(), pairs.end(), [&](const PairSeparation& pair) { return pair.disjoint == answer; });
   };
   if (any_disjoint(Answer::no)) return Answer::no;
-  const bool void_tube = std::find(empty.begin(), empty.end(), Answer::yes) != empty.end();
-  return void_tube || any_disjoint(Answer::unknown) ? Answer::unknown : Answer::yes;
+  const bool all_run = std::all_of(empty.begin(), empty.end(), [](Answer answer) { return answer == Answer::no; });
+  return !all_run || any_disjoint(Answer::unknown) ? Answer::unknown : Answer::yes;
 }
 
 std::string_view to_string(DesignStatus status) noexcept {

@@ -32,7 +32,7 @@ struct InputDesign {
   std::vector<Answer> empty;  ///< per mode: is its tube empty under u? `yes`: the model contradicts itself, a modelling error
   std::vector<Box> outputs;   ///< per mode: hull of its output tube, (N+1)·n_y by time; n_y where only the last output counts
 
-  /// `yes`: every pair is proven disjoint and no tube is proven empty; `no`: a pair is proven to meet.
+  /// `yes`: every pair is proven disjoint and no tube is empty, proven as well; `no`: a pair is proven to meet.
   Answer separates() const;
 };
 

@@ -129,7 +129,7 @@ struct ExperimentRow {
   std::int64_t runs = 0;
   std::vector<std::int64_t> possible;  ///< per mode of the bank: runs at whose end it was not excluded
   std::int64_t isolated = 0, wrong = 0, unknown_fault = 0, undecided = 0;  ///< runs by the last decision
-  DelayStatistics isolation = {};                                          ///< k of the first decision for the true mode
+  DelayStatistics isolation = {};                                          ///< first k from which on the true mode is isolated
 };
 
 struct PipelineOutcome {

@@ -18,6 +18,16 @@ std::string number_text(double x) {
   return text;
 }
 
+/// U+0000 … U+001F, U+007F … U+009F: what a terminal would act on, and what would break a line of a table. The text is UTF-8.
+bool holds_control_characters(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool wide = byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    if (byte < 0x20 || byte == 0x7F || wide) return true;
+  }
+  return false;
+}
+
 /// Reads the entries of a list of numbers into `out`; reports the first wrong ones and the number of the others.
 template <class Entry, class Out>
 bool read_entries(const Cursor& list, Entry&& entry, Out&& out) {
@@ -120,6 +130,13 @@ std::optional<std::string> read_text(const Cursor& at, std::size_t limit) {
     return std::nullopt;
   }
   return text;
+}
+
+std::optional<std::string> read_line(const Cursor& at, std::size_t limit) {
+  auto text = read_text(at, limit);
+  if (!text || !holds_control_characters(*text)) return text;
+  at.error("holds a control character", "write it in one line, without tabs and escape sequences");
+  return std::nullopt;
 }
 
 std::optional<std::string> read_choice(const Cursor& at, const std::vector<std::string>& choices) {

@@ -52,6 +52,8 @@ std::optional<std::int64_t> read_integer(const Cursor& at, double lowest, double
 std::optional<bool> read_flag(const Cursor& at);
 /// A text that is not empty and has at most `limit` bytes.
 std::optional<std::string> read_text(const Cursor& at, std::size_t limit);
+/// Such a text without control characters, for names and titles: they are printed as they are.
+std::optional<std::string> read_line(const Cursor& at, std::size_t limit);
 std::optional<std::string> read_choice(const Cursor& at, const std::vector<std::string>& choices);
 /// A list of numbers.
 std::optional<Vector> read_vector(const Cursor& at, Index limit = max_entries);

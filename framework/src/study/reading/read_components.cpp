@@ -272,7 +272,7 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   const auto backend = backend_at ? read_component(*backend_at, "backend", context) : std::nullopt;
   const bool algorithm = read_algorithm(at, context, spec);
   if (const auto name_at = at.find("name")) {
-    spec.name = read_text(*name_at, max_name).value_or("");
+    spec.name = read_line(*name_at, max_name).value_or("");
   } else if (backend) {
     spec.name = backend->type;
   }

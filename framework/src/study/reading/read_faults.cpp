@@ -120,7 +120,7 @@ bool FaultReader::read_mode_fault(const Cursor& at, Fault& fault) {
 
 bool FaultReader::read_outside_fault(const Cursor& at, Fault& fault) {
   fault.spec.name = "outside the bank";
-  if (const auto name = at.find("name")) fault.spec.name = read_text(*name, max_name).value_or("");
+  if (const auto name = at.find("name")) fault.spec.name = read_line(*name, max_name).value_or("");
   const bool described = std::any_of(mode_keys().begin(), mode_keys().end(), [&](const auto& key) { return at.find(key); });
   if (!described) {
     at.error("does not tell what is different", "name a \"mode\", or give one of " + suggest("", mode_keys()));

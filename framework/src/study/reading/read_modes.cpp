@@ -187,7 +187,7 @@ void read_modes(const Cursor& system, SystemPart& part, std::vector<std::string>
   const std::size_t before = system.problems().met();
   Names names;
   if (const auto at = system.find("nominal")) {
-    part.nominal = read_text(*at, max_name).value_or(part.nominal);
+    part.nominal = read_line(*at, max_name).value_or(part.nominal);
     names.take(*at, part.nominal);
   } else {
     names.take_default(part.nominal);
@@ -201,7 +201,7 @@ void read_modes(const Cursor& system, SystemPart& part, std::vector<std::string>
       keys.insert(keys.begin(), "name");
       if (!at.expect_keys(keys, "key of a mode", "{\"name\": ..., \"actuator\": [...]}")) continue;
       const auto name_at = at.need("name", "every mode has a name of its own");
-      const auto name = name_at ? read_text(*name_at, max_name) : std::nullopt;
+      const auto name = name_at ? read_line(*name_at, max_name) : std::nullopt;
       if (name) names.take(*name_at, *name);
       if (!part.good) continue;
       auto mode = read_mode(at, part, warnings);

@@ -51,7 +51,7 @@ void StudyReader::read_version(const Cursor& root) {
 
 void StudyReader::read_title(const Cursor& root) {
   const auto at = root.find("title");
-  study_.title = at ? read_text(*at, max_title).value_or("") : file_.stem().string();
+  study_.title = at ? read_line(*at, max_title).value_or("") : file_.stem().string();
 }
 
 void StudyReader::load_plugins(const Cursor& root) {

@@ -76,6 +76,7 @@ void Results::design(const PipelineSpec& spec, std::optional<Rounding> rounding,
   results_.key("experiments");
   write(results_, outcome.experiments, modes);
   results_.key("summary").begin_object(Layout::lines);
+  write_time(results_, "assumptions_until", outcome.assumptions_until);
   write_time(results_, "violated_at", outcome.violated_at);
   results_.key("error");
   outcome.error.empty() ? results_.null() : results_.value(outcome.error);
@@ -87,6 +88,7 @@ void Results::design(const PipelineSpec& spec, std::optional<Rounding> rounding,
   row.fields[1] = csv_field(outcome.backend);
   row.fields[3] = used;
   row.fields[4] = std::to_string(outcome.steps);
+  row.fields[9] = csv_time(outcome.assumptions_until);
   row.fields[11] = csv_time(outcome.violated_at);
   row.fields[14] = csv_field(outcome.error);
   row.design = summary_fields(outcome);

@@ -138,6 +138,7 @@ void Results::diagnosis(const DiagnosisResult& result) {
 void Results::end_diagnosis(const PipelineOutcome& outcome) {
   results_.end_array().key("summary").begin_object(Layout::lines).member("steps", outcome.steps);
   write_members(results_, *outcome.diagnosis);
+  write_time(results_, "assumptions_until", outcome.assumptions_until);
   write_time(results_, "violated_at", outcome.violated_at);
   results_.key("error");
   outcome.error.empty() ? results_.null() : results_.value(outcome.error);
@@ -148,6 +149,7 @@ void Results::end_diagnosis(const PipelineOutcome& outcome) {
   row.fields[1] = csv_field(outcome.backend);
   row.fields[3] = rounding_ ? std::string(to_string(*rounding_)) : "";
   row.fields[4] = std::to_string(outcome.steps);
+  row.fields[9] = csv_time(outcome.assumptions_until);
   row.fields[11] = csv_time(outcome.violated_at);
   row.fields[14] = csv_field(outcome.error);
   row.diagnosis = summary_fields(outcome);

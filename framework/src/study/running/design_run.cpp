@@ -6,6 +6,7 @@
 #include "cordon/solvers/set_questions.hpp"
 #include "study/data/experiment.hpp"
 #include "study/results/median.hpp"
+#include "study/running/admissible_sets.hpp"
 #include "study/running/design.hpp"
 #include "study/running/diagnosis_run.hpp"
 #include "study/running/diagnosis_score.hpp"
@@ -35,6 +36,8 @@ class DesignPipeline {
       outcome_.design = registry.make_designer(spec.designer->type, bank_, backend_, spec.designer->params)->design(control);
       if (outcome_.design->best && spec.diagnoser) {
         diagnoser_ = registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
+        admissible_ = admissible_sets(*spec.diagnoser);
+        if (const auto& assumed = outcome_.design->admissible_set) admissible_.push_back(*assumed);
       }
     });
   }
@@ -51,30 +54,39 @@ class DesignPipeline {
   /// One experiment; false if the pipeline has stopped.
   bool run(Index mode, std::int64_t seed_offset) {
     std::optional<Diagnosis> last;
-    std::optional<Index> isolated_at;
-    bool assumptions_hold = true;
+    Index isolated_at = -1, assumptions_until = -1;
     DiagnosisScore score([](const DiagnosisSegment&) {});
     guarded(outcome_, [&] {
       const auto data = open_experiment(study_, bank_, mode, outcome_.design->best->u, static_cast<std::uint64_t>(seed_offset));
       diagnoser_->start();
       while (const std::optional<Record> record = data->next()) {
-        if (record->truth) assumptions_hold = assumptions_hold && may_be(mode, record->sample.k, *record->truth);
+        if (assumptions_until < 0 && record->truth && !may_be(mode, record->sample.k, *record->truth)) {
+          assumptions_until = record->sample.k;
+        }
         last = diagnoser_->step(record->sample);
         check_fits(*last, bank_, outcome_.diagnoser);
         score.step(mode, *last);
         median_.add(diagnoser_->step_us());
         ++outcome_.steps;
-        if (!isolated_at && isolates(*last, mode)) isolated_at = last->k;
+        if (!isolates(*last, mode)) {
+          isolated_at = -1;
+        } else if (isolated_at < 0) {
+          isolated_at = last->k;
+        }
       }
     });
     if (!outcome_.error.empty()) {
       outcome_.error += " (experiment with mode \"" + bank_[mode].name + "\", seed " + std::to_string(seed_offset + 1) + ")";
       return false;
     }
-    if (const auto& excluded = score.true_mode_excluded(); excluded && assumptions_hold && outcome_.violated_at < 0) {
+    if (assumptions_until >= 0 && (outcome_.assumptions_until < 0 || assumptions_until < outcome_.assumptions_until)) {
+      outcome_.assumptions_until = assumptions_until;
+    }
+    const auto& excluded = score.true_mode_excluded();
+    if (excluded && (assumptions_until < 0 || excluded->k < assumptions_until) && outcome_.violated_at < 0) {
       outcome_.violated_at = excluded->k;
     }
-    if (isolated_at) ++isolated_at_[*isolated_at];
+    if (isolated_at >= 0) ++isolated_at_[isolated_at];
     if (last) count(*last);
     return true;
   }
@@ -92,11 +104,10 @@ class DesignPipeline {
     return diagnosis.decision == Decision::monitoring && diagnosis.mode == mode;
   }
 
-  /// Does the state keep to what the pipeline assumes of it: to X0 of the mode, later to the designer's admissible set?
+  /// Does the state keep to what the pipeline assumes of it: to X0 of the mode, later to the admissible sets of designer and
+  /// diagnoser?
   bool may_be(Index mode, Index k, const Vector& x) const {
-    if (k == 0) return contains(bank_[mode].model.X0, x) != Answer::no;
-    const auto& admissible = outcome_.design->admissible_set;
-    return !admissible || contains(*admissible, x) != Answer::no;
+    return k == 0 ? contains(bank_[mode].model.X0, x) != Answer::no : !leaves(admissible_, k, x);
   }
 
   /// The end of an experiment.
@@ -122,6 +133,7 @@ class DesignPipeline {
   ModeBank bank_;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Diagnoser> diagnoser_;
+  std::vector<LineForm> admissible_;
   Delays isolated_at_;
   Median median_;
   PipelineOutcome outcome_;

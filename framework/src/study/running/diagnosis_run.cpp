@@ -6,6 +6,7 @@
 
 #include "cordon/solvers/set_questions.hpp"
 #include "study/results/median.hpp"
+#include "study/running/admissible_sets.hpp"
 #include "study/running/diagnosis_score.hpp"
 #include "study/running/fault_score.hpp"
 #include "study/running/pipeline_guard.hpp"
@@ -39,6 +40,7 @@ class DiagnosisPipeline {
       : bank_(bank_of(study)),
         own_model_(is_own_model(study)),
         first_other_fault_(first_other_fault(study)),
+        admissible_(admissible_sets(*spec.diagnoser)),
         seeds_(seeds_of(study)),
         fault_score_(study.model.linear.faults()) {
     outcome_.name = spec.name;
@@ -62,6 +64,7 @@ class DiagnosisPipeline {
   void begin_run(std::int64_t seed_offset) {
     seed_offset_ = seed_offset;
     start_holds_ = true;
+    assumptions_until_.reset();
     fault_score_.begin_run(seed_offset);
     timeline_.emplace();
     score_.emplace([this](const DiagnosisSegment& segment) {
@@ -82,6 +85,7 @@ class DiagnosisPipeline {
     if (failed()) return;
     if (found_.steps == 0 && record.mode) found_.truth_known = true;
     if (record.mode && record.truth && record.sample.k == 0) check_start(*record.mode, *record.truth);
+    if (record.truth) check_state(record.sample.k, *record.truth);
     ++found_.steps;
     if (seed_offset_ == 0) {
       ++outcome_.steps;
@@ -129,14 +133,21 @@ class DiagnosisPipeline {
     violated_in_run_.reset();
   }
 
-  /// A statement that is proven false: a defect where the data are made by the model itself.
+  /// A statement that is proven false: a defect where the data are made by the model itself, and keep to what is assumed.
   void blame(Index k) {
-    if (own_model_) violated_in_run_ = std::min(k, violated_in_run_.value_or(k));
+    if (own_model_ && (!assumptions_until_ || k < *assumptions_until_))
+      violated_in_run_ = std::min(k, violated_in_run_.value_or(k));
   }
 
   /// A statement about a mode since the first sample rests on that mode's X0.
   void check_start(Index mode, const Vector& x0) {
     if (mode >= 0 && mode != bank_.nominal) start_holds_ = contains(bank_[mode].model.X0, x0) != Answer::no;
+  }
+
+  void check_state(Index k, const Vector& x) {
+    if (assumptions_until_ || !leaves(admissible_, k, x)) return;
+    assumptions_until_ = k;
+    if (outcome_.assumptions_until < 0 || k < outcome_.assumptions_until) outcome_.assumptions_until = k;
   }
 
   template <class Item>
@@ -151,6 +162,8 @@ class DiagnosisPipeline {
   ModeBank bank_;
   bool own_model_, start_holds_ = true;
   Index first_other_fault_;
+  std::vector<LineForm> admissible_;
+  std::optional<Index> assumptions_until_;  ///< of this run
   std::int64_t seeds_, seed_offset_ = 0;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Diagnoser> diagnoser_;
