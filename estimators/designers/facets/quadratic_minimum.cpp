@@ -49,9 +49,9 @@ std::optional<QuadraticMinimum> stationary(const QuadraticProgram& p, const Acti
   right.tail(m) -= product(C, z);
   const Vector solution = product(linalg::pseudo_inverse(K), right);
   if (!solution.allFinite()) return std::nullopt;
-  z(columns) = solution.head(v);
+  for (Index k = 0; k < v; ++k) z[columns[static_cast<std::size_t>(k)]] = solution[k];
   QuadraticMinimum minimum{z, solution.segment(v, p.b.size()), Vector::Zero(p.e.size())};
-  minimum.of_F(rows) = solution.tail(m - p.b.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) minimum.of_F[rows[k]] = solution[v + p.b.size() + static_cast<Index>(k)];
   return minimum;
 }
 
@@ -84,9 +84,12 @@ bool correct(const QuadraticProgram& p, const QuadraticMinimum& found, Active& a
 
 /// Bounds that are fixed against the rows leave a point that no row is met at.
 bool is_feasible(const QuadraticProgram& p, const Vector& z) {
-  const Vector missed = (product(p.A, z) - p.b).cwiseAbs();
-  const Vector allowed = tolerance * (p.b.cwiseAbs() + p.A.cwiseAbs().rowwise().sum());
-  return (missed.array() <= allowed.array()).all() && (z.size() == 0 || z.cwiseAbs().maxCoeff() <= 1 + tolerance);
+  const Vector rows = product(p.A, z);
+  for (Index i = 0; i < rows.size(); ++i) {
+    const double terms = std::abs(p.b[i]) + p.A.row(i).lpNorm<1>();
+    if (!(std::abs(rows[i] - p.b[i]) <= tolerance * terms)) return false;
+  }
+  return std::all_of(z.begin(), z.end(), [](double entry) { return std::abs(entry) <= 1 + tolerance; });
 }
 
 }  // namespace
@@ -103,7 +106,9 @@ std::optional<QuadraticMinimum> quadratic_minimum(const QuadraticProgram& p, Vec
   for (int guess = 0; guess < most_guesses; ++guess) {
     std::optional<QuadraticMinimum> found = stationary(p, active, z);
     if (!found) return std::nullopt;
-    if (!correct(p, *found, active, z)) return is_feasible(p, found->z) ? found : std::nullopt;
+    if (correct(p, *found, active, z)) continue;
+    if (!is_feasible(p, found->z)) return std::nullopt;
+    return found;
   }
   return std::nullopt;
 }
