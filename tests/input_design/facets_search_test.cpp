@@ -340,13 +340,17 @@ TEST_CASE("Without noise there is no cheapest input, and none is claimed") {
   CHECK(found.reason.find("without width") != std::string::npos);
 }
 
-TEST_CASE("Inputs too near to a set without width: not found, and not denied either") {
-  SeparationProblem problem =
-      problem_of({pair_of(0, 1, Matrix(1, 0), numbers({1}), Matrix::Ones(1, 1))}, boxed_inputs(1, 1e-7), Cost::Kind::norm_1, 0);
+TEST_CASE("Inputs too near to a set without width: found at corners, or not denied") {
+  const PairProgram exact = pair_of(0, 1, Matrix(1, 0), numbers({1}), Matrix::Ones(1, 1));
+  SeparationProblem problem = problem_of({exact}, boxed_inputs(1, 1e-7), Cost::Kind::norm_1, 0);
   problem.U.c[0] = 1;
-  const SearchResult found = searched(problem);
-  CHECK(found.status == DesignStatus::unknown);
-  CHECK(found.reason == "a linear program could not be decided");
+  const SearchResult corner = searched(problem);  // the cheapest of U separates
+  check_optimal(problem, corner, 1 - 1e-7);
+  CHECK(separation(exact, *corner.u).disjoint == Answer::yes);
+  problem.U.G *= 1e-5;
+  const SearchResult nearer = searched(problem);  // by less than rounding allows to prove
+  CHECK(nearer.status == DesignStatus::unknown);
+  CHECK(nearer.reason == "a linear program could not be decided");
 }
 
 TEST_CASE("A search that is stopped says so, and proves what it can") {
