@@ -340,3 +340,23 @@ TEST_CASE("A quadratic cost under equations is proven without further tangents")
   CHECK((*answer.zeta - numbers({.3, .2})).cwiseAbs().maxCoeff() < 1e-9);
   CHECK(answer.bound == doctest::Approx(.12).epsilon(1e-10));
 }
+
+TEST_CASE("A hull without one of its facets is not closed") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const Index r : {Index(3), Index(4)}) {
+    Matrix simplex = Matrix::Zero(r, r + 1);
+    simplex.rightCols(r).setIdentity();
+    designers::GrowingHull hull(simplex, 1e-13);
+    CHECK(hull.is_closed());
+    for (int k = 0; k < 12; ++k) {
+      const Vector x = Vector::NullaryExpr(r, [&] { return 2 * uniform(random); });
+      REQUIRE(hull.add(x, [] { return false; }));
+      CHECK(hull.is_closed());
+      const designers::GrowingHull::Facet last = hull.facets().back();
+      hull.facets().pop_back();
+      CHECK_FALSE(hull.is_closed());
+      hull.facets().push_back(last);
+    }
+  }
+}

@@ -224,6 +224,10 @@ class Builder {
         open->proven = found.level;
       }
     }
+    if (!hull.is_closed()) {
+      reason_ = "the set of inputs that do not separate them is so thin that facets may be missing";
+      return false;
+    }
     for (const GrowingHull::Facet& facet : hull.facets()) {
       set_.facets.push_back(facet_of(pair_, facet.proof, 0, std::max(0.0, facet.proven - hull.level(facet))));
     }

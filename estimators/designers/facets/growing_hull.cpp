@@ -2,15 +2,35 @@
 #include "designers/facets/growing_hull.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "cordon/core/linalg.hpp"
 
 namespace cordon::designers {
 
+namespace {
+
+constexpr double on_ridge = 1e-9;  ///< of a point's distance from the centre
+constexpr int most_ridges = 5000;  ///< candidates per facet
+
+/// The next subset of `size` numbers below `all`, in order; false after the last one.
+bool next_subset(std::vector<std::size_t>& subset, std::size_t all) {
+  for (std::size_t i = subset.size(); i-- > 0;) {
+    if (subset[i] + (subset.size() - i) >= all) continue;
+    ++subset[i];
+    for (std::size_t j = i + 1; j < subset.size(); ++j) subset[j] = subset[j - 1] + 1;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 GrowingHull::GrowingHull(const Matrix& simplex, double accuracy)
     : centre_(simplex.rowwise().mean()), accuracy_(accuracy), points_(simplex.cols()) {
   const Index r = simplex.rows();
+  for (Index point = 0; point <= r; ++point) offsets_.push_back(simplex.col(point) - centre_);
   for (Index left_out = 0; left_out <= r; ++left_out) {
     Facet facet;
     Matrix rows(r, r);
@@ -31,6 +51,7 @@ GrowingHull::GrowingHull(const Matrix& simplex, double accuracy)
 
 bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
   const Index number = points_++, ridge = centre_.size() - 1;
+  offsets_.push_back(x - centre_);
   std::vector<double> excess;
   std::vector<bool> seen(static_cast<std::size_t>(points_));  // the points of the facets that x is beyond
   for (const Facet& facet : facets_) {
@@ -81,6 +102,42 @@ bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
   }
   facets_.resize(kept);
   facets_.insert(facets_.end(), std::make_move_iterator(made.begin()), std::make_move_iterator(made.end()));
+  return true;
+}
+
+bool GrowingHull::is_closed() const {
+  const auto r = static_cast<std::size_t>(centre_.size());
+  if (r < 3) return true;  // two ends, or a polygon whose edges close up one by one
+  for (const Facet& facet : facets_) {
+    const std::size_t on = facet.on.size();
+    if (on < r) return false;
+    Matrix rows(static_cast<Index>(on), centre_.size());
+    for (std::size_t i = 0; i < on; ++i) {
+      const Vector& offset = offsets_[static_cast<std::size_t>(facet.on[i])];
+      rows.row(static_cast<Index>(i)) = offset.transpose() / offset.norm();
+    }
+    std::vector<std::size_t> subset(r - 1);
+    for (std::size_t i = 0; i < subset.size(); ++i) subset[i] = i;
+    int candidates = 0;
+    std::size_t ridges = 0;
+    do {
+      if (++candidates > most_ridges) return false;
+      const Matrix along = linalg::null_space(rows(subset, Eigen::all));
+      if (along.cols() != 1) continue;  // these points span less than a ridge
+      const Vector turn = rows * along.col(0);
+      if (turn.maxCoeff() > on_ridge && turn.minCoeff() < -on_ridge) continue;  // through the inside of the facet
+      std::vector<Index> ridge;
+      for (std::size_t i = 0; i < on; ++i) {
+        if (std::abs(turn[static_cast<Index>(i)]) <= on_ridge) ridge.push_back(facet.on[i]);
+      }
+      const bool shared = std::any_of(facets_.begin(), facets_.end(), [&](const Facet& other) {
+        return &other != &facet && std::includes(other.on.begin(), other.on.end(), ridge.begin(), ridge.end());
+      });
+      if (!shared) return false;
+      ++ridges;
+    } while (next_subset(subset, on));
+    if (ridges < r) return false;
+  }
   return true;
 }
 
