@@ -46,6 +46,11 @@ std::string open_question(const ModeBank& bank, const InputDesign& design, doubl
         "equations. An empty tube is disjoint from every other, and that is no separation",
         empty.size() == 1 ? "" : "s", fmt::join(empty, ", "), empty.size() == 1 ? "is" : "are");
   }
+  for (Index mode = 0; mode < bank.size(); ++mode) {
+    if (design.empty[static_cast<std::size_t>(mode)] == Answer::no) continue;
+    return fmt::format("whether {} has any output under this input is not decided: it is at the edge of what the equations allow",
+                       name_of(bank, mode));
+  }
   for (const PairSeparation& pair : design.pairs) {
     if (pair.disjoint == Answer::yes) continue;
     const std::string who = name_of(bank, pair.i) + " and " + name_of(bank, pair.j);
