@@ -216,8 +216,9 @@ TEST_CASE("a start is used where it is a solution") {
 TEST_CASE("the search begins with its start") {
   const MixedIntegerProgram p = long_program();
   MipOptions options;
-  options.start = Vector::Zero(p.cost.size());  // nothing on one side: the slack is all
-  options.start->segment(30, 4) = p.row_lower;
+  Vector start = Vector::Zero(p.cost.size());  // nothing on one side: the slack is all
+  start.segment(30, 4) = p.row_lower;
+  options.start.emplace(std::move(start));
   double first = infinity;
   options.watch = [&](double best, double) {
     first = std::min(first, best);
