@@ -210,9 +210,9 @@ TEST_CASE("What makes no sense is refused, all of it at once") {
     ModeBank tall = small;
     for (Mode& mode : tall.modes) {
       const LinearModel& m = mode.model.linear;
-      mode.model.linear.C = m.C.replicate(300, 1);
-      mode.model.linear.D = m.D.replicate(300, 1);
-      mode.model.linear.Dv = m.Dv.replicate(300, 1);
+      mode.model.linear.C = m.C.replicate(300, 1).eval();
+      mode.model.linear.D = m.D.replicate(300, 1).eval();
+      mode.model.linear.Dv = m.Dv.replicate(300, 1).eval();
     }
     CHECK(judged_at(tall, 3).empty());
     CHECK(mentions(judged_at(tall, 12), "/input", "rows and"));  // few columns, but the square of the rows
