@@ -164,6 +164,8 @@ TEST_CASE("Horizons of the published example: 2 is too short, 4 is cheaper than 
   const SeparationProblem four = published_problem(4, 1e-4);
   const SearchResult found = searched(four);
   check_optimal(four, found, 8.7056961, 1e-7);
+  const SeparationProblem five = published_problem(5, 1e-4);  // hulls in five dimensions, all found to be closed
+  check_optimal(five, searched(five), 8.37528, 1e-6);
 }
 
 TEST_CASE("Scalar models from anywhere: the cheapest input costs .9 (1 + ε)") {

@@ -11,18 +11,36 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr double on_ridge = 1e-9;  ///< of a point's distance from the centre
-constexpr int most_ridges = 5000;  ///< candidates per facet
+constexpr double flat = 1e-9;  ///< of the largest distance among points: nearer ones span no more dimensions
 
-/// The next subset of `size` numbers below `all`, in order; false after the last one.
-bool next_subset(std::vector<std::size_t>& subset, std::size_t all) {
-  for (std::size_t i = subset.size(); i-- > 0;) {
-    if (subset[i] + (subset.size() - i) >= all) continue;
-    ++subset[i];
-    for (std::size_t j = i + 1; j < subset.size(); ++j) subset[j] = subset[j - 1] + 1;
-    return true;
+/// The columns that span the simplex of which each next corner is farthest from those before; fewer than dim + 1 where the points
+/// are flat.
+std::vector<Index> corners(const Matrix& points) {
+  std::vector<Index> chosen{0};
+  Matrix rest = points.colwise() - points.col(0);
+  const double largest = rest.colwise().norm().maxCoeff();
+  while (static_cast<Index>(chosen.size()) <= points.rows()) {
+    Index farthest = 0;
+    if (!(rest.colwise().norm().maxCoeff(&farthest) > flat * largest)) break;
+    chosen.push_back(farthest);
+    const Vector direction = rest.col(farthest).normalized();
+    rest -= direction * (direction.transpose() * rest);
   }
-  return false;
+  return chosen;
+}
+
+/// Do the lines of a polygon, by angle, share a point with the next one each?
+bool is_closed_polygon(const std::vector<GrowingHull::Facet>& facets) {
+  std::vector<std::pair<double, const GrowingHull::Facet*>> by_angle;
+  for (const auto& facet : facets) by_angle.emplace_back(std::atan2(facet.h[1], facet.h[0]), &facet);
+  std::sort(by_angle.begin(), by_angle.end());
+  for (std::size_t i = 0; i < by_angle.size(); ++i) {
+    const auto& one = by_angle[i].second->on;
+    const auto& next = by_angle[(i + 1) % by_angle.size()].second->on;
+    if (std::none_of(one.begin(), one.end(), [&](Index p) { return std::binary_search(next.begin(), next.end(), p); }))
+      return false;
+  }
+  return by_angle.size() >= 3;
 }
 
 }  // namespace
@@ -106,39 +124,37 @@ bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
 }
 
 bool GrowingHull::is_closed() const {
-  const auto r = static_cast<std::size_t>(centre_.size());
-  if (r < 3) return true;  // two ends, or a polygon whose edges close up one by one
-  for (const Facet& facet : facets_) {
-    const std::size_t on = facet.on.size();
-    if (on < r) return false;
-    Matrix rows(static_cast<Index>(on), centre_.size());
-    for (std::size_t i = 0; i < on; ++i) {
-      const Vector& offset = offsets_[static_cast<std::size_t>(facet.on[i])];
-      rows.row(static_cast<Index>(i)) = offset.transpose() / offset.norm();
-    }
-    std::vector<std::size_t> subset(r - 1);
-    for (std::size_t i = 0; i < subset.size(); ++i) subset[i] = i;
-    int candidates = 0;
-    std::size_t ridges = 0;
-    do {
-      if (++candidates > most_ridges) return false;
-      const Matrix along = linalg::null_space(rows(subset, Eigen::all));
-      if (along.cols() != 1) continue;  // these points span less than a ridge
-      const Vector turn = rows * along.col(0);
-      if (turn.maxCoeff() > on_ridge && turn.minCoeff() < -on_ridge) continue;  // through the inside of the facet
-      std::vector<Index> ridge;
-      for (std::size_t i = 0; i < on; ++i) {
-        if (std::abs(turn[static_cast<Index>(i)]) <= on_ridge) ridge.push_back(facet.on[i]);
-      }
-      const bool shared = std::any_of(facets_.begin(), facets_.end(), [&](const Facet& other) {
-        return &other != &facet && std::includes(other.on.begin(), other.on.end(), ridge.begin(), ridge.end());
-      });
-      if (!shared) return false;
-      ++ridges;
-    } while (next_subset(subset, on));
-    if (ridges < r) return false;
+  const Index r = centre_.size();
+  if (r == 1) return facets_.size() == 2;
+  if (r == 2) return is_closed_polygon(facets_);
+  return std::all_of(facets_.begin(), facets_.end(), [&](const Facet& facet) { return has_neighbours(facet); });
+}
+
+bool GrowingHull::has_neighbours(const Facet& facet) const {
+  const Matrix basis = linalg::null_space(facet.h.transpose());
+  Matrix points(basis.cols(), static_cast<Index>(facet.on.size()));
+  for (Index i = 0; i < points.cols(); ++i) {
+    points.col(i) = linalg::product(basis.transpose(), offsets_[static_cast<std::size_t>(facet.on[static_cast<std::size_t>(i)])]);
   }
-  return true;
+  if (basis.cols() != centre_.size() - 1 || points.cols() == 0) return false;
+  std::vector<Index> order = corners(points);  // the points of the facet as its own hull numbers them
+  const auto simplex = static_cast<Index>(order.size());
+  if (simplex <= points.rows()) return false;
+  GrowingHull hull(points(Eigen::all, order), accuracy_);
+  for (Index i = 0; i < points.cols(); ++i) {
+    if (std::find(order.begin(), order.begin() + simplex, i) != order.begin() + simplex) continue;
+    hull.add(points.col(i), [] { return false; });
+    order.push_back(i);
+  }
+  if (hull.facets().empty() || !hull.is_closed()) return false;
+  return std::all_of(hull.facets().begin(), hull.facets().end(), [&](const Facet& part) {
+    std::vector<Index> ridge;
+    for (const Index i : part.on) ridge.push_back(facet.on[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])]);
+    std::sort(ridge.begin(), ridge.end());
+    return std::any_of(facets_.begin(), facets_.end(), [&](const Facet& other) {
+      return &other != &facet && std::includes(other.on.begin(), other.on.end(), ridge.begin(), ridge.end());
+    });
+  });
 }
 
 }  // namespace cordon::designers

@@ -32,15 +32,16 @@ class GrowingHull {
   /// False if `over` ended it half way: the hull is of no use then.
   bool add(VectorIn x, const std::function<bool()>& over);
 
-  /// Is no facet missing? Rounding can hide one where the set is thin. True: every ridge of every facet lies on a second one; as
-  /// facets are connected by ridges, there are no others. Costs up to `most_ridges` small decompositions per facet, and is false
-  /// for facets with more.
+  /// Is no facet missing? Rounding can hide one where the set is thin. True: every ridge of every facet lies on a second one, the
+  /// ridges being the facets of a closed hull of their own; as facets are connected by ridges, there are no others.
   bool is_closed() const;
 
   std::vector<Facet>& facets() { return facets_; }
   const std::vector<Facet>& facets() const { return facets_; }
 
  private:
+  bool has_neighbours(const Facet& facet) const;
+
   Vector centre_;
   double accuracy_;
   Index points_ = 0;
