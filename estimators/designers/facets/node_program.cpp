@@ -6,7 +6,6 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
-#include "cordon/solvers/lp.hpp"
 #include "designers/facets/quadratic_minimum.hpp"
 
 namespace cordon::designers {
@@ -16,6 +15,8 @@ using linalg::product;
 namespace {
 
 constexpr double row_rounding = 1e-14;  ///< of the terms of a row, from computing its coefficients
+
+constexpr double tube_room = 2e-10;  ///< kept of the factors of tubes
 
 /// A bound of one of the variables or slacks, with room for rounding: a larger one is a bound as well.
 double roomy(double bound) { return bound * (1 + 1e-9) + 1e-300; }
@@ -159,6 +160,14 @@ void NodeProgram::touch(BoundedProgram& program, Index i, double at) const {
   program.add_row_above(row, 2 * at * (U.c[i] - problem_.cost.reference[i]) / reach_[i] - at * at, row_rounding, 5);
 }
 
+/// With the factors of tubes, the columns of `hard_` behind ζ, a little inside their bounds.
+LinearProgram NodeProgram::inside(const BoundedProgram& program) const {
+  Vector room = Vector::Ones(program.lower.size());
+  const Index zetas = problem_.U.G.cols();
+  room.segment(zetas, hard_.lower.size() - zetas).setConstant(1 - tube_room);
+  return LinearProgram(program.A, program.b, program.lower.cwiseProduct(room), program.upper.cwiseProduct(room));
+}
+
 NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>& chosen, const std::vector<Vector>& touched) {
   Answer answer;
   for (const SeparatingFacet* facet : chosen) {
@@ -176,8 +185,7 @@ NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>
     program.add_row_above(facet->a, facet->out, 0, facet->a.cwiseAbs().sum() - facet->in);
   }
   ++programs_;
-  const LinearProgram::Solution solution =
-      LinearProgram(program.A, program.b, program.lower, program.upper).maximize(-program.cost);
+  const LinearProgram::Solution solution = inside(program).maximize(-program.cost);
   if (solution.status != LinearProgram::Status::optimal) {
     answer.impossible = proven_impossible(chosen);
     return answer;
@@ -196,7 +204,7 @@ std::optional<Vector> NodeProgram::farthest(const Vector& direction) {
   Vector objective = Vector::Zero(hard_.lower.size());
   objective.head(problem_.U.G.cols()) = product(problem_.U.G.transpose(), direction);
   ++programs_;
-  const LinearProgram::Solution solution = LinearProgram(hard_.A, hard_.b, hard_.lower, hard_.upper).maximize(objective);
+  const LinearProgram::Solution solution = inside(hard_).maximize(objective);
   if (solution.status != LinearProgram::Status::optimal) return std::nullopt;
   SeparatingFacet end{objective.head(problem_.U.G.cols())};
   end.out = end.in = solution.objective - 1e-9 * end.a.cwiseAbs().sum();
@@ -220,6 +228,7 @@ void NodeProgram::polish(const BoundedProgram& program, const std::vector<const 
   }
   const auto q = static_cast<Index>(inputs.size());
   QuadraticProgram exact{Matrix::Zero(q, n), Vector(q), Vector(q), hard_.A, hard_.b, Matrix::Zero(k, n), Vector(k)};
+  exact.A.rightCols(n - zetas) *= 1 - tube_room;
   for (Index row = 0; row < q; ++row) {
     const Index i = inputs[static_cast<std::size_t>(row)];
     exact.D.row(row).head(zetas) = U.G.row(i) / reach_[i];

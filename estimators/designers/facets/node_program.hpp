@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "cordon/solvers/lp.hpp"
 #include "designers/facets/forbidden_set.hpp"
 
 namespace cordon::designers {
@@ -28,6 +29,7 @@ struct BoundedProgram {
 double proven_minimum(const BoundedProgram& program, VectorIn y);
 
 /// min cost(c + Gζ) subject to ζ in U, no tube empty, and a·ζ ≥ out for the chosen facets. Every bound is one for a·ζ ≥ in.
+/// Solutions keep a little inside of what leaves a tube non-empty, so that this can be proven of them; bounds do not.
 ///   norm_1     u_i - r_i = σ_i (p_i - q_i), cost Σ ω_i σ_i (p_i + q_i)
 ///   norm_inf   T t ≥ ω_i |u_i - r_i|
 ///   quadratic  t_i ≥ 2 τ (u_i - r_i)/σ_i - τ² for tangents τ, cost Σ ω_i σ_i² t_i: cheaper than the true cost. From what the
@@ -58,6 +60,7 @@ class NodeProgram {
   double in_cost(double value) const;
   void polish(const BoundedProgram& program, const std::vector<const SeparatingFacet*>& chosen, const Vector& x, Answer& answer);
   bool proven_impossible(const std::vector<const SeparatingFacet*>& chosen);
+  LinearProgram inside(const BoundedProgram& program) const;
 
   const SeparationProblem& problem_;
   BoundedProgram hard_, full_;      ///< without and with the rows and columns of the cost; ζ are the first columns of both
