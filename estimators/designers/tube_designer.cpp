@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "designers/tube_designer.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "cordon/core/linalg.hpp"
@@ -118,6 +120,39 @@ DesignOutcome without_answer(DesignOutcome outcome, std::string reason, std::str
   return outcome;
 }
 
+namespace {
+
+/// Is an input proven to lie outside the set that it is to be taken from?
+bool leaves_input_set(const ModeBank& bank, const Params& params, const Matrix& u) {
+  const LineForm U = input_set_from(bank, params);
+  for (Index k = params.has("first_input") ? 1 : 0; k < u.rows(); ++k) {
+    if (contains(U, u.row(k).transpose()) == Answer::no) return true;
+  }
+  return false;
+}
+
+/// The last word on what a search has found. False: it is not shown to be an answer, and is dropped. Without ε the tubes may
+/// touch: the cost is a limit then.
+bool is_answer(const ModeBank& bank, const Params& params, double epsilon, DesignOutcome& outcome) {
+  const InputDesign& found = *outcome.best;
+  const bool outside = leaves_input_set(bank, params, found.u);
+  const bool limit = epsilon == 0 &&
+                     std::all_of(found.empty.begin(), found.empty.end(), [](Answer empty) { return empty == Answer::no; }) &&
+                     std::all_of(found.pairs.begin(), found.pairs.end(), [](const auto& pair) { return pair.kappa > -touching; });
+  std::string open = outside ? "it leaves the input set" : open_question(bank, found, epsilon);
+  if (!outside && (found.separates() == Answer::yes || limit)) {
+    if (!open.empty()) outcome.reason = std::move(open);
+    return true;
+  }
+  outcome.status = DesignStatus::unknown;
+  outcome.best = std::nullopt;
+  outcome.reason = "an input was found, but rounding leaves open whether it is an answer: " + open;
+  outcome.suggestion = "a larger epsilon, or numbers of similar size in the models and the input set";
+  return false;
+}
+
+}  // namespace
+
 DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
   DesignOutcome outcome;
   outcome.epsilon = params_.real("epsilon");
@@ -148,12 +183,7 @@ DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
       outcome.best = judge(bank(), backend(), params_, *problem, inside_bounds(problem->U, std::move(*found.u)),
                            [&] { return control.stop(); });
       if (!outcome.best) return without_answer(std::move(outcome), "the search was stopped before the input was judged");
-      if (std::string open = open_question(bank(), *outcome.best, problem->epsilon); !open.empty()) {
-        outcome.reason = std::move(open);
-        // ε = 0 asks for a limit, which need not separate; else what is called optimal has to.
-        if (problem->epsilon > 0 && outcome.status == DesignStatus::optimal) outcome.status = DesignStatus::feasible;
-      }
-      return outcome;
+      if (is_answer(bank(), params_, problem->epsilon, outcome)) return outcome;
     }
     if (horizon == horizons.last || control.stop()) return outcome;
     outcome.tried.push_back({horizon, outcome.status, outcome.reason});
