@@ -34,6 +34,7 @@ Exit exit_for(Errc code) noexcept {
     case Errc::io:
       return Exit::invalid;
     case Errc::solver:
+    case Errc::time_limit:
       return Exit::unanswered;
     case Errc::plugin:
       return Exit::plugin;

@@ -49,6 +49,8 @@ std::string_view to_string(Errc code) noexcept {
       return "unsupported";
     case Errc::solver:
       return "solver";
+    case Errc::time_limit:
+      return "time_limit";
     case Errc::plugin:
       return "plugin";
     case Errc::io:

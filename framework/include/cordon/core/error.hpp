@@ -16,6 +16,7 @@ enum class Errc {
   invalid,      ///< a value outside its domain (negative radius, unknown parameter, …)
   unsupported,  ///< the operation cannot enclose its result in this representation
   solver,       ///< a solver broke down in a way that leaves no sound answer
+  time_limit,   ///< a limit of time was reached before there was an answer
   plugin,       ///< a plugin was refused or broke its contract
   io,           ///< reading or writing failed
   internal      ///< a defect of this program

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -17,7 +18,11 @@ namespace cordon {
 
 struct RunOptions {
   std::filesystem::path out;                ///< directory of the results; empty: none are written
+  std::string pipeline = {};                ///< run this one only; empty: all
   const std::atomic<bool>* stop = nullptr;  ///< set from a signal handler: the run ends with `interrupted`, old results stay
+  /// When to give a pipeline up: it ends with an error (Errc::time_limit) like any other; tested between steps.
+  std::optional<std::chrono::steady_clock::time_point> deadline = {};
+  bool report = true;  ///< write report.html as well
   /// Called now and then: pipeline index, records done, records in all (0: unknown).
   std::function<void(std::size_t, std::int64_t, std::int64_t)> progress;
 };

@@ -99,6 +99,15 @@ struct PipelineSpec {
   std::optional<ComponentSpec> designer = {};   ///< likewise; the pipeline has an input of its own then
 };
 
+/// One axis of a sweep: each of its values takes the place of what stands at `path`, in every place that the path matches.
+struct SweepAxis {
+  std::string name;
+  std::string path;                 ///< JSON pointer into the study; "*" stands for every element of an array
+  std::vector<std::string> values;  ///< JSON texts, none twice
+  bool repeat = false;              ///< repetitions, seeds for example: statistics are taken over this axis
+};
+
+/// Of a study with a sweep everything but `sweep` is that of the first values of all axes.
 struct Study {
   std::filesystem::path file;
   std::string title;
@@ -108,8 +117,10 @@ struct Study {
   std::variant<SimulateSpec, CsvSpec> data;  ///< pipelines with a designer take seed, seeds, noise and start of simulated data
   std::vector<PipelineSpec> pipelines;
   std::vector<ComponentSpec> metrics;
-  std::vector<std::string> warnings;  ///< e.g. a refused plugin that the study does not need
-  std::string resolved;               ///< the study as JSON with every default, for the results file
+  std::vector<SweepAxis> sweep = {};               ///< in order; the grid of points is described in sweep.hpp
+  std::shared_ptr<const std::string> source = {};  ///< the text of the file
+  std::vector<std::string> warnings;               ///< e.g. a refused plugin that the study does not need
+  std::string resolved;                            ///< the study as JSON with every default, for the results file
 };
 
 /// The nominal mode first, then the others in the order of the study.

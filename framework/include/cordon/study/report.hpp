@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figures of a finished run or sweep.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace cordon {
+
+struct ReportOptions {
+  bool html = true;  ///< report.html: one file that needs nothing else
+  bool svg = false;  ///< figures/NAME.svg
+  bool csv = false;  ///< figures/NAME.csv: the numbers of each figure
+};
+
+/// Reads the files that `cordon run` has left in `directory`, and no plugin, and writes the figures there. Memory and size of the
+/// page do not depend on the length of the run: curves are thinned out so that bands still enclose what they stand for. Returns
+/// the files. Throws InputError, Errc::io.
+std::vector<std::filesystem::path> write_report(const std::filesystem::path& directory, const ReportOptions& options = {});
+
+}  // namespace cordon

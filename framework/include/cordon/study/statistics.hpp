@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Statistics of a table of results: per pipeline and combination of values, over the repetitions.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cordon/study/result_table.hpp"
+
+namespace cordon {
+
+/// Of the finite numbers among some values. Quantiles interpolate linearly between order statistics (type 7). No number: NaN.
+struct Statistics {
+  std::int64_t count = 0;          ///< finite numbers
+  std::int64_t infinite = 0;       ///< infinite ones, which are left out of all that follows
+  double mean = 0, deviation = 0;  ///< sample standard deviation, 0 for one number
+  double min = 0, q05 = 0, q25 = 0, median = 0, q75 = 0, q95 = 0, max = 0;
+};
+Statistics statistics_of(std::span<const double> values);
+
+/// One pipeline under one combination of the axes that are not repetitions.
+struct SummaryRow {
+  std::size_t pipeline = 0;
+  std::vector<std::size_t> at;  ///< per axis; 0 for repetitions
+  std::int64_t points = 0, failed = 0;
+  std::vector<Statistics> columns;  ///< by column of the table, over the points that did not fail
+  std::vector<double> relative;     ///< by column: mean / smallest mean among the pipelines under the same combination; NaN where
+                                    ///< smaller is not better, or a mean is not positive
+};
+
+struct Summary {
+  std::vector<SummaryRow> rows;  ///< by combination, then by pipeline
+};
+Summary summarise(const ResultTable& table);
+
+/// Is less of this number better (radius, volume, delays, false alarms, times, cost), more, or neither?
+enum class Preference { less, more, none };
+Preference preference_of(const std::string& column);
+
+}  // namespace cordon
