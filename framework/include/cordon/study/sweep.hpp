@@ -70,8 +70,8 @@ struct SweepOptions {
 struct SweepOutcome {
   bool interrupted = false;
   SweepProgress progress;
-  ResultTable table;          ///< of all points of this part, empty if interrupted
-  std::int64_t violated = 0;  ///< points at which a guarantee was violated
+  ResultTable table;                     ///< of all points of this part, empty if interrupted
+  std::int64_t violated = 0;             ///< points at which a guarantee was violated
   std::optional<Errc> first_error = {};  ///< of the failed point with the smallest index, where it was run or resumed
   std::vector<std::filesystem::path> files;
 };
@@ -79,8 +79,8 @@ struct SweepOutcome {
 /// Every point is run on its own: it fails, runs into its limit or violates a guarantee without stopping the others, and what
 /// became of it stands in its row. Writes results.json, points.csv, run.json and the summaries of `summarise`; all but times are
 /// the same bytes whatever `jobs`, interruptions and shards were. While it runs, finished points are kept in a journal in `out`,
-/// which survives the death of the process at any time. With `resume`, and finished results of the same sweep in `out`, nothing is
-/// run: they are read. Throws InputError: `out` holds the unfinished sweep of another study, or one of this study without
+/// which survives the death of the process at any time. With `resume`, and finished results of the same sweep in `out`, nothing
+/// is run: they are read. Throws InputError: `out` holds the unfinished sweep of another study, or one of this study without
 /// `resume`, or another process works there; Errc::io, and the journal stays.
 SweepOutcome run_sweep(const Study& study, const Registry& registry, const SweepOptions& options);
 

@@ -11,6 +11,7 @@
 #include "study/results/results_design.hpp"
 #include "study/results/results_diagnosis.hpp"
 #include "study/results/results_parts.hpp"
+#include "study/statistics/table_builder.hpp"
 
 namespace cordon::detail {
 
@@ -62,6 +63,7 @@ Results::Results(const Study& study, const Registry& registry, const std::filesy
       summary_file_(directory_.create("summary.csv")),
       diagnosis_file_(has_diagnosers(study) ? &directory_.create("diagnosis.csv") : nullptr),
       inputs_file_(has_designers(study) ? &directory_.create("inputs.csv") : nullptr),
+      tables_(directory_),
       run_file_(directory_.create("run.json")),
       results_file_(directory_.create("results.json")),
       results_(results_file_),
@@ -290,6 +292,8 @@ std::vector<std::filesystem::path> Results::commit(const RunOutcome& outcome) {
   if (!header_written_) write_header(study_.model.linear.states());
   if (diagnosis_file_ && !diagnosis_header_written_) write_diagnosis_header(study_.modes.size() + 1);
   write_summaries();
+  const ResultTable table = table_of(study_, outcome);
+  tables_.write(table, summarise(table));
   results_.end_array().end_object();
   results_file_.write("\n");
   double wall = 0;

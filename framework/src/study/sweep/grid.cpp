@@ -18,8 +18,8 @@ SweepGrid::SweepGrid(const Study& study) : pipelines_(study.pipelines.size()) {
 
 SweepPoint SweepGrid::operator[](std::int64_t index) const {
   if (index < 0 || index >= size()) {
-    throw Error(Errc::invalid, "there is no point " + std::to_string(index) + "; the sweep has the points 0 to " +
-                                   std::to_string(size() - 1));
+    throw Error(Errc::invalid,
+                "there is no point " + std::to_string(index) + "; the sweep has the points 0 to " + std::to_string(size() - 1));
   }
   const auto pipelines = static_cast<std::int64_t>(pipelines_);
   SweepPoint point{index, std::vector<std::size_t>(sizes_.size()), static_cast<std::size_t>(index % pipelines)};

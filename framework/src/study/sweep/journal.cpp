@@ -93,7 +93,8 @@ std::string limit_of(double seconds) { return std::isfinite(seconds) ? "a limit 
 
 /// Why points of one sweep are no points of the other, and the mend; two empty texts if they are.
 std::pair<std::string, std::string> difference(const JournalHead& old, const JournalHead& now) {
-  if (old.study_hash != now.study_hash) return {"holds the unfinished sweep of another study, or of an earlier version of this one", discard};
+  if (old.study_hash != now.study_hash)
+    return {"holds the unfinished sweep of another study, or of an earlier version of this one", discard};
   if (old.version != now.version || old.abi_tag != now.abi_tag)
     return {"holds an unfinished sweep of another build of this program (version " + old.version + ")", discard};
   if (old.plugins != now.plugins) return {"holds an unfinished sweep with other plugins", discard};

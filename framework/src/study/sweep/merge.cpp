@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <set>
 
 #include "study/sweep/journal.hpp"
 #include "study/sweep/sweep_files.hpp"
@@ -33,18 +34,19 @@ void check_same(const SweepFiles& first, const fs::path& first_directory, const 
   if (part.heads.results != first.heads.results)
     refuse(directory, "was made with other plugins or libraries" + like, "run all parts on the same installation");
   if (part.shard->of != first.shard->of)
-    refuse(directory, "is a part of " + std::to_string(part.shard->of) + ", " + first_directory.string() + " is one of " +
-                          std::to_string(first.shard->of),
+    refuse(directory,
+           "is a part of " + std::to_string(part.shard->of) + ", " + first_directory.string() + " is one of " +
+               std::to_string(first.shard->of),
            "merge parts of one sweep only");
 }
 
-void check_all_there(const std::vector<bool>& there, const fs::path& out) {
+void check_all_there(const std::set<std::int64_t>& there, std::int64_t of, const fs::path& out) {
   std::string missing;
-  for (std::size_t i = 0; i < there.size(); ++i) {
-    if (!there[i]) missing += (missing.empty() ? "" : ", ") + std::to_string(i + 1);
+  for (std::int64_t part = 1; part <= of; ++part) {
+    if (there.count(part) == 0) missing += (missing.empty() ? "" : ", ") + std::to_string(part);
   }
   if (missing.empty()) return;
-  refuse(out, "cannot be written: of " + std::to_string(there.size()) + " parts these are missing: " + missing,
+  refuse(out, "cannot be written: of " + std::to_string(of) + " parts these are missing: " + missing,
          "name the directories of all parts");
 }
 
@@ -53,22 +55,20 @@ void check_all_there(const std::vector<bool>& there, const fs::path& out) {
 SweepOutcome merge_sweeps(const std::vector<fs::path>& parts, const fs::path& out) {
   if (parts.empty()) throw Error(Errc::invalid, "there are no parts to merge");
   SweepFiles all = read_part(parts.front());
-  std::vector<bool> there(static_cast<std::size_t>(all.shard->of));
-  there[static_cast<std::size_t>(all.shard->part) - 1] = true;
+  std::set<std::int64_t> there{all.shard->part};
   std::error_code ignored;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (fs::equivalent(parts[i], out, ignored)) refuse(out, "is one of the parts", "name another directory for the whole sweep");
     if (i == 0) continue;
     SweepFiles part = read_part(parts[i]);
     check_same(all, parts.front(), part, parts[i]);
-    const auto place = static_cast<std::size_t>(part.shard->part) - 1;
-    if (there[place]) refuse(parts[i], "is part " + std::to_string(part.shard->part) + ", which came before", "name each part once");
-    there[place] = true;
+    if (!there.insert(part.shard->part).second)
+      refuse(parts[i], "is part " + std::to_string(part.shard->part) + ", which came before", "name each part once");
     all.rows.merge(part.rows);
     all.wall_s += part.wall_s;
     all.finished = std::max(all.finished, part.finished);
   }
-  check_all_there(there, out);
+  check_all_there(there, all.shard->of, out);
   all.shard.reset();
   if (detail::Journal::is_in(out)) refuse(out, "holds an unfinished sweep", "name another directory for the whole sweep");
   SweepOutcome outcome;

@@ -137,7 +137,7 @@ Shard shard_of(const std::string& line, const fs::path& file) {
   Shard shard;
   const auto at = root.expect(Kind::object, mend) ? root.need("shard", mend) : std::nullopt;
   if (at && at->expect(Kind::object, mend)) shard = {whole(*at, "part", 1), whole(*at, "of", 1)};
-  if (problems.any() || shard.part > shard.of) refuse(file, "has a shard that is none", mend);
+  if (problems.any() || shard.part > shard.of || shard.of > most_parts) refuse(file, "has a shard that is none", mend);
   return shard;
 }
 
@@ -161,7 +161,8 @@ void check_complete(const SweepFiles& sweep, const SweepGrid& grid, const fs::pa
   std::int64_t count = 0;
   for (std::int64_t i = 0; i < grid.size(); ++i) {
     const bool mine = shard.has(grid[i], sweep.study.pipelines.size());
-    if (mine != sweep.rows.has(i)) refuse(file, "point " + std::to_string(i) + (mine ? " is missing" : " does not belong here"), mend);
+    if (mine != sweep.rows.has(i))
+      refuse(file, "point " + std::to_string(i) + (mine ? " is missing" : " does not belong here"), mend);
     count += mine;
   }
   if (count != sweep.rows.size()) refuse(file, "has points that are not in its sweep", mend);
@@ -206,7 +207,7 @@ SweepFiles read_sweep(const fs::path& directory) {
       });
   check_complete(sweep, *grid, file);
   const Frame frame = read_points(
-      times, [&](const Frame& frame) { sweep.heads.run = frame.head; },
+      times, [&](const Frame& around) { sweep.heads.run = around.head; },
       [&](const Cursor& at) {
         PointResult result;
         return read_point(at, true, result) && sweep.rows.extend(result);

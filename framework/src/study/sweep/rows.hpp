@@ -15,6 +15,8 @@
 
 namespace cordon::detail {
 
+inline constexpr std::int64_t most_parts = 10'000;  ///< of a sweep
+
 struct PointResult {
   std::int64_t index = 0;
   std::vector<ResultNumber> numbers;  ///< none is NaN
@@ -34,8 +36,8 @@ bool read_numbers(const json::Cursor& at, bool measured, std::vector<ResultNumbe
 /// The points that are done, by index.
 class SweepRows {
  public:
-  void add(const PointResult& result);  ///< the first result of a point counts
-  bool extend(const PointResult& more);     ///< adds numbers to a point; false if there is none
+  void add(const PointResult& result);   ///< the first result of a point counts
+  bool extend(const PointResult& more);  ///< adds numbers to a point; false if there is none
   void merge(const SweepRows& other);
   bool has(std::int64_t index) const { return rows_.count(index) > 0; }
   std::int64_t size() const { return static_cast<std::int64_t>(rows_.size()); }

@@ -30,13 +30,15 @@ void check(const SweepOptions& options) {
   if (options.jobs < 1) throw Error(Errc::invalid, "a sweep needs one job at least");
   if (options.resume && options.restart) throw Error(Errc::invalid, "resume and restart exclude each other");
   if (!(options.point_limit_s > 0)) throw Error(Errc::invalid, "the time limit of a point must be above 0");
-  if (options.shard.of < 1 || options.shard.part < 1 || options.shard.part > options.shard.of)
-    throw Error(Errc::invalid, "a shard is a part between 1 and the number of parts");
+  if (options.shard.of < 1 || options.shard.part < 1 || options.shard.part > options.shard.of || options.shard.of > most_parts)
+    throw Error(Errc::invalid,
+                "a shard is a part between 1 and the number of parts, which is " + std::to_string(most_parts) + " at most");
 }
 
 JournalHead head_of(const Study& study, const Registry& registry, const SweepOptions& options) {
   const BuildInfo build = build_info();
-  JournalHead head{fingerprint(study.resolved), build.version, build.abi_tag, {}, options.shard, options.point_limit_s, utc_now()};
+  JournalHead head{fingerprint(study.resolved), build.version, build.abi_tag, {}, options.shard,
+                   options.point_limit_s,       utc_now()};
   for (const PluginReport& report : registry.reports()) {
     if (report.state == PluginReport::State::loaded) head.plugins.push_back(report.name + ' ' + report.version);
   }
@@ -155,6 +157,7 @@ class SweepRun {
   }
 
  private:
+  bool stopped_from_outside() const { return options_.stop && options_.stop->load(); }
   bool is_mine(std::int64_t index) const { return options_.shard.has(grid_[index], study_.pipelines.size()); }
 
   SweepFiles described(const std::string& started) const {
@@ -211,7 +214,7 @@ class SweepRun {
         std::unique_lock guard(sharing_);
         if (ended_.wait_for(guard, std::chrono::milliseconds(50), [this] { return finished_ == working_; })) break;
       }
-      if (options_.stop && options_.stop->load()) stop_ = true;
+      if (stopped_from_outside()) stop_ = true;
       if (options_.progress) options_.progress(progress());
       if (seconds_since(synced) > 5) {
         journal_->sync();
@@ -224,7 +227,7 @@ class SweepRun {
   void work_on_points() {
     try {
       PointRunner runner(at_, study_, registry_, options_.point_limit_s, stop_);
-      while (!stop_) {
+      while (!stop_ && !stopped_from_outside()) {
         const std::optional<SweepPoint> point = next();
         if (!point) break;
         const std::optional<PointResult> result = runner.run(*point);
