@@ -10,11 +10,13 @@ namespace cordon::report {
 
 /// Where a figure stands: the headings of a page.
 namespace section {
-inline const std::string bounds = "Bounds", metrics = "Metrics";
+inline const std::string bounds = "Bounds", sets = "Sets", metrics = "Metrics";
 }
 
 /// Bounds of every state over time.
 void add_bounds(const RunFiles& files, const Curves& curves, Report& report);
+/// Pairs of coordinates of the sets at chosen times.
+void add_projections(const RunFiles& files, const Curves& curves, Report& report);
 /// Every metric that is a number, and the time of a step.
 void add_metrics(const RunFiles& files, const Curves& curves, Report& report);
 

@@ -17,8 +17,8 @@ namespace {
 using Point = PlanePoint;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double parallel = 1e-13;          ///< sine of the angle between generators that count as one
 constexpr double display_precision = 1e-7;  ///< of the set's size
-constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
 Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y}; }
 Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y}; }
@@ -38,7 +38,8 @@ double size_of(const std::vector<Point>& points) {
 
 /// Without vertices that repeat their predecessor.
 std::vector<Point> distinct(const std::vector<Point>& points) {
-  const double near = 1e-2 * display_precision * size_of(points);
+  const double rounding = 1e-13 * (points.empty() ? 0 : length(points.front()));
+  const double near = 1e-2 * display_precision * size_of(points) + rounding;
   std::vector<Point> kept;
   for (const Point& p : points) {
     if (kept.empty() || length(p - kept.back()) > near) kept.push_back(p);
@@ -58,11 +59,12 @@ std::vector<Point> zonotope(Point center, const Matrix& G) {
   }
   std::sort(generators.begin(), generators.end(), [](Point a, Point b) { return std::atan2(a.y, a.x) < std::atan2(b.y, b.x); });
   std::vector<Point> half;
-  Point at{};
+  Point at{}, last{};
   for (const Point& g : generators) at = at - g;
   for (const Point& g : generators) {
-    half.push_back(at);
+    if (half.empty() || std::abs(cross(last, g)) > parallel * length(last) * length(g)) half.push_back(at);
     at = at + 2.0 * g;
+    last = g;
   }
   if (half.empty()) return {center};
   std::vector<Point> vertices;
@@ -198,7 +200,7 @@ void cut_with(std::vector<Point>& points, std::vector<bool>& flags, Point d, dou
 
 }  // namespace
 
-PlaneSet project(const LineForm& X, Index i, Index j, std::size_t max_vertices) {
+PlaneSet project(const LineForm& X, Index i, Index j, const PlaneLimits& limits) {
   Matrix P = Matrix::Zero(2, X.dim());
   P(0, i) = P(1, j) = 1;
   const LineForm flat = eliminate_lines(affine_map(X, P, Vector::Zero(2)));
@@ -213,9 +215,9 @@ PlaneSet project(const LineForm& X, Index i, Index j, std::size_t max_vertices) 
     set.kind = PlaneSet::Kind::bounded;
     set.vertices = zonotope({flat.c[0], flat.c[1]}, flat.G);
   } else {
-    set = Sandwich(flat, max_vertices > no_limit / 2 ? no_limit : 2 * max_vertices).enclose();
+    set = Sandwich(flat, limits.directions).enclose();
   }
-  set.vertices = with_fewer_vertices(std::move(set.vertices), max_vertices);
+  set.vertices = with_fewer_vertices(std::move(set.vertices), limits.vertices);
   return set;
 }
 

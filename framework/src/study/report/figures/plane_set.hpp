@@ -28,11 +28,16 @@ struct PlaneSet {
   double lower = 0, upper = 0;
 };
 
-/// Coordinates i and j (i ≠ j) of X, with `max_vertices` ≥ 8 vertices at most. Without constraints and lines from the generators
+struct PlaneLimits {
+  std::size_t vertices = 1000;    ///< of the polygon, 4 at least
+  std::size_t directions = 2000;  ///< that support values are asked in, beside the four of the axes
+};
+
+/// Coordinates i and j (i ≠ j) of X. Without constraints and lines from the generators
 /// alone; otherwise by support values: of the region between an inner and an outer polygon, the largest corner is asked for
 /// first, until every edge of the outer polygon is one of the set. What is left open, and vertices beyond the limit, make the
 /// polygon larger, never smaller. Recession cones of exchange forms are subspaces, so that there are no other kinds.
-PlaneSet project(const LineForm& X, Index i, Index j, std::size_t max_vertices);
+PlaneSet project(const LineForm& X, Index i, Index j, const PlaneLimits& limits = {});
 
 /// Joins edges where that adds least area, until there are `limit` ≥ 4 vertices at most: the result contains the polygon.
 std::vector<PlanePoint> with_fewer_vertices(std::vector<PlanePoint> polygon, std::size_t limit);

@@ -12,6 +12,7 @@ constexpr std::size_t max_study = 1'000'000;  ///< bytes of the study's text in 
 void add_run(const RunFiles& files, Report& report) {
   const Curves curves = read_curves(files);
   add_bounds(files, curves, report);
+  add_projections(files, curves, report);
   add_metrics(files, curves, report);
 }
 
