@@ -271,7 +271,10 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
     const bool known = std::find(summary_columns_.begin(), summary_columns_.end(), metric.name) != summary_columns_.end();
     if (!known) summary_columns_.push_back(metric.name);
   }
-  results_.end_object().end_object();
+  const std::vector<ResultNumber> numbers = numbers_of(outcome);
+  results_.end_object();
+  write_numbers(results_, numbers, false);
+  results_.end_object();
   row.fields = {pipeline_,
                 csv_field(outcome.backend),
                 csv_field(outcome.observer),
@@ -292,6 +295,7 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
   write_times(run_, outcome.median_us, outcome.median_hull_us);
   run_.member("median_step_us", outcome.median_step_us).member("wall_s", outcome.wall_s);
   for (const MetricValue& metric : summary.measured) write(run_, metric);
+  write_numbers(run_, numbers, true);
   run_.end_object().end_object();
 }
 
