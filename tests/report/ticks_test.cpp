@@ -103,3 +103,14 @@ TEST_CASE("an axis covers the finite values, and no more than a margin beyond") 
   CHECK(log.upper > 100);
   CHECK(log.upper < 1000);
 }
+
+TEST_CASE("a logarithmic axis names its powers") {
+  CHECK(log_text(1) == "1");
+  CHECK(log_text(100) == "100");
+  CHECK(log_text(1000) == "10³");
+  CHECK(log_text(0.01) == "0.01");
+  CHECK(log_text(1e-3) == "10⁻³");
+  CHECK(log_text(2000) == "2000");
+  CHECK((Axis{1, 1e4, 0, 1, true}).text(1e4) == "10⁴");
+  CHECK((Axis{1, 1e4, 0, 1}).text(1e4) == "10000");
+}

@@ -93,6 +93,13 @@ function short(value, digits = 6) {
   return String(rounded).replace('-', '−');
 }
 
+/** The same on a logarithmic axis: powers of ten as such, but for a few. */
+function logText(value) {
+  const power = Math.round(Math.log10(value));
+  if (Math.abs(power) < 3 || Math.abs(value / 10 ** power - 1) > 1e-9) return short(value);
+  return `10${[...String(power)].map((c) => superscripts[c]).join('')}`;
+}
+
 /** The numbers of the page's data: infinite ones are words there, gaps are null. */
 function number(value) {
   if (value === 'inf') return Infinity;

@@ -150,7 +150,7 @@ function plotScales(plot) {
     },
     y: {
       type: plot.log_y ? 'logarithmic' : 'linear', min: lower, max: upper, grid, title: title(plot.y_label),
-      ticks: { ...ticks, autoSkip: false, callback: (value) => short(value) },
+      ticks: { ...ticks, autoSkip: false, callback: (value) => (plot.log_y ? logText(value) : short(value)) },
       afterBuildTicks: setTicks(() => (plot.log_y ? logTicks(lower, upper) : niceTicks(lower, upper, 6))),
     },
   };
@@ -175,6 +175,17 @@ function plotOptions(plot) {
   };
 }
 
+/** The plot with its numbers as arrays; made when they are first needed. */
+function unpacked(plot) {
+  if (!plot.isUnpacked) {
+    for (const series of plot.series) {
+      for (const member of ['x', 'y', 'upper']) series[member] = numbersOf(series[member]);
+    }
+    plot.isUnpacked = true;
+  }
+  return plot;
+}
+
 function plotNumbers(plot) {
   const header = [plot.x_label || 'x'];
   const rows = new Map();
@@ -196,12 +207,9 @@ function plotNumbers(plot) {
 
 function plotView(figure) {
   const plot = figure.plot;
-  for (const series of plot.series) {
-    for (const member of ['x', 'y', 'upper']) series[member] = numbersOf(series[member]);
-  }
   const canvas = element('canvas', { role: 'img' });
   const legend = element('ul', { class: 'legend', 'aria-label': 'Curves' });
-  const numbers = numbersPart(figure, () => plotNumbers(plot));
+  const numbers = numbersPart(figure, () => plotNumbers(unpacked(plot)));
   let chart = null;
 
   const label = () => {
@@ -215,9 +223,9 @@ function plotView(figure) {
     legend.replaceChildren(...plot.series.map((series) => element('li', { class: isShown(series.pipeline) ? undefined : 'off' },
       swatch(series.pipeline, series.shade, series.kind), series.name)));
     legend.hidden = plot.series.length < 2 && plot.series.every((series) => series.name === '');
-    label();
     numbers.refresh();
     if (chart === null) return;
+    label();
     const range = valueRange(plot);
     chart.data.datasets = plot.series.flatMap((series) => datasetsOf(series, range, plot.log_y));
     chart.options = plotOptions(plot);
@@ -225,11 +233,12 @@ function plotView(figure) {
   };
   const create = () => {
     if (chart !== null) return;
-    const range = valueRange(plot);
+    const range = valueRange(unpacked(plot));
     chart = new Chart(canvas, {
       type: 'line', data: { datasets: plot.series.flatMap((series) => datasetsOf(series, range, plot.log_y)) },
       options: plotOptions(plot), plugins: [linesPlugin],
     });
+    label();
   };
   return { parts: [element('div', { class: 'canvas' }, canvas), legend, numbers.details], create, update, resize: () => chart?.resize() };
 }

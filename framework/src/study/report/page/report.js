@@ -155,7 +155,7 @@ function drawWhenSeen() {
       views.find((view) => view.article === entry.target).create();
       observer.unobserve(entry.target);
     }
-  }, { rootMargin: '400px' });
+  }, { rootMargin: '200px' });
   views.forEach((view) => observer.observe(view.article));
 }
 

@@ -72,7 +72,7 @@ void draw_frame(Drawing& drawing, const Frame& frame) {
   }
   for (const double tick : y.ticks(static_cast<int>((y.begin - y.end) / 45))) {
     drawing.line({x.begin, y(tick)}, {x.end, y(tick)}, rule);
-    drawing.text({x.begin - 7, y(tick) + 4}, short_text(tick), at_end(soft));
+    drawing.text({x.begin - 7, y(tick) + 4}, y.text(tick), at_end(soft));
   }
   drawing.rectangle({x.begin, y.end}, x.end - x.begin, bottom - y.end, outline);
   drawing.text({(x.begin + x.end) / 2, bottom + 36}, frame.x_label, at_middle(ink));

@@ -77,6 +77,12 @@ std::string short_text(double value) {
   return text[0] == '-' ? "−" + text.substr(1) : text;
 }
 
+std::string log_text(double value) {
+  const double power = std::round(std::log10(value));
+  if (std::abs(power) < 3 || std::abs(value / std::pow(10.0, power) - 1) > 1e-9) return short_text(value);
+  return "10" + superscript(static_cast<int>(power));
+}
+
 double Axis::operator()(double value) const {
   const double beyond = 20 * (end - begin);
   if (std::isinf(value)) return value > 0 ? begin + beyond : begin - beyond;

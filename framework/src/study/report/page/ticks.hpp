@@ -17,6 +17,9 @@ std::vector<double> log_ticks(double lower, double upper);
 /// A number with at most six digits, with a power of ten where it is very large or small; ∞ and − as they are printed.
 std::string short_text(double value);
 
+/// The same on a logarithmic axis: powers of ten as such, but for a few.
+std::string log_text(double value);
+
 /// A value of an axis as a place in a drawing.
 struct Axis {
   double lower = 0, upper = 1;
@@ -28,6 +31,7 @@ struct Axis {
   std::vector<double> ticks(int count, bool whole = false) const {
     return log ? log_ticks(lower, upper) : nice_ticks(lower, upper, count, whole);
   }
+  std::string text(double tick) const { return log ? log_text(tick) : short_text(tick); }
 };
 
 /// An axis over the finite ones among the values (positive ones if `log`), with a margin, from `begin` to `end`. An axis of
