@@ -10,7 +10,7 @@ inline cordon::ResultTable sweep() {
   cordon::ResultTable table;
   table.title = "Budgets";
   table.study_hash = "fnv1a64:0";
-  table.version = "1";
+  table.version = "1.0";
   table.pipelines = {"first", "second"};
   table.axes = {{"budget", "/pipelines/*/observer/max_generators", {"10", "20"}, false},
                 {"seed", "/data/simulate/seed", {"1", "2", "3"}, true}};
