@@ -45,23 +45,25 @@ std::string escaped(char c) {
       break;
   }
   static constexpr char hex[] = "0123456789abcdef";
-  if (static_cast<unsigned char>(c) >= 0x20) return std::string(1, c);
+  if (static_cast<unsigned char>(c) >= 0x20) return std::string(1, c);  // bytes of longer sequences too
   return std::string("\\u00") + hex[c >> 4] + hex[c & 15];
 }
 
 }  // namespace
 
-std::string json_string(std::string_view text) {
-  std::string out = "\"";
+std::string well_formed(std::string_view text) {
+  std::string out;
   while (!text.empty()) {
     const std::size_t length = sequence_length(text);
-    if (length == 1) {
-      out += escaped(text[0]);
-    } else {
-      out += length == 0 ? std::string_view("\xEF\xBF\xBD") : text.substr(0, length);
-    }
+    out += length == 0 ? std::string_view("\xEF\xBF\xBD") : text.substr(0, length);
     text.remove_prefix(std::max<std::size_t>(1, length));
   }
+  return out;
+}
+
+std::string json_string(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : well_formed(text)) out += escaped(c);
   return out + '"';
 }
 
