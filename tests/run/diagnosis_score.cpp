@@ -304,3 +304,30 @@ TEST_CASE("delays over many segments: smallest, median, largest") {
   counts = tally.statistics().at(0);
   CHECK(counts.detection.median == 4);
 }
+
+TEST_CASE("delays over all modes: isolation is of modes in the bank") {
+  DiagnosisTally tally;
+  const auto add = [&](Index mode, Index detection, Index isolation, bool scored = true) {
+    DiagnosisSegment segment;
+    segment.mode = mode;
+    segment.from = 10;
+    segment.scored = scored;
+    if (detection >= 0) segment.detected_at = 10 + detection;
+    if (isolation >= 0) (mode < 0 ? segment.unknown_fault_at : segment.isolated_at) = 10 + isolation;
+    tally.add(segment);
+  };
+  CHECK(tally.detection().count == 0);
+  add(0, 1, 3);
+  add(1, 5, 8);
+  add(1, 4, -1);
+  add(-1, 9, 40);
+  add(0, 100, 100, false);
+  CHECK(tally.detection().count == 4);
+  CHECK(tally.detection().min == 1);
+  CHECK(tally.detection().median == 4.5);
+  CHECK(tally.detection().max == 9);
+  CHECK(tally.isolation().count == 2);
+  CHECK(tally.isolation().min == 3);
+  CHECK(tally.isolation().median == 5.5);
+  CHECK(tally.isolation().max == 8);
+}

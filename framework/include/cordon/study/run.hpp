@@ -119,6 +119,7 @@ struct DiagnosisOutcome {
   std::int64_t runs_with_wrong_mode = 0;               ///< some segment, the first included, has `wrong_at`
   bool truth_known = false;                            ///< the data tell the true mode: what follows can be said
   std::vector<ModeStatistics> statistics;              ///< modes that occurred, by index
+  DelayStatistics detection, isolation;                ///< over all modes, `isolation` over those of the bank
   std::optional<TrueModeExcluded> true_mode_excluded;  ///< the first; makes `violated_at` for simulated data of a linear model
   std::vector<FaultStatistics> faults;                 ///< of diagnosers that bound additive faults
   std::optional<FaultOutside> fault_outside;           ///< the first; makes `violated_at` as well
@@ -156,16 +157,17 @@ struct PipelineOutcome {
   AnswerCount bounds;              ///< of interval hulls; unknown: infinite although the estimate is not proven unbounded
   std::string error;               ///< the pipeline stopped with this error; the others go on
   std::optional<Errc> error_code;
-  std::vector<Gain> gains;          ///< of the observer
-  Box last_hull;                    ///< of the last estimate; dimension 0: there is none
-  std::int64_t inner_steps = 0;     ///< steps with an inner estimate
-  std::int64_t inner_outside = -1;  ///< first k at which it leaves the hull by more than rounding (1e-9 relative): a defect
-  double inner_share = 0;           ///< mean width of the inner estimate / width of the hull over steps and states
-  std::vector<MetricValue> summary;
-  PhaseTimes median_us;       ///< medians over the steps up to the first estimate proven empty, phase by phase
-  double median_step_us = 0;  ///< median of predict + correct + reduce
-  double median_hull_us = 0;  ///< median of the interval hulls, which are not part of a step
-  double wall_s = 0;          ///< wall-clock time of the whole pipeline, data and results included
+  std::vector<Gain> gains;           ///< of the observer
+  Box last_hull;                     ///< of the last estimate; dimension 0: there is none
+  std::int64_t inner_steps = 0;      ///< steps with an inner estimate
+  std::int64_t inner_outside = -1;   ///< first k at which it leaves the hull by more than rounding (1e-9 relative): a defect
+  double inner_share = 0;            ///< mean width of the inner estimate / width of the hull over steps and states
+  std::vector<MetricValue> summary;  ///< of the metrics
+  std::size_t reproducible = 0;      ///< the first so many of `summary` repeat from run to run; the others are measured
+  PhaseTimes median_us;              ///< medians over the steps up to the first estimate proven empty, phase by phase
+  double median_step_us = 0;         ///< median of predict + correct + reduce
+  double median_hull_us = 0;         ///< median of the interval hulls, which are not part of a step
+  double wall_s = 0;                 ///< wall-clock time of the whole pipeline, data and results included
 };
 
 struct RunOutcome {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/interchange/utf16.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 #include "study/results/json_writer.hpp"
@@ -25,23 +26,22 @@ void append_utf8(std::string& out, std::uint32_t point) {
   }
 }
 
-/// The code point at the front, which is well-formed; removes it.
+/// The code point at the front, U+FFFD for bytes that are no UTF-8; removes it.
 std::uint32_t take(std::string_view& utf8) {
+  const std::size_t length = detail::utf8_length(utf8);
   const auto lead = static_cast<unsigned char>(utf8[0]);
-  const std::size_t length = lead < 0x80 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
-  std::uint32_t point = length == 1 ? lead : lead & (0x7Fu >> length);
+  std::uint32_t point = length == 0 ? 0xFFFD : length == 1 ? lead : lead & (0x7Fu >> length);
   for (std::size_t i = 1; i < length; ++i) point = (point << 6) | (static_cast<unsigned char>(utf8[i]) & 0x3Fu);
-  utf8.remove_prefix(length);
+  utf8.remove_prefix(std::max<std::size_t>(1, length));
   return point;
 }
 
 }  // namespace
 
 std::u16string to_utf16(std::string_view utf8) {
-  const std::string mended = detail::well_formed(utf8);
   std::u16string out;
-  for (std::string_view rest = mended; !rest.empty();) {
-    const std::uint32_t point = take(rest);
+  while (!utf8.empty()) {
+    const std::uint32_t point = take(utf8);
     if (point < 0x10000) {
       out += static_cast<char16_t>(point);
     } else {

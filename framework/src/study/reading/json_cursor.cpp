@@ -142,7 +142,7 @@ bool Cursor::expect_keys(const std::vector<std::string>& keys, const std::string
   for (std::size_t i = 0; i < size(); ++i) {
     const std::string& key = value_->keys()[i];
     if (key == "$comment" || key == "$schema" || std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-    problems_->add(child(pointer_, key), value_->items()[i].line, "unknown " + noun, suggest(key, keys));
+    problems_->add_unknown(child(pointer_, key), value_->items()[i].line, "unknown " + noun, suggest(key, keys));
   }
   return true;
 }

@@ -267,7 +267,8 @@ bool read_algorithm(const Cursor& at, const ComponentContext& context, PipelineS
   return spec.designer.has_value() == designer_at.has_value() && spec.diagnoser.has_value() == diagnoser_at.has_value();
 }
 
-PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const ModeBank& bank, const ComponentContext& context) {
+PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const ModeBank& bank, const ComponentContext& context,
+                           bool asks) {
   PipelineSpec spec;
   const std::string form = "{\"name\": ..., \"backend\": {\"type\": ...}, \"observer\": {\"type\": ...}}";
   if (!at.expect_keys({"name", "backend", "observer", "diagnoser", "designer"}, "key of a pipeline", form)) return spec;
@@ -282,7 +283,7 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   if (!backend || !algorithm) return spec;
   spec.backend = *backend;
   const bool bank_wide = spec.diagnoser || spec.designer;
-  if (bank_wide ? system.modes_good : system.good) check_together(at, spec, system, bank, context);
+  if (asks && (bank_wide ? system.modes_good : system.good)) check_together(at, spec, system, bank, context);
   return spec;
 }
 
@@ -323,7 +324,8 @@ void read_plant(const Cursor& at, const SystemPart& system, SimulateSpec& spec, 
   }
 }
 
-std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& system, const ComponentContext& context) {
+std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& system, const ComponentContext& context,
+                                         const std::function<bool(std::size_t)>& asks) {
   std::vector<PipelineSpec> specs;
   if (!at.expect(Kind::array, "a list of pipelines: [{\"backend\": ..., \"observer\": ...}]")) return specs;
   if (at.size() == 0) at.error("is an empty list", "give at least one pipeline");
@@ -337,7 +339,7 @@ std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& sys
   std::map<std::string, std::size_t> seen;
   for (std::size_t i = 0; i < at.size(); ++i) {
     const Cursor item = at.item(i);
-    specs.push_back(read_pipeline(item, system, bank, context));
+    specs.push_back(read_pipeline(item, system, bank, context, asks(i)));
     const std::string& name = specs.back().name;
     if (name.empty()) continue;
     const auto [first, fresh] = seen.emplace(name, i);

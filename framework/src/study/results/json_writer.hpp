@@ -13,8 +13,8 @@
 
 namespace cordon::detail {
 
-/// The text with every byte that is no UTF-8 replaced by U+FFFD.
-std::string well_formed(std::string_view text);
+/// Length of the well-formed UTF-8 sequence at the front of `text`, 0 if there is none.
+std::size_t utf8_length(std::string_view text);
 
 /// Text as a JSON string with its quotes: `"`, `\` and control characters escaped, bytes that are no UTF-8 replaced by U+FFFD.
 std::string json_string(std::string_view text);

@@ -45,7 +45,16 @@ class Names {
                                "violated_at",
                                "answers",
                                "answers_proven",
-                               "answers_unknown"};
+                               "answers_unknown",
+                               "numbers",
+                               "contains_truth_share",
+                               "step_us",
+                               "predict_us",
+                               "correct_us",
+                               "reduce_us",
+                               "question_us",
+                               "hull_us",
+                               "wall_s"};
 };
 
 }  // namespace

@@ -5,12 +5,14 @@
 #include <cmath>
 
 #include "cordon/registry/build.hpp"
+#include "study/results/fingerprint.hpp"
 #include "study/results/host.hpp"
 #include "study/results/numbers.hpp"
 #include "study/results/outcome_json.hpp"
 #include "study/results/results_design.hpp"
 #include "study/results/results_diagnosis.hpp"
 #include "study/results/results_parts.hpp"
+#include "study/statistics/table_builder.hpp"
 
 namespace cordon::detail {
 
@@ -27,15 +29,6 @@ std::string csv_value(const MetricValue& metric) {
   if (const auto* number = std::get_if<double>(&metric.value)) return csv_number(*number);
   if (const auto* integer = std::get_if<Index>(&metric.value)) return std::to_string(*integer);
   return csv_field(std::get<std::string>(metric.value));
-}
-
-/// FNV-1a with 64 bits, to tell studies apart.
-std::string fingerprint(std::string_view text) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  std::string digits(16, '0');
-  for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
-  return "fnv1a64:" + digits;
 }
 
 void write(JsonWriter& json, std::string_view name, const AnswerCount& count) {
@@ -71,6 +64,7 @@ Results::Results(const Study& study, const Registry& registry, const std::filesy
       summary_file_(directory_.create("summary.csv")),
       diagnosis_file_(has_diagnosers(study) ? &directory_.create("diagnosis.csv") : nullptr),
       inputs_file_(has_designers(study) ? &directory_.create("inputs.csv") : nullptr),
+      tables_(directory_),
       run_file_(directory_.create("run.json")),
       results_file_(directory_.create("results.json")),
       results_(results_file_),
@@ -271,7 +265,10 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
     const bool known = std::find(summary_columns_.begin(), summary_columns_.end(), metric.name) != summary_columns_.end();
     if (!known) summary_columns_.push_back(metric.name);
   }
-  results_.end_object().end_object();
+  const std::vector<ResultNumber> numbers = numbers_of(outcome);
+  results_.end_object();
+  write_numbers(results_, numbers, false);
+  results_.end_object();
   row.fields = {pipeline_,
                 csv_field(outcome.backend),
                 csv_field(outcome.observer),
@@ -292,6 +289,7 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
   write_times(run_, outcome.median_us, outcome.median_hull_us);
   run_.member("median_step_us", outcome.median_step_us).member("wall_s", outcome.wall_s);
   for (const MetricValue& metric : summary.measured) write(run_, metric);
+  write_numbers(run_, numbers, true);
   run_.end_object().end_object();
 }
 
@@ -319,6 +317,8 @@ std::vector<std::filesystem::path> Results::commit(const RunOutcome& outcome) {
   if (!header_written_) write_header(study_.model.linear.states());
   if (diagnosis_file_ && !diagnosis_header_written_) write_diagnosis_header(study_.modes.size() + 1);
   write_summaries();
+  const ResultTable table = table_of(study_, outcome);
+  tables_.write(table, summarise(table));
   results_.end_array().end_object();
   results_file_.write("\n");
   double wall = 0;

@@ -80,7 +80,10 @@ void Results::design(const PipelineSpec& spec, std::optional<Rounding> rounding,
   write_time(results_, "violated_at", outcome.violated_at);
   results_.key("error");
   outcome.error.empty() ? results_.null() : results_.value(outcome.error);
-  results_.end_object().end_object();
+  const std::vector<ResultNumber> numbers = numbers_of(outcome);
+  results_.end_object();
+  write_numbers(results_, numbers, false);
+  results_.end_object();
   if (outcome.design && outcome.design->best) write_inputs(*inputs_file_, name, outcome.design->best->u);
   Summary row;
   row.fields.assign(15, "");
@@ -95,7 +98,9 @@ void Results::design(const PipelineSpec& spec, std::optional<Rounding> rounding,
   summaries_.push_back(std::move(row));
   run_.begin_object(Layout::lines).member("name", spec.name).key("steps").begin_array().end_array();
   run_.key("summary").begin_object(Layout::lines).member("median_step_us", outcome.median_step_us);
-  run_.member("wall_s", outcome.wall_s).end_object().end_object();
+  run_.member("wall_s", outcome.wall_s);
+  write_numbers(run_, numbers, true);
+  run_.end_object().end_object();
 }
 
 }  // namespace cordon::detail

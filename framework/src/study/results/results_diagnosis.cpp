@@ -142,7 +142,10 @@ void Results::end_diagnosis(const PipelineOutcome& outcome) {
   write_time(results_, "violated_at", outcome.violated_at);
   results_.key("error");
   outcome.error.empty() ? results_.null() : results_.value(outcome.error);
-  results_.end_object().end_object();
+  const std::vector<ResultNumber> numbers = numbers_of(outcome);
+  results_.end_object();
+  write_numbers(results_, numbers, false);
+  results_.end_object();
   Summary row;
   row.fields.assign(15, "");
   row.fields[0] = pipeline_;
@@ -156,6 +159,7 @@ void Results::end_diagnosis(const PipelineOutcome& outcome) {
   summaries_.push_back(std::move(row));
   run_.end_array().key("summary").begin_object(Layout::lines);
   run_.member("median_step_us", outcome.median_step_us).member("wall_s", outcome.wall_s);
+  write_numbers(run_, numbers, true);
   run_.end_object().end_object();
 }
 

@@ -41,6 +41,14 @@ void write_blocks(JsonWriter& json, const LineForm& X) {
   json.key("M").matrix(X.M).key("G").matrix(X.G).member("c", X.c).key("S").matrix(X.S).key("A").matrix(X.A).member("b", X.b);
 }
 
+void write_numbers(JsonWriter& json, const std::vector<ResultNumber>& numbers, bool measured) {
+  json.key("numbers").begin_object();
+  for (const auto& [column, value] : numbers) {
+    if (column.measured == measured && !std::isnan(value)) json.member(column.name, value);
+  }
+  json.end_object();
+}
+
 void write(JsonWriter& json, const LineForm& X) {
   json.begin_object();
   write_blocks(json, X);

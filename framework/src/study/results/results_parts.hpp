@@ -9,6 +9,7 @@
 #include "cordon/core/answer.hpp"
 #include "cordon/core/box.hpp"
 #include "cordon/core/line_form.hpp"
+#include "cordon/study/result_table.hpp"
 #include "study/results/json_writer.hpp"
 
 namespace cordon::detail {
@@ -22,6 +23,8 @@ std::string joined(const std::vector<std::string>& fields);  ///< one row with i
 void write_time(JsonWriter& json, std::string_view name, std::int64_t k);  ///< negative: null
 void write_blocks(JsonWriter& json, const LineForm& X);  ///< the members of an exchange form, inside an open object
 void write_box(JsonWriter& json, std::string_view key, const Box& box);  ///< {lower, upper}
+/// "numbers": {name: number} of those that are measured, or of the others; NaN is left out.
+void write_numbers(JsonWriter& json, const std::vector<ResultNumber>& numbers, bool measured);
 void write(JsonWriter& json, const LineForm& X);
 void write(JsonWriter& json, const Certificate& why);
 

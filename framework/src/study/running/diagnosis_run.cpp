@@ -111,6 +111,8 @@ class DiagnosisPipeline {
     outcome_.median_step_us = median_.value();
     outcome_.wall_s = wall_s;
     found_.statistics = tally_.statistics();
+    found_.detection = tally_.detection();
+    found_.isolation = tally_.isolation();
     found_.faults = fault_score_.statistics();
     outcome_.diagnosis = std::move(found_);
     return std::move(outcome_);

@@ -145,9 +145,14 @@ void DiagnosisTally::add(const DiagnosisSegment& segment) {
   counts.missed += segment.missed();
   counts.wrong += segment.wrong_at >= 0;
   counts.unknown_fault += segment.unknown_fault_at >= 0;
-  if (segment.detected_at >= 0) ++entry.detection[segment.detected_at - segment.from];
+  if (segment.detected_at >= 0) {
+    ++entry.detection[segment.detected_at - segment.from];
+    ++detection_[segment.detected_at - segment.from];
+  }
   const Index found = segment.mode >= 0 ? segment.isolated_at : segment.unknown_fault_at;
-  if (found >= 0) ++entry.isolation[found - segment.from];
+  if (found < 0) return;
+  ++entry.isolation[found - segment.from];
+  if (segment.mode >= 0) ++isolation_[found - segment.from];
 }
 
 std::vector<ModeStatistics> DiagnosisTally::statistics() const {

@@ -76,6 +76,8 @@ class DiagnosisTally {
  public:
   void add(const DiagnosisSegment& segment);
   std::vector<ModeStatistics> statistics() const;
+  DelayStatistics detection() const { return summary(detection_); }  ///< of all segments
+  DelayStatistics isolation() const { return summary(isolation_); }  ///< of those in a mode of the bank
 
  private:
   struct Entry {
@@ -84,6 +86,7 @@ class DiagnosisTally {
   };
 
   std::map<Index, Entry> entries_;
+  Delays detection_, isolation_;
 };
 
 }  // namespace cordon::detail

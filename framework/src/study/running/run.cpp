@@ -114,6 +114,7 @@ class Pipeline {
     MetricValues summary;
     if (board_) guarded([&] { summary = board_->summary(); });
     outcome_.summary = summary.reproducible;
+    outcome_.reproducible = summary.reproducible.size();
     outcome_.summary.insert(outcome_.summary.end(), summary.measured.begin(), summary.measured.end());
     outcome_.median_us = {medians_.predict.value(), medians_.correct.value(), medians_.reduce.value(), medians_.question.value()};
     outcome_.median_hull_us = medians_.hull.value();
