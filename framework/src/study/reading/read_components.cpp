@@ -16,6 +16,9 @@ constexpr int max_nesting = 8;  // of components
 
 const char* article(std::string_view kind) { return kind == "observer" ? "an " : "a "; }
 
+/// A list of rows, or the sparse form.
+bool is_matrix(const Value& value) { return value.kind == Kind::array || is_sparse_matrix(value); }
+
 std::optional<std::vector<Matrix>> read_matrices(const Cursor& at) {
   if (!at.expect(Kind::array, "a list of matrices: [[[1, 2], [3, 4]], [[5, 6], [7, 8]]]")) return std::nullopt;
   std::vector<Matrix> all;
@@ -45,7 +48,7 @@ std::optional<Params::Value> read_inner(const Cursor& at, const ParamSpec& param
     at.error("components are nested more than " + std::to_string(max_nesting) + " deep", "use one with fewer components inside");
     return std::nullopt;
   }
-  const bool short_form = !param.matrix_type.empty(), matrix = short_form && at.is(Kind::array);
+  const bool short_form = !param.matrix_type.empty(), matrix = short_form && is_matrix(at.value());
   if (short_form && !matrix && !at.is(Kind::object) && !at.is(Kind::text) && !at.is(Kind::broken)) {
     at.error("is " + std::string(kind_name(at.value().kind)) + ", must be a matrix, a text or an object",
              std::string("write a matrix, the name of ") + article(kind) + kind + ", or {\"type\": name, ...parameters}");
@@ -97,9 +100,9 @@ const Value& target(const Cursor& at, std::string& relative) {
       if (index < value->items().size()) next = &value->items()[index];
     }
     if (!next) {
-      const bool short_form = value->kind == Kind::text || value->kind == Kind::array;
+      const bool short_form = value->kind == Kind::text || is_matrix(*value);
       if (short_form && step == "type") relative.resize(begin - 1);
-      if (value->kind != Kind::array || step != "matrix") break;
+      if (!is_matrix(*value) || step != "matrix") break;
       relative.erase(begin - 1, step.size() + 1);
       continue;
     }
