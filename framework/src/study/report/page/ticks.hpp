@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Axes: where their ticks are, and what stands beside them.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cordon::report {
+
+/// Round numbers (1, 2 or 5 times a power of ten apart) within [lower, upper], about `count` of them.
+std::vector<double> nice_ticks(double lower, double upper, int count, bool whole = false);
+
+/// Powers of ten within [lower, upper], with 2 and 5 between them over three decades or less. Both bounds are positive.
+std::vector<double> log_ticks(double lower, double upper);
+
+/// A number with at most six digits, with a power of ten where it is very large or small; ∞ and − as they are printed.
+std::string short_text(double value);
+
+/// The same on a logarithmic axis: powers of ten as such, but for a few.
+std::string log_text(double value);
+
+/// A value of an axis as a place in a drawing.
+struct Axis {
+  double lower = 0, upper = 1;
+  double begin = 0, end = 1;  ///< the places of `lower` and `upper`
+  bool log = false;
+
+  /// ±∞, and what has no logarithm, lie beyond the edge.
+  double operator()(double value) const;
+  std::vector<double> ticks(int count, bool whole = false) const {
+    return log ? log_ticks(lower, upper) : nice_ticks(lower, upper, count, whole);
+  }
+  std::string text(double tick) const { return log ? log_text(tick) : short_text(tick); }
+};
+
+/// An axis over the finite ones among the values (positive ones if `log`), with a margin, from `begin` to `end`. An axis of
+/// positive values begins at zero where that costs little room.
+Axis axis_over(const std::vector<double>& values, bool log, double begin, double end);
+
+}  // namespace cordon::report
