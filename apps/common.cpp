@@ -126,6 +126,14 @@ std::string table(const std::vector<std::vector<std::string>>& rows, const Paint
   return text;
 }
 
+std::string quoted(const std::string& word) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:+@%=";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 void load_plugins(Registry& registry, std::span<const std::filesystem::path> first) { registry.load(default_search_path(first)); }
 
 void warn_refused(const Registry& registry) {

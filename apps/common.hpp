@@ -53,6 +53,9 @@ class Paint {
 /// Columns aligned by two spaces, first row bold; cells are UTF-8. The last column is not padded.
 std::string table(const std::vector<std::vector<std::string>>& rows, const Paint& paint);
 
+/// As a shell takes it as one word.
+std::string quoted(const std::string& word);
+
 /// Loads the default search path with `first` before it.
 void load_plugins(Registry& registry, std::span<const std::filesystem::path> first);
 /// One warning per refused plugin, for commands that can do without.

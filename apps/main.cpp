@@ -44,6 +44,7 @@ Exit run(int argc, char** argv) {
       ->option_text("DIR")
       ->allow_extra_args(false);
   add_run(app, program);
+  add_merge(app, program);
   add_validate(app, program);
   add_verify(app, program);
   add_guarantees(app, program);

@@ -17,15 +17,28 @@ std::string duration(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
+std::string bar_of(double fraction) {
+  const auto filled = static_cast<std::size_t>(30 * fraction);
+  return fmt::format("[{}] {:3.0f} %", std::string(filled, '#') + std::string(30 - filled, ' '), 100 * fraction);
+}
+
 }  // namespace
+
+std::string progress_line(const SweepProgress& progress) {
+  const double fraction = progress.total > 0 ? static_cast<double>(progress.done) / static_cast<double>(progress.total) : 1;
+  std::string line = fmt::format("{}  {}/{} points", bar_of(fraction), progress.done, progress.total);
+  if (progress.failed > 0) line += fmt::format("  {} failed", progress.failed);
+  const std::int64_t done_here = progress.done - progress.resumed, left = progress.total - progress.done;
+  if (done_here <= 0) return line;
+  return line +
+         fmt::format("  {} left", duration(progress.elapsed_s * static_cast<double>(left) / static_cast<double>(done_here)));
+}
 
 std::string progress_line(const std::string& name, double fraction, std::int64_t done, std::int64_t total, double elapsed_s) {
   const std::string shown = fmt::format("{:.20}", name);
   if (total <= 0) return fmt::format("{}  {}", shown, done);
-  const auto filled = static_cast<std::size_t>(30 * fraction);
-  const std::string bar = std::string(filled, '#') + std::string(30 - filled, ' ');
   const std::string left = fraction > 0 ? duration(elapsed_s * (1 - fraction) / fraction) + " left" : "";
-  return fmt::format("[{}] {:3.0f} %  {}  {}/{}  {}", bar, 100 * fraction, shown, done, total, left);
+  return fmt::format("{}  {}  {}/{}  {}", bar_of(fraction), shown, done, total, left);
 }
 
 ProgressBar::ProgressBar(std::vector<std::string> pipelines, bool visible)

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "cordon/study/sweep.hpp"
+
 namespace cordon::apps {
 
 /// Appears on stderr after one second, with the remaining time; nothing at all where stderr is no terminal.
@@ -36,5 +38,8 @@ class ProgressBar {
 
 /// "[#####     ]  50 %  name  10/20  3 s left"; without a total "name  10". Names are cut to 20 characters.
 std::string progress_line(const std::string& name, double fraction, std::int64_t done, std::int64_t total, double elapsed_s);
+
+/// "[#####     ]  50 %  10/20 points  1 failed  3 s left", the time by the rate of this process.
+std::string progress_line(const SweepProgress& progress);
 
 }  // namespace cordon::apps

@@ -13,29 +13,36 @@
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
 #include "run_report.hpp"
+#include "sweep.hpp"
 
 namespace cordon::apps {
 
 namespace {
 
-struct Arguments {
-  std::filesystem::path study, out;
-  bool json = false, quiet = false;
-};
+std::filesystem::path directory_for(const RunArguments& arguments) {
+  if (!arguments.out.empty()) return arguments.out;
+  const std::string name = arguments.study.stem().string();
+  if (arguments.point) return std::filesystem::path("results") / fmt::format("{}-point-{}", name, *arguments.point);
+  if (arguments.shard.empty()) return std::filesystem::path("results") / name;
+  const Shard shard = shard_of(arguments.shard);
+  return std::filesystem::path("results") / fmt::format("{}-part-{}-of-{}", name, shard.part, shard.of);
+}
 
-Exit run(const Program& program, const Arguments& arguments) {
-  RunOptions options;
-  options.stop = stop_on_signals();  // reading checks what was read, which may take a while
-  Registry registry;
-  registry.load({program.plugins});  // the study's own directories and the usual ones follow
-  const Study study = read_study(arguments.study, registry);
-  if (!arguments.quiet) {
-    for (const std::string& warning : study.warnings) warn(warning);
-  }
+/// All pipelines of a study, or the one of `only`.
+Exit run_once(const Study& study, const std::string& only, const Registry& registry, const RunArguments& arguments,
+              const std::atomic<bool>* stop) {
   std::vector<std::string> names;
   for (const PipelineSpec& pipeline : study.pipelines) names.push_back(pipeline.name);
   ProgressBar bar(names, !arguments.quiet && isatty(STDERR_FILENO) == 1);
-  options.out = arguments.out.empty() ? std::filesystem::path("results") / arguments.study.stem() : arguments.out;
+  RunOptions options;
+  options.stop = stop;
+  options.out = directory_for(arguments);
+  options.pipeline = only;
+  options.report = !arguments.no_report;
+  if (arguments.point_limit_s) {
+    const std::chrono::duration<double> limit(std::min(*arguments.point_limit_s, 1e9));
+    options.deadline = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);
+  }
   options.progress = [&](std::size_t pipeline, std::int64_t done, std::int64_t total) { bar.show(pipeline, done, total); };
   const RunOutcome outcome = run_study(study, registry, options);
   bar.clear();
@@ -48,19 +55,56 @@ Exit run(const Program& program, const Arguments& arguments) {
   return exit_of(outcome);
 }
 
+Exit run(const Program& program, const RunArguments& arguments) {
+  const std::atomic<bool>* const stop = stop_on_signals();  // reading checks what was read, which may take a while
+  Registry registry;
+  registry.load({program.plugins});  // the study's own directories and the usual ones follow
+  const Study study = read_study(arguments.study, registry);
+  check_options(arguments, study);
+  if (!arguments.quiet) {
+    for (const std::string& warning : study.warnings) warn(warning);
+  }
+  if (arguments.point) {
+    const SweepPoint point = SweepGrid(study)[*arguments.point];
+    return run_once(study_at(study, point.at, registry), study.pipelines[point.pipeline].name, registry, arguments, stop);
+  }
+  if (study.sweep.empty()) return run_once(study, "", registry, arguments, stop);
+  return run_all_points(study, registry, arguments, directory_for(arguments), stop);
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("run", "Run a study and compare its pipelines");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RunArguments>();
   command->add_option("STUDY", arguments->study, "Study file (JSON)")->required()->option_text(" ");
   command->add_option("--out", arguments->out, "Directory for the results [results/<name of the study>]")->option_text("DIR");
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
+  command->add_flag("--no-report", arguments->no_report, "Write no report.html");
+  const char* const group = "Sweeps (studies with a \"sweep\"; docs/sweeps.md)";
+  command->add_option("--jobs", arguments->jobs, "Points at a time [the number of cores]")
+      ->check(CLI::Range(1, 1024))
+      ->option_text("N")
+      ->group(group);
+  command->add_flag("--resume", arguments->resume, "Go on after what an interrupted run has left")->group(group);
+  command->add_flag("--restart", arguments->restart, "Throw away what an interrupted run has left")->group(group);
+  command->add_option("--point-limit", arguments->point_limit_s, "Give a point up after this time")
+      ->check(CLI::PositiveNumber)
+      ->option_text("SECONDS")
+      ->group(group);
+  command->add_option("--shard", arguments->shard, "Run part I of N parts; cordon merge joins them")
+      ->option_text("I/N")
+      ->group(group);
+  command->add_option("--point", arguments->point, "Run this one point like a study of its own, with all files")
+      ->option_text("INDEX")
+      ->group(group);
   command->footer(
       "Results appear when all are complete: results.json, sets.jsonl, data.csv, steps.csv, summary.csv, run.json, and\n"
       "diagnosis.csv where there are diagnosers: they are tried on all seeds of the study, and the first is written.\n"
       "Where there are designers, inputs.csv holds what they designed; a diagnoser beside one is tried on every mode with it.\n"
+      "A sweep writes results.json, points.csv and run.json, and keeps finished points while it runs: killed at any time, it\n"
+      "goes on with --resume.\n"
       "SIGINT or SIGTERM ends the run with exit code 130 and leaves earlier results as they were; a second one kills.");
   command->callback([&program, arguments] { program.exit = run(program, *arguments); });
 }

@@ -27,7 +27,7 @@ const Mistake top_level[] = {
     {"\"title\": \"a study\"", "\"title\": \"\\u009f\"", "/title", "holds a control character", "in one line"},
     {"\"title\": \"a study\"", "\"plugins\": [\"nowhere\"]", "/plugins/0", "no such directory", "relative to the folder"},
     {"\"title\": \"a study\"", "\"plugins\": \"nowhere\"", "/plugins", "is a text, must be a list", "list of texts"},
-    {"\"title\": \"a study\"", "\"sweep\": []", "/sweep", "unknown key of a study", "\"system\""},
+    {"\"title\": \"a study\"", "\"figures\": []", "/figures", "unknown key of a study", "\"system\""},
     {"\"title\": \"a study\"", "\"a/b~c\": 0", "/a~1b~0c", "unknown key of a study", "\"system\""},
     {"\"title\": \"a study\"", "\"title\": \"x\", \"title\": \"y\"", "/title", "the key is repeated (first on line 3)",
      "remove one"},

@@ -432,6 +432,49 @@ const char* const design_study = R"({
 }
 )";
 
+const char* const sweep_study = R"({
+"cordon": 1,
+"title": "a sweep",
+"system": {
+"type": "lti",
+"A": [[0.5, 1], [0, 0.5]],
+"B": [[1], [0]],
+"C": [[1, 0]],
+"X0": {"type": "box", "lower": [-1, -1], "upper": [1, 1]},
+"W": {"type": "box", "lower": [-1, -1], "upper": [1, 1]},
+"V": {"type": "box", "lower": [-0.1], "upper": [0.1]}
+},
+"data": {
+"simulate": {
+"steps": 20,
+"x0": [0.5, 0.25],
+"input": [{"type": "sine", "amplitude": 1, "omega": 0.5}]
+}
+},
+"pipelines": [
+{
+"name": "first",
+"backend": {"type": "zonotope", "strip": "volume"},
+"observer": {"type": "prediction_correction", "max_generators": 30}
+},
+{
+"backend": "interval",
+"observer": "prediction_correction"
+},
+{
+"backend": "line_zonotope",
+"observer": {"type": "luenberger", "gain": [[0.5], [0.25]]}
+}
+],
+"metrics": ["radius", {"type": "quantile", "level": 0.5}],
+"sweep": [
+{"name": "generators", "path": "/pipelines/*/observer/max_generators", "values": [10, 20, 40]},
+{"name": "bound", "path": "/system/W/upper/0", "values": [1, 2.5]},
+{"name": "seed", "path": "/data/simulate/seed", "range": [1, 9, 4]}
+]
+}
+)";
+
 std::string exchanged(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos || text.find(from, at + 1) != std::string::npos)

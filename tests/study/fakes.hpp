@@ -45,6 +45,9 @@ extern const char* const uncertain_study;
 /// The same with designers, a diagnoser for experiments and an x0 that is drawn from a set.
 extern const char* const design_study;
 
+/// The same with a sweep over generators (of two of three pipelines), a bound of W, and seeds.
+extern const char* const sweep_study;
+
 /// `text` with its only occurrence of `from` exchanged. Throws std::logic_error if there is none or more than one.
 std::string exchanged(std::string text, const std::string& from, const std::string& to);
 

@@ -5,12 +5,24 @@
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
+#include "cordon/study/sweep.hpp"
 #include "study/fakes.hpp"
 
 using namespace cordon;
 using namespace study_test;
 
 namespace {
+
+/// Reads the last point of a sweep.
+void read_last_point(const Study& study, const Registry& registry) {
+  std::vector<std::size_t> last;
+  for (const SweepAxis& axis : study.sweep) last.push_back(axis.values.size() - 1);
+  try {
+    RC_ASSERT(!study_at(study, last, registry).resolved.empty());
+  } catch (const InputError& error) {
+    RC_ASSERT(!error.diagnostics().empty());
+  }
+}
 
 /// Reads a damaged study; true if it was still valid. Any other exception than the two kinds fails the test.
 bool survives(const Scratch& scratch, const std::string& text) {
@@ -20,6 +32,7 @@ bool survives(const Scratch& scratch, const std::string& text) {
     const Study study = read_study(scratch.write("s.json", text), registry, SearchPath{});
     RC_ASSERT(!study.pipelines.empty());
     RC_ASSERT(!study.resolved.empty());
+    read_last_point(study, registry);
     return true;
   } catch (const InputError& error) {
     RC_ASSERT(!error.diagnostics().empty());
@@ -48,7 +61,7 @@ const std::vector<std::string> tokens = {"{",         "}",
 
 TEST_CASE("truncated at every byte") {
   const Scratch scratch;
-  for (const std::string text : {valid_study, diagnosis_study, uncertain_study, design_study}) {
+  for (const std::string text : {valid_study, diagnosis_study, uncertain_study, design_study, sweep_study}) {
     for (std::size_t size = 0; size + 2 < text.size(); ++size) CHECK_FALSE(survives(scratch, text.substr(0, size)));
   }
 }
@@ -56,7 +69,7 @@ TEST_CASE("truncated at every byte") {
 TEST_CASE("random bytes and tokens exchanged") {
   const Scratch scratch;
   CHECK(rc::check("damaged studies", [&] {
-    std::string text = *rc::gen::element(valid_study, diagnosis_study, uncertain_study, design_study);
+    std::string text = *rc::gen::element(valid_study, diagnosis_study, uncertain_study, design_study, sweep_study);
     for (int edits = *rc::gen::inRange(1, 6); edits > 0; --edits) {
       const auto at = *rc::gen::inRange<std::size_t>(0, text.size());
       switch (*rc::gen::inRange(0, 4)) {
@@ -82,7 +95,7 @@ TEST_CASE("every value exchanged for every token") {
   const Scratch scratch;
   int valid = 0, refused = 0;
   std::mt19937_64 random(99);
-  for (const std::string text : {valid_study, diagnosis_study, uncertain_study, design_study}) {
+  for (const std::string text : {valid_study, diagnosis_study, uncertain_study, design_study, sweep_study}) {
     for (std::size_t at = 0; at < text.size(); ++at) {
       const bool starts = text[at] == '[' || text[at] == '{' || text[at] == '"' || (text[at] >= '0' && text[at] <= '9');
       if (!starts) continue;

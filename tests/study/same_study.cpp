@@ -75,6 +75,10 @@ bool same(const std::optional<ComponentSpec>& a, const std::optional<ComponentSp
 }  // namespace
 
 bool same(const Study& a, const Study& b) {
+  const auto axes = [](const SweepAxis& p, const SweepAxis& q) {
+    return p.name == q.name && p.path == q.path && p.values == q.values && p.repeat == q.repeat;
+  };
+  if (!std::equal(a.sweep.begin(), a.sweep.end(), b.sweep.begin(), b.sweep.end(), axes)) return false;
   const auto modes = [](const Mode& p, const Mode& q) { return p.name == q.name && same(p.model, q.model); };
   if (a.nominal != b.nominal || !std::equal(a.modes.begin(), a.modes.end(), b.modes.begin(), b.modes.end(), modes)) return false;
   if (a.title != b.title || !same(a.model, b.model) || a.data.index() != b.data.index()) return false;

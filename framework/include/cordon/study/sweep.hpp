@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cordon/core/error.hpp"
 #include "cordon/study/result_table.hpp"
 #include "cordon/study/study.hpp"
 
@@ -58,6 +60,7 @@ struct SweepOptions {
   std::filesystem::path out;  ///< directory of the results
   int jobs = 1;               ///< threads; results do not depend on it
   bool resume = false;        ///< go on after what an interrupted run of the same sweep has left in `out`
+  bool restart = false;       ///< throw away what an interrupted run of any sweep has left there; not with `resume`
   double point_limit_s = std::numeric_limits<double>::infinity();  ///< wall-clock time of one point, tested between its steps
   Shard shard;
   const std::atomic<bool>* stop = nullptr;             ///< set from a signal handler: what is finished is kept for `resume`
@@ -67,16 +70,18 @@ struct SweepOptions {
 struct SweepOutcome {
   bool interrupted = false;
   SweepProgress progress;
-  ResultTable table;          ///< of all points of this part, empty if interrupted
-  std::int64_t violated = 0;  ///< points at which a guarantee was violated
+  ResultTable table;                     ///< of all points of this part, empty if interrupted
+  std::int64_t violated = 0;             ///< points at which a guarantee was violated
+  std::optional<Errc> first_error = {};  ///< of the failed point with the smallest index, where it was run or resumed
   std::vector<std::filesystem::path> files;
 };
 
 /// Every point is run on its own: it fails, runs into its limit or violates a guarantee without stopping the others, and what
 /// became of it stands in its row. Writes results.json, points.csv, run.json and the summaries of `summarise`; all but times are
 /// the same bytes whatever `jobs`, interruptions and shards were. While it runs, finished points are kept in a journal in `out`,
-/// which survives the death of the process at any time. Throws InputError: `out` holds the unfinished sweep of another study, or
-/// one of this study without `resume`; Errc::io.
+/// which survives the death of the process at any time. With `resume`, and finished results of the same sweep in `out`, nothing
+/// is run: they are read. Throws InputError: `out` holds the unfinished sweep of another study, or one of this study without
+/// `resume`, or another process works there; Errc::io, and the journal stays.
 SweepOutcome run_sweep(const Study& study, const Registry& registry, const SweepOptions& options);
 
 /// Joins the results of all parts of one sweep in `out`: the same files that one process would have left. Throws InputError if

@@ -61,13 +61,15 @@ void check_start_of_modes(const Start& start, const Study& study) {
 }
 
 /// A simulation that starts outside the set an observer starts from would break its guarantee by construction.
-void check_start(const Cursor& root, const Study& study) {
+void check_start(const Cursor& root, const Study& study, std::optional<std::size_t> only) {
   const auto* spec = std::get_if<SimulateSpec>(&study.data);
   if (!spec || (!spec->x0 && !spec->x0_set)) return;
   const Cursor at = *root.find("data")->find("simulate")->find("x0");
   const Start start(at, *spec);
   bool own = false, designed = false;  // does a pipeline start from the system's X0?
-  for (const PipelineSpec& pipeline : study.pipelines) {
+  for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
+    if (only && *only != i) continue;
+    const PipelineSpec& pipeline = study.pipelines[i];
     const Params* params = starting_params(pipeline);
     designed = designed || pipeline.designer;
     own = own || !params || pipeline.designer;
@@ -99,9 +101,10 @@ std::string obstacle(const Mode& mode, const std::string& file) {
 }
 
 /// A diagnoser beside a designer sees experiments with every mode.
-void check_experiments(const Cursor& root, const Study& study) {
+void check_experiments(const Cursor& root, const Study& study, std::optional<std::size_t> only) {
   const Cursor pipelines = *root.find("pipelines");
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
+    if (only && *only != i) continue;
     if (!study.pipelines[i].designer || !study.pipelines[i].diagnoser) continue;
     const Cursor at = *pipelines.item(i).find("diagnoser");
     for (const Mode& mode : bank_of(study).modes) {
@@ -113,9 +116,9 @@ void check_experiments(const Cursor& root, const Study& study) {
 
 }  // namespace
 
-void check_study(const Cursor& root, const Study& study) {
-  check_start(root, study);
-  check_experiments(root, study);
+void check_study(const Cursor& root, const Study& study, std::optional<std::size_t> only) {
+  check_start(root, study, only);
+  check_experiments(root, study, only);
 }
 
 }  // namespace cordon::json

@@ -49,6 +49,59 @@ std::optional<double> finite_entry(const Value& value) {
   return value.kind == Kind::number ? std::optional<double>(value.number) : std::nullopt;
 }
 
+bool is_moderate(std::size_t rows, std::size_t cols) {
+  const auto limit = static_cast<std::size_t>(max_entries);
+  return rows <= limit && cols <= limit && rows * std::max<std::size_t>(cols, 1) <= limit;
+}
+
+/// Puts one entry, [row, column, number], into A; reports what is wrong with it.
+bool read_sparse_entry(const Cursor& at, Matrix& A, std::vector<bool>& taken) {
+  if (!at.expect(Kind::array, "an entry is [row, column, number], counted from 1")) return false;
+  if (at.size() != 3) {
+    at.error("has " + counted(static_cast<Index>(at.size()), "number") + ", must have 3",
+             "an entry is [row, column, number], counted from 1");
+    return false;
+  }
+  const auto row = read_integer(at.item(0), 1, static_cast<double>(A.rows()));
+  const auto column = read_integer(at.item(1), 1, static_cast<double>(A.cols()));
+  const auto number = read_number(at.item(2));
+  if (!row || !column || !number) return false;
+  const auto place = static_cast<std::size_t>((*row - 1) * A.cols() + *column - 1);
+  if (taken[place]) {
+    at.error("repeats the entry in row " + std::to_string(*row) + ", column " + std::to_string(*column),
+             "name each entry once; entries are not added up");
+    return false;
+  }
+  taken[place] = true;
+  A(*row - 1, *column - 1) = *number;
+  return true;
+}
+
+std::optional<Matrix> read_sparse_matrix(const Cursor& at) {
+  const std::string form = "the sparse form is {\"rows\": 2, \"cols\": 3, \"entries\": [[1, 3, 0.5]]}";
+  at.expect_keys({"rows", "cols", "entries"}, "key of a sparse matrix", "");
+  const auto rows_at = at.need("rows", form), cols_at = at.need("cols", form), entries = at.need("entries", form);
+  const auto limit = static_cast<double>(max_entries);
+  const Index rows = rows_at ? read_integer(*rows_at, 0, limit).value_or(-1) : -1;
+  const Index cols = cols_at ? read_integer(*cols_at, 0, limit).value_or(-1) : -1;
+  if (rows < 0 || cols < 0 || !entries || !entries->expect(Kind::array, form)) return std::nullopt;
+  if (!is_moderate(static_cast<std::size_t>(rows), static_cast<std::size_t>(cols))) {
+    at.error("has more than " + std::to_string(max_entries) + " entries, those that are 0 counted");
+    return std::nullopt;
+  }
+  if (rows * cols == 0 && entries->size() > 0) {
+    entries->error("holds entries of a matrix that is " + shape(rows, cols), form);
+    return std::nullopt;
+  }
+  Matrix A = Matrix::Zero(rows, cols);
+  std::vector<bool> taken(static_cast<std::size_t>(A.size()));
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < entries->size() && wrong < shown_entries; ++i) {
+    if (!read_sparse_entry(entries->item(i), A, taken)) ++wrong;
+  }
+  return wrong == 0 ? std::optional<Matrix>(std::move(A)) : std::nullopt;
+}
+
 std::optional<double> bound_entry(const Value& value) {
   if (value.kind == Kind::text && value.text() == "inf") return std::numeric_limits<double>::infinity();
   if (value.kind == Kind::text && value.text() == "-inf") return -std::numeric_limits<double>::infinity();
@@ -89,7 +142,7 @@ bool Cursor::expect_keys(const std::vector<std::string>& keys, const std::string
   for (std::size_t i = 0; i < size(); ++i) {
     const std::string& key = value_->keys()[i];
     if (key == "$comment" || key == "$schema" || std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-    problems_->add(child(pointer_, key), value_->items()[i].line, "unknown " + noun, suggest(key, keys));
+    problems_->add_unknown(child(pointer_, key), value_->items()[i].line, "unknown " + noun, suggest(key, keys));
   }
   return true;
 }
@@ -180,12 +233,12 @@ std::optional<Vector> read_bounds(const Cursor& at) {
 
 std::optional<Matrix> read_matrix(const Cursor& at) {
   const std::string form = "a matrix is a list of rows: [[1, 2], [3, 4]]";
+  if (is_sparse_matrix(at.value())) return read_sparse_matrix(at);
   if (!at.expect(Kind::array, form)) return std::nullopt;
   const auto& rows = at.value().items();
   if (rows.empty()) return Matrix(0, 0);
   const std::size_t cols = rows.front().items().size();
-  if (rows.size() > static_cast<std::size_t>(max_entries) ||
-      rows.size() * std::max<std::size_t>(cols, 1) > static_cast<std::size_t>(max_entries)) {
+  if (!is_moderate(rows.size(), cols)) {
     at.error("has more than " + std::to_string(max_entries) + " entries");
     return std::nullopt;
   }
@@ -204,6 +257,25 @@ std::optional<Matrix> read_matrix(const Cursor& at) {
     }
   }
   return wrong == 0 ? std::optional<Matrix>(std::move(A)) : std::nullopt;
+}
+
+bool is_sparse_matrix(const Value& value) {
+  if (value.kind != Kind::object || value.find("type")) return false;
+  return value.find("entries") || value.find("rows") || value.find("cols");
+}
+
+Cursor entry_of(const Cursor& matrix, Index row, Index column) {
+  if (!is_sparse_matrix(matrix.value())) {
+    return matrix.item(static_cast<std::size_t>(row)).item(static_cast<std::size_t>(column));
+  }
+  const Cursor entries = *matrix.find("entries");
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::vector<Value>& entry = entries.value().items()[i].items();
+    if (entry[0].number == static_cast<double>(row + 1) && entry[1].number == static_cast<double>(column + 1)) {
+      return entries.item(i);
+    }
+  }
+  return matrix;
 }
 
 std::optional<std::vector<std::string>> read_names(const Cursor& at, const std::string& noun) {

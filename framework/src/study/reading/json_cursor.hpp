@@ -59,8 +59,12 @@ std::optional<std::string> read_choice(const Cursor& at, const std::vector<std::
 std::optional<Vector> read_vector(const Cursor& at, Index limit = max_entries);
 /// A list of numbers, "inf" and "-inf".
 std::optional<Vector> read_bounds(const Cursor& at);
-/// A list of rows of equal length; [] is 0 × 0, [[], []] is 2 × 0.
+/// A list of rows of equal length; [] is 0 × 0, [[], []] is 2 × 0. Or the sparse form.
 std::optional<Matrix> read_matrix(const Cursor& at);
+/// Is this the sparse form of a matrix, right or wrong: {"rows", "cols", "entries": [[row, column, number], …]}, counted from 1?
+bool is_sparse_matrix(const Value& value);
+/// The place of an entry of a matrix that was read, counted from 0; that of the matrix where the sparse form does not name it.
+Cursor entry_of(const Cursor& matrix, Index row, Index column);
 /// A list of texts that are all different.
 std::optional<std::vector<std::string>> read_names(const Cursor& at, const std::string& noun);
 

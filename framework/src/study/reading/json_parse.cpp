@@ -169,8 +169,9 @@ Value Parser::value() {
   }
   if (c == '"') {
     Value result = of_kind(Value::Kind::text);
-    result.parts = std::make_unique<Parts>();
-    result.parts->text = string();
+    const auto parts = std::make_shared<Parts>();
+    result.parts = parts;
+    parts->text = string();
     return result;
   }
   if (c == '-' || is_digit(c)) return number();
@@ -182,7 +183,8 @@ Value Parser::value() {
 
 Value Parser::object() {
   Value result = of_kind(Value::Kind::object);
-  result.parts = std::make_unique<Parts>();
+  const auto parts = std::make_shared<Parts>();
+  result.parts = parts;
   std::unordered_set<std::string> seen;
   ++at_;
   skip_space();
@@ -199,8 +201,8 @@ Value Parser::object() {
     skip_space();
     Value member = value();
     if (seen.insert(key).second) {
-      result.parts->keys.push_back(std::move(key));
-      result.parts->items.push_back(std::move(member));
+      parts->keys.push_back(std::move(key));
+      parts->items.push_back(std::move(member));
     } else {
       problems_.add(pointer(), key_line, "the key is repeated (first on line " + std::to_string(result.find(key)->line) + ")",
                     "remove one of the two");
@@ -216,15 +218,16 @@ Value Parser::object() {
 
 Value Parser::array() {
   Value result = of_kind(Value::Kind::array);
-  result.parts = std::make_unique<Parts>();
+  const auto parts = std::make_shared<Parts>();
+  result.parts = parts;
   ++at_;
   skip_space();
   if (take(']')) return result;
   path_.emplace_back().in_array = true;
   for (;;) {
-    path_.back().index = result.parts->items.size();
+    path_.back().index = parts->items.size();
     if (next_is(']')) fail("a value is missing, found \"]\"", "remove the comma before it");
-    result.parts->items.push_back(value());
+    parts->items.push_back(value());
     skip_space();
     if (take(']')) break;
     if (!take(',')) fail("\",\" or \"]\" is missing, " + found(), at_end() ? "is the file complete?" : "");

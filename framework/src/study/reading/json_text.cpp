@@ -97,6 +97,11 @@ void Problems::add(std::string pointer, int line, std::string message, std::stri
   found_.push_back({escaped(pointer, 300), std::move(message), std::move(suggestion), line});
 }
 
+void Problems::add_unknown(std::string pointer, int line, std::string message, std::string suggestion) {
+  if (count_ < max_problems) unknown_.insert(escaped(pointer, 300));
+  add(std::move(pointer), line, std::move(message), std::move(suggestion));
+}
+
 std::vector<Diagnostic> Problems::sorted() const {
   std::vector<Diagnostic> result = found_;
   std::stable_sort(result.begin(), result.end(), [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,14 +16,15 @@ namespace cordon::json {
 struct Parts;
 
 /// A JSON value (RFC 8259) with its line. `broken` stands for a value that was reported already: readers pass over it in silence.
+/// Copies share their parts, which never change once the value is made: a copy is cheap, and safe to use from another thread.
 struct Value {
   enum class Kind : std::uint8_t { null, boolean, number, text, array, object, broken };
 
   Kind kind = Kind::null;
   bool flag = false;
   int line = 0;
-  double number = 0;             ///< finite
-  std::unique_ptr<Parts> parts;  ///< of texts, arrays and objects
+  double number = 0;                   ///< finite
+  std::shared_ptr<const Parts> parts;  ///< of texts, arrays and objects
 
   const std::string& text() const;
   const std::vector<Value>& items() const;        ///< elements of an array, values of an object
@@ -50,17 +52,22 @@ std::string child(std::string_view pointer, std::size_t index);
 class Problems {
  public:
   void add(std::string pointer, int line, std::string message, std::string suggestion = "");
+  /// The same for a key that does not belong there, whatever its value.
+  void add_unknown(std::string pointer, int line, std::string message, std::string suggestion);
+  bool is_unknown(const std::string& pointer) const { return unknown_.count(pointer) > 0; }
   bool any() const { return count_ > 0; }
   std::size_t count() const { return count_; }
   /// A reader met a value that was reported before.
   void pass_over() { ++passed_over_; }
   /// Grows with every wrong value that a reader meets: unchanged over a section, the section is right.
   std::size_t met() const { return count_ + passed_over_; }
+  const std::vector<Diagnostic>& found() const { return found_; }
   /// In the order of their lines; the last one tells how many were left out.
   std::vector<Diagnostic> sorted() const;
 
  private:
   std::vector<Diagnostic> found_;
+  std::set<std::string> unknown_;
   std::size_t count_ = 0, passed_over_ = 0;
 };
 

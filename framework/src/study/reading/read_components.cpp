@@ -16,6 +16,9 @@ constexpr int max_nesting = 8;  // of components
 
 const char* article(std::string_view kind) { return kind == "observer" ? "an " : "a "; }
 
+/// A list of rows, or the sparse form.
+bool is_matrix(const Value& value) { return value.kind == Kind::array || is_sparse_matrix(value); }
+
 std::optional<std::vector<Matrix>> read_matrices(const Cursor& at) {
   if (!at.expect(Kind::array, "a list of matrices: [[[1, 2], [3, 4]], [[5, 6], [7, 8]]]")) return std::nullopt;
   std::vector<Matrix> all;
@@ -45,7 +48,7 @@ std::optional<Params::Value> read_inner(const Cursor& at, const ParamSpec& param
     at.error("components are nested more than " + std::to_string(max_nesting) + " deep", "use one with fewer components inside");
     return std::nullopt;
   }
-  const bool short_form = !param.matrix_type.empty(), matrix = short_form && at.is(Kind::array);
+  const bool short_form = !param.matrix_type.empty(), matrix = short_form && is_matrix(at.value());
   if (short_form && !matrix && !at.is(Kind::object) && !at.is(Kind::text) && !at.is(Kind::broken)) {
     at.error("is " + std::string(kind_name(at.value().kind)) + ", must be a matrix, a text or an object",
              std::string("write a matrix, the name of ") + article(kind) + kind + ", or {\"type\": name, ...parameters}");
@@ -97,9 +100,9 @@ const Value& target(const Cursor& at, std::string& relative) {
       if (index < value->items().size()) next = &value->items()[index];
     }
     if (!next) {
-      const bool short_form = value->kind == Kind::text || value->kind == Kind::array;
+      const bool short_form = value->kind == Kind::text || is_matrix(*value);
       if (short_form && step == "type") relative.resize(begin - 1);
-      if (value->kind != Kind::array || step != "matrix") break;
+      if (!is_matrix(*value) || step != "matrix") break;
       relative.erase(begin - 1, step.size() + 1);
       continue;
     }
@@ -264,7 +267,8 @@ bool read_algorithm(const Cursor& at, const ComponentContext& context, PipelineS
   return spec.designer.has_value() == designer_at.has_value() && spec.diagnoser.has_value() == diagnoser_at.has_value();
 }
 
-PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const ModeBank& bank, const ComponentContext& context) {
+PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const ModeBank& bank, const ComponentContext& context,
+                           bool asks) {
   PipelineSpec spec;
   const std::string form = "{\"name\": ..., \"backend\": {\"type\": ...}, \"observer\": {\"type\": ...}}";
   if (!at.expect_keys({"name", "backend", "observer", "diagnoser", "designer"}, "key of a pipeline", form)) return spec;
@@ -279,7 +283,7 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   if (!backend || !algorithm) return spec;
   spec.backend = *backend;
   const bool bank_wide = spec.diagnoser || spec.designer;
-  if (bank_wide ? system.modes_good : system.good) check_together(at, spec, system, bank, context);
+  if (asks && (bank_wide ? system.modes_good : system.good)) check_together(at, spec, system, bank, context);
   return spec;
 }
 
@@ -320,7 +324,8 @@ void read_plant(const Cursor& at, const SystemPart& system, SimulateSpec& spec, 
   }
 }
 
-std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& system, const ComponentContext& context) {
+std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& system, const ComponentContext& context,
+                                         const std::function<bool(std::size_t)>& asks) {
   std::vector<PipelineSpec> specs;
   if (!at.expect(Kind::array, "a list of pipelines: [{\"backend\": ..., \"observer\": ...}]")) return specs;
   if (at.size() == 0) at.error("is an empty list", "give at least one pipeline");
@@ -334,7 +339,7 @@ std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& sys
   std::map<std::string, std::size_t> seen;
   for (std::size_t i = 0; i < at.size(); ++i) {
     const Cursor item = at.item(i);
-    specs.push_back(read_pipeline(item, system, bank, context));
+    specs.push_back(read_pipeline(item, system, bank, context, asks(i)));
     const std::string& name = specs.back().name;
     if (name.empty()) continue;
     const auto [first, fresh] = seen.emplace(name, i);

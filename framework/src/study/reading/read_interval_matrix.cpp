@@ -27,7 +27,7 @@ bool expect_entries(const Cursor& at, const Matrix& A, Wrong&& wrong, const std:
     for (Index j = 0; j < A.cols(); ++j) {
       const std::string message = wrong(i, j);
       if (message.empty() || ++count > shown_entries) continue;
-      at.item(static_cast<std::size_t>(i)).item(static_cast<std::size_t>(j)).error(message, suggestion);
+      entry_of(at, i, j).error(message, suggestion);
     }
   }
   if (count > shown_entries) at.error("holds " + std::to_string(count - shown_entries) + " more entries of this kind");
@@ -88,7 +88,7 @@ std::optional<IntervalMatrix> read_lower_and_upper(const Cursor& at) {
 }  // namespace
 
 std::optional<IntervalMatrix> read_interval_matrix(const Cursor& at) {
-  if (!at.is(Value::Kind::object)) {
+  if (!at.is(Value::Kind::object) || is_sparse_matrix(at.value())) {
     auto exact = read_matrix(at);
     return exact ? std::optional(IntervalMatrix(std::move(*exact), Matrix())) : std::nullopt;
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "cordon/registry/registry.hpp"
 #include "cordon/study/study.hpp"
 #include "study/reading/json_cursor.hpp"
+#include "study/reading/read_sweep.hpp"
 
 namespace cordon::json {
 
@@ -126,22 +128,25 @@ void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& s
                  std::vector<std::string>& warnings);
 /// Reads /data/simulate/plant and makes it.
 void read_plant(const Cursor& plant, const SystemPart& system, SimulateSpec& spec, const ComponentContext& context);
-std::vector<PipelineSpec> read_pipelines(const Cursor& pipelines, const SystemPart& system, const ComponentContext& context);
+/// Asks the algorithms of the pipelines for which `asks` is true whether they can work with the model.
+std::vector<PipelineSpec> read_pipelines(const Cursor& pipelines, const SystemPart& system, const ComponentContext& context,
+                                         const std::function<bool(std::size_t)>& asks);
 std::vector<ComponentSpec> read_metrics(const Cursor& metrics, const ComponentContext& context);
 
 /// Do simulations start where pipelines assume it, and can the experiments of designers be simulated? For studies that have no
-/// other problem.
-void check_study(const Cursor& root, const Study& study);
+/// other problem. `only`: of this pipeline alone.
+void check_study(const Cursor& root, const Study& study, std::optional<std::size_t> only = {});
 
 /// What the resolved text needs besides the study itself: texts and models as they are written.
 struct Written {
+  Value tree;  ///< with the first value of every axis
   std::vector<std::string> plugins;
   std::string csv_file;
   std::vector<WrittenMode> modes;
   std::vector<WrittenFault> faults;
 };
 /// The study as JSON with every default: keys in a fixed order, sets in exchange form, doubles in the shortest form that reads
-/// back equal.
-std::string resolve(const Study& study, const Written& written, const Registry& registry);
+/// back equal. With a sweep, what its paths lead into stays as it is written, so that they find their way in this text as well.
+std::string resolve(const Study& study, const Written& written, const std::vector<WrittenAxis>& sweep, const Registry& registry);
 
 }  // namespace cordon::json

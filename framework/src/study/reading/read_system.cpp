@@ -42,8 +42,9 @@ class SystemReader {
 
 std::optional<Matrix> SystemReader::matrix(const char* key) {
   const auto at = system_.find(key);
-  if (!at || (at->is(Value::Kind::object) && !at->expect(Value::Kind::array, "only A, B and C can be known by an interval")))
-    return std::nullopt;
+  if (!at) return std::nullopt;
+  const bool by_interval = at->is(Value::Kind::object) && !is_sparse_matrix(at->value());
+  if (by_interval && !at->expect(Value::Kind::array, "only A, B and C can be known by an interval")) return std::nullopt;
   return read_matrix(*at);
 }
 
@@ -51,7 +52,7 @@ std::optional<Matrix> SystemReader::matrix(const char* key) {
 std::optional<Matrix> SystemReader::interval_matrix(const char* key, Matrix& radius) {
   const auto at = system_.find(key);
   if (!at) return std::nullopt;
-  if (exact_ && at->is(Value::Kind::object)) {
+  if (exact_ && at->is(Value::Kind::object) && !is_sparse_matrix(at->value())) {
     at->error("is an interval matrix, in a system of type \"lti\"", "write \"type\": \"interval_lti\"");
     return std::nullopt;
   }

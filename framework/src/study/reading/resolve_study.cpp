@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "study/reading/read_parts.hpp"
+#include "study/reading/resolve_sweep.hpp"
 
 namespace cordon::json {
 
@@ -232,7 +233,7 @@ void print(const Json& value, const std::string& indent, std::string& out) {
 
 }  // namespace
 
-std::string resolve(const Study& study, const Written& written, const Registry& registry) {
+std::string resolve(const Study& study, const Written& written, const std::vector<WrittenAxis>& sweep, const Registry& registry) {
   Json root;
   root["cordon"] = 1;
   root["title"] = study.title;
@@ -258,6 +259,7 @@ std::string resolve(const Study& study, const Written& written, const Registry& 
   }
   root["metrics"] = Json::array();
   for (const ComponentSpec& spec : study.metrics) root["metrics"].push_back(to_json(spec, "metric", registry));
+  if (!sweep.empty()) add_sweep(root, written.tree, sweep);
   std::string text;
   print(root, "", text);
   return text + "\n";

@@ -89,6 +89,14 @@ Json signals() {
   return {{"oneOf", all}};
 }
 
+Json sparse_matrix() {
+  const Json size = integer(0, json::max_entries), place = integer(1, json::max_entries);
+  const Json entry{{"type", "array"}, {"prefixItems", {place, place, {{"type", "number"}}}}, {"minItems", 3}, {"maxItems", 3}};
+  return described(object({{"rows", size}, {"cols", size}, {"entries", described(list_of(entry), "[row, column, number]")}},
+                          {"rows", "cols", "entries"}),
+                   "sparse: the entries that are not 0, rows and columns counted from 1");
+}
+
 Json interval_matrix() {
   const Json matrix = reference("matrix");
   return {{"anyOf",
@@ -291,7 +299,7 @@ Json components(const Registry& registry, const char* kind) {
 Json definitions(const Registry& registry) {
   Json defs;
   defs["vector"] = list_of({{"type", "number"}});
-  defs["matrix"] = described(list_of(reference("vector")), "a list of rows of equal length");
+  defs["matrix"] = {{"anyOf", {described(list_of(reference("vector")), "a list of rows of equal length"), sparse_matrix()}}};
   defs["interval_matrix"] = interval_matrix();
   defs["bounds"] = list_of({{"anyOf", {{{"type", "number"}}, one_of({"inf", "-inf"})}}});
   defs["set"] = sets();

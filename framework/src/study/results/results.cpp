@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cordon/registry/build.hpp"
+#include "study/results/file_heads.hpp"
 #include "study/results/host.hpp"
 #include "study/results/numbers.hpp"
 #include "study/results/outcome_json.hpp"
 #include "study/results/results_design.hpp"
 #include "study/results/results_diagnosis.hpp"
 #include "study/results/results_parts.hpp"
+#include "study/statistics/table_builder.hpp"
 
 namespace cordon::detail {
 
@@ -27,15 +28,6 @@ std::string csv_value(const MetricValue& metric) {
   if (const auto* number = std::get_if<double>(&metric.value)) return csv_number(*number);
   if (const auto* integer = std::get_if<Index>(&metric.value)) return std::to_string(*integer);
   return csv_field(std::get<std::string>(metric.value));
-}
-
-/// FNV-1a with 64 bits, to tell studies apart.
-std::string fingerprint(std::string_view text) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  std::string digits(16, '0');
-  for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
-  return "fnv1a64:" + digits;
 }
 
 void write(JsonWriter& json, std::string_view name, const AnswerCount& count) {
@@ -71,6 +63,7 @@ Results::Results(const Study& study, const Registry& registry, const std::filesy
       summary_file_(directory_.create("summary.csv")),
       diagnosis_file_(has_diagnosers(study) ? &directory_.create("diagnosis.csv") : nullptr),
       inputs_file_(has_designers(study) ? &directory_.create("inputs.csv") : nullptr),
+      tables_(directory_),
       run_file_(directory_.create("run.json")),
       results_file_(directory_.create("results.json")),
       results_(results_file_),
@@ -81,37 +74,13 @@ Results::Results(const Study& study, const Registry& registry, const std::filesy
 }
 
 void Results::begin_results(const Registry& registry) {
-  const BuildInfo build = build_info();
-  results_.begin_object(Layout::lines).member("cordon_results", 1);
-  results_.key("cordon").begin_object().member("version", build.version).member("abi_tag", build.abi_tag).end_object();
-  results_.key("tools").begin_object();
-  for (const auto& [tool, version] : build.tools) results_.member(tool, version);
-  results_.end_object();
-  results_.key("plugins").begin_array();
-  for (const PluginReport& report : registry.reports()) {
-    if (report.state != PluginReport::State::loaded) continue;
-    results_.begin_object().member("name", report.name).member("version", report.version).end_object();
-  }
-  results_.end_array();
-  results_.member("title", study_.title).member("study_hash", fingerprint(study_.resolved));
-  results_.key("study");
-  study_.resolved.empty() ? results_.null() : results_.raw(study_.resolved);
+  begin_results_file(results_, study_, registry);
   results_.key("pipelines").begin_array(Layout::lines);
 }
 
 void Results::begin_run(const Registry& registry) {
-  const Host host = this_host();
-  run_.begin_object(Layout::lines).member("cordon_run", 1).member("study", study_.file.string()).member("started", utc_now());
-  run_.key("host").begin_object().member("name", host.name).member("system", host.system).member("cpu", host.cpu).end_object();
-  run_.key("plugins").begin_array(Layout::lines);
-  for (const PluginReport& report : registry.reports()) {
-    if (report.state != PluginReport::State::loaded) continue;
-    run_.begin_object().member("name", report.name).member("file", report.file.string()).end_object();
-  }
-  run_.end_array();
-  run_.key("warnings").begin_array(Layout::lines);
-  for (const std::string& warning : study_.warnings) run_.value(warning);
-  run_.end_array().key("pipelines").begin_array(Layout::lines);
+  begin_run_file(run_, study_, registry, utc_now());
+  run_.key("pipelines").begin_array(Layout::lines);
 }
 
 void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding,
@@ -323,6 +292,8 @@ std::vector<std::filesystem::path> Results::commit(const RunOutcome& outcome) {
   if (!header_written_) write_header(study_.model.linear.states());
   if (diagnosis_file_ && !diagnosis_header_written_) write_diagnosis_header(study_.modes.size() + 1);
   write_summaries();
+  const ResultTable table = table_of(study_, outcome);
+  tables_.write(table, summarise(table));
   results_.end_array().end_object();
   results_file_.write("\n");
   double wall = 0;

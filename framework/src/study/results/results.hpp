@@ -10,6 +10,7 @@
 #include "study/results/diagnosis_json.hpp"
 #include "study/results/json_writer.hpp"
 #include "study/results/metric_board.hpp"
+#include "study/statistics/summaries.hpp"
 
 namespace cordon::detail {
 
@@ -48,6 +49,7 @@ struct Assumptions {
 ///   steps.csv, summary.csv   the same numbers as tables (∞ as inf, absent values as empty fields)
 ///   diagnosis.csv the steps of pipelines with a diagnoser, if there are any (their steps[] in results.json hold decisions)
 ///   inputs.csv    the designed inputs, if there are pipelines with a designer
+///   summary.tex, summary.md, benchmarks.csv   the summaries as tables to print, with times
 ///   run.json      host, times, and what else differs from run to run
 /// Nothing is visible under its name before `commit`.
 class Results {
@@ -90,6 +92,7 @@ class Results {
   OutputFile& summary_file_;
   OutputFile* diagnosis_file_ = nullptr;  ///< if there are diagnosers
   OutputFile* inputs_file_ = nullptr;     ///< if there are designers
+  TableFiles tables_;
   OutputFile& run_file_;
   OutputFile& results_file_;
   JsonWriter results_, run_;

@@ -41,7 +41,7 @@ PipelineDesign design_one(const Study& study, std::size_t index, const Registry&
     if (options.progress) {
       tell = [&](Index horizon, double best, double bound) { options.progress(index, horizon, best, bound); };
     }
-    detail::WatchedDesign control(options.stop, tell);
+    detail::WatchedDesign control([&] { return options.stop && options.stop->load(); }, tell);
     made.outcome = designer->design(control);
   });
   made.design_s = seconds_since(begin);

@@ -2,7 +2,6 @@
 // How designers are watched while they work.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <functional>
 
@@ -10,13 +9,18 @@
 
 namespace cordon::detail {
 
-/// Ends a design by a flag (may be null), and passes its progress on at most twenty times a second.
+/// Ends a design when it is told to, and passes its progress on at most twenty times a second.
 class WatchedDesign final : public DesignControl {
  public:
   using Tell = std::function<void(Index, double, double)>;
-  explicit WatchedDesign(const std::atomic<bool>* stop, Tell tell = {}) : stop_(stop), tell_(std::move(tell)) {}
+  explicit WatchedDesign(std::function<bool()> stop, Tell tell = {}) : stop_(std::move(stop)), tell_(std::move(tell)) {}
 
-  bool stop() const noexcept override { return stop_ && stop_->load(); }
+  bool stop() const noexcept override {
+    stopped_ = stopped_ || stop_();
+    return stopped_;
+  }
+  /// Has the design been told to end?
+  bool stopped() const noexcept { return stopped_; }
   void progress(Index horizon, double best, double bound) override {
     if (!tell_ || Clock::now() - told_ < std::chrono::milliseconds(50)) return;
     told_ = Clock::now();
@@ -26,7 +30,8 @@ class WatchedDesign final : public DesignControl {
  private:
   using Clock = std::chrono::steady_clock;
 
-  const std::atomic<bool>* stop_;
+  std::function<bool()> stop_;
+  mutable bool stopped_ = false;
   Tell tell_;
   Clock::time_point told_ = {};
 };

@@ -23,17 +23,19 @@ double seconds_since(Clock::time_point begin) { return std::chrono::duration<dou
 /// A designer and a diagnoser with what they have found so far.
 class DesignPipeline {
  public:
-  DesignPipeline(const Study& study, const PipelineSpec& spec) : study_(study), bank_(bank_of(study)) {
+  DesignPipeline(const Study& study, const PipelineSpec& spec, const TimeLimit& limit)
+      : study_(study), bank_(bank_of(study)), limit_(limit) {
     outcome_.name = spec.name;
     outcome_.backend = spec.backend.type;
     outcome_.designer = spec.designer->type;
     if (spec.diagnoser) outcome_.diagnoser = spec.diagnoser->type;
   }
 
-  void design(const PipelineSpec& spec, const Registry& registry, DesignControl& control) {
+  void design(const PipelineSpec& spec, const Registry& registry, WatchedDesign& control) {
     guarded(outcome_, [&] {
       backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
       outcome_.design = registry.make_designer(spec.designer->type, bank_, backend_, spec.designer->params)->design(control);
+      if (control.stopped()) limit_.check(0);
       if (outcome_.design->best && spec.diagnoser) {
         diagnoser_ = registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
         admissible_ = admissible_sets(*spec.diagnoser);
@@ -60,6 +62,7 @@ class DesignPipeline {
       const auto data = open_experiment(study_, bank_, mode, outcome_.design->best->u, static_cast<std::uint64_t>(seed_offset));
       diagnoser_->start();
       while (const std::optional<Record> record = data->next()) {
+        limit_.check(outcome_.steps);
         if (assumptions_until < 0 && record->truth && !may_be(mode, record->sample.k, *record->truth)) {
           assumptions_until = record->sample.k;
         }
@@ -131,6 +134,7 @@ class DesignPipeline {
 
   const Study& study_;
   ModeBank bank_;
+  const TimeLimit& limit_;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Diagnoser> diagnoser_;
   std::vector<LineForm> admissible_;
@@ -142,14 +146,15 @@ class DesignPipeline {
 }  // namespace
 
 std::optional<PipelineOutcome> run_design(const Study& study, std::size_t index, const Registry& registry,
-                                          const RunOptions& options, Results* results) {
+                                          const RunOptions& options, const TimeLimit& limit, Results* results) {
   const PipelineSpec& spec = study.pipelines[index];
   const auto stopped = [&] { return options.stop && options.stop->load(); };
   const Clock::time_point begin = Clock::now();
-  DesignPipeline pipeline(study, spec);
-  WatchedDesign control(options.stop, [&](Index, double, double) {
-    if (options.progress) options.progress(index, 0, 0);
-  });
+  DesignPipeline pipeline(study, spec, limit);
+  WatchedDesign control([&] { return stopped() || limit.reached(); },
+                        [&](Index, double, double) {
+                          if (options.progress) options.progress(index, 0, 0);
+                        });
   pipeline.design(spec, registry, control);
   if (stopped()) return std::nullopt;
   if (pipeline.experiments_follow()) {

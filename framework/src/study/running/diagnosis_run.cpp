@@ -61,6 +61,12 @@ class DiagnosisPipeline {
   const DiagnosisOutcome& found() const { return found_; }
   bool failed() const { return !outcome_.error.empty(); }
 
+  /// The time is over: the pipeline has stopped with an error.
+  bool gives_up(const TimeLimit& limit) {
+    guarded(outcome_, [&] { limit.check(found_.steps); });
+    return failed();
+  }
+
   void begin_run(std::int64_t seed_offset) {
     seed_offset_ = seed_offset;
     start_holds_ = true;
@@ -195,7 +201,8 @@ void check_fits(const Diagnosis& diagnosis, const ModeBank& bank, const std::str
 }
 
 std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study, std::size_t index,
-                                             const Registry& registry, const RunOptions& options, Results* results) {
+                                             const Registry& registry, const RunOptions& options, const TimeLimit& limit,
+                                             Results* results) {
   const PipelineSpec& spec = study.pipelines[index];
   const Clock::time_point begin = Clock::now();
   DiagnosisPipeline pipeline(study, spec);
@@ -212,7 +219,7 @@ std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& 
     while (!pipeline.failed()) {
       if (options.stop && options.stop->load()) return std::nullopt;
       const std::optional<Record> record = data->next();
-      if (!record) break;
+      if (!record || pipeline.gives_up(limit)) break;
       if (writer) writer->data(*record);
       pipeline.step(*record, writer);
       if (options.progress && seconds_since(told) > 0.05) {

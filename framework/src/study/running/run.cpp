@@ -12,6 +12,7 @@
 #include "study/running/diagnosis_run.hpp"
 #include "study/running/inner_check.hpp"
 #include "study/running/pipeline_guard.hpp"
+#include "study/running/time_limit.hpp"
 
 namespace cordon {
 
@@ -24,6 +25,7 @@ using detail::Median;
 using detail::MetricBoard;
 using detail::MetricValues;
 using detail::Results;
+using detail::TimeLimit;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -79,6 +81,12 @@ class Pipeline {
       if (const Set* admissible = observer_->admissible_set()) assumptions_->admissible_set = admissible->line_form();
       outcome_.gains = observer_->gains();
     });
+  }
+
+  /// The time is over: the pipeline has stopped with an error.
+  bool gives_up(const TimeLimit& limit) {
+    guarded([&] { limit.check(outcome_.steps); });
+    return failed();
   }
 
   /// False once the pipeline has stopped with an error.
@@ -200,8 +208,8 @@ class Pipeline {
 };
 
 /// Runs one pipeline over its own stream of the data. False: stopped from outside.
-bool run_pipeline(const Study& study, std::size_t index, const Registry& registry, const RunOptions& options, DataSource& data,
-                  Results* results, RunOutcome& outcome) {
+bool run_pipeline(const Study& study, std::size_t index, const Registry& registry, const RunOptions& options,
+                  const TimeLimit& limit, DataSource& data, Results* results, RunOutcome& outcome) {
   const PipelineSpec& spec = study.pipelines[index];
   const Clock::time_point begin = Clock::now();
   const std::int64_t total = data.size().value_or(0);
@@ -213,7 +221,7 @@ bool run_pipeline(const Study& study, std::size_t index, const Registry& registr
   while (!pipeline.failed()) {
     if (options.stop && options.stop->load()) return false;
     const std::optional<Record> record = data.next();
-    if (!record) break;
+    if (!record || pipeline.gives_up(limit)) break;
     if (results) results->data(*record);
     if (!pipeline.step(*record, results)) break;
     ++done;
@@ -227,9 +235,33 @@ bool run_pipeline(const Study& study, std::size_t index, const Registry& registr
   return true;
 }
 
+/// Where the pipeline of this name stands. Throws InputError if there is none.
+std::size_t index_of(const Study& study, const std::string& name) {
+  std::vector<std::string> names;
+  for (const PipelineSpec& spec : study.pipelines) names.push_back(spec.name);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  throw InputError(study.file.string(), {{"/pipelines", "there is no pipeline \"" + name + "\"", suggest(name, names)}});
+}
+
+/// run_on for one of the pipelines.
+RunOutcome run_one(const detail::OpenData& open, Study study, const Registry& registry, RunOptions options) {
+  const std::size_t index = index_of(study, options.pipeline);
+  study.pipelines = {study.pipelines[index]};
+  options.pipeline.clear();
+  if (options.progress) {
+    options.progress = [index, tell = options.progress](std::size_t, std::int64_t done, std::int64_t total) {
+      tell(index, done, total);
+    };
+  }
+  return detail::run_on(open, study, registry, options);
+}
+
 }  // namespace
 
 RunOutcome detail::run_on(const OpenData& open, const Study& study, const Registry& registry, const RunOptions& options) {
+  if (!options.pipeline.empty()) return run_one(open, study, registry, options);
+  const TimeLimit limit(options.deadline);
   const bool streams = std::any_of(study.pipelines.begin(), study.pipelines.end(), [](const auto& p) { return !p.designer; });
   std::unique_ptr<DataSource> data = streams ? open(0) : nullptr;  // first: bad data leave no trace on the disk
   std::optional<Results> results;
@@ -240,13 +272,13 @@ RunOutcome detail::run_on(const OpenData& open, const Study& study, const Regist
     bool done = true;
     if (study.pipelines[i].designer || study.pipelines[i].diagnoser) {
       std::optional<PipelineOutcome> found = study.pipelines[i].designer
-                                                 ? detail::run_design(study, i, registry, options, writer)
-                                                 : detail::run_diagnosis(open, study, i, registry, options, writer);
+                                                 ? detail::run_design(study, i, registry, options, limit, writer)
+                                                 : detail::run_diagnosis(open, study, i, registry, options, limit, writer);
       done = found.has_value();
       if (found) outcome.pipelines.push_back(std::move(*found));
     } else {
       if (i > 0) data = open(0);
-      done = run_pipeline(study, i, registry, options, *data, writer, outcome);
+      done = run_pipeline(study, i, registry, options, limit, *data, writer, outcome);
     }
     if (!done) {
       outcome.interrupted = true;

@@ -2,6 +2,7 @@
 #include "study/verification/recorded_run.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 
 #include "study/reading/read_parts.hpp"
@@ -43,6 +44,8 @@ std::optional<Index> read_size(const Cursor& set, const char* key) {
   return size ? std::optional<Index>(*size) : std::nullopt;
 }
 
+}  // namespace
+
 std::optional<LineForm> read_form(const Cursor& at, Index dim) {
   if (!at.expect(Kind::object, mend())) return std::nullopt;
   const auto n = read_size(at, "dim"), l = read_size(at, "lines"), g = read_size(at, "generators"),
@@ -58,6 +61,8 @@ std::optional<LineForm> read_form(const Cursor& at, Index dim) {
   if (!M || !G || !S || !A || !c || !b) return std::nullopt;
   return LineForm{std::move(*M), std::move(*G), std::move(*c), std::move(*S), std::move(*A), std::move(*b)};
 }
+
+namespace {
 
 template <class Enum>
 std::optional<Enum> read_word(const Cursor& object, const char* key, std::initializer_list<Enum> all) {
@@ -213,6 +218,18 @@ void check_times(const std::filesystem::path& file) {
   }
 }
 
+/// `k` of a line of sets.jsonl, if it stands there as it was written. (A quote inside of a text is escaped, so that no name holds
+/// the key.)
+std::optional<Index> time_of(const std::string& text) {
+  static const std::string key = "\"k\": ";
+  const std::size_t at = text.find(key);
+  if (at == std::string::npos) return std::nullopt;
+  Index k = 0;
+  const char *first = text.data() + at + key.size(), *last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, k);
+  return error == std::errc{} && end != last && *end == ',' ? std::optional<Index>(k) : std::nullopt;
+}
+
 }  // namespace
 
 RecordedRun read_run(const std::filesystem::path& directory) {
@@ -252,10 +269,14 @@ SetReader::SetReader(const std::filesystem::path& directory) : file_(directory /
   if (!stream_) throw InputError(file_.string(), {{"", "cannot be read", "\"cordon run\" writes it beside results.json"}});
 }
 
-std::optional<RecordedSet> SetReader::next() {
+std::optional<RecordedSet> SetReader::next(const std::function<bool(Index)>& wanted) {
   std::string text;
-  if (!std::getline(stream_, text)) return std::nullopt;
-  ++line_;
+  for (bool passes = true; passes;) {
+    if (!std::getline(stream_, text)) return std::nullopt;
+    ++line_;
+    const auto k = wanted ? time_of(text) : std::nullopt;
+    passes = k && !wanted(*k);
+  }
   Problems problems;
   RecordedSet row;
   row.line = line_;

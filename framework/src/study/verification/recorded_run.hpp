@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,6 +54,9 @@ struct RecordedRun {
   std::vector<RecordedPipeline> pipelines;
 };
 
+/// A set in exchange form, as results files write it.
+std::optional<LineForm> read_form(const json::Cursor& at, Index dim);
+
 /// Throws InputError.
 RecordedRun read_run(const std::filesystem::path& directory);
 
@@ -60,8 +64,8 @@ RecordedRun read_run(const std::filesystem::path& directory);
 class SetReader {
  public:
   explicit SetReader(const std::filesystem::path& directory);
-  /// The next line; nothing at the end. Throws InputError.
-  std::optional<RecordedSet> next();
+  /// The next line; nothing at the end. Lines of times that are not `wanted` are passed over unread. Throws InputError.
+  std::optional<RecordedSet> next(const std::function<bool(Index)>& wanted = {});
 
  private:
   std::filesystem::path file_;

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace cordon::detail {
+
+/// FNV-1a with 64 bits as 16 hexadecimal digits. Two texts that differ in one byte never have the same.
+inline std::string fnv1a64(std::string_view text) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  std::string digits(16, '0');
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
+  return digits;
+}
+
+/// To tell studies apart.
+inline std::string fingerprint(std::string_view text) { return "fnv1a64:" + fnv1a64(text); }
+
+}  // namespace cordon::detail

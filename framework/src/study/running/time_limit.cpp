@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/running/time_limit.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "cordon/core/error.hpp"
+
+namespace cordon::detail {
+
+void TimeLimit::check(std::int64_t steps) const {
+  if (!reached()) return;
+  const double seconds = std::max(0.0, std::chrono::duration<double>(*deadline_ - begin_).count());
+  throw Error(Errc::time_limit,
+              fmt::format("time limit of {:.3g} s reached after {} {}", seconds, steps, steps == 1 ? "step" : "steps"));
+}
+
+}  // namespace cordon::detail

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Makes a table of results row by row.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+
+#include "cordon/study/result_table.hpp"
+
+namespace cordon::detail {
+
+/// Columns come in the order of their first appearance.
+class TableBuilder {
+ public:
+  explicit TableBuilder(ResultTable& table) : table_(table) {}
+
+  /// `numbers` go to the row; NaN makes no column.
+  void add(ResultRow row, const std::vector<ResultNumber>& numbers);
+  /// More numbers of a row that was added before.
+  void extend(std::size_t row, const std::vector<ResultNumber>& numbers);
+  /// All rows get as many values as there are columns.
+  void finish();
+
+ private:
+  std::size_t column(const ResultColumn& column);
+
+  ResultTable& table_;
+  std::unordered_map<std::string, std::size_t> known_;
+};
+
+/// The table of a run: one row per pipeline, no axes.
+ResultTable table_of(const Study& study, const RunOutcome& outcome);
+
+}  // namespace cordon::detail

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/sweep/journal.hpp"
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fcntl.h>
+#include <fstream>
+#include <optional>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+#include "study/results/fingerprint.hpp"
+#include "study/results/json_writer.hpp"
+#include "study/results/numbers.hpp"
+#include "study/results/string_sink.hpp"
+
+namespace cordon::detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* folder = ".sweep";
+const std::string discard = "\"--restart\" throws the unfinished sweep away; another \"--out\" keeps it";
+
+[[noreturn]] void fail(const fs::path& path, int reason) {
+  const std::string mend = reason == ENOSPC || reason == EDQUOT ? "; free some space, then go on with --resume" : "";
+  throw Error(Errc::io,
+              "cannot write " + path.string() + ": " + std::strerror(reason) + mend + "; points that were finished are kept");
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& reason, const std::string& mend) {
+  throw InputError(file.string(), {{"", reason, mend}});
+}
+
+std::string with_checksum(const std::string& text) { return fnv1a64(text) + ' ' + text + '\n'; }
+
+/// The text of a line that is whole.
+std::optional<std::string> checked(const std::string& line) {
+  constexpr std::size_t digits = 16;
+  if (line.size() < digits + 2 || line.size() > json::max_bytes || line[digits] != ' ') return std::nullopt;
+  std::string text = line.substr(digits + 1);
+  return fnv1a64(text) == line.substr(0, digits) ? std::optional(std::move(text)) : std::nullopt;
+}
+
+std::string text_of(const JournalHead& head) {
+  StringSink sink;
+  JsonWriter json(sink);
+  json.begin_object().member("cordon_journal", 1).member("study_hash", head.study_hash);
+  json.member("version", head.version).member("abi_tag", head.abi_tag).key("plugins").begin_array();
+  for (const std::string& plugin : head.plugins) json.value(plugin);
+  json.end_array().member("part", head.shard.part).member("of", head.shard.of).member("limit", head.limit_s);
+  json.member("started", head.started).end_object();
+  return std::move(sink.text);
+}
+
+std::optional<JournalHead> head_of(const std::string& text) {
+  json::Problems problems;
+  const json::Value tree = json::parse(text, problems);
+  const json::Cursor root(tree, "", problems);
+  if (!root.expect(json::Value::Kind::object, "")) return std::nullopt;
+  JournalHead head;
+  const auto word = [&](const char* key) {
+    const auto at = root.need(key, "");
+    return at && at->expect(json::Value::Kind::text, "") ? at->value().text() : std::string();
+  };
+  const auto whole = [&](const char* key) {
+    const auto at = root.need(key, "");
+    return at ? json::read_integer(*at, 1, json::max_integer).value_or(1) : 1;
+  };
+  head.study_hash = word("study_hash");
+  head.version = word("version");
+  head.abi_tag = word("abi_tag");
+  head.started = word("started");
+  head.shard = {whole("part"), whole("of")};
+  if (const auto plugins = root.need("plugins", "")) {
+    for (const json::Value& plugin : plugins->value().items()) head.plugins.push_back(plugin.text());
+  }
+  const auto limit = root.need("limit", "");
+  head.limit_s = limit && limit->is(json::Value::Kind::number) ? limit->value().number : HUGE_VAL;
+  if (whole("cordon_journal") != 1 || problems.any()) return std::nullopt;
+  return head;
+}
+
+std::string part_of(const Shard& shard) {
+  return shard.of == 1 ? "all points" : "part " + std::to_string(shard.part) + " of " + std::to_string(shard.of);
+}
+
+std::string limit_of(double seconds) { return std::isfinite(seconds) ? "a limit of " + to_text(seconds) + " s" : "no limit"; }
+
+/// Why points of one sweep are no points of the other, and the mend; two empty texts if they are.
+std::pair<std::string, std::string> difference(const JournalHead& old, const JournalHead& now) {
+  if (old.study_hash != now.study_hash)
+    return {"holds the unfinished sweep of another study, or of an earlier version of this one", discard};
+  if (old.version != now.version || old.abi_tag != now.abi_tag)
+    return {"holds an unfinished sweep of another build of this program (version " + old.version + ")", discard};
+  if (old.plugins != now.plugins) return {"holds an unfinished sweep with other plugins", discard};
+  if (old.shard.part != now.shard.part || old.shard.of != now.shard.of)
+    return {"holds " + part_of(old.shard) + ", and " + part_of(now.shard) + " was asked for",
+            "every part needs an \"--out\" of its own"};
+  if (old.limit_s != now.limit_s)
+    return {"was begun with " + limit_of(old.limit_s) + " per point, now there is " + limit_of(now.limit_s),
+            "go on with the same limit; " + discard};
+  return {};
+}
+
+}  // namespace
+
+bool Journal::is_in(const fs::path& out) {
+  std::error_code ignored;
+  return fs::exists(out / folder / "journal", ignored);
+}
+
+Journal::Journal(const fs::path& out, const JournalHead& head, Start start, const std::function<void(PointResult)>& earlier)
+    : directory_(out / folder), file_(directory_ / "journal"), head_(head) {
+  try {
+    lock();
+    std::ifstream old;
+    if (is_in(out) && start == Start::fresh) {
+      refuse(out, "holds an unfinished sweep", "\"--resume\" goes on with it, \"--restart\" throws it away");
+    }
+    if (is_in(out) && start == Start::resume) {
+      old.open(file_, std::ios::binary);
+      check_head(old);
+    }
+    begin(old, earlier);
+  } catch (...) {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (lock_ >= 0) ::close(lock_);
+    throw;
+  }
+}
+
+Journal::~Journal() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void Journal::lock() {
+  for (;;) {
+    std::error_code error;
+    fs::create_directories(directory_, error);
+    if (error) throw Error(Errc::io, "cannot make the directory " + directory_.string() + ": " + error.message());
+    lock_ = ::open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+    if (lock_ < 0 && errno != ENOENT) fail(directory_, errno);
+    if (lock_ < 0) continue;  // it was finished in between
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+      if (errno != EWOULDBLOCK) fail(directory_, errno);
+      refuse(directory_.parent_path(), "another process is running a sweep into this directory",
+             "wait for its end, or name another \"--out\"");
+    }
+    struct stat held, there;
+    const bool same = ::fstat(lock_, &held) == 0 && ::lstat(directory_.c_str(), &there) == 0 && held.st_dev == there.st_dev &&
+                      held.st_ino == there.st_ino;
+    if (same) return;
+    ::close(std::exchange(lock_, -1));
+  }
+}
+
+/// Leaves the stream behind the head.
+void Journal::check_head(std::istream& old) {
+  std::string line;
+  std::optional<std::string> text;
+  if (std::getline(old, line) && !old.eof()) text = checked(line);
+  const std::optional<JournalHead> head = text ? head_of(*text) : std::nullopt;
+  if (!head) refuse(file_, "is damaged: it does not tell which sweep it belongs to", discard);
+  const auto [reason, mend] = difference(*head, head_);
+  if (!reason.empty()) refuse(directory_.parent_path(), reason, mend);
+  head_.started = head->started;
+}
+
+/// A new file takes the place of the old one, with its lines that are whole, and is left open at its end.
+void Journal::begin(std::istream& old, const std::function<void(PointResult)>& earlier) {
+  const fs::path fresh = directory_ / "journal.new";
+  descriptor_ = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail(fresh, errno);
+  write(with_checksum(text_of(head_)));
+  for (std::string line; std::getline(old, line) && !old.eof();) {  // a last line without its end is torn
+    const std::optional<std::string> text = checked(line);
+    auto point = text ? point_of(*text) : std::nullopt;
+    if (!point) continue;
+    write(line + '\n');
+    earlier(std::move(*point));
+  }
+  if (old.bad()) throw Error(Errc::io, "cannot read " + file_.string());
+  sync();
+  if (::rename(fresh.c_str(), file_.c_str()) != 0) fail(file_, errno);
+  ::fsync(lock_);  // the new name, where the file system can
+}
+
+void Journal::add(const std::string& line) {
+  const std::lock_guard guard(writing_);
+  write(with_checksum(line));
+}
+
+void Journal::write(std::string_view bytes) {
+  if (broken_) throw Error(Errc::io, "cannot write " + file_.string() + " any more");  // a torn line must stay the last one
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      broken_ = true;
+      fail(file_, errno);
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void Journal::sync() {
+  int result = ::fsync(descriptor_);
+  while (result != 0 && errno == EINTR) result = ::fsync(descriptor_);
+  if (result != 0 && errno != EINVAL && errno != EROFS) fail(file_, errno);  // those two: it cannot be synchronised
+}
+
+void Journal::remove() {
+  std::error_code ignored;
+  fs::remove_all(directory_, ignored);
+}
+
+}  // namespace cordon::detail

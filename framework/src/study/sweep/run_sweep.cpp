@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "cordon/registry/build.hpp"
+#include "study/results/fingerprint.hpp"
+#include "study/results/host.hpp"
+#include "study/sweep/journal.hpp"
+#include "study/sweep/sweep_files.hpp"
+#include "study/sweep/sweep_run.hpp"
+
+namespace cordon::detail {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double longest_limit_s = 1e9;  // beyond that the clock would overflow, and nobody waits
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+void check(const SweepOptions& options) {
+  if (options.out.empty()) throw Error(Errc::invalid, "a sweep needs a directory for its results");
+  if (options.jobs < 1) throw Error(Errc::invalid, "a sweep needs one job at least");
+  if (options.resume && options.restart) throw Error(Errc::invalid, "resume and restart exclude each other");
+  if (!(options.point_limit_s > 0)) throw Error(Errc::invalid, "the time limit of a point must be above 0");
+  if (options.shard.of < 1 || options.shard.part < 1 || options.shard.part > options.shard.of || options.shard.of > most_parts)
+    throw Error(Errc::invalid,
+                "a shard is a part between 1 and the number of parts, which is " + std::to_string(most_parts) + " at most");
+}
+
+JournalHead head_of(const Study& study, const Registry& registry, const SweepOptions& options) {
+  const BuildInfo build = build_info();
+  JournalHead head{fingerprint(study.resolved), build.version, build.abi_tag, {}, options.shard,
+                   options.point_limit_s,       utc_now()};
+  for (const PluginReport& report : registry.reports()) {
+    if (report.state == PluginReport::State::loaded) head.plugins.push_back(report.name + ' ' + report.version);
+  }
+  return head;
+}
+
+/// One line for the problems of an input, without the name of the study's file, which is not part of the results.
+std::string text_of(const InputError& error, const Study& study) {
+  std::string text = error.file() == study.file.string() ? "" : error.file() + ": ";
+  bool first = true;
+  for (const Diagnostic& one : error.diagnostics()) {
+    text += first ? "" : "; ";
+    first = false;
+    if (!one.pointer.empty()) text += one.pointer + " ";
+    text += one.message;
+    if (!one.suggestion.empty()) text += "; " + one.suggestion;
+  }
+  return text;
+}
+
+/// Runs points, one after another: what one thread of a sweep does.
+class PointRunner {
+ public:
+  PointRunner(const StudyAt& at, const Study& study, const Registry& registry, double limit_s, const std::atomic<bool>& stop)
+      : at_(at), study_(study), registry_(registry), limit_s_(limit_s), stop_(stop) {}
+
+  /// Nothing: stopped.
+  std::optional<PointResult> run(const SweepPoint& point) {
+    PointResult result;
+    result.index = point.index;
+    try {
+      if (!run(point, result)) return std::nullopt;
+    } catch (const InputError& error) {
+      fail(result, error.code(), text_of(error, study_));
+    } catch (const Error& error) {
+      fail(result, error.code(), error.what());
+    } catch (const std::exception& error) {
+      fail(result, Errc::internal, error.what());
+    } catch (...) {
+      fail(result, Errc::internal, "an exception of unknown type");
+    }
+    return result;
+  }
+
+ private:
+  bool run(const SweepPoint& point, PointResult& result) {
+    if (!now_ || point.at != place_) {  // points of one combination follow each other
+      now_.reset();
+      now_ = at_(point.at);
+      place_ = point.at;
+    }
+    RunOptions options;
+    options.pipeline = now_->pipelines.at(point.pipeline).name;
+    options.stop = &stop_;
+    if (limit_s_ < longest_limit_s)
+      options.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_s_));
+    const RunOutcome outcome = run_study(*now_, registry_, options);
+    if (outcome.interrupted) return false;
+    const PipelineOutcome& pipeline = outcome.pipelines.front();
+    result.numbers = numbers_of(pipeline);
+    result.error = pipeline.error;
+    result.code = pipeline.error_code;
+    return true;
+  }
+
+  static void fail(PointResult& result, Errc code, const std::string& message) {
+    result.code = code;
+    result.error = message.empty() ? std::string(to_string(code)) : message;
+  }
+
+  const StudyAt& at_;
+  const Study& study_;
+  const Registry& registry_;
+  double limit_s_;
+  const std::atomic<bool>& stop_;
+  std::optional<Study> now_;
+  std::vector<std::size_t> place_;
+};
+
+class SweepRun {
+ public:
+  SweepRun(const StudyAt& at, const Study& study, const Registry& registry, const SweepOptions& options)
+      : at_(at), study_(study), registry_(registry), options_(options), grid_(study) {
+    for (std::int64_t i = 0; i < grid_.size(); ++i) total_ += is_mine(i);
+  }
+
+  SweepOutcome run() {
+    JournalHead head = head_of(study_, registry_, options_);
+    if (options_.resume && !Journal::is_in(options_.out)) {
+      if (auto finished = finished_before(head)) return std::move(*finished);
+    }
+    const Journal::Start start = options_.resume    ? Journal::Start::resume
+                                 : options_.restart ? Journal::Start::restart
+                                                    : Journal::Start::fresh;
+    journal_.emplace(options_.out, head, start, [&](const PointResult& point) {
+      if (point.index < grid_.size() && is_mine(point.index)) rows_.add(point);
+    });
+    resumed_ = rows_.size();
+    work();
+    SweepOutcome outcome;
+    outcome.progress = progress();
+    outcome.interrupted = rows_.size() < total_;
+    if (outcome.interrupted) {
+      journal_->sync();
+      return outcome;
+    }
+    SweepFiles files = described(journal_->head().started);
+    files.rows = std::move(rows_);
+    files.wall_s = seconds_since(begin_);
+    outcome.table = table_of(files);
+    outcome.files = write_sweep(options_.out, files, outcome.table);
+    journal_->remove();
+    outcome.violated = violations(outcome.table);
+    outcome.first_error = files.rows.first_error();
+    return outcome;
+  }
+
+ private:
+  bool stopped_from_outside() const { return options_.stop && options_.stop->load(); }
+  bool is_mine(std::int64_t index) const { return options_.shard.has(grid_[index], study_.pipelines.size()); }
+
+  SweepFiles described(const std::string& started) const {
+    SweepFiles files;
+    files.heads = heads_of(study_, registry_, started);
+    read_head(files, study_.file);
+    if (options_.shard.of > 1) files.shard = options_.shard;
+    return files;
+  }
+
+  /// Results of this sweep that are there already.
+  std::optional<SweepOutcome> finished_before(const JournalHead& head) const {
+    try {
+      SweepFiles files = read_sweep(options_.out);
+      const Shard shard = files.shard.value_or(Shard{});
+      if (files.heads.results != described(head.started).heads.results || shard.part != options_.shard.part ||
+          shard.of != options_.shard.of)
+        return std::nullopt;
+      SweepOutcome outcome;
+      outcome.progress = {total_, total_, files.rows.failed(), total_, 0};
+      outcome.table = table_of(files);
+      outcome.violated = violations(outcome.table);
+      return outcome;
+    } catch (const InputError&) {
+      return std::nullopt;  // nothing that was finished
+    }
+  }
+
+  SweepProgress progress() {
+    const std::lock_guard guard(sharing_);
+    return {rows_.size(), total_, rows_.failed(), resumed_, seconds_since(begin_)};
+  }
+
+  /// Runs what is left. Returns when all is done, or when it was stopped; throws what a thread could not deal with.
+  void work() {
+    const std::int64_t left = total_ - rows_.size();
+    const std::int64_t jobs = std::min<std::int64_t>(options_.jobs, left);
+    {
+      std::vector<std::jthread> threads;
+      const struct StopAtEnd {
+        std::atomic<bool>& stop;
+        ~StopAtEnd() { stop = true; }
+      } stop_at_end{stop_};  // before the threads are joined, also if one of them cannot be made
+      for (; working_ < jobs; ++working_) threads.emplace_back([this] { work_on_points(); });
+      watch();
+    }
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+  void watch() {
+    Clock::time_point synced = Clock::now();
+    for (;;) {
+      {
+        std::unique_lock guard(sharing_);
+        if (ended_.wait_for(guard, std::chrono::milliseconds(50), [this] { return finished_ == working_; })) break;
+      }
+      if (stopped_from_outside()) stop_ = true;
+      if (options_.progress) options_.progress(progress());
+      if (seconds_since(synced) > 5) {
+        journal_->sync();
+        synced = Clock::now();
+      }
+    }
+    if (options_.progress) options_.progress(progress());
+  }
+
+  void work_on_points() {
+    try {
+      PointRunner runner(at_, study_, registry_, options_.point_limit_s, stop_);
+      while (!stop_ && !stopped_from_outside()) {
+        const std::optional<SweepPoint> point = next();
+        if (!point) break;
+        const std::optional<PointResult> result = runner.run(*point);
+        if (result) keep(*result);
+      }
+    } catch (...) {
+      const std::lock_guard guard(sharing_);
+      if (!failure_) failure_ = std::current_exception();
+      stop_ = true;
+    }
+    const std::lock_guard guard(sharing_);
+    ++finished_;
+    ended_.notify_all();
+  }
+
+  std::optional<SweepPoint> next() {
+    const std::lock_guard guard(sharing_);
+    while (next_ < grid_.size() && (!is_mine(next_) || rows_.has(next_))) ++next_;
+    if (next_ == grid_.size()) return std::nullopt;
+    return grid_[next_++];
+  }
+
+  /// Rows are made from the journal's line, so that they do not depend on whether it was read back.
+  void keep(const PointResult& result) {
+    const std::string line = line_of(result);
+    const std::optional<PointResult> read = point_of(line);
+    if (!read) throw Error(Errc::internal, "a point was written that cannot be read: " + line);
+    journal_->add(line);
+    const std::lock_guard guard(sharing_);
+    rows_.add(*read);
+  }
+
+  const StudyAt& at_;
+  const Study& study_;
+  const Registry& registry_;
+  const SweepOptions& options_;
+  SweepGrid grid_;
+  std::int64_t total_ = 0, resumed_ = 0;
+  Clock::time_point begin_ = Clock::now();
+  std::optional<Journal> journal_;
+  std::atomic<bool> stop_ = false;
+  std::mutex sharing_;  ///< of all that follows
+  std::condition_variable ended_;
+  SweepRows rows_;
+  std::int64_t next_ = 0, working_ = 0, finished_ = 0;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+SweepOutcome run_sweep_on(const StudyAt& at, const Study& study, const Registry& registry, const SweepOptions& options) {
+  check(options);
+  return SweepRun(at, study, registry, options).run();
+}
+
+}  // namespace cordon::detail
+
+namespace cordon {
+
+SweepOutcome run_sweep(const Study& study, const Registry& registry, const SweepOptions& options) {
+  return detail::run_sweep_on([&](const std::vector<std::size_t>& at) { return study_at(study, at, registry); }, study, registry,
+                              options);
+}
+
+}  // namespace cordon

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bounds, metrics and times of a run come out of its files as they stand there.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+#include <rapidcheck.h>
+
+#include "cordon/core/error.hpp"
+#include "report/results_files.hpp"
+#include "study/report/read_report.hpp"
+
+using namespace cordon;
+using namespace cordon::report;
+
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+const Plot& plot(const Report& report, const std::string& id) {
+  for (const Figure& figure : report.figures) {
+    if (figure.id == id) return std::get<Plot>(figure.content);
+  }
+  FAIL("no figure " << id);
+  throw 0;
+}
+
+bool has(const Report& report, const std::string& id) {
+  return std::any_of(report.figures.begin(), report.figures.end(), [&](const Figure& figure) { return figure.id == id; });
+}
+
+}  // namespace
+
+TEST_CASE("bounds: bands of pipelines, inner bands, truth, gaps and marks") {
+  const ResultsFiles files;
+  const Report report = read_report(files.path());
+  CHECK(report.title == "Two <b>states</b>");
+  CHECK(report.pipelines == std::vector<std::string>{"a", "b"});
+  CHECK(report.study == R"({"title": "Two", "system": {"modes": []}})");
+  const Plot& first = plot(report, "bounds_1");
+  REQUIRE(first.series.size() == 4);
+  const Series &a = first.series[0], &inner = first.series[1], &b = first.series[2], &truth = first.series[3];
+  CHECK(a.kind == Series::Kind::band);
+  CHECK(a.name == "a");
+  CHECK(a.pipeline == 0);
+  CHECK(a.x == std::vector<double>{0, 1, 2});
+  CHECK(a.y[1] == -2);
+  CHECK(a.upper[1] == 2);
+  CHECK(std::isnan(a.y[2]));
+  CHECK(std::isnan(a.upper[2]));
+  CHECK(inner.kind == Series::Kind::band);
+  CHECK(inner.pipeline == 0);
+  CHECK(inner.shade == 1);
+  CHECK(std::isnan(inner.y[0]));
+  CHECK(inner.y[1] == -1);
+  CHECK(inner.upper[1] == 1);
+  CHECK(b.pipeline == 1);
+  CHECK(b.x == std::vector<double>{0});
+  CHECK(truth.kind == Series::Kind::line);
+  CHECK(truth.pipeline == of_data);
+  CHECK(truth.y == std::vector<double>{0.25, 0.75, 1});
+  const Plot& second = plot(report, "bounds_2");
+  CHECK(second.series[0].y[0] == -inf);
+  CHECK(second.series[0].upper[0] == inf);
+  CHECK(second.series[1].upper[1] == 1.5);
+  CHECK(second.series[3].y == std::vector<double>{0.5, -0.5, 2});
+  REQUIRE(first.marks.size() == 2);
+  CHECK(first.marks[0].x == 2);
+  CHECK(first.marks[0].pipeline == 0);
+  CHECK(first.marks[0].text == "empty from k = 2");
+  CHECK(first.marks[1].x == 2);
+  CHECK(first.marks[1].pipeline == of_data);
+  CHECK(first.marks[1].text == "outside the bank");
+}
+
+TEST_CASE("metrics: columns with numbers, logarithmic over powers of ten, and the times of steps") {
+  const ResultsFiles files;
+  const Report report = read_report(files.path());
+  const Plot &radius = plot(report, "metric_1"), &volume = plot(report, "metric_2"), &time = plot(report, "step_time");
+  CHECK_FALSE(has(report, "metric_3"));
+  CHECK(radius.y_label == "radius");
+  CHECK_FALSE(radius.log_y);
+  CHECK(radius.series[0].y[1] == 3);
+  CHECK(std::isnan(radius.series[0].y[2]));
+  CHECK(volume.y_label == "volume");
+  CHECK(volume.log_y);
+  CHECK(volume.series[1].y == std::vector<double>{100});
+  CHECK(time.series[0].y == std::vector<double>{7});
+  CHECK(time.series[1].y == std::vector<double>{1});
+  files.replace("steps.csv", "set,0.5,", "set,0,");
+  CHECK_FALSE(plot(read_report(files.path()), "metric_2").log_y);
+}
+
+TEST_CASE("long runs: the page holds few points and every extreme, all of them on demand") {
+  const ResultsFiles files;
+  std::string rows = "pipeline,k,consistent,tightness,lower_1,upper_1,radius\n";
+  for (int k = 0; k < 20'000; ++k) {
+    rows.append("a,").append(std::to_string(k)).append(",yes,exact,").append(k == 777 ? "-9" : "-1");
+    rows.append(",1,").append(k == 778 ? "8" : "1").append("\n");
+  }
+  files.write("steps.csv", rows);
+  const Report page = read_report(files.path()), all = read_report(files.path(), Detail::all);
+  const Series band = plot(page, "bounds_1").series[0];
+  CHECK(band.x.size() <= 1000);
+  CHECK(*std::min_element(band.y.begin(), band.y.end()) == -9);
+  const Series radius = plot(page, "metric_1").series[0];
+  CHECK(*std::max_element(radius.y.begin(), radius.y.end()) == 8);
+  CHECK(std::any_of(page.notes.begin(), page.notes.end(),
+                    [](const std::string& note) { return note.find("thinned") != std::string::npos; }));
+  CHECK(plot(all, "bounds_1").series[0].x.size() == 20'000);
+  CHECK(all.notes.empty());
+}
+
+TEST_CASE("many states: the first of them on a page, all on demand") {
+  const ResultsFiles files;
+  std::string header = "pipeline,k,consistent,tightness", row = "a,0,yes,exact";
+  for (const char* name : {",lower_", ",upper_"}) {
+    for (int i = 1; i <= 20; ++i) {
+      header.append(name).append(std::to_string(i));
+      row.append(",0");
+    }
+  }
+  files.write("steps.csv", header + "\n" + row + "\n");
+  const Report page = read_report(files.path());
+  CHECK(has(page, "bounds_12"));
+  CHECK_FALSE(has(page, "bounds_13"));
+  CHECK(page.notes.at(0).find("12 of 20") != std::string::npos);
+  CHECK(has(read_report(files.path(), Detail::all), "bounds_20"));
+}
+
+TEST_CASE("files that are not as they were written are refused with file, place and reason") {
+  const auto refused = [](const std::string& name, const std::string& from, const std::string& to, const std::string& reason) {
+    const ResultsFiles files;
+    files.replace(name, from, to);
+    CAPTURE(to);
+    CHECK_THROWS_WITH_AS(read_report(files.path()), doctest::Contains(reason.c_str()), InputError);
+  };
+  refused("results.json", "\"cordon_results\": 1", "\"cordon_results\": 2", "is not known");
+  refused("results.json", "\"cordon_results\": 1, ", "", "is missing");
+  refused("results.json", "\"name\": \"b\"", "\"name\": \"a\"", "repeats the name");
+  refused("results.json", "\"name\": \"b\"", "\"nam\": \"b\"", "/pipelines/1/name");
+  refused("results.json", "\"plugins\": [", "\"plugins\": [3, ", "/plugins/0");
+  refused("run.json", "{\"k\": 0", "{\"k\": \"x\"", "/pipelines/0/steps/k");
+  refused("steps.csv", "a,1,", "c,1,", "names the pipeline \"c\"");
+  refused("steps.csv", "a,1,", "a,1.5,", "is no integer");
+  refused("steps.csv", "a,1,", "a,1,1,", "16 fields");
+  refused("steps.csv", "outer,-2,", "outer,nan,", "is no number");
+  refused("steps.csv", "upper_2", "upper_3", "as many upper");
+  refused("steps.csv", "lower_2", "lower_1", "twice");
+  refused("steps.csv", "consistent", "consistant", "no column \"consistent\"");
+  refused("data.csv", "k,", "t,", "no column \"k\"");
+  const ResultsFiles files;
+  std::filesystem::remove(files.path() / "steps.csv");
+  CHECK_THROWS_WITH_AS(read_report(files.path()), doctest::Contains("steps.csv"), InputError);
+}
+
+TEST_CASE("any bytes in any file: a report or an InputError") {
+  CHECK(rc::check([] {
+    const ResultsFiles files;
+    const auto name = *rc::gen::element<std::string>("results.json", "run.json", "steps.csv", "data.csv");
+    std::string text = files.read(name);
+    const auto count = *rc::gen::inRange(1, 6);
+    for (int i = 0; i < count; ++i) {
+      const auto at = *rc::gen::inRange<std::size_t>(0, text.size());
+      switch (*rc::gen::inRange(0, 3)) {
+        case 0:
+          text[at] = *rc::gen::elementOf(std::string("{}[],:\"\\\n0-e1ai\xff") + '\0');
+          break;
+        case 1:
+          text.erase(at, *rc::gen::inRange<std::size_t>(1, 20));
+          break;
+        default:
+          text.insert(at, *rc::gen::element<std::string>("inf", "1e308", "-", "null", "[[", "\"", "9007199254740993", ","));
+      }
+      if (text.empty()) text.push_back('x');
+    }
+    files.write(name, text);
+    try {
+      read_report(files.path());
+    } catch (const InputError&) {
+    }
+  }));
+}

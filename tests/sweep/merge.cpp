@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts that do not make a sweep, and files that are not as they were written.
+#include <fstream>
+
+#include <doctest/doctest.h>
+#include <rapidcheck.h>
+
+#include "sweep/sweeps.hpp"
+
+using sweeps::into;
+using namespace cordon;
+namespace fs = std::filesystem;
+
+namespace {
+
+Study small(int seeds = 2) { return sweeps::study({fakes::pipeline("a"), fakes::pipeline("b", "breaking")}, seeds); }
+
+fs::path part(const Scratch& scratch, const std::string& name, const Study& study, Shard shard) {
+  SweepOptions options = into(scratch / name);
+  options.shard = shard;
+  sweeps::run(study, options);
+  return options.out;
+}
+
+std::string refusal(const std::vector<fs::path>& parts, const fs::path& out) {
+  try {
+    merge_sweeps(parts, out);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void put(const fs::path& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+
+std::string exchanged(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("parts that do not belong together are refused, and nothing is written") {
+  const Scratch scratch;
+  const Study study = small();
+  const fs::path one = part(scratch, "one", study, {1, 3}), two = part(scratch, "two", study, {2, 3}),
+                 three = part(scratch, "three", study, {3, 3}), other = part(scratch, "other", small(3), {3, 3}),
+                 of_two = part(scratch, "of two", study, {2, 2}), whole = part(scratch, "whole", study, {});
+  const auto refused = [&](const std::vector<fs::path>& parts, const std::string& reason) {
+    const std::string text = refusal(parts, scratch / "out");
+    CAPTURE(text);
+    CHECK(text.find(reason) != std::string::npos);
+    CHECK_FALSE(fs::exists(scratch / "out"));
+  };
+  refused({}, "no parts");
+  refused({one}, "of 3 parts these are missing: 2, 3");
+  refused({three, one}, "these are missing: 2");
+  refused({one, two, two, three}, "is part 2, which came before");
+  refused({one, two, other}, "is of another study");
+  refused({one, of_two}, "is a part of 2");
+  refused({whole}, "holds a whole sweep");
+  refused({one, scratch / "absent"}, "cannot be read");
+  CHECK(refusal({one, two, three}, two).find("is one of the parts") != std::string::npos);
+  const std::string results = bytes_of(three / "results.json");
+  put(three / "results.json", exchanged(results, "\"version\": \"", "\"version\": \"9"));
+  refused({one, two, three}, "another build");
+  put(three / "results.json", exchanged(results, "\"abi_tag\": \"", "\"abi_tag\": \"9"));
+  refused({one, two, three}, "another build");
+  put(three / "results.json", exchanged(results, "\"plugins\": [", "\"plugins\": [1"));
+  refused({one, two, three}, "other plugins or libraries");
+  put(three / "results.json", results);
+  CHECK(merge_sweeps({three, one, two}, scratch / "out").progress.done == 8);
+  CHECK(sweeps::reproducible(scratch / "out") == sweeps::reproducible(whole));
+}
+
+TEST_CASE("an unfinished part is not merged, and no unfinished sweep is written over") {
+  const Scratch scratch;
+  const Study study = small();
+  const fs::path one = part(scratch, "one", study, {1, 2}), two = part(scratch, "two", study, {2, 2});
+  const std::atomic<bool> stop = true;
+  SweepOptions options = into(scratch / "three");
+  options.stop = &stop;
+  REQUIRE(sweeps::run(study, options).interrupted);
+  CHECK(refusal({one, two, options.out}, scratch / "out").find("unfinished part") != std::string::npos);
+  CHECK(refusal({one, two}, options.out).find("holds an unfinished sweep") != std::string::npos);
+}
+
+TEST_CASE("points have to be those of the part") {
+  const Scratch scratch;
+  const Study study = small();
+  const fs::path one = part(scratch, "one", study, {1, 2}), two = part(scratch, "two", study, {2, 2});
+  const std::string results = bytes_of(two / "results.json"), run = bytes_of(two / "run.json");
+  const auto refused = [&](const std::string& reason) {
+    const std::string text = refusal({one, two}, scratch / "out");
+    CAPTURE(text);
+    CHECK(text.find(reason) != std::string::npos);
+  };
+  const auto changed = [&](const std::string& from, const std::string& to, const std::string& reason) {
+    CAPTURE(from);
+    put(two / "results.json", exchanged(results, from, to));
+    refused(reason);
+  };
+  changed("\"point\": 1, ", "\"point\": 99, ", "this line is no point");
+  changed("\"point\": 1, ", "\"point\": 2, ", "this line is no point");  // where it is said to be does not fit
+  changed("\"point\": 1, \"pipeline\": 1", "\"point\": 0, \"pipeline\": 0", "point 0 does not belong here");
+  changed("\"at\": [0, 0]", "\"at\": [0]", "this line is no point");
+  changed("\"at\": [0, 0]", "\"at\": [0, 1]", "this line is no point");
+  changed("\"of\": 2", "\"of\": 1", "a shard that is none");
+  changed("\"of\": 2", "\"of\": 1000000", "a shard that is none");
+  changed("\"error\": null", "\"error\": 1", "this line is no point");
+  changed("\n  ]\n}\n", "", "ends in the middle");
+  changed("\"cordon_results\": 1", "\"cordon_results\": []", "cordon_results");
+  changed("\"points\": [", "\"point\": [", "has no points");
+  const std::size_t begin = results.find("    {\"point\""), end = results.find('\n', begin) + 1;
+  put(two / "results.json", results.substr(0, begin) + results.substr(end));
+  refused("is missing");
+  put(two / "results.json", results.substr(0, end) + results.substr(begin));
+  refused("this line is no point");  // it comes twice
+  put(two / "results.json", results);
+  put(two / "run.json", exchanged(run, "\"point\": 1, ", "\"point\": 0, "));
+  refused("this line is no point");
+  put(two / "run.json", exchanged(run, "\n  \"wall_s\"", "\n  \"wall\""));
+  refused("wall_s");
+  put(two / "run.json", exchanged(run, "\n  \"wall_s\": ", "\n  \"wall_s\": \"x\", \"y\": "));
+  refused("must be a number");
+  put(two / "run.json", run);
+  CHECK(refusal({one, two}, scratch / "out").empty());
+}
+
+TEST_CASE("files with any bytes are read or refused") {
+  const Scratch scratch;
+  const Study study = small(1);
+  const fs::path one = part(scratch, "one", study, {1, 2}), two = part(scratch, "two", study, {2, 2});
+  for (const char* name : {"results.json", "run.json"}) {
+    const std::string whole = bytes_of(two / name);
+    CHECK(rc::check([&] {
+      std::string damaged = whole;
+      const auto changes = *rc::gen::inRange(1, 4);
+      for (int i = 0; i < changes; ++i) {
+        const auto at = *rc::gen::inRange<std::size_t>(0, damaged.size());
+        damaged.replace(at, *rc::gen::inRange<std::size_t>(0, 30), *rc::gen::container<std::string>(rc::gen::arbitrary<char>()));
+      }
+      put(two / name, damaged);
+      try {
+        merge_sweeps({one, two}, scratch / "out");
+      } catch (const Error&) {
+      }
+    }));
+    put(two / name, whole);
+  }
+}
