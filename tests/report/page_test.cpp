@@ -35,6 +35,7 @@ Json data_of(const Report& report) { return Json::parse(between(page_of(report),
 TEST_CASE("numbers have six digits, more where they differ little") {
   CHECK(packed_numbers({1.23456789, -1e-9, 1e300}) == "[1.23457,-1e-09,1e+300]");
   CHECK(packed_numbers({1000.00012, 1000.00034}) == "[1000.00012,1000.00034]");
+  CHECK(packed_numbers({1000.0001234567, 1000.0003}) == "[1000.000123457,1000.0003]");
   CHECK(packed_numbers({sample::infinite, -sample::infinite, sample::missing}) == "[\"inf\",\"-inf\",null]");
   CHECK(packed_numbers({1234567, 0, -0.0}) == "[1234567,0,0]");
   CHECK(packed_numbers({}) == "[]");
@@ -156,6 +157,8 @@ TEST_CASE("the page asks for nothing from elsewhere and runs only its own script
   CHECK(policy.starts_with("default-src 'none'"));
   CHECK(policy.find("unsafe") == std::string::npos);
   CHECK(count(policy, "'sha256-") == 6);
+  CHECK(count(policy, "='") == 6);  // 32 bytes in base 64
+  CHECK(count(policy, "=='") == 0);
   CHECK(count(page, "<script>") == 5);
   CHECK(count(page, " src=") == 0);
   CHECK(count(page, "<link") == 0);

@@ -167,6 +167,38 @@ TEST_CASE("a band is an area between two lines") {
   CHECK(drawn_curves(tree).size() == 4);
 }
 
+TEST_CASE("a band has a gap where its upper bound is missing") {
+  Plot plot{"k", "y", false, {{Series::Kind::band, "a", 0, {0, 1, 2, 3}, {0, 0, 0, 1}, {1, 1, sample::missing, 2}}}};
+  CHECK(elements(drawn(plot), "polygon").size() == 2);
+}
+
+TEST_CASE("shades of a pipeline are told apart") {
+  Plot plot{"k", "y", false, {}};
+  for (int shade = 0; shade < 3; ++shade) plot.series.push_back({Series::Kind::line, "a", 0, {0, 1}, {0, 1}, {}, shade});
+  const Tree tree = drawn(plot);
+  const auto curves = drawn_curves(tree);
+  REQUIRE(curves.size() == 3);
+  CHECK(attribute(*curves[0], "stroke") == "#0072b2");
+  CHECK(attribute(*curves[1], "stroke") != attribute(*curves[0], "stroke"));
+  CHECK(attribute(*curves[2], "stroke") != attribute(*curves[1], "stroke"));
+  CHECK(attribute(*curves[1], "stroke-dasharray") != attribute(*curves[2], "stroke-dasharray"));
+}
+
+TEST_CASE("a long legend has several rows within the drawing") {
+  Plot plot = sample::plot(10, 5, false);
+  for (Series& series : plot.series) series.name = "a pipeline with a rather long name";
+  const Tree tree = drawn(plot);
+  std::vector<double> rows;
+  for (const Tree* text : elements(tree, "text")) {
+    if (text->data() != "a pipeline with a rather long name") continue;
+    CHECK(std::stod(attribute(*text, "x")) + text_width(text->data()) < 640);
+    rows.push_back(std::stod(attribute(*text, "y")));
+  }
+  CHECK(rows.size() == 10);
+  CHECK(rows.back() == rows.front() + 4 * 18);
+  CHECK(rows.back() < std::stod(attribute(tree.get_child("svg"), "height")));
+}
+
 TEST_CASE("a logarithmic axis has powers of ten, and values that are not positive lie below it") {
   Plot plot{"k", "y", true, {{Series::Kind::line, "a", 0, {0, 1, 2}, {1e-3, 1e6, 0}}}};
   const Tree tree = drawn(plot);
@@ -225,6 +257,9 @@ TEST_CASE("sets that are points or segments are drawn") {
   const Tree tree = drawn(projection);
   CHECK(elements(tree, "circle").size() == 1);
   CHECK(elements(tree, "polygon").empty());
+  std::size_t edges = 0;
+  for (const Tree* line : elements(tree, "line")) edges += attribute(*line, "stroke-linecap") == "round";
+  CHECK(edges == 1);
 }
 
 TEST_CASE("a timeline has a bar per span, from half a step before to half a step after") {

@@ -102,6 +102,22 @@ LineForm common_runs(std::span<const Model* const> models, const Experiment& exp
   return rows.project(rows.line(0));
 }
 
+LineForm output_tube(const Model& model, const Experiment& experiment) {
+  Equations rows;
+  Shared shared;
+  const Index outputs = model.linear.outputs(), last = experiment.u.rows() - 1;
+  const Equations::Line all = rows.line(experiment.last_output_only ? outputs : (last + 1) * outputs);
+  Index first = all.first;
+  for (Index k = 0; k <= last; ++k) {
+    const Index counted = k == last || !experiment.last_output_only ? outputs : 0;
+    shared.u.push_back(rows.constant(experiment.u.row(k).transpose()));
+    shared.y.push_back({first, counted});
+    first += counted;
+  }
+  add_run(rows, model, shared, experiment.admissible_set);
+  return rows.project(all);
+}
+
 ExactEmptiness exact_emptiness(const LineForm& X) {
   const auto rows_count = static_cast<double>(X.constraints()), columns = static_cast<double>(X.lines() + X.generators());
   const double work = rows_count * rows_count * columns;

@@ -26,6 +26,9 @@ struct Experiment {
 /// Every entry is a number of the models.
 LineForm common_runs(std::span<const Model* const> models, const Experiment& experiment);
 
+/// The outputs of all times that count, one below the other, which a model can show under the inputs, by the same rows.
+LineForm output_tube(const Model& model, const Experiment& experiment);
+
 /// Is the set of such rows empty? `yes` by a Farkas vector y with bᵀy > ‖Aᵀy‖₁, `no` by a solution, both exact. If `yes`, it is
 /// empty for all ‖ξ‖∞ < 1 + κ too, with `kappa_lower` ≤ κ, rounded down.
 struct ExactEmptiness {

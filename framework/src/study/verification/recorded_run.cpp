@@ -44,6 +44,8 @@ std::optional<Index> read_size(const Cursor& set, const char* key) {
   return size ? std::optional<Index>(*size) : std::nullopt;
 }
 
+}  // namespace
+
 std::optional<LineForm> read_form(const Cursor& at, Index dim) {
   if (!at.expect(Kind::object, mend())) return std::nullopt;
   const auto n = read_size(at, "dim"), l = read_size(at, "lines"), g = read_size(at, "generators"),
@@ -59,6 +61,8 @@ std::optional<LineForm> read_form(const Cursor& at, Index dim) {
   if (!M || !G || !S || !A || !c || !b) return std::nullopt;
   return LineForm{std::move(*M), std::move(*G), std::move(*c), std::move(*S), std::move(*A), std::move(*b)};
 }
+
+namespace {
 
 template <class Enum>
 std::optional<Enum> read_word(const Cursor& object, const char* key, std::initializer_list<Enum> all) {

@@ -54,6 +54,9 @@ struct RecordedRun {
   std::vector<RecordedPipeline> pipelines;
 };
 
+/// A set in exchange form, as results files write it.
+std::optional<LineForm> read_form(const json::Cursor& at, Index dim);
+
 /// Throws InputError.
 RecordedRun read_run(const std::filesystem::path& directory);
 

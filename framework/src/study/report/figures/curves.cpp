@@ -40,6 +40,7 @@ class StepsReader {
     name_ = table_.need("pipeline");
     k_ = table_.need("k");
     consistent_ = table_.need("consistent");
+    tightness_ = table_.need("tightness");
     hull_ = bounds_of(table_, "");
     inner_ = bounds_of(table_, "inner_");
     curves_.all_states = hull_.lower.size();
@@ -81,7 +82,7 @@ class StepsReader {
   /// The columns between the hull and the inner bounds.
   void find_metrics() {
     std::set<std::size_t> taken{name_, k_, consistent_};
-    if (const auto tightness = table_.find("tightness")) taken.insert(*tightness);
+    taken.insert(tightness_);
     for (const auto* group : {&hull_.lower, &hull_.upper, &inner_.lower, &inner_.upper})
       taken.insert(group->begin(), group->end());
     for (std::size_t i = 0; i < table_.names().size(); ++i) {
@@ -94,6 +95,7 @@ class StepsReader {
   bool add(StepCurves& steps, bool was_empty) {
     const std::int64_t k = table_.integer(k_);
     const bool empty = table_.text(consistent_) == "no";
+    if (table_.text(tightness_) == "exact") ++steps.exact;
     if (steps.first < 0) steps.first = k;
     steps.last = std::max(steps.last, k);
     if (empty && !was_empty && steps.empty_from.size() < max_marks) steps.empty_from.push_back(k);
@@ -123,7 +125,7 @@ class StepsReader {
   const RunFiles& files_;
   Curves& curves_;
   ColumnReader table_;
-  std::size_t name_ = 0, k_ = 0, consistent_ = 0;
+  std::size_t name_ = 0, k_ = 0, consistent_ = 0, tightness_ = 0;
   BoundColumns hull_, inner_;
   std::vector<std::size_t> metrics_;
   std::vector<bool> numeric_;

@@ -18,6 +18,7 @@ struct StepCurves {
   std::vector<Thinner> hull, inner;      ///< by state
   std::vector<Thinner> metrics;          ///< by column
   std::int64_t first = -1, last = -1;    ///< k; -1: there are no steps
+  std::int64_t exact = 0;                ///< steps that are claimed to be exact
   std::vector<std::int64_t> empty_from;  ///< where an estimate is proven empty and the one before was not
 };
 

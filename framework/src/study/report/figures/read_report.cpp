@@ -11,9 +11,13 @@ constexpr std::size_t max_study = 1'000'000;  ///< bytes of the study's text in 
 
 void add_run(const RunFiles& files, Report& report) {
   const Curves curves = read_curves(files);
+  add_failures(files, report);
   add_bounds(files, curves, report);
   add_projections(files, curves, report);
+  if (files.any(PipelineHead::Kind::diagnoser)) add_diagnosis(files, curves, report);
+  if (files.any(PipelineHead::Kind::designer)) add_designs(files, report);
   add_metrics(files, curves, report);
+  add_answers(files, curves, report);
 }
 
 }  // namespace

@@ -46,6 +46,7 @@ class RunFiles {
   const std::vector<std::pair<std::string, std::string>>& versions() const { return versions_; }
   const std::vector<Thinner>& step_times() const { return step_times_; }  ///< µs by pipeline
 
+  json::Cursor root() const { return {tree_, "", problems_}; }
   /// The entry of `pipelines` in results.json, without its steps.
   json::Cursor tree(std::size_t pipeline) const;
   /// Throws InputError if the tree was not as it should be.

@@ -57,7 +57,7 @@ std::string draw(const Intervals& intervals, const Figure& figure) {
     }
     draw_bar(drawing, {row.first, row.first_lower, row.first_upper, "#0072b2"}, x, y + 22, y + 17);
     draw_bar(drawing, {row.second, row.second_lower, row.second_upper, "#d55e00"}, x, y + 40, y + 63);
-    drawing.text({right + 16, y + row_height / 2 + 4}, shortened(row.verdict, most), ink);
+    drawing.text({width - 6, y + row_height / 2 + 4}, shortened(row.verdict, most), at_end(ink));
     drawing.line({left, y + row_height}, {right, y + row_height}, rule);
     y += row_height;
   }
