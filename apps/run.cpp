@@ -102,7 +102,8 @@ void add_run(CLI::App& app, Program& program) {
       ->group(group);
   command->footer(
       "Results appear when all are complete: results.json, sets.jsonl, data.csv, steps.csv, summary.csv, run.json, and\n"
-      "report.html, and diagnosis.csv where there are diagnosers: they are tried on all seeds of the study, and the first is written.\n"
+      "diagnosis.csv where there are diagnosers: they are tried on all seeds of the study, and the first is written.\n"
+      "report.html follows, unless --no-report is given.\n"
       "Where there are designers, inputs.csv holds what they designed; a diagnoser beside one is tried on every mode with it.\n"
       "A sweep writes results.json, points.csv and run.json, and keeps finished points while it runs: killed at any time, it\n"
       "goes on with --resume.\n"
