@@ -20,8 +20,8 @@ struct Target {
 /// Writes `system`, and `data` unless they are left out, as a MAT-file of version 5. Errc::invalid if the data are too large.
 void study_to_mat(const Study& study, const Target& target, bool with_data = true);
 
-/// Writes what a finished run or sweep has left in `directory`: `system`, `data`, and `results` or `sweep`; with the sets of every
-/// step if asked for. Throws InputError.
+/// Writes what a finished run or sweep has left in `directory`: `system`, `data`, and `results` or `sweep`; with the sets of
+/// every step if asked for. Throws InputError.
 void results_to_mat(const std::filesystem::path& directory, const Target& target, bool with_sets = false);
 
 /// Writes a JSON file of one set, or of a list of sets: `set`, or `sets`. Throws InputError.

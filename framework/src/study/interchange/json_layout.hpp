@@ -17,7 +17,7 @@ std::string pretty(const Json& value);
 
 /// A number as it is written in studies: 3, not 3.0. Infinite ones are "inf" and "-inf".
 Json to_json(double x);
-Json to_json(MatrixIn A);      ///< a list of rows
-Json to_sparse(MatrixIn A);    ///< {"rows", "cols", "entries"}, counted from 1
+Json to_json(MatrixIn A);    ///< a list of rows
+Json to_sparse(MatrixIn A);  ///< {"rows", "cols", "entries"}, counted from 1
 
 }  // namespace cordon::json

@@ -9,13 +9,12 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <matio.h>
 #include <memory>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <matio.h>
 
 #include "cordon/core/error.hpp"
 #include "cordon/registry/build.hpp"

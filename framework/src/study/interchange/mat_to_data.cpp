@@ -78,7 +78,8 @@ std::vector<std::string> mode_names(const Matrix& modes, const json::SystemPart&
 
 }  // namespace
 
-std::optional<CsvData> data_of(const Value& data, const json::SystemPart& system, const std::string& pointer, Problems& problems) {
+std::optional<CsvData> data_of(const Value& data, const json::SystemPart& system, const std::string& pointer,
+                               Problems& problems) {
   if (!data.field("y")) return std::nullopt;
   const LinearModel& m = system.model.linear;
   DataReader reader(data, pointer, problems);

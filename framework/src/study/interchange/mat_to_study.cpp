@@ -10,6 +10,7 @@
 #include "study/interchange/write_files.hpp"
 #include "study/reading/json_cursor.hpp"
 #include "study/reading/read_parts.hpp"
+#include "study/reading/read_sets.hpp"
 
 namespace cordon {
 
@@ -88,7 +89,8 @@ Choice choose(const Variables& all, const fs::path& file, const std::string& var
     }
   }
   refuse(file, "", "holds no system and no sets" + refusals(all),
-         "a system is a struct with matrices A and C, or variables of these names; a set is a struct with lower and upper, or c and G");
+         "a system is a struct with matrices A and C, or variables of these names; a set is a struct with lower and upper, or c "
+         "and G");
 }
 
 Json sets_json(const Value& sets, json::Problems& problems) {
@@ -177,8 +179,9 @@ std::string title_of(const Variables& all, const fs::path& file) {
 std::string comment_for(const fs::path& file, const std::vector<std::string>& missing) {
   std::string text = "Made from " + file.filename().string() + ". Data and pipelines are a beginning: change them at will.";
   for (const std::string& set : missing) {
-    text += set == "W" ? " Add \"W\" to the system, a set that contains every disturbance w (one coordinate per column of Bw)."
-                       : " Add \"V\" to the system, a set that contains every measurement noise v (one coordinate per column of Dv).";
+    text += set == "W"
+                ? " Add \"W\" to the system, a set that contains every disturbance w (one coordinate per column of Bw)."
+                : " Add \"V\" to the system, a set that contains every measurement noise v (one coordinate per column of Dv).";
   }
   return text;
 }

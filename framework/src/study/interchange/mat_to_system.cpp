@@ -24,12 +24,12 @@ struct SetKey {
 using Shape = SetKey::Shape;
 
 constexpr SetKey set_keys[] = {
-    {"c", "center", Shape::vector},         {"center", "center", Shape::vector}, {"M", "lines", Shape::matrix},
-    {"lines", "lines", Shape::matrix},      {"G", "generators", Shape::matrix},  {"generators", "generators", Shape::matrix},
-    {"S", "S", Shape::matrix},              {"A", "A", Shape::matrix},           {"b", "b", Shape::vector},
-    {"lower", "lower", Shape::bounds},      {"upper", "upper", Shape::bounds},   {"rho", "rho", Shape::vector},
-    {"d", "d", Shape::number},              {"sigma", "sigma", Shape::number},   {"dim", "dim", Shape::number},
-    {"H", "H", Shape::matrix},              {"h", "h", Shape::vector},           {"vertices", "vertices", Shape::matrix}};
+    {"c", "center", Shape::vector},    {"center", "center", Shape::vector}, {"M", "lines", Shape::matrix},
+    {"lines", "lines", Shape::matrix}, {"G", "generators", Shape::matrix},  {"generators", "generators", Shape::matrix},
+    {"S", "S", Shape::matrix},         {"A", "A", Shape::matrix},           {"b", "b", Shape::vector},
+    {"lower", "lower", Shape::bounds}, {"upper", "upper", Shape::bounds},   {"rho", "rho", Shape::vector},
+    {"d", "d", Shape::number},         {"sigma", "sigma", Shape::number},   {"dim", "dim", Shape::number},
+    {"H", "H", Shape::matrix},         {"h", "h", Shape::vector},           {"vertices", "vertices", Shape::matrix}};
 
 struct SetKeys {
   const char* type;
@@ -239,7 +239,8 @@ Json mode_of(const Value& modes, Index j, const Json& nominal, const std::string
   SystemReader reader(modes, j, pointer, problems);
   Json mode;
   mode["name"] = reader.text_of("name", "mode " + std::to_string(j + 1));
-  const std::pair<const char*, Index> parts[] = {{"actuator", size_of(nominal, "B", true)}, {"sensor", size_of(nominal, "C", false)}};
+  const std::pair<const char*, Index> parts[] = {{"actuator", size_of(nominal, "B", true)},
+                                                 {"sensor", size_of(nominal, "C", false)}};
   for (const auto& [name, size] : parts) {
     const Value* value = reader.find(name);
     if (is_given(value)) mode[name] = effectiveness_of(*value, size, reader.place(name), problems);
@@ -285,7 +286,8 @@ bool is_set(const Value& value) {
 Json set_of(const Value& set, Index element, const std::string& pointer, Problems& problems) {
   Json out;
   if (!set.is(Value::Kind::structs)) {
-    problems.add(pointer, 0, kind_of(set) + ", must be a struct with the fields of a set", "struct('lower', [-1; -1], 'upper', [1; 1])");
+    problems.add(pointer, 0, kind_of(set) + ", must be a struct with the fields of a set",
+                 "struct('lower', [-1; -1], 'upper', [1; 1])");
     return out;
   }
   if (element >= set.rows * set.cols) {
@@ -312,7 +314,8 @@ Json set_of(const Value& set, Index element, const std::string& pointer, Problem
     if (holds(keys, key.key)) {
       out[key.key] = key_of(key, *value, child(pointer, key.field), problems);
     } else if (!has_more) {
-      problems.add(child(pointer, key.field), 0, "does not belong to a set of type " + json::in_quotes(name), "change the type, or remove it");
+      problems.add(child(pointer, key.field), 0, "does not belong to a set of type " + json::in_quotes(name),
+                   "change the type, or remove it");
     }
   }
   const Value* center = set.field("c", element);

@@ -21,7 +21,8 @@ void put(std::string& out, const Value& value) {
   put(out, value.text);
   put(out, value.numbers.rows());
   put(out, value.numbers.cols());
-  out.append(reinterpret_cast<const char*>(value.numbers.data()), static_cast<std::size_t>(value.numbers.size()) * sizeof(double));
+  out.append(reinterpret_cast<const char*>(value.numbers.data()),
+             static_cast<std::size_t>(value.numbers.size()) * sizeof(double));
   put(out, value.rows);
   put(out, value.cols);
   put(out, static_cast<std::int64_t>(value.names.size()));

@@ -10,6 +10,7 @@
 #include "study/interchange/model_to_mat.hpp"
 #include "study/interchange/steps_to_mat.hpp"
 #include "study/interchange/write_files.hpp"
+#include "study/reading/read_parts.hpp"
 #include "study/results/numbers.hpp"
 #include "study/verification/recorded_run.hpp"
 
@@ -41,7 +42,8 @@ Value data_of(const fs::path& file) {
   for (const std::string& name : names) numbers[name];
   Index samples = 0;
   for (; reader.next(row); ++samples) {
-    if (row.fields.size() != names.size()) refuse(file, "a row of another length than the header", mend, static_cast<int>(row.line));
+    if (row.fields.size() != names.size())
+      refuse(file, "a row of another length than the header", mend, static_cast<int>(row.line));
     budget -= static_cast<std::int64_t>(names.size());
     if (budget < 0) refuse(file, "holds more than " + std::to_string(mat::max_numbers) + " numbers", "use data.csv itself");
     for (std::size_t i = 0; i < names.size(); ++i) {

@@ -118,7 +118,8 @@ bool is_set(const json::Value& value) {
 JsonFile kind_of(const json::Value& root) {
   if (root.find("cordon_results") || root.find("cordon_run")) return JsonFile::results;
   if (root.find("cordon") || root.find("system")) return JsonFile::study;
-  const bool list = root.kind == Kind::array && !root.items().empty() && std::all_of(root.items().begin(), root.items().end(), is_set);
+  const bool list =
+      root.kind == Kind::array && !root.items().empty() && std::all_of(root.items().begin(), root.items().end(), is_set);
   return list || is_set(root) ? JsonFile::sets : JsonFile::other;
 }
 

@@ -23,10 +23,6 @@ Steps members(const Steps& steps, std::string_view key) {
   return found;
 }
 
-bool any(const Steps& steps) {
-  return std::any_of(steps.begin(), steps.end(), [](const json::Value* step) { return step != nullptr; });
-}
-
 /// yes and true are 1, no and false 0, everything else that is no number is NaN.
 double scalar(const json::Value* value) {
   if (!value) return nan;
@@ -163,8 +159,8 @@ void add_steps(Struct& pipeline, const json::Value& list) {
     if (is_among(key, {"decision", "mode", "true_mode", "suggested"})) pipeline.set(key, texts(values));
     if (key == "modes") pipeline.set("evidence", modes(values));
     if (key == "faults") pipeline.set("faults", faults(values));
-    if (!is_among(key, {"k", "hull", "inner", "consistent", "since", "reset", "tightness", "decision", "mode", "true_mode", "suggested",
-                        "modes", "faults"})) {
+    if (!is_among(key, {"k", "hull", "inner", "consistent", "since", "reset", "tightness", "decision", "mode", "true_mode",
+                        "suggested", "modes", "faults"})) {
       metric_names.push_back(key);
     }
   }

@@ -103,8 +103,9 @@ class Builder {
   }
   bool string(std::string& text) {
     return leaf(Kind::text, [&](Value& value) {
-      value.parts = std::make_unique<Parts>();
-      value.parts->text = std::move(text);
+      const auto parts = std::make_shared<Parts>();
+      parts->text = std::move(text);
+      value.parts = parts;
     });
   }
   bool binary(const std::vector<std::uint8_t>&) { return false; }  // not part of JSON text
@@ -131,6 +132,7 @@ class Builder {
 
   struct Level {
     Value value;
+    std::shared_ptr<Parts> parts = std::make_shared<Parts>();  ///< of the value, once it is complete
     Wish wish = Wish::way;
     std::string key;                            ///< of the member that is read
     std::size_t index = 0;                      ///< of the element that is read
@@ -190,7 +192,6 @@ class Builder {
     Level& level = open_.emplace_back();
     level.wish = wished;
     level.value = begun(kind);
-    level.value.parts = std::make_unique<Parts>();
     return true;
   }
 
@@ -198,6 +199,7 @@ class Builder {
     if (skipped_ > 0) return --skipped_ > 0 || put({}, Wish::none);
     Level level = std::move(open_.back());
     open_.pop_back();
+    level.value.parts = level.parts;
     return put(std::move(level.value), level.wish);
   }
 
@@ -231,8 +233,8 @@ class Builder {
       wanted_.take(Cursor(value, pointer(), problems_), at);
       values_ = 0;
     } else if (wished != Wish::none) {
-      if (!parent.in_array()) parent.value.parts->keys.push_back(parent.key);
-      parent.value.parts->items.push_back(std::move(value));
+      if (!parent.in_array()) parent.parts->keys.push_back(parent.key);
+      parent.parts->items.push_back(std::move(value));
     }
     ++parent.index;
     return true;

@@ -5,9 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "study/results/json_writer.hpp"
-#include "study/results/numbers.hpp"
-#include "study/results/string_sink.hpp"
+#include "study/reading/read_sweep.hpp"
 #include "study/statistics/large_json.hpp"
 #include "study/statistics/table_builder.hpp"
 
@@ -32,42 +30,6 @@ std::string text_of(const Cursor& object, const char* key) {
 }
 
 std::size_t index_of(const Cursor& at) { return static_cast<std::size_t>(read_integer(at, 0, max_integer).value_or(0)); }
-
-/// A JSON text of a value, on one line.
-void write(JsonWriter& json, const Value& value) {
-  switch (value.kind) {
-    case Kind::null:
-    case Kind::broken:
-      json.null();
-      break;
-    case Kind::boolean:
-      json.value(value.flag);
-      break;
-    case Kind::number:
-      json.value(value.number);
-      break;
-    case Kind::text:
-      json.value(std::string_view(value.text()));
-      break;
-    case Kind::array:
-      json.begin_array();
-      for (const Value& item : value.items()) write(json, item);
-      json.end_array();
-      break;
-    case Kind::object:
-      json.begin_object();
-      for (std::size_t i = 0; i < value.items().size(); ++i) write(json.key(value.keys()[i]), value.items()[i]);
-      json.end_object();
-      break;
-  }
-}
-
-std::string json_of(const Value& value) {
-  StringSink sink;
-  JsonWriter json(sink);
-  write(json, value);
-  return std::move(sink.text);
-}
 
 /// {name: number, "inf" or "-inf"}.
 std::vector<ResultNumber> read_numbers(const Cursor& at, bool measured) {
@@ -190,7 +152,7 @@ void TableReader::read_axes(const Cursor& root) {
     if (const auto repeat = at.need("repeat", mend())) axis.repeat = read_flag(*repeat).value_or(false);
     const auto values = at.need("values", mend());
     if (!values || !values->expect(Kind::array, mend())) continue;
-    for (const Value& value : values->value().items()) axis.values.push_back(json_of(value));
+    for (const Value& value : values->value().items()) axis.values.push_back(canonical_text(value));
   }
 }
 

@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Studies and sets that go to MATLAB come back as they were.
+#include <cmath>
+#include <limits>
+
+#include <doctest/doctest.h>
+#include <rapidcheck.h>
+
+#include "cordon/study/interchange.hpp"
+#include "run/scratch.hpp"
+#include "study/fakes.hpp"
+#include "study/interchange/json_to_mat.hpp"
+#include "study/interchange/mat_file.hpp"
+#include "study/interchange/model_to_mat.hpp"
+#include "study/interchange/steps_to_mat.hpp"
+#include "study/same_study.hpp"
+
+using namespace cordon;
+using mat::Value;
+using study_test::exchanged;
+using FileScratch = ::Scratch;
+
+namespace {
+
+const double inf = std::numeric_limits<double>::infinity();
+
+void put(const std::filesystem::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+std::filesystem::path mat_of(const FileScratch& scratch, const mat::Variables& variables) {
+  put(scratch / "in.mat", mat::to_bytes(variables));
+  return scratch / "in.mat";
+}
+
+Study read(const std::filesystem::path& file) {
+  Registry registry;
+  registry.add(study_test::register_fakes);
+  return read_study(file, registry, SearchPath{});
+}
+
+const Value* find(const mat::Variables& all, const std::string& name) {
+  for (const mat::Variable& v : all) {
+    if (v.name == name) return &v.value;
+  }
+  return nullptr;
+}
+
+/// The system part of a resolved study, as text.
+std::string system_text(const Study& study) {
+  const std::size_t begin = study.resolved.find("\"system\""), end = study.resolved.find("\"data\"");
+  return study.resolved.substr(begin, end - begin);
+}
+
+/// The problems of reading this struct as a system.
+std::vector<Diagnostic> problems_of(const mat::Variables& variables, const std::string& variable = "") {
+  const FileScratch scratch;
+  try {
+    mat_to_json(mat_of(scratch, variables), {scratch / "out.json"}, variable);
+  } catch (const InputError& error) {
+    CHECK_FALSE(std::filesystem::exists(scratch / "out.json"));
+    return error.diagnostics();
+  }
+  return {};
+}
+
+void expect_problem(const mat::Variables& variables, const std::string& pointer, const std::string& message) {
+  const auto problems = problems_of(variables);
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0].pointer == pointer);
+  CHECK(problems[0].message.find(message) != std::string::npos);
+  CHECK(problems[0].line == 0);
+}
+
+Value box(const Matrix& lower, const Matrix& upper) {
+  mat::Struct set;
+  set.set("lower", mat::matrix(lower)).set("upper", mat::matrix(upper));
+  return std::move(set).value();
+}
+
+/// Two states, one input, one output.
+mat::Variables plain() {
+  return {{"A", mat::matrix(Matrix{{1, 0.1}, {0, 1}})},
+          {"B", mat::matrix(Matrix{{0}, {0.1}})},
+          {"C", mat::matrix(Matrix{{1, 0}})},
+          {"D", mat::matrix(Matrix{{0}})},
+          {"W", box(Matrix{{-0.1}, {-0.1}}, Matrix{{0.1}, {0.1}})},
+          {"V", box(Matrix{{-0.1}}, Matrix{{0.1}})}};
+}
+
+mat::Variables with(mat::Variables all, const std::string& name, Value value) {
+  for (mat::Variable& v : all) {
+    if (v.name != name) continue;
+    v.value = std::move(value);
+    return all;
+  }
+  all.push_back({name, std::move(value)});
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a system survives the way to a MAT-file and back") {
+  const FileScratch scratch;
+  for (const char* text : {study_test::valid_study, study_test::diagnosis_study, study_test::uncertain_study, study_test::design_study}) {
+    put(scratch / "study.json", text);
+    const Study study = read(scratch / "study.json");
+    study_to_mat(study, {scratch / "study.mat"}, false);
+    const ImportedStudy back = mat_to_json(scratch / "study.mat", {scratch / "back.json"});
+    CHECK(back.ignored.empty());
+    CHECK(back.missing.empty());
+    CHECK_FALSE(back.sets_only);
+    // the beginning of a study names components that the fakes lack: the system is what counts
+    Registry registry;
+    registry.add(study_test::register_fakes);
+    std::string again = text;
+    const std::string imported = bytes_of(scratch / "back.json");
+    const std::size_t from = imported.find("\"system\""), to = imported.find("\"data\"", from);
+    const std::size_t old_from = again.find("\"system\""), old_to = again.find("\"data\"", old_from) != std::string::npos
+                                                                      ? again.find("\"data\"", old_from)
+                                                                      : again.find("\"pipelines\"", old_from);
+    again.replace(old_from, old_to - old_from, imported.substr(from, to - from));
+    put(scratch / "again.json", again);
+    const Study twin = read(scratch / "again.json");
+    const ModeBank a = bank_of(study), b = bank_of(twin);
+    REQUIRE(a.size() == b.size());
+    for (Index j = 0; j < a.size(); ++j) {
+      CAPTURE(j);
+      CHECK(a[j].name == b[j].name);
+      const LinearModel &m = a[j].model.linear, &n = b[j].model.linear;
+      CHECK(m.is_descriptor() == n.is_descriptor());
+      for (const auto part : {&LinearModel::E, &LinearModel::A, &LinearModel::B, &LinearModel::Bw, &LinearModel::C, &LinearModel::D,
+                              &LinearModel::Dv, &LinearModel::A_radius, &LinearModel::B_radius, &LinearModel::C_radius, &LinearModel::F}) {
+        REQUIRE((m.*part).rows() == (n.*part).rows());
+        REQUIRE((m.*part).cols() == (n.*part).cols());
+        CHECK(m.*part == n.*part);
+      }
+      CHECK(m.actuator.lower == n.actuator.lower);
+      CHECK(m.actuator.upper == n.actuator.upper);
+      CHECK(m.sensor.lower == n.sensor.lower);
+      for (const auto part : {&Model::X0, &Model::W, &Model::V, &Model::U}) {
+        const LineForm &X = a[j].model.*part, &Y = b[j].model.*part;
+        CHECK(X.c == Y.c);
+        CHECK(X.G == Y.G);
+        CHECK(X.M == Y.M);
+        CHECK(X.b == Y.b);
+        CHECK(X.A == Y.A);
+        CHECK(X.S == Y.S);
+      }
+    }
+    std::filesystem::remove(scratch / "study.mat");
+    std::filesystem::remove(scratch / "back.json");
+  }
+}
+
+TEST_CASE("boxes are recognised, and only boxes") {
+  CHECK(rc::check("make_box of the bounds is the set", [] {
+    const auto n = *rc::gen::inRange<Index>(1, 5);
+    Box box{Vector(n), Vector(n)};
+    for (Index i = 0; i < n; ++i) {
+      const double x = *rc::gen::inRange(-1000, 1000) / 7.0, y = *rc::gen::inRange(-1000, 1000) / 1e3;
+      box.lower[i] = std::min(x, y), box.upper[i] = std::max(x, y);
+      if (*rc::gen::inRange(0, 5) == 0) box.lower[i] = -inf, box.upper[i] = inf;
+      if (*rc::gen::inRange(0, 5) == 0) box.lower[i] = box.upper[i] = x;
+    }
+    const LineForm X = make_box(box);
+    const auto found = mat::as_box(X);
+    RC_ASSERT(found.has_value());
+    const LineForm Y = make_box(*found);
+    RC_ASSERT(X.c == Y.c);
+    RC_ASSERT(X.G == Y.G);
+    RC_ASSERT(X.M == Y.M);
+  }));
+  CHECK_FALSE(mat::as_box(make_zonotope(Vector{{0, 0}}, Matrix{{1, 0.5}, {0, 1}})));
+  CHECK_FALSE(mat::as_box(make_zonotope(Vector{{0, 0}}, Matrix{{0, 1}, {1, 0}})));
+  CHECK_FALSE(mat::as_box(make_strip(Vector{{1, 0}}, 0, 1)));
+  LineForm cut = make_box({Vector{{0}}, Vector{{1}}});
+  cut.A = Matrix{{1}}, cut.b = Vector{{0}}, cut.S = Matrix(1, 0);
+  CHECK_FALSE(mat::as_box(cut));
+}
+
+TEST_CASE("the fields of a set") {
+  const Value X = mat::to_mat(make_box({Vector{{-1, -inf}}, Vector{{3, inf}}}));
+  CHECK(X.field("type")->text == "box");
+  CHECK(X.field("lower")->numbers == Matrix{{-1}, {-inf}});
+  CHECK(X.field("upper")->numbers == Matrix{{3}, {inf}});
+  CHECK(X.field("c")->numbers == Matrix{{1}, {0}});
+  CHECK(X.field("G")->numbers == Matrix{{2}, {0}});
+  CHECK(X.field("M")->numbers == Matrix{{0}, {1}});
+  CHECK(mat::to_mat(make_space(2)).field("type")->text == "space");
+  CHECK(mat::to_mat(make_point(Vector{{1}})).field("type")->text == "point");
+  CHECK(mat::to_mat(make_strip(Vector{{1, 1}}, 0, 1)).field("type")->text == "line_zonotope");
+  CHECK(mat::to_mat(make_zonotope(Vector{{0, 0}}, Matrix{{1, 1}, {0, 1}})).field("type")->text == "zonotope");
+}
+
+TEST_CASE("sets of every type come back") {
+  const FileScratch scratch;
+  const std::string sets = R"([
+    {"type": "box", "lower": [-1, "-inf"], "upper": [1, "inf"]},
+    {"type": "zonotope", "center": [1, 2], "generators": [[1, 0.5], [0, 1]]},
+    {"type": "constrained_zonotope", "center": [0, 0], "generators": [[1, 0], [0, 1]], "A": [[1, 1]], "b": [0.5]},
+    {"type": "line_zonotope", "center": [0, 0], "lines": [[1], [1]], "generators": [[0], [1]], "S": [[1]], "A": [[-1]], "b": [2]},
+    {"type": "space", "dim": 3},
+    {"type": "point", "center": [4, 5, 6]}])";
+  put(scratch / "sets.json", sets);
+  CHECK(json_file(scratch / "sets.json") == JsonFile::sets);
+  sets_to_mat(scratch / "sets.json", {scratch / "sets.mat"});
+  const ImportedStudy back = mat_to_json(scratch / "sets.mat", {scratch / "back.json"});
+  CHECK(back.sets_only);
+  rewrite_matrices(scratch / "sets.json", {scratch / "same.json"}, MatrixForm::dense);
+  CHECK(bytes_of(scratch / "back.json") == bytes_of(scratch / "same.json"));
+}
+
+TEST_CASE("one set, and the types that are not exchange forms") {
+  const FileScratch scratch;
+  mat::Struct strip, polytope, hull;
+  strip.set("rho", mat::matrix(Matrix{{1, 2}})).set("d", mat::number(0.5)).set("sigma", mat::number(1));
+  polytope.set("H", mat::matrix(Matrix{{1, 1}})).set("h", mat::number(1)).set("lower", mat::matrix(Matrix{{-1}, {-1}}));
+  polytope.set("upper", mat::matrix(Matrix{{1}, {1}}));
+  hull.set("type", mat::text("polytope")).set("vertices", mat::matrix(Matrix{{0, 0}, {1, 0}, {0, 1}}));
+  const std::pair<Value, std::string> cases[] = {
+      {std::move(strip).value(), R"({"type": "strip", "rho": [1, 2], "d": 0.5, "sigma": 1})"},
+      {std::move(polytope).value(), R"({"type": "polytope", "lower": [-1, -1], "upper": [1, 1], "H": [[1, 1]], "h": [1]})"},
+      {std::move(hull).value(), R"({"type": "polytope", "vertices": [[0, 0], [1, 0], [0, 1]]})"}};
+  for (const auto& [value, text] : cases) {
+    put(scratch / "want.json", text);
+    rewrite_matrices(scratch / "want.json", {scratch / "same.json", true}, MatrixForm::dense);
+    mat_to_json(mat_of(scratch, {{"S", value}}), {scratch / "back.json", true});
+    CHECK(bytes_of(scratch / "back.json") == bytes_of(scratch / "same.json"));
+  }
+}
+
+TEST_CASE("matrices alone are a system") {
+  const FileScratch scratch;
+  const ImportedStudy imported = mat_to_json(mat_of(scratch, plain()), {scratch / "out.json"});
+  CHECK(imported.files == std::vector<std::filesystem::path>{scratch / "out.json"});
+  CHECK(imported.missing.empty());
+  const Study study = read(scratch / "out.json");
+  CHECK(study.title == "in");
+  CHECK(study.model.linear.A == Matrix{{1, 0.1}, {0, 1}});
+  CHECK(study.model.linear.Bw == Matrix::Identity(2, 2));
+  CHECK(std::get<SimulateSpec>(study.data).input.size() == 1);
+}
+
+TEST_CASE("without W and V the study says what is missing") {
+  const FileScratch scratch;
+  mat::Variables all = plain();
+  all.resize(4);
+  const ImportedStudy imported = mat_to_json(mat_of(scratch, all), {scratch / "out.json"});
+  CHECK(imported.missing == std::vector<std::string>{"W", "V"});
+  try {
+    read(scratch / "out.json");
+    FAIL("W and V are not there");
+  } catch (const InputError& error) {
+    REQUIRE(error.diagnostics().size() == 2);
+    CHECK(error.diagnostics()[0].pointer == "/system/W");
+  }
+}
+
+TEST_CASE("which variable is taken") {
+  const FileScratch scratch;
+  mat::Struct one, two;
+  for (mat::Struct* s : {&one, &two}) {
+    for (const mat::Variable& v : plain()) s->set(v.name, v.value);
+  }
+  one.set("C1", mat::number(1));
+  const Value first = std::move(one).value(), second = std::move(two).value();
+  const ImportedStudy imported = mat_to_json(mat_of(scratch, {{"plant", first}, {"x", mat::number(1)}}), {scratch / "out.json"});
+  CHECK(imported.ignored == std::vector<std::string>{"C1"});
+  const auto several = problems_of({{"plant", first}, {"other", second}});
+  REQUIRE(several.size() == 1);
+  CHECK(several[0].suggestion.find("--variable") != std::string::npos);
+  CHECK(several[0].suggestion.find("plant") != std::string::npos);
+  CHECK(problems_of({{"plant", first}, {"system", second}}).empty());
+  CHECK(problems_of({{"plant", first}, {"other", second}}, "other").empty());
+  CHECK(problems_of({{"plant", first}}, "plantt")[0].suggestion.find("plant") != std::string::npos);
+  CHECK(problems_of({{"x", mat::number(1)}})[0].message.find("no system and no sets") != std::string::npos);
+  CHECK(problems_of({{"x", mat::number(1)}}, "x")[0].message.find("neither a system nor sets") != std::string::npos);
+}
+
+TEST_CASE("what is wrong in a system is told by its field") {
+  const double nan = std::nan("");
+  expect_problem(with(plain(), "A", mat::matrix(Matrix{{1, nan}, {0, 1}})), "/A", "holds NaN in row 1, column 2");
+  expect_problem(with(plain(), "A", mat::matrix(Matrix{{1, inf}, {0, 1}})), "/A", "holds Inf in row 1, column 2");
+  expect_problem(with(plain(), "A", mat::text("x")), "/A", "is a text");
+  expect_problem(with(plain(), "C", mat::matrix(Matrix{{1, 0, 0}})), "/C", "must have 2 columns");
+  expect_problem(with(plain(), "W", mat::number(1)), "/W", "must be a struct with the fields of a set");
+  expect_problem(with(plain(), "W", box(Matrix{{nan}, {1}}, Matrix{{2}, {2}})), "/W/lower", "holds NaN");
+  expect_problem(with(plain(), "W", box(Matrix{{3}, {1}}, Matrix{{2}, {2}})), "/W/lower/0", "above the upper bound");
+  expect_problem(with(plain(), "W", box(Matrix{{1, 1}, {1, 1}}, Matrix{{2}, {2}})), "/W/lower", "must be a vector");
+  expect_problem(with(plain(), "V", box(Matrix{{1}, {1}}, Matrix{{2}, {2}})), "/V", "has dimension 2");
+  expect_problem(with(plain(), "Ts", mat::number(0)), "/Ts", "continuous time");
+  expect_problem(with(plain(), "type", mat::text("ltti")), "/type", "unknown choice");
+  expect_problem(with(plain(), "modes", mat::number(1)), "/modes", "must be a struct array");
+  CHECK(problems_of(with(plain(), "Ts", mat::number(0.1))).empty());
+  mat::Struct set;
+  set.set("type", mat::text("zonotope")).set("c", mat::matrix(Matrix{{0}, {0}})).set("A", mat::matrix(Matrix{{1}})).set("b", mat::number(1));
+  const auto problems = problems_of(with(plain(), "W", std::move(set).value()));
+  REQUIRE(problems.size() == 2);
+  CHECK(problems[0].message.find("does not belong to a set of type") != std::string::npos);
+  mat::Struct unknown;
+  unknown.set("type", mat::text("zonotop")).set("c", mat::matrix(Matrix{{0}, {0}}));
+  CHECK(problems_of(with(plain(), "W", std::move(unknown).value()))[0].suggestion.find("zonotope") != std::string::npos);
+}
+
+TEST_CASE("effectiveness of modes: numbers, or rows [low high]") {
+  const FileScratch scratch;
+  mat::Struct weak, deaf;
+  weak.set("name", mat::text("weak")).set("actuator", mat::matrix(Matrix{{0.25, 0.5}})).set("sensor", mat::matrix(Matrix(0, 0)));
+  deaf.set("name", mat::text("deaf")).set("actuator", mat::matrix(Matrix(0, 0))).set("sensor", mat::number(0));
+  const auto modes = mat::Struct::array({weak, deaf});
+  mat_to_json(mat_of(scratch, with(plain(), "modes", modes)), {scratch / "out.json"});
+  const Study study = read(scratch / "out.json");
+  REQUIRE(study.modes.size() == 2);
+  CHECK(study.modes[0].model.linear.actuator.lower[0] == 0.25);
+  CHECK(study.modes[0].model.linear.actuator.upper[0] == 0.5);
+  CHECK(study.modes[1].model.linear.C.isZero(0));
+  mat::Struct wrong;
+  wrong.set("name", mat::text("x")).set("actuator", mat::matrix(Matrix{{1, 1, 1}}));
+  expect_problem(with(plain(), "modes", mat::Struct::array({wrong})), "/modes/0/actuator", "is 1 × 3");
+}
+
+TEST_CASE("data become a CSV file, whichever way they stand") {
+  const FileScratch scratch;
+  const Matrix u{{1, 2, 3}}, y{{0.1, 0.25, -1e-300}}, x{{1, 2, 3}, {4, 5, 6}};
+  mat::Struct rows, columns;
+  rows.set("u", mat::matrix(u)).set("y", mat::matrix(y)).set("x", mat::matrix(x)).set("mode", mat::matrix(Matrix{{0, 0, -1}}));
+  columns.set("u", mat::matrix(u.transpose())).set("y", mat::matrix(y.transpose())).set("x", mat::matrix(x.transpose()));
+  columns.set("mode", mat::matrix(Matrix{{0}, {0}, {-1}}));
+  std::string first;
+  for (mat::Struct* data : {&rows, &columns}) {
+    const ImportedStudy imported =
+        mat_to_json(mat_of(scratch, with(plain(), "data", std::move(*data).value())), {scratch / "out.json", true});
+    REQUIRE(imported.files.size() == 2);
+    const std::string text = bytes_of(scratch / "out.csv");
+    CHECK(text == "k,u_1,y_1,x_1,x_2,mode\n0,1,0.1,1,4,healthy\n1,2,0.25,2,5,healthy\n2,3,-1e-300,3,6,\n");
+    const Study study = read(scratch / "out.json");
+    const auto source = open_data(study);
+    CHECK(source->size() == 3);
+    CHECK(source->next()->truth == Vector{{1, 4}});
+  }
+}
+
+TEST_CASE("data that are wrong") {
+  const auto data = [](const char* name, Matrix numbers) {
+    mat::Struct all;
+    for (const auto& [key, value] : std::vector<std::pair<std::string, Matrix>>{{"u", Matrix{{1, 2}}}, {"y", Matrix{{1, 2}}}, {"mode", Matrix{{0, 0}}}}) {
+      all.set(key, mat::matrix(key == name ? numbers : value));
+    }
+    return with(plain(), "data", std::move(all).value());
+  };
+  CHECK(problems_of(data("", Matrix())).empty());
+  expect_problem(data("u", Matrix{{1, 2, 3}}), "/data/u", "has 3 samples, the others have 2");
+  expect_problem(data("u", Matrix(0, 0)), "/data/u", "is missing");
+  expect_problem(data("y", Matrix{{1, std::nan("")}}), "/data/y", "holds NaN or Inf in sample 2");
+  expect_problem(data("y", Matrix{{1, 2, 3}, {4, 5, 6}}), "/data/y", "is 2 × 3, must have 1 row");
+  expect_problem(data("mode", Matrix{{0, 1}}), "/data/mode", "holds 1 in sample 2");
+  expect_problem(data("mode", Matrix{{0.5, 0}}), "/data/mode", "holds 0.5 in sample 1");
+}
+
+TEST_CASE("nothing is replaced unless asked for") {
+  const FileScratch scratch;
+  put(scratch / "out.json", "mine");
+  const auto mat = mat_of(scratch, plain());
+  CHECK_THROWS_WITH_AS(mat_to_json(mat, {scratch / "out.json"}), doctest::Contains("exists already"), Error);
+  CHECK(bytes_of(scratch / "out.json") == "mine");
+  CHECK(tree(scratch.path()).size() == 2);
+  mat_to_json(mat, {scratch / "out.json", true});
+  CHECK(bytes_of(scratch / "out.json") != "mine");
+  CHECK_THROWS_WITH_AS(mat_to_json(mat, {scratch / "absent" / "out.json"}), doctest::Contains("no directory"), Error);
+  CHECK_THROWS_WITH_AS(mat_to_json(mat, {scratch.path(), true}), doctest::Contains("is a directory"), Error);
+}
+
+TEST_CASE("JSON values as values of MATLAB") {
+  json::Problems problems;
+  const json::Value tree = json::parse(
+      R"({"a b": null, "inf": "-inf", "t": "text", "yes": true, "row": [1, null, "inf"], "M": [[1, 2], [3, 4]], "ragged": [[1], [2, 3]],
+          "list": [{"x": 1}, "y"], "none": [], "form": {"M": [[], []], "G": [[1], [2]], "c": [3, 4], "S": [], "A": [], "b": []}})",
+      problems);
+  REQUIRE_FALSE(problems.any());
+  const Value value = mat::to_mat(tree);
+  CHECK(std::isnan(value.field("a_b")->numbers(0, 0)));
+  CHECK(value.field("inf")->numbers(0, 0) == -inf);
+  CHECK(value.field("t")->text == "text");
+  CHECK(value.field("yes")->numbers(0, 0) == 1);
+  CHECK(value.field("row")->numbers.cols() == 3);
+  CHECK(value.field("row")->numbers(0, 2) == inf);
+  CHECK(value.field("M")->numbers == Matrix{{1, 2}, {3, 4}});
+  CHECK(value.field("ragged")->is(Value::Kind::cell));
+  CHECK(value.field("list")->items[0].field("x")->numbers(0, 0) == 1);
+  CHECK(value.field("none")->numbers.size() == 0);
+  CHECK(value.field("form")->field("c")->numbers == Matrix{{3}, {4}});
+  CHECK(value.field("form")->field("M")->numbers.rows() == 2);
+}
+
+TEST_CASE("steps become rows") {
+  json::Problems problems;
+  const json::Value observer = json::parse(
+      R"([{"k": 0, "hull": {"lower": [1, "-inf"], "upper": [2, "inf"]}, "consistent": "yes", "tightness": "exact", "radius": 0.5, "what": "a"},
+          {"k": 1, "hull": {"lower": [3, 4], "upper": [5, 6]}, "inner": {"lower": [3, 4], "upper": [4, 5]}, "consistent": "unknown",
+           "tightness": "outer", "radius": null, "what": "b"}])",
+      problems);
+  mat::Struct out;
+  mat::add_steps(out, observer);
+  const Value steps = std::move(out).value();
+  CHECK(steps.field("k")->numbers == Matrix{{0, 1}});
+  CHECK(steps.field("lower")->numbers == Matrix{{1, 3}, {-inf, 4}});
+  CHECK(steps.field("upper")->numbers == Matrix{{2, 5}, {inf, 6}});
+  CHECK(std::isnan(steps.field("inner_lower")->numbers(1, 0)));
+  CHECK(steps.field("inner_upper")->numbers(1, 1) == 5);
+  CHECK(steps.field("consistent")->numbers(0, 0) == 1);
+  CHECK(std::isnan(steps.field("consistent")->numbers(0, 1)));
+  CHECK(steps.field("exact")->numbers == Matrix{{1, 0}});
+  CHECK(steps.field("metrics")->field("radius")->numbers(0, 0) == 0.5);
+  CHECK(steps.field("metrics")->field("what")->items[1].text == "b");
+  const json::Value diagnoser = json::parse(
+      R"([{"k": 0, "decision": "isolating", "mode": null, "since": 0, "reset": false,
+           "modes": [{"candidate": true, "consistent": "yes", "residual": {"lower": [-1], "upper": [1]}}, {"candidate": false, "consistent": "no"}],
+           "faults": [{"fault": 2, "at": -1, "lower": 0.5, "upper": 1, "estimate": 0.75}]},
+          {"k": 1, "decision": "monitoring", "mode": "leak", "since": 1, "reset": true, "modes": [{"candidate": true}, {"candidate": false}]}])",
+      problems);
+  REQUIRE_FALSE(problems.any());
+  mat::Struct more;
+  mat::add_steps(more, diagnoser);
+  const Value found = std::move(more).value();
+  CHECK(found.field("decision")->items[1].text == "monitoring");
+  CHECK(found.field("mode")->items[0].text == "");
+  CHECK(found.field("mode")->items[1].text == "leak");
+  CHECK(found.field("reset")->numbers == Matrix{{0, 1}});
+  const Value& evidence = *found.field("evidence");
+  CHECK(evidence.cols == 2);
+  CHECK(evidence.field("candidate", 1)->numbers == Matrix{{0, 0}});
+  CHECK(evidence.field("consistent", 1)->numbers(0, 0) == 0);
+  CHECK(evidence.field("upper", 0)->numbers(0, 0) == 1);
+  const Value& faults = *found.field("faults");
+  CHECK(faults.cols == 2);
+  CHECK(faults.field("at", 1)->numbers(0, 0) == -1);
+  CHECK(std::isnan(faults.field("at", 0)->numbers(0, 0)));
+  CHECK_FALSE(found.field("metrics"));
+}
+
+TEST_CASE("points of a sweep become columns") {
+  ResultTable table;
+  table.axes = {{"max generators", "/x", {"10", "20"}, false}, {"noise", "/y", {"\"uniform\"", "\"vertex\""}, true}};
+  table.pipelines = {"first", "second one"};
+  table.columns = {{"radius", false}, {"median step", true}};
+  table.rows = {{0, {0, 1}, {0.5, 7}, ""}, {1, {1, 0}, {std::nan(""), 8}, "stopped"}};
+  const Value sweep = mat::to_mat(table);
+  CHECK(sweep.field("pipelines")->items[1].text == "second one");
+  CHECK(sweep.field("axes")->field("name", 1)->text == "noise");
+  CHECK(sweep.field("axes")->field("values", 0)->items[1].numbers(0, 0) == 20);
+  const Value& points = *sweep.field("points");
+  CHECK(points.field("point")->numbers == Matrix{{0}, {1}});
+  CHECK(points.field("pipeline")->numbers == Matrix{{1}, {2}});
+  CHECK(points.field("max_generators")->numbers == Matrix{{10}, {20}});
+  CHECK(points.field("noise")->items[0].text == "vertex");
+  CHECK(points.field("radius")->numbers(0, 0) == 0.5);
+  CHECK(points.field("median_step")->numbers == Matrix{{7}, {8}});
+  CHECK(points.field("error")->items[1].text == "stopped");
+}
