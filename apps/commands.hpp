@@ -21,6 +21,7 @@ struct Program {
 
 void add_run(CLI::App& app, Program& program);
 void add_merge(CLI::App& app, Program& program);
+void add_report(CLI::App& app, Program& program);
 void add_validate(CLI::App& app, Program& program);
 void add_verify(CLI::App& app, Program& program);
 void add_compare(CLI::App& app, Program& program);

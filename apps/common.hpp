@@ -28,6 +28,9 @@ Exit exit_for(Errc code) noexcept;
 /// Prints the error of a command to stderr and gives its exit code. Call in a catch block.
 Exit report_current_exception() noexcept;
 
+/// Before the reason why a report could not be written.
+inline const std::string no_report = "the results are complete, but report.html was not written: ";
+
 /// Results: to stdout, flushed. A reader that has gone away (closed pipe) is not an error: the rest is dropped. Throws Errc::io
 /// otherwise.
 void print(const std::string& text);

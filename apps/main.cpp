@@ -45,6 +45,7 @@ Exit run(int argc, char** argv) {
       ->allow_extra_args(false);
   add_run(app, program);
   add_merge(app, program);
+  add_report(app, program);
   add_validate(app, program);
   add_verify(app, program);
   add_compare(app, program);
