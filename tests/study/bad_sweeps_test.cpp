@@ -23,6 +23,7 @@ const Mistake forms[] = {
     {"\"path\": \"/data/simulate/seed\"", "\"path\": \"data/simulate/seed\"", "/sweep/2/path", "is no path", "JSON pointer"},
     {"\"path\": \"/data/simulate/seed\"", "\"path\": \"/data/~2\"", "/sweep/2/path", "is no path", "JSON pointer"},
     {"\"path\": \"/data/simulate/seed\"", "\"path\": \"/data/~\"", "/sweep/2/path", "is no path", "JSON pointer"},
+    {"\"path\": \"/data/simulate/seed\"", "\"path\": \"/a~1b~0c/d\"", "/sweep/2/path", "the study has no \"a/b~c\"", ""},
     {"\"path\": \"/data/simulate/seed\"", "\"path\": \"/cordon\"", "/sweep/2/path", "leads into /cordon", "name a parameter"},
     {"\"path\": \"/data/simulate/seed\"", "\"path\": \"/plugins/0\"", "/sweep/2/path", "leads into /plugins", "name a parameter"},
     {"\"path\": \"/data/simulate/seed\"", "\"path\": \"/sweep/0/range\"", "/sweep/2/path", "leads into /sweep",
