@@ -209,7 +209,7 @@ bool ask_facets(Hull& hull, const ScaledSet& set, Index& queries, Index max_quer
 /// away from o by its part of μ, holds X. The inner one: the support functions differ by `moved` at most, which is a share of
 /// moved / distance of the hull's. A support below a facet contradicts the points of X and lowers λ in the same way.
 VolumeBounds bounds_of(Hull& hull) {
-  double inner = 1, outer = 0;
+  double inner = 1, outer = 1;
   for (const Facet& f : hull.facets()) {
     if (!f.alive) continue;
     const double gap = f.support - f.offset;
@@ -217,7 +217,6 @@ VolumeBounds bounds_of(Hull& hull) {
     outer = std::max(outer, 1 + gap / distance(f));
   }
   inner = std::max(inner, 0.0);
-  outer = std::max(outer, inner);
   const double volume = hull.volume();
   return {volume * inner * inner * inner, volume * outer * outer * outer, false};
 }
@@ -252,16 +251,14 @@ VolumeBounds volume(const SupportOracle& X, double relative_tolerance, Index max
   const double factor = set.volume_factor(), aim = relative_tolerance / 100;
   Hull hull;
   Index queries = 0;
-  VolumeBounds best{0, std::numeric_limits<double>::infinity(), false};
+  VolumeBounds bounds{0, std::numeric_limits<double>::infinity(), false};
   while (ask_facets(hull, set, queries, max_queries)) {
     const VolumeBounds found = bounds_of(hull);
-    if (factor * (found.upper - found.lower) < best.upper - best.lower) {
-      best = {factor * found.lower, factor * found.upper, false};
-    }
-    if (agree(best, aim) || !grow(hull, aim)) break;
+    bounds = {factor * found.lower, factor * found.upper, false};
+    if (agree(bounds, aim) || !grow(hull, aim)) break;
   }
-  best.converged = agree(best, relative_tolerance);
-  return best;
+  bounds.converged = agree(bounds, relative_tolerance);
+  return bounds;
 }
 
 }  // namespace cordon::sets
