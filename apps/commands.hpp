@@ -21,8 +21,10 @@ struct Program {
 
 void add_run(CLI::App& app, Program& program);
 void add_merge(CLI::App& app, Program& program);
+void add_report(CLI::App& app, Program& program);
 void add_validate(CLI::App& app, Program& program);
 void add_verify(CLI::App& app, Program& program);
+void add_compare(CLI::App& app, Program& program);
 void add_guarantees(CLI::App& app, Program& program);
 void add_design(CLI::App& app, Program& program);
 void add_list(CLI::App& app, Program& program);
@@ -31,5 +33,6 @@ void add_schema(CLI::App& app, Program& program);
 void add_new(CLI::App& app, Program& program);
 void add_doctor(CLI::App& app, Program& program);
 void add_conform(CLI::App& app, Program& program);
+void add_convert(CLI::App& app, Program& program);
 
 }  // namespace cordon::apps

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ Exit exit_for(Errc code) noexcept;
 /// Prints the error of a command to stderr and gives its exit code. Call in a catch block.
 Exit report_current_exception() noexcept;
 
+/// Before the reason why a report could not be written.
+inline const std::string no_report = "the results are complete, but report.html was not written: ";
+
 /// Results: to stdout, flushed. A reader that has gone away (closed pipe) is not an error: the rest is dropped. Throws Errc::io
 /// otherwise.
 void print(const std::string& text);
@@ -35,6 +39,9 @@ void print(const std::string& text);
 void note(const std::string& text);
 void warn(const std::string& text);
 void complain(const std::string& text);
+
+/// A path as a shell reads it, in quotes where it needs them.
+std::string quoted(const std::filesystem::path& path);
 
 /// Colours for a stream: none off a terminal, with NO_COLOR set (to anything but "") or TERM=dumb.
 class Paint {

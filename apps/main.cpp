@@ -45,13 +45,16 @@ Exit run(int argc, char** argv) {
       ->allow_extra_args(false);
   add_run(app, program);
   add_merge(app, program);
+  add_report(app, program);
   add_validate(app, program);
   add_verify(app, program);
+  add_compare(app, program);
   add_guarantees(app, program);
   add_design(app, program);
   add_list(app, program);
   add_info(app, program);
   add_schema(app, program);
+  add_convert(app, program);
   add_new(app, program);
   add_doctor(app, program);
   add_conform(app, program);

@@ -52,6 +52,7 @@ Exit run_once(const Study& study, const std::string& only, const Registry& regis
   }
   if (!arguments.quiet) print(arguments.json ? report_json(study, outcome) : report_text(study, outcome, options.out));
   for (const std::string& complaint : complaints(study, outcome)) complain(complaint);
+  if (!outcome.report_error.empty()) warn(no_report + outcome.report_error);
   return exit_of(outcome);
 }
 
@@ -102,6 +103,7 @@ void add_run(CLI::App& app, Program& program) {
   command->footer(
       "Results appear when all are complete: results.json, sets.jsonl, data.csv, steps.csv, summary.csv, run.json, and\n"
       "diagnosis.csv where there are diagnosers: they are tried on all seeds of the study, and the first is written.\n"
+      "report.html follows, unless --no-report is given.\n"
       "Where there are designers, inputs.csv holds what they designed; a diagnoser beside one is tried on every mode with it.\n"
       "A sweep writes results.json, points.csv and run.json, and keeps finished points while it runs: killed at any time, it\n"
       "goes on with --resume.\n"

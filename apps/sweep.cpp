@@ -73,6 +73,7 @@ Exit run_all_points(const Study& study, const Registry& registry, const RunArgum
   if (arguments.point_limit_s) options.point_limit_s = *arguments.point_limit_s;
   if (!arguments.shard.empty()) options.shard = shard_of(arguments.shard);
   options.stop = stop;
+  options.report = !arguments.no_report;
   options.progress = [&](const SweepProgress& progress) { bar.show(progress_line(progress)); };
   const SweepOutcome outcome = run_sweep(study, registry, options);
   bar.clear();
@@ -85,6 +86,7 @@ Exit run_all_points(const Study& study, const Registry& registry, const RunArgum
     if (outcome.files.empty()) note(fmt::format("finished before: {} holds this sweep, nothing was run", out.string()));
     print(arguments.json ? sweep_report_json(outcome) : sweep_report_text(outcome, out));
   }
+  if (!outcome.report_error.empty()) warn(no_report + outcome.report_error);
   if (outcome.violated > 0)
     complain(fmt::format("a guarantee was violated at {} of {} points", outcome.violated, outcome.progress.total));
   if (outcome.progress.failed > 0 && outcome.progress.failed == outcome.progress.total) complain("every point failed");

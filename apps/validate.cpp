@@ -81,6 +81,18 @@ std::vector<std::string> components_of(const PipelineSpec& pipeline) {
   return names;
 }
 
+/// "generators: 3 values; seed: 50 values, repeated", and how many points that makes with the pipelines.
+std::string describe_sweep(const Study& study) {
+  std::vector<std::string> axes;
+  auto points = static_cast<std::int64_t>(study.pipelines.size());
+  for (const SweepAxis& axis : study.sweep) {
+    const auto size = static_cast<Index>(axis.values.size());
+    points *= size;
+    axes.push_back(fmt::format("{}: {}{}", axis.name, count(size, "value"), axis.repeat ? ", repeated" : ""));
+  }
+  return axes.empty() ? "" : fmt::format("  sweep     {}\n  points    {}\n", fmt::join(axes, "; "), points);
+}
+
 std::string describe(const Study& study) {
   const Paint paint(stdout);
   std::string text = fmt::format("{}: {}\n  title     {}\n  system    {}\n  data      {}\n", study.file.string(),
@@ -94,7 +106,7 @@ std::string describe(const Study& study) {
   std::vector<std::string> metrics;
   for (const ComponentSpec& metric : study.metrics) metrics.push_back(metric.type);
   if (!metrics.empty()) text += fmt::format("  metrics   {}\n", fmt::join(metrics, ", "));
-  return text;
+  return text + describe_sweep(study);
 }
 
 Json as_json(const Study& study) {

@@ -58,6 +58,17 @@ export const curves = (page, id) => page.evaluate((name) => {
 /** What a canvas shows; another picture is another text. */
 export const picture = (page, id) => page.evaluate((name) => document.querySelector(`#figure_${name} canvas`).toDataURL(), id);
 
+/** The colours of a curve's canvas at places of its axes: [red, green, blue, alpha] for each [x, y]. */
+export const colours = (page, id, places) => page.evaluate(([name, all]) => {
+  const canvas = document.querySelector(`#figure_${name} canvas`), chart = Chart.getChart(canvas);
+  const copy = document.createElement('canvas');
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  const context = copy.getContext('2d', { willReadFrequently: true });
+  context.drawImage(canvas, 0, 0);
+  return all.map(([x, y]) => [...context.getImageData(chart.scales.x.getPixelForValue(x), chart.scales.y.getPixelForValue(y), 1, 1).data]);
+}, [id, places]);
+
 /** Opens the numbers of a figure. */
 export async function openNumbers(figure) {
   await figure.locator('.numbers summary').click();

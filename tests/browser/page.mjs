@@ -6,7 +6,7 @@ import { readFileSync, rmSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 
-import { close, curves, dataOf, launch, open, openNumbers, picture, show } from './browser.mjs';
+import { close, colours, curves, dataOf, launch, open, openNumbers, picture, show } from './browser.mjs';
 
 const [samples, scratch] = process.env.CORDON_TEST_ARGUMENTS.split('\n');
 const file = (name) => join(scratch, `${name}.html`);
@@ -112,7 +112,8 @@ test('the slider moves through time', async () => {
   await page.keyboard.press('Home');
   assert.equal(await k(), 'k = 0');
   assert.equal((await shapes(page)).length, 2);
-  assert.equal(await figure.locator('.stage line.open').count(), 1);
+  assert.deepEqual(await figure.locator('.stage line.open').evaluateAll((all) => all.map((line) => line.getAttribute('stroke-dasharray'))), ['2 5']);
+  assert.equal(await figure.locator('.stage g line:not(.open)[stroke-dasharray]').count(), 0);
   assert.match(await told(), /continues beyond the frame \(second\)/);
   assert.match(await told(), /True state: \(−1, 0\)/);
   await page.keyboard.press('End');
@@ -150,6 +151,35 @@ test('curves are the data: gaps stay gaps, infinity leaves the figure', async ()
   });
   assert.equal(drawn.values[30], null);
   assert.ok(drawn.upper);
+  await close(page);
+});
+
+test('a value of steps holds until the next, and a band is an area', async () => {
+  const page = await open(browser, file('every_kind'));
+  await show(page, 'volume');
+  const { y } = await page.evaluate(() => Chart.getChart(document.querySelector('#figure_volume canvas')).data.datasets[1].data[30]);
+  const next = await page.evaluate(() => Chart.getChart(document.querySelector('#figure_volume canvas')).data.datasets[1].data[31].y);
+  const [on, off] = await colours(page, 'volume', [[30.75, y], [30.25, next]]);
+  assert.ok(on[3] > 100, 'the value before the step');
+  assert.equal(off[3], 0, 'not yet the value after it');
+  await show(page, 'state_1');
+  const [inside, between, outside] = await colours(page, 'state_1', [[62.5, 0.2], [62.5, 0.62], [62.5, 3]]);
+  assert.ok(inside[3] > 0);
+  assert.ok(between[3] > 0);
+  assert.ok(inside[3] > between[3], 'where two bands lie on each other it is darker');
+  assert.equal(outside[3], 0);
+  await close(page);
+});
+
+test('a logarithmic axis: what has no logarithm lies below it', async () => {
+  const page = await open(browser, file('every_kind'));
+  await show(page, 'volume');
+  const [value, lowest, ticks] = await page.evaluate(() => {
+    const chart = Chart.getChart(document.querySelector('#figure_volume canvas'));
+    return [chart.data.datasets[0].data[10].y, chart.scales.y.min, chart.scales.y.ticks.map((tick) => tick.label)];
+  });
+  assert.ok(value > 0 && value < lowest);
+  assert.deepEqual(ticks, ['0.1', '0.2', '0.5', '1', '2']);
   await close(page);
 });
 
@@ -231,6 +261,11 @@ test('hostile names are shown, not executed', async () => {
   assert.ok((await page.locator('#figure_modes .plate svg text').allTextContents()).some((text) => text.startsWith('</script><script>')));
   await page.locator('.chip').first().click();
   for (const summary of await page.locator('.numbers summary').all()) await summary.click();
+  const waiting = page.waitForEvent('download');
+  await page.locator('#figure_budgets').getByRole('button', { name: 'Download as CSV' }).click();
+  const header = readFileSync(await (await waiting).path(), 'utf8').split('\n')[0];
+  const field = `"${hostile.replaceAll('"', '""')}"`;
+  assert.equal(header, `${field},${field}`);
   await close(page);
 });
 

@@ -111,6 +111,7 @@ inline Report every_kind() {
   curves.series[1].y[31] = infinite;
   Plot steps = plot(2, 40, true);
   for (Series& series : steps.series) series.kind = Series::Kind::steps;
+  steps.series[0].y[10] = 0;
   Plot points{"generators", "mean radius", false, {}};
   points.x_names = {"10", "20", "30"};
   points.series = {{Series::Kind::points, "first", 0, {0, 1, 2}, {3, 2, 1.5}},

@@ -34,6 +34,15 @@ Outcome run(const std::string& arguments, const std::string& streams) {
 const std::string examples = std::string(CORDON_SOURCE_DIR) + "/examples/studies/";
 const std::string main_study = examples + "descriptor_four_representations.json";
 
+/// The resolved text of a study is a study with the same resolved text.
+void expect_resolved_again(const Scratch& scratch, const std::string& study) {
+  const auto first = nlohmann::ordered_json::parse(run("validate --json " + study, "2>/dev/null").out);
+  const std::string resolved = first["studies"][0]["study"].dump();
+  const std::string file = scratch.write("resolved.json", resolved).string();
+  const auto second = nlohmann::ordered_json::parse(run("validate --json " + file, "2>/dev/null").out);
+  CHECK(second["studies"][0]["study"].dump() == resolved);
+}
+
 }  // namespace
 
 TEST_CASE("the examples are valid with the plugins of this build") {
@@ -76,13 +85,19 @@ TEST_CASE("the manual of study files shows valid studies, and every component of
               std::string::npos);
         CHECK(outcome.out.find("additive  fault 1 from k = 20 to 40\n") != std::string::npos);
       }
+      if (block.find("\"sweep\"") != std::string::npos) {
+        CHECK(outcome.out.find("sweep     generators: 3 values; noise: 2 values; seed: 20 values, repeated\n") !=
+              std::string::npos);
+        CHECK(outcome.out.find("points    240\n") != std::string::npos);
+        expect_resolved_again(scratch, scratch.folder() / "s.json");
+      }
       ++studies;
     } else {
       CHECK(nlohmann::json::accept("{" + block + "}"));
       ++pieces;
     }
   }
-  CHECK(studies == 3);
+  CHECK(studies == 4);
   CHECK(pieces == 6);
   const auto list = nlohmann::json::parse(run("list --json", "2>/dev/null").out);
   for (const auto& component : list["components"]) {
@@ -123,13 +138,8 @@ TEST_CASE("modes, faults, plants and diagnosers are described, and resolved text
     CHECK(outcome.out.find(part) != std::string::npos);
   }
   const Scratch scratch;
-  for (const char* name : {"cstr_nonlinear.json", "consistency_four_models.json"}) {
-    const auto first = nlohmann::ordered_json::parse(run("validate --json " + examples + name, "2>/dev/null").out);
-    const std::string resolved = first["studies"][0]["study"].dump();
-    const std::string file = scratch.write("resolved.json", resolved).string();
-    const auto second = nlohmann::ordered_json::parse(run("validate --json " + file, "2>/dev/null").out);
-    CHECK(second["studies"][0]["study"].dump() == resolved);
-  }
+  for (const char* name : {"cstr_nonlinear.json", "consistency_four_models.json"})
+    expect_resolved_again(scratch, examples + name);
 }
 
 TEST_CASE("list and info know every kind of component") {
@@ -148,6 +158,7 @@ TEST_CASE("schema prints JSON with the components of this build") {
   CHECK(outcome.exit == 0);
   const auto schema = nlohmann::json::parse(outcome.out);
   CHECK(schema["$defs"]["backend"]["oneOf"].size() == 5);  // four, and their names alone
+  CHECK(schema["properties"]["sweep"]["items"]["required"] == nlohmann::json{"name", "path"});
 }
 
 TEST_CASE("info shows a component as text without colours, and as JSON with its details") {

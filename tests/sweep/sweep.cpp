@@ -94,7 +94,7 @@ TEST_CASE("results.json, run.json and points.csv") {
   CHECK(std::count(table.begin(), table.end(), '\n') == 13);
   CHECK_FALSE(std::filesystem::exists(scratch / ".sweep"));
   for (const auto& file : outcome.files) CHECK(std::filesystem::exists(file));
-  CHECK(outcome.files.back().filename() == "results.json");
+  CHECK(outcome.files.back().filename() == "report.html");
 }
 
 TEST_CASE("jobs and parts leave the same files") {

@@ -22,7 +22,7 @@ struct RunOptions {
   const std::atomic<bool>* stop = nullptr;  ///< set from a signal handler: the run ends with `interrupted`, old results stay
   /// When to give a pipeline up: it ends with an error (Errc::time_limit) like any other; tested between steps.
   std::optional<std::chrono::steady_clock::time_point> deadline = {};
-  bool report = true;  ///< write report.html as well
+  bool report = true;  ///< write report.html as well, after the results: see RunOutcome::report_error
   /// Called now and then: pipeline index, records done, records in all (0: unknown).
   std::function<void(std::size_t, std::int64_t, std::int64_t)> progress;
 };
@@ -174,6 +174,7 @@ struct RunOutcome {
   bool interrupted = false;
   std::vector<PipelineOutcome> pipelines;
   std::vector<std::filesystem::path> files;
+  std::string report_error = {};  ///< why there is no new report.html, though the results are complete; empty: nothing went wrong
 };
 
 /// Runs all pipelines, one after another; those with a diagnoser on all seeds of simulated data, of which the first is written.

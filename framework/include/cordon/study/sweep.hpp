@@ -63,6 +63,7 @@ struct SweepOptions {
   bool restart = false;       ///< throw away what an interrupted run of any sweep has left there; not with `resume`
   double point_limit_s = std::numeric_limits<double>::infinity();  ///< wall-clock time of one point, tested between its steps
   Shard shard;
+  bool report = true;  ///< write report.html as well, after the results
   const std::atomic<bool>* stop = nullptr;             ///< set from a signal handler: what is finished is kept for `resume`
   std::function<void(const SweepProgress&)> progress;  ///< called now and then, from one thread at a time
 };
@@ -74,6 +75,7 @@ struct SweepOutcome {
   std::int64_t violated = 0;             ///< points at which a guarantee was violated
   std::optional<Errc> first_error = {};  ///< of the failed point with the smallest index, where it was run or resumed
   std::vector<std::filesystem::path> files;
+  std::string report_error = {};  ///< as in RunOutcome
 };
 
 /// Every point is run on its own: it fails, runs into its limit or violates a guarantee without stopping the others, and what

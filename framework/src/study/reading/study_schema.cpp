@@ -328,6 +328,24 @@ Json definitions(const Registry& registry) {
   return defs;
 }
 
+Json sweep() {
+  const Json whole = integer(-static_cast<std::int64_t>(json::max_integer), static_cast<std::int64_t>(json::max_integer));
+  Json properties;
+  properties["name"] = described(text(200), "unique; the name of its column in tables");
+  properties["path"] =
+      described(Json{{"type", "string"}, {"pattern", "^(/([^~]|~[01])*)+$"}, {"maxLength", 4096}},
+                "what is varied: a JSON pointer, with \"*\" for every element of a list: /pipelines/*/observer/max_generators");
+  properties["values"] = described(Json{{"type", "array"}, {"minItems", 1}, {"maxItems", 100'000}, {"uniqueItems", true}},
+                                   "they take the place of what stands there, one after another");
+  properties["range"] = described(Json{{"type", "array"}, {"items", whole}, {"minItems", 2}, {"maxItems", 3}},
+                                  "[first, last] or [first, last, step]: integers, in place of values");
+  properties["repeat"] = described(Json{{"type", "boolean"}},
+                                   "statistics are taken over these values; by default true where the path ends in /seed");
+  Json axis = object(properties, {"name", "path"});
+  axis["oneOf"] = {{{"required", {"values"}}}, {{"required", {"range"}}}};
+  return {{"type", "array"}, {"items", axis}, {"minItems", 1}, {"maxItems", 100}};
+}
+
 Json with_simulate(Json properties, const std::vector<std::string>& required) {
   Json simulate{{"properties", std::move(properties)}};
   if (!required.empty()) simulate["required"] = required;
@@ -360,6 +378,7 @@ std::string study_json_schema(const Registry& registry) {
   properties["data"] = reference("data");
   properties["pipelines"] = {{"type", "array"}, {"items", reference("pipeline")}, {"minItems", 1}, {"maxItems", 1000}};
   properties["metrics"] = list_of(reference("metric"));
+  properties["sweep"] = described(sweep(), "the study is run under all combinations of the values");
   Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Cordon study"}};
   root.update(object(properties, {"cordon", "system", "pipelines"}));
   root["allOf"] = conditions();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 
+#include "study/report/try_report.hpp"
 #include "study/results/median.hpp"
 #include "study/results/results.hpp"
 #include "study/running/design_run.hpp"
@@ -289,6 +290,8 @@ RunOutcome detail::run_on(const OpenData& open, const Study& study, const Regist
     outcome.interrupted = true;
   } else if (writer) {
     outcome.files = writer->commit(outcome);
+    results.reset();
+    if (options.report) outcome.report_error = report::try_report(options.out, outcome.files);
   }
   return outcome;
 }

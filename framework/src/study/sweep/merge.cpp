@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "study/report/try_report.hpp"
 #include "study/sweep/journal.hpp"
 #include "study/sweep/sweep_files.hpp"
 
@@ -74,6 +75,7 @@ SweepOutcome merge_sweeps(const std::vector<fs::path>& parts, const fs::path& ou
   SweepOutcome outcome;
   outcome.table = detail::table_of(all);
   outcome.files = detail::write_sweep(out, all, outcome.table);
+  outcome.report_error = report::try_report(out, outcome.files);
   outcome.violated = detail::violations(outcome.table);
   outcome.progress = {all.rows.size(), all.rows.size(), all.rows.failed(), all.rows.size(), 0};
   return outcome;

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "cordon/registry/build.hpp"
+#include "study/report/try_report.hpp"
 #include "study/results/fingerprint.hpp"
 #include "study/results/host.hpp"
 #include "study/sweep/journal.hpp"
@@ -150,6 +151,7 @@ class SweepRun {
     files.wall_s = seconds_since(begin_);
     outcome.table = table_of(files);
     outcome.files = write_sweep(options_.out, files, outcome.table);
+    if (options_.report) outcome.report_error = report::try_report(options_.out, outcome.files);
     journal_->remove();
     outcome.violated = violations(outcome.table);
     outcome.first_error = files.rows.first_error();

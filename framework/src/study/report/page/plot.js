@@ -47,7 +47,6 @@ function drawnValue(value, [lower, upper], log) {
   if (Number.isNaN(value)) return null;
   const below = log ? lower * 1e-3 : lower - 10 * (upper - lower);
   const above = log ? upper * 1e3 : upper + 10 * (upper - lower);
-  if (log && value <= 0) return below;
   return Math.min(Math.max(value, below), above);
 }
 

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Finished runs or sweeps side by side: which numbers are the same, and whether times differ by more than chance.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cordon/study/statistics.hpp"
+
+namespace cordon {
+
+/// A finished run or sweep.
+struct ComparedRun {
+  std::string directory, version, study_hash, host;
+};
+
+/// Measured times of a run beside those of the first run: over repetitions, or over the steps of single runs.
+struct TimeTest {
+  std::int64_t first = 0, other = 0;       ///< numbers of measurements
+  double ratio = 0, lower = 0, upper = 0;  ///< median ratio to the first run with its 95 % interval; NaN: there is none
+  double p = 1;                            ///< Mann–Whitney, two-sided, adjusted (Holm) for all tests of the comparison
+  bool significant() const { return p < .05; }
+};
+
+/// One number of one pipeline under one combination of values in one run.
+struct ComparedNumber {
+  Statistics statistics;              ///< over the repetitions
+  double difference = 0, ratio = 0;   ///< of the mean to that of the first run; NaN: cannot be said
+  std::int64_t common = 0;            ///< points that both have, by their values
+  std::int64_t different = 0;         ///< of these, points at which the number is another one
+  std::optional<TimeTest> test = {};  ///< of measured numbers, where there is more than one measurement
+};
+
+struct ComparedRow {
+  std::string pipeline;
+  std::vector<std::string> at;       ///< values of the axes that are not repetitions, as JSON
+  std::vector<ComparedNumber> runs;  ///< by run; the first one beside itself
+};
+
+struct ComparedMeasure {
+  ResultColumn column;
+  std::vector<ComparedRow> rows;  ///< of those that have the number in some run
+  bool is_equal() const;          ///< in every row all runs have the points of the first, with the same numbers
+};
+
+struct Comparison {
+  std::vector<ComparedRun> runs;
+  std::vector<std::string> axes;          ///< names of those that are not repetitions
+  std::vector<ComparedMeasure> measures;  ///< in the order of the results
+  std::vector<std::string> warnings;      ///< different studies, programs or machines; pipelines that only some have
+};
+
+/// Joins two or more directories by the names of pipelines and the values of axes. Throws InputError: one cannot be read, or
+/// their axes have different names.
+Comparison compare_results(const std::vector<std::filesystem::path>& directories);
+
+}  // namespace cordon

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/report.hpp"
+
+#include "cordon/core/error.hpp"
+#include "study/report/figure_csv.hpp"
+#include "study/report/page/page.hpp"
+#include "study/report/page/svg.hpp"
+#include "study/report/read_report.hpp"
+#include "study/report/try_report.hpp"
+#include "study/results/atomic_directory.hpp"
+
+namespace cordon {
+
+namespace {
+
+using Files = std::vector<std::filesystem::path>;
+
+void commit(detail::AtomicDirectory& directory, Files& files) {
+  for (std::filesystem::path& file : directory.commit()) files.push_back(std::move(file));
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> write_report(const std::filesystem::path& directory, const ReportOptions& options) {
+  std::error_code failed;
+  if (!std::filesystem::is_directory(directory, failed)) {
+    throw InputError(directory.string(),
+                     {{"", "is no directory", "name the directory that \"cordon run\" wrote its results to", 0}});
+  }
+  Files files;
+  if (options.html || options.svg) {
+    const report::Report page = report::read_report(directory);
+    if (options.html) {
+      detail::AtomicDirectory out(directory);
+      out.create("report.html").write(report::page_of(page));
+      commit(out, files);
+    }
+    if (options.svg) {
+      detail::AtomicDirectory out(directory / "figures");
+      for (const report::Figure& figure : page.figures) out.create(figure.id + ".svg").write(report::svg_of(figure, page));
+      commit(out, files);
+    }
+  }
+  if (options.csv) {
+    const report::Report all = report::read_report(directory, report::Detail::all);
+    detail::AtomicDirectory out(directory / "figures");
+    for (const report::Figure& figure : all.figures) out.create(figure.id + ".csv").write(report::csv_of(figure, all));
+    commit(out, files);
+  }
+  return files;
+}
+
+std::string report::try_report(const std::filesystem::path& directory, std::vector<std::filesystem::path>& files) noexcept {
+  try {
+    for (std::filesystem::path& file : write_report(directory)) files.push_back(std::move(file));
+    return "";
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "an exception of unknown type";
+  }
+}
+
+}  // namespace cordon

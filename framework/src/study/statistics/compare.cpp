@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/compare.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "study/statistics/rank_test.hpp"
+#include "study/statistics/recorded_table.hpp"
+
+namespace cordon {
+
+namespace {
+
+using detail::RecordedTable;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+/// Pipeline and values: of a row of the comparison without repetitions, of a point with them.
+using Key = std::vector<std::string>;
+
+Key key_of(const ResultTable& table, const ResultRow& row, bool with_repetitions) {
+  Key key{table.pipelines[row.pipeline]};
+  for (std::size_t i = 0; i < table.axes.size(); ++i) {
+    if (with_repetitions || !table.axes[i].repeat) key.push_back(table.axes[i].values[row.at[i]]);
+  }
+  return key;
+}
+
+std::vector<std::string> names_of(const ResultTable& table, bool repeat) {
+  std::vector<std::string> names;
+  for (const SweepAxis& axis : table.axes) {
+    if (axis.repeat == repeat) names.push_back(axis.name);
+  }
+  return names;
+}
+
+/// One run, with its rows in groups of repetitions.
+struct Run {
+  RecordedTable recorded;
+  std::map<Key, std::vector<const ResultRow*>> groups;
+  std::map<std::string, std::size_t> columns;
+  std::map<std::string, std::size_t> pipelines;
+
+  explicit Run(RecordedTable read) : recorded(std::move(read)) {
+    const ResultTable& table = recorded.table;
+    for (const ResultRow& row : table.rows) groups[key_of(table, row, false)].push_back(&row);
+    for (std::size_t i = 0; i < table.columns.size(); ++i) columns.emplace(table.columns[i].name, i);
+    for (std::size_t i = 0; i < table.pipelines.size(); ++i) pipelines.emplace(table.pipelines[i], i);
+  }
+
+  /// The number of a point; NaN where there is none, or the point failed.
+  double value(const ResultRow& row, const std::string& column) const {
+    const auto found = columns.find(column);
+    return found == columns.end() || !row.error.empty() ? none : row.values[found->second];
+  }
+
+  std::vector<double> values(const Key& key, const std::string& column) const {
+    std::vector<double> found;
+    if (const auto group = groups.find(key); group != groups.end()) {
+      for (const ResultRow* row : group->second) found.push_back(value(*row, column));
+    }
+    return found;
+  }
+
+  /// Points of a group by all their values.
+  std::map<Key, double> points(const Key& key, const std::string& column) const {
+    std::map<Key, double> found;
+    if (const auto group = groups.find(key); group != groups.end()) {
+      for (const ResultRow* row : group->second) found[key_of(recorded.table, *row, true)] = value(*row, column);
+    }
+    return found;
+  }
+
+  /// What a test of a measured number rests on: the repetitions, or, of a single run, its steps.
+  std::vector<double> measurements(const Key& key, const std::string& column) const {
+    const auto pipeline = pipelines.find(key.front());
+    if (column == "step_us" && pipeline != pipelines.end() && pipeline->second < recorded.step_us.size()) {
+      return recorded.step_us[pipeline->second];
+    }
+    std::vector<double> found = values(key, column);
+    std::erase_if(found, [](double x) { return !std::isfinite(x); });
+    return found;
+  }
+};
+
+ComparedNumber compared(const Run& first, const Run& other, const Key& key, const ResultColumn& column) {
+  ComparedNumber found;
+  const Statistics before = statistics_of(first.values(key, column.name));
+  found.statistics = statistics_of(other.values(key, column.name));
+  found.difference = found.statistics.mean - before.mean;
+  found.ratio = before.mean != 0 ? found.statistics.mean / before.mean : none;
+  const auto mine = first.points(key, column.name), theirs = other.points(key, column.name);
+  for (const auto& [point, value] : mine) {
+    const auto same_point = theirs.find(point);
+    if (same_point == theirs.end()) continue;
+    ++found.common;
+    found.different += !is_same(value, same_point->second);
+  }
+  if (!column.measured || &first == &other) return found;
+  const std::vector<double> a = first.measurements(key, column.name), b = other.measurements(key, column.name);
+  if (a.size() < 2 || b.size() < 2) return found;
+  const auto [ratio, lower, upper] = detail::median_ratio(a, b);
+  found.test = TimeTest{static_cast<std::int64_t>(a.size()), static_cast<std::int64_t>(b.size()), ratio, lower, upper,
+                        detail::mann_whitney_p(a, b)};
+  return found;
+}
+
+/// Keys of all runs, in the order of their first appearance.
+std::vector<Key> keys_of(const std::vector<Run>& runs) {
+  std::vector<Key> keys;
+  std::map<Key, bool> known;
+  for (const Run& run : runs) {
+    for (const ResultRow& row : run.recorded.table.rows) {
+      Key key = key_of(run.recorded.table, row, false);
+      if (known.emplace(key, true).second) keys.push_back(std::move(key));
+    }
+  }
+  return keys;
+}
+
+std::vector<ResultColumn> columns_of(const std::vector<Run>& runs) {
+  std::vector<ResultColumn> columns;
+  for (const Run& run : runs) {
+    for (const ResultColumn& column : run.recorded.table.columns) {
+      const bool known =
+          std::any_of(columns.begin(), columns.end(), [&](const ResultColumn& c) { return c.name == column.name; });
+      if (!known) columns.push_back(column);
+    }
+  }
+  return columns;
+}
+
+ComparedMeasure measure_of(const std::vector<Run>& runs, const std::vector<Key>& keys, const ResultColumn& column) {
+  ComparedMeasure measure{column, {}};
+  for (const Key& key : keys) {
+    ComparedRow row{key.front(), {key.begin() + 1, key.end()}, {}};
+    bool any = false;
+    for (const Run& run : runs) {
+      row.runs.push_back(compared(runs.front(), run, key, column));
+      any = any || row.runs.back().statistics.count + row.runs.back().statistics.infinite > 0;
+    }
+    if (any) measure.rows.push_back(std::move(row));
+  }
+  return measure;
+}
+
+/// All tests of a comparison are judged together.
+void adjust(std::vector<ComparedMeasure>& measures) {
+  std::vector<TimeTest*> tests;
+  std::vector<double> p;
+  for (ComparedMeasure& measure : measures) {
+    for (ComparedRow& row : measure.rows) {
+      for (ComparedNumber& number : row.runs) {
+        if (!number.test) continue;
+        tests.push_back(&*number.test);
+        p.push_back(number.test->p);
+      }
+    }
+  }
+  const std::vector<double> adjusted = detail::holm(p);
+  for (std::size_t i = 0; i < tests.size(); ++i) tests[i]->p = adjusted[i];
+}
+
+std::vector<std::string> warnings_of(const std::vector<Run>& runs, const std::vector<Key>& keys,
+                                     const std::vector<std::string>& names) {
+  std::vector<std::string> warnings;
+  const RecordedTable& first = runs.front().recorded;
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    const RecordedTable& other = runs[i].recorded;
+    const auto warn = [&](bool differs, const char* what) {
+      if (differs) warnings.push_back(fmt::format("{} and {}: {}", names[0], names[i], what));
+    };
+    warn(other.table.study_hash != first.table.study_hash, "different studies: numbers differ for that reason alone");
+    warn(other.host != first.host || other.processor != first.processor,
+         "different machines: times say nothing about the programs");
+    warn(other.table.version != first.table.version, "different versions of the program");
+    warn(other.table.version == first.table.version && (other.abi_tag != first.abi_tag || other.tools != first.tools),
+         "different builds of one version");
+  }
+  if (!first.step_us.empty()) {
+    warnings.emplace_back(
+        "single runs: steps of one run depend on each other; repeat the runs, by a sweep over seeds, for firm statements about "
+        "times");
+  }
+  for (const Key& key : keys) {
+    std::string missing;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (!runs[i].groups.contains(key)) missing += (missing.empty() ? "" : ", ") + names[i];
+    }
+    if (missing.empty()) continue;
+    warnings.push_back(fmt::format("\"{}\" is not in {}", fmt::join(key, ", "), missing));
+  }
+  return warnings;
+}
+
+}  // namespace
+
+bool ComparedMeasure::is_equal() const {
+  return std::all_of(rows.begin(), rows.end(), [](const ComparedRow& row) {
+    return std::all_of(row.runs.begin(), row.runs.end(), [&](const ComparedNumber& number) {
+      return number.different == 0 && number.common > 0 && number.common == row.runs.front().common;
+    });
+  });
+}
+
+Comparison compare_results(const std::vector<std::filesystem::path>& directories) {
+  if (directories.size() < 2) throw Error(Errc::invalid, "a comparison needs two directories or more");
+  Comparison result;
+  std::vector<Run> runs;
+  std::vector<std::string> names;
+  runs.reserve(directories.size());  // groups hold the places of rows
+  for (const std::filesystem::path& directory : directories) {
+    runs.emplace_back(detail::read_recorded_table(directory));
+    const RecordedTable& recorded = runs.back().recorded;
+    names.push_back(directory.string());
+    result.runs.push_back({names.back(), recorded.table.version, recorded.table.study_hash, recorded.host});
+    if (names_of(recorded.table, false) != names_of(runs.front().recorded.table, false) ||
+        names_of(recorded.table, true) != names_of(runs.front().recorded.table, true)) {
+      throw InputError(names.back(),
+                       {{"", "is over other axes than " + names.front(), "compare sweeps over axes of the same names", 0}});
+    }
+  }
+  result.axes = names_of(runs.front().recorded.table, false);
+  const std::vector<Key> keys = keys_of(runs);
+  for (const ResultColumn& column : columns_of(runs)) result.measures.push_back(measure_of(runs, keys, column));
+  std::erase_if(result.measures, [](const ComparedMeasure& measure) { return measure.rows.empty(); });
+  adjust(result.measures);
+  result.warnings = warnings_of(runs, keys, names);
+  return result;
+}
+
+}  // namespace cordon

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/statistics/rank_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace cordon::detail {
+
+namespace {
+
+constexpr std::size_t most_exact = 40, most_ratios = 500;
+
+/// Of two series in one order: the sum over the values of the first of the values of the second below it (ties: half), and what
+/// ties take from the variance.
+struct Ranked {
+  double u = 0;
+  double ties = 0;  ///< Σ t³ - t over groups of equal values
+};
+
+Ranked ranked(std::span<const double> first, std::span<const double> second) {
+  std::vector<std::pair<double, bool>> all;
+  for (const double x : first) all.emplace_back(x, true);
+  for (const double x : second) all.emplace_back(x, false);
+  std::sort(all.begin(), all.end());
+  Ranked found;
+  double below = 0;  // values of the second series below this group
+  for (std::size_t begin = 0; begin < all.size();) {
+    std::size_t end = begin;
+    double ours = 0, theirs = 0;
+    for (; end < all.size() && all[end].first == all[begin].first; ++end) (all[end].second ? ours : theirs) += 1;
+    found.u += ours * (below + theirs / 2);
+    const double t = ours + theirs;
+    found.ties += t * t * t - t;
+    below += theirs;
+    begin = end;
+  }
+  return found;
+}
+
+/// P(U ≤ u) for series of m and n values without ties: counts of arrangements, built up value by value.
+double exact_lower_tail(std::size_t m, std::size_t n, std::size_t u) {
+  // counts[i][w]: arrangements of i values of the first series among the values of the second so far with sum w
+  std::vector<std::vector<double>> counts(m + 1, std::vector<double>(m * n + 1));
+  counts[0][0] = 1;
+  for (std::size_t place = 1; place <= m + n; ++place) {
+    for (std::size_t i = std::min(m, place); i >= 1; --i) {
+      // the value at this place of the order is the i-th of the first series: place - i of the second lie below it
+      const std::size_t below = place - i;
+      if (below > n) continue;
+      for (std::size_t w = m * n; w + 1 > below; --w) counts[i][w] += counts[i - 1][w - below];
+    }
+  }
+  const double all = std::accumulate(counts[m].begin(), counts[m].end(), 0.);
+  const double tail = std::accumulate(counts[m].begin(), counts[m].begin() + static_cast<std::ptrdiff_t>(u + 1), 0.);
+  return tail / all;
+}
+
+/// Evenly spaced order statistics, the first and the last among them.
+std::vector<double> thinned(std::span<const double> values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  if (sorted.size() <= most_ratios) return sorted;
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < most_ratios; ++i) kept.push_back(sorted[i * (sorted.size() - 1) / (most_ratios - 1)]);
+  return kept;
+}
+
+bool all_positive(std::span<const double> values) {
+  return !values.empty() && std::all_of(values.begin(), values.end(), [](double x) { return x > 0 && std::isfinite(x); });
+}
+
+}  // namespace
+
+double mann_whitney_p(std::span<const double> first, std::span<const double> second) {
+  if (first.empty() || second.empty()) return 1;
+  const Ranked found = ranked(first, second);
+  const double m = static_cast<double>(first.size()), n = static_cast<double>(second.size()), N = m + n;
+  const double u = std::min(found.u, m * n - found.u);
+  if (found.ties == 0 && first.size() + second.size() <= most_exact) {
+    return std::min(1., 2 * exact_lower_tail(first.size(), second.size(), static_cast<std::size_t>(u)));
+  }
+  const double variance = m * n / 12 * (N + 1 - found.ties / (N * (N - 1)));
+  if (!(variance > 0)) return 1;
+  const double z = std::max(0., m * n / 2 - u - .5) / std::sqrt(variance);
+  return std::erfc(z / std::sqrt(2.));
+}
+
+MedianRatio median_ratio(std::span<const double> first, std::span<const double> second) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!all_positive(first) || !all_positive(second)) return {none, none, none};
+  const std::vector<double> a = thinned(first), b = thinned(second);
+  std::vector<double> ratios;
+  ratios.reserve(a.size() * b.size());
+  for (const double x : a) {
+    for (const double y : b) ratios.push_back(y / x);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  const double m = static_cast<double>(a.size()), n = static_cast<double>(b.size());
+  const double half = 1.959963984540054 * std::sqrt(m * n * (m + n + 1) / 12);
+  const auto last = ratios.size() - 1;
+  const double below = std::floor(m * n / 2 - half);  // so many ratios lie below the interval
+  const auto lower = below > 0 ? static_cast<std::size_t>(below) : 0;
+  const double median = (ratios[last / 2] + ratios[(last + 1) / 2]) / 2;
+  return {median, ratios[lower], ratios[last - lower]};
+}
+
+std::vector<double> holm(const std::vector<double>& p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return p[i] < p[j]; });
+  std::vector<double> adjusted(p.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    largest = std::max(largest, std::min(1., static_cast<double>(order.size() - i) * p[order[i]]));
+    adjusted[order[i]] = largest;
+  }
+  return adjusted;
+}
+
+}  // namespace cordon::detail

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The report of a sweep: who is best where, and curves over the values.
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "report/find_figure.hpp"
+#include "report/results_files.hpp"
+#include "study/report/read_report.hpp"
+
+using namespace cordon::report;
+
+namespace {
+
+/// Pipelines "a" and "b" over two orders and two seeds; radius by pipeline, order and seed.
+class SweepFiles {
+ public:
+  explicit SweepFiles(const std::string& orders = "10, 30") {
+    std::string points, times;
+    int index = 0;
+    for (int order = 0; order < 2; ++order) {
+      for (int seed = 0; seed < 2; ++seed) {
+        for (int pipeline = 0; pipeline < 2; ++pipeline, ++index) {
+          const double radius = pipeline == 0 ? 4 - 2 * order + seed : 2 + order + seed;
+          points.append(index == 0 ? "\n" : ",\n").append(R"({"point": )").append(std::to_string(index));
+          points.append(R"(, "pipeline": )")
+              .append(std::to_string(pipeline))
+              .append(R"(, "at": [)")
+              .append(std::to_string(order));
+          points.append(", ")
+              .append(std::to_string(seed))
+              .append(R"(], "numbers": {"radius_mean": )")
+              .append(std::to_string(radius));
+          points.append(R"(, "steps": 3}, "error": null})");
+          times.append(index == 0 ? "\n" : ",\n").append(R"({"point": )").append(std::to_string(index));
+          times.append(R"(, "numbers": {"wall_s": 1}})");
+        }
+      }
+    }
+    files.write("results.json", R"({"cordon_results": 1, "cordon": {"version": "1.2", "abi_tag": "x"}, "tools": {}, "plugins": [],
+  "title": "Sweep", "study_hash": "h", "study": {"sweep": [
+    {"name": "order", "path": "/pipelines/*/observer/order", "repeat": false, "values": [)" +
+                                    orders + R"(]},
+    {"name": "seed", "path": "/data/simulate/seed", "repeat": true, "values": [1, 2]}]},
+  "pipelines": [{"name": "a", "backend": "box", "observer": "o"}, {"name": "b", "backend": "box", "observer": "o"}],
+  "points": [)" + points + "]}\n");
+    files.write("run.json", R"({"cordon_run": 1, "study": "s", "started": "now", "host": {"name": "h", "system": "s", "cpu": "c"},
+  "plugins": [], "warnings": [], "points": [)" +
+                                times + R"(], "wall_s": 1, "finished": "then"})");
+  }
+  ResultsFiles files;
+};
+
+}  // namespace
+
+TEST_CASE("who is best where, with the lead over the second") {
+  const SweepFiles sweep;
+  const Report report = read_report(sweep.files.path());
+  const Table& table = content<Table>(report, "winners");
+  REQUIRE(table.header.size() >= 2);
+  CHECK(table.header[0] == "order");
+  CHECK(table.header[1] == "mean radius");
+  REQUIRE(table.rows.size() == 2);
+  CHECK(table.rows[0][0].text == "10");  // 4.5 against 2.5
+  CHECK(table.rows[0][1].text == "b (44.4 %)");
+  CHECK(table.rows[0][1].share == doctest::Approx(2 / 4.5 / 0.5));
+  CHECK(table.rows[1][0].text == "30");  // 2.5 against 3.5
+  CHECK(table.rows[1][1].text == "a (28.6 %)");
+  CHECK(report.figures.front().id == "winners");
+  CHECK(find_figure(report, "comparison"));
+}
+
+TEST_CASE("curves over a factor: means and quantiles over the repetitions, one curve per pipeline") {
+  const SweepFiles sweep;
+  const Plot& plot = content<Plot>(read_report(sweep.files.path()), "sweep_1_1");
+  CHECK(plot.x_label == "order");
+  CHECK(plot.x_names.empty());
+  REQUIRE(plot.series.size() == 4);
+  CHECK(plot.series[0].kind == Series::Kind::band);
+  CHECK(plot.series[0].pipeline == 0);
+  CHECK(plot.series[0].y[0] == doctest::Approx(4.05));
+  CHECK(plot.series[0].upper[0] == doctest::Approx(4.95));
+  CHECK(plot.series[1].x == std::vector<double>{10, 30});
+  CHECK(plot.series[1].y == std::vector<double>{4.5, 2.5});
+  CHECK(plot.series[3].pipeline == 1);
+  CHECK(plot.series[3].y == std::vector<double>{2.5, 3.5});
+}
+
+TEST_CASE("values that are words, or not in order, are names on the axis") {
+  const SweepFiles words(R"("girard", "combastel")"), falling("30, 10");
+  CHECK(content<Plot>(read_report(words.files.path()), "sweep_1_1").x_names == std::vector<std::string>{"girard", "combastel"});
+  CHECK(content<Plot>(read_report(falling.files.path()), "sweep_1_1").x_names == std::vector<std::string>{"30", "10"});
+}
+
+TEST_CASE("a pipeline that failed somewhere is not compared there, and is named") {
+  const SweepFiles sweep;
+  sweep.files.replace("results.json", R"("numbers": {"radius_mean": 5.000000, "steps": 3}, "error": null)",
+                      R"("numbers": {}, "error": "too <large>")");
+  const Report report = read_report(sweep.files.path());
+  const Table& table = content<Table>(report, "winners");
+  CHECK(table.rows[0][1].text == "–");
+  CHECK(table.rows[1][1].text == "a (28.6 %)");
+  const Plot& plot = content<Plot>(report, "sweep_1_1");
+  CHECK(std::isnan(plot.series[1].y[0]));
+  CHECK(plot.series[1].y[1] == 2.5);
+  REQUIRE(report.notes.size() == 1);
+  CHECK(report.notes[0] == "1 of 8 points failed; the first of \"a\": too <large>");
+}
