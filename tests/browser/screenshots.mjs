@@ -12,7 +12,7 @@ const images = join(sources, 'docs', 'images');
 const pictures = [
   ['report_estimation', 'descriptor_four_representations', 'Sets'],
   ['report_diagnosis', 'cstr_actuator_faults', 'Diagnosis'],
-  ['report_input_design', 'active_diagnosis_descriptor', 'Designed inputs'],
+  ['report_design', 'active_diagnosis_descriptor', 'Designed inputs'],
   ['report_sweep', 'compare_representations', null],
 ];
 
