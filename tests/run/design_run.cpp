@@ -175,7 +175,7 @@ TEST_CASE("what the files hold") {
       study_of({fakes::pipeline("observer"), fakes::design("a, b", "found", "truth"), fakes::design("none", "unknown")});
   const RunOutcome outcome = run(study, scratch / "one");
   run(study, scratch / "two");
-  CHECK(outcome.files.size() == 10);
+  CHECK(outcome.files.size() == 11);
   for (const char* name : {"results.json", "inputs.csv", "summary.csv", "data.csv", "steps.csv", "sets.jsonl"}) {
     CHECK(bytes_of(scratch / "one" / name) == bytes_of(scratch / "two" / name));
   }

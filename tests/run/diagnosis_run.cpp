@@ -205,7 +205,7 @@ TEST_CASE("the files of a diagnosis") {
   const Scratch scratch;
   const Study study = study_of({fakes::pipeline("observer"), fakes::diagnosis("a, b")}, 2);
   const RunOutcome outcome = run(study, {{0, 0}, {9, 1}, {15, -1}}, scratch / "one");
-  CHECK(outcome.files.size() == 10);
+  CHECK(outcome.files.size() == 11);
   run(study, {{0, 0}, {9, 1}, {15, -1}}, scratch / "two");
   for (const char* name : {"results.json", "sets.jsonl", "data.csv", "steps.csv", "summary.csv", "diagnosis.csv"}) {
     CHECK_MESSAGE(bytes_of(scratch / "one" / name) == bytes_of(scratch / "two" / name), name);

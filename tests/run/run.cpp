@@ -46,8 +46,8 @@ TEST_CASE("results.json: the study, each step, the summary") {
   const RunOutcome outcome =
       run(fakes::study({fakes::pipeline("first \"box\", é\x01"), fakes::pipeline("second")}), scratch.path());
   CHECK_FALSE(outcome.interrupted);
-  CHECK(outcome.files.size() == 9);
-  CHECK(tree(scratch.path()).size() == 9);
+  CHECK(outcome.files.size() == 10);
+  CHECK(tree(scratch.path()).size() == 10);
   const json results = json::parse(bytes_of(scratch / "results.json"));
   CHECK(results["cordon_results"] == 1);
   CHECK(results["study"]["title"] == "two states");
