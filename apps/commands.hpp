@@ -33,5 +33,6 @@ void add_schema(CLI::App& app, Program& program);
 void add_new(CLI::App& app, Program& program);
 void add_doctor(CLI::App& app, Program& program);
 void add_conform(CLI::App& app, Program& program);
+void add_convert(CLI::App& app, Program& program);
 
 }  // namespace cordon::apps

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,9 @@ void print(const std::string& text);
 void note(const std::string& text);
 void warn(const std::string& text);
 void complain(const std::string& text);
+
+/// A path as a shell reads it, in quotes where it needs them.
+std::string quoted(const std::filesystem::path& path);
 
 /// Colours for a stream: none off a terminal, with NO_COLOR set (to anything but "") or TERM=dumb.
 class Paint {

@@ -33,9 +33,10 @@ std::string ending(const fs::path& path) {
 void require_mat(const ConvertRequest& wanted, const char* what) {
   if (ending(wanted.out) == ".mat") return;
   const bool table = ending(wanted.out) == ".csv";
-  throw Error(Errc::invalid,
-              fmt::format("{} become a MAT-file: give a name that ends in .mat{}", what,
-                          table ? "; tables of results are there already: steps.csv, data.csv and summary.csv in their directory" : ""));
+  throw Error(
+      Errc::invalid,
+      fmt::format("{} become a MAT-file: give a name that ends in .mat{}", what,
+                  table ? "; tables of results are there already: steps.csv, data.csv and summary.csv in their directory" : ""));
 }
 
 void convert_results(const ConvertRequest& wanted, const Target& target) {
@@ -48,7 +49,8 @@ void convert_mat(const ConvertRequest& wanted, const Target& target) {
   if (ending(wanted.out) != ".json")
     throw Error(Errc::invalid, "a MAT-file becomes a study or a file of sets: give a name that ends in .json");
   const ImportedStudy imported = mat_to_json(wanted.in, target, wanted.variable);
-  for (const std::string& name : imported.ignored) warn(fmt::format("the field {} is not part of a system and was left out", name));
+  for (const std::string& name : imported.ignored)
+    warn(fmt::format("the field {} is not part of a system and was left out", name));
   for (const fs::path& file : imported.files) note(fmt::format("Wrote {}", file.string()));
   if (imported.sets_only) return;
   if (!imported.missing.empty()) {
@@ -68,7 +70,8 @@ void convert_json(const Program& program, const ConvertRequest& wanted, const Ta
     throw Error(Errc::invalid, fmt::format("{} is neither a study nor a set nor a list of sets", wanted.in.string()));
   }
   if (wanted.sparse || wanted.dense) {
-    if (ending(wanted.out) != ".json") throw Error(Errc::invalid, "--sparse and --dense write JSON: give a name that ends in .json");
+    if (ending(wanted.out) != ".json")
+      throw Error(Errc::invalid, "--sparse and --dense write JSON: give a name that ends in .json");
     refuse_option(wanted.no_data, "--no-data", "a MAT-file of a study");
     rewrite_matrices(wanted.in, target, wanted.sparse ? MatrixForm::sparse : MatrixForm::dense);
   } else if (ending(wanted.out) == ".json") {
@@ -120,7 +123,8 @@ void add_convert(CLI::App& app, Program& program) {
   command->add_flag("--sets", wanted->sets, "Of results: the set of every step as well");
   command->add_flag("--no-data", wanted->no_data, "Of a study: the system alone");
   command->add_option("--variable", wanted->variable, "Of a MAT-file: the variable to take")->option_text("NAME");
-  CLI::Option* sparse = command->add_flag("--sparse", wanted->sparse, "Matrices by their entries that are not 0, where that is shorter");
+  CLI::Option* sparse =
+      command->add_flag("--sparse", wanted->sparse, "Matrices by their entries that are not 0, where that is shorter");
   command->add_flag("--dense", wanted->dense, "Matrices as lists of rows")->excludes(sparse);
   command->callback([&program, wanted] { program.exit = convert(program, *wanted); });
 }

@@ -54,6 +54,7 @@ Exit run(int argc, char** argv) {
   add_list(app, program);
   add_info(app, program);
   add_schema(app, program);
+  add_convert(app, program);
   add_new(app, program);
   add_doctor(app, program);
   add_conform(app, program);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -14,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "new_study.hpp"
 #include "plugin_template.hpp"
 
 namespace cordon::apps {
@@ -119,17 +119,6 @@ class PartialDirectory {
   bool kept_ = false;
 };
 
-/// As a shell reads it.
-std::string quoted(const fs::path& path) {
-  std::string text = path.string();
-  const bool plain = std::all_of(text.begin(), text.end(),
-                                 [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("/._-+~", c); });
-  if (plain) return text;
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
 /// What CMake must be told to find this program's package; `installed` says if it has one.
 std::string prefix_option(bool& installed) {
   std::error_code error;
@@ -179,6 +168,7 @@ void add_new(CLI::App& app, Program& program) {
   plugin->add_option("NAME", *name, "Name of the plugin and of its backend, in snake_case")->required();
   plugin->add_option("--dir", *directory, "The directory to write, which must not exist (default: NAME)")->option_text("DIR");
   plugin->callback([&program, name, directory] { program.exit = new_plugin(program, *name, *directory); });
+  add_new_study(*command, program);
 }
 
 }  // namespace cordon::apps

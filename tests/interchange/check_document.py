@@ -18,7 +18,7 @@ for kind, block in re.findall(r"<!-- (\w+) -->\n```matlab\n(.*?)```", document, 
     for line in block.splitlines():
         code = line.split("%")[0]
         assigned = re.match(r"(\w+) = (\w+)((?:\.\w+)+)(\{\d+\})?;", code)
-        for name, path in re.findall(r"\b([A-Z])((?:\.\w+)+)", line):
+        for name, path in re.findall(r"\b([A-Z])((?:\.[a-zA-Z]\w*)+)", re.sub(r"\(\d+\)", "", line)):
             count += 1
             try:
                 value = look(known[name], path[1:].split("."))

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Studies and sets that go to MATLAB come back as they were.
+#include "cordon/study/interchange.hpp"
+
 #include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
-#include "cordon/study/interchange.hpp"
 #include "run/scratch.hpp"
 #include "study/fakes.hpp"
 #include "study/interchange/json_to_mat.hpp"
 #include "study/interchange/mat_file.hpp"
 #include "study/interchange/model_to_mat.hpp"
 #include "study/interchange/steps_to_mat.hpp"
+#include "study/reading/read_parts.hpp"
 #include "study/same_study.hpp"
 
 using namespace cordon;
@@ -35,19 +37,6 @@ Study read(const std::filesystem::path& file) {
   Registry registry;
   registry.add(study_test::register_fakes);
   return read_study(file, registry, SearchPath{});
-}
-
-const Value* find(const mat::Variables& all, const std::string& name) {
-  for (const mat::Variable& v : all) {
-    if (v.name == name) return &v.value;
-  }
-  return nullptr;
-}
-
-/// The system part of a resolved study, as text.
-std::string system_text(const Study& study) {
-  const std::size_t begin = study.resolved.find("\"system\""), end = study.resolved.find("\"data\"");
-  return study.resolved.substr(begin, end - begin);
 }
 
 /// The problems of reading this struct as a system.
@@ -100,7 +89,8 @@ mat::Variables with(mat::Variables all, const std::string& name, Value value) {
 
 TEST_CASE("a system survives the way to a MAT-file and back") {
   const FileScratch scratch;
-  for (const char* text : {study_test::valid_study, study_test::diagnosis_study, study_test::uncertain_study, study_test::design_study}) {
+  for (const char* text :
+       {study_test::valid_study, study_test::diagnosis_study, study_test::uncertain_study, study_test::design_study}) {
     put(scratch / "study.json", text);
     const Study study = read(scratch / "study.json");
     study_to_mat(study, {scratch / "study.mat"}, false);
@@ -109,26 +99,24 @@ TEST_CASE("a system survives the way to a MAT-file and back") {
     CHECK(back.missing.empty());
     CHECK_FALSE(back.sets_only);
     // the beginning of a study names components that the fakes lack: the system is what counts
-    Registry registry;
-    registry.add(study_test::register_fakes);
-    std::string again = text;
-    const std::string imported = bytes_of(scratch / "back.json");
-    const std::size_t from = imported.find("\"system\""), to = imported.find("\"data\"", from);
-    const std::size_t old_from = again.find("\"system\""), old_to = again.find("\"data\"", old_from) != std::string::npos
-                                                                      ? again.find("\"data\"", old_from)
-                                                                      : again.find("\"pipelines\"", old_from);
-    again.replace(old_from, old_to - old_from, imported.substr(from, to - from));
-    put(scratch / "again.json", again);
-    const Study twin = read(scratch / "again.json");
-    const ModeBank a = bank_of(study), b = bank_of(twin);
+    json::Problems problems;
+    std::vector<std::string> warnings;
+    const json::Value root = json::parse(bytes_of(scratch / "back.json"), problems);
+    const json::SystemPart imported = json::read_system(*json::Cursor(root, "", problems).find("system"), warnings);
+    REQUIRE_FALSE(problems.any());
+    ModeBank b;
+    b.modes.push_back({imported.nominal, imported.model});
+    b.modes.insert(b.modes.end(), imported.modes.begin(), imported.modes.end());
+    const ModeBank a = bank_of(study);
     REQUIRE(a.size() == b.size());
     for (Index j = 0; j < a.size(); ++j) {
       CAPTURE(j);
       CHECK(a[j].name == b[j].name);
       const LinearModel &m = a[j].model.linear, &n = b[j].model.linear;
       CHECK(m.is_descriptor() == n.is_descriptor());
-      for (const auto part : {&LinearModel::E, &LinearModel::A, &LinearModel::B, &LinearModel::Bw, &LinearModel::C, &LinearModel::D,
-                              &LinearModel::Dv, &LinearModel::A_radius, &LinearModel::B_radius, &LinearModel::C_radius, &LinearModel::F}) {
+      for (const auto part :
+           {&LinearModel::E, &LinearModel::A, &LinearModel::B, &LinearModel::Bw, &LinearModel::C, &LinearModel::D,
+            &LinearModel::Dv, &LinearModel::A_radius, &LinearModel::B_radius, &LinearModel::C_radius, &LinearModel::F}) {
         REQUIRE((m.*part).rows() == (n.*part).rows());
         REQUIRE((m.*part).cols() == (n.*part).cols());
         CHECK(m.*part == n.*part);
@@ -292,7 +280,10 @@ TEST_CASE("what is wrong in a system is told by its field") {
   expect_problem(with(plain(), "modes", mat::number(1)), "/modes", "must be a struct array");
   CHECK(problems_of(with(plain(), "Ts", mat::number(0.1))).empty());
   mat::Struct set;
-  set.set("type", mat::text("zonotope")).set("c", mat::matrix(Matrix{{0}, {0}})).set("A", mat::matrix(Matrix{{1}})).set("b", mat::number(1));
+  set.set("type", mat::text("zonotope"))
+      .set("c", mat::matrix(Matrix{{0}, {0}}))
+      .set("A", mat::matrix(Matrix{{1}}))
+      .set("b", mat::number(1));
   const auto problems = problems_of(with(plain(), "W", std::move(set).value()));
   REQUIRE(problems.size() == 2);
   CHECK(problems[0].message.find("does not belong to a set of type") != std::string::npos);
@@ -342,7 +333,8 @@ TEST_CASE("data become a CSV file, whichever way they stand") {
 TEST_CASE("data that are wrong") {
   const auto data = [](const char* name, Matrix numbers) {
     mat::Struct all;
-    for (const auto& [key, value] : std::vector<std::pair<std::string, Matrix>>{{"u", Matrix{{1, 2}}}, {"y", Matrix{{1, 2}}}, {"mode", Matrix{{0, 0}}}}) {
+    for (const auto& [key, value] :
+         std::vector<std::pair<std::string, Matrix>>{{"u", Matrix{{1, 2}}}, {"y", Matrix{{1, 2}}}, {"mode", Matrix{{0, 0}}}}) {
       all.set(key, mat::matrix(key == name ? numbers : value));
     }
     return with(plain(), "data", std::move(all).value());

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // MAT-files are read as they were written, and whatever their bytes are, the program goes on.
+#include "study/interchange/mat_file.hpp"
+
 #include <cmath>
 #include <limits>
+#include <matio.h>
 
 #include <doctest/doctest.h>
-#include <matio.h>
 #include <rapidcheck.h>
 
 #include "cordon/core/error.hpp"
 #include "run/scratch.hpp"
-#include "study/interchange/mat_file.hpp"
 #include "study/interchange/mat_wire.hpp"
 #include "study/interchange/utf16.hpp"
 
@@ -21,7 +22,8 @@ namespace {
 
 bool same(const Value& a, const Value& b) {
   if (a.kind != b.kind || a.text != b.text || a.rows != b.rows || a.cols != b.cols || a.names != b.names) return false;
-  if (a.numbers.rows() != b.numbers.rows() || a.numbers.cols() != b.numbers.cols() || a.items.size() != b.items.size()) return false;
+  if (a.numbers.rows() != b.numbers.rows() || a.numbers.cols() != b.numbers.cols() || a.items.size() != b.items.size())
+    return false;
   for (Index i = 0; i < a.numbers.size(); ++i) {
     const double x = a.numbers.data()[i], y = b.numbers.data()[i];
     if (x != y && !(std::isnan(x) && std::isnan(y))) return false;
@@ -257,7 +259,8 @@ TEST_CASE("names of MATLAB") {
 }
 
 TEST_CASE("UTF-16") {
-  for (const std::string text : {"", "plain", "é ü ß", "日本語", "😀 beyond 0xFFFF"}) CHECK(mat::to_utf8(mat::to_utf16(text)) == text);
+  for (const std::string text : {"", "plain", "é ü ß", "日本語", "😀 beyond 0xFFFF"})
+    CHECK(mat::to_utf8(mat::to_utf16(text)) == text);
   CHECK(mat::to_utf16("\xFFx") == u"\uFFFDx");
   CHECK(mat::to_utf8(std::u16string{char16_t(0xD800), u'x', char16_t(0xDC00)}) == "\xEF\xBF\xBDx\xEF\xBF\xBD");
 }

@@ -35,7 +35,8 @@ std::string diagonal(int n) {
 }  // namespace
 
 TEST_CASE("a large diagonal becomes sparse, and comes back") {
-  const std::string set = R"({"type": "zonotope", "center": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], "generators": )" + diagonal(12) + "}";
+  const std::string set =
+      R"({"type": "zonotope", "center": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], "generators": )" + diagonal(12) + "}";
   const json sparse = rewritten(set, MatrixForm::sparse);
   CHECK(sparse["generators"]["rows"] == 12);
   CHECK(sparse["generators"]["cols"] == 12);
@@ -50,7 +51,8 @@ TEST_CASE("what would be longer stays dense") {
 }
 
 TEST_CASE("nothing but matrices is touched") {
-  const std::string text = R"({"cordon": 1, "$comment": [[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]],
+  const std::string text =
+      R"({"cordon": 1, "$comment": [[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]],
     "system": {"A": [[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]],
       "modes": [{"actuator": [[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]]}],
       "B": {"rows": 2, "cols": 2, "entries": []}},
@@ -67,20 +69,24 @@ TEST_CASE("nothing but matrices is touched") {
 }
 
 TEST_CASE("a matrix that a sweep looks into keeps its form") {
-  const std::string zeros = "[[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]]";
-  const std::string head = R"({"cordon": 1, "pipelines": [{"gain": )" + zeros + R"(}], "other": )" + zeros + R"(, "sweep": [{"path": ")";
+  const std::string zeros =
+      "[[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]]";
+  const std::string head =
+      R"({"cordon": 1, "pipelines": [{"gain": )" + zeros + R"(}], "other": )" + zeros + R"(, "sweep": [{"path": ")";
   const json swept = rewritten(head + "/pipelines/*/gain/0/3\"}]}", MatrixForm::sparse);
   CHECK(swept["pipelines"][0]["gain"].is_array());
   CHECK(swept["other"].is_object());
   CHECK(rewritten(head + "/pipelines/0/gains/0/3\"}]}", MatrixForm::sparse)["pipelines"][0]["gain"].is_object());
-  const json kept = rewritten(R"({"cordon": 1, "A": {"rows": 3, "cols": 3, "entries": [[1, 2, 3], [2, 2, 2]]}, "sweep": [{"path": "/A/entries/0/2"}]})",
-                              MatrixForm::dense);
+  const json kept = rewritten(
+      R"({"cordon": 1, "A": {"rows": 3, "cols": 3, "entries": [[1, 2, 3], [2, 2, 2]]}, "sweep": [{"path": "/A/entries/0/2"}]})",
+      MatrixForm::dense);
   CHECK(kept["A"]["entries"] == json::parse("[[1, 2, 3], [2, 2, 2]]"));
 }
 
 TEST_CASE("a study is the same study in both forms") {
   const FileScratch scratch;
-  for (const char* text : {study_test::valid_study, study_test::diagnosis_study, study_test::uncertain_study, study_test::design_study}) {
+  for (const char* text :
+       {study_test::valid_study, study_test::diagnosis_study, study_test::uncertain_study, study_test::design_study}) {
     put(scratch / "in.json", text);
     CHECK(json_file(scratch / "in.json") == JsonFile::study);
     rewrite_matrices(scratch / "in.json", {scratch / "sparse.json", true}, MatrixForm::sparse);
@@ -94,9 +100,9 @@ TEST_CASE("a study is the same study in both forms") {
 TEST_CASE("files of other kinds are refused") {
   const FileScratch scratch;
   for (const auto& [text, kind] : std::vector<std::pair<std::string, JsonFile>>{{"{\"cordon_results\": 1}", JsonFile::results},
-                                                                               {"[1, 2]", JsonFile::other},
-                                                                               {"{\"type\": \"ball\"}", JsonFile::other},
-                                                                               {"[]", JsonFile::other}}) {
+                                                                                {"[1, 2]", JsonFile::other},
+                                                                                {"{\"type\": \"ball\"}", JsonFile::other},
+                                                                                {"[]", JsonFile::other}}) {
     put(scratch / "in.json", text);
     CHECK(json_file(scratch / "in.json") == kind);
     CHECK_THROWS_AS(rewrite_matrices(scratch / "in.json", {scratch / "out.json"}, MatrixForm::dense), InputError);

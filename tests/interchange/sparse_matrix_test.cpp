@@ -24,7 +24,8 @@ TEST_CASE("every matrix of a system may be sparse") {
   std::string text = exchanged(valid_study, dense_A, sparse_A);
   text = exchanged(text, "\"E\": [[1, 0], [0, 0]]", R"("E": {"rows": 2, "cols": 2, "entries": [[1, 1, 1]]})");
   text = exchanged(text, "\"B\": [[1], [0]]", R"("B": {"$comment": "one entry", "cols": 1, "entries": [[1, 1, 1]], "rows": 2})");
-  text = exchanged(text, "\"Bw\": [[1, 0, 0], [0, 1, 1]]", R"("Bw": {"rows": 2, "cols": 3, "entries": [[1, 1, 1], [2, 2, 1], [2, 3, 1]]})");
+  text = exchanged(text, "\"Bw\": [[1, 0, 0], [0, 1, 1]]",
+                   R"("Bw": {"rows": 2, "cols": 3, "entries": [[1, 1, 1], [2, 2, 1], [2, 3, 1]]})");
   text = exchanged(text, "\"C\": [[1, 0]]", R"("C": {"rows": 1, "cols": 2, "entries": [[1, 1, 1]]})");
   text = exchanged(text, "\"D\": [[0.25]]", R"("D": {"rows": 1, "cols": 1, "entries": [[1, 1, 0.25]]})");
   text = exchanged(text, "\"generators\": [[1, 0.5], [0, 1]]",
@@ -40,7 +41,8 @@ TEST_CASE("interval matrices, directions of faults and gains may be sparse") {
   text = exchanged(text, "\"radius\": [[0.125, 0], [0, 0.0625]]",
                    R"("radius": {"rows": 2, "cols": 2, "entries": [[1, 1, 0.125], [2, 2, 0.0625]]})");
   text = exchanged(text, "\"C\": [[1, 0], [0, 1]]", R"("C": {"rows": 2, "cols": 2, "entries": [[1, 1, 1], [2, 2, 1]]})");
-  text = exchanged(text, "\"F\": [[1, 0.5], [0, 2]]", R"("F": {"rows": 2, "cols": 2, "entries": [[1, 1, 1], [1, 2, 0.5], [2, 2, 2]]})");
+  text = exchanged(text, "\"F\": [[1, 0.5], [0, 2]]",
+                   R"("F": {"rows": 2, "cols": 2, "entries": [[1, 1, 1], [1, 2, 0.5], [2, 2, 2]]})");
   text = exchanged(text, "\"gain\": [[0.5, 0], [0, 0.25]]",
                    R"("gain": {"rows": 2, "cols": 2, "entries": [[1, 1, 0.5], [2, 2, 0.25]]})");
   const Study sparse = read_text(text), dense = read_text(uncertain_study);
@@ -60,8 +62,9 @@ TEST_CASE("an exact system takes sparse matrices, and refuses intervals as befor
 TEST_CASE("a size without entries is a matrix of zeros") {
   const std::string text = exchanged(valid_study, "\"D\": [[0.25]]", R"("D": {"rows": 1, "cols": 1, "entries": []})");
   CHECK(read_text(text).model.linear.D(0, 0) == 0);
-  const std::string none = exchanged(exchanged(valid_study, "\"Bw\": [[1, 0, 0], [0, 1, 1]]", R"("Bw": {"rows": 2, "cols": 0, "entries": []})"),
-                                     "\"W\": {\"type\": \"box\", \"lower\": [-1, -1, -1], \"upper\": [1, 1, 1]},\n", "");
+  const std::string none =
+      exchanged(exchanged(valid_study, "\"Bw\": [[1, 0, 0], [0, 1, 1]]", R"("Bw": {"rows": 2, "cols": 0, "entries": []})"),
+                "\"W\": {\"type\": \"box\", \"lower\": [-1, -1, -1], \"upper\": [1, 1, 1]},\n", "");
   CHECK(read_text(none).model.linear.disturbances() == 0);
 }
 
@@ -87,8 +90,9 @@ TEST_CASE("mistakes are told with their place") {
 }
 
 TEST_CASE("only the first wrong entries are told") {
-  const auto problems = problems_of(exchanged(
-      valid_study, dense_A, R"("A": {"rows": 2, "cols": 2, "entries": [[9, 1, 1], [9, 2, 1], [9, 3, 1], [9, 4, 1], [9, 5, 1]]})"));
+  const auto problems = problems_of(
+      exchanged(valid_study, dense_A,
+                R"("A": {"rows": 2, "cols": 2, "entries": [[9, 1, 1], [9, 2, 1], [9, 3, 1], [9, 4, 1], [9, 5, 1]]})"));
   std::size_t about_A = 0;
   for (const Diagnostic& d : problems) about_A += d.pointer.find("/system/A") == 0;
   CHECK(about_A <= 6);
@@ -96,8 +100,7 @@ TEST_CASE("only the first wrong entries are told") {
 }
 
 TEST_CASE("a wrong entry of an interval is told where it stands") {
-  expect_reported(uncertain_study,
-                  {"\"radius\": [[0.125, 0], [0, 0.0625]]",
-                   R"("radius": {"rows": 2, "cols": 2, "entries": [[1, 1, 0.125], [2, 1, 1], [2, 2, -1]]})",
-                   "/system/A/radius/entries/2", "is negative", "at least 0"});
+  expect_reported(uncertain_study, {"\"radius\": [[0.125, 0], [0, 0.0625]]",
+                                    R"("radius": {"rows": 2, "cols": 2, "entries": [[1, 1, 0.125], [2, 1, 1], [2, 2, -1]]})",
+                                    "/system/A/radius/entries/2", "is negative", "at least 0"});
 }

@@ -14,7 +14,7 @@
 #include "study/statistics/table_builder.hpp"
 
 using namespace cordon;
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -27,7 +27,7 @@ void write_file(const std::filesystem::path& file, const std::string& bytes) {
 
 /// A sweep of two pipelines over two budgets and two seeds, as its files.
 struct SweepFiles {
-  json results, run;
+  Json results, run;
 };
 
 SweepFiles sweep_files() {
@@ -46,10 +46,10 @@ SweepFiles sweep_files() {
                         {"values", {"zonotope", {{"type", "interval"}, {"n", 0.5}}}}},
                        {{"name", "seed"}, {"path", "/data/simulate/seed"}, {"repeat", true}, {"values", {1, 2}}}}}}},
                    {"pipelines", {{{"name", "a"}, {"backend", "x"}}, {{"name", "b"}, {"backend", "x"}}}},
-                   {"points", json::array()}};
-  files.run = {{"cordon_run", 1}, {"host", {{"name", "h"}, {"system", "s"}, {"cpu", "c"}}}, {"points", json::array()}};
+                   {"points", Json::array()}};
+  files.run = {{"cordon_run", 1}, {"host", {{"name", "h"}, {"system", "s"}, {"cpu", "c"}}}, {"points", Json::array()}};
   for (int i = 0; i < 8; ++i) {
-    json point{{"point", i}, {"pipeline", i % 2}, {"at", {i / 4, i / 2 % 2}}, {"numbers", {{"steps", 10}}}, {"error", nullptr}};
+    Json point{{"point", i}, {"pipeline", i % 2}, {"at", {i / 4, i / 2 % 2}}, {"numbers", {{"steps", 10}}}, {"error", nullptr}};
     if (i == 3) point["numbers"] = {{"radius_mean", "inf"}, {"lower_bound", "-inf"}};
     if (i == 5) point["error"] = "broken";
     files.results["points"].push_back(point);
@@ -136,7 +136,7 @@ TEST_CASE("a sweep is read as it was written, however it is laid out") {
     CHECK(table.axes[0].name == "backend");
     CHECK(table.axes[0].path == "/pipelines/*/backend");
     CHECK_FALSE(table.axes[0].repeat);
-    CHECK(table.axes[0].values == std::vector<std::string>{"\"zonotope\"", R"({"type": "interval", "n": 0.5})"});
+    CHECK(table.axes[0].values == std::vector<std::string>{"\"zonotope\"", R"({"type":"interval","n":0.5})"});
     CHECK(table.axes[1].repeat);
     CHECK(table.axes[1].values == std::vector<std::string>{"1", "2"});
     CHECK(table.pipelines == std::vector<std::string>{"a", "b"});
@@ -162,7 +162,7 @@ TEST_CASE("a part of a sweep is a table with fewer rows") {
   const Scratch scratch;
   SweepFiles files = sweep_files();
   files.results["shard"] = {{"part", 1}, {"of", 2}};
-  for (json* points : {&files.results["points"], &files.run["points"]}) {
+  for (Json* points : {&files.results["points"], &files.run["points"]}) {
     for (const int i : {6, 5, 3, 0}) points->erase(points->begin() + i);
   }
   write_sweep(scratch.path(), files);
@@ -174,7 +174,7 @@ TEST_CASE("a part of a sweep is a table with fewer rows") {
 TEST_CASE("points before pipelines and axes are read as well") {
   const Scratch scratch;
   SweepFiles files = sweep_files();
-  json turned;
+  Json turned;
   turned["points"] = files.results["points"];
   for (const auto& [key, value] : files.results.items()) turned[key] = value;
   files.results = turned;
@@ -191,7 +191,7 @@ TEST_CASE("files that are not as they were written are refused, with the place")
   says([](SweepFiles& f) { f.results["cordon_results"] = 2; }, "/cordon_results");
   says([](SweepFiles& f) { f.results.erase("title"); }, "title");
   says([](SweepFiles& f) { f.results["title"] = "line\nend"; }, "/title");
-  says([](SweepFiles& f) { f.results["pipelines"] = json::array(); }, "/pipelines");
+  says([](SweepFiles& f) { f.results["pipelines"] = Json::array(); }, "/pipelines");
   says([](SweepFiles& f) { f.results["pipelines"][1] = 3; }, "/pipelines/1");
   says([](SweepFiles& f) { f.results["study"]["sweep"][0]["values"] = "x"; }, "/study/sweep/0/values");
   says([](SweepFiles& f) { f.results["points"][2]["pipeline"] = 2; }, "/points/2");
@@ -210,7 +210,7 @@ TEST_CASE("files that are not as they were written are refused, with the place")
   says([](SweepFiles& f) { f.run["host"] = 1; }, "/host");
   says([](SweepFiles& f) { f.run["points"].erase(f.run["points"].begin() + 2); }, "/points/2");
   says([](SweepFiles& f) { f.run["points"].erase(f.run["points"].end() - 1); }, "does not have the points");
-  says([](SweepFiles& f) { f.run["points"].push_back({{"point", 8}, {"numbers", json::object()}}); }, "/points/8");
+  says([](SweepFiles& f) { f.run["points"].push_back({{"point", 8}, {"numbers", Json::object()}}); }, "/points/8");
   const Scratch empty;
   CHECK_THROWS_AS(read_result_table(empty.path()), InputError);
   CHECK_THROWS_AS(read_result_table(empty / "nowhere"), InputError);
@@ -221,12 +221,12 @@ TEST_CASE("files that are not as they were written are refused, with the place")
 
 TEST_CASE("runs that do not fit together, or were made before there were numbers") {
   const Scratch scratch;
-  json results = sweep_files().results, run = sweep_files().run;
+  Json results = sweep_files().results, run = sweep_files().run;
   results.erase("points");
   results["study"].erase("sweep");
   run.erase("points");
-  run["pipelines"] = json::array();
-  for (json& pipeline : results["pipelines"]) {
+  run["pipelines"] = Json::array();
+  for (Json& pipeline : results["pipelines"]) {
     pipeline["numbers"] = {{"steps", 3}};
     pipeline["summary"] = {{"error", nullptr}};
     run["pipelines"].push_back(
@@ -234,7 +234,7 @@ TEST_CASE("runs that do not fit together, or were made before there were numbers
          {"steps", {{{"k", 0}, {"time_us", {{"predict", 1}, {"correct", 2}, {"reduce", 4}, {"hull", 8}}}}}},
          {"summary", {{"numbers", {{"wall_s", 1}}}}}});
   }
-  const auto reading = [&](const json& first, const json& second) -> std::string {
+  const auto reading = [&](const Json& first, const Json& second) -> std::string {
     write_sweep(scratch.path(), {first, second});
     try {
       const detail::RecordedTable recorded = detail::read_recorded_table(scratch.path());
@@ -245,7 +245,7 @@ TEST_CASE("runs that do not fit together, or were made before there were numbers
     return "";
   };
   CHECK(reading(results, run).empty());
-  json other = results;
+  Json other = results;
   other["pipelines"][1].erase("numbers");
   CHECK(reading(other, run).find("older version") != std::string::npos);
   other = run;
@@ -302,7 +302,7 @@ TEST_CASE("what is wanted of a large file") {
   CHECK(read("{\n\"b\": [[{\"a\": 1}]],\n\"a\":\n{\"x\": [1]}}") == "a@4 ");
   CHECK(read("{\"b\": 7\n,\n\"a\": 5\n}") == "a@3 ");
   CHECK(read("{\"l\": [{\"x\": 1, \"y\": 2}, {\"y\": 2}, 3, {\"x\": {\"y\": 1}}]}") == "1001");
-  CHECK(read("{\"s\": [{\"t\": [1,\n2]}, {\"u\": [1]}, {\"t\": [[3]]}]}") == "/s/0/t/0@1:0,0 /s/0/t/1@2:0,1 /s/2/t/0@1:2,0 ");
+  CHECK(read("{\"s\": [{\"t\": [1,\n2]}, {\"u\": [1]}, {\"t\": [[3]]}]}") == "/s/0/t/0@1:0,0 /s/0/t/1@2:0,1 /s/2/t/0@2:2,0 ");
   CHECK(read("{\"a\": 1,\n\"a\": 2}") == "!/a@2a@1 ");
   CHECK(read("{\"b\": 1, \"b\": 2, \"a\": 2}") == "a@1 ");
   CHECK(read("{\"a\":\n 1e999}").find("!/a@2") == 0);
@@ -310,8 +310,8 @@ TEST_CASE("what is wanted of a large file") {
   CHECK(read("{\"a\": \"\xff\"}").find("!/a@1") == 0);
   CHECK(read("").find("!") == 0);
   std::string deep = "{\"a\": ", deeper = "{\"b\": ";
-  for (int i = 0; i < 100; ++i) deep += "[";
+  for (int i = 0; i < 100; ++i) deep += '[';
   CHECK(read(deep).find("!/a/0") == 0);
-  for (int i = 0; i < 300000; ++i) deeper += "[";
+  for (int i = 0; i < 300000; ++i) deeper += '[';
   CHECK(read(deeper).find("!") == 0);  // nothing of it is kept, and no stack grows
 }

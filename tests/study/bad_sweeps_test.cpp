@@ -81,6 +81,8 @@ const Mistake forms[] = {
 const Mistake values[] = {
     {"\"values\": [10, 20, 40]", "\"values\": [10, 0, 40]", "/sweep/0/values/1",
      "is too small (at /pipelines/0/observer/max_generators)", "must lie between 1"},
+    {"\"values\": [10, 20, 40]", "\"values\": [10,\n0,\n40]", "/sweep/0/values/1",
+     "is too small (at /pipelines/0/observer/max_generators)", "must lie between 1", 38},
     {"\"values\": [10, 20, 40]", "\"values\": [0, 20, 40]", "/sweep/0/values/0",
      "is too small (at /pipelines/0/observer/max_generators)", "must lie between 1"},
     {"\"values\": [10, 20, 40]", "\"values\": [10, 20, \"x\"]", "/sweep/0/values/2",
@@ -142,6 +144,13 @@ TEST_CASE("all problems of a sweep and of the rest at once") {
   for (const Diagnostic& d : problems_of(text)) places.push_back(d.pointer);
   CHECK(places == std::vector<std::string>{"/data/simulate/steps", "/sweep/0/values/1", "/sweep/0/values/2", "/sweep/1/values/1",
                                            "/sweep/2/range"});
+}
+
+TEST_CASE("the same problem with several values is told of each") {
+  std::vector<std::string> places;
+  for (const Diagnostic& d : problems_of(exchanged(sweep_study, "\"values\": [10, 20, 40]", "\"values\": [0, -1, 40]")))
+    places.push_back(d.pointer);
+  CHECK(places == std::vector<std::string>{"/sweep/0/values/0", "/sweep/0/values/1"});
 }
 
 TEST_CASE("of many values those at regular distances are tried, the ends among them") {

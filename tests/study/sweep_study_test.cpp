@@ -287,6 +287,54 @@ TEST_CASE("the point of one pipeline does not depend on whether others work") {
   CHECK(same(study, read.at({2, 1, 0})));
 }
 
+TEST_CASE("pipelines are asked again where a value of theirs, or of the system, is another one") {
+  const auto wrong = [](const Read& read) {
+    for (const Combination& right : {Combination{0, 0, 0}, Combination{0, 0, 1}, Combination{0, 1, 0}})
+      CHECK_NOTHROW(read.at(right));
+    for (int i = 0; i < 2; ++i) CHECK_THROWS_AS(read.at({0, 1, 1}), InputError);
+    CHECK_THROWS_AS(study_of_point(read.study, SweepPoint{0, {0, 1, 1}, 1}, read.registry), InputError);
+    CHECK_NOTHROW(study_of_point(read.study, SweepPoint{0, {0, 1, 1}, 0}, read.registry));
+  };
+  const std::string generators = "/pipelines/*/observer/max_generators",
+                    bound = "\"path\": \"/system/W/upper/0\", \"values\": [1, 2.5]";
+  SUBCASE("a value of all pipelines") {
+    const std::string box = R"({"type": "box", "lower": [-1, -1], "upper": [1, 1]})", space = R"({"type": "space", "dim": 2})";
+    std::string text = with_axis("/pipelines/*/observer/initial_set", "[" + box + ", " + space + "]");
+    text = exchanged(text, R"("backend": "interval")", R"("name": "second", "backend": "interval")");
+    text = exchanged(text, bound, R"("path": "/pipelines/1/backend", "values": ["line_zonotope", "interval"])");
+    wrong(Read(exchanged(text, R"({"type": "zonotope", "strip": "volume"})", R"("line_zonotope")")));
+  }
+  SUBCASE("a value of the system") {
+    const std::string exact = "[[0.5, 1], [0, 0.5]]",
+                      uncertain = R"({"center": [[0.5, 1], [0, 0.5]], "radius": [[0, 0.1], [0, 0]]})";
+    std::string text = with_axis("/system/A", "[" + exact + ", " + uncertain + "]");
+    text = exchanged(text, bound, R"("path": "/pipelines/1/observer", "values": ["prediction_correction", "descriptor"])");
+    text = exchanged(text, generators, "/pipelines/0/observer/max_generators");
+    wrong(Read(exchanged(text, R"("type": "lti")", R"("type": "interval_lti")")));
+  }
+  SUBCASE("the start of the data") {
+    const std::string sets =
+        R"([{"type": "box", "lower": [-1, -1], "upper": [1, 1]}, {"type": "box", "lower": [0, 0], "upper": [0.5, 0.5]}])";
+    std::string text = with_axis("/data/simulate/x0", "[[0, 0], [0.9, 0.9]]");
+    wrong(Read(exchanged(text, bound, R"("path": "/pipelines/1/observer/initial_set", "values": )" + sets)));
+  }
+}
+
+TEST_CASE("the parts of a system that fill in each other") {
+  const Read read(R"({
+    "cordon": 1,
+    "system": {
+      "type": "lti", "A": [[0.5, 0], [0, 0.5]], "B": [[1], [0]], "C": [[1, 0]],
+      "W": {"type": "box", "lower": [-1, -1], "upper": [1, 1]}, "V": {"type": "box", "lower": [-1], "upper": [1]},
+      "modes": [{"name": "deaf", "sensor": [0.5]}]
+    },
+    "pipelines": [{"backend": "line_zonotope", "designer": {"type": "search", "horizon": 4}}],
+    "sweep": [{"name": "actuators", "path": "/system/B", "values": [[[1], [0]], [[1, 0], [0, 1]]]}]
+  })");
+  CHECK(read.at({1}).model.linear.D.cols() == 2);
+  expect_points_round_trip(read);
+}
+
 TEST_CASE("points are read by several threads") {
   const Read read(sweep_study);
   std::vector<std::string> expected;

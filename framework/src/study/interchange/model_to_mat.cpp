@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/interchange/model_to_mat.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -23,18 +24,26 @@ bool equal(const LineForm& X, const LineForm& Y) {
          X.b.size() == Y.b.size();
 }
 
-/// x, moved by some units in the last place.
-double moved(double x, int steps) {
-  for (; steps > 0; --steps) x = std::nextafter(x, inf);
-  for (; steps < 0; ++steps) x = std::nextafter(x, -inf);
-  return x;
+/// Doubles around x: its neighbours, and others within some rounding errors of numbers of the size `largest`. The nearest come
+/// first.
+std::vector<double> around(double x, double largest) {
+  std::vector<double> found{x};
+  const double unit = (std::nextafter(largest, inf) - largest) / 8;
+  double below = x, above = x;
+  for (int i = 1; i <= 16; ++i) {
+    if (i <= 3) found.insert(found.end(), {below = std::nextafter(below, -inf), above = std::nextafter(above, inf)});
+    found.insert(found.end(), {x - i * unit, x + i * unit});
+  }
+  return found;
 }
 
-/// A bound on either side of the centre with this radius that `make_box` turns into exactly these two.
+/// A bound on either side of the centre with this radius that `make_box` turns into exactly these two: they differ from c ± r by
+/// rounding errors of the larger of c and r.
 std::optional<std::array<double, 2>> bounds_of(double center, double radius) {
-  for (int low : {0, -1, 1, -2, 2}) {
-    for (int high : {0, 1, -1, 2, -2}) {
-      const double lower = moved(center - radius, low), upper = moved(center + radius, high);
+  const double largest = std::max(std::abs(center), radius);
+  const std::vector<double> uppers = around(center + radius, largest);
+  for (const double lower : around(center - radius, largest)) {
+    for (const double upper : uppers) {
       if (!(lower < upper) || !std::isfinite(lower) || !std::isfinite(upper)) continue;
       const LineForm X = make_box({Vector::Constant(1, lower), Vector::Constant(1, upper)});
       if (X.c[0] == center && X.G(0, 0) == radius) return std::array{lower, upper};
@@ -111,10 +120,11 @@ Value to_mat(const LineForm& X) {
   const std::optional<Box> box = as_box(X);
   const bool whole = box && X.dim() > 0 && X.lines() == X.dim();
   Struct set;
-  set.set("type", text(whole ? "space" : box && X.generators() + X.lines() > 0 ? "box" : type_of(X)));
+  const bool bounds = box && !whole && X.generators() + X.lines() > 0;
+  set.set("type", text(whole ? "space" : bounds ? "box" : type_of(X)));
   set.set("c", matrix(X.c)).set("G", matrix(X.G)).set("A", matrix(X.A)).set("b", matrix(X.b));
   set.set("M", matrix(X.M)).set("S", matrix(X.S));
-  if (box) set.set("lower", matrix(box->lower)).set("upper", matrix(box->upper));
+  if (bounds) set.set("lower", matrix(box->lower)).set("upper", matrix(box->upper));
   return std::move(set).value();
 }
 

@@ -36,8 +36,8 @@ std::vector<ResultNumber> read_numbers(const Cursor& at, bool measured) {
   std::vector<ResultNumber> numbers;
   if (!at.expect(Kind::object, mend())) return numbers;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    const Cursor item = at.item(i);
     const std::string& name = at.value().keys()[i];
+    const Cursor item(at.value().items()[i], child(at.pointer(), name), at.problems());
     const bool named = !name.empty() && name.size() <= longest_name &&
                        std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
     if (!named) at.error("has a number without a proper name", mend());

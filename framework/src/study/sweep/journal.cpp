@@ -139,21 +139,22 @@ Journal::~Journal() {
   if (lock_ >= 0) ::close(lock_);
 }
 
+/// The lock is on a file, not on the directory: network file systems lock nothing else.
 void Journal::lock() {
+  const fs::path file = directory_ / "lock";
   for (;;) {
     std::error_code error;
     fs::create_directories(directory_, error);
     if (error) throw Error(Errc::io, "cannot make the directory " + directory_.string() + ": " + error.message());
-    lock_ = ::open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
-    if (lock_ < 0 && errno != ENOENT) fail(directory_, errno);
-    if (lock_ < 0) continue;  // it was finished in between
-    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-      if (errno != EWOULDBLOCK) fail(directory_, errno);
+    lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (lock_ < 0 && errno != ENOENT) fail(file, errno);
+    if (lock_ < 0) continue;  // another process has finished in between
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       refuse(directory_.parent_path(), "another process is running a sweep into this directory",
              "wait for its end, or name another \"--out\"");
     }
     struct stat held, there;
-    const bool same = ::fstat(lock_, &held) == 0 && ::lstat(directory_.c_str(), &there) == 0 && held.st_dev == there.st_dev &&
+    const bool same = ::fstat(lock_, &held) == 0 && ::lstat(file.c_str(), &there) == 0 && held.st_dev == there.st_dev &&
                       held.st_ino == there.st_ino;
     if (same) return;
     ::close(std::exchange(lock_, -1));
@@ -188,7 +189,10 @@ void Journal::begin(std::istream& old, const std::function<void(PointResult)>& e
   if (old.bad()) throw Error(Errc::io, "cannot read " + file_.string());
   sync();
   if (::rename(fresh.c_str(), file_.c_str()) != 0) fail(file_, errno);
-  ::fsync(lock_);  // the new name, where the file system can
+  if (const int directory = ::open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); directory >= 0) {
+    ::fsync(directory);  // the new name, where the file system can
+    ::close(directory);
+  }
 }
 
 void Journal::add(const std::string& line) {
@@ -216,8 +220,9 @@ void Journal::sync() {
 }
 
 void Journal::remove() {
-  std::error_code ignored;
-  fs::remove_all(directory_, ignored);
+  // The lock goes last: from then on files of these names are another process's.
+  for (const fs::path& path : {file_, directory_ / "lock"}) ::unlink(path.c_str());
+  ::rmdir(directory_.c_str());
 }
 
 }  // namespace cordon::detail

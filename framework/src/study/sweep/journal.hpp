@@ -23,8 +23,8 @@ struct JournalHead {
 };
 
 /// Lines in OUT/.sweep/journal, each with a checksum: the head, then a point each. A line that is cut off or damaged counts for
-/// nothing. The directory is locked while the object lives, so that two processes cannot write into it. Errors of writing are
-/// Errc::io; what was written stays.
+/// nothing. The directory is held by a lock while the object lives, so that two processes cannot write into it. Errors of writing
+/// are Errc::io; what was written stays.
 class Journal {
  public:
   enum class Start { fresh, resume, restart };

@@ -244,6 +244,10 @@ RecordedRun read_run(const std::filesystem::path& directory) {
     const auto version = root.need("cordon_results", "this is not a results file of \"cordon run\"");
     const auto number = version ? read_number(*version) : std::nullopt;
     if (number && *number != 1) version->error("this version of the format is not known", "this program reads 1");
+    if (root.find("points")) {
+      throw InputError(file.string(), {{"/points", "is a sweep, which keeps no sets",
+                                        "\"cordon run STUDY --point INDEX\" runs one point with all files"}});
+    }
     const auto study = root.need("study", mend()), pipelines = root.need("pipelines", mend());
     const auto system = study && study->expect(Kind::object, mend()) ? study->need("system", mend()) : std::nullopt;
     std::vector<std::string> warnings;

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Finished runs side by side: what is equal, what is not, and what times say.
+#include "cordon/study/compare.hpp"
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "compare_report.hpp"
+#include "run/scratch.hpp"
+
+using namespace cordon;
+using json = nlohmann::ordered_json;
+
+namespace {
+
+/// A sweep of two pipelines over a budget (10, 20) and ten seeds.
+struct Sweep {
+  double radius = 1, time = 100;
+  std::string version = "1.0", hash = "fnv1a64:1", host = "h";
+  int seeds = 10;
+  std::string second = "second";
+  std::string axis = "budget";
+
+  void write(const std::filesystem::path& directory) const {
+    json results{{"cordon_results", 1},
+                 {"cordon", {{"version", version}, {"abi_tag", "t"}}},
+                 {"tools", json::object()},
+                 {"title", "S"},
+                 {"study_hash", hash},
+                 {"study", {{"sweep", json::array()}}},
+                 {"pipelines", {{{"name", "first"}}, {{"name", second}}}},
+                 {"points", json::array()}};
+    json run{{"cordon_run", 1}, {"host", {{"name", host}, {"cpu", "c"}}}, {"points", json::array()}};
+    json& axes = results["study"]["sweep"];
+    axes.push_back({{"name", axis}, {"path", "/x"}, {"repeat", false}, {"values", {10, "twenty"}}});
+    axes.push_back({{"name", "seed"}, {"path", "/y"}, {"repeat", true}, {"values", json::array()}});
+    for (int i = 0; i < seeds; ++i) axes[1]["values"].push_back(i);
+    int index = 0;
+    for (int budget = 0; budget < 2; ++budget) {
+      for (int seed = 0; seed < seeds; ++seed) {
+        for (int pipeline = 0; pipeline < 2; ++pipeline, ++index) {
+          json numbers{{"steps", 5}, {"radius_mean", (pipeline == 0 && budget == 1 ? radius : 1) + seed}};
+          results["points"].push_back(
+              {{"point", index}, {"pipeline", pipeline}, {"at", {budget, seed}}, {"numbers", numbers}, {"error", nullptr}});
+          run["points"].push_back(
+              {{"point", index}, {"numbers", {{"step_us", (pipeline == 0 ? time : 100) + seed}, {"hull_us", 1}}}});
+        }
+      }
+    }
+    std::filesystem::create_directories(directory);
+    std::ofstream(directory / "results.json") << results.dump();
+    std::ofstream(directory / "run.json") << run.dump();
+  }
+};
+
+Comparison compared(const Sweep& a, const Sweep& b) {
+  const Scratch scratch;
+  a.write(scratch / "a");
+  b.write(scratch / "b");
+  Comparison found = compare_results({scratch / "a", scratch / "b"});
+  for (ComparedRun& run : found.runs) run.directory = run.directory.substr(run.directory.size() - 1);
+  for (std::string& warning : found.warnings) {
+    for (std::size_t at; (at = warning.find(scratch.path().string())) != std::string::npos;) {
+      warning.erase(at, scratch.path().string().size() + 1);
+    }
+  }
+  return found;
+}
+
+const ComparedMeasure& measure(const Comparison& comparison, const std::string& name) {
+  for (const ComparedMeasure& one : comparison.measures) {
+    if (one.column.name == name) return one;
+  }
+  FAIL("no measure " << name);
+  return comparison.measures.front();
+}
+
+bool warns(const Comparison& comparison, const std::string& words) {
+  for (const std::string& warning : comparison.warnings) {
+    if (warning.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("the same sweep twice") {
+  const Comparison found = compared({}, {});
+  CHECK(found.axes == std::vector<std::string>{"budget"});
+  CHECK(found.warnings.empty());
+  REQUIRE(found.measures.size() == 4);
+  for (const char* name : {"steps", "radius_mean", "step_us", "hull_us"}) CHECK(measure(found, name).is_equal());
+  const ComparedMeasure& radius = measure(found, "radius_mean");
+  REQUIRE(radius.rows.size() == 4);
+  CHECK(radius.rows[0].pipeline == "first");
+  CHECK(radius.rows[0].at == std::vector<std::string>{"10"});
+  CHECK(radius.rows[3].pipeline == "second");
+  CHECK(radius.rows[3].at == std::vector<std::string>{"\"twenty\""});
+  REQUIRE(radius.rows[0].runs.size() == 2);
+  CHECK(radius.rows[0].runs[1].statistics.mean == 5.5);
+  CHECK(radius.rows[0].runs[1].difference == 0);
+  CHECK(radius.rows[0].runs[1].ratio == 1);
+  CHECK(radius.rows[0].runs[1].common == 10);
+  CHECK_FALSE(radius.rows[0].runs[1].test);
+  const ComparedNumber& time = measure(found, "step_us").rows[0].runs[1];
+  CHECK_FALSE(measure(found, "step_us").rows[0].runs[0].test);
+  REQUIRE(time.test);
+  CHECK(time.test->first == 10);
+  CHECK(time.test->other == 10);
+  CHECK(time.test->p == 1);
+  CHECK_FALSE(time.test->significant());
+  CHECK(apps::verdict_of({"step_us", true}, measure(found, "step_us").rows[0].runs[0], time).find("not significant, × 1 [") == 0);
+  const std::string text = apps::compare_text(found);
+  CHECK(text.find("Equal in all runs, point by point: steps, radius_mean\n") != std::string::npos);
+  CHECK(text.find("1 more times") != std::string::npos);
+  CHECK(text.find("hull_us\n") == std::string::npos);
+}
+
+TEST_CASE("other numbers, and other times") {
+  Sweep other;
+  other.radius = 3;
+  other.time = 200;
+  const Comparison found = compared({}, other);
+  const ComparedMeasure &radius = measure(found, "radius_mean"), &time = measure(found, "step_us");
+  CHECK(measure(found, "steps").is_equal());
+  CHECK_FALSE(radius.is_equal());
+  const ComparedNumber& changed = radius.rows[2].runs[1];  // first, twenty
+  CHECK(changed.difference == 2);
+  CHECK(changed.ratio == doctest::Approx(7.5 / 5.5));
+  CHECK(changed.different == 10);
+  CHECK(radius.rows[0].runs[1].different == 0);
+  CHECK(apps::verdict_of(radius.column, radius.rows[2].runs[0], changed) == "different at 10 of 10 points");
+  CHECK(apps::verdict_of(radius.column, radius.rows[0].runs[0], radius.rows[0].runs[1]) == "equal");
+  REQUIRE(time.rows[0].runs[1].test);
+  const TimeTest& test = *time.rows[0].runs[1].test;
+  CHECK(test.significant());
+  CHECK(test.ratio == doctest::Approx(1.957).epsilon(.01));
+  CHECK(test.lower < test.ratio);
+  CHECK(test.upper > test.ratio);
+  CHECK(test.p == doctest::Approx(8 * 2 / 184756.));  // eight tests in all, and the smallest p of them
+  CHECK_FALSE(time.rows[1].runs[1].test->significant());
+  CHECK(apps::verdict_of(time.column, time.rows[0].runs[0], time.rows[0].runs[1]).find("slower, × 1.96 [") == 0);
+  std::swap(other.time, other.radius);  // and the other way round
+  const Comparison faster = compared({}, other);
+  const ComparedRow& quick = measure(faster, "step_us").rows[0];
+  CHECK(apps::verdict_of({"step_us", true}, quick.runs[0], quick.runs[1]).find("faster, ×") == 0);
+}
+
+TEST_CASE("other studies, machines, programs, pipelines, and fewer seeds") {
+  Sweep other;
+  other.hash = "fnv1a64:2";
+  CHECK(warns(compared({}, other), "a and b: different studies"));
+  other = {};
+  other.host = "another";
+  CHECK(warns(compared({}, other), "different machines"));
+  other = {};
+  other.version = "2.0";
+  CHECK(warns(compared({}, other), "different versions"));
+  CHECK_FALSE(warns(compared({}, other), "different builds"));
+  other = {};
+  other.second = "third";
+  const Comparison found = compared({}, other);
+  CHECK(warns(found, "\"second, 10\" is not in b"));
+  CHECK(warns(found, "\"third, 10\" is not in a"));
+  const ComparedMeasure& radius = measure(found, "radius_mean");
+  CHECK(radius.rows.size() == 6);
+  CHECK_FALSE(radius.is_equal());
+  CHECK(std::isnan(radius.rows[1].runs[1].ratio));
+  CHECK(apps::verdict_of(radius.column, radius.rows[1].runs[0], radius.rows[1].runs[1]) == "no common points");
+  other = {};
+  other.seeds = 7;
+  const Comparison fewer = compared({}, other);
+  const ComparedRow& row = measure(fewer, "radius_mean").rows[0];
+  CHECK(row.runs[1].common == 7);
+  CHECK(row.runs[1].different == 0);
+  CHECK_FALSE(measure(fewer, "radius_mean").is_equal());
+  CHECK(apps::verdict_of({"radius_mean", false}, row.runs[0], row.runs[1]) == "equal at 7 common points");
+  other.seeds = 1;
+  const Comparison one = compared(other, other);
+  CHECK_FALSE(measure(one, "step_us").rows[0].runs[1].test);
+  CHECK(apps::verdict_of({"step_us", true}, measure(one, "step_us").rows[0].runs[0], measure(one, "step_us").rows[0].runs[1]) ==
+        "one measurement each");
+  other = {};
+  other.axis = "order";
+  CHECK_THROWS_AS(compared({}, other), InputError);
+  CHECK_THROWS_AS(compare_results({"nowhere"}), Error);
+}
+
+TEST_CASE("the outputs for people and programs") {
+  Sweep other;
+  other.radius = 3;
+  other.second = "a|<b>";
+  const Comparison found = compared(other, other);
+  const std::string text = apps::compare_text(compared({}, other));
+  CHECK(text.find("   DIRECTORY  VERSION  STUDY      HOST\nA  a          1.0      fnv1a64:1  h\n") == 0);
+  CHECK(text.find("radius_mean\nPIPELINE  budget  A            B            B - A  B / A  VERDICT\n") != std::string::npos);
+  CHECK(text.find("first     twenty  5.500 ± 3.0  7.500 ± 3.0  2      1.36   different at 10 of 10 points\n") !=
+        std::string::npos);
+  const std::string md = apps::compare_markdown(found);
+  CHECK(md.find("| a\\|&lt;b> |") != std::string::npos);
+  CHECK(md.find("### step\\_us") != std::string::npos);
+  const std::string csv = apps::compare_csv(found);
+  CHECK(csv.find("measure,measured,pipeline,budget,run,directory,count,") == 0);
+  CHECK(csv.find("\nradius_mean,0,first,10,B,b,10,0,5.5,3.0276503540974917,5.5,0,1,10,0,,,,\n") != std::string::npos);
+  CHECK(csv.find("\nstep_us,1,a|<b>,twenty,B,b,10,0,104.5,") != std::string::npos);
+  const json report = json::parse(apps::compare_json(found));
+  CHECK(report["runs"].size() == 2);
+  CHECK(report["measures"][1]["name"] == "radius_mean");
+  CHECK(report["measures"][1]["equal"] == true);
+  CHECK(report["measures"][2]["equal"].is_null());
+  CHECK(report["measures"][1]["rows"][2]["at"]["budget"] == "twenty");
+  CHECK(report["measures"][1]["rows"][2]["runs"][1]["mean"] == 7.5);
+  CHECK(report["measures"][2]["rows"][0]["runs"][1]["test"]["significant"] == false);
+  CHECK(report["measures"][2]["rows"][0]["runs"][0]["test"].is_null());
+}
