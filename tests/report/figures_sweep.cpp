@@ -56,7 +56,7 @@ class SweepFiles {
 TEST_CASE("who is best where, with the lead over the second") {
   const SweepFiles sweep;
   const Report report = read_report(sweep.files.path());
-  const Table& table = content<Table>(report, "winners");
+  const Table table = content<Table>(report, "winners");
   REQUIRE(table.header.size() >= 2);
   CHECK(table.header[0] == "order");
   CHECK(table.header[1] == "mean radius");
@@ -72,7 +72,7 @@ TEST_CASE("who is best where, with the lead over the second") {
 
 TEST_CASE("curves over a factor: means and quantiles over the repetitions, one curve per pipeline") {
   const SweepFiles sweep;
-  const Plot& plot = content<Plot>(read_report(sweep.files.path()), "sweep_1_1");
+  const Plot plot = content<Plot>(read_report(sweep.files.path()), "sweep_1_1");
   CHECK(plot.x_label == "order");
   CHECK(plot.x_names.empty());
   REQUIRE(plot.series.size() == 4);
@@ -97,10 +97,10 @@ TEST_CASE("a pipeline that failed somewhere is not compared there, and is named"
   sweep.files.replace("results.json", R"("numbers": {"radius_mean": 5.000000, "steps": 3}, "error": null)",
                       R"("numbers": {}, "error": "too <large>")");
   const Report report = read_report(sweep.files.path());
-  const Table& table = content<Table>(report, "winners");
+  const Table table = content<Table>(report, "winners");
   CHECK(table.rows[0][1].text == "–");
   CHECK(table.rows[1][1].text == "a (28.6 %)");
-  const Plot& plot = content<Plot>(report, "sweep_1_1");
+  const Plot plot = content<Plot>(report, "sweep_1_1");
   CHECK(std::isnan(plot.series[1].y[0]));
   CHECK(plot.series[1].y[1] == 2.5);
   REQUIRE(report.notes.size() == 1);
