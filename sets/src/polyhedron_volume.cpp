@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Volume between an inscribed and a circumscribed polytope. Both come from the hull of points of the set that are moved to a
+// grid: computed in integers, it is exact however near the points are to each other.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <vector>
 
@@ -13,35 +17,48 @@ namespace cordon::sets {
 namespace {
 
 using Point = Eigen::Vector3d;
+using Node = Eigen::Matrix<std::int64_t, 3, 1>;  ///< point of the grid, counted in steps from the origin
+__extension__ typedef __int128 Wide;
 
-constexpr double flat_tolerance = 1e-12;    ///< thickness, relative to the interval hull, that counts as none
-constexpr double beyond_tolerance = 1e-11;  ///< how far outside a facet a point must lie to be added
-constexpr double coplanar_tolerance =
-    1e-12;  ///< facets whose plane is this near to a new point are replaced with the visible ones
+constexpr double flat_tolerance = 1e-12;  ///< thickness, relative to the interval hull, that counts as none
+constexpr double step = 0x1p-36;          ///< of the grid
+constexpr double moved = 0.8661 * step;   ///< how far a point is moved to the grid at most: √3/2 steps
+/// Differences of such nodes are at most 2⁴¹ steps, so that their determinants stay below 2¹²⁶.
+constexpr double largest_coordinate = 16;
+
+Node nearest_node(const Point& x) { return (x / step).array().round().cast<std::int64_t>(); }
+Point position(const Node& a) { return a.cast<double>() * step; }
 
 Point cross(const Point& a, const Point& b) {
   return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+}
+
+/// The same without rounding errors.
+std::array<Wide, 3> exact_cross(const Node& a, const Node& b) {
+  const auto minor = [&](Index i, Index j) { return static_cast<Wide>(a[i]) * b[j] - static_cast<Wide>(a[j]) * b[i]; };
+  return {minor(1, 2), minor(2, 0), minor(0, 1)};
 }
 
 /// Triangle with its corners counter-clockwise from outside; neighbour i lies across the edge from corner i to corner i + 1.
 struct Facet {
   std::array<std::size_t, 3> corner;
   std::array<std::size_t, 3> neighbour{};
-  Point normal = Point::Zero();  ///< of length 1; 0 for a degenerate triangle
+  std::array<Wide, 3> exact{};   ///< normal of any length
+  Point normal = Point::Zero();  ///< the same of length 1
   double offset = 0;             ///< normalᵀx on the facet
   double support = 0;            ///< of the set along the normal, once asked
   Point farthest = Point::Zero();
+  std::size_t seen_by = 0;  ///< the last point that saw this facet
   bool alive = true, asked = false;
 };
 
-/// Convex hull of points in R³ that grows point by point.
+/// Convex hull of nodes that grows node by node, without rounding errors.
 class Hull {
  public:
-  explicit Hull(const std::array<Point, 4>& simplex) {
-    points_.assign(simplex.begin(), simplex.end());
-    const Point& p = points_[0];
-    const bool positive = cross(points_[1] - p, points_[2] - p).dot(points_[3] - p) > 0;
-    if (!positive) std::swap(points_[1], points_[2]);
+  /// The hull of the origin and the three unit points.
+  Hull() {
+    const Node origin = Node::Zero();
+    nodes_ = {origin, nearest_node(Point::Unit(0)), nearest_node(Point::Unit(1)), nearest_node(Point::Unit(2))};
     const std::array<std::array<std::size_t, 3>, 4> corners{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
     for (const auto& corner : corners) add_facet(corner);
     // across 0-2, 2-1, 1-0; 0-1, 1-3, 3-0; 1-2, 2-3, 3-1; 0-3, 3-2, 2-0
@@ -53,90 +70,81 @@ class Hull {
 
   std::vector<Facet>& facets() { return facets_; }
 
-  Point center() const {
-    Point sum = Point::Zero();
-    for (const Point& p : points_) sum += p;
-    return sum / static_cast<double>(points_.size());
-  }
-
-  double volume(const Point& apex) const {
+  double volume() const {
     double six = 0;
     for (const Facet& f : facets_) {
       if (!f.alive) continue;
-      const Point a = points_[f.corner[0]] - apex, b = points_[f.corner[1]] - apex, c = points_[f.corner[2]] - apex;
+      const Point a = position(nodes_[f.corner[0]]), b = position(nodes_[f.corner[1]]), c = position(nodes_[f.corner[2]]);
       six += a.dot(cross(b, c));
     }
     return six / 6;
   }
 
-  /// Replaces the facets that x sees, found from `start` (which sees it), by a cone with apex x. False, and no change, if
-  /// rounding errors leave no simple horizon.
-  bool insert(std::size_t start, const Point& x) {
-    std::vector<std::size_t> visible;
-    std::vector<Edge> horizon;
-    explore(start, x, visible, horizon);
+  bool sees(const Node& x, const Facet& f) const {
+    const Node d = x - nodes_[f.corner[0]];
+    return f.exact[0] * d[0] + f.exact[1] * d[1] + f.exact[2] * d[2] > 0;
+  }
+
+  /// Replaces the facets that x sees, found from `start` (which it sees), by a cone with apex x. The edges around them form one
+  /// cycle, and no edge is in line with x.
+  void insert(std::size_t start, const Node& x) {
+    nodes_.push_back(x);
+    const std::vector<Edge> horizon = remove_seen(start, x);
     std::unordered_map<std::size_t, std::size_t> by_start, by_end;  // first and second corner of a horizon edge → its new facet
-    const std::size_t first = facets_.size();
     for (std::size_t k = 0; k < horizon.size(); ++k) {
-      if (!by_start.emplace(horizon[k].from, first + k).second || !by_end.emplace(horizon[k].to, first + k).second) return false;
+      by_start[horizon[k].from] = facets_.size() + k;
+      by_end[horizon[k].to] = facets_.size() + k;
     }
     for (const Edge& edge : horizon) {
-      if (!by_start.contains(edge.to)) return false;
+      facets_[edge.outside].neighbour[edge.side] = facets_.size();
+      add_facet({edge.from, edge.to, nodes_.size() - 1});
+      facets_.back().neighbour = {edge.outside, by_start.at(edge.to), by_end.at(edge.from)};
     }
-    if (horizon.size() < 3) return false;
-    points_.push_back(x);
-    for (const std::size_t f : visible) facets_[f].alive = false;
-    for (const Edge& edge : horizon) {
-      add_facet({edge.from, edge.to, points_.size() - 1});
-      facets_.back().neighbour = {edge.outside, by_start[edge.to], by_end[edge.from]};
-      std::array<std::size_t, 3>& back = facets_[edge.outside].neighbour;
-      back[edge.side] = facets_.size() - 1;
-    }
-    return true;
   }
 
  private:
-  /// Edge of a visible facet whose other facet, `outside`, is not visible; it is that one's edge number `side`.
+  /// Edge of a removed facet whose other facet, `outside`, stays; it is that one's edge number `side`.
   struct Edge {
     std::size_t from, to, outside, side;
   };
 
   void add_facet(const std::array<std::size_t, 3>& corner) {
     Facet f{corner};
-    const Point& p = points_[corner[0]];
-    const Point normal = cross(points_[corner[1]] - p, points_[corner[2]] - p);
-    const double length = normal.norm();
-    if (length > 1e-14) {
-      f.normal = normal / length;
-      f.offset = f.normal.dot(p);
-    }
+    const Node& p = nodes_[corner[0]];
+    f.exact = exact_cross(nodes_[corner[1]] - p, nodes_[corner[2]] - p);
+    f.normal = Point(static_cast<double>(f.exact[0]), static_cast<double>(f.exact[1]), static_cast<double>(f.exact[2]));
+    f.normal.stableNormalize();
+    f.offset = f.normal.dot(position(p));
     facets_.push_back(f);
   }
 
-  void explore(std::size_t start, const Point& x, std::vector<std::size_t>& visible, std::vector<Edge>& horizon) const {
-    std::vector<char> state(facets_.size(), 0);  // 1: visible
-    const auto sees = [&](const Facet& f) { return f.normal.dot(x) - f.offset > -coplanar_tolerance; };
-    visible.push_back(start);
-    state[start] = 1;
-    for (std::size_t k = 0; k < visible.size(); ++k) {
-      for (const std::size_t next : facets_[visible[k]].neighbour) {
-        if (state[next] != 0 || !sees(facets_[next])) continue;
-        state[next] = 1;
-        visible.push_back(next);
+  std::vector<Edge> remove_seen(std::size_t start, const Node& x) {
+    const std::size_t mark = nodes_.size();
+    std::vector<std::size_t> seen{start};
+    facets_[start].seen_by = mark;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      for (const std::size_t next : facets_[seen[k]].neighbour) {
+        if (facets_[next].seen_by == mark || !sees(x, facets_[next])) continue;
+        facets_[next].seen_by = mark;
+        seen.push_back(next);
       }
     }
-    for (const std::size_t f : visible) {
+    std::vector<Edge> horizon;
+    for (const std::size_t k : seen) {
+      Facet& f = facets_[k];
+      f.alive = false;
       for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t outside = facets_[f].neighbour[i], from = facets_[f].corner[i], to = facets_[f].corner[(i + 1) % 3];
-        if (state[outside] != 0) continue;
-        std::size_t side = 0;
-        while (side < 2 && facets_[outside].corner[side] != to) ++side;
-        horizon.push_back({from, to, outside, side});
+        const Facet& outside = facets_[f.neighbour[i]];
+        if (outside.seen_by == mark) continue;
+        const std::size_t to = f.corner[(i + 1) % 3];
+        const auto side = std::find(outside.corner.begin(), outside.corner.end(), to) - outside.corner.begin();
+        horizon.push_back({f.corner[i], to, f.neighbour[i], static_cast<std::size_t>(side)});
       }
     }
+    return horizon;
   }
 
-  std::vector<Point> points_;
+  std::vector<Node> nodes_;
   std::vector<Facet> facets_;
 };
 
@@ -179,34 +187,58 @@ bool spanning_simplex(const ScaledSet& set, std::array<Point, 4>& p) {
   return std::abs(normal.dot(p[3] - p[0])) > flat_tolerance;
 }
 
-/// Asks for the support of every new facet. Returns the scale μ ≥ 1 with X ⊆ o + μ (hull - o), or +inf beyond the limit.
-double ask_facets(Hull& hull, const ScaledSet& set, const Point& o, Index& queries, Index max_queries) {
-  double scale = 1;
+/// A point inside of the first simplex, farther than 0.14 from its facets, and thus from those of every hull.
+Point inner_point() { return Point::Constant(0.25); }
+
+double distance(const Facet& f) { return f.offset - f.normal.dot(inner_point()); }
+
+/// Asks for the support of every new facet; false at the limit.
+bool ask_facets(Hull& hull, const ScaledSet& set, Index& queries, Index max_queries) {
   for (Facet& f : hull.facets()) {
-    if (!f.alive || f.normal.isZero(0)) continue;
-    if (!f.asked) {
-      if (++queries > max_queries) return std::numeric_limits<double>::infinity();
-      const SupportPoint answer = set.query(f.normal);
-      f.support = answer.h;
-      f.farthest = answer.x;
-      f.asked = true;
-    }
-    scale = std::max(scale, (f.support - f.normal.dot(o)) / (f.offset - f.normal.dot(o)));
+    if (!f.alive || f.asked) continue;
+    if (++queries > max_queries) return false;
+    const SupportPoint answer = set.query(f.normal);
+    f.support = answer.h;
+    f.farthest = answer.x;
+    f.asked = true;
   }
-  return scale;
+  return true;
 }
 
-bool grow(Hull& hull) {
+/// With o the inner point, o + λ (hull - o) ⊆ X ⊆ o + μ (hull - o). The outer one holds as every facet's half-space, moved
+/// away from o by its part of μ, holds X. The inner one: the support functions differ by `moved` at most, which is a share of
+/// moved / distance of the hull's. A support below a facet contradicts the points of X and lowers λ in the same way.
+VolumeBounds bounds_of(Hull& hull) {
+  double inner = 1, outer = 0;
+  for (const Facet& f : hull.facets()) {
+    if (!f.alive) continue;
+    const double gap = f.support - f.offset;
+    inner = std::min(inner, 1 + (std::min(gap, 0.0) - moved) / distance(f));
+    outer = std::max(outer, 1 + gap / distance(f));
+  }
+  inner = std::max(inner, 0.0);
+  outer = std::max(outer, inner);
+  const double volume = hull.volume();
+  return {volume * inner * inner * inner, volume * outer * outer * outer, false};
+}
+
+/// Adds the farthest point beyond each facet where the gap is more than its share of `aim`. False if there is none.
+bool grow(Hull& hull, double aim) {
   bool grown = false;
   const std::size_t count = hull.facets().size();
   for (std::size_t i = 0; i < count; ++i) {
     const Facet& f = hull.facets()[i];
-    if (!f.alive || !f.asked || f.normal.dot(f.farthest) - f.offset <= beyond_tolerance) continue;
-    const Point x = f.farthest;
-    grown |= hull.insert(i, x);
+    if (!f.alive || f.support - f.offset <= aim / 8 * distance(f)) continue;
+    if (!(f.farthest.cwiseAbs().maxCoeff() <= largest_coordinate)) continue;  // nothing but noise lies there
+    const Node x = nearest_node(f.farthest);
+    if (!hull.sees(x, f)) continue;
+    hull.insert(i, x);
+    grown = true;
   }
   return grown;
 }
+
+bool agree(const VolumeBounds& bounds, double tolerance) { return bounds.upper <= bounds.lower * (1 + tolerance); }
 
 }  // namespace
 
@@ -217,19 +249,19 @@ VolumeBounds volume(const SupportOracle& X, double relative_tolerance, Index max
   Matrix B(3, 3);
   B << simplex[1] - simplex[0], simplex[2] - simplex[0], simplex[3] - simplex[0];
   if (!set.transform(simplex[0], B)) return {0, 0, true};
-  const double factor = set.volume_factor();
-  Hull hull({Point::Zero(), Point::Unit(0), Point::Unit(1), Point::Unit(2)});
+  const double factor = set.volume_factor(), aim = relative_tolerance / 100;
+  Hull hull;
   Index queries = 0;
-  VolumeBounds bounds{0, std::numeric_limits<double>::infinity(), false};
-  while (!bounds.converged) {
-    const Point o = hull.center();
-    const double scale = ask_facets(hull, set, o, queries, max_queries), inner = factor * hull.volume(o);
-    bounds.lower = std::max(bounds.lower, inner);
-    bounds.upper = std::min(bounds.upper, inner * scale * scale * scale);
-    bounds.converged = bounds.upper <= bounds.lower * (1 + relative_tolerance);
-    if (!std::isfinite(scale) || bounds.converged || !grow(hull)) break;
+  VolumeBounds best{0, std::numeric_limits<double>::infinity(), false};
+  while (ask_facets(hull, set, queries, max_queries)) {
+    const VolumeBounds found = bounds_of(hull);
+    if (factor * (found.upper - found.lower) < best.upper - best.lower) {
+      best = {factor * found.lower, factor * found.upper, false};
+    }
+    if (agree(best, aim) || !grow(hull, aim)) break;
   }
-  return bounds;
+  best.converged = agree(best, relative_tolerance);
+  return best;
 }
 
 }  // namespace cordon::sets

@@ -37,10 +37,13 @@ struct VolumeBounds {
   bool converged = false;  ///< lower and upper agree to the tolerance
 };
 
-/// Volume of a bounded set X ⊂ R³. The hull of known points of X grows until the support function confirms each of its
-/// facets; the largest relative gap of a facet, seen from an inner point, bounds the volume from above. Bounds are nominal
-/// (up to rounding). Exact for polytopes; for curved sets the bounds at the limit of queries are returned. Flat sets and ∅
-/// have the volume 0. Errors: Errc::unsupported for an unbounded set. O(V²) for V vertices, one query per facet tried.
-VolumeBounds volume(const SupportOracle& X, double relative_tolerance = 1e-9, Index max_queries = 20000);
+/// Volume of a bounded set X ⊂ R³. Known points of X, moved to a fine grid of coordinates in which X is about as thick as it is
+/// long, have a hull that is exact in integers; it grows until the support function confirms each of its facets. Bounds follow
+/// from what the points are moved, 1e-11 of the set's size, and from the largest gap between a facet and its support; they hold
+/// up to rounding errors of the support function. Asking goes on until they agree to a hundredth of the tolerance; the rest
+/// leaves room for an inexact support function. For curved sets, and where rounding hides the thickness of a set, the bounds at
+/// the limit of queries or of resolution are returned. Flat sets (thinner than 1e-12 of their interval hull) and ∅ have the
+/// volume 0. Errors: Errc::unsupported for an unbounded set. O(V²) for V vertices, one query per facet tried.
+VolumeBounds volume(const SupportOracle& X, double relative_tolerance = 1e-7, Index max_queries = 20000);
 
 }  // namespace cordon::sets

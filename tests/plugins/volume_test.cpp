@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Volumes of sets with constraints against those of exact polytopes, with details that are hardly larger than rounding.
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "cordon/core/line_form.hpp"
+#include "cordon/solvers/polytope.hpp"
+#include "published/study_models.hpp"
+
+using namespace cordon;
+
+namespace {
+
+/// A set of dimension 3 around a point, with one column of G and A for each entry of `sizes`.
+LineForm random_set(const Vector& sizes, Index constraints, std::mt19937& random) {
+  std::uniform_real_distribution<double> number(-1, 1);
+  const Index g = sizes.size();
+  LineForm X{Matrix(3, 0), Matrix(3, g), Vector(3), Matrix(constraints, 0), Matrix(constraints, g), Vector(constraints)};
+  Vector xi(g);
+  for (auto* part : {&X.G, &X.A}) {
+    for (double& entry : part->reshaped()) entry = number(random);
+  }
+  for (auto* part : {&X.c, &xi}) {
+    for (double& entry : *part) entry = .7 * number(random);
+  }
+  X.G = X.G * sizes.asDiagonal();
+  X.A = X.A * sizes.asDiagonal();
+  X.b = X.A * xi;
+  return X;
+}
+
+}  // namespace
+
+TEST_CASE("volumes with constraints are those of the exact polytope") {
+  const Plugins plugins;
+  std::mt19937 random(1);
+  for (const double detail : {1., 1e-4, 1e-7, 1e-9, 3e-11, 1e-13}) {
+    for (int trial = 0; trial < 6; ++trial) {
+      CAPTURE(detail);
+      CAPTURE(trial);
+      Vector sizes = Vector::Ones(9);
+      sizes.tail(3).setConstant(detail);
+      const LineForm X = random_set(sizes, trial % 3, random);
+      const rounding::Range truth = Polytope::from(X).volume();
+      for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
+        const auto backend = plugins.backend(name);
+        const Volume found = backend->import(X)->volume();
+        CHECK(found.exact);
+        CHECK(found.value >= truth.lower * (1 - 1e-12));
+        CHECK(found.value <= truth.upper * (1 + 1e-7));
+      }
+    }
+  }
+}
