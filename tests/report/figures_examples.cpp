@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -261,6 +262,12 @@ TEST_CASE("the figures of every example study show its results") {
       CHECK(figure.id.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos);
       CHECK_FALSE(figure.section.empty());
       CHECK_FALSE(figure.title.empty());
+      if (const auto* plot = std::get_if<Plot>(&figure.content)) {
+        for (const Series& series : plot->series) {
+          CAPTURE(series.name);
+          CHECK(std::adjacent_find(series.x.begin(), series.x.end(), std::greater_equal<>()) == series.x.end());
+        }
+      }
     }
     if (results.contains("points")) continue;
     for (std::size_t p = 0; p < results["pipelines"].size(); ++p) {
