@@ -93,7 +93,8 @@ std::string closing_text(const Sorted& found) {
 constexpr const char* explanation =
     "Ratios in verdicts are medians over all pairs of measurements, with their 95 % intervals; p of Mann–Whitney tests, "
     "two-sided,\n"
-    "adjusted for their number (Holm).\n";
+    "adjusted for their number (Holm). That times differ does not say why: the load of the machine moves all times of a run.\n"
+    "Repeat the runs in turn before you put it down to the programs.\n";
 
 bool any_test(const Comparison& comparison) {
   for (const ComparedMeasure& measure : comparison.measures) {

@@ -10,9 +10,9 @@ const [cordon, sources, scratch] = process.argv.slice(2);
 const images = join(sources, 'docs', 'images');
 /** Name of the picture, study, and the section at the top of the picture; none: the head of the page. */
 const pictures = [
-  ['report_estimation', 'descriptor_four_representations', null],
+  ['report_estimation', 'descriptor_four_representations', 'Sets'],
   ['report_diagnosis', 'cstr_actuator_faults', 'Diagnosis'],
-  ['report_input_design', 'active_diagnosis_descriptor', 'Designed inputs'],
+  ['report_design', 'active_diagnosis_descriptor', 'Designed inputs'],
   ['report_sweep', 'compare_representations', null],
 ];
 

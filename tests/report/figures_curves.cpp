@@ -74,6 +74,33 @@ TEST_CASE("bounds: bands of pipelines, inner bands, truth, gaps and marks") {
   CHECK(first.marks[1].text == "outside the bank");
 }
 
+TEST_CASE("an estimate that stays empty is marked once, and again after it was not") {
+  const ResultsFiles files;
+  std::string rows = "pipeline,k,consistent,tightness,lower_1,upper_1\n";
+  for (const char* row : {"a,0,no", "a,1,no", "a,2,yes", "a,3,no", "b,0,no"}) rows.append(row).append(",outer,0,1\n");
+  files.write("steps.csv", rows);
+  files.write("data.csv", "k,y_1\n0,0\n");
+  std::vector<std::pair<double, int>> marks;
+  const Report report = read_report(files.path());
+  for (const Mark& mark : plot(report, "bounds_1").marks) marks.emplace_back(mark.x, mark.pipeline);
+  CHECK(marks == std::vector<std::pair<double, int>>{{0, 0}, {3, 0}, {0, 1}});
+}
+
+TEST_CASE("failures are told first") {
+  const ResultsFiles files;
+  files.replace(
+      "results.json", R"("steps": [{"k": 0}]})",
+      R"("steps": [], "summary": {"violated_at": 3, "inner_outside": 4, "inconsistent_from": 26, "assumptions_until": 20,
+     "error": "too <large>"}})");
+  const std::vector<std::string> notes = read_report(files.path()).notes;
+  REQUIRE(notes.size() == 4);
+  CHECK(notes[0].find("guarantee of \"a\" was violated at k = 3") != std::string::npos);
+  CHECK(notes[1].find("inner estimate of \"a\" leaves its bounds at k = 4") != std::string::npos);
+  CHECK(notes[2].find("proven empty from k = 26") != std::string::npos);
+  CHECK(notes[2].find("assumed at k = 20") != std::string::npos);
+  CHECK(notes[3] == "\"a\" stopped with an error: too <large>");
+}
+
 TEST_CASE("metrics: columns with numbers, logarithmic over powers of ten, and the times of steps") {
   const ResultsFiles files;
   const Report report = read_report(files.path());
@@ -89,7 +116,8 @@ TEST_CASE("metrics: columns with numbers, logarithmic over powers of ten, and th
   CHECK(time.series[0].y == std::vector<double>{7});
   CHECK(time.series[1].y == std::vector<double>{1});
   files.replace("steps.csv", "set,0.5,", "set,0,");
-  CHECK_FALSE(plot(read_report(files.path()), "metric_2").log_y);
+  const Report with_zero = read_report(files.path());
+  CHECK_FALSE(plot(with_zero, "metric_2").log_y);
 }
 
 TEST_CASE("long runs: the page holds few points and every extreme, all of them on demand") {

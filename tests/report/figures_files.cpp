@@ -69,6 +69,7 @@ TEST_CASE("the page alone, or all figures too") {
   }
   CHECK(files.read("report.html") == page);
   CHECK(files.read("figures/bounds_1.csv").find("a,a,1,-2,2\n") != std::string::npos);
+  CHECK(names({false, true, false}).front() == "figures/bounds_1.svg");
   CHECK(names({false, false, true}).front() == "figures/bounds_1.csv");
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The report of a sweep: who is best where, and curves over the values.
+#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -31,6 +32,7 @@ class SweepFiles {
               .append(std::to_string(seed))
               .append(R"(], "numbers": {"radius_mean": )")
               .append(std::to_string(radius));
+          points.append(pipeline == 0 ? R"(, "contains_truth_share": 1)" : R"(, "contains_truth_share": 0.5)");
           points.append(R"(, "steps": 3}, "error": null})");
           times.append(index == 0 ? "\n" : ",\n").append(R"({"point": )").append(std::to_string(index));
           times.append(R"(, "numbers": {"wall_s": 1}})");
@@ -56,7 +58,7 @@ class SweepFiles {
 TEST_CASE("who is best where, with the lead over the second") {
   const SweepFiles sweep;
   const Report report = read_report(sweep.files.path());
-  const Table& table = content<Table>(report, "winners");
+  const Table table = content<Table>(report, "winners");
   REQUIRE(table.header.size() >= 2);
   CHECK(table.header[0] == "order");
   CHECK(table.header[1] == "mean radius");
@@ -66,13 +68,16 @@ TEST_CASE("who is best where, with the lead over the second") {
   CHECK(table.rows[0][1].share == doctest::Approx(2 / 4.5 / 0.5));
   CHECK(table.rows[1][0].text == "30");  // 2.5 against 3.5
   CHECK(table.rows[1][1].text == "a (28.6 %)");
+  const auto inside = std::find(table.header.begin(), table.header.end(), "truth inside");
+  REQUIRE(inside != table.header.end());
+  CHECK(table.rows[0][static_cast<std::size_t>(inside - table.header.begin())].text == "a (100 %)");
   CHECK(report.figures.front().id == "winners");
   CHECK(find_figure(report, "comparison"));
 }
 
 TEST_CASE("curves over a factor: means and quantiles over the repetitions, one curve per pipeline") {
   const SweepFiles sweep;
-  const Plot& plot = content<Plot>(read_report(sweep.files.path()), "sweep_1_1");
+  const Plot plot = content<Plot>(read_report(sweep.files.path()), "sweep_1_1");
   CHECK(plot.x_label == "order");
   CHECK(plot.x_names.empty());
   REQUIRE(plot.series.size() == 4);
@@ -94,13 +99,14 @@ TEST_CASE("values that are words, or not in order, are names on the axis") {
 
 TEST_CASE("a pipeline that failed somewhere is not compared there, and is named") {
   const SweepFiles sweep;
-  sweep.files.replace("results.json", R"("numbers": {"radius_mean": 5.000000, "steps": 3}, "error": null)",
+  sweep.files.replace("results.json",
+                      R"("numbers": {"radius_mean": 5.000000, "contains_truth_share": 1, "steps": 3}, "error": null)",
                       R"("numbers": {}, "error": "too <large>")");
   const Report report = read_report(sweep.files.path());
-  const Table& table = content<Table>(report, "winners");
+  const Table table = content<Table>(report, "winners");
   CHECK(table.rows[0][1].text == "–");
   CHECK(table.rows[1][1].text == "a (28.6 %)");
-  const Plot& plot = content<Plot>(report, "sweep_1_1");
+  const Plot plot = content<Plot>(report, "sweep_1_1");
   CHECK(std::isnan(plot.series[1].y[0]));
   CHECK(plot.series[1].y[1] == 2.5);
   REQUIRE(report.notes.size() == 1);

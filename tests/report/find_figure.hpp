@@ -16,7 +16,7 @@ inline const cordon::report::Figure* find_figure(const cordon::report::Report& r
 
 /// What a figure shows; the test fails if there is none.
 template <class Content>
-const Content& content(const cordon::report::Report& report, const std::string& id) {
+Content content(const cordon::report::Report& report, const std::string& id) {
   const cordon::report::Figure* figure = find_figure(report, id);
   CAPTURE(id);
   REQUIRE(figure);

@@ -21,6 +21,13 @@ RunOutcome run(const Study& study, const RunOptions& options) {
   return run_study(study, registry, options);
 }
 
+/// A study whose diagnosers and designers have three modes.
+Study study_of(PipelineSpec spec, std::int64_t steps = 20) {
+  Study study = fakes::study({std::move(spec)}, steps);
+  study.modes = {{"leak", study.model}, {"stuck", study.model}};
+  return study;
+}
+
 /// Options whose time is over after so many milliseconds.
 RunOptions until(int milliseconds) {
   RunOptions options;
@@ -63,7 +70,7 @@ TEST_CASE("a pipeline that does not exist is told, with the nearest name") {
 
 TEST_CASE("a pipeline is given up when the time is over, before its next step") {
   const auto limited = [](PipelineSpec spec, int milliseconds, std::int64_t steps) {
-    return run(fakes::study({std::move(spec)}, steps), until(milliseconds)).pipelines.at(0);
+    return run(study_of(std::move(spec), steps), until(milliseconds)).pipelines.at(0);
   };
   for (const PipelineOutcome& outcome :
        {limited(fakes::pipeline("observer"), -1, 20), limited(fakes::diagnosis("diagnoser"), -1, 20)}) {
@@ -72,8 +79,10 @@ TEST_CASE("a pipeline is given up when the time is over, before its next step") 
     CHECK(outcome.steps == 0);
   }
   const PipelineOutcome later = limited(fakes::pipeline("observer"), 30, 10'000'000);
+  const std::string ending = " s reached after " + std::to_string(later.steps) + " steps";
   CHECK(later.error_code == Errc::time_limit);
-  CHECK(later.error == "time limit of 0.03 s reached after " + std::to_string(later.steps) + " steps");
+  CHECK(later.error.starts_with("time limit of 0.0"));
+  CHECK(later.error.ends_with(ending));
   CHECK(later.steps > 0);
   CHECK(later.steps < 10'000'000);
   const PipelineOutcome ended = limited(fakes::pipeline("observer"), 3'600'000, 20);
@@ -82,7 +91,7 @@ TEST_CASE("a pipeline is given up when the time is over, before its next step") 
 }
 
 TEST_CASE("diagnosers count the steps of all seeds, and name the seed") {
-  Study study = fakes::study({fakes::diagnosis("diagnoser")}, 1000);
+  Study study = study_of(fakes::diagnosis("diagnoser"), 1000);
   std::get<SimulateSpec>(study.data).seeds = 1'000'000;
   const PipelineOutcome outcome = run(study, until(50)).pipelines.at(0);
   CHECK(outcome.error_code == Errc::time_limit);
@@ -91,17 +100,16 @@ TEST_CASE("diagnosers count the steps of all seeds, and name the seed") {
 }
 
 TEST_CASE("a design ends with its time, and keeps what it has found") {
-  const Study study = fakes::study({fakes::design("waits", "waits")});
-  const PipelineOutcome outcome = run(study, until(20)).pipelines.at(0);
+  const PipelineOutcome outcome = run(study_of(fakes::design("waits", "waits")), until(20)).pipelines.at(0);
   CHECK(outcome.error_code == Errc::time_limit);
-  CHECK(contains(outcome.error, "time limit of 0.02 s"));
+  CHECK(contains(outcome.error, "time limit of 0.0"));
   CHECK(outcome.design);
-  const PipelineOutcome found = run(fakes::study({fakes::design("found")}), until(-1)).pipelines.at(0);
+  const PipelineOutcome found = run(study_of(fakes::design("found")), until(-1)).pipelines.at(0);
   CHECK(found.error.empty());  // it never asked
 }
 
 TEST_CASE("experiments with a design end with the time") {
-  const PipelineOutcome outcome = run(fakes::study({fakes::design("found", "found", "truth")}), until(-1)).pipelines.at(0);
+  const PipelineOutcome outcome = run(study_of(fakes::design("found", "found", "truth")), until(-1)).pipelines.at(0);
   CHECK(outcome.error_code == Errc::time_limit);
   CHECK(contains(outcome.error, "(experiment with mode"));
 }
@@ -111,7 +119,7 @@ TEST_CASE("stopped from outside is not out of time") {
   for (const PipelineSpec& spec : {fakes::pipeline("observer"), fakes::diagnosis("diagnoser"), fakes::design("waits", "waits")}) {
     RunOptions options = until(-1);
     options.stop = &stop;
-    const RunOutcome outcome = run(fakes::study({spec}), options);
+    const RunOutcome outcome = run(study_of(spec), options);
     CHECK(outcome.interrupted);
     CHECK(outcome.pipelines.empty());
   }

@@ -84,7 +84,7 @@ TEST_CASE("a run: the important columns that have numbers, in order, the best ma
                           {"undecided", false}},
                          {{100, 1, 9, 2, 30, none, none, 1, 55.5, 0}, {100, .5, 3, 1, 3, none, none, 1, 4, 0}}));
   CHECK(titles(table) ==
-        Texts{"pipeline", "mean radius", "× best", "truth inside", "generators", "µs/step", "× best", "time [s]"});
+        Texts{"pipeline", "mean radius", "× best", "truth inside", "used generators", "µs/step", "× best", "time [s]"});
   CHECK(table.columns[1].name == "radius_mean");
   CHECK_FALSE(table.columns[0].number);
   CHECK(table.columns[1].number);

@@ -73,7 +73,7 @@ TEST_CASE("the files of a sweep") {
         "Budgets,\"second budget=20,seed=2\",,0.25\n");
   CHECK(files.at("summary.md") ==
         "## Budgets\n\n"
-        "| budget | pipeline | mean radius | × best | generators | µs/step | × best | failed |\n"
+        "| budget | pipeline | mean radius | × best | used generators | µs/step | × best | failed |\n"
         "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
         "| 10 | first | **1.500 ± 0.71** | 1 | 30 | 30 ± 14 | 3 | 0/2 |\n"
         "| 10 | second | 3 ± 1.4 | 2 | – | **10** | 1 | 0/2 |\n"
@@ -88,7 +88,7 @@ TEST_CASE("the files of a sweep") {
         "  \\label{tab:budgets}\n"
         "  \\begin{tabular}{llrrrrrr}\n"
         "    \\toprule\n"
-        "    budget & pipeline & mean radius & $\\times$ best & generators & $\\mu$s/step & $\\times$ best & failed \\\\\n"
+        "    budget & pipeline & mean radius & $\\times$ best & used generators & $\\mu$s/step & $\\times$ best & failed \\\\\n"
         "    \\midrule\n"
         "    10 & first & $\\mathbf{1.500 \\pm 0.71}$ & $1$ & $30$ & $30 \\pm 14$ & $3$ & $0/2$ \\\\\n"
         "    10 & second & $3 \\pm 1.4$ & $2$ & -- & $\\mathbf{10}$ & $1$ & $0/2$ \\\\\n"
@@ -121,6 +121,18 @@ TEST_CASE("verdicts: what was claimed held, did not hold, or is not known") {
         "benchmark,instance,result,time\n"
         "Verdicts,p0,1,1\nVerdicts,p1,0,1\nVerdicts,p2,0,1\nVerdicts,p3,0,1\nVerdicts,p4,1,1\nVerdicts,p5,0,1\nVerdicts,p6,,"
         "1\nVerdicts,p7,0,1\n");
+}
+
+TEST_CASE("shares are per cents, and marks are mathematics") {
+  ResultTable table;
+  table.title = "Marks";
+  table.pipelines = {"a", "b"};
+  table.columns = {{"radius_mean", false}, {"contains_truth_share", false}, {"inconsistent_from", false}};
+  table.rows = {{0, {}, {1, .5, 3}, ""}, {1, {}, {inf, 1, none}, ""}};
+  const std::string tex = written(table).at("summary.tex");
+  CHECK(tex.find(" a & $1^{\\dagger}$ & -- & $50\\,\\%^{\\dagger}$ \\\\\n") != std::string::npos);
+  CHECK(tex.find(" b & $\\infty$ & -- & $100\\,\\%$ \\\\\n") != std::string::npos);
+  CHECK(tex.find("$\\dagger$: an estimate was proven empty") != std::string::npos);
 }
 
 TEST_CASE("names that try to break out") {

@@ -63,7 +63,7 @@ struct SweepOptions {
   bool restart = false;       ///< throw away what an interrupted run of any sweep has left there; not with `resume`
   double point_limit_s = std::numeric_limits<double>::infinity();  ///< wall-clock time of one point, tested between its steps
   Shard shard;
-  bool report = true;  ///< write report.html as well, after the results
+  bool report = true;                                  ///< write report.html as well, after the results
   const std::atomic<bool>* stop = nullptr;             ///< set from a signal handler: what is finished is kept for `resume`
   std::function<void(const SweepProgress&)> progress;  ///< called now and then, from one thread at a time
 };

@@ -2,6 +2,7 @@
 #include "study/running/time_limit.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -11,9 +12,10 @@ namespace cordon::detail {
 
 void TimeLimit::check(std::int64_t steps) const {
   if (!reached()) return;
-  const double seconds = std::max(0.0, std::chrono::duration<double>(*deadline_ - begin_).count());
+  // In hundredths: the run began a little after its deadline was set.
+  const double seconds = std::round(100 * std::max(0.0, std::chrono::duration<double>(*deadline_ - begin_).count())) / 100;
   throw Error(Errc::time_limit,
-              fmt::format("time limit of {:.3g} s reached after {} {}", seconds, steps, steps == 1 ? "step" : "steps"));
+              fmt::format("time limit of {} s reached after {} {}", seconds, steps, steps == 1 ? "step" : "steps"));
 }
 
 }  // namespace cordon::detail

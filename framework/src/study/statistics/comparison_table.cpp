@@ -46,8 +46,8 @@ const std::vector<Measure>& measures() {
       {"kappa_min", "least κ"},
       {"experiments_isolated", "isolated"},
       {"experiments_wrong", "wrong", false, false, true},
-      {"generators_max", "generators"},
-      {"constraints_max", "constraints"},
+      {"generators_max", "used generators"},
+      {"constraints_max", "used constraints"},
       {"step_us", "µs/step", true},
       {"wall_s", "time [s]"},
   };

@@ -75,7 +75,7 @@ std::string latex_number(std::string_view text, bool best) {
       out += "\\infty";
     } else if (takes(" †")) {
       out += "^{\\dagger}";
-    } else if (takes("%")) {
+    } else if (takes(" %")) {
       out += "\\,\\%";
     } else {
       out += text[i];

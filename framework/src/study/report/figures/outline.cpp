@@ -117,7 +117,7 @@ class Scanner {
 
   bool is_growing_list() const {
     if (levels_.size() == 1) return levels_[0].key == "points";
-    return levels_.size() == 3 && levels_[0].key == "pipelines" && levels_[2].object && levels_[2].key == "steps";
+    return levels_.size() == 3 && levels_[0].key == "pipelines" && levels_[2].key == "steps";
   }
 
   void keep(char c) {

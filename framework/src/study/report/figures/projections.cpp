@@ -182,7 +182,7 @@ class Projector {
     std::string caption =
         "The sets of all pipelines, seen in two coordinates. Polygons contain the sets, and touch them unless they have too many "
         "vertices to be drawn; "
-        "dashed edges lie on the edge of the picture, where the set goes on.";
+        "dotted edges lie on the edge of the picture, where the set goes on.";
     if (outer_) caption += " Of some sets an enclosure is drawn, since their representation has no exact exchange form.";
     for (std::size_t q = 0; q < pairs_.size(); ++q) {
       const auto [i, j] = pairs_[q];

@@ -32,10 +32,7 @@ std::optional<Vector> separating_direction(const LineForm& X, const LineForm& Y)
   const double length = d.norm();
   if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
   d /= length;
-  const auto [x_lower, x_upper] = range_along(X, d);
-  const auto [y_lower, y_upper] = range_along(Y, d);
-  if (x_upper < y_lower) return d;
-  if (y_upper < x_lower) return Vector(-d);
+  if (range_along(X, d).second < range_along(Y, d).first) return d;
   return std::nullopt;
 }
 

@@ -32,7 +32,9 @@ std::vector<Measure> measures_of(const ResultTable& table, const ComparisonTable
   for (const ComparisonColumn& column : comparison.columns) {
     const std::size_t at = detail::column_of(table, column.name);
     const bool counts = column.number && at < table.columns.size() && preference_of(column.name) != Preference::none;
-    if (counts && measures.size() < most_measures) measures.push_back({column.title, at});
+    // A comparison shows some numbers twice: as they are, and relative to the best.
+    const bool again = std::any_of(measures.begin(), measures.end(), [at](const Measure& one) { return one.column == at; });
+    if (counts && !again && measures.size() < most_measures) measures.push_back({column.title, at});
   }
   return measures;
 }

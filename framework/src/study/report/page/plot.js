@@ -55,7 +55,7 @@ function datasetsOf(series, range, log) {
   const points = (values) => series.x.map((x, i) => ({ x, y: drawnValue(values[i], range, log) }));
   const common = {
     label: series.name, hidden: !isShown(series.pipeline), borderColor: colour, backgroundColor: colour, borderWidth: 1.8,
-    borderDash: dashOf(series.pipeline, series.shade), pointRadius: series.x.length === 1 ? 3 : 0, pointHoverRadius: 4, tension: 0, series,
+    borderDash: dashOf(series.pipeline, series.shade), pointRadius: series.x.length <= 12 ? 2.5 : 0, pointHoverRadius: 4, tension: 0, series,
   };
   if (series.kind === 'points') {
     return [{ ...common, data: points(series.y), showLine: false, pointRadius: 3.5, pointStyle: markerOf(series.pipeline, series.shade) }];

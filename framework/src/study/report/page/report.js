@@ -21,7 +21,8 @@ function tableView(figure) {
   const { header, rows } = figure.table;
   const isNumber = header.map((_, i) => rows.some((row) => row[i]?.number));
   const cellOf = (one) => {
-    const td = element('td', { class: [one.number && 'number', one.best && 'best'].filter(Boolean).join(' ') || undefined }, one.text);
+    const classes = [one.number && 'number', one.best && 'best', one.text.length > 40 && 'prose'];
+    const td = element('td', { class: classes.filter(Boolean).join(' ') || undefined }, one.text);
     if (one.share > 0) td.style.backgroundColor = `rgba(var(--best), ${(0.06 + 0.3 * one.share).toFixed(3)})`;
     return td;
   };
@@ -40,7 +41,7 @@ function tableView(figure) {
     });
     return th;
   });
-  const table = element('table', {}, element('thead', {}, element('tr', {}, ...heads)), body);
+  const table = element('table', { class: header.length > 8 ? 'dense' : undefined }, element('thead', {}, element('tr', {}, ...heads)), body);
   const update = () => [...body.rows].forEach((row) => { row.hidden = 'pipeline' in row.dataset && !isShown(Number(row.dataset.pipeline)); });
   return { parts: [element('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': figure.title }, table)], create() {}, update, resize() {} };
 }
@@ -78,6 +79,21 @@ function card(figure) {
   return article;
 }
 
+/** Cards stand in pairs; the last of an odd number of neighbours takes the whole width, so that no place stays empty. */
+function fillRows(cards) {
+  let alone = null;
+  for (const one of [...cards, null]) {
+    const wide = one === null || one.classList.contains('wide');
+    if (wide) {
+      alone?.classList.add('wide');
+      alone = null;
+    } else {
+      alone = alone === null ? one : null;
+    }
+  }
+  return cards;
+}
+
 function buildSections() {
   const content = document.getElementById('content'), contents = document.getElementById('contents');
   const names = [...new Set(data.figures.map((figure) => figure.section))];
@@ -85,7 +101,7 @@ function buildSections() {
     const id = `section_${i + 1}`;
     const figures = data.figures.filter((figure) => figure.section === name);
     content.append(element('section', { id, 'aria-labelledby': `${id}_title` }, element('h2', { id: `${id}_title` }, name),
-      element('div', { class: 'figures' }, ...figures.map(card))));
+      element('div', { class: 'figures' }, ...fillRows(figures.map(card)))));
     contents.append(element('a', { href: `#${id}` }, name));
   });
   contents.hidden = names.length < 2;

@@ -58,11 +58,12 @@ void draw_line(Drawing& drawing, const Series& series, const Frame& frame, std::
     if (series.kind == Series::Kind::steps && !points.empty()) points.emplace_back(at.first, points.back().second);
     points.push_back(at);
   }
-  if (points.size() == 1) {
-    drawing.circle(points[0], 2.5, fmt::format("fill=\"{}\"", colour_of(series.pipeline, series.shade)));
-  } else {
-    drawing.polyline(points, stroke_of(series.pipeline, series.shade));
+  // Few values are seen as such.
+  if (points.size() == 1 || (series.kind == Series::Kind::line && series.x.size() <= 12)) {
+    for (const Point& point : points)
+      drawing.circle(point, 2.5, fmt::format("fill=\"{}\"", colour_of(series.pipeline, series.shade)));
   }
+  if (points.size() > 1) drawing.polyline(points, stroke_of(series.pipeline, series.shade));
 }
 
 void draw_series(Drawing& drawing, const Series& series, const Frame& frame) {
