@@ -181,6 +181,10 @@ void check_diagnosis(const Report& report, const Json& pipeline, int p) {
       REQUIRE(at < band.x.size());
       CHECK(same(band.y[at], number(fault["lower"])));
       CHECK(same(band.upper[at], number(fault["upper"])));
+      if (!fault.contains("truth")) continue;
+      const Series truth = series_of(plot, of_data, "true fault");
+      CHECK(truth.y.at(static_cast<std::size_t>(std::find(truth.x.begin(), truth.x.end(), band.x[at]) - truth.x.begin())) ==
+            number(fault["truth"]));
     }
   }
   if (!pipeline["summary"]["scores"].is_null()) {

@@ -75,6 +75,36 @@ TEST_CASE("who is best where, with the lead over the second") {
   CHECK(find_figure(report, "comparison"));
 }
 
+TEST_CASE("pipelines that are equally good share the lead; there is none if all are") {
+  const SweepFiles sweep;
+  sweep.files.replace("results.json", R"({"name": "b", "backend": "box", "observer": "o"}])",
+                      R"({"name": "b", "backend": "box", "observer": "o"}, {"name": "c", "backend": "box", "observer": "o"}])");
+  // points of three pipelines: order 10 as (1, 1, 2), order 30 all alike
+  std::string points, times;
+  for (int index = 0; index < 12; ++index) {
+    const int order = index / 6, seed = index / 3 % 2, pipeline = index % 3;
+    points.append(index == 0 ? "" : ",").append(R"({"point": )").append(std::to_string(index));
+    points.append(R"(, "pipeline": )").append(std::to_string(pipeline)).append(R"(, "at": [)").append(std::to_string(order));
+    points.append(", ").append(std::to_string(seed)).append(R"(], "numbers": {"radius_mean": )");
+    points.append(order == 0 && pipeline == 2 ? "2" : "1").append(R"(}, "error": null})");
+    times.append(index == 0 ? "" : ",").append(R"({"point": )").append(std::to_string(index)).append(R"(, "numbers": {}})");
+  }
+  const auto with_points = [&](const std::string& name, const std::string& rows) {
+    std::string text = sweep.files.read(name);
+    const std::size_t from = text.find("\"points\": [") + 11, to = text.rfind(']');
+    sweep.files.write(name, text.replace(from, to - from, rows));
+  };
+  with_points("results.json", points);
+  with_points("run.json", times);
+  const Report report = read_report(sweep.files.path());
+  const Table table = content<Table>(report, "winners");
+  REQUIRE(table.rows.size() == 2);
+  CHECK(table.rows[0][1].text == "a, b (50 %)");
+  CHECK(table.rows[0][1].share == 1);
+  CHECK(table.rows[1][1].text == "all alike");
+  CHECK(table.rows[1][1].share == 0);
+}
+
 TEST_CASE("curves over a factor: means and quantiles over the repetitions, one curve per pipeline") {
   const SweepFiles sweep;
   const Plot plot = content<Plot>(read_report(sweep.files.path()), "sweep_1_1");

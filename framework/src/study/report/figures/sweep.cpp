@@ -65,12 +65,13 @@ void add_comparison(const ComparisonTable& comparison, const RunFiles& files, Re
   report.figures.push_back({"comparison", section::comparison, "Comparison", std::move(caption), std::move(table)});
 }
 
-/// The lead of the best mean over the second, as a share of the second; NaN if it cannot be said.
+/// The lead of the best mean over the next one that differs, as a share of that; NaN if it cannot be said.
 double lead_of(std::vector<double> means, Preference preference) {
   std::sort(means.begin(), means.end());
   if (preference == Preference::more) std::reverse(means.begin(), means.end());
-  if (means.size() < 2 || means[1] == 0) return none;
-  return std::abs(means[0] - means[1]) / std::abs(means[1]);
+  const auto next = std::find_if(means.begin(), means.end(), [&](double mean) { return mean != means.front(); });
+  if (next == means.end() || *next == 0) return none;
+  return std::abs(means.front() - *next) / std::abs(*next);
 }
 
 Table::Cell winner_cell(const ResultTable& table, std::span<const SummaryRow> rows, std::size_t column) {
@@ -81,19 +82,17 @@ Table::Cell winner_cell(const ResultTable& table, std::span<const SummaryRow> ro
   if (means.size() < 2) return text_cell("–");
   const std::vector<bool> best = detail::best_of(table, rows, column);
   std::string names;
-  std::size_t count = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (!best[i]) continue;
-    names += (count++ == 0 ? "" : ", ") + table.pipelines[rows[i].pipeline];
+    if (best[i]) names += (names.empty() ? "" : ", ") + table.pipelines[rows[i].pipeline];
   }
-  if (count == 0) return text_cell("all alike");
+  if (names.empty()) return text_cell("all alike");
   Table::Cell cell = text_cell(std::move(names));
   const double lead = lead_of(std::move(means), preference_of(table.columns[column].name));
-  if (count == 1 && std::isfinite(lead)) {
+  cell.share = 0.05;
+  if (std::isfinite(lead)) {
     cell.text += fmt::format(" ({} %)", shown(100 * lead, 3));
-    cell.share = std::min(lead / clear_margin, 1.0);
+    cell.share = std::clamp(lead / clear_margin, cell.share, 1.0);
   }
-  if (count == 1) cell.share = std::max(cell.share, 0.05);
   return cell;
 }
 
@@ -116,7 +115,7 @@ void add_winners(const ResultTable& table, const Summary& summary, const std::ve
   }
   report.figures.push_back(
       {"winners", section::comparison, "Which pipeline is best where",
-       "The pipeline with the best mean, and by how much it is better than the second; the darker, the clearer. Only those "
+       "The pipeline with the best mean, and by how much it is better than the next; the darker, the clearer. Only those "
        "are compared that have a number at every repetition and whose estimates never ended early.",
        std::move(winners)});
 }
