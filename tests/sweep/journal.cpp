@@ -2,9 +2,11 @@
 #include "study/sweep/journal.hpp"
 
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <limits>
 #include <set>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -257,6 +259,31 @@ TEST_CASE("two processes do not write one journal") {
     CHECK(status == 0);
   }
   CHECK(read(scratch.path()).empty());  // free again
+}
+
+TEST_CASE("a line that was torn by a full disk stays the last one") {
+  const Scratch scratch;
+  struct rlimit before, small;
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  small = before;
+  small.rlim_cur = 1000;
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  std::int64_t written = 0;
+  {
+    Journal journal(scratch.path(), head(), Start::fresh, {});
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    try {
+      for (;; ++written) journal.add(line_of(point(written)));
+    } catch (const Error& error) {
+      CHECK(error.code() == Errc::io);
+    }
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    CHECK_THROWS_WITH_AS(journal.add(line_of(point(99))), doctest::Contains("any more"), Error);
+  }
+  std::signal(SIGXFSZ, old_handler);
+  CHECK(written > 0);
+  CHECK(std::filesystem::file_size(scratch / ".sweep/journal") == 1000);
+  CHECK(read(scratch.path()).size() == static_cast<std::size_t>(written));
 }
 
 TEST_CASE("removed, it leaves nothing; where it cannot be, it says so") {

@@ -250,8 +250,10 @@ TEST_CASE("resumed after its end, a sweep runs nothing, but only if the results 
   const Study other = sweeps::study(two_pipelines(), 4);
   CHECK(sweeps::run(other, options, never).progress.failed == 16);
   CHECK(sweeps::run(study, options).progress.failed == 0);
-  options.shard = {1, 2};
-  CHECK(sweeps::run(study, options).progress.resumed == 0);
+  for (const Shard shard : {Shard{1, 2}, Shard{2, 2}, Shard{2, 3}, Shard{}}) {
+    options.shard = shard;
+    CHECK(sweeps::run(study, options).progress.resumed == 0);
+  }
 }
 
 TEST_CASE("options that are none are refused before anything is written") {

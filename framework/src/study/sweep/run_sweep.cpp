@@ -87,7 +87,6 @@ class PointRunner {
  private:
   bool run(const SweepPoint& point, PointResult& result) {
     if (!now_ || point.at != place_) {  // points of one combination follow each other
-      now_.reset();
       now_ = at_(point.at);
       place_ = point.at;
     }
