@@ -243,6 +243,35 @@ TEST_CASE("without W and V the study says what is missing") {
   }
 }
 
+TEST_CASE("a matrix without columns says that there are none, [] says nothing") {
+  const FileScratch scratch;
+  mat::Variables all = plain();
+  all.resize(4);
+  all.push_back({"V", box(Matrix{{-0.1}}, Matrix{{0.1}})});
+  const ImportedStudy none = mat_to_json(mat_of(scratch, with(all, "Bw", mat::matrix(Matrix(2, 0)))), {scratch / "out.json"});
+  CHECK(none.missing.empty());
+  CHECK(read(scratch / "out.json").model.linear.disturbances() == 0);
+  const ImportedStudy absent =
+      mat_to_json(mat_of(scratch, with(all, "Bw", mat::matrix(Matrix(0, 0)))), {scratch / "out.json", true});
+  CHECK(absent.missing == std::vector<std::string>{"W"});
+}
+
+TEST_CASE("two actuators, two outputs") {
+  const FileScratch scratch;
+  mat::Variables all = with(plain(), "B", mat::matrix(Matrix{{1, 0}, {0, 1}}));
+  all = with(with(all, "D", mat::matrix(Matrix(0, 0))), "C", mat::matrix(Matrix{{1, 0}, {0, 1}}));
+  all = with(all, "V", box(Matrix{{-1}, {-1}}, Matrix{{1}, {1}}));
+  mat::Struct mode;  // a row of two numbers is no range
+  mode.set("name", mat::text("half")).set("actuator", mat::matrix(Matrix{{0.5, 0.25}}));
+  all = with(all, "modes", mat::Struct::array({mode}));
+  mat::Struct data;  // where both ways fit, a column is a sample
+  data.set("u", mat::matrix(Matrix{{1, 2}, {3, 4}})).set("y", mat::matrix(Matrix{{5, 6}, {7, 8}}));
+  mat_to_json(mat_of(scratch, with(all, "data", std::move(data).value())), {scratch / "out.json"});
+  CHECK(bytes_of(scratch / "out.csv") == "k,u_1,u_2,y_1,y_2\n0,1,3,5,7\n1,2,4,6,8\n");
+  const Study study = read(scratch / "out.json");
+  CHECK(study.modes.at(0).model.linear.B == Matrix{{0.5, 0}, {0, 0.25}});
+}
+
 TEST_CASE("which variable is taken") {
   const FileScratch scratch;
   mat::Struct one, two;
@@ -345,6 +374,7 @@ TEST_CASE("data that are wrong") {
   expect_problem(data("y", Matrix{{1, std::nan("")}}), "/data/y", "holds NaN or Inf in sample 2");
   expect_problem(data("y", Matrix{{1, 2, 3}, {4, 5, 6}}), "/data/y", "is 2 × 3, must have 1 row");
   expect_problem(data("mode", Matrix{{0, 1}}), "/data/mode", "holds 1 in sample 2");
+  expect_problem(data("mode", Matrix{{0, -2}}), "/data/mode", "holds -2 in sample 2");
   expect_problem(data("mode", Matrix{{0.5, 0}}), "/data/mode", "holds 0.5 in sample 1");
 }
 

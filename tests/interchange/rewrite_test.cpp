@@ -45,6 +45,14 @@ TEST_CASE("a large diagonal becomes sparse, and comes back") {
   CHECK(rewritten(sparse.dump(), MatrixForm::dense) == json::parse(set));
 }
 
+TEST_CASE("rows come before columns") {
+  const std::string zeros(60, '0');
+  std::string row;
+  for (const char c : zeros) row += std::string(row.empty() ? "" : ", ") + c;
+  const json sparse = rewritten(R"({"cordon": 1, "A": [[)" + row + ", 7], [" + row + ", 0]]}", MatrixForm::sparse);
+  CHECK(sparse["A"] == json::parse(R"({"rows": 2, "cols": 61, "entries": [[1, 61, 7]]})"));
+}
+
 TEST_CASE("what would be longer stays dense") {
   const std::string set = R"({"type": "zonotope", "center": [0, 0], "generators": [[1, 0], [0, 1]]})";
   CHECK(rewritten(set, MatrixForm::sparse) == json::parse(set));
@@ -77,6 +85,7 @@ TEST_CASE("a matrix that a sweep looks into keeps its form") {
   CHECK(swept["pipelines"][0]["gain"].is_array());
   CHECK(swept["other"].is_object());
   CHECK(rewritten(head + "/pipelines/0/gains/0/3\"}]}", MatrixForm::sparse)["pipelines"][0]["gain"].is_object());
+  CHECK(rewritten(head + "/other\"}]}", MatrixForm::sparse)["other"].is_object());  // the whole matrix is exchanged
   const json kept = rewritten(
       R"({"cordon": 1, "A": {"rows": 3, "cols": 3, "entries": [[1, 2, 3], [2, 2, 2]]}, "sweep": [{"path": "/A/entries/0/2"}]})",
       MatrixForm::dense);

@@ -101,6 +101,6 @@ TEST_CASE("only the first wrong entries are told") {
 
 TEST_CASE("a wrong entry of an interval is told where it stands") {
   expect_reported(uncertain_study, {"\"radius\": [[0.125, 0], [0, 0.0625]]",
-                                    R"("radius": {"rows": 2, "cols": 2, "entries": [[1, 1, 0.125], [2, 1, 1], [2, 2, -1]]})",
+                                    R"("radius": {"rows": 2, "cols": 2, "entries": [[1, 1, 0.125], [2, 1, 1], [1, 2, -1]]})",
                                     "/system/A/radius/entries/2", "is negative", "at least 0"});
 }

@@ -50,12 +50,12 @@ class Rewriter {
   }
 
   Json rewrite(const Cursor& at) const {
-    const bool sparse = json::is_sparse_matrix(at.value());
-    if ((sparse || is_dense_matrix(at.value())) && !is_swept(at.pointer())) {
+    const bool matrix_here = json::is_sparse_matrix(at.value()) || is_dense_matrix(at.value());
+    if (matrix_here && !is_swept(at.pointer())) {
       const auto A = json::read_matrix(at);
       return A ? matrix(*A) : Json();
     }
-    return copy(at, !sparse);
+    return copy(at, true);
   }
 
  private:
