@@ -3,6 +3,7 @@
 
 #include "cordon/study/statistics.hpp"
 #include "study/results/atomic_directory.hpp"
+#include "study/results/earlier_results.hpp"
 #include "study/results/file_heads.hpp"
 #include "study/results/host.hpp"
 #include "study/results/results_parts.hpp"
@@ -138,7 +139,7 @@ std::vector<std::filesystem::path> write_sweep(const std::filesystem::path& out,
   write_summaries(directory, table, summarise(table));
   write_run(directory.create("run.json"), sweep, table);
   write_results(directory.create("results.json"), sweep, table);
-  return directory.commit();
+  return directory.commit(files_of_earlier_results(out));
 }
 
 }  // namespace cordon::detail
