@@ -109,6 +109,12 @@ TEST_CASE_FIXTURE(Fixture, "points that fail are told; if all do, by the exit co
   CHECK(holds(outcome, " s reached after 0 steps"));
   CHECK(holds(outcome, "every point failed"));
   CHECK(json::parse(bytes_of(scratch / "out/results.json"))["points"][0]["error"].is_string());
+  CHECK(run({"--out", scratch / "out", "--point-limit", "1e-9", "--no-report", "--resume"}).exit == 5);
+  CHECK(run({"--out", scratch / "out", "--point-limit", "9", "--no-report", "--resume"}).exit == 2);
+  for (const std::string part : {"1", "2"}) {
+    CHECK(run({"--out", scratch / part, "--shard", part + "/2", "--point-limit", "1e-9", "--no-report"}).exit == 5);
+  }
+  CHECK(program::run(scratch, {"merge", scratch / "1", scratch / "2", "--out", scratch / "merged"}).exit == 5);
 }
 
 TEST_CASE_FIXTURE(Fixture, "interrupted, it tells the command that goes on") {
