@@ -109,6 +109,12 @@ TEST_CASE_FIXTURE(Fixture, "points that fail are told; if all do, by the exit co
   CHECK(holds(outcome, " s reached after 0 steps"));
   CHECK(holds(outcome, "every point failed"));
   CHECK(json::parse(bytes_of(scratch / "out/results.json"))["points"][0]["error"].is_string());
+  CHECK(run({"--out", scratch / "out", "--point-limit", "1e-9", "--no-report", "--resume"}).exit == 5);
+  CHECK(run({"--out", scratch / "out", "--point-limit", "9", "--no-report", "--resume"}).exit == 2);
+  for (const std::string part : {"1", "2"}) {
+    CHECK(run({"--out", scratch / part, "--shard", part + "/2", "--point-limit", "1e-9", "--no-report"}).exit == 5);
+  }
+  CHECK(program::run(scratch, {"merge", scratch / "1", scratch / "2", "--out", scratch / "merged"}).exit == 5);
 }
 
 TEST_CASE_FIXTURE(Fixture, "interrupted, it tells the command that goes on") {
@@ -147,4 +153,46 @@ TEST_CASE_FIXTURE(Fixture, "resumed after its end, it says so and runs nothing")
   CHECK(holds(again, "finished before"));
   CHECK(holds(again, "Zonotope"));
   CHECK(tree(scratch / "out") == before);
+}
+
+TEST_CASE_FIXTURE(Fixture, "results leave no file of those before them") {
+  const std::string plain = std::string(CORDON_SOURCE_DIR) + "/examples/studies/linear_two_states.json";
+  const auto names = [&](const char* folder) {
+    std::set<std::string> found;
+    for (const auto& [name, bytes] : tree(scratch / folder)) found.insert(name);
+    return found;
+  };
+  const auto run_plain = [&](const char* folder, const std::string& option) {
+    CHECK(program::run(scratch, {"run", plain, "--out", scratch / folder, option}).exit == 0);
+  };
+  CHECK(run({"--out", scratch / "sweep"}).exit == 0);
+  run_plain("run", "--quiet");
+  const auto of_sweep = names("sweep"), of_run = names("run");
+  std::filesystem::copy(scratch / "sweep", scratch / "out");
+  std::ofstream(scratch / "out/notes.txt") << "mine";
+  std::ofstream(scratch / "out/data.csv") << "mine, not of the sweep";
+  std::ofstream(scratch / "out/diagnosis.csv") << "mine, not of the sweep";
+  CHECK(run({"--out", scratch / "out"}).exit == 0);
+  CHECK(bytes_of(scratch / "out/data.csv") == "mine, not of the sweep");
+  run_plain("out", "--quiet");
+  auto expected = of_run;
+  expected.insert({"notes.txt", "diagnosis.csv"});
+  CHECK(names("out") == expected);
+  CHECK(run({"--out", scratch / "out"}).exit == 0);
+  expected = of_sweep;
+  expected.insert("notes.txt");
+  CHECK(names("out") == expected);
+  CHECK(run({"--out", scratch / "out", "--no-report"}).exit == 0);
+  expected.erase("report.html");
+  CHECK(names("out") == expected);
+  run_plain("run", "--no-report");
+  CHECK(names("run").count("report.html") == 0);
+}
+
+TEST_CASE_FIXTURE(Fixture, "files beside results that are not of this program stay") {
+  std::filesystem::create_directory(scratch / "out");
+  std::ofstream(scratch / "out/results.json") << "{\n  \"other\": 1\n}\n";
+  std::ofstream(scratch / "out/data.csv") << "mine";
+  CHECK(run({"--out", scratch / "out", "--no-report"}).exit == 0);
+  CHECK(bytes_of(scratch / "out/data.csv") == "mine");
 }

@@ -70,7 +70,12 @@ TEST_CASE("parts that do not belong together are refused, and nothing is written
   put(three / "results.json", exchanged(results, "\"plugins\": [", "\"plugins\": [1"));
   refused({one, two, three}, "other plugins or libraries");
   put(three / "results.json", results);
-  CHECK(merge_sweeps({three, one, two}, scratch / "out").progress.done == 8);
+  put(three / "results.json", exchanged(results, "\"point_limit_s\": null", "\"point_limit_s\": 2"));
+  refused({one, two, three}, "another time limit per point");
+  put(three / "results.json", results);
+  const SweepOutcome merged = merge_sweeps({three, one, two}, scratch / "out");
+  CHECK(merged.progress.done == 8);
+  CHECK(merged.first_error == Errc::unsupported);
   CHECK(sweeps::reproducible(scratch / "out") == sweeps::reproducible(whole));
 }
 
@@ -109,6 +114,11 @@ TEST_CASE("points have to be those of the part") {
   changed("\"of\": 2", "\"of\": 1", "a shard that is none");
   changed("\"of\": 2", "\"of\": 1000000", "a shard that is none");
   changed("\"error\": null", "\"error\": 1", "this line is no point");
+  changed("\"error\": null", "\"error\": \"why?\"", "this line is no point");  // without a code
+  changed("\"error\": null", "\"error\": null, \"error_code\": \"io\"", "this line is no point");
+  changed("\"error_code\": \"unsupported\"", "\"error_code\": \"bad\"", "this line is no point");
+  changed("\"error_code\": \"unsupported\"", "\"error_code\": 1", "this line is no point");
+  changed("\"point_limit_s\": null", "\"point_limit_s\": \"x\"", "must be a number");
   changed("\n  ]\n}\n", "", "ends in the middle");
   changed("\"cordon_results\": 1", "\"cordon_results\": []", "cordon_results");
   changed("\"points\": [", "\"point\": [", "has no points");

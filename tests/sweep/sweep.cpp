@@ -250,10 +250,38 @@ TEST_CASE("resumed after its end, a sweep runs nothing, but only if the results 
   const Study other = sweeps::study(two_pipelines(), 4);
   CHECK(sweeps::run(other, options, never).progress.failed == 16);
   CHECK(sweeps::run(study, options).progress.failed == 0);
-  for (const Shard shard : {Shard{1, 2}, Shard{2, 2}, Shard{2, 3}, Shard{}}) {
-    options.shard = shard;
-    CHECK(sweeps::run(study, options).progress.resumed == 0);
-  }
+  options.shard = {1, 2};
+  const auto whole = tree(scratch.path());
+  CHECK_THROWS_WITH_AS(sweeps::run(study, options), doctest::Contains("all points, and part 1 of 2 was asked for"), InputError);
+  CHECK(tree(scratch.path()) == whole);
+  options.resume = false;
+  CHECK(sweeps::run(study, options).progress.total == 6);
+  options.resume = true;
+  CHECK(sweeps::run(study, options).progress.resumed == 6);
+  options.shard = {2, 2};
+  CHECK_THROWS_WITH_AS(sweeps::run(study, options), doctest::Contains("part 1 of 2, and part 2 of 2"), InputError);
+}
+
+TEST_CASE("finished results tell the error of every point, and the limit of time") {
+  const Scratch scratch;
+  const Study study = sweeps::study({fakes::pipeline("bad", "breaking")}, 1);
+  SweepOptions options = into(scratch / "out");
+  options.point_limit_s = 100;
+  CHECK(sweeps::run(study, options).first_error == Errc::unsupported);
+  CHECK(results_of(options.out)["point_limit_s"] == 100);
+  CHECK(results_of(options.out)["points"][0]["error_code"] == "unsupported");
+  options.resume = true;
+  const SweepOutcome again = sweeps::run(study, options);
+  CHECK(again.progress.resumed == 2);
+  CHECK(again.first_error == Errc::unsupported);
+  options.point_limit_s = std::numeric_limits<double>::infinity();
+  const auto before = tree(scratch.path());
+  CHECK_THROWS_WITH_AS(sweeps::run(study, options), doctest::Contains("a limit of 100 s per point, now there is no limit"),
+                       InputError);
+  CHECK(tree(scratch.path()) == before);
+  options.resume = false;
+  CHECK(sweeps::run(study, options).progress.resumed == 0);
+  CHECK(results_of(options.out)["point_limit_s"].is_null());
 }
 
 TEST_CASE("options that are none are refused before anything is written") {

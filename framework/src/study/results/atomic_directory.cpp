@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/results/atomic_directory.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -115,7 +116,16 @@ OutputFile& AtomicDirectory::create(const std::string& name) {
   return *files_.back().second;
 }
 
-std::vector<fs::path> AtomicDirectory::commit() {
+void AtomicDirectory::remove(const std::vector<std::string>& outdated) const {
+  for (const std::string& name : outdated) {
+    const bool is_new = std::any_of(files_.begin(), files_.end(), [&](const auto& file) { return file.first == name; });
+    const fs::path path = target_ / name;
+    if (is_new || ::unlink(path.c_str()) == 0 || errno == ENOENT || errno == EISDIR) continue;
+    fail(path, "cannot remove", std::strerror(errno));
+  }
+}
+
+std::vector<fs::path> AtomicDirectory::commit(const std::vector<std::string>& outdated) {
   for (const auto& [name, file] : files_) {
     std::error_code ignored;
     if (fs::is_directory(target_ / name, ignored)) fail(target_ / name, "cannot replace", "it is a directory");
@@ -125,6 +135,7 @@ std::vector<fs::path> AtomicDirectory::commit() {
   const SignalsBlocked blocked;
   for (const auto& [name, file] : files_) {
     const fs::path final = target_ / name;
+    if (file == files_.back().second) remove(outdated);
     if (::rename((partial_ / name).c_str(), final.c_str()) != 0) fail(final, "cannot replace", std::strerror(errno));
     committed_ = true;
     results.push_back(final);

@@ -40,15 +40,18 @@ class AtomicDirectory {
   AtomicDirectory(const AtomicDirectory&) = delete;
   AtomicDirectory& operator=(const AtomicDirectory&) = delete;
 
+  const std::filesystem::path& path() const { return target_; }
   /// Opens a new file; it belongs to this object.
   OutputFile& create(const std::string& name);
   /// Closes all files and renames them into the target in the order of creation, with signals blocked. Returns their final paths.
-  std::vector<std::filesystem::path> commit();
+  /// Before the last one, files of the target that are `outdated` and were not created anew are removed.
+  std::vector<std::filesystem::path> commit(const std::vector<std::string>& outdated = {});
 
  private:
   void make_target();
   void remove_leftovers() const;
   void make_partial();
+  void remove(const std::vector<std::string>& outdated) const;
   void discard() noexcept;
 
   std::filesystem::path target_, partial_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/results/earlier_results.hpp"
 #include "study/results/file_heads.hpp"
 #include "study/results/host.hpp"
 #include "study/results/numbers.hpp"
@@ -300,7 +301,7 @@ std::vector<std::filesystem::path> Results::commit(const RunOutcome& outcome) {
   for (const PipelineOutcome& pipeline : outcome.pipelines) wall += pipeline.wall_s;
   run_.end_array().member("wall_s", wall).member("finished", utc_now()).end_object();
   run_file_.write("\n");
-  return directory_.commit();
+  return directory_.commit(files_of_earlier_results(directory_.path()));
 }
 
 }  // namespace cordon::detail

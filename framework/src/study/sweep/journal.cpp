@@ -85,12 +85,6 @@ std::optional<JournalHead> head_of(const std::string& text) {
   return head;
 }
 
-std::string part_of(const Shard& shard) {
-  return shard.of == 1 ? "all points" : "part " + std::to_string(shard.part) + " of " + std::to_string(shard.of);
-}
-
-std::string limit_of(double seconds) { return std::isfinite(seconds) ? "a limit of " + to_text(seconds) + " s" : "no limit"; }
-
 /// Why points of one sweep are no points of the other, and the mend; two empty texts if they are.
 std::pair<std::string, std::string> difference(const JournalHead& old, const JournalHead& now) {
   if (old.study_hash != now.study_hash)
@@ -99,15 +93,23 @@ std::pair<std::string, std::string> difference(const JournalHead& old, const Jou
     return {"holds an unfinished sweep of another build of this program (version " + old.version + ")", discard};
   if (old.plugins != now.plugins) return {"holds an unfinished sweep with other plugins", discard};
   if (old.shard.part != now.shard.part || old.shard.of != now.shard.of)
-    return {"holds " + part_of(old.shard) + ", and " + part_of(now.shard) + " was asked for",
+    return {"holds " + name_of(old.shard) + ", and " + name_of(now.shard) + " was asked for",
             "every part needs an \"--out\" of its own"};
   if (old.limit_s != now.limit_s)
-    return {"was begun with " + limit_of(old.limit_s) + " per point, now there is " + limit_of(now.limit_s),
+    return {"was begun with " + name_of_limit(old.limit_s) + " per point, now there is " + name_of_limit(now.limit_s),
             "go on with the same limit; " + discard};
   return {};
 }
 
 }  // namespace
+
+std::string name_of(const Shard& shard) {
+  return shard.of == 1 ? "all points" : "part " + std::to_string(shard.part) + " of " + std::to_string(shard.of);
+}
+
+std::string name_of_limit(double seconds) {
+  return std::isfinite(seconds) ? "a limit of " + to_text(seconds) + " s" : "no limit";
+}
 
 bool Journal::is_in(const fs::path& out) {
   std::error_code ignored;

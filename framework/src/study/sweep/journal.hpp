@@ -22,6 +22,10 @@ struct JournalHead {
   std::string started;  ///< of the first process
 };
 
+/// Parts and time limits for messages.
+std::string name_of(const Shard& shard);
+std::string name_of_limit(double seconds);
+
 /// Lines in OUT/.sweep/journal, each with a checksum: the head, then a point each. A line that is cut off or damaged counts for
 /// nothing. The directory is held by a lock while the object lives, so that two processes cannot write into it. Errors of writing
 /// are Errc::io; what was written stays.

@@ -32,6 +32,8 @@ void check_same(const SweepFiles& first, const fs::path& first_directory, const 
   if (part.study_hash != first.study_hash) refuse(directory, "is of another study" + like, "merge parts of one sweep only");
   if (part.version != first.version || part.abi_tag != first.abi_tag)
     refuse(directory, "was made by another build of this program" + like, "run all parts with the same build");
+  if (part.limit_s != first.limit_s)
+    refuse(directory, "was run with another time limit per point" + like, "run all parts with the same \"--point-limit\"");
   if (part.heads.results != first.heads.results)
     refuse(directory, "was made with other plugins or libraries" + like, "run all parts on the same installation");
   if (part.shard->of != first.shard->of)
@@ -77,6 +79,7 @@ SweepOutcome merge_sweeps(const std::vector<fs::path>& parts, const fs::path& ou
   outcome.files = detail::write_sweep(out, all, outcome.table);
   outcome.report_error = report::try_report(out, outcome.files);
   outcome.violated = detail::violations(outcome.table);
+  outcome.first_error = all.rows.first_error();
   outcome.progress = {all.rows.size(), all.rows.size(), all.rows.failed(), all.rows.size(), 0};
   return outcome;
 }

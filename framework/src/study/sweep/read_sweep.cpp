@@ -105,6 +105,8 @@ void read_names(const Cursor& root, SweepFiles& sweep) {
     sweep.study.pipelines.emplace_back().name = pipeline.expect(Kind::object, mend) ? text(pipeline, "name") : "";
   }
   if (pipelines && pipelines->size() == 0) pipelines->error("is empty", mend);
+  const auto limit = root.need("point_limit_s", mend);
+  if (limit && !limit->is(Kind::null)) sweep.limit_s = json::read_number(*limit).value_or(sweep.limit_s);
   const auto study = root.need("study", mend);
   if (!study || study->is(Kind::null)) return;
   const auto axes = study->expect(Kind::object, mend) ? study->find("sweep") : std::nullopt;
@@ -201,6 +203,11 @@ SweepFiles read_sweep(const fs::path& directory) {
         if (!read_point(at, false, result) || result.index >= grid->size() || sweep.rows.has(result.index)) return false;
         const auto error = at.need("error", mend);
         if (error && !error->is(Kind::null)) result.error = json::read_text(*error, json::max_bytes).value_or("");
+        if (const auto code = at.find("error_code")) {
+          result.code = code->is(Kind::text) ? error_code(code->value().text()) : std::nullopt;
+          if (!result.code) return false;
+        }
+        if (result.error.empty() == result.code.has_value()) return false;
         if (!is_at(at, (*grid)[result.index])) return false;
         sweep.rows.add(result);
         return true;

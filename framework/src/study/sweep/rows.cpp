@@ -22,15 +22,15 @@ void write_numbers_of(JsonWriter& json, const char* key, const PointResult& resu
   json.end_object();
 }
 
-std::optional<Errc> code_of(std::string_view word) {
+}  // namespace
+
+std::optional<Errc> error_code(std::string_view name) {
   for (const Errc code : {Errc::dimension, Errc::not_finite, Errc::invalid, Errc::unsupported, Errc::solver, Errc::time_limit,
                           Errc::plugin, Errc::io, Errc::internal}) {
-    if (to_string(code) == word) return code;
+    if (to_string(code) == name) return code;
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 std::string line_of(const PointResult& result) {
   StringSink sink;
@@ -57,7 +57,8 @@ std::optional<PointResult> point_of(std::string_view line) {
     if (!numbers || !read_numbers(*numbers, measured, result.numbers)) return std::nullopt;
   }
   if (const auto error = root.find("error")) result.error = json::read_text(*error, json::max_bytes).value_or("");
-  if (const auto code = root.find("code"); code && code->is(json::Value::Kind::text)) result.code = code_of(code->value().text());
+  if (const auto code = root.find("code"); code && code->is(json::Value::Kind::text))
+    result.code = error_code(code->value().text());
   return problems.any() ? std::nullopt : std::optional(std::move(result));
 }
 
@@ -108,6 +109,11 @@ std::size_t SweepRows::id(const ResultColumn& column) {
 std::optional<Errc> SweepRows::first_error() const {
   const auto found = std::find_if(rows_.begin(), rows_.end(), [](const auto& row) { return !row.second.error.empty(); });
   return found == rows_.end() ? std::nullopt : found->second.code;
+}
+
+std::optional<Errc> SweepRows::code(std::int64_t index) const {
+  const auto row = rows_.find(index);
+  return row == rows_.end() ? std::nullopt : row->second.code;
 }
 
 ResultTable SweepRows::table(const Study& study) const {

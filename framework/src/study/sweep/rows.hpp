@@ -30,6 +30,9 @@ std::string line_of(const PointResult& result);
 /// Nothing if the text is no such line.
 std::optional<PointResult> point_of(std::string_view line);
 
+/// The error of this name.
+std::optional<Errc> error_code(std::string_view name);
+
 /// Adds the members of an object: numbers, "inf" and "-inf". False, and a problem is told, if there is anything else.
 bool read_numbers(const json::Cursor& at, bool measured, std::vector<ResultNumber>& numbers);
 
@@ -43,6 +46,7 @@ class SweepRows {
   std::int64_t size() const { return static_cast<std::int64_t>(rows_.size()); }
   std::int64_t failed() const { return failed_; }
   std::optional<Errc> first_error() const;
+  std::optional<Errc> code(std::int64_t index) const;  ///< of the error of a point
   /// Names come from the study.
   ResultTable table(const Study& study) const;
 

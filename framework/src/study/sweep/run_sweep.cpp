@@ -163,28 +163,42 @@ class SweepRun {
 
   SweepFiles described(const std::string& started) const {
     SweepFiles files;
-    files.heads = heads_of(study_, registry_, started);
+    files.heads = heads_of(study_, registry_, started, options_.point_limit_s);
     read_head(files, study_.file);
     if (options_.shard.of > 1) files.shard = options_.shard;
     return files;
   }
 
-  /// Results of this sweep that are there already.
+  void check_same_work(const SweepFiles& finished) const {
+    const auto refuse = [&](const std::string& reason, const std::string& mend) {
+      throw InputError(options_.out.string(), {{"", reason, mend}});
+    };
+    const Shard shard = finished.shard.value_or(Shard{});
+    if (shard.part != options_.shard.part || shard.of != options_.shard.of)
+      refuse("holds the results of " + name_of(shard) + ", and " + name_of(options_.shard) + " was asked for",
+             "every part needs an \"--out\" of its own; without \"--resume\" the results there are replaced");
+    if (finished.limit_s != options_.point_limit_s)
+      refuse("holds results with " + name_of_limit(finished.limit_s) + " per point, now there is " +
+                 name_of_limit(options_.point_limit_s),
+             "give the same limit; without \"--resume\" all points are run again");
+  }
+
+  /// Results of this sweep that are there already. Throws InputError if they are of another part or limit.
   std::optional<SweepOutcome> finished_before(const JournalHead& head) const {
+    std::optional<SweepFiles> files;
     try {
-      SweepFiles files = read_sweep(options_.out);
-      const Shard shard = files.shard.value_or(Shard{});
-      if (files.heads.results != described(head.started).heads.results || shard.part != options_.shard.part ||
-          shard.of != options_.shard.of)
-        return std::nullopt;
-      SweepOutcome outcome;
-      outcome.progress = {total_, total_, files.rows.failed(), total_, 0};
-      outcome.table = table_of(files);
-      outcome.violated = violations(outcome.table);
-      return outcome;
+      files = read_sweep(options_.out);
     } catch (const InputError&) {
       return std::nullopt;  // nothing that was finished
     }
+    if (files->study_hash == head.study_hash) check_same_work(*files);
+    if (files->heads.results != described(head.started).heads.results) return std::nullopt;
+    SweepOutcome outcome;
+    outcome.progress = {total_, total_, files->rows.failed(), total_, 0};
+    outcome.table = table_of(*files);
+    outcome.violated = violations(outcome.table);
+    outcome.first_error = files->rows.first_error();
+    return outcome;
   }
 
   SweepProgress progress() {

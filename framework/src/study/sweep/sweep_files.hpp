@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,14 +17,15 @@ struct SweepHeads {
   std::string results, run;
   friend bool operator==(const SweepHeads&, const SweepHeads&) = default;
 };
-SweepHeads heads_of(const Study& study, const Registry& registry, const std::string& started);
+SweepHeads heads_of(const Study& study, const Registry& registry, const std::string& started, double limit_s);
 
 /// All of a sweep that its files tell.
 struct SweepFiles {
   SweepHeads heads;
   Study study;  ///< title, axes, and the names of the pipelines: as `heads.results` tells them
   std::string study_hash, version, abi_tag;
-  std::optional<Shard> shard;  ///< of a part
+  double limit_s = std::numeric_limits<double>::infinity();  ///< of a point
+  std::optional<Shard> shard;                                ///< of a part
   SweepRows rows;
   double wall_s = 0;
   std::string finished = {};

@@ -3,6 +3,7 @@
 
 #include "cordon/study/statistics.hpp"
 #include "study/results/atomic_directory.hpp"
+#include "study/results/earlier_results.hpp"
 #include "study/results/file_heads.hpp"
 #include "study/results/host.hpp"
 #include "study/results/results_parts.hpp"
@@ -60,6 +61,7 @@ void write_results(Sink& file, const SweepFiles& sweep, const ResultTable& table
     write_numbers_of(json, table, row, false);
     json.key("error");
     row.error.empty() ? json.null() : json.value(row.error);
+    if (const auto code = sweep.rows.code(index_of(table, row))) json.member("error_code", to_string(*code));
   });
   file.write("\n}\n");
 }
@@ -105,7 +107,7 @@ void write_table(Sink& file, const ResultTable& table) {
 
 }  // namespace
 
-SweepHeads heads_of(const Study& study, const Registry& registry, const std::string& started) {
+SweepHeads heads_of(const Study& study, const Registry& registry, const std::string& started, double limit_s) {
   StringSink results, run;
   JsonWriter json(results);
   begin_results_file(json, study, registry);
@@ -118,6 +120,8 @@ SweepHeads heads_of(const Study& study, const Registry& registry, const std::str
     json.end_object();
   }
   json.end_array();
+  json.key("point_limit_s");
+  std::isfinite(limit_s) ? json.value(limit_s) : json.null();
   JsonWriter run_json(run);
   begin_run_file(run_json, study, registry, started);
   return {std::move(results.text), std::move(run.text)};
@@ -138,7 +142,7 @@ std::vector<std::filesystem::path> write_sweep(const std::filesystem::path& out,
   write_summaries(directory, table, summarise(table));
   write_run(directory.create("run.json"), sweep, table);
   write_results(directory.create("results.json"), sweep, table);
-  return directory.commit();
+  return directory.commit(files_of_earlier_results(out));
 }
 
 }  // namespace cordon::detail
