@@ -40,13 +40,18 @@ std::string mean_text(const Statistics& found) {
 struct Sorted {
   std::vector<const ComparedMeasure*> shown;
   std::vector<std::string> equal;
-  std::size_t left_out = 0;  ///< times that are parts of others
+  std::size_t left_out = 0;  ///< times beside the main ones
 };
 
 Sorted sorted(const Comparison& comparison) {
   Sorted result;
+  const auto has = [&](std::string_view name) {
+    return std::any_of(comparison.measures.begin(), comparison.measures.end(),
+                       [&](const ComparedMeasure& measure) { return measure.column.name == name; });
+  };
+  const bool whole = has("horizon") || !has("step_us");  // designs take their time as a whole
   for (const ComparedMeasure& measure : comparison.measures) {
-    const bool is_main = measure.column.name == "step_us" || measure.column.name == "wall_s";
+    const bool is_main = measure.column.name == "step_us" || (measure.column.name == "wall_s" && whole);
     if (measure.column.measured && !is_main) {
       ++result.left_out;
     } else if (!measure.column.measured && measure.is_equal()) {
@@ -85,15 +90,15 @@ std::string closing_text(const Sorted& found) {
   std::string text;
   if (!found.equal.empty()) text += fmt::format("Equal in all runs, point by point: {}\n", fmt::join(found.equal, ", "));
   if (found.left_out > 0) {
-    text += fmt::format("{} more times are parts of those above: --csv and --json have them\n", found.left_out);
+    text += fmt::format("{} more times of the same steps and runs: --csv and --json have them\n", found.left_out);
   }
   return text;
 }
 
 constexpr const char* explanation =
-    "Ratios in verdicts are medians over all pairs of measurements, with their 95 % intervals; p of Mann–Whitney tests, "
-    "two-sided,\n"
-    "adjusted for their number (Holm). That times differ does not say why: the load of the machine moves all times of a run.\n"
+    "Ratios in verdicts are medians over all pairs of measurements, with intervals at the confidence of the verdict; p of\n"
+    "Mann–Whitney tests, two-sided, adjusted for their number in the table (Holm). That times differ does not say why: the load "
+    "of the machine moves all times of a run.\n"
     "Repeat the runs in turn before you put it down to the programs.\n";
 
 bool any_test(const Comparison& comparison) {
@@ -139,6 +144,7 @@ ordered_json test_json(const std::optional<TimeTest>& test) {
           {"lower", json_number(test->lower)},
           {"upper", json_number(test->upper)},
           {"p", test->p},
+          {"least", test->least},
           {"significant", test->significant()}};
 }
 
@@ -153,8 +159,9 @@ std::string verdict_of(const ResultColumn& column, const ComparedNumber& first, 
   }
   if (!other.test) return "one measurement each";
   const TimeTest& test = *other.test;
-  const std::string interval =
-      std::isnan(test.ratio) ? "" : fmt::format(", × {:.3g} [{:.3g}, {:.3g}]", test.ratio, test.lower, test.upper);
+  std::string interval = std::isnan(test.ratio) ? "" : fmt::format(", × {:.3g}", test.ratio);
+  if (!std::isnan(test.lower)) interval += fmt::format(" [{:.3g}, {:.3g}]", test.lower, test.upper);
+  if (test.too_few()) return "too few repetitions to tell" + interval;
   if (!test.significant()) return "not significant" + interval;
   const bool slower = std::isnan(test.ratio) ? other.difference > 0 : test.ratio > 1;
   return fmt::format("{}{}, p {} {:.1g}", slower ? "slower" : "faster", interval, test.p < 1e-6 ? "<" : "=",

@@ -19,7 +19,9 @@ namespace {
 struct Sweep {
   double radius = 1, time = 100;
   std::string version = "1.0", hash = "fnv1a64:1", host = "h";
-  int seeds = 10;
+  int seeds = 10, budgets = 2;
+  double factor = 1;  ///< of all times
+  bool with_wall = false, designs = false;
   std::string second = "second";
   std::string axis = "budget";
 
@@ -35,17 +37,20 @@ struct Sweep {
     json run{{"cordon_run", 1}, {"host", {{"name", host}, {"cpu", "c"}}}, {"points", json::array()}};
     json& axes = results["study"]["sweep"];
     axes.push_back({{"name", axis}, {"path", "/x"}, {"repeat", false}, {"values", {10, "twenty"}}});
+    for (int i = 2; i < budgets; ++i) axes[0]["values"].push_back(10 + i);
     axes.push_back({{"name", "seed"}, {"path", "/y"}, {"repeat", true}, {"values", json::array()}});
     for (int i = 0; i < seeds; ++i) axes[1]["values"].push_back(i);
     int index = 0;
-    for (int budget = 0; budget < 2; ++budget) {
+    for (int budget = 0; budget < budgets; ++budget) {
       for (int seed = 0; seed < seeds; ++seed) {
         for (int pipeline = 0; pipeline < 2; ++pipeline, ++index) {
           json numbers{{"steps", 5}, {"radius_mean", (pipeline == 0 && budget == 1 ? radius : 1) + seed}};
+          if (designs) numbers["horizon"] = 3;
           results["points"].push_back(
               {{"point", index}, {"pipeline", pipeline}, {"at", {budget, seed}}, {"numbers", numbers}, {"error", nullptr}});
-          run["points"].push_back(
-              {{"point", index}, {"numbers", {{"step_us", (pipeline == 0 ? time : 100) + seed}, {"hull_us", 1}}}});
+          json times{{"step_us", factor * ((pipeline == 0 ? time : 100) + seed)}, {"hull_us", 1}};
+          if (with_wall) times["wall_s"] = 1 + seed;
+          run["points"].push_back({{"point", index}, {"numbers", times}});
         }
       }
     }
@@ -118,6 +123,54 @@ TEST_CASE("the same sweep twice") {
   CHECK(text.find("hull_us\n") == std::string::npos);
 }
 
+TEST_CASE("a slowdown of every row is found as soon as the repetitions can tell, and the interval agrees") {
+  for (const int seeds : {5, 6, 7, 50}) {
+    CAPTURE(seeds);
+    Sweep sweep, slow;
+    sweep.budgets = slow.budgets = 6;
+    sweep.seeds = slow.seeds = seeds;
+    slow.factor = 3;
+    const Comparison found = compared(sweep, slow);
+    const ComparedMeasure& time = measure(found, "step_us");
+    REQUIRE(time.rows.size() == 12);
+    for (const ComparedRow& row : time.rows) {
+      const TimeTest& test = row.runs[1].test.value();
+      const std::string verdict = apps::verdict_of(time.column, row.runs[0], row.runs[1]);
+      CHECK(test.ratio == doctest::Approx(3).epsilon(.02));
+      if (seeds == 5) {  // 12 · 2 / 252 = 0.095
+        CHECK(test.least == doctest::Approx(24. / 252));
+        CHECK(verdict == "too few repetitions to tell, × 3");
+        CHECK(std::isnan(test.lower));
+      } else {
+        CHECK(test.significant());
+        CHECK(verdict.find("slower, × 3 [2.") == 0);
+        CHECK(test.lower > 1);
+        CHECK(test.upper >= test.ratio);
+      }
+    }
+  }
+}
+
+TEST_CASE("times that overlap are not significant, and their interval holds 1") {
+  Sweep sweep, other;
+  other.time = 103.5;
+  const Comparison found = compared(sweep, other);
+  const ComparedRow& row = measure(found, "step_us").rows[0];
+  const TimeTest& test = row.runs[1].test.value();
+  CHECK_FALSE(test.significant());
+  CHECK_FALSE(test.too_few());
+  CHECK(test.least == doctest::Approx(4 * 2 / 184756.));
+  CHECK(apps::verdict_of({"step_us", true}, row.runs[0], row.runs[1]).find("not significant, × 1.03 [0.9") == 0);
+}
+
+TEST_CASE("the time of a whole pipeline is shown where it designs") {
+  Sweep sweep;
+  sweep.with_wall = true;
+  CHECK(apps::compare_text(compared(sweep, sweep)).find("wall_s\n") == std::string::npos);
+  sweep.designs = true;
+  CHECK(apps::compare_text(compared(sweep, sweep)).find("wall_s\n") != std::string::npos);
+}
+
 TEST_CASE("other numbers, and other times") {
   Sweep other;
   other.radius = 3;
@@ -139,7 +192,7 @@ TEST_CASE("other numbers, and other times") {
   CHECK(test.ratio == doctest::Approx(1.957).epsilon(.01));
   CHECK(test.lower < test.ratio);
   CHECK(test.upper > test.ratio);
-  CHECK(test.p == doctest::Approx(8 * 2 / 184756.));  // eight tests in all, and the smallest p of them
+  CHECK(test.p == doctest::Approx(4 * 2 / 184756.));  // four tests of this measure, and the smallest p of them
   CHECK_FALSE(time.rows[1].runs[1].test->significant());
   CHECK(apps::verdict_of(time.column, time.rows[0].runs[0], time.rows[0].runs[1]).find("slower, × 1.96 [") == 0);
   std::swap(other.time, other.radius);  // and the other way round

@@ -19,9 +19,12 @@ struct ComparedRun {
 /// Measured times of a run beside those of the first run: over repetitions, or over the steps of single runs.
 struct TimeTest {
   std::int64_t first = 0, other = 0;       ///< numbers of measurements
-  double ratio = 0, lower = 0, upper = 0;  ///< median ratio to the first run with its 95 % interval; NaN: there is none
-  double p = 1;                            ///< Mann–Whitney, two-sided, adjusted (Holm) for all tests of the comparison
+  double ratio = 0, lower = 0, upper = 0;  ///< median ratio to the first run, with an interval that leaves 1 out exactly if
+                                           ///< `significant`, at the confidence that takes; NaN: there is none
+  double p = 1;                            ///< Mann–Whitney, two-sided, adjusted (Holm) for all tests of the same measure
+  double least = 1;  ///< the smallest p that as many measurements can have, if all tests of the measure are as clear
   bool significant() const { return p < .05; }
+  bool too_few() const { return !significant() && !(least < .05); }
 };
 
 /// One number of one pipeline under one combination of values in one run.

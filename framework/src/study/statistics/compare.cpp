@@ -102,12 +102,6 @@ ComparedNumber compared(const Run& first, const Run& other, const Key& key, cons
     ++found.common;
     found.different += !is_same(value, same_point->second);
   }
-  if (!column.measured || &first == &other) return found;
-  const std::vector<double> a = first.measurements(key, column.name), b = other.measurements(key, column.name);
-  if (a.size() < 2 || b.size() < 2) return found;
-  const auto [ratio, lower, upper] = detail::median_ratio(a, b);
-  found.test = TimeTest{static_cast<std::int64_t>(a.size()), static_cast<std::int64_t>(b.size()), ratio, lower, upper,
-                        detail::mann_whitney_p(a, b)};
   return found;
 }
 
@@ -150,21 +144,48 @@ ComparedMeasure measure_of(const std::vector<Run>& runs, const std::vector<Key>&
   return measure;
 }
 
-/// All tests of a comparison are judged together.
-void adjust(std::vector<ComparedMeasure>& measures) {
-  std::vector<TimeTest*> tests;
-  std::vector<double> p;
-  for (ComparedMeasure& measure : measures) {
-    for (ComparedRow& row : measure.rows) {
-      for (ComparedNumber& number : row.runs) {
-        if (!number.test) continue;
-        tests.push_back(&*number.test);
-        p.push_back(number.test->p);
-      }
+/// The measurements of one number in the first run and in another one.
+struct Samples {
+  ComparedNumber* number;
+  std::vector<double> first, other;
+};
+
+std::vector<Samples> samples_of(const std::vector<Run>& runs, ComparedMeasure& measure) {
+  std::vector<Samples> samples;
+  for (ComparedRow& row : measure.rows) {
+    Key key{row.pipeline};
+    key.insert(key.end(), row.at.begin(), row.at.end());
+    for (std::size_t i = 1; i < runs.size(); ++i) {
+      Samples one{&row.runs[i], runs[0].measurements(key, measure.column.name), runs[i].measurements(key, measure.column.name)};
+      if (one.first.size() >= 2 && one.other.size() >= 2) samples.push_back(std::move(one));
     }
   }
-  const std::vector<double> adjusted = detail::holm(p);
-  for (std::size_t i = 0; i < tests.size(); ++i) tests[i]->p = adjusted[i];
+  return samples;
+}
+
+/// All tests of a measure are judged together: each measure answers a question of its own, and most times are parts of others.
+void add_tests(const std::vector<Run>& runs, ComparedMeasure& measure) {
+  if (!measure.column.measured) return;
+  constexpr double level = .05;
+  const std::vector<Samples> samples = samples_of(runs, measure);
+  std::vector<double> p;
+  for (const Samples& one : samples) p.push_back(detail::mann_whitney_p(one.first, one.other));
+  const std::vector<double> adjusted = detail::holm(p), levels = detail::holm_levels(p, level);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto& [number, first, other] = samples[i];
+    auto [ratio, lower, upper] = detail::median_ratio(first, other, levels[i]);
+    const double least = std::min(1., static_cast<double>(samples.size()) * detail::least_p(first.size(), other.size()));
+    TimeTest test{static_cast<std::int64_t>(first.size()),
+                  static_cast<std::int64_t>(other.size()),
+                  ratio,
+                  lower,
+                  upper,
+                  adjusted[i],
+                  least};
+    // Ties at 1, or order statistics in place of all numbers, can bring them apart.
+    if (test.significant() == (lower <= 1 && 1 <= upper)) test.lower = test.upper = none;
+    number->test = test;
+  }
 }
 
 std::vector<std::string> warnings_of(const std::vector<Run>& runs, const std::vector<Key>& keys,
@@ -230,7 +251,7 @@ Comparison compare_results(const std::vector<std::filesystem::path>& directories
   const std::vector<Key> keys = keys_of(runs);
   for (const ResultColumn& column : columns_of(runs)) result.measures.push_back(measure_of(runs, keys, column));
   std::erase_if(result.measures, [](const ComparedMeasure& measure) { return measure.rows.empty(); });
-  adjust(result.measures);
+  for (ComparedMeasure& measure : result.measures) add_tests(runs, measure);
   result.warnings = warnings_of(runs, keys, names);
   return result;
 }
