@@ -105,6 +105,15 @@ TEST_CASE("the time of a pipeline is of interest where it designs, the steps are
   CHECK(texts(compared(table), 0) == Texts{"a", "3", "9.200 *", "1", "100 % *", "0.001000", "2"});
 }
 
+TEST_CASE("what is proven of designs has columns") {
+  ResultTable table = run_table({{"horizon", false}, {"cost", false}, {"optimal", false}, {"infeasible", false}},
+                                {{3, 9, 1, 0}, {3, none, 0, 1}});
+  CHECK(titles(compared(table)) == Texts{"pipeline", "horizon", "cost", "× best", "optimal", "infeasible"});
+  CHECK(texts(compared(table), 1) == Texts{"b", "3", "–", "–", "0 %", "100 %"});
+  table.rows.pop_back();
+  CHECK(titles(compared(table)).back() == "optimal");
+}
+
 TEST_CASE("bounds of faults have a column each") {
   const ComparisonTable table = compared(run_table(
       {{"fault_1_half_width", false}, {"fault_12_half_width", false}, {"fault_1_rms_error", false}}, {{.5, 2, 1}, {.25, 4, 1}}));
