@@ -3,6 +3,7 @@
 #include "cordon/study/compare.hpp"
 
 #include <cmath>
+#include <functional>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -22,6 +23,7 @@ struct Sweep {
   int seeds = 10, budgets = 2;
   double factor = 1;  ///< of all times
   bool with_wall = false, designs = false;
+  std::function<bool(int seed)> fails = [](int) { return false; };
   std::string second = "second";
   std::string axis = "budget";
 
@@ -46,8 +48,11 @@ struct Sweep {
         for (int pipeline = 0; pipeline < 2; ++pipeline, ++index) {
           json numbers{{"steps", 5}, {"radius_mean", (pipeline == 0 && budget == 1 ? radius : 1) + seed}};
           if (designs) numbers["horizon"] = 3;
-          results["points"].push_back(
-              {{"point", index}, {"pipeline", pipeline}, {"at", {budget, seed}}, {"numbers", numbers}, {"error", nullptr}});
+          results["points"].push_back({{"point", index},
+                                       {"pipeline", pipeline},
+                                       {"at", {budget, seed}},
+                                       {"numbers", numbers},
+                                       {"error", fails(seed) ? json("broken") : json(nullptr)}});
           json times{{"step_us", factor * ((pipeline == 0 ? time : 100) + seed)}, {"hull_us", 1}};
           if (with_wall) times["wall_s"] = 1 + seed;
           run["points"].push_back({{"point", index}, {"numbers", times}});
@@ -241,6 +246,58 @@ TEST_CASE("other studies, machines, programs, pipelines, and fewer seeds") {
   CHECK_THROWS_AS(compare_results({"nowhere"}), Error);
 }
 
+TEST_CASE("failed points are counted, and differences are over the points that failed in neither") {
+  Sweep sweep, broken;
+  broken.fails = [](int seed) { return seed < 5; };  // the quick ones, with small radii
+  const Comparison found = compared(sweep, broken);
+  CHECK(warns(found, "b: 20 of 40 points failed"));
+  const ComparedMeasure &radius = measure(found, "radius_mean"), &time = measure(found, "step_us");
+  const ComparedNumber &first = radius.rows[0].runs[0], &other = radius.rows[0].runs[1];
+  CHECK(first.failed == 0);
+  CHECK(other.failed == 5);
+  CHECK(other.points == 10);
+  CHECK(other.common == 10);
+  CHECK(other.finished == 5);
+  CHECK(other.paired == 5);
+  CHECK(other.different == 0);
+  CHECK(other.statistics.mean == 8);
+  CHECK(other.difference == 0);
+  CHECK(other.ratio == 1);
+  CHECK_FALSE(radius.is_equal());
+  CHECK(apps::verdict_of(radius.column, first, other) == "equal at 5 common points");
+  const ComparedRow& row = time.rows[0];
+  CHECK(row.runs[1].test.value().first == 5);
+  CHECK(row.runs[1].difference == 0);
+  CHECK(apps::verdict_of(time.column, row.runs[0], row.runs[1]).find(", over 5 common points") != std::string::npos);
+  const std::string text = apps::compare_text(found);
+  CHECK(text.find("8 ± 1.6 (failed: 5/10)") != std::string::npos);
+  CHECK(text.find("Equal in all runs") == std::string::npos);
+  const Comparison same = compared(broken, broken);
+  CHECK(measure(same, "radius_mean").is_equal());
+  CHECK(apps::verdict_of(radius.column, measure(same, "radius_mean").rows[0].runs[0],
+                         measure(same, "radius_mean").rows[0].runs[1]) == "equal at 5 common points");
+  Sweep others = broken;
+  others.fails = [](int seed) { return seed >= 5; };
+  const ComparedMeasure& none = measure(compared(broken, others), "radius_mean");
+  CHECK_FALSE(none.is_equal());
+  CHECK(apps::verdict_of(none.column, none.rows[0].runs[0], none.rows[0].runs[1]) == "failed at every common point");
+  CHECK(std::isnan(none.rows[0].runs[1].difference));
+}
+
+TEST_CASE("nothing but failures, or no points at all") {
+  Sweep broken, empty;
+  broken.fails = [](int) { return true; };
+  Comparison found = compared(broken, broken);
+  CHECK(warns(found, "a: all 40 points failed"));
+  CHECK(warns(found, "b: all 40 points failed"));
+  CHECK(apps::compare_text(found).find("There is no number to compare.\n") != std::string::npos);
+  empty.seeds = 0;
+  found = compared(empty, {});
+  CHECK(warns(found, "a has no points"));
+  CHECK(apps::verdict_of({"steps", false}, measure(found, "steps").rows[0].runs[0], measure(found, "steps").rows[0].runs[1]) ==
+        "no common points");
+}
+
 TEST_CASE("the outputs for people and programs") {
   Sweep other;
   other.radius = 3;
@@ -255,9 +312,9 @@ TEST_CASE("the outputs for people and programs") {
   CHECK(md.find("| a\\|&lt;b> |") != std::string::npos);
   CHECK(md.find("### step\\_us") != std::string::npos);
   const std::string csv = apps::compare_csv(found);
-  CHECK(csv.find("measure,measured,pipeline,budget,run,directory,count,") == 0);
-  CHECK(csv.find("\nradius_mean,0,first,10,B,b,10,0,5.5,3.0276503540974917,5.5,0,1,10,0,,,,\n") != std::string::npos);
-  CHECK(csv.find("\nstep_us,1,a|<b>,twenty,B,b,10,0,104.5,") != std::string::npos);
+  CHECK(csv.find("measure,measured,pipeline,budget,run,directory,points,failed,count,") == 0);
+  CHECK(csv.find("\nradius_mean,0,first,10,B,b,10,0,10,0,5.5,3.0276503540974917,5.5,0,1,10,10,0,,,,\n") != std::string::npos);
+  CHECK(csv.find("\nstep_us,1,a|<b>,twenty,B,b,10,0,10,0,104.5,") != std::string::npos);
   const json report = json::parse(apps::compare_json(found));
   CHECK(report["runs"].size() == 2);
   CHECK(report["measures"][1]["name"] == "radius_mean");
