@@ -29,24 +29,30 @@ std::string value_text(const std::string& json) {
   return value.is_string() ? value.get<std::string>() : json;
 }
 
-std::string mean_text(const Statistics& found) {
-  if (found.count == 0) return found.infinite > 0 ? "∞" : "–";
-  std::string text = number_text(found.mean);
-  if (found.deviation > 0) text += " ± " + number_text(found.deviation, 2);
-  return found.infinite > 0 ? text + fmt::format(" (∞: {})", found.infinite) : text;
+std::string mean_text(const ComparedNumber& number) {
+  const Statistics& found = number.statistics;
+  std::string text = found.count > 0 ? number_text(found.mean) : found.infinite > 0 ? "∞" : "–";
+  if (found.count > 0 && found.deviation > 0) text += " ± " + number_text(found.deviation, 2);
+  if (found.count > 0 && found.infinite > 0) text += fmt::format(" (∞: {})", found.infinite);
+  return number.failed > 0 ? text + fmt::format(" (failed: {}/{})", number.failed, number.points) : text;
 }
 
 /// Whole measures that are told in a word each.
 struct Sorted {
   std::vector<const ComparedMeasure*> shown;
   std::vector<std::string> equal;
-  std::size_t left_out = 0;  ///< times that are parts of others
+  std::size_t left_out = 0;  ///< times beside the main ones
 };
 
 Sorted sorted(const Comparison& comparison) {
   Sorted result;
+  const auto has = [&](std::string_view name) {
+    return std::any_of(comparison.measures.begin(), comparison.measures.end(),
+                       [&](const ComparedMeasure& measure) { return measure.column.name == name; });
+  };
+  const bool whole = has("horizon") || !has("step_us");  // designs take their time as a whole
   for (const ComparedMeasure& measure : comparison.measures) {
-    const bool is_main = measure.column.name == "step_us" || measure.column.name == "wall_s";
+    const bool is_main = measure.column.name == "step_us" || (measure.column.name == "wall_s" && whole);
     if (measure.column.measured && !is_main) {
       ++result.left_out;
     } else if (!measure.column.measured && measure.is_equal()) {
@@ -71,7 +77,7 @@ Rows rows_of(const Comparison& comparison, const ComparedMeasure& measure) {
     cells.push_back(row.pipeline);
     for (const std::string& value : row.at) cells.push_back(value_text(value));
     for (std::size_t i = 0; i < row.runs.size(); ++i) {
-      cells.push_back(mean_text(row.runs[i].statistics));
+      cells.push_back(mean_text(row.runs[i]));
       if (i == 0) continue;
       cells.push_back(number_text(row.runs[i].difference, 3));
       cells.push_back(number_text(row.runs[i].ratio, 3));
@@ -83,17 +89,18 @@ Rows rows_of(const Comparison& comparison, const ComparedMeasure& measure) {
 
 std::string closing_text(const Sorted& found) {
   std::string text;
+  if (found.equal.empty() && found.shown.empty() && found.left_out == 0) text += "There is no number to compare.\n";
   if (!found.equal.empty()) text += fmt::format("Equal in all runs, point by point: {}\n", fmt::join(found.equal, ", "));
   if (found.left_out > 0) {
-    text += fmt::format("{} more times are parts of those above: --csv and --json have them\n", found.left_out);
+    text += fmt::format("{} more times of the same steps and runs: --csv and --json have them\n", found.left_out);
   }
   return text;
 }
 
 constexpr const char* explanation =
-    "Ratios in verdicts are medians over all pairs of measurements, with their 95 % intervals; p of Mann–Whitney tests, "
-    "two-sided,\n"
-    "adjusted for their number (Holm). That times differ does not say why: the load of the machine moves all times of a run.\n"
+    "Ratios in verdicts are medians over all pairs of measurements, with intervals at the confidence of the verdict; p of\n"
+    "Mann–Whitney tests, two-sided, adjusted for their number in the table (Holm). That times differ does not say why: the load "
+    "of the machine moves all times of a run.\n"
     "Repeat the runs in turn before you put it down to the programs.\n";
 
 bool any_test(const Comparison& comparison) {
@@ -139,6 +146,7 @@ ordered_json test_json(const std::optional<TimeTest>& test) {
           {"lower", json_number(test->lower)},
           {"upper", json_number(test->upper)},
           {"p", test->p},
+          {"least", test->least},
           {"significant", test->significant()}};
 }
 
@@ -146,15 +154,20 @@ ordered_json test_json(const std::optional<TimeTest>& test) {
 
 std::string verdict_of(const ResultColumn& column, const ComparedNumber& first, const ComparedNumber& other) {
   if (other.common == 0) return "no common points";
+  if (other.finished == 0) return "failed at every common point";
   if (!column.measured) {
-    if (other.different == 0)
-      return other.common == first.common ? "equal" : fmt::format("equal at {} common points", other.common);
-    return other.common == 1 ? "different" : fmt::format("different at {} of {} points", other.different, other.common);
+    const bool whole = other.finished == first.points && other.finished == other.points;
+    if (other.different == 0) return whole ? "equal" : fmt::format("equal at {} common points", other.finished);
+    if (other.finished == 1 && whole) return "different";
+    return fmt::format("different at {} of {} {}points", other.different, other.finished, whole ? "" : "common ");
   }
-  if (!other.test) return "one measurement each";
+  if (!other.test) return other.paired == 0 ? "no common measurement" : "one measurement each";
   const TimeTest& test = *other.test;
-  const std::string interval =
-      std::isnan(test.ratio) ? "" : fmt::format(", × {:.3g} [{:.3g}, {:.3g}]", test.ratio, test.lower, test.upper);
+  std::string interval = std::isnan(test.ratio) ? "" : fmt::format(", × {:.3g}", test.ratio);
+  if (!std::isnan(test.lower)) interval += fmt::format(" [{:.3g}, {:.3g}]", test.lower, test.upper);
+  if (other.paired < other.points || other.paired < first.points)
+    interval += fmt::format(", over {} common points", other.paired);
+  if (test.too_few()) return "too few repetitions to tell" + interval;
   if (!test.significant()) return "not significant" + interval;
   const bool slower = std::isnan(test.ratio) ? other.difference > 0 : test.ratio > 1;
   return fmt::format("{}{}, p {} {:.1g}", slower ? "slower" : "faster", interval, test.p < 1e-6 ? "<" : "=",
@@ -208,7 +221,9 @@ std::string compare_markdown(const Comparison& comparison) {
 std::string compare_csv(const Comparison& comparison) {
   std::string text = "measure,measured,pipeline";
   for (const std::string& axis : comparison.axes) text += fmt::format(",{}", csv_field(axis));
-  text += ",run,directory,count,infinite,mean,deviation,median,difference,ratio,common,different,median_ratio,lower,upper,p\n";
+  text +=
+      ",run,directory,points,failed,count,infinite,mean,deviation,median,difference,ratio,common,finished,different,median_ratio,"
+      "lower,upper,p\n";
   for (const ComparedMeasure& measure : comparison.measures) {
     for (const ComparedRow& row : measure.rows) {
       for (std::size_t i = 0; i < row.runs.size(); ++i) {
@@ -216,9 +231,10 @@ std::string compare_csv(const Comparison& comparison) {
         const Statistics& found = number.statistics;
         text += fmt::format("{},{},{}", csv_field(measure.column.name), measure.column.measured ? 1 : 0, csv_field(row.pipeline));
         for (const std::string& value : row.at) text += fmt::format(",{}", csv_field(value_text(value)));
-        text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{}", letter(i), csv_field(comparison.runs[i].directory), found.count,
-                            found.infinite, csv_number(found.mean), csv_number(found.deviation), csv_number(found.median),
-                            csv_number(number.difference), csv_number(number.ratio), number.common, number.different);
+        text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{}", letter(i), csv_field(comparison.runs[i].directory),
+                            number.points, number.failed, found.count, found.infinite, csv_number(found.mean),
+                            csv_number(found.deviation), csv_number(found.median), csv_number(number.difference),
+                            csv_number(number.ratio), number.common, number.finished, number.different);
         if (const auto& test = number.test) {
           text +=
               fmt::format(",{},{},{},{}\n", csv_number(test->ratio), csv_number(test->lower), csv_number(test->upper), test->p);
@@ -242,7 +258,9 @@ std::string compare_json(const Comparison& comparison) {
       ordered_json at = ordered_json::object(), numbers = ordered_json::array();
       for (std::size_t i = 0; i < row.at.size(); ++i) at[comparison.axes[i]] = ordered_json::parse(row.at[i]);
       for (const ComparedNumber& number : row.runs) {
-        numbers.push_back({{"count", number.statistics.count},
+        numbers.push_back({{"points", number.points},
+                           {"failed", number.failed},
+                           {"count", number.statistics.count},
                            {"infinite", number.statistics.infinite},
                            {"mean", json_number(number.statistics.mean)},
                            {"deviation", json_number(number.statistics.deviation)},
@@ -250,6 +268,7 @@ std::string compare_json(const Comparison& comparison) {
                            {"difference", json_number(number.difference)},
                            {"ratio", json_number(number.ratio)},
                            {"common", number.common},
+                           {"finished", number.finished},
                            {"different", number.different},
                            {"test", test_json(number.test)}});
       }

@@ -3,6 +3,7 @@
 #include "cordon/study/compare.hpp"
 
 #include <cmath>
+#include <functional>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,10 @@ namespace {
 struct Sweep {
   double radius = 1, time = 100;
   std::string version = "1.0", hash = "fnv1a64:1", host = "h";
-  int seeds = 10;
+  int seeds = 10, budgets = 2;
+  double factor = 1;  ///< of all times
+  bool with_wall = false, designs = false;
+  std::function<bool(int seed)> fails = [](int) { return false; };
   std::string second = "second";
   std::string axis = "budget";
 
@@ -35,17 +39,23 @@ struct Sweep {
     json run{{"cordon_run", 1}, {"host", {{"name", host}, {"cpu", "c"}}}, {"points", json::array()}};
     json& axes = results["study"]["sweep"];
     axes.push_back({{"name", axis}, {"path", "/x"}, {"repeat", false}, {"values", {10, "twenty"}}});
+    for (int i = 2; i < budgets; ++i) axes[0]["values"].push_back(10 + i);
     axes.push_back({{"name", "seed"}, {"path", "/y"}, {"repeat", true}, {"values", json::array()}});
     for (int i = 0; i < seeds; ++i) axes[1]["values"].push_back(i);
     int index = 0;
-    for (int budget = 0; budget < 2; ++budget) {
+    for (int budget = 0; budget < budgets; ++budget) {
       for (int seed = 0; seed < seeds; ++seed) {
         for (int pipeline = 0; pipeline < 2; ++pipeline, ++index) {
           json numbers{{"steps", 5}, {"radius_mean", (pipeline == 0 && budget == 1 ? radius : 1) + seed}};
-          results["points"].push_back(
-              {{"point", index}, {"pipeline", pipeline}, {"at", {budget, seed}}, {"numbers", numbers}, {"error", nullptr}});
-          run["points"].push_back(
-              {{"point", index}, {"numbers", {{"step_us", (pipeline == 0 ? time : 100) + seed}, {"hull_us", 1}}}});
+          if (designs) numbers["horizon"] = 3;
+          results["points"].push_back({{"point", index},
+                                       {"pipeline", pipeline},
+                                       {"at", {budget, seed}},
+                                       {"numbers", numbers},
+                                       {"error", fails(seed) ? json("broken") : json(nullptr)}});
+          json times{{"step_us", factor * ((pipeline == 0 ? time : 100) + seed)}, {"hull_us", 1}};
+          if (with_wall) times["wall_s"] = 1 + seed;
+          run["points"].push_back({{"point", index}, {"numbers", times}});
         }
       }
     }
@@ -118,6 +128,54 @@ TEST_CASE("the same sweep twice") {
   CHECK(text.find("hull_us\n") == std::string::npos);
 }
 
+TEST_CASE("a slowdown of every row is found as soon as the repetitions can tell, and the interval agrees") {
+  for (const int seeds : {5, 6, 7, 50}) {
+    CAPTURE(seeds);
+    Sweep sweep, slow;
+    sweep.budgets = slow.budgets = 6;
+    sweep.seeds = slow.seeds = seeds;
+    slow.factor = 3;
+    const Comparison found = compared(sweep, slow);
+    const ComparedMeasure& time = measure(found, "step_us");
+    REQUIRE(time.rows.size() == 12);
+    for (const ComparedRow& row : time.rows) {
+      const TimeTest& test = row.runs[1].test.value();
+      const std::string verdict = apps::verdict_of(time.column, row.runs[0], row.runs[1]);
+      CHECK(test.ratio == doctest::Approx(3).epsilon(.02));
+      if (seeds == 5) {  // 12 · 2 / 252 = 0.095
+        CHECK(test.least == doctest::Approx(24. / 252));
+        CHECK(verdict == "too few repetitions to tell, × 3");
+        CHECK(std::isnan(test.lower));
+      } else {
+        CHECK(test.significant());
+        CHECK(verdict.find("slower, × 3 [2.") == 0);
+        CHECK(test.lower > 1);
+        CHECK(test.upper >= test.ratio);
+      }
+    }
+  }
+}
+
+TEST_CASE("times that overlap are not significant, and their interval holds 1") {
+  Sweep sweep, other;
+  other.time = 103.5;
+  const Comparison found = compared(sweep, other);
+  const ComparedRow& row = measure(found, "step_us").rows[0];
+  const TimeTest& test = row.runs[1].test.value();
+  CHECK_FALSE(test.significant());
+  CHECK_FALSE(test.too_few());
+  CHECK(test.least == doctest::Approx(4 * 2 / 184756.));
+  CHECK(apps::verdict_of({"step_us", true}, row.runs[0], row.runs[1]).find("not significant, × 1.03 [0.9") == 0);
+}
+
+TEST_CASE("the time of a whole pipeline is shown where it designs") {
+  Sweep sweep;
+  sweep.with_wall = true;
+  CHECK(apps::compare_text(compared(sweep, sweep)).find("wall_s\n") == std::string::npos);
+  sweep.designs = true;
+  CHECK(apps::compare_text(compared(sweep, sweep)).find("wall_s\n") != std::string::npos);
+}
+
 TEST_CASE("other numbers, and other times") {
   Sweep other;
   other.radius = 3;
@@ -139,7 +197,7 @@ TEST_CASE("other numbers, and other times") {
   CHECK(test.ratio == doctest::Approx(1.957).epsilon(.01));
   CHECK(test.lower < test.ratio);
   CHECK(test.upper > test.ratio);
-  CHECK(test.p == doctest::Approx(8 * 2 / 184756.));  // eight tests in all, and the smallest p of them
+  CHECK(test.p == doctest::Approx(4 * 2 / 184756.));  // four tests of this measure, and the smallest p of them
   CHECK_FALSE(time.rows[1].runs[1].test->significant());
   CHECK(apps::verdict_of(time.column, time.rows[0].runs[0], time.rows[0].runs[1]).find("slower, × 1.96 [") == 0);
   std::swap(other.time, other.radius);  // and the other way round
@@ -188,6 +246,58 @@ TEST_CASE("other studies, machines, programs, pipelines, and fewer seeds") {
   CHECK_THROWS_AS(compare_results({"nowhere"}), Error);
 }
 
+TEST_CASE("failed points are counted, and differences are over the points that failed in neither") {
+  Sweep sweep, broken;
+  broken.fails = [](int seed) { return seed < 5; };  // the quick ones, with small radii
+  const Comparison found = compared(sweep, broken);
+  CHECK(warns(found, "b: 20 of 40 points failed"));
+  const ComparedMeasure &radius = measure(found, "radius_mean"), &time = measure(found, "step_us");
+  const ComparedNumber &first = radius.rows[0].runs[0], &other = radius.rows[0].runs[1];
+  CHECK(first.failed == 0);
+  CHECK(other.failed == 5);
+  CHECK(other.points == 10);
+  CHECK(other.common == 10);
+  CHECK(other.finished == 5);
+  CHECK(other.paired == 5);
+  CHECK(other.different == 0);
+  CHECK(other.statistics.mean == 8);
+  CHECK(other.difference == 0);
+  CHECK(other.ratio == 1);
+  CHECK_FALSE(radius.is_equal());
+  CHECK(apps::verdict_of(radius.column, first, other) == "equal at 5 common points");
+  const ComparedRow& row = time.rows[0];
+  CHECK(row.runs[1].test.value().first == 5);
+  CHECK(row.runs[1].difference == 0);
+  CHECK(apps::verdict_of(time.column, row.runs[0], row.runs[1]).find(", over 5 common points") != std::string::npos);
+  const std::string text = apps::compare_text(found);
+  CHECK(text.find("8 ± 1.6 (failed: 5/10)") != std::string::npos);
+  CHECK(text.find("Equal in all runs") == std::string::npos);
+  const Comparison same = compared(broken, broken);
+  CHECK(measure(same, "radius_mean").is_equal());
+  CHECK(apps::verdict_of(radius.column, measure(same, "radius_mean").rows[0].runs[0],
+                         measure(same, "radius_mean").rows[0].runs[1]) == "equal at 5 common points");
+  Sweep others = broken;
+  others.fails = [](int seed) { return seed >= 5; };
+  const ComparedMeasure& none = measure(compared(broken, others), "radius_mean");
+  CHECK_FALSE(none.is_equal());
+  CHECK(apps::verdict_of(none.column, none.rows[0].runs[0], none.rows[0].runs[1]) == "failed at every common point");
+  CHECK(std::isnan(none.rows[0].runs[1].difference));
+}
+
+TEST_CASE("nothing but failures, or no points at all") {
+  Sweep broken, empty;
+  broken.fails = [](int) { return true; };
+  Comparison found = compared(broken, broken);
+  CHECK(warns(found, "a: all 40 points failed"));
+  CHECK(warns(found, "b: all 40 points failed"));
+  CHECK(apps::compare_text(found).find("There is no number to compare.\n") != std::string::npos);
+  empty.seeds = 0;
+  found = compared(empty, {});
+  CHECK(warns(found, "a has no points"));
+  CHECK(apps::verdict_of({"steps", false}, measure(found, "steps").rows[0].runs[0], measure(found, "steps").rows[0].runs[1]) ==
+        "no common points");
+}
+
 TEST_CASE("the outputs for people and programs") {
   Sweep other;
   other.radius = 3;
@@ -202,9 +312,9 @@ TEST_CASE("the outputs for people and programs") {
   CHECK(md.find("| a\\|&lt;b> |") != std::string::npos);
   CHECK(md.find("### step\\_us") != std::string::npos);
   const std::string csv = apps::compare_csv(found);
-  CHECK(csv.find("measure,measured,pipeline,budget,run,directory,count,") == 0);
-  CHECK(csv.find("\nradius_mean,0,first,10,B,b,10,0,5.5,3.0276503540974917,5.5,0,1,10,0,,,,\n") != std::string::npos);
-  CHECK(csv.find("\nstep_us,1,a|<b>,twenty,B,b,10,0,104.5,") != std::string::npos);
+  CHECK(csv.find("measure,measured,pipeline,budget,run,directory,points,failed,count,") == 0);
+  CHECK(csv.find("\nradius_mean,0,first,10,B,b,10,0,10,0,5.5,3.0276503540974917,5.5,0,1,10,10,0,,,,\n") != std::string::npos);
+  CHECK(csv.find("\nstep_us,1,a|<b>,twenty,B,b,10,0,10,0,104.5,") != std::string::npos);
   const json report = json::parse(apps::compare_json(found));
   CHECK(report["runs"].size() == 2);
   CHECK(report["measures"][1]["name"] == "radius_mean");

@@ -105,6 +105,15 @@ TEST_CASE("the time of a pipeline is of interest where it designs, the steps are
   CHECK(texts(compared(table), 0) == Texts{"a", "3", "9.200 *", "1", "100 % *", "0.001000", "2"});
 }
 
+TEST_CASE("what is proven of designs has columns") {
+  ResultTable table = run_table({{"horizon", false}, {"cost", false}, {"optimal", false}, {"infeasible", false}},
+                                {{3, 9, 1, 0}, {3, none, 0, 1}});
+  CHECK(titles(compared(table)) == Texts{"pipeline", "horizon", "cost", "× best", "optimal", "infeasible"});
+  CHECK(texts(compared(table), 1) == Texts{"b", "3", "–", "–", "0 %", "100 %"});
+  table.rows.pop_back();
+  CHECK(titles(compared(table)).back() == "optimal");
+}
+
 TEST_CASE("bounds of faults have a column each") {
   const ComparisonTable table = compared(run_table(
       {{"fault_1_half_width", false}, {"fault_12_half_width", false}, {"fault_1_rms_error", false}}, {{.5, 2, 1}, {.25, 4, 1}}));
@@ -159,6 +168,28 @@ TEST_CASE("equal means: none is the best; of two that are best both are") {
   CHECK(texts(table, 0)[1] == "2 *");
   CHECK(texts(table, 1)[1] == "2 *");
   CHECK(texts(table, 2)[1] == "3");
+}
+
+TEST_CASE("means that differ by rounding are alike") {
+  const ResultTable costs = run_table({{"cost", false}, {"gap", false}}, {{9.20053, 0}, {9.20053 + 1e-11, 1.5e-11}});
+  CHECK(texts(compared(costs), 0) == Texts{"a", "9.201", "1", "0 %"});
+  const ComparisonTable table = compared(run_table({{"cost", false}, {"gap", false}}, {{9, 0}, {9 + 1e-11, 1e-6}, {9.1, .5}}));
+  CHECK(texts(table, 0)[1] == "9 *");
+  CHECK(texts(table, 1)[1].ends_with(" *"));
+  CHECK_FALSE(texts(table, 2)[1].ends_with(" *"));
+  CHECK(texts(table, 0)[3] == "0 % *");
+  CHECK_FALSE(texts(table, 1)[3].ends_with(" *"));
+  const ComparisonTable small =
+      compared(run_table({{"radius_mean", false}}, {{1e-12}, {2e-12}}));  // no share: small is not alike
+  CHECK(texts(small, 0)[1].ends_with(" *"));
+  CHECK_FALSE(texts(small, 1)[1].ends_with(" *"));
+}
+
+TEST_CASE("an inner estimate outside of its bounds is a violation, and not compared") {
+  const ComparisonTable table =
+      compared(run_table({{"radius_mean", false}, {"inner_outside", false}}, {{2, none}, {1, 4}, {3, none}}));
+  CHECK(texts(table, 0)[1] == "2 *");
+  CHECK(texts(table, 1)[1] == "1 †");
 }
 
 TEST_CASE("values of axes: texts without quotes, long ones cut, no control characters") {

@@ -231,8 +231,9 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   auto repeat = found(outcome).repeat;  // nothing was found
   CHECK(repeat.at("horizon") == 3);
   CHECK(repeat.at("nodes") == 11);
-  CHECK(repeat.at("lower_bound") == -inf);
-  for (const char* name : {"cost", "gap", "separates", "kappa_min"}) CHECK_MESSAGE(is_none(repeat, name), name);
+  CHECK(repeat.at("optimal") == 0);
+  CHECK(repeat.at("infeasible") == 0);
+  for (const char* name : {"cost", "lower_bound", "gap", "separates", "kappa_min"}) CHECK_MESSAGE(is_none(repeat, name), name);
   CHECK(!repeat.contains("experiments"));
 
   design.best.emplace();
@@ -242,6 +243,11 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   design.best->empty = {Answer::no, Answer::no, Answer::no};
   outcome.experiments = {{0, 5, {}, 4, 1, 0, 0, {}}, {1, 6, {}, 3, 0, 1, 2, {}}};
   repeat = found(outcome).repeat;
+  design.status = DesignStatus::optimal;
+  repeat = found(outcome).repeat;
+  CHECK(repeat.at("optimal") == 1);
+  CHECK(repeat.at("infeasible") == 0);
+  CHECK(repeat.at("lower_bound") == 8);
   CHECK(repeat.at("cost") == 10);
   CHECK(repeat.at("gap") == doctest::Approx(.2));
   CHECK(repeat.at("separates") == 1);
@@ -255,6 +261,17 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   CHECK(is_none(found(outcome).repeat, "separates"));
   design.best->pairs.clear();
   CHECK(is_none(found(outcome).repeat, "kappa_min"));
+  design.best.reset();
+  design.status = DesignStatus::infeasible;
+  repeat = found(outcome).repeat;
+  CHECK(repeat.at("lower_bound") == inf);
+  CHECK(repeat.at("infeasible") == 1);
+  CHECK(repeat.at("optimal") == 0);
+  design.status = DesignStatus::given;
+  repeat = found(outcome).repeat;
+  CHECK(repeat.at("lower_bound") == 8);
+  CHECK(is_none(repeat, "optimal"));
+  CHECK(is_none(repeat, "infeasible"));
   outcome.design.reset();  // the designer broke down
   CHECK(!found(outcome).repeat.contains("cost"));
 }

@@ -115,34 +115,68 @@ TEST_CASE("ranks only: p does not change with the scale of the measurements") {
 }
 
 TEST_CASE("the median of all ratios and its interval") {
-  MedianRatio found = median_ratio(Values{1, 2, 4}, Values{2, 4, 8});
+  MedianRatio found = median_ratio(Values{1, 2, 4}, Values{2, 4, 8}, .05);
   CHECK(found.ratio == 2);
-  CHECK(found.lower == .5);  // too few for an interval that leaves anything out
-  CHECK(found.upper == 8);
-  found = median_ratio(Values{2}, Values{3, 4});
+  CHECK(std::isnan(found.lower));  // too few for an interval that leaves anything out
+  CHECK(std::isnan(found.upper));
+  found = median_ratio(Values{2}, Values{3, 4}, .05);
   CHECK(found.ratio == 1.75);
-  // 10 and 10: floor(50 - 1.96 √175) = 24 ratios lie below the interval
-  const Values a = row(1, 10), b = row(2, 10);
+  // 10 and 10: the critical value of the tables is U = 23
+  const Values a = row(1, 10), b = row(2, 10, 1.01);
   Values ratios;
   for (const double x : a) {
     for (const double y : b) ratios.push_back(y / x);
   }
   std::sort(ratios.begin(), ratios.end());
-  found = median_ratio(a, b);
-  CHECK(found.lower == ratios[24]);
-  CHECK(found.upper == ratios[99 - 24]);
+  found = median_ratio(a, b, .05);
+  CHECK(found.lower == ratios[23]);
+  CHECK(found.upper == ratios[99 - 23]);
   CHECK(found.ratio == (ratios[49] + ratios[50]) / 2);
   for (const Values& bad : {Values{}, Values{0, 1}, Values{-1}}) {
-    CHECK(std::isnan(median_ratio(bad, Values{1}).ratio));
-    CHECK(std::isnan(median_ratio(Values{1}, bad).upper));
+    CHECK(std::isnan(median_ratio(bad, Values{1}, .05).ratio));
+    CHECK(std::isnan(median_ratio(Values{1}, bad, .05).upper));
   }
 }
 
 TEST_CASE("long series: order statistics stand for all") {
-  const MedianRatio found = median_ratio(row(1000, 20000, .05), row(2000, 20000, .1));
+  const MedianRatio found = median_ratio(row(1000, 20000, .05), row(2000, 20000, .1), .05);
   CHECK(found.ratio == doctest::Approx(2).epsilon(1e-3));
   CHECK(found.lower < 2);
   CHECK(found.upper > 2);
+}
+
+TEST_CASE("without ties the interval leaves 1 out exactly if the test rejects") {
+  CHECK(rc::check([] {
+    const auto size = rc::gen::inRange<std::size_t>(2, 30);
+    Values a(*size), b(*size);
+    const double shift = 1 + .1 * *rc::gen::inRange(0, 10);
+    for (double& x : a) x = 100 + *rc::gen::inRange(0, 1'000'000) * 1e-4;
+    for (double& x : b) x = shift * (100 + *rc::gen::inRange(0, 1'000'000) * 1e-4) + 1e-7;
+    for (Values* values : {&a, &b}) {
+      std::sort(values->begin(), values->end());
+      RC_PRE(std::adjacent_find(values->begin(), values->end()) == values->end());
+    }
+    const double level = *rc::gen::element(.05, .01, .002);
+    const MedianRatio found = median_ratio(a, b, level);
+    const bool outside = found.lower > 1 || found.upper < 1;
+    RC_ASSERT(outside == (mann_whitney_p(a, b) < level));
+    RC_ASSERT(std::isnan(found.lower) == !(least_p(a.size(), b.size()) < level));
+  }));
+}
+
+TEST_CASE("levels of several tests: a test fails exactly if its p is not below its level") {
+  CHECK(holm_levels({}, .05).empty());
+  const Values levels = holm_levels({.01, .04, .03, .005}, .05);
+  CHECK(levels[3] == .05 / 4);
+  CHECK(levels[0] == .05 / 3);
+  CHECK(levels[2] == .05 / 2);
+  CHECK(levels[1] == .05 / 2);  // after the first that failed
+  CHECK(rc::check([](const std::vector<unsigned short>& numbers) {
+    Values p;
+    for (const unsigned short number : numbers) p.push_back(number / 650'000.);
+    const Values adjusted = holm(p), held = holm_levels(p, .05);
+    for (std::size_t i = 0; i < p.size(); ++i) RC_ASSERT((adjusted[i] < .05) == (p[i] < held[i]));
+  }));
 }
 
 TEST_CASE("adjustment for several tests") {

@@ -171,6 +171,18 @@ TEST_CASE("a part of a sweep is a table with fewer rows") {
   CHECK(table.rows[3].values.back() == 3.5);
 }
 
+TEST_CASE("a part of a sweep without points is a table without rows") {
+  const Scratch scratch;
+  SweepFiles files = sweep_files();
+  files.results["shard"] = {{"part", 9}, {"of", 9}};
+  files.results["points"] = files.run["points"] = Json::array();
+  write_sweep(scratch.path(), files);
+  const ResultTable table = read_result_table(scratch.path());
+  CHECK(table.rows.empty());
+  CHECK(table.pipelines.size() == 2);
+  CHECK(table.axes.size() == 2);
+}
+
 TEST_CASE("points before pipelines and axes are read as well") {
   const Scratch scratch;
   SweepFiles files = sweep_files();
@@ -194,6 +206,7 @@ TEST_CASE("files that are not as they were written are refused, with the place")
   says([](SweepFiles& f) { f.results["pipelines"] = Json::array(); }, "/pipelines");
   says([](SweepFiles& f) { f.results["pipelines"][1] = 3; }, "/pipelines/1");
   says([](SweepFiles& f) { f.results["study"]["sweep"][0]["values"] = "x"; }, "/study/sweep/0/values");
+  says([](SweepFiles& f) { f.results["points"] = 1; }, "/points");
   says([](SweepFiles& f) { f.results["points"][2]["pipeline"] = 2; }, "/points/2");
   says([](SweepFiles& f) { f.results["points"][2]["pipeline"] = -1; }, "/points/2/pipeline");
   says([](SweepFiles& f) { f.results["points"][2]["at"] = {0}; }, "/points/2");

@@ -103,9 +103,10 @@ TEST_CASE("the files of a sweep") {
 TEST_CASE("verdicts: what was claimed held, did not hold, or is not known") {
   ResultTable table;
   table.title = "Verdicts";
-  table.columns = {{"violated_at", false}, {"inner_outside", false}, {"inconsistent", false},
-                   {"horizon", false},     {"separates", false},     {"wall_s", true}};
-  const auto add = [&](std::vector<double> values) {
+  table.columns = {{"violated_at", false}, {"inner_outside", false}, {"inconsistent", false}, {"horizon", false},
+                   {"separates", false},   {"wall_s", true},         {"infeasible", false}};
+  const auto add = [&](std::vector<double> values, double infeasible = none) {
+    values.push_back(infeasible);
     table.pipelines.push_back("p" + std::to_string(table.rows.size()));
     table.rows.push_back({table.rows.size(), {}, std::move(values), ""});
   };
@@ -117,10 +118,12 @@ TEST_CASE("verdicts: what was claimed held, did not hold, or is not known") {
   add({none, none, none, 3, 0, 1});
   add({none, none, none, 3, none, 1});
   add({5, none, none, 3, 1, 1});
+  add({none, none, none, 3, none, 1}, 1);
+  add({none, none, none, 3, 1, 1}, 0);
   CHECK(written(table).at("benchmarks.csv") ==
         "benchmark,instance,result,time\n"
         "Verdicts,p0,1,1\nVerdicts,p1,0,1\nVerdicts,p2,0,1\nVerdicts,p3,0,1\nVerdicts,p4,1,1\nVerdicts,p5,0,1\nVerdicts,p6,,"
-        "1\nVerdicts,p7,0,1\n");
+        "1\nVerdicts,p7,0,1\nVerdicts,p8,infeasible,1\nVerdicts,p9,1,1\n");
 }
 
 TEST_CASE("shares are per cents, and marks are mathematics") {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "cordon/study/statistics.hpp"
@@ -21,7 +22,11 @@ bool is_comparable(const ResultTable& table, const SummaryRow& row, std::size_t 
 std::vector<std::span<SummaryRow>> combinations(Summary& summary);
 std::vector<std::span<const SummaryRow>> combinations(const Summary& summary);
 
-/// Per row of one combination: has it the best mean of this column? None is best if all that are comparable are equal.
+/// Do two means of a column differ by no more than rounding may: by 1e-9 of the larger, or, of shares and gaps, by 1e-9?
+bool are_alike(const std::string& column, double a, double b);
+
+/// Per row of one combination: has it the best mean of this column, or one alike? None is best if all that are comparable are
+/// alike.
 std::vector<bool> best_of(const ResultTable& table, std::span<const SummaryRow> rows, std::size_t column);
 
 }  // namespace cordon::detail

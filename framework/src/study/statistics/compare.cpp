@@ -69,45 +69,62 @@ struct Run {
   }
 
   /// Points of a group by all their values.
-  std::map<Key, double> points(const Key& key, const std::string& column) const {
-    std::map<Key, double> found;
+  std::map<Key, const ResultRow*> points(const Key& key) const {
+    std::map<Key, const ResultRow*> found;
     if (const auto group = groups.find(key); group != groups.end()) {
-      for (const ResultRow* row : group->second) found[key_of(recorded.table, *row, true)] = value(*row, column);
+      for (const ResultRow* row : group->second) found[key_of(recorded.table, *row, true)] = row;
     }
     return found;
   }
 
-  /// What a test of a measured number rests on: the repetitions, or, of a single run, its steps.
-  std::vector<double> measurements(const Key& key, const std::string& column) const {
+  /// Times of the steps of a single run.
+  const std::vector<double>* steps(const Key& key, const std::string& column) const {
     const auto pipeline = pipelines.find(key.front());
-    if (column == "step_us" && pipeline != pipelines.end() && pipeline->second < recorded.step_us.size()) {
-      return recorded.step_us[pipeline->second];
-    }
-    std::vector<double> found = values(key, column);
-    std::erase_if(found, [](double x) { return !std::isfinite(x); });
-    return found;
+    const bool known = column == "step_us" && pipeline != pipelines.end() && pipeline->second < recorded.step_us.size();
+    return known ? &recorded.step_us[pipeline->second] : nullptr;
   }
 };
 
-ComparedNumber compared(const Run& first, const Run& other, const Key& key, const ResultColumn& column) {
-  ComparedNumber found;
-  const Statistics before = statistics_of(first.values(key, column.name));
-  found.statistics = statistics_of(other.values(key, column.name));
-  found.difference = found.statistics.mean - before.mean;
-  found.ratio = before.mean != 0 ? found.statistics.mean / before.mean : none;
-  const auto mine = first.points(key, column.name), theirs = other.points(key, column.name);
-  for (const auto& [point, value] : mine) {
+/// One number at the points that two runs share.
+struct Shared {
+  std::int64_t common = 0, finished = 0, different = 0;
+  std::vector<double> first, other;  ///< where it is finite in both
+};
+
+Shared shared_points(const Run& first, const Run& other, const Key& key, const std::string& column) {
+  Shared found;
+  const auto theirs = other.points(key);
+  for (const auto& [point, row] : first.points(key)) {
     const auto same_point = theirs.find(point);
     if (same_point == theirs.end()) continue;
     ++found.common;
-    found.different += !is_same(value, same_point->second);
+    if (!row->error.empty() || !same_point->second->error.empty()) continue;
+    ++found.finished;
+    const double a = first.value(*row, column), b = other.value(*same_point->second, column);
+    found.different += !is_same(a, b);
+    if (!std::isfinite(a) || !std::isfinite(b)) continue;
+    found.first.push_back(a);
+    found.other.push_back(b);
   }
-  if (!column.measured || &first == &other) return found;
-  const std::vector<double> a = first.measurements(key, column.name), b = other.measurements(key, column.name);
-  if (a.size() < 2 || b.size() < 2) return found;
-  const auto [ratio, lower, upper] = detail::median_ratio(a, b);
-  found.test = TimeTest{static_cast<std::int64_t>(a.size()), static_cast<std::int64_t>(b.size()), ratio, lower, upper,
-                        detail::mann_whitney_p(a, b)};
+  return found;
+}
+
+ComparedNumber compared(const Run& first, const Run& other, const Key& key, const ResultColumn& column) {
+  ComparedNumber found;
+  found.statistics = statistics_of(other.values(key, column.name));
+  if (const auto group = other.groups.find(key); group != other.groups.end()) {
+    found.points = static_cast<std::int64_t>(group->second.size());
+    found.failed =
+        std::count_if(group->second.begin(), group->second.end(), [](const ResultRow* row) { return !row->error.empty(); });
+  }
+  const Shared shared = shared_points(first, other, key, column.name);
+  found.common = shared.common;
+  found.finished = shared.finished;
+  found.different = shared.different;
+  found.paired = static_cast<std::int64_t>(shared.first.size());
+  const double before = statistics_of(shared.first).mean, after = statistics_of(shared.other).mean;
+  found.difference = after - before;
+  found.ratio = before != 0 ? after / before : none;
   return found;
 }
 
@@ -150,21 +167,55 @@ ComparedMeasure measure_of(const std::vector<Run>& runs, const std::vector<Key>&
   return measure;
 }
 
-/// All tests of a comparison are judged together.
-void adjust(std::vector<ComparedMeasure>& measures) {
-  std::vector<TimeTest*> tests;
-  std::vector<double> p;
-  for (ComparedMeasure& measure : measures) {
-    for (ComparedRow& row : measure.rows) {
-      for (ComparedNumber& number : row.runs) {
-        if (!number.test) continue;
-        tests.push_back(&*number.test);
-        p.push_back(number.test->p);
+/// The measurements of one number in the first run and in another one: at the points that failed in neither, or of single runs
+/// their steps.
+struct Samples {
+  ComparedNumber* number;
+  std::vector<double> first, other;
+};
+
+std::vector<Samples> samples_of(const std::vector<Run>& runs, ComparedMeasure& measure) {
+  std::vector<Samples> samples;
+  for (ComparedRow& row : measure.rows) {
+    Key key{row.pipeline};
+    key.insert(key.end(), row.at.begin(), row.at.end());
+    for (std::size_t i = 1; i < runs.size(); ++i) {
+      Shared shared = shared_points(runs[0], runs[i], key, measure.column.name);
+      Samples one{&row.runs[i], std::move(shared.first), std::move(shared.other)};
+      const auto *first = runs[0].steps(key, measure.column.name), *other = runs[i].steps(key, measure.column.name);
+      if (first && other) {
+        one.first = *first;
+        one.other = *other;
       }
+      if (one.first.size() >= 2 && one.other.size() >= 2) samples.push_back(std::move(one));
     }
   }
-  const std::vector<double> adjusted = detail::holm(p);
-  for (std::size_t i = 0; i < tests.size(); ++i) tests[i]->p = adjusted[i];
+  return samples;
+}
+
+/// All tests of a measure are judged together: each measure answers a question of its own, and most times are parts of others.
+void add_tests(const std::vector<Run>& runs, ComparedMeasure& measure) {
+  if (!measure.column.measured) return;
+  constexpr double level = .05;
+  const std::vector<Samples> samples = samples_of(runs, measure);
+  std::vector<double> p;
+  for (const Samples& one : samples) p.push_back(detail::mann_whitney_p(one.first, one.other));
+  const std::vector<double> adjusted = detail::holm(p), levels = detail::holm_levels(p, level);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto& [number, first, other] = samples[i];
+    auto [ratio, lower, upper] = detail::median_ratio(first, other, levels[i]);
+    const double least = std::min(1., static_cast<double>(samples.size()) * detail::least_p(first.size(), other.size()));
+    TimeTest test{static_cast<std::int64_t>(first.size()),
+                  static_cast<std::int64_t>(other.size()),
+                  ratio,
+                  lower,
+                  upper,
+                  adjusted[i],
+                  least};
+    // Ties at 1, or order statistics in place of all numbers, can bring them apart.
+    if (test.significant() == (lower <= 1 && 1 <= upper)) test.lower = test.upper = none;
+    number->test = test;
+  }
 }
 
 std::vector<std::string> warnings_of(const std::vector<Run>& runs, const std::vector<Key>& keys,
@@ -188,6 +239,18 @@ std::vector<std::string> warnings_of(const std::vector<Run>& runs, const std::ve
         "single runs: steps of one run depend on each other; repeat the runs, by a sweep over seeds, for firm statements about "
         "times");
   }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto& rows = runs[i].recorded.table.rows;
+    const auto failed = std::count_if(rows.begin(), rows.end(), [](const ResultRow& row) { return !row.error.empty(); });
+    if (rows.empty()) {
+      warnings.push_back(fmt::format("{} has no points", names[i]));
+    } else if (failed == static_cast<std::ptrdiff_t>(rows.size())) {
+      warnings.push_back(fmt::format("{}: all {} points failed, there is nothing to compare", names[i], failed));
+    } else if (failed > 0) {
+      warnings.push_back(fmt::format("{}: {} of {} points failed; differences are over the points that failed in neither run",
+                                     names[i], failed, rows.size()));
+    }
+  }
   for (const Key& key : keys) {
     std::string missing;
     for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -204,7 +267,8 @@ std::vector<std::string> warnings_of(const std::vector<Run>& runs, const std::ve
 bool ComparedMeasure::is_equal() const {
   return std::all_of(rows.begin(), rows.end(), [](const ComparedRow& row) {
     return std::all_of(row.runs.begin(), row.runs.end(), [&](const ComparedNumber& number) {
-      return number.different == 0 && number.common > 0 && number.common == row.runs.front().common;
+      return number.different == 0 && number.common > 0 && number.common == row.runs.front().common &&
+             number.finished == row.runs.front().finished && number.failed == row.runs.front().failed;
     });
   });
 }
@@ -230,7 +294,7 @@ Comparison compare_results(const std::vector<std::filesystem::path>& directories
   const std::vector<Key> keys = keys_of(runs);
   for (const ResultColumn& column : columns_of(runs)) result.measures.push_back(measure_of(runs, keys, column));
   std::erase_if(result.measures, [](const ComparedMeasure& measure) { return measure.rows.empty(); });
-  adjust(result.measures);
+  for (ComparedMeasure& measure : result.measures) add_tests(runs, measure);
   result.warnings = warnings_of(runs, keys, names);
   return result;
 }

@@ -42,6 +42,8 @@ const std::vector<Measure>& measures() {
       {"horizon", "horizon"},
       {"cost", "cost", true},
       {"gap", "gap", false, true},
+      {"optimal", "optimal", false, true},
+      {"infeasible", "infeasible", false, true, true},
       {"separates", "separates", false, true},
       {"kappa_min", "least κ"},
       {"experiments_isolated", "isolated"},

@@ -126,6 +126,13 @@ void add_diagnosis(Numbers& numbers, const PipelineOutcome& outcome) {
   add_faults(numbers, found.faults);
 }
 
+/// What every separating input costs at least, infinite if there is none; a search that proved nothing has no bound.
+double bound_of(const DesignOutcome& design) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (design.status == DesignStatus::infeasible) return infinity;
+  return design.lower_bound == -infinity ? none : design.lower_bound;
+}
+
 void add_design(Numbers& numbers, const PipelineOutcome& outcome) {
   numbers.time("assumptions_until", outcome.assumptions_until);
   numbers.time("violated_at", outcome.violated_at);
@@ -133,8 +140,11 @@ void add_design(Numbers& numbers, const PipelineOutcome& outcome) {
     const auto& best = design->best;
     numbers.count("horizon", design->horizon);
     numbers.add("cost", best ? best->cost : none);
-    numbers.add("lower_bound", design->lower_bound);
+    numbers.add("lower_bound", bound_of(*design));
     numbers.add("gap", std::isfinite(design->gap()) ? design->gap() : none);
+    const bool searched = design->status != DesignStatus::given;
+    numbers.add("optimal", searched ? static_cast<double>(design->status == DesignStatus::optimal) : none);
+    numbers.add("infeasible", searched ? static_cast<double>(design->status == DesignStatus::infeasible) : none);
     numbers.answer("separates", best ? best->separates() : Answer::unknown);
     double kappa = best && !best->pairs.empty() ? std::numeric_limits<double>::infinity() : none;
     for (std::size_t i = 0; best && i < best->pairs.size(); ++i) kappa = std::min(kappa, best->pairs[i].kappa_lower);

@@ -58,6 +58,32 @@ double exact_lower_tail(std::size_t m, std::size_t n, std::size_t u) {
   return tail / all;
 }
 
+/// Two-sided p of the smaller of both sums.
+double p_of(double u, std::size_t first, std::size_t second, double ties) {
+  const double m = static_cast<double>(first), n = static_cast<double>(second), N = m + n;
+  if (ties == 0 && first + second <= most_exact) {
+    return std::min(1., 2 * exact_lower_tail(first, second, static_cast<std::size_t>(u)));
+  }
+  const double variance = m * n / 12 * (N + 1 - ties / (N * (N - 1)));
+  if (!(variance > 0)) return 1;
+  const double z = std::max(0., m * n / 2 - u - .5) / std::sqrt(variance);
+  return std::erfc(z / std::sqrt(2.));
+}
+
+/// How many sums there are, from 0 on, whose p is below the level.
+std::size_t rejected(std::size_t first, std::size_t second, double ties, double level) {
+  std::size_t some = 0, most = first * second / 2 + 1;  // sums below `some` are; `most` is not
+  while (some < most) {
+    const std::size_t middle = some + (most - some) / 2;
+    if (p_of(static_cast<double>(middle), first, second, ties) < level) {
+      some = middle + 1;
+    } else {
+      most = middle;
+    }
+  }
+  return some;
+}
+
 /// Evenly spaced order statistics, the first and the last among them.
 std::vector<double> thinned(std::span<const double> values) {
   std::vector<double> sorted(values.begin(), values.end());
@@ -77,18 +103,13 @@ bool all_positive(std::span<const double> values) {
 double mann_whitney_p(std::span<const double> first, std::span<const double> second) {
   if (first.empty() || second.empty()) return 1;
   const Ranked found = ranked(first, second);
-  const double m = static_cast<double>(first.size()), n = static_cast<double>(second.size()), N = m + n;
-  const double u = std::min(found.u, m * n - found.u);
-  if (found.ties == 0 && first.size() + second.size() <= most_exact) {
-    return std::min(1., 2 * exact_lower_tail(first.size(), second.size(), static_cast<std::size_t>(u)));
-  }
-  const double variance = m * n / 12 * (N + 1 - found.ties / (N * (N - 1)));
-  if (!(variance > 0)) return 1;
-  const double z = std::max(0., m * n / 2 - u - .5) / std::sqrt(variance);
-  return std::erfc(z / std::sqrt(2.));
+  const double all = static_cast<double>(first.size()) * static_cast<double>(second.size());
+  return p_of(std::min(found.u, all - found.u), first.size(), second.size(), found.ties);
 }
 
-MedianRatio median_ratio(std::span<const double> first, std::span<const double> second) {
+double least_p(std::size_t first, std::size_t second) { return first == 0 || second == 0 ? 1 : p_of(0, first, second, 0); }
+
+MedianRatio median_ratio(std::span<const double> first, std::span<const double> second, double level) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (!all_positive(first) || !all_positive(second)) return {none, none, none};
   const std::vector<double> a = thinned(first), b = thinned(second);
@@ -98,13 +119,17 @@ MedianRatio median_ratio(std::span<const double> first, std::span<const double> 
     for (const double y : b) ratios.push_back(y / x);
   }
   std::sort(ratios.begin(), ratios.end());
-  const double m = static_cast<double>(a.size()), n = static_cast<double>(b.size());
-  const double half = 1.959963984540054 * std::sqrt(m * n * (m + n + 1) / 12);
   const auto last = ratios.size() - 1;
-  const double below = std::floor(m * n / 2 - half);  // so many ratios lie below the interval
-  const auto lower = below > 0 ? static_cast<std::size_t>(below) : 0;
   const double median = (ratios[last / 2] + ratios[(last + 1) / 2]) / 2;
-  return {median, ratios[lower], ratios[last - lower]};
+  std::size_t below =
+      rejected(first.size(), second.size(), ranked(first, second).ties, level);  // 1 is not among so many at an end
+  if (below == 0) return {median, none, none};
+  if (ratios.size() < first.size() * second.size()) {
+    const double all = static_cast<double>(first.size()) * static_cast<double>(second.size());
+    below = static_cast<std::size_t>(static_cast<double>(below) / all * static_cast<double>(ratios.size()));
+    if (below == 0) return {median, none, none};
+  }
+  return {median, ratios[below - 1], ratios[last - (below - 1)]};
 }
 
 std::vector<double> holm(const std::vector<double>& p) {
@@ -118,6 +143,21 @@ std::vector<double> holm(const std::vector<double>& p) {
     adjusted[order[i]] = largest;
   }
   return adjusted;
+}
+
+std::vector<double> holm_levels(const std::vector<double>& p, double level) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return p[i] < p[j]; });
+  std::vector<double> levels(p.size());
+  bool failed = false;
+  double now = level;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (!failed) now = level / static_cast<double>(order.size() - i);
+    levels[order[i]] = now;
+    failed = failed || !(p[order[i]] < now);
+  }
+  return levels;
 }
 
 }  // namespace cordon::detail

@@ -98,12 +98,12 @@ class TableReader {
   void read_times_of_pipelines(const Cursor& root, std::vector<Thinned>& steps);
   void read_times_of_point(const Cursor& at);
   void read_times_of_step(const Cursor& at, Thinned& steps);
-  bool is_sweep() const { return !points_.empty(); }
 
   std::filesystem::path directory_;
   RecordedTable read_;
   TableBuilder builder_;
-  std::vector<std::size_t> points_;  ///< of a sweep: index of each row
+  bool is_sweep_ = false;
+  std::vector<std::size_t> points_;  ///< of a sweep: index of each row; a part may have none
   std::size_t timed_ = 0;            ///< rows with times so far
 };
 
@@ -117,6 +117,7 @@ void TableReader::read_results() {
   const Value tree = read_large(file, wanted, problems);
   const Cursor root(tree, "", problems);
   if (root.expect(Kind::object, mend())) {
+    if (const auto points = root.find("points")) is_sweep_ = points->expect(Kind::array, mend());
     read_head(root);
     read_axes(root);
     read_pipelines(root);
@@ -164,7 +165,7 @@ void TableReader::read_pipelines(const Cursor& root) {
     const Cursor at = pipelines->item(i);
     if (!at.expect(Kind::object, mend())) continue;
     read_.table.pipelines.push_back(text_of(at, "name"));
-    if (is_sweep()) continue;
+    if (is_sweep_) continue;
     const auto numbers = at.find("numbers"), summary = at.need("summary", mend());
     if (!numbers) at.error("has no \"numbers\"", "the run was made by an older version; run the study again");
     if (!numbers || !summary || !summary->expect(Kind::object, mend())) continue;
@@ -194,7 +195,7 @@ void TableReader::check_rows(const Cursor& root) {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const ResultRow& row = table.rows[i];
     bool fits = row.pipeline < table.pipelines.size() && row.at.size() == table.axes.size();
-    for (std::size_t j = 0; is_sweep() && fits && j < row.at.size(); ++j) fits = row.at[j] < table.axes[j].values.size();
+    for (std::size_t j = 0; is_sweep_ && fits && j < row.at.size(); ++j) fits = row.at[j] < table.axes[j].values.size();
     if (!fits) {
       root.problems().add(child("/points", i), 0, "names a pipeline or a value that is not there", mend());
       return;
@@ -219,7 +220,7 @@ void TableReader::read_times() {
   const Cursor root(tree, "", problems);
   if (root.expect(Kind::object, mend())) {
     read_host(root);
-    if (is_sweep()) {
+    if (is_sweep_) {
       if (timed_ != points_.size() && !problems.any())
         root.error("does not have the points of results.json", "both files must be of one sweep");
     } else {

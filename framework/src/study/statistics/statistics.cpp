@@ -90,7 +90,7 @@ Statistics statistics_of(std::span<const double> values) {
 
 Preference preference_of(const std::string& column) {
   if (has(column, {"contains_truth_yes", "contains_truth_share", "exact_share", "inner_share", "detected", "isolated",
-                   "faults_proven", "separates", "kappa_min", "experiments_isolated"}))
+                   "faults_proven", "optimal", "separates", "kappa_min", "experiments_isolated"}))
     return Preference::more;
   if (has(column, {"volume_of_hull_steps"})) return Preference::none;
   if (has(column, {"undecided", "answers_unknown", "contains_truth_no", "contains_truth_unknown", "wrong_mode_rate",

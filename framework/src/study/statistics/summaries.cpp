@@ -146,7 +146,8 @@ void write_markdown(Sink& file, const std::string& title, const ComparisonTable&
   for (const std::string& note : table.notes) file.write(fmt::format("\n{}\n", markdown_text(note)));
 }
 
-/// Did everything hold that the pipeline claims? "1", "0", or nothing if it did not come to its end or has no answer.
+/// Did everything hold that the pipeline claims? "1", "0", or nothing if it did not come to its end or has no answer; of a design
+/// "infeasible" if it is proven that no input separates the modes.
 std::string verdict(const ResultTable& table, const ResultRow& row) {
   if (!row.error.empty()) return "";
   const auto value = [&](std::string_view name) {
@@ -154,6 +155,7 @@ std::string verdict(const ResultTable& table, const ResultRow& row) {
     return column < row.values.size() ? row.values[column] : std::nan("");
   };
   if (!std::isnan(value("violated_at")) || !std::isnan(value("inner_outside")) || value("inconsistent") > 0) return "0";
+  if (value("infeasible") == 1) return "infeasible";
   if (!std::isnan(value("horizon"))) return std::isnan(value("separates")) ? "" : to_text(value("separates"));
   return "1";
 }
