@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
+#include "cordon/core/error.hpp"
 #include "cordon/solvers/polytope.hpp"
 #include "study/report/figures/plane_set.hpp"
 
@@ -77,6 +78,18 @@ Points vertices(const Polytope& P) {
   return points;
 }
 
+/// Corners of a convex polygon, counter-clockwise.
+Points in_order(Points corners) {
+  PlanePoint middle;
+  for (const PlanePoint& p : corners) {
+    middle.x += p.x / static_cast<double>(corners.size());
+    middle.y += p.y / static_cast<double>(corners.size());
+  }
+  const auto angle = [&](const PlanePoint& p) { return std::atan2(p.y - middle.y, p.x - middle.x); };
+  std::sort(corners.begin(), corners.end(), [&](const PlanePoint& p, const PlanePoint& q) { return angle(p) < angle(q); });
+  return corners;
+}
+
 void check_bounded(const PlaneSet& set, const Polytope& P, bool tight) {
   RC_ASSERT(set.kind == PlaneSet::Kind::bounded);
   const Points corners = vertices(P);
@@ -84,8 +97,8 @@ void check_bounded(const PlaneSet& set, const Polytope& P, bool tight) {
   for (const PlanePoint& p : corners) RC_ASSERT(beyond(set.vertices, p.x, p.y) <= precision);
   if (set.vertices.size() > 2) RC_ASSERT(area(set.vertices) > 0);
   if (!tight) return;
-  RC_ASSERT(set.vertices.size() <= corners.size());
-  for (const PlanePoint& v : set.vertices) {  // and is one of the exact ones
+  RC_ASSERT(set.vertices.size() <= corners.size() || extent(set.vertices) <= 1e-9);  // a point may have the width of rounding
+  for (const PlanePoint& v : set.vertices) {                                         // and is one of the exact ones
     RC_ASSERT(std::any_of(corners.begin(), corners.end(),
                           [&](const PlanePoint& p) { return std::hypot(p.x - v.x, p.y - v.y) <= precision; }));
   }
@@ -113,6 +126,67 @@ TEST_CASE("bounded sets are drawn as their exact projections") {
     RC_CLASSIFY(X.constraints() > 0, "constraints");
     check_bounded(set, P, true);
   }));
+}
+
+TEST_CASE("units and offsets of the two coordinates are their own") {
+  CHECK(rc::check([] {
+    LineForm X = random_set(0);
+    if (*rc::gen::inRange(0, 3) > 0) {  // most sets with room
+      X.G = random_matrix(X.dim(), 8);
+      X.S = Matrix(*rc::gen::inRange(0, 3), 0);
+      X.A = random_matrix(X.S.rows(), 8);
+      X.b = random_matrix(X.A.rows(), 1, 5);
+    }
+    X.c.setZero();
+    const Polytope P = exact(X, 0, 1);
+    RC_PRE(!P.is_empty());
+    const Points corners = in_order(vertices(P));
+    const PlanePoint unit{std::pow(10, *rc::gen::inRange(-90, 91) / 10.0), std::pow(10, *rc::gen::inRange(-90, 91) / 10.0)};
+    const PlanePoint offset{std::pow(10, *rc::gen::inRange(0, 9)) - 1, 1 - std::pow(10, *rc::gen::inRange(0, 9))};
+    X.G.row(0) *= unit.x;
+    X.G.row(1) *= unit.y;
+    X.c[0] = offset.x * unit.x;
+    X.c[1] = offset.y * unit.y;
+    PlaneSet set = project(X, 0, 1);
+    RC_ASSERT(set.kind == PlaneSet::Kind::bounded);
+    for (PlanePoint& p : set.vertices) p = {(p.x - X.c[0]) / unit.x, (p.y - X.c[1]) / unit.y};
+    const double rounding = 1e-15 * (std::abs(offset.x) + std::abs(offset.y) + 10), precision = 1e-8 + 8 * rounding;
+    for (const PlanePoint& p : corners) RC_ASSERT(beyond(set.vertices, p.x, p.y) <= precision);
+    const auto same_extent = [&](auto coordinate) {
+      const auto less = [&](const PlanePoint& p, const PlanePoint& q) { return p.*coordinate < q.*coordinate; };
+      const auto drawn = std::minmax_element(set.vertices.begin(), set.vertices.end(), less);
+      const auto whole = std::minmax_element(corners.begin(), corners.end(), less);
+      RC_ASSERT(std::abs(*drawn.first.*coordinate - *whole.first.*coordinate) <= 1e-7 + rounding);
+      RC_ASSERT(std::abs(*drawn.second.*coordinate - *whole.second.*coordinate) <= 1e-7 + rounding);
+    };
+    same_extent(&PlanePoint::x);
+    same_extent(&PlanePoint::y);
+    for (const PlanePoint& p : set.vertices) RC_ASSERT(beyond(set.vertices, p.x, p.y) <= precision);  // convex
+    if (corners.size() > 2 && area(corners) > 1e-3) {
+      RC_ASSERT(std::abs(area(set.vertices) / area(corners) - 1) <= 1e-4 + 1e3 * rounding);
+    }
+  }));
+}
+
+TEST_CASE("one coordinate without width, and none") {
+  const Matrix A = (Matrix(1, 3) << 1, 1, 0).finished();
+  for (const double unit : {1e-9, 1.0, 1e9}) {
+    LineForm X{Matrix(2, 0),   (Matrix(2, 3) << 0, 0, 0, unit, 0, unit).finished(), Eigen::Vector2d(1e6, 3), Matrix(1, 0), A,
+               Vector::Zero(1)};
+    const PlaneSet upright = project(X, 0, 1), level = project(X, 1, 0);
+    REQUIRE(upright.vertices.size() == 2);
+    REQUIRE(level.vertices.size() == 2);
+    for (const PlanePoint& p : upright.vertices) CHECK(p.x == 1e6);
+    CHECK(std::abs(upright.vertices[0].y - upright.vertices[1].y) == doctest::Approx(4 * unit));
+    for (const PlanePoint& p : level.vertices) CHECK(p.y == 1e6);
+    CHECK(std::abs(level.vertices[0].x - level.vertices[1].x) == doctest::Approx(4 * unit));
+    X.G.setZero();
+    const PlaneSet point = project(X, 0, 1);
+    REQUIRE(point.vertices.size() == 1);
+    CHECK(point.vertices[0].y == 3);
+  }
+  const LineForm huge = make_zonotope(Eigen::Vector2d(0, 0), (Matrix(2, 2) << 1e308, 1e308, 1, 0).finished());
+  CHECK_THROWS_AS(project(huge, 0, 1), Error);
 }
 
 TEST_CASE("with few vertices or directions the polygon still holds the set") {

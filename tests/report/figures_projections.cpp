@@ -98,6 +98,32 @@ TEST_CASE("a set that is much larger than others is cut by the window, the truth
   CHECK(sets(read_report(files.path()))->frames.at(0).left < -19);
 }
 
+TEST_CASE("each coordinate of the window has its own unit") {
+  const ResultsFiles files;
+  files.write("steps.csv", header + steps("a", 1) + steps("b", 1));
+  files.write("data.csv", "k,x_1,x_2\n0,0,0\n");
+  const auto frame = [&](const std::string& a, const std::string& b) {
+    files.write("sets.jsonl", line("a", 0, a) + line("b", 0, b));
+    return sets(read_report(files.path()))->frames.at(0);
+  };
+  const SetFrame hugs = frame(box(0, 10000, 0.00001), box(0, 20000, 0.00002));
+  CHECK(hugs.right == doctest::Approx(23200));
+  CHECK(hugs.top == doctest::Approx(0.0000232));
+  CHECK(hugs.sets.at(1).open.empty());
+  const SetFrame cuts = frame(box(0, 10000, 0.00001), box(0, 20000, 1));  // too high, but not too wide
+  CHECK(cuts.right == doctest::Approx(23200));
+  CHECK(cuts.top == doctest::Approx(0.0000116));
+  CHECK(cuts.bottom == doctest::Approx(-0.0000116));
+  const SetFrame flat = frame(box(10000, 0, 2), box(10000, 0.0000000000001, 1));  // the width of rounding is none
+  CHECK(flat.left < 0);
+  CHECK(flat.top == doctest::Approx(2.32));
+  const SetFrame points = frame(box(0, 0, 0), box(0, 0, 0));
+  CHECK(points.right == doctest::Approx(1.16));
+  CHECK(points.bottom == doctest::Approx(-1.16));
+  files.write("data.csv", "k,x_1,x_2\n0,10000,0\n");
+  CHECK(frame(box(10000, 0, 2), box(10000, 0, 1)).right == doctest::Approx(10011.6));
+}
+
 TEST_CASE("times: evenly, the first and the last, and those of events") {
   const ResultsFiles files;
   files.write("steps.csv", header + steps("a", 1000));

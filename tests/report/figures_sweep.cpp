@@ -55,6 +55,22 @@ class SweepFiles {
 
 }  // namespace
 
+TEST_CASE("columns of the comparison have names of their own in a file") {
+  const SweepFiles sweep;
+  sweep.files.replace("run.json", R"("wall_s": 1}})", R"("wall_s": 2}})");
+  const auto header = [&](Detail detail) { return content<Table>(read_report(sweep.files.path(), detail), "comparison").header; };
+  const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const std::vector<std::string> page = header(Detail::page);
+  std::vector<std::string> file = header(Detail::all);
+  CHECK(has(page, "× best"));
+  CHECK(has(file, "mean radius × best"));
+  CHECK_FALSE(has(file, "× best"));
+  std::sort(file.begin(), file.end());
+  CHECK(std::adjacent_find(file.begin(), file.end()) == file.end());
+}
+
 TEST_CASE("who is best where, with the lead over the second") {
   const SweepFiles sweep;
   const Report report = read_report(sweep.files.path());

@@ -174,6 +174,19 @@ TEST_CASE("fields of CSV files") {
   CHECK(detail::csv_text("\tx") == "'\tx");
 }
 
+TEST_CASE("rows that begin with a bracket, a star or a dollar") {
+  ResultTable table = two_budgets();
+  table.axes[0].name = "[2pt]";
+  table.axes[0].values = {"[10,20]", R"(" * $a$")"};
+  table.pipelines = {"[first]", "*second $x$"};
+  auto files = written(table);
+  std::string tex = files.at("summary.tex");
+  CHECK(tex.find("    {}[2pt] & pipeline &") != std::string::npos);
+  CHECK(tex.find("    {}[10,20] & [first] &") != std::string::npos);
+  CHECK(tex.find("    {} * \\$a\\$ & *second") != std::string::npos);
+  CHECK(files.at("summary.md").find("\\*second \\$x\\$ |") != std::string::npos);
+}
+
 TEST_CASE("whatever a name is, a Markdown row stays a row, and LaTeX gets no bare special character") {
   CHECK(rc::check([] {
     const auto name = *rc::gen::container<std::string>(rc::gen::weightedOneOf<char>(
@@ -182,7 +195,7 @@ TEST_CASE("whatever a name is, a Markdown row stays a row, and LaTeX gets no bar
     RC_ASSERT(md.find_first_of("\n\r<>") == std::string::npos);
     std::size_t slashes = 0;
     for (const char c : md) {
-      if (c == '|') RC_ASSERT(slashes % 2 == 1);
+      if (c == '|' || c == '$') RC_ASSERT(slashes % 2 == 1);
       slashes = c == '\\' ? slashes + 1 : 0;
     }
     const std::string tex = detail::latex_text(name);

@@ -100,6 +100,12 @@ std::string label_of(std::string_view title) {
   return label.empty() ? "results" : label;
 }
 
+/// The first cell of a row: a bracket or star would be an argument of the command before it, across spaces and lines.
+std::string first_latex_cell(std::string text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first != std::string::npos && (text[first] == '[' || text[first] == '*') ? "{}" + text : text;
+}
+
 void write_latex(Sink& file, const std::string& title, const ComparisonTable& table) {
   file.write(
       "% Needs \\usepackage{booktabs}; in two-column papers table* in place of table.\n\\begin{table}\n  \\centering\\small\n");
@@ -111,7 +117,8 @@ void write_latex(Sink& file, const std::string& title, const ComparisonTable& ta
   file.write("}\n    \\toprule\n    ");
   for (std::size_t j = 0; j < table.columns.size(); ++j) {
     if (j > 0) file.write(" & ");
-    file.write(latex_text(table.columns[j].title));
+    const std::string column = latex_text(table.columns[j].title);
+    file.write(j == 0 ? first_latex_cell(column) : column);
   }
   file.write(" \\\\\n");
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
@@ -120,7 +127,8 @@ void write_latex(Sink& file, const std::string& title, const ComparisonTable& ta
     for (std::size_t j = 0; j < table.columns.size(); ++j) {
       const ComparisonCell& cell = table.rows[i][j];
       line += j > 0 ? " & " : "";
-      line += table.columns[j].number ? latex_number(cell.text, cell.best) : latex_text(cell.text);
+      const std::string text = table.columns[j].number ? latex_number(cell.text, cell.best) : latex_text(cell.text);
+      line += j == 0 ? first_latex_cell(text) : text;
     }
     file.write(line + " \\\\\n");
   }

@@ -81,9 +81,10 @@ std::string latex_text(std::string_view text) {
 }
 
 std::string markdown_text(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 12> pairs{{{"\\", "\\\\"},
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 13> pairs{{{"\\", "\\\\"},
                                                                                         {"|", "\\|"},
                                                                                         {"`", "\\`"},
+                                                                                        {"$", "\\$"},
                                                                                         {"*", "\\*"},
                                                                                         {"_", "\\_"},
                                                                                         {"[", "\\["},

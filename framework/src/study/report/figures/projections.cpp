@@ -63,21 +63,34 @@ std::set<std::int64_t> times_of(const Curves& curves, std::size_t count) {
   return times;
 }
 
+/// Of an interval; 0 if it is rounding.
+double size_of(double low, double high) {
+  const double size = high - low;
+  return size > 1e-12 * std::max(std::abs(low), std::abs(high)) ? size : 0;
+}
+
 struct Extent {
   double left = std::numeric_limits<double>::infinity(), right = -left, bottom = left, top = -left;
 
+  void add_x(double low, double high) {
+    left = std::min(left, low);
+    right = std::max(right, high);
+  }
+  void add_y(double low, double high) {
+    bottom = std::min(bottom, low);
+    top = std::max(top, high);
+  }
   void add(double x, double y) {
-    left = std::min(left, x);
-    right = std::max(right, x);
-    bottom = std::min(bottom, y);
-    top = std::max(top, y);
+    add_x(x, x);
+    add_y(y, y);
   }
   void add(const Extent& other) {
     add(other.left, other.bottom);
     add(other.right, other.top);
   }
   bool is_empty() const { return !(left <= right); }
-  double size() const { return std::max(right - left, top - bottom); }
+  double width() const { return size_of(left, right); }
+  double height() const { return size_of(bottom, top); }
 };
 
 /// The sets of one pair of coordinates at one time.
@@ -98,41 +111,51 @@ Extent around_strips(const Drawn& drawn) {
   return extent;
 }
 
-void widen(double& low, double& high, double size) {
+/// One coordinate, which says nothing about the size of the other: their units may differ.
+void widen(double& low, double& high) {
   const double middle = (low + high) / 2, scale = std::max(std::abs(low), std::abs(high));
-  const double least = std::max({1e-3 * size, 1e-9 * scale, std::numeric_limits<double>::min()});
-  const double half = std::max((high - low) / 2, least) * (1 + 2 * margin);
+  // Without a size: as much as shows where it lies.
+  const double least = scale > 0 ? std::max(1e-3 * scale, std::numeric_limits<double>::min()) : 1;
+  const double half = (size_of(low, high) > 0 ? (high - low) / 2 : least) * (1 + 2 * margin);
   low = middle - half;
   high = middle + half;
 }
 
-/// The window: all bounded sets that are not much larger than half of them, and the truth.
+/// Of the sizes of sets in one coordinate: above it a set is much larger than half of those that have a size.
+double limit_of(std::vector<double> sizes) {
+  std::erase_if(sizes, [](double size) { return !(size > 0); });
+  if (sizes.empty()) return 0;
+  std::sort(sizes.begin(), sizes.end());
+  return much_larger * sizes[(sizes.size() - 1) / 2];
+}
+
+/// The window: in each coordinate all bounded sets that are not much larger than half of them, and the truth.
 SetFrame frame_of(std::int64_t k, const Drawn& drawn) {
   std::vector<Extent> extents;
-  std::vector<double> sizes;
+  std::vector<double> widths, heights;
   for (const auto& [pipeline, set] : drawn.sets) {
     if (set.kind != PlaneSet::Kind::bounded) continue;
     Extent extent;
     for (const PlanePoint& p : set.vertices) extent.add(p.x, p.y);
     if (extent.is_empty()) continue;
     extents.push_back(extent);
-    if (extent.size() > 0) sizes.push_back(extent.size());
+    widths.push_back(extent.width());
+    heights.push_back(extent.height());
   }
-  std::sort(sizes.begin(), sizes.end());
-  const double limit = sizes.empty() ? 0 : much_larger * sizes[(sizes.size() - 1) / 2];
+  const double width_limit = limit_of(widths), height_limit = limit_of(heights);
   Extent all;
   for (const Extent& extent : extents) {
-    if (extent.size() <= limit) all.add(extent);
+    if (extent.width() <= width_limit) all.add_x(extent.left, extent.right);
+    if (extent.height() <= height_limit) all.add_y(extent.bottom, extent.top);
   }
   if (drawn.truth) all.add(drawn.truth->first, drawn.truth->second);
   if (extents.empty()) {
     if (const Extent strips = around_strips(drawn); !strips.is_empty()) all.add(strips);
   }
   if (all.is_empty()) all.add(0, 0);
-  if (all.size() == 0) all.add(Extent{all.left - 1, all.right + 1, all.bottom - 1, all.top + 1});
   SetFrame frame{k, all.left, all.right, all.bottom, all.top, {}, drawn.truth};
-  widen(frame.left, frame.right, all.size());
-  widen(frame.bottom, frame.top, all.size());
+  widen(frame.left, frame.right);
+  widen(frame.bottom, frame.top);
   for (const auto& [pipeline, set] : drawn.sets) {
     Polygon polygon;
     polygon.pipeline = pipeline;

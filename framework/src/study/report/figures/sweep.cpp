@@ -49,7 +49,13 @@ std::vector<std::size_t> factors_of(const ResultTable& table) {
 
 void add_comparison(const ComparisonTable& comparison, const RunFiles& files, Report& report) {
   Table table;
-  for (const ComparisonColumn& column : comparison.columns) table.header.push_back(column.title);
+  std::string measure;
+  for (const ComparisonColumn& column : comparison.columns) {
+    if (!column.relative) measure = column.title;
+    // Beside its measure on the page; in a file every column has a name of its own.
+    const bool named = column.relative && files.detail() == Detail::all;
+    table.header.push_back(named ? fmt::format("{} {}", measure, column.title) : column.title);
+  }
   for (const auto& row : comparison.rows) {
     if (files.detail() == Detail::page && table.rows.size() == most_rows) break;
     auto& cells = table.rows.emplace_back();
