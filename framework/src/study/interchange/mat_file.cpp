@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <malloc.h>
 #include <matio.h>
 #include <memory>
 #include <sys/mman.h>
@@ -18,6 +19,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/registry/build.hpp"
+#include "study/interchange/mat_layout.hpp"
 #include "study/interchange/mat_wire.hpp"
 #include "study/interchange/utf16.hpp"
 
@@ -339,6 +341,7 @@ std::string objection_inside(const matvar_t& v, int depth, std::size_t& budget) 
 }
 
 Variables read_all(const char* path) {
+  check_layout(path);
   const MatFile file(Mat_Open(path, MAT_ACC_RDONLY));
   if (!file) throw Error(Errc::invalid, "libmatio cannot open it");
   Variables variables;
@@ -346,8 +349,8 @@ Variables read_all(const char* path) {
   while (const MatVariable v{Mat_VarReadNextInfo(file.get())}) {
     if (!v->name) continue;
     std::size_t left = budget;
-    const std::string why = objection_inside(*v, 0, left);
-    if (why.empty()) Mat_VarReadDataAll(file.get(), v.get());
+    std::string why = objection_inside(*v, 0, left);
+    if (why.empty() && Mat_VarReadDataAll(file.get(), v.get()) != 0) why = "it is damaged";
     variables.push_back({v->name, why.empty() ? read(*v, 0, budget) : refused(why)});
     if (variables.size() > 10'000) throw Error(Errc::invalid, "it holds more than 10000 variables");
   }
@@ -374,6 +377,7 @@ void limit_this_process(const char* path) {
   const int nowhere = ::open("/dev/null", O_RDWR);  // libraries below print what they think of damaged files
   if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO), ::dup2(nowhere, STDOUT_FILENO);
   limit(RLIMIT_CORE, 0);
+  ::mallopt(M_PERTURB, 0xFF);  // memory begins as zeros: what libmatio leaves unread shows nothing of this process
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(path, error);
   limit(RLIMIT_CPU, 3 + (error ? rlim_t{0} : static_cast<rlim_t>(bytes >> 22)));  // seconds
