@@ -115,7 +115,7 @@ TEST_CASE("all numeric classes are numbers") {
                               numbers<std::int32_t>("i32", MAT_C_INT32, MAT_T_INT32, {-70000}, {1, 1}),
                               numbers<std::uint32_t>("u32", MAT_C_UINT32, MAT_T_UINT32, {4000000000u}, {1, 1}),
                               numbers<std::int64_t>("i64", MAT_C_INT64, MAT_T_INT64, {-9007199254740992}, {1, 1}),
-                              numbers<std::int64_t>("huge", MAT_C_INT64, MAT_T_INT64, {9007199254740994}, {1, 1}),
+                              numbers<std::int64_t>("huge", MAT_C_INT64, MAT_T_INT64, {9007199254740993}, {1, 1}),
                               numbers<double>("flat", MAT_C_DOUBLE, MAT_T_DOUBLE, {1, 2, 3, 4}, {2, 2, 1}),
                               numbers<double>("cube", MAT_C_DOUBLE, MAT_T_DOUBLE, {1, 2, 3, 4, 5, 6, 7, 8}, {2, 2, 2})});
   const mat::Variables all = mat::read_file(file);
@@ -131,6 +131,31 @@ TEST_CASE("all numeric classes are numbers") {
   CHECK(all[8].value.is(Kind::refused));
   CHECK(all[9].value.numbers == Matrix{{1, 3}, {2, 4}});
   CHECK(all[10].value.text.find("3 dimensions") != std::string::npos);
+}
+
+TEST_CASE("integers of 64 bits are read if they are doubles") {
+  const Scratch scratch;
+  const std::uint64_t one = 1;
+  const std::pair<std::uint64_t, bool> wide[] = {
+      {(one << 53) - 1, true}, {one << 53, true},          {(one << 53) + 1, false}, {(one << 53) + 2, true},
+      {one << 63, true},       {~std::uint64_t{0}, false}, {(one << 63) + 1, false}, {~std::uint64_t{0} << 11, true}};
+  for (const auto& [x, exact] : wide) {
+    CAPTURE(x);
+    const auto all =
+        mat::read_file(by_matio(scratch, MAT_FT_MAT5, {numbers<std::uint64_t>("x", MAT_C_UINT64, MAT_T_UINT64, {x}, {1, 1})}));
+    CHECK(all[0].value.is(Kind::numbers) == exact);
+    if (exact) CHECK(all[0].value.numbers(0, 0) == static_cast<double>(x));
+  }
+  const std::pair<std::int64_t, bool> narrow[] = {{std::numeric_limits<std::int64_t>::min(), true},
+                                                  {std::numeric_limits<std::int64_t>::max(), false},
+                                                  {-(std::int64_t{1} << 53) - 1, false},
+                                                  {-(std::int64_t{1} << 53) - 2, true}};
+  for (const auto& [x, exact] : narrow) {
+    CAPTURE(x);
+    const auto all =
+        mat::read_file(by_matio(scratch, MAT_FT_MAT5, {numbers<std::int64_t>("x", MAT_C_INT64, MAT_T_INT64, {x}, {1, 1})}));
+    CHECK(all[0].value.is(Kind::numbers) == exact);
+  }
 }
 
 TEST_CASE("sparse matrices are read, complex ones are not") {

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <limits>
 #include <malloc.h>
 #include <matio.h>
 #include <memory>
@@ -203,14 +204,24 @@ Value read(const matvar_t& v, int depth, std::size_t& budget) {
   return refused("its class is not known");
 }
 
-/// Integers beyond 2⁵³ set `inexact`.
+/// Whether the integer became another number as a double.
+template <class T>
+bool is_rounded(T x, double y) {
+  if constexpr (sizeof(T) < 8 || !std::is_integral_v<T>) {
+    return false;
+  } else {
+    const double end = std::ldexp(1.0, std::numeric_limits<T>::digits);  // one more than the largest
+    return y >= end || static_cast<T>(y) != x;
+  }
+}
+
 template <class T>
 void copy(const void* data, std::size_t count, double* out, bool& inexact) {
   for (std::size_t i = 0; i < count; ++i) {
     T x;
     std::memcpy(&x, static_cast<const char*>(data) + i * sizeof(T), sizeof(T));
     out[i] = static_cast<double>(x);
-    if constexpr (sizeof(T) == 8 && std::is_integral_v<T>) inexact = inexact || std::abs(out[i]) > 9007199254740992.0;
+    inexact = inexact || is_rounded(x, out[i]);
   }
 }
 
@@ -254,7 +265,7 @@ std::string convert(matio_types type, const void* data, std::size_t bytes, std::
     default:
       return "it is damaged";
   }
-  return inexact ? "it holds integers beyond 2^53" : "";
+  return inexact ? "it holds integers beyond 2^53 that are no doubles" : "";
 }
 
 Value read_numbers(const matvar_t& v) {
