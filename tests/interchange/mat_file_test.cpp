@@ -398,6 +398,10 @@ TEST_CASE("names of MATLAB") {
   CHECK(mat::valid_name("_a") == "x_a");
   CHECK(mat::valid_name("Größe--1") == "Gr_e_1");
   CHECK(mat::valid_name("") == "x");
+  for (const std::string keyword : {"end", "for", "function", "otherwise", "do"})
+    CHECK(mat::valid_name(keyword) == "x" + keyword);
+  CHECK(mat::valid_name("ends") == "ends");
+  CHECK(mat::valid_names({"end", "xend"}) == std::vector<std::string>{"xend", "xend_2"});
   CHECK(mat::valid_name(std::string(100, 'a')).size() == 63);
   const auto names = mat::valid_names({"a b", "a-b", "a_b_2", "a+b", std::string(70, 'z'), std::string(71, 'z')});
   CHECK(names == std::vector<std::string>{"a_b", "a_b_2", "a_b_2_2", "a_b_3", std::string(63, 'z'), std::string(61, 'z') + "_2"});
