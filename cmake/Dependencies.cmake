@@ -42,6 +42,7 @@ endif()
 add_library(matio INTERFACE)
 target_include_directories(matio SYSTEM INTERFACE "${MATIO_INCLUDE_DIR}")
 target_link_libraries(matio INTERFACE "${MATIO_LIBRARY}")
+find_package(ZLIB REQUIRED)  # their compression
 # Chart.js, which becomes a part of every report.
 find_file(CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js /usr/share/nodejs/chart.js/dist)
 if(NOT CHART_JS)

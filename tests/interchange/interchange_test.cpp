@@ -15,6 +15,7 @@
 #include "study/interchange/model_to_mat.hpp"
 #include "study/interchange/steps_to_mat.hpp"
 #include "study/reading/read_parts.hpp"
+#include "study/reading/read_sets.hpp"
 #include "study/same_study.hpp"
 
 using namespace cordon;
@@ -144,7 +145,7 @@ TEST_CASE("boxes are recognised, and only boxes") {
     const auto n = *rc::gen::inRange<Index>(1, 5);
     Box box{Vector(n), Vector(n)};
     for (Index i = 0; i < n; ++i) {
-      const double x = *rc::gen::inRange(-1000, 1000) / 7.0, y = *rc::gen::inRange(-1000, 1000) / 1e3;
+      const double x = *rc::gen::inRange(-1000, 1000) / 64.0, y = *rc::gen::inRange(-1000, 1000) / 256.0;
       box.lower[i] = std::min(x, y), box.upper[i] = std::max(x, y);
       if (*rc::gen::inRange(0, 5) == 0) box.lower[i] = -inf, box.upper[i] = inf;
       if (*rc::gen::inRange(0, 5) == 0) box.lower[i] = box.upper[i] = x;
@@ -152,6 +153,8 @@ TEST_CASE("boxes are recognised, and only boxes") {
     const LineForm X = make_box(box);
     const auto found = mat::as_box(X);
     RC_ASSERT(found.has_value());
+    RC_ASSERT(found->lower == box.lower);
+    RC_ASSERT(found->upper == box.upper);
     const LineForm Y = make_box(*found);
     RC_ASSERT(X.c == Y.c);
     RC_ASSERT(X.G == Y.G);
@@ -163,6 +166,50 @@ TEST_CASE("boxes are recognised, and only boxes") {
   LineForm cut = make_box({Vector{{0}}, Vector{{1}}});
   cut.A = Matrix{{1}}, cut.b = Vector{{0}}, cut.S = Matrix(1, 0);
   CHECK_FALSE(mat::as_box(cut));
+}
+
+TEST_CASE("bounds that are no doubles are not written") {
+  CHECK_FALSE(mat::as_box(make_zonotope(Vector{{0.1}}, Matrix{{0.7}})));        // 0.1 + 0.7 is rounded
+  CHECK_FALSE(mat::as_box(make_zonotope(Vector{{1e308}}, Matrix{{1.7e308}})));  // there is no such double
+  CHECK_FALSE(mat::as_box(make_zonotope(Vector{{1}}, Matrix{{1e-300}})));
+  const Value X = mat::to_mat(make_zonotope(Vector{{0.1}}, Matrix{{0.7}}));
+  CHECK(X.field("type")->text == "zonotope");
+  CHECK_FALSE(X.field("lower"));
+  CHECK(X.field("c")->numbers(0, 0) == 0.1);
+  CHECK(X.field("G")->numbers(0, 0) == 0.7);
+}
+
+TEST_CASE("sets come back bit by bit, and as they were written") {
+  const FileScratch scratch;
+  CHECK(rc::check("random zonotopes", [&] {
+    const auto n = *rc::gen::inRange<Index>(1, 4), m = *rc::gen::inRange<Index>(1, 4);
+    const bool diagonal = *rc::gen::arbitrary<bool>();
+    const auto any = [] { return std::ldexp(*rc::gen::inRange(-100000, 100000) / 977.0, *rc::gen::inRange(-60, 60)); };
+    Vector c(n);
+    Matrix G = Matrix::Zero(n, diagonal ? n : m);
+    for (Index i = 0; i < n; ++i) c[i] = any();
+    for (Index i = 0; i < n; ++i) {
+      for (Index j = 0; j < G.cols(); ++j) {
+        if (!diagonal || i == j) G(i, j) = diagonal ? std::abs(any()) + 1e-9 : any();
+      }
+    }
+    const auto back = mat_to_json(mat_of(scratch, {{"X", mat::to_mat(make_zonotope(c, G))}}), {scratch / "set.json", true});
+    RC_ASSERT(back.sets_only);
+    json::Problems problems;
+    std::vector<std::string> warnings;
+    const json::Value root = json::parse(bytes_of(scratch / "set.json"), problems);
+    const auto X = json::read_set(json::Cursor(root, "", problems), warnings);
+    RC_ASSERT(X.has_value());
+    RC_ASSERT(X->c == c);
+    RC_ASSERT(X->G.rows() == n);
+    if (G.cwiseAbs().minCoeff() > 0 || diagonal) RC_ASSERT((X->G.cols() == G.cols() && X->G == G));
+    const Value written = mat::to_mat(make_zonotope(c, G));
+    for (Index i = 0; written.field("lower") && i < n; ++i) {  // in more digits
+      const long double center = c[i], radius = G.row(i).cwiseAbs().maxCoeff();
+      RC_ASSERT(center - radius == static_cast<long double>(written.field("lower")->numbers(i, 0)));
+      RC_ASSERT(center + radius == static_cast<long double>(written.field("upper")->numbers(i, 0)));
+    }
+  }));
 }
 
 TEST_CASE("the fields of a set") {

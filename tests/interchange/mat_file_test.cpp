@@ -2,9 +2,12 @@
 // MAT-files are read as they were written, and whatever their bytes are, the program goes on.
 #include "study/interchange/mat_file.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <matio.h>
+#include <zlib.h>
 
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
@@ -112,7 +115,7 @@ TEST_CASE("all numeric classes are numbers") {
                               numbers<std::int32_t>("i32", MAT_C_INT32, MAT_T_INT32, {-70000}, {1, 1}),
                               numbers<std::uint32_t>("u32", MAT_C_UINT32, MAT_T_UINT32, {4000000000u}, {1, 1}),
                               numbers<std::int64_t>("i64", MAT_C_INT64, MAT_T_INT64, {-9007199254740992}, {1, 1}),
-                              numbers<std::int64_t>("huge", MAT_C_INT64, MAT_T_INT64, {9007199254740994}, {1, 1}),
+                              numbers<std::int64_t>("huge", MAT_C_INT64, MAT_T_INT64, {9007199254740993}, {1, 1}),
                               numbers<double>("flat", MAT_C_DOUBLE, MAT_T_DOUBLE, {1, 2, 3, 4}, {2, 2, 1}),
                               numbers<double>("cube", MAT_C_DOUBLE, MAT_T_DOUBLE, {1, 2, 3, 4, 5, 6, 7, 8}, {2, 2, 2})});
   const mat::Variables all = mat::read_file(file);
@@ -128,6 +131,31 @@ TEST_CASE("all numeric classes are numbers") {
   CHECK(all[8].value.is(Kind::refused));
   CHECK(all[9].value.numbers == Matrix{{1, 3}, {2, 4}});
   CHECK(all[10].value.text.find("3 dimensions") != std::string::npos);
+}
+
+TEST_CASE("integers of 64 bits are read if they are doubles") {
+  const Scratch scratch;
+  const std::uint64_t one = 1;
+  const std::pair<std::uint64_t, bool> wide[] = {
+      {(one << 53) - 1, true}, {one << 53, true},          {(one << 53) + 1, false}, {(one << 53) + 2, true},
+      {one << 63, true},       {~std::uint64_t{0}, false}, {(one << 63) + 1, false}, {~std::uint64_t{0} << 11, true}};
+  for (const auto& [x, exact] : wide) {
+    CAPTURE(x);
+    const auto all =
+        mat::read_file(by_matio(scratch, MAT_FT_MAT5, {numbers<std::uint64_t>("x", MAT_C_UINT64, MAT_T_UINT64, {x}, {1, 1})}));
+    CHECK(all[0].value.is(Kind::numbers) == exact);
+    if (exact) CHECK(all[0].value.numbers(0, 0) == static_cast<double>(x));
+  }
+  const std::pair<std::int64_t, bool> narrow[] = {{std::numeric_limits<std::int64_t>::min(), true},
+                                                  {std::numeric_limits<std::int64_t>::max(), false},
+                                                  {-(std::int64_t{1} << 53) - 1, false},
+                                                  {-(std::int64_t{1} << 53) - 2, true}};
+  for (const auto& [x, exact] : narrow) {
+    CAPTURE(x);
+    const auto all =
+        mat::read_file(by_matio(scratch, MAT_FT_MAT5, {numbers<std::int64_t>("x", MAT_C_INT64, MAT_T_INT64, {x}, {1, 1})}));
+    CHECK(all[0].value.is(Kind::numbers) == exact);
+  }
 }
 
 TEST_CASE("sparse matrices are read, complex ones are not") {
@@ -205,6 +233,123 @@ TEST_CASE("truncated at every byte") {
   }
 }
 
+/// Refused, or nothing but what the undamaged file holds.
+void expect_same_or_refused(const std::filesystem::path& file, const mat::Variables& whole) {
+  try {
+    for (const mat::Variable& v : mat::read_file(file)) {
+      if (v.value.is(Kind::refused)) continue;
+      const auto found = std::find_if(whole.begin(), whole.end(), [&](const mat::Variable& one) { return one.name == v.name; });
+      REQUIRE(found != whole.end());
+      CHECK(same(v.value, found->value));
+    }
+  } catch (const InputError&) {
+  }
+}
+
+/// One variable of each kind. No number and no name has a word below 2^16, so that small words are sizes, types and flags.
+std::vector<matvar_t*> one_of_each() {
+  std::size_t one[2] = {1, 1}, two[2] = {1, 2};
+  const char* fields[] = {"gain", "name"};
+  std::string name = "abcdefghijkl";
+  std::size_t length[2] = {1, name.size()};
+  matvar_t* s = Mat_VarCreateStruct("ssss", 2, one, fields, 2);
+  Mat_VarSetStructFieldByIndex(s, 0, 0, numbers<double>("gain", MAT_C_DOUBLE, MAT_T_DOUBLE, {0.1, 0.3, 1 / 3.0, 1e-7}, {2, 2}));
+  Mat_VarSetStructFieldByIndex(s, 1, 0, Mat_VarCreate("name", MAT_C_CHAR, MAT_T_UINT8, 2, length, name.data(), 0));
+  matvar_t* items[] = {numbers<float>(nullptr, MAT_C_SINGLE, MAT_T_SINGLE, {0.1f, 0.7f, 0.9f}, {3, 1}),
+                       numbers<std::int32_t>(nullptr, MAT_C_INT32, MAT_T_INT32, {1 << 20, 1 << 21}, {1, 2})};
+  std::vector<mat_uint32_t> ir{0, 1, 2, 0}, jc{0, 1, 3, 4};
+  std::vector<double> entries{0.1, 0.2, 0.3, 0.7};
+  mat_sparse_t sparse{4, ir.data(), 4, jc.data(), 4, 4, entries.data()};
+  std::size_t square[2] = {3, 3};
+  return {numbers<double>("AAAA", MAT_C_DOUBLE, MAT_T_DOUBLE, {0.1, 0.7, 1 / 3.0, 1e-7}, {2, 2}), s,
+          Mat_VarCreate("cccc", MAT_C_CELL, MAT_T_CELL, 2, two, static_cast<void*>(items), 0),
+          Mat_VarCreate("SSSS", MAT_C_SPARSE, MAT_T_DOUBLE, 2, square, &sparse, 0)};
+}
+
+TEST_CASE("sizes that do not fit are refused, never filled up") {
+  const Scratch scratch;
+  for (matvar_t* const v : one_of_each()) {
+    const auto file = by_matio(scratch, MAT_FT_MAT5, {v});
+    const mat::Variables whole = mat::read_file(file);
+    REQUIRE(whole.size() == 1);
+    std::size_t changed = 0;
+    REQUIRE_FALSE(whole[0].value.is(Kind::refused));
+    const std::string bytes = bytes_of(file);
+    for (std::size_t size = 128; size < bytes.size(); size += 4) {
+      CAPTURE(size);
+      expect_same_or_refused(written(scratch, bytes.substr(0, size)), whole);
+    }
+    if (whole[0].name == "SSSS") continue;  // its places are small words, too
+    for (std::size_t at = 128; at < bytes.size(); at += 4) {
+      const auto word_at = [&](std::size_t place) {
+        std::uint32_t x = 0;
+        std::memcpy(&x, &bytes[place], 4);
+        return x;
+      };
+      const std::uint32_t word = word_at(at), before = word_at(at - 4);
+      const bool flags = before == 8 && word_at(at - 8) == 6,
+                 type = at > 128 && before != 0x40005 && (before == 0 || before > 4096);
+      if (word == 0 || word > 4096 || flags || type) continue;  // a change of these is another meaning, not another size
+      for (const int change : {-8, -4, -2, -1, 1, 4, 8, 64}) {
+        CAPTURE(at);
+        CAPTURE(change);
+        ++changed;
+        const std::uint32_t other = word + static_cast<std::uint32_t>(change);
+        std::string damaged = bytes;
+        std::memcpy(&damaged[at], &other, 4);
+        expect_same_or_refused(written(scratch, damaged), whole);
+      }
+    }
+    CHECK((changed > 40 || whole[0].name == "SSSS"));
+  }
+}
+
+TEST_CASE("data that are shorter or longer than the dimensions") {
+  const Scratch scratch;
+  const auto element = [](std::uint32_t type, const std::string& data) {
+    const std::uint32_t tag[2] = {type, static_cast<std::uint32_t>(data.size())};
+    return std::string(reinterpret_cast<const char*>(tag), 8) + data + std::string((8 - data.size() % 8) % 8, '\0');
+  };
+  const std::string head = mat::to_bytes({}).substr(0, 128);
+  const auto variable = [&](std::size_t count, bool packed) {
+    const std::vector<double> numbers(count, 0.5);
+    const std::string body = element(6, std::string("\6\0\0\0\0\0\0\0", 8)) + element(5, std::string("\2\0\0\0\2\0\0\0", 8)) +
+                             element(1, "A") + element(9, std::string(reinterpret_cast<const char*>(numbers.data()), 8 * count));
+    const std::string plain = element(14, body);
+    if (!packed) return head + plain;
+    uLongf size = compressBound(plain.size());
+    std::string small(size, '\0');
+    REQUIRE(compress(reinterpret_cast<Bytef*>(small.data()), &size, reinterpret_cast<const Bytef*>(plain.data()), plain.size()) ==
+            Z_OK);
+    const std::uint32_t tag[2] = {15, static_cast<std::uint32_t>(size)};
+    return head + std::string(reinterpret_cast<const char*>(tag), 8) + small.substr(0, size);
+  };
+  for (const bool packed : {false, true}) {
+    CAPTURE(packed);
+    CHECK(mat::read_file(written(scratch, variable(4, packed)))[0].value.numbers == Matrix::Constant(2, 2, 0.5));
+    for (const std::size_t count : {0, 1, 2, 3, 5, 6}) {
+      CAPTURE(count);
+      CHECK(reason(written(scratch, variable(count, packed))).find("damaged") != std::string::npos);
+    }
+    const std::string whole = variable(4, packed);
+    for (std::size_t size = 129; size < whole.size(); ++size) CHECK(reason(written(scratch, whole.substr(0, size))) != "");
+    CHECK(reason(written(scratch, whole + "x")) != "");
+  }
+  std::string wrong_sum = variable(4, true);
+  wrong_sum.back() = static_cast<char>(wrong_sum.back() ^ 1);
+  CHECK(reason(written(scratch, wrong_sum)) != "");
+}
+
+TEST_CASE("version 7.3, cut off anywhere") {
+  const Scratch scratch;
+  const auto file =
+      by_matio(scratch, MAT_FT_MAT73, {numbers<double>("A", MAT_C_DOUBLE, MAT_T_DOUBLE, {0.1, 0.7, 1 / 3.0, 1e-7}, {2, 2})});
+  const mat::Variables whole = mat::read_file(file);
+  const std::string bytes = bytes_of(file);
+  for (std::size_t size = 128; size < bytes.size(); size += 61)
+    expect_same_or_refused(written(scratch, bytes.substr(0, size)), whole);
+}
+
 TEST_CASE("damaged bytes") {
   const Scratch scratch;
   const std::string plain = [&] {
@@ -253,6 +398,10 @@ TEST_CASE("names of MATLAB") {
   CHECK(mat::valid_name("_a") == "x_a");
   CHECK(mat::valid_name("Größe--1") == "Gr_e_1");
   CHECK(mat::valid_name("") == "x");
+  for (const std::string keyword : {"end", "for", "function", "otherwise", "do"})
+    CHECK(mat::valid_name(keyword) == "x" + keyword);
+  CHECK(mat::valid_name("ends") == "ends");
+  CHECK(mat::valid_names({"end", "xend"}) == std::vector<std::string>{"xend", "xend_2"});
   CHECK(mat::valid_name(std::string(100, 'a')).size() == 63);
   const auto names = mat::valid_names({"a b", "a-b", "a_b_2", "a+b", std::string(70, 'z'), std::string(71, 'z')});
   CHECK(names == std::vector<std::string>{"a_b", "a_b_2", "a_b_2_2", "a_b_3", std::string(63, 'z'), std::string(61, 'z') + "_2"});

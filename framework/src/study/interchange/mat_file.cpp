@@ -9,6 +9,8 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <limits>
+#include <malloc.h>
 #include <matio.h>
 #include <memory>
 #include <sys/mman.h>
@@ -18,6 +20,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/registry/build.hpp"
+#include "study/interchange/mat_layout.hpp"
 #include "study/interchange/mat_wire.hpp"
 #include "study/interchange/utf16.hpp"
 
@@ -201,14 +204,24 @@ Value read(const matvar_t& v, int depth, std::size_t& budget) {
   return refused("its class is not known");
 }
 
-/// Integers beyond 2⁵³ set `inexact`.
+/// Whether the integer became another number as a double.
+template <class T>
+bool is_rounded(T x, double y) {
+  if constexpr (sizeof(T) < 8 || !std::is_integral_v<T>) {
+    return false;
+  } else {
+    const double end = std::ldexp(1.0, std::numeric_limits<T>::digits);  // one more than the largest
+    return y >= end || static_cast<T>(y) != x;
+  }
+}
+
 template <class T>
 void copy(const void* data, std::size_t count, double* out, bool& inexact) {
   for (std::size_t i = 0; i < count; ++i) {
     T x;
     std::memcpy(&x, static_cast<const char*>(data) + i * sizeof(T), sizeof(T));
     out[i] = static_cast<double>(x);
-    if constexpr (sizeof(T) == 8 && std::is_integral_v<T>) inexact = inexact || std::abs(out[i]) > 9007199254740992.0;
+    inexact = inexact || is_rounded(x, out[i]);
   }
 }
 
@@ -252,7 +265,7 @@ std::string convert(matio_types type, const void* data, std::size_t bytes, std::
     default:
       return "it is damaged";
   }
-  return inexact ? "it holds integers beyond 2^53" : "";
+  return inexact ? "it holds integers beyond 2^53 that are no doubles" : "";
 }
 
 Value read_numbers(const matvar_t& v) {
@@ -339,6 +352,7 @@ std::string objection_inside(const matvar_t& v, int depth, std::size_t& budget) 
 }
 
 Variables read_all(const char* path) {
+  check_layout(path);
   const MatFile file(Mat_Open(path, MAT_ACC_RDONLY));
   if (!file) throw Error(Errc::invalid, "libmatio cannot open it");
   Variables variables;
@@ -346,8 +360,8 @@ Variables read_all(const char* path) {
   while (const MatVariable v{Mat_VarReadNextInfo(file.get())}) {
     if (!v->name) continue;
     std::size_t left = budget;
-    const std::string why = objection_inside(*v, 0, left);
-    if (why.empty()) Mat_VarReadDataAll(file.get(), v.get());
+    std::string why = objection_inside(*v, 0, left);
+    if (why.empty() && Mat_VarReadDataAll(file.get(), v.get()) != 0) why = "it is damaged";
     variables.push_back({v->name, why.empty() ? read(*v, 0, budget) : refused(why)});
     if (variables.size() > 10'000) throw Error(Errc::invalid, "it holds more than 10000 variables");
   }
@@ -374,6 +388,7 @@ void limit_this_process(const char* path) {
   const int nowhere = ::open("/dev/null", O_RDWR);  // libraries below print what they think of damaged files
   if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO), ::dup2(nowhere, STDOUT_FILENO);
   limit(RLIMIT_CORE, 0);
+  ::mallopt(M_PERTURB, 0xFF);  // memory begins as zeros: what libmatio leaves unread shows nothing of this process
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(path, error);
   limit(RLIMIT_CPU, 3 + (error ? rlim_t{0} : static_cast<rlim_t>(bytes >> 22)));  // seconds

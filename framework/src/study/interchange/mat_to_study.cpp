@@ -145,8 +145,9 @@ Json pipelines_for(const json::SystemPart& system) {
   if (m.is_uncertain() && !m.is_descriptor()) observer = {{"type", "zonotope_uncertain"}, {"gain", {{"type", "h_infinity"}}}};
   const bool bounded = is_bounded(system.model.X0) == Answer::yes;
   Json list = Json::array();
-  if (bounded) list.push_back({{"name", "Zonotope"}, {"backend", "zonotope"}, {"observer", observer}});
-  if (!bounded || !m.is_uncertain()) {
+  // of a descriptor system, a zonotope needs [E; C] of full column rank
+  if (bounded && !m.is_descriptor()) list.push_back({{"name", "Zonotope"}, {"backend", "zonotope"}, {"observer", observer}});
+  if (!bounded || m.is_descriptor() || !m.is_uncertain()) {
     list.push_back({{"name", "Line zonotope"}, {"backend", "line_zonotope"}, {"observer", observer}});
   }
   return list;

@@ -12,6 +12,40 @@ namespace {
 
 constexpr std::size_t longest_name = 63;
 
+/// Words of the language, of MATLAB or Octave, that are no names.
+constexpr std::string_view keywords[] = {"break",
+                                         "case",
+                                         "catch",
+                                         "classdef",
+                                         "continue",
+                                         "do",
+                                         "else",
+                                         "elseif",
+                                         "end",
+                                         "endfor",
+                                         "endfunction",
+                                         "endif",
+                                         "endparfor",
+                                         "endswitch",
+                                         "endwhile",
+                                         "end_try_catch",
+                                         "end_unwind_protect",
+                                         "for",
+                                         "function",
+                                         "global",
+                                         "if",
+                                         "otherwise",
+                                         "parfor",
+                                         "persistent",
+                                         "return",
+                                         "spmd",
+                                         "switch",
+                                         "try",
+                                         "until",
+                                         "unwind_protect",
+                                         "unwind_protect_cleanup",
+                                         "while"};
+
 }  // namespace
 
 const Value* Value::field(std::string_view name, Index element) const {
@@ -94,7 +128,9 @@ std::string valid_name(std::string_view name) {
       valid += '_';
     }
   }
-  return valid.empty() ? "x" : valid.substr(0, longest_name);
+  const bool keyword = std::find(std::begin(keywords), std::end(keywords), valid) != std::end(keywords);
+  if (valid.empty() || keyword) valid.insert(valid.begin(), 'x');
+  return valid.substr(0, longest_name);
 }
 
 std::vector<std::string> valid_names(const std::vector<std::string>& names) {

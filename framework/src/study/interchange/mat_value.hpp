@@ -57,7 +57,7 @@ class Struct {
 };
 
 /// Names that MATLAB takes for variables and fields: a letter, then letters, digits and underscores, 63 at most. Runs of other
-/// characters become an underscore.
+/// characters become an underscore, and keywords begin with an x.
 std::string valid_name(std::string_view name);
 /// The same for several names; those that would be equal get "_2", "_3", ….
 std::vector<std::string> valid_names(const std::vector<std::string>& names);

@@ -2,7 +2,6 @@
 #include "study/interchange/model_to_mat.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -24,32 +23,12 @@ bool equal(const LineForm& X, const LineForm& Y) {
          X.b.size() == Y.b.size();
 }
 
-/// Doubles around x: its neighbours, and others within some rounding errors of numbers of the size `largest`. The nearest come
-/// first.
-std::vector<double> around(double x, double largest) {
-  std::vector<double> found{x};
-  const double unit = (std::nextafter(largest, inf) - largest) / 8;
-  double below = x, above = x;
-  for (int i = 1; i <= 16; ++i) {
-    if (i <= 3) found.insert(found.end(), {below = std::nextafter(below, -inf), above = std::nextafter(above, inf)});
-    found.insert(found.end(), {x - i * unit, x + i * unit});
-  }
-  return found;
-}
-
-/// A bound on either side of the centre with this radius that `make_box` turns into exactly these two: they differ from c ± r by
-/// rounding errors of the larger of c and r.
-std::optional<std::array<double, 2>> bounds_of(double center, double radius) {
-  const double largest = std::max(std::abs(center), radius);
-  const std::vector<double> uppers = around(center + radius, largest);
-  for (const double lower : around(center - radius, largest)) {
-    for (const double upper : uppers) {
-      if (!(lower < upper) || !std::isfinite(lower) || !std::isfinite(upper)) continue;
-      const LineForm X = make_box({Vector::Constant(1, lower), Vector::Constant(1, upper)});
-      if (X.c[0] == center && X.G(0, 0) == radius) return std::array{lower, upper};
-    }
-  }
-  return std::nullopt;
+/// x + y, if that is a double.
+std::optional<double> exact_sum(double x, double y) {
+  const double sum = x + y, rest = sum - x;
+  if (!std::isfinite(sum) || !std::isfinite(rest)) return std::nullopt;
+  const double error = (x - (sum - rest)) + (y - rest);
+  return error == 0 ? std::optional(sum) : std::nullopt;
 }
 
 /// The simplest type that holds the blocks as they are.
@@ -109,9 +88,10 @@ std::optional<Box> as_box(const LineForm& X) {
     const bool line = X.M.row(i).any(), generator = X.G.row(i).any();
     if (line) box.lower[i] = -inf, box.upper[i] = inf;
     if (!generator || line) continue;
-    const auto bounds = bounds_of(X.c[i], X.G.row(i).cwiseAbs().maxCoeff());
-    if (!bounds) return std::nullopt;
-    box.lower[i] = (*bounds)[0], box.upper[i] = (*bounds)[1];
+    const double radius = X.G.row(i).cwiseAbs().maxCoeff();
+    const auto lower = exact_sum(X.c[i], -radius), upper = exact_sum(X.c[i], radius);
+    if (!lower || !upper) return std::nullopt;
+    box.lower[i] = *lower, box.upper[i] = *upper;
   }
   return equal(make_box(box), X) ? std::optional(box) : std::nullopt;
 }

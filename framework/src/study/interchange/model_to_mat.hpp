@@ -11,7 +11,7 @@ namespace cordon::mat {
 
 /// type, c, G, A, b, M, S; of a box lower and upper besides, from which `make_box` makes the same set.
 Value to_mat(const LineForm& X);
-/// The box that `make_box` makes this form of, if there is one.
+/// The box that `make_box` makes this form of, if there is one whose bounds are exactly those of the set.
 std::optional<Box> as_box(const LineForm& X);
 /// Of the nominal mode, with the name of it and the other modes.
 Value to_mat(const ModeBank& bank);
