@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/run.hpp"
 
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <unistd.h>
@@ -26,6 +28,15 @@ std::filesystem::path directory_for(const RunArguments& arguments) {
   if (arguments.shard.empty()) return std::filesystem::path("results") / name;
   const Shard shard = shard_of(arguments.shard);
   return std::filesystem::path("results") / fmt::format("{}-part-{}-of-{}", name, shard.part, shard.of);
+}
+
+/// Empty for a number of seconds.
+std::string time_problem(const std::string& text) {
+  double seconds = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, seconds);
+  const bool good = read.ec == std::errc() && read.ptr == end && std::isfinite(seconds) && seconds > 0;
+  return good ? "" : text + " is no time; write seconds, above 0";
 }
 
 /// All pipelines of a study, or the one of `only`.
@@ -91,7 +102,7 @@ void add_run(CLI::App& app, Program& program) {
   command->add_flag("--resume", arguments->resume, "Go on after what an interrupted run has left")->group(group);
   command->add_flag("--restart", arguments->restart, "Throw away what an interrupted run has left")->group(group);
   command->add_option("--point-limit", arguments->point_limit_s, "Give a point up after this time")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Validator(time_problem, "", ""))
       ->option_text("SECONDS")
       ->group(group);
   command->add_option("--shard", arguments->shard, "Run part I of N parts; cordon merge joins them")

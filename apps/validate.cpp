@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "cordon/study/data.hpp"
 #include "cordon/study/study.hpp"
+#include "cordon/study/sweep.hpp"
 
 namespace cordon::apps {
 
@@ -134,13 +135,25 @@ Json as_json(const std::string& file, const Error& error) {
   return entry;
 }
 
+/// Opens the data under the other values of the axes that choose a file or its columns.
+void open_all_data(const Study& study, const Registry& registry) {
+  constexpr std::size_t most = 1000;  // of one axis
+  open_data(study);
+  for (std::size_t axis = 0; axis < study.sweep.size(); ++axis) {
+    if (!study.sweep[axis].path.starts_with("/data/csv") && study.sweep[axis].path != "/data") continue;
+    std::vector<std::size_t> at(study.sweep.size(), 0);
+    for (at[axis] = 1; at[axis] < std::min(most, study.sweep[axis].values.size()); ++at[axis])
+      open_data(study_at(study, at, registry));
+  }
+}
+
 /// Reads one study and its data as `cordon run` would, but runs nothing and writes nothing.
 Exit validate_one(const std::string& file, const Program& program, bool json, Json& entries) {
   try {
     Registry registry;
     registry.load(SearchPath{program.plugins});
     const Study study = read_study(file, registry);
-    open_data(study);
+    open_all_data(study, registry);
     if (json) {
       entries.push_back(as_json(study));
     } else {

@@ -18,6 +18,8 @@ const Mistake forms[] = {
      "did you mean \"name\"?"},
     {"\"name\": \"generators\"", "\"name\": \"a\\nb\"", "/sweep/0/name", "holds a control character", "in one line"},
     {"\"name\": \"generators\"", "\"name\": \"error\"", "/sweep/0/name", "is the name of another column", "choose another"},
+    {"\"name\": \"generators\"", "\"name\": \"median\"", "/sweep/0/name", "is the name of another column", "choose another"},
+    {"\"name\": \"generators\"", "\"name\": \"relative\"", "/sweep/0/name", "is the name of another column", "choose another"},
     {"\"name\": \"bound\"", "\"name\": \"generators\"", "/sweep/1/name", "repeats the name of /sweep/0", "unique", 38},
     {"\"path\": \"/data/simulate/seed\", ", "", "/sweep/2/path", "is missing", "what is varied", 39},
     {"\"path\": \"/data/simulate/seed\"", "\"path\": \"data/simulate/seed\"", "/sweep/2/path", "is no path", "JSON pointer"},
@@ -144,6 +146,46 @@ TEST_CASE("all problems of a sweep and of the rest at once") {
   for (const Diagnostic& d : problems_of(text)) places.push_back(d.pointer);
   CHECK(places == std::vector<std::string>{"/data/simulate/steps", "/sweep/0/values/1", "/sweep/0/values/2", "/sweep/1/values/1",
                                            "/sweep/2/range"});
+}
+
+TEST_CASE("wrong axes do not hide what is wrong with the paths of others") {
+  std::string text = exchanged(sweep_study, "\"name\": \"generators\", ", "");
+  text = exchanged(text, "/system/W/upper/0", "/system/U/upper/0");
+  text = exchanged(text, "/data/simulate/seed", "/data/simulat/seed");
+  text = exchanged(text, "\"range\": [1, 9, 4]}",
+                   "\"range\": [1, 9, 4]}, {\"name\": \"more\", \"path\": \"/x\", \"range\": [1, 0]}");
+  std::vector<std::string> places;
+  for (const Diagnostic& d : problems_of(text)) places.push_back(d.pointer);
+  CHECK(places == std::vector<std::string>{"/sweep/0/name", "/sweep/1/path", "/sweep/3/range/1", "/sweep/2/path"});
+}
+
+TEST_CASE("an entry of a sparse matrix has no path") {
+  std::string text = exchanged(sweep_study, "\"A\": [[0.5, 1], [0, 0.5]]",
+                               "\"A\": {\"rows\": 2, \"cols\": 2, \"entries\": [[1, 1, 0.5], [2, 2, 0.5]]}");
+  for (const char* path : {"/system/A/0/1", "/system/A/0"}) {
+    const auto problems = problems_of(exchanged(text, "/data/simulate/seed", path));
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].pointer == "/sweep/2/path");
+    CHECK(problems[0].message == "/system/A is a sparse matrix, its entries have no places");
+    CHECK(problems[0].suggestion.find("list of rows") != std::string::npos);
+  }
+}
+
+TEST_CASE("repetitions that share seeds are warned of") {
+  const auto warnings = [](const char* study, const std::string& rest) {
+    return read_text(exchanged(study, "\"data\": {",
+                               "\"sweep\": [{\"name\": \"seed\", \"path\": \"/data/simulate/seed\", " + rest + "}], \"data\": {"))
+        .warnings;
+  };
+  const std::size_t before = read_text(diagnosis_study).warnings.size();
+  const auto shared = warnings(diagnosis_study, "\"range\": [1, 5]");
+  REQUIRE(shared.size() == before + 1);
+  CHECK(shared.back().find("/sweep/0: with \"seeds\": 3") != std::string::npos);
+  CHECK(shared.back().find("\"range\": [first, last, 3]") != std::string::npos);
+  CHECK(warnings(diagnosis_study, "\"values\": [8, 1, 3]").size() == before + 1);
+  CHECK(warnings(diagnosis_study, "\"values\": [8, 1, 5]").size() == before);
+  CHECK(warnings(diagnosis_study, "\"range\": [1, 7, 3]").size() == before);
+  CHECK(warnings(diagnosis_study, "\"range\": [1, 5], \"repeat\": false").size() == before);
 }
 
 TEST_CASE("the same problem with several values is told of each") {

@@ -117,6 +117,22 @@ TEST_CASE("bad rows of recorded data are found by validate") {
   CHECK(outcome.out.find("oops") != std::string::npos);
 }
 
+TEST_CASE("validate opens the recorded data of every value of a sweep") {
+  const Scratch scratch;
+  auto study = nlohmann::ordered_json::parse(std::ifstream(examples + "recorded_walk.json"));
+  study["sweep"] = {{{"name", "walk"}, {"path", "/data/csv/file"}, {"values", {"good.csv", "bad.csv"}}}};
+  const std::string file = scratch.write("walk.json", study.dump());
+  const std::string good = "k,px_m,py_m,vx_mps,vy_mps,zx_m,zy_m\n0,0,0,0,0,0,0\n";
+  scratch.write("good.csv", good);
+  scratch.write("bad.csv", good + "1,0,0,0,0,oops,0\n");
+  const Outcome bad = run("validate " + file, "2>&1");
+  CHECK(bad.exit == 2);
+  CHECK(bad.out.find("bad.csv") != std::string::npos);
+  CHECK(bad.out.find("oops") != std::string::npos);
+  scratch.write("bad.csv", good);
+  CHECK(run("validate " + file, "2>&1").exit == 0);
+}
+
 TEST_CASE("a refused plugin that the study needs is exit code 3") {
   const Scratch scratch;
   scratch.write("ellipsoid.so", "not a library");

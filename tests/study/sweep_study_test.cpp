@@ -280,6 +280,17 @@ TEST_CASE("the point of one pipeline does not depend on whether others work") {
   CHECK_THROWS_AS(point(2, {0, 1, 1}), InputError);
   CHECK_NOTHROW(point(0, {0, 1, 1}));
   CHECK_THROWS_AS(point(2, {0, 1, 1}), InputError);
+  const Scratch out;
+  SweepOptions options;
+  options.out = out.folder() / "results";
+  const SweepOutcome outcome = run_sweep(read.study, read.registry, options);
+  int wrong = 0;
+  for (const ResultRow& row : outcome.table.rows) {
+    const bool tells = row.error.find("/pipelines/2/") != std::string::npos;
+    wrong += tells;
+    CHECK(tells == (row.at[1] == 1 && row.at[2] == 1 && row.pipeline == 2));
+  }
+  CHECK(wrong == 3);
   Study study = point(1, {2, 1, 0});
   CHECK(generators(study, 1) == 40);
   CHECK(study.resolved.empty());

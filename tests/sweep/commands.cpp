@@ -100,7 +100,8 @@ TEST_CASE_FIXTURE(Fixture, "options that say nothing are errors") {
   }
   refused({study, "--resume", "--restart"}, "exclude each other");
   refused({study, "--jobs", "0"}, "--jobs");
-  refused({study, "--point-limit", "0"}, "--point-limit");
+  for (const std::string limit : {"0", "-1", "abc", "1s", "inf", "nan"})
+    refused({study, "--point-limit", limit}, limit + " is no time; write seconds, above 0");
 }
 
 TEST_CASE_FIXTURE(Fixture, "points that fail are told; if all do, by the exit code of the first") {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 
 #include "run/scratch.hpp"
 #include "study/results/fingerprint.hpp"
+#include "study/sweep/sweep_files.hpp"
 #include "sweep/sweeps.hpp"
 
 using namespace cordon;
@@ -82,6 +84,20 @@ std::string refusal(const std::filesystem::path& out, const JournalHead& other) 
 }
 
 }  // namespace
+
+TEST_CASE("what is no file is not read") {
+  const Scratch scratch;
+  std::filesystem::create_directories(scratch / ".sweep");
+  REQUIRE(::mkfifo((scratch / ".sweep/journal").c_str(), 0600) == 0);
+  CHECK(refusal(scratch.path(), head()).find("is no regular file") != std::string::npos);
+  REQUIRE(::mkfifo((scratch / ".sweep/journal.new").c_str(), 0600) == 0);
+  {
+    const Journal journal(scratch.path(), head(), Journal::Start::restart, [](const PointResult&) {});
+  }
+  CHECK(std::filesystem::is_regular_file(scratch / ".sweep/journal"));
+  REQUIRE(::mkfifo((scratch / "results.json").c_str(), 0600) == 0);
+  CHECK_THROWS_WITH_AS(detail::read_sweep(scratch.path()), doctest::Contains("is no regular file"), InputError);
+}
 
 TEST_CASE("a line gives back what was written") {
   CHECK(rc::check([] {

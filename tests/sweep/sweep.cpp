@@ -156,6 +156,35 @@ TEST_CASE("a point that fails stops no other") {
   CHECK(results_of(scratch.path())["points"][2]["numbers"].empty());
 }
 
+TEST_CASE("errors name files as the study does, wherever it is") {
+  const Scratch scratch;
+  Study study = sweeps::study({fakes::pipeline("one")}, 2);
+  study.file = scratch / "folder/study.json";
+  const std::string folder = scratch / "folder";
+  const auto made_at = [&](const std::vector<std::size_t>& place) -> Study {
+    if (place[0] == 0 && place[1] == 0) throw InputError(folder + "/data.csv", {{"/data/csv/file", "is missing", ""}});
+    if (place[0] == 0) throw Error(Errc::io, "cannot open " + folder + "/../b.csv: \"" + folder + "/c\"");
+    throw Error(Errc::io, "cannot open /elsewhere" + folder + "/b.csv");
+  };
+  const auto rows = sweeps::run(study, into(scratch / "out"), made_at).table.rows;
+  CHECK(rows[0].error == "data.csv: /data/csv/file is missing");
+  CHECK(rows[1].error == "cannot open ../b.csv: \"c\"");
+  CHECK(rows[2].error == "cannot open /elsewhere" + folder + "/b.csv");
+}
+
+TEST_CASE("an axis with the name of a number has a column of its own") {
+  const Scratch scratch;
+  Study study = sweeps::study({fakes::pipeline("one")}, 1);
+  study.sweep[0].name = "steps";
+  study.sweep[1].name = "axis_steps";
+  study.resolved.replace(study.resolved.find("\"noise\""), 7, "\"steps\"");
+  study.resolved.replace(study.resolved.find("\"seed\""), 6, "\"axis_steps\"");
+  sweeps::run(study, into(scratch.path()));
+  const std::string table = bytes_of(scratch / "points.csv");
+  CHECK(table.starts_with("point,pipeline,axis_axis_steps,axis_steps,"));
+  CHECK(table.find(",steps,") != std::string::npos);
+}
+
 TEST_CASE("violated guarantees are counted") {
   const Scratch scratch;
   Params crooked;

@@ -54,7 +54,8 @@ inline Study study(std::vector<PipelineSpec> pipelines, int seeds = 3, std::int6
 }
 
 /// The study under a combination.
-inline detail::StudyAt at(const Study& study) {
+using StudyAt = std::function<Study(const std::vector<std::size_t>&)>;
+inline StudyAt at(const Study& study) {
   return [study](const std::vector<std::size_t>& place) {
     Study made = study;
     auto& simulate = std::get<SimulateSpec>(made.data);
@@ -64,10 +65,10 @@ inline detail::StudyAt at(const Study& study) {
   };
 }
 
-inline SweepOutcome run(const Study& study, const SweepOptions& options, const detail::StudyAt& made_at) {
+inline SweepOutcome run(const Study& study, const SweepOptions& options, const StudyAt& made_at) {
   Registry registry;
   registry.add(register_all);
-  return detail::run_sweep_on(made_at, study, registry, options);
+  return detail::run_sweep_on([&](const SweepPoint& point) { return made_at(point.at); }, study, registry, options);
 }
 inline SweepOutcome run(const Study& study, const SweepOptions& options) { return run(study, options, at(study)); }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/reading/point_study.hpp"
 
+#include <algorithm>
+
 #include "study/reading/study_source.hpp"
 
 namespace cordon {
@@ -13,6 +15,16 @@ void check_indices(const std::vector<WrittenAxis>& axes, const std::vector<std::
   bool good = at.size() == axes.size();
   for (std::size_t i = 0; good && i < axes.size(); ++i) good = at[i] < axes[i].values.size();
   if (!good) throw Error(Errc::invalid, "there is no such combination of values in the sweep");
+}
+
+/// Without problems of pipelines that were not asked for, unless there are no others.
+std::vector<Diagnostic> of_interest(std::vector<Diagnostic> all, std::optional<std::size_t> only) {
+  const auto is_others = [&](const Diagnostic& d) {
+    const auto steps = path_steps(d.pointer);
+    return only && steps && steps->size() > 1 && steps->front().key == "pipelines" && (*steps)[1].key != std::to_string(*only);
+  };
+  if (!std::all_of(all.begin(), all.end(), is_others)) std::erase_if(all, is_others);
+  return all;
 }
 
 Study read_point(const Study& study, const std::vector<std::size_t>& at, std::optional<std::size_t> only,
@@ -28,7 +40,7 @@ Study read_point(const Study& study, const std::vector<std::size_t>& at, std::op
   options.known = source.system;
   TreeReading reading = read_tree(tree, registry, options, problems);
   for (const Diagnostic& d : reading.refusals) problems.add(d.pointer, d.line, d.message, d.suggestion);
-  if (problems.any()) throw InputError(source.file.string(), problems.sorted());
+  if (problems.any()) throw InputError(source.file.string(), of_interest(problems.sorted(), only));
   for (std::size_t i = 0; i < reading.study.pipelines.size(); ++i) {
     if (only.value_or(i) == i) source.remember(registry, i, at);
   }

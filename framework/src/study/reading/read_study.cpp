@@ -81,6 +81,8 @@ Study StudyReader::read() {
     SweepAxis& made = study.sweep.emplace_back(SweepAxis{axis.name, axis.path.text, {}, axis.repeat});
     for (const Value& value : axis.values) made.values.push_back(canonical_text(value));
   }
+  if (std::string warning = overlapping_seeds(study, source_->sweep); !warning.empty())
+    study.warnings.push_back(std::move(warning));
   study.resolved = resolve(study, reading.written, source_->sweep, registry_);
   if (source_->sweep.empty()) {
     source_->tree = Value{};

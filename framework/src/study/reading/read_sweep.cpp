@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "study/reading/read_parts.hpp"
 
@@ -108,7 +109,8 @@ std::optional<WrittenAxis> read_axis(const Cursor& at) {
   axis.pointer = at.pointer();
   const auto name_at = at.need("name", "the name of its column in tables");
   const auto name = name_at ? read_line(*name_at, max_name) : std::nullopt;
-  for (const char* taken : {"point", "pipeline", "error"})
+  for (const char* taken : {"point", "pipeline", "error", "measure", "points", "failed", "count", "infinite", "mean", "deviation",
+                            "min", "q05", "q25", "median", "q75", "q95", "max", "relative"})
     if (name == taken) name_at->error("is the name of another column of the results", "choose another one");
   const auto path_at = at.need("path", "what is varied: \"/pipelines/*/observer/max_generators\"");
   auto path = path_at ? read_path(*path_at) : std::nullopt;
@@ -128,7 +130,9 @@ std::optional<WrittenAxis> read_axis(const Cursor& at) {
 }
 
 /// Compares every axis with those before it.
-void check_pairs(const Cursor& list, const std::vector<std::pair<std::size_t, WrittenAxis>>& axes) {
+/// Returns places of those that cannot stay.
+std::set<std::size_t> check_pairs(const Cursor& list, const std::vector<std::pair<std::size_t, WrittenAxis>>& axes) {
+  std::set<std::size_t> wrong;
   for (std::size_t j = 0; j < axes.size(); ++j) {
     for (std::size_t i = 0; i < j; ++i) {
       const auto& [before, earlier] = axes[i];
@@ -138,9 +142,11 @@ void check_pairs(const Cursor& list, const std::vector<std::pair<std::size_t, Wr
       if (axis.path.meets(earlier.path)) {
         list.item(index).find("path")->error("writes where " + other + " writes too: " + earlier.path.text,
                                              "remove one of the two, or make them one axis with objects as values");
+        wrong.insert(j);
       }
     }
   }
+  return wrong;
 }
 
 void check_points(const Cursor& root, const Cursor& list, const std::vector<std::pair<std::size_t, WrittenAxis>>& axes) {
@@ -155,7 +161,6 @@ void check_points(const Cursor& root, const Cursor& list, const std::vector<std:
 std::vector<WrittenAxis> read_sweep(const Cursor& root) {
   const auto list = root.find("sweep");
   if (!list) return {};
-  const std::size_t before = list->problems().met();
   if (!list->expect(Kind::array, std::string("a list of axes: [") + axis_form + "]")) return {};
   if (list->size() == 0) list->error("is an empty list", std::string("remove it, or give an axis: ") + axis_form);
   if (list->size() > max_axes) {
@@ -166,11 +171,11 @@ std::vector<WrittenAxis> read_sweep(const Cursor& root) {
   for (std::size_t i = 0; i < list->size(); ++i) {
     if (auto axis = read_axis(list->item(i))) axes.emplace_back(i, std::move(*axis));
   }
-  check_pairs(*list, axes);
+  const std::set<std::size_t> wrong = check_pairs(*list, axes);
   check_points(root, *list, axes);
-  if (list->problems().met() != before) return {};
-  std::vector<WrittenAxis> result;
-  for (auto& axis : axes) result.push_back(std::move(axis.second));
+  std::vector<WrittenAxis> result;  // those that are right, so that all their problems are told as well
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    if (wrong.count(i) == 0) result.push_back(std::move(axes[i].second));
   return result;
 }
 

@@ -165,4 +165,25 @@ TreeReading read_first_values(StudySource& source, const Registry& registry, boo
   return result;
 }
 
+std::string overlapping_seeds(const Study& study, const std::vector<WrittenAxis>& axes) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  const bool all_seeds = std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                                     [](const PipelineSpec& spec) { return spec.diagnoser || spec.designer; });
+  if (!simulate || simulate->seeds < 2 || !all_seeds) return "";
+  for (const WrittenAxis& axis : axes) {
+    if (!axis.repeat || axis.path.text != "/data/simulate/seed") continue;
+    std::vector<double> seeds;
+    for (const Value& value : axis.values) seeds.push_back(value.number);
+    std::sort(seeds.begin(), seeds.end());
+    const auto next = std::adjacent_find(seeds.begin(), seeds.end(),
+                                         [&](double a, double b) { return b - a < static_cast<double>(simulate->seeds); });
+    if (next == seeds.end()) continue;
+    const std::string count = std::to_string(simulate->seeds);
+    return axis.pointer + ": with \"seeds\": " + count +
+           " the repetitions share seeds, and statistics count these several times; " + "choose values that lie " + count +
+           " apart: \"range\": [first, last, " + count + "]";
+  }
+  return "";
+}
+
 }  // namespace cordon::json

@@ -12,4 +12,7 @@ namespace cordon::json {
 /// is right, the names of the pipelines in `source.tree`.
 TreeReading read_first_values(StudySource& source, const Registry& registry, bool checks, Problems& problems);
 
+/// Warns of seeds that are run under several values of an axis; empty: there are none.
+std::string overlapping_seeds(const Study& study, const std::vector<WrittenAxis>& axes);
+
 }  // namespace cordon::json

@@ -165,6 +165,10 @@ class Placer {
 
   std::optional<Value> put_into_object(const Value& node, std::size_t depth, const Role& role, bool starred) {
     const std::string& key = step(depth).key;
+    if (is_sparse_matrix(node) && step_index(key)) {
+      return fail(pointer(depth) + " is a sparse matrix, its entries have no places",
+                  "write it as a list of rows, or sweep the whole matrix");
+    }
     const auto found = std::find(node.keys().begin(), node.keys().end(), key);
     Draft draft(node);
     if (found != node.keys().end()) {

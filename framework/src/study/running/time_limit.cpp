@@ -2,7 +2,6 @@
 #include "study/running/time_limit.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -12,10 +11,11 @@ namespace cordon::detail {
 
 void TimeLimit::check(std::int64_t steps) const {
   if (!reached()) return;
-  // In hundredths: the run began a little after its deadline was set.
-  const double seconds = std::round(100 * std::max(0.0, std::chrono::duration<double>(*deadline_ - begin_).count())) / 100;
+  // Rounded: the run began a little after its deadline was set.
+  const double seconds = std::max(0.0, std::chrono::duration<double>(*deadline_ - begin_).count());
+  const std::string limit = seconds < 100 ? fmt::format("{:.3g}", seconds) : fmt::format("{:.0f}", seconds);
   throw Error(Errc::time_limit,
-              fmt::format("time limit of {} s reached after {} {}", seconds, steps, steps == 1 ? "step" : "steps"));
+              fmt::format("time limit of {} s reached after {} {}", limit, steps, steps == 1 ? "step" : "steps"));
 }
 
 }  // namespace cordon::detail

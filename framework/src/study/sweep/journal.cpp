@@ -125,6 +125,7 @@ Journal::Journal(const fs::path& out, const JournalHead& head, Start start, cons
       refuse(out, "holds an unfinished sweep", "\"--resume\" goes on with it, \"--restart\" throws it away");
     }
     if (is_in(out) && start == Start::resume) {
+      if (!fs::is_regular_file(file_)) refuse(file_, "is no regular file", discard);
       old.open(file_, std::ios::binary);
       check_head(old);
     }
@@ -178,7 +179,8 @@ void Journal::check_head(std::istream& old) {
 /// A new file takes the place of the old one, with its lines that are whole, and is left open at its end.
 void Journal::begin(std::istream& old, const std::function<void(PointResult)>& earlier) {
   const fs::path fresh = directory_ / "journal.new";
-  descriptor_ = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+  ::unlink(fresh.c_str());  // whatever it is
+  descriptor_ = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(fresh, errno);
   write(with_checksum(text_of(head_)));
   for (std::string line; std::getline(old, line) && !old.eof();) {  // a last line without its end is torn

@@ -38,6 +38,8 @@ void end_member(std::string& text) {
 /// Calls `begin` when the head is there, then hands each point to `point`, which tells whether it is right.
 Frame read_points(const fs::path& file, const std::function<void(const Frame&)>& begin,
                   const std::function<bool(const Cursor&)>& point) {
+  std::error_code ignored;
+  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) refuse(file, "is no regular file", mend);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) refuse(file, "cannot be read", "\"cordon run\" writes it at the end of a sweep");
   enum class Place { head, points, tail } place = Place::head;

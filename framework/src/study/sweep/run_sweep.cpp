@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "cordon/registry/build.hpp"
+#include "study/reading/point_study.hpp"
 #include "study/report/try_report.hpp"
 #include "study/results/fingerprint.hpp"
 #include "study/results/host.hpp"
@@ -60,11 +61,26 @@ std::string text_of(const InputError& error, const Study& study) {
   return text;
 }
 
+/// Paths as the study writes them: without its folder, which is another one elsewhere.
+std::string without_folder(std::string text, const Study& study) {
+  std::error_code failure;
+  const std::string folder = (std::filesystem::absolute(study.file, failure).parent_path() / "").string();
+  if (failure || folder.size() < 2) return text;
+  for (std::size_t at = 0; (at = text.find(folder, at)) != std::string::npos;) {
+    if (at == 0 || std::string_view(" \"'(\n").find(text[at - 1]) != std::string_view::npos) {
+      text.erase(at, folder.size());
+    } else {
+      ++at;
+    }
+  }
+  return text;
+}
+
 /// Runs points, one after another: what one thread of a sweep does.
 class PointRunner {
  public:
-  PointRunner(const StudyAt& at, const Study& study, const Registry& registry, double limit_s, const std::atomic<bool>& stop)
-      : at_(at), study_(study), registry_(registry), limit_s_(limit_s), stop_(stop) {}
+  PointRunner(const StudyOf& of, const Study& study, const Registry& registry, double limit_s, const std::atomic<bool>& stop)
+      : of_(of), study_(study), registry_(registry), limit_s_(limit_s), stop_(stop) {}
 
   /// Nothing: stopped.
   std::optional<PointResult> run(const SweepPoint& point) {
@@ -86,42 +102,37 @@ class PointRunner {
 
  private:
   bool run(const SweepPoint& point, PointResult& result) {
-    if (!now_ || point.at != place_) {  // points of one combination follow each other
-      now_ = at_(point.at);
-      place_ = point.at;
-    }
+    const Study now = of_(point);
     RunOptions options;
-    options.pipeline = now_->pipelines.at(point.pipeline).name;
+    options.pipeline = now.pipelines.at(point.pipeline).name;
     options.stop = &stop_;
     if (limit_s_ < longest_limit_s)
       options.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_s_));
-    const RunOutcome outcome = run_study(*now_, registry_, options);
+    const RunOutcome outcome = run_study(now, registry_, options);
     if (outcome.interrupted) return false;
     const PipelineOutcome& pipeline = outcome.pipelines.front();
     result.numbers = numbers_of(pipeline);
-    result.error = pipeline.error;
+    result.error = without_folder(pipeline.error, study_);
     result.code = pipeline.error_code;
     return true;
   }
 
-  static void fail(PointResult& result, Errc code, const std::string& message) {
+  void fail(PointResult& result, Errc code, const std::string& message) const {
     result.code = code;
-    result.error = message.empty() ? std::string(to_string(code)) : message;
+    result.error = message.empty() ? std::string(to_string(code)) : without_folder(message, study_);
   }
 
-  const StudyAt& at_;
+  const StudyOf& of_;
   const Study& study_;
   const Registry& registry_;
   double limit_s_;
   const std::atomic<bool>& stop_;
-  std::optional<Study> now_;
-  std::vector<std::size_t> place_;
 };
 
 class SweepRun {
  public:
-  SweepRun(const StudyAt& at, const Study& study, const Registry& registry, const SweepOptions& options)
-      : at_(at), study_(study), registry_(registry), options_(options), grid_(study) {
+  SweepRun(const StudyOf& of, const Study& study, const Registry& registry, const SweepOptions& options)
+      : of_(of), study_(study), registry_(registry), options_(options), grid_(study) {
     for (std::int64_t i = 0; i < grid_.size(); ++i) total_ += is_mine(i);
   }
 
@@ -241,7 +252,7 @@ class SweepRun {
 
   void work_on_points() {
     try {
-      PointRunner runner(at_, study_, registry_, options_.point_limit_s, stop_);
+      PointRunner runner(of_, study_, registry_, options_.point_limit_s, stop_);
       while (!stop_ && !stopped_from_outside()) {
         const std::optional<SweepPoint> point = next();
         if (!point) break;
@@ -275,7 +286,7 @@ class SweepRun {
     rows_.add(*read);
   }
 
-  const StudyAt& at_;
+  const StudyOf& of_;
   const Study& study_;
   const Registry& registry_;
   const SweepOptions& options_;
@@ -293,9 +304,9 @@ class SweepRun {
 
 }  // namespace
 
-SweepOutcome run_sweep_on(const StudyAt& at, const Study& study, const Registry& registry, const SweepOptions& options) {
+SweepOutcome run_sweep_on(const StudyOf& of, const Study& study, const Registry& registry, const SweepOptions& options) {
   check(options);
-  return SweepRun(at, study, registry, options).run();
+  return SweepRun(of, study, registry, options).run();
 }
 
 }  // namespace cordon::detail
@@ -303,7 +314,7 @@ SweepOutcome run_sweep_on(const StudyAt& at, const Study& study, const Registry&
 namespace cordon {
 
 SweepOutcome run_sweep(const Study& study, const Registry& registry, const SweepOptions& options) {
-  return detail::run_sweep_on([&](const std::vector<std::size_t>& at) { return study_at(study, at, registry); }, study, registry,
+  return detail::run_sweep_on([&](const SweepPoint& point) { return study_of_point(study, point, registry); }, study, registry,
                               options);
 }
 

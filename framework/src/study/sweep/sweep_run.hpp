@@ -2,16 +2,15 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
 #include "cordon/study/sweep.hpp"
 
 namespace cordon::detail {
 
-/// The study under one combination of values; called from several threads.
-using StudyAt = std::function<Study(const std::vector<std::size_t>&)>;
+/// The study for one point: only the point's own pipeline must be right. Called from several threads.
+using StudyOf = std::function<Study(const SweepPoint&)>;
 
 /// run_sweep with studies from anywhere.
-SweepOutcome run_sweep_on(const StudyAt& at, const Study& study, const Registry& registry, const SweepOptions& options);
+SweepOutcome run_sweep_on(const StudyOf& of, const Study& study, const Registry& registry, const SweepOptions& options);
 
 }  // namespace cordon::detail

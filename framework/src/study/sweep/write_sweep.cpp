@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include "cordon/study/statistics.hpp"
@@ -81,11 +82,27 @@ std::string csv_value(const std::string& json) {
   return csv_field(value.kind == json::Value::Kind::text ? value.text() : json);
 }
 
+/// The name of an axis, or another one if a number or an axis has it.
+std::string column_of(const ResultTable& table, const SweepAxis& axis) {
+  const auto is_number = [&](const std::string& name) {
+    return std::any_of(table.columns.begin(), table.columns.end(),
+                       [&](const ResultColumn& column) { return !column.measured && column.name == name; });
+  };
+  const auto is_axis = [&](const std::string& name) {
+    return std::any_of(table.axes.begin(), table.axes.end(), [&](const SweepAxis& other) { return other.name == name; });
+  };
+  std::string name = axis.name;
+  if (!is_number(name)) return name;
+  do name = "axis_" + name;
+  while (is_number(name) || is_axis(name));
+  return name;
+}
+
 void write_table(Sink& file, const ResultTable& table) {
   std::vector<std::string> fields{"point", "pipeline"};
   std::vector<std::vector<std::string>> values;  // per axis
   for (const SweepAxis& axis : table.axes) {
-    fields.push_back(csv_field(axis.name));
+    fields.push_back(csv_field(column_of(table, axis)));
     values.emplace_back();
     for (const std::string& value : axis.values) values.back().push_back(csv_value(value));
   }
