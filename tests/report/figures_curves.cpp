@@ -74,6 +74,39 @@ TEST_CASE("bounds: bands of pipelines, inner bands, truth, gaps and marks") {
   CHECK(first.marks[1].text == "outside the bank");
 }
 
+TEST_CASE("bounds less the truth, for every pipeline from its first step on") {
+  const ResultsFiles files;
+  const Report report = read_report(files.path());
+  const Plot& first = plot(report, "bounds_less_truth_1");
+  REQUIRE(first.series.size() == 2);
+  const Series &a = first.series[0], &b = first.series[1];
+  CHECK(a.kind == Series::Kind::band);
+  CHECK(a.name == "a");
+  CHECK(a.pipeline == 0);
+  CHECK(a.x == std::vector<double>{0, 1, 2});
+  CHECK(a.y[0] == -1.25);
+  CHECK(a.upper[0] == .75);
+  CHECK(a.y[1] == -2.75);
+  CHECK(a.upper[1] == 1.25);
+  CHECK(std::isnan(a.y[2]));  // proven empty
+  CHECK(b.y == std::vector<double>{-5.25});
+  CHECK(b.upper == std::vector<double>{4.75});
+  CHECK(first.thresholds.size() == 1);
+  REQUIRE(first.marks.size() == 1);
+  CHECK(first.marks[0].text == "outside the bank");
+  const Plot& second = plot(report, "bounds_less_truth_2");
+  CHECK(second.series[0].y[0] == -inf);
+  CHECK(second.series[0].upper[1] == 3.5);
+  std::string rows = "k,y_1,x_1,x_2\n1,0,0.75,-0.5\n";  // the truth of one time
+  files.write("data.csv", rows);
+  const Report gaps = read_report(files.path());
+  CHECK(std::isnan(plot(gaps, "bounds_less_truth_1").series[0].y[0]));
+  CHECK(plot(gaps, "bounds_less_truth_1").series[0].y[1] == -2.75);
+  CHECK(plot(gaps, "bounds_less_truth_1").series.size() == 1);  // "b" has no step there
+  files.write("data.csv", "k,y_1\n0,0\n");
+  CHECK_FALSE(has(read_report(files.path()), "bounds_less_truth_1"));
+}
+
 TEST_CASE("an estimate that stays empty is marked once, and again after it was not") {
   const ResultsFiles files;
   std::string rows = "pipeline,k,consistent,tightness,lower_1,upper_1\n";

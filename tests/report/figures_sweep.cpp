@@ -2,6 +2,7 @@
 // The report of a sweep: who is best where, and curves over the values.
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include <doctest/doctest.h>
 
@@ -123,12 +124,14 @@ TEST_CASE("pipelines that are equally good share the lead; there is none if all 
 
 TEST_CASE("curves over a factor: means and quantiles over the repetitions, one curve per pipeline") {
   const SweepFiles sweep;
-  const Plot plot = content<Plot>(read_report(sweep.files.path()), "sweep_1_1");
+  const Plot plot = content<Plot>(read_report(sweep.files.path()), "sweep_order_radius_mean");
   CHECK(plot.x_label == "order");
   CHECK(plot.x_names.empty());
   REQUIRE(plot.series.size() == 4);
   CHECK(plot.series[0].kind == Series::Kind::band);
   CHECK(plot.series[0].pipeline == 0);
+  CHECK(plot.series[0].name.empty());  // one entry per pipeline in the legend
+  CHECK(plot.series[1].name == "a");
   CHECK(plot.series[0].y[0] == doctest::Approx(4.05));
   CHECK(plot.series[0].upper[0] == doctest::Approx(4.95));
   CHECK(plot.series[1].x == std::vector<double>{10, 30});
@@ -139,8 +142,10 @@ TEST_CASE("curves over a factor: means and quantiles over the repetitions, one c
 
 TEST_CASE("values that are words, or not in order, are names on the axis") {
   const SweepFiles words(R"("girard", "combastel")"), falling("30, 10");
-  CHECK(content<Plot>(read_report(words.files.path()), "sweep_1_1").x_names == std::vector<std::string>{"girard", "combastel"});
-  CHECK(content<Plot>(read_report(falling.files.path()), "sweep_1_1").x_names == std::vector<std::string>{"30", "10"});
+  CHECK(content<Plot>(read_report(words.files.path()), "sweep_order_radius_mean").x_names ==
+        std::vector<std::string>{"girard", "combastel"});
+  CHECK(content<Plot>(read_report(falling.files.path()), "sweep_order_radius_mean").x_names ==
+        std::vector<std::string>{"30", "10"});
 }
 
 TEST_CASE("a pipeline that failed somewhere is not compared there, and is named") {
@@ -152,9 +157,87 @@ TEST_CASE("a pipeline that failed somewhere is not compared there, and is named"
   const Table table = content<Table>(report, "winners");
   CHECK(table.rows[0][1].text == "–");
   CHECK(table.rows[1][1].text == "a (28.6 %)");
-  const Plot plot = content<Plot>(report, "sweep_1_1");
+  const Plot plot = content<Plot>(report, "sweep_order_radius_mean");
   CHECK(std::isnan(plot.series[1].y[0]));
   CHECK(plot.series[1].y[1] == 2.5);
   REQUIRE(report.notes.size() == 1);
   CHECK(report.notes[0] == "1 of 8 points failed; the first of \"a\": too <large>");
+}
+
+TEST_CASE("those that tie for the best are named together, with the lead over the next; rounding is no lead") {
+  const SweepFiles sweep;
+  std::string results = sweep.files.read("results.json"), times = sweep.files.read("run.json");
+  const auto replace = [](std::string& text, const std::string& from, const std::string& to) {
+    REQUIRE(text.find(from) != std::string::npos);
+    text.replace(text.find(from), from.size(), to);
+  };
+  std::string points, measured;
+  // at order 10 "a" and "b" differ by rounding and "c" is twice as large; at order 30 all are alike
+  for (int i = 0; i < 12; ++i) {
+    const int order = i / 6, seed = i / 3 % 2, pipeline = i % 3;
+    const double radius = 2 + seed + (pipeline == 1 ? 1e-11 : 0) + (pipeline == 2 && order == 0 ? 2.5 : 0);
+    const double share = pipeline == 0 ? 1 : 0;
+    std::ostringstream line;
+    line.precision(17);
+    line << (i == 0 ? "" : ",") << R"({"point": )" << i << R"(, "pipeline": )" << pipeline << R"(, "at": [)" << order << ", "
+         << seed << R"(], "numbers": {"radius_mean": )" << radius << R"(, "contains_truth_share": )" << share
+         << R"(}, "error": null})";
+    points += line.str();
+    measured.append(i == 0 ? "" : ",").append(R"({"point": )").append(std::to_string(i)).append(R"(, "numbers": {}})");
+  }
+  results.erase(results.find("\"points\": ["));
+  results.append("\"points\": [").append(points).append("]}");
+  replace(results, R"({"name": "b",)", R"({"name": "c", "backend": "box", "observer": "o"}, {"name": "b",)");
+  times.erase(times.find("\"points\": ["));
+  times.append("\"points\": [").append(measured).append(R"(], "wall_s": 1, "finished": "then"})");
+  replace(results, R"("name": "c")", R"("name": "B")");
+  replace(results, R"("name": "b")", R"("name": "c")");
+  replace(results, R"("name": "B")", R"("name": "b")");
+  sweep.files.write("results.json", results);
+  sweep.files.write("run.json", times);
+  const Table table = content<Table>(read_report(sweep.files.path()), "winners");
+  REQUIRE(table.header == std::vector<std::string>{"order", "mean radius", "truth inside"});
+  CHECK(table.rows[0][1].text == "a, b (50 %)");
+  CHECK(table.rows[0][1].share == doctest::Approx(1));
+  CHECK(table.rows[1][1].text == "all alike");
+  CHECK(table.rows[1][1].share == 0);
+  CHECK(table.rows[0][2].text == "a");  // 100 % against nothing
+  CHECK(table.rows[0][2].share == 1);
+}
+
+TEST_CASE("figures are named by axis and number, in letters that files may have, each once") {
+  const SweepFiles sweep;
+  std::string results = sweep.files.read("results.json");
+  for (std::size_t at; (at = results.find("\"contains_truth_share\"")) != std::string::npos;) {
+    results.replace(at, 22, "\"fault_1_half_width\"");
+  }
+  results.replace(results.find("\"order\""), 7, "\"Ordé <b>\"");
+  sweep.files.write("results.json", results);
+  const Report report = read_report(sweep.files.path());
+  CHECK(find_figure(report, "sweep_ord_b_radius_mean"));
+  CHECK(find_figure(report, "sweep_ord_b_fault_1_half_width"));
+}
+
+TEST_CASE("names of axes that an id cannot tell apart are numbered") {
+  const SweepFiles sweep;
+  std::string results = sweep.files.read("results.json");
+  results.replace(results.find("\"order\""), 7, "\"seed!\"");
+  results.replace(results.find("\"repeat\": true"), 14, "\"repeat\": false");
+  sweep.files.write("results.json", results);
+  const Report report = read_report(sweep.files.path());
+  CHECK(find_figure(report, "sweep_seed_radius_mean"));
+  CHECK(find_figure(report, "sweep_seed_radius_mean_2"));
+}
+
+TEST_CASE("a part of a sweep without points has a report") {
+  const SweepFiles sweep;
+  for (const char* name : {"results.json", "run.json"}) {
+    std::string text = sweep.files.read(name);
+    const std::size_t begin = text.find("\"points\": [") + 10, end = text.rfind(']');
+    text.replace(begin, end + 1 - begin, "[]");
+    sweep.files.write(name, text);
+  }
+  const Report report = read_report(sweep.files.path());
+  CHECK_FALSE(find_figure(report, "winners"));
+  CHECK_FALSE(find_figure(report, "comparison"));
 }

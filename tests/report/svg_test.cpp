@@ -184,6 +184,20 @@ TEST_CASE("shades of a pipeline are told apart") {
   CHECK(attribute(*curves[1], "stroke-dasharray") != attribute(*curves[2], "stroke-dasharray"));
 }
 
+TEST_CASE("a band without a name is drawn and has no entry in the legend") {
+  const auto with_band = [](const std::string& name) {
+    Figure figure{"id", "s", "T", "", Plot{"x", "y", false, {}}};
+    std::get<Plot>(figure.content).series = {{Series::Kind::band, name, 0, {0, 1}, {1, 1}, {2, 2}},
+                                             {Series::Kind::line, "mean", 0, {0, 1}, {1.5, 1.5}}};
+    Report report;
+    report.pipelines = {"p"};
+    return drawn(figure, report);
+  };
+  const Tree named = with_band("band"), nameless = with_band("");
+  CHECK(elements(named, "text").size() == elements(nameless, "text").size() + 1);
+  CHECK_FALSE(elements(nameless, "polygon").empty());
+}
+
 TEST_CASE("a long legend has several rows within the drawing") {
   Plot plot = sample::plot(10, 5, false);
   for (Series& series : plot.series) series.name = "a pipeline with a rather long name";

@@ -25,7 +25,7 @@ struct Series {
     steps    ///< y holds until the next x
   };
   Kind kind = Kind::line;
-  std::string name;  ///< for the legend
+  std::string name;  ///< for the legend; empty: it has no entry there
   int pipeline = of_data;
   std::vector<double> x, y;
   std::vector<double> upper = {};  ///< of bands

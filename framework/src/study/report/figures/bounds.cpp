@@ -36,6 +36,18 @@ Plot bounds_of(const RunFiles& files, const Curves& curves, std::size_t i) {
   return plot;
 }
 
+/// Beside a large state the bands of its bounds are too narrow to be seen.
+Plot errors_of(const RunFiles& files, const Curves& curves, std::size_t i) {
+  Plot plot{"k", fmt::format("bounds less x_{}", i + 1), false, {}, {{"true state", 0}}};
+  for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
+    const StepCurves& steps = curves.pipelines[p];
+    if (i < steps.error.size() && steps.error[i].has_values())
+      plot.series.push_back(steps.error[i].band(files.pipelines()[p].name, static_cast<int>(p)));
+  }
+  for (const PlantEvent& event : curves.events) plot.marks.push_back({static_cast<double>(event.k), event.text});
+  return plot;
+}
+
 }  // namespace
 
 void add_bounds(const RunFiles& files, const Curves& curves, Report& report) {
@@ -58,6 +70,15 @@ void add_bounds(const RunFiles& files, const Curves& curves, Report& report) {
   for (std::size_t i = 0; i < curves.states; ++i) {
     report.figures.push_back({fmt::format("bounds_{}", i + 1), section::bounds, fmt::format("Bounds of state {}", i + 1), caption,
                               bounds_of(files, curves, i)});
+  }
+  for (std::size_t i = 0; i < curves.states; ++i) {
+    Plot plot = errors_of(files, curves, i);
+    if (plot.series.empty()) continue;
+    report.figures.push_back(
+        {fmt::format("bounds_less_truth_{}", i + 1), section::bounds,
+         fmt::format("Bounds of state {} less its true value", i + 1),
+         "How far the bounds lie from the true state, which is 0 here: a band that leaves 0 out does not hold it.",
+         std::move(plot)});
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "study/report/figures/columns.hpp"
@@ -34,6 +35,41 @@ void add_bounds(const ColumnReader& table, const BoundColumns& columns, bool emp
   }
 }
 
+/// Nothing for a run whose pipelines all have inputs of their own: no data were read then.
+std::optional<ColumnReader> open_data_table(const RunFiles& files) {
+  const std::filesystem::path file = files.directory() / "data.csv";
+  std::error_code failed;
+  if (std::filesystem::file_size(file, failed) == 0 && !failed) return std::nullopt;
+  return ColumnReader(file);
+}
+
+/// The true states at one time after another. Times of data.csv increase, so that it is read along with the steps of a pipeline.
+class TruthReader {
+ public:
+  TruthReader(const RunFiles& files, std::size_t states) : table_(open_data_table(files)) {
+    if (!table_) return;
+    k_ = table_->need("k");
+    columns_ = table_->numbered("x_");
+    if (columns_.size() != states || columns_.empty() || !table_->next()) table_.reset();
+  }
+
+  bool is_known() const { return table_.has_value(); }
+
+  /// Goes on to time k; is the state known there?
+  bool reach(std::int64_t k) {
+    while (table_ && table_->integer(k_) < k) {
+      if (!table_->next()) table_.reset();
+    }
+    return table_ && table_->integer(k_) == k;
+  }
+  double state(std::size_t i) const { return table_->number(columns_[i]); }
+
+ private:
+  std::optional<ColumnReader> table_;
+  std::size_t k_ = 0;
+  std::vector<std::size_t> columns_;
+};
+
 class StepsReader {
  public:
   StepsReader(const RunFiles& files, Curves& curves) : files_(files), curves_(curves), table_(files.directory() / "steps.csv") {
@@ -48,12 +84,14 @@ class StepsReader {
     find_metrics();
     const std::size_t pipelines = files.pipelines().size();
     const std::size_t inner_states = inner_.lower.empty() ? 0 : curves_.states;
-    const std::size_t series = pipelines * (curves_.states + inner_states + metrics_.size());
+    const std::size_t error_states = TruthReader(files, curves_.all_states).is_known() ? curves_.states : 0;
+    const std::size_t series = pipelines * (curves_.states + inner_states + error_states + metrics_.size());
     if (series > max_curves) table_.refuse("holds more curves than a report can show");
     const Thinner curve(points_per_series(files.detail(), series));
     StepCurves empty;
     empty.hull.assign(curves_.states, curve);
     empty.inner.assign(inner_states, curve);
+    empty.error.assign(error_states, curve);
     empty.metrics.assign(metrics_.size(), curve);
     curves_.pipelines.assign(pipelines, empty);
   }
@@ -62,17 +100,24 @@ class StepsReader {
     std::string name;
     int pipeline = 0;
     bool was_empty = false;
+    std::unique_ptr<TruthReader> truth;
     while (table_.next()) {
       if (table_.text(name_) != name || name.empty()) {
         name = table_.text(name_);
         pipeline = files_.pipeline(name, "steps.csv");
         was_empty = false;
+        truth.reset();
+        // Rows of a pipeline stand together: the data are read once for each, whatever the file holds.
+        if (curves_.pipelines[static_cast<std::size_t>(pipeline)].first < 0)
+          truth = std::make_unique<TruthReader>(files_, curves_.all_states);
       }
-      was_empty = add(curves_.pipelines[static_cast<std::size_t>(pipeline)], was_empty);
+      StepCurves& steps = curves_.pipelines[static_cast<std::size_t>(pipeline)];
+      if (!steps.error.empty()) add_errors(steps, truth.get());
+      was_empty = add(steps, was_empty);
     }
     drop_texts();
     for (const StepCurves& steps : curves_.pipelines) {
-      for (const auto* group : {&steps.hull, &steps.inner, &steps.metrics}) {
+      for (const auto* group : {&steps.hull, &steps.inner, &steps.error, &steps.metrics}) {
         for (const Thinner& curve : *group) curves_.thinned = curves_.thinned || curve.is_thinned();
       }
     }
@@ -89,6 +134,15 @@ class StepsReader {
       if (!taken.contains(i)) metrics_.push_back(i);
     }
     numeric_.assign(metrics_.size(), true);
+  }
+
+  void add_errors(StepCurves& steps, TruthReader* truth) {
+    const std::int64_t k = table_.integer(k_);
+    const bool known = table_.text(consistent_) != "no" && truth && truth->reach(k);
+    for (std::size_t i = 0; i < steps.error.size(); ++i) {
+      const double x = known ? truth->state(i) : none;
+      steps.error[i].add(static_cast<double>(k), table_.number(hull_.lower[i]) - x, table_.number(hull_.upper[i]) - x);
+    }
   }
 
   /// Is the estimate proven empty?
@@ -130,14 +184,6 @@ class StepsReader {
   std::vector<std::size_t> metrics_;
   std::vector<bool> numeric_;
 };
-
-/// Nothing for a run whose pipelines all have inputs of their own: no data were read then.
-std::optional<ColumnReader> open_data_table(const RunFiles& files) {
-  const std::filesystem::path file = files.directory() / "data.csv";
-  std::error_code failed;
-  if (std::filesystem::file_size(file, failed) == 0 && !failed) return std::nullopt;
-  return ColumnReader(file);
-}
 
 /// Which additive faults are not 0 now, and which mode the plant is in.
 std::string plant_state(const RunFiles& files, const ColumnReader& table, const std::vector<std::size_t>& faults,

@@ -16,6 +16,7 @@ namespace cordon::report {
 /// Steps of one pipeline.
 struct StepCurves {
   std::vector<Thinner> hull, inner;      ///< by state
+  std::vector<Thinner> error;            ///< by state: the hull less the true state; none: it is not known
   std::vector<Thinner> metrics;          ///< by column
   std::int64_t first = -1, last = -1;    ///< k; -1: there are no steps
   std::int64_t exact = 0;                ///< steps that are claimed to be exact

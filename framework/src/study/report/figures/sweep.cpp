@@ -19,7 +19,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_measures = 12, most_rows = 400;
-constexpr double clear_margin = 0.5;  ///< a lead over the second that is shaded fully
+constexpr double clear_margin = 0.5;  ///< a lead over the next that is shaded fully
 
 /// What pipelines are held against each other by.
 struct Measure {
@@ -71,34 +71,35 @@ void add_comparison(const ComparisonTable& comparison, const RunFiles& files, Re
   report.figures.push_back({"comparison", section::comparison, "Comparison", std::move(caption), std::move(table)});
 }
 
-/// The lead of the best mean over the next one that differs, as a share of that; NaN if it cannot be said.
-double lead_of(std::vector<double> means, Preference preference) {
-  std::sort(means.begin(), means.end());
-  if (preference == Preference::more) std::reverse(means.begin(), means.end());
-  const auto next = std::find_if(means.begin(), means.end(), [&](double mean) { return mean != means.front(); });
-  if (next == means.end() || *next == 0) return none;
-  return std::abs(means.front() - *next) / std::abs(*next);
+/// The lead of the best means over the next one that is not alike, as a share of the next; NaN if that is 0 or there is none.
+double lead_of(const ResultTable& table, std::span<const SummaryRow> rows, const std::vector<bool>& best, std::size_t column) {
+  double winner = none, next = none;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!detail::is_comparable(table, rows[i], column)) continue;
+    const double mean = rows[i].columns[column].mean;
+    double& of = best[i] ? winner : next;
+    const bool better = preference_of(table.columns[column].name) == Preference::less ? mean < of : mean > of;
+    if (std::isnan(of) || better) of = mean;
+  }
+  return next == 0 ? none : std::abs(winner - next) / std::abs(next);
 }
 
 Table::Cell winner_cell(const ResultTable& table, std::span<const SummaryRow> rows, std::size_t column) {
-  std::vector<double> means;
-  for (const SummaryRow& row : rows) {
-    if (detail::is_comparable(table, row, column)) means.push_back(row.columns[column].mean);
-  }
-  if (means.size() < 2) return text_cell("–");
+  const auto compared =
+      std::count_if(rows.begin(), rows.end(), [&](const SummaryRow& row) { return detail::is_comparable(table, row, column); });
+  if (compared < 2) return text_cell("–");
   const std::vector<bool> best = detail::best_of(table, rows, column);
   std::string names;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (best[i]) names += (names.empty() ? "" : ", ") + table.pipelines[rows[i].pipeline];
   }
-  if (names.empty()) return text_cell("all alike");
+  if (std::none_of(best.begin(), best.end(), [](bool one) { return one; })) return text_cell("all alike");
   Table::Cell cell = text_cell(std::move(names));
-  const double lead = lead_of(std::move(means), preference_of(table.columns[column].name));
-  cell.share = 0.05;
-  if (std::isfinite(lead)) {
-    cell.text += fmt::format(" ({} %)", shown(100 * lead, 3));
-    cell.share = std::clamp(lead / clear_margin, cell.share, 1.0);
-  }
+  const double lead = lead_of(table, rows, best, column);
+  cell.share = 1;  // over 0 every lead is clear
+  if (!std::isfinite(lead)) return cell;
+  cell.text += fmt::format(" ({} %)", shown(100 * lead, 3));
+  cell.share = std::clamp(lead / clear_margin, 0.05, 1.0);
   return cell;
 }
 
@@ -119,10 +120,12 @@ void add_winners(const ResultTable& table, const Summary& summary, const std::ve
     }
     for (const Measure& measure : measures) cells.push_back(winner_cell(table, rows, measure.column));
   }
+  if (winners.rows.empty()) return;
   report.figures.push_back(
       {"winners", section::comparison, "Which pipeline is best where",
-       "The pipeline with the best mean, and by how much it is better than the next; the darker, the clearer. Only those "
-       "are compared that have a number at every repetition and whose estimates never ended early.",
+       "The pipeline with the best mean, or those whose best means are alike up to 1e-9, and by how much they are better than "
+       "the next; the darker, the clearer. Only those are compared that have a number at every repetition and whose estimates "
+       "never ended early.",
        std::move(winners)});
 }
 
@@ -166,7 +169,7 @@ Plot curves_of(const ResultTable& table, const Summary& summary, std::size_t axi
   for (std::size_t p = 0; p < pools.size(); ++p) {
     const int pipeline = static_cast<int>(p);
     Series mean{Series::Kind::line, table.pipelines[p], pipeline, {}, {}};
-    Series band{Series::Kind::band, table.pipelines[p] + ", 5 % to 95 %", pipeline, {}, {}};
+    Series band{Series::Kind::band, "", pipeline, {}, {}};  // without an entry of its own in the legend
     bool any = false;
     for (std::size_t i = 0; i < pools[p].size(); ++i) {
       const Statistics found = statistics_of(pools[p][i].values);
@@ -189,18 +192,46 @@ Plot curves_of(const ResultTable& table, const Summary& summary, std::size_t axi
   return plot;
 }
 
+/// What a figure's id may hold of a name.
+std::string id_part(const std::string& name) {
+  constexpr std::size_t longest = 60;
+  std::string part;
+  for (const char c : name.substr(0, longest)) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (plain || (c >= 'A' && c <= 'Z')) {
+      part += static_cast<char>(plain ? c : c - 'A' + 'a');
+    } else if (!part.empty() && part.back() != '_') {
+      part += '_';
+    }
+  }
+  while (part.ends_with('_')) part.pop_back();
+  return part;
+}
+
+/// By names, since places move when a column appears; numbered where names differ in nothing that an id may hold.
+std::string id_of(const std::string& axis, const std::string& column, const Report& report) {
+  const std::string id = "sweep_" + id_part(axis) + "_" + id_part(column);
+  const auto taken = [&](const std::string& one) {
+    return std::any_of(report.figures.begin(), report.figures.end(), [&](const Figure& figure) { return figure.id == one; });
+  };
+  if (!taken(id)) return id;
+  int number = 2;
+  while (taken(fmt::format("{}_{}", id, number))) ++number;
+  return fmt::format("{}_{}", id, number);
+}
+
 void add_curves(const ResultTable& table, const Summary& summary, const std::vector<Measure>& measures, Report& report) {
   for (const std::size_t axis : factors_of(table)) {
     if (table.axes[axis].values.size() < 2) continue;
     for (const Measure& measure : measures) {
       Plot plot = curves_of(table, summary, axis, measure);
       if (plot.series.empty()) continue;
-      report.figures.push_back(
-          {fmt::format("sweep_{}_{}", axis + 1, measure.column + 1), section::sweep,
-           fmt::format("{} over {}", measure.title, table.axes[axis].name),
-           "Mean and the range from the 5 % to the 95 % quantile, over all repetitions and other values. Gaps: a pipeline has "
-           "failed, has no number, or its estimates ended early at some of them.",
-           std::move(plot)});
+      report.figures.push_back({id_of(table.axes[axis].name, table.columns[measure.column].name, report), section::sweep,
+                                fmt::format("{} over {}", measure.title, table.axes[axis].name),
+                                "Lines are means, bands the range from the 5 % to the 95 % quantile, over all repetitions and "
+                                "other values. Gaps: a pipeline has "
+                                "failed, has no number, or its estimates ended early at some of them.",
+                                std::move(plot)});
     }
   }
 }

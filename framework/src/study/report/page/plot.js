@@ -127,7 +127,7 @@ const linesPlugin = {
 
 function tooltipText(item) {
   const { series } = item.dataset;
-  if (item.dataset.upper) return null;
+  if (item.dataset.upper || series.name === '') return null;
   const i = item.dataIndex;
   const value = series.kind === 'band' ? `[${short(series.y[i])}, ${short(series.upper[i])}]` : short(series.y[i]);
   return `${series.name}: ${value}`;
@@ -196,8 +196,9 @@ function plotNumbers(plot) {
     });
   };
   for (const series of plot.series.filter((one) => isShown(one.pipeline))) {
-    column(series.kind === 'band' ? `${series.name}, lower` : series.name, series.x, series.y);
-    if (series.kind === 'band') column(`${series.name}, upper`, series.x, series.upper);
+    const called = series.name || data.pipelines[series.pipeline] || '';
+    column(series.kind === 'band' ? `${called}, lower` : called, series.x, series.y);
+    if (series.kind === 'band') column(`${called}, upper`, series.x, series.upper);
   }
   const name = (x) => plot.x_names[x] ?? x;
   const sorted = [...rows].sort(([a], [b]) => a - b);
@@ -213,13 +214,13 @@ function plotView(figure) {
 
   const label = () => {
     const [left, right] = axisRange(plot), [lower, upper] = valueRange(plot);
-    const names = plot.series.filter((series) => isShown(series.pipeline)).map((series) => series.name);
+    const names = plot.series.filter((series) => isShown(series.pipeline) && series.name !== '').map((series) => series.name);
     const across = plot.x_names.length > 0 ? plot.x_names.join(', ') : `${short(left)} to ${short(right)}`;
     canvas.setAttribute('aria-label', `${figure.title}. ${names.length} curves: ${names.join(', ')}. ${plot.x_label}: ${across}. ` +
       `${plot.y_label}: ${short(lower, 3)} to ${short(upper, 3)}${plot.log_y ? ', logarithmic' : ''}.`);
   };
   const update = () => {
-    legend.replaceChildren(...plot.series.map((series) => element('li', { class: isShown(series.pipeline) ? undefined : 'off' },
+    legend.replaceChildren(...plot.series.filter((series) => series.name !== '').map((series) => element('li', { class: isShown(series.pipeline) ? undefined : 'off' },
       swatch(series.pipeline, series.shade, series.kind), series.name)));
     legend.hidden = plot.series.length < 2 && plot.series.every((series) => series.name === '');
     numbers.refresh();
