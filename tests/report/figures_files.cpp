@@ -73,6 +73,20 @@ TEST_CASE("the page alone, or all figures too") {
   CHECK(names({false, false, true}).front() == "figures/bounds_1.csv");
 }
 
+TEST_CASE("figures of earlier results go, other files stay") {
+  const ResultsFiles files;
+  write_report(files.path(), {false, true, true});
+  for (const char* name : {"old_1.svg", "old_1.csv", "My figure.svg", "old_1.txt", "Old.csv"}) {
+    files.write(std::string("figures/") + name, "x");
+  }
+  const auto exists = [&](const char* name) { return std::filesystem::exists(files.path() / "figures" / name); };
+  SUBCASE("by drawings") { write_report(files.path(), {false, true, false}); }
+  SUBCASE("by tables") { write_report(files.path(), {false, false, true}); }
+  CHECK_FALSE(exists("old_1.svg"));
+  CHECK_FALSE(exists("old_1.csv"));
+  for (const char* name : {"bounds_1.svg", "bounds_1.csv", "My figure.svg", "old_1.txt", "Old.csv"}) CHECK(exists(name));
+}
+
 TEST_CASE("a report that fails says why and leaves the old one") {
   const ResultsFiles files;
   write_report(files.path());

@@ -71,6 +71,32 @@ TEST_CASE("the page holds the report") {
   }
 }
 
+TEST_CASE("bands are rounded outwards") {
+  const std::vector<double> values{1.23456789, -1.23456749, 9.9999999e-9, -9999999900.5, 0, 0.5};
+  CHECK(packed_numbers(values, Rounding::down) == "[1.23456,-1.23457,9.99999e-09,-1e+10,0,0.5]");
+  CHECK(packed_numbers(values, Rounding::up) == "[1.23457,-1.23456,1e-08,-9.99999e+09,0,0.5]");
+  CHECK(packed_numbers({1e-310, sample::infinite, -sample::infinite, sample::missing}, Rounding::up) ==
+        "[1e-310,\"inf\",\"-inf\",null]");
+  Report report;
+  report.pipelines = {"a"};
+  Plot plot{"k", "x_1", false, {}};
+  plot.series.push_back({Series::Kind::band, "band", 0, {0, 1}, {1.00000049, 1.5}, {1.00000051, 2.00000049}});
+  report.figures.push_back({"f", "s", "t", "c", plot});
+  const Json band = data_of(report)["figures"][0]["plot"]["series"][0];
+  CHECK(band["y"][0].get<double>() <= 1.00000049);
+  CHECK(band["upper"][1].get<double>() >= 2.00000049);
+}
+
+TEST_CASE("coordinates far from the origin keep what the frame shows") {
+  Report report;
+  report.pipelines = {"a"};
+  const double far = 1e10;
+  report.figures.push_back(
+      {"f", "s", "t", "c", Projection{"x_1", "x_2", {{0, far, far + 1, 0, 1, {{0, {far + 0.12345}, {0.5}, {}}}, {}}}}});
+  const Json set = data_of(report)["figures"][0]["projection"]["frames"][0]["sets"][0];
+  CHECK(std::abs(set["x"][0].get<double>() - far - 0.12345) <= 2e-6);
+}
+
 TEST_CASE("curves in the page") {
   const Json figures = data_of(sample::every_kind())["figures"];
   const Json& plot = figures[1]["plot"];

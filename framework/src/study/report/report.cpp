@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/report.hpp"
 
+#include <algorithm>
+
 #include "cordon/core/error.hpp"
 #include "study/report/figure_csv.hpp"
 #include "study/report/page/page.hpp"
@@ -17,6 +19,19 @@ using Files = std::vector<std::filesystem::path>;
 
 void commit(detail::AtomicDirectory& directory, Files& files) {
   for (std::filesystem::path& file : directory.commit()) files.push_back(std::move(file));
+}
+
+/// Figures of earlier results: drawings and tables that are none of this report.
+void remove_others(const std::filesystem::path& directory, const report::Report& report) {
+  const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  Files others;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    const std::string name = entry.path().stem().string(), kind = entry.path().extension().string();
+    if (!entry.is_regular_file() || (kind != ".svg" && kind != ".csv") || !std::all_of(name.begin(), name.end(), plain)) continue;
+    const auto is_it = [&](const report::Figure& figure) { return figure.id == name; };
+    if (std::none_of(report.figures.begin(), report.figures.end(), is_it)) others.push_back(entry.path());
+  }
+  for (const std::filesystem::path& file : others) std::filesystem::remove(file);
 }
 
 }  // namespace
@@ -39,6 +54,7 @@ std::vector<std::filesystem::path> write_report(const std::filesystem::path& dir
       detail::AtomicDirectory out(directory / "figures");
       for (const report::Figure& figure : page.figures) out.create(figure.id + ".svg").write(report::svg_of(figure, page));
       commit(out, files);
+      remove_others(directory / "figures", page);
     }
   }
   if (options.csv) {
@@ -46,6 +62,7 @@ std::vector<std::filesystem::path> write_report(const std::filesystem::path& dir
     detail::AtomicDirectory out(directory / "figures");
     for (const report::Figure& figure : all.figures) out.create(figure.id + ".csv").write(report::csv_of(figure, all));
     commit(out, files);
+    remove_others(directory / "figures", all);
   }
   return files;
 }

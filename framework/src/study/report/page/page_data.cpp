@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -22,6 +23,19 @@ std::string rounded(double value, int digits) {
   if (std::isinf(value)) return value > 0 ? "\"inf\"" : "\"-inf\"";
   if (std::abs(value) < 1e15 && value == std::floor(value)) return fmt::format("{:.0f}", value == 0 ? 0.0 : value);
   return fmt::format("{:.{}g}", value, digits);
+}
+
+/// The same, never above or never below the value.
+std::string rounded(double value, int digits, Rounding rounding) {
+  std::string text = rounded(value, digits);
+  if (rounding == Rounding::nearest || !std::isfinite(value)) return text;
+  const auto fits = [&] {
+    return rounding == Rounding::down ? std::strtod(text.c_str(), nullptr) <= value : std::strtod(text.c_str(), nullptr) >= value;
+  };
+  if (fits()) return text;
+  const double half = std::pow(10.0, std::floor(std::log10(std::abs(value))) - digits + 1) / 2;
+  text = fmt::format("{:.{}g}", rounding == Rounding::down ? value - half : value + half, digits);
+  return fits() ? text : fmt::format("{}", value);
 }
 
 /// Digits that show the differences between values, where these are small beside the values.
@@ -82,8 +96,10 @@ void write(JsonWriter& json, const Plot& plot) {
   json.key("series").begin_array(JsonWriter::Layout::lines);
   for (const Series& series : plot.series) {
     json.begin_object().member("kind", name_of(series.kind)).member("name", series.name).member("pipeline", series.pipeline);
-    json.member("shade", series.shade).key("x").raw(packed_numbers(series.x)).key("y").raw(packed_numbers(series.y));
-    json.key("upper").raw(packed_numbers(series.upper)).end_object();
+    const bool band = series.kind == Series::Kind::band;  // which encloses what it shows
+    json.member("shade", series.shade).key("x").raw(packed_numbers(series.x));
+    json.key("y").raw(packed_numbers(series.y, band ? Rounding::down : Rounding::nearest));
+    json.key("upper").raw(packed_numbers(series.upper, band ? Rounding::up : Rounding::nearest)).end_object();
   }
   json.end_array().key("thresholds").begin_array();
   for (const auto& [name, value] : plot.thresholds) {
@@ -97,6 +113,9 @@ void write(JsonWriter& json, const Plot& plot) {
   json.end_array().end_object();
 }
 
+/// With all digits that the number has.
+std::string with_all_digits(double value) { return std::isfinite(value) ? fmt::format("{}", value + 0.0) : rounded(value, 17); }
+
 /// Coordinates in a frame: what its drawing can show, and no more.
 std::string coordinates(const std::vector<double>& values, double span) {
   const int decimals = std::clamp(static_cast<int>(std::ceil(5 - std::log10(span))), 0, 300);
@@ -104,7 +123,7 @@ std::string coordinates(const std::vector<double>& values, double span) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i > 0) out += ',';
     const double scale = std::pow(10.0, decimals), whole = std::round(values[i] * scale);
-    out += std::isfinite(whole) ? rounded(whole / scale, 15) : rounded(values[i], 17);
+    out += with_all_digits(std::isfinite(whole) ? whole / scale : values[i]);
   }
   return out + ']';
 }
@@ -172,13 +191,14 @@ void write_colours(JsonWriter& json, std::string_view name, const std::array<std
 
 }  // namespace
 
-std::string packed_numbers(const std::vector<double>& values) {
+std::string packed_numbers(const std::vector<double>& values, Rounding rounding) {
   if (has_equal_steps(values)) {
     return fmt::format(R"({{"from":{:.0f},"by":{:.0f},"count":{}}})", values[0], values[1] - values[0], values.size());
   }
   const int digits = digits_of(values);
   std::string out = "[";
-  for (std::size_t i = 0; i < values.size(); ++i) out += fmt::format("{}{}", i > 0 ? "," : "", rounded(values[i], digits));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    out += fmt::format("{}{}", i > 0 ? "," : "", rounded(values[i], digits, rounding));
   return out + ']';
 }
 
