@@ -94,6 +94,8 @@ std::string quoted(const std::filesystem::path& path) {
   return result + "'";
 }
 
+std::filesystem::path as_operand(const std::filesystem::path& path) { return path.string().starts_with('-') ? "." / path : path; }
+
 Paint::Paint(std::FILE* stream) : on_(isatty(fileno(stream)) == 1) {
   const char *none = std::getenv("NO_COLOR"), *terminal = std::getenv("TERM");
   if ((none && *none) || !terminal || std::strcmp(terminal, "dumb") == 0) on_ = false;

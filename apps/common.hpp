@@ -42,6 +42,8 @@ void complain(const std::string& text);
 
 /// A path as a shell reads it, in quotes where it needs them.
 std::string quoted(const std::filesystem::path& path);
+/// The same file, named so that a program cannot take it for an option.
+std::filesystem::path as_operand(const std::filesystem::path& path);
 
 /// Colours for a stream: none off a terminal, with NO_COLOR set (to anything but "") or TERM=dumb.
 class Paint {

@@ -49,15 +49,14 @@ void convert_mat(const ConvertRequest& wanted, const Target& target) {
   if (ending(wanted.out) != ".json")
     throw Error(Errc::invalid, "a MAT-file becomes a study or a file of sets: give a name that ends in .json");
   const ImportedStudy imported = mat_to_json(wanted.in, target, wanted.variable);
-  for (const std::string& name : imported.ignored)
-    warn(fmt::format("the field {} is not part of a system and was left out", name));
+  for (const std::string& name : imported.ignored) warn(fmt::format("left out, as no part of the system: {}", name));
   for (const fs::path& file : imported.files) note(fmt::format("Wrote {}", file.string()));
   if (imported.sets_only) return;
   if (!imported.missing.empty()) {
     warn(fmt::format("{} says nothing of {}: add {} to the system before the study can run", wanted.in.string(),
                      fmt::join(imported.missing, " and "), imported.missing.size() == 1 ? "it" : "them"));
   }
-  note(fmt::format("Next: cordon validate {}", imported.files.back().string()));
+  note(fmt::format("Next: cordon validate {}", quoted(as_operand(imported.files.back()))));
 }
 
 void convert_json(const Program& program, const ConvertRequest& wanted, const Target& target) {

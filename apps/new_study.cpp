@@ -77,7 +77,7 @@ Exit new_study(const fs::path& wanted, const std::string& kind) {
   }
   write_new(file, content_of(kind, title));
   note(fmt::format("Wrote {}\nNext:", file.string()));
-  const std::string shown = quoted(file);
+  const std::string shown = quoted(as_operand(file));
   print(fmt::format("cordon validate {}\ncordon run {} --out {}\n", shown, shown, quoted(fs::path("results") / title)));
   return Exit::done;
 }

@@ -263,6 +263,35 @@ TEST_CASE("one set, and the types that are not exchange forms") {
   }
 }
 
+TEST_CASE("matrices beside a struct with a system are left out, and named") {
+  const FileScratch scratch;
+  mat::Struct system;
+  for (const mat::Variable& v : plain()) system.set(v.name, v.name == "A" ? mat::matrix(Matrix{{3, 0}, {0, 3}}) : v.value);
+  const auto all = with(plain(), "system", std::move(system).value());
+  const ImportedStudy imported = mat_to_json(mat_of(scratch, all), {scratch / "out.json"});
+  CHECK(read(scratch / "out.json").model.linear.A(0, 0) == 3);
+  REQUIRE(imported.ignored.size() == 1);
+  CHECK(imported.ignored[0] == "the variables A, B, C, D, W, V (the system is taken from a struct beside them)");
+  CHECK(mat_to_json(mat_of(scratch, all), {scratch / "chosen.json"}, "system").ignored.empty());
+}
+
+TEST_CASE("two variables of one name are an error") {
+  const FileScratch scratch;
+  const std::string again = mat::to_bytes({{"A", mat::matrix(Matrix{{5, 0}, {0, 5}})}});
+  put(scratch / "in.mat", mat::to_bytes(plain()) + again.substr(128));  // without the header
+  CHECK_THROWS_WITH_AS(mat_to_json(scratch / "in.mat", {scratch / "out.json"}), doctest::Contains("stands there twice"),
+                       InputError);
+  CHECK_FALSE(std::filesystem::exists(scratch / "out.json"));
+}
+
+TEST_CASE("titles have no control characters") {
+  const FileScratch scratch;
+  mat::Struct about;
+  about.set("title", mat::text(std::string("a\0b\n\x7F\"ü", 8)));
+  mat_to_json(mat_of(scratch, with(plain(), "cordon", std::move(about).value())), {scratch / "out.json"});
+  CHECK(read(scratch / "out.json").title == "a b  \"ü");
+}
+
 TEST_CASE("matrices alone are a system") {
   const FileScratch scratch;
   const ImportedStudy imported = mat_to_json(mat_of(scratch, plain()), {scratch / "out.json"});

@@ -190,6 +190,16 @@ TEST_CASE("a sparse matrix with places outside of it is damaged") {
   }
 }
 
+TEST_CASE("a sparse matrix with two entries at one place") {
+  const Scratch scratch;
+  std::vector<mat_uint32_t> ir{0, 1, 0, 0}, jc{0, 1, 4};
+  std::vector<double> entries{1, 2, 3, 4};
+  mat_sparse_t sparse{4, ir.data(), 4, jc.data(), 3, 4, entries.data()};
+  std::size_t dims[2] = {2, 2};
+  const auto file = by_matio(scratch, MAT_FT_MAT5, {Mat_VarCreate("S", MAT_C_SPARSE, MAT_T_DOUBLE, 2, dims, &sparse, 0)});
+  CHECK(mat::read_file(file)[0].value.text == "it has two entries at one place");
+}
+
 TEST_CASE("version 7.3 is read, version 4 is not") {
   const Scratch scratch;
   const auto make = [] { return numbers<double>("A", MAT_C_DOUBLE, MAT_T_DOUBLE, {1, 2, 3, 4}, {2, 2}); };

@@ -17,6 +17,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 
 #include "cordon/core/error.hpp"
 #include "cordon/registry/build.hpp"
@@ -287,11 +288,13 @@ Value read_sparse(const matvar_t& v) {
   std::vector<double> entries(count);
   const std::string why = convert(v.data_type, s->data, s->ndata * Mat_SizeOf(v.data_type), count, entries.data());
   if (!why.empty()) return refused(why);
+  std::vector<std::size_t> last(v.dims[0], v.dims[1]);  // the column with the last entry of each row
   for (std::size_t j = 0; j < v.dims[1]; ++j) {
     if (s->jc[j] > s->jc[j + 1] || s->jc[j + 1] > count) return refused("it is damaged");
     for (std::size_t k = s->jc[j]; k < s->jc[j + 1]; ++k) {
       if (s->ir[k] >= v.dims[0]) return refused("it is damaged");
-      numbers(static_cast<Index>(s->ir[k]), static_cast<Index>(j)) += entries[k];
+      if (std::exchange(last[s->ir[k]], j) == j) return refused("it has two entries at one place");
+      numbers(static_cast<Index>(s->ir[k]), static_cast<Index>(j)) = entries[k];
     }
   }
   return matrix(std::move(numbers));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A MAT-file as the beginning of a study.
 #include <algorithm>
+#include <set>
 
 #include "cordon/solvers/set_questions.hpp"
 #include "study/interchange/mat_file.hpp"
@@ -49,6 +50,23 @@ Value as_struct(const Variables& all) {
   mat::Struct fields;
   for (const Variable& v : all) fields.set(v.name, v.value);
   return std::move(fields).value();
+}
+
+void refuse_twins(const Variables& all, const fs::path& file) {
+  std::set<std::string> names;
+  for (const Variable& v : all) {
+    if (!names.insert(v.name).second) refuse(file, json::child("", v.name), "stands there twice", "save it again, once");
+  }
+}
+
+/// Variables that would be the system if there were no struct that is one, for a warning; "" if there are none.
+std::string other_system(const Variables& all) {
+  std::string names;
+  if (!find(all, "A") || !find(all, "C")) return names;
+  for (const char* name : {"E", "A", "B", "Bw", "C", "D", "Dv", "F", "X0", "W", "V", "U", "modes"}) {
+    if (find(all, name)) names += (names.empty() ? "" : ", ") + std::string(name);
+  }
+  return "the variables " + names + " (the system is taken from a struct beside them)";
 }
 
 /// Variables that are there and cannot be used, for messages.
@@ -174,7 +192,10 @@ Json recorded(const CsvSpec& spec, const fs::path& file) {
 std::string title_of(const Variables& all, const fs::path& file) {
   const Value* about = find(all, "cordon");
   const Value* title = about ? about->field("title") : nullptr;
-  return title && title->is(Value::Kind::text) && !title->text.empty() ? title->text : file.stem().string();
+  std::string text = title && title->is(Value::Kind::text) && !title->text.empty() ? title->text : file.stem().string();
+  const auto control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+  std::replace_if(text.begin(), text.end(), control, ' ');
+  return text;
 }
 
 std::string comment_for(const fs::path& file, const std::vector<std::string>& missing) {
@@ -191,6 +212,7 @@ std::string comment_for(const fs::path& file, const std::vector<std::string>& mi
 
 ImportedStudy mat_to_json(const fs::path& file, const Target& target, const std::string& variable) {
   const Variables all = mat::read_file(file);
+  refuse_twins(all, file);
   const Choice choice = choose(all, file, variable);
   ImportedStudy imported;
   json::Problems problems;
@@ -204,6 +226,8 @@ ImportedStudy mat_to_json(const fs::path& file, const Target& target, const std:
   }
   const Json system = mat::system_of(choice.value, imported.ignored, problems);
   if (choice.workspace) imported.ignored.clear();
+  const std::string others = choice.workspace || !variable.empty() ? "" : other_system(all);
+  if (!others.empty()) imported.ignored.push_back(others);
   if (problems.any()) fail(file, problems);
   const json::SystemPart part = checked(with_placeholders(system, imported.missing), file);
   const Value* data = find(all, "data");
