@@ -22,8 +22,8 @@ TEST_CASE("killed at twenty random moments") {
   const auto expected = program::reproducible(scratch / "whole");
   REQUIRE(expected.count("results.json") == 1);
   std::mt19937 random(1);
-  int killed = 0, went_on = 0;
-  for (int trial = 0; trial < 10; ++trial) {
+  int killed = 0, went_on = 0;  // a process that ends before it is killed does not count, nor one that had not begun
+  for (int trial = 0; (killed < 20 || went_on < 10) && trial < 200; ++trial) {
     CAPTURE(trial);
     const std::string out = "out " + std::to_string(trial);
     for (int kill = 0; kill < 2; ++kill) {
@@ -40,6 +40,6 @@ TEST_CASE("killed at twenty random moments") {
     CHECK_MESSAGE(last.exit == 0, last.text);
     CHECK(program::reproducible(scratch / out) == expected);
   }
-  CHECK(killed >= 10);
-  CHECK(went_on >= 5);
+  CHECK(killed >= 20);
+  CHECK(went_on >= 10);
 }
