@@ -176,7 +176,7 @@ void add_soundness(LawList& list) {
   list.push_back({{"soundness.support", "dᵀx ≤ support(d) for x ∈ X"}, one_set, check_support});
   list.push_back({{"soundness.interval_hull", "X ⊆ interval_hull()"}, one_set, check_interval_hull});
   list.push_back({{"soundness.line_form", "X ⊆ line_form()"}, one_set, check_line_form});
-  list.push_back({{"soundness.volume", "volume() bounds the volume, and equals it where it is called exact"},
+  list.push_back({{"soundness.volume", "volume() bounds the volume, and equals it to 1e-7 where it is called exact"},
                   one_set,
                   check_volume,
                   {},
