@@ -87,6 +87,8 @@ const ComparedMeasure& measure(const Comparison& comparison, const std::string& 
   return comparison.measures.front();
 }
 
+const ComparedMeasure& measure(Comparison&&, const std::string&) = delete;  // what it gives back lives in the comparison
+
 bool warns(const Comparison& comparison, const std::string& words) {
   for (const std::string& warning : comparison.warnings) {
     if (warning.find(words) != std::string::npos) return true;
@@ -278,7 +280,8 @@ TEST_CASE("failed points are counted, and differences are over the points that f
                          measure(same, "radius_mean").rows[0].runs[1]) == "equal at 5 common points");
   Sweep others = broken;
   others.fails = [](int seed) { return seed >= 5; };
-  const ComparedMeasure& none = measure(compared(broken, others), "radius_mean");
+  const Comparison apart = compared(broken, others);
+  const ComparedMeasure& none = measure(apart, "radius_mean");
   CHECK_FALSE(none.is_equal());
   CHECK(apps::verdict_of(none.column, none.rows[0].runs[0], none.rows[0].runs[1]) == "failed at every common point");
   CHECK(std::isnan(none.rows[0].runs[1].difference));
