@@ -137,6 +137,29 @@ test('sets are drawn where their coordinates are', async () => {
   await close(page);
 });
 
+test('ticks far from the origin are told apart, and none is cut off', async () => {
+  const page = await open(browser, file('far'));
+  await show(page, 'far_state');
+  const labels = await page.evaluate(() => {
+    const { scales } = Chart.getChart(document.querySelector('#figure_far_state canvas'));
+    return scales.y.ticks.map((tick) => tick.label);
+  });
+  assert.ok(labels.length >= 4);
+  assert.equal(new Set(labels).size, labels.length, labels.join(' '));
+  await show(page, 'far_sets');
+  const texts = await page.evaluate(() => {
+    const stage = document.querySelector('#figure_far_sets .stage').getBoundingClientRect();
+    return [...document.querySelectorAll('#figure_far_sets .stage text')].map((text) => {
+      const box = text.getBoundingClientRect();
+      return { text: text.textContent, cut: box.left < stage.left - 1 || box.right > stage.right + 1 };
+    });
+  });
+  assert.ok(texts.length >= 8);
+  assert.equal(new Set(texts.map(({ text }) => text)).size, texts.length);
+  assert.deepEqual(texts.filter(({ cut }) => cut), []);
+  await close(page);
+});
+
 test('curves are the data: gaps stay gaps, infinity leaves the figure', async () => {
   const page = await open(browser, file('every_kind'));
   await show(page, 'radius');
@@ -309,7 +332,7 @@ test('ten pipelines over a thousand steps open quickly', async () => {
 });
 
 test('drawings for papers are shown by the browser', async () => {
-  for (const name of ['table', 'radius', 'volume', 'state_1', 'states', 'budgets', 'modes', 'tubes']) {
+  for (const name of ['table', 'radius', 'volume', 'state_1', 'states', 'budgets', 'modes', 'tubes', 'far_state', 'far_sets']) {
     const page = await open(browser, join(scratch, `${name}.svg`));
     assert.equal(await page.evaluate(() => document.documentElement.nodeName), 'svg');
     const outside = await page.evaluate(() => {

@@ -161,6 +161,24 @@ inline Report with_names(const std::string& name) {
   return report;
 }
 
+/// A state near a million that moves by thousandths.
+inline Report far_from_origin() {
+  Report report{"Far from the origin", {}, {"first"}, {}, {{"cordon", "0.1.0"}}, "{}"};
+  Series series{Series::Kind::band, "hull", 0, {}, {}, {}};
+  Projection sets{"x1", "x2", {}};
+  for (int k = 0; k < 20; ++k) {
+    const double centre = 1e6 + 1e-3 * std::sin(0.3 * k);
+    series.x.push_back(k);
+    series.y.push_back(centre - 2e-4);
+    series.upper.push_back(centre + 2e-4);
+    sets.frames.push_back({k, 1e6 - 2e-3, 1e6 + 2e-3, -1e6 - 2e-3, -1e6 + 2e-3, {hexagon(0, centre, -1e6, 2e-4)}});
+  }
+  Plot plot{"k", "x1", false, {series}};
+  report.figures.push_back({"far_state", "States", "Bounds of x1", "", plot});
+  report.figures.push_back({"far_sets", "Sets", "Sets", "", sets});
+  return report;
+}
+
 /// Ten pipelines over a thousand steps: bounds of six states, radius, volume and ten sets at a hundred times.
 inline Report large() {
   Report report{"Ten pipelines, a thousand steps", {}, {}, {}, {{"cordon", "0.1.0"}}, "{}"};

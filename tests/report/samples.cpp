@@ -29,5 +29,9 @@ int main(int count, char** arguments) {
   write(out / "every_kind.html", page_of(every));
   write(out / "hostile.html", page_of(sample::with_names(sample::hostile)));
   write(out / "large.html", page_of(sample::large()));
-  for (const auto& figure : every.figures) write(out / (figure.id + ".svg"), svg_of(figure, every));
+  const auto far = sample::far_from_origin();
+  write(out / "far.html", page_of(far));
+  for (const auto& report : {every, far}) {
+    for (const auto& figure : report.figures) write(out / (figure.id + ".svg"), svg_of(figure, report));
+  }
 }

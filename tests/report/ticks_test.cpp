@@ -104,6 +104,27 @@ TEST_CASE("an axis covers the finite values, and no more than a margin beyond") 
   CHECK(log.upper < 1000);
 }
 
+TEST_CASE("an axis far from the origin tells its values apart") {
+  CHECK(digits_within(0, 10) == 6);
+  CHECK(digits_within(-1, 1) == 6);
+  CHECK(digits_within(1e6, 1e6 + 1e-3) == 13);
+  CHECK(digits_within(2, 2) == 6);
+  CHECK((Axis{1e6 - 1e-3, 1e6 + 1e-3}).text(1e6 + 0.0005) == "1.0000000005·10⁶");
+  CHECK((Axis{20000, 20000.01}).text(20000.0025) == "20000.0025");
+  const bool holds = rc::check("ticks, and values between them", [] {
+    const double lower = *rc::gen::inRange(-1000000, 1000000);
+    const Axis axis{lower, lower + std::pow(10.0, *rc::gen::inRange(-4, 4)) * *rc::gen::inRange(1, 10)};
+    std::string before;
+    for (const double tick : axis.ticks(6)) {
+      const std::string text = axis.text(tick);
+      RC_ASSERT(text != before);
+      RC_ASSERT(text != axis.text(tick + 1e-3 * (axis.upper - axis.lower)));
+      before = text;
+    }
+  });
+  CHECK(holds);
+}
+
 TEST_CASE("a logarithmic axis names its powers") {
   CHECK(log_text(1) == "1");
   CHECK(log_text(100) == "100");

@@ -63,7 +63,7 @@ function niceTicks(lower, upper, count = 6, whole = false) {
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = Math.max(whole ? 1 : 0, power * ([1, 2, 5].find((m) => m * power >= rough * (1 - 1e-9)) ?? 10));
   const ticks = [];
-  for (let i = Math.ceil(lower / step - 1e-9); i <= upper / step + 1e-9; ++i) ticks.push(Number((i * step).toPrecision(12)));
+  for (let i = Math.ceil(lower / step - 1e-9); i <= upper / step + 1e-9; ++i) ticks.push(Number((i * step).toPrecision(14)));
   return ticks;
 }
 /** Powers of ten within [lower, upper]; with 2 and 5 between them where they are few. */
@@ -93,7 +93,13 @@ function short(value, digits = 6) {
   return String(rounded).replace('-', '−');
 }
 
-/** The same on a logarithmic axis: powers of ten as such, but for a few. */
+/** The digits, from 6 to 15, that tell values of [lower, upper] apart, also far from the origin. */
+function digitsWithin(lower, upper) {
+  const size = Math.max(Math.abs(lower), Math.abs(upper)) / (upper - lower);
+  return Number.isFinite(size) && size > 0 ? Math.min(15, Math.max(6, Math.ceil(Math.log10(size)) + 4)) : 6;
+}
+
+/** A number on a logarithmic axis: powers of ten as such, but for a few. */
 function logText(value) {
   const power = Math.round(Math.log10(value));
   if (Math.abs(power) < 3 || Math.abs(value / 10 ** power - 1) > 1e-9) return short(value);

@@ -129,7 +129,8 @@ function tooltipText(item) {
   const { series } = item.dataset;
   if (item.dataset.upper || series.name === '') return null;
   const i = item.dataIndex;
-  const value = series.kind === 'band' ? `[${short(series.y[i])}, ${short(series.upper[i])}]` : short(series.y[i]);
+  const digits = digitsWithin(item.chart.scales.y.min, item.chart.scales.y.max);
+  const value = series.kind === 'band' ? `[${short(series.y[i], digits)}, ${short(series.upper[i], digits)}]` : short(series.y[i], digits);
   return `${series.name}: ${value}`;
 }
 
@@ -144,12 +145,12 @@ function plotScales(plot) {
   return {
     x: {
       type: 'linear', min: left, max: right, grid, title: title(plot.x_label),
-      ticks: { ...ticks, callback: (value) => (plot.x_names.length > 0 ? plot.x_names[value] ?? '' : short(value)) },
+      ticks: { ...ticks, callback: (value) => (plot.x_names.length > 0 ? plot.x_names[value] ?? '' : short(value, digitsWithin(left, right))) },
       afterBuildTicks: setTicks((axis) => (plot.x_names.length > 0 ? plot.x_names.map((_, i) => i) : niceTicks(left, right, axis.width > 500 ? 9 : 5, whole))),
     },
     y: {
       type: plot.log_y ? 'logarithmic' : 'linear', min: lower, max: upper, grid, title: title(plot.y_label),
-      ticks: { ...ticks, autoSkip: false, callback: (value) => (plot.log_y ? logText(value) : short(value)) },
+      ticks: { ...ticks, autoSkip: false, callback: (value) => (plot.log_y ? logText(value) : short(value, digitsWithin(lower, upper))) },
       afterBuildTicks: setTicks(() => (plot.log_y ? logTicks(lower, upper) : niceTicks(lower, upper, 6))),
     },
   };
@@ -165,7 +166,7 @@ function plotOptions(plot) {
       tooltip: {
         filter: (item) => !item.dataset.upper,
         callbacks: {
-          title: (items) => (items.length === 0 ? '' : plot.x_names[items[0].parsed.x] ?? `${plot.x_label} = ${short(items[0].parsed.x)}`),
+          title: (items) => (items.length === 0 ? '' : plot.x_names[items[0].parsed.x] ?? `${plot.x_label} = ${short(items[0].parsed.x, 12)}`),
           label: tooltipText,
         },
       },

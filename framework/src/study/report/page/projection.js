@@ -3,24 +3,29 @@
 'use strict';
 
 const stageWidth = 640, stageHeight = 430;
-const stageMargin = { left: 62, right: 14, top: 12, bottom: 46 };
+const stageMargin = { right: 14, top: 12, bottom: 46 };
 
 /** Axes of a frame, and the maps from its coordinates to those of the drawing. */
 function stageAxes(projection, frame) {
   const right = stageWidth - stageMargin.right, bottom = stageHeight - stageMargin.bottom;
-  const x = (value) => stageMargin.left + ((value - frame.left) / (frame.right - frame.left)) * (right - stageMargin.left);
+  const across = (value) => short(value, digitsWithin(frame.left, frame.right));
+  const upwards = (value) => short(value, digitsWithin(frame.bottom, frame.top));
+  const xLabel = 7 * Math.max(across(frame.left).length, across(frame.right).length);
+  const yTicks = niceTicks(frame.bottom, frame.top, 6);
+  const left = 22 + 7 * Math.max(5, ...yTicks.map((tick) => upwards(tick).length));
+  const x = (value) => left + ((value - frame.left) / (frame.right - frame.left)) * (right - left);
   const y = (value) => bottom - ((value - frame.bottom) / (frame.top - frame.bottom)) * (bottom - stageMargin.top);
   const parts = [];
-  for (const tick of niceTicks(frame.left, frame.right, 7)) {
+  for (const tick of niceTicks(frame.left, frame.right, Math.min(7, Math.floor((right - left) / (xLabel + 14))))) {
     parts.push(drawn('line', { class: 'grid', x1: x(tick), x2: x(tick), y1: stageMargin.top, y2: bottom }),
-      drawn('text', { x: x(tick), y: bottom + 18, 'text-anchor': 'middle' }, short(tick)));
+      drawn('text', { x: x(tick), y: bottom + 18, 'text-anchor': 'middle' }, across(tick)));
   }
-  for (const tick of niceTicks(frame.bottom, frame.top, 6)) {
-    parts.push(drawn('line', { class: 'grid', x1: stageMargin.left, x2: right, y1: y(tick), y2: y(tick) }),
-      drawn('text', { x: stageMargin.left - 8, y: y(tick) + 4, 'text-anchor': 'end' }, short(tick)));
+  for (const tick of yTicks) {
+    parts.push(drawn('line', { class: 'grid', x1: left, x2: right, y1: y(tick), y2: y(tick) }),
+      drawn('text', { x: left - 8, y: y(tick) + 4, 'text-anchor': 'end' }, upwards(tick)));
   }
-  parts.push(drawn('rect', { class: 'frame', x: stageMargin.left, y: stageMargin.top, width: right - stageMargin.left, height: bottom - stageMargin.top }),
-    drawn('text', { x: (stageMargin.left + right) / 2, y: stageHeight - 8, 'text-anchor': 'middle' }, projection.x_label),
+  parts.push(drawn('rect', { class: 'frame', x: left, y: stageMargin.top, width: right - left, height: bottom - stageMargin.top }),
+    drawn('text', { x: (left + right) / 2, y: stageHeight - 8, 'text-anchor': 'middle' }, projection.x_label),
     drawn('text', { x: 14, y: (stageMargin.top + bottom) / 2, 'text-anchor': 'middle', transform: `rotate(-90 14 ${(stageMargin.top + bottom) / 2})` }, projection.y_label));
   return { x, y, parts };
 }
@@ -55,7 +60,7 @@ function stageWords(frame) {
   if (open.length > 0) words.push(`Dotted edges: the set continues beyond the frame (${open.join(', ')}).`);
   const missing = data.pipelines.filter((_, i) => shown[i] && !frame.sets.some((set) => set.pipeline === i));
   if (missing.length > 0) words.push(`No set at this time: ${missing.join(', ')}.`);
-  if (frame.truth) words.push(`True state: (${short(frame.truth[0])}, ${short(frame.truth[1])}).`);
+  if (frame.truth) words.push(`True state: (${short(frame.truth[0], digitsWithin(frame.left, frame.right))}, ${short(frame.truth[1], digitsWithin(frame.bottom, frame.top))}).`);
   return words.join(' ');
 }
 

@@ -27,7 +27,7 @@ void draw_bar(Drawing& drawing, const Bar& bar, const Axis& x, double y, double 
   }
   const double from = std::clamp(x(bar.lower), x.begin, x.end), to = std::clamp(x(bar.upper), x.begin, x.end);
   drawing.rectangle({from, y}, std::max(2.0, to - from), 10, fmt::format("fill=\"{}\"", bar.colour));
-  const std::string text = fmt::format("{}  [{}, {}]", bar.name, short_text(bar.lower), short_text(bar.upper));
+  const std::string text = fmt::format("{}  [{}, {}]", bar.name, x.text(bar.lower), x.text(bar.upper));
   if (from + text_width(text) <= x.end) {
     drawing.text({from, text_y}, text, style);
   } else {

@@ -54,31 +54,44 @@ std::string_view name_of(Timeline::State state) {
   return "outside";
 }
 
+namespace {
+
+std::vector<double> ticks_of_y(const Axis& y) { return y.ticks(static_cast<int>((y.begin - y.end) / 45)); }
+
+}  // namespace
+
+double room_beside(const Axis& y) {
+  double widest = 27;
+  for (const double tick : ticks_of_y(y)) widest = std::max(widest, text_width(y.text(tick)));
+  return widest + 31;
+}
+
 void draw_frame(Drawing& drawing, const Frame& frame) {
   const Axis &x = frame.x, &y = frame.y;
   const double bottom = y.begin;
   std::vector<double> x_ticks;
   if (frame.x_names.empty()) {
-    x_ticks = x.ticks(static_cast<int>((x.end - x.begin) / 70), frame.whole_x);
+    const double widest = std::max(text_width(x.text(x.lower)), text_width(x.text(x.upper)));
+    x_ticks = x.ticks(static_cast<int>((x.end - x.begin) / std::max(70.0, widest + 14)), frame.whole_x);
   } else {
     for (std::size_t i = 0; i < frame.x_names.size(); ++i) x_ticks.push_back(static_cast<double>(i));
   }
   const double room = (x.end - x.begin) / static_cast<double>(std::max<std::size_t>(1, frame.x_names.size())) - 6;
   for (const double tick : x_ticks) {
     const std::string text =
-        frame.x_names.empty() ? short_text(tick) : shortened(frame.x_names[static_cast<std::size_t>(tick)], room);
+        frame.x_names.empty() ? x.text(tick) : shortened(frame.x_names[static_cast<std::size_t>(tick)], room);
     drawing.line({x(tick), y.end}, {x(tick), bottom}, rule);
     drawing.text({x(tick), bottom + 17}, text, at_middle(soft));
   }
-  for (const double tick : y.ticks(static_cast<int>((y.begin - y.end) / 45))) {
+  for (const double tick : ticks_of_y(y)) {
     drawing.line({x.begin, y(tick)}, {x.end, y(tick)}, rule);
     drawing.text({x.begin - 7, y(tick) + 4}, y.text(tick), at_end(soft));
   }
   drawing.rectangle({x.begin, y.end}, x.end - x.begin, bottom - y.end, outline);
   drawing.text({(x.begin + x.end) / 2, bottom + 36}, frame.x_label, at_middle(ink));
   const double middle = (y.begin + y.end) / 2;
-  drawing.text({x.begin - 48, middle}, frame.y_label,
-               at_middle(ink) + fmt::format(" transform=\"rotate(-90 {} {})\"", x.begin - 48, middle));
+  const double beside = x.begin - room_beside(y) + 10;
+  drawing.text({beside, middle}, frame.y_label, at_middle(ink) + fmt::format(" transform=\"rotate(-90 {} {})\"", beside, middle));
 }
 
 void draw_marks(Drawing& drawing, std::vector<Mark> marks, const Axis& x, double top, double bottom) {

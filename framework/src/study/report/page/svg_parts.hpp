@@ -45,6 +45,8 @@ struct Frame {
   bool whole_x = false;                   ///< ticks of x are integers
 };
 void draw_frame(Drawing& drawing, const Frame& frame);
+/// What the ticks and the label of y take to the left of the frame.
+double room_beside(const Axis& y);
 
 /// Vertical lines with texts above `top`, in up to three rows of 13 units; a text that would cover another one is left out.
 void draw_marks(Drawing& drawing, std::vector<Mark> marks, const Axis& x, double top, double bottom);

@@ -111,7 +111,7 @@ Axis x_axis(const Plot& plot, double begin, double end) {
 }  // namespace
 
 std::string draw(const Plot& plot, const Figure& figure) {
-  constexpr double width = 640, left = 66, right = 626, height = 280;
+  constexpr double width = 640, right = 626, height = 280;
   const double top = plot.marks.empty() ? 14 : 52, bottom = top + height;
   std::vector<double> values;
   bool whole = true;
@@ -121,8 +121,9 @@ std::string draw(const Plot& plot, const Figure& figure) {
     for (const double x : series.x) whole = whole && x == std::floor(x);
   }
   for (const auto& threshold : plot.thresholds) values.push_back(threshold.second);
-  const Frame frame{
-      x_axis(plot, left, right), axis_over(values, plot.log_y, bottom, top), plot.x_label, plot.y_label, plot.x_names, whole};
+  const Axis y_axis = axis_over(values, plot.log_y, bottom, top);
+  const double left = room_beside(y_axis) + 8;
+  const Frame frame{x_axis(plot, left, right), y_axis, plot.x_label, plot.y_label, plot.x_names, whole};
   const std::vector<LegendEntry> legend = legend_of(plot);
   const double legend_top = bottom + 60;
 

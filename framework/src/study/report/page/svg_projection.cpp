@@ -28,8 +28,8 @@ void draw_set(Drawing& drawing, const Polygon& set, const Axis& x, const Axis& y
 
 /// One time in the square whose upper left corner is `corner`; true if a set continues beyond the frame.
 bool draw_time(Drawing& drawing, const Projection& projection, const SetFrame& time, Point corner, double size) {
-  const Axis x{time.left, time.right, corner.first + 58, corner.first + size};
   const Axis y{time.bottom, time.top, corner.second + size - 48, corner.second + 24};
+  const Axis x{time.left, time.right, corner.first + room_beside(y), corner.first + size};
   drawing.text({x.begin, corner.second + 15}, fmt::format("k = {}", time.k), std::string(ink) + " font-weight=\"bold\"");
   draw_frame(drawing, {x, y, projection.x_label, projection.y_label});
   drawing.begin_clip({x.begin - 2, y.end - 2}, x.end - x.begin + 4, y.begin - y.end + 4);

@@ -14,7 +14,7 @@ namespace cordon::report {
 namespace {
 
 /// Without the noise of 3 · 0.1.
-double clean(double value) { return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr); }
+double clean(double value) { return std::strtod(fmt::format("{:.14g}", value).c_str(), nullptr); }
 
 std::string superscript(int exponent) {
   constexpr std::array<std::string_view, 10> digits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -55,10 +55,10 @@ std::vector<double> log_ticks(double lower, double upper) {
   return ticks;
 }
 
-std::string short_text(double value) {
+std::string short_text(double value, int digits) {
   if (std::isnan(value)) return "–";
   if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
-  std::string text = fmt::format("{:.5e}", value);
+  std::string text = fmt::format("{:.{}e}", value, digits - 1);
   const std::size_t e = text.find('e');
   const int exponent = std::atoi(text.c_str() + e + 1);
   if (value != 0 && (exponent >= 6 || exponent < -4)) {
@@ -72,9 +72,14 @@ std::string short_text(double value) {
     }
     text = mantissa + "10" + superscript(exponent);
   } else {
-    text = fmt::format("{:.6g}", value == 0 ? 0.0 : value);
+    text = fmt::format("{:.{}g}", value == 0 ? 0.0 : value, digits);
   }
   return text[0] == '-' ? "−" + text.substr(1) : text;
+}
+
+int digits_within(double lower, double upper) {
+  const double size = std::max(std::abs(lower), std::abs(upper)) / (upper - lower);
+  return std::isfinite(size) && size > 0 ? std::clamp(static_cast<int>(std::ceil(std::log10(size))) + 4, 6, 15) : 6;
 }
 
 std::string log_text(double value) {

@@ -14,8 +14,11 @@ std::vector<double> nice_ticks(double lower, double upper, int count, bool whole
 /// Powers of ten within [lower, upper], with 2 and 5 between them over three decades or less. Both bounds are positive.
 std::vector<double> log_ticks(double lower, double upper);
 
-/// A number with at most six digits, with a power of ten where it is very large or small; ∞ and − as they are printed.
-std::string short_text(double value);
+/// A number with at most `digits` digits, with a power of ten where it is very large or small; ∞ and − as they are printed.
+std::string short_text(double value, int digits = 6);
+
+/// The digits, from 6 to 15, that tell values of [lower, upper] apart, also far from the origin.
+int digits_within(double lower, double upper);
 
 /// The same on a logarithmic axis: powers of ten as such, but for a few.
 std::string log_text(double value);
@@ -31,7 +34,8 @@ struct Axis {
   std::vector<double> ticks(int count, bool whole = false) const {
     return log ? log_ticks(lower, upper) : nice_ticks(lower, upper, count, whole);
   }
-  std::string text(double tick) const { return log ? log_text(tick) : short_text(tick); }
+  /// A tick, or a value between the ticks.
+  std::string text(double value) const { return log ? log_text(value) : short_text(value, digits_within(lower, upper)); }
 };
 
 /// An axis over the finite ones among the values (positive ones if `log`), with a margin, from `begin` to `end`. An axis of
