@@ -39,16 +39,13 @@ std::string time_problem(const std::string& text) {
   return good ? "" : text + " is no time; write seconds, above 0";
 }
 
-/// All pipelines of a study, or the one of `only`.
-Exit run_once(const Study& study, const std::string& only, const Registry& registry, const RunArguments& arguments,
-              const std::atomic<bool>* stop) {
+Exit run_once(const Study& study, const Registry& registry, const RunArguments& arguments, const std::atomic<bool>* stop) {
   std::vector<std::string> names;
   for (const PipelineSpec& pipeline : study.pipelines) names.push_back(pipeline.name);
   ProgressBar bar(names, !arguments.quiet && isatty(STDERR_FILENO) == 1);
   RunOptions options;
   options.stop = stop;
   options.out = directory_for(arguments);
-  options.pipeline = only;
   options.report = !arguments.no_report;
   if (arguments.point_limit_s) {
     const std::chrono::duration<double> limit(std::min(*arguments.point_limit_s, 1e9));
@@ -77,10 +74,9 @@ Exit run(const Program& program, const RunArguments& arguments) {
     for (const std::string& warning : study.warnings) warn(warning);
   }
   if (arguments.point) {
-    const SweepPoint point = SweepGrid(study)[*arguments.point];
-    return run_once(study_at(study, point.at, registry), study.pipelines[point.pipeline].name, registry, arguments, stop);
+    return run_once(study_at(study, SweepGrid(study)[*arguments.point], registry), registry, arguments, stop);
   }
-  if (study.sweep.empty()) return run_once(study, "", registry, arguments, stop);
+  if (study.sweep.empty()) return run_once(study, registry, arguments, stop);
   return run_all_points(study, registry, arguments, directory_for(arguments), stop);
 }
 

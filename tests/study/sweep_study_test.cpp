@@ -296,6 +296,19 @@ TEST_CASE("the point of one pipeline does not depend on whether others work") {
   CHECK(study.resolved.empty());
   study.resolved = read.at({2, 1, 0}).resolved;
   CHECK(same(study, read.at({2, 1, 0})));
+  const auto alone = [&](std::size_t pipeline) {
+    return study_at(read.study, SweepPoint{0, {0, 1, 1}, pipeline}, read.registry);
+  };
+  for (const std::size_t pipeline : {0, 1}) {
+    const Study one = alone(pipeline);
+    REQUIRE(one.pipelines.size() == 1);
+    CHECK(one.pipelines[0].name == read.study.pipelines[pipeline].name);
+    const auto resolved = nlohmann::json::parse(one.resolved);
+    REQUIRE(resolved["pipelines"].size() == 1);
+    CHECK(resolved["pipelines"][0]["name"] == one.pipelines[0].name);
+  }
+  CHECK_THROWS_AS(alone(2), InputError);
+  CHECK_THROWS_AS(alone(3), Error);
 }
 
 TEST_CASE("pipelines are asked again where a value of theirs, or of the system, is another one") {

@@ -42,6 +42,9 @@ class SweepGrid {
 /// The study under one combination of values, with every default. Reads it anew: throws InputError for a combination that is
 /// wrong though each value is right. Loads no plugin; safe to call from several threads.
 Study study_at(const Study& study, const std::vector<std::size_t>& at, const Registry& registry);
+/// One point as a study of its own, with its pipeline alone: another one that does not go together with the model and the data
+/// under these values does not matter.
+Study study_at(const Study& study, const SweepPoint& point, const Registry& registry);
 
 /// A part of a sweep: point i with combination q and pipeline p belongs to part 1 + (q + p) mod `of`.
 struct Shard {
@@ -82,8 +85,8 @@ struct SweepOutcome {
 /// became of it stands in its row. Writes results.json, points.csv, run.json and the summaries of `summarise`; all but times are
 /// the same bytes whatever `jobs`, interruptions and shards were. While it runs, finished points are kept in a journal in `out`,
 /// which survives the death of the process at any time. With `resume`, and finished results of the same sweep in `out`, nothing
-/// is run: they are read. Throws InputError: `out` holds the unfinished sweep of another study, or one of this study without
-/// `resume`, or another process works there; Errc::io, and the journal stays.
+/// is run: they are read, and their report is written if it is missing. Throws InputError: `out` holds the unfinished sweep of
+/// another study, or one of this study without `resume`, or another process works there; Errc::io, and the journal stays.
 SweepOutcome run_sweep(const Study& study, const Registry& registry, const SweepOptions& options);
 
 /// Joins the results of all parts of one sweep in `out`: the same files that one process would have left. Throws InputError if

@@ -27,10 +27,13 @@ std::vector<Diagnostic> of_interest(std::vector<Diagnostic> all, std::optional<s
   return all;
 }
 
-Study read_point(const Study& study, const std::vector<std::size_t>& at, std::optional<std::size_t> only,
+enum class Text { resolved, none };
+
+Study read_point(const Study& study, const std::vector<std::size_t>& at, std::optional<std::size_t> only, Text text,
                  const Registry& registry) {
   const StudySource& source = source_of(study);
   check_indices(source.sweep, at);
+  if (only && *only >= study.pipelines.size()) throw Error(Errc::invalid, "there is no such pipeline in the study");
   Problems problems;
   const Value tree =
       substituted(source.sweep.empty() ? parse(source.text, problems) : source.tree, source.sweep, at, registry, problems);
@@ -44,18 +47,24 @@ Study read_point(const Study& study, const std::vector<std::size_t>& at, std::op
   for (std::size_t i = 0; i < reading.study.pipelines.size(); ++i) {
     if (only.value_or(i) == i) source.remember(registry, i, at);
   }
-  if (!only) reading.study.resolved = resolve(reading.study, reading.written, {}, registry);
+  if (text == Text::none) return std::move(reading.study);
+  if (only) reading.study.pipelines = {reading.study.pipelines[*only]};
+  reading.study.resolved = resolve(reading.study, reading.written, {}, registry);
   return std::move(reading.study);
 }
 
 }  // namespace
 
 Study study_at(const Study& study, const std::vector<std::size_t>& at, const Registry& registry) {
-  return read_point(study, at, {}, registry);
+  return read_point(study, at, {}, Text::resolved, registry);
+}
+
+Study study_at(const Study& study, const SweepPoint& point, const Registry& registry) {
+  return read_point(study, point.at, point.pipeline, Text::resolved, registry);
 }
 
 Study study_of_point(const Study& study, const SweepPoint& point, const Registry& registry) {
-  return read_point(study, point.at, point.pipeline, registry);
+  return read_point(study, point.at, point.pipeline, Text::none, registry);
 }
 
 }  // namespace cordon

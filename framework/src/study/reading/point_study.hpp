@@ -6,8 +6,7 @@
 
 namespace cordon {
 
-/// As study_at under the values of `point`, but without the resolved text, and of the pipelines only that of the point must go
-/// together with the model and the data: another one that does not work under these values does not matter. Safe to call from
+/// As study_at, but with all pipelines and without the resolved text, which takes more time than the rest. Safe to call from
 /// several threads.
 Study study_of_point(const Study& study, const SweepPoint& point, const Registry& registry);
 
