@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <exception>
 #include <memory>
+#include <optional>
+#include <set>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -116,54 +119,74 @@ Json as_json(const Study& study) {
   return entry;
 }
 
-/// The error in flight, for programs.
-Json as_json(const std::string& file, const Error& error) {
-  Json entry{{"file", file},
-             {"valid", false},
-             {"code", to_string(error.code())},
-             {"warnings", Json::array()},
-             {"errors", Json::array()}};
+void add_errors(Json& errors, const Error& error) {
   const auto* input = dynamic_cast<const InputError*>(&error);
-  if (!input) entry["errors"].push_back({{"message", error.what()}});
+  if (!input) errors.push_back({{"message", error.what()}});
   for (const Diagnostic& d : input ? input->diagnostics() : std::vector<Diagnostic>{}) {
-    entry["errors"].push_back({{"file", input->file()},
-                               {"pointer", d.pointer},
-                               {"line", d.line},
-                               {"message", d.message},
-                               {"suggestion", d.suggestion}});
+    errors.push_back({{"file", input->file()},
+                      {"pointer", d.pointer},
+                      {"line", d.line},
+                      {"message", d.message},
+                      {"suggestion", d.suggestion}});
   }
-  return entry;
 }
 
-/// Opens the data under the other values of the axes that choose a file or its columns.
-void open_all_data(const Study& study, const Registry& registry) {
+/// What is wrong with the data, under every value of the axes that choose a file or its columns; the same error once.
+std::vector<std::exception_ptr> wrong_data(const Study& study, const Registry& registry) {
   constexpr std::size_t most = 1000;  // of one axis
-  open_data(study);
+  std::vector<std::exception_ptr> errors;
+  std::set<std::string> known;
+  const auto open = [&](const auto& made) {
+    try {
+      open_data(made());
+    } catch (const Error& error) {
+      if (known.insert(error.what()).second) errors.push_back(std::current_exception());
+    }
+  };
+  open([&] { return study; });
   for (std::size_t axis = 0; axis < study.sweep.size(); ++axis) {
     if (!study.sweep[axis].path.starts_with("/data/csv") && study.sweep[axis].path != "/data") continue;
     std::vector<std::size_t> at(study.sweep.size(), 0);
     for (at[axis] = 1; at[axis] < std::min(most, study.sweep[axis].values.size()); ++at[axis])
-      open_data(study_at(study, at, registry));
+      open([&] { return study_at(study, at, registry); });
   }
+  return errors;
+}
+
+/// Tells every error, as a text or in an entry for programs; the exit code is that of the first.
+Exit refuse(const std::string& file, const std::vector<std::exception_ptr>& wrong, Json* entries) {
+  std::optional<Exit> exit;
+  Json entry{{"file", file}, {"valid", false}, {"warnings", Json::array()}, {"errors", Json::array()}};
+  for (const std::exception_ptr& one : wrong) {
+    try {
+      std::rethrow_exception(one);
+    } catch (const Error& error) {
+      if (!exit) entry["code"] = to_string(error.code());
+      add_errors(entry["errors"], error);
+      const Exit its = entries ? exit_for(error.code()) : report_current_exception();
+      if (!exit) exit = its;
+    }
+  }
+  if (entries) entries->push_back(std::move(entry));
+  return exit.value_or(Exit::done);
 }
 
 /// Reads one study and its data as `cordon run` would, but runs nothing and writes nothing.
-Exit validate_one(const std::string& file, const Program& program, bool json, Json& entries) {
+Exit validate_one(const std::string& file, const Program& program, Json* entries) {
   try {
     Registry registry;
     registry.load(SearchPath{program.plugins});
     const Study study = read_study(file, registry);
-    open_all_data(study, registry);
-    if (json) {
-      entries.push_back(as_json(study));
+    if (const auto wrong = wrong_data(study, registry); !wrong.empty()) return refuse(file, wrong, entries);
+    if (entries) {
+      entries->push_back(as_json(study));
     } else {
       for (const std::string& warning : study.warnings) warn(warning);
       print(describe(study));
     }
     return Exit::done;
-  } catch (const Error& error) {
-    if (json) entries.push_back(as_json(file, error));
-    return json ? exit_for(error.code()) : report_current_exception();
+  } catch (const Error&) {
+    return refuse(file, {std::current_exception()}, entries);
   }
 }
 
@@ -172,7 +195,7 @@ Exit validate(const Program& program, const Arguments& arguments) {
   Exit exit = Exit::done;
   Json entries = Json::array();
   for (const std::string& file : arguments.studies) {
-    const Exit one = validate_one(file, program, arguments.json, entries);
+    const Exit one = validate_one(file, program, arguments.json ? &entries : nullptr);
     if (exit == Exit::done) exit = one;
   }
   if (arguments.json) print(Json{{"studies", std::move(entries)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

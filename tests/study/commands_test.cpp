@@ -120,16 +120,23 @@ TEST_CASE("bad rows of recorded data are found by validate") {
 TEST_CASE("validate opens the recorded data of every value of a sweep") {
   const Scratch scratch;
   auto study = nlohmann::ordered_json::parse(std::ifstream(examples + "recorded_walk.json"));
-  study["sweep"] = {{{"name", "walk"}, {"path", "/data/csv/file"}, {"values", {"good.csv", "bad.csv"}}}};
+  study["sweep"] = {{{"name", "walk"}, {"path", "/data/csv/file"}, {"values", {"good.csv", "bad.csv", "worse.csv"}}}};
   const std::string file = scratch.write("walk.json", study.dump());
   const std::string good = "k,px_m,py_m,vx_mps,vy_mps,zx_m,zy_m\n0,0,0,0,0,0,0\n";
   scratch.write("good.csv", good);
   scratch.write("bad.csv", good + "1,0,0,0,0,oops,0\n");
+  scratch.write("worse.csv", good + "1,0,0,0,0,0,alas\n");
   const Outcome bad = run("validate " + file, "2>&1");
   CHECK(bad.exit == 2);
   CHECK(bad.out.find("bad.csv") != std::string::npos);
   CHECK(bad.out.find("oops") != std::string::npos);
+  CHECK(bad.out.find("alas") != std::string::npos);  // every error at once
+  const auto told = nlohmann::json::parse(run("validate --json " + file, "2>/dev/null").out)["studies"];
+  REQUIRE(told.size() == 1);
+  CHECK(told[0]["valid"] == false);
+  CHECK(told[0]["errors"].size() == 2);
   scratch.write("bad.csv", good);
+  scratch.write("worse.csv", good);
   CHECK(run("validate " + file, "2>&1").exit == 0);
 }
 
