@@ -154,6 +154,9 @@ TEST_CASE_FIXTURE(Fixture, "resumed after its end, it says so and runs nothing")
   CHECK(holds(again, "finished before"));
   CHECK(holds(again, "Zonotope"));
   CHECK(tree(scratch / "out") == before);
+  CHECK_FALSE(std::filesystem::exists(scratch / "out/report.html"));
+  CHECK(run({"--out", scratch / "out", "--resume"}).exit == 0);
+  CHECK(std::filesystem::exists(scratch / "out/report.html"));
 }
 
 TEST_CASE_FIXTURE(Fixture, "results leave no file of those before them") {

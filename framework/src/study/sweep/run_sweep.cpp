@@ -209,6 +209,11 @@ class SweepRun {
     outcome.table = table_of(*files);
     outcome.violated = violations(outcome.table);
     outcome.first_error = files->rows.first_error();
+    std::error_code ignored;
+    if (options_.report && !std::filesystem::exists(options_.out / "report.html", ignored)) {
+      std::vector<std::filesystem::path> added;  // ended between the results and their report, or had none
+      outcome.report_error = report::try_report(options_.out, added);
+    }
     return outcome;
   }
 
