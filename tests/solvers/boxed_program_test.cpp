@@ -70,6 +70,26 @@ TEST_CASE("bounds hold for any multipliers, and are attained") {
   }));
 }
 
+TEST_CASE("bounds are as tight for tiny and huge objectives") {
+  CHECK(rc::check("a power of two before the objective stands before the bound", [] {
+    const Index g = *rc::gen::inRange<Index>(2, 12), m = *rc::gen::inRange<Index>(1, 4);
+    const auto number = [] { return static_cast<double>(*rc::gen::inRange(-100, 101)) / 10; };
+    Matrix A(m, g);
+    for (Index k = 0; k < A.size(); ++k) A.data()[k] = number();
+    Vector xi(g), objective(g);
+    for (Index j = 0; j < g; ++j) xi[j] = static_cast<double>(*rc::gen::inRange(-95, 96)) / 100;
+    for (Index j = 0; j < g; ++j) objective[j] = number();
+    BoxedProgram program(A, Vector(A * xi));
+    const auto plain = program.maximum(objective);
+    RC_PRE(plain.solved);
+    for (const int power : {-60, -30, 40}) {
+      const auto scaled = program.maximum(Vector(std::ldexp(1.0, power) * objective));
+      RC_ASSERT(scaled.solved);
+      RC_ASSERT(std::abs(std::ldexp(scaled.upper, -power) - plain.upper) <= 1e-9 * (1 + objective.lpNorm<1>()));
+    }
+  }));
+}
+
 TEST_CASE("emptiness is decided on both sides of the boundary") {
   CHECK(rc::check("rows moved beyond their reach", [] {
     const Index g = *rc::gen::inRange<Index>(1, 10), m = *rc::gen::inRange<Index>(1, 4);

@@ -31,7 +31,7 @@ struct ImportedStudy {
   std::vector<std::filesystem::path> files;  ///< the study, and its data if there are any
   bool sets_only = false;                    ///< what was written is a set or a list of sets
   std::vector<std::string> missing;          ///< what has to be added to the study before it can run: "W", "V"
-  std::vector<std::string> ignored;          ///< fields of the system that are not part of one
+  std::vector<std::string> ignored;          ///< fields and variables of the file that are no part of the system
 };
 
 /// Reads a MAT-file and writes its system as the beginning of a study; data beside it become a CSV file of the same name. A file

@@ -26,8 +26,10 @@ struct SummaryRow {
   std::vector<std::size_t> at;  ///< per axis; 0 for repetitions
   std::int64_t points = 0, failed = 0;
   std::vector<Statistics> columns;  ///< by column of the table, over the points that did not fail
-  std::vector<double> relative;     ///< by column: mean / smallest mean among the pipelines under the same combination; NaN where
-                                    ///< smaller is not better, or a mean is not positive
+  /// By column: mean / smallest mean among the pipelines under the same combination. NaN where smaller is not better, a mean is
+  /// not positive, or a point of the row has no finite number; but for times, also where an estimate was proven empty, the truth
+  /// has left what the pipeline assumes, or a guarantee was violated.
+  std::vector<double> relative;
 };
 
 struct Summary {
