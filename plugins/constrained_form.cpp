@@ -25,13 +25,6 @@ ConstrainedForm::Result made(sets::Reduced result) {
   return {std::move(result.set), result.exact ? Tightness::exact : Tightness::outer};
 }
 
-/// Power of two that brings the largest entry to 256 … 512. The solver takes reduced costs below 1e-7 for none: of a larger
-/// objective it sees the small parts, too.
-double enlarging(const Vector& g) {
-  const double largest = g.size() > 0 ? g.lpNorm<Eigen::Infinity>() : 0;
-  return largest > 1e-280 ? std::ldexp(1.0, 8 - std::ilogb(largest)) : 1;
-}
-
 }  // namespace
 
 Answer ConstrainedForm::is_empty(const Value& X, Certificate* why) const { return cordon::is_empty(X, why); }
@@ -51,18 +44,17 @@ double ConstrainedForm::exact_volume(const Value& X) const {
   bool solved = true;
   const sets::SupportOracle oracle = [&](const Vector& d) -> sets::SupportPoint {
     const Vector g = linalg::product(Y.G.transpose(), d);
-    const double factor = enlarging(g);
-    const BoxedProgram::Bound bound = program.maximum(factor * g);
+    const BoxedProgram::Bound bound = program.maximum(g);
     if (!bound.xi) {
       solved = solved && bound.upper == -std::numeric_limits<double>::infinity();
       return {-std::numeric_limits<double>::infinity(), Y.c};
     }
     // the solver's point must be one of the set, and the certified bound its value
-    const double upper = bound.upper / factor, size = 1e-9 * (g.lpNorm<1>() + d.cwiseAbs().dot(Y.c.cwiseAbs()));
+    const double size = 1e-9 * (g.lpNorm<1>() + d.cwiseAbs().dot(Y.c.cwiseAbs()));
     const Vector gap = linalg::product(Y.A, *bound.xi) - Y.b;
     const bool feasible = (gap.array().abs() <= 1e-7 * (Y.b.cwiseAbs() + Y.A.cwiseAbs().rowwise().sum()).array()).all();
-    solved = solved && feasible && upper - g.dot(*bound.xi) <= size;
-    return {d.dot(Y.c) + upper, Y.c + linalg::product(Y.G, *bound.xi)};
+    solved = solved && feasible && bound.upper - g.dot(*bound.xi) <= size;
+    return {d.dot(Y.c) + bound.upper, Y.c + linalg::product(Y.G, *bound.xi)};
   };
   double volume = -1;
   if (Y.dim() == 1) volume = std::max(0.0, oracle(Vector{{1.0}}).h + oracle(Vector{{-1.0}}).h);

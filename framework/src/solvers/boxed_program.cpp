@@ -107,9 +107,13 @@ BoxedProgram::Bound BoxedProgram::maximum(VectorIn g) {
     bound.solved = true;
     return bound;
   }
-  const LinearProgram::Solution solution = s.for_objectives().maximize(g);
+  // The solver's tolerances are absolute: whatever the objective is, it sees one of some hundreds. Larger ones it scales itself.
+  const double largest = g.size() ? g.cwiseAbs().maxCoeff() : 0;
+  const int power = largest > 0 && std::isfinite(largest) ? std::ilogb(largest) - 8 : 0;
+  const auto shifted = [](VectorIn v, int by) { return Vector(v.unaryExpr([by](double x) { return std::ldexp(x, by); })); };
+  const LinearProgram::Solution solution = s.for_objectives().maximize(shifted(g, -power));
   if (solution.status == LinearProgram::Status::optimal) {
-    const Vector y = s.scale.cwiseProduct(solution.y);
+    const Vector y = s.scale.cwiseProduct(shifted(solution.y, power));
     if (const double upper = upper_bound(g, s.A, s.b, y, s.accuracy.error); upper < bound.upper) {
       bound.upper = upper;
       bound.y = y;
