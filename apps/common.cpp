@@ -2,7 +2,6 @@
 #include "common.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -83,16 +82,6 @@ void to_stderr(const std::string& text) {
 void note(const std::string& text) { to_stderr(text + "\n"); }
 void warn(const std::string& text) { to_stderr(Paint(stderr).yellow("warning:") + " " + text + "\n"); }
 void complain(const std::string& text) { to_stderr(Paint(stderr).red("error:") + " " + text + "\n"); }
-
-std::string quoted(const std::filesystem::path& path) {
-  std::string text = path.string();
-  const bool plain = std::all_of(text.begin(), text.end(),
-                                 [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || std::strchr("/._-+~", c); });
-  if (plain) return text;
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
 
 std::filesystem::path as_operand(const std::filesystem::path& path) { return path.string().starts_with('-') ? "." / path : path; }
 

@@ -40,8 +40,8 @@ void note(const std::string& text);
 void warn(const std::string& text);
 void complain(const std::string& text);
 
-/// A path as a shell reads it, in quotes where it needs them.
-std::string quoted(const std::filesystem::path& path);
+/// A word or a path as a shell reads it, in quotes where it needs them.
+std::string quoted(const std::string& word);
 /// The same file, named so that a program cannot take it for an option.
 std::filesystem::path as_operand(const std::filesystem::path& path);
 
@@ -61,9 +61,6 @@ class Paint {
 
 /// Columns aligned by two spaces, first row bold; cells are UTF-8. The last column is not padded.
 std::string table(const std::vector<std::vector<std::string>>& rows, const Paint& paint);
-
-/// As a shell takes it as one word.
-std::string quoted(const std::string& word);
 
 /// Loads the default search path with `first` before it.
 void load_plugins(Registry& registry, std::span<const std::filesystem::path> first);

@@ -58,15 +58,6 @@ fs::path find_plugin(const Program& program, const std::string& plugin) {
                                          names.empty() ? "give the path of its file" : suggest(plugin, names)));
 }
 
-/// A word as the shell takes it.
-std::string quoted(const std::string& word) {
-  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+") == std::string::npos)
-    return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 std::string replay_command(const Program& program, const Arguments& arguments, const Candidate& candidate) {
   std::string text = "cordon";
   for (const fs::path& directory : program.plugins) text += " --plugins " + quoted(directory.string());
