@@ -80,24 +80,29 @@ TEST_CASE("the files of a sweep") {
         "| 20 | first | 1.500e-07 | 1 | 40 | 20 | 1 | 0/2 |\n"
         "| 20 | second | ∞ | – | – | 10 | – | 1/2 |\n"
         "\nMean ± standard deviation over up to 2 repetitions.\n");
-  CHECK(files.at("summary.tex") ==
-        "% Needs \\usepackage{booktabs}; in two-column papers table* in place of table.\n"
-        "\\begin{table}\n"
-        "  \\centering\\small\n"
-        "  \\caption{Budgets. Mean $\\pm$ standard deviation over up to 2 repetitions.}\n"
-        "  \\label{tab:budgets}\n"
-        "  \\begin{tabular}{llrrrrrr}\n"
-        "    \\toprule\n"
-        "    budget & pipeline & mean radius & $\\times$ best & used generators & $\\mu$s/step & $\\times$ best & failed \\\\\n"
-        "    \\midrule\n"
-        "    10 & first & $\\mathbf{1.500 \\pm 0.71}$ & $1$ & $30$ & $30 \\pm 14$ & $3$ & $0/2$ \\\\\n"
-        "    10 & second & $3 \\pm 1.4$ & $2$ & -- & $\\mathbf{10}$ & $1$ & $0/2$ \\\\\n"
-        "    \\midrule\n"
-        "    20 & first & $1.500\\cdot10^{-7}$ & $1$ & $40$ & $20$ & $1$ & $0/2$ \\\\\n"
-        "    20 & second & $\\infty$ & -- & -- & $10$ & -- & $1/2$ \\\\\n"
-        "    \\bottomrule\n"
-        "  \\end{tabular}\n"
-        "\\end{table}\n");
+  CHECK(
+      files.at("summary.tex") ==
+      "% Needs \\usepackage{booktabs,graphicx}; in two-column papers table* in place of table. Shrunk where it is wider than the "
+      "text.\n"
+      "\\begin{table}\n"
+      "  \\centering\\footnotesize\\setlength{\\tabcolsep}{4pt}\n"
+      "  \\caption{Budgets. Mean $\\pm$ standard deviation over up to 2 repetitions.}\n"
+      "  \\label{tab:budgets}\n"
+      "  \\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n"
+      "  \\begin{tabular}{llrrrrrr}\n"
+      "    \\toprule\n"
+      "    budget & pipeline & \\multicolumn{2}{c}{mean radius} & used & \\multicolumn{2}{c}{$\\mu$s/step} & failed \\\\\n"
+      "    \\cmidrule(lr){3-4}\\cmidrule(lr){6-7}\n"
+      "     &  &  & $\\times$ best & generators &  & $\\times$ best &  \\\\\n"
+      "    \\midrule\n"
+      "    10 & first & $\\mathbf{1.500 \\pm 0.71}$ & $1$ & $30$ & $30 \\pm 14$ & $3$ & $0/2$ \\\\\n"
+      "    10 & second & $3 \\pm 1.4$ & $2$ & -- & $\\mathbf{10}$ & $1$ & $0/2$ \\\\\n"
+      "    \\midrule\n"
+      "    20 & first & $1.500\\cdot10^{-7}$ & $1$ & $40$ & $20$ & $1$ & $0/2$ \\\\\n"
+      "    20 & second & $\\infty$ & -- & -- & $10$ & -- & $1/2$ \\\\\n"
+      "    \\bottomrule\n"
+      "  \\end{tabular}}\n"
+      "\\end{table}\n");
 }
 
 TEST_CASE("verdicts: what was claimed held, did not hold, or is not known") {

@@ -10,6 +10,7 @@
 #include "study/results/numbers.hpp"
 #include "study/results/results_parts.hpp"
 #include "study/statistics/comparable.hpp"
+#include "study/statistics/latex_table.hpp"
 #include "study/statistics/table_text.hpp"
 
 namespace cordon::detail {
@@ -47,92 +48,6 @@ void write_statistics(Sink& file, const ResultTable& table, const Summary& summa
       file.write(joined(fields));
     }
   }
-}
-
-/// A number of a comparison table, which consists of digits and a few marks, in the mathematics of LaTeX.
-std::string latex_number(std::string_view text, bool best) {
-  if (text == "–") return "--";
-  std::string out;
-  bool exponent = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const std::string_view rest = text.substr(i);
-    const auto takes = [&](std::string_view what) {
-      if (!rest.starts_with(what)) return false;
-      i += what.size() - 1;
-      return true;
-    };
-    if (exponent && !(text[i] >= '0' && text[i] <= '9')) {
-      out += '}';
-      exponent = false;
-    }
-    if (takes("e+") || takes("e-")) {
-      out += text[i] == '-' ? "\\cdot10^{-" : "\\cdot10^{";
-      exponent = true;
-      while (i + 2 < text.size() && text[i + 1] == '0') ++i;
-    } else if (takes("±")) {
-      out += "\\pm";
-    } else if (takes("∞")) {
-      out += "\\infty";
-    } else if (takes(" †")) {
-      out += "^{\\dagger}";
-    } else if (takes(" %")) {
-      out += "\\,\\%";
-    } else {
-      out += text[i];
-    }
-  }
-  if (exponent) out += '}';
-  return fmt::format(fmt::runtime(best ? "$\\mathbf{{{}}}$" : "${}$"), out);
-}
-
-/// The title as a label: letters and digits, everything else as single hyphens.
-std::string label_of(std::string_view title) {
-  std::string label;
-  for (const char c : title) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (plain) {
-      label += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    } else if (!label.empty() && label.back() != '-') {
-      label += '-';
-    }
-  }
-  while (label.ends_with('-')) label.pop_back();
-  return label.empty() ? "results" : label;
-}
-
-/// The first cell of a row: a bracket or star would be an argument of the command before it, across spaces and lines.
-std::string first_latex_cell(std::string text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  return first != std::string::npos && (text[first] == '[' || text[first] == '*') ? "{}" + text : text;
-}
-
-void write_latex(Sink& file, const std::string& title, const ComparisonTable& table) {
-  file.write(
-      "% Needs \\usepackage{booktabs}; in two-column papers table* in place of table.\n\\begin{table}\n  \\centering\\small\n");
-  std::string caption = latex_text(title);
-  if (!caption.ends_with('.')) caption += '.';
-  for (const std::string& note : table.notes) caption.append(" ").append(latex_text(note));
-  file.write("  \\caption{" + caption + "}\n  \\label{tab:" + label_of(title) + "}\n  \\begin{tabular}{");
-  for (const ComparisonColumn& column : table.columns) file.write(column.number ? "r" : "l");
-  file.write("}\n    \\toprule\n    ");
-  for (std::size_t j = 0; j < table.columns.size(); ++j) {
-    if (j > 0) file.write(" & ");
-    const std::string column = latex_text(table.columns[j].title);
-    file.write(j == 0 ? first_latex_cell(column) : column);
-  }
-  file.write(" \\\\\n");
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    if (std::find(table.groups.begin(), table.groups.end(), i) != table.groups.end()) file.write("    \\midrule\n");
-    std::string line = "    ";
-    for (std::size_t j = 0; j < table.columns.size(); ++j) {
-      const ComparisonCell& cell = table.rows[i][j];
-      line += j > 0 ? " & " : "";
-      const std::string text = table.columns[j].number ? latex_number(cell.text, cell.best) : latex_text(cell.text);
-      line += j == 0 ? first_latex_cell(text) : text;
-    }
-    file.write(line + " \\\\\n");
-  }
-  file.write("    \\bottomrule\n  \\end{tabular}\n\\end{table}\n");
 }
 
 void write_markdown(Sink& file, const std::string& title, const ComparisonTable& table) {
