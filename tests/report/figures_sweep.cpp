@@ -81,13 +81,13 @@ TEST_CASE("who is best where, with the lead over the second") {
   CHECK(table.header[1] == "mean radius");
   REQUIRE(table.rows.size() == 2);
   CHECK(table.rows[0][0].text == "10");  // 4.5 against 2.5
-  CHECK(table.rows[0][1].text == "b (44.4 %)");
+  CHECK(table.rows[0][1].text == "b (44.4\u00a0%)");
   CHECK(table.rows[0][1].share == doctest::Approx(2 / 4.5 / 0.5));
   CHECK(table.rows[1][0].text == "30");  // 2.5 against 3.5
-  CHECK(table.rows[1][1].text == "a (28.6 %)");
+  CHECK(table.rows[1][1].text == "a (28.6\u00a0%)");
   const auto inside = std::find(table.header.begin(), table.header.end(), "truth inside");
   REQUIRE(inside != table.header.end());
-  CHECK(table.rows[0][static_cast<std::size_t>(inside - table.header.begin())].text == "a (100 %)");
+  CHECK(table.rows[0][static_cast<std::size_t>(inside - table.header.begin())].text == "a (100\u00a0%)");
   CHECK(report.figures.front().id == "winners");
   CHECK(find_figure(report, "comparison"));
 }
@@ -116,7 +116,7 @@ TEST_CASE("pipelines that are equally good share the lead; there is none if all 
   const Report report = read_report(sweep.files.path());
   const Table table = content<Table>(report, "winners");
   REQUIRE(table.rows.size() == 2);
-  CHECK(table.rows[0][1].text == "a, b (50 %)");
+  CHECK(table.rows[0][1].text == "a, b (50\u00a0%)");
   CHECK(table.rows[0][1].share == 1);
   CHECK(table.rows[1][1].text == "all alike");
   CHECK(table.rows[1][1].share == 0);
@@ -156,7 +156,7 @@ TEST_CASE("a pipeline that failed somewhere is not compared there, and is named"
   const Report report = read_report(sweep.files.path());
   const Table table = content<Table>(report, "winners");
   CHECK(table.rows[0][1].text == "–");
-  CHECK(table.rows[1][1].text == "a (28.6 %)");
+  CHECK(table.rows[1][1].text == "a (28.6\u00a0%)");
   const Plot plot = content<Plot>(report, "sweep_order_radius_mean");
   CHECK(std::isnan(plot.series[1].y[0]));
   CHECK(plot.series[1].y[1] == 2.5);
@@ -197,7 +197,7 @@ TEST_CASE("those that tie for the best are named together, with the lead over th
   sweep.files.write("run.json", times);
   const Table table = content<Table>(read_report(sweep.files.path()), "winners");
   REQUIRE(table.header == std::vector<std::string>{"order", "mean radius", "truth inside"});
-  CHECK(table.rows[0][1].text == "a, b (50 %)");
+  CHECK(table.rows[0][1].text == "a, b (50\u00a0%)");
   CHECK(table.rows[0][1].share == doctest::Approx(1));
   CHECK(table.rows[1][1].text == "all alike");
   CHECK(table.rows[1][1].share == 0);

@@ -98,7 +98,7 @@ Table::Cell winner_cell(const ResultTable& table, std::span<const SummaryRow> ro
   const double lead = lead_of(table, rows, best, column);
   cell.share = 1;  // over 0 every lead is clear
   if (!std::isfinite(lead)) return cell;
-  cell.text += fmt::format(" ({} %)", shown(100 * lead, 3));
+  cell.text += fmt::format(" ({}\u00a0%)", shown(100 * lead, 3));
   cell.share = std::clamp(lead / clear_margin, 0.05, 1.0);
   return cell;
 }
