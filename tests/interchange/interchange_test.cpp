@@ -20,7 +20,6 @@
 using namespace cordon;
 using mat::Value;
 using study_test::exchanged;
-using FileScratch = ::Scratch;
 
 namespace {
 
@@ -28,7 +27,7 @@ const double inf = std::numeric_limits<double>::infinity();
 
 void put(const std::filesystem::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
 
-std::filesystem::path mat_of(const FileScratch& scratch, const mat::Variables& variables) {
+std::filesystem::path mat_of(const Scratch& scratch, const mat::Variables& variables) {
   put(scratch / "in.mat", mat::to_bytes(variables));
   return scratch / "in.mat";
 }
@@ -41,7 +40,7 @@ Study read(const std::filesystem::path& file) {
 
 /// The problems of reading this struct as a system.
 std::vector<Diagnostic> problems_of(const mat::Variables& variables, const std::string& variable = "") {
-  const FileScratch scratch;
+  const Scratch scratch;
   try {
     mat_to_json(mat_of(scratch, variables), {scratch / "out.json"}, variable);
   } catch (const InputError& error) {
@@ -88,7 +87,7 @@ mat::Variables with(mat::Variables all, const std::string& name, Value value) {
 }  // namespace
 
 TEST_CASE("a system survives the way to a MAT-file and back") {
-  const FileScratch scratch;
+  const Scratch scratch;
   for (const char* text :
        {study_test::valid_study, study_test::diagnosis_study, study_test::uncertain_study, study_test::design_study}) {
     put(scratch / "study.json", text);
@@ -179,7 +178,7 @@ TEST_CASE("bounds that are no doubles are not written") {
 }
 
 TEST_CASE("sets come back bit by bit, and as they were written") {
-  const FileScratch scratch;
+  const Scratch scratch;
   CHECK(rc::check("random zonotopes", [&] {
     const auto n = *rc::gen::inRange<Index>(1, 4), m = *rc::gen::inRange<Index>(1, 4);
     const bool diagonal = *rc::gen::arbitrary<bool>();
@@ -226,7 +225,7 @@ TEST_CASE("the fields of a set") {
 }
 
 TEST_CASE("sets of every type come back") {
-  const FileScratch scratch;
+  const Scratch scratch;
   const std::string sets = R"([
     {"type": "box", "lower": [-1, "-inf"], "upper": [1, "inf"]},
     {"type": "zonotope", "center": [1, 2], "generators": [[1, 0.5], [0, 1]]},
@@ -244,7 +243,7 @@ TEST_CASE("sets of every type come back") {
 }
 
 TEST_CASE("one set, and the types that are not exchange forms") {
-  const FileScratch scratch;
+  const Scratch scratch;
   mat::Struct strip, polytope, hull;
   strip.set("rho", mat::matrix(Matrix{{1, 2}})).set("d", mat::number(0.5)).set("sigma", mat::number(1));
   polytope.set("H", mat::matrix(Matrix{{1, 1}})).set("h", mat::number(1)).set("lower", mat::matrix(Matrix{{-1}, {-1}}));
@@ -263,7 +262,7 @@ TEST_CASE("one set, and the types that are not exchange forms") {
 }
 
 TEST_CASE("matrices beside a struct with a system are left out, and named") {
-  const FileScratch scratch;
+  const Scratch scratch;
   mat::Struct system;
   for (const mat::Variable& v : plain()) system.set(v.name, v.name == "A" ? mat::matrix(Matrix{{3, 0}, {0, 3}}) : v.value);
   const auto all = with(plain(), "system", std::move(system).value());
@@ -275,7 +274,7 @@ TEST_CASE("matrices beside a struct with a system are left out, and named") {
 }
 
 TEST_CASE("two variables of one name are an error") {
-  const FileScratch scratch;
+  const Scratch scratch;
   const std::string again = mat::to_bytes({{"A", mat::matrix(Matrix{{5, 0}, {0, 5}})}});
   put(scratch / "in.mat", mat::to_bytes(plain()) + again.substr(128));  // without the header
   CHECK_THROWS_WITH_AS(mat_to_json(scratch / "in.mat", {scratch / "out.json"}), doctest::Contains("stands there twice"),
@@ -284,7 +283,7 @@ TEST_CASE("two variables of one name are an error") {
 }
 
 TEST_CASE("titles have no control characters") {
-  const FileScratch scratch;
+  const Scratch scratch;
   mat::Struct about;
   about.set("title", mat::text(std::string("a\0b\n\x7F\"ü", 8)));
   mat_to_json(mat_of(scratch, with(plain(), "cordon", std::move(about).value())), {scratch / "out.json"});
@@ -292,7 +291,7 @@ TEST_CASE("titles have no control characters") {
 }
 
 TEST_CASE("matrices alone are a system") {
-  const FileScratch scratch;
+  const Scratch scratch;
   const ImportedStudy imported = mat_to_json(mat_of(scratch, plain()), {scratch / "out.json"});
   CHECK(imported.files == std::vector<std::filesystem::path>{scratch / "out.json"});
   CHECK(imported.missing.empty());
@@ -304,7 +303,7 @@ TEST_CASE("matrices alone are a system") {
 }
 
 TEST_CASE("without W and V the study says what is missing") {
-  const FileScratch scratch;
+  const Scratch scratch;
   mat::Variables all = plain();
   all.resize(4);
   const ImportedStudy imported = mat_to_json(mat_of(scratch, all), {scratch / "out.json"});
@@ -319,7 +318,7 @@ TEST_CASE("without W and V the study says what is missing") {
 }
 
 TEST_CASE("a matrix without columns says that there are none, [] says nothing") {
-  const FileScratch scratch;
+  const Scratch scratch;
   mat::Variables all = plain();
   all.resize(4);
   all.push_back({"V", box(Matrix{{-0.1}}, Matrix{{0.1}})});
@@ -332,7 +331,7 @@ TEST_CASE("a matrix without columns says that there are none, [] says nothing") 
 }
 
 TEST_CASE("two actuators, two outputs") {
-  const FileScratch scratch;
+  const Scratch scratch;
   mat::Variables all = with(plain(), "B", mat::matrix(Matrix{{1, 0}, {0, 1}}));
   all = with(with(all, "D", mat::matrix(Matrix(0, 0))), "C", mat::matrix(Matrix{{1, 0}, {0, 1}}));
   all = with(all, "V", box(Matrix{{-1}, {-1}}, Matrix{{1}, {1}}));
@@ -348,7 +347,7 @@ TEST_CASE("two actuators, two outputs") {
 }
 
 TEST_CASE("which variable is taken") {
-  const FileScratch scratch;
+  const Scratch scratch;
   mat::Struct one, two;
   for (mat::Struct* s : {&one, &two}) {
     for (const mat::Variable& v : plain()) s->set(v.name, v.value);
@@ -397,7 +396,7 @@ TEST_CASE("what is wrong in a system is told by its field") {
 }
 
 TEST_CASE("effectiveness of modes: numbers, or rows [low high]") {
-  const FileScratch scratch;
+  const Scratch scratch;
   mat::Struct weak, deaf;
   weak.set("name", mat::text("weak")).set("actuator", mat::matrix(Matrix{{0.25, 0.5}})).set("sensor", mat::matrix(Matrix(0, 0)));
   deaf.set("name", mat::text("deaf")).set("actuator", mat::matrix(Matrix(0, 0))).set("sensor", mat::number(0));
@@ -414,7 +413,7 @@ TEST_CASE("effectiveness of modes: numbers, or rows [low high]") {
 }
 
 TEST_CASE("data become a CSV file, whichever way they stand") {
-  const FileScratch scratch;
+  const Scratch scratch;
   const Matrix u{{1, 2, 3}}, y{{0.1, 0.25, -1e-300}}, x{{1, 2, 3}, {4, 5, 6}};
   mat::Struct rows, columns;
   rows.set("u", mat::matrix(u)).set("y", mat::matrix(y)).set("x", mat::matrix(x)).set("mode", mat::matrix(Matrix{{0, 0, -1}}));
@@ -454,7 +453,7 @@ TEST_CASE("data that are wrong") {
 }
 
 TEST_CASE("nothing is replaced unless asked for") {
-  const FileScratch scratch;
+  const Scratch scratch;
   put(scratch / "out.json", "mine");
   const auto mat = mat_of(scratch, plain());
   CHECK_THROWS_WITH_AS(mat_to_json(mat, {scratch / "out.json"}), doctest::Contains("exists already"), Error);

@@ -8,7 +8,6 @@
 #include "study/fakes.hpp"
 
 using namespace cordon;
-using FileScratch = ::Scratch;
 using nlohmann::json;
 
 namespace {
@@ -16,7 +15,7 @@ namespace {
 void put(const std::filesystem::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
 
 json rewritten(const std::string& text, MatrixForm form) {
-  const FileScratch scratch;
+  const Scratch scratch;
   put(scratch / "in.json", text);
   rewrite_matrices(scratch / "in.json", {scratch / "out.json"}, form);
   return json::parse(bytes_of(scratch / "out.json"));
@@ -93,7 +92,7 @@ TEST_CASE("a matrix that a sweep looks into keeps its form") {
 }
 
 TEST_CASE("a study is the same study in both forms") {
-  const FileScratch scratch;
+  const Scratch scratch;
   for (const char* text :
        {study_test::valid_study, study_test::diagnosis_study, study_test::uncertain_study, study_test::design_study}) {
     put(scratch / "in.json", text);
@@ -107,7 +106,7 @@ TEST_CASE("a study is the same study in both forms") {
 }
 
 TEST_CASE("files of other kinds are refused") {
-  const FileScratch scratch;
+  const Scratch scratch;
   for (const auto& [text, kind] : std::vector<std::pair<std::string, JsonFile>>{{"{\"cordon_results\": 1}", JsonFile::results},
                                                                                 {"[1, 2]", JsonFile::other},
                                                                                 {"{\"type\": \"ball\"}", JsonFile::other},

@@ -14,6 +14,27 @@
 
 using namespace cordon;
 
+namespace {
+
+double number() { return static_cast<double>(*rc::gen::inRange(-100, 101)) / 10; }
+
+struct Program {
+  Matrix A;
+  Vector b, xi, objective;
+};
+
+/// Aξ = b with ‖ξ‖∞ < 1.
+Program feasible_program(Index g, Index m) {
+  Program p{Matrix(m, g), Vector(m), Vector(g), Vector(g)};
+  for (Index k = 0; k < p.A.size(); ++k) p.A.data()[k] = number();
+  for (Index j = 0; j < g; ++j) p.xi[j] = static_cast<double>(*rc::gen::inRange(-95, 96)) / 100;
+  for (Index j = 0; j < g; ++j) p.objective[j] = number();
+  p.b = p.A * p.xi;
+  return p;
+}
+
+}  // namespace
+
 TEST_CASE("a plain linear program") {
   LinearProgram lp(Matrix{{1.0, 1.0, 1.0}}, Vector{{1.0}}, Vector{{0.0, 0.0, 0.0}}, Vector{{1.0, 2.0, 0.25}});
   auto solution = lp.maximize(Vector{{1.0, 2.0, 3.0}});
@@ -46,13 +67,7 @@ TEST_CASE("numbers that would abort the solver are refused before") {
 TEST_CASE("bounds hold for any multipliers, and are attained") {
   CHECK(rc::check("upper ≥ attained, and both meet on feasible programs", [] {
     const Index g = *rc::gen::inRange<Index>(1, 12), m = *rc::gen::inRange<Index>(0, 5);
-    const auto number = [] { return static_cast<double>(*rc::gen::inRange(-100, 101)) / 10; };
-    Matrix A(m, g);
-    for (Index k = 0; k < A.size(); ++k) A.data()[k] = number();
-    Vector xi(g), objective(g);
-    for (Index j = 0; j < g; ++j) xi[j] = static_cast<double>(*rc::gen::inRange(-95, 96)) / 100;
-    for (Index j = 0; j < g; ++j) objective[j] = number();
-    const Vector b = A * xi;
+    const auto [A, b, xi, objective] = feasible_program(g, m);
     BoxedProgram program(A, b);
     RC_ASSERT(program.is_empty() != Answer::yes);
     const auto bound = program.maximum(objective);
@@ -72,14 +87,7 @@ TEST_CASE("bounds hold for any multipliers, and are attained") {
 
 TEST_CASE("bounds are as tight for tiny and huge objectives") {
   CHECK(rc::check("a power of two before the objective stands before the bound", [] {
-    const Index g = *rc::gen::inRange<Index>(2, 12), m = *rc::gen::inRange<Index>(1, 4);
-    const auto number = [] { return static_cast<double>(*rc::gen::inRange(-100, 101)) / 10; };
-    Matrix A(m, g);
-    for (Index k = 0; k < A.size(); ++k) A.data()[k] = number();
-    Vector xi(g), objective(g);
-    for (Index j = 0; j < g; ++j) xi[j] = static_cast<double>(*rc::gen::inRange(-95, 96)) / 100;
-    for (Index j = 0; j < g; ++j) objective[j] = number();
-    const Vector b = A * xi;
+    const auto [A, b, xi, objective] = feasible_program(*rc::gen::inRange<Index>(2, 12), *rc::gen::inRange<Index>(1, 4));
     const auto plain = BoxedProgram(A, b).maximum(objective);
     RC_PRE(plain.solved);
     for (const int power : {-60, -30, 40}) {  // on a program of its own: the last basis of another one would help

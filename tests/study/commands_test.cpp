@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "run/scratch.hpp"
 #include "study/fakes.hpp"
 
 using namespace study_test;
@@ -89,7 +90,7 @@ TEST_CASE("the manual of study files shows valid studies, and every component of
         CHECK(outcome.out.find("sweep     generators: 3 values; noise: 2 values; seed: 20 values, repeated\n") !=
               std::string::npos);
         CHECK(outcome.out.find("points    240\n") != std::string::npos);
-        expect_resolved_again(scratch, scratch.folder() / "s.json");
+        expect_resolved_again(scratch, scratch.path() / "s.json");
       }
       ++studies;
     } else {
@@ -112,7 +113,7 @@ TEST_CASE("bad rows of recorded data are found by validate") {
   std::ifstream study(examples + "recorded_walk.json");
   scratch.write("walk.json", std::string(std::istreambuf_iterator<char>(study), {}));
   scratch.write("recorded_walk.csv", "k,px_m,py_m,vx_mps,vy_mps,zx_m,zy_m\n0,0,0,0,0,0,0\n1,0,0,0,0,oops,0\n");
-  const Outcome outcome = run("validate " + (scratch.folder() / "walk.json").string(), "2>&1");
+  const Outcome outcome = run("validate " + (scratch.path() / "walk.json").string(), "2>&1");
   CHECK(outcome.exit == 2);
   CHECK(outcome.out.find("oops") != std::string::npos);
 }
@@ -147,7 +148,7 @@ TEST_CASE("a refused plugin that the study needs is exit code 3") {
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const std::string study =
       scratch.write("s.json", exchanged(text, "{\"type\": \"interval\"}", "{\"type\": \"ellipsoid\"}")).string();
-  const Outcome outcome = run("--plugins " + scratch.folder().string() + " validate " + study, "2>&1");
+  const Outcome outcome = run("--plugins " + scratch.path().string() + " validate " + study, "2>&1");
   CHECK(outcome.exit == 3);
   CHECK(outcome.out.find("ellipsoid.so was refused") != std::string::npos);
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cordon/study/data.hpp"
+#include "run/scratch.hpp"
 #include "study/fakes.hpp"
 #include "study/mistake.hpp"
 #include "study/same_study.hpp"

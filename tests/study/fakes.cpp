@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "cordon/solvers/set_questions.hpp"
+#include "run/scratch.hpp"
 
 namespace study_test {
 
@@ -246,23 +247,6 @@ void register_fakes(Registrar& registrar) {
   ParamSchema quantile;
   quantile.real("level", "between 0 and 1", {}, 0, 1).required();
   add_metric(registrar, "quantile", quantile);
-}
-
-Scratch::Scratch() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "cordon_study_XXXXXX").string();
-  if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary directory");
-  folder_ = pattern;
-}
-
-Scratch::~Scratch() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
-std::filesystem::path Scratch::write(const std::string& name, const std::string& text) const {
-  const std::filesystem::path file = folder_ / name;
-  std::ofstream(file, std::ios::binary) << text;
-  return file;
 }
 
 const char* const valid_study = R"({

@@ -19,20 +19,6 @@ namespace study_test {
 /// take uncertain models.
 void register_fakes(cordon::Registrar& registrar);
 
-/// A directory of its own that is removed in the end.
-class Scratch {
- public:
-  Scratch();
-  ~Scratch();
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  std::filesystem::path write(const std::string& name, const std::string& text) const;
-  const std::filesystem::path& folder() const { return folder_; }
-
- private:
-  std::filesystem::path folder_;
-};
-
 /// A valid study, one member per line, in which the tests exchange pieces.
 extern const char* const valid_study;
 

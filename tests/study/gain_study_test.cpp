@@ -2,6 +2,7 @@
 // Components inside components that may be written as a matrix: gains.
 #include <doctest/doctest.h>
 
+#include "run/scratch.hpp"
 #include "study/fakes.hpp"
 #include "study/same_study.hpp"
 

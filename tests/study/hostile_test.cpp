@@ -6,6 +6,7 @@
 #include <rapidcheck.h>
 
 #include "cordon/study/sweep.hpp"
+#include "run/scratch.hpp"
 #include "study/fakes.hpp"
 
 using namespace cordon;

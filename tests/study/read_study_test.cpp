@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "run/scratch.hpp"
 #include "study/fakes.hpp"
 #include "study/same_study.hpp"
 
@@ -87,7 +88,7 @@ TEST_CASE("a system may be free of disturbances and noise") {
   CHECK(study.model.linear.noises() == 0);
   CHECK(study.model.W.dim() == 0);
   const Scratch scratch;
-  expect_round_trip(study, scratch.folder());
+  expect_round_trip(study, scratch.path());
 }
 
 TEST_CASE("all signals and their defaults") {
@@ -108,13 +109,13 @@ TEST_CASE("all signals and their defaults") {
   CHECK((input[4].type == Signal::Type::prbs && input[4].period == 1 && input[4].seed == 0));
   CHECK((input[5].type == Signal::Type::table && input[5].values.size() == 3));
   const Scratch scratch;
-  expect_round_trip(study, scratch.folder());
+  expect_round_trip(study, scratch.path());
 }
 
 TEST_CASE("the resolved text reads back as an equal study") {
   const Scratch scratch;
   const Study study = read_text(valid_study);
-  expect_round_trip(study, scratch.folder());
+  expect_round_trip(study, scratch.path());
   const auto json = nlohmann::json::parse(study.resolved);
   CHECK(json["pipelines"][0]["observer"]["max_constraints"] == 20);
   CHECK(json["pipelines"][1]["observer"]["initial_set"] == nlohmann::json({{"type", "space"}, {"dim", 2}}));
@@ -124,20 +125,20 @@ TEST_CASE("the resolved text reads back as an equal study") {
       valid_study, "{\"type\": \"descriptor\", \"max_generators\": 30}",
       R"({"type": "all_kinds", "order": 3, "weight": 0.1, "fast": true, "norm": "two", "poles": [1e-308, 0.30000000000000004, -0.0],
       "gain": [[123456789.12345678, 5e-324]], "note": "\"é\n", "safe_set": {"type": "polytope", "lower": [-1, 0], "upper": [1, 3.3], "H": [[1, 0.7]], "h": [0.1]}})");
-  expect_round_trip(read_text(awkward), scratch.folder());
+  expect_round_trip(read_text(awkward), scratch.path());
 }
 
 TEST_CASE("the resolved text of a diagnosis reads back as an equal study") {
   const Scratch scratch;
   const Study study = read_text(diagnosis_study);
   CHECK(study.modes.size() == 4);
-  expect_round_trip(study, scratch.folder());
+  expect_round_trip(study, scratch.path());
   const auto json = nlohmann::json::parse(study.resolved);
   CHECK(json["system"]["modes"][0] == nlohmann::json({{"name", "weak"}, {"actuator", {0.3, {0.1, 0.7}}}}));
   CHECK(json["data"]["simulate"]["faults"][1] == nlohmann::json({{"mode", "deaf"}, {"from", 6}, {"to", 9}}));
   CHECK(json["pipelines"][0]["diagnoser"]["observer"]["max_constraints"] == 20);
   expect_round_trip(read_text(exchanged(diagnosis_study, "\"steps\": 20", "\"steps\": 20, \"plant\": \"reactor\"")),
-                    scratch.folder());
+                    scratch.path());
   // awkward numbers, lists of matrices, components in components, the default name of a fault
   std::string awkward = exchanged(diagnosis_study, "[0.3, [0.1, 0.7]]", "[0.30000000000000004, [5e-324, 0.7]]");
   awkward = exchanged(awkward, "\"actuator\": [0.3, [0.2, 0.5]]", "\"actuator\": [0.30000000000000004, 5e-324]");
@@ -146,7 +147,7 @@ TEST_CASE("the resolved text of a diagnosis reads back as an equal study") {
   awkward =
       exchanged(awkward, "\"observer\": \"prediction_correction\"",
                 "\"diagnoser\": {\"type\": \"committee\", \"member\": {\"type\": \"committee\", \"member\": \"committee\"}}");
-  expect_round_trip(read_text(awkward), scratch.folder());
+  expect_round_trip(read_text(awkward), scratch.path());
 }
 
 TEST_CASE("the resolved text does not depend on order, spacing or spelling of the file") {
@@ -190,8 +191,8 @@ TEST_CASE("the printed text names file, place, line, reason and mend") {
 
 TEST_CASE("files that cannot be read") {
   const Scratch scratch;
-  CHECK(message_of(scratch.folder() / "none.json").find("no such file") != std::string::npos);
-  CHECK(message_of(scratch.folder()).find("is a directory") != std::string::npos);
+  CHECK(message_of(scratch.path() / "none.json").find("no such file") != std::string::npos);
+  CHECK(message_of(scratch.path()).find("is a directory") != std::string::npos);
   CHECK(message_of(scratch.write("empty.json", "")).find("column 1: a value is missing: the file ends here") !=
         std::string::npos);
   CHECK(message_of(scratch.write("list.json", "[]")).find("is a list, must be an object") != std::string::npos);
@@ -214,10 +215,10 @@ TEST_CASE("recorded data: the file is looked for beside the study") {
   const Study study = read_file(
       scratch.write("s.json", with(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "truth": ["x", "y"], "mode": "m"})")));
   const auto& csv = std::get<CsvSpec>(study.data);
-  CHECK(csv.file == scratch.folder() / "d.csv");
+  CHECK(csv.file == scratch.path() / "d.csv");
   CHECK(csv.truth == std::vector<std::string>{"x", "y"});
   CHECK(csv.mode == "m");
-  expect_round_trip(study, scratch.folder());
+  expect_round_trip(study, scratch.path());
   CHECK(nlohmann::json::parse(study.resolved)["data"]["csv"]["file"] == "d.csv");
 
   const auto expect = [&](const std::string& csv_text, const std::string& pointer, const std::string& message) {
@@ -240,14 +241,14 @@ TEST_CASE("recorded data: the file is looked for beside the study") {
 
 TEST_CASE("a component of a refused plugin is a problem of the installation") {
   const Scratch scratch;
-  std::filesystem::create_directory(scratch.folder() / "plug");
-  std::ofstream(scratch.folder() / "plug" / "ellipsoid.so") << "not a library";
+  std::filesystem::create_directory(scratch.path() / "plug");
+  std::ofstream(scratch.path() / "plug" / "ellipsoid.so") << "not a library";
   const std::string with_plugins = exchanged(valid_study, "\"title\": \"a study\"", "\"plugins\": [\"plug\"]");
 
   const Study unaffected = read_file(scratch.write("s.json", with_plugins));
   REQUIRE(unaffected.warnings.size() == 1);
   CHECK(unaffected.warnings[0].find("ellipsoid.so was refused") != std::string::npos);
-  expect_round_trip(unaffected, scratch.folder());
+  expect_round_trip(unaffected, scratch.path());
 
   const std::string needs_it =
       exchanged(with_plugins, "\"type\": \"zonotope\", \"strip\": \"volume\"", "\"type\": \"ellipsoid\"");
@@ -284,14 +285,14 @@ TEST_CASE("without any plugin the installation is at fault, told once per kind")
 TEST_CASE("the examples are valid, and their resolved texts read back") {
   const std::filesystem::path folder = std::filesystem::path(CORDON_SOURCE_DIR) / "examples/studies";
   const Scratch scratch;
-  std::filesystem::copy(folder, scratch.folder(), std::filesystem::copy_options::recursive);
+  std::filesystem::copy(folder, scratch.path(), std::filesystem::copy_options::recursive);
   int studies = 0;
   for (const char* name : {"descriptor_four_representations.json", "linear_two_states.json", "recorded_walk.json"}) {
     CAPTURE(name);
-    const Study study = read_file(scratch.folder() / name);
+    const Study study = read_file(scratch.path() / name);
     CHECK(study.pipelines.size() == 4);
     CHECK(study.metrics.size() == 6);
-    expect_round_trip(study, scratch.folder());
+    expect_round_trip(study, scratch.path());
     ++studies;
   }
   CHECK(studies == 3);

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "run/scratch.hpp"
 #include "study/fakes.hpp"
 
 using namespace cordon;
@@ -128,7 +129,7 @@ void expect_round_trip(const Study& study, const std::filesystem::path& folder) 
 
 void expect_round_trip(const Study& study) {
   const Scratch scratch;
-  expect_round_trip(study, scratch.folder());
+  expect_round_trip(study, scratch.path());
 }
 
 }  // namespace study_test

@@ -7,6 +7,7 @@
 #include <rapidcheck.h>
 
 #include "cordon/study/sweep.hpp"
+#include "run/scratch.hpp"
 #include "study/fakes.hpp"
 #include "study/reading/point_study.hpp"
 #include "study/same_study.hpp"
@@ -282,7 +283,7 @@ TEST_CASE("the point of one pipeline does not depend on whether others work") {
   CHECK_THROWS_AS(point(2, {0, 1, 1}), InputError);
   const Scratch out;
   SweepOptions options;
-  options.out = out.folder() / "results";
+  options.out = out.path() / "results";
   const SweepOutcome outcome = run_sweep(read.study, read.registry, options);
   int wrong = 0;
   for (const ResultRow& row : outcome.table.rows) {
