@@ -51,7 +51,7 @@ class Source {
     Vector d = random_.cube(n);
     for (Index i = 0; i < n; ++i) {  // coordinates of unlike scale count alike
       const double width = hull.upper[i] - hull.lower[i];
-      if (std::isfinite(width) && width > 0) d[i] /= width;
+      if (std::isfinite(width) && width > 1e-200) d[i] /= width;  // not what rounding made of 0
     }
     return d;
   }

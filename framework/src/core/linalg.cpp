@@ -129,6 +129,13 @@ Matrix product(MatrixIn A, MatrixIn B) {
   return C;
 }
 
+Matrix gram(MatrixIn A) {
+  Matrix K = Matrix::Zero(A.rows(), A.rows());
+  K.selfadjointView<Eigen::Lower>().rankUpdate(A);
+  K.triangularView<Eigen::StrictlyUpper>() = K.transpose();
+  return K;
+}
+
 Matrix denoised_product(MatrixIn A, MatrixIn B) {
   Matrix C = product(A, B);
   if (C.size() == 0) return C;

@@ -7,15 +7,19 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
-#include "cordon/solvers/lp.hpp"
+#include "solvers/box_solver.hpp"
+#include "solvers/row_certificates.hpp"
+#include "solvers/row_gram.hpp"
 
 namespace cordon {
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Coefficients below this share of their row are left out of what the solver sees; the certificates see everything.
-constexpr double proposal_tolerance = 1e-13;
+/// A bound that exceeds the value of its point by this share of the objective is worth another solver's opinion.
+constexpr double loose = 1e-7;
+/// Solutions of Aξ = (1 + σ) b with σ below this at most: the proof of emptiness will have a margin.
+constexpr double clearly_empty = -1e-6;
 /// An infeasibility smaller than this share of the terms it is made of may stem from the rounding errors of nominal operations.
 constexpr double nominal_tolerance = 1e-10;
 
@@ -28,12 +32,10 @@ bool fits(VectorIn xi, const Vector& radius) {
   return true;
 }
 
+bool fits(const Vector& xi, double distance) { return xi.size() == 0 || rounding::up(xi.cwiseAbs().maxCoeff() + distance) <= 1; }
+
 /// What an uncertain right-hand side adds to bᵀy at most.
 double doubt(VectorIn error, VectorIn y) { return error.isZero(0) ? 0.0 : rounding::dot(error, y.cwiseAbs()).upper; }
-
-double upper_bound(VectorIn g, const Matrix& A, const Vector& b, const Vector& y, VectorIn error) {
-  return rounding::up(rounding::up(rounding::dot(b, y).upper + rounding::residual_norm_1(g, A, y)) + doubt(error, y));
-}
 
 }  // namespace
 
@@ -41,144 +43,177 @@ struct BoxedProgram::State {
   Matrix A;
   Vector b;
   Accuracy accuracy;  ///< complete: zeros where nothing was given
-  Vector scale;       ///< row scales of the solver's programs
-  std::optional<LinearProgram> objective_program, scaling_program;
+  RowCertificates certificates;
+  std::optional<BoxSolver> objective_solver, scaling_solver;
 
-  Matrix proposal_matrix() const {
-    Matrix P = scale.asDiagonal() * A;
-    for (Index i = 0; i < P.rows(); ++i) {
-      const double tiny = proposal_tolerance * (P.cols() ? P.row(i).cwiseAbs().maxCoeff() : 0.0);
-      for (Index j = 0; j < P.cols(); ++j) {
-        if (std::abs(P(i, j)) < tiny) P(i, j) = 0;
+  State(Matrix rows, Vector right, Accuracy known)
+      : A(std::move(rows)), b(std::move(right)), accuracy(std::move(known)), certificates(A, b, accuracy.error) {}
+
+  Answer is_empty(Certificate* why);
+
+  BoxSolver& for_objectives() {
+    if (!objective_solver) objective_solver.emplace(A, b);
+    return *objective_solver;
+  }
+
+  /// max σ with Aξ = (1 + σ) b, ‖ξ‖∞ ≤ 1, |σ| ≤ 1: feasible in any case. σ* < 0 means empty, and the multipliers prove it; else ξ
+  /// / (1 + σ*) is the solution of the rows with the smallest norm, or one of norm at most 1/2.
+  BoxSolver& for_scaling() {
+    if (!scaling_solver) {
+      Matrix rows(A.rows(), A.cols() + 1);
+      rows << A, -b;
+      scaling_solver.emplace(rows, b);
+    }
+    return *scaling_solver;
+  }
+
+  /// Nothing is said about emptiness by less than what rounding may have added.
+  bool prove_empty(const Vector& y, double& margin) const {
+    margin = certificates.farkas_margin(y);
+    return margin > nominal_tolerance * y.cwiseAbs().dot(b.cwiseAbs() + certificates.reach() + accuracy.magnitude);
+  }
+
+  void take(VectorIn g, Bound& bound, const BoxSolver& solver) {
+    bound.solved = true;
+    const double upper = certificates.upper_bound(g, solver.multipliers());
+    if (!(upper < bound.upper)) return;
+    bound.upper = upper;
+    bound.y = solver.multipliers();
+  }
+
+  /// What a proposal of this status, and if need be another solver's, proves.
+  void propose(VectorIn g, Bound& bound, BoxSolver::Status status) {
+    BoxSolver& solver = *objective_solver;
+    if (status == BoxSolver::Status::infeasible) {
+      double margin = 0;
+      Certificate why;
+      if (prove_empty(solver.multipliers(), margin)) {
+        why.data = solver.multipliers();
+      } else if (is_empty(&why) != Answer::yes) {
+        status = solver.second_opinion(g);
+      }
+      if (why.data.size() > 0 && status == BoxSolver::Status::infeasible) {
+        bound = {-infinity, std::move(why.data), std::nullopt, true};
+        return;
       }
     }
-    return P;
+    if (status != BoxSolver::Status::optimal) return;
+    take(g, bound, solver);
+    if (bound.upper - solver.value() <= loose * g.lpNorm<1>()) return;
+    if (solver.second_opinion(g) == BoxSolver::Status::optimal) take(g, bound, solver);
   }
 
-  LinearProgram& for_objectives() {
-    if (!objective_program) {
-      const Vector one = Vector::Ones(A.cols());
-      objective_program.emplace(proposal_matrix(), scale.cwiseProduct(b), -one, one);
-    }
-    return *objective_program;
+  /// ξ / (1 + σ) of a solution (ξ, σ) of the scaling program.
+  std::optional<Vector> central(BoxSolver& solver) const {
+    Vector solution;
+    solver.take_point(solution);
+    const double tau = 1 + solution[A.cols()];
+    const Vector xi = solution.head(A.cols()) / tau;
+    if (!(tau > 0) || !xi.allFinite()) return std::nullopt;
+    return xi;
   }
 
-  /// max τ with Aξ = τ b, ‖ξ‖∞ ≤ 1, 0 ≤ τ ≤ 2: feasible at 0 in any case. τ* < 1 means empty, and the multipliers prove it;
-  /// else ξ/τ* is the solution of the rows with the smallest norm, or one of norm at most 1/2.
-  LinearProgram::Solution scaled() {
-    const Index g = A.cols();
-    if (!scaling_program) {
-      Matrix rows(A.rows(), g + 1);
-      rows.leftCols(g) = proposal_matrix();
-      rows.col(g) = -scale.cwiseProduct(b);
-      Vector lower = Vector::Constant(g + 1, -1.0), upper = Vector::Ones(g + 1);
-      lower[g] = 0;
-      upper[g] = 2;
-      scaling_program.emplace(rows, Vector::Zero(A.rows()), lower, upper);
+  /// The row that the box misses most clearly, if it does (0ᵀξ = b ≠ 0 among them).
+  std::optional<Vector> missed_row(double& margin) const {
+    for (Index i = 0; i < A.rows(); ++i) {
+      if (!(std::abs(b[i]) > certificates.reach()[i] * (1 - 1e-9))) continue;
+      const Vector y = Vector::Unit(A.rows(), i) * (b[i] > 0 ? 1.0 : -1.0);
+      if (prove_empty(y, margin)) return y;
     }
-    return scaling_program->maximize(Vector::Unit(g + 1, g));
+    return std::nullopt;
   }
 };
 
-BoxedProgram::BoxedProgram(Matrix A, Vector b, Accuracy accuracy) : state_(std::make_unique<State>()) {
+BoxedProgram::BoxedProgram(Matrix A, Vector b, Accuracy accuracy) {
   if (A.rows() != b.size()) throw Error(Errc::dimension, "boxed program: matrix and right-hand side differ in rows");
   if (!A.allFinite() || !b.allFinite()) throw Error(Errc::not_finite, "boxed program: a NaN or infinite coefficient");
-  state_->scale = linalg::row_scales(A);
-  state_->A = std::move(A);
-  state_->b = std::move(b);
   for (Vector* part : {&accuracy.magnitude, &accuracy.error}) {
-    if (part->size() == 0) part->setZero(state_->b.size());
-    if (part->size() != state_->b.size())
-      throw Error(Errc::dimension, "boxed program: the accuracy of the rows has the wrong size");
+    if (part->size() == 0) part->setZero(b.size());
+    if (part->size() != b.size()) throw Error(Errc::dimension, "boxed program: the accuracy of the rows has the wrong size");
   }
-  state_->accuracy = std::move(accuracy);
+  state_ = std::make_unique<State>(std::move(A), std::move(b), std::move(accuracy));
 }
 BoxedProgram::~BoxedProgram() = default;
 BoxedProgram::BoxedProgram(BoxedProgram&&) noexcept = default;
 BoxedProgram& BoxedProgram::operator=(BoxedProgram&&) noexcept = default;
 
 BoxedProgram::Bound BoxedProgram::maximum(VectorIn g) {
-  State& s = *state_;
-  if (g.size() != s.A.cols()) throw Error(Errc::dimension, "boxed program: the objective has the wrong size");
-  const Vector none = Vector::Zero(s.A.rows());
-  Bound bound{upper_bound(g, s.A, s.b, none, s.accuracy.error), none, std::nullopt, false};
-  if (s.A.rows() == 0) {
+  Bound bound;
+  upper_bound(g, bound);
+  if (!bound.solved || bound.upper == -infinity) return bound;
+  if (state_->A.rows() == 0) {
     bound.xi = g.array().sign().matrix();
-    bound.solved = true;
-    return bound;
-  }
-  // The solver's tolerances are absolute: whatever the objective is, it sees one of some hundreds. Larger ones it scales itself.
-  const double largest = g.size() ? g.cwiseAbs().maxCoeff() : 0;
-  const int power = largest > 0 && std::isfinite(largest) ? std::ilogb(largest) - 8 : 0;
-  const auto shifted = [](VectorIn v, int by) { return Vector(v.unaryExpr([by](double x) { return std::ldexp(x, by); })); };
-  const LinearProgram::Solution solution = s.for_objectives().maximize(shifted(g, -power));
-  if (solution.status == LinearProgram::Status::optimal) {
-    const Vector y = s.scale.cwiseProduct(shifted(solution.y, power));
-    if (const double upper = upper_bound(g, s.A, s.b, y, s.accuracy.error); upper < bound.upper) {
-      bound.upper = upper;
-      bound.y = y;
-    }
-    bound.xi = solution.x;
-    bound.solved = true;
-  } else if (Certificate why; is_empty(&why) == Answer::yes) {
-    bound = {-infinity, why.data, std::nullopt, true};
+  } else {
+    state_->objective_solver->take_point(bound.xi.emplace());
   }
   return bound;
 }
 
-Answer BoxedProgram::is_empty(Certificate* why) {
+void BoxedProgram::upper_bound(VectorIn g, Bound& bound) {
   State& s = *state_;
-  const Index m = s.A.rows(), g = s.A.cols();
+  if (g.size() != s.A.cols()) throw Error(Errc::dimension, "boxed program: the objective has the wrong size");
+  bound.solved = s.A.rows() == 0;
+  bound.upper = infinity;
+  bound.xi.reset();
+  if (!bound.solved) s.propose(g, bound, s.for_objectives().maximize(g));
+  if (bound.upper == -infinity) return;
+  if (const double trivial = rounding::norm_1(g).upper; !(bound.upper < trivial)) {
+    bound.upper = trivial;
+    bound.y.setZero(s.A.rows());
+  }
+}
+
+Answer BoxedProgram::is_empty(Certificate* why) { return state_->is_empty(why); }
+
+Answer BoxedProgram::State::is_empty(Certificate* why) {
+  const Index m = A.rows(), g = A.cols();
   const auto conclude = [&](Answer answer, Certificate::Kind kind, Vector data, double margin) {
     if (why) *why = {kind, std::move(data), margin};
     return answer;
   };
   if (why) *why = {};
   if (m == 0) return conclude(Answer::no, Certificate::Kind::structure, Vector(0), 1);
-
-  const Vector weight = s.b.cwiseAbs() + (g ? Vector(s.A.cwiseAbs().rowwise().sum()) : Vector::Zero(m)) + s.accuracy.magnitude;
-  const auto empty_by = [&](const Vector& y, double& margin) {
-    margin = farkas_margin(s.A, s.b, y, s.accuracy.error);
-    return margin > nominal_tolerance * y.cwiseAbs().dot(weight);
-  };
   double margin = 0;
-  for (Index i = 0; i < m; ++i) {  // a single row that the box cannot meet (0ᵀξ = b ≠ 0 among them)
-    if (s.b[i] == 0) continue;
-    const Vector y = Vector::Unit(m, i) * (s.b[i] > 0 ? 1.0 : -1.0);
-    if (empty_by(y, margin)) return conclude(Answer::yes, Certificate::Kind::farkas, y, margin);
-  }
+  if (auto y = missed_row(margin)) return conclude(Answer::yes, Certificate::Kind::farkas, std::move(*y), margin);
+
+  const RowGram gram(A, b, accuracy.error);
   const auto point_proves = [&](const Vector& xi) {
-    const std::optional<Vector> radius = repair_radius(s.A, s.b, xi, s.accuracy.error);
+    if (gram.is_regular() && fits(xi, gram.distance(xi))) return true;
+    const std::optional<Vector> radius = repair_radius(A, b, xi, accuracy.error);
     return radius && fits(xi, *radius);
   };
+  const auto found = [&](Vector xi) {
+    margin = g ? 1 - xi.cwiseAbs().maxCoeff() : 1;
+    return conclude(Answer::no, Certificate::Kind::point, std::move(xi), margin);
+  };
   // Cheap first: the least-squares point proves either answer when it lies clearly inside or outside.
-  const Matrix scaled = s.scale.asDiagonal() * s.A;
-  if (const auto dual = linalg::solve_spd(linalg::product(scaled, scaled.transpose()), s.scale.cwiseProduct(s.b))) {
-    const Vector y = s.scale.cwiseProduct(dual->col(0));
-    const Vector xi = linalg::product(s.A.transpose(), y);
-    if (xi.allFinite() && (g == 0 || xi.cwiseAbs().maxCoeff() < 0.999) && point_proves(xi)) {
-      return conclude(Answer::no, Certificate::Kind::point, xi, g ? 1 - xi.cwiseAbs().maxCoeff() : 1);
-    }
-    if (y.allFinite() && empty_by(y, margin)) return conclude(Answer::yes, Certificate::Kind::farkas, y, margin);
+  if (gram.is_regular()) {
+    RowGram::Point point = gram.least_squares();
+    if (fits(point.xi, gram.distance(point.xi))) return found(std::move(point.xi));
+    if (prove_empty(point.y, margin)) return conclude(Answer::yes, Certificate::Kind::farkas, std::move(point.y), margin);
   }
-  const LinearProgram::Solution solution = s.scaled();
-  if (solution.status != LinearProgram::Status::optimal) return Answer::unknown;
-  const Vector y = -s.scale.cwiseProduct(solution.y);
-  if (empty_by(y, margin)) return conclude(Answer::yes, Certificate::Kind::farkas, y, margin);
-  if (solution.objective >= 1) {
-    const Vector xi = solution.x.head(g) / solution.objective;
-    if (point_proves(xi)) return conclude(Answer::no, Certificate::Kind::point, xi, g ? 1 - xi.cwiseAbs().maxCoeff() : 1);
+  BoxSolver& solver = for_scaling();
+  const Vector sigma = Vector::Unit(g + 1, g);
+  BoxSolver::Status status = solver.maximize(sigma, clearly_empty);
+  if (status == BoxSolver::Status::infeasible) status = solver.second_opinion(sigma);
+  if (status == BoxSolver::Status::unsolved) return Answer::unknown;
+  if (Vector y = -solver.multipliers(); prove_empty(y, margin))
+    return conclude(Answer::yes, Certificate::Kind::farkas, std::move(y), margin);
+  if (status != BoxSolver::Status::optimal) return Answer::unknown;
+  if (std::optional<Vector> xi = central(solver)) {
+    if (point_proves(*xi)) return found(std::move(*xi));
   }
   return Answer::unknown;
 }
 
 std::optional<Vector> BoxedProgram::central_point(double beyond) {
   State& s = *state_;
-  if (s.A.rows() == 0) return Vector(Vector::Zero(s.A.cols()));
-  const LinearProgram::Solution solution = s.scaled();
-  if (solution.status != LinearProgram::Status::optimal || solution.objective <= 0) return std::nullopt;
-  const Vector xi = solution.x.head(s.A.cols()) / solution.objective;
-  if (!xi.allFinite() || (xi.size() && xi.cwiseAbs().maxCoeff() > 1 + beyond)) return std::nullopt;
+  const Index g = s.A.cols();
+  if (s.A.rows() == 0) return Vector(Vector::Zero(g));
+  BoxSolver& solver = s.for_scaling();
+  if (solver.maximize(Vector::Unit(g + 1, g)) != BoxSolver::Status::optimal) return std::nullopt;
+  std::optional<Vector> xi = s.central(solver);
+  if (!xi || (xi->size() && xi->cwiseAbs().maxCoeff() > 1 + beyond)) return std::nullopt;
   return xi;
 }
 

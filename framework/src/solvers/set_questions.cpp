@@ -51,15 +51,24 @@ bool has_few_lines(MatrixIn S, MatrixIn A) {
   return is_affordable(m * (l * l + g), S, A);
 }
 
-/// The part of X in ξ alone: lines eliminated, directions with lines known. `error` bounds that of X.b.
+std::optional<LinesEliminated> without_lines(const LineForm& X, VectorIn magnitude) {
+  if (X.lines() == 0) return std::nullopt;
+  return eliminate_lines_traced(X, magnitude);
+}
+
+/// The part of X in ξ alone: lines eliminated, directions with lines known.
 struct Questioned {
-  LinesEliminated eliminated;
+  std::optional<LinesEliminated> eliminated;  ///< nothing: X had no lines
   const LineForm& X;
   BoxedProgram program;
+  Vector gradient;            ///< Gᵀd
+  BoxedProgram::Bound bound;  ///< of the last direction; their memory is used again
 
-  explicit Questioned(const LineForm& form) : Questioned(eliminate_lines_traced(form, Vector(0)), Vector(0)) {}
-  Questioned(LinesEliminated made, Vector error)
-      : eliminated(std::move(made)), X(eliminated.set), program(X.A, X.b, {eliminated.row_magnitude, std::move(error)}) {}
+  /// `form` must outlive this; `magnitude` (may be empty) is the size of what cancelled in its b before.
+  explicit Questioned(const LineForm& form, VectorIn magnitude = Vector(0))
+      : eliminated(without_lines(form, magnitude)),
+        X(eliminated ? eliminated->set : form),
+        program(X.A, X.b, {eliminated ? eliminated->row_magnitude : Vector(magnitude), Vector(0)}) {}
   Questioned(const Questioned&) = delete;
   Questioned& operator=(const Questioned&) = delete;
 
@@ -70,30 +79,21 @@ struct Questioned {
     return false;
   }
 
-  /// Of the set `whole` that was eliminated. Through lines, a bound is what rational arithmetic makes of the multipliers.
+  /// Of the set `whole` that was eliminated.
   double support(const LineForm& whole, VectorIn d, Certificate* why) {
     if (why) *why = {};
     if (unbounded_along(d)) return beyond(whole, why);
-    const Vector g = linalg::product(X.G.transpose(), d);
-    if (!g.allFinite()) return beyond(whole, why);  // an overflow
-    const BoxedProgram::Bound bound = program.maximum(g);
-    if (bound.upper == -infinity) {
-      const Certificate proof{Certificate::Kind::farkas, linalg::product(eliminated.rows.transpose(), bound.y),
-                              farkas_margin(X.A, X.b, bound.y)};
-      if (whole.lines() > 0 && !(has_few_lines(whole.S, whole.A) && proves_empty(whole, proof))) return beyond(whole, why);
-      if (why) *why = proof;
-      return -infinity;
-    }
-    const double gradient_error = rounding::product_error(X.G.transpose(), d).sum();
-    double h = rounding::up(rounding::up(rounding::dot(d, X.c).upper + bound.upper) + gradient_error);
-    const Vector y = linalg::product(eliminated.rows.transpose(), bound.y) - linalg::product(eliminated.outputs.transpose(), d);
-    if (whole.lines() > 0) {
-      const auto proven = has_few_lines(whole.S, whole.A) ? proven_support(whole, d, y) : std::nullopt;
-      if (!proven) return beyond(whole, why);
-      h = *proven;
-    }
-    if (why) *why = {Certificate::Kind::dual, y, h};
-    return h;
+    gradient = linalg::product(X.G.transpose(), d);
+    if (!gradient.allFinite()) return beyond(whole, why);  // an overflow
+    if (eliminated) return support_through_lines(whole, d, why);
+    return support_of_gradient(rounding::dot(d, X.c).upper, rounding::product_error(X.G.transpose(), d).sum(), why);
+  }
+
+  /// Along ±e_i: the gradient is a row of G.
+  double support_along_axis(const LineForm& whole, Index i, double sign, Certificate* why) {
+    if (eliminated) return support(whole, sign * Vector::Unit(X.dim(), i), why);
+    gradient = sign * X.G.row(i);
+    return support_of_gradient(sign * X.c[i], 0, why);
   }
 
   /// Nothing bounds the set along a direction: +inf, unless it is empty.
@@ -120,14 +120,44 @@ struct Questioned {
 
   /// (δ, ξ) of the set before the elimination.
   Vector with_lines(const Vector& xi) const {
-    Vector both(eliminated.lines_offset.size() + xi.size());
-    both << eliminated.lines_offset + linalg::product(eliminated.lines_by_factors, xi), xi;
+    if (!eliminated) return xi;
+    Vector both(eliminated->lines_offset.size() + xi.size());
+    both << eliminated->lines_offset + linalg::product(eliminated->lines_by_factors, xi), xi;
     return both;
   }
 
  private:
-  Certificate farkas(const Certificate& own) const {
-    return {own.kind, linalg::product(eliminated.rows.transpose(), own.data), own.margin};
+  double support_of_gradient(double at_center, double gradient_error, Certificate* why) {
+    program.upper_bound(gradient, bound);
+    if (bound.upper == -infinity) {
+      if (why) *why = {Certificate::Kind::farkas, bound.y, farkas_margin(X.A, X.b, bound.y)};
+      return -infinity;
+    }
+    const double h = rounding::up(rounding::up(at_center + bound.upper) + gradient_error);
+    if (why) *why = {Certificate::Kind::dual, bound.y, h};
+    return h;
+  }
+
+  /// A bound is what rational arithmetic makes of the multipliers.
+  double support_through_lines(const LineForm& whole, VectorIn d, Certificate* why) {
+    program.upper_bound(gradient, bound);
+    const bool affordable = has_few_lines(whole.S, whole.A);
+    if (bound.upper == -infinity) {
+      Certificate proof = farkas({Certificate::Kind::farkas, bound.y, farkas_margin(X.A, X.b, bound.y)});
+      if (!(affordable && proves_empty(whole, proof))) return beyond(whole, why);
+      if (why) *why = std::move(proof);
+      return -infinity;
+    }
+    Vector y = linalg::product(eliminated->rows.transpose(), bound.y) - linalg::product(eliminated->outputs.transpose(), d);
+    const auto proven = affordable ? proven_support(whole, d, y) : std::nullopt;
+    if (!proven) return beyond(whole, why);
+    if (why) *why = {Certificate::Kind::dual, std::move(y), *proven};
+    return *proven;
+  }
+
+  Certificate farkas(Certificate own) const {
+    if (eliminated) own.data = linalg::product(eliminated->rows.transpose(), own.data);
+    return own;
   }
 
   Certificate point(const Certificate& own) const {
@@ -153,35 +183,56 @@ void difference(VectorIn x, VectorIn y, Vector& value, Vector& error) {
 /// rational arithmetic decides.
 class Infeasibility {
  public:
-  explicit Infeasibility(rational::Rows rows)
-      : rows_(std::move(rows)), lines_(rows_.S.cols() > 0 && !rows_.S.isZero(0)), small_(is_small(rows_.S, rows_.A)) {
+  explicit Infeasibility(rational::Rows rows) : rows_(std::move(rows)), lines_(rows_.S.cols() > 0 && !rows_.S.isZero(0)) {
     difference(rows_.plus, rows_.minus, b_, error_);
     magnitude_ = (rows_.minus.array() == 0).select(0.0, rows_.plus.cwiseAbs() + rows_.minus.cwiseAbs());
   }
 
   Answer answer(Certificate* why) {
-    const Index m = b_.size(), l = lines_ ? rows_.S.cols() : 0;
-    const LineForm X{Matrix(0, l), Matrix(0, rows_.A.cols()), Vector(0), lines_ ? rows_.S : Matrix(m, 0), rows_.A, b_};
-    Questioned q(eliminate_lines_traced(X, magnitude_), lines_ ? Vector(0) : error_);
     Certificate proof;
-    Answer answer = q.is_empty(&proof);
-    proof = with_idle_lines(std::move(proof));
-    if (lines_ && answer != Answer::unknown && !holds(proof)) answer = Answer::unknown;
-    if (answer == Answer::unknown && small_) {
-      proof = with_idle_lines(q.candidate());
-      if (proof.kind != Certificate::Kind::point || !holds(proof)) proof = settled();
-      answer = proof.kind == Certificate::Kind::none     ? Answer::unknown
-               : proof.kind == Certificate::Kind::farkas ? Answer::yes
-                                                         : Answer::no;
-    }
+    const Answer answer = lines_ ? through_lines(proof) : directly(proof);
     if (why) *why = answer == Answer::unknown ? Certificate{} : std::move(proof);
     return answer;
   }
 
  private:
+  Answer directly(Certificate& proof) {
+    BoxedProgram program(rows_.A, b_, {magnitude_, error_});
+    const Answer answer = program.is_empty(&proof);
+    if (proof.kind == Certificate::Kind::structure)
+      proof = {Certificate::Kind::point, Vector::Zero(rows_.A.cols()), proof.margin};
+    if (answer == Answer::unknown && is_small()) {
+      if (const auto xi = program.central_point()) proof = {Certificate::Kind::point, *xi, 0};
+      return decided(with_idle_lines(std::move(proof)), proof);
+    }
+    proof = with_idle_lines(std::move(proof));
+    return answer;
+  }
+
+  Answer through_lines(Certificate& proof) {
+    const LineForm X{Matrix(0, rows_.S.cols()), Matrix(0, rows_.A.cols()), Vector(0), rows_.S, rows_.A, b_};
+    Questioned q(X, magnitude_);
+    const Answer answer = q.is_empty(&proof);
+    if (answer != Answer::unknown && holds(proof)) return answer;
+    return is_small() ? decided(q.candidate(), proof) : Answer::unknown;
+  }
+
+  /// By rational arithmetic, from a point that may be a solution.
+  Answer decided(Certificate candidate, Certificate& proof) {
+    proof = candidate.kind == Certificate::Kind::point && holds(candidate) ? std::move(candidate) : settled();
+    return proof.kind == Certificate::Kind::none     ? Answer::unknown
+           : proof.kind == Certificate::Kind::farkas ? Answer::yes
+                                                     : Answer::no;
+  }
+
+  bool is_small() {
+    if (!small_) small_ = cordon::is_small(rows_.S, rows_.A);
+    return *small_;
+  }
+
   /// Lines that enter no row were left out: any value will do.
   Certificate with_idle_lines(Certificate proof) const {
-    if (!lines_ && rows_.S.cols() > 0 && proof.kind == Certificate::Kind::point) {
+    if (rows_.S.cols() > 0 && proof.kind == Certificate::Kind::point) {
       Vector both = Vector::Zero(rows_.S.cols() + proof.data.size());
       both.tail(proof.data.size()) = proof.data;
       proof.data = std::move(both);
@@ -191,7 +242,7 @@ class Infeasibility {
 
   /// In rational arithmetic; a margin of emptiness must exceed what nominal operations may have added.
   bool holds(Certificate& proof) {
-    if (!small_) return false;
+    if (!is_small()) return false;
     if (!system_) system_.emplace(rows_);
     if (proof.kind == Certificate::Kind::point) return has_solution_near(*system_, proof.data);
     const auto margin = rational::farkas_margin(*system_, proof.data);
@@ -208,7 +259,8 @@ class Infeasibility {
   }
 
   rational::Rows rows_;
-  bool lines_, small_;
+  bool lines_;
+  std::optional<bool> small_;
   Vector b_, error_, magnitude_;
   std::optional<rational::System> system_;
 };
@@ -289,10 +341,9 @@ Box interval_hull(const LineForm& X, std::vector<Certificate>* why) {
   Box hull = Box::space(n);
   bool asked = false;
   for (Index i = 0; i < n; ++i) {
-    const Vector d = Vector::Unit(n, i);
-    if (q.unbounded_along(d)) continue;
-    hull.upper[i] = q.support(X, d, proof(2 * i));
-    hull.lower[i] = -q.support(X, -d, proof(2 * i + 1));
+    if (q.X.lines() > 0 && q.unbounded_along(Vector::Unit(n, i))) continue;
+    hull.upper[i] = q.support_along_axis(X, i, 1, proof(2 * i));
+    hull.lower[i] = -q.support_along_axis(X, i, -1, proof(2 * i + 1));
     asked = true;
     if (hull.upper[i] == -infinity || hull.lower[i] == infinity) return Box::empty(n);
   }

@@ -63,6 +63,9 @@ double determinant(MatrixIn A);
 /// A B through one compiled kernel (Eigen's product templates are expensive to compile in every file).
 Matrix product(MatrixIn A, MatrixIn B);
 
+/// A Aᵀ, at half the cost of a product.
+Matrix gram(MatrixIn A);
+
 /// A B with entries that cancel to 1e-14 of their terms or less set to zero: for coefficients of unbounded variables and of whole
 /// equations, where rounding noise would turn into a statement. Throws Errc::not_finite if the product overflows.
 Matrix denoised_product(MatrixIn A, MatrixIn B);

@@ -4,7 +4,9 @@
 // without fused operations; underflow is covered by an absolute term.
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "cordon/core/types.hpp"
@@ -14,9 +16,14 @@ namespace cordon::rounding {
 inline constexpr double unit = std::numeric_limits<double>::epsilon() / 2;  ///< unit roundoff 2⁻⁵³
 inline constexpr double tiny = std::numeric_limits<double>::min();          ///< covers underflow, one per operation
 
-/// The next double above or below.
-inline double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
-inline double down(double x) { return std::nextafter(x, -std::numeric_limits<double>::infinity()); }
+/// The next double above or below; infinities and NaN stay. Doubles of one sign are ordered like their bits.
+inline double up(double x) {
+  if (!(x < std::numeric_limits<double>::infinity())) return x;
+  if (x == 0) return std::numeric_limits<double>::denorm_min();
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  return std::bit_cast<double>(x > 0 ? bits + 1 : bits - 1);
+}
+inline double down(double x) { return -up(-x); }
 
 /// An interval that contains the exact value.
 struct Range {

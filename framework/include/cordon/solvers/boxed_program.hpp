@@ -12,11 +12,12 @@ namespace cordon {
 
 /// The polytope P = {ξ ∈ Rᵍ : Aξ = b, ‖ξ‖∞ ≤ 1} and certified questions about it.
 ///
-/// A linear-programming solver proposes points and multipliers; what is answered follows from a check of the proposal with
-/// rounding errors bounded, so that a solver's failure can cost tightness (`unknown`, a larger bound) but never soundness.
+/// A dual simplex method proposes points and multipliers (and GLPK, where that fails); what is answered follows from a check of
+/// the proposal with rounding errors bounded, so that a solver's failure can cost tightness (`unknown`, a larger bound) but never
+/// soundness.
 /// Degenerate cases: no rows: P is the unit box. g = 0: P is {0} if b = 0, else ∅.
-/// The object keeps A and b and factorises nothing; `maximum` warm-starts from the previous call of the same object, so
-/// one object serves the 2n directions of an interval hull. Not thread-safe: one object per thread.
+/// What the first question needs beside A and b is kept, so that one object serves the 2n directions of an interval hull; an
+/// answer does not depend on what was asked before. Not thread-safe: one object per thread.
 class BoxedProgram {
  public:
   /// How well the rows are known; empty vectors: exactly.
@@ -39,6 +40,8 @@ class BoxedProgram {
   };
   /// Certified upper bound of max{gᵀξ : ξ ∈ P}.
   Bound maximum(VectorIn g);
+  /// The same without the maximiser, in the memory of an earlier bound.
+  void upper_bound(VectorIn g, Bound& bound);
 
   /// Is P empty? `yes` by a Farkas vector y: bᵀy > ‖Aᵀy‖₁; `no` by a point whose residual is repaired rigorously.
   /// "Empty" is said only if the margin exceeds 1e-10 of the terms it is made of, |y|ᵀ(|b| + |A|1 + magnitude): a smaller one

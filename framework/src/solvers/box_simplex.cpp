@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solvers/box_simplex.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace cordon {
+
+namespace {
+
+constexpr double feasible = 1e-9;         ///< a bound may be exceeded by this
+constexpr double smallest_pivot = 1e-12;  ///< of a row of the tableau, relative to the norm of the inverse's row
+constexpr double first_pivot = 1e-3;      ///< of the columns that a basis is built from, relative to their size
+constexpr double agreement = 1e-7;        ///< of a pivot computed by row and by column
+constexpr Index fresh_enough = 30;        ///< updates after which basic values are computed anew before they are believed
+
+}  // namespace
+
+BoxSimplex::BoxSimplex(const Matrix& A, VectorIn b)
+    : m_(A.rows()),
+      g_(A.cols()),
+      height_(padded(m_)),
+      columns_(Matrix::Zero(height_, g_)),
+      inverse_(height_, m_),
+      panels_(A),
+      sums_(static_cast<std::size_t>(m_ * Panels<double>::width)),
+      b_(Vector::Zero(height_)),
+      y_(b_),
+      basic_value_(b_),
+      norms_(b_),
+      rho_(b_),
+      image_(b_),
+      change_(b_),
+      change_image_(b_),
+      basic_(static_cast<std::size_t>(m_)),
+      order_(static_cast<std::size_t>(g_)),
+      candidates_(static_cast<std::size_t>(panels_.padded_cols())),
+      cost_(Vector::Zero(panels_.padded_cols())),
+      side_(cost_),
+      reduced_(cost_),
+      decrease_(cost_),
+      breakpoint_(cost_) {
+  columns_.topRows(m_) = A;
+  b_.head(m_) = b;
+}
+
+BoxSimplex::Status BoxSimplex::maximize(VectorIn g, VectorIn scores, double enough) {
+  cost_.head(g_) = g;
+  order_by(scores);
+  build_basis();
+  return solve(enough);
+}
+
+/// The m best come first and in order.
+void BoxSimplex::order_by(VectorIn scores) {
+  std::iota(order_.begin(), order_.end(), Index{0});
+  const auto better = [&scores](Index i, Index j) { return scores[i] != scores[j] ? scores[i] < scores[j] : i < j; };
+  const auto middle = order_.begin() + std::min(g_, m_);
+  if (middle != order_.end()) std::nth_element(order_.begin(), middle, order_.end(), better);
+  std::sort(order_.begin(), middle, better);
+}
+
+/// From artificials alone, by the columns in `order_` as far as they are independent.
+void BoxSimplex::build_basis() {
+  inverse_.setZero();
+  for (Index i = 0; i < m_; ++i) {
+    basic_[static_cast<std::size_t>(i)] = g_ + i;
+    inverse_(i, i) = 1;
+  }
+  side_.head(g_).setOnes();
+  Index made = 0;
+  for (std::size_t k = 0; k < order_.size() && k < static_cast<std::size_t>(2 * m_) && made < m_; ++k) {
+    if (!bring_in(order_[k])) continue;
+    side_[order_[k]] = 0;
+    ++made;
+  }
+  norms_.setZero();
+  for (Index k = 0; k < m_; ++k) norms_ += inverse_.col(k).cwiseAbs2();
+}
+
+/// In place of the artificial with the largest pivot, if that is large enough.
+bool BoxSimplex::bring_in(Index variable) {
+  transform(&columns_(0, variable), image_);
+  Index row = none;
+  double best = first_pivot * columns_.col(variable).lpNorm<Eigen::Infinity>();
+  for (Index i = 0; i < m_; ++i) {
+    if (!is_artificial(basic(i)) || !(std::abs(image_[i]) > best)) continue;
+    best = std::abs(image_[i]);
+    row = i;
+  }
+  if (row == none) return false;
+  rho_.head(m_) = inverse_.row(row);
+  update_inverse(row, false);
+  basic_[static_cast<std::size_t>(row)] = variable;
+  return true;
+}
+
+/// image = B⁻¹v. The inverse's column of a row whose artificial is basic is a unit vector.
+void BoxSimplex::transform(const double* v, Vector& image) const {
+  image.setZero();
+  for (Index k = 0; k < m_; ++k) {
+    if (is_artificial(basic(k))) {
+      image[k] += v[k];
+    } else {
+      add_multiple(height_, v[k], &inverse_(0, k), image.data());
+    }
+  }
+}
+
+/// After the column with this `image_` took the place of the basic variable of a row; `rho_` is that row of the inverse.
+void BoxSimplex::update_inverse(Index row, bool with_norms) {
+  const double pivot = image_[row];
+  double norm = 0;
+  image_[row] = 0;
+  if (with_norms) norms_.setZero();
+  for (Index k = 0; k < m_; ++k) {
+    const double factor = rho_[k] / pivot;
+    inverse_(row, k) = 0;
+    if (with_norms) {
+      add_multiple(height_, -factor, image_.data(), &inverse_(0, k), norms_.data());
+    } else if (factor != 0) {
+      add_multiple(height_, -factor, image_.data(), &inverse_(0, k));
+    }
+    inverse_(row, k) = factor;
+    norm += factor * factor;
+  }
+  norms_[row] = norm;
+  image_[row] = pivot;
+}
+
+/// Sides, reduced costs and basic values of the present basis.
+bool BoxSimplex::take_objective() {
+  find_multipliers();
+  panels_.transpose_times(y_.data(), decrease_.data());
+  for (Index j = 0; j < g_; ++j) {
+    const double d = cost_[j] - decrease_[j];
+    side_[j] = side_[j] == 0 ? 0 : d < 0 ? -1 : 1;
+    reduced_[j] = side_[j] * d;
+  }
+  solve_basics();
+  return basic_value_.allFinite() && y_.allFinite();
+}
+
+/// x_B = B⁻¹(b - N x_N).
+void BoxSimplex::solve_basics() {
+  constexpr Index width = Panels<double>::width;
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  for (Index p = 0; p < panels_.panels(); ++p) panels_.add_times(p, Line<double>::load(&side_[p * width]), sums_.data());
+  for (Index i = 0; i < m_; ++i) change_[i] = b_[i] - Line<double>::load(&sums_[static_cast<std::size_t>(i * width)]).total();
+  transform(change_.data(), basic_value_);
+  updates_ = 0;
+}
+
+/// By what is left of the rows; after `solve_basics`.
+void BoxSimplex::refine_basics() {
+  for (Index i = 0; i < m_; ++i) {
+    if (is_artificial(basic(i))) {
+      change_[basic(i) - g_] -= basic_value_[i];
+    } else {
+      add_multiple(height_, -basic_value_[i], &columns_(0, basic(i)), change_.data());
+    }
+  }
+  transform(change_.data(), change_image_);
+  basic_value_ += change_image_;
+}
+
+/// y = B⁻ᵀ g_B.
+void BoxSimplex::find_multipliers() {
+  for (Index i = 0; i < m_; ++i) rho_[i] = is_artificial(basic(i)) ? 0 : cost_[basic(i)];
+  for (Index k = 0; k < m_; ++k) y_[k] = dot(height_, rho_.data(), &inverse_(0, k));
+}
+
+/// By the reduced costs of basic variables, which should vanish.
+void BoxSimplex::refine_multipliers() {
+  for (Index i = 0; i < m_; ++i) {
+    rho_[i] = is_artificial(basic(i)) ? -y_[basic(i) - g_] : cost_[basic(i)] - dot(height_, y_.data(), &columns_(0, basic(i)));
+  }
+  for (Index k = 0; k < m_; ++k) y_[k] += dot(height_, rho_.data(), &inverse_(0, k));
+}
+
+/// The inverse, and all that follows from it, anew.
+bool BoxSimplex::rebuild() {
+  std::size_t first = 0;
+  for (Index i = 0; i < m_; ++i) {
+    if (!is_artificial(basic(i))) order_[first++] = basic(i);
+  }
+  for (Index j = 0; j < g_; ++j) {
+    if (side_[j] != 0) order_[first++] = j;
+  }
+  build_basis();
+  return take_objective();
+}
+
+void BoxSimplex::take_point(Vector& xi) {
+  solve_basics();
+  refine_basics();
+  xi = side_.head(g_);
+  for (Index i = 0; i < m_; ++i) {
+    if (!is_artificial(basic(i))) xi[basic(i)] = basic_value_[i];
+  }
+}
+
+/// The bound that the multipliers of the basis show.
+double BoxSimplex::objective() const {
+  double sum = dot(cost_.size(), cost_.data(), side_.data());
+  for (Index i = 0; i < m_; ++i) {
+    if (!is_artificial(basic(i))) sum += cost_[basic(i)] * basic_value_[i];
+  }
+  return sum;
+}
+
+BoxSimplex::Status BoxSimplex::solve(double enough) {
+  iterations_ = 0;
+  if (!take_objective()) return Status::unsolved;
+  bool rebuilt = false;
+  for (const Index limit = 200 + 20 * (m_ + g_); iterations_ < limit; ++iterations_) {
+    if (enough > any && objective() < enough) {
+      find_multipliers();
+      refine_multipliers();
+      return Status::below;
+    }
+    const Index row = leaving_row();
+    if (row == none && updates_ >= fresh_enough) {
+      solve_basics();
+      continue;
+    }
+    if (row == none) {
+      find_multipliers();
+      refine_multipliers();
+      return Status::optimal;
+    }
+    direction_ = basic_value_[row] < 0 ? 1 : -1;
+    price(row);
+    const Index entering = entering_variable(std::abs(basic_value_[row]) - room(row));
+    if (entering == none) {
+      y_ = -direction_ * rho_;
+      return Status::infeasible;
+    }
+    if (exchange(row, entering)) continue;
+    if (rebuilt && updates_ == 0) return Status::unsolved;
+    rebuilt = true;
+    if (!rebuild()) return Status::unsolved;
+  }
+  return Status::unsolved;
+}
+
+/// The largest violation of a bound beside the norm of its row, or none.
+Index BoxSimplex::leaving_row() const {
+  Index best = none;
+  double steepest = 0;
+  for (Index i = 0; i < m_; ++i) {
+    const double violation = std::abs(basic_value_[i]) - room(i);
+    if (!(violation > feasible) || violation * violation <= steepest * norms_[i]) continue;
+    steepest = violation * violation / norms_[i];
+    best = i;
+  }
+  return best;
+}
+
+/// The row of the tableau: how fast each reduced cost falls, and where those that fall vanish.
+void BoxSimplex::price(Index row) {
+  rho_.head(m_) = direction_ * inverse_.row(row).transpose();
+  panels_.transpose_times(rho_.data(), decrease_.data());
+  rho_ *= direction_;
+  const double least = smallest_pivot * std::sqrt(norms_[row]);
+  candidate_count_ = 0;
+  for (Index j = 0; j < g_; ++j) {
+    decrease_[j] *= side_[j];
+    candidates_[candidate_count_] = j;
+    candidate_count_ += decrease_[j] > least;
+  }
+  for (std::size_t k = 0; k < candidate_count_; ++k) {
+    const Index j = candidates_[k];
+    breakpoint_[j] = reduced_[j] / decrease_[j];
+  }
+}
+
+/// Passes breakpoints while the bound still falls; the last one enters. None if the bound falls without end, beyond what the
+/// tolerance of bounds explains.
+Index BoxSimplex::entering_variable(double infeasibility) {
+  double slope = infeasibility, largest = 0;
+  for (passed_ = 0; slope > feasible / 2; ++passed_) {
+    if (passed_ == candidate_count_) return none;
+    select(passed_);
+    const double pivot = decrease_[candidates_[passed_]];
+    slope -= 2 * pivot;
+    largest = std::max(largest, pivot);
+  }
+  // A tiny pivot makes a bad basis: any breakpoint before it will do as well.
+  do {
+    --passed_;
+  } while (decrease_[candidates_[passed_]] < 1e-5 * largest);
+  return candidates_[passed_];
+}
+
+/// Brings the candidate with the first breakpoint among those from `place` on to that place.
+void BoxSimplex::select(std::size_t place) {
+  std::size_t best = place;
+  double least = breakpoint_[candidates_[place]];
+  for (std::size_t k = place + 1; k < candidate_count_; ++k) {
+    const double here = breakpoint_[candidates_[k]];
+    best = here < least ? k : best;
+    least = here < least ? here : least;
+  }
+  std::swap(candidates_[place], candidates_[best]);
+}
+
+/// Variables whose breakpoints were passed go to their other bounds.
+void BoxSimplex::flip_passed() {
+  if (passed_ == 0) return;
+  change_.setZero();
+  for (std::size_t k = 0; k < passed_; ++k) {
+    const Index j = candidates_[k];
+    add_multiple(height_, -2 * side_[j], &columns_(0, j), change_.data());
+    side_[j] = -side_[j];
+    reduced_[j] = -reduced_[j];
+  }
+  transform(change_.data(), change_image_);
+  basic_value_ -= change_image_;
+}
+
+/// False, with nothing changed, if the pivot is not known well enough.
+bool BoxSimplex::exchange(Index row, Index entering) {
+  transform(&columns_(0, entering), image_);
+  const double pivot = image_[row], step = breakpoint_[entering], side = side_[entering], size = decrease_[entering];
+  if (!(std::abs(pivot * direction_ * side - size) <= agreement * size)) return false;
+
+  reduced_ -= step * decrease_;
+  flip_passed();
+  reduced_ = reduced_.cwiseMax(0.0);
+  const Index leaving = basic(row);
+  const double move = (basic_value_[row] + direction_ * room(row)) / pivot;
+  add_multiple(height_, -move, image_.data(), basic_value_.data());
+  basic_value_[row] = side + move;
+  update_inverse(row, true);
+  basic_[static_cast<std::size_t>(row)] = entering;
+  side_[entering] = 0;
+  reduced_[entering] = 0;
+  if (!is_artificial(leaving)) {
+    side_[leaving] = -direction_;
+    reduced_[leaving] = step;
+  }
+  ++updates_;
+  return true;
+}
+
+}  // namespace cordon

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solvers/row_gram.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/rounding.hpp"
+
+namespace cordon {
+
+namespace {
+
+using rounding::gamma;
+using rounding::up;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Of the mean eigenvalue: what is left of it after rounding counts as the smallest one.
+constexpr double shift_share = 1e-8;
+/// The shift makes solutions inexact; each correction makes up for nearly all that is left.
+constexpr int most_corrections = 5;
+constexpr double accurate = 1e-15;
+
+}  // namespace
+
+RowGram::RowGram(const Matrix& A, const Vector& b, const Vector& error) : A_(0, A.cols()), all_(A.rows()) {
+  const Index g = A.cols();
+  for (Index i = 0; i < all_; ++i) {
+    if (g > 0 && !A.row(i).isZero(0)) {
+      rows_.push_back(i);
+    } else if (b[i] != 0 || error[i] != 0) {
+      return;
+    }
+  }
+  const Index m = static_cast<Index>(rows_.size());
+  if (m == 0) {
+    smallest_ = 1;
+    return;
+  }
+  const Matrix rows = m == all_ ? A : Matrix(A(rows_, Eigen::all));
+  scale_ = linalg::row_scales(rows);
+  A_ = scale_.asDiagonal() * rows;
+  if (((A_.array().abs() < rounding::tiny) && (rows.array() != 0)).any()) return;  // scaling must be exact
+  b_ = scale_.cwiseProduct(Vector(b(rows_)));
+  error_ = scale_.cwiseProduct(Vector(error(rows_)));
+  reach_ = A_.cwiseAbs().rowwise().sum() * up(1 + 2 * gamma(g + 2));
+  factor();
+}
+
+/// |fl(K) - K| ≤ γ |A||A|ᵀ for K = A Aᵀ, whose 2-norm is at most the trace of K. A computed factor L of K - s I has |LLᵀ - (K -
+/// sI)| ≤ γ |L||L|ᵀ with ‖|L||L|ᵀ‖₂ ≤ trace(LLᵀ) [Higham2002, th. 10.3], and LLᵀ has no negative eigenvalue.
+void RowGram::factor() {
+  const Index g = A_.cols(), m = A_.rows();
+  Matrix K = linalg::gram(A_);
+  const double trace = K.trace(), shift = shift_share * trace / static_cast<double>(m);
+  const double hidden =
+      1.01 * (gamma(g + 4) + gamma(m + 8) + 4 * rounding::unit) * trace + static_cast<double>((g + m + 4) * m) * rounding::tiny;
+  K.diagonal().array() -= shift;
+  auto L = linalg::cholesky(K);
+  if (!L || !(shift > 2 * hidden)) return;
+  L_ = std::move(*L);
+  smallest_ = rounding::down(shift - hidden);
+}
+
+Vector RowGram::solve(Vector right) const {
+  L_.triangularView<Eigen::Lower>().solveInPlace(right);
+  L_.transpose().triangularView<Eigen::Upper>().solveInPlace(right);
+  return right;
+}
+
+RowGram::Point RowGram::least_squares() const {
+  Point point{Vector(A_.cols()), Vector::Zero(all_)};
+  if (rows_.empty()) {
+    point.xi.setZero();
+    return point;
+  }
+  Vector y = Vector::Zero(b_.size()), left = b_;
+  for (int round = 0; round < most_corrections; ++round) {
+    y += solve(left);
+    left = b_ - linalg::product(A_, linalg::product(A_.transpose(), y));
+    if ((left.array().abs() <= accurate * (b_.cwiseAbs() + reach_).array()).all()) break;
+  }
+  point.xi = linalg::product(A_.transpose(), y);
+  point.y(rows_) = scale_.cwiseProduct(y);
+  return point;
+}
+
+double RowGram::distance(const Vector& xi) const {
+  if (rows_.empty()) return 0;
+  const double largest = xi.size() ? xi.cwiseAbs().maxCoeff() : 0;
+  if (!std::isfinite(largest)) return infinity;
+  const double share = gamma(A_.cols() + 4), underflow = static_cast<double>(A_.cols() + 4) * rounding::tiny;
+  const Vector gap = (b_ - linalg::product(A_, xi)).cwiseAbs() * (1 + 4 * rounding::unit) +
+                     share * (reach_ * largest + b_.cwiseAbs()) * (1 + 8 * rounding::unit) + error_ * (1 + 4 * rounding::unit) +
+                     Vector::Constant(b_.size(), underflow);
+  const double size = std::sqrt(gap.squaredNorm() / smallest_) * (1 + 4 * gamma(b_.size() + 8));
+  return up(size * (1 + 8 * rounding::unit) + rounding::tiny);
+}
+
+}  // namespace cordon
