@@ -7,8 +7,9 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
 
-# No contraction into fused operations: results must not depend on the machine they were compiled for.
-add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+# No contraction into fused operations: results must not depend on the machine they were compiled for. Nobody reads the flags of
+# floating-point exceptions or the errno of functions of mathematics: without them, choices and square roots vectorise.
+add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off -fno-trapping-math -fno-math-errno)
 if(CORDON_WARNINGS_AS_ERRORS)
   add_compile_options(-Werror)
 endif()

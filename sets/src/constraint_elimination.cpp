@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/sets/constraint_elimination.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "elimination_plan.hpp"
+#include "elimination_scores.hpp"
 #include "residue.hpp"
 
 namespace cordon::sets {
@@ -17,9 +20,9 @@ namespace {
 constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a coefficient is zero
 constexpr double unreliable =
     1e-5;  ///< a row cancelled to this share of its terms is dropped: what is left is too uncertain to prove anything
-constexpr double dependent = 1e-12;     ///< a row this near to the span of others adds nothing to the scores
-constexpr double factor_weight = 1e-6;  ///< of the change of the factors beside that of the state: decides ties
-constexpr double pivot_floor = 1e-9;    ///< pivots below this share of their row are not used
+constexpr double pivot_floor = 1e-9;  ///< pivots below this share of their row are not used
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The rows and outputs being reduced. Factors and rows are marked instead of moved.
 class Elimination {
@@ -29,30 +32,32 @@ class Elimination {
         c_(X.c),
         A_(X.A),
         b_(X.b),
-        A_terms_(X.A.cwiseAbs()),
+        A_terms_(A_.cwiseAbs()),
         b_terms_(X.b.cwiseAbs()),
         state_terms_(Vector::Zero(X.dim())),
         in_row_(X.constraints(), true),
-        free_(X.generators(), true) {}
+        free_(Vector::Ones(X.generators())) {}
 
   Index rows() const { return A_.rows(); }
   Index factors() const { return A_.cols(); }
 
-  Index live_rows() const {
-    Index count = 0;
-    for (const bool live : in_row_) count += live ? 1 : 0;
-    return count;
+  std::vector<Index> live_rows() const {
+    std::vector<Index> live;
+    for (Index i = 0; i < rows(); ++i) {
+      if (in_row_[at(i)]) live.push_back(i);
+    }
+    return live;
   }
+  Index live_count() const { return std::count(in_row_.begin(), in_row_.end(), true); }
 
   /// Drops rows that became 0 = 0 up to rounding, or so small by cancellation that rounding could make them false. Dropping a row
   /// never shrinks the set; it is no longer exact if more than noise was dropped.
   void drop_unreliable_rows() {
     for (Index i = 0; i < rows(); ++i) {
       if (!in_row_[at(i)]) continue;
+      const double* const terms_of_row = A_terms_.data() + i * factors();
       double terms = b_terms_[i];
-      for (Index j = 0; j < factors(); ++j) {
-        if (free_[at(j)]) terms = std::max(terms, A_terms_(i, j));
-      }
+      for (Index j = 0; j < factors(); ++j) terms = std::max(terms, free_[j] * terms_of_row[j]);
       const double left = std::max(scale(i), std::abs(b_[i]));
       if (left > unreliable * terms) continue;
       in_row_[at(i)] = false;
@@ -94,22 +99,17 @@ class Elimination {
     }
   }
 
-  /// The interval ρ_j that the rows allow ξ_j while all other factors keep to [-1,1]. Bounds tightened by rows must not enter
-  /// here: they would rest on |ξ_j| ≤ 1 itself, and ρ_j ⊆ [-1,1] would no longer show that this bound may be forgotten.
-  void bound_factors() {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    allowed_lower_ = Vector::Constant(factors(), -infinity);
-    allowed_upper_ = Vector::Constant(factors(), infinity);
+  /// Of every factor: the interval ρ_j that the rows allow ξ_j while all other factors keep to [-1,1], and the row in which it
+  /// has the largest share of the row's 1-norm. Bounds tightened by rows must not enter here: they would rest on |ξ_j| ≤ 1
+  /// itself, and ρ_j ⊆ [-1,1] would no longer show that this bound may be forgotten.
+  void survey() {
+    allowed_lower_.setConstant(factors(), -infinity);
+    allowed_upper_.setConstant(factors(), infinity);
+    share_.setConstant(factors(), pivot_floor);
+    binding_row_.setConstant(factors(), -1);
     for (Index i = 0; i < rows(); ++i) {
       if (!in_row_[at(i)]) continue;
-      const double norm = A_.row(i).lpNorm<1>(), floor = pivot_floor * scale(i);
-      for (Index j = 0; j < factors(); ++j) {
-        const double a = A_(i, j);
-        if (!free_[at(j)] || std::abs(a) <= floor) continue;
-        const double middle = b_[i] / a, spread = (norm - std::abs(a)) / std::abs(a);
-        allowed_lower_[j] = std::max(allowed_lower_[j], middle - spread);
-        allowed_upper_[j] = std::min(allowed_upper_[j], middle + spread);
-      }
+      survey_row(i, A_.row(i).lpNorm<1>(), pivot_floor * scale(i));
     }
   }
 
@@ -127,7 +127,7 @@ class Elimination {
   /// ξ = mid(E) + rad(E) ξ': exact, as E holds every feasible ξ.
   void rescale() {
     for (Index j = 0; j < factors(); ++j) {
-      if (!free_[at(j)] || !(lower_[j] <= upper_[j])) continue;
+      if (free_[j] == 0 || !(lower_[j] <= upper_[j])) continue;
       const double mid = (lower_[j] + upper_[j]) / 2, rad = (upper_[j] - lower_[j]) / 2;
       if (mid == 0 && rad == 1) continue;
       c_ += mid * G_.col(j);
@@ -142,87 +142,31 @@ class Elimination {
     drop_unreliable_rows();
   }
 
-  /// P = I - F Fᵀ + Q Qᵀ (without the part of G where its scales are too far apart to factorise: scores only order candidates); F
-  /// from the factorisations of I + GGᵀ and A H Aᵀ, Q from the eliminations so far.
-  void factorise() {
-    const Index n = G_.rows(), g = factors(), m = rows();
-    F_ = Matrix::Zero(g, n + m);
-    const auto half = linalg::cholesky(Matrix::Identity(n, n) + linalg::product(G_, G_.transpose()));
-    for (Index k = 0; half && k < n; ++k) {  // columns of Gᵀ L⁻ᵀ by forward substitution
-      F_.col(k) = G_.row(k).transpose();
-      for (Index l = 0; l < k; ++l) F_.col(k) -= (*half)(k, l) * F_.col(l);
-      F_.col(k) /= (*half)(k, k);
-    }
-    // Rows of A H^{1/2}, orthonormalised in the metric H one after another; dependent ones add nothing.
-    Matrix basis(m, g);  // B with F_A = H Bᵀ normalised
-    Index count = 0;
-    for (Index i = 0; i < m; ++i) {
-      if (!in_row_[at(i)]) continue;
-      Vector a = A_.row(i).transpose();
-      Vector h = a - F_.leftCols(n) * (F_.leftCols(n).transpose() * a);
-      const double before = a.dot(h);
-      for (Index k = 0; k < count; ++k) {
-        const double overlap = F_.col(n + k).dot(a);
-        a -= overlap * basis.row(k).transpose();
-        h -= overlap * F_.col(n + k);
-      }
-      const double squared = a.dot(h);
-      if (!(squared > dependent * before) || !(squared > 0)) continue;
-      const double norm = std::sqrt(squared);
-      basis.row(count) = a.transpose() / norm;
-      F_.col(n + count) = h / norm;
-      ++count;
-    }
-    F_.conservativeResize(g, n + count);
-    diagonal_ = 1 - F_.rowwise().squaredNorm().array();
-    Q_.resize(g, 0);
-    moved_ = G_;
-    for (Index i = 0; i < n; ++i) {  // in units of the set's own width
-      const double width = G_.row(i).lpNorm<1>();
-      if (width > 0) moved_.row(i) /= width;
-    }
-    moved_ -= linalg::product(linalg::product(moved_, F_), F_.transpose());
-  }
-
-  /// The cheapest factor, and the row in which it has the largest share of the row's 1-norm: the row that binds it most. The
-  /// choice of the row does not change the set but the rows that remain, and with them all later scores. False if no row has a
-  /// usable pivot. `loss` is the score.
-  bool choose(Index& row, Index& col, double& loss) const {
-    double best = std::numeric_limits<double>::infinity(), best_pivot = 0;
-    bool found = false;
-    const Vector row_norm = A_.cwiseAbs().rowwise().sum();
+  /// The cheapest factor, and the row that binds it most. The choice of the row does not change the set but the rows that remain,
+  /// and with them all later scores. False if no row has a usable pivot. `loss` is the score.
+  bool choose(Index& row, Index& col, double& loss) {
+    if (!scores_) scores_.emplace(G_, A_, live_rows());
+    survey();
+    double best = infinity, best_share = 0;
+    col = -1;
     for (Index j = 0; j < factors(); ++j) {
-      if (!free_[at(j)]) continue;
-      Index pivot_row = -1;
-      double pivot = pivot_floor;
-      for (Index i = 0; i < rows(); ++i) {
-        if (!in_row_[at(i)]) continue;
-        const double share = std::abs(A_(i, j)) / row_norm[i];
-        if (share > pivot) {
-          pivot = share;
-          pivot_row = i;
-        }
-      }
-      if (pivot_row < 0) continue;
+      if (free_[j] == 0 || binding_row_[j] < 0) continue;
       const double reach = std::max({0.0, std::abs(allowed_lower_[j]) - 1, std::abs(allowed_upper_[j]) - 1});
-      const double diagonal = std::max(diagonal_[j], 1e-15);
-      const double score = reach == 0 ? 0 : reach * reach * (moved_.col(j).squaredNorm() / diagonal + factor_weight) / diagonal;
-      if (!found || score < best * (1 - 1e-9) || (score <= best * (1 + 1e-9) && pivot > best_pivot)) {
-        found = true;
-        best = score;
-        best_pivot = pivot;
-        row = pivot_row;
-        col = j;
-      }
+      const double score = scores_->score(j, reach);
+      if (col >= 0 && score >= best * (1 - 1e-9) && !(score <= best * (1 + 1e-9) && share_[j] > best_share)) continue;
+      best = score;
+      best_share = share_[j];
+      row = static_cast<Index>(binding_row_[j]);
+      col = j;
     }
     loss = best;
-    return found;
+    return col >= 0;
   }
 
   /// Solves `row` for ξ_col and drops both.
   void eliminate(Index row, Index col) {
     steps_.push_back({EliminationStep::eliminate, row, col});
-    const Eigen::RowVectorXd pivot_row = A_.row(row) / A_(row, col);
+    const Vector pivot_row = A_.row(row).transpose() / A_(row, col);
     const double right = b_[row] / A_(row, col);
     const Vector out = G_.col(col);
     const double row_terms = std::max(A_terms_.row(row).maxCoeff(), b_terms_[row]) / std::abs(A_(row, col));
@@ -237,19 +181,19 @@ class Elimination {
       if (i != row && in_row_[at(i)]) subtract_row(i, row, A_(i, col) / A_(row, col), col);
     }
     in_row_[at(row)] = false;
-    free_[at(col)] = false;
-    update_scores(col);
+    free_[col] = 0;
   }
+
+  /// After `eliminate`, if there are more to come.
+  void update_scores(Index col) { scores_->forget(col); }
 
   const std::vector<EliminationStep>& steps() const { return steps_; }
 
   LineForm result(const Matrix& M) const {
-    std::vector<Index> rows_left, factors_left;
-    for (Index i = 0; i < rows(); ++i) {
-      if (in_row_[at(i)]) rows_left.push_back(i);
-    }
+    const std::vector<Index> rows_left = live_rows();
+    std::vector<Index> factors_left;
     for (Index j = 0; j < factors(); ++j) {
-      if (free_[at(j)]) factors_left.push_back(j);
+      if (free_[j] != 0) factors_left.push_back(j);
     }
     const Index m = static_cast<Index>(rows_left.size()), g = static_cast<Index>(factors_left.size());
     LineForm X{M, Matrix(G_.rows(), g), c_, Matrix::Zero(m, M.cols()), Matrix(m, g), Vector(m)};
@@ -271,14 +215,36 @@ class Elimination {
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   double scale(Index i) const { return A_.cols() ? A_.row(i).cwiseAbs().maxCoeff() : 0.0; }
 
+  void survey_row(Index i, double norm, double floor) {
+    const double* __restrict const row = A_.data() + i * factors();
+    double* __restrict const lowest = allowed_lower_.data(), * __restrict const highest = allowed_upper_.data();
+    double* __restrict const best_share = share_.data(), * __restrict const binding = binding_row_.data();
+    const double right = b_[i], place = static_cast<double>(i), inverse_norm = 1 / norm;
+    const Index count = factors();
+    for (Index j = 0; j < count; ++j) {  // without branches, so that it vectorises
+      const double size = std::abs(row[j]), inverse = 1 / (size > floor ? size : infinity);
+      const double middle = row[j] < 0 ? -right * inverse : right * inverse;
+      const double spread = size > floor ? (norm - size) * inverse : infinity;
+      const double lower = middle - spread, upper = middle + spread, share = size * inverse_norm;
+      lowest[j] = lowest[j] < lower ? lower : lowest[j];
+      highest[j] = upper < highest[j] ? upper : highest[j];
+      binding[j] = share > best_share[j] ? place : binding[j];
+      best_share[j] = share > best_share[j] ? share : best_share[j];
+    }
+  }
+
   void subtract_row(Index i, Index row, double factor, Index col) {
     if (factor != 0) {
       const double size = std::abs(factor);
-      for (Index j = 0; j < factors(); ++j) {
-        if (A_terms_(row, j) == 0) continue;
-        A_(i, j) -= factor * A_(row, j);
-        A_terms_(i, j) = std::max(A_terms_(i, j), size * A_terms_(row, j));
-        if (std::abs(A_(i, j)) <= noise * A_terms_(i, j)) A_(i, j) = 0;
+      const double* __restrict const from = A_.data() + row * factors(), * __restrict const from_terms =
+                                                                             A_terms_.data() + row * factors();
+      double* __restrict const to = A_.data() + i * factors(), * __restrict const to_terms = A_terms_.data() + i * factors();
+      const Index count = factors();
+      for (Index j = 0; j < count; ++j) {
+        const double entry = to[j] - factor * from[j], passed = size * from_terms[j];
+        const double terms = to_terms[j] < passed ? passed : to_terms[j];
+        to_terms[j] = terms;
+        to[j] = std::abs(entry) <= noise * terms ? 0 : entry;
       }
       b_[i] -= factor * b_[row];
       b_terms_[i] = std::max(b_terms_[i], size * b_terms_[row]);
@@ -297,7 +263,7 @@ class Elimination {
     const double floor = pivot_floor * scale(i), rounding = noise * (A_terms_.row(i).sum() + b_terms_[i]);
     for (Index j = 0; j < factors(); ++j) {
       const double a = A_(i, j);
-      if (!free_[at(j)] || std::abs(a) <= floor) continue;
+      if (free_[j] == 0 || std::abs(a) <= floor) continue;
       const double own_low = a > 0 ? a * lower_[j] : a * upper_[j], own_high = a > 0 ? a * upper_[j] : a * lower_[j];
       double from = (b_[i] - (high - own_high)) / a, to = (b_[i] - (low - own_low)) / a;
       if (from > to) std::swap(from, to);
@@ -312,55 +278,39 @@ class Elimination {
     }
   }
 
-  void update_scores(Index col) {
-    Vector p = -(F_ * F_.row(col).transpose());
-    if (Q_.cols() > 0) p += Q_ * Q_.row(col).transpose();
-    p[col] += 1;
-    const double rest = 1 - p[col];
-    if (!(rest > 1e-14)) return;
-    const Vector q = p / std::sqrt(rest), shift = moved_.col(col);
-    moved_ += linalg::product(shift, p.transpose() / rest);
-    diagonal_.array() += q.array().square();
-    Q_.conservativeResize(Eigen::NoChange, Q_.cols() + 1);
-    Q_.col(Q_.cols() - 1) = q;
-  }
-
   Matrix G_;
   Vector c_;
-  Matrix A_;
+  RowMatrix A_;
   Vector b_;
-  Matrix A_terms_;  ///< size of the terms each coefficient was computed from
+  RowMatrix A_terms_;  ///< size of the terms each coefficient was computed from
   Vector b_terms_;
   Vector state_terms_;  ///< likewise of c and G, per coordinate
   bool exact_ = true, rescaled_ = false;
   std::vector<EliminationStep> steps_;
-  std::vector<bool> in_row_, free_;
-  Vector lower_, upper_, allowed_lower_, allowed_upper_;
-  Matrix F_, Q_;
-  Matrix moved_;  ///< D G P: column j over P_jj is the change of the state when ξ_j moves by one
-  Vector diagonal_;
+  std::vector<bool> in_row_;
+  Vector free_;  ///< 1, or 0 for factors that were eliminated
+  Vector lower_, upper_, allowed_lower_, allowed_upper_, share_, binding_row_;
+  std::optional<EliminationScores> scores_;
 };
 
 /// Eliminates down to `max_constraints`; is what was forgotten implied by the rest?
 bool run(Elimination& work, Index max_constraints, const ConstraintElimination& options) {
   work.drop_unreliable_rows();
-  if (work.live_rows() <= max_constraints) return work.exact();
+  if (work.live_count() <= max_constraints) return work.exact();
   if (options.gauss_jordan) work.to_gauss_jordan();
   if (options.rescale) {
     work.tighten();
     work.rescale();
   }
-  work.bound_factors();
-  work.factorise();
   bool exact = true;
-  while (work.live_rows() > max_constraints) {
+  while (work.live_count() > max_constraints) {
     Index row = 0, col = 0;
     double loss = 0;
     if (!work.choose(row, col, loss)) break;
     exact = exact && loss == 0;
     work.eliminate(row, col);
     work.drop_unreliable_rows();
-    work.bound_factors();
+    if (work.live_count() > max_constraints) work.update_scores(col);
   }
   return exact && work.exact();
 }
