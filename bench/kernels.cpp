@@ -75,6 +75,21 @@ void containment_of_inner_point(benchmark::State& state) {
   const Vector x = hull.center();
   for (auto _ : state) benchmark::DoNotOptimize(contains(X, x));
 }
+/// Within 2 % of the boundary, seen from the middle.
+void containment_near_boundary(benchmark::State& state) {
+  const LineForm X = random_set(size(state));
+  const Vector middle = interval_hull(X).center();
+  std::mt19937_64 engine(5);
+  const Vector direction = random_matrix(engine, X.dim(), 1);
+  double inside = 0, outside = 100;
+  for (int k = 0; k < 40; ++k) {
+    const double between = (inside + outside) / 2;
+    (contains(X, middle + between * direction) == Answer::yes ? inside : outside) = between;
+  }
+  const Vector x = middle + .98 * inside * direction;
+  if (contains(X, x) != Answer::yes) state.SkipWithError("the point must be proven to lie in the set");
+  for (auto _ : state) benchmark::DoNotOptimize(contains(X, x));
+}
 void strip_of_zonotope(benchmark::State& state) {
   const LineForm X = random_set(size(state));
   const sets::Zonotope Z{X.c, X.G};
@@ -93,6 +108,7 @@ BENCHMARK(interval_hull_certified)->Apply(sizes);
 BENCHMARK(emptiness_of_non_empty)->Apply(sizes);
 BENCHMARK(emptiness_of_empty)->Apply(sizes);
 BENCHMARK(containment_of_inner_point)->Apply(sizes);
+BENCHMARK(containment_near_boundary)->Apply(sizes);
 BENCHMARK(strip_of_zonotope)->Apply(sizes);
 
 }  // namespace

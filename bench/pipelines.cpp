@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One step (predict, correct, reduce; and the certified hull apart) of every pipeline of the main study, with nominal and with
-// outward rounding, through plugins as in a run.
+// outward rounding, through plugins as in a run; with the allocations of the step. And what comes before the first step.
 #include <memory>
 
 #include <benchmark/benchmark.h>
 
+#include "allocations.hpp"
 #include "cordon/study/data.hpp"
 #include "cordon/study/study.hpp"
 
@@ -37,6 +38,7 @@ void steps(benchmark::State& state, const Study& study, const PipelineSpec& pipe
   std::vector<Sample> samples;
   for (const auto source = open_data(study); samples.size() <= 20;) samples.push_back(source->next()->sample);
   std::size_t k = samples.size();
+  long allocated = 0;
   for (auto _ : state) {
     if (k >= samples.size()) {
       observer->start();
@@ -44,9 +46,12 @@ void steps(benchmark::State& state, const Study& study, const PipelineSpec& pipe
       observer->step(samples[1]);
       k = 2;
     }
+    const long before = bench::allocations();
     const Estimate estimate = observer->step(samples[k++]);
+    allocated += bench::allocations() - before;
     state.SetIterationTime(work(*observer, estimate) * 1e-6);
   }
+  state.counters["allocations"] = static_cast<double>(allocated) / static_cast<double>(state.iterations());
 }
 
 double hull_time(const Estimate& estimate) {
@@ -71,6 +76,15 @@ void add(const std::string& rounding, const Study& study) {
     measure("step_with_hull", [](const Observer& observer, const Estimate& e) { return observer.times().step() + hull_time(e); });
   }
 }
+
+void plugins_loaded_and_study_validated(benchmark::State& state) {
+  for (auto _ : state) {
+    Registry registry;
+    registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+    benchmark::DoNotOptimize(read_study(CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry));
+  }
+}
+BENCHMARK(plugins_loaded_and_study_validated)->Repetitions(7)->Unit(benchmark::kMicrosecond)->MinTime(.05);
 
 const int registered = [] {
   add("", fixture().nominal);
