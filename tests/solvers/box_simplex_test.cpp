@@ -266,3 +266,53 @@ TEST_CASE("a solution of the rows lies as near as the factor says") {
   CHECK(idle.least_squares().xi == Vector::Zero(2));
   CHECK(idle.distance(Vector{{.5, .5}}) == 0);
 }
+
+TEST_CASE("hostile programs end in a proof or in none, never in a wrong one") {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  SUBCASE("without variables") {
+    BoxedProgram idle(Matrix(2, 0), Vector::Zero(2)), wrong(Matrix(2, 0), Vector{{0, 1e-3}});
+    CHECK(idle.is_empty() == Answer::no);
+    CHECK(idle.maximum(Vector(0)).upper >= 0);
+    CHECK(wrong.is_empty() == Answer::yes);
+    CHECK(wrong.maximum(Vector(0)).upper == -inf);
+    CHECK_FALSE(wrong.central_point());
+  }
+  SUBCASE("a right-hand side beyond the range of single precision") {
+    const Matrix A{{1, 2, 3}, {1, -1, .5}};
+    for (const double far : {1e39, 1e200, 1e307}) {
+      BoxedProgram program(A, Vector{{far, 0}});
+      CHECK(program.is_empty() == Answer::yes);
+      CHECK(program.maximum(Vector{{1, 1, 1}}).upper == -inf);
+    }
+  }
+  SUBCASE("the last bit beside the edge proves nothing") {
+    for (const double b : {1.0, 1 + 0x1p-52, 1 - 0x1p-53, 1 + 1e-12}) {
+      BoxedProgram program(Matrix{{.25, .25, .5}}, Vector{{b}});
+      CHECK(program.is_empty() != Answer::yes);
+      CHECK(program.maximum(Vector{{1, 1, 1}}).upper >= 3);
+    }
+    CHECK(BoxedProgram(Matrix{{.25, .25, .5}}, Vector{{1 + 1e-8}}).is_empty() == Answer::yes);
+    CHECK(BoxedProgram(Matrix{{.25, .25, .5}}, Vector{{1 + 0x1p-52}}).is_empty() != Answer::no);
+  }
+  SUBCASE("scores and multipliers that are no numbers") {
+    const Matrix A{{1, 2, 3, -1}, {1, -1, .5, 2}};
+    const Vector b{{.5, .25}}, g{{1, 2, 3, 4}}, none = Vector::Zero(2);
+    BoxSimplex simplex(A, b);
+    REQUIRE(simplex.maximize(g, Vector::Zero(4)) == BoxSimplex::Status::optimal);
+    const double best = simplex.objective();
+    for (const Vector& scores : {Vector{{nan, nan, nan, nan}}, Vector{{nan, 1, inf, -inf}}, Vector{{3, nan, 2, nan}}}) {
+      REQUIRE(simplex.maximize(g, scores) == BoxSimplex::Status::optimal);
+      CHECK(simplex.objective() == doctest::Approx(best));
+    }
+    CHECK(simplex.maximize(Vector{{nan, 1, 1, 1}}, Vector::Zero(4)) == BoxSimplex::Status::unsolved);
+    const RowCertificates certificates(A, b, none);
+    for (const Vector& y : {Vector{{nan, 0}}, Vector{{inf, 0}}, Vector{{1e308, 1e308}}}) {
+      CHECK_FALSE(certificates.farkas_margin(y) > 0);
+      CHECK_FALSE(certificates.upper_bound(g, y) < best);
+    }
+    const RowGram gram(A, b, none);
+    REQUIRE(gram.is_regular());
+    CHECK_FALSE(gram.distance(Vector{{nan, 0, 0, 0}}) <= 1);
+    CHECK_FALSE(gram.distance(Vector{{inf, 0, 0, 0}}) <= 1);
+  }
+}

@@ -25,7 +25,7 @@ BasisGuess::BasisGuess(const Matrix& A, VectorIn b)
       split_(g_.size()),
       dual_(g_.size()),
       scores_(A.cols()) {
-  for (Index i = 0; i < A.rows(); ++i) right_[static_cast<std::size_t>(i)] = static_cast<float>(b[i]);
+  for (Index i = 0; i < A.rows(); ++i) right_[static_cast<std::size_t>(i)] = static_cast<float>(std::clamp(b[i], -1e30, 1e30));
   orthonormalise();
 }
 

@@ -7,6 +7,9 @@
 
 namespace cordon {
 
+using vectors::add_multiple;
+using vectors::dot;
+
 namespace {
 
 constexpr double feasible = 1e-9;         ///< a bound may be exceeded by this
@@ -20,7 +23,7 @@ constexpr Index fresh_enough = 30;        ///< updates after which basic values 
 BoxSimplex::BoxSimplex(const Matrix& A, VectorIn b)
     : m_(A.rows()),
       g_(A.cols()),
-      height_(padded(m_)),
+      height_(vectors::padded(m_)),
       columns_(Matrix::Zero(height_, g_)),
       inverse_(height_, m_),
       panels_(A),
@@ -52,10 +55,13 @@ BoxSimplex::Status BoxSimplex::maximize(VectorIn g, VectorIn scores, double enou
   return solve(enough);
 }
 
-/// The m best come first and in order.
+/// The m best come first and in order; one that is no number comes last.
 void BoxSimplex::order_by(VectorIn scores) {
   std::iota(order_.begin(), order_.end(), Index{0});
-  const auto better = [&scores](Index i, Index j) { return scores[i] != scores[j] ? scores[i] < scores[j] : i < j; };
+  breakpoint_.head(g_) = scores.array().isNaN().select(std::numeric_limits<double>::infinity(), scores);
+  const auto better = [this](Index i, Index j) {
+    return breakpoint_[i] != breakpoint_[j] ? breakpoint_[i] < breakpoint_[j] : i < j;
+  };
   const auto middle = order_.begin() + std::min(g_, m_);
   if (middle != order_.end()) std::nth_element(order_.begin(), middle, order_.end(), better);
   std::sort(order_.begin(), middle, better);

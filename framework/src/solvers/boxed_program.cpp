@@ -34,9 +34,6 @@ bool fits(VectorIn xi, const Vector& radius) {
 
 bool fits(const Vector& xi, double distance) { return xi.size() == 0 || rounding::up(xi.cwiseAbs().maxCoeff() + distance) <= 1; }
 
-/// What an uncertain right-hand side adds to bᵀy at most.
-double doubt(VectorIn error, VectorIn y) { return error.isZero(0) ? 0.0 : rounding::dot(error, y.cwiseAbs()).upper; }
-
 }  // namespace
 
 struct BoxedProgram::State {
@@ -73,6 +70,15 @@ struct BoxedProgram::State {
     return margin > nominal_tolerance * y.cwiseAbs().dot(b.cwiseAbs() + certificates.reach() + accuracy.magnitude);
   }
 
+  /// A proof that P is empty, if there is one: the proposal, or what the question itself finds.
+  std::optional<Vector> farkas_vector(const Vector& proposal) {
+    double margin = 0;
+    if (prove_empty(proposal, margin)) return proposal;
+    Certificate why;
+    if (is_empty(&why) == Answer::yes) return std::move(why.data);
+    return std::nullopt;
+  }
+
   void take(VectorIn g, Bound& bound, const BoxSolver& solver) {
     bound.solved = true;
     const double upper = certificates.upper_bound(g, solver.multipliers());
@@ -85,17 +91,11 @@ struct BoxedProgram::State {
   void propose(VectorIn g, Bound& bound, BoxSolver::Status status) {
     BoxSolver& solver = *objective_solver;
     if (status == BoxSolver::Status::infeasible) {
-      double margin = 0;
-      Certificate why;
-      if (prove_empty(solver.multipliers(), margin)) {
-        why.data = solver.multipliers();
-      } else if (is_empty(&why) != Answer::yes) {
-        status = solver.second_opinion(g);
-      }
-      if (why.data.size() > 0 && status == BoxSolver::Status::infeasible) {
-        bound = {-infinity, std::move(why.data), std::nullopt, true};
+      if (auto y = farkas_vector(solver.multipliers())) {
+        bound = {-infinity, std::move(*y), std::nullopt, true};
         return;
       }
+      status = solver.second_opinion(g);
     }
     if (status != BoxSolver::Status::optimal) return;
     take(g, bound, solver);
@@ -226,11 +226,7 @@ double BoxedProgram::attained(VectorIn g, VectorIn xi) {
   return rounding::down(rounding::dot(g, inside).lower - rounding::dot(g.cwiseAbs(), *radius).upper);
 }
 
-double farkas_margin(MatrixIn A, VectorIn b, VectorIn y, VectorIn error) {
-  if (!y.allFinite()) return -infinity;
-  const double margin = rounding::down(rounding::dot(b, y).lower - rounding::residual_norm_1(Vector::Zero(A.cols()), A, y));
-  return rounding::down(margin - doubt(error, y));
-}
+double farkas_margin(MatrixIn A, VectorIn b, VectorIn y, VectorIn error) { return RowCertificates(A, b, error).farkas_margin(y); }
 
 std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi, VectorIn error) {
   const Index g = A.cols();

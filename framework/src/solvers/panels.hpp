@@ -90,7 +90,9 @@ class Panels {
   std::vector<Scalar> data_;
 };
 
-/// Vectors for the functions below are filled with zeros up to a multiple of this.
+namespace vectors {
+
+/// Vectors for the functions here are filled with zeros up to a multiple of this.
 constexpr Index vector_block = 4;
 inline Index padded(Index n) { return (n + vector_block - 1) / vector_block * vector_block; }
 
@@ -130,5 +132,7 @@ inline void add_multiple(Index n, double a, const double* x, double* y, double* 
     store(squares + i, load(squares + i) + value * value);
   }
 }
+
+}  // namespace vectors
 
 }  // namespace cordon

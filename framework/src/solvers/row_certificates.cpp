@@ -13,7 +13,7 @@ using rounding::down;
 using rounding::gamma;
 using rounding::up;
 
-RowCertificates::RowCertificates(const Matrix& A, const Vector& b, const Vector& error)
+RowCertificates::RowCertificates(const Matrix& A, VectorIn b, VectorIn error)
     : cols_(A.cols()),
       panels_(A),
       b_(b),
@@ -23,19 +23,20 @@ RowCertificates::RowCertificates(const Matrix& A, const Vector& b, const Vector&
   reach_ *= up(1 + 2 * gamma(cols_ + 2));
 }
 
-double RowCertificates::upper_bound(VectorIn g, const Vector& y) const {
-  const double doubt = exact_ ? 0.0 : rounding::dot(error_, y.cwiseAbs()).upper;
-  return up(up(rounding::dot(b_, y).upper + residual(g.data(), y)) + doubt);
+/// What an uncertain right-hand side adds to bᵀy at most.
+double RowCertificates::doubt(VectorIn y) const { return exact_ ? 0.0 : rounding::dot(error_, y.cwiseAbs()).upper; }
+
+double RowCertificates::upper_bound(VectorIn g, VectorIn y) const {
+  return up(up(rounding::dot(b_, y).upper + residual(g.data(), y)) + doubt(y));
 }
 
-double RowCertificates::farkas_margin(const Vector& y) const {
+double RowCertificates::farkas_margin(VectorIn y) const {
   if (!y.allFinite()) return -std::numeric_limits<double>::infinity();
-  const double doubt = exact_ ? 0.0 : rounding::dot(error_, y.cwiseAbs()).upper;
-  return down(down(rounding::dot(b_, y).lower - residual(nullptr, y)) - doubt);
+  return down(down(rounding::dot(b_, y).lower - residual(nullptr, y)) - doubt(y));
 }
 
 /// ≥ ‖g - Aᵀy‖₁. A column is off by γ (|g_j| + Σ|A_ij||y_i|) at most, all of them by γ (‖g‖₁ + Σ reach_i |y_i|).
-double RowCertificates::residual(const double* g, const Vector& y) const {
+double RowCertificates::residual(const double* g, VectorIn y) const {
   constexpr Index width = Panels<double>::width;
   double sums[width] = {}, sizes[width] = {};
   for (Index p = 0; p < panels_.panels(); ++p) {

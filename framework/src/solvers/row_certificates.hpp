@@ -10,24 +10,23 @@ namespace cordon {
 /// Many checks of the same rows: |A|1 is known once, so that the bound of the errors costs O(m) and a check one product with Aᵀ.
 class RowCertificates {
  public:
-  /// `error` bounds |b - true right-hand side|.
-  RowCertificates(const Matrix& A, const Vector& b, const Vector& error);
+  /// `error` bounds |b - true right-hand side|; it may be empty, for none.
+  RowCertificates(const Matrix& A, VectorIn b, VectorIn error);
 
   /// ≥ bᵀy + ‖g - Aᵀy‖₁, hence ≥ max{gᵀξ}, for every right-hand side within `error`.
-  double upper_bound(VectorIn g, const Vector& y) const;
+  double upper_bound(VectorIn g, VectorIn y) const;
   /// ≤ bᵀy - ‖Aᵀy‖₁ for every right-hand side within `error`: positive means empty.
-  double farkas_margin(const Vector& y) const;
+  double farkas_margin(VectorIn y) const;
   /// ≥ |A|1.
   const Vector& reach() const { return reach_; }
 
  private:
-  double residual(const double* g, const Vector& y) const;
+  double residual(const double* g, VectorIn y) const;
+  double doubt(VectorIn y) const;
 
   Index cols_;
   Panels<double> panels_;
-  const Vector& b_;
-  const Vector& error_;
-  Vector reach_;
+  Vector b_, error_, reach_;
   bool exact_;
 };
 

@@ -57,7 +57,7 @@ void RowGram::factor() {
       1.01 * (gamma(g + 4) + gamma(m + 8) + 4 * rounding::unit) * trace + static_cast<double>((g + m + 4) * m) * rounding::tiny;
   K.diagonal().array() -= shift;
   auto L = linalg::cholesky(K);
-  if (!L || !(shift > 2 * hidden)) return;
+  if (!L || !L->allFinite() || !(shift > 2 * hidden)) return;
   L_ = std::move(*L);
   smallest_ = rounding::down(shift - hidden);
 }
