@@ -4,34 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "small_products.hpp"
+
 namespace cordon::sets {
 
 namespace {
 
 constexpr double dependent = 1e-12;     ///< a row this near to the span of others adds nothing to the scores
 constexpr double factor_weight = 1e-6;  ///< of the change of the factors beside that of the state: decides ties
-
-constexpr Index few = 4000;  ///< multiplications, for which a plain loop is faster than preparing for more
-
-/// AᵀB.
-Matrix inner_products(const Matrix& A, const Matrix& B) {
-  Matrix C(A.cols(), B.cols());
-  if (A.size() * B.cols() <= few) {
-    C.noalias() = A.transpose().lazyProduct(B);
-  } else {
-    C.noalias() = A.transpose() * B;
-  }
-  return C;
-}
-
-/// C -= A B.
-void subtract_product(const Matrix& A, const Matrix& B, Matrix& C) {
-  if (A.size() * B.cols() <= few) {
-    C.noalias() -= A.lazyProduct(B);
-  } else {
-    C.noalias() -= A * B;
-  }
-}
 
 /// W L⁻ᵀ for the independent ones among the columns of W, where L Lᵀ = K is the Gram matrix of these in some metric. K is
 /// overwritten.

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "small_products.hpp"
 #include "tracked_form.hpp"
 
 namespace cordon::sets {
@@ -42,15 +43,9 @@ Matrix noisy_rows(const LineForm& X, const Vector& noise, Index count, Index str
 
 /// Does {Hᵀξ : ‖ξ‖₂ ≤ 1} hold the unit ball?
 bool holds_unit_ball(const Matrix& H) {
-  constexpr Index few = 4000;
-  const Index m = H.cols();
-  if (H.rows() < m) return false;
-  Matrix K = -Matrix::Identity(m, m);
-  if (H.size() * m <= few) {
-    K.noalias() += H.transpose().lazyProduct(H);
-  } else {
-    K.selfadjointView<Eigen::Lower>().rankUpdate(H.transpose());
-  }
+  if (H.rows() < H.cols()) return false;
+  Matrix K = inner_products(H, H);
+  K.diagonal().array() -= 1;
   return is_positive_definite(K);
 }
 
