@@ -7,9 +7,17 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
 
-# No contraction into fused operations: results must not depend on the machine they were compiled for. Nobody reads the flags of
-# floating-point exceptions or the errno of functions of mathematics: without them, choices and square roots vectorise.
-add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off -fno-trapping-math -fno-math-errno)
+# What plugins built elsewhere must share with this build, so that results do not depend on the machine they were compiled for: no
+# contraction into fused operations, and one width of vectors in Eigen, whatever -march says. By the width Eigen orders its sums and
+# aligns its memory (the ABI tag compares the latter); the compiler itself may use wider vectors, it changes no result by them.
+set(CORDON_SHARED_FLAGS -ffp-contract=off)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  list(APPEND CORDON_SHARED_FLAGS -U__AVX__ -U__AVX2__ -U__AVX512F__ -U__FMA__)
+endif()
+
+# Nobody reads the flags of floating-point exceptions or the errno of functions of mathematics: without them, choices and square roots
+# vectorise.
+add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -fno-trapping-math -fno-math-errno ${CORDON_SHARED_FLAGS})
 if(CORDON_WARNINGS_AS_ERRORS)
   add_compile_options(-Werror)
 endif()
