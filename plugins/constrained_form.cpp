@@ -43,7 +43,7 @@ double ConstrainedForm::exact_volume(const Value& X) const {
   BoxedProgram program(Y.A, Y.b);  // one program, warm from direction to direction
   bool solved = true;
   const sets::SupportOracle oracle = [&](const Vector& d) -> sets::SupportPoint {
-    const Vector g = linalg::product(Y.G.transpose(), d);
+    const Vector g = linalg::transposed_product(Y.G, d);
     const BoxedProgram::Bound bound = program.maximum(g);
     if (!bound.xi) {
       solved = solved && bound.upper == -std::numeric_limits<double>::infinity();
@@ -126,8 +126,7 @@ ConstrainedForm::Result ConstrainedForm::convex_hull(const Value& X, const Value
 
 std::optional<ConstrainedForm::Result> ConstrainedForm::reduce(const Value& X, Budget budget) const {
   if (outward) return made(sets::outward::reduce(X, budget.generators, budget.constraints, reduction));
-  const sets::Reduced reduced = sets::reduce(X, budget.generators, budget.constraints, reduction);
-  return Result{reduced.set, reduced.exact ? Tightness::exact : Tightness::outer};
+  return made(sets::reduce(X, budget.generators, budget.constraints, reduction));
 }
 
 ParamSchema constrained_schema() {

@@ -98,8 +98,8 @@ GainDesign h_infinity_design(const Model& model, const Matrix& theta, const Erro
     GainDesign found = unsolved(s);
     if (s.status == SdpStatus::solved) {
       // P and PL of e are TᵀPT and TᵀPL of z.
-      const Matrix P = linalg::product(T.transpose(), linalg::product(program.P.value(s.x), T));
-      found = accepted(model, theta, errors, monotone, s, P, linalg::product(T.transpose(), program.M.value(s.x)));
+      const Matrix P = linalg::transposed_product(T, linalg::product(program.P.value(s.x), T));
+      found = accepted(model, theta, errors, monotone, s, P, linalg::transposed_product(T, program.M.value(s.x)));
     }
     if (found.feasible == Answer::yes || round == 0) design = std::move(found);
     if (design.feasible == Answer::yes) break;

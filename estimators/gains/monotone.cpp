@@ -143,7 +143,7 @@ Matrix raised_to_monotone(const Matrix& A, const Matrix& C, Matrix L) {
       }
       if (low.empty()) break;
       const Vector lift = (-closed(0, low).transpose()).array() + extra;
-      row -= linalg::product(lift.transpose(), linalg::pseudo_inverse(C(Eigen::all, low)));
+      row -= linalg::transposed_product(lift, linalg::pseudo_inverse(C(Eigen::all, low)));
       closed = A.row(i) - linalg::product(row, C);
       if (closed.minCoeff() <= best) continue;
       best = closed.minCoeff();

@@ -24,7 +24,7 @@ struct Block {
 std::vector<Block> blocks_of(const Matrix& A, const Matrix& C, const std::vector<std::complex<double>>& poles) {
   const Index n = A.rows();
   const Matrix free = linalg::null_space(C);
-  const Matrix rows = linalg::product(free.transpose(), A.transpose());
+  const Matrix rows = linalg::transposed_product(free, A.transpose());
   std::vector<Block> blocks;
   Index at = 0;
   for (const std::complex<double>& pole : poles) {
@@ -65,9 +65,9 @@ void turn(Matrix& X, const Block& block) {
   Matrix others(n, n - block.size);
   others << X.leftCols(block.at), X.rightCols(after);
   const Matrix complement = linalg::null_space(others.transpose());
-  const linalg::Svd polar = linalg::svd(linalg::product(complement.transpose(), X.middleCols(block.at, block.size)));
+  const linalg::Svd polar = linalg::svd(linalg::transposed_product(complement, X.middleCols(block.at, block.size)));
   const Matrix target = linalg::product(complement, linalg::product(polar.U.leftCols(block.size), polar.V.transpose()));
-  const Vector x = linalg::product(block.space, linalg::product(block.space.transpose(), target.reshaped()));
+  const Vector x = linalg::product(block.space, linalg::transposed_product(block.space, target.reshaped()));
   if (x.norm() > perpendicular) put(X, block, x);
 }
 

@@ -18,7 +18,7 @@ constexpr double line_range = 10;
 /// Some (δ, ξ) that satisfies the constraints with the smallest ‖ξ‖∞. Multipliers P with PᵀS = 0 leave rows in ξ alone.
 std::optional<Vector> central_factors(const LineForm& X) {
   const Matrix P = linalg::null_space(X.S.transpose());
-  BoxedProgram program(linalg::product(P.transpose(), X.A), linalg::product(P.transpose(), X.b));
+  BoxedProgram program(linalg::transposed_product(P, X.A), linalg::transposed_product(P, X.b));
   const std::optional<Vector> xi = program.central_point();
   if (!xi) return std::nullopt;
   Vector factors(X.lines() + X.generators());

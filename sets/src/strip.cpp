@@ -27,7 +27,7 @@ constexpr double nominal_error = 1e-10;
 
 /// λ of the smallest F-radius; 0 if the strip does not see the generators.
 Vector segment_gain(MatrixIn G, VectorIn rho, double sigma) {
-  Vector p = linalg::product(G.transpose(), rho);
+  Vector p = linalg::transposed_product(G, rho);
   const double scale = std::max(p.size() ? p.lpNorm<Eigen::Infinity>() : 0.0, sigma);
   const double seen = p.size() ? linalg::product(G.cwiseAbs().transpose(), rho.cwiseAbs()).maxCoeff() : 0.0;
   if (p.size() == 0 || p.lpNorm<Eigen::Infinity>() <= smallest_part * seen) return Vector::Zero(rho.size());
@@ -58,7 +58,7 @@ Matrix normals(const Matrix& G) {
   return W;
 }
 
-double sum_of_determinants(const Matrix& W, VectorIn lambda) { return linalg::product(W.transpose(), lambda).lpNorm<1>(); }
+double sum_of_determinants(const Matrix& W, VectorIn lambda) { return linalg::transposed_product(W, lambda).lpNorm<1>(); }
 
 /// min{N(λ) : ρᵀλ = 1} by its dual, max{y : Σ_J w_J ξ_J = y ρ, |ξ_J| ≤ 1}: λ is the multiplier of the rows. Any answer of the
 /// solver gives an enclosure; it is used if it is better than `best`.
@@ -106,7 +106,7 @@ Vector squared_gain(const Matrix& G, VectorIn rho, double sigma, const Vector& p
 /// λ of the smallest volume for G of full row rank.
 Vector volume_gain(const Matrix& G, VectorIn rho, double sigma, StripMethod method) {
   const Index n = G.rows(), g = G.cols();
-  Vector parts = linalg::product(G.transpose(), rho);
+  Vector parts = linalg::transposed_product(G, rho);
   for (Index j = 0; j < g; ++j) {
     if (std::abs(parts[j]) <= smallest_part * rho.cwiseAbs().dot(G.col(j).cwiseAbs())) parts[j] = 0;
   }
@@ -138,8 +138,8 @@ Vector volume_gain_in_range(const Matrix& G, VectorIn rho, double sigma, StripMe
   if (Q.cols() == 0) return Vector::Zero(rho.size());
   const Vector lambda = Q.cols() == G.rows()
                             ? volume_gain(scaled, scaled_rho, sigma, method)
-                            : Vector(linalg::product(Q, volume_gain(linalg::product(Q.transpose(), scaled),
-                                                                    linalg::product(Q.transpose(), scaled_rho), sigma, method)));
+                            : Vector(linalg::product(Q, volume_gain(linalg::transposed_product(Q, scaled),
+                                                                    linalg::transposed_product(Q, scaled_rho), sigma, method)));
   return lambda.cwiseQuotient(scale);
 }
 

@@ -52,7 +52,7 @@ SupportPoint ScaledSet::ask(const Vector& d) const {
 }
 
 SupportPoint ScaledSet::query(const Vector& d) const {
-  const Vector scaled = linalg::product(inverse_.transpose(), d), direction = scaled.cwiseQuotient(width_);
+  const Vector scaled = linalg::transposed_product(inverse_, d), direction = scaled.cwiseQuotient(width_);
   const double length = direction.stableNorm();
   const SupportPoint answer = ask(direction / length);
   if (answer.h == -infinity) throw Error(Errc::invalid, std::string(operation_) + ": the set is empty in one direction only");

@@ -12,6 +12,7 @@
 namespace cordon::designers {
 
 using linalg::product;
+using linalg::transposed_product;
 
 namespace {
 
@@ -60,9 +61,9 @@ class Support {
         R_(std::move(R)),
         L_(std::move(L)),
         c_(std::move(centre)),
-        seen_(product(R_.transpose(), pair_.G)),
-        rows_(product(L_.transpose(), pair_.G)),
-        right_(-product(L_.transpose(), c_) / pair_.factor),
+        seen_(transposed_product(R_, pair_.G)),
+        rows_(transposed_product(L_, pair_.G)),
+        right_(-transposed_product(L_, c_) / pair_.factor),
         program_(rows_, right_, {product(L_.cwiseAbs().transpose(), pair_.terms), {}}) {}
 
   /// Is Q empty?
@@ -80,10 +81,10 @@ class Support {
 
   Answer along(const Vector& d) {
     ++programs;
-    const BoxedProgram::Bound bound = program_.maximum(product(seen_.transpose(), d));
+    const BoxedProgram::Bound bound = program_.maximum(transposed_product(seen_, d));
     Answer answer;
     answer.y = product(R_, d) - product(L_, bound.y);
-    answer.level = pair_.factor * product(pair_.G.transpose(), answer.y).cwiseAbs().sum() + answer.y.dot(c_);
+    answer.level = pair_.factor * transposed_product(pair_.G, answer.y).cwiseAbs().sum() + answer.y.dot(c_);
     if (bound.solved && bound.xi) answer.x = point(*bound.xi);
     return answer;
   }
@@ -98,7 +99,7 @@ class Support {
     const Vector residual = (product(rows_, inside) - right_).cwiseAbs();
     const Vector allowed = residual_tolerance * product(L_.cwiseAbs().transpose(), pair_.terms);
     if (residual.size() && (residual - allowed).maxCoeff() > 0) return std::nullopt;
-    return Vector(pair_.factor * product(seen_, inside) + product(R_.transpose(), c_));
+    return Vector(pair_.factor * product(seen_, inside) + transposed_product(R_, c_));
   }
 
   const ScaledPair& pair_;
@@ -113,8 +114,8 @@ class Support {
 SeparatingFacet facet_of(const ScaledPair& pair, const Vector& y, double distance, double below) {
   SeparatingFacet facet;
   const double terms = y.cwiseAbs().dot(pair.terms);
-  facet.a = product(pair.N.transpose(), y);
-  facet.out = pair.factor * product(pair.G.transpose(), y).cwiseAbs().sum() + y.dot(pair.c) + outer_rounding * terms;
+  facet.a = transposed_product(pair.N, y);
+  facet.out = pair.factor * transposed_product(pair.G, y).cwiseAbs().sum() + y.dot(pair.c) + outer_rounding * terms;
   facet.in = facet.out - below - inner_rounding * terms;
   facet.out += distance * terms;
   const double scale = facet.a.size() ? facet.a.cwiseAbs().maxCoeff() : 0;

@@ -134,7 +134,7 @@ bool GrowingHull::has_neighbours(const Facet& facet) const {
   const Matrix basis = linalg::null_space(facet.h.transpose());
   Matrix points(basis.cols(), static_cast<Index>(facet.on.size()));
   for (Index i = 0; i < points.cols(); ++i) {
-    points.col(i) = linalg::product(basis.transpose(), offsets_[static_cast<std::size_t>(facet.on[static_cast<std::size_t>(i)])]);
+    points.col(i) = linalg::transposed_product(basis, offsets_[static_cast<std::size_t>(facet.on[static_cast<std::size_t>(i)])]);
   }
   if (basis.cols() != centre_.size() - 1 || points.cols() == 0) return false;
   std::vector<Index> order = corners(points);  // the points of the facet as its own hull numbers them

@@ -11,6 +11,7 @@
 namespace cordon::designers {
 
 using linalg::product;
+using linalg::transposed_product;
 
 namespace {
 
@@ -202,7 +203,7 @@ NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>
 
 std::optional<Vector> NodeProgram::farthest(const Vector& direction) {
   Vector objective = Vector::Zero(hard_.lower.size());
-  objective.head(problem_.U.G.cols()) = product(problem_.U.G.transpose(), direction);
+  objective.head(problem_.U.G.cols()) = transposed_product(problem_.U.G, direction);
   ++programs_;
   const LinearProgram::Solution solution = inside(hard_).maximize(objective);
   if (solution.status != LinearProgram::Status::optimal) return std::nullopt;

@@ -10,6 +10,7 @@
 namespace cordon::designers {
 
 using linalg::product;
+using linalg::transposed_product;
 
 namespace {
 
@@ -40,10 +41,10 @@ std::optional<QuadraticMinimum> stationary(const QuadraticProgram& p, const Acti
   const Matrix D = p.D(Eigen::all, columns), CF = C(Eigen::all, columns);
   const Matrix weighted = 2 * p.price.asDiagonal() * D;
   Matrix K = Matrix::Zero(v + m, v + m);
-  K.topLeftCorner(v, v) = product(D.transpose(), weighted);
+  K.topLeftCorner(v, v) = transposed_product(D, weighted);
   K.topRightCorner(v, m) = -CF.transpose();
   K.bottomLeftCorner(m, v) = CF;
-  right.head(v) = -product(weighted.transpose(), p.o + product(p.D, z));
+  right.head(v) = -transposed_product(weighted, p.o + product(p.D, z));
   right.segment(v, p.b.size()) = p.b;
   right.tail(m - p.b.size()) = p.e(rows);
   right.tail(m) -= product(C, z);
@@ -59,8 +60,8 @@ std::optional<QuadraticMinimum> stationary(const QuadraticProgram& p, const Acti
 bool correct(const QuadraticProgram& p, const QuadraticMinimum& found, Active& active, Vector& z) {
   bool changed = false;
   const Vector& of_F = found.of_F;
-  Vector reduced = 2 * product(p.D.transpose(), p.price.cwiseProduct(p.o + product(p.D, found.z)));
-  reduced -= product(p.A.transpose(), found.of_A) + product(p.F.transpose(), of_F);
+  Vector reduced = 2 * transposed_product(p.D, p.price.cwiseProduct(p.o + product(p.D, found.z)));
+  reduced -= transposed_product(p.A, found.of_A) + transposed_product(p.F, of_F);
   const Vector above = product(p.F, found.z) - p.e;
   z = found.z;
   for (std::size_t k = 0; k < active.fixed.size(); ++k) {

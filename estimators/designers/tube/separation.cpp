@@ -56,7 +56,7 @@ std::optional<Proposal> propose(const Matrix& G, const Vector& d) {
 /// holds, if y proves nothing.
 double proven_kappa(const Matrix& G, const Vector& d, const Vector& error, const Vector& y) {
   if (!y.allFinite()) return -1;
-  const double norm = linalg::product(G.transpose(), y).cwiseAbs().sum();
+  const double norm = linalg::transposed_product(G, y).cwiseAbs().sum();
   const double margin = farkas_margin(G, d, y, error);
   if (norm == 0) return margin > 0 ? infinity : -1;
   const double slack = 1 + 1e-12;  // of the norm's own rounding

@@ -13,7 +13,7 @@ namespace {
 /// The proof about the rows that are left as one about all rows.
 Certificate traced(const LinesEliminated& rest, const Certificate& own) {
   if (own.kind == Certificate::Kind::farkas) {
-    return {own.kind, linalg::product(rest.rows.transpose(), own.data), own.margin};
+    return {own.kind, linalg::transposed_product(rest.rows, own.data), own.margin};
   }
   const Vector xi = own.kind == Certificate::Kind::point ? own.data : Vector(Vector::Zero(rest.set.generators()));
   Vector both(rest.lines_offset.size() + xi.size());

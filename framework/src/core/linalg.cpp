@@ -11,6 +11,7 @@
 #include <Eigen/SVD>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/vectors.hpp"
 
 namespace cordon::linalg {
 
@@ -125,12 +126,36 @@ double determinant(MatrixIn A) { return A.rows() == 0 ? 1.0 : Matrix(A).determin
 Matrix product(MatrixIn A, MatrixIn B) {
   Matrix C(A.rows(), B.cols());
   if (A.cols() == 0) return C.setZero();
-  C.noalias() = A * B;
+  if (vectors::is_small(A)) {
+    vectors::small_product(A, B, C);
+  } else {
+    C.noalias() = A * B;
+  }
+  return C;
+}
+
+Matrix transposed_product(MatrixIn A, MatrixIn B) {
+  Matrix C(A.cols(), B.cols());
+  if (A.rows() == 0) return C.setZero();
+  if (B.cols() == 1 && A.rows() <= 12) {
+    for (Index j = 0; j < A.cols(); ++j) {
+      double sum = 0;
+      for (Index i = 0; i < A.rows(); ++i) sum += A(i, j) * B(i, 0);
+      C(j, 0) = sum;
+    }
+  } else {
+    C.noalias() = A.transpose() * B;
+  }
   return C;
 }
 
 Matrix gram(MatrixIn A) {
-  Matrix K = Matrix::Zero(A.rows(), A.rows());
+  Matrix K;
+  if (A.rows() <= 6) {
+    vectors::small_gram(A, K);
+    return K;
+  }
+  K.setZero(A.rows(), A.rows());
   K.selfadjointView<Eigen::Lower>().rankUpdate(A);
   K.triangularView<Eigen::StrictlyUpper>() = K.transpose();
   return K;
@@ -139,7 +164,7 @@ Matrix gram(MatrixIn A) {
 Matrix denoised_product(MatrixIn A, MatrixIn B) {
   Matrix C = product(A, B);
   if (C.size() == 0) return C;
-  if (!C.allFinite()) throw Error(Errc::not_finite, "a matrix product overflows; scale the problem");
+  if (!vectors::all_finite(C)) throw Error(Errc::not_finite, "a matrix product overflows; scale the problem");
   const Matrix magnitude = product(A.cwiseAbs(), B.cwiseAbs());
   return (C.array().abs() <= 1e-14 * magnitude.array()).select(0.0, C);
 }

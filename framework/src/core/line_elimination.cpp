@@ -13,8 +13,8 @@ constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a co
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Rows of [S A b] above rows of [M G c], with the magnitude of the terms that each entry was computed from, and the combination
-/// of the original rows [S A b] that was added to each (not kept up for rows that are used up). Rows of banded systems touch few
-/// others and in few places: only those are visited.
+/// of the original rows [S A b] that was added to each, if it is asked for (not kept up for rows that are used up). Rows of
+/// banded systems touch few others and in few places: only those are visited.
 struct Tableau {
   /// The largest equilibrated entry of a row of S.
   struct Candidate {
@@ -32,12 +32,12 @@ struct Tableau {
   std::vector<Candidate> candidates;  ///< of every row
 
   /// `b_magnitude`: size of what cancelled in b already; may be empty.
-  Tableau(const LineForm& X, VectorIn b_magnitude)
+  Tableau(const LineForm& X, VectorIn b_magnitude, bool traced)
       : lines(X.lines()),
         rows(X.constraints()),
         width(lines + X.generators() + 1),
         T(rows + X.dim(), width),
-        trace(RowMajor::Identity(rows + X.dim(), rows)),
+        trace(RowMajor::Identity(rows + X.dim(), traced ? rows : 0)),
         used(static_cast<std::size_t>(rows), false) {
     const Index g = X.generators();
     T.topLeftCorner(rows, lines) = X.S;
@@ -48,6 +48,7 @@ struct Tableau {
     T.bottomRightCorner(X.dim(), 1) = -X.c;  // so that every row is treated alike: x = Mδ + Gξ - (-c)
     magnitude = T.cwiseAbs();
     if (b_magnitude.size() > 0) magnitude.col(width - 1).head(rows) = magnitude.col(width - 1).head(rows).cwiseMax(b_magnitude);
+    candidates.reserve(static_cast<std::size_t>(rows));
     for (Index i = 0; i < rows; ++i) candidates.push_back(candidate(i));
   }
 
@@ -167,9 +168,65 @@ Matrix independent_columns(Matrix M) {
   return M.leftCols(kept);
 }
 
+using Pivots = std::vector<std::pair<Index, Index>>;
+
+Pivots eliminate(Tableau& tableau) {
+  Pivots pivots;
+  for (Index row = 0, col = 0; tableau.find_pivot(row, col);) {
+    tableau.eliminate(row, col);
+    pivots.emplace_back(row, col);
+  }
+  return pivots;
+}
+
+/// What is left of X; row k of the set is row kept[k] of the tableau.
+LineForm remainder(const Tableau& tableau, const LineForm& X, const Pivots& pivots, std::vector<Index>& kept) {
+  const Index n = X.dim(), g = X.generators();
+  for (Index i = 0; i < tableau.rows; ++i) {
+    if (!tableau.used[static_cast<std::size_t>(i)] && !tableau.vanished(i)) kept.push_back(i);
+  }
+  std::vector<bool> gone(static_cast<std::size_t>(X.lines()), false);
+  for (const auto& [row, col] : pivots) gone[static_cast<std::size_t>(col)] = true;
+  std::vector<Index> kept_lines;
+  for (Index j = 0; j < X.lines(); ++j) {
+    if (!gone[static_cast<std::size_t>(j)]) kept_lines.push_back(j);
+  }
+  const Index m = static_cast<Index>(kept.size());
+  LineForm Y{Matrix(n, static_cast<Index>(kept_lines.size())),
+             tableau.T.block(tableau.rows, X.lines(), n, g),
+             -tableau.T.bottomRightCorner(n, 1),
+             Matrix(),
+             Matrix(m, g),
+             Vector(m)};
+  for (Index k = 0; k < Y.M.cols(); ++k) Y.M.col(k) = tableau.T.col(kept_lines[static_cast<std::size_t>(k)]).tail(n);
+  for (Index k = 0; k < m; ++k) {
+    const Index i = kept[static_cast<std::size_t>(k)];
+    Y.A.row(k) = tableau.T.row(i).segment(X.lines(), g);
+    Y.b[k] = tableau.T(i, tableau.width - 1);
+  }
+  if (Y.M.cols() > 0) Y.M = independent_columns(std::move(Y.M));
+  Y.S = Matrix::Zero(m, Y.M.cols());
+  return Y;
+}
+
+Vector largest(const RowMajor& magnitude, const std::vector<Index>& rows) {
+  Vector sizes(static_cast<Index>(rows.size()));
+  for (Index k = 0; k < sizes.size(); ++k) sizes[k] = magnitude.row(rows[static_cast<std::size_t>(k)]).maxCoeff();
+  return sizes;
+}
+
 }  // namespace
 
-LineForm eliminate_lines(const LineForm& X) { return eliminate_lines_traced(X, Vector(0)).set; }
+LineForm eliminate_lines(const LineForm& X) { return solve_for_lines(X).set; }
+
+LinesSolved solve_for_lines(const LineForm& X) {
+  if (X.lines() == 0) return {X, Vector::Zero(X.constraints()), Vector::Zero(X.dim())};
+  Tableau tableau(X, Vector(0), false);
+  const Pivots pivots = eliminate(tableau);
+  std::vector<Index> kept;
+  LineForm set = remainder(tableau, X, pivots, kept);
+  return {std::move(set), largest(tableau.magnitude, kept), tableau.magnitude.bottomRows(X.dim()).rowwise().sum()};
+}
 
 LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) {
   const Index n = X.dim(), g = X.generators(), all = X.constraints();
@@ -181,55 +238,21 @@ LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) 
             Matrix(0, g),
             Vector(0)};
   }
-  Tableau tableau(X, b_magnitude);
-  std::vector<bool> gone(static_cast<std::size_t>(X.lines()), false);
+  Tableau tableau(X, b_magnitude, true);
+  const Pivots pivots = eliminate(tableau);
   Matrix lines_by_factors = Matrix::Zero(X.lines(), g);
   Vector lines_offset = Vector::Zero(X.lines());
-  std::vector<std::pair<Index, Index>> pivots;
-  for (Index row = 0, col = 0; tableau.find_pivot(row, col);) {
-    tableau.eliminate(row, col);
-    gone[static_cast<std::size_t>(col)] = true;
-    pivots.emplace_back(row, col);
-  }
   for (const auto& [row, col] : pivots) {
     lines_by_factors.row(col) = -tableau.T.row(row).segment(X.lines(), g);
     lines_offset[col] = tableau.T(row, tableau.width - 1);
   }
-
-  std::vector<Index> kept_rows, kept_lines;
-  Index vanished = 0;
-  for (Index i = 0; i < tableau.rows; ++i) {
-    if (tableau.used[static_cast<std::size_t>(i)]) continue;
-    if (tableau.vanished(i)) {
-      ++vanished;
-    } else {
-      kept_rows.push_back(i);
-    }
-  }
-  for (Index j = 0; j < X.lines(); ++j) {
-    if (!gone[static_cast<std::size_t>(j)]) kept_lines.push_back(j);
-  }
-  const Index m = static_cast<Index>(kept_rows.size());
-  LineForm Y{Matrix(n, static_cast<Index>(kept_lines.size())),
-             tableau.T.block(tableau.rows, X.lines(), n, g),
-             -tableau.T.bottomRightCorner(n, 1),
-             Matrix(),
-             Matrix(m, g),
-             Vector(m)};
-  for (Index k = 0; k < Y.M.cols(); ++k) Y.M.col(k) = tableau.T.col(kept_lines[static_cast<std::size_t>(k)]).tail(n);
-  Vector magnitude(m);
-  Matrix rows(m, all);
-  for (Index k = 0; k < m; ++k) {
-    const Index i = kept_rows[static_cast<std::size_t>(k)];
-    Y.A.row(k) = tableau.T.row(i).segment(X.lines(), g);
-    Y.b[k] = tableau.T(i, tableau.width - 1);
-    magnitude[k] = tableau.magnitude.row(i).maxCoeff();
-    rows.row(k) = tableau.trace.row(i);
-  }
-  Y.M = independent_columns(std::move(Y.M));
-  Y.S = Matrix::Zero(m, Y.M.cols());
-  return {std::move(Y),
-          std::move(magnitude),
+  std::vector<Index> kept;
+  LineForm set = remainder(tableau, X, pivots, kept);
+  Matrix rows(static_cast<Index>(kept.size()), all);
+  for (Index k = 0; k < rows.rows(); ++k) rows.row(k) = tableau.trace.row(kept[static_cast<std::size_t>(k)]);
+  const Index vanished = all - static_cast<Index>(pivots.size()) - set.constraints();
+  return {std::move(set),
+          largest(tableau.magnitude, kept),
           std::move(rows),
           Matrix(tableau.trace.bottomRows(n)),
           std::move(lines_by_factors),

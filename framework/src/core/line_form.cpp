@@ -6,6 +6,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "cordon/core/vectors.hpp"
 
 namespace cordon {
 
@@ -16,13 +17,6 @@ constexpr double product_noise = 1e-14;  ///< cancelled to this share of its ter
 Matrix beside(MatrixIn left, MatrixIn right) {
   Matrix C(left.rows(), left.cols() + right.cols());
   C << left, right;
-  return C;
-}
-
-Matrix above(MatrixIn top, MatrixIn bottom) {
-  Matrix C(top.rows() + bottom.rows(), top.cols());
-  C.topRows(top.rows()) = top;
-  C.bottomRows(bottom.rows()) = bottom;
   return C;
 }
 
@@ -44,11 +38,11 @@ void require_map(MatrixIn T, Index dim, const char* operation) {
     throw Error(Errc::dimension, std::string(operation) + ": a matrix with " + std::to_string(T.cols()) +
                                      " columns does not act on a set of dimension " + std::to_string(dim));
   }
-  if (!T.allFinite()) throw Error(Errc::not_finite, std::string(operation) + ": the matrix has a NaN or infinite entry");
+  if (!vectors::all_finite(T)) throw Error(Errc::not_finite, std::string(operation) + ": the matrix has a NaN or infinite entry");
 }
 
 void require_finite(const Matrix& A) {
-  if (!A.allFinite()) throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
+  if (!vectors::all_finite(A)) throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
 }
 
 LineForm finite(LineForm X) {
@@ -91,7 +85,9 @@ void check(const LineForm& X, const std::string& what) {
   wrong("G", X.G, n, g);
   wrong("S", X.S, m, l);
   wrong("A", X.A, m, g);
-  if (!X.c.allFinite() || !X.M.allFinite() || !X.G.allFinite() || !X.S.allFinite() || !X.A.allFinite() || !X.b.allFinite()) {
+  bool finite = vectors::all_finite(X.c) && vectors::all_finite(X.b);
+  for (const Matrix* block : {&X.M, &X.G, &X.S, &X.A}) finite = finite && vectors::all_finite(*block);
+  if (!finite) {
     throw Error(Errc::not_finite, what + ": a NaN or infinite entry");
   }
 }
@@ -180,12 +176,26 @@ LineForm cartesian_product(const LineForm& X, const LineForm& Y) {
 LineForm intersection(const LineForm& X, MatrixIn R, const LineForm& Y) {
   require_map(R, X.dim(), "intersection");
   require_same_dim(R.rows(), Y.dim(), "intersection");
-  const Index n = X.dim();
-  return finite({beside(X.M, Matrix::Zero(n, Y.lines())), beside(X.G, Matrix::Zero(n, Y.generators())), X.c,
-                 above(linalg::block_diagonal(X.S, Y.S), beside(linalg::denoised_product(R, X.M), -Y.M)),
-                 above(linalg::block_diagonal(X.A, Y.A), beside(linalg::product(R, X.G), -Y.G)),
-                 joined(joined(X.b, Y.b), denoised_difference(Y.c, linalg::product(R, X.c),
-                                                              Y.c.cwiseAbs() + linalg::product(R.cwiseAbs(), X.c.cwiseAbs())))});
+  const Index n = X.dim(), p = Y.dim(), mx = X.constraints(), my = Y.constraints();
+  const Index lx = X.lines(), ly = Y.lines(), gx = X.generators(), gy = Y.generators();
+  LineForm Z{Matrix(n, lx + ly), Matrix(n, gx + gy), X.c, Matrix::Zero(mx + my + p, lx + ly), Matrix::Zero(mx + my + p, gx + gy),
+             Vector(mx + my + p)};
+  Z.M.leftCols(lx) = X.M;
+  Z.M.rightCols(ly).setZero();
+  Z.G.leftCols(gx) = X.G;
+  Z.G.rightCols(gy).setZero();
+  Z.S.topLeftCorner(mx, lx) = X.S;
+  Z.S.block(mx, lx, my, ly) = Y.S;
+  Z.A.topLeftCorner(mx, gx) = X.A;
+  Z.A.block(mx, gx, my, gy) = Y.A;
+  // R x = y
+  if (lx > 0) Z.S.bottomLeftCorner(p, lx) = linalg::denoised_product(R, X.M);
+  Z.S.bottomRightCorner(p, ly) = -Y.M;
+  if (gx > 0) Z.A.bottomLeftCorner(p, gx) = linalg::product(R, X.G);
+  Z.A.bottomRightCorner(p, gy) = -Y.G;
+  Z.b << X.b, Y.b,
+      denoised_difference(Y.c, linalg::product(R, X.c), Y.c.cwiseAbs() + linalg::product(R.cwiseAbs(), X.c.cwiseAbs()));
+  return finite(std::move(Z));
 }
 
 // With λ = (1 + ξ₀)/2 the point is λ x + (1 - λ) y. The scaled factors become variables of their own, |α_i| ≤ λ and |β_i| ≤ 1 -

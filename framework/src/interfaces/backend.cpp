@@ -7,6 +7,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "cordon/core/vectors.hpp"
 
 namespace cordon {
 
@@ -24,7 +25,7 @@ void require_map(MatrixIn T, Index rows, Index cols, const char* what) {
                                      std::to_string(T.cols()) + ", must be " + std::to_string(rows) + " x " +
                                      std::to_string(cols));
   }
-  if (!T.allFinite()) throw Error(Errc::not_finite, std::string(what) + ": the matrix has a NaN or infinite entry");
+  if (!vectors::all_finite(T)) throw Error(Errc::not_finite, std::string(what) + ": the matrix has a NaN or infinite entry");
 }
 
 void require_vector(VectorIn t, Index size, const char* what) {
@@ -32,7 +33,7 @@ void require_vector(VectorIn t, Index size, const char* what) {
     throw Error(Errc::dimension,
                 std::string(what) + ": the vector has size " + std::to_string(t.size()) + ", must be " + std::to_string(size));
   }
-  if (!t.allFinite()) throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
+  if (!vectors::all_finite(t)) throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
 }
 
 /// a + b = s without rounding? [Ogita2005]
@@ -56,6 +57,18 @@ const Set& require_set(const Enclosure& X, const char* what) {
   if (!X.set) throw Error(Errc::invalid, std::string(what) + ": no set was given");
   return *X.set;
 }
+
+bool is_own(const SetBackend& backend, const Enclosure& X) { return X.set && &X.set->backend() == &backend; }
+
+/// X itself where it is of the backend already, without counting one more reference to it; else X imported.
+class Own {
+  Enclosure imported_;
+
+ public:
+  Own(const SetBackend& backend, const Enclosure& X)
+      : imported_(is_own(backend, X) ? Enclosure{} : backend.import(X)), enclosure(is_own(backend, X) ? X : imported_) {}
+  const Enclosure& enclosure;
+};
 
 /// Later code takes a result's dimension for granted, also in arithmetic without checks of its own.
 template <class Made>
@@ -107,25 +120,32 @@ Enclosure SetBackend::space(Index n) const { return import(make_space(n)); }
 Enclosure SetBackend::empty(Index n) const { return import(make_empty(n)); }
 
 Enclosure SetBackend::predict(const Enclosure& X, const Predict& p) const {
-  const Enclosure own = import(X);
+  const Own converted(*this, X);
+  const Enclosure& own = converted.enclosure;
   require_map(p.A, p.A.rows(), own->dim(), "predict: A");
   require_vector(p.f, p.A.rows(), "predict: f");
   Tightness inputs = own.tightness;
+  bool all_own = true;
+  for (const Term& term : p.terms) all_own = all_own && is_own(*this, term.set);
+  const auto made = [&](std::span<const Term> terms) {
+    for (const Term& term : terms) {
+      require_map(term.T, p.A.rows(), term.set->dim(), "predict: T");
+      inputs = meet(inputs, term.set.tightness);
+    }
+    return adopt(fitting(do_predict(*own.set, {p.A, p.f, terms}), p.A.rows(), info_, "predict"), inputs);
+  };
+  if (all_own) return made(p.terms);
   std::vector<Enclosure> imported;
   imported.reserve(p.terms.size());
   std::vector<Term> terms;
   terms.reserve(p.terms.size());
-  for (const Term& term : p.terms) {
-    imported.push_back(import(term.set));
-    require_map(term.T, p.A.rows(), imported.back()->dim(), "predict: T");
-    inputs = meet(inputs, imported.back().tightness);
-    terms.push_back({term.T, imported.back()});
-  }
-  return adopt(fitting(do_predict(*own.set, {p.A, p.f, terms}), p.A.rows(), info_, "predict"), inputs);
+  for (const Term& term : p.terms) terms.push_back({term.T, imported.emplace_back(import(term.set))});
+  return made(terms);
 }
 
 Enclosure SetBackend::correct(const Enclosure& X, const Correct& c) const {
-  const Enclosure own = import(X), noise = import(c.noise.set);
+  const Own converted(*this, X), converted_noise(*this, c.noise.set);
+  const Enclosure &own = converted.enclosure, &noise = converted_noise.enclosure;
   require_map(c.C, c.C.rows(), own->dim(), "correct: C");
   require_vector(c.z, c.C.rows(), "correct: z");
   require_map(c.noise.T, c.C.rows(), noise->dim(), "correct: T");
@@ -135,7 +155,8 @@ Enclosure SetBackend::correct(const Enclosure& X, const Correct& c) const {
 
 Enclosure SetBackend::reduce(const Enclosure& X, Budget budget) const {
   if (budget.generators < 0 || budget.constraints < 0) throw Error(Errc::invalid, "reduce: a negative budget");
-  const Enclosure own = import(X);
+  const Own converted(*this, X);
+  const Enclosure& own = converted.enclosure;
   Made made = do_reduce(*own.set, budget);
   if (!made.set) return own;
   return adopt(fitting(std::move(made), own->dim(), info_, "reduce"), own.tightness);

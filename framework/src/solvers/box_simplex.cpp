@@ -9,6 +9,9 @@ namespace cordon {
 
 using vectors::add_multiple;
 using vectors::dot;
+using vectors::load;
+using vectors::Pair;
+using vectors::store;
 
 namespace {
 
@@ -62,9 +65,7 @@ void BoxSimplex::order_by(VectorIn scores) {
   const auto better = [this](Index i, Index j) {
     return breakpoint_[i] != breakpoint_[j] ? breakpoint_[i] < breakpoint_[j] : i < j;
   };
-  const auto middle = order_.begin() + std::min(g_, m_);
-  if (middle != order_.end()) std::nth_element(order_.begin(), middle, order_.end(), better);
-  std::sort(order_.begin(), middle, better);
+  std::partial_sort(order_.begin(), order_.begin() + std::min(g_, m_), order_.end(), better);
 }
 
 /// From artificials alone, by the columns in `order_` as far as they are independent.
@@ -85,53 +86,75 @@ void BoxSimplex::build_basis() {
   for (Index k = 0; k < m_; ++k) norms_ += inverse_.col(k).cwiseAbs2();
 }
 
-/// In place of the artificial with the largest pivot, if that is large enough.
+/// In place of the artificial with the largest pivot, if that is large enough. The inverse's columns of rows whose artificials
+/// are basic are unit vectors still.
 bool BoxSimplex::bring_in(Index variable) {
-  transform(&columns_(0, variable), image_);
+  const double* const column = &columns_(0, variable);
+  for (Index i = 0; i < height_; ++i) image_[i] = 0;
+  double size = 0, best = 0;
+  for (Index k = 0; k < m_; ++k) {
+    size = std::max(size, std::abs(column[k]));
+    if (is_artificial(basic(k))) {
+      image_[k] += column[k];
+    } else {
+      add_multiple(height_, column[k], &inverse_(0, k), image_.data());
+    }
+  }
   Index row = none;
-  double best = first_pivot * columns_.col(variable).lpNorm<Eigen::Infinity>();
+  best = first_pivot * size;
   for (Index i = 0; i < m_; ++i) {
     if (!is_artificial(basic(i)) || !(std::abs(image_[i]) > best)) continue;
     best = std::abs(image_[i]);
     row = i;
   }
   if (row == none) return false;
-  rho_.head(m_) = inverse_.row(row);
-  update_inverse(row, false);
+  const double pivot = image_[row];
+  image_[row] = 0;
+  for (Index k = 0; k < m_; ++k) {
+    const double factor = inverse_(row, k) / pivot;
+    if (factor == 0) continue;
+    add_multiple(height_, -factor, image_.data(), &inverse_(0, k));
+    inverse_(row, k) = factor;
+  }
   basic_[static_cast<std::size_t>(row)] = variable;
   return true;
 }
 
-/// image = B⁻¹v. The inverse's column of a row whose artificial is basic is a unit vector.
+/// image = B⁻¹v, four rows at a time.
 void BoxSimplex::transform(const double* v, Vector& image) const {
-  image.setZero();
-  for (Index k = 0; k < m_; ++k) {
-    if (is_artificial(basic(k))) {
-      image[k] += v[k];
-    } else {
-      add_multiple(height_, v[k], &inverse_(0, k), image.data());
+  for (Index i = 0; i < height_; i += vectors::block) {
+    const double* from = inverse_.data() + i;
+    Pair low{0, 0}, high{0, 0};
+    for (Index k = 0; k < m_; ++k, from += height_) {
+      low += v[k] * load(from);
+      high += v[k] * load(from + 2);
     }
+    store(&image[i], low);
+    store(&image[i + 2], high);
   }
 }
 
-/// After the column with this `image_` took the place of the basic variable of a row; `rho_` is that row of the inverse.
-void BoxSimplex::update_inverse(Index row, bool with_norms) {
+/// After the column with this `image_` took the place of the basic variable of a row; `rho_` is that row of the inverse, and is
+/// divided by the pivot.
+void BoxSimplex::update_inverse(Index row) {
   const double pivot = image_[row];
-  double norm = 0;
-  image_[row] = 0;
-  if (with_norms) norms_.setZero();
-  for (Index k = 0; k < m_; ++k) {
-    const double factor = rho_[k] / pivot;
-    inverse_(row, k) = 0;
-    if (with_norms) {
-      add_multiple(height_, -factor, image_.data(), &inverse_(0, k), norms_.data());
-    } else if (factor != 0) {
-      add_multiple(height_, -factor, image_.data(), &inverse_(0, k));
+  rho_ /= pivot;
+  for (Index k = 0; k < m_; ++k) inverse_(row, k) = 0;
+  image_[row] = -1;  // so that the row itself becomes rho
+  for (Index i = 0; i < height_; i += vectors::block) {
+    const Pair low = load(&image_[i]), high = load(&image_[i + 2]);
+    Pair low_norms{0, 0}, high_norms{0, 0};
+    double* place = inverse_.data() + i;
+    for (Index k = 0; k < m_; ++k, place += height_) {
+      const Pair first = load(place) - rho_[k] * low, second = load(place + 2) - rho_[k] * high;
+      store(place, first);
+      store(place + 2, second);
+      low_norms += first * first;
+      high_norms += second * second;
     }
-    inverse_(row, k) = factor;
-    norm += factor * factor;
+    store(&norms_[i], low_norms);
+    store(&norms_[i + 2], high_norms);
   }
-  norms_[row] = norm;
   image_[row] = pivot;
 }
 
@@ -339,7 +362,7 @@ bool BoxSimplex::exchange(Index row, Index entering) {
   const double move = (basic_value_[row] + direction_ * room(row)) / pivot;
   add_multiple(height_, -move, image_.data(), basic_value_.data());
   basic_value_[row] = side + move;
-  update_inverse(row, true);
+  update_inverse(row);
   basic_[static_cast<std::size_t>(row)] = entering;
   side_[entering] = 0;
   reduced_[entering] = 0;

@@ -56,7 +56,7 @@ class BoxSimplex {
   void refine_multipliers();
   bool rebuild();
   void transform(const double* v, Vector& image) const;
-  void update_inverse(Index row, bool with_norms);
+  void update_inverse(Index row);
   Status solve(double enough);
   Index leaving_row() const;
   void price(Index row);

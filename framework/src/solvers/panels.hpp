@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "cordon/core/types.hpp"
+#include "cordon/core/vectors.hpp"
 
 namespace cordon {
 
@@ -89,50 +89,5 @@ class Panels {
   Index rows_, panels_;
   std::vector<Scalar> data_;
 };
-
-namespace vectors {
-
-/// Vectors for the functions here are filled with zeros up to a multiple of this.
-constexpr Index vector_block = 4;
-inline Index padded(Index n) { return (n + vector_block - 1) / vector_block * vector_block; }
-
-using Pair = Line<double>::Part;
-inline Pair load(const double* from) {
-  Pair pair;
-  __builtin_memcpy(&pair, from, sizeof pair);
-  return pair;
-}
-inline void store(double* to, Pair pair) { __builtin_memcpy(to, &pair, sizeof pair); }
-
-/// xᵀy.
-inline double dot(Index n, const double* x, const double* y) {
-  Pair low{0, 0}, high{0, 0};
-  for (Index i = 0; i < n; i += 4) {
-    low += load(x + i) * load(y + i);
-    high += load(x + i + 2) * load(y + i + 2);
-  }
-  low += high;
-  return low[0] + low[1];
-}
-
-/// y += a x.
-inline void add_multiple(Index n, double a, const double* x, double* y) {
-  for (Index i = 0; i < n; i += 4) {
-    const Pair low = load(y + i) + a * load(x + i), high = load(y + i + 2) + a * load(x + i + 2);
-    store(y + i, low);
-    store(y + i + 2, high);
-  }
-}
-
-/// y += a x, then squares += y², entrywise.
-inline void add_multiple(Index n, double a, const double* x, double* y, double* squares) {
-  for (Index i = 0; i < n; i += 2) {
-    const Pair value = load(y + i) + a * load(x + i);
-    store(y + i, value);
-    store(squares + i, load(squares + i) + value * value);
-  }
-}
-
-}  // namespace vectors
 
 }  // namespace cordon

@@ -77,10 +77,10 @@ RowGram::Point RowGram::least_squares() const {
   Vector y = Vector::Zero(b_.size()), left = b_;
   for (int round = 0; round < most_corrections; ++round) {
     y += solve(left);
-    left = b_ - linalg::product(A_, linalg::product(A_.transpose(), y));
+    left = b_ - linalg::product(A_, linalg::transposed_product(A_, y));
     if ((left.array().abs() <= accurate * (b_.cwiseAbs() + reach_).array()).all()) break;
   }
-  point.xi = linalg::product(A_.transpose(), y);
+  point.xi = linalg::transposed_product(A_, y);
   point.y(rows_) = scale_.cwiseProduct(y);
   return point;
 }

@@ -253,7 +253,7 @@ std::vector<Matrix> on_its_face(const SemidefiniteProgram& program, const std::v
     if (rank == 0) continue;
     S.segment(at, rank * rank) = Matrix(eigen[j].values.tail(rank).asDiagonal()).reshaped();
     for (const auto& [i, term] : program.inequalities[j].terms) {
-      map.row(i).segment(at, rank * rank) = linalg::product(linalg::product(V.transpose(), term), V).reshaped().transpose();
+      map.row(i).segment(at, rank * rank) = linalg::product(linalg::transposed_product(V, term), V).reshaped().transpose();
     }
     at += rank * rank;
   }

@@ -82,7 +82,7 @@ Answer within_facets(const LineForm& X, const LineForm& Y, double terms) {
     for (const double sign : {1.0, -1.0}) {
       const Vector d = sign * normal;
       const double reach =
-          rounding::down(rounding::dot(d, center).lower + rounding::norm_1(linalg::product(lifted.transpose(), d)).lower);
+          rounding::down(rounding::dot(d, center).lower + rounding::norm_1(linalg::transposed_product(lifted, d)).lower);
       const double needed = support(X, d.head(n));
       const double scale = center.cwiseAbs().maxCoeff() + lifted.cwiseAbs().rowwise().sum().maxCoeff() + std::abs(needed) + terms;
       if (!(needed <= reach - 1e-12 * scale)) return Answer::unknown;

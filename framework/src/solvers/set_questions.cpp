@@ -83,7 +83,7 @@ struct Questioned {
   double support(const LineForm& whole, VectorIn d, Certificate* why) {
     if (why) *why = {};
     if (unbounded_along(d)) return beyond(whole, why);
-    gradient = linalg::product(X.G.transpose(), d);
+    gradient = linalg::transposed_product(X.G, d);
     if (!gradient.allFinite()) return beyond(whole, why);  // an overflow
     if (eliminated) return support_through_lines(whole, d, why);
     return support_of_gradient(rounding::dot(d, X.c).upper, rounding::product_error(X.G.transpose(), d).sum(), why);
@@ -148,7 +148,7 @@ struct Questioned {
       if (why) *why = std::move(proof);
       return -infinity;
     }
-    Vector y = linalg::product(eliminated->rows.transpose(), bound.y) - linalg::product(eliminated->outputs.transpose(), d);
+    Vector y = linalg::transposed_product(eliminated->rows, bound.y) - linalg::transposed_product(eliminated->outputs, d);
     const auto proven = affordable ? proven_support(whole, d, y) : std::nullopt;
     if (!proven) return beyond(whole, why);
     if (why) *why = {Certificate::Kind::dual, std::move(y), *proven};
@@ -156,7 +156,7 @@ struct Questioned {
   }
 
   Certificate farkas(Certificate own) const {
-    if (eliminated) own.data = linalg::product(eliminated->rows.transpose(), own.data);
+    if (eliminated) own.data = linalg::transposed_product(eliminated->rows, own.data);
     return own;
   }
 
@@ -284,7 +284,7 @@ double attained_through_lines(const LineForm& X, VectorIn d) {
   if (!is_small(X.S, X.A)) return -infinity;
   if (!proven_support(X, d, Vector::Zero(X.constraints()))) return is_empty(X) == Answer::no ? infinity : -infinity;
   Questioned q(X);
-  const BoxedProgram::Bound bound = q.program.maximum(linalg::product(q.X.G.transpose(), d));
+  const BoxedProgram::Bound bound = q.program.maximum(linalg::transposed_product(q.X.G, d));
   if (!bound.xi) return -infinity;
   const rational::System rows(rows_of(X));
   if (const auto point = rational::solution_near(rows, q.with_lines(*bound.xi))) return value_at(X, d, *point);
@@ -318,7 +318,7 @@ double support(const LineForm& X, VectorIn d, Certificate* why) {
 double attained(const LineForm& X, VectorIn d) {
   if (X.lines() > 0) return attained_through_lines(X, d);
   Questioned q(X);
-  const Vector g = linalg::product(q.X.G.transpose(), d);
+  const Vector g = linalg::transposed_product(q.X.G, d);
   if (!g.allFinite()) return -infinity;  // an overflow
   const BoxedProgram::Bound bound = q.program.maximum(g);
   if (!bound.xi) return -infinity;

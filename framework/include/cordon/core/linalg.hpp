@@ -63,6 +63,9 @@ double determinant(MatrixIn A);
 /// A B through one compiled kernel (Eigen's product templates are expensive to compile in every file).
 Matrix product(MatrixIn A, MatrixIn B);
 
+/// Aᵀ B, without a copy of Aᵀ.
+Matrix transposed_product(MatrixIn A, MatrixIn B);
+
 /// A Aᵀ, at half the cost of a product.
 Matrix gram(MatrixIn A);
 

@@ -12,6 +12,14 @@ namespace cordon {
 /// are dropped, a row 0 = b ≠ 0 stays (X is ∅). O((n + m)(l + g) min(l, m)). [Rego2025, Alg. 1]
 LineForm eliminate_lines(const LineForm& X);
 
+/// The same, with the sizes of the terms that were added up: what is left of them after cancellation is known up to a share only.
+struct LinesSolved {
+  LineForm set;
+  Vector row_magnitude;    ///< of every row of `set`, the largest over its entries
+  Vector state_magnitude;  ///< of every coordinate, summed over its entries
+};
+LinesSolved solve_for_lines(const LineForm& X);
+
 /// The same, with what leads back to X. `set` has m' rows, X has m rows and l lines; every row is the combination of X's rows
 /// that made it, so that a proof about `set` becomes one about X.
 struct LinesEliminated {

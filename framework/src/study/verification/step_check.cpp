@@ -147,7 +147,7 @@ void StepCheck::contains_vertex(const Vector& x) {
 
 void StepCheck::contains_direction(const Vector& d, bool line) {
   const Matrix basis = lineality_space(row_.set);
-  const Vector beyond = d - linalg::product(basis, linalg::product(basis.transpose(), d));
+  const Vector beyond = d - linalg::product(basis, linalg::transposed_product(basis, d));
   const double off = beyond.norm() / d.norm();
   if (!reported_empty() && off <= nominal_tolerance) return;
   violated(fmt::format("the exact set is unbounded along {}{}, the reported set is not", line ? "±" : "", text(d)), true);

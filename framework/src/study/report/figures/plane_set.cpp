@@ -212,7 +212,7 @@ class Sandwich {
 
   Support ask(Point d) {
     const Vector direction = Eigen::Vector2d(d.x, d.y);
-    const BoxedProgram::Bound bound = program_.maximum(linalg::product(G_.transpose(), direction));
+    const BoxedProgram::Bound bound = program_.maximum(linalg::transposed_product(G_, direction));
     return support(d, bound, bound.upper - dot(d, middle_));
   }
 
@@ -283,7 +283,7 @@ PlaneSet strip(const LineForm& X) {
   set.kind = PlaneSet::Kind::strip;
   const Point along{X.M(0, 0), X.M(1, 0)};
   set.normal = (1 / length(along)) * Point{-along.y, along.x};
-  const Vector normal = Eigen::Vector2d(set.normal.x, set.normal.y), g = linalg::product(X.G.transpose(), normal);
+  const Vector normal = Eigen::Vector2d(set.normal.x, set.normal.y), g = linalg::transposed_product(X.G, normal);
   BoxedProgram program(X.A, X.b);
   const double middle = normal.dot(X.c), up = program.maximum(g).upper, down = program.maximum(-g).upper;
   if (up == -infinity || down == -infinity) return {};

@@ -27,7 +27,7 @@ std::optional<Vector> separating_direction(const LineForm& X, const LineForm& Y)
   BoxedProgram program(both.set.A, both.set.b, {both.row_magnitude, Vector(0)});
   Certificate why;
   if (program.is_empty(&why) != Answer::yes || why.kind != Certificate::Kind::farkas) return std::nullopt;
-  const Vector multipliers = linalg::product(both.rows.transpose(), why.data);
+  const Vector multipliers = linalg::transposed_product(both.rows, why.data);
   Vector d = multipliers.tail(n);
   const double length = d.norm();
   if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
@@ -41,7 +41,7 @@ std::pair<double, double> range_along(const LineForm& X, VectorIn d) {
     if (std::abs(X.M.col(j).dot(d)) > across * X.M.col(j).norm() * d.norm()) return {-infinity, infinity};
   }
   BoxedProgram program(X.A, X.b);
-  const Vector g = linalg::product(X.G.transpose(), d);
+  const Vector g = linalg::transposed_product(X.G, d);
   const double middle = d.dot(X.c);
   return {middle - program.maximum(-g).upper, middle + program.maximum(g).upper};
 }
