@@ -133,18 +133,20 @@ struct Intervals {
   }
 
   Result predict(const Box& X, MatrixIn A, VectorIn f, std::span<const Operand<Box>> operands) const {
-    Box sum = sets::affine_map(X, A, f);
+    std::vector<sets::MappedBox> summands;
+    summands.reserve(operands.size());
     bool exact = sets::is_monomial(A);
     for (const auto& operand : operands) {
-      sum = sets::minkowski_sum(sum, sets::affine_map(operand.value, operand.T, Vector::Zero(A.rows())));
+      summands.push_back({operand.T, operand.value});
       exact = exact && sets::is_monomial(operand.T);
     }
+    Box sum = sets::affine_sum(X, A, f, summands);
     if (outward && exact) {
       std::vector<const MatrixIn*> maps{&A};
       for (const auto& operand : operands) maps.push_back(&operand.T);
       exact = only_places(maps, f);
     }
-    return {sum, exact ? Tightness::exact : Tightness::outer};
+    return {std::move(sum), exact ? Tightness::exact : Tightness::outer};
   }
   Result correct(const Box& X, MatrixIn C, VectorIn z, const Operand<Box>& noise) const {
     const bool exact = !outward && sets::has_monomial_rows(C) && sets::is_monomial(noise.T);

@@ -110,6 +110,7 @@ class SingularValueObserver final : public Observer {
   SingularValueObserver(const ObserverContext& context, const Params& params)
       : Observer(context.model, context.backend),
         transformed_(model().linear),
+        same_coordinates_(transformed_.T.isIdentity(0)),
         budget_(budget_from(params)),
         static_at_start_(params.flag("static_at_start")),
         X0_(initial_set_from(model(), params)),
@@ -156,7 +157,9 @@ class SingularValueObserver final : public Observer {
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const Enclosure predicted = timed(Phase::predict, [&] {
       const Matrix spread = effectiveness_.input_spread(stacked_B_, before.u);
-      std::vector<Term> terms{{stacked_Bw_, W_}};
+      std::vector<Term> terms;
+      terms.reserve(4);
+      terms.push_back({stacked_Bw_, W_});
       if (transformed_.static_rows() > 0) terms.push_back({transformed_.free_part, free_});
       if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(to_x(Z_), before.u) : Enclosure{};
@@ -170,8 +173,12 @@ class SingularValueObserver final : public Observer {
 
   void do_replace(const Enclosure& X) override { Z_ = to_z(X); }
 
-  Enclosure to_z(const Enclosure& X) const { return backend().affine_map(X, transformed_.T.transpose(), Vector::Zero(X->dim())); }
-  Enclosure to_x(const Enclosure& Z) const { return backend().affine_map(Z, transformed_.T, Vector::Zero(Z->dim())); }
+  Enclosure to_z(const Enclosure& X) const {
+    return same_coordinates_ ? X : backend().affine_map(X, transformed_.T.transpose(), Vector::Zero(X->dim()));
+  }
+  Enclosure to_x(const Enclosure& Z) const {
+    return same_coordinates_ ? Z : backend().affine_map(Z, transformed_.T, Vector::Zero(Z->dim()));
+  }
 
   /// 0 = Ǎ z + B̌ diag(f) u + B̌w w with a fresh w ∈ W.
   Enclosure with_static_rows(const Enclosure& Z, VectorIn u) const {
@@ -196,6 +203,7 @@ class SingularValueObserver final : public Observer {
   }
 
   Transformed transformed_;
+  bool same_coordinates_;  ///< z = x
   Budget budget_;
   bool static_at_start_;
   LineForm X0_;
@@ -252,6 +260,7 @@ class PseudoInverseObserver final : public Observer {
     TBw_ = linalg::product(T_, used_.Bw);
     minus_ND_ = -linalg::product(N_, used_.D);
     minus_NDv_ = -linalg::product(N_, used_.Dv);
+    noise_generators_ = linalg::product(used_.Dv, model().V.G);
   }
 
   LineForm initial_set() const override { return X0_; }
@@ -265,19 +274,24 @@ class PseudoInverseObserver final : public Observer {
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const Enclosure predicted = timed(Phase::predict, [&] {
-      const Matrix spread_before = output_spread(before, true), spread_now = output_spread(now, false);
+      const Matrix spread_before = output_spread(before, true);
       const Matrix L = gain(spread_before);
       const Matrix minus_LDv = -linalg::product(L, used_.Dv);
-      const Matrix from_u = TB_ - linalg::product(L, used_.D);
-      const Matrix inputs_before = effectiveness_.input_spread(from_u, before.u);
-      const Matrix inputs_now = effectiveness_.input_spread(minus_ND_, now.u);
-      const Matrix outputs_before = linalg::product(L, spread_before), outputs_now = linalg::product(N_, spread_now);
-      std::vector<Term> terms{{TBw_, W_}, {minus_LDv, V_}, {minus_NDv_, V_}};
+      std::vector<Term> terms;
+      terms.reserve(8);
+      terms.push_back({TBw_, W_});
+      terms.push_back({minus_LDv, V_});
+      terms.push_back({minus_NDv_, V_});
+      Matrix inputs_before, inputs_now, outputs_before, outputs_now;
       if (effectiveness_.has_input_ranges()) {
+        inputs_before = effectiveness_.input_spread(TB_ - linalg::product(L, used_.D), before.u);
+        inputs_now = effectiveness_.input_spread(minus_ND_, now.u);
         terms.push_back({inputs_before, effectiveness_.input_factors()});
         terms.push_back({inputs_now, effectiveness_.input_factors()});
       }
       if (effectiveness_.has_output_ranges()) {
+        outputs_before = linalg::product(L, spread_before);
+        outputs_now = linalg::product(N_, output_spread(now, false));
         terms.push_back({outputs_before, effectiveness_.output_factors()});
         terms.push_back({outputs_now, effectiveness_.output_factors()});
       }
@@ -307,18 +321,17 @@ class PseudoInverseObserver final : public Observer {
 
   /// Minimises the F-radius of the next estimate, as far as the last measurement decides it.
   Matrix gain(const Matrix& spread) const {
-    Matrix noise = linalg::product(used_.Dv, model().V.G), G = X_->line_form().G, free = spread;
+    Matrix G = X_->line_form().G, free = spread, noise = noise_generators_;
     double largest = 0;  // squares of sets that shrink to a point underflow: L does not depend on the unit
     for (const Matrix* M : {&noise, &G, &free}) largest = M->size() == 0 ? largest : std::max(largest, M->cwiseAbs().maxCoeff());
     if (largest < std::numeric_limits<double>::min()) return Matrix::Zero(TA_.rows(), used_.outputs());
     const double unit = std::ldexp(1.0, -std::ilogb(largest));
     for (Matrix* M : {&noise, &G, &free}) *M *= unit;
-    const Matrix Q = linalg::product(noise, noise.transpose()) + linalg::product(free, free.transpose());
-    const Matrix CG = linalg::product(used_.C, G);
-    const Matrix S = linalg::product(CG, CG.transpose()) + Q;
-    const Matrix cross = linalg::product(linalg::product(TA_, G), CG.transpose());
-    if (const auto solved = linalg::solve_spd(S, cross.transpose())) return solved->transpose();
-    return linalg::product(cross, linalg::pseudo_inverse(S));
+    const Matrix CP = linalg::product(used_.C, linalg::gram(G));
+    const Matrix S = linalg::product(CP, used_.C.transpose()) + linalg::gram(noise) + linalg::gram(free);
+    const Matrix cross = linalg::product(CP, TA_.transpose());  // C P (T A)ᵀ
+    if (const auto solved = linalg::solve_spd(S, cross)) return solved->transpose();
+    return linalg::transposed_product(cross, linalg::pseudo_inverse(S));
   }
 
   Budget budget_;
@@ -328,6 +341,7 @@ class PseudoInverseObserver final : public Observer {
   LinearModel used_;  ///< weighted by the sensors' effectiveness
   Vector is_used_;    ///< per output: 1 or 0
   Matrix T_, N_, TA_, TB_, TBw_, minus_ND_, minus_NDv_;
+  Matrix noise_generators_;  ///< Dv Gv
 };
 
 bool by_singular_values(const SetBackend& backend) { return backend.info().intersections; }

@@ -27,19 +27,24 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// The rows and outputs being reduced. Factors and rows are marked instead of moved.
 class Elimination {
  public:
-  Elimination(const LineForm& X)
-      : G_(X.G),
+  /// `before`: of the terms that X was computed from.
+  Elimination(const LineForm& X, const Terms& before)
+      : factors_(X.generators()),
+        G_(padded_rows(X.G)),
         c_(X.c),
-        A_(X.A),
+        A_(padded_rows(X.A)),
         b_(X.b),
         A_terms_(A_.cwiseAbs()),
         b_terms_(X.b.cwiseAbs()),
-        state_terms_(Vector::Zero(X.dim())),
-        in_row_(X.constraints(), true),
-        free_(Vector::Ones(X.generators())) {}
+        before_(before),
+        computed_((before.rows.array() > 0).any() || (before.state.array() > 0).any()),
+        in_row_(at(X.constraints()), true),
+        free_(Vector::Zero(A_.cols())) {
+    free_.head(factors_).setOnes();
+  }
 
   Index rows() const { return A_.rows(); }
-  Index factors() const { return A_.cols(); }
+  Index factors() const { return factors_; }
 
   std::vector<Index> live_rows() const {
     std::vector<Index> live;
@@ -55,9 +60,7 @@ class Elimination {
   void drop_unreliable_rows() {
     for (Index i = 0; i < rows(); ++i) {
       if (!in_row_[at(i)]) continue;
-      const double* const terms_of_row = A_terms_.data() + i * factors();
-      double terms = b_terms_[i];
-      for (Index j = 0; j < factors(); ++j) terms = std::max(terms, free_[j] * terms_of_row[j]);
+      const double terms = std::max(b_terms_[i], vectors::largest_product(width(), free_.data(), A_terms_.data() + i * width()));
       const double left = std::max(scale(i), std::abs(b_[i]));
       if (left > unreliable * terms) continue;
       in_row_[at(i)] = false;
@@ -91,6 +94,7 @@ class Elimination {
       A_terms_.row(row) /= std::abs(pivot);
       b_[row] /= pivot;
       b_terms_[row] /= std::abs(pivot);
+      before_.rows[row] /= std::abs(pivot);
       steps_.push_back({EliminationStep::clear_column, row, col});
       for (Index i = 0; i < rows(); ++i) {
         if (i != row && in_row_[at(i)]) subtract_row(i, row, A_(i, col), col);
@@ -103,10 +107,10 @@ class Elimination {
   /// has the largest share of the row's 1-norm. Bounds tightened by rows must not enter here: they would rest on |ξ_j| ≤ 1
   /// itself, and ρ_j ⊆ [-1,1] would no longer show that this bound may be forgotten.
   void survey() {
-    allowed_lower_.setConstant(factors(), -infinity);
-    allowed_upper_.setConstant(factors(), infinity);
-    share_.setConstant(factors(), pivot_floor);
-    binding_row_.setConstant(factors(), -1);
+    allowed_lower_.setConstant(width(), -infinity);
+    allowed_upper_.setConstant(width(), infinity);
+    share_.setConstant(width(), pivot_floor);
+    binding_row_.setConstant(width(), -1);
     for (Index i = 0; i < rows(); ++i) {
       if (!in_row_[at(i)]) continue;
       survey_row(i, A_.row(i).lpNorm<1>(), pivot_floor * scale(i));
@@ -132,7 +136,7 @@ class Elimination {
       if (mid == 0 && rad == 1) continue;
       c_ += mid * G_.col(j);
       rescaled_ = true;
-      state_terms_ = state_terms_.cwiseMax((G_.col(j).array() != 0).select(c_.cwiseAbs() + G_.col(j).cwiseAbs(), 0.0));
+      before_.state = before_.state.cwiseMax((G_.col(j).array() != 0).select(c_.cwiseAbs() + G_.col(j).cwiseAbs(), 0.0));
       b_ -= mid * A_.col(j);
       b_terms_ = b_terms_.cwiseMax(std::abs(mid) * A_terms_.col(j));
       G_.col(j) *= rad;
@@ -166,17 +170,17 @@ class Elimination {
   /// Solves `row` for ξ_col and drops both.
   void eliminate(Index row, Index col) {
     steps_.push_back({EliminationStep::eliminate, row, col});
-    const Vector pivot_row = A_.row(row).transpose() / A_(row, col);
-    const double right = b_[row] / A_(row, col);
-    const Vector out = G_.col(col);
-    const double row_terms = std::max(A_terms_.row(row).maxCoeff(), b_terms_[row]) / std::abs(A_(row, col));
-    const Vector terms = c_.cwiseAbs() + G_.cwiseAbs().rowwise().maxCoeff() + row_terms * out.cwiseAbs();
-    state_terms_ = state_terms_.cwiseMax((out.array() != 0).select(terms, 0.0));
-    for (Index j = 0; j < factors(); ++j) {
-      if (pivot_row[j] != 0) G_.col(j) -= pivot_row[j] * out;
+    const double pivot = A_(row, col);
+    const double row_terms = std::max({A_terms_.row(row).maxCoeff(), b_terms_[row], before_.rows[row]}) / std::abs(pivot);
+    for (Index i = 0; i < G_.rows(); ++i) {
+      const double out = G_(i, col);
+      if (out == 0) continue;
+      const double terms = std::abs(c_[i]) + G_.row(i).cwiseAbs().maxCoeff() + row_terms * std::abs(out);
+      before_.state[i] = std::max(before_.state[i], terms);
+      vectors::add_multiple(width(), -out / pivot, A_.data() + row * width(), G_.data() + i * width());
+      c_[i] += out / pivot * b_[row];
+      G_(i, col) = 0;
     }
-    c_ += right * out;
-    G_.col(col).setZero();
     for (Index i = 0; i < rows(); ++i) {
       if (i != row && in_row_[at(i)]) subtract_row(i, row, A_(i, col) / A_(row, col), col);
     }
@@ -195,32 +199,35 @@ class Elimination {
     for (Index j = 0; j < factors(); ++j) {
       if (free_[j] != 0) factors_left.push_back(j);
     }
-    const Index m = static_cast<Index>(rows_left.size()), g = static_cast<Index>(factors_left.size());
-    LineForm X{M, Matrix(G_.rows(), g), c_, Matrix::Zero(m, M.cols()), Matrix(m, g), Vector(m)};
-    for (Index j = 0; j < g; ++j) {
-      X.G.col(j) = G_.col(factors_left[at(j)]);
-      for (Index i = 0; i < m; ++i) X.A(i, j) = A_(rows_left[at(i)], factors_left[at(j)]);
-    }
-    for (Index i = 0; i < m; ++i) X.b[i] = b_[rows_left[at(i)]];
-    if (steps_.empty() && !rescaled_) return X;
-    Vector row_terms = Vector::Zero(m);
-    for (Index i = 0; i < m; ++i) {  // a row 0 = b that was not dropped is false by more than rounding
+    const Index n = G_.rows(), m = static_cast<Index>(rows_left.size()), g = static_cast<Index>(factors_left.size());
+    LineForm X{M, Matrix(n, g), c_, Matrix::Zero(m, M.cols()), Matrix(m, g), Vector(m)};
+    const auto copy = [&](const Rows& from, Index row, Matrix& to, Index place) {
+      for (Index j = 0; j < g; ++j) to(place, j) = from(row, factors_left[at(j)]);
+    };
+    for (Index i = 0; i < n; ++i) copy(G_, i, X.G, i);
+    Terms terms{Vector::Zero(m), before_.state};
+    for (Index i = 0; i < m; ++i) {
       const Index row = rows_left[at(i)];
-      if (scale(row) > 0) row_terms[i] = std::max(A_terms_.row(row).maxCoeff(), b_terms_[row]);
+      copy(A_, row, X.A, i);
+      X.b[i] = b_[row];
+      // a row 0 = b that was not dropped is false by more than rounding
+      if (scale(row) > 0) terms.rows[i] = std::max({A_terms_.row(row).maxCoeff(), b_terms_[row], before_.rows[row]});
     }
-    return with_residue(X, row_terms, state_terms_);
+    if (steps_.empty() && !rescaled_ && !computed_) return X;
+    return with_residue(std::move(X), terms);
   }
 
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  double scale(Index i) const { return A_.cols() ? A_.row(i).cwiseAbs().maxCoeff() : 0.0; }
+  Index width() const { return A_.cols(); }
+  double scale(Index i) const { return vectors::largest_size(width(), A_.data() + i * width()); }
 
   void survey_row(Index i, double norm, double floor) {
-    const double* __restrict const row = A_.data() + i * factors();
+    const double* __restrict const row = A_.data() + i * width();
     double* __restrict const lowest = allowed_lower_.data(), * __restrict const highest = allowed_upper_.data();
     double* __restrict const best_share = share_.data(), * __restrict const binding = binding_row_.data();
     const double right = b_[i], place = static_cast<double>(i), inverse_norm = 1 / norm;
-    const Index count = factors();
+    const Index count = width();
     for (Index j = 0; j < count; ++j) {  // without branches, so that it vectorises
       const double size = std::abs(row[j]), inverse = 1 / (size > floor ? size : infinity);
       const double middle = row[j] < 0 ? -right * inverse : right * inverse;
@@ -236,10 +243,10 @@ class Elimination {
   void subtract_row(Index i, Index row, double factor, Index col) {
     if (factor != 0) {
       const double size = std::abs(factor);
-      const double* __restrict const from = A_.data() + row * factors(), * __restrict const from_terms =
-                                                                             A_terms_.data() + row * factors();
-      double* __restrict const to = A_.data() + i * factors(), * __restrict const to_terms = A_terms_.data() + i * factors();
-      const Index count = factors();
+      const double* __restrict const from = A_.data() + row * width(), * __restrict const from_terms =
+                                                                           A_terms_.data() + row * width();
+      double* __restrict const to = A_.data() + i * width(), * __restrict const to_terms = A_terms_.data() + i * width();
+      const Index count = width();
       for (Index j = 0; j < count; ++j) {
         const double entry = to[j] - factor * from[j], passed = size * from_terms[j];
         const double terms = to_terms[j] < passed ? passed : to_terms[j];
@@ -248,6 +255,7 @@ class Elimination {
       }
       b_[i] -= factor * b_[row];
       b_terms_[i] = std::max(b_terms_[i], size * b_terms_[row]);
+      before_.rows[i] = std::max(before_.rows[i], size * before_.rows[row]);
       if (std::abs(b_[i]) <= noise * b_terms_[i]) b_[i] = 0;
     }
     A_(i, col) = 0;
@@ -278,13 +286,15 @@ class Elimination {
     }
   }
 
-  Matrix G_;
+  Index factors_;
+  Rows G_;
   Vector c_;
-  RowMatrix A_;
+  Rows A_;
   Vector b_;
-  RowMatrix A_terms_;  ///< size of the terms each coefficient was computed from
+  Rows A_terms_;  ///< size of the terms each coefficient was computed from
   Vector b_terms_;
-  Vector state_terms_;  ///< likewise of c and G, per coordinate
+  Terms before_;  ///< of rows: size of the terms before that; of states: of all terms
+  bool computed_;
   bool exact_ = true, rescaled_ = false;
   std::vector<EliminationStep> steps_;
   std::vector<bool> in_row_;
@@ -317,17 +327,22 @@ bool run(Elimination& work, Index max_constraints, const ConstraintElimination& 
 
 }  // namespace
 
-Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
+Reduced eliminate_constraints(const LineForm& X, const Terms& before, Index max_constraints,
+                              const ConstraintElimination& options) {
   if (max_constraints < 0) throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
   if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0))
     throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
-  Elimination work(X);
+  Elimination work(X, before);
   const bool exact = run(work, max_constraints, options);
   return {work.result(X.M), exact};
 }
 
+Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
+  return eliminate_constraints(X, no_terms(X), max_constraints, options);
+}
+
 std::vector<EliminationStep> plan_elimination(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
-  Elimination work(X);
+  Elimination work(X, no_terms(X));
   run(work, max_constraints, options);
   return work.steps();
 }

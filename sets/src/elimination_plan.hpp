@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cordon/sets/constraint_elimination.hpp"
+#include "residue.hpp"
 
 namespace cordon::sets {
 
@@ -21,5 +22,9 @@ struct EliminationStep {
 
 /// The steps that `eliminate_constraints` takes, but for the rescaling of factors. X has no lines.
 std::vector<EliminationStep> plan_elimination(const LineForm& X, Index max_constraints, const ConstraintElimination& options);
+
+/// `eliminate_constraints` of a set that was computed itself, from terms of these sizes.
+Reduced eliminate_constraints(const LineForm& X, const Terms& before, Index max_constraints,
+                              const ConstraintElimination& options);
 
 }  // namespace cordon::sets

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "small_products.hpp"
-
 namespace cordon::sets {
 
 namespace {
@@ -13,50 +11,67 @@ namespace {
 constexpr double dependent = 1e-12;     ///< a row this near to the span of others adds nothing to the scores
 constexpr double factor_weight = 1e-6;  ///< of the change of the factors beside that of the state: decides ties
 
-/// W L⁻ᵀ for the independent ones among the columns of W, where L Lᵀ = K is the Gram matrix of these in some metric. K is
-/// overwritten.
-Matrix orthonormalised(Matrix W, Matrix K) {
-  const Index m = K.rows();
+double* row(Rows& A, Index i) { return A.data() + i * A.cols(); }
+
+/// Rows W of F become L⁻¹W, where L Lᵀ = K; K is overwritten with L. Of the first `constraints` rows only those count that are
+/// independent: returns which. The others have 1 on K's diagonal beside what is their own, however much cancels.
+std::vector<Index> orthonormalise(Rows& F, Matrix& K, Index constraints) {
+  const Index m = K.rows(), width = F.cols();
   const Vector before = K.diagonal();
-  Index made = 0;
+  std::vector<Index> independent;
+  independent.reserve(static_cast<std::size_t>(m));
   for (Index k = 0; k < m; ++k) {
-    if (!(K(k, k) > dependent * before[k]) || !(K(k, k) > 0)) continue;
-    const double pivot = std::sqrt(K(k, k));
-    K.col(k).tail(m - k) /= pivot;
-    W.col(made) = W.col(k) / pivot;
+    double* const column = &K(0, k);
+    const double least = dependent * before[k];
+    if (k < constraints && !(column[k] > least && column[k] > 0)) continue;
+    if (k >= constraints && !(column[k] > std::max(least, 1.0))) column[k] = std::max(least, 1.0);
+    const double inverse = 1 / std::sqrt(column[k]);
+    double* const made = row(F, k);
+    for (Index j = 0; j < width; ++j) made[j] *= inverse;
+    for (Index j = k; j < m; ++j) column[j] *= inverse;
     for (Index j = k + 1; j < m; ++j) {
-      const double factor = K(j, k);
+      const double factor = column[j];
       if (factor == 0) continue;
-      K.col(j).tail(m - j) -= factor * K.col(k).tail(m - j);
-      W.col(j) -= factor * W.col(made);
+      double* const to = &K(0, j);
+      for (Index i = j; i < m; ++i) to[i] -= factor * column[i];
+      vectors::add_multiple(width, -factor, made, row(F, j));
     }
-    ++made;
+    independent.push_back(k);
   }
-  return W.leftCols(made);
+  return independent;
 }
 
 }  // namespace
 
-EliminationScores::EliminationScores(const Matrix& G, const RowMatrix& A, const std::vector<Index>& live)
-    : Q_(G.cols(), 0), moved_(G.transpose()) {
-  const Index n = G.rows();
-  Matrix K = inner_products(moved_, moved_);
-  K.diagonal().array() += 1;
-  const Matrix outputs = orthonormalised(moved_, std::move(K));
-  const Matrix rows = A(live, Eigen::all).transpose();
-  Matrix W = rows;  // H Aᵀ
-  subtract_product(outputs, inner_products(outputs, rows), W);
-  K = inner_products(rows, W);
-  const Matrix constraints = orthonormalised(std::move(W), std::move(K));
-  F_.resize(G.cols(), outputs.cols() + constraints.cols());
-  F_ << outputs, constraints;
-  diagonal_ = 1 - F_.rowwise().squaredNorm().array();
-  for (Index i = 0; i < n; ++i) {  // in units of the set's own width
-    const double width = moved_.col(i).lpNorm<1>();
-    if (width > 0) moved_.col(i) /= width;
+// With W = [A; G] and K = WWᵀ + [0 0; 0 I] it holds P = I - WᵀK⁻¹W, and the rows of G in K⁻¹W are G P.
+EliminationScores::EliminationScores(const Rows& G, const Rows& A, const std::vector<Index>& live)
+    : F_(static_cast<Index>(live.size()) + G.rows(), G.cols()), moved_(G.rows(), G.cols()) {
+  const Index n = G.rows(), m = static_cast<Index>(live.size()), width = G.cols();
+  for (Index i = 0; i < m; ++i) std::copy_n(A.data() + live[static_cast<std::size_t>(i)] * width, width, row(F_, i));
+  std::copy_n(G.data(), n * width, row(F_, m));
+  Matrix K = row_gram(F_);
+  K.diagonal().tail(n).array() += 1;
+  const std::vector<Index> independent = orthonormalise(F_, K, m);
+  for (std::size_t k = 0; k < independent.size(); ++k) {
+    if (independent[k] != static_cast<Index>(k)) std::copy_n(row(F_, independent[k]), width, row(F_, static_cast<Index>(k)));
   }
-  subtract_product(F_, inner_products(F_, moved_), moved_);
-  moved_squares_ = moved_.rowwise().squaredNorm();
+  const Index made = static_cast<Index>(independent.size());
+  for (Index i = n - 1; i >= 0; --i) {
+    std::copy_n(row(F_, made - n + i), width, row(moved_, i));
+    for (Index k = i + 1; k < n; ++k) vectors::add_multiple(width, -K(m + k, m + i), row(moved_, k), row(moved_, i));
+    moved_.row(i) /= K(m + i, m + i);
+  }
+  for (Index i = 0; i < n; ++i) {  // in units of the set's own width
+    const double size = G.row(i).lpNorm<1>();
+    if (size > 0) moved_.row(i) /= size;
+  }
+  if (made < m + n) F_.conservativeResize(made, Eigen::NoChange);
+  diagonal_.setOnes(width);
+  for (Index k = 0; k < made; ++k) {
+    const double* const from = row(F_, k);
+    for (Index j = 0; j < width; ++j) diagonal_[j] -= from[j] * from[j];
+  }
+  sum_squares_of_moves();
 }
 
 double EliminationScores::score(Index j, double reach) const {
@@ -66,17 +81,25 @@ double EliminationScores::score(Index j, double reach) const {
 }
 
 void EliminationScores::forget(Index col) {
-  Vector p = -(F_ * F_.row(col).transpose());
-  if (Q_.cols() > 0) p += Q_ * Q_.row(col).transpose();
-  p[col] += 1;
+  const Index width = F_.cols();
+  Vector p = Vector::Unit(width, col);
+  for (Index k = 0; k < F_.rows(); ++k) vectors::add_multiple(width, -F_(k, col), row(F_, k), p.data());
+  for (const Vector& q : Q_) vectors::add_multiple(width, q[col], q.data(), p.data());
   const double rest = 1 - p[col];
   if (!(rest > 1e-14)) return;
-  const Vector shift = moved_.row(col).transpose() / rest;
-  for (Index i = 0; i < shift.size(); ++i) moved_.col(i) += shift[i] * p;
-  moved_squares_ = moved_.rowwise().squaredNorm();
-  Q_.conservativeResize(Eigen::NoChange, Q_.cols() + 1);
-  Q_.col(Q_.cols() - 1) = p / std::sqrt(rest);
-  diagonal_.array() += Q_.col(Q_.cols() - 1).array().square();
+  for (Index i = 0; i < moved_.rows(); ++i) vectors::add_multiple(width, moved_(i, col) / rest, p.data(), row(moved_, i));
+  sum_squares_of_moves();
+  p /= std::sqrt(rest);
+  diagonal_.array() += p.array().square();
+  Q_.push_back(std::move(p));
+}
+
+void EliminationScores::sum_squares_of_moves() {
+  moved_squares_.setZero(moved_.cols());
+  for (Index i = 0; i < moved_.rows(); ++i) {
+    const double* const from = row(moved_, i);
+    for (Index j = 0; j < moved_.cols(); ++j) moved_squares_[j] += from[j] * from[j];
+  }
 }
 
 }  // namespace cordon::sets

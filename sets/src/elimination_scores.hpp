@@ -4,18 +4,16 @@
 
 #include <vector>
 
-#include "cordon/core/types.hpp"
+#include "rows.hpp"
 
 namespace cordon::sets {
 
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// P = H - (AH)ᵀ(AHAᵀ)⁻¹(AH) with H = (I + GᵀG)⁻¹, kept as I - F Fᵀ + Q Qᵀ: F from one factorisation, a column of Q for every
-/// factor that was eliminated since. O(g (n + m)²), then O(g (n + m)) per elimination.
+/// P = H - (AH)ᵀ(AHAᵀ)⁻¹(AH) with H = (I + GᵀG)⁻¹, kept as I - FᵀF + QᵀQ: F from one factorisation, a row of Q for every factor
+/// that was eliminated since. O(g (n + m)²), then O(g (n + m)) per elimination.
 class EliminationScores {
  public:
   /// Of the rows of A named `live`. Rows that depend on others up to rounding are left out: scores only order candidates.
-  EliminationScores(const Matrix& G, const RowMatrix& A, const std::vector<Index>& live);
+  EliminationScores(const Rows& G, const Rows& A, const std::vector<Index>& live);
 
   /// r² (‖D G P e_j‖² / P_jj + w) / P_jj for r = `reach`.
   double score(Index j, double reach) const;
@@ -23,8 +21,11 @@ class EliminationScores {
   void forget(Index col);
 
  private:
-  Matrix F_, Q_;
-  Matrix moved_;  ///< P Gᵀ D: row j over P_jj is the change of the state when ξ_j moves by one
+  void sum_squares_of_moves();
+
+  Rows F_;
+  std::vector<Vector> Q_;
+  Rows moved_;  ///< D G P: column j over P_jj is the change of the state when ξ_j moves by one
   Vector diagonal_, moved_squares_;
 };
 

@@ -12,6 +12,7 @@
 #include "reduction_split.hpp"
 #include "require.hpp"
 #include "row_scales.hpp"
+#include "rows.hpp"
 
 namespace cordon::sets {
 
@@ -91,7 +92,7 @@ Matrix pca_reduction(const Matrix& G, Index max_generators) {
   const Vector scale = scales_of_axes(small);
   small = scale.asDiagonal() * small;
   const Matrix U = linalg::svd(small).U;
-  Vector radii = box_radii(linalg::product(U.transpose(), small));
+  Vector radii = box_radii(linalg::transposed_product(U, small));
   const double largest = radii.maxCoeff();
   for (double& radius : radii) radius = radius <= noise * largest ? 0.0 : radius;
   const Matrix frame = scale.cwiseInverse().asDiagonal() * U * radii.asDiagonal();
@@ -104,126 +105,156 @@ Matrix pca_reduction(const Matrix& G, Index max_generators) {
 /// one axis-parallel generator per row.
 class BasisReduction {
  public:
-  explicit BasisReduction(const Matrix& G) : G_(G), scale_(row_scales(G)), W_(scale_.asDiagonal() * G) { eliminate(); }
+  explicit BasisReduction(const Matrix& G)
+      : G_(G), scale_(row_scales(G)), W_(padded_rows(G)), row_(numbers(G.rows())), order_(numbers(G.cols())) {
+    for (Index i = 0; i < W_.rows(); ++i) W_.row(i) *= scale_[i];
+    eliminate();
+  }
 
   Matrix reduce(Index max_generators) {
-    const Index n = W_.rows(), g = W_.cols();
     Index slacks = 0;
-    for (Index i = rank_; i < n; ++i) slacks += W_.row(i).tail(g - rank_).lpNorm<Eigen::Infinity>() > noise ? 1 : 0;
+    for (Index i = rank_; i < G_.rows(); ++i) slacks += has_residual(at(row_, i)) ? 1 : 0;
     return assemble(absorb_cheapest(max_generators - slacks));
   }
 
   /// Every row without a pivot is given a unit vector, so that the frame is square.
   ReductionSplit split(Index max_generators) {
-    const Index n = W_.rows(), g = W_.cols(), last = absorb_cheapest(max_generators - (n - rank_));
-    ReductionSplit parts{G_.middleCols(rank_, last - rank_), Matrix(n, rank_ + g - last), Matrix::Zero(n, n)};
-    parts.replaced << G_.leftCols(rank_), G_.rightCols(g - last);
-    parts.frame.leftCols(rank_) = G_.leftCols(rank_);
-    for (Index i = rank_; i < n; ++i) parts.frame(row_[static_cast<std::size_t>(i)], i) = 1;
+    const Index n = G_.rows(), g = G_.cols(), last = absorb_cheapest(max_generators - (n - rank_));
+    ReductionSplit parts{columns(rank_, last), Matrix(n, rank_ + g - last), Matrix::Zero(n, n)};
+    parts.replaced << columns(0, rank_), columns(last, g);
+    parts.frame.leftCols(rank_) = columns(0, rank_);
+    for (Index i = rank_; i < n; ++i) parts.frame(at(row_, i), i) = 1;
     return parts;
   }
 
  private:
+  using Numbers = std::vector<Index>;
+  static Numbers numbers(Index count) {
+    Numbers all(static_cast<std::size_t>(count));
+    std::iota(all.begin(), all.end(), Index{0});
+    return all;
+  }
+  static Index at(const Numbers& numbers, Index i) { return numbers[static_cast<std::size_t>(i)]; }
+  static void swap(Numbers& numbers, Index i, Index j) {
+    std::swap(numbers[static_cast<std::size_t>(i)], numbers[static_cast<std::size_t>(j)]);
+  }
+  double* row(Index i) { return W_.data() + i * W_.cols(); }
+  const double* row(Index i) const { return W_.data() + i * W_.cols(); }
+
+  /// G's columns in places first … last-1 of the order.
+  Matrix columns(Index first, Index last) const {
+    Matrix some(G_.rows(), last - first);
+    for (Index k = first; k < last; ++k) some.col(k - first) = G_.col(at(order_, k));
+    return some;
+  }
+
+  /// Is there more than rounding in a row without a pivot?
+  bool has_residual(Index i) const {
+    for (Index k = rank_; k < G_.cols(); ++k) {
+      if (std::abs(W_(i, at(order_, k))) > noise) return true;
+    }
+    return false;
+  }
+
+  /// W = [I R; 0 E] in the order of rows and columns, by Gauss-Jordan steps with pivots over the whole of E.
+  void eliminate() {
+    const Index n = G_.rows(), g = G_.cols();
+    for (rank_ = 0; rank_ < std::min(n, g) && put_pivot_first(); ++rank_) {
+      const Index pivot_row = at(row_, rank_), column = at(order_, rank_);
+      W_.row(pivot_row) /= W_(pivot_row, column);
+      for (Index i = 0; i < n; ++i) {
+        const double factor = W_(i, column);
+        if (i != pivot_row && factor != 0) vectors::add_multiple(W_.cols(), -factor, row(pivot_row), row(i));
+      }
+    }
+  }
+
+  /// The largest entry of E; false if none counts.
+  bool put_pivot_first() {
+    largest_.setZero(W_.cols());
+    for (Index i = rank_; i < G_.rows(); ++i) {
+      const double* const entries = row(at(row_, i));
+      double* const largest = largest_.data();
+      for (Index j = 0; j < W_.cols(); ++j) {
+        const double size = std::abs(entries[j]);
+        largest[j] = largest[j] < size ? size : largest[j];
+      }
+    }
+    Index place = rank_;
+    for (Index k = rank_; k < G_.cols(); ++k) {
+      if (largest_[at(order_, k)] > largest_[at(order_, place)]) place = k;
+    }
+    const double pivot = largest_[at(order_, place)];
+    if (!(pivot > rank_tolerance)) return false;
+    swap(order_, rank_, place);
+    for (Index i = rank_; i < G_.rows(); ++i) {
+      if (std::abs(W_(at(row_, i), at(order_, rank_))) != pivot) continue;
+      swap(row_, rank_, i);
+      break;
+    }
+    return true;
+  }
+
   /// Absorbs columns until `most` are left, and returns how many are.
   Index absorb_cheapest(Index most) {
-    const Index n = W_.rows(), g = W_.cols();
     growth_ = Vector::Ones(rank_);
-    slack_ = Vector::Zero(n - rank_);
-    Index last = g;  // columns rank_ … last-1 are left in V
+    slack_ = Vector::Zero(G_.rows() - rank_);
+    Index last = G_.cols();  // places rank_ … last-1 are left in V
     while (last > most) {
-      const Index cheapest = cheapest_column(last);
-      absorb(cheapest, last);
-      --last;
-      W_.col(cheapest).swap(W_.col(last));
-      G_.col(cheapest).swap(G_.col(last));
+      const Index cheapest = cheapest_place(last);
+      absorb(at(order_, cheapest));
+      swap(order_, cheapest, --last);
     }
     return last;
   }
 
-  /// W = [I R; 0 E] by Gauss-Jordan steps with pivots over the whole remaining block; rows and columns are swapped along.
-  void eliminate() {
-    const Index n = W_.rows(), g = W_.cols();
-    row_.resize(static_cast<std::size_t>(n));
-    std::iota(row_.begin(), row_.end(), Index{0});
-    for (rank_ = 0; rank_ < std::min(n, g); ++rank_) {
-      const Index k = rank_;
-      Index i = 0, j = 0;
-      const double largest = W_.bottomRightCorner(n - k, g - k).cwiseAbs().maxCoeff(&i, &j);
-      if (!(largest > rank_tolerance)) break;
-      swap(k, k + i, k + j);
-      Vector pivot_column = W_.col(k);
-      const double pivot = pivot_column[k];
-      pivot_column[k] = 0;
-      for (Index column = k + 1; column < g; ++column) {
-        const double factor = W_(k, column) / pivot;
-        if (factor == 0) continue;
-        W_.col(column) -= factor * pivot_column;
-        W_(k, column) = factor;
-      }
-    }
-  }
-
-  void swap(Index k, Index row, Index column) {
-    if (row != k) {
-      W_.row(k).swap(W_.row(row));
-      std::swap(row_[static_cast<std::size_t>(k)], row_[static_cast<std::size_t>(row)]);
-    }
-    if (column != k) {
-      W_.col(k).swap(W_.col(column));
-      G_.col(k).swap(G_.col(column));
-    }
-  }
-
   /// The volume error is summed without cancellation: q collects the terms of second and higher order.
-  Index cheapest_column(Index last) const {
+  Index cheapest_place(Index last) {
+    sum_.setZero(W_.cols());
+    cost_.setZero(W_.cols());
+    double* const sum = sum_.data();
+    double* const cost = cost_.data();
+    for (Index i = 0; i < rank_; ++i) {
+      const double* const entries = row(at(row_, i));
+      const double inverse = 1 / growth_[i];
+      for (Index j = 0; j < W_.cols(); ++j) {
+        const double r = std::abs(entries[j]) * inverse;
+        cost[j] += r * (sum[j] + cost[j]);
+        sum[j] += r;
+      }
+    }
     Index best = rank_;
-    double best_cost = std::numeric_limits<double>::infinity();
-    for (Index j = rank_; j < last; ++j) {
-      double s = 0, q = 0;
-      for (Index i = 0; i < rank_; ++i) {
-        const double r = std::abs(W_(i, j));
-        q += r * (s + q);
-        s += r;
-      }
-      if (q < best_cost) {
-        best_cost = q;
-        best = j;
-      }
+    for (Index k = rank_; k < last; ++k) {
+      if (cost_[at(order_, k)] < cost_[at(order_, best)]) best = k;
     }
     return best;
   }
 
-  void absorb(Index column, Index last) {
-    for (Index i = 0; i < rank_; ++i) {
-      const double r = std::abs(W_(i, column));
-      if (r == 0) continue;
-      growth_[i] *= 1 + r;
-      W_.row(i).segment(rank_, last - rank_) /= 1 + r;
-    }
-    for (Index i = 0; i < slack_.size(); ++i) slack_[i] += std::abs(W_(rank_ + i, column));
+  void absorb(Index column) {
+    for (Index i = 0; i < rank_; ++i) growth_[i] += std::abs(W_(at(row_, i), column));
+    for (Index i = 0; i < slack_.size(); ++i) slack_[i] += std::abs(W_(at(row_, rank_ + i), column));
   }
 
   Matrix assemble(Index last) const {
-    const Index n = W_.rows(), g = W_.cols();
+    const Index n = G_.rows(), g = G_.cols();
     Matrix H = Matrix::Zero(n, last + slack_.size());
-    H.leftCols(rank_) = G_.leftCols(rank_) * growth_.asDiagonal();
-    H.middleCols(rank_, last - rank_) = G_.middleCols(rank_, last - rank_);
+    for (Index k = 0; k < last; ++k) H.col(k) = (k < rank_ ? growth_[k] : 1.0) * G_.col(at(order_, k));
     Index count = last;
     for (Index i = 0; i < slack_.size(); ++i) {
       if (!(slack_[i] > noise * static_cast<double>(g - last))) continue;
-      const Index row = row_[static_cast<std::size_t>(rank_ + i)];
-      H(row, count++) = slack_[i] / scale_[row];
+      const Index place = at(row_, rank_ + i);
+      H(place, count++) = slack_[i] / scale_[place];
     }
     H.conservativeResize(Eigen::NoChange, count);
     return H;
   }
 
-  Matrix G_;
+  const Matrix& G_;
   Vector scale_;
-  Matrix W_;
-  std::vector<Index> row_;  ///< row_[i]: the row of G that row i of W stands for
+  Rows W_;
+  Numbers row_, order_;  ///< W's rows and columns in the order of their pivots
   Index rank_ = 0;
-  Vector growth_, slack_;
+  Vector growth_, slack_, largest_, sum_, cost_;
 };
 
 }  // namespace

@@ -164,6 +164,33 @@ Box minkowski_sum(const Box& X, const Box& Y) {
   return Z;
 }
 
+Box affine_sum(const Box& X, MatrixIn A, VectorIn f, std::span<const MappedBox> summands) {
+  constexpr const char* name = "sum of mapped boxes";
+  check(X, name);
+  require_map(A, X.dim(), name, "the matrix");
+  require_size(f.size(), A.rows(), name, "the translation");
+  require_finite(f, name, "the translation");
+  bool empty = X.is_empty();
+  for (const MappedBox& summand : summands) {
+    check(summand.set, name);
+    require_map(summand.T, summand.set.dim(), name, "a summand's matrix");
+    require_size(summand.T.rows(), A.rows(), name, "the rows of a summand's matrix");
+    empty = empty || summand.set.is_empty();
+  }
+  if (empty) return Box::empty(A.rows());
+  Box Y{Vector(A.rows()), Vector(A.rows())};
+  for (Index i = 0; i < A.rows(); ++i) {
+    Range sum = image_row(X, A, i);
+    if (directed::is_finite(sum)) sum = directed::plus(sum, Range{f[i], f[i]});
+    for (std::size_t k = 0; k < summands.size() && directed::is_finite(sum); ++k) {
+      const Range image = image_row(summands[k].set, summands[k].T, i);
+      sum = directed::is_finite(image) ? directed::plus(sum, image) : directed::line();
+    }
+    store(Y, i, sum);
+  }
+  return Y;
+}
+
 Box cartesian_product(const Box& X, const Box& Y) {
   check(X, "product of boxes");
   check(Y, "product of boxes");

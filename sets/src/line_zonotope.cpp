@@ -1,66 +1,69 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/sets/line_zonotope.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
+#include "cordon/core/vectors.hpp"
+#include "elimination_plan.hpp"
 #include "false_row.hpp"
+#include "require.hpp"
 #include "residue.hpp"
 
 namespace cordon::sets {
 
 namespace {
 
-/// |T| (|c| + |G| 1), the size of the terms of T X.
-Vector terms_of_map(MatrixIn T, const LineZonotope& X) {
-  const Vector reach = X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum();
-  return linalg::product(T.cwiseAbs(), reach);
+/// |c| + |G| 1.
+Vector reach(const LineZonotope& X) {
+  Vector sizes = X.c.cwiseAbs();
+  const Index n = X.dim();
+  const double* entry = X.G.data();
+  for (Index j = 0; j < X.generators(); ++j) {
+    for (Index i = 0; i < n; ++i) sizes[i] += std::abs(*entry++);
+  }
+  return sizes;
 }
 
-LineZonotope assembled_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands) {
-  LineZonotope Y = affine_map(X, A, f);
-  if (summands.empty()) return Y;
-  Index lines = X.lines(), generators = X.generators(), constraints = X.constraints();
-  for (const Summand& s : summands) {
-    lines += s.set.lines();
-    generators += s.set.generators();
-    constraints += s.set.constraints();
+void require_no_overflow(const LineZonotope& X) {
+  for (const Matrix* block : {&X.M, &X.G, &X.S, &X.A}) {
+    if (!vectors::all_finite(*block)) throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
   }
-  const Index m = A.rows();
-  Index line = X.lines(), generator = X.generators(), row = X.constraints();
-  Y.M.conservativeResize(m, lines);
-  Y.G.conservativeResize(m, generators);
-  Y.b.conservativeResize(constraints);
-  Matrix S = Matrix::Zero(constraints, lines), B = Matrix::Zero(constraints, generators);
-  S.topLeftCorner(row, line) = X.S;
-  B.topLeftCorner(row, generator) = X.A;
-  for (const Summand& s : summands) {
-    const LineZonotope mapped = affine_map(s.set, s.T, Vector::Zero(m));
-    Y.M.middleCols(line, mapped.lines()) = mapped.M;
-    Y.G.middleCols(generator, mapped.generators()) = mapped.G;
-    Y.c += mapped.c;
-    S.block(row, line, mapped.constraints(), mapped.lines()) = mapped.S;
-    B.block(row, generator, mapped.constraints(), mapped.generators()) = mapped.A;
-    Y.b.segment(row, mapped.constraints()) = mapped.b;
-    line += mapped.lines();
-    generator += mapped.generators();
-    row += mapped.constraints();
+  if (!vectors::all_finite(X.c) || !vectors::all_finite(X.b))
+    throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
+}
+
+/// `block` = T G.
+void put_product(MatrixIn T, const Matrix& G, Eigen::Ref<Matrix> block) {
+  if (vectors::is_small(T)) {
+    vectors::small_product(T, G, block);
+  } else {
+    block = linalg::product(T, G);
   }
-  Y.S = std::move(S);
-  Y.A = std::move(B);
-  return Y;
+}
+
+/// A line zonotope of this size; rows and columns of S and A are 0.
+LineZonotope blank(Index dim, Index lines, Index generators, Index constraints) {
+  return {Matrix(dim, lines),
+          Matrix(dim, generators),
+          Vector(dim),
+          Matrix::Zero(constraints, lines),
+          Matrix::Zero(constraints, generators),
+          Vector(constraints)};
 }
 
 /// Without the rows that are not `kept`.
-LineZonotope with_rows(LineZonotope X, const std::vector<Index>& kept) {
-  if (static_cast<Index>(kept.size()) == X.constraints()) return X;
+void keep_rows(LineZonotope& X, Terms& terms, const std::vector<Index>& kept) {
+  if (static_cast<Index>(kept.size()) == X.constraints()) return;
   X.S = Matrix(X.S(kept, Eigen::all));
   X.A = Matrix(X.A(kept, Eigen::all));
   X.b = Vector(X.b(kept));
-  return X;
+  terms.rows = Vector(terms.rows(kept));
 }
 
 /// Does this row say nothing that could be told from rounding? One that misses the set by less than proofs need is such a row.
@@ -71,45 +74,115 @@ bool is_vague(double terms, double reach, double b) {
 }  // namespace
 
 LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands) {
-  const LineZonotope Y = assembled_sum(X, A, f, summands);
-  if (summands.empty()) return Y;
-  Vector terms = f.cwiseAbs() + terms_of_map(A, X);
-  for (const Summand& s : summands) terms += terms_of_map(s.T, s.set);
-  return with_residue(Y, Vector::Zero(Y.constraints()), terms);
+  constexpr const char* name = "sum of mapped sets";
+  const Index m = A.rows();
+  require_size(f.size(), m, name, "the translation");
+  Index lines = X.lines(), generators = X.generators(), constraints = X.constraints();
+  for (const Summand& s : summands) {
+    lines += s.set.lines();
+    generators += s.set.generators();
+    constraints += s.set.constraints();
+  }
+  LineZonotope Y = blank(m, lines, generators, constraints);
+  Y.c = f;
+  Terms terms{Vector::Zero(constraints), f.cwiseAbs()};
+  Index line = 0, generator = 0, row = 0;
+  const auto add = [&](MatrixIn T, const LineZonotope& Z) {
+    require_size(T.rows(), m, name, "the number of rows of a summand's map");
+    require_map(T, Z.dim(), name, "the map");
+    const Index l = Z.lines(), g = Z.generators(), rows = Z.constraints();
+    if (l > 0) Y.M.middleCols(line, l) = linalg::denoised_product(T, Z.M);
+    put_product(T, Z.G, Y.G.middleCols(generator, g));
+    const Vector size = reach(Z);
+    for (Index k = 0; k < T.cols(); ++k) {
+      Y.c += T.col(k) * Z.c[k];
+      terms.state += T.col(k).cwiseAbs() * size[k];
+    }
+    if (rows > 0) {
+      Y.S.block(row, line, rows, l) = Z.S;
+      Y.A.block(row, generator, rows, g) = Z.A;
+      Y.b.segment(row, rows) = Z.b;
+    }
+    line += l;
+    generator += g;
+    row += rows;
+  };
+  add(A, X);
+  for (const Summand& s : summands) add(s.T, s.set);
+  require_no_overflow(Y);
+  return summands.empty() ? Y : with_residue(std::move(Y), terms);
 }
 
 LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T, const LineZonotope& V) {
-  LineZonotope Y = intersection(X, C, affine_map(V, -T, z));
-  const Vector center_terms =
-      z.cwiseAbs() + linalg::product(T.cwiseAbs(), V.c.cwiseAbs()) + linalg::product(C.cwiseAbs(), X.c.cwiseAbs());
-  const Vector terms = z.cwiseAbs() + terms_of_map(T, V) + terms_of_map(C, X);
-  const Index first = Y.constraints() - z.size();
-  Vector row_terms = Vector::Zero(Y.constraints());
-  std::vector<Index> kept;
-  for (Index i = 0; i < Y.constraints(); ++i) {
-    const Index k = i - first;
+  constexpr const char* name = "intersection with a measurement";
+  const Index p = C.rows(), lines = X.lines(), g = X.generators(), old = X.constraints() + V.constraints();
+  require_map(C, X.dim(), name, "C");
+  require_map(T, V.dim(), name, "T");
+  require_size(T.rows(), p, name, "the number of rows of T");
+  require_size(z.size(), p, name, "z");
+  // C x = z - T v, with the factors of V behind those of X
+  LineZonotope Y = blank(X.dim(), lines + V.lines(), g + V.generators(), old + p);
+  Y.M.leftCols(lines) = X.M;
+  Y.M.rightCols(V.lines()).setZero();
+  Y.G.leftCols(g) = X.G;
+  Y.G.rightCols(V.generators()).setZero();
+  Y.c = X.c;
+  Y.S.topLeftCorner(X.constraints(), lines) = X.S;
+  Y.S.block(X.constraints(), lines, V.constraints(), V.lines()) = V.S;
+  if (lines > 0) Y.S.bottomLeftCorner(p, lines) = linalg::denoised_product(C, X.M);
+  if (V.lines() > 0) Y.S.bottomRightCorner(p, V.lines()) = linalg::denoised_product(T, V.M);
+  Y.A.topLeftCorner(X.constraints(), g) = X.A;
+  Y.A.block(X.constraints(), g, V.constraints(), V.generators()) = V.A;
+  put_product(C, X.G, Y.A.bottomLeftCorner(p, g));
+  put_product(T, V.G, Y.A.bottomRightCorner(p, V.generators()));
+  Y.b.head(X.constraints()) = X.b;
+  Y.b.segment(X.constraints(), V.constraints()) = V.b;
+
+  Terms terms = no_terms(Y);
+  const Vector of_X = reach(X), of_V = reach(V);
+  std::vector<Index> kept(static_cast<std::size_t>(old));
+  std::iota(kept.begin(), kept.end(), Index{0});
+  kept.reserve(static_cast<std::size_t>(old + p));
+  for (Index k = 0; k < p; ++k) {
+    double right = z[k], center_terms = std::abs(z[k]), all_terms = std::abs(z[k]);
+    const auto subtract = [&](MatrixIn map, const Vector& center, const Vector& reach) {
+      for (Index j = 0; j < map.cols(); ++j) {
+        right -= map(k, j) * center[j];
+        center_terms += std::abs(map(k, j) * center[j]);
+        all_terms += std::abs(map(k, j)) * reach[j];
+      }
+    };
+    subtract(T, V.c, of_V);
+    subtract(C, X.c, of_X);
     // z - T c_V - C c_X cancels where the sets touch: a residue is no statement
-    if (k >= 0 && std::abs(Y.b[i]) <= nominal_noise * center_terms[k]) Y.b[i] = 0;
-    if (k >= 0 && Y.S.row(i).isZero(0) && is_vague(terms[k], Y.A.row(i).lpNorm<1>(), Y.b[i])) continue;
-    if (k >= 0) row_terms[i] = terms[k];
-    kept.push_back(i);
+    Y.b[old + k] = std::abs(right) <= nominal_noise * center_terms ? 0 : right;
+    terms.rows[old + k] = all_terms;
+    if (!(Y.lines() > 0 && !Y.S.row(old + k).isZero(0)) && is_vague(all_terms, Y.A.row(old + k).lpNorm<1>(), Y.b[old + k]))
+      continue;
+    kept.push_back(old + k);
   }
-  return with_residue(with_rows(std::move(Y), kept), row_terms(kept), Vector::Zero(X.dim()));
+  require_no_overflow(Y);
+  keep_rows(Y, terms, kept);
+  return with_residue(std::move(Y), terms);
 }
 
 namespace {
 
+struct Computed {
+  LineZonotope set;
+  Terms terms;
+};
+
 /// Lines eliminated; what cancelled there counts as in a measurement.
-LineZonotope without_lines(const LineZonotope& X) {
-  if (X.lines() == 0) return X;
-  LinesEliminated made = eliminate_lines_traced(X, Vector(0));
+Computed without_lines(const LineZonotope& X) {
+  LinesSolved made = solve_for_lines(X);
   std::vector<Index> kept;
   for (Index i = 0; i < made.set.constraints(); ++i) {
     if (!is_vague(made.row_magnitude[i], made.set.A.row(i).lpNorm<1>(), made.set.b[i])) kept.push_back(i);
   }
-  const Vector rows = X.b.cwiseAbs() + X.A.cwiseAbs().rowwise().sum();
-  const Vector state_terms = X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum() + linalg::product(made.outputs.cwiseAbs(), rows);
-  return with_residue(with_rows(std::move(made.set), kept), made.row_magnitude(kept), state_terms);
+  Terms terms{std::move(made.row_magnitude), std::move(made.state_magnitude)};
+  keep_rows(made.set, terms, kept);
+  return {std::move(made.set), std::move(terms)};
 }
 
 /// Zero columns carry nothing, except in a set proven wrong by its rows alone, which keeps its rows.
@@ -123,6 +196,7 @@ LineZonotope drop_zero_generators(LineZonotope X) {
     }
     ++kept;
   }
+  if (kept == X.generators()) return X;
   X.G.conservativeResize(Eigen::NoChange, kept);
   X.A.conservativeResize(Eigen::NoChange, kept);
   return X;
@@ -136,7 +210,13 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
     throw Error(Errc::invalid, "reduce: " + std::to_string(max_generators) + " generators cannot enclose a set of dimension " +
                                    std::to_string(n) + "; give at least " + std::to_string(n));
   }
-  Reduced reduced = eliminate_constraints(without_lines(X), max_constraints, how.constraints);
+  Reduced reduced;
+  if (X.lines() > 0) {
+    const auto [set, terms] = without_lines(X);
+    reduced = eliminate_constraints(set, terms, max_constraints, how.constraints);
+  } else {
+    reduced = eliminate_constraints(X, max_constraints, how.constraints);
+  }
   reduced.set = drop_zero_generators(std::move(reduced.set));
   if (has_false_row(reduced.set)) return {make_empty(n), true};
   if (reduced.set.generators() <= max_generators) return reduced;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cordon/core/error.hpp"
-#include "cordon/core/types.hpp"
+#include "cordon/core/vectors.hpp"
 
 namespace cordon::sets {
 
@@ -16,7 +16,7 @@ inline void require_size(Index actual, Index wanted, const char* operation, cons
 }
 
 inline void require_finite(MatrixIn A, const char* operation, const char* argument) {
-  if (A.allFinite()) return;
+  if (vectors::all_finite(A)) return;
   throw Error(Errc::not_finite, std::string(operation) + ": " + argument + " has a NaN or infinite entry; give finite numbers");
 }
 

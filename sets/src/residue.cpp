@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "residue.hpp"
 
+#include <cmath>
 #include <limits>
+#include <vector>
 
-#include "small_products.hpp"
+#include "rows.hpp"
 #include "tracked_form.hpp"
 
 namespace cordon::sets {
@@ -25,28 +27,56 @@ bool is_positive_definite(Matrix& K) {
   return true;
 }
 
-/// Rows of [G; A] with noise, as columns, in units of `noise` / `nominal_margin`, and of them only every `stride`-th factor.
-Matrix noisy_rows(const LineForm& X, const Vector& noise, Index count, Index stride) {
+/// Rows of [G; A] with noise in units of `noise` / `nominal_margin`, and of them only every `stride`-th factor.
+Rows noisy_rows(const LineForm& X, const Vector& noise, Index count, Index stride) {
   const Index n = X.dim(), taken = (X.generators() + stride - 1) / stride;
-  Matrix columns(taken, count);
+  Rows rows = Rows::Zero(count, vectors::padded(taken));
   Index next = 0;
   for (Index i = 0; i < noise.size(); ++i) {
     if (!(noise[i] > 0)) continue;
     const double scale = nominal_margin / noise[i];
     const double* const from = i < n ? &X.G(i, 0) : &X.A(i - n, 0);
     const Index step = stride * (i < n ? n : X.constraints());
-    double* const to = &columns(0, next++);
+    double* const to = &rows(next++, 0);
     for (Index j = 0; j < taken; ++j) to[j] = scale * from[j * step];
   }
-  return columns;
+  return rows;
 }
 
-/// Does {Hᵀξ : ‖ξ‖₂ ≤ 1} hold the unit ball?
-bool holds_unit_ball(const Matrix& H) {
-  if (H.rows() < H.cols()) return false;
-  Matrix K = inner_products(H, H);
+/// Does {Hξ : ‖ξ‖₂ ≤ 1} hold the unit ball?
+bool holds_unit_ball(const Rows& H) {
+  if (H.cols() < H.rows()) return false;
+  Matrix K = row_gram(H);
   K.diagonal().array() -= 1;
   return is_positive_definite(K);
+}
+
+/// Has every row and coordinate that was computed a factor of its own, in no other row and coordinate, that covers its noise? As
+/// those of disturbances are, which come last.
+bool have_own_factors(const LineForm& X, const Terms& terms) {
+  const Index n = X.dim(), m = X.constraints();
+  Index open = (terms.state.array() > 0).count() + (terms.rows.array() > 0).count();
+  std::vector<bool> covered(static_cast<std::size_t>(n + m), false);
+  for (Index j = X.generators() - 1; j >= 0 && open > 0; --j) {
+    Index place = -1, entries = 0;
+    for (Index i = 0; i < n && entries < 2; ++i) {
+      if (X.G(i, j) == 0) continue;
+      place = i;
+      ++entries;
+    }
+    for (Index i = 0; i < m && entries < 2; ++i) {
+      if (X.A(i, j) == 0) continue;
+      place = n + i;
+      ++entries;
+    }
+    if (entries != 1 || covered[static_cast<std::size_t>(place)]) continue;
+    const double size = place < n ? X.G(place, j) : X.A(place - n, j);
+    const double computed_from = place < n ? terms.state[place] : terms.rows[place - n];
+    if (!(computed_from > 0) || !(nominal_noise * computed_from <= nominal_margin * std::abs(size))) continue;
+    covered[static_cast<std::size_t>(place)] = true;
+    --open;
+  }
+  return open == 0;
 }
 
 /// Does {[G; A]ξ : ‖ξ‖₂ ≤ 1} hold the ellipsoid with the half axes `noise` / `nominal_margin`? Rows without noise do not count.
@@ -60,15 +90,17 @@ bool is_wide(const LineForm& X, const Vector& noise) {
 
 }  // namespace
 
-LineForm with_residue(const LineForm& X, const Vector& row_terms, const Vector& state_terms) {
+LineForm with_residue(LineForm X, const Terms& terms) {
+  if (have_own_factors(X, terms)) return X;
   const Index n = X.dim(), m = X.constraints();
-  Vector terms(n + m);
-  terms << state_terms, row_terms.cwiseMax(X.b.cwiseAbs().cwiseMax(X.A.cwiseAbs().rowwise().sum()));
+  Vector noise(n + m);
+  noise << terms.state, terms.rows.cwiseMax(X.b.cwiseAbs().cwiseMax(X.A.cwiseAbs().rowwise().sum()));
   for (Index i = 0; i < m; ++i) {
-    if (!X.S.row(i).isZero(0)) terms[n + i] = row_terms[i];  // lines satisfy such a row
+    if (X.lines() > 0 && !X.S.row(i).isZero(0)) noise[n + i] = terms.rows[i];  // lines satisfy such a row
   }
-  if (is_wide(X, nominal_noise * terms)) return X;
-  return with_radii(X, nominal_noise * row_terms, nominal_noise * state_terms);
+  noise *= nominal_noise;
+  if (is_wide(X, noise)) return X;
+  return with_radii(X, nominal_noise * terms.rows, nominal_noise * terms.state);
 }
 
 }  // namespace cordon::sets

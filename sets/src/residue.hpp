@@ -12,9 +12,14 @@ constexpr double nominal_noise = 1e-14;
 /// No proof rests on less than this share of its terms.
 constexpr double nominal_margin = 1e-10;
 
-/// X, whose coordinates and rows were computed from terms of these sizes (0: not computed, hence exact). Where the lifted
-/// zonotope [G; A] is so flat that the margin of proofs does not cover 1e-14 of the terms, these get factors of their own: the
-/// set becomes larger by them.
-LineForm with_residue(const LineForm& X, const Vector& row_terms, const Vector& state_terms);
+/// Sizes of the terms that the rows [A b] and the coordinates [G c] of a set were computed from; 0: not computed, hence exact.
+struct Terms {
+  Vector rows, state;
+};
+inline Terms no_terms(const LineForm& X) { return {Vector::Zero(X.constraints()), Vector::Zero(X.dim())}; }
+
+/// X, computed from such terms. Where the lifted zonotope [G; A] is so flat that the margin of proofs does not cover 1e-14 of the
+/// terms, these get factors of their own: the set becomes larger by them.
+LineForm with_residue(LineForm X, const Terms& terms);
 
 }  // namespace cordon::sets

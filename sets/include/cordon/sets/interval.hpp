@@ -10,6 +10,8 @@
 // Source: [Jaulin2001, ch. 2 and 4].
 #pragma once
 
+#include <span>
+
 #include "cordon/core/box.hpp"
 #include "cordon/core/interval_matrix.hpp"
 
@@ -28,6 +30,16 @@ Box affine_map(const Box& X, MatrixIn T, VectorIn t);
 
 /// X ⊕ Y; exact. O(n).
 Box minkowski_sum(const Box& X, const Box& Y);
+
+/// The summand T·set of `affine_sum`; a view.
+struct MappedBox {
+  MatrixIn T;
+  const Box& set;
+};
+
+/// Smallest box around A X, plus f, plus the smallest boxes around Tᵢ Xᵢ: what affine_map and minkowski_sum make of them, to the
+/// last bit. A is m×n, Tᵢ is m×dim Xᵢ. O(m Σ nᵢ).
+Box affine_sum(const Box& X, MatrixIn A, VectorIn f, std::span<const MappedBox> summands);
 
 /// X × Y; exact. O(n).
 Box cartesian_product(const Box& X, const Box& Y);

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Matrices by rows. The steps of an observer have some dozens of numbers in each: for these a plain loop is faster than preparing
+// for large ones. Large ones go the usual way.
+#pragma once
+
+#include "cordon/core/vectors.hpp"
+
+namespace cordon::sets {
+
+/// Rows filled with zeros up to whole vectors: cols() is the padded number.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Rows padded_rows(const Matrix& A);
+
+/// A Aᵀ.
+Matrix row_gram(const Rows& A);
+
+}  // namespace cordon::sets
