@@ -219,6 +219,38 @@ TEST_CASE("a guess of the basis saves iterations, a bad one costs none of the an
   CHECK(3 * guessed < simplex.iterations());
 }
 
+TEST_CASE("an objective of one variable does not lead around in circles") {
+  // Nearly all reduced costs vanish: every basis shows the same bound, until one is found whose values keep to theirs.
+  std::mt19937_64 engine(11);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int round = 0; round < 10; ++round) {
+    CAPTURE(round);
+    const Index m = 24, g = 300;
+    Matrix A(m, g);
+    Vector xi(g);
+    for (double& a : A.reshaped()) a = number(engine);
+    for (Index j = 0; j < g; ++j) {
+      A.col(j) *= std::pow(10, -1.5 * (1 + number(engine)));
+      xi[j] = .95 * number(engine);
+    }
+    const Vector b = A * xi;
+    BoxSimplex simplex(A, b);
+    BasisGuess guess(A, b);
+    Index iterations = 0;
+    for (Index j = 0; j < 12; ++j) {
+      const Vector objective = Vector::Unit(g, 25 * j);
+      CHECK(simplex.maximize(objective, guess.scores(objective)) == BoxSimplex::Status::optimal);
+      iterations += simplex.iterations();
+      const double upper = RowCertificates(A, b, Vector::Zero(m)).upper_bound(objective, simplex.multipliers());
+      Vector point;
+      simplex.take_point(point);
+      CHECK(point.cwiseAbs().maxCoeff() <= 1 + 1e-8);
+      CHECK(std::abs(upper - objective.dot(point)) <= 1e-9);
+    }
+    CHECK(iterations <= 12 * 6 * m);
+  }
+}
+
 TEST_CASE("multipliers of any kind prove no more than is true") {
   Programs programs(7);
   std::mt19937_64 engine(8);

@@ -20,6 +20,9 @@ constexpr double smallest_pivot = 1e-12;  ///< of a row of the tableau, relative
 constexpr double first_pivot = 1e-3;      ///< of the columns that a basis is built from, relative to their size
 constexpr double agreement = 1e-7;        ///< of a pivot computed by row and by column
 constexpr Index fresh_enough = 30;        ///< updates after which basic values are computed anew before they are believed
+constexpr double no_step = 1e-12;         ///< of the multipliers: the bound stays where it is
+constexpr Index patience = 6;            ///< with as many such steps in a row
+constexpr double nudge = 1e-6;            ///< of the costs, after that
 
 }  // namespace
 
@@ -53,6 +56,8 @@ BoxSimplex::BoxSimplex(const Matrix& A, VectorIn b)
 
 BoxSimplex::Status BoxSimplex::maximize(VectorIn g, VectorIn scores, double enough) {
   cost_.head(g_) = g;
+  objective_ = g;
+  nudged_ = false;
   order_by(scores);
   build_basis();
   return solve(enough);
@@ -230,6 +235,33 @@ void BoxSimplex::take_point(Vector& xi) {
   }
 }
 
+/// Makes all reduced costs positive, by amounts that differ: where many vanish, as under an objective of few entries, the method
+/// would go around in circles among bases of one bound. The multipliers stay.
+void BoxSimplex::nudge_costs() {
+  for (Index j = 0; j < g_; ++j) {
+    const double place = static_cast<double>(j + 1) * 0.6180339887498949;
+    const double amount = nudge * (1 + place - std::floor(place));
+    cost_[j] += side_[j] * amount;
+    if (side_[j] != 0) reduced_[j] += amount;
+  }
+  nudged_ = true;
+}
+
+/// The objective as it was given. Variables whose reduced costs vanish stay where they are, as do the basic values then.
+bool BoxSimplex::take_back_nudges() {
+  cost_.head(g_) = objective_;
+  nudged_ = false;
+  find_multipliers();
+  panels_.transpose_times(y_.data(), decrease_.data());
+  for (Index j = 0; j < g_; ++j) {
+    const double d = cost_[j] - decrease_[j];
+    if (side_[j] * d < -no_step) side_[j] = -side_[j];
+    reduced_[j] = std::max(side_[j] * d, 0.0);
+  }
+  solve_basics();
+  return basic_value_.allFinite() && y_.allFinite();
+}
+
 /// The bound that the multipliers of the basis show.
 double BoxSimplex::objective() const {
   double sum = dot(cost_.size(), cost_.data(), side_.data());
@@ -239,32 +271,43 @@ double BoxSimplex::objective() const {
   return sum;
 }
 
+/// What the present basis shows, with its multipliers.
+BoxSimplex::Status BoxSimplex::concluded(Status status) {
+  find_multipliers();
+  refine_multipliers();
+  return status;
+}
+
 BoxSimplex::Status BoxSimplex::solve(double enough) {
   iterations_ = 0;
   if (!take_objective()) return Status::unsolved;
   bool rebuilt = false;
+  Index idle = 0;
   for (const Index limit = 200 + 20 * (m_ + g_); iterations_ < limit; ++iterations_) {
-    if (enough > any && objective() < enough) {
-      find_multipliers();
-      refine_multipliers();
-      return Status::below;
+    const bool is_below = enough > any && objective() < enough;
+    const Index row = is_below ? none : leaving_row();
+    if (row == none && nudged_) {
+      if (!take_back_nudges()) return Status::unsolved;
+      continue;
     }
-    const Index row = leaving_row();
+    if (is_below) return concluded(Status::below);
     if (row == none && updates_ >= fresh_enough) {
       solve_basics();
       continue;
     }
-    if (row == none) {
-      find_multipliers();
-      refine_multipliers();
-      return Status::optimal;
-    }
+    if (row == none) return concluded(Status::optimal);
     direction_ = basic_value_[row] < 0 ? 1 : -1;
     price(row);
     const Index entering = entering_variable(std::abs(basic_value_[row]) - room(row));
     if (entering == none) {
       y_ = -direction_ * rho_;
       return Status::infeasible;
+    }
+    idle = breakpoint_[entering] > no_step ? 0 : idle + 1;
+    if (idle > patience && !nudged_) {
+      nudge_costs();
+      idle = 0;
+      continue;
     }
     if (exchange(row, entering)) continue;
     if (rebuilt && updates_ == 0) return Status::unsolved;

@@ -14,7 +14,8 @@ namespace cordon {
 ///
 /// Dual simplex method with bound flipping. Boxed variables make every basis dual feasible, so there is no first phase. Each row
 /// has an artificial variable in [0,0]: the first basis, which is never singular; once out, an artificial never returns, and
-/// redundant rows keep theirs. The inverse of the basis is kept explicitly, by columns; the squared norms of its rows (exact
+/// redundant rows keep theirs. Where the bound does not move any more, costs are changed by some 1e-6 until the basis is optimal
+/// under these. The inverse of the basis is kept explicitly, by columns; the squared norms of its rows (exact
 /// steepest edges, [Forrest1992]) fall out of its update. Sums have one order on every machine. Nothing is allocated after
 /// construction. Tolerances are absolute: rows and objective should have entries of about 1. O(m (m + g)) per iteration.
 class BoxSimplex {
@@ -57,6 +58,9 @@ class BoxSimplex {
   bool rebuild();
   void transform(const double* v, Vector& image) const;
   void update_inverse(Index row);
+  void nudge_costs();
+  bool take_back_nudges();
+  Status concluded(Status status);
   Status solve(double enough);
   Index leaving_row() const;
   void price(Index row);
@@ -69,7 +73,7 @@ class BoxSimplex {
   Matrix columns_, inverse_;
   Panels<double> panels_;  ///< the columns once more
   std::vector<double> sums_;
-  Vector b_, y_, basic_value_, norms_, rho_, image_, change_, change_image_;
+  Vector b_, objective_, y_, basic_value_, norms_, rho_, image_, change_, change_image_;
   std::vector<Index> basic_;       ///< variable in each position; artificial i is g + i
   std::vector<Index> order_;       ///< columns, those to be made basic first
   std::vector<Index> candidates_;  ///< variables with a breakpoint; the passed ones come first
@@ -78,6 +82,7 @@ class BoxSimplex {
   Vector cost_, side_, reduced_, decrease_, breakpoint_;
   std::size_t candidate_count_ = 0, passed_ = 0;
   Index iterations_ = 0, updates_ = 0;
+  bool nudged_ = false;   ///< costs differ from the objective
   double direction_ = 1;  ///< +1: the leaving variable is below its lower bound; -1: above its upper one
 };
 
