@@ -21,7 +21,7 @@ constexpr double first_pivot = 1e-3;      ///< of the columns that a basis is bu
 constexpr double agreement = 1e-7;        ///< of a pivot computed by row and by column
 constexpr Index fresh_enough = 30;        ///< updates after which basic values are computed anew before they are believed
 constexpr double no_step = 1e-12;         ///< of the multipliers: the bound stays where it is
-constexpr Index patience = 6;            ///< with as many such steps in a row
+constexpr Index patience = 6;             ///< with as many such steps in a row
 constexpr double nudge = 1e-6;            ///< of the costs, after that
 
 }  // namespace
