@@ -41,7 +41,7 @@ class MedianReporter final : public benchmark::BenchmarkReporter {
     for (const Run& run : runs) {
       if (run.run_type != Run::RT_Aggregate || run.aggregate_name != "median") continue;
       std::string name = run.run_name.str();
-      for (const char* suffix : {"/repeats:7", "/manual_time", "/min_time:0.050"}) {
+      for (const char* suffix : {"/repeats:7", "/manual_time", "/min_time:0.050", "/min_time:0.010"}) {
         if (const auto at = name.find(suffix); at != std::string::npos) name.erase(at, std::strlen(suffix));
       }
       const double median = run.GetAdjustedRealTime();
