@@ -9,10 +9,12 @@ set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
 
 # What plugins built elsewhere must share with this build, so that results do not depend on the machine they were compiled for: no
 # contraction into fused operations, and one width of vectors in Eigen, whatever -march says. By the width Eigen orders its sums and
-# aligns its memory (the ABI tag compares the latter); the compiler itself may use wider vectors, it changes no result by them.
+# aligns its memory (the ABI tag compares the latter); the compiler itself may use wider vectors, it changes no result by them. GCC 12
+# fuses alternating sums and differences in spite of -ffp-contract=off where the processor can, so it must not know that it can;
+# AVX-512 has fused instructions of its own.
 set(CORDON_SHARED_FLAGS -ffp-contract=off)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  list(APPEND CORDON_SHARED_FLAGS -U__AVX__ -U__AVX2__ -U__AVX512F__ -U__FMA__)
+  list(APPEND CORDON_SHARED_FLAGS -U__AVX__ -U__AVX2__ -mno-fma -mno-fma4 -mno-avx512f)
 endif()
 
 # Nobody reads the flags of floating-point exceptions or the errno of functions of mathematics: without them, choices and square roots
