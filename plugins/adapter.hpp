@@ -21,9 +21,15 @@
 #include <span>
 #include <vector>
 
+#include <boost/container/small_vector.hpp>
+
 #include "cordon/interfaces/backend.hpp"
 
 namespace cordon::plugins {
+
+/// As many as the terms of most sums, without memory of their own.
+template <class T>
+using Few = boost::container::small_vector<T, 6>;
 
 /// T·value, a view.
 template <class Value>
@@ -80,10 +86,9 @@ class ValueBackend final : public SetBackend {
   Made do_import(const LineForm& X) const override { return make(representation_.import(X)); }
 
   Made do_predict(const Set& X, const Predict& p) const override {
-    std::vector<Operand<Value>> operands;
-    operands.reserve(p.terms.size());
+    Few<Operand<Value>> operands;
     for (const Term& term : p.terms) operands.push_back({term.T, value(*term.set)});
-    return make(representation_.predict(value(X), p.A, p.f, operands));
+    return make(representation_.predict(value(X), p.A, p.f, {operands.data(), operands.size()}));
   }
   Made do_correct(const Set& X, const Correct& c) const override {
     return make(representation_.correct(value(X), c.C, c.z, Operand<Value>{c.noise.T, value(*c.noise.set)}));

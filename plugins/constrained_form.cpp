@@ -82,11 +82,10 @@ ConstrainedForm::Result ConstrainedForm::import(const LineForm& X) const {
 
 ConstrainedForm::Result ConstrainedForm::predict(const Value& X, MatrixIn A, VectorIn f,
                                                  std::span<const Operand<Value>> operands) const {
-  std::vector<sets::Summand> summands;
-  summands.reserve(operands.size());
+  Few<sets::Summand> summands;
   for (const auto& operand : operands) summands.push_back({operand.T, operand.value});
-  if (outward) return made(sets::outward::affine_sum(X, A, f, summands));
-  return {sets::affine_sum(X, A, f, summands), Tightness::exact};
+  if (outward) return made(sets::outward::affine_sum(X, A, f, {summands.data(), summands.size()}));
+  return {sets::affine_sum(X, A, f, {summands.data(), summands.size()}), Tightness::exact};
 }
 
 ConstrainedForm::Result ConstrainedForm::correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {

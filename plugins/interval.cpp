@@ -133,14 +133,13 @@ struct Intervals {
   }
 
   Result predict(const Box& X, MatrixIn A, VectorIn f, std::span<const Operand<Box>> operands) const {
-    std::vector<sets::MappedBox> summands;
-    summands.reserve(operands.size());
+    plugins::Few<sets::MappedBox> summands;
     bool exact = sets::is_monomial(A);
     for (const auto& operand : operands) {
       summands.push_back({operand.T, operand.value});
       exact = exact && sets::is_monomial(operand.T);
     }
-    Box sum = sets::affine_sum(X, A, f, summands);
+    Box sum = sets::affine_sum(X, A, f, {summands.data(), summands.size()});
     if (outward && exact) {
       std::vector<const MatrixIn*> maps{&A};
       for (const auto& operand : operands) maps.push_back(&operand.T);

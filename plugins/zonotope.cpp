@@ -92,13 +92,12 @@ struct Zonotopes {
   Result predict(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
     if (!X.Z) return empty(A.rows());
     if (outward) return predict_outward(X, A, f, operands);
-    std::vector<sets::MappedZonotope> summands;
-    summands.reserve(operands.size());
+    plugins::Few<sets::MappedZonotope> summands;
     for (const auto& operand : operands) {
       if (!operand.value.Z) return empty(A.rows());
       summands.push_back({operand.T, *operand.value.Z});
     }
-    return result(sets::affine_sum(*X.Z, A, f, summands), Tightness::exact);
+    return result(sets::affine_sum(*X.Z, A, f, {summands.data(), summands.size()}), Tightness::exact);
   }
   Result predict_outward(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
     std::vector<LineForm> forms;

@@ -29,6 +29,7 @@
 #include "cordon/core/linalg.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
+#include "observers/in_place.hpp"
 #include "observers/interval_spread.hpp"
 
 namespace cordon::estimators {
@@ -36,6 +37,7 @@ namespace cordon::estimators {
 namespace {
 
 constexpr double rank_tolerance = 1e-10;
+constexpr double steady = 1e-12;  ///< changes of P relative to its largest entry that leave the gain as it is
 
 /// An orthogonal factor without entries that are zero up to the rounding of the decomposition.
 Matrix denoised(const Matrix& Q) { return (Q.array().abs() <= 1e-15).select(0.0, Q); }
@@ -261,6 +263,9 @@ class PseudoInverseObserver final : public Observer {
     minus_ND_ = -linalg::product(N_, used_.D);
     minus_NDv_ = -linalg::product(N_, used_.Dv);
     noise_generators_ = linalg::product(used_.Dv, model().V.G);
+    C_transposed_ = used_.C.transpose();
+    TA_transposed_ = TA_.transpose();
+    terms_.reserve(8);
   }
 
   LineForm initial_set() const override { return X0_; }
@@ -269,38 +274,37 @@ class PseudoInverseObserver final : public Observer {
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
     X_ = X0 ? *X0 : backend().import(X0_);
     X_.tightness = Tightness::outer;  // the first measurement enters with the second
+    unit_ = 0;                        // no gain of an earlier run is kept
     return X_;
   }
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const Enclosure predicted = timed(Phase::predict, [&] {
       const Matrix spread_before = output_spread(before, true);
-      const Matrix L = gain(spread_before);
-      const Matrix minus_LDv = -linalg::product(L, used_.Dv);
-      std::vector<Term> terms;
-      terms.reserve(8);
-      terms.push_back({TBw_, W_});
-      terms.push_back({minus_LDv, V_});
-      terms.push_back({minus_NDv_, V_});
+      find_gain(spread_before);
+      terms_.clear();
+      terms_.push_back({TBw_, W_});
+      terms_.push_back({minus_LDv_, V_});
+      terms_.push_back({minus_NDv_, V_});
       Matrix inputs_before, inputs_now, outputs_before, outputs_now;
       if (effectiveness_.has_input_ranges()) {
-        inputs_before = effectiveness_.input_spread(TB_ - linalg::product(L, used_.D), before.u);
+        inputs_before = effectiveness_.input_spread(TB_ - linalg::product(L_, used_.D), before.u);
         inputs_now = effectiveness_.input_spread(minus_ND_, now.u);
-        terms.push_back({inputs_before, effectiveness_.input_factors()});
-        terms.push_back({inputs_now, effectiveness_.input_factors()});
+        terms_.push_back({inputs_before, effectiveness_.input_factors()});
+        terms_.push_back({inputs_now, effectiveness_.input_factors()});
       }
       if (effectiveness_.has_output_ranges()) {
-        outputs_before = linalg::product(L, spread_before);
+        outputs_before = linalg::product(L_, spread_before);
         outputs_now = linalg::product(N_, output_spread(now, false));
-        terms.push_back({outputs_before, effectiveness_.output_factors()});
-        terms.push_back({outputs_now, effectiveness_.output_factors()});
+        terms_.push_back({outputs_before, effectiveness_.output_factors()});
+        terms_.push_back({outputs_now, effectiveness_.output_factors()});
       }
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
-      if (effectiveness_.has_open_states()) terms.push_back({T_, open});
-      const Vector f = effectiveness_.input(TB_, before.u) +
-                       linalg::product(L, is_used_.cwiseProduct(before.y) - effectiveness_.input(used_.D, before.u)) +
-                       linalg::product(N_, is_used_.cwiseProduct(now.y) - effectiveness_.input(used_.D, now.u));
-      return backend().predict(X_, {TA_ - linalg::product(L, used_.C), f, terms});
+      if (effectiveness_.has_open_states()) terms_.push_back({T_, open});
+      effectiveness_.input(TB_, before.u, shift_);
+      add_output(L_, before);
+      add_output(N_, now);
+      return backend().predict(X_, {map_, shift_, terms_});
     });
     X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
     X_.tightness = Tightness::outer;  // the measurement enters by a gain, and v_{k-1} twice
@@ -319,20 +323,52 @@ class PseudoInverseObserver final : public Observer {
     return is_used_.asDiagonal() * effectiveness_.output_spread(effectiveness_.output_bound(sample, reach ? &*reach : nullptr));
   }
 
-  /// Minimises the F-radius of the next estimate, as far as the last measurement decides it.
-  Matrix gain(const Matrix& spread) const {
-    Matrix G = X_->line_form().G, free = spread, noise = noise_generators_;
-    double largest = 0;  // squares of sets that shrink to a point underflow: L does not depend on the unit
-    for (const Matrix* M : {&noise, &G, &free}) largest = M->size() == 0 ? largest : std::max(largest, M->cwiseAbs().maxCoeff());
-    if (largest < std::numeric_limits<double>::min()) return Matrix::Zero(TA_.rows(), used_.outputs());
-    const double unit = std::ldexp(1.0, -std::ilogb(largest));
-    for (Matrix* M : {&noise, &G, &free}) *M *= unit;
-    const Matrix CP = linalg::product(used_.C, linalg::gram(G));
-    const Matrix S = linalg::product(CP, used_.C.transpose()) + linalg::gram(noise) + linalg::gram(free);
-    const Matrix cross = linalg::product(CP, TA_.transpose());  // C P (T A)ᵀ
-    if (const auto solved = linalg::solve_spd(S, cross)) return solved->transpose();
-    return linalg::transposed_product(cross, linalg::pseudo_inverse(S));
+  /// shift += M (y - D u), of the outputs that are used.
+  void add_output(const Matrix& M, const Sample& sample) {
+    effectiveness_.input(used_.D, sample.u, output_);
+    output_ = is_used_.cwiseProduct(sample.y) - output_;
+    product(M, output_, part_);
+    shift_ += part_;
   }
+
+  /// L minimises the F-radius of the next estimate, as far as the last measurement decides it.
+  void find_gain(const Matrix& spread) {
+    const LineForm X = X_->line_form();
+    // squares of sets that shrink to a point underflow: L does not depend on the unit
+    const double largest = std::max({largest_entry(noise_generators_), largest_entry(X.G), largest_entry(spread)});
+    const double unit = largest < std::numeric_limits<double>::min() ? 0.0 : std::ldexp(1.0, -std::ilogb(largest));
+    scaled_ = X.G * unit;
+    gram(scaled_, P_);
+    if (unit > 0 && unit == unit_ && spread.size() == 0 && is_steady()) return;
+    unit_ = unit;
+    solved_P_ = P_;
+    L_.setZero(TA_.rows(), used_.outputs());
+    if (unit > 0) solve_for_gain(spread);
+    product(L_, used_.Dv, minus_LDv_);
+    minus_LDv_ = -minus_LDv_;
+    product(L_, used_.C, map_);
+    map_ = TA_ - map_;
+  }
+
+  /// Any gain makes an enclosure: the last one is kept where P is the same to nearly all digits.
+  bool is_steady() const { return (P_ - solved_P_).cwiseAbs().maxCoeff() <= steady * P_.diagonal().maxCoeff(); }
+
+  void solve_for_gain(const Matrix& spread) {
+    product(used_.C, P_, CP_);
+    product(CP_, C_transposed_, S_);
+    scaled_ = noise_generators_ * unit_;
+    gram(scaled_, noise_gram_);
+    S_ += noise_gram_;
+    if (spread.size() > 0) S_ += linalg::gram(spread * unit_);
+    product(CP_, TA_transposed_, cross_);  // C P (T A)ᵀ
+    if (const auto solved = linalg::solve_spd(S_, cross_)) {
+      L_ = solved->transpose();
+    } else {
+      L_ = linalg::transposed_product(cross_, linalg::pseudo_inverse(S_));
+    }
+  }
+
+  static double largest_entry(const Matrix& M) { return M.size() == 0 ? 0.0 : M.cwiseAbs().maxCoeff(); }
 
   Budget budget_;
   LineForm X0_;
@@ -342,6 +378,14 @@ class PseudoInverseObserver final : public Observer {
   Vector is_used_;    ///< per output: 1 or 0
   Matrix T_, N_, TA_, TB_, TBw_, minus_ND_, minus_NDv_;
   Matrix noise_generators_;  ///< Dv Gv
+  Matrix C_transposed_, TA_transposed_;
+  Matrix L_, minus_LDv_, map_;  ///< the last gain, -L Dv, T A - L C
+  Matrix solved_P_;             ///< that L_ was computed from
+  double unit_ = 0;             ///< of solved_P_; 0: none
+  // Kept from step to step, so that no step takes memory for them.
+  Matrix scaled_, P_, CP_, S_, cross_, noise_gram_;
+  Vector shift_, output_, part_;
+  std::vector<Term> terms_;
 };
 
 bool by_singular_values(const SetBackend& backend) { return backend.info().intersections; }

@@ -7,6 +7,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "observers/in_place.hpp"
 #include "observers/interval_spread.hpp"
 
 namespace cordon::estimators {
@@ -65,7 +66,17 @@ Effectiveness::Effectiveness(const Model& model, const SetBackend& backend)
 }
 
 Vector Effectiveness::input(MatrixIn B, VectorIn u) const {
-  return model_.linear.actuator.dim() == 0 ? Vector(linalg::product(B, u)) : Vector(linalg::product(B, f_.cwiseProduct(u)));
+  Vector image;
+  input(B, u, image);
+  return image;
+}
+
+void Effectiveness::input(MatrixIn B, VectorIn u, Vector& image) const {
+  if (model_.linear.actuator.dim() == 0) {
+    product(B, u, image);
+  } else {
+    product(B, f_.cwiseProduct(u), image);
+  }
 }
 
 Matrix Effectiveness::input_spread(MatrixIn B, VectorIn u) const {

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Observers keep memory, and one of them its gain, from step to step: nothing of it may show after a new start.
+#include <doctest/doctest.h>
+
+#include "cordon/registry/registry.hpp"
+#include "cordon/study/data.hpp"
+#include "cordon/study/study.hpp"
+
+using namespace cordon;
+
+namespace {
+
+std::vector<Matrix> run(Observer& observer, const std::vector<Sample>& samples) {
+  std::vector<Matrix> sets;
+  observer.start();
+  for (const Sample& sample : samples) {
+    const LineForm X = observer.step(sample).set->line_form();
+    sets.insert(sets.end(), {X.M, X.G, X.c, X.S, X.A, X.b});
+  }
+  return sets;
+}
+
+bool same(const std::vector<Matrix>& left, const std::vector<Matrix>& right) {
+  return std::equal(left.begin(), left.end(), right.begin(), right.end(), [](const Matrix& A, const Matrix& B) {
+    return A.rows() == B.rows() && A.cols() == B.cols() && (A.array() == B.array()).all();
+  });
+}
+
+}  // namespace
+
+TEST_CASE("an observer that is started anew, after other data too, gives the sets of a new one") {
+  Registry registry;
+  registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+  const Study study = read_study(CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
+  std::vector<Sample> samples;
+  for (const auto source = open_data(study); samples.size() < 100;) samples.push_back(source->next()->sample);
+  std::vector<Sample> other(samples.begin(), samples.begin() + 90);
+  for (Sample& sample : other) sample.y *= 1.001;
+  for (const PipelineSpec& pipeline : study.pipelines) {
+    CAPTURE(pipeline.name);
+    const auto make = [&] {
+      return registry.make_observer(pipeline.observer.type,
+                                    {study.model, registry.make_backend(pipeline.backend.type, pipeline.backend.params)},
+                                    pipeline.observer.params);
+    };
+    const auto observer = make(), fresh = make();
+    run(*observer, other);
+    CHECK(same(run(*observer, samples), run(*fresh, samples)));
+  }
+}
