@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "cordon/core/error.hpp"
@@ -24,34 +23,39 @@ constexpr double pivot_floor = 1e-9;  ///< pivots below this share of their row 
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The rows and outputs being reduced. Factors and rows are marked instead of moved.
+/// The rows and outputs being reduced. Factors and rows are marked instead of moved. Observers eliminate in every step: an object
+/// is kept by each thread, with its memory.
 class Elimination {
  public:
-  /// `before`: of the terms that X was computed from.
-  Elimination(const LineForm& X, const Terms& before)
-      : factors_(X.generators()),
-        G_(padded_rows(X.G)),
-        c_(X.c),
-        A_(padded_rows(X.A)),
-        b_(X.b),
-        A_terms_(A_.cwiseAbs()),
-        b_terms_(X.b.cwiseAbs()),
-        before_(before),
-        computed_((before.rows.array() > 0).any() || (before.state.array() > 0).any()),
-        in_row_(at(X.constraints()), true),
-        free_(Vector::Zero(A_.cols())) {
+  /// Begins anew. `before`: of the terms that X was computed from.
+  void take(const LineForm& X, const Terms& before) {
+    factors_ = X.generators();
+    take_padded_rows(X.G, G_);
+    c_ = X.c;
+    take_padded_rows(X.A, A_);
+    b_ = X.b;
+    A_terms_ = A_.cwiseAbs();
+    b_terms_ = X.b.cwiseAbs();
+    before_ = before;
+    computed_ = (before.rows.array() > 0).any() || (before.state.array() > 0).any();
+    exact_ = true;
+    rescaled_ = false;
+    steps_.clear();
+    in_row_.assign(at(X.constraints()), true);
+    free_.setZero(A_.cols());
     free_.head(factors_).setOnes();
+    scored_ = false;
   }
 
   Index rows() const { return A_.rows(); }
   Index factors() const { return factors_; }
 
-  std::vector<Index> live_rows() const {
-    std::vector<Index> live;
+  const std::vector<Index>& live_rows() {
+    live_rows_.clear();
     for (Index i = 0; i < rows(); ++i) {
-      if (in_row_[at(i)]) live.push_back(i);
+      if (in_row_[at(i)]) live_rows_.push_back(i);
     }
-    return live;
+    return live_rows_;
   }
   Index live_count() const { return std::count(in_row_.begin(), in_row_.end(), true); }
 
@@ -149,14 +153,15 @@ class Elimination {
   /// The cheapest factor, and the row that binds it most. The choice of the row does not change the set but the rows that remain,
   /// and with them all later scores. False if no row has a usable pivot. `loss` is the score.
   bool choose(Index& row, Index& col, double& loss) {
-    if (!scores_) scores_.emplace(G_, A_, live_rows());
+    if (!scored_) scores_.take(G_, A_, live_rows());
+    scored_ = true;
     survey();
     double best = infinity, best_share = 0;
     col = -1;
     for (Index j = 0; j < factors(); ++j) {
       if (free_[j] == 0 || binding_row_[j] < 0) continue;
       const double reach = std::max({0.0, std::abs(allowed_lower_[j]) - 1, std::abs(allowed_upper_[j]) - 1});
-      const double score = scores_->score(j, reach);
+      const double score = scores_.score(j, reach);
       if (col >= 0 && score >= best * (1 - 1e-9) && !(score <= best * (1 + 1e-9) && share_[j] > best_share)) continue;
       best = score;
       best_share = share_[j];
@@ -189,20 +194,20 @@ class Elimination {
   }
 
   /// After `eliminate`, if there are more to come.
-  void update_scores(Index col) { scores_->forget(col); }
+  void update_scores(Index col) { scores_.forget(col); }
 
   const std::vector<EliminationStep>& steps() const { return steps_; }
 
-  LineForm result(const Matrix& M) const {
-    const std::vector<Index> rows_left = live_rows();
-    std::vector<Index> factors_left;
+  LineForm result(const Matrix& M) {
+    const std::vector<Index>& rows_left = live_rows();
+    live_factors_.clear();
     for (Index j = 0; j < factors(); ++j) {
-      if (free_[j] != 0) factors_left.push_back(j);
+      if (free_[j] != 0) live_factors_.push_back(j);
     }
-    const Index n = G_.rows(), m = static_cast<Index>(rows_left.size()), g = static_cast<Index>(factors_left.size());
+    const Index n = G_.rows(), m = static_cast<Index>(rows_left.size()), g = static_cast<Index>(live_factors_.size());
     LineForm X{M, Matrix(n, g), c_, Matrix::Zero(m, M.cols()), Matrix(m, g), Vector(m)};
     const auto copy = [&](const Rows& from, Index row, Matrix& to, Index place) {
-      for (Index j = 0; j < g; ++j) to(place, j) = from(row, factors_left[at(j)]);
+      for (Index j = 0; j < g; ++j) to(place, j) = from(row, live_factors_[at(j)]);
     };
     for (Index i = 0; i < n; ++i) copy(G_, i, X.G, i);
     Terms terms{Vector::Zero(m), before_.state};
@@ -286,7 +291,7 @@ class Elimination {
     }
   }
 
-  Index factors_;
+  Index factors_ = 0;
   Rows G_;
   Vector c_;
   Rows A_;
@@ -294,14 +299,21 @@ class Elimination {
   Rows A_terms_;  ///< size of the terms each coefficient was computed from
   Vector b_terms_;
   Terms before_;  ///< of rows: size of the terms before that; of states: of all terms
-  bool computed_;
-  bool exact_ = true, rescaled_ = false;
+  bool computed_ = false, exact_ = true, rescaled_ = false;
   std::vector<EliminationStep> steps_;
   std::vector<bool> in_row_;
   Vector free_;  ///< 1, or 0 for factors that were eliminated
   Vector lower_, upper_, allowed_lower_, allowed_upper_, share_, binding_row_;
-  std::optional<EliminationScores> scores_;
+  std::vector<Index> live_rows_, live_factors_;
+  EliminationScores scores_;
+  bool scored_ = false;
 };
+
+Elimination& elimination_of(const LineForm& X, const Terms& before) {
+  static thread_local Elimination work;
+  work.take(X, before);
+  return work;
+}
 
 /// Eliminates down to `max_constraints`; is what was forgotten implied by the rest?
 bool run(Elimination& work, Index max_constraints, const ConstraintElimination& options) {
@@ -332,7 +344,7 @@ Reduced eliminate_constraints(const LineForm& X, const Terms& before, Index max_
   if (max_constraints < 0) throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
   if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0))
     throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
-  Elimination work(X, before);
+  Elimination& work = elimination_of(X, before);
   const bool exact = run(work, max_constraints, options);
   return {work.result(X.M), exact};
 }
@@ -342,7 +354,7 @@ Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const Co
 }
 
 std::vector<EliminationStep> plan_elimination(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
-  Elimination work(X, no_terms(X));
+  Elimination& work = elimination_of(X, no_terms(X));
   run(work, max_constraints, options);
   return work.steps();
 }

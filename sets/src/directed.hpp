@@ -43,12 +43,12 @@ inline rounding::Range plus(rounding::Range x, rounding::Range y) {
 }
 inline rounding::Range minus(rounding::Range x, rounding::Range y) { return plus(x, {-y.upper, -y.lower}); }
 inline rounding::Range times(double a, rounding::Range x) {
-  const rounding::Range p = times(a, x.lower), q = times(a, x.upper);
-  return {std::min(p.lower, q.lower), std::max(p.upper, q.upper)};
+  return a > 0 ? rounding::Range{times(a, x.lower).lower, times(a, x.upper).upper}
+               : rounding::Range{times(a, x.upper).lower, times(a, x.lower).upper};
 }
 inline rounding::Range over(rounding::Range x, double a) {
-  const rounding::Range p = over(x.lower, a), q = over(x.upper, a);
-  return {std::min(p.lower, q.lower), std::max(p.upper, q.upper)};
+  return a > 0 ? rounding::Range{over(x.lower, a).lower, over(x.upper, a).upper}
+               : rounding::Range{over(x.upper, a).lower, over(x.lower, a).upper};
 }
 inline rounding::Range times(rounding::Range a, rounding::Range x) {
   const rounding::Range p = times(a.lower, x), q = times(a.upper, x);

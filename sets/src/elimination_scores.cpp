@@ -13,13 +13,13 @@ constexpr double factor_weight = 1e-6;  ///< of the change of the factors beside
 
 double* row(Rows& A, Index i) { return A.data() + i * A.cols(); }
 
-/// Rows W of F become L⁻¹W, where L Lᵀ = K; K is overwritten with L. Of the first `constraints` rows only those count that are
-/// independent: returns which. The others have 1 on K's diagonal beside what is their own, however much cancels.
-std::vector<Index> orthonormalise(Rows& F, Matrix& K, Index constraints) {
+/// Rows W of F become L⁻¹W, where L Lᵀ = K; the lower part of K is overwritten with L. Of the first `constraints` rows only those
+/// count that are independent: tells which. The others have 1 on K's diagonal beside what is their own, however much cancels.
+/// `before` receives K's diagonal.
+void orthonormalise(Rows& F, Matrix& K, Index constraints, Vector& before, std::vector<Index>& independent) {
   const Index m = K.rows(), width = F.cols();
-  const Vector before = K.diagonal();
-  std::vector<Index> independent;
-  independent.reserve(static_cast<std::size_t>(m));
+  before = K.diagonal();
+  independent.clear();
   for (Index k = 0; k < m; ++k) {
     double* const column = &K(0, k);
     const double least = dependent * before[k];
@@ -38,36 +38,36 @@ std::vector<Index> orthonormalise(Rows& F, Matrix& K, Index constraints) {
     }
     independent.push_back(k);
   }
-  return independent;
 }
 
 }  // namespace
 
 // With W = [A; G] and K = WWᵀ + [0 0; 0 I] it holds P = I - WᵀK⁻¹W, and the rows of G in K⁻¹W are G P.
-EliminationScores::EliminationScores(const Rows& G, const Rows& A, const std::vector<Index>& live)
-    : F_(static_cast<Index>(live.size()) + G.rows(), G.cols()), moved_(G.rows(), G.cols()) {
+void EliminationScores::take(const Rows& G, const Rows& A, const std::vector<Index>& live) {
   const Index n = G.rows(), m = static_cast<Index>(live.size()), width = G.cols();
+  F_.resize(m + n, width);
+  moved_.resize(n, width);
+  forgotten_ = 0;
   for (Index i = 0; i < m; ++i) std::copy_n(A.data() + live[static_cast<std::size_t>(i)] * width, width, row(F_, i));
   std::copy_n(G.data(), n * width, row(F_, m));
-  Matrix K = row_gram(F_);
-  K.diagonal().tail(n).array() += 1;
-  const std::vector<Index> independent = orthonormalise(F_, K, m);
-  for (std::size_t k = 0; k < independent.size(); ++k) {
-    if (independent[k] != static_cast<Index>(k)) std::copy_n(row(F_, independent[k]), width, row(F_, static_cast<Index>(k)));
+  take_row_gram(F_, K_);
+  K_.diagonal().tail(n).array() += 1;
+  orthonormalise(F_, K_, m, diagonal_, independent_);
+  for (std::size_t k = 0; k < independent_.size(); ++k) {
+    if (independent_[k] != static_cast<Index>(k)) std::copy_n(row(F_, independent_[k]), width, row(F_, static_cast<Index>(k)));
   }
-  const Index made = static_cast<Index>(independent.size());
+  rows_ = static_cast<Index>(independent_.size());
   for (Index i = n - 1; i >= 0; --i) {
-    std::copy_n(row(F_, made - n + i), width, row(moved_, i));
-    for (Index k = i + 1; k < n; ++k) vectors::add_multiple(width, -K(m + k, m + i), row(moved_, k), row(moved_, i));
-    moved_.row(i) /= K(m + i, m + i);
+    std::copy_n(row(F_, rows_ - n + i), width, row(moved_, i));
+    for (Index k = i + 1; k < n; ++k) vectors::add_multiple(width, -K_(m + k, m + i), row(moved_, k), row(moved_, i));
+    moved_.row(i) /= K_(m + i, m + i);
   }
   for (Index i = 0; i < n; ++i) {  // in units of the set's own width
     const double size = G.row(i).lpNorm<1>();
     if (size > 0) moved_.row(i) /= size;
   }
-  if (made < m + n) F_.conservativeResize(made, Eigen::NoChange);
   diagonal_.setOnes(width);
-  for (Index k = 0; k < made; ++k) {
+  for (Index k = 0; k < rows_; ++k) {
     const double* const from = row(F_, k);
     for (Index j = 0; j < width; ++j) diagonal_[j] -= from[j] * from[j];
   }
@@ -82,16 +82,19 @@ double EliminationScores::score(Index j, double reach) const {
 
 void EliminationScores::forget(Index col) {
   const Index width = F_.cols();
-  Vector p = Vector::Unit(width, col);
-  for (Index k = 0; k < F_.rows(); ++k) vectors::add_multiple(width, -F_(k, col), row(F_, k), p.data());
-  for (const Vector& q : Q_) vectors::add_multiple(width, q[col], q.data(), p.data());
+  if (forgotten_ == Q_.size()) Q_.emplace_back();
+  Vector& p = Q_[forgotten_];
+  p.setZero(width);
+  p[col] = 1;
+  for (Index k = 0; k < rows_; ++k) vectors::add_multiple(width, -F_(k, col), row(F_, k), p.data());
+  for (std::size_t k = 0; k < forgotten_; ++k) vectors::add_multiple(width, Q_[k][col], Q_[k].data(), p.data());
   const double rest = 1 - p[col];
   if (!(rest > 1e-14)) return;
   for (Index i = 0; i < moved_.rows(); ++i) vectors::add_multiple(width, moved_(i, col) / rest, p.data(), row(moved_, i));
   sum_squares_of_moves();
   p /= std::sqrt(rest);
   diagonal_.array() += p.array().square();
-  Q_.push_back(std::move(p));
+  ++forgotten_;
 }
 
 void EliminationScores::sum_squares_of_moves() {

@@ -9,11 +9,11 @@
 namespace cordon::sets {
 
 /// P = H - (AH)ᵀ(AHAᵀ)⁻¹(AH) with H = (I + GᵀG)⁻¹, kept as I - FᵀF + QᵀQ: F from one factorisation, a row of Q for every factor
-/// that was eliminated since. O(g (n + m)²), then O(g (n + m)) per elimination.
+/// that was eliminated since. O(g (n + m)²), then O(g (n + m)) per elimination. An object may be used again: its memory stays.
 class EliminationScores {
  public:
   /// Of the rows of A named `live`. Rows that depend on others up to rounding are left out: scores only order candidates.
-  EliminationScores(const Rows& G, const Rows& A, const std::vector<Index>& live);
+  void take(const Rows& G, const Rows& A, const std::vector<Index>& live);
 
   /// r² (‖D G P e_j‖² / P_jj + w) / P_jj for r = `reach`.
   double score(Index j, double reach) const;
@@ -23,10 +23,14 @@ class EliminationScores {
  private:
   void sum_squares_of_moves();
 
-  Rows F_;
-  std::vector<Vector> Q_;
+  Rows F_;  ///< in its first `rows_` rows
+  Index rows_ = 0;
+  std::vector<Vector> Q_;  ///< the first `forgotten_`
+  std::size_t forgotten_ = 0;
   Rows moved_;  ///< D G P: column j over P_jj is the change of the state when ξ_j moves by one
   Vector diagonal_, moved_squares_;
+  Matrix K_;
+  std::vector<Index> independent_;
 };
 
 }  // namespace cordon::sets

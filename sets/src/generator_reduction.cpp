@@ -7,6 +7,8 @@
 #include <numeric>
 #include <vector>
 
+#include <boost/container/small_vector.hpp>
+
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
 #include "reduction_split.hpp"
@@ -23,13 +25,30 @@ constexpr double rank_tolerance = 1e-10;
 /// Rounding level of the elimination, relative to a row's scale: below it a computed residual is not distinguishable from 0.
 constexpr double noise = 1e-14;
 
-Matrix nonzero_columns(MatrixIn G) {
-  Matrix kept(G.rows(), G.cols());
+bool is_zero(MatrixIn G, Index j) {
+  for (Index i = 0; i < G.rows(); ++i) {
+    if (G(i, j) != 0) return false;
+  }
+  return true;
+}
+
+Index count_nonzero_columns(MatrixIn G) {
+  Index count = 0;
+  for (Index j = 0; j < G.cols(); ++j) count += is_zero(G, j) ? 0 : 1;
+  return count;
+}
+
+void take_nonzero_columns(MatrixIn G, Matrix& kept) {
+  kept.resize(G.rows(), count_nonzero_columns(G));
   Index count = 0;
   for (Index j = 0; j < G.cols(); ++j) {
-    if ((G.col(j).array() != 0).any()) kept.col(count++) = G.col(j);
+    if (!is_zero(G, j)) kept.col(count++) = G.col(j);
   }
-  if (count < G.cols()) kept.conservativeResize(Eigen::NoChange, count);
+}
+
+Matrix nonzero_columns(MatrixIn G) {
+  Matrix kept;
+  take_nonzero_columns(G, kept);
   return kept;
 }
 
@@ -102,12 +121,17 @@ Matrix pca_reduction(const Matrix& G, Index max_generators) {
 /// Method 4 of [Yang2018]: G = [T V] with a basis T of large columns found by full pivoting, R = T⁻¹V. Replacing T and v_j
 /// by T (I + diag|r_j|) adds the volume ∏(1 + |r_ij|) - 1 - Σ|r_ij| (in units of det T); the cheapest column goes first.
 /// A flat G has fewer pivots than rows; what the basis leaves of a removed column in the other rows goes to their slack,
-/// one axis-parallel generator per row.
+/// one axis-parallel generator per row. Observers reduce in every step: an object is kept by each thread, with its memory.
 class BasisReduction {
  public:
-  explicit BasisReduction(const Matrix& G)
-      : G_(G), scale_(row_scales(G)), W_(padded_rows(G)), row_(numbers(G.rows())), order_(numbers(G.cols())) {
+  /// Begins with the columns of G that are not zero. Memory of earlier reductions is used again.
+  void take(MatrixIn G) {
+    take_nonzero_columns(G, G_);
+    take_row_scales(G_, scale_);
+    take_padded_rows(G_, W_);
     for (Index i = 0; i < W_.rows(); ++i) W_.row(i) *= scale_[i];
+    number(row_, G_.rows());
+    number(order_, G_.cols());
     eliminate();
   }
 
@@ -128,11 +152,10 @@ class BasisReduction {
   }
 
  private:
-  using Numbers = std::vector<Index>;
-  static Numbers numbers(Index count) {
-    Numbers all(static_cast<std::size_t>(count));
+  using Numbers = boost::container::small_vector<Index, 64>;
+  static void number(Numbers& all, Index count) {
+    all.resize(static_cast<std::size_t>(count));
     std::iota(all.begin(), all.end(), Index{0});
-    return all;
   }
   static Index at(const Numbers& numbers, Index i) { return numbers[static_cast<std::size_t>(i)]; }
   static void swap(Numbers& numbers, Index i, Index j) {
@@ -171,10 +194,10 @@ class BasisReduction {
 
   /// The largest entry of E; false if none counts.
   bool put_pivot_first() {
-    largest_.setZero(W_.cols());
+    sum_.setZero(W_.cols());
     for (Index i = rank_; i < G_.rows(); ++i) {
       const double* const entries = row(at(row_, i));
-      double* const largest = largest_.data();
+      double* const largest = sum_.data();
       for (Index j = 0; j < W_.cols(); ++j) {
         const double size = std::abs(entries[j]);
         largest[j] = largest[j] < size ? size : largest[j];
@@ -182,9 +205,9 @@ class BasisReduction {
     }
     Index place = rank_;
     for (Index k = rank_; k < G_.cols(); ++k) {
-      if (largest_[at(order_, k)] > largest_[at(order_, place)]) place = k;
+      if (sum_[at(order_, k)] > sum_[at(order_, place)]) place = k;
     }
-    const double pivot = largest_[at(order_, place)];
+    const double pivot = sum_[at(order_, place)];
     if (!(pivot > rank_tolerance)) return false;
     swap(order_, rank_, place);
     for (Index i = rank_; i < G_.rows(); ++i) {
@@ -249,18 +272,25 @@ class BasisReduction {
     return H;
   }
 
-  const Matrix& G_;
+  Matrix G_;
   Vector scale_;
   Rows W_;
   Numbers row_, order_;  ///< W's rows and columns in the order of their pivots
   Index rank_ = 0;
-  Vector growth_, slack_, largest_, sum_, cost_;
+  Vector growth_, slack_;
+  Vector sum_, cost_;  ///< per column: the largest entry, then a row's part of the costs
 };
+
+BasisReduction& basis_reduction(MatrixIn G) {
+  static thread_local BasisReduction reduction;
+  reduction.take(G);
+  return reduction;
+}
 
 }  // namespace
 
 ReductionSplit split_generators(const Matrix& G, Index max_generators, GeneratorReduction method) {
-  if (method == GeneratorReduction::yang_scott) return BasisReduction(G).split(max_generators);
+  if (method == GeneratorReduction::yang_scott) return basis_reduction(G).split(max_generators);
   const Index n = G.rows(), kept = std::min(max_generators - n, G.cols());
   const Matrix sorted = sorted_by_size(G, method == GeneratorReduction::combastel ? Size::norm_2 : Size::norm_1_minus_max);
   const Matrix small = sorted.rightCols(sorted.cols() - kept);
@@ -278,17 +308,16 @@ Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction me
                                    "; allow at least " + std::to_string(G.rows()));
   }
   require_finite(G, "generator reduction", "the generator matrix");
-  const Matrix kept = nonzero_columns(G);
-  if (kept.cols() <= max_generators) return kept;
+  if (count_nonzero_columns(G) <= max_generators) return nonzero_columns(G);
   switch (method) {
     case GeneratorReduction::girard:
-      return box_reduction(kept, max_generators, Size::norm_1_minus_max);
+      return box_reduction(nonzero_columns(G), max_generators, Size::norm_1_minus_max);
     case GeneratorReduction::combastel:
-      return box_reduction(kept, max_generators, Size::norm_2);
+      return box_reduction(nonzero_columns(G), max_generators, Size::norm_2);
     case GeneratorReduction::pca:
-      return pca_reduction(kept, max_generators);
+      return pca_reduction(nonzero_columns(G), max_generators);
     case GeneratorReduction::yang_scott:
-      return BasisReduction(kept).reduce(max_generators);
+      return basis_reduction(G).reduce(max_generators);
   }
   throw Error(Errc::invalid, "generator reduction: unknown method");
 }

@@ -12,6 +12,7 @@
 #include "cordon/core/vectors.hpp"
 #include "elimination_plan.hpp"
 #include "false_row.hpp"
+#include "put_product.hpp"
 #include "require.hpp"
 #include "residue.hpp"
 
@@ -19,15 +20,14 @@ namespace cordon::sets {
 
 namespace {
 
-/// |c| + |G| 1.
-Vector reach(const LineZonotope& X) {
-  Vector sizes = X.c.cwiseAbs();
+/// `sizes` = |c| + |G| 1.
+void take_reach(const LineZonotope& X, Vector& sizes) {
+  sizes = X.c.cwiseAbs();
   const Index n = X.dim();
   const double* entry = X.G.data();
   for (Index j = 0; j < X.generators(); ++j) {
     for (Index i = 0; i < n; ++i) sizes[i] += std::abs(*entry++);
   }
-  return sizes;
 }
 
 void require_no_overflow(const LineZonotope& X) {
@@ -36,15 +36,6 @@ void require_no_overflow(const LineZonotope& X) {
   }
   if (!vectors::all_finite(X.c) || !vectors::all_finite(X.b))
     throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
-}
-
-/// `block` = T G.
-void put_product(MatrixIn T, const Matrix& G, Eigen::Ref<Matrix> block) {
-  if (vectors::is_small(T)) {
-    vectors::small_product(T, G, block);
-  } else {
-    block = linalg::product(T, G);
-  }
 }
 
 /// A line zonotope of this size; rows and columns of S and A are 0.
@@ -86,6 +77,7 @@ LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span
   LineZonotope Y = blank(m, lines, generators, constraints);
   Y.c = f;
   Terms terms{Vector::Zero(constraints), f.cwiseAbs()};
+  Vector size;  // of a summand's coordinates
   Index line = 0, generator = 0, row = 0;
   const auto add = [&](MatrixIn T, const LineZonotope& Z) {
     require_size(T.rows(), m, name, "the number of rows of a summand's map");
@@ -93,7 +85,7 @@ LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span
     const Index l = Z.lines(), g = Z.generators(), rows = Z.constraints();
     if (l > 0) Y.M.middleCols(line, l) = linalg::denoised_product(T, Z.M);
     put_product(T, Z.G, Y.G.middleCols(generator, g));
-    const Vector size = reach(Z);
+    take_reach(Z, size);
     for (Index k = 0; k < T.cols(); ++k) {
       Y.c += T.col(k) * Z.c[k];
       terms.state += T.col(k).cwiseAbs() * size[k];
@@ -110,7 +102,8 @@ LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span
   add(A, X);
   for (const Summand& s : summands) add(s.T, s.set);
   require_no_overflow(Y);
-  return summands.empty() ? Y : with_residue(std::move(Y), terms);
+  if (summands.empty()) return Y;
+  return with_residue(std::move(Y), terms);
 }
 
 LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T, const LineZonotope& V) {
@@ -139,7 +132,9 @@ LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, M
   Y.b.segment(X.constraints(), V.constraints()) = V.b;
 
   Terms terms = no_terms(Y);
-  const Vector of_X = reach(X), of_V = reach(V);
+  Vector of_X, of_V;
+  take_reach(X, of_X);
+  take_reach(V, of_V);
   std::vector<Index> kept(static_cast<std::size_t>(old));
   std::iota(kept.begin(), kept.end(), Index{0});
   kept.reserve(static_cast<std::size_t>(old + p));

@@ -10,9 +10,11 @@ namespace cordon::sets {
 /// Rows filled with zeros up to whole vectors: cols() is the padded number.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-Rows padded_rows(const Matrix& A);
+Rows padded_rows(MatrixIn A);
+void take_padded_rows(MatrixIn A, Rows& rows);
 
 /// A Aᵀ.
 Matrix row_gram(const Rows& A);
+void take_row_gram(const Rows& A, Matrix& K);
 
 }  // namespace cordon::sets

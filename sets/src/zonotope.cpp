@@ -7,6 +7,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "put_product.hpp"
 #include "require.hpp"
 
 namespace cordon::sets {
@@ -96,12 +97,12 @@ Zonotope affine_sum(const Zonotope& Z, MatrixIn A, VectorIn f, std::span<const M
   Zonotope sum{f, Matrix(A.rows(), columns)};
   Index at = 0;
   const auto add = [&](MatrixIn T, const Zonotope& X) {
-    if (X.dim() == 0) {
-      sum.G.middleCols(at, X.generators()).setZero();
-    } else {
-      sum.c += linalg::product(T, X.c);
-      if (X.generators() > 0) sum.G.middleCols(at, X.generators()) = linalg::product(T, X.G);
+    for (Index i = 0; i < T.rows(); ++i) {
+      double center = 0;
+      for (Index k = 0; k < T.cols(); ++k) center += T(i, k) * X.c[k];
+      sum.c[i] += center;
     }
+    put_product(T, X.G, sum.G.middleCols(at, X.generators()));
     at += X.generators();
   };
   add(A, Z);

@@ -174,7 +174,8 @@ TEST_CASE("scores of eliminations, and after some") {
     const Index g = X.generators();
     std::vector<Index> live(static_cast<std::size_t>(m)), forgotten;
     std::iota(live.begin(), live.end(), Index{0});
-    sets::EliminationScores scores(sets::padded_rows(X.G), sets::padded_rows(X.A), live);
+    sets::EliminationScores scores;
+    scores.take(sets::padded_rows(X.G), sets::padded_rows(X.A), live);
     for (int step = 0; step < 3; ++step) {
       const Vector plain = plain_scores(X.G, X.A, forgotten, 1.5);
       for (Index j = 0; j < g; ++j) {

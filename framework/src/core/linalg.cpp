@@ -84,8 +84,49 @@ std::optional<Matrix> solve(MatrixIn A, MatrixIn B) {
   return Matrix(lu.solve(B));
 }
 
+namespace {
+
+/// So many equations that preparing for large systems would cost more than solving them.
+constexpr Index few = 4;
+
+std::optional<Matrix> solve_few_spd(MatrixIn A, MatrixIn B) {
+  const Index m = A.rows();
+  double L[few][few] = {}, inverse[few] = {};
+  for (Index k = 0; k < m; ++k) {
+    double square = 0;
+    for (Index j = 0; j < k; ++j) square += L[k][j] * L[k][j];
+    const double pivot = A(k, k) - square;
+    if (!(pivot > 0)) return std::nullopt;
+    const double root = std::sqrt(pivot);
+    inverse[k] = 1 / root;
+    for (Index i = k + 1; i < m; ++i) {
+      double product = 0;
+      for (Index j = 0; j < k; ++j) product += L[i][j] * L[k][j];
+      L[i][k] = (A(i, k) - product) / root;
+    }
+  }
+  Matrix X = B;
+  for (Index c = 0; c < X.cols(); ++c) {
+    double* const x = &X(0, c);
+    for (Index k = 0; k < m; ++k) {
+      x[k] *= inverse[k];
+      for (Index i = k + 1; i < m; ++i) x[i] -= x[k] * L[i][k];
+    }
+    for (Index k = m - 1; k >= 0; --k) {
+      double sum = 0;
+      for (Index i = k + 1; i < m; ++i) sum += L[i][k] * x[i];
+      x[k] = (x[k] - sum) * inverse[k];
+    }
+  }
+  if (!vectors::all_finite(X)) return std::nullopt;
+  return X;
+}
+
+}  // namespace
+
 std::optional<Matrix> solve_spd(MatrixIn A, MatrixIn B) {
   if (A.rows() == 0) return Matrix(0, B.cols());
+  if (A.rows() <= few) return solve_few_spd(A, B);
   const Eigen::LLT<Matrix> llt(A);
   if (llt.info() != Eigen::Success) return std::nullopt;
   Matrix X = llt.solve(B);
@@ -161,12 +202,41 @@ Matrix gram(MatrixIn A) {
   return K;
 }
 
+namespace {
+
+constexpr double product_noise = 1e-14;  ///< cancelled to this share of its terms, an entry is zero
+
+[[noreturn]] void refuse_overflow() { throw Error(Errc::not_finite, "a matrix product overflows; scale the problem"); }
+
+/// The same sums in one pass. Terms that overflow in sum are refused as well: nothing could be told from their noise.
+Matrix small_denoised_product(MatrixIn A, MatrixIn B) {
+  Matrix C(A.rows(), B.cols());
+  double overflow = 0;  // NaN after one
+  for (Index j = 0; j < B.cols(); ++j) {
+    for (Index i = 0; i < A.rows(); ++i) {
+      double sum = 0, size = 0;
+      for (Index k = 0; k < A.cols(); ++k) {
+        const double term = A(i, k) * B(k, j);
+        sum += term;
+        size += std::abs(term);
+      }
+      C(i, j) = std::abs(sum) <= product_noise * size ? 0 : sum;
+      overflow += 0.0 * size;
+    }
+  }
+  if (overflow != 0) refuse_overflow();
+  return C;
+}
+
+}  // namespace
+
 Matrix denoised_product(MatrixIn A, MatrixIn B) {
+  if (vectors::is_small(A)) return small_denoised_product(A, B);
   Matrix C = product(A, B);
   if (C.size() == 0) return C;
-  if (!vectors::all_finite(C)) throw Error(Errc::not_finite, "a matrix product overflows; scale the problem");
+  if (!vectors::all_finite(C)) refuse_overflow();
   const Matrix magnitude = product(A.cwiseAbs(), B.cwiseAbs());
-  return (C.array().abs() <= 1e-14 * magnitude.array()).select(0.0, C);
+  return (C.array().abs() <= product_noise * magnitude.array()).select(0.0, C);
 }
 
 Vector row_scales(MatrixIn A) {

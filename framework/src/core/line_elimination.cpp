@@ -14,7 +14,8 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 /// Rows of [S A b] above rows of [M G c], with the magnitude of the terms that each entry was computed from, and the combination
 /// of the original rows [S A b] that was added to each, if it is asked for (not kept up for rows that are used up). Rows of
-/// banded systems touch few others and in few places: only those are visited.
+/// banded systems touch few others and in few places: only those are visited. Observers eliminate in every step: an object is
+/// kept by each thread, with its memory.
 struct Tableau {
   /// The largest equilibrated entry of a row of S.
   struct Candidate {
@@ -26,19 +27,22 @@ struct Tableau {
     Index first, last;
   };
 
-  Index lines, rows, width;
+  Index lines = 0, rows = 0, width = 0;
   RowMajor T, magnitude, trace;
   std::vector<bool> used;
   std::vector<Candidate> candidates;  ///< of every row
+  Eigen::RowVectorXd pivot, pivot_magnitude, pivot_trace;
+  std::vector<Run> runs, trace_runs;  ///< of the pivot row
 
   /// `b_magnitude`: size of what cancelled in b already; may be empty.
-  Tableau(const LineForm& X, VectorIn b_magnitude, bool traced)
-      : lines(X.lines()),
-        rows(X.constraints()),
-        width(lines + X.generators() + 1),
-        T(rows + X.dim(), width),
-        trace(RowMajor::Identity(rows + X.dim(), traced ? rows : 0)),
-        used(static_cast<std::size_t>(rows), false) {
+  void take(const LineForm& X, VectorIn b_magnitude, bool traced) {
+    lines = X.lines();
+    rows = X.constraints();
+    width = lines + X.generators() + 1;
+    T.resize(rows + X.dim(), width);
+    trace.setIdentity(rows + X.dim(), traced ? rows : 0);
+    used.assign(static_cast<std::size_t>(rows), false);
+    candidates.clear();
     const Index g = X.generators();
     T.topLeftCorner(rows, lines) = X.S;
     T.block(0, lines, rows, g) = X.A;
@@ -75,23 +79,24 @@ struct Tableau {
     return best > 0;
   }
 
-  static std::vector<Run> nonzero(const Eigen::RowVectorXd& row) {
-    std::vector<Run> runs;
+  static void find_runs(const Eigen::RowVectorXd& row, std::vector<Run>& runs) {
+    runs.clear();
     for (Index j = 0; j < row.size(); ++j) {
       if (row[j] == 0) continue;
       if (runs.empty() || runs.back().last != j) runs.push_back({j, j});
       runs.back().last = j + 1;
     }
-    return runs;
   }
 
   /// Terms inherit the magnitude of the pivot row: what cancelled there is noise here too.
   void eliminate(Index row, Index col) {
     used[static_cast<std::size_t>(row)] = true;
     const double divisor = T(row, col);
-    const Eigen::RowVectorXd pivot = T.row(row) / divisor, pivot_magnitude = magnitude.row(row) / std::abs(divisor),
-                             pivot_trace = trace.row(row) / divisor;
-    const std::vector<Run> runs = nonzero(pivot_magnitude), trace_runs = nonzero(pivot_trace);
+    pivot = T.row(row) / divisor;
+    pivot_magnitude = magnitude.row(row) / std::abs(divisor);
+    pivot_trace = trace.row(row) / divisor;
+    find_runs(pivot_magnitude, runs);
+    find_runs(pivot_trace, trace_runs);
     for (Index i = 0; i < T.rows(); ++i) {
       const double factor = T(i, col);
       if (i == row || factor == 0) continue;
@@ -168,6 +173,12 @@ Matrix independent_columns(Matrix M) {
   return M.leftCols(kept);
 }
 
+Tableau& tableau_of(const LineForm& X, VectorIn b_magnitude, bool traced) {
+  static thread_local Tableau tableau;
+  tableau.take(X, b_magnitude, traced);
+  return tableau;
+}
+
 using Pivots = std::vector<std::pair<Index, Index>>;
 
 Pivots eliminate(Tableau& tableau) {
@@ -221,7 +232,7 @@ LineForm eliminate_lines(const LineForm& X) { return solve_for_lines(X).set; }
 
 LinesSolved solve_for_lines(const LineForm& X) {
   if (X.lines() == 0) return {X, Vector::Zero(X.constraints()), Vector::Zero(X.dim())};
-  Tableau tableau(X, Vector(0), false);
+  Tableau& tableau = tableau_of(X, Vector(0), false);
   const Pivots pivots = eliminate(tableau);
   std::vector<Index> kept;
   LineForm set = remainder(tableau, X, pivots, kept);
@@ -238,7 +249,7 @@ LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) 
             Matrix(0, g),
             Vector(0)};
   }
-  Tableau tableau(X, b_magnitude, true);
+  Tableau& tableau = tableau_of(X, b_magnitude, true);
   const Pivots pivots = eliminate(tableau);
   Matrix lines_by_factors = Matrix::Zero(X.lines(), g);
   Vector lines_offset = Vector::Zero(X.lines());

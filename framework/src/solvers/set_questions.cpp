@@ -301,6 +301,12 @@ Answer is_empty(const LineForm& X, Certificate* why) {
     if (why) *why = {Certificate::Kind::structure, Vector(0), 1};
     return Answer::no;
   }
+  if (X.lines() == 0) {  // nearly always known at once, without a copy of the rows for rational arithmetic
+    Certificate proof;
+    const Answer answer = BoxedProgram(X.A, X.b).is_empty(&proof);
+    if (why) *why = std::move(proof);
+    if (answer != Answer::unknown) return answer;
+  }
   return Infeasibility(rows_of(X)).answer(why);
 }
 
