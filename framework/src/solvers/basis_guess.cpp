@@ -71,10 +71,14 @@ const Vector& BasisGuess::scores(VectorIn g) {
 /// w = Q g; the size of g - Qᵀw tells what counts as small.
 void BasisGuess::least_squares() {
   std::fill(sums_.begin(), sums_.end(), 0.0F);
-  for (Index p = 0; p < rows_.panels(); ++p)
-    rows_.add_times(p, Line<float>::load(&g_[static_cast<std::size_t>(p * width)]), sums_.data());
+  Line<float> squares;
+  for (Index p = 0; p < rows_.panels(); ++p) {
+    const Line<float> g = Line<float>::load(&g_[static_cast<std::size_t>(p * width)]);
+    rows_.add_times(p, g, sums_.data());
+    squares.add(g, g);
+  }
   total(0);
-  const float all = std::inner_product(g_.begin(), g_.end(), g_.begin(), 0.0F);
+  const float all = squares.total();
   const float part = std::inner_product(w_.begin(), w_.end(), w_.begin(), 0.0F);
   threshold_ = std::sqrt(std::max(all - part, 1e-6F * all) / static_cast<float>(scores_.size()));
   std::fill(dual_.begin(), dual_.end(), 0.0F);

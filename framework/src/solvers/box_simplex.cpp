@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace cordon {
 
@@ -45,11 +44,11 @@ BoxSimplex::BoxSimplex(const Matrix& A, VectorIn b)
       basic_(static_cast<std::size_t>(m_)),
       order_(static_cast<std::size_t>(g_)),
       candidates_(static_cast<std::size_t>(panels_.padded_cols())),
+      steps_(candidates_.size() + vectors::block),
       cost_(Vector::Zero(panels_.padded_cols())),
       side_(cost_),
       reduced_(cost_),
-      decrease_(cost_),
-      breakpoint_(cost_) {
+      decrease_(cost_) {
   columns_.topRows(m_) = A;
   b_.head(m_) = b;
 }
@@ -63,14 +62,28 @@ BoxSimplex::Status BoxSimplex::maximize(VectorIn g, VectorIn scores, double enou
   return solve(enough);
 }
 
-/// The m best come first and in order; one that is no number comes last.
+/// The m best come first and in order, of equal ones the first; one that is no number comes last. The others follow in any order.
 void BoxSimplex::order_by(VectorIn scores) {
-  std::iota(order_.begin(), order_.end(), Index{0});
-  breakpoint_.head(g_) = scores.array().isNaN().select(std::numeric_limits<double>::infinity(), scores);
-  const auto better = [this](Index i, Index j) {
-    return breakpoint_[i] != breakpoint_[j] ? breakpoint_[i] < breakpoint_[j] : i < j;
-  };
-  std::partial_sort(order_.begin(), order_.begin() + std::min(g_, m_), order_.end(), better);
+  reduced_.head(g_) = scores.array().isNaN().select(std::numeric_limits<double>::infinity(), scores);  // not in use yet
+  const double* const score = reduced_.data();
+  const Index best = std::min(g_, m_);
+  Index* const order = order_.data();
+  Index made = 0, rest = g_;
+  for (Index j = 0; j < g_; ++j) {
+    const double here = score[j];
+    if (made == best) {
+      if (best == 0 || !(here < score[order[best - 1]])) {
+        order[--rest] = j;
+        continue;
+      }
+      order[--rest] = order[best - 1];
+    } else {
+      ++made;
+    }
+    Index place = made - 1;
+    for (; place > 0 && here < score[order[place - 1]]; --place) order[place] = order[place - 1];
+    order[place] = j;
+  }
 }
 
 /// From artificials alone, by the columns in `order_` as far as they are independent.
@@ -303,7 +316,7 @@ BoxSimplex::Status BoxSimplex::solve(double enough) {
       y_ = -direction_ * rho_;
       return Status::infeasible;
     }
-    idle = breakpoint_[entering] > no_step ? 0 : idle + 1;
+    idle = steps_[passed_] > no_step ? 0 : idle + 1;
     if (idle > patience && !nudged_) {
       nudge_costs();
       idle = 0;
@@ -332,20 +345,23 @@ Index BoxSimplex::leaving_row() const {
 
 /// The row of the tableau: how fast each reduced cost falls, and where those that fall vanish.
 void BoxSimplex::price(Index row) {
-  rho_.head(m_) = direction_ * inverse_.row(row).transpose();
+  const double* const from = &inverse_(row, 0);
+  for (Index k = 0; k < m_; ++k) rho_[k] = from[k * height_];
   panels_.transpose_times(rho_.data(), decrease_.data());
-  rho_ *= direction_;
+  double* const decrease = decrease_.data();
+  const double* const side = side_.data();
+  for (Index j = 0; j < decrease_.size(); ++j) decrease[j] *= direction_ * side[j];
   const double least = smallest_pivot * std::sqrt(norms_[row]);
-  candidate_count_ = 0;
+  Index* const candidates = candidates_.data();
+  double* const steps = steps_.data();
+  std::size_t count = 0;
   for (Index j = 0; j < g_; ++j) {
-    decrease_[j] *= side_[j];
-    candidates_[candidate_count_] = j;
-    candidate_count_ += decrease_[j] > least;
+    candidates[count] = j;
+    count += decrease[j] > least;
   }
-  for (std::size_t k = 0; k < candidate_count_; ++k) {
-    const Index j = candidates_[k];
-    breakpoint_[j] = reduced_[j] / decrease_[j];
-  }
+  for (std::size_t k = 0; k < count; ++k) steps[k] = reduced_[candidates[k]] / decrease[candidates[k]];
+  for (std::size_t k = count; k < count + vectors::block; ++k) steps[k] = std::numeric_limits<double>::infinity();
+  candidate_count_ = count;
 }
 
 /// Passes breakpoints while the bound still falls; the last one enters. None if the bound falls without end, beyond what the
@@ -368,13 +384,18 @@ Index BoxSimplex::entering_variable(double infeasibility) {
 
 /// Brings the candidate with the first breakpoint among those from `place` on to that place.
 void BoxSimplex::select(std::size_t place) {
-  std::size_t best = place;
-  double least = breakpoint_[candidates_[place]];
-  for (std::size_t k = place + 1; k < candidate_count_; ++k) {
-    const double here = breakpoint_[candidates_[k]];
-    best = here < least ? k : best;
-    least = here < least ? here : least;
+  double* const steps = steps_.data();
+  Pair low = load(steps + place), high = load(steps + place + 2);
+  for (std::size_t k = place + vectors::block; k < candidate_count_; k += vectors::block) {
+    const Pair first = load(steps + k), second = load(steps + k + 2);
+    low = first < low ? first : low;
+    high = second < high ? second : high;
   }
+  low = high < low ? high : low;
+  const double least = low[0] < low[1] ? low[0] : low[1];
+  std::size_t best = place;
+  while (best + 1 < candidate_count_ && steps[best] != least) ++best;
+  std::swap(steps[place], steps[best]);
   std::swap(candidates_[place], candidates_[best]);
 }
 
@@ -395,7 +416,7 @@ void BoxSimplex::flip_passed() {
 /// False, with nothing changed, if the pivot is not known well enough.
 bool BoxSimplex::exchange(Index row, Index entering) {
   transform(&columns_(0, entering), image_);
-  const double pivot = image_[row], step = breakpoint_[entering], side = side_[entering], size = decrease_[entering];
+  const double pivot = image_[row], step = steps_[passed_], side = side_[entering], size = decrease_[entering];
   if (!(std::abs(pivot * direction_ * side - size) <= agreement * size)) return false;
 
   reduced_ -= step * decrease_;

@@ -76,10 +76,11 @@ class BoxSimplex {
   Vector b_, objective_, y_, basic_value_, norms_, rho_, image_, change_, change_image_;
   std::vector<Index> basic_;       ///< variable in each position; artificial i is g + i
   std::vector<Index> order_;       ///< columns, those to be made basic first
-  std::vector<Index> candidates_;  ///< variables with a breakpoint; the passed ones come first
+  std::vector<Index> candidates_;  ///< variables whose reduced costs fall; those that were passed come first
+  std::vector<double> steps_;      ///< of the multipliers, where these costs vanish
   /// Of the structural variables, with padding: objective; bound ±1, 0 for basic ones; side · reduced cost ≥ 0, its decrease per
-  /// step of the multipliers, and the step where it vanishes.
-  Vector cost_, side_, reduced_, decrease_, breakpoint_;
+  /// step of the multipliers.
+  Vector cost_, side_, reduced_, decrease_;
   std::size_t candidate_count_ = 0, passed_ = 0;
   Index iterations_ = 0, updates_ = 0;
   bool nudged_ = false;   ///< costs differ from the objective

@@ -25,6 +25,7 @@ constexpr double accurate = 1e-15;
 
 RowGram::RowGram(const Matrix& A, const Vector& b, const Vector& error) : A_(0, A.cols()), all_(A.rows()) {
   const Index g = A.cols();
+  rows_.reserve(static_cast<std::size_t>(all_));
   for (Index i = 0; i < all_; ++i) {
     if (g > 0 && !A.row(i).isZero(0)) {
       rows_.push_back(i);
@@ -37,13 +38,22 @@ RowGram::RowGram(const Matrix& A, const Vector& b, const Vector& error) : A_(0, 
     smallest_ = 1;
     return;
   }
-  const Matrix rows = m == all_ ? A : Matrix(A(rows_, Eigen::all));
-  scale_ = linalg::row_scales(rows);
-  A_ = scale_.asDiagonal() * rows;
-  if (((A_.array().abs() < rounding::tiny) && (rows.array() != 0)).any()) return;  // scaling must be exact
-  b_ = scale_.cwiseProduct(Vector(b(rows_)));
-  error_ = scale_.cwiseProduct(Vector(error(rows_)));
-  reach_ = A_.cwiseAbs().rowwise().sum() * up(1 + 2 * gamma(g + 2));
+  const Vector scales = linalg::row_scales(A);
+  A_.resize(m, g);
+  of_rows_.resize(m, 4);
+  for (Index k = 0; k < m; ++k) {
+    const Index i = rows_[static_cast<std::size_t>(k)];
+    double size = 0;
+    for (Index j = 0; j < g; ++j) {
+      A_(k, j) = scales[i] * A(i, j);
+      if (std::abs(A_(k, j)) < rounding::tiny && A(i, j) != 0) return;  // scaling must be exact
+      size += std::abs(A_(k, j));
+    }
+    scale()[k] = scales[i];
+    right()[k] = scales[i] * b[i];
+    unsure()[k] = scales[i] * error[i];
+    reach()[k] = size * up(1 + 2 * gamma(g + 2));
+  }
   factor();
 }
 
@@ -62,10 +72,9 @@ void RowGram::factor() {
   smallest_ = rounding::down(shift - hidden);
 }
 
-Vector RowGram::solve(Vector right) const {
-  L_.triangularView<Eigen::Lower>().solveInPlace(right);
-  L_.transpose().triangularView<Eigen::Upper>().solveInPlace(right);
-  return right;
+void RowGram::solve(Vector& v) const {
+  L_.triangularView<Eigen::Lower>().solveInPlace(v);
+  L_.transpose().triangularView<Eigen::Upper>().solveInPlace(v);
 }
 
 RowGram::Point RowGram::least_squares() const {
@@ -74,14 +83,15 @@ RowGram::Point RowGram::least_squares() const {
     point.xi.setZero();
     return point;
   }
-  Vector y = Vector::Zero(b_.size()), left = b_;
+  Vector y = Vector::Zero(A_.rows()), left = right();
   for (int round = 0; round < most_corrections; ++round) {
-    y += solve(left);
-    left = b_ - linalg::product(A_, linalg::transposed_product(A_, y));
-    if ((left.array().abs() <= accurate * (b_.cwiseAbs() + reach_).array()).all()) break;
+    solve(left);
+    y += left;
+    point.xi = linalg::transposed_product(A_, y);
+    left = right() - linalg::product(A_, point.xi);
+    if ((left.array().abs() <= accurate * (right().cwiseAbs() + reach()).array()).all()) break;
   }
-  point.xi = linalg::transposed_product(A_, y);
-  point.y(rows_) = scale_.cwiseProduct(y);
+  for (Index k = 0; k < y.size(); ++k) point.y[rows_[static_cast<std::size_t>(k)]] = scale()[k] * y[k];
   return point;
 }
 
@@ -90,10 +100,15 @@ double RowGram::distance(const Vector& xi) const {
   const double largest = xi.size() ? xi.cwiseAbs().maxCoeff() : 0;
   if (!std::isfinite(largest)) return infinity;
   const double share = gamma(A_.cols() + 4), underflow = static_cast<double>(A_.cols() + 4) * rounding::tiny;
-  const Vector gap = (b_ - linalg::product(A_, xi)).cwiseAbs() * (1 + 4 * rounding::unit) +
-                     share * (reach_ * largest + b_.cwiseAbs()) * (1 + 8 * rounding::unit) + error_ * (1 + 4 * rounding::unit) +
-                     Vector::Constant(b_.size(), underflow);
-  const double size = std::sqrt(gap.squaredNorm() / smallest_) * (1 + 4 * gamma(b_.size() + 8));
+  const Vector image = linalg::product(A_, xi);
+  double squares = 0;
+  for (Index k = 0; k < image.size(); ++k) {
+    const double gap = std::abs(right()[k] - image[k]) * (1 + 4 * rounding::unit) +
+                       share * (reach()[k] * largest + std::abs(right()[k])) * (1 + 8 * rounding::unit) +
+                       unsure()[k] * (1 + 4 * rounding::unit) + underflow;
+    squares += gap * gap;
+  }
+  const double size = std::sqrt(squares / smallest_) * (1 + 4 * gamma(image.size() + 8));
   return up(size * (1 + 8 * rounding::unit) + rounding::tiny);
 }
 

@@ -2,7 +2,7 @@
 // Points that satisfy few equations in many variables: proposals by least squares, and a proof that a solution is near.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "cordon/core/types.hpp"
 
@@ -27,11 +27,20 @@ class RowGram {
 
  private:
   void factor();
-  Vector solve(Vector right) const;
+  void solve(Vector& v) const;  ///< v becomes (A Aᵀ)⁻¹v
+
+  // Of the rows that are not zero, scaled; |A| 1 is rounded up.
+  auto right() { return of_rows_.col(0); }
+  auto right() const { return of_rows_.col(0); }
+  auto unsure() { return of_rows_.col(1); }
+  auto unsure() const { return of_rows_.col(1); }
+  auto reach() { return of_rows_.col(2); }
+  auto reach() const { return of_rows_.col(2); }
+  auto scale() { return of_rows_.col(3); }
+  auto scale() const { return of_rows_.col(3); }
 
   std::vector<Index> rows_;  ///< that are not zero
-  Matrix A_, L_;
-  Vector b_, error_, scale_, reach_;
+  Matrix A_, L_, of_rows_;
   Index all_;
   double smallest_ = 0;
 };
