@@ -13,11 +13,6 @@ namespace {
 /// Coefficients below this share of their row are left out: proposals need no more, and pivots on noise are bad ones.
 constexpr double noise = 1e-13;
 
-Matrix scaled(const Matrix& A, const Vector& scale) {
-  Matrix rows = scale.asDiagonal() * A;  // the largest entry of a row lies in [1, 2)
-  return (rows.array().abs() < noise).select(0.0, rows);
-}
-
 /// The power of two that brings the largest entry into [1, 2).
 int power_of(VectorIn g) {
   const double largest = g.size() ? g.cwiseAbs().maxCoeff() : 0;
@@ -35,48 +30,79 @@ void shift(Vector& v, int power) {
 
 }  // namespace
 
-BoxSolver::BoxSolver(const Matrix& A, const Vector& b) : BoxSolver(A, b, linalg::row_scales(A)) {}
+BoxSolver::Scaled::Scaled(const Matrix& whole) : scale(linalg::row_scales(whole)), A(whole.rows(), whole.cols()) {
+  active.reserve(static_cast<std::size_t>(whole.cols()));
+  for (Index j = 0; j < whole.cols(); ++j) {
+    const Index k = static_cast<Index>(active.size());
+    bool enters = false;
+    for (Index i = 0; i < whole.rows(); ++i) {
+      const double entry = scale[i] * whole(i, j);  // the largest of a row lies in [1, 2)
+      A(i, k) = std::abs(entry) < noise ? 0.0 : entry;
+      enters = enters || A(i, k) != 0;
+    }
+    if (enters || (active.empty() && j + 1 == whole.cols())) active.push_back(j);  // solvers want one variable at least
+  }
+  A.conservativeResize(Eigen::NoChange, static_cast<Index>(active.size()));
+}
 
-BoxSolver::BoxSolver(Matrix A, const Vector& b, Vector scale)
-    : scale_(std::move(scale)), A_(scaled(A, scale_)), b_(scale_.cwiseProduct(b)), simplex_(A_, b_) {}
+BoxSolver::BoxSolver(const Matrix& A, const Vector& b) : BoxSolver(Scaled(A), b, A.cols()) {}
+
+BoxSolver::BoxSolver(Scaled rows, const Vector& b, Index cols)
+    : rows_(std::move(rows)), b_(rows_.scale.cwiseProduct(b)), simplex_(rows_.A, b_), bounds_(cols) {}
+
+/// `objective_`: of the active variables, with its largest entry in [1, 2).
+void BoxSolver::take_objective(VectorIn g) {
+  objective_.resize(static_cast<Index>(rows_.active.size()));
+  idle_ = 0;
+  for (Index j = 0, k = 0; j < g.size(); ++j) {
+    bounds_[j] = g[j] < 0 ? -1 : 1;
+    if (k < objective_.size() && rows_.active[static_cast<std::size_t>(k)] == j) {
+      objective_[k++] = g[j];
+    } else {
+      idle_ += std::abs(g[j]);
+    }
+  }
+  power_ = power_of(objective_);
+  shift(objective_, -power_);
+}
 
 BoxSolver::Status BoxSolver::maximize(VectorIn g, double enough) {
-  const int power = power_of(g);
-  objective_ = g;
-  shift(objective_, -power);
-  if (!guess_) guess_.emplace(A_, b_);
+  take_objective(g);
+  if (!guess_) guess_.emplace(rows_.A, b_);
   point_.reset();
-  const Status status = simplex_.maximize(objective_, guess_->scores(objective_), std::ldexp(enough, -power));
+  const Status status = simplex_.maximize(objective_, guess_->scores(objective_), std::ldexp(enough - idle_, -power_));
   if (status == Status::unsolved) return second_opinion(g);
-  value_ = std::ldexp(simplex_.objective(), power);
+  value_ = std::ldexp(simplex_.objective(), power_) + idle_;
   y_ = simplex_.multipliers();
-  if (status != Status::infeasible) shift(y_, power);
-  y_.array() *= scale_.array();
+  if (status != Status::infeasible) shift(y_, power_);
+  y_.array() *= rows_.scale.array();
   return status;
 }
 
 BoxSolver::Status BoxSolver::second_opinion(VectorIn g) {
-  // GLPK's tolerances are absolute: whatever the objective is, it sees one of some hundreds.
-  const int power = power_of(g) - 8;
-  objective_ = g;
-  shift(objective_, -power);
-  const Vector one = Vector::Ones(A_.cols());
-  LinearProgram::Solution solution = LinearProgram(A_, b_, -one, one).maximize(objective_);
+  take_objective(g);
+  constexpr int larger = 8;  // GLPK's tolerances are absolute: whatever the objective is, it sees one of some hundreds
+  shift(objective_, larger);
+  const Vector one = Vector::Ones(objective_.size());
+  LinearProgram::Solution solution = LinearProgram(rows_.A, b_, -one, one).maximize(objective_);
   if (solution.status != LinearProgram::Status::optimal) return Status::unsolved;
-  value_ = std::ldexp(solution.objective, power);
+  value_ = std::ldexp(solution.objective, power_ - larger) + idle_;
   point_ = std::move(solution.x);
   y_ = std::move(solution.y);
-  shift(y_, power);
-  y_.array() *= scale_.array();
+  shift(y_, power_ - larger);
+  y_.array() *= rows_.scale.array();
   return Status::optimal;
 }
 
 void BoxSolver::take_point(Vector& xi) {
+  Vector point;
   if (point_) {
-    xi = *point_;
+    point = *point_;
   } else {
-    simplex_.take_point(xi);
+    simplex_.take_point(point);
   }
+  xi = bounds_;
+  for (Index k = 0; k < point.size(); ++k) xi[rows_.active[static_cast<std::size_t>(k)]] = point[k];
 }
 
 }  // namespace cordon

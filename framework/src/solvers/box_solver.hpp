@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "cordon/core/types.hpp"
 #include "solvers/basis_guess.hpp"
@@ -11,7 +12,8 @@
 namespace cordon {
 
 /// Brings rows and objectives to entries near 1 by powers of two, guesses a basis and runs the dual simplex method from there;
-/// where that fails, GLPK may still find multipliers. A proposal depends on the question alone, not on what was asked before.
+/// where that fails, GLPK may still find multipliers. Variables that enter no row are left out and put at their bounds; sets that
+/// were reduced have many. A proposal depends on the question alone, not on what was asked before.
 class BoxSolver {
  public:
   BoxSolver(const Matrix& A, const Vector& b);
@@ -28,15 +30,24 @@ class BoxSolver {
   void take_point(Vector& xi);
 
  private:
-  BoxSolver(Matrix A, const Vector& b, Vector scale);
+  /// Rows divided by their scales, without coefficients that are noise.
+  struct Scaled {
+    Vector scale;
+    Matrix A;                   ///< the columns that are not zero
+    std::vector<Index> active;  ///< which these are
+    explicit Scaled(const Matrix& whole);
+  };
+  BoxSolver(Scaled rows, const Vector& b, Index cols);
+  void take_objective(VectorIn g);
 
-  Vector scale_;
-  Matrix A_;
+  Scaled rows_;
   Vector b_, objective_, y_;
   BoxSimplex simplex_;
   std::optional<BasisGuess> guess_;
   std::optional<Vector> point_;  ///< the other solver's
-  double value_ = 0;
+  Vector bounds_;                ///< where the objective is largest over the box alone: ±1 per variable
+  double idle_ = 0, value_ = 0;  ///< `idle_`: the part of the value by variables that enter no row
+  int power_ = 0;                ///< the objective was divided by 2 to this power
 };
 
 }  // namespace cordon
