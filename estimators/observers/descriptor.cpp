@@ -24,6 +24,8 @@
 #include <cmath>
 #include <limits>
 
+#include <boost/container/small_vector.hpp>
+
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
@@ -159,14 +161,13 @@ class SingularValueObserver final : public Observer {
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const Enclosure predicted = timed(Phase::predict, [&] {
       const Matrix spread = effectiveness_.input_spread(stacked_B_, before.u);
-      std::vector<Term> terms;
-      terms.reserve(4);
+      boost::container::small_vector<Term, 4> terms;  // without memory of its own
       terms.push_back({stacked_Bw_, W_});
       if (transformed_.static_rows() > 0) terms.push_back({transformed_.free_part, free_});
       if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(to_x(Z_), before.u) : Enclosure{};
       if (effectiveness_.has_open_states()) terms.push_back({stacked_rows_, open});
-      Enclosure Z = backend().predict(Z_, {stacked_A_, effectiveness_.input(stacked_B_, before.u), terms});
+      Enclosure Z = backend().predict(Z_, {stacked_A_, effectiveness_.input(stacked_B_, before.u), {terms.data(), terms.size()}});
       Z.tightness = meet(Z.tightness, recursion_);
       return with_static_rows(Z, now.u);
     });
@@ -265,7 +266,6 @@ class PseudoInverseObserver final : public Observer {
     noise_generators_ = linalg::product(used_.Dv, model().V.G);
     C_transposed_ = used_.C.transpose();
     TA_transposed_ = TA_.transpose();
-    terms_.reserve(8);
   }
 
   LineForm initial_set() const override { return X0_; }
@@ -282,29 +282,29 @@ class PseudoInverseObserver final : public Observer {
     const Enclosure predicted = timed(Phase::predict, [&] {
       const Matrix spread_before = output_spread(before, true);
       find_gain(spread_before);
-      terms_.clear();
-      terms_.push_back({TBw_, W_});
-      terms_.push_back({minus_LDv_, V_});
-      terms_.push_back({minus_NDv_, V_});
+      boost::container::small_vector<Term, 8> terms;  // without memory of its own
+      terms.push_back({TBw_, W_});
+      terms.push_back({minus_LDv_, V_});
+      terms.push_back({minus_NDv_, V_});
       Matrix inputs_before, inputs_now, outputs_before, outputs_now;
       if (effectiveness_.has_input_ranges()) {
         inputs_before = effectiveness_.input_spread(TB_ - linalg::product(L_, used_.D), before.u);
         inputs_now = effectiveness_.input_spread(minus_ND_, now.u);
-        terms_.push_back({inputs_before, effectiveness_.input_factors()});
-        terms_.push_back({inputs_now, effectiveness_.input_factors()});
+        terms.push_back({inputs_before, effectiveness_.input_factors()});
+        terms.push_back({inputs_now, effectiveness_.input_factors()});
       }
       if (effectiveness_.has_output_ranges()) {
         outputs_before = linalg::product(L_, spread_before);
         outputs_now = linalg::product(N_, output_spread(now, false));
-        terms_.push_back({outputs_before, effectiveness_.output_factors()});
-        terms_.push_back({outputs_now, effectiveness_.output_factors()});
+        terms.push_back({outputs_before, effectiveness_.output_factors()});
+        terms.push_back({outputs_now, effectiveness_.output_factors()});
       }
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
-      if (effectiveness_.has_open_states()) terms_.push_back({T_, open});
+      if (effectiveness_.has_open_states()) terms.push_back({T_, open});
       effectiveness_.input(TB_, before.u, shift_);
       add_output(L_, before);
       add_output(N_, now);
-      return backend().predict(X_, {map_, shift_, terms_});
+      return backend().predict(X_, {map_, shift_, {terms.data(), terms.size()}});
     });
     X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
     X_.tightness = Tightness::outer;  // the measurement enters by a gain, and v_{k-1} twice
@@ -385,7 +385,6 @@ class PseudoInverseObserver final : public Observer {
   // Kept from step to step, so that no step takes memory for them.
   Matrix scaled_, P_, CP_, S_, cross_, noise_gram_;
   Vector shift_, output_, part_;
-  std::vector<Term> terms_;
 };
 
 bool by_singular_values(const SetBackend& backend) { return backend.info().intersections; }
