@@ -39,7 +39,7 @@ namespace cordon::estimators {
 namespace {
 
 constexpr double rank_tolerance = 1e-10;
-constexpr double steady = 1e-12;  ///< changes of P relative to its largest entry that leave the gain as it is
+constexpr double steady = 1e-12;  ///< changes of entries of P, relative to their states' sizes, that leave the gain as it is
 
 /// An orthogonal factor without entries that are zero up to the rounding of the decomposition.
 Matrix denoised(const Matrix& Q) { return (Q.array().abs() <= 1e-15).select(0.0, Q); }
@@ -340,26 +340,35 @@ class PseudoInverseObserver final : public Observer {
     scaled_ = X.G * unit;
     gram(scaled_, P_);
     if (unit > 0 && unit == unit_ && spread.size() == 0 && is_steady()) return;
-    unit_ = unit;
+    unit_ = 0;  // until all that follows from P is there
     solved_P_ = P_;
     L_.setZero(TA_.rows(), used_.outputs());
-    if (unit > 0) solve_for_gain(spread);
+    if (unit > 0) solve_for_gain(spread, unit);
     product(L_, used_.Dv, minus_LDv_);
     minus_LDv_ = -minus_LDv_;
     product(L_, used_.C, map_);
     map_ = TA_ - map_;
+    unit_ = unit;
   }
 
   /// Any gain makes an enclosure: the last one is kept where P is the same to nearly all digits.
-  bool is_steady() const { return (P_ - solved_P_).cwiseAbs().maxCoeff() <= steady * P_.diagonal().maxCoeff(); }
+  bool is_steady() const {
+    for (Index j = 0; j < P_.cols(); ++j) {
+      for (Index i = 0; i <= j; ++i) {
+        const double size = std::sqrt(solved_P_(i, i) * solved_P_(j, j));  // the units of states do not matter
+        if (!(std::abs(P_(i, j) - solved_P_(i, j)) <= steady * size)) return false;
+      }
+    }
+    return true;
+  }
 
-  void solve_for_gain(const Matrix& spread) {
+  void solve_for_gain(const Matrix& spread, double unit) {
     product(used_.C, P_, CP_);
     product(CP_, C_transposed_, S_);
-    scaled_ = noise_generators_ * unit_;
+    scaled_ = noise_generators_ * unit;
     gram(scaled_, noise_gram_);
     S_ += noise_gram_;
-    if (spread.size() > 0) S_ += linalg::gram(spread * unit_);
+    if (spread.size() > 0) S_ += linalg::gram(spread * unit);
     product(CP_, TA_transposed_, cross_);  // C P (T A)ᵀ
     if (const auto solved = linalg::solve_spd(S_, cross_)) {
       L_ = solved->transpose();

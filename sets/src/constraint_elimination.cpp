@@ -23,11 +23,11 @@ constexpr double pivot_floor = 1e-9;  ///< pivots below this share of their row 
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The rows and outputs being reduced. Factors and rows are marked instead of moved. Observers eliminate in every step: an object
-/// is kept by each thread, with its memory.
+/// The rows and outputs being reduced. Factors and rows are marked instead of moved. Observers eliminate in every step: memory is
+/// kept.
 class Elimination {
  public:
-  /// Begins anew. `before`: of the terms that X was computed from.
+  /// `before`: of the terms that X was computed from.
   void take(const LineForm& X, const Terms& before) {
     factors_ = X.generators();
     take_padded_rows(X.G, G_);
@@ -38,13 +38,16 @@ class Elimination {
     b_terms_ = X.b.cwiseAbs();
     before_ = before;
     computed_ = (before.rows.array() > 0).any() || (before.state.array() > 0).any();
-    exact_ = true;
-    rescaled_ = false;
-    steps_.clear();
-    in_row_.assign(at(X.constraints()), true);
+    steps_.reserve(at(X.constraints()));
+    in_row_.assign(at(X.constraints()), 1);
     free_.setZero(A_.cols());
     free_.head(factors_).setOnes();
-    scored_ = false;
+  }
+
+  void exchange(MemoryExchange& memory) {
+    memory.swap(G_, A_, A_terms_, c_, b_, b_terms_, before_.rows, before_.state, free_, lower_, upper_, allowed_lower_);
+    memory.swap(allowed_upper_, share_, binding_row_, in_row_, live_rows_, live_factors_);
+    scores_.exchange(memory);
   }
 
   Index rows() const { return A_.rows(); }
@@ -57,17 +60,17 @@ class Elimination {
     }
     return live_rows_;
   }
-  Index live_count() const { return std::count(in_row_.begin(), in_row_.end(), true); }
+  Index live_count() const { return std::count(in_row_.begin(), in_row_.end(), 1); }
 
   /// Drops rows that became 0 = 0 up to rounding, or so small by cancellation that rounding could make them false. Dropping a row
   /// never shrinks the set; it is no longer exact if more than noise was dropped.
   void drop_unreliable_rows() {
     for (Index i = 0; i < rows(); ++i) {
-      if (!in_row_[at(i)]) continue;
+      if (in_row_[at(i)] == 0) continue;
       const double terms = std::max(b_terms_[i], vectors::largest_product(width(), free_.data(), A_terms_.data() + i * width()));
       const double left = std::max(scale(i), std::abs(b_[i]));
       if (left > unreliable * terms) continue;
-      in_row_[at(i)] = false;
+      in_row_[at(i)] = 0;
       steps_.push_back({EliminationStep::drop, i, 0});
       exact_ = exact_ && left <= noise * terms;
     }
@@ -116,7 +119,7 @@ class Elimination {
     share_.setConstant(width(), pivot_floor);
     binding_row_.setConstant(width(), -1);
     for (Index i = 0; i < rows(); ++i) {
-      if (!in_row_[at(i)]) continue;
+      if (in_row_[at(i)] == 0) continue;
       survey_row(i, A_.row(i).lpNorm<1>(), pivot_floor * scale(i));
     }
   }
@@ -189,7 +192,7 @@ class Elimination {
     for (Index i = 0; i < rows(); ++i) {
       if (i != row && in_row_[at(i)]) subtract_row(i, row, A_(i, col) / A_(row, col), col);
     }
-    in_row_[at(row)] = false;
+    in_row_[at(row)] = 0;
     free_[col] = 0;
   }
 
@@ -301,19 +304,13 @@ class Elimination {
   Terms before_;  ///< of rows: size of the terms before that; of states: of all terms
   bool computed_ = false, exact_ = true, rescaled_ = false;
   std::vector<EliminationStep> steps_;
-  std::vector<bool> in_row_;
-  Vector free_;  ///< 1, or 0 for factors that were eliminated
+  std::vector<Index> in_row_;  ///< 1, or 0 for rows that were eliminated or dropped
+  Vector free_;                ///< 1, or 0 for factors that were eliminated
   Vector lower_, upper_, allowed_lower_, allowed_upper_, share_, binding_row_;
   std::vector<Index> live_rows_, live_factors_;
   EliminationScores scores_;
   bool scored_ = false;
 };
-
-Elimination& elimination_of(const LineForm& X, const Terms& before) {
-  static thread_local Elimination work;
-  work.take(X, before);
-  return work;
-}
 
 /// Eliminates down to `max_constraints`; is what was forgotten implied by the rest?
 bool run(Elimination& work, Index max_constraints, const ConstraintElimination& options) {
@@ -344,9 +341,10 @@ Reduced eliminate_constraints(const LineForm& X, const Terms& before, Index max_
   if (max_constraints < 0) throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
   if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0))
     throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
-  Elimination& work = elimination_of(X, before);
-  const bool exact = run(work, max_constraints, options);
-  return {work.result(X.M), exact};
+  WithKeptMemory<Elimination> work(KeptFor::constraint_elimination);
+  work->take(X, before);
+  const bool exact = run(*work, max_constraints, options);
+  return {work->result(X.M), exact};
 }
 
 Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
@@ -354,9 +352,10 @@ Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const Co
 }
 
 std::vector<EliminationStep> plan_elimination(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
-  Elimination& work = elimination_of(X, no_terms(X));
-  run(work, max_constraints, options);
-  return work.steps();
+  WithKeptMemory<Elimination> work(KeptFor::constraint_elimination);
+  work->take(X, no_terms(X));
+  run(*work, max_constraints, options);
+  return work->steps();
 }
 
 }  // namespace cordon::sets

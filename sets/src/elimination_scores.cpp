@@ -47,6 +47,7 @@ void EliminationScores::take(const Rows& G, const Rows& A, const std::vector<Ind
   const Index n = G.rows(), m = static_cast<Index>(live.size()), width = G.cols();
   F_.resize(m + n, width);
   moved_.resize(n, width);
+  Q_.resize(std::max(m, Index{1}), width);
   forgotten_ = 0;
   for (Index i = 0; i < m; ++i) std::copy_n(A.data() + live[static_cast<std::size_t>(i)] * width, width, row(F_, i));
   std::copy_n(G.data(), n * width, row(F_, m));
@@ -82,18 +83,21 @@ double EliminationScores::score(Index j, double reach) const {
 
 void EliminationScores::forget(Index col) {
   const Index width = F_.cols();
-  if (forgotten_ == Q_.size()) Q_.emplace_back();
-  Vector& p = Q_[forgotten_];
-  p.setZero(width);
+  if (forgotten_ == Q_.rows()) Q_.conservativeResize(2 * forgotten_, Eigen::NoChange);
+  double* const p = row(Q_, forgotten_);
+  std::fill_n(p, width, 0.0);
   p[col] = 1;
-  for (Index k = 0; k < rows_; ++k) vectors::add_multiple(width, -F_(k, col), row(F_, k), p.data());
-  for (std::size_t k = 0; k < forgotten_; ++k) vectors::add_multiple(width, Q_[k][col], Q_[k].data(), p.data());
+  for (Index k = 0; k < rows_; ++k) vectors::add_multiple(width, -F_(k, col), row(F_, k), p);
+  for (Index k = 0; k < forgotten_; ++k) vectors::add_multiple(width, Q_(k, col), row(Q_, k), p);
   const double rest = 1 - p[col];
   if (!(rest > 1e-14)) return;
-  for (Index i = 0; i < moved_.rows(); ++i) vectors::add_multiple(width, moved_(i, col) / rest, p.data(), row(moved_, i));
+  for (Index i = 0; i < moved_.rows(); ++i) vectors::add_multiple(width, moved_(i, col) / rest, p, row(moved_, i));
   sum_squares_of_moves();
-  p /= std::sqrt(rest);
-  diagonal_.array() += p.array().square();
+  const double length = std::sqrt(rest);
+  for (Index j = 0; j < width; ++j) {
+    p[j] /= length;
+    diagonal_[j] += p[j] * p[j];
+  }
   ++forgotten_;
 }
 

@@ -20,13 +20,15 @@ class EliminationScores {
   /// ξ_col is no longer bounded.
   void forget(Index col);
 
+  void exchange(MemoryExchange& memory) { memory.swap(F_, Q_, moved_, diagonal_, moved_squares_, K_, independent_); }
+
  private:
   void sum_squares_of_moves();
 
   Rows F_;  ///< in its first `rows_` rows
   Index rows_ = 0;
-  std::vector<Vector> Q_;  ///< the first `forgotten_`
-  std::size_t forgotten_ = 0;
+  Rows Q_;  ///< in its first `forgotten_` rows
+  Index forgotten_ = 0;
   Rows moved_;  ///< D G P: column j over P_jj is the change of the state when ξ_j moves by one
   Vector diagonal_, moved_squares_;
   Matrix K_;

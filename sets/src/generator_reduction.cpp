@@ -7,8 +7,6 @@
 #include <numeric>
 #include <vector>
 
-#include <boost/container/small_vector.hpp>
-
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
 #include "reduction_split.hpp"
@@ -121,10 +119,10 @@ Matrix pca_reduction(const Matrix& G, Index max_generators) {
 /// Method 4 of [Yang2018]: G = [T V] with a basis T of large columns found by full pivoting, R = T⁻¹V. Replacing T and v_j
 /// by T (I + diag|r_j|) adds the volume ∏(1 + |r_ij|) - 1 - Σ|r_ij| (in units of det T); the cheapest column goes first.
 /// A flat G has fewer pivots than rows; what the basis leaves of a removed column in the other rows goes to their slack,
-/// one axis-parallel generator per row. Observers reduce in every step: an object is kept by each thread, with its memory.
+/// one axis-parallel generator per row. Observers reduce in every step: memory is kept.
 class BasisReduction {
  public:
-  /// Begins with the columns of G that are not zero. Memory of earlier reductions is used again.
+  /// Of G the columns that are not zero.
   void take(MatrixIn G) {
     take_nonzero_columns(G, G_);
     take_row_scales(G_, scale_);
@@ -134,6 +132,8 @@ class BasisReduction {
     number(order_, G_.cols());
     eliminate();
   }
+
+  void exchange(MemoryExchange& memory) { memory.swap(G_, scale_, W_, row_, order_, growth_, slack_, sum_, cost_); }
 
   Matrix reduce(Index max_generators) {
     Index slacks = 0;
@@ -152,7 +152,7 @@ class BasisReduction {
   }
 
  private:
-  using Numbers = boost::container::small_vector<Index, 64>;
+  using Numbers = std::vector<Index>;
   static void number(Numbers& all, Index count) {
     all.resize(static_cast<std::size_t>(count));
     std::iota(all.begin(), all.end(), Index{0});
@@ -281,16 +281,14 @@ class BasisReduction {
   Vector sum_, cost_;  ///< per column: the largest entry, then a row's part of the costs
 };
 
-BasisReduction& basis_reduction(MatrixIn G) {
-  static thread_local BasisReduction reduction;
-  reduction.take(G);
-  return reduction;
-}
-
 }  // namespace
 
 ReductionSplit split_generators(const Matrix& G, Index max_generators, GeneratorReduction method) {
-  if (method == GeneratorReduction::yang_scott) return basis_reduction(G).split(max_generators);
+  if (method == GeneratorReduction::yang_scott) {
+    WithKeptMemory<BasisReduction> basis(KeptFor::generator_reduction);
+    basis->take(G);
+    return basis->split(max_generators);
+  }
   const Index n = G.rows(), kept = std::min(max_generators - n, G.cols());
   const Matrix sorted = sorted_by_size(G, method == GeneratorReduction::combastel ? Size::norm_2 : Size::norm_1_minus_max);
   const Matrix small = sorted.rightCols(sorted.cols() - kept);
@@ -316,8 +314,11 @@ Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction me
       return box_reduction(nonzero_columns(G), max_generators, Size::norm_2);
     case GeneratorReduction::pca:
       return pca_reduction(nonzero_columns(G), max_generators);
-    case GeneratorReduction::yang_scott:
-      return basis_reduction(G).reduce(max_generators);
+    case GeneratorReduction::yang_scott: {
+      WithKeptMemory<BasisReduction> basis(KeptFor::generator_reduction);
+      basis->take(G);
+      return basis->reduce(max_generators);
+    }
   }
   throw Error(Errc::invalid, "generator reduction: unknown method");
 }

@@ -3,12 +3,13 @@
 // for large ones. Large ones go the usual way.
 #pragma once
 
+#include "cordon/core/kept_memory.hpp"
 #include "cordon/core/vectors.hpp"
 
 namespace cordon::sets {
 
 /// Rows filled with zeros up to whole vectors: cols() is the padded number.
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Rows = KeptMemory::Rows;
 
 Rows padded_rows(MatrixIn A);
 void take_padded_rows(MatrixIn A, Rows& rows);

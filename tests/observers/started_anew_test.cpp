@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Observers keep memory, and one of them its gain, from step to step: nothing of it may show after a new start.
+// Observers keep memory, and one of them its gain, from step to step: nothing of it may show after a new start, and the gain is
+// kept only while it is as good as a new one.
 #include <doctest/doctest.h>
 
 #include "cordon/registry/registry.hpp"
@@ -46,5 +47,35 @@ TEST_CASE("an observer that is started anew, after other data too, gives the set
     const auto observer = make(), fresh = make();
     run(*observer, other);
     CHECK(same(run(*observer, samples), run(*fresh, samples)));
+  }
+}
+
+TEST_CASE("a gain is not kept while the smallest state still changes, whatever the units") {
+  Model model;
+  LinearModel& m = model.linear;
+  m.E = m.C = m.Bw = m.Dv = Matrix::Identity(2, 2);
+  m.A = Vector{{0, 3}}.asDiagonal();
+  m.B = m.D = Matrix::Zero(2, 1);
+  const auto box = [](double first, double second) {
+    const Vector upper{{first, second}};
+    return make_box({-upper, upper});
+  };
+  model.X0 = box(1e7, 1e-6);
+  model.W = box(1e7, 1e-4);
+  model.V = box(1e6, 1e-3);
+  model.U = make_space(1);
+  Registry registry;
+  registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+  for (const char* backend : {"interval", "zonotope"}) {
+    CAPTURE(backend);
+    const auto observer = registry.make_observer("descriptor", {model, registry.make_backend(backend, {})},
+                                                 Params().set("max_generators", Index{20}));
+    observer->start();
+    double widest = 0;
+    for (Index k = 0; k < 200; ++k) {
+      const Box hull = observer->step({k, Vector::Zero(1), Vector::Zero(2)}).set->interval_hull();
+      widest = std::max(widest, hull.upper[1]);
+    }
+    CHECK(widest < .02);
   }
 }
