@@ -118,8 +118,8 @@ void add_lifetime(LawList& list) {
                   needs_library,
                   0.05};
   outlives.without_backend = unload.without_backend = true;
+  list.push_back(unload);  // before anything else runs in this process
   list.push_back(outlives);
-  list.push_back(unload);
 }
 
 }  // namespace cordon::conformance

@@ -136,12 +136,12 @@ std::string_view to_string(Status status) noexcept {
 const LawList& law_list() {
   static const LawList list = [] {
     LawList all;
+    add_lifetime(all);  // first: afterwards a library may be pinned by what other laws made it do
     add_soundness(all);
     add_tightness(all);
     add_algebra(all);
     add_questions(all);
     add_contract(all);
-    add_lifetime(all);
     return all;
   }();
   return list;
