@@ -31,7 +31,6 @@
 #include "cordon/core/linalg.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
-#include "observers/in_place.hpp"
 #include "observers/interval_spread.hpp"
 
 namespace cordon::estimators {
@@ -266,6 +265,15 @@ class PseudoInverseObserver final : public Observer {
     noise_generators_ = linalg::product(used_.Dv, model().V.G);
     C_transposed_ = used_.C.transpose();
     TA_transposed_ = TA_.transpose();
+    const Index p = used_.outputs();
+    minus_LDv_.resize(n, used_.Dv.cols());
+    map_.resize(n, n);
+    CP_.resize(p, n);
+    S_.resize(p, p);
+    cross_.resize(p, n);
+    shift_.resize(n);
+    output_.resize(p);
+    part_.resize(n);
   }
 
   LineForm initial_set() const override { return X0_; }
@@ -327,7 +335,7 @@ class PseudoInverseObserver final : public Observer {
   void add_output(const Matrix& M, const Sample& sample) {
     effectiveness_.input(used_.D, sample.u, output_);
     output_ = is_used_.cwiseProduct(sample.y) - output_;
-    product(M, output_, part_);
+    linalg::product(M, output_, part_);
     shift_ += part_;
   }
 
@@ -338,15 +346,15 @@ class PseudoInverseObserver final : public Observer {
     const double largest = std::max({largest_entry(noise_generators_), largest_entry(X.G), largest_entry(spread)});
     const double unit = largest < std::numeric_limits<double>::min() ? 0.0 : std::ldexp(1.0, -std::ilogb(largest));
     scaled_ = X.G * unit;
-    gram(scaled_, P_);
+    linalg::gram(scaled_, P_);
     if (unit > 0 && unit == unit_ && spread.size() == 0 && is_steady()) return;
     unit_ = 0;  // until all that follows from P is there
     solved_P_ = P_;
     L_.setZero(TA_.rows(), used_.outputs());
     if (unit > 0) solve_for_gain(spread, unit);
-    product(L_, used_.Dv, minus_LDv_);
+    linalg::product(L_, used_.Dv, minus_LDv_);
     minus_LDv_ = -minus_LDv_;
-    product(L_, used_.C, map_);
+    linalg::product(L_, used_.C, map_);
     map_ = TA_ - map_;
     unit_ = unit;
   }
@@ -363,13 +371,13 @@ class PseudoInverseObserver final : public Observer {
   }
 
   void solve_for_gain(const Matrix& spread, double unit) {
-    product(used_.C, P_, CP_);
-    product(CP_, C_transposed_, S_);
+    linalg::product(used_.C, P_, CP_);
+    linalg::product(CP_, C_transposed_, S_);
     scaled_ = noise_generators_ * unit;
-    gram(scaled_, noise_gram_);
+    linalg::gram(scaled_, noise_gram_);
     S_ += noise_gram_;
     if (spread.size() > 0) S_ += linalg::gram(spread * unit);
-    product(CP_, TA_transposed_, cross_);  // C P (T A)ᵀ
+    linalg::product(CP_, TA_transposed_, cross_);  // C P (T A)ᵀ
     if (const auto solved = linalg::solve_spd(S_, cross_)) {
       L_ = solved->transpose();
     } else {

@@ -7,7 +7,6 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
-#include "observers/in_place.hpp"
 #include "observers/interval_spread.hpp"
 
 namespace cordon::estimators {
@@ -66,16 +65,16 @@ Effectiveness::Effectiveness(const Model& model, const SetBackend& backend)
 }
 
 Vector Effectiveness::input(MatrixIn B, VectorIn u) const {
-  Vector image;
+  Vector image(B.rows());
   input(B, u, image);
   return image;
 }
 
 void Effectiveness::input(MatrixIn B, VectorIn u, Vector& image) const {
   if (model_.linear.actuator.dim() == 0) {
-    product(B, u, image);
+    linalg::product(B, u, image);
   } else {
-    product(B, f_.cwiseProduct(u), image);
+    linalg::product(B, f_.cwiseProduct(u), image);
   }
 }
 

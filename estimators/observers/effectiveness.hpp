@@ -29,7 +29,7 @@ class Effectiveness {
 
   /// B diag(f̂) u.
   Vector input(MatrixIn B, VectorIn u) const;
-  void input(MatrixIn B, VectorIn u, Vector& image) const;
+  void input(MatrixIn B, VectorIn u, Vector& image) const;  ///< the same into a vector of that size
   /// B diag(f̌) diag(u), the columns of inputs with a range only.
   Matrix input_spread(MatrixIn B, VectorIn u) const;
   /// The set of φ: a unit box with one coordinate per input with a range.

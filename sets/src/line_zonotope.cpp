@@ -12,7 +12,6 @@
 #include "cordon/core/vectors.hpp"
 #include "elimination_plan.hpp"
 #include "false_row.hpp"
-#include "put_product.hpp"
 #include "require.hpp"
 #include "residue.hpp"
 
@@ -84,7 +83,7 @@ LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span
     require_map(T, Z.dim(), name, "the map");
     const Index l = Z.lines(), g = Z.generators(), rows = Z.constraints();
     if (l > 0) Y.M.middleCols(line, l) = linalg::denoised_product(T, Z.M);
-    put_product(T, Z.G, Y.G.middleCols(generator, g));
+    linalg::product(T, Z.G, Y.G.middleCols(generator, g));
     take_reach(Z, size);
     for (Index k = 0; k < T.cols(); ++k) {
       Y.c += T.col(k) * Z.c[k];
@@ -126,8 +125,8 @@ LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, M
   if (V.lines() > 0) Y.S.bottomRightCorner(p, V.lines()) = linalg::denoised_product(T, V.M);
   Y.A.topLeftCorner(X.constraints(), g) = X.A;
   Y.A.block(X.constraints(), g, V.constraints(), V.generators()) = V.A;
-  put_product(C, X.G, Y.A.bottomLeftCorner(p, g));
-  put_product(T, V.G, Y.A.bottomRightCorner(p, V.generators()));
+  linalg::product(C, X.G, Y.A.bottomLeftCorner(p, g));
+  linalg::product(T, V.G, Y.A.bottomRightCorner(p, V.generators()));
   Y.b.head(X.constraints()) = X.b;
   Y.b.segment(X.constraints(), V.constraints()) = V.b;
 

@@ -7,7 +7,6 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
-#include "put_product.hpp"
 #include "require.hpp"
 
 namespace cordon::sets {
@@ -102,7 +101,7 @@ Zonotope affine_sum(const Zonotope& Z, MatrixIn A, VectorIn f, std::span<const M
       for (Index k = 0; k < T.cols(); ++k) center += T(i, k) * X.c[k];
       sum.c[i] += center;
     }
-    put_product(T, X.G, sum.G.middleCols(at, X.generators()));
+    linalg::product(T, X.G, sum.G.middleCols(at, X.generators()));
     at += X.generators();
   };
   add(A, Z);

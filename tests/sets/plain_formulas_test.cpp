@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
 #include "cordon/sets/generator_reduction.hpp"
@@ -254,4 +255,58 @@ TEST_CASE("lines are solved for alike with and without a trace") {
     RC_ASSERT(near(solved.set.M, traced.set.M, 0));
     RC_ASSERT(near(solved.row_magnitude, traced.row_magnitude, 0));
   }));
+}
+
+TEST_CASE("products in place, in blocks of larger matrices") {
+  CHECK(rc::check([] {
+    const Index m = *rc::gen::inRange<Index>(0, 9), n = *rc::gen::inRange<Index>(0, 15), k = *rc::gen::inRange<Index>(0, 5);
+    const Matrix A = arbitrary_matrix(m, n), B = arbitrary_matrix(n, k);
+    Matrix whole = Matrix::Constant(m + 2, k + 2, 7), plain = whole;
+    for (Index i = 0; i < m; ++i) {
+      for (Index j = 0; j < k; ++j) {
+        plain(i + 1, j + 1) = 0;
+        for (Index l = 0; l < n; ++l) plain(i + 1, j + 1) += A(i, l) * B(l, j);
+      }
+    }
+    linalg::product(A, B, whole.block(1, 1, m, k));
+    RC_ASSERT(near(whole, plain, 1e-14));
+    RC_ASSERT(linalg::product(A, B) == whole.block(1, 1, m, k));
+    Matrix K = Matrix::Constant(2, 3, 7);
+    linalg::gram(A, K);
+    RC_ASSERT(near(K, linalg::product(A, A.transpose()), 1e-14));
+  }));
+}
+
+TEST_CASE("what cancels in a product is zero, and what overflows is refused") {
+  for (const Index rows : {1, 6, 7}) {  // small maps have a way of their own
+    CAPTURE(rows);
+    const Matrix ones = Matrix::Ones(rows, 3);
+    CHECK(linalg::denoised_product(ones, Vector{{.1, .2, -.3}}).isZero(0));
+    CHECK(linalg::denoised_product(ones, Vector{{.1, .2, -.3 + 1e-12}}).minCoeff() > 9e-13);
+    CHECK_THROWS_AS(linalg::denoised_product(1e308 * ones, Vector{{1, 1, 1}}), Error);
+    CHECK_THROWS_AS(linalg::denoised_product(1e308 * ones, Vector{{10, 1, 1}}), Error);
+  }
+}
+
+TEST_CASE("definite systems, few equations by loops of their own") {
+  CHECK(rc::check([] {
+    const Index m = *rc::gen::inRange<Index>(1, 8);
+    const Matrix G = arbitrary_matrix(m, m + 3), B = arbitrary_matrix(m, *rc::gen::inRange<Index>(0, 4));
+    const Matrix A = linalg::gram(G) + Matrix::Identity(m, m);
+    const auto X = linalg::solve_spd(A, B);
+    RC_ASSERT(X.has_value());
+    RC_ASSERT(near(linalg::product(A, *X), B, 1e-9));
+  }));
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Index m : {1, 2, 4, 5}) {
+    CAPTURE(m);
+    Matrix A = Matrix::Identity(m, m);
+    A(m - 1, m - 1) = 0;
+    CHECK_FALSE(linalg::solve_spd(A, Matrix::Ones(m, 1)));
+    A(m - 1, m - 1) = -1;
+    CHECK_FALSE(linalg::solve_spd(A, Matrix::Ones(m, 1)));
+    A(m - 1, m - 1) = nan;
+    CHECK_FALSE(linalg::solve_spd(A, Matrix::Ones(m, 1)));
+    CHECK_FALSE(linalg::solve_spd(Matrix::Identity(m, m), Matrix::Constant(m, 1, nan)));
+  }
 }

@@ -166,13 +166,18 @@ double determinant(MatrixIn A) { return A.rows() == 0 ? 1.0 : Matrix(A).determin
 
 Matrix product(MatrixIn A, MatrixIn B) {
   Matrix C(A.rows(), B.cols());
-  if (A.cols() == 0) return C.setZero();
-  if (vectors::is_small(A)) {
+  product(A, B, C);
+  return C;
+}
+
+void product(MatrixIn A, MatrixIn B, Eigen::Ref<Matrix> C) {
+  if (A.cols() == 0) {
+    C.setZero();
+  } else if (vectors::is_small(A)) {
     vectors::small_product(A, B, C);
   } else {
     C.noalias() = A * B;
   }
-  return C;
 }
 
 Matrix transposed_product(MatrixIn A, MatrixIn B) {
@@ -192,14 +197,18 @@ Matrix transposed_product(MatrixIn A, MatrixIn B) {
 
 Matrix gram(MatrixIn A) {
   Matrix K;
+  gram(A, K);
+  return K;
+}
+
+void gram(MatrixIn A, Matrix& K) {
   if (A.rows() <= 6) {
     vectors::small_gram(A, K);
-    return K;
+    return;
   }
   K.setZero(A.rows(), A.rows());
   K.selfadjointView<Eigen::Lower>().rankUpdate(A);
   K.triangularView<Eigen::StrictlyUpper>() = K.transpose();
-  return K;
 }
 
 namespace {

@@ -14,8 +14,8 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 /// Rows of [S A b] above rows of [M G c], with the magnitude of the terms that each entry was computed from, and the combination
 /// of the original rows [S A b] that was added to each, if it is asked for (not kept up for rows that are used up). Rows of
-/// banded systems touch few others and in few places: only those are visited. Observers eliminate in every step: an object is
-/// kept by each thread, with its memory.
+/// banded systems touch few others and in few places: only those are visited. Observers eliminate in every step: each thread
+/// keeps one, with its memory; unlike a plugin, the framework's library is never unloaded.
 struct Tableau {
   /// The largest equilibrated entry of a row of S.
   struct Candidate {

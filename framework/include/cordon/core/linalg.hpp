@@ -62,12 +62,16 @@ double determinant(MatrixIn A);
 
 /// A B through one compiled kernel (Eigen's product templates are expensive to compile in every file).
 Matrix product(MatrixIn A, MatrixIn B);
+/// C = A B, in place: C has the shape already, a block of a larger matrix for example, and shares no memory with A and B.
+void product(MatrixIn A, MatrixIn B, Eigen::Ref<Matrix> C);
 
 /// Aᵀ B, without a copy of Aᵀ.
 Matrix transposed_product(MatrixIn A, MatrixIn B);
 
 /// A Aᵀ, at half the cost of a product.
 Matrix gram(MatrixIn A);
+/// K = A Aᵀ; a K of that shape keeps its memory. It shares none with A.
+void gram(MatrixIn A, Matrix& K);
 
 /// A B with entries that cancel to 1e-14 of their terms or less set to zero: for coefficients of unbounded variables and of whole
 /// equations, where rounding noise would turn into a statement. Throws Errc::not_finite if the product overflows.
