@@ -15,6 +15,7 @@
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/outward_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "reduction_parameter.hpp"
 #include "rounding_parameter.hpp"
 
 namespace cordon::plugins {
@@ -130,8 +131,7 @@ std::optional<ConstrainedForm::Result> ConstrainedForm::reduce(const Value& X, B
 
 ParamSchema constrained_schema() {
   ParamSchema schema;
-  schema.choice("reduction", "how generators are reduced to the budget", {"yang_scott", "girard", "combastel", "pca"},
-                "yang_scott");
+  add_reduction(schema);
   schema.choice("precondition", "rows as they are, or in Gauss-Jordan form, before constraints are eliminated",
                 {"raw", "gauss_jordan"}, "raw");
   schema.flag("rescale", "tighten the factors' bounds before constraints are eliminated", false);
@@ -139,21 +139,10 @@ ParamSchema constrained_schema() {
   return schema;
 }
 
-namespace {
-
-sets::GeneratorReduction generator_reduction_from(const std::string& name) {
-  if (name == "girard") return sets::GeneratorReduction::girard;
-  if (name == "combastel") return sets::GeneratorReduction::combastel;
-  if (name == "pca") return sets::GeneratorReduction::pca;
-  return sets::GeneratorReduction::yang_scott;
-}
-
-}  // namespace
-
 ConstrainedForm constrained_form_from(const Params& params, bool lines) {
   return {lines,
           rounding_from(params) == Rounding::outward,
-          {generator_reduction_from(params.text("reduction")),
+          {reduction_from(params),
            {params.flag("rescale"), params.text("precondition") == "gauss_jordan"}}};
 }
 

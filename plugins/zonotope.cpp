@@ -12,6 +12,7 @@
 #include "cordon/sets/outward.hpp"
 #include "cordon/sets/strip.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "reduction_parameter.hpp"
 #include "rounding_parameter.hpp"
 
 namespace {
@@ -31,7 +32,7 @@ struct Zonotopes {
   using Value = MaybeZonotope;
   using Result = plugins::ResultOf<MaybeZonotope>;
 
-  sets::GeneratorReduction reduction = sets::GeneratorReduction::yang_scott;
+  sets::GeneratorReduction reduction = sets::GeneratorReduction::adaptive;
   sets::StripMethod strip = sets::StripMethod::segment;
   bool outward = false;
 
@@ -140,8 +141,7 @@ struct Zonotopes {
 
 ParamSchema schema() {
   ParamSchema schema;
-  schema.choice("reduction", "how generators are reduced to the budget", {"yang_scott", "girard", "combastel", "pca"},
-                "yang_scott");
+  plugins::add_reduction(schema);
   schema.choice("strip",
                 "how a strip is intersected: smallest F-radius, smallest volume among parallel strips, or smallest volume",
                 {"segment", "bravo", "volume"}, "segment");
@@ -156,11 +156,7 @@ std::unique_ptr<SetBackend> create(const Params& params) {
   info.citation = "Combastel2003; Alamo2005";
   info.rounding = plugins::rounding_from(params);
   Zonotopes zonotopes;
-  const std::string& reduction = params.text("reduction");
-  zonotopes.reduction = reduction == "girard"      ? sets::GeneratorReduction::girard
-                        : reduction == "combastel" ? sets::GeneratorReduction::combastel
-                        : reduction == "pca"       ? sets::GeneratorReduction::pca
-                                                   : sets::GeneratorReduction::yang_scott;
+  zonotopes.reduction = plugins::reduction_from(params);
   const std::string& strip = params.text("strip");
   zonotopes.strip = strip == "bravo"    ? sets::StripMethod::bravo
                     : strip == "volume" ? sets::StripMethod::volume

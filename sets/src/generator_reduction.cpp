@@ -5,50 +5,25 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <vector>
 
+#include "basis_reduction.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "nonzero_columns.hpp"
 #include "reduction_split.hpp"
 #include "require.hpp"
 #include "row_scales.hpp"
-#include "rows.hpp"
 
 namespace cordon::sets {
 
 namespace {
 
-/// A pivot below this part of its row's scale does not count: the row is then left to the slack of `BasisReduction`.
-constexpr double rank_tolerance = 1e-10;
-/// Rounding level of the elimination, relative to a row's scale: below it a computed residual is not distinguishable from 0.
+/// Radii below this share of the largest are rounding of the rotation: flat sets stay flat.
 constexpr double noise = 1e-14;
-
-bool is_zero(MatrixIn G, Index j) {
-  for (Index i = 0; i < G.rows(); ++i) {
-    if (G(i, j) != 0) return false;
-  }
-  return true;
-}
-
-Index count_nonzero_columns(MatrixIn G) {
-  Index count = 0;
-  for (Index j = 0; j < G.cols(); ++j) count += is_zero(G, j) ? 0 : 1;
-  return count;
-}
-
-void take_nonzero_columns(MatrixIn G, Matrix& kept) {
-  kept.resize(G.rows(), count_nonzero_columns(G));
-  Index count = 0;
-  for (Index j = 0; j < G.cols(); ++j) {
-    if (!is_zero(G, j)) kept.col(count++) = G.col(j);
-  }
-}
-
-Matrix nonzero_columns(MatrixIn G) {
-  Matrix kept;
-  take_nonzero_columns(G, kept);
-  return kept;
-}
+/// `adaptive` keeps the result of `yang_scott` as long as it widens no coordinate by more than this factor.
+constexpr double most_widening = 1.01;
 
 /// Half widths of the interval hull, rounded up.
 Vector box_radii(MatrixIn G) {
@@ -79,222 +54,133 @@ Matrix sorted_by_size(MatrixIn G, Size size) {
   return sorted;
 }
 
-/// Replaces the columns from `kept` on by the n columns of `frame`.
-Matrix with_frame(const Matrix& sorted, Index kept, MatrixIn frame) {
-  Matrix H(sorted.rows(), kept + frame.cols());
-  H << sorted.leftCols(kept), frame;
+using Rows = std::vector<Index>;
+
+/// The last of the sorted columns are replaced by a box along the columns of S⁻¹ Q, Q orthogonal, S = diag(scale).
+struct Box {
+  Matrix sorted;
+  Index kept = 0;
+  Vector scale;
+  Matrix Q;
+  std::vector<Rows> groups;  ///< of rows (and columns of Q) that Q mixes
+
+  Index dim() const { return sorted.rows(); }
+  Matrix replaced() const { return sorted.rightCols(sorted.cols() - kept); }
+  Matrix directions() const { return scale.cwiseInverse().asDiagonal() * Q; }
+
+  Matrix reduced() const {
+    Vector radii = box_radii(linalg::transposed_product(Q, scale.asDiagonal() * replaced()));
+    for (const Rows& group : groups) {
+      const double largest = radii(group).maxCoeff();
+      for (const Index i : group) radii[i] = radii[i] <= noise * largest ? 0.0 : radii[i];
+    }
+    Matrix H(dim(), kept + dim());
+    H << sorted.leftCols(kept), directions() * radii.asDiagonal();
+    return nonzero_columns(H);
+  }
+};
+
+Box along_coordinates(const Matrix& G, Index max_generators, Size size) {
+  const Index n = G.rows();
+  return {sorted_by_size(G, size), std::min(max_generators - n, G.cols()), Vector::Ones(n), Matrix::Identity(n, n), {}};
+}
+
+/// Radii per coordinate need no rotation, and none is left out.
+Matrix boxed(const Box& box) {
+  const Index n = box.dim();
+  Matrix H(n, box.kept + n);
+  H << box.sorted.leftCols(box.kept), box_radii(box.replaced()).asDiagonal().toDenseMatrix();
   return nonzero_columns(H);
 }
 
-Matrix box_reduction(const Matrix& G, Index max_generators, Size size) {
-  const Index kept = max_generators - G.rows();
-  const Matrix sorted = sorted_by_size(G, size);
-  const Vector radii = box_radii(sorted.rightCols(sorted.cols() - kept));
-  return with_frame(sorted, kept, radii.asDiagonal().toDenseMatrix());
+/// Rows whose largest entries differ by up to 2¹⁶, from the largest downwards. Axes are sought within each group alone: a row of
+/// smaller numbers is as often rounding noise as it is a small unit, and a rotation that mixes both widens the larger one by
+/// what is noise, or swamps the smaller one by rounding errors of the larger.
+std::vector<Rows> comparable_rows(MatrixIn G) {
+  Rows order(static_cast<std::size_t>(G.rows()));
+  std::iota(order.begin(), order.end(), Index{0});
+  const Vector size = G.cols() ? Vector(G.cwiseAbs().rowwise().maxCoeff()) : Vector(Vector::Zero(G.rows()));
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return size[a] > size[b]; });
+  std::vector<Rows> groups;
+  for (const Index i : order) {
+    if (groups.empty() || size[i] <= std::ldexp(size[groups.back().front()], -16)) groups.emplace_back();
+    groups.back().push_back(i);
+  }
+  return groups;
 }
 
-/// Where the rows' scales differ by more than 2¹⁶ they are made equal before their principal axes are sought: the rounding errors
-/// of the rotation would swamp the smallest coordinates otherwise.
-Vector scales_of_axes(MatrixIn small) {
-  Vector scale = row_scales(small);
-  if (scale.maxCoeff() <= std::ldexp(scale.minCoeff(), 16)) scale.setOnes();
-  return scale;
+/// Orthogonal axes of the columns, group by group: principal ones, or those of a QR decomposition with the longest column first.
+enum class Axes { principal, qr };
+
+enum class Units { own, equal };  ///< of the rows: as they are, or by the largest entry of each
+
+Box along_axes(const Matrix& G, Index max_generators, Size size, Axes kind, Units units) {
+  Box box = along_coordinates(G, max_generators, size);
+  const Matrix replaced = box.replaced();
+  if (units == Units::equal) box.scale = row_scales(replaced);
+  const Matrix scaled = box.scale.asDiagonal() * replaced;
+  box.groups = comparable_rows(scaled);
+  for (const Rows& rows : box.groups) {
+    const Matrix part = scaled(rows, Eigen::all);
+    box.Q(rows, rows) = kind == Axes::principal ? linalg::svd(part).U : linalg::orthogonal_axes(part);
+  }
+  return box;
 }
 
-/// The box is taken along the left singular vectors of the small generators.
-Matrix pca_reduction(const Matrix& G, Index max_generators) {
-  const Index kept = max_generators - G.rows();
-  const Matrix sorted = sorted_by_size(G, Size::norm_1_minus_max);
-  Matrix small = sorted.rightCols(sorted.cols() - kept);
-  const Vector scale = scales_of_axes(small);
-  small = scale.asDiagonal() * small;
-  const Matrix U = linalg::svd(small).U;
-  Vector radii = box_radii(linalg::transposed_product(U, small));
-  const double largest = radii.maxCoeff();
-  for (double& radius : radii) radius = radius <= noise * largest ? 0.0 : radius;
-  const Matrix frame = scale.cwiseInverse().asDiagonal() * U * radii.asDiagonal();
-  return with_frame(sorted, kept, frame);
+Box box_of(const Matrix& G, Index max_generators, GeneratorReduction method, Units units = Units::own) {
+  switch (method) {
+    case GeneratorReduction::pca:
+      return along_axes(G, max_generators, Size::norm_1_minus_max, Axes::principal, units);
+    case GeneratorReduction::qr:
+      return along_axes(G, max_generators, Size::norm_2, Axes::qr, units);
+    case GeneratorReduction::combastel:
+      return along_coordinates(G, max_generators, Size::norm_2);
+    default:
+      return along_coordinates(G, max_generators, Size::norm_1_minus_max);
+  }
 }
 
-/// Method 4 of [Yang2018]: G = [T V] with a basis T of large columns found by full pivoting, R = T⁻¹V. Replacing T and v_j
-/// by T (I + diag|r_j|) adds the volume ∏(1 + |r_ij|) - 1 - Σ|r_ij| (in units of det T); the cheapest column goes first.
-/// A flat G has fewer pivots than rows; what the basis leaves of a removed column in the other rows goes to their slack,
-/// one axis-parallel generator per row. Observers reduce in every step: memory is kept.
-class BasisReduction {
- public:
-  /// Of G the columns that are not zero.
-  void take(MatrixIn G) {
-    take_nonzero_columns(G, G_);
-    take_row_scales(G_, scale_);
-    take_padded_rows(G_, W_);
-    for (Index i = 0; i < W_.rows(); ++i) W_.row(i) *= scale_[i];
-    number(row_, G_.rows());
-    number(order_, G_.cols());
-    eliminate();
-  }
+/// Widths of the coordinates of {Hη} in units of those of {Gξ}.
+Vector widening(MatrixIn G, MatrixIn H) {
+  const Vector before = G.cwiseAbs().rowwise().sum(), after = H.cwiseAbs().rowwise().sum();
+  return (before.array() > 0).select(after.cwiseQuotient(before), 1.0);
+}
 
-  void exchange(MemoryExchange& memory) { memory.swap(G_, scale_, W_, row_, order_, growth_, slack_, sum_, cost_); }
-
-  Matrix reduce(Index max_generators) {
-    Index slacks = 0;
-    for (Index i = rank_; i < G_.rows(); ++i) slacks += has_residual(at(row_, i)) ? 1 : 0;
-    return assemble(absorb_cheapest(max_generators - slacks));
-  }
-
-  /// Every row without a pivot is given a unit vector, so that the frame is square.
-  ReductionSplit split(Index max_generators) {
-    const Index n = G_.rows(), g = G_.cols(), last = absorb_cheapest(max_generators - (n - rank_));
-    ReductionSplit parts{columns(rank_, last), Matrix(n, rank_ + g - last), Matrix::Zero(n, n)};
-    parts.replaced << columns(0, rank_), columns(last, g);
-    parts.frame.leftCols(rank_) = columns(0, rank_);
-    for (Index i = rank_; i < n; ++i) parts.frame(at(row_, i), i) = 1;
-    return parts;
-  }
-
- private:
-  using Numbers = std::vector<Index>;
-  static void number(Numbers& all, Index count) {
-    all.resize(static_cast<std::size_t>(count));
-    std::iota(all.begin(), all.end(), Index{0});
-  }
-  static Index at(const Numbers& numbers, Index i) { return numbers[static_cast<std::size_t>(i)]; }
-  static void swap(Numbers& numbers, Index i, Index j) {
-    std::swap(numbers[static_cast<std::size_t>(i)], numbers[static_cast<std::size_t>(j)]);
-  }
-  double* row(Index i) { return W_.data() + i * W_.cols(); }
-  const double* row(Index i) const { return W_.data() + i * W_.cols(); }
-
-  /// G's columns in places first … last-1 of the order.
-  Matrix columns(Index first, Index last) const {
-    Matrix some(G_.rows(), last - first);
-    for (Index k = first; k < last; ++k) some.col(k - first) = G_.col(at(order_, k));
-    return some;
-  }
-
-  /// Is there more than rounding in a row without a pivot?
-  bool has_residual(Index i) const {
-    for (Index k = rank_; k < G_.cols(); ++k) {
-      if (std::abs(W_(i, at(order_, k))) > noise) return true;
-    }
-    return false;
-  }
-
-  /// W = [I R; 0 E] in the order of rows and columns, by Gauss-Jordan steps with pivots over the whole of E.
-  void eliminate() {
-    const Index n = G_.rows(), g = G_.cols();
-    for (rank_ = 0; rank_ < std::min(n, g) && put_pivot_first(); ++rank_) {
-      const Index pivot_row = at(row_, rank_), column = at(order_, rank_);
-      W_.row(pivot_row) /= W_(pivot_row, column);
-      for (Index i = 0; i < n; ++i) {
-        const double factor = W_(i, column);
-        if (i != pivot_row && factor != 0) vectors::add_multiple(W_.cols(), -factor, row(pivot_row), row(i));
-      }
-    }
-  }
-
-  /// The largest entry of E; false if none counts.
-  bool put_pivot_first() {
-    sum_.setZero(W_.cols());
-    for (Index i = rank_; i < G_.rows(); ++i) {
-      const double* const entries = row(at(row_, i));
-      double* const largest = sum_.data();
-      for (Index j = 0; j < W_.cols(); ++j) {
-        const double size = std::abs(entries[j]);
-        largest[j] = largest[j] < size ? size : largest[j];
-      }
-    }
-    Index place = rank_;
-    for (Index k = rank_; k < G_.cols(); ++k) {
-      if (sum_[at(order_, k)] > sum_[at(order_, place)]) place = k;
-    }
-    const double pivot = sum_[at(order_, place)];
-    if (!(pivot > rank_tolerance)) return false;
-    swap(order_, rank_, place);
-    for (Index i = rank_; i < G_.rows(); ++i) {
-      if (std::abs(W_(at(row_, i), at(order_, rank_))) != pivot) continue;
-      swap(row_, rank_, i);
-      break;
-    }
-    return true;
-  }
-
-  /// Absorbs columns until `most` are left, and returns how many are.
-  Index absorb_cheapest(Index most) {
-    growth_ = Vector::Ones(rank_);
-    slack_ = Vector::Zero(G_.rows() - rank_);
-    Index last = G_.cols();  // places rank_ … last-1 are left in V
-    while (last > most) {
-      const Index cheapest = cheapest_place(last);
-      absorb(at(order_, cheapest));
-      swap(order_, cheapest, --last);
-    }
-    return last;
-  }
-
-  /// The volume error is summed without cancellation: q collects the terms of second and higher order.
-  Index cheapest_place(Index last) {
-    sum_.setZero(W_.cols());
-    cost_.setZero(W_.cols());
-    double* const sum = sum_.data();
-    double* const cost = cost_.data();
-    for (Index i = 0; i < rank_; ++i) {
-      const double* const entries = row(at(row_, i));
-      const double inverse = 1 / growth_[i];
-      for (Index j = 0; j < W_.cols(); ++j) {
-        const double r = std::abs(entries[j]) * inverse;
-        cost[j] += r * (sum[j] + cost[j]);
-        sum[j] += r;
-      }
-    }
-    Index best = rank_;
-    for (Index k = rank_; k < last; ++k) {
-      if (cost_[at(order_, k)] < cost_[at(order_, best)]) best = k;
-    }
-    return best;
-  }
-
-  void absorb(Index column) {
-    for (Index i = 0; i < rank_; ++i) growth_[i] += std::abs(W_(at(row_, i), column));
-    for (Index i = 0; i < slack_.size(); ++i) slack_[i] += std::abs(W_(at(row_, rank_ + i), column));
-  }
-
-  Matrix assemble(Index last) const {
-    const Index n = G_.rows(), g = G_.cols();
-    Matrix H = Matrix::Zero(n, last + slack_.size());
-    for (Index k = 0; k < last; ++k) H.col(k) = (k < rank_ ? growth_[k] : 1.0) * G_.col(at(order_, k));
-    Index count = last;
-    for (Index i = 0; i < slack_.size(); ++i) {
-      if (!(slack_[i] > noise * static_cast<double>(g - last))) continue;
-      const Index place = at(row_, rank_ + i);
-      H(place, count++) = slack_[i] / scale_[place];
-    }
-    H.conservativeResize(Eigen::NoChange, count);
-    return H;
-  }
-
-  Matrix G_;
-  Vector scale_;
-  Rows W_;
-  Numbers row_, order_;  ///< W's rows and columns in the order of their pivots
-  Index rank_ = 0;
-  Vector growth_, slack_;
-  Vector sum_, cost_;  ///< per column: the largest entry, then a row's part of the costs
+/// The result of `yang_scott`, or a box that widens the coordinates less in their sum.
+struct Adapted {
+  Matrix basis;            ///< the result of yang_scott
+  std::optional<Box> box;  ///< the box in its place
 };
+
+Adapted adapt(const Matrix& G, Index max_generators) {
+  Adapted best{reduce_into_basis(G, max_generators), std::nullopt};
+  const Vector wider = widening(G, best.basis);
+  if (wider.size() == 0 || wider.maxCoeff() <= most_widening) return best;
+  double least = wider.sum();
+  const auto try_box = [&](GeneratorReduction method, Units units) {
+    Box box = box_of(G, max_generators, method, units);
+    const double sum = widening(G, box.reduced()).sum();
+    if (!(sum < least)) return;
+    least = sum;
+    best.box = std::move(box);
+  };
+  try_box(GeneratorReduction::pca, Units::own);
+  try_box(GeneratorReduction::qr, Units::own);
+  try_box(GeneratorReduction::qr, Units::equal);
+  return best;
+}
+
+ReductionSplit as_split(const Box& box) {
+  return {box.sorted.leftCols(box.kept), box.replaced(), box.directions(), false};
+}
 
 }  // namespace
 
 ReductionSplit split_generators(const Matrix& G, Index max_generators, GeneratorReduction method) {
-  if (method == GeneratorReduction::yang_scott) {
-    WithKeptMemory<BasisReduction> basis(KeptFor::generator_reduction);
-    basis->take(G);
-    return basis->split(max_generators);
-  }
-  const Index n = G.rows(), kept = std::min(max_generators - n, G.cols());
-  const Matrix sorted = sorted_by_size(G, method == GeneratorReduction::combastel ? Size::norm_2 : Size::norm_1_minus_max);
-  const Matrix small = sorted.rightCols(sorted.cols() - kept);
-  if (method != GeneratorReduction::pca) return {sorted.leftCols(kept), small, Matrix::Identity(n, n)};
-  const Vector scale = scales_of_axes(small);
-  return {sorted.leftCols(kept), small, scale.cwiseInverse().asDiagonal() * linalg::svd(scale.asDiagonal() * small).U};
+  if (method == GeneratorReduction::yang_scott) return split_into_basis(G, max_generators);
+  if (method != GeneratorReduction::adaptive) return as_split(box_of(G, max_generators, method));
+  const Adapted adapted = adapt(G, max_generators);
+  return adapted.box ? as_split(*adapted.box) : split_into_basis(G, max_generators);
 }
 
 Vector enclosing_radii(MatrixIn G) { return box_radii(G); }
@@ -309,15 +195,16 @@ Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction me
   if (count_nonzero_columns(G) <= max_generators) return nonzero_columns(G);
   switch (method) {
     case GeneratorReduction::girard:
-      return box_reduction(nonzero_columns(G), max_generators, Size::norm_1_minus_max);
     case GeneratorReduction::combastel:
-      return box_reduction(nonzero_columns(G), max_generators, Size::norm_2);
+      return boxed(box_of(nonzero_columns(G), max_generators, method));
     case GeneratorReduction::pca:
-      return pca_reduction(nonzero_columns(G), max_generators);
-    case GeneratorReduction::yang_scott: {
-      WithKeptMemory<BasisReduction> basis(KeptFor::generator_reduction);
-      basis->take(G);
-      return basis->reduce(max_generators);
+    case GeneratorReduction::qr:
+      return box_of(nonzero_columns(G), max_generators, method).reduced();
+    case GeneratorReduction::yang_scott:
+      return reduce_into_basis(G, max_generators);
+    case GeneratorReduction::adaptive: {
+      Adapted adapted = adapt(nonzero_columns(G), max_generators);
+      return adapted.box ? adapted.box->reduced() : std::move(adapted.basis);
     }
   }
   throw Error(Errc::invalid, "generator reduction: unknown method");

@@ -156,8 +156,7 @@ Matrix reduce_columns(const Columns& columns, Index max_generators, GeneratorRed
   const std::optional<Matrix> frame = box ? std::nullopt : enclosing_frame(replaced, split.frame);
   const Matrix replacement = frame ? *frame : Matrix(enclosing_radii(replaced).asDiagonal());
   Matrix reduced(replaced.rows(), split.kept.cols() + replacement.cols());
-  // the order of the nominal method, on which its later choices among equals depend
-  if (method == GeneratorReduction::yang_scott) {
+  if (split.frame_first) {
     reduced << replacement, split.kept;
   } else {
     reduced << split.kept, replacement;

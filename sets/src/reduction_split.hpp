@@ -10,6 +10,7 @@ struct ReductionSplit {
   Matrix kept;      ///< stay as they are
   Matrix replaced;  ///< the others
   Matrix frame;     ///< n×n: directions of the parallelotope that replaces them
+  bool frame_first = false;  ///< its place in the result: later choices among equals depend on it
 };
 
 /// The split of `reduce_generators` for max_generators ≥ n: kept and frame have at most max_generators columns together.

@@ -15,8 +15,8 @@ using namespace cordon::test;
 
 namespace {
 
-constexpr GeneratorReduction methods[] = {GeneratorReduction::girard, GeneratorReduction::combastel, GeneratorReduction::pca,
-                                          GeneratorReduction::yang_scott};
+constexpr GeneratorReduction methods[] = {GeneratorReduction::girard, GeneratorReduction::combastel,  GeneratorReduction::pca,
+                                          GeneratorReduction::qr,     GeneratorReduction::yang_scott, GeneratorReduction::adaptive};
 
 /// Are both the same columns up to order and sign?
 bool same_columns(const Matrix& A, const Matrix& B, double tolerance) {
@@ -122,9 +122,12 @@ TEST_CASE("flat sets stay flat") {
   const Matrix base{{1, 0}, {2, 1}, {-1, 3}, {.5, .5}};
   Matrix factors(2, 12);
   for (double& x : factors.reshaped()) x = random.between(-1, 1);
-  const Matrix H = reduce_generators(base * factors, 6);
-  CHECK(H.cols() == 6);
-  CHECK(linalg::rank(H, 1e-9) == 2);
+  CHECK(reduce_generators(base * factors, 6, GeneratorReduction::yang_scott).cols() == 6);
+  for (const GeneratorReduction method : {GeneratorReduction::yang_scott, GeneratorReduction::qr, GeneratorReduction::adaptive}) {
+    const Matrix H = reduce_generators(base * factors, 6, method);
+    CHECK(H.cols() <= 6);
+    CHECK(linalg::rank(H, 1e-9) == 2);
+  }
   // a direction of relative size 1e-12 is below the rank tolerance, but must not be lost
   Matrix thin = base * factors;
   thin.row(3) = thin.row(0);
@@ -151,4 +154,52 @@ TEST_CASE("a reduction encloses and keeps its budget") {
       RC_ASSERT(encloses({Z.c, H}, point_of(Z, random), random));
     }
   }));
+}
+
+TEST_CASE("axes are not taken from rows of rounding noise") {
+  const double noisy[] = {1e-20, 1e-12, 1e-6};
+  for (const double noise : noisy) {
+    CAPTURE(noise);
+    const Matrix G{{noise, noise, noise, -noise}, {1, -1, .5, .25}};
+    for (const GeneratorReduction method : {GeneratorReduction::pca, GeneratorReduction::qr}) {
+      const Matrix H = reduce_generators(G, 2, method);
+      CHECK(H.row(1).lpNorm<1>() == doctest::Approx(2.75).epsilon(1e-12));
+      CHECK(H.row(0).lpNorm<1>() >= 4 * noise);
+      CHECK(H.row(0).lpNorm<1>() <= 4 * noise * (1 + 1e-12));
+    }
+  }
+}
+
+namespace {
+
+/// Largest width of the coordinates after `steps` of X⁺ = F X ⊕ N, reduced, in units of the unreduced limit Σ |Fʲ N| 1.
+double growth(const Matrix& F, const Matrix& N, const Matrix& G0, Index budget, GeneratorReduction method, int steps) {
+  Vector limit = Vector::Zero(F.rows());
+  Matrix D = N;
+  for (int k = 0; k < 3000; ++k, D = Matrix(F * D)) limit += D.cwiseAbs().rowwise().sum();
+  Matrix G = G0;
+  for (int k = 0; k < steps; ++k) {
+    Matrix next(F.rows(), G.cols() + N.cols());
+    next << F * G, N;
+    G = reduce_generators(next, budget, method);
+  }
+  return G.cwiseAbs().rowwise().sum().cwiseQuotient(limit).maxCoeff();
+}
+
+}  // namespace
+
+TEST_CASE("sets of a stable recursion do not grow under the default reduction") {
+  // the error of a Kalman gain L for a stable plant: F = A - L, N = [.02 I, -.3 L]
+  const Matrix A{{.98, 0, .02}, {0, .96, .02}, {.02, .02, .955}};
+  const Matrix L{{.055, 0, .008}, {0, .045, .007}, {.008, .007, .046}};
+  const Matrix F = A - L;
+  Matrix N(3, 6);
+  N << .02 * Matrix::Identity(3, 3), -.3 * L;
+  const Matrix G0 = 2 * Matrix::Identity(3, 3);
+  CHECK(growth(F, N, G0, 30, GeneratorReduction::yang_scott, 600) > 1e3);  // which is why it is not the default
+  for (const Index budget : {6, 10, 30, 100}) {
+    CAPTURE(budget);
+    CHECK(growth(F, N, G0, budget, GeneratorReduction::adaptive, 600) < (budget < 30 ? 3 : 1.5));
+    CHECK(growth(F, N, G0, budget, GeneratorReduction::qr, 600) < 10);
+  }
 }

@@ -70,6 +70,11 @@ Matrix range_basis(MatrixIn A, double relative_tolerance) {
   return Q;
 }
 
+Matrix orthogonal_axes(MatrixIn A) {
+  if (A.cols() == 0 || A.rows() == 0) return Matrix::Identity(A.rows(), A.rows());
+  return Eigen::ColPivHouseholderQR<Matrix>(A).householderQ();
+}
+
 Matrix null_space(MatrixIn A, double relative_tolerance) {
   const Svd d = svd(A);
   const Index r = count_above(d.sigma, relative_tolerance);

@@ -28,6 +28,10 @@ Matrix pseudo_inverse(MatrixIn A, double relative_tolerance = 1e-12);
 /// Orthonormal basis of the range of A (n×r), by column-pivoted QR with a relative tolerance on R's diagonal.
 Matrix range_basis(MatrixIn A, double relative_tolerance = 1e-10);
 
+/// Q (m×m orthogonal) of a QR decomposition of A with column pivoting: its first column points along the longest column of A, its
+/// second along what the first leaves of the next, and so on; columns beyond A's rank complete it.
+Matrix orthogonal_axes(MatrixIn A);
+
 /// Orthonormal basis of the null space of A (n×(n-r)), by singular values.
 Matrix null_space(MatrixIn A, double relative_tolerance = 1e-10);
 

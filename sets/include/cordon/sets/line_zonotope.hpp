@@ -32,7 +32,7 @@ LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, M
 
 /// How a line zonotope is reduced.
 struct LineReduction {
-  GeneratorReduction generators = GeneratorReduction::yang_scott;
+  GeneratorReduction generators = GeneratorReduction::adaptive;
   ConstraintElimination constraints;
 };
 

@@ -51,7 +51,7 @@ Reduced eliminate_constraints(const LineZonotope& X, Index max_constraints, cons
 /// H with at most `max_generators` columns and {Gξ} ⊆ {Hη}. Columns that the nominal method leaves stay as they are; those W that
 /// it replaces are enclosed by a square frame F with |F⁻¹ W| 1 ≤ 1, proven by an approximate inverse of F; if the proof fails, by
 /// a box.
-Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction method = GeneratorReduction::yang_scott);
+Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction method = GeneratorReduction::adaptive);
 
 /// A zonotope around {x ∈ Z : z - C x ∈ T V}: for λ as the nominal method chooses it, Z(λ) with its rounding errors. Nothing if
 /// the intersection is proven empty.
