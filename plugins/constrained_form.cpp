@@ -142,8 +142,7 @@ ParamSchema constrained_schema() {
 ConstrainedForm constrained_form_from(const Params& params, bool lines) {
   return {lines,
           rounding_from(params) == Rounding::outward,
-          {reduction_from(params),
-           {params.flag("rescale"), params.text("precondition") == "gauss_jordan"}}};
+          {reduction_from(params), {params.flag("rescale"), params.text("precondition") == "gauss_jordan"}}};
 }
 
 }  // namespace cordon::plugins

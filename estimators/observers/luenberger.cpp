@@ -8,6 +8,7 @@
 #include "observers/interval_spread.hpp"
 #include "observers/luenberger_recursion.hpp"
 #include "observers/observer_gain.hpp"
+#include "observers/widening_limit.hpp"
 
 namespace cordon::estimators {
 
@@ -21,7 +22,8 @@ class Luenberger final : public Observer {
       : Observer(context.model, context.backend),
         X0_(initial_set_from(model(), params)),
         gain_(observer_gain(context, params, "gain", steady_kalman())),
-        recursion_(model(), gain_.gain.L, context.backend, budget_from(params)) {}
+        recursion_(model(), gain_.gain.L, context.backend, budget_from(params)),
+        limit_(gain_.designer->is_time_varying() ? 0 : params.real("widening_limit")) {}
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override { return {gain_.gain}; }
@@ -29,24 +31,33 @@ class Luenberger final : public Observer {
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
     const Enclosure start = X0 ? *X0 : backend().import(X0_);
+    limit_.start(recursion_, start);
     X_ = timed(Phase::reduce, [&] { return recursion_.reduced(start); });
     X_.tightness = Tightness::outer;  // what the measurement of the same time says is left out
     return X_;
   }
   Enclosure do_step(const Sample& before, const Sample&) override {
+    Vector open;
     const Enclosure next = timed(Phase::predict, [&] {
       if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_for(gain_, model(), X_));
-      return recursion_.next(X_, before);
+      return recursion_.next(X_, before, &open);
     });
-    X_ = timed(Phase::reduce, [&] { return recursion_.reduced(next); });
+    X_ = timed(Phase::reduce, [&] {
+      limit_.step(recursion_, before, open);
+      return limit_.apply(backend(), recursion_.reduced(next));
+    });
     X_.tightness = Tightness::outer;
     return X_;
   }
-  void do_replace(const Enclosure& X) override { X_ = X; }
+  void do_replace(const Enclosure& X) override {
+    X_ = X;
+    limit_.start(recursion_, X);
+  }
 
   LineForm X0_;
   ObserverGain gain_;
   LuenbergerRecursion recursion_;
+  WideningLimit limit_;
   Enclosure X_;
 };
 
@@ -68,6 +79,7 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
 
 void register_luenberger(Registrar& registrar) {
   ParamSchema schema = common_parameters();
+  add_widening_limit(schema);
   add_gain_parameter(schema, "gain",
                      "L, a matrix with a row per state and a column per output that makes A - L C stable, or a designer of one; "
                      "absent: \"kalman\" with \"steady\"");

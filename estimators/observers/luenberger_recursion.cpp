@@ -46,7 +46,10 @@ LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L, std::shar
   minus_Dv_ = -Dv_;
   state_unit_ = Matrix::Identity(n, n);
   output_unit_ = Matrix::Identity(p, p);
-  const Vector w = invariant::enclosing_zonotope(model.W).c, v = invariant::enclosing_zonotope(model.V).c;
+  const sets::Zonotope around_W = invariant::enclosing_zonotope(model.W), around_V = invariant::enclosing_zonotope(model.V);
+  const Vector &w = around_W.c, &v = around_V.c;
+  W_generators_ = around_W.G;
+  V_generators_ = around_V.G;
   state_drift_ = product(Bw_, w);
   v_ = product(Dv_, v);
   W_ = backend_->import(model.W);
@@ -80,15 +83,21 @@ void LuenbergerRecursion::use_gain(Matrix L) {
   w_ = state_drift_ - product(L_, v_);
 }
 
-/// Δ, the part of y that ranges of sensors and the radii of C leave open.
-Enclosure LuenbergerRecursion::output_box(const Enclosure& X, const Vector& largest, VectorIn u) const {
+Matrix LuenbergerRecursion::error_noise() const {
+  Matrix N(Ao_.rows(), W_generators_.cols() + V_generators_.cols());
+  N << product(Bw_, W_generators_), product(minus_LDv_, V_generators_);
+  return N;
+}
+
+/// Half widths of Δ, the part of y that ranges of sensors and the radii of C leave open.
+Vector LuenbergerRecursion::output_widths(const Enclosure& X, const Vector& largest, VectorIn u) const {
   Vector widths = interval_spread(C_radius_, largest, C_.rows());
   if (sensor_radius_.size() != 0) {
     const Vector outputs = largest_entries(backend_->affine_map(X, raw_C_, Vector::Zero(raw_C_.rows()))->interval_hull());
     const Vector reach = outputs + product(raw_D_, u.cwiseAbs());
     widths += (sensor_radius_.array() > 0).select(sensor_radius_.cwiseProduct(reach), 0.0).matrix();
   }
-  return bounded_box(widths, "a range of sensor effectiveness or an interval matrix C");
+  return widths;
 }
 
 Enclosure LuenbergerRecursion::bounded_box(const Vector& widths, const std::string& cause) const {
@@ -98,34 +107,38 @@ Enclosure LuenbergerRecursion::bounded_box(const Vector& widths, const std::stri
 
 void LuenbergerRecursion::add_open(Summands& to, Target target, const Enclosure& X, VectorIn u, bool twice) const {
   const bool state = target == Target::state;
-  const auto add = [&](const Matrix& T, const Enclosure& set) {
+  const auto add = [&](const Matrix& T, const Enclosure& set, const Vector& widths) {
     to.terms.push_back({T, set});
     if (twice) to.terms.push_back({T, set});
+    if (to.half_widths.size() == 0) to.half_widths = Vector::Zero(T.rows());
+    to.half_widths += T.cwiseAbs() * widths;
   };
   if (!ranged_.empty()) {
     to.inputs = (state ? ranges_ : output_ranges_) * u(ranged_).asDiagonal();
-    add(to.inputs, unit_);
+    add(to.inputs, unit_, Vector::Ones(to.inputs.cols()));
   }
   const bool by_A = state && A_radius_.size() != 0, by_B = state && B_radius_.size() != 0, by_C = C_radius_.size() != 0;
   const Vector largest = by_A || by_C ? largest_entries(X->interval_hull()) : Vector(X->dim());
   if (by_A || by_B) {
     const Vector inputs = most_f_.cwiseProduct(u.cwiseAbs());
-    to.parameters = bounded_box(interval_spread(A_radius_, largest, A_.rows()) + interval_spread(B_radius_, inputs, A_.rows()),
-                                "an interval matrix A");
-    add(state_unit_, to.parameters);
+    const Vector widths = interval_spread(A_radius_, largest, A_.rows()) + interval_spread(B_radius_, inputs, A_.rows());
+    to.parameters = bounded_box(widths, "an interval matrix A");
+    add(state_unit_, to.parameters, widths);
   }
   if (by_C || sensor_radius_.size() != 0) {
-    to.outputs = output_box(X, largest, u);
-    add(state ? minus_L_ : output_unit_, to.outputs);
+    const Vector widths = output_widths(X, largest, u);
+    to.outputs = bounded_box(widths, "a range of sensor effectiveness or an interval matrix C");
+    add(state ? minus_L_ : output_unit_, to.outputs, widths);
   }
 }
 
-Enclosure LuenbergerRecursion::next(const Enclosure& X, const Sample& now) const {
+Enclosure LuenbergerRecursion::next(const Enclosure& X, const Sample& now, Vector* open) const {
   Summands summands;
   summands.terms.reserve(5);
   summands.terms.push_back({minus_LDv_, V_});
   summands.terms.push_back({Bw_, W_});
   add_open(summands, Target::state, X, now.u, false);
+  if (open) *open = std::move(summands.half_widths);
   return backend_->predict(X, {Ao_, product(L_, now.y) + product(input_, now.u), summands.terms});
 }
 

@@ -28,11 +28,16 @@ class LuenbergerRecursion {
 
   const SetBackend& backend() const { return *backend_; }
 
-  /// X̂⁺ before reduction, from X̂ and the sample of the same time.
-  Enclosure next(const Enclosure& X, const Sample& now) const;
+  /// X̂⁺ before reduction, from X̂ and the sample of the same time. `open`, if asked for: the half widths of the part of P that is
+  /// not W or V, of no entries where there is none.
+  Enclosure next(const Enclosure& X, const Sample& now, Vector* open = nullptr) const;
   Enclosure reduced(const Enclosure& X) const { return backend_->reduce(X, budget_); }
   /// R, in the space of outputs.
   Enclosure residual(const Enclosure& X, const Sample& now) const;
+
+  /// Of the errors x - x̂ around the point observer, e⁺ = F e + N ξ + …, ‖ξ‖∞ ≤ 1: F = A - L C̄, and N = [Bw G_W, -L Dv G_V].
+  const Matrix& error_map() const { return Ao_; }
+  Matrix error_noise() const;
 
   /// The point observer, centres in place of sets: the same numbers on every backend.
   Vector next(VectorIn x, const Sample& now) const;
@@ -59,11 +64,12 @@ class LuenbergerRecursion {
     Matrix inputs;
     Enclosure parameters, outputs;
     std::vector<Term> terms;
+    Vector half_widths;  ///< of the sum; no entries: nothing is open
   };
   enum class Target { state, output };
   /// Adds what ranges and interval matrices leave open in X̂⁺ or in R.
   void add_open(Summands& to, Target target, const Enclosure& X, VectorIn u, bool twice) const;
-  Enclosure output_box(const Enclosure& X, const Vector& largest, VectorIn u) const;
+  Vector output_widths(const Enclosure& X, const Vector& largest, VectorIn u) const;
   Enclosure bounded_box(const Vector& widths, const std::string& cause) const;
 
   std::shared_ptr<const SetBackend> backend_;
@@ -77,6 +83,7 @@ class LuenbergerRecursion {
   Matrix Bw_, minus_Bw_, Dv_, minus_Dv_, minus_LDv_;
   Matrix state_unit_, output_unit_;
   Enclosure W_, V_, W0_, V0_;              ///< W0, V0: moved by -w̄, -v̄
+  Matrix W_generators_, V_generators_;     ///< of zonotopes around W and V
   Enclosure unit_;                         ///< [-1,1] to the power of `ranged_`
   Vector state_drift_, w_, v_;             ///< Bw w̄, Bw w̄ - L Dv v̄, Dv v̄
   Matrix raw_C_, raw_D_;                   ///< C and |D| max f, for Δ

@@ -19,6 +19,15 @@ ParamSchema common_parameters() {
   return schema;
 }
 
+void add_widening_limit(ParamSchema& schema) {
+  schema.real(
+      "widening_limit",
+      "where reductions have made a set wider, in some coordinate, than this many times the unreduced one, the box around "
+      "the latter takes its place; 0: never. For sets without constraints, gains that do not vary in time, and nominal "
+      "rounding",
+      2, 0, 1e300);
+}
+
 Budget budget_from(const Params& params) { return {params.integer("max_generators"), params.integer("max_constraints")}; }
 
 const LineForm& initial_set_from(const Model& model, const Params& params) {

@@ -14,6 +14,9 @@ ParamSchema common_parameters();
 /// The budget; at least as many generators as the estimate's dimension are needed.
 Budget budget_from(const Params& params);
 
+/// `widening_limit` of observers with a constant gain: see widening_limit.hpp.
+void add_widening_limit(ParamSchema& schema);
+
 /// X0 of the model, or the parameter `initial_set` in its place.
 const LineForm& initial_set_from(const Model& model, const Params& params);
 

@@ -10,6 +10,7 @@
 #include "observers/interval_spread.hpp"
 #include "observers/luenberger_recursion.hpp"
 #include "observers/observer_gain.hpp"
+#include "observers/widening_limit.hpp"
 
 namespace cordon::estimators {
 
@@ -24,6 +25,7 @@ class ZonotopeUncertain final : public Observer {
         X0_(initial_set_from(model(), params)),
         gain_(std::move(gain)),
         recursion_(model(), gain_.gain.L, context.backend, budget_from(params)),
+        limit_(gain_.designer->is_time_varying() ? 0 : params.real("widening_limit")),
         inner_(model(), gain_.gain.L, params) {}
 
   LineForm initial_set() const override { return X0_; }
@@ -33,6 +35,7 @@ class ZonotopeUncertain final : public Observer {
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
     X_ = X0 ? *X0 : backend().import(X0_);
+    limit_.start(recursion_, X_);
     if (!X0) {
       inner_.start(X0_);
     } else if (backend().info().exact_exchange) {
@@ -43,16 +46,19 @@ class ZonotopeUncertain final : public Observer {
     return estimate();
   }
   Enclosure do_step(const Sample& before, const Sample&) override {
-    const Enclosure carried = timed(Phase::reduce, [&] { return recursion_.reduced(X_); });
+    const Enclosure carried = timed(Phase::reduce, [&] { return limit_.apply(backend(), recursion_.reduced(X_)); });
+    Vector open;
     X_ = timed(Phase::predict, [&] {
       if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_for(gain_, model(), carried));
-      return recursion_.next(carried, before);
+      return recursion_.next(carried, before, &open);
     });
+    limit_.step(recursion_, before, open);
     inner_.step(before);
     return estimate();
   }
   void do_replace(const Enclosure& X) override {
     X_ = X;
+    limit_.start(recursion_, X);
     inner_.end();
   }
   /// Claimed outer: what the measurement of the same time says is left out.
@@ -61,6 +67,7 @@ class ZonotopeUncertain final : public Observer {
   LineForm X0_;
   ObserverGain gain_;
   LuenbergerRecursion recursion_;
+  WideningLimit limit_;
   InnerEnvelope inner_;
   Enclosure X_;
 };
@@ -99,6 +106,7 @@ constexpr const char* details =
 
 void register_zonotope_uncertain(Registrar& registrar) {
   ParamSchema schema = common_parameters();
+  add_widening_limit(schema);
   add_gain_parameter(schema, "gain", "output gain, with A - L C stable; absent: the steady gain \"kalman\"");
   InnerEnvelope::add_parameters(schema);
   registrar.observer({{"zonotope_uncertain", "set recursion with an output gain; standard linear systems with interval matrices",

@@ -170,9 +170,7 @@ Adapted adapt(const Matrix& G, Index max_generators) {
   return best;
 }
 
-ReductionSplit as_split(const Box& box) {
-  return {box.sorted.leftCols(box.kept), box.replaced(), box.directions(), false};
-}
+ReductionSplit as_split(const Box& box) { return {box.sorted.leftCols(box.kept), box.replaced(), box.directions(), false}; }
 
 }  // namespace
 

@@ -7,9 +7,9 @@ namespace cordon::sets {
 
 /// What a reduction does with the columns of G.
 struct ReductionSplit {
-  Matrix kept;      ///< stay as they are
-  Matrix replaced;  ///< the others
-  Matrix frame;     ///< n×n: directions of the parallelotope that replaces them
+  Matrix kept;               ///< stay as they are
+  Matrix replaced;           ///< the others
+  Matrix frame;              ///< n×n: directions of the parallelotope that replaces them
   bool frame_first = false;  ///< its place in the result: later choices among equals depend on it
 };
 

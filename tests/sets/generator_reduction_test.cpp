@@ -15,8 +15,9 @@ using namespace cordon::test;
 
 namespace {
 
-constexpr GeneratorReduction methods[] = {GeneratorReduction::girard, GeneratorReduction::combastel,  GeneratorReduction::pca,
-                                          GeneratorReduction::qr,     GeneratorReduction::yang_scott, GeneratorReduction::adaptive};
+constexpr GeneratorReduction methods[] = {GeneratorReduction::girard,     GeneratorReduction::combastel,
+                                          GeneratorReduction::pca,        GeneratorReduction::qr,
+                                          GeneratorReduction::yang_scott, GeneratorReduction::adaptive};
 
 /// Are both the same columns up to order and sign?
 bool same_columns(const Matrix& A, const Matrix& B, double tolerance) {

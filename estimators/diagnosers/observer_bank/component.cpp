@@ -18,6 +18,7 @@ constexpr std::int64_t most_steps = 100'000;
 
 ParamSchema parameters() {
   ParamSchema schema = common_parameters();
+  add_widening_limit(schema);
   schema
       .integer("waiting_time",
                "T: a mode lasts at least so many steps; decides between ambiguous and isolated, switch and unknown fault", {}, 1,
@@ -98,6 +99,7 @@ ObserverBankOptions options_of(const DiagnoserContext& context, const Params& pa
   ObserverBankOptions options;
   options.gains = gains_of(context, params);
   options.budget = budget_from(params);
+  options.widening_limit = params.real("widening_limit");
   options.initial_set = initial_set_from(bank[bank.nominal].model, params);
   options.waiting_time = params.integer("waiting_time");
   if (params.has("strip_gain")) options.strip_gain = params.matrix("strip_gain");

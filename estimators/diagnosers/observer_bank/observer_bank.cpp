@@ -60,7 +60,8 @@ ObserverBank::ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> back
       workers_(options_.threads) {
   const ModeBank& all = Diagnoser::bank();
   for (Index j = 0; j < all.size(); ++j) {
-    members_.emplace_back(all[j].model, options_.gains[static_cast<std::size_t>(j)], shared_backend(), options_.budget);
+    members_.emplace_back(all[j].model, options_.gains[static_cast<std::size_t>(j)], shared_backend(), options_.budget,
+                          options_.widening_limit);
   }
   inputs_ = input_bounds(all);
   error_set_ = this->backend().import(check_error_set(all, options_.gains, options_.offline).set);
@@ -87,8 +88,14 @@ void ObserverBank::expect_input(const Sample& now) const {
 void ObserverBank::advance(Index j, const Sample& before) {
   Member& m = member(j);
   if (m.bound) m.bound = m.recursion.reduced(m.recursion.next_bound(*m.bound, m.X, before));
-  if (m.copy) m.copy = m.recursion.reduced(m.recursion.next(*m.copy, before));
-  m.X = m.recursion.reduced(m.recursion.next(m.X, before));
+  const auto advanced = [&](const Enclosure& X, WideningLimit& limit) {
+    Vector open;
+    const Enclosure next = m.recursion.next(X, before, &open);
+    limit.step(m.recursion, before, open);
+    return limit.apply(backend(), m.recursion.reduced(next));
+  };
+  if (m.copy) m.copy = advanced(*m.copy, m.copy_limit);
+  m.X = advanced(m.X, m.X_limit);
   m.size = m.recursion.next_size(m.center, before);
   m.center = m.recursion.next(m.center, before);
 }
@@ -125,6 +132,7 @@ void ObserverBank::reset(Index j, const Sample& now) {
   const Index n = m.center.size();
   const Enclosure errors = m.recursion.errors_within(error_set_, m.recursion.explained_outputs(error_set_, m.center, now), gain);
   m.copy = m.recursion.reduced(backend().affine_map(errors, Matrix::Identity(n, n), m.center));
+  m.copy_limit.start(m.recursion, *m.copy);
   const Enclosure strips = backend().box(m.residual->interval_hull());
   m.bound = m.recursion.reduced(m.recursion.errors_within(error_set_, strips, gain));
 }
@@ -138,6 +146,7 @@ Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
     elimination_.start(now.k);
     for (Index j = 0; j < modes; ++j) {
       member(j).X = member(j).recursion.reduced(backend().import(options_.initial_set));
+      member(j).X_limit.start(member(j).recursion, member(j).X);
       member(j).center = invariant::enclosing_zonotope(options_.initial_set).c;
       member(j).size = member(j).center.cwiseAbs();
     }

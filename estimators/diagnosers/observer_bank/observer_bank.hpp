@@ -12,6 +12,7 @@
 #include "diagnosers/mode_workers.hpp"
 #include "diagnosers/observer_bank/fdi_conditions.hpp"
 #include "observers/luenberger_recursion.hpp"
+#include "observers/widening_limit.hpp"
 
 namespace cordon::estimators {
 
@@ -19,6 +20,7 @@ struct ObserverBankOptions {
   std::vector<Matrix> gains;  ///< one per mode
   Budget budget;
   LineForm initial_set;
+  double widening_limit = 0;
   Index waiting_time = 0;
   std::optional<Matrix> strip_gain;
   OfflineOptions offline;
@@ -43,9 +45,10 @@ class ObserverBank final : public Diagnoser {
  private:
   /// The observer of one mode.
   struct Member {
-    Member(const Model& model, const Matrix& L, const std::shared_ptr<const SetBackend>& backend, Budget budget)
-        : recursion(model, L, backend, budget) {}
+    Member(const Model& model, const Matrix& L, const std::shared_ptr<const SetBackend>& backend, Budget budget, double widening)
+        : recursion(model, L, backend, budget), X_limit(widening), copy_limit(widening) {}
     LuenbergerRecursion recursion;
+    WideningLimit X_limit, copy_limit;
     Enclosure X, residual;           ///< X̂, R
     Vector center;                   ///< x̂
     Vector size, residual_size;      ///< of the numbers that x̂ and its residual are made of

@@ -8,10 +8,11 @@ namespace cordon::sets {
 
 /// Which generators are replaced, and by what. Of equally small ones the last are replaced first.
 enum class GeneratorReduction {
-  girard,      ///< the smallest by ‖g‖₁ - ‖g‖∞, by their interval hull [Girard2005]
-  combastel,   ///< the smallest by ‖g‖₂, by their interval hull [Combastel2003]
-  pca,         ///< the smallest by ‖g‖₁ - ‖g‖∞, by a box along their principal axes [Kopetzki2017]
-  qr,          ///< the smallest by ‖g‖₂, by a box along the axes of a QR decomposition of them, longest column first [Lohner1987; Nedialkov2001]
+  girard,     ///< the smallest by ‖g‖₁ - ‖g‖∞, by their interval hull [Girard2005]
+  combastel,  ///< the smallest by ‖g‖₂, by their interval hull [Combastel2003]
+  pca,        ///< the smallest by ‖g‖₁ - ‖g‖∞, by a box along their principal axes [Kopetzki2017]
+  qr,  ///< the smallest by ‖g‖₂, by a box along the axes of a QR decomposition of them, longest column first [Lohner1987;
+       ///< Nedialkov2001]
   yang_scott,  ///< one by one into a basis of large generators, cheapest volume error first [Scott2016; Yang2018, method 4]
   adaptive     ///< yang_scott, unless it widens a coordinate by more than 1 %: then what widens them least in their sum of
                ///< yang_scott, pca, qr, and qr after rows are scaled alike

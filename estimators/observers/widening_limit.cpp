@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observers/widening_limit.hpp"
+
+#include <limits>
+
+#include "cordon/core/linalg.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+/// What is left of Fᵏ once it counts for nothing.
+constexpr double negligible = 1e-13;
+/// Rounding errors of the sums, as a share of them: far above those, far below what the limit is about.
+constexpr double rounding_share = 1e-9;
+
+Vector row_sums(const Matrix& M) { return M.cwiseAbs().rowwise().sum(); }
+
+}  // namespace
+
+ErrorHull::ErrorHull(Matrix F, Matrix N, Vector start)
+    : F_(std::move(F)),
+      power_(Matrix::Identity(F_.rows(), F_.rows())),
+      noise_(std::move(N)),
+      powers_(Matrix::Zero(F_.rows(), F_.rows())),
+      start_(std::move(start)),
+      sum_(Vector::Zero(F_.rows())) {}
+
+void ErrorHull::step(const Vector& b) {
+  if (b.size() > 0) b_ = b_.size() > 0 ? Vector(b_.cwiseMax(b)) : b;
+  if (settled_) return;
+  sum_ += row_sums(noise_);
+  powers_ += power_.cwiseAbs();
+  noise_ = linalg::product(F_, noise_);
+  power_ = linalg::product(F_, power_);
+  const Vector all = half_widths();
+  settled_ = (row_sums(power_ * all.asDiagonal()).array() <= negligible * all.array()).all();
+}
+
+Vector ErrorHull::half_widths() const {
+  Vector h = sum_ + power_.cwiseAbs() * start_;
+  if (b_.size() > 0) h += powers_ * b_;
+  return h * (1 + rounding_share);
+}
+
+void WideningLimit::start(const LuenbergerRecursion& recursion, const Enclosure& X) {
+  errors_.reset();
+  if (limit_ == 0 || recursion.backend().info().rounding == Rounding::outward) return;
+  const Box hull = X->interval_hull();
+  if (hull.is_empty() || !hull.is_bounded()) return;
+  center_ = (hull.lower + hull.upper) / 2;
+  const Vector half = (hull.upper - center_).cwiseMax(center_ - hull.lower);
+  errors_.emplace(recursion.error_map(), recursion.error_noise(), half);
+}
+
+void WideningLimit::step(const LuenbergerRecursion& recursion, const Sample& before, const Vector& open) {
+  if (!errors_) return;
+  center_ = recursion.next(center_, before);
+  errors_->step(open);
+}
+
+Enclosure WideningLimit::apply(const SetBackend& backend, const Enclosure& X) const {
+  if (!errors_) return X;
+  const Complexity size = X->complexity();
+  if (size.constraints > 0 || size.lines > 0) return X;
+  const Vector half = errors_->half_widths() + rounding_share * center_.cwiseAbs();
+  if (!half.allFinite()) return X;
+  const Box hull = X->interval_hull();
+  if (((hull.upper - hull.lower).array() <= 2 * limit_ * half.array()).all()) return X;
+  Enclosure box = backend.box({hull.lower.cwiseMax(center_ - half), hull.upper.cwiseMin(center_ + half)});
+  box.tightness = Tightness::outer;
+  return box;
+}
+
+}  // namespace cordon::estimators
