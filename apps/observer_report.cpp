@@ -96,6 +96,27 @@ std::string inner_text(const RunOutcome& outcome, const Paint& paint) {
   return titled("Inner estimates", rows, paint);
 }
 
+std::string growth_text(const RunOutcome& outcome, const Paint& paint) {
+  Rows rows{{"PIPELINE", "STATE", "SMALLEST WIDTH", "AT k", "LAST WIDTH", "FACTOR"}};
+  std::string advice;
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    if (!pipeline.growth) continue;
+    const WidthGrowth& growth = *pipeline.growth;
+    rows.push_back({pipeline.name, fmt::format("x{}", growth.state + 1), width_text(growth.smallest),
+                    fmt::format("{}", growth.smallest_at), width_text(growth.last), fmt::format("{:.4g}", growth.factor)});
+    advice = advice_on(growth);
+  }
+  const std::string text = titled("Warning: bounds that grow", rows, paint);
+  return text.empty() ? "" : text.substr(0, text.size() - 1) + "Cause and remedy: " + advice + "\n\n";
+}
+
+ordered_json growth_json(const PipelineOutcome& pipeline) {
+  if (!pipeline.growth) return nullptr;
+  const WidthGrowth& growth = *pipeline.growth;
+  return {{"state", growth.state + 1},        {"smallest", json_number(growth.smallest)}, {"smallest_at", growth.smallest_at},
+          {"last", json_number(growth.last)}, {"factor", json_number(growth.factor)},     {"advice", advice_on(growth)}};
+}
+
 ordered_json json_number(double value) {
   if (std::isnan(value)) return nullptr;
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";

@@ -19,11 +19,15 @@ std::string gains_text(const RunOutcome& outcome, const Paint& paint);
 std::string widths_text(const RunOutcome& outcome, const Paint& paint);
 /// One row per pipeline that offers an inner estimate.
 std::string inner_text(const RunOutcome& outcome, const Paint& paint);
+/// One row per pipeline whose bounds grow, and what to do about it.
+std::string growth_text(const RunOutcome& outcome, const Paint& paint);
 
 /// The number, null for NaN, "inf" and "-inf".
 nlohmann::ordered_json json_number(double value);
 /// The same as in results.json.
 nlohmann::ordered_json gains_json(const PipelineOutcome& pipeline);
+/// The same as in results.json; null if nothing grows.
+nlohmann::ordered_json growth_json(const PipelineOutcome& pipeline);
 /// {hull, width}; null if there was no step.
 nlohmann::ordered_json last_json(const PipelineOutcome& pipeline);
 

@@ -183,6 +183,7 @@ ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& m
           {"inner_steps", p.inner_steps},
           {"inner_share", p.inner_steps > 0 ? json_number(p.inner_share) : ordered_json(nullptr)},
           {"inner_outside", time_or_null(p.inner_outside)},
+          {"growth", growth_json(p)},
           {"gains", gains_json(p)},
           {"last", last_json(p)},
           {"error", error_of(p)},
@@ -208,7 +209,8 @@ std::string report_text(const Study& study, const RunOutcome& outcome, const std
   }
   const std::string title = study.title.empty() ? "" : paint.bold(study.title) + "\n\n";
   const std::string comparison = observed.pipelines.empty() && !diagnoses.empty() ? "" : observer_table(observed, paint) + "\n";
-  const std::string details = gains_text(observed, paint) + widths_text(observed, paint) + inner_text(observed, paint);
+  const std::string details =
+      gains_text(observed, paint) + widths_text(observed, paint) + inner_text(observed, paint) + growth_text(observed, paint);
   return title + comparison + details + diagnoses + "Results are in " + out.string() + "\n";
 }
 

@@ -37,7 +37,10 @@ void expect_widths(const PublishedWidths& published, const std::vector<Box>& fou
   }
 }
 
-Params budget(Params params, std::int64_t generators) { return params.set("max_generators", generators); }
+/// As published: what reductions add is not limited.
+Params budget(Params params, std::int64_t generators) {
+  return params.set("max_generators", generators).set("widening_limit", 0.0);
+}
 
 }  // namespace
 
@@ -55,6 +58,9 @@ TEST_CASE("what the reduction costs the two tanks") {
   const Vector whole = 2 * hulls("72", "zonotope_uncertain", budget(with_gain(L), 100'000), "zonotope").back().radius();
   CHECK(reduced[0] == doctest::Approx(63.874528).epsilon(1e-8));
   CHECK(whole[0] == doctest::Approx(8.449280).epsilon(1e-7));
+  const Vector limited =
+      2 * hulls("72", "zonotope_uncertain", budget(with_gain(L), 20).set("widening_limit", 2.0), "zonotope").back().radius();
+  CHECK((limited.array() <= 2.001 * whole.array()).all());
   CHECK(whole[1] == doctest::Approx(1.146565).epsilon(1e-6));
 }
 

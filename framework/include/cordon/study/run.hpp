@@ -138,6 +138,16 @@ struct ExperimentRow {
   DelayStatistics isolation = {};                                          ///< first k from which on the true mode is isolated
 };
 
+/// A state whose bounds have become wider and wider: `last` is ten times `smallest` or more.
+struct WidthGrowth {
+  Index state = 0;
+  Index smallest_at = 0;          ///< k of the smallest width, the first ten samples left out
+  double smallest = 0, last = 0;  ///< widths
+  double factor = 1;              ///< last / smallest
+};
+/// What may be behind it, and what to do.
+std::string advice_on(const WidthGrowth& growth);
+
 struct PipelineOutcome {
   std::string name, backend, observer;
   std::string diagnoser;                      ///< if there is one, `observer` is empty
@@ -157,17 +167,18 @@ struct PipelineOutcome {
   AnswerCount bounds;              ///< of interval hulls; unknown: infinite although the estimate is not proven unbounded
   std::string error;               ///< the pipeline stopped with this error; the others go on
   std::optional<Errc> error_code;
-  std::vector<Gain> gains;           ///< of the observer
-  Box last_hull;                     ///< of the last estimate; dimension 0: there is none
-  std::int64_t inner_steps = 0;      ///< steps with an inner estimate
-  std::int64_t inner_outside = -1;   ///< first k at which it leaves the hull by more than rounding (1e-9 relative): a defect
-  double inner_share = 0;            ///< mean width of the inner estimate / width of the hull over steps and states
-  std::vector<MetricValue> summary;  ///< of the metrics
-  std::size_t reproducible = 0;      ///< the first so many of `summary` repeat from run to run; the others are measured
-  PhaseTimes median_us;              ///< medians over the steps up to the first estimate proven empty, phase by phase
-  double median_step_us = 0;         ///< median of predict + correct + reduce
-  double median_hull_us = 0;         ///< median of the interval hulls, which are not part of a step
-  double wall_s = 0;                 ///< wall-clock time of the whole pipeline, data and results included
+  std::vector<Gain> gains;            ///< of the observer
+  Box last_hull;                      ///< of the last estimate; dimension 0: there is none
+  std::optional<WidthGrowth> growth;  ///< of the state that has grown most; none: the sets stay as they are
+  std::int64_t inner_steps = 0;       ///< steps with an inner estimate
+  std::int64_t inner_outside = -1;    ///< first k at which it leaves the hull by more than rounding (1e-9 relative): a defect
+  double inner_share = 0;             ///< mean width of the inner estimate / width of the hull over steps and states
+  std::vector<MetricValue> summary;   ///< of the metrics
+  std::size_t reproducible = 0;       ///< the first so many of `summary` repeat from run to run; the others are measured
+  PhaseTimes median_us;               ///< medians over the steps up to the first estimate proven empty, phase by phase
+  double median_step_us = 0;          ///< median of predict + correct + reduce
+  double median_hull_us = 0;          ///< median of the interval hulls, which are not part of a step
+  double wall_s = 0;                  ///< wall-clock time of the whole pipeline, data and results included
 };
 
 struct RunOutcome {

@@ -49,4 +49,16 @@ void write_inner(JsonWriter& json, const PipelineOutcome& outcome) {
   write_time(json, "inner_outside", outcome.inner_outside);
 }
 
+void write_growth(JsonWriter& json, const PipelineOutcome& outcome) {
+  json.key("growth");
+  if (!outcome.growth) {
+    json.null();
+    return;
+  }
+  const WidthGrowth& growth = *outcome.growth;
+  json.begin_object().member("state", growth.state + 1).member("smallest", growth.smallest);
+  json.member("smallest_at", growth.smallest_at).member("last", growth.last).member("factor", growth.factor);
+  json.member("advice", advice_on(growth)).end_object();
+}
+
 }  // namespace cordon::detail

@@ -18,5 +18,6 @@ void write_last(JsonWriter& json, Index k, const Box& hull);
 
 /// "inner_steps", "inner_share", "inner_outside".
 void write_inner(JsonWriter& json, const PipelineOutcome& outcome);
+void write_growth(JsonWriter& json, const PipelineOutcome& outcome);
 
 }  // namespace cordon::detail

@@ -227,6 +227,7 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
   write_time(results_, "outside_from", outcome.outside_from);
   write_time(results_, "violated_at", outcome.violated_at);
   write_inner(results_, outcome);
+  write_growth(results_, outcome);
   results_.key("answers").begin_object();
   write(results_, "emptiness", outcome.emptiness);
   write(results_, "containment", outcome.containment);

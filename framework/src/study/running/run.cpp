@@ -11,6 +11,7 @@
 #include "study/results/results.hpp"
 #include "study/running/design_run.hpp"
 #include "study/running/diagnosis_run.hpp"
+#include "study/running/growth.hpp"
 #include "study/running/inner_check.hpp"
 #include "study/running/pipeline_guard.hpp"
 #include "study/running/time_limit.hpp"
@@ -115,6 +116,7 @@ class Pipeline {
     if (outcome_.inconsistent_from < 0) medians_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
     count(*estimate, hull);
     if (results) results->step({*estimate, hull, hull_proofs_, inner, *values, observer_->times(), hull_us});
+    growth_.step(estimate->k, hull);
     outcome_.last_hull = std::move(hull);
     return true;
   }
@@ -129,6 +131,7 @@ class Pipeline {
     outcome_.median_hull_us = medians_.hull.value();
     outcome_.median_step_us = medians_.step.value();
     outcome_.wall_s = wall_s;
+    outcome_.growth = growth_.growth();
     outcome_.inner_steps = inner_.steps();
     outcome_.inner_outside = inner_.outside();
     if (inner_.steps() > 0) outcome_.inner_share = inner_.share();
@@ -205,6 +208,7 @@ class Pipeline {
   std::vector<Certificate> hull_proofs_;
   Medians medians_;
   InnerCheck inner_;
+  detail::GrowthWatch growth_;
   PipelineOutcome outcome_;
 };
 

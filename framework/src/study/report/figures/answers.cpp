@@ -126,6 +126,12 @@ void add_failures(const RunFiles& files, Report& report) {
       report.notes.push_back(fmt::format("The inner estimate of \"{}\" leaves its bounds at k = {}: a defect, please report it.",
                                          name, shown(k, 15)));
     }
+    if (const auto growth = object_of(*summary, "growth")) {
+      report.notes.push_back(
+          fmt::format("The bounds of \"{}\" grow: the width of x{} is {} times that at k = {}. Cause and remedy: {}.", name,
+                      shown(value_of(*growth, "state"), 15), shown(value_of(*growth, "factor"), 4),
+                      shown(value_of(*growth, "smallest_at"), 15), text_of(*growth, "advice")));
+    }
     if (const double k = value_of(*summary, "inconsistent_from"); !std::isnan(k)) {
       const double until = value_of(*summary, "assumptions_until");
       report.notes.push_back(fmt::format(
