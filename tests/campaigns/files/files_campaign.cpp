@@ -75,6 +75,11 @@ void campaign_of(const char* kind, const std::vector<std::string>& examples, con
   const std::size_t count = from_environment("CORDON_CAMPAIGN_FILES", 150), seed = from_environment("CORDON_CAMPAIGN_SEED", 1);
   std::size_t accepted = 0, refused = 0;
   double slowest = 0;
+  for (const std::string& example : examples) {
+    fs::remove_all(file);
+    std::ofstream(file, std::ios::binary) << example;
+    REQUIRE_NOTHROW(read());
+  }
   for (std::size_t i = 0; i < count; ++i) {
     campaign::Random random(seed * 1'000'003 + i);
     const std::string bytes = campaign::mutated(random, examples[i % examples.size()]);
@@ -121,7 +126,7 @@ std::vector<std::string> studies() {
   const std::string pipelines = R"("pipelines": [
     {"name": "Zonotope", "backend": {"type": "zonotope"}, "observer": {"type": "prediction_correction", "max_generators": 8}},
     {"name": "Interval", "backend": "interval", "observer": "prediction_correction"}])";
-  const std::string data = R"("data": {"simulate": {"steps": 6, "seed": 3, "x0": [1, -1], "inputs": {"type": "constant", "value": [1]}}})";
+  const std::string data = R"("data": {"simulate": {"steps": 6, "seed": 3, "x0": [1, -1], "input": [{"type": "constant", "offset": 1}]}})";
   std::vector<std::string> all;
   all.push_back("{\n  \"cordon\": 1, \"title\": \"plain\",\n  " + system + "},\n  " + data + ",\n  " + pipelines +
                 ",\n  \"metrics\": [\"radius\", \"volume\", \"contains_truth\"]\n}\n");
@@ -283,7 +288,7 @@ TEST_CASE("journals") {
   {
     detail::Journal journal(scratch.path(), head, detail::Journal::Start::fresh, {});
     for (std::int64_t i = 0; i < 5; ++i) {
-      journal.add(line_of({i, {{{"steps", false}, 3.0}, {{"wall_s", true}, 0.1 * static_cast<double>(i)}}, ""}));
+      journal.add(detail::line_of({i, {{{"steps", false}, 3.0}, {{"wall_s", true}, 0.1 * static_cast<double>(i)}}, ""}));
     }
     journal.sync();
   }

@@ -69,6 +69,19 @@ inline std::string very_long(Random& random) {
   return below(random, 2) == 0 ? "\"" + std::string(length, 'x') + "\"" : std::string(length, '9');
 }
 
+/// Another number in the place of one, so that the file keeps its form; nothing if none is found.
+inline void mutate_number(Random& random, std::string& text) {
+  static const std::vector<std::string> numbers{"0",    "-0",    "1",    "-1",  "2",      "3",      "0.1",        "-2.5",
+                                                "1e-9", "1e9",   "1e15", "1e5", "-1e300", "1e308",  "-1e308",     "5e-324",
+                                                "1e20", "1e-20", "1e150", "64", "1000",   "100000", "4294967296", "9007199254740993"};
+  for (int trial = 0; trial < 50; ++trial) {
+    const Span word = token(random, text);
+    if (word.length == 0 || !(std::isdigit(static_cast<unsigned char>(text[word.at])) || text[word.at] == '-')) continue;
+    text.replace(word.at, word.length, numbers[below(random, numbers.size())]);
+    return;
+  }
+}
+
 /// One change.
 inline void mutate(Random& random, std::string& text) {
   const Span word = token(random, text), part = stretch(random, text, 200);
@@ -124,7 +137,8 @@ inline void mutate(Random& random, std::string& text) {
 }
 
 inline std::string mutated(Random& random, std::string text) {
-  for (std::size_t changes = 1 + below(random, 3); changes-- > 0;) mutate(random, text);
+  const bool keeps_form = below(random, 2) == 0;
+  for (std::size_t changes = 1 + below(random, 3); changes-- > 0;) keeps_form ? mutate_number(random, text) : mutate(random, text);
   return text;
 }
 

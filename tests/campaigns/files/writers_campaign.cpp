@@ -102,7 +102,7 @@ TEST_CASE("killed at any time, a run leaves the earlier results or its own") {
   for (; killed < rounds() && trials < 20 * rounds(); ++trials) {
     program::Process process(arguments(3 - now, out), scratch / "output");
     // Most of a run is its beginning; what matters is its end.
-    std::this_thread::sleep_for(std::chrono::duration<double>(std::uniform_real_distribution<double>(0.5, 1.2)(random) * lasted));
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::uniform_real_distribution<double>(0.2, 1)(random) * lasted));
     process.kill_it(SIGKILL);
     const int exit = process.wait();
     killed += exit == -SIGKILL;
