@@ -83,6 +83,8 @@ void note(const std::string& text) { to_stderr(text + "\n"); }
 void warn(const std::string& text) { to_stderr(Paint(stderr).yellow("warning:") + " " + text + "\n"); }
 void complain(const std::string& text) { to_stderr(Paint(stderr).red("error:") + " " + text + "\n"); }
 
+std::string path_problem(const std::string& text) { return text.empty() ? "the name is empty; name a directory" : ""; }
+
 std::filesystem::path as_operand(const std::filesystem::path& path) { return path.string().starts_with('-') ? "." / path : path; }
 
 Paint::Paint(std::FILE* stream) : on_(isatty(fileno(stream)) == 1) {

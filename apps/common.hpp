@@ -42,6 +42,8 @@ void complain(const std::string& text);
 
 /// A word or a path as a shell reads it, in quotes where it needs them.
 std::string quoted(const std::string& word);
+/// Why a text names no file, for options; empty if it does. An empty one would name files in the working directory.
+std::string path_problem(const std::string& text);
 /// The same file, named so that a program cannot take it for an option.
 std::filesystem::path as_operand(const std::filesystem::path& path);
 

@@ -39,6 +39,7 @@ void add_compare(CLI::App& app, Program& program) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("DIR", arguments->directories, "Directories with results; the others are compared with the first")
       ->required()
+      ->check(CLI::Validator(path_problem, "", ""))
       ->expected(2, 100)
       ->option_text("...");
   CLI::Option* json = command->add_flag("--json", arguments->json, "Print JSON for programs");

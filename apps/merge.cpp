@@ -32,8 +32,11 @@ Exit merge(const Arguments& arguments) {
 void add_merge(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("merge", "Join the parts of a sweep that were run with --shard");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("DIR", arguments->parts, "Directories of all parts, in any order")->required()->option_text(" ");
-  command->add_option("--out", arguments->out, "Directory for the whole sweep")->required()->option_text("DIR");
+  command->add_option("DIR", arguments->parts, "Directories of all parts, in any order")
+      ->required()
+      ->check(CLI::Validator(path_problem, "", ""))
+     ->option_text(" ");
+  command->add_option("--out", arguments->out, "Directory for the whole sweep")->required()->check(CLI::Validator(path_problem, "", ""))->option_text("DIR");
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->footer(

@@ -29,7 +29,10 @@ Exit report(const Arguments& arguments) {
 void add_report(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("report", "Draw the figures of a finished run or sweep");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("DIR", arguments->directory, "Directory of the results")->required()->option_text(" ");
+  command->add_option("DIR", arguments->directory, "Directory of the results")
+      ->required()
+      ->check(CLI::Validator(path_problem, "", ""))
+     ->option_text(" ");
   command->add_flag("--svg", arguments->options.svg, "Write every figure as figures/NAME.svg too");
   command->add_flag("--csv", arguments->options.csv, "Write the numbers of every figure as figures/NAME.csv too");
   command->add_flag("--quiet", arguments->quiet, "Do not print the names of the files");

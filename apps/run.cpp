@@ -86,7 +86,9 @@ void add_run(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("run", "Run a study and compare its pipelines");
   const auto arguments = std::make_shared<RunArguments>();
   command->add_option("STUDY", arguments->study, "Study file (JSON)")->required()->option_text(" ");
-  command->add_option("--out", arguments->out, "Directory for the results [results/<name of the study>]")->option_text("DIR");
+  command->add_option("--out", arguments->out, "Directory for the results [results/<name of the study>]")
+      ->check(CLI::Validator(path_problem, "", ""))
+      ->option_text("DIR");
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->add_flag("--no-report", arguments->no_report, "Write no report.html");
@@ -114,6 +116,7 @@ void add_run(CLI::App& app, Program& program) {
       "Where there are designers, inputs.csv holds what they designed; a diagnoser beside one is tried on every mode with it.\n"
       "A sweep writes results.json, points.csv and run.json, and keeps finished points while it runs: killed at any time, it\n"
       "goes on with --resume.\n"
+      "One run at a time writes into a directory: a second one is told so, and ends with exit code 2.\n"
       "SIGINT or SIGTERM ends the run with exit code 130 and leaves earlier results as they were; a second one kills.");
   command->callback([&program, arguments] { program.exit = run(program, *arguments); });
 }

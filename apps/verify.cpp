@@ -118,7 +118,9 @@ Exit verify(Arguments& arguments) {
 void add_verify(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("verify", "Check the results of a run again, in exact arithmetic");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("DIR", arguments->directory, "Directory that \"cordon run\" wrote")->required();
+  command->add_option("DIR", arguments->directory, "Directory that \"cordon run\" wrote")
+      ->required()
+      ->check(CLI::Validator(path_problem, "", ""));
   command->add_option("--every", arguments->options.every, "Check every M-th step")
       ->option_text("M [1]")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));

@@ -66,7 +66,7 @@ TEST_CASE("brackets and keys inside of texts are texts") {
 
 TEST_CASE("what cannot be read is refused with its reason") {
   const Scratch scratch;
-  CHECK_THROWS_WITH_AS(outline_of(scratch / "results.json"), doctest::Contains("No such file"), InputError);
+  CHECK_THROWS_WITH_AS(outline_of(scratch / "results.json"), doctest::Contains("no such file"), InputError);
   CHECK_THROWS_WITH_AS(outline_of(scratch.path()), doctest::Contains("is a directory"), InputError);
   std::ofstream(scratch / "deep.json") << std::string(1000, '[');
   CHECK_THROWS_WITH_AS(outline_of(scratch / "deep.json"), doctest::Contains("nested too deeply"), InputError);

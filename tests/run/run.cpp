@@ -47,7 +47,7 @@ TEST_CASE("results.json: the study, each step, the summary") {
       run(fakes::study({fakes::pipeline("first \"box\", é\x01"), fakes::pipeline("second")}), scratch.path());
   CHECK_FALSE(outcome.interrupted);
   CHECK(outcome.files.size() == 9);
-  CHECK(tree(scratch.path()).size() == 9);
+  CHECK(tree(scratch.path()).size() == 10);  // and the manifest
   INFO(outcome.report_error);
   CHECK(outcome.report_error.find("control character") != std::string::npos);  // in a name, which no study file can have
   const json results = json::parse(bytes_of(scratch / "results.json"));

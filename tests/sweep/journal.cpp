@@ -96,7 +96,7 @@ TEST_CASE("what is no file is not read") {
   }
   CHECK(std::filesystem::is_regular_file(scratch / ".sweep/journal"));
   REQUIRE(::mkfifo((scratch / "results.json").c_str(), 0600) == 0);
-  CHECK_THROWS_WITH_AS(detail::read_sweep(scratch.path()), doctest::Contains("is no regular file"), InputError);
+  CHECK_THROWS_WITH_AS(detail::read_sweep(scratch.path()), doctest::Contains("is a pipe, not a regular file"), InputError);
 }
 
 TEST_CASE("a line gives back what was written") {
@@ -257,8 +257,8 @@ TEST_CASE("two processes do not write one journal") {
   const Scratch scratch;
   for (const Start start : {Start::fresh, Start::resume, Start::restart}) {
     const Journal journal(scratch.path(), head(), Start::restart, {});
-    CHECK_THROWS_WITH_AS(Journal(scratch.path(), head(), start, {}), doctest::Contains("another process is running a sweep"),
-                         InputError);
+    CHECK_THROWS_WITH_AS(Journal(scratch.path(), head(), start, {}),
+                         doctest::Contains("is writing results into this directory"), InputError);
     const pid_t child = ::fork();
     REQUIRE(child >= 0);
     if (child == 0) {
@@ -308,8 +308,32 @@ TEST_CASE("removed, it leaves nothing; where it cannot be, it says so") {
   CHECK(tree(scratch / "new/out").empty());
   CHECK_FALSE(Journal::is_in(scratch / "new/out"));
   std::ofstream(scratch / "file") << "mine";
-  CHECK_THROWS_WITH_AS(Journal(scratch / "file", head(), Start::fresh, {}), doctest::Contains("cannot make the directory"),
+  CHECK_THROWS_WITH_AS(Journal(scratch / "file", head(), Start::fresh, {}), doctest::Contains("it is a file; name a directory"),
                        Error);
+}
+
+TEST_CASE("no symbolic link is followed") {
+  const Scratch scratch;
+  for (const char* name : {"journal", "journal.new"}) std::ofstream(scratch / name) << "mine";
+  const auto before = tree(scratch.path());
+  const std::filesystem::path out = scratch / "out";
+  const auto unharmed = [&] {
+    for (const auto& [name, bytes] : before) CHECK(bytes_of(scratch / name) == bytes);
+  };
+  std::filesystem::create_directories(out);
+  std::filesystem::create_directory_symlink(scratch.path(), out / ".sweep");
+  for (const Start start : {Start::restart, Start::resume, Start::fresh}) {
+    CHECK_THROWS_AS(Journal(out, head(), start, {}), InputError);
+    unharmed();
+  }
+  std::filesystem::remove(out / ".sweep");
+  std::filesystem::create_directory(out / ".sweep");
+  for (const char* name : {"journal", "journal.new"}) std::filesystem::create_symlink(scratch / name, out / ".sweep" / name);
+  CHECK_THROWS_WITH_AS(Journal(out, head(), Start::resume, {}), doctest::Contains("is no regular file"), InputError);
+  CHECK_THROWS_AS(Journal(out, head(), Start::fresh, {}), InputError);
+  { const Journal journal(out, head(), Start::restart, {}); }  // the links are replaced
+  unharmed();
+  CHECK_FALSE(std::filesystem::is_symlink(out / ".sweep/journal"));
 }
 
 TEST_CASE("points of no sweep, of another part, or that come twice change nothing") {

@@ -31,7 +31,11 @@ std::string refusal(const std::vector<fs::path>& parts, const fs::path& out) {
   return "";
 }
 
-void put(const fs::path& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+/// Without the manifest, which knows other bytes.
+void put(const fs::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+  fs::remove(file.parent_path() / "manifest.json");
+}
 
 std::string exchanged(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
@@ -59,8 +63,9 @@ TEST_CASE("parts that do not belong together are refused, and nothing is written
   refused({one, two, two, three}, "is part 2, which came before");
   refused({one, two, other}, "is of another study");
   refused({one, of_two}, "is a part of 2");
-  refused({whole}, "holds a whole sweep");
-  refused({one, scratch / "absent"}, "cannot be read");
+  refused({one, whole}, "holds a whole sweep");
+  refused({whole, one}, "holds a whole sweep");
+  refused({one, scratch / "absent"}, "there is no such file");
   CHECK(refusal({one, two, three}, two).find("is one of the parts") != std::string::npos);
   const std::string results = bytes_of(three / "results.json");
   put(three / "results.json", exchanged(results, "\"version\": \"", "\"version\": \"9"));
@@ -76,6 +81,13 @@ TEST_CASE("parts that do not belong together are refused, and nothing is written
   const SweepOutcome merged = merge_sweeps({three, one, two}, scratch / "out");
   CHECK(merged.progress.done == 8);
   CHECK(merged.first_error == Errc::unsupported);
+  CHECK(sweeps::reproducible(scratch / "out") == sweeps::reproducible(whole));
+}
+
+TEST_CASE("a sweep in one part is whole, and merged as such") {
+  const Scratch scratch;
+  const fs::path whole = part(scratch, "whole", small(), {1, 1});
+  CHECK(merge_sweeps({whole}, scratch / "out").progress.done == 8);
   CHECK(sweeps::reproducible(scratch / "out") == sweeps::reproducible(whole));
 }
 

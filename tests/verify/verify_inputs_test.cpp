@@ -70,6 +70,7 @@ class Run {
     Json changed = results_;
     change(changed["pipelines"]);
     write("out/results.json", changed);
+    std::filesystem::remove(scratch_ / "out/manifest.json");  // which knows it as it was
     return verify_run(scratch_ / "out");
   }
 

@@ -1,27 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/data/csv_reader.hpp"
 
-#include <cerrno>
 #include <cstring>
-
-#include "cordon/core/error.hpp"
 
 namespace cordon::detail {
 
 CsvReader::CsvReader(const std::filesystem::path& file) : file_(file), buffer_(1 << 16) {
-  errno = 0;
-  stream_.open(file, std::ios::binary);
-  if (!stream_) throw Error(Errc::io, "cannot open " + file.string() + ": " + std::strerror(errno));
   fill();
   if (filled_ >= 3 && std::memcmp(buffer_.data(), "\xEF\xBB\xBF", 3) == 0) at_ = 3;
 }
 
 bool CsvReader::fill() {
-  errno = 0;
-  stream_.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-  filled_ = static_cast<std::size_t>(stream_.gcount());
+  filled_ = file_.read(buffer_.data(), buffer_.size());
   at_ = 0;
-  if (stream_.bad()) throw Error(Errc::io, "cannot read " + file_.string() + ": " + std::strerror(errno));
   return filled_ > 0;
 }
 

@@ -4,9 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
+
+#include "study/reading/input_file.hpp"
 
 namespace cordon::detail {
 
@@ -18,7 +19,8 @@ struct CsvRow {
 
 /// Reads rows of bytes. Lines end with LF, CR LF or CR; quoted fields may hold commas, quotes ("") and line ends; a UTF-8 byte
 /// order mark is skipped; blank lines at the end of the file are ignored, elsewhere they are malformed rows. A row beyond 1 MiB
-/// is malformed and skipped to its end of line, so that memory stays bounded for any file. Throws Errc::io when reading fails.
+/// is malformed and skipped to its end of line, so that memory stays bounded for any file. Throws InputError: not a regular file,
+/// or an error of reading.
 class CsvReader {
  public:
   explicit CsvReader(const std::filesystem::path& file);
@@ -39,8 +41,7 @@ class CsvReader {
   void skip_line();
   bool ends_line(int c);
 
-  std::filesystem::path file_;
-  std::ifstream stream_;
+  InputFile file_;
   std::vector<char> buffer_;
   std::size_t at_ = 0, filled_ = 0;
   std::int64_t line_ = 1;

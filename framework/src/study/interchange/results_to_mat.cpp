@@ -62,14 +62,14 @@ Value data_of(const fs::path& file) {
 }
 
 /// The sets of all steps, by pipeline.
-std::map<std::string, std::vector<Value>> sets_of(const fs::path& directory) {
+std::map<std::string, std::vector<Value>> sets_of(const detail::RecordedFiles& files) {
   std::map<std::string, std::vector<Value>> sets;
-  verification::SetReader reader(directory);
+  verification::SetReader reader(files);
   std::int64_t budget = mat::max_numbers;
   while (const auto row = reader.next()) {
     const LineForm& X = row->set;
     budget -= X.c.size() * (1 + X.G.cols() + X.M.cols()) + X.b.size() * (1 + X.A.cols() + X.S.cols()) + 20;
-    if (budget < 0) refuse(directory / "sets.jsonl", "holds more sets than one MAT-file takes", "leave out --sets");
+    if (budget < 0) refuse(files.directory() / "sets.jsonl", "holds more sets than one MAT-file takes", "leave out --sets");
     sets[row->pipeline].push_back(mat::to_mat(X));
   }
   return sets;
@@ -89,9 +89,9 @@ Value pipeline_to_mat(const Cursor& at, std::vector<Value>* sets) {
   return std::move(pipeline).value();
 }
 
-Value pipelines_to_mat(const Cursor& pipelines, const fs::path& directory, bool with_sets) {
+Value pipelines_to_mat(const Cursor& pipelines, const detail::RecordedFiles& files, bool with_sets) {
   std::map<std::string, std::vector<Value>> sets;
-  if (with_sets) sets = sets_of(directory);
+  if (with_sets) sets = sets_of(files);
   std::vector<std::string> names;
   for (std::size_t p = 0; p < pipelines.size(); ++p) {
     const auto name = pipelines.item(p).need("name", mend);
@@ -169,7 +169,8 @@ Value to_mat(const ResultTable& table) {
 }  // namespace mat
 
 void results_to_mat(const fs::path& directory, const Target& target, bool with_sets) {
-  const fs::path file = directory / "results.json";
+  const detail::RecordedFiles files(directory);
+  const fs::path file = files.file("results.json");
   json::Problems problems;
   const json::Value tree = json::parse(json::read_file(file.string()), problems);
   const Cursor root(tree, "", problems);
@@ -190,11 +191,12 @@ void results_to_mat(const fs::path& directory, const Target& target, bool with_s
     }
     if (!problems.any() && sweep) all.push_back({"sweep", mat::to_mat(read_result_table(directory))});
     if (!problems.any() && !sweep && pipelines && pipelines->expect(Kind::array, mend)) {
-      all.push_back({"data", data_of(directory / "data.csv")});
-      all.push_back({"results", pipelines_to_mat(*pipelines, directory, with_sets)});
+      all.push_back({"data", data_of(files.file("data.csv"))});
+      all.push_back({"results", pipelines_to_mat(*pipelines, files, with_sets)});
     }
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());
+  files.check_unchanged();
   detail::write_files({{target.file, mat::to_bytes(all)}}, target.replace);
 }
 

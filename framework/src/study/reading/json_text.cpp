@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
+
+#include "study/reading/input_file.hpp"
 
 namespace cordon::json {
 
@@ -30,10 +29,6 @@ std::string escaped(std::string_view word, std::size_t limit) {
   }
   if (i < word.size()) text += "...";
   return text;
-}
-
-[[noreturn]] void refuse(const std::string& file, std::string message, std::string suggestion) {
-  throw InputError(escaped(file, 4096), {Diagnostic{"", std::move(message), std::move(suggestion), 0}});
 }
 
 const Parts& no_parts() {
@@ -112,22 +107,7 @@ std::vector<Diagnostic> Problems::sorted() const {
 }
 
 std::string read_file(const std::string& file) {
-  std::error_code failure;
-  const auto status = std::filesystem::status(file, failure);
-  if (status.type() == std::filesystem::file_type::not_found)
-    refuse(file, "no such file", "check the name and the working directory");
-  if (std::filesystem::is_directory(status)) refuse(file, "is a directory", "name the JSON file inside it");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
-  if (!stream) refuse(file, std::string("cannot be opened: ") + std::strerror(errno), "check its permissions");
-  std::string text;
-  std::array<char, 1 << 16> chunk{};
-  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), stream.get())) {
-    text.append(chunk.data(), got);
-    if (text.size() > max_bytes) refuse(file, "is larger than 64 MB", "recorded data belong into a CSV file");
-  }
-  if (std::ferror(stream.get()) != 0)
-    refuse(file, std::string("cannot be read: ") + std::strerror(errno), "check the file system");
-  return text;
+  return detail::InputFile(file, "name a JSON file that can be read").rest(max_bytes, "recorded data belong into a CSV file");
 }
 
 }  // namespace cordon::json

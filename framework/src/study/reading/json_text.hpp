@@ -75,7 +75,7 @@ inline constexpr std::size_t max_bytes = std::size_t{64} << 20;
 inline constexpr int max_depth = 64;
 inline constexpr std::size_t max_values = 10'000'000;
 
-/// The bytes of a file. Throws InputError: missing, a directory, not readable, more than `max_bytes`.
+/// The bytes of a file. Throws InputError: missing, not a regular file, not readable, more than `max_bytes`.
 std::string read_file(const std::string& file);
 
 /// The tree of a text. Reports what is wrong: not UTF-8 or not JSON (one problem with line and column; the result is then

@@ -36,12 +36,9 @@ void remove_others(const std::filesystem::path& directory, const report::Report&
 
 }  // namespace
 
-std::vector<std::filesystem::path> write_report(const std::filesystem::path& directory, const ReportOptions& options) {
-  std::error_code failed;
-  if (!std::filesystem::is_directory(directory, failed)) {
-    throw InputError(directory.string(),
-                     {{"", "is no directory", "name the directory that \"cordon run\" wrote its results to", 0}});
-  }
+namespace {
+
+Files write_figures(const std::filesystem::path& directory, const ReportOptions& options) {
   Files files;
   if (options.html || options.svg) {
     const report::Report page = report::read_report(directory);
@@ -67,9 +64,21 @@ std::vector<std::filesystem::path> write_report(const std::filesystem::path& dir
   return files;
 }
 
-std::string report::try_report(const std::filesystem::path& directory, std::vector<std::filesystem::path>& files) noexcept {
+}  // namespace
+
+Files write_report(const std::filesystem::path& directory, const ReportOptions& options) {
+  std::error_code failed;
+  if (!std::filesystem::is_directory(directory, failed)) {
+    throw InputError(directory.string(),
+                     {{"", "is no directory", "name the directory that \"cordon run\" wrote its results to", 0}});
+  }
+  const detail::DirectoryLock lock(directory);
+  return write_figures(directory, options);
+}
+
+std::string report::try_report(const detail::DirectoryLock& directory, std::vector<std::filesystem::path>& files) noexcept {
   try {
-    for (std::filesystem::path& file : write_report(directory)) files.push_back(std::move(file));
+    for (std::filesystem::path& file : write_figures(directory.directory(), {})) files.push_back(std::move(file));
     return "";
   } catch (const std::exception& error) {
     return error.what();

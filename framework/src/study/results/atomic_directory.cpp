@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/results/atomic_directory.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -50,9 +49,9 @@ class SignalsBlocked {
 
 }  // namespace
 
-AtomicDirectory::AtomicDirectory(fs::path target) : target_(fs::absolute(target).lexically_normal()) {
+AtomicDirectory::AtomicDirectory(fs::path target, bool whole, Rename rename)
+    : target_(fs::absolute(target).lexically_normal()), whole_(whole), rename_(std::move(rename)), made_(target_) {
   try {
-    make_target();
     remove_leftovers();
     make_partial();
   } catch (...) {
@@ -61,24 +60,12 @@ AtomicDirectory::AtomicDirectory(fs::path target) : target_(fs::absolute(target)
   }
 }
 
-AtomicDirectory::~AtomicDirectory() { discard(); }
+AtomicDirectory::AtomicDirectory(fs::path target) : AtomicDirectory(std::move(target), false, rename_file) {}
 
-void AtomicDirectory::make_target() {
-  std::vector<fs::path> missing;
-  std::error_code error;
-  for (fs::path at = target_; !fs::exists(at, error) && at.has_relative_path(); at = at.parent_path()) missing.push_back(at);
-  if (missing.empty() && !fs::is_directory(target_, error)) {
-    fail(target_, "cannot write results to", "it is a file; name a directory");
-  }
-  for (; !missing.empty(); missing.pop_back()) {
-    if (missing.back().filename().empty()) continue;  // "results/": the same directory twice
-    if (fs::create_directory(missing.back(), error)) {
-      made_.push_back(missing.back());
-    } else if (error) {
-      fail(missing.back(), "cannot make the directory", error.message());
-    }
-  }
-}
+AtomicDirectory::AtomicDirectory(const DirectoryLock& lock, Rename rename)
+    : AtomicDirectory(lock.directory(), true, std::move(rename)) {}
+
+AtomicDirectory::~AtomicDirectory() { discard(); }
 
 void AtomicDirectory::remove_leftovers() const {
   std::error_code error;
@@ -116,35 +103,41 @@ OutputFile& AtomicDirectory::create(const std::string& name) {
   return *files_.back().second;
 }
 
-void AtomicDirectory::remove(const std::vector<std::string>& outdated) const {
-  for (const std::string& name : outdated) {
-    const bool is_new = std::any_of(files_.begin(), files_.end(), [&](const auto& file) { return file.first == name; });
-    const fs::path path = target_ / name;
-    if (is_new || ::unlink(path.c_str()) == 0 || errno == ENOENT || errno == EISDIR) continue;
-    fail(path, "cannot remove", std::strerror(errno));
-  }
+void AtomicDirectory::write_manifest() {
+  std::vector<ManifestEntry> entries;
+  for (const auto& [name, file] : files_) entries.push_back(file->entry());
+  OutputFile manifest(partial_ / manifest_name);
+  manifest.write(manifest_text(entries));
+  manifest.close();
 }
 
-std::vector<fs::path> AtomicDirectory::commit(const std::vector<std::string>& outdated) {
+std::vector<fs::path> AtomicDirectory::commit() {
+  std::vector<fs::path> results;
   for (const auto& [name, file] : files_) {
     std::error_code ignored;
     if (fs::is_directory(target_ / name, ignored)) fail(target_ / name, "cannot replace", "it is a directory");
     file->close();
+    results.push_back(target_ / name);
   }
-  std::vector<fs::path> results;
+  if (std::error_code ignored; whole_ && fs::is_directory(target_ / manifest_name, ignored)) {
+    fail(target_ / manifest_name, "cannot replace", "it is a directory");
+  }
   const SignalsBlocked blocked;
-  for (const auto& [name, file] : files_) {
-    const fs::path final = target_ / name;
-    if (file == files_.back().second) remove(outdated);
-    if (::rename((partial_ / name).c_str(), final.c_str()) != 0) fail(final, "cannot replace", std::strerror(errno));
-    committed_ = true;
-    results.push_back(final);
+  if (whole_) {
+    const fs::path committed = target_ / committed_folder;
+    write_manifest();
+    sync_names(partial_);
+    if (rename_(partial_.c_str(), committed.c_str()) != 0) fail(committed, "cannot make", std::strerror(errno));
+    partial_.clear();  // from here on these are the results
+    sync_names(target_);
+    publish(target_, rename_);
+  } else {
+    for (const auto& [name, file] : files_) {
+      const fs::path final = target_ / name;
+      if (rename_((partial_ / name).c_str(), final.c_str()) != 0) fail(final, "cannot replace", std::strerror(errno));
+    }
+    sync_names(target_);
   }
-  if (const int directory = open_directory(target_); directory >= 0) {
-    ::fsync(directory);  // makes the new names durable where the file system can; the files themselves are on the disk already
-    ::close(directory);
-  }
-  committed_ = true;
   discard();
   return results;
 }
@@ -156,8 +149,6 @@ void AtomicDirectory::discard() noexcept {
   partial_.clear();
   if (lock_ >= 0) ::close(lock_);
   lock_ = -1;
-  if (committed_) return;
-  for (; !made_.empty(); made_.pop_back()) fs::remove(made_.back(), ignored);  // only if empty
 }
 
 }  // namespace cordon::detail

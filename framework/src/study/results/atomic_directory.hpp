@@ -7,6 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "study/results/directory_lock.hpp"
+#include "study/results/fingerprint.hpp"
+#include "study/results/manifest.hpp"
+#include "study/results/publish.hpp"
 #include "study/results/sink.hpp"
 
 namespace cordon::detail {
@@ -21,6 +25,7 @@ class OutputFile final : public Sink {
 
   void write(std::string_view bytes) override;
   void close();  ///< writes what is buffered, waits until it is on the disk, and closes
+  ManifestEntry entry() const;  ///< of all that was written and is no longer buffered
 
  private:
   void flush();
@@ -28,6 +33,8 @@ class OutputFile final : public Sink {
   std::filesystem::path path_;
   int descriptor_;
   std::string buffer_;
+  std::int64_t bytes_ = 0;
+  Fnv1a64 hash_;
 };
 
 /// Files under `<target>/.partial-<pid>-<n>/` until `commit` moves them into `target`. Destroyed before that, it removes its
@@ -35,7 +42,11 @@ class OutputFile final : public Sink {
 /// start: a living owner holds a lock on its directory. Throws Errc::io: `target` is a file, or cannot be written to.
 class AtomicDirectory {
  public:
+  /// For files that stand beside others: each appears whole, one after another.
   explicit AtomicDirectory(std::filesystem::path target);
+  /// For results: they appear all or none, with a manifest, and take the place of earlier ones. Whatever the process dies of, the
+  /// directory holds the earlier results or the new ones. `lock` is held longer than this object lives.
+  explicit AtomicDirectory(const DirectoryLock& lock, Rename rename = rename_file);
   ~AtomicDirectory();
   AtomicDirectory(const AtomicDirectory&) = delete;
   AtomicDirectory& operator=(const AtomicDirectory&) = delete;
@@ -43,22 +54,22 @@ class AtomicDirectory {
   const std::filesystem::path& path() const { return target_; }
   /// Opens a new file; it belongs to this object.
   OutputFile& create(const std::string& name);
-  /// Closes all files and renames them into the target in the order of creation, with signals blocked. Returns their final paths.
-  /// Before the last one, files of the target that are `outdated` and were not created anew are removed.
-  std::vector<std::filesystem::path> commit(const std::vector<std::string>& outdated = {});
+  /// Closes all files and moves them into the target in the order of creation, with signals blocked. Returns their final paths.
+  std::vector<std::filesystem::path> commit();
 
  private:
-  void make_target();
+  AtomicDirectory(std::filesystem::path target, bool whole, Rename rename);
   void remove_leftovers() const;
   void make_partial();
-  void remove(const std::vector<std::string>& outdated) const;
+  void write_manifest();
   void discard() noexcept;
 
   std::filesystem::path target_, partial_;
-  std::vector<std::filesystem::path> made_;  ///< directories that did not exist before, outermost first
+  bool whole_;
+  Rename rename_;
+  MadeDirectories made_;
   std::vector<std::pair<std::string, std::unique_ptr<OutputFile>>> files_;
   int lock_ = -1;
-  bool committed_ = false;
 };
 
 }  // namespace cordon::detail

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/results/earlier_results.hpp"
 
-#include <fstream>
+#include "cordon/core/error.hpp"
+#include "study/reading/input_file.hpp"
+#include "study/reading/json_text.hpp"
 
 namespace cordon::detail {
 
 std::vector<std::string> files_of_earlier_results(const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / "results.json";
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) return {};
-  std::ifstream stream(file, std::ios::binary);
-  std::string line;
-  if (!std::getline(stream, line) || line != "{" || !std::getline(stream, line) || !line.starts_with("  \"cordon_results\": "))
-    return {};
-  bool sweep = false;
-  while (!sweep && std::getline(stream, line)) sweep = line == "  \"points\": [";
-  if (sweep) return {"points.csv", "times.csv", "report.html"};
-  return {"data.csv", "sets.jsonl", "steps.csv", "diagnosis.csv", "inputs.csv", "report.html"};
+  constexpr std::size_t longest = json::max_bytes;
+  try {
+    InputFile file(directory / "results.json");
+    std::string line;
+    if (!file.line(line, longest) || line != "{") return {};
+    if (!file.line(line, longest) || !line.starts_with("  \"cordon_results\": ")) return {};
+    bool sweep = false;
+    while (!sweep && file.line(line, longest)) sweep = line == "  \"points\": [";
+    if (sweep) return {"points.csv", "times.csv", "report.html"};
+    return {"data.csv", "sets.jsonl", "steps.csv", "diagnosis.csv", "inputs.csv", "report.html"};
+  } catch (const InputError&) {
+    return {};  // nothing that this program wrote
+  }
 }
 
 }  // namespace cordon::detail

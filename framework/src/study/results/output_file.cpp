@@ -39,6 +39,8 @@ void OutputFile::write(std::string_view bytes) {
 
 void OutputFile::flush() {
   std::string_view rest = buffer_;
+  hash_.add(rest);
+  bytes_ += static_cast<std::int64_t>(rest.size());
   while (!rest.empty()) {
     const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
     if (written < 0 && errno == EINTR) continue;
@@ -47,6 +49,8 @@ void OutputFile::flush() {
   }
   buffer_.clear();
 }
+
+ManifestEntry OutputFile::entry() const { return {path_.filename().string(), bytes_, hash_.digits()}; }
 
 void OutputFile::close() {
   if (descriptor_ < 0) return;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/results/earlier_results.hpp"
 #include "study/results/file_heads.hpp"
 #include "study/results/host.hpp"
 #include "study/results/numbers.hpp"
@@ -54,8 +53,7 @@ bool has_designers(const Study& study) {
 
 }  // namespace
 
-// run.json and results.json come last: where a results.json is new, the other files are new too.
-Results::Results(const Study& study, const Registry& registry, const std::filesystem::path& out)
+Results::Results(const Study& study, const Registry& registry, const DirectoryLock& out)
     : study_(study),
       directory_(out),
       data_file_(directory_.create("data.csv")),
@@ -302,7 +300,7 @@ std::vector<std::filesystem::path> Results::commit(const RunOutcome& outcome) {
   for (const PipelineOutcome& pipeline : outcome.pipelines) wall += pipeline.wall_s;
   run_.end_array().member("wall_s", wall).member("finished", utc_now()).end_object();
   run_file_.write("\n");
-  return directory_.commit(files_of_earlier_results(directory_.path()));
+  return directory_.commit();
 }
 
 }  // namespace cordon::detail

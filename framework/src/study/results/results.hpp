@@ -51,10 +51,12 @@ struct Assumptions {
 ///   inputs.csv    the designed inputs, if there are pipelines with a designer
 ///   summary.tex, summary.md, benchmarks.csv   the summaries as tables to print, with times
 ///   run.json      host, times, and what else differs from run to run
-/// Nothing is visible under its name before `commit`.
+///   manifest.json which files these are
+/// Nothing is visible under its name before `commit`, and then all is.
 class Results {
  public:
-  Results(const Study& study, const Registry& registry, const std::filesystem::path& out);
+  /// Into the directory of `out`, which lives longer.
+  Results(const Study& study, const Registry& registry, const DirectoryLock& out);
 
   void begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding, const std::optional<Assumptions>& assumptions,
                       const std::vector<Gain>& gains);

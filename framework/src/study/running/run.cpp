@@ -269,8 +269,9 @@ RunOutcome detail::run_on(const OpenData& open, const Study& study, const Regist
   const TimeLimit limit(options.deadline);
   const bool streams = std::any_of(study.pipelines.begin(), study.pipelines.end(), [](const auto& p) { return !p.designer; });
   std::unique_ptr<DataSource> data = streams ? open(0) : nullptr;  // first: bad data leave no trace on the disk
+  std::optional<detail::DirectoryLock> lock;
   std::optional<Results> results;
-  if (!options.out.empty()) results.emplace(study, registry, options.out);
+  if (!options.out.empty()) results.emplace(study, registry, lock.emplace(options.out));
   Results* const writer = results ? &*results : nullptr;
   RunOutcome outcome;
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
@@ -295,7 +296,7 @@ RunOutcome detail::run_on(const OpenData& open, const Study& study, const Regist
   } else if (writer) {
     outcome.files = writer->commit(outcome);
     results.reset();
-    if (options.report) outcome.report_error = report::try_report(options.out, outcome.files);
+    if (options.report) outcome.report_error = report::try_report(*lock, outcome.files);
   }
   return outcome;
 }

@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/statistics/large_json.hpp"
 
-#include <cerrno>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <memory>
 #include <unordered_set>
 
 #include <nlohmann/json.hpp>
+
+#include "study/reading/input_file.hpp"
 
 namespace cordon::json {
 
 namespace {
 
 using Kind = Value::Kind;
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 /// The bytes of a file, one after another, with the line of the last one.
 class Bytes {
  public:
-  explicit Bytes(std::FILE* stream) : stream_(stream), chunk_(std::size_t{1} << 16) { fill(); }
+  explicit Bytes(const std::filesystem::path& file) : file_(file, "\"cordon run\" writes it"), chunk_(std::size_t{1} << 16) {
+    fill();
+  }
 
   bool at_end() const { return at_ == size_; }
   char now() const { return chunk_[at_]; }
@@ -34,11 +33,11 @@ class Bytes {
 
  private:
   void fill() {
-    size_ = std::fread(chunk_.data(), 1, chunk_.size(), stream_);
+    size_ = file_.read(chunk_.data(), chunk_.size());
     at_ = 0;
   }
 
-  std::FILE* stream_;
+  detail::InputFile file_;
   std::vector<char> chunk_;
   std::size_t size_ = 0, at_ = 0;
   int line_ = 1;
@@ -253,18 +252,9 @@ class Builder {
 }  // namespace
 
 Value read_large(const std::filesystem::path& file, const Wanted& wanted, Problems& problems) {
-  const auto refuse = [&](const std::string& message) -> InputError {
-    return InputError(file.string(), {{"", message, "\"cordon run\" writes it", 0}});
-  };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) throw refuse("is a directory");
-  const File stream(std::fopen(file.c_str(), "rb"), &std::fclose);
-  if (!stream) throw refuse(std::string("cannot be read: ") + std::strerror(errno));
-  Bytes bytes(stream.get());
+  Bytes bytes(file);
   Builder builder(wanted, bytes, problems);
-  const bool whole = nlohmann::json::sax_parse(Reader(&bytes), Reader(nullptr), &builder);
-  if (std::ferror(stream.get()) != 0) throw refuse("cannot be read to its end");
-  if (whole) return builder.take();
+  if (nlohmann::json::sax_parse(Reader(&bytes), Reader(nullptr), &builder)) return builder.take();
   Value broken;
   broken.kind = Kind::broken;
   return broken;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "study/reading/read_sweep.hpp"
+#include "study/results/manifest.hpp"
 #include "study/statistics/large_json.hpp"
 #include "study/statistics/table_builder.hpp"
 
@@ -77,11 +78,12 @@ class Thinned {
 
 class TableReader {
  public:
-  explicit TableReader(const std::filesystem::path& directory) : directory_(directory), builder_(read_.table) {}
+  explicit TableReader(const std::filesystem::path& directory) : files_(directory), builder_(read_.table) {}
 
   RecordedTable read() {
     read_results();
     read_times();
+    files_.check_unchanged();
     builder_.finish();
     return std::move(read_);
   }
@@ -99,7 +101,7 @@ class TableReader {
   void read_times_of_point(const Cursor& at);
   void read_times_of_step(const Cursor& at, Thinned& steps);
 
-  std::filesystem::path directory_;
+  RecordedFiles files_;
   RecordedTable read_;
   TableBuilder builder_;
   bool is_sweep_ = false;
@@ -108,7 +110,7 @@ class TableReader {
 };
 
 void TableReader::read_results() {
-  const std::filesystem::path file = directory_ / "results.json";
+  const std::filesystem::path file = files_.file("results.json");
   Problems problems;
   Wanted wanted{{"/cordon_results", "/cordon", "/tools", "/title", "/study_hash", "/study/sweep", "/pipelines/*/name",
                  "/pipelines/*/numbers", "/pipelines/*/summary/error"},
@@ -204,7 +206,7 @@ void TableReader::check_rows(const Cursor& root) {
 }
 
 void TableReader::read_times() {
-  const std::filesystem::path file = directory_ / "run.json";
+  const std::filesystem::path file = files_.file("run.json");
   Problems problems;
   std::vector<Thinned> steps(read_.table.pipelines.size());
   const Wanted wanted{{"/cordon_run", "/host", "/pipelines/*/name", "/pipelines/*/summary/numbers"},

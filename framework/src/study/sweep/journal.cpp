@@ -5,16 +5,13 @@
 #include <cmath>
 #include <cstring>
 #include <fcntl.h>
-#include <fstream>
-#include <optional>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
 
 #include "study/results/fingerprint.hpp"
 #include "study/results/json_writer.hpp"
 #include "study/results/numbers.hpp"
+#include "study/results/publish.hpp"
 #include "study/results/string_sink.hpp"
 
 namespace cordon::detail {
@@ -24,6 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* folder = ".sweep";
+constexpr std::size_t longest_line = json::max_bytes;
 const std::string discard = "\"--restart\" throws the unfinished sweep away; another \"--out\" keeps it";
 
 [[noreturn]] void fail(const fs::path& path, int reason) {
@@ -41,7 +39,7 @@ std::string with_checksum(const std::string& text) { return fnv1a64(text) + ' ' 
 /// The text of a line that is whole.
 std::optional<std::string> checked(const std::string& line) {
   constexpr std::size_t digits = 16;
-  if (line.size() < digits + 2 || line.size() > json::max_bytes || line[digits] != ' ') return std::nullopt;
+  if (line.size() < digits + 2 || line[digits] != ' ') return std::nullopt;
   std::string text = line.substr(digits + 1);
   return fnv1a64(text) == line.substr(0, digits) ? std::optional(std::move(text)) : std::nullopt;
 }
@@ -113,90 +111,70 @@ std::string name_of_limit(double seconds) {
 
 bool Journal::is_in(const fs::path& out) {
   std::error_code ignored;
-  return fs::exists(out / folder / "journal", ignored);
+  return fs::exists(fs::symlink_status(out / folder / "journal", ignored));
 }
 
 Journal::Journal(const fs::path& out, const JournalHead& head, Start start, const std::function<void(PointResult)>& earlier)
-    : directory_(out / folder), file_(directory_ / "journal"), head_(head) {
+    : lock_(out), directory_(lock_.directory() / folder), file_(directory_ / "journal"), head_(head) {
   try {
-    lock();
-    std::ifstream old;
+    make_folder();
+    std::optional<InputFile> old;
     if (is_in(out) && start == Start::fresh) {
       refuse(out, "holds an unfinished sweep", "\"--resume\" goes on with it, \"--restart\" throws it away");
     }
     if (is_in(out) && start == Start::resume) {
-      if (!fs::is_regular_file(file_)) refuse(file_, "is no regular file", discard);
-      old.open(file_, std::ios::binary);
-      check_head(old);
+      if (!fs::is_regular_file(fs::symlink_status(file_))) refuse(file_, "is no regular file", discard);
+      check_head(old.emplace(file_, discard));
     }
     begin(old, earlier);
   } catch (...) {
     if (descriptor_ >= 0) ::close(descriptor_);
-    if (lock_ >= 0) ::close(lock_);
     throw;
   }
 }
 
 Journal::~Journal() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (lock_ >= 0) ::close(lock_);
 }
 
-/// The lock is on a file, not on the directory: network file systems lock nothing else.
-void Journal::lock() {
-  const fs::path file = directory_ / "lock";
-  for (;;) {
-    std::error_code error;
-    fs::create_directories(directory_, error);
-    if (error) throw Error(Errc::io, "cannot make the directory " + directory_.string() + ": " + error.message());
-    lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (lock_ < 0 && errno != ENOENT) fail(file, errno);
-    if (lock_ < 0) continue;  // another process has finished in between
-    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      refuse(directory_.parent_path(), "another process is running a sweep into this directory",
-             "wait for its end, or name another \"--out\"");
-    }
-    struct stat held, there;
-    const bool same = ::fstat(lock_, &held) == 0 && ::lstat(file.c_str(), &there) == 0 && held.st_dev == there.st_dev &&
-                      held.st_ino == there.st_ino;
-    if (same) return;
-    ::close(std::exchange(lock_, -1));
+/// A link in its place could lead to files that are none of this program's.
+void Journal::make_folder() const {
+  std::error_code error;
+  if (!fs::create_directory(directory_, error) && error) {
+    throw Error(Errc::io, "cannot make the directory " + directory_.string() + ": " + error.message());
   }
+  if (!fs::is_directory(fs::symlink_status(directory_))) refuse(directory_, "is a symbolic link", "remove the link");
 }
 
-/// Leaves the stream behind the head.
-void Journal::check_head(std::istream& old) {
+/// Leaves the file behind the head.
+void Journal::check_head(InputFile& old) {
   std::string line;
   std::optional<std::string> text;
-  if (std::getline(old, line) && !old.eof()) text = checked(line);
+  if (old.line(line, longest_line) && old.ended_line()) text = checked(line);
   const std::optional<JournalHead> head = text ? head_of(*text) : std::nullopt;
   if (!head) refuse(file_, "is damaged: it does not tell which sweep it belongs to", discard);
   const auto [reason, mend] = difference(*head, head_);
-  if (!reason.empty()) refuse(directory_.parent_path(), reason, mend);
+  if (!reason.empty()) refuse(lock_.directory(), reason, mend);
   head_.started = head->started;
 }
 
 /// A new file takes the place of the old one, with its lines that are whole, and is left open at its end.
-void Journal::begin(std::istream& old, const std::function<void(PointResult)>& earlier) {
+void Journal::begin(std::optional<InputFile>& old, const std::function<void(PointResult)>& earlier) {
   const fs::path fresh = directory_ / "journal.new";
   ::unlink(fresh.c_str());  // whatever it is
   descriptor_ = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(fresh, errno);
   write(with_checksum(text_of(head_)));
-  for (std::string line; std::getline(old, line) && !old.eof();) {  // a last line without its end is torn
+  for (std::string line; old && old->line(line, longest_line) && old->ended_line();) {  // a last line without its end is torn
     const std::optional<std::string> text = checked(line);
     auto point = text ? point_of(*text) : std::nullopt;
     if (!point) continue;
     write(line + '\n');
     earlier(std::move(*point));
   }
-  if (old.bad()) throw Error(Errc::io, "cannot read " + file_.string());
   sync();
   if (::rename(fresh.c_str(), file_.c_str()) != 0) fail(file_, errno);
-  if (const int directory = ::open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); directory >= 0) {
-    ::fsync(directory);  // the new name, where the file system can
-    ::close(directory);
-  }
+  sync_names(directory_);
 }
 
 void Journal::add(const std::string& line) {
@@ -224,8 +202,7 @@ void Journal::sync() {
 }
 
 void Journal::remove() {
-  // The lock goes last: from then on files of these names are another process's.
-  for (const fs::path& path : {file_, directory_ / "lock"}) ::unlink(path.c_str());
+  ::unlink(file_.c_str());
   ::rmdir(directory_.c_str());
 }
 

@@ -4,11 +4,13 @@
 
 #include <filesystem>
 #include <functional>
-#include <istream>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "study/reading/input_file.hpp"
+#include "study/results/directory_lock.hpp"
 #include "study/sweep/rows.hpp"
 
 namespace cordon::detail {
@@ -27,8 +29,8 @@ std::string name_of(const Shard& shard);
 std::string name_of_limit(double seconds);
 
 /// Lines in OUT/.sweep/journal, each with a checksum: the head, then a point each. A line that is cut off or damaged counts for
-/// nothing. The directory is held by a lock while the object lives, so that two processes cannot write into it. Errors of writing
-/// are Errc::io; what was written stays.
+/// nothing. OUT is held by a lock while the object lives, so that two processes cannot write into it; symbolic links are not
+/// followed. Errors of writing are Errc::io; what was written stays.
 class Journal {
  public:
   enum class Start { fresh, resume, restart };
@@ -44,20 +46,22 @@ class Journal {
   /// Is there one in `out`?
   static bool is_in(const std::filesystem::path& out);
 
+  const DirectoryLock& lock() const { return lock_; }  ///< of OUT
   const JournalHead& head() const { return head_; }  ///< `started` is that of the first process
   void add(const std::string& line);                 ///< of line_of; from any thread
   void sync();                                       ///< returns when all is on the disk
   void remove();                                     ///< the sweep is finished
 
  private:
-  void lock();
-  void check_head(std::istream& old);
-  void begin(std::istream& old, const std::function<void(PointResult)>& earlier);
+  void make_folder() const;
+  void check_head(InputFile& old);
+  void begin(std::optional<InputFile>& old, const std::function<void(PointResult)>& earlier);
   void write(std::string_view bytes);
 
+  DirectoryLock lock_;
   std::filesystem::path directory_, file_;
   JournalHead head_;
-  int lock_ = -1, descriptor_ = -1;
+  int descriptor_ = -1;
   bool broken_ = false;
   std::mutex writing_;
 };

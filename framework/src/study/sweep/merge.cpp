@@ -17,11 +17,13 @@ using detail::SweepFiles;
   throw InputError(directory.string(), {{"", reason, mend}});
 }
 
-SweepFiles read_part(const fs::path& directory) {
+/// A whole sweep is part 1 of 1.
+SweepFiles read_part(const fs::path& directory, bool alone) {
   if (detail::Journal::is_in(directory)) {
     refuse(directory, "holds an unfinished part", "\"cordon run\" with \"--resume\" and the same \"--shard\" finishes it");
   }
   SweepFiles part = detail::read_sweep(directory);
+  if (!part.shard && alone) part.shard = Shard{};
   if (!part.shard) refuse(directory, "holds a whole sweep, not a part of one", "name directories of \"cordon run --shard I/N\"");
   return part;
 }
@@ -57,13 +59,13 @@ void check_all_there(const std::set<std::int64_t>& there, std::int64_t of, const
 
 SweepOutcome merge_sweeps(const std::vector<fs::path>& parts, const fs::path& out) {
   if (parts.empty()) throw Error(Errc::invalid, "there are no parts to merge");
-  SweepFiles all = read_part(parts.front());
+  SweepFiles all = read_part(parts.front(), parts.size() == 1);
   std::set<std::int64_t> there{all.shard->part};
   std::error_code ignored;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (fs::equivalent(parts[i], out, ignored)) refuse(out, "is one of the parts", "name another directory for the whole sweep");
     if (i == 0) continue;
-    SweepFiles part = read_part(parts[i]);
+    SweepFiles part = read_part(parts[i], false);
     check_same(all, parts.front(), part, parts[i]);
     if (!there.insert(part.shard->part).second)
       refuse(parts[i], "is part " + std::to_string(part.shard->part) + ", which came before", "name each part once");
@@ -73,11 +75,12 @@ SweepOutcome merge_sweeps(const std::vector<fs::path>& parts, const fs::path& ou
   }
   check_all_there(there, all.shard->of, out);
   all.shard.reset();
+  const detail::DirectoryLock lock(out);
   if (detail::Journal::is_in(out)) refuse(out, "holds an unfinished sweep", "name another directory for the whole sweep");
   SweepOutcome outcome;
   outcome.table = detail::table_of(all);
-  outcome.files = detail::write_sweep(out, all, outcome.table);
-  outcome.report_error = report::try_report(out, outcome.files);
+  outcome.files = detail::write_sweep(lock, all, outcome.table);
+  outcome.report_error = report::try_report(lock, outcome.files);
   outcome.violated = detail::violations(outcome.table);
   outcome.first_error = all.rows.first_error();
   outcome.progress = {all.rows.size(), all.rows.size(), all.rows.failed(), all.rows.size(), 0};

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cmath>
-#include <fstream>
+#include <algorithm>
 #include <functional>
 
 #include <nlohmann/json.hpp>
 
+#include "study/reading/input_file.hpp"
 #include "study/results/json_writer.hpp"
+#include "study/results/manifest.hpp"
 #include "study/sweep/sweep_files.hpp"
 
 namespace cordon::detail {
@@ -38,21 +39,17 @@ void end_member(std::string& text) {
 /// Calls `begin` when the head is there, then hands each point to `point`, which tells whether it is right.
 Frame read_points(const fs::path& file, const std::function<void(const Frame&)>& begin,
                   const std::function<bool(const Cursor&)>& point) {
-  std::error_code ignored;
-  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) refuse(file, "is no regular file", mend);
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) refuse(file, "cannot be read", "\"cordon run\" writes it at the end of a sweep");
+  InputFile input(file, "\"cordon run\" writes it at the end of a sweep");
   enum class Place { head, points, tail } place = Place::head;
   Frame frame;
-  int number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    ++number;
+  for (std::string line; input.line(line, json::max_bytes);) {
     if (place == Place::points && line.starts_with("    ")) {
       if (line.ends_with(',')) line.pop_back();
       json::Problems problems;
       const json::Value tree = json::parse(line, problems);
       const Cursor at(tree, "", problems);
-      if (!point(at) || problems.any()) throw InputError(file.string(), {{"", "this line is no point of a sweep", mend, number}});
+      if (!point(at) || problems.any()) throw InputError(file.string(), {{"", "this line is no point of a sweep", mend,
+                                         static_cast<int>(std::min<std::int64_t>(input.lines(), 1'000'000'000))}});
       continue;
     }
     if (place == Place::head && line == "  \"points\": [") {
@@ -189,7 +186,8 @@ void read_head(SweepFiles& sweep, const fs::path& file) {
 }
 
 SweepFiles read_sweep(const fs::path& directory) {
-  const fs::path file = directory / "results.json", times = directory / "run.json";
+  const RecordedFiles files(directory);
+  const fs::path file = files.file("results.json"), times = files.file("run.json");
   SweepFiles sweep;
   std::optional<SweepGrid> grid;
   read_points(
@@ -222,6 +220,7 @@ SweepFiles read_sweep(const fs::path& directory) {
         return read_point(at, true, result) && sweep.rows.extend(result);
       });
   read_times(sweep, frame, times);
+  files.check_unchanged();
   return sweep;
 }
 

@@ -160,8 +160,8 @@ class SweepRun {
     files.rows = std::move(rows_);
     files.wall_s = seconds_since(begin_);
     outcome.table = table_of(files);
-    outcome.files = write_sweep(options_.out, files, outcome.table);
-    if (options_.report) outcome.report_error = report::try_report(options_.out, outcome.files);
+    outcome.files = write_sweep(journal_->lock(), files, outcome.table);
+    if (options_.report) outcome.report_error = report::try_report(journal_->lock(), outcome.files);
     journal_->remove();
     outcome.violated = violations(outcome.table);
     outcome.first_error = files.rows.first_error();
@@ -212,7 +212,11 @@ class SweepRun {
     std::error_code ignored;
     if (options_.report && !std::filesystem::exists(options_.out / "report.html", ignored)) {
       std::vector<std::filesystem::path> added;  // ended between the results and their report, or had none
-      outcome.report_error = report::try_report(options_.out, added);
+      try {
+        outcome.report_error = report::try_report(DirectoryLock(options_.out), added);
+      } catch (const Error& error) {
+        outcome.report_error = error.what();
+      }
     }
     return outcome;
   }

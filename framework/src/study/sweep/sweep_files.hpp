@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "study/results/directory_lock.hpp"
 #include "study/sweep/rows.hpp"
 
 namespace cordon::detail {
@@ -36,9 +37,8 @@ void read_head(SweepFiles& sweep, const std::filesystem::path& file);
 
 ResultTable table_of(const SweepFiles& sweep);
 
-/// All files are renamed into `out`, or none is. Returns them.
-std::vector<std::filesystem::path> write_sweep(const std::filesystem::path& out, const SweepFiles& sweep,
-                                               const ResultTable& table);
+/// All files appear in the directory of `out`, or none does. Returns them.
+std::vector<std::filesystem::path> write_sweep(const DirectoryLock& out, const SweepFiles& sweep, const ResultTable& table);
 
 /// Reads results.json and run.json line by line: memory holds the numbers only. Throws InputError, also if they do not hold every
 /// point of the sweep, or of the part.

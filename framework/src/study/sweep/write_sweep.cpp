@@ -4,7 +4,6 @@
 
 #include "cordon/study/statistics.hpp"
 #include "study/results/atomic_directory.hpp"
-#include "study/results/earlier_results.hpp"
 #include "study/results/file_heads.hpp"
 #include "study/results/host.hpp"
 #include "study/results/results_parts.hpp"
@@ -152,15 +151,13 @@ ResultTable table_of(const SweepFiles& sweep) {
   return table;
 }
 
-// results.json comes last: where it is new, the other files are new too.
-std::vector<std::filesystem::path> write_sweep(const std::filesystem::path& out, const SweepFiles& sweep,
-                                               const ResultTable& table) {
+std::vector<std::filesystem::path> write_sweep(const DirectoryLock& out, const SweepFiles& sweep, const ResultTable& table) {
   AtomicDirectory directory(out);
   write_table(directory.create("points.csv"), table);
   write_summaries(directory, table, summarise(table));
   write_run(directory.create("run.json"), sweep, table);
   write_results(directory.create("results.json"), sweep, table);
-  return directory.commit(files_of_earlier_results(out));
+  return directory.commit();
 }
 
 }  // namespace cordon::detail

@@ -198,23 +198,32 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
   return pipeline;
 }
 
-CsvSpec data_of(const std::filesystem::path& directory, const LinearModel& model) {
+int line_number(const detail::InputFile& file) { return static_cast<int>(std::min<std::int64_t>(file.lines(), 1'000'000'000)); }
+
+CsvSpec data_of(std::filesystem::path file, const LinearModel& model) {
   CsvSpec spec;
-  spec.file = directory / "data.csv";
+  spec.file = std::move(file);
   for (Index i = 1; i <= model.inputs(); ++i) spec.inputs.push_back("u_" + std::to_string(i));
   for (Index i = 1; i <= model.outputs(); ++i) spec.outputs.push_back("y_" + std::to_string(i));
   return spec;
 }
 
+/// A line of a file whose lines all have their ends; false behind the last one.
+bool next_line(detail::InputFile& file, std::string& line) {
+  if (!file.line(line, max_bytes)) return false;
+  if (file.ended_line()) return true;
+  throw InputError(file.path().string(), {{"", "ends in the middle of a line", mend(), line_number(file)}});
+}
+
 /// The first column of data.csv counts the rows from 0: estimates are matched with samples by it.
-void check_times(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+void check_times(const std::filesystem::path& path) {
+  detail::InputFile file(path, mend());
   std::string row;
-  std::getline(stream, row);
-  for (std::int64_t k = 0; std::getline(stream, row); ++k) {
+  next_line(file, row);
+  for (std::int64_t k = 0; next_line(file, row); ++k) {
     if (row.substr(0, row.find(',')) == std::to_string(k)) continue;
-    throw InputError(file.string(), {{"", "must tell of k = " + std::to_string(k) + " in its first column", mend(),
-                                      static_cast<int>(std::min<std::int64_t>(k + 2, 1'000'000'000))}});
+    throw InputError(path.string(),
+                     {{"", "must tell of k = " + std::to_string(k) + " in its first column", mend(), line_number(file)}});
   }
 }
 
@@ -233,13 +242,12 @@ std::optional<Index> time_of(const std::string& text) {
 }  // namespace
 
 RecordedRun read_run(const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / "results.json";
+  RecordedRun run{detail::RecordedFiles(directory), {}, {}, {}, {}};
+  const std::filesystem::path file = run.files.file("results.json");
   Problems problems;
   const std::string text = read_file(file.string());
   const Value tree = parse(text, problems);
   const Cursor root(tree, "", problems);
-  RecordedRun run;
-  run.directory = directory;
   if (root.expect(Kind::object, "a results file of \"cordon run\" is an object")) {
     const auto version = root.need("cordon_results", "this is not a results file of \"cordon run\"");
     const auto number = version ? read_number(*version) : std::nullopt;
@@ -264,51 +272,48 @@ RecordedRun read_run(const std::filesystem::path& directory) {
     run.model = std::move(part.model);
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());
-  run.data = data_of(directory, run.model.linear);
+  run.data = data_of(run.files.file("data.csv"), run.model.linear);
   check_times(run.data.file);
   return run;
 }
 
-SetReader::SetReader(const std::filesystem::path& directory) : file_(directory / "sets.jsonl"), stream_(file_, std::ios::binary) {
-  if (!stream_) throw InputError(file_.string(), {{"", "cannot be read", "\"cordon run\" writes it beside results.json"}});
-}
+SetReader::SetReader(const detail::RecordedFiles& files)
+    : files_(files), input_(files.file("sets.jsonl"), "\"cordon run\" writes it beside results.json") {}
 
 std::optional<RecordedSet> SetReader::next(const std::function<bool(Index)>& wanted) {
   std::string text;
   for (bool passes = true; passes;) {
-    if (!std::getline(stream_, text)) return std::nullopt;
-    ++line_;
+    if (!next_line(input_, text)) {
+      files_.check_unchanged();
+      return std::nullopt;
+    }
     const auto k = wanted ? time_of(text) : std::nullopt;
     passes = k && !wanted(*k);
   }
   Problems problems;
   RecordedSet row;
-  row.line = line_;
-  if (text.size() > max_bytes) {
-    problems.add("", 1, "the line is longer than " + std::to_string(max_bytes) + " bytes", mend());
-  } else {
-    const Value tree = parse(text, problems);
-    const Cursor root(tree, "", problems);
-    if (root.expect(Kind::object, mend())) {
-      const auto name = root.need("pipeline", mend()), k_at = root.need("k", mend()), proof = root.need("proof", mend());
-      const auto exchange = read_word(root, "exchange", {Tightness::exact, Tightness::outer});
-      const auto dim = read_size(root, "dim");
-      if (name) row.pipeline = read_text(*name, 1000).value_or("");
-      if (k_at) row.k = read_integer(*k_at, 0, max_integer).value_or(0);
-      if (exchange) row.exact_exchange = *exchange == Tightness::exact;
-      if (auto form = dim ? read_form(root, *dim) : std::nullopt) row.set = std::move(*form);
-      if (proof) row.proof = read_certificate(*proof).value_or(Certificate{});
-      if (const auto proofs = root.find("hull_proofs"); proofs && proofs->expect(Kind::array, mend())) {
-        for (std::size_t i = 0; i < proofs->size(); ++i) {
-          row.hull_proofs.push_back(read_certificate(proofs->item(i)).value_or(Certificate{}));
-        }
+  row.line = input_.lines();
+  const Value tree = parse(text, problems);
+  const Cursor root(tree, "", problems);
+  if (root.expect(Kind::object, mend())) {
+    const auto name = root.need("pipeline", mend()), k_at = root.need("k", mend()), proof = root.need("proof", mend());
+    const auto exchange = read_word(root, "exchange", {Tightness::exact, Tightness::outer});
+    const auto dim = read_size(root, "dim");
+    if (name) row.pipeline = read_text(*name, 1000).value_or("");
+    if (k_at) row.k = read_integer(*k_at, 0, max_integer).value_or(0);
+    if (exchange) row.exact_exchange = *exchange == Tightness::exact;
+    if (auto form = dim ? read_form(root, *dim) : std::nullopt) row.set = std::move(*form);
+    if (proof) row.proof = read_certificate(*proof).value_or(Certificate{});
+    if (const auto proofs = root.find("hull_proofs"); proofs && proofs->expect(Kind::array, mend())) {
+      for (std::size_t i = 0; i < proofs->size(); ++i) {
+        row.hull_proofs.push_back(read_certificate(proofs->item(i)).value_or(Certificate{}));
       }
     }
   }
   if (!problems.any()) return row;
   std::vector<Diagnostic> found = problems.sorted();
-  for (Diagnostic& one : found) one.line = static_cast<int>(std::min<std::int64_t>(line_, 1'000'000'000));
-  throw InputError(file_.string(), std::move(found));
+  for (Diagnostic& one : found) one.line = line_number(input_);
+  throw InputError(input_.path().string(), std::move(found));
 }
 
 }  // namespace cordon::verification

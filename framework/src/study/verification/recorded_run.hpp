@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -12,7 +11,9 @@
 
 #include "cordon/study/design.hpp"
 #include "cordon/study/study.hpp"
+#include "study/reading/input_file.hpp"
 #include "study/reading/json_cursor.hpp"
+#include "study/results/manifest.hpp"
 
 namespace cordon::verification {
 
@@ -47,7 +48,7 @@ struct RecordedSet {
 };
 
 struct RecordedRun {
-  std::filesystem::path directory;
+  detail::RecordedFiles files;
   Model model;
   ModeBank bank;
   CsvSpec data;  ///< data.csv
@@ -57,20 +58,19 @@ struct RecordedRun {
 /// A set in exchange form, as results files write it.
 std::optional<LineForm> read_form(const json::Cursor& at, Index dim);
 
-/// Throws InputError.
+/// All but the sets. Throws InputError.
 RecordedRun read_run(const std::filesystem::path& directory);
 
 /// Streams sets.jsonl.
 class SetReader {
  public:
-  explicit SetReader(const std::filesystem::path& directory);
-  /// The next line; nothing at the end. Lines of times that are not `wanted` are passed over unread. Throws InputError.
+  explicit SetReader(const detail::RecordedFiles& files);
+  /// The next line; nothing at the end, where `files` must be unchanged. Lines of times that are not `wanted` are passed over unread. Throws InputError.
   std::optional<RecordedSet> next(const std::function<bool(Index)>& wanted = {});
 
  private:
-  std::filesystem::path file_;
-  std::ifstream stream_;
-  std::int64_t line_ = 0;
+  const detail::RecordedFiles& files_;
+  detail::InputFile input_;
 };
 
 }  // namespace cordon::verification

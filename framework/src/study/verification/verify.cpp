@@ -97,7 +97,7 @@ Matrix directions_of(Index n, const VerifyOptions& options, Index k) {
 class Verification {
  public:
   Verification(const std::filesystem::path& directory, const VerifyOptions& options)
-      : run_(read_run(directory)), options_(options), sets_(directory) {
+      : run_(read_run(directory)), options_(options), sets_(run_.files) {
     for (const RecordedPipeline& pipeline : run_.pipelines) names_.push_back(pipeline.name);
   }
 
@@ -127,9 +127,11 @@ class Verification {
     return std::move(outcome_);
   }
 
+  void check_unchanged() const { run_.files.check_unchanged(); }
+
  private:
   [[noreturn]] void refuse(std::int64_t line, const std::string& reason) const {
-    throw InputError((run_.directory / "sets.jsonl").string(),
+    throw InputError((run_.files.directory() / "sets.jsonl").string(),
                      {{"", reason, "the file is not as \"cordon run\" wrote it; run the study again", static_cast<int>(line)}});
   }
 
@@ -162,7 +164,7 @@ class Verification {
   void check(std::size_t p, FeasibleSequence& feasible) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
     Study study;
-    study.file = run_.directory / "results.json";
+    study.file = run_.files.directory() / "results.json";
     study.model = run_.model;
     study.data = run_.data;
     const std::unique_ptr<DataSource> data = open_data(study);
@@ -252,7 +254,10 @@ class Verification {
 
 VerifyOutcome verify_run(const std::filesystem::path& directory, const VerifyOptions& options) {
   if (options.every < 1 || options.directions < 0) throw Error(Errc::invalid, "verify: every and directions must be positive");
-  return Verification(directory, options).run();
+  Verification verification(directory, options);
+  VerifyOutcome outcome = verification.run();
+  verification.check_unchanged();
+  return outcome;
 }
 
 }  // namespace cordon

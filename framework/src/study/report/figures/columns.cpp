@@ -12,20 +12,7 @@
 
 namespace cordon::report {
 
-namespace {
-
-detail::CsvReader open(const std::filesystem::path& file) {
-  try {
-    if (std::filesystem::is_regular_file(file)) return detail::CsvReader(file);
-  } catch (const Error& error) {
-    throw InputError(file.string(), {{"", error.what(), "\"cordon run\" writes it beside results.json", 0}});
-  }
-  throw InputError(file.string(), {{"", "is missing", "\"cordon run\" writes it beside results.json", 0}});
-}
-
-}  // namespace
-
-ColumnReader::ColumnReader(const std::filesystem::path& file) : file_(file), reader_(open(file)) {
+ColumnReader::ColumnReader(const std::filesystem::path& file) : file_(file), reader_(file) {
   if (!reader_.next(row_) || !row_.problem.empty()) refuse("has no header");
   names_ = row_.fields;
   std::set<std::string> seen;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "study/reading/input_file.hpp"
 #include "study/report/figures/columns.hpp"
 
 namespace cordon::report {
@@ -37,9 +38,9 @@ void add_bounds(const ColumnReader& table, const BoundColumns& columns, bool emp
 
 /// Nothing for a run whose pipelines all have inputs of their own: no data were read then.
 std::optional<ColumnReader> open_data_table(const RunFiles& files) {
-  const std::filesystem::path file = files.directory() / "data.csv";
-  std::error_code failed;
-  if (std::filesystem::file_size(file, failed) == 0 && !failed) return std::nullopt;
+  const std::filesystem::path file = files.files().file("data.csv");
+  char first = 0;
+  if (detail::InputFile(file).read(&first, 1) == 0) return std::nullopt;
   return ColumnReader(file);
 }
 
@@ -72,7 +73,7 @@ class TruthReader {
 
 class StepsReader {
  public:
-  StepsReader(const RunFiles& files, Curves& curves) : files_(files), curves_(curves), table_(files.directory() / "steps.csv") {
+  StepsReader(const RunFiles& files, Curves& curves) : files_(files), curves_(curves), table_(files.files().file("steps.csv")) {
     name_ = table_.need("pipeline");
     k_ = table_.need("k");
     consistent_ = table_.need("consistent");

@@ -67,7 +67,7 @@ std::optional<Design> design_of(const RunFiles& files, std::size_t pipeline, Ind
 }
 
 void add_inputs(const RunFiles& files, Report& report) {
-  ColumnReader table(files.directory() / "inputs.csv");
+  ColumnReader table(files.files().file("inputs.csv"));
   const std::size_t name = table.need("pipeline"), k = table.need("k");
   const std::vector<std::size_t> channels = table.numbered("u_");
   std::vector<Plot> plots;

@@ -17,7 +17,7 @@ constexpr std::size_t max_curves = 20'000;
 class DiagnosisReader {
  public:
   DiagnosisReader(const RunFiles& files, DiagnosisTable& out)
-      : files_(files), out_(out), table_(files.directory() / "diagnosis.csv") {
+      : files_(files), out_(out), table_(files.files().file("diagnosis.csv")) {
     name_ = table_.need("pipeline");
     k_ = table_.need("k");
     mode_ = table_.need("mode");

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/report/figures/outline.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <optional>
 #include <vector>
 
 #include "cordon/core/error.hpp"
+#include "study/reading/input_file.hpp"
 #include "study/reading/json_text.hpp"
 
 namespace cordon::report {
@@ -153,19 +151,12 @@ class Scanner {
 }  // namespace
 
 Outline outline_of(const std::filesystem::path& file, const ItemVisitor& visit) {
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  const bool is_directory = std::filesystem::is_directory(file);
-  if (!stream || is_directory) {
-    const std::string reason = is_directory ? "is a directory" : std::strerror(errno);
-    throw InputError(file.string(), {{"", "cannot be read: " + reason, "\"cordon run STUDY --out DIR\" writes it to DIR", 0}});
-  }
+  detail::InputFile input(file, "\"cordon run STUDY --out DIR\" writes it to DIR");
   Scanner scanner(file.string(), visit);
   std::vector<char> buffer(1 << 16);
-  while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), stream.gcount() > 0) {
-    for (std::streamsize i = 0; i < stream.gcount(); ++i) scanner.put(buffer[static_cast<std::size_t>(i)]);
+  while (const std::size_t got = input.read(buffer.data(), buffer.size())) {
+    for (std::size_t i = 0; i < got; ++i) scanner.put(buffer[i]);
   }
-  if (stream.bad()) throw Error(Errc::io, "cannot read " + file.string() + ": " + std::strerror(errno));
   return scanner.finish();
 }
 

@@ -181,7 +181,7 @@ class Projector {
   }
 
   void read() {
-    verification::SetReader reader(files_.directory());
+    verification::SetReader reader(files_.files());
     while (const auto row = reader.next([&](Index k) { return times_.contains(k); })) {
       const int pipeline = files_.pipeline(row->pipeline, "sets.jsonl");
       if (row->set.dim() != states_) {

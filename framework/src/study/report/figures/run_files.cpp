@@ -84,8 +84,8 @@ std::vector<Cursor> items_of(const Cursor& object, std::string_view key) {
   return items;
 }
 
-RunFiles::RunFiles(std::filesystem::path directory, Detail detail) : directory_(std::move(directory)), detail_(detail) {
-  const Outline outline = outline_of(directory_ / "results.json");
+RunFiles::RunFiles(std::filesystem::path directory, Detail detail) : files_(std::move(directory)), detail_(detail) {
+  const Outline outline = outline_of(files_.file("results.json"));
   tree_ = parse(outline.text, problems_);
   study_ = outline.study;
   const Cursor root(tree_, "", problems_);
@@ -138,7 +138,7 @@ void RunFiles::read_times() {
   const std::size_t points = points_per_series(detail_, 10 * std::max<std::size_t>(pipelines_.size(), 1));
   step_times_.assign(pipelines_.size(), Thinner(points));
   Problems problems;
-  const Outline outline = outline_of(directory_ / "run.json", [&](std::size_t pipeline, const std::string& item) {
+  const Outline outline = outline_of(files_.file("run.json"), [&](std::size_t pipeline, const std::string& item) {
     if (is_sweep_ || pipeline >= step_times_.size()) return;
     const Value step = parse(item, problems);
     const Cursor at(step, "/pipelines/" + std::to_string(pipeline) + "/steps", problems);
@@ -155,7 +155,7 @@ void RunFiles::read_times() {
     if (const auto host = root.find("host")) add_texts(*host, "host ", versions_);
     if (const std::string started = text_of(root, "started"); !started.empty()) versions_.emplace_back("started", started);
   }
-  if (problems.any()) throw InputError((directory_ / "run.json").string(), problems.sorted());
+  if (problems.any()) throw InputError((directory() / "run.json").string(), problems.sorted());
 }
 
 bool RunFiles::any(PipelineHead::Kind kind) const {
@@ -166,7 +166,7 @@ int RunFiles::pipeline(const std::string& name, const std::string& file) const {
   for (std::size_t i = 0; i < pipelines_.size(); ++i) {
     if (pipelines_[i].name == name) return static_cast<int>(i);
   }
-  throw InputError((directory_ / file).string(),
+  throw InputError((directory() / file).string(),
                    {{"", "names the pipeline " + in_quotes(name) + ", which results.json does not have", mend(), 0}});
 }
 
@@ -179,7 +179,8 @@ std::string RunFiles::mode(std::int64_t index) const {
 Cursor RunFiles::tree(std::size_t pipeline) const { return Cursor(tree_, "", problems_).find("pipelines")->item(pipeline); }
 
 void RunFiles::check() const {
-  if (problems_.any()) throw InputError((directory_ / "results.json").string(), problems_.sorted());
+  if (problems_.any()) throw InputError((directory() / "results.json").string(), problems_.sorted());
+  files_.check_unchanged();
 }
 
 std::size_t points_per_series(Detail detail, std::size_t series) {

@@ -12,6 +12,7 @@
 #include "study/report/figure.hpp"
 #include "study/report/figures/thinning.hpp"
 #include "study/report/read_report.hpp"
+#include "study/results/manifest.hpp"
 
 namespace cordon::report {
 
@@ -32,7 +33,9 @@ class RunFiles {
   /// Reads results.json and run.json. Throws InputError.
   RunFiles(std::filesystem::path directory, Detail detail);
 
-  const std::filesystem::path& directory() const { return directory_; }
+  const std::filesystem::path& directory() const { return files_.directory(); }
+  /// Files of the directory, which belong together.
+  const detail::RecordedFiles& files() const { return files_; }
   Detail detail() const { return detail_; }
   bool is_sweep() const { return is_sweep_; }
   const std::string& title() const { return title_; }
@@ -49,7 +52,7 @@ class RunFiles {
   json::Cursor root() const { return {tree_, "", problems_}; }
   /// The entry of `pipelines` in results.json, without its steps.
   json::Cursor tree(std::size_t pipeline) const;
-  /// Throws InputError if the tree was not as it should be.
+  /// Throws InputError if the tree was not as it should be, or the files have changed since they were first read.
   void check() const;
 
  private:
@@ -57,7 +60,7 @@ class RunFiles {
   void read_modes(const json::Cursor& root);
   void read_times();
 
-  std::filesystem::path directory_;
+  detail::RecordedFiles files_;
   Detail detail_;
   json::Value tree_;
   mutable json::Problems problems_;
