@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common.hpp"
+#include "cordon/study/study.hpp"
 
 namespace CLI {
 class App;
@@ -16,6 +17,9 @@ namespace cordon::apps {
 /// What the commands share with main.
 struct Program {
   std::vector<std::filesystem::path> plugins;  ///< --plugins, searched first
+  bool trust_plugins = false;                  ///< --trust-plugins: of directories that studies name
+  /// For commands that need the whole study.
+  StudyPlugins study_plugins() const { return trust_plugins ? StudyPlugins::load : StudyPlugins::refuse; }
   Exit exit = Exit::done;
 };
 

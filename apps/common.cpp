@@ -22,8 +22,8 @@ const char* const exit_codes_help =
     "  4    a claimed guarantee was violated\n"
     "  5    a solver gave no answer in its limit\n"
     "  130  interrupted by SIGINT or SIGTERM\n"
-    "Plugins are searched in: --plugins, the study's \"plugins\", CORDON_PLUGIN_PATH, beside the program, the installed "
-    "directory.";
+    "Plugins are searched in: --plugins, the study's \"plugins\" (with --trust-plugins), CORDON_PLUGIN_PATH, beside the program, "
+    "the installed directory.";
 
 Exit exit_for(Errc code) noexcept {
   switch (code) {
@@ -142,6 +142,8 @@ void load_plugins(Registry& registry, std::span<const std::filesystem::path> fir
 
 void warn_refused(const Registry& registry) {
   for (const PluginReport& report : registry.reports()) {
+    for (const std::string& component : report.left_out)
+      warn(fmt::format("{}: {}; rename it, or remove one of the two", report.file.string(), component));
     if (report.state != PluginReport::State::refused) continue;
     warn(fmt::format("{} was refused: {}; {}", report.file.string(), report.reason, report.fix));
   }

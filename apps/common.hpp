@@ -66,7 +66,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows, const Paint
 
 /// Loads the default search path with `first` before it.
 void load_plugins(Registry& registry, std::span<const std::filesystem::path> first);
-/// One warning per refused plugin, for commands that can do without.
+/// One warning per refused plugin and per component that was left out, for commands that can do without.
 void warn_refused(const Registry& registry);
 
 /// One component of any kind.

@@ -82,7 +82,7 @@ void convert_json(const Program& program, const ConvertRequest& wanted, const Ta
   } else {
     require_mat(wanted, "studies");
     Registry registry;
-    const Study study = read_study(wanted.in, registry, default_search_path(program.plugins));
+    const Study study = read_study(wanted.in, registry, default_search_path(program.plugins), program.study_plugins());
     study_to_mat(study, target, !wanted.no_data);
   }
   note(fmt::format("Wrote {}", wanted.out.string()));

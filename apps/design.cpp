@@ -28,7 +28,7 @@ Exit design(const Program& program, Arguments& arguments) {
   options.stop = stop_on_signals();  // reading checks what was read, which may take a while
   Registry registry;
   registry.load({program.plugins});
-  const Study study = read_study(arguments.study, registry);
+  const Study study = read_study(arguments.study, registry, default_search_path(), program.study_plugins());
   if (!arguments.quiet) {
     for (const std::string& warning : study.warnings) warn(warning);
   }

@@ -44,6 +44,7 @@ std::string as_json(const BuildInfo& build, const SearchPath& path, const Regist
     }
     if (!r.abi_tag.empty()) entry["abi_tag"] = r.abi_tag;
     if (r.state == PluginReport::State::loaded) entry["components"] = r.components;
+    if (!r.left_out.empty()) entry["left_out"] = r.left_out;
     json["plugins"].push_back(std::move(entry));
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -52,9 +53,13 @@ std::string as_json(const BuildInfo& build, const SearchPath& path, const Regist
 std::string describe(const PluginReport& r, const Paint& paint) {
   const std::string file = r.file.string();
   switch (r.state) {
-    case PluginReport::State::loaded:
-      return fmt::format("  {}    {}\n              {} {}, {}: {}\n              {}\n", paint.green("loaded"), file, r.name,
-                         r.version, r.license, r.summary, fmt::join(r.components, ", "));
+    case PluginReport::State::loaded: {
+      std::string text = fmt::format("  {}    {}\n              {} {}, {}: {}\n              {}\n", paint.green("loaded"), file,
+                                     r.name, r.version, r.license, r.summary, fmt::join(r.components, ", "));
+      for (const std::string& component : r.left_out)
+        text += fmt::format("              {}: {}\n", paint.red("left out"), component);
+      return text;
+    }
     case PluginReport::State::shadowed:
       return fmt::format("  {}  {}\n              {} {}, by {}\n", paint.yellow("shadowed"), file, r.name, r.version, r.reason);
     case PluginReport::State::refused:
@@ -88,9 +93,11 @@ Exit doctor(const Program& program, bool json) {
   const auto& reports = registry.reports();
   const auto refused = std::count_if(reports.begin(), reports.end(),
                                      [](const PluginReport& r) { return r.state == PluginReport::State::refused; });
-  if (refused == 0) return Exit::done;
-  complain(fmt::format("{} of {} plugin files {} refused", refused, reports.size(), refused == 1 ? "was" : "were"));
-  return Exit::plugin;
+  const bool complete = std::all_of(reports.begin(), reports.end(), [](const PluginReport& r) { return r.left_out.empty(); });
+  if (refused > 0)
+    complain(fmt::format("{} of {} plugin files {} refused", refused, reports.size(), refused == 1 ? "was" : "were"));
+  if (!complete) complain("components were left out whose names are there twice; rename them, or remove a plugin");
+  return refused == 0 && complete ? Exit::done : Exit::plugin;
 }
 
 }  // namespace

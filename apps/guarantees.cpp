@@ -83,7 +83,7 @@ std::string report_json(const Study& study, const std::vector<Promise>& all) {
 Exit guarantees(const Program& program, const Arguments& arguments) {
   Registry registry;
   registry.load({program.plugins});
-  const Study study = read_study(arguments.study, registry);
+  const Study study = read_study(arguments.study, registry, default_search_path(), program.study_plugins());
   for (const std::string& warning : study.warnings) warn(warning);
   const std::vector<Promise> all = promises(study, registry, arguments.pipeline);
   print(arguments.json ? report_json(study, all) : report_text(study, all));

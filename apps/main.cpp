@@ -43,6 +43,8 @@ Exit run(int argc, char** argv) {
       ->check(CLI::ExistingDirectory)
       ->option_text("DIR")
       ->allow_extra_args(false);
+  app.add_flag("--trust-plugins", program.trust_plugins,
+               "Load plugins from the directories that a study names: programs, which can do all that you can");
   add_run(app, program);
   add_merge(app, program);
   add_report(app, program);

@@ -68,7 +68,7 @@ Exit run(const Program& program, const RunArguments& arguments) {
   const std::atomic<bool>* const stop = stop_on_signals();  // reading checks what was read, which may take a while
   Registry registry;
   registry.load({program.plugins});  // the study's own directories and the usual ones follow
-  const Study study = read_study(arguments.study, registry);
+  const Study study = read_study(arguments.study, registry, default_search_path(), program.study_plugins());
   check_options(arguments, study);
   if (!arguments.quiet) {
     for (const std::string& warning : study.warnings) warn(warning);

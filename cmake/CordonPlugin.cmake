@@ -19,6 +19,12 @@ function(cordon_add_plugin_targets name)
   if(NOT arg_SOURCES OR arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "cordon_add_plugin(${name}): needs SOURCES, takes LIBRARIES, PROVIDES, CONFORMANCE and DIRECTORY besides")
   endif()
+  # Known where Cordon was installed. What another compiler makes has another ABI tag, and is refused when it is loaded.
+  if(CORDON_COMPILER AND NOT CORDON_COMPILER MATCHES "^${CMAKE_CXX_COMPILER_ID} ")
+    message(FATAL_ERROR "cordon_add_plugin(${name}): this Cordon was compiled by ${CORDON_COMPILER} and refuses plugins that "
+      "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} has compiled. Configure a new build directory with the same compiler "
+      "(-DCMAKE_CXX_COMPILER=...), or build Cordon with this one.")
+  endif()
   add_library(${name}_plugin MODULE ${arg_SOURCES})
   target_link_libraries(${name}_plugin PRIVATE cordon::cordon ${arg_LIBRARIES})
   # -fno-gnu-unique: a unique symbol would keep the library mapped for ever and hide lifetime defects (clang makes none).

@@ -51,14 +51,32 @@ namespace {
 
 constexpr double not_available = std::numeric_limits<double>::quiet_NaN();
 
+bool is_weight(const Matrix& W) { return W.rows() == W.cols() && W == W.transpose() && linalg::cholesky(W); }
+
+/// What `Weighted` would find out when it is made, or at the first step of a run.
+std::vector<Diagnostic> check_weight(const MetricContext& context, const Params& params) {
+  if (!params.has("weight")) return {};
+  const Matrix& W = params.matrix("weight");
+  const Index n = context.model.linear.states();
+  std::vector<Diagnostic> problems;
+  if (W.rows() != n || W.cols() != n) {
+    problems.push_back({"/weight",
+                        "is " + std::to_string(W.rows()) + " × " + std::to_string(W.cols()) + ", the state has " +
+                            std::to_string(n) + (n == 1 ? " entry" : " entries"),
+                        "give a row and a column per state"});
+  } else if (!is_weight(W)) {
+    problems.push_back({"/weight", "is not symmetric and positive definite", "give W = Wᵀ with positive eigenvalues"});
+  }
+  return problems;
+}
+
 /// The weight, and the generators of a zonotope around the estimate.
 class Weighted {
  public:
   explicit Weighted(const Params& params) {
     if (!params.has("weight")) return;
     weight_ = params.matrix("weight");
-    if (weight_.rows() != weight_.cols() || weight_ != weight_.transpose() || !linalg::cholesky(weight_))
-      throw Error(Errc::invalid, "/weight must be symmetric and positive definite");
+    if (!is_weight(weight_)) throw Error(Errc::invalid, "/weight must be symmetric and positive definite");
   }
 
   struct View {
@@ -128,7 +146,8 @@ void add(Registrar& registrar, const char* summary) {
   schema.matrix("weight", "W, symmetric and positive definite, a row and a column per state; the identity by default");
   registrar.metric(
       {{Measure::name, summary, "Pourasghar2021", std::move(schema)},
-       [](const Params& params) -> std::unique_ptr<Metric> { return std::make_unique<WeightedRadius<Measure>>(params); }});
+       [](const Params& params) -> std::unique_ptr<Metric> { return std::make_unique<WeightedRadius<Measure>>(params); },
+       check_weight});
 }
 
 }  // namespace

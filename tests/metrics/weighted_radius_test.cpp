@@ -124,6 +124,17 @@ TEST_CASE("the metrics say what they measured") {
   CHECK(std::isnan(number(seen.step[0])));
   CHECK(std::isnan(number(seen.summary[0])));
 
+  // what a run would find out is told of the model before
+  Model model;
+  model.linear.A = Matrix::Identity(2, 2);
+  const auto told = [&](const Matrix& W) {
+    const auto problems = registry.check_metric("w_radius", {model}, Params().set("weight", W));
+    return problems.empty() ? "" : problems.at(0).pointer + " " + problems.at(0).message;
+  };
+  CHECK(registry.check_metric("w_radius", {model}, {}).empty());
+  CHECK(told(Matrix{{2, 1}, {1, 2}}) == "");
+  CHECK(told(Matrix{{1}}) == "/weight is 1 × 1, the state has 2 entries");
+  CHECK(told(Matrix{{1, 2}, {2, 1}}) == "/weight is not symmetric and positive definite");
   CHECK_THROWS_AS(registry.make_metric("w_radius", Params().set("weight", Matrix{{1, 2}, {2, 1}})), Error);
   CHECK_THROWS_AS(registry.make_metric("w_radius", Params().set("weight", Matrix{{1, .5}, {0, 1}})), Error);
   CHECK_THROWS_AS(see("w_radius", "zonotope", square, Params().set("weight", Matrix{{1}})), Error);

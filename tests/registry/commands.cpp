@@ -1,32 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The commands list, info and doctor as a user meets them: output, exit codes, closed pipes.
-#include <sys/wait.h>
-
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "registry/temporary.hpp"
+#include "registry/program.hpp"
 
 using namespace test;
 using nlohmann::json;
 
 namespace {
-
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
-
-/// Runs `cordon ARGUMENTS` through a shell; the arguments may redirect.
-Outcome cordon_with(const std::string& arguments, const std::string& environment = "") {
-  const TemporaryDirectory directory;
-  const std::string out = (directory / "out").string(), err = (directory / "err").string();
-  const std::string command = "( " + environment + " \"" CORDON_PROGRAM "\" " + arguments + " ) >" + out + " 2>" + err;
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 const std::string with_good = "--plugins \"" CORDON_GOOD_PLUGINS "\" ", with_bad = "--plugins \"" CORDON_BAD_PLUGINS "\" ";
 
@@ -94,7 +76,7 @@ TEST_CASE("doctor tells what became of every library, and returns 3 if any was r
   CHECK(contains(text.err, "plugin files were refused"));
   for (const char* part : {"loaded    " CORDON_GOOD_PLUGINS "/test_box.so", "shadowed  " CORDON_BAD_PLUGINS "/repeats_plugin.so",
                            "by " CORDON_GOOD_PLUGINS "/test_box.so", "refused   " CORDON_BAD_PLUGINS "/wrong_version.so",
-                           "why: it was built for plugin ABI 2, this is 1", "fix: rebuild the plugin", "gxx_abi="}) {
+                           "why: it was built for plugin ABI 3, this is 2", "fix: rebuild the plugin", "gxx_abi="}) {
     CHECK_MESSAGE(contains(text.out, part), part);
   }
   const Outcome machine = cordon_with(with_good + with_bad + "doctor --json");
@@ -117,6 +99,53 @@ TEST_CASE("doctor returns 0 when nothing was refused, and the environment variab
   CHECK(outcome.code == 0);
   CHECK(outcome.err.empty());
   CHECK(contains(outcome.out, "loaded    " CORDON_GOOD_PLUGINS "/test_box.so"));
+}
+
+TEST_CASE("what was learned of a plugin is kept in the cache, and without one everything works") {
+  const TemporaryDirectory cache, plugins;
+  plugins.add(fs::path(CORDON_TRACING_PLUGINS) / "tracing.so");
+  const std::string trace = (cache / "trace").string(), list = "list --plugins " + plugins.path().string();
+  const auto openings = [&](const std::string& place) {
+    fs::remove(trace);
+    const Outcome outcome = cordon_with(list, "CORDON_TEST_TRACE=" + trace + " XDG_CACHE_HOME=" + place);
+    CHECK(outcome.code == 0);
+    CHECK(contains(outcome.out, "tracing"));
+    CHECK(outcome.err.empty());
+    const std::string text = read(trace);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  const std::string place = cache.path().string();
+  CHECK(openings(place) == 2);  // tried, then loaded
+  CHECK(openings(place) == 1);
+  for (const auto& entry : fs::directory_iterator(cache / "cordon/plugins")) {
+    CHECK_FALSE(entry.path().filename().string().starts_with("."));
+    std::ofstream(entry.path()) << "no entry at all\n";
+  }
+  CHECK(openings(place) == 2);
+  CHECK(openings(place) == 1);
+  CHECK(openings("/proc/nowhere") == 2);
+  CHECK(openings("/dev/null") == 2);
+  CHECK(openings("relative HOME=") == 2);
+  CHECK_FALSE(fs::exists("relative"));
+}
+
+TEST_CASE("a component whose name is taken is named, and makes doctor's exit code") {
+  const std::string text = "metric \"step_count\" is there already, from plugin \"test_box\"";
+  const TemporaryDirectory directory;
+  directory.add(bad("repeats_component"));
+  const std::string both = with_good + "--plugins " + directory.path().string() + " ";
+  const Outcome list = cordon_with(both + "list");
+  CHECK(list.code == 0);
+  CHECK(contains(list.err, "warning: " + (directory / "repeats_component.so").string() + ": " + text));
+  CHECK(contains(list.out, "new_in_repeats_component"));
+  const Outcome doctor = cordon_with(both + "doctor");
+  CHECK(doctor.code == 3);
+  CHECK(contains(doctor.out, "left out: " + text));
+  const json report = json::parse(cordon_with(both + "doctor --json").out);
+  const json* plugin = entry(report.at("plugins"), "name", "repeats_component");
+  REQUIRE(plugin);
+  CHECK(plugin->at("state") == "loaded");
+  CHECK(plugin->at("left_out") == json{text});
 }
 
 TEST_CASE("usage errors are invalid input; help and version are not") {

@@ -198,6 +198,7 @@ const Mistake components[] = {
     {"\"radius\"", "\"quantile\"", "/metrics/0/level", "is missing", "between 0 and 1"},
     {"\"radius\"", "\"radius\", \"radius\"", "/metrics/1", "repeats /metrics/0", "remove one"},
     {"\"level\": 0.5", "\"level\": 1.5", "/metrics/1/level", "is 1.5, must lie in [0, 1]", ""},
+    {"\"level\": 0.5", "\"level\": 0.75", "/metrics/1/level", "is not known of 2 states", "give another one"},
     {"\"metrics\": [", "\"metrics\": \"all\", \"$comment\": [", "/metrics", "is a text, must be a list", "list of metrics"},
 };
 

@@ -203,7 +203,14 @@ void add_designers(Registrar& registrar) {
 }
 
 void add_metric(Registrar& registrar, const std::string& name, const ParamSchema& schema = {}) {
-  registrar.metric({{name, "a fake", "", schema}, [](const Params&) { return std::make_unique<FakeMetric>(); }});
+  const auto check = [](const MetricContext& context, const Params& params) {
+    std::vector<Diagnostic> problems;
+    const Index states = context.model.linear.states();
+    if (params.has("level") && params.real("level") == 0.75)
+      problems.push_back({"/level", "is not known of " + std::to_string(states) + " states", "give another one"});
+    return problems;
+  };
+  registrar.metric({{name, "a fake", "", schema}, [](const Params&) { return std::make_unique<FakeMetric>(); }, check});
 }
 
 }  // namespace

@@ -37,18 +37,17 @@ void Catalogue::remove(std::string_view plugin) {
 template <class Entry>
 void Batch::add(Shelf<Entry>& mine, const Shelf<Entry>& known, const std::string& kind, Entry entry) {
   const std::string component = kind + " \"" + entry.info.name + "\"";
-  components_.push_back(kind + " " + entry.info.name);
   if (!is_snake_case(entry.info.name)) problems_.push_back(component + " is not in snake_case");
   if (entry.info.summary.empty()) problems_.push_back(component + " has no summary");
   check_schema(component, entry.info.schema, problems_);
   if (!entry.create) problems_.push_back(component + " has no function that makes it");
   if (mine.count(entry.info.name)) problems_.push_back(component + " is registered twice");
   if (const auto other = known.find(entry.info.name); other != known.end()) {
-    collides_ = true;
-    problems_.push_back(component + (other->second.plugin.empty()
-                                         ? " is there already, from this program itself"
-                                         : " is there already, from plugin \"" + other->second.plugin + "\""));
+    left_out_.push_back(component + " is there already, from " +
+                        (other->second.plugin.empty() ? "this program itself" : "plugin \"" + other->second.plugin + "\""));
+    return;
   }
+  components_.push_back(kind + " " + entry.info.name);
   std::string name = entry.info.name;
   mine.emplace(std::move(name), Provided<Entry>{std::move(entry), plugin_});
 }

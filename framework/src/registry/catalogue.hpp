@@ -44,9 +44,10 @@ class Batch final : public Registrar {
   void gain(GainEntry entry) override;
   void designer(DesignerEntry entry) override;
 
-  const std::vector<std::string>& problems() const { return problems_; }  ///< broken rules; none: may be committed
-  bool collides() const { return collides_; }  ///< one of the problems is a name that somebody else has
+  const std::vector<std::string>& problems() const { return problems_; }      ///< broken rules; none: may be committed
   const std::vector<std::string>& components() const { return components_; }  ///< "backend zonotope", …
+  /// Components whose names somebody else has, with the reason: they are no part of what is committed.
+  const std::vector<std::string>& left_out() const { return left_out_; }
   void commit(Catalogue& catalogue);
 
  private:
@@ -56,8 +57,7 @@ class Batch final : public Registrar {
   const Catalogue& known_;
   std::string plugin_;
   Catalogue mine_;
-  std::vector<std::string> problems_, components_;
-  bool collides_ = false;
+  std::vector<std::string> problems_, components_, left_out_;
 };
 
 }  // namespace cordon::registry

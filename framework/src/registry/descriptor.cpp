@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registry/descriptor.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <map>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -24,17 +27,24 @@ std::map<std::string, std::string> fields(const std::string& tag) {
   return fields;
 }
 
-std::string missing_texts(const PluginDescriptor& d) {
-  std::string missing;
-  const std::pair<const char*, const void*> members[] = {
-      {"abi_tag", d.abi_tag}, {"name", d.name},     {"version", d.version},
-      {"license", d.license}, {"author", d.author}, {"summary", d.summary},
-  };
-  for (const auto& [name, value] : members) {
-    if (!value) missing += (missing.empty() ? "" : ", ") + std::string(name);
+/// A text of the descriptor: ended within its array, and printable.
+struct Text {
+  const char* name;
+  const char* chars;
+  std::size_t size;
+
+  bool is_empty() const { return chars[0] == '\0'; }
+  bool is_sound() const {
+    const char* const end = std::find(chars, chars + size, '\0');
+    const auto control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+    return end != chars + size && std::none_of(chars, end, control);
   }
-  if (!d.register_components) missing += (missing.empty() ? "" : ", ") + std::string("register_components");
-  return missing;
+};
+
+std::vector<Text> texts(const PluginDescriptor& d) {
+  return {{"abi_tag", d.abi_tag, sizeof d.abi_tag}, {"name", d.name, sizeof d.name},
+          {"version", d.version, sizeof d.version}, {"license", d.license, sizeof d.license},
+          {"author", d.author, sizeof d.author},    {"summary", d.summary, sizeof d.summary}};
 }
 
 }  // namespace
@@ -66,16 +76,34 @@ bool is_snake_case(std::string_view name) {
   return true;
 }
 
+std::optional<Refusal> read_descriptor(const ElfFile& file, PluginDescriptor& descriptor) {
+  const std::string_view there = file.exported(descriptor_symbol);
+  if (there.empty()) {
+    return Refusal{fmt::format("it exports no symbol {}: not a Cordon plugin", descriptor_symbol),
+                   "write CORDON_PLUGIN(...) in it and build it with cordon_add_plugin, or move it out of the plugin directory"};
+  }
+  descriptor = {};
+  constexpr std::size_t head = offsetof(PluginDescriptor, abi_tag);
+  std::memcpy(&descriptor, there.data(), std::min(there.size(), head));
+  if (descriptor.abi_version != CORDON_ABI_VERSION) {
+    return Refusal{fmt::format("it was built for plugin ABI {}, this is {}", descriptor.abi_version, CORDON_ABI_VERSION),
+                   rebuild};
+  }
+  if (descriptor.size != sizeof descriptor || there.size() < sizeof descriptor) {
+    const std::size_t size = std::min<std::size_t>(descriptor.size, there.size());
+    return Refusal{fmt::format("its descriptor has {} bytes, must have {}", size, sizeof descriptor), rebuild};
+  }
+  std::memcpy(&descriptor, there.data(), sizeof descriptor);
+  std::string missing;
+  for (const Text& text : texts(descriptor)) {
+    if (!text.is_sound()) return Refusal{fmt::format("the text \"{}\" of its descriptor is damaged", text.name), rebuild};
+    if (text.is_empty()) missing += (missing.empty() ? "" : ", ") + std::string(text.name);
+  }
+  if (!missing.empty()) return Refusal{"its descriptor lacks " + missing, "fill in every field of CORDON_PLUGIN(...)"};
+  return {};
+}
+
 std::optional<Refusal> check_descriptor(const PluginDescriptor& d) {
-  if (d.abi_version != CORDON_ABI_VERSION) {
-    return Refusal{fmt::format("it was built for plugin ABI {}, this is {}", d.abi_version, CORDON_ABI_VERSION), rebuild};
-  }
-  if (d.size != sizeof(PluginDescriptor)) {
-    return Refusal{fmt::format("its descriptor has {} bytes, must have {}", d.size, sizeof(PluginDescriptor)), rebuild};
-  }
-  if (const std::string missing = missing_texts(d); !missing.empty()) {
-    return Refusal{"its descriptor lacks " + missing, "fill in every field of CORDON_PLUGIN(...)"};
-  }
   if (std::strcmp(d.abi_tag, CORDON_ABI_TAG) != 0) {
     return Refusal{"it was built in a way that does not fit this program (" + tag_differences(CORDON_ABI_TAG, d.abi_tag) + ")",
                    rebuild};

@@ -4,12 +4,18 @@
 #include <optional>
 
 #include "cordon/registry/plugin.hpp"
+#include "registry/elf_file.hpp"
 #include "registry/refusal.hpp"
 
 namespace cordon::registry {
 
-/// Does the descriptor promise that the plugin can work with this framework? Calls no code of the plugin; looks at the ABI tag
-/// before anything whose layout depends on it.
+inline constexpr const char* descriptor_symbol = "cordon_plugin_descriptor";
+
+/// Copies the descriptor from the file; refused unless it is of this ABI version and complete. `register_components` means
+/// nothing yet. Executes nothing of the plugin.
+std::optional<Refusal> read_descriptor(const ElfFile& file, PluginDescriptor& descriptor);
+
+/// Does the descriptor promise that the plugin can work with this framework?
 std::optional<Refusal> check_descriptor(const PluginDescriptor& descriptor);
 
 /// The fields in which two ABI tags ("key=value;key=value") differ, as text.

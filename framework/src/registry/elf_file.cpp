@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registry/elf_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <elf.h>
 #include <fstream>
-#include <link.h>
+#include <iterator>
 #include <system_error>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -18,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 using Header = ElfW(Ehdr);  // of the class (32 or 64 bits) that this program was compiled for
-using Segment = ElfW(Phdr);
 
+constexpr std::uintmax_t largest_library = 256u << 20;  // bytes
 constexpr const char* copy_again = "copy or build the library again";
 constexpr const char* not_a_plugin = "move it out of the plugin directory, or build the plugin with cordon_add_plugin";
 
@@ -37,12 +36,6 @@ std::optional<Refusal> check_kind(const fs::path& file) {
   return {};
 }
 
-template <class T>
-bool read_at(std::ifstream& in, std::uint64_t offset, T* data, std::size_t count) {
-  in.seekg(static_cast<std::streamoff>(offset));
-  return static_cast<bool>(in.read(reinterpret_cast<char*>(data), static_cast<std::streamsize>(count * sizeof(T))));
-}
-
 /// offset + count * size ≤ limit, without overflow.
 bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t size, std::uint64_t limit) {
   return offset <= limit && (size == 0 || count <= (limit - offset) / size);
@@ -51,7 +44,7 @@ bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t size, std::ui
 /// The header of the running program: what a library must agree with.
 bool own_header(Header& header) {
   std::ifstream self("/proc/self/exe", std::ios::binary);
-  return self && read_at(self, 0, &header, 1);
+  return static_cast<bool>(self.read(reinterpret_cast<char*>(&header), sizeof header));
 }
 
 std::optional<Refusal> check_header(const Header& header) {
@@ -66,45 +59,191 @@ std::optional<Refusal> check_header(const Header& header) {
         "build the plugin for this machine"};
   }
   if (header.e_type != ET_DYN) return Refusal{"it is an ELF file but no shared library", not_a_plugin};
-  if (header.e_phnum == 0 || header.e_phnum == PN_XNUM || header.e_phentsize != sizeof(Segment)) {
+  if (header.e_phnum == 0 || header.e_phnum == PN_XNUM || header.e_phentsize != sizeof(ElfW(Phdr))) {
     return Refusal{"its ELF header is damaged", copy_again};
   }
   return {};
 }
 
-std::optional<Refusal> check_extent(std::ifstream& in, const Header& header, std::uint64_t size) {
+std::optional<Refusal> read_whole(const fs::path& file, std::string& bytes) {
+  if (auto refusal = check_kind(file)) return refusal;
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  if (error) return Refusal{"it cannot be examined: " + error.message(), "check its permissions"};
+  if (size == 0) return Refusal{"it is empty", copy_again};
+  if (size > largest_library)
+    return Refusal{fmt::format("it has {} bytes, at most {} are read", size, largest_library), not_a_plugin};
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return Refusal{fmt::format("it cannot be read: {}", std::strerror(errno)), "check its permissions"};
+  bytes.resize(size);
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (in.bad()) return Refusal{"it cannot be read", "check the disk"};
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return {};
+}
+
+std::uint32_t gnu_hash(std::string_view name) {
+  std::uint32_t hash = 5381;
+  for (const char c : name) hash = 33 * hash + static_cast<unsigned char>(c);
+  return hash;
+}
+
+std::uint64_t symbol_of(ElfW(Xword) info) {
+#if __ELF_NATIVE_CLASS == 64
+  return ELF64_R_SYM(info);
+#else
+  return ELF32_R_SYM(info);
+#endif
+}
+
+}  // namespace
+
+std::optional<Refusal> ElfFile::read(const fs::path& file) {
+  if (auto refusal = read_whole(file, bytes_)) return refusal;
+  if (bytes_.compare(0, SELFMAG, ELFMAG) != 0) return Refusal{"it is not a shared library (no ELF file)", not_a_plugin};
+  Header header{};
+  if (bytes_.size() < sizeof header) {
+    return Refusal{fmt::format("it is truncated: {} bytes are less than an ELF header", bytes_.size()), copy_again};
+  }
+  std::memcpy(&header, bytes_.data(), sizeof header);
+  if (auto refusal = check_header(header)) return refusal;
+  if (auto refusal = check_extent(header)) return refusal;
+  if (!read_dynamic() || !relocations_are_sound()) return Refusal{"its tables are damaged", copy_again};
+  return {};
+}
+
+std::optional<Refusal> ElfFile::check_extent(const Header& header) {
+  const std::uint64_t size = bytes_.size();
   const Refusal truncated{fmt::format("it is truncated: {} bytes do not hold what its ELF header announces", size), copy_again};
   if (!fits(header.e_phoff, header.e_phnum, header.e_phentsize, size)) return truncated;
   if (header.e_shoff != 0 && !fits(header.e_shoff, header.e_shnum, header.e_shentsize, size)) return truncated;
-  std::vector<Segment> segments(header.e_phnum);
-  if (!read_at(in, header.e_phoff, segments.data(), segments.size())) return truncated;
-  for (const Segment& segment : segments) {
+  segments_.resize(header.e_phnum);
+  std::memcpy(segments_.data(), bytes_.data() + header.e_phoff, segments_.size() * sizeof(Segment));
+  for (const Segment& segment : segments_) {
     if (segment.p_type != PT_NULL && !fits(segment.p_offset, segment.p_filesz, 1, size)) return truncated;
   }
   return {};
 }
 
-}  // namespace
+/// What stands in the file at an address, to the end of its segment.
+std::string_view ElfFile::at(Address address) const {
+  for (const Segment& segment : segments_) {
+    if (segment.p_type != PT_LOAD || address < segment.p_vaddr || address - segment.p_vaddr >= segment.p_filesz) continue;
+    const Address into = address - segment.p_vaddr;
+    return std::string_view(bytes_).substr(segment.p_offset + into, segment.p_filesz - into);
+  }
+  return {};
+}
 
-std::optional<Refusal> check_library_file(const fs::path& file) {
-  if (auto refusal = check_kind(file)) return refusal;
-  std::error_code error;
-  const std::uint64_t size = fs::file_size(file, error);
-  if (error) return Refusal{"it cannot be examined: " + error.message(), "check its permissions"};
-  if (size == 0) return Refusal{"it is empty", copy_again};
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return Refusal{fmt::format("it cannot be read: {}", std::strerror(errno)), "check its permissions"};
-  unsigned char magic[SELFMAG] = {};
-  if (size < SELFMAG || !read_at(in, 0, magic, SELFMAG) || std::memcmp(magic, ELFMAG, SELFMAG) != 0) {
-    return Refusal{"it is not a shared library (no ELF file)", not_a_plugin};
+template <class T>
+std::optional<T> ElfFile::get(Address address) const {
+  const std::string_view there = at(address);
+  if (there.size() < sizeof(T)) return std::nullopt;
+  T value;
+  std::memcpy(&value, there.data(), sizeof value);
+  return value;
+}
+
+std::optional<ElfFile::Address> ElfFile::dynamic(std::int64_t tag) const {
+  const auto found = dynamic_.find(tag);
+  return found == dynamic_.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// The dynamic section, with the names in it inside the table of strings.
+bool ElfFile::read_dynamic() {
+  std::vector<Address> names;
+  for (const Segment& segment : segments_) {
+    if (segment.p_type != PT_DYNAMIC) continue;
+    for (Address next = segment.p_vaddr;; next += sizeof(ElfW(Dyn))) {
+      const auto entry = get<ElfW(Dyn)>(next);
+      if (!entry) return false;
+      if (entry->d_tag == DT_NULL) break;
+      if (entry->d_tag == DT_NEEDED) names.push_back(entry->d_un.d_val);
+      dynamic_[entry->d_tag] = entry->d_un.d_val;
+    }
   }
-  Header header{};
-  if (size < sizeof header || !read_at(in, 0, &header, 1)) {
-    return Refusal{fmt::format("it is truncated: {} bytes are less than an ELF header", size), copy_again};
+  if (!dynamic(DT_SYMTAB) || dynamic(DT_SYMENT) != sizeof(Symbol) || !dynamic(DT_STRTAB) || !dynamic(DT_STRSZ)) return false;
+  const std::string_view strings = at(*dynamic(DT_STRTAB));
+  const Address size = *dynamic(DT_STRSZ);
+  if (size == 0 || size > strings.size() || strings[size - 1] != '\0') return false;
+  return std::all_of(names.begin(), names.end(), [&](Address name) { return name < size; });
+}
+
+bool ElfFile::is_writable(Address address) const {
+  return std::any_of(segments_.begin(), segments_.end(), [&](const Segment& s) {
+    return s.p_type == PT_LOAD && (s.p_flags & PF_W) && address >= s.p_vaddr && s.p_memsz >= sizeof(Address) &&
+           address - s.p_vaddr <= s.p_memsz - sizeof(Address);
+  });
+}
+
+/// One table of relocations: each writes into data and refers to a symbol of the file.
+bool ElfFile::table_is_sound(std::int64_t address_tag, std::int64_t size_tag, std::uint64_t entry) const {
+  if (!dynamic(address_tag)) return true;
+  const auto size = dynamic(size_tag);
+  const std::string_view table = at(*dynamic(address_tag));
+  if (!size || *size > table.size() || *size % entry != 0) return false;
+  for (std::size_t i = 0; i < *size; i += entry) {
+    ElfW(Rel) relocation;  // those with an addend begin alike
+    std::memcpy(&relocation, table.data() + i, sizeof relocation);
+    const std::uint64_t symbol = symbol_of(relocation.r_info);
+    if (!is_writable(relocation.r_offset) || !get<Symbol>(*dynamic(DT_SYMTAB) + symbol * sizeof(Symbol))) return false;
   }
-  if (auto refusal = check_header(header)) return refusal;
-  return check_extent(in, header, size);
+  return true;
+}
+
+bool ElfFile::relocations_are_sound() const {
+  const bool addends = dynamic(DT_PLTREL).value_or(DT_RELA) == DT_RELA;
+  return table_is_sound(DT_RELA, DT_RELASZ, sizeof(ElfW(Rela))) && table_is_sound(DT_REL, DT_RELSZ, sizeof(ElfW(Rel))) &&
+         table_is_sound(DT_JMPREL, DT_PLTRELSZ, addends ? sizeof(ElfW(Rela)) : sizeof(ElfW(Rel)));
+}
+
+/// The symbol of this number, if it is defined and has this name.
+std::optional<ElfFile::Symbol> ElfFile::defined_as(std::string_view name, std::uint64_t index) const {
+  const auto symbol = get<Symbol>(*dynamic(DT_SYMTAB) + index * sizeof(Symbol));
+  if (!symbol || symbol->st_shndx == SHN_UNDEF || symbol->st_name >= *dynamic(DT_STRSZ)) return std::nullopt;
+  const std::string_view text = at(*dynamic(DT_STRTAB)).substr(symbol->st_name);
+  if (text.size() <= name.size() || !text.starts_with(name) || text[name.size()] != '\0') return std::nullopt;
+  return symbol;
+}
+
+std::optional<ElfFile::Symbol> ElfFile::find_by_gnu_hash(Address table, std::string_view name) const {
+  struct Head {
+    std::uint32_t buckets, first, filter_words, filter_shift;
+  };
+  const auto head = get<Head>(table);
+  if (!head || head->buckets == 0) return std::nullopt;
+  const std::uint32_t hash = gnu_hash(name);
+  const Address buckets = table + sizeof(Head) + head->filter_words * sizeof(Address);
+  const Address chains = buckets + Address{4} * head->buckets;
+  const auto first = get<std::uint32_t>(buckets + Address{4} * (hash % head->buckets));
+  if (!first || *first < head->first) return std::nullopt;
+  for (std::uint64_t index = *first;; ++index) {
+    const auto link = get<std::uint32_t>(chains + 4 * (index - head->first));
+    if (!link) return std::nullopt;
+    if ((*link | 1) == (hash | 1)) {
+      if (const auto symbol = defined_as(name, index)) return symbol;
+    }
+    if (*link & 1) return std::nullopt;  // the end of its chain
+  }
+}
+
+std::optional<ElfFile::Symbol> ElfFile::find_by_hash(Address table, std::string_view name) const {
+  const auto symbols = get<std::uint32_t>(table + 4);  // of the two sizes in front, that of the chains
+  for (std::uint64_t index = 0; symbols && index < *symbols && get<Symbol>(*dynamic(DT_SYMTAB) + index * sizeof(Symbol));
+       ++index) {
+    if (const auto symbol = defined_as(name, index)) return symbol;
+  }
+  return std::nullopt;
+}
+
+std::string_view ElfFile::exported(std::string_view name) const {
+  std::optional<Symbol> symbol;
+  if (const auto table = dynamic(DT_GNU_HASH)) {
+    symbol = find_by_gnu_hash(*table, name);
+  } else if (const auto older = dynamic(DT_HASH)) {
+    symbol = find_by_hash(*older, name);
+  }
+  return symbol ? at(symbol->st_value).substr(0, symbol->st_size) : std::string_view{};
 }
 
 }  // namespace cordon::registry

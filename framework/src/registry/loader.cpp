@@ -2,6 +2,8 @@
 #include "registry/loader.hpp"
 
 #include <cctype>
+#include <cstddef>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 
@@ -9,6 +11,8 @@
 
 #include "registry/descriptor.hpp"
 #include "registry/elf_file.hpp"
+#include "registry/trial.hpp"
+#include "registry/verdicts.hpp"
 
 namespace cordon::registry {
 
@@ -17,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_library = 256u << 20;  // bytes; anything larger is no plugin that is worth reading for a name
-constexpr const char* descriptor_symbol = "cordon_plugin_descriptor";
 
 std::optional<Refusal> register_into(Batch& batch, const PluginDescriptor& descriptor) {
   const std::string fix = fmt::format("report it to the plugin's author, {}", descriptor.author);
@@ -28,13 +31,9 @@ std::optional<Refusal> register_into(Batch& batch, const PluginDescriptor& descr
   } catch (...) {
     return Refusal{"it threw something that is no std::exception while registering", fix};
   }
-  if (!batch.problems().empty()) {
-    const char* mend = batch.collides()
-                           ? "remove one of the two plugins, or rename the component"
-                           : "mend what the plugin registers: snake_case names, each once, with a summary and documentation";
-    return Refusal{fmt::format("it broke the rules of registering: {}", fmt::join(batch.problems(), "; ")), mend};
-  }
-  return {};
+  if (batch.problems().empty()) return {};
+  return Refusal{fmt::format("it broke the rules of registering: {}", fmt::join(batch.problems(), "; ")),
+                 "mend what the plugin registers: snake_case names, each once, with a summary and documentation"};
 }
 
 /// Another plugin of the same name was there first: shadowed, or a contradiction within one directory.
@@ -61,29 +60,62 @@ void describe(PluginReport& report, const PluginDescriptor& descriptor) {
   report.summary = descriptor.summary;
 }
 
+struct Opened {
+  LibraryPtr library;
+  const PluginDescriptor* descriptor = nullptr;
+};
+
+/// Opens the library, whose descriptor in the file is `announced`; here code of the plugin runs for the first time.
+std::optional<Refusal> open(const fs::path& file, const PluginDescriptor& announced, Opened& opened) {
+  std::string why;
+  opened.library = open_library(file, why);
+  if (!opened.library)
+    return Refusal{"the loader refused it: " + why, "rebuild the plugin against this installation, with every library it needs"};
+  opened.descriptor = static_cast<const PluginDescriptor*>(find_symbol(*opened.library, descriptor_symbol));
+  constexpr std::size_t texts = offsetof(PluginDescriptor, register_components);
+  if (!opened.descriptor || std::memcmp(opened.descriptor, &announced, texts) != 0)
+    return Refusal{"its descriptor is not the one that its file holds", "copy or build the library again"};
+  if (!opened.descriptor->register_components)
+    return Refusal{"its descriptor lacks register_components", "fill in every field of CORDON_PLUGIN(...)"};
+  return {};
+}
+
+/// What becomes of a process that opens the library, lets it register and closes it again; refusals by a rule are found again by
+/// the process that asks.
+std::optional<Refusal> try_out(const fs::path& file, const ElfFile& elf, const PluginDescriptor& announced) {
+  const FileIdentity identity(file, elf.bytes());
+  if (auto known = recall(identity)) return known->refusal;
+  Trial trial = try_in_child([&] {
+    const Catalogue empty;
+    Opened opened;
+    if (open(file, announced, opened)) return;
+    Batch batch(empty, announced.name);
+    register_into(batch, *opened.descriptor);
+  });
+  if (trial.repeats) remember(identity, {trial.refusal});
+  return trial.refusal;
+}
+
 /// Fills in the report. `state` is left at refused unless everything held.
 std::optional<Refusal> admit(PluginReport& report, LoadedPlugins& plugins, Catalogue& catalogue) {
-  if (auto refusal = check_library_file(report.file)) return refusal;
-  std::string why;
-  LibraryPtr library = open_library(report.file, why);
-  if (!library)
-    return Refusal{"the loader refused it: " + why, "rebuild the plugin against this installation, with every library it needs"};
-  const auto* descriptor = static_cast<const PluginDescriptor*>(find_symbol(*library, descriptor_symbol));
-  if (!descriptor) {
-    return Refusal{fmt::format("it exports no symbol {}: not a Cordon plugin", descriptor_symbol),
-                   "write CORDON_PLUGIN(...) in it and build it with cordon_add_plugin, or move it out of the plugin directory"};
-  }
-  const auto refusal = check_descriptor(*descriptor);
-  if (descriptor->abi_version == CORDON_ABI_VERSION && descriptor->size == sizeof(PluginDescriptor) && descriptor->abi_tag)
-    report.abi_tag = descriptor->abi_tag;
-  if (refusal) return refusal;
-  describe(report, *descriptor);
+  ElfFile elf;
+  PluginDescriptor announced;
+  if (auto refusal = elf.read(report.file)) return refusal;
+  if (auto refusal = read_descriptor(elf, announced)) return refusal;
+  report.abi_tag = announced.abi_tag;
+  if (auto refusal = check_descriptor(announced)) return refusal;
+  describe(report, announced);
   if (is_taken(report, plugins)) return {};
+  if (auto refusal = try_out(report.file, elf, announced)) return refusal;
+  const KeptFloatingPoint kept;
+  Opened opened;
+  if (auto refusal = open(report.file, announced, opened)) return refusal;
   Batch batch(catalogue, report.name);  // dies before the library does
-  const auto broken = register_into(batch, *descriptor);
+  const auto broken = register_into(batch, *opened.descriptor);
   report.components = batch.components();
   if (broken) return broken;
-  plugins.emplace(report.name, LoadedPlugin{std::move(library), report.file});
+  report.left_out = batch.left_out();
+  plugins.emplace(report.name, LoadedPlugin{std::move(opened.library), report.file});
   batch.commit(catalogue);
   report.state = PluginReport::State::loaded;
   return {};

@@ -69,6 +69,7 @@ struct Registry::State {
   std::map<std::string, LoadedPlugin, std::less<>> plugins;
   Catalogue catalogue;
   std::vector<PluginReport> reports;
+  std::vector<fs::path> searched;
 
   LibraryPtr library(const std::string& plugin) const {
     const auto found = plugins.find(plugin);
@@ -195,6 +196,29 @@ std::vector<std::string> announced(const fs::path& library) {
   return components;
 }
 
+/// The files of a directory whose names end in `extension`, absolute and sorted.
+std::vector<fs::path> files_of(const fs::path& directory, const char* extension, std::error_code& error) {
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code relative;
+    if (entry->path().extension() == extension) files.push_back(fs::absolute(entry->path(), relative).lexically_normal());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+std::vector<fs::path> libraries_in(const fs::path& directory, std::error_code& error) {
+  return files_of(directory, ".so", error);
+}
+
+std::vector<fs::path> announced_without_file(const fs::path& directory) {
+  std::error_code ignored;
+  std::vector<fs::path> files = files_of(directory, ".provides", ignored);
+  for (fs::path& file : files) file.replace_extension(".so");
+  std::erase_if(files,
+                [&](const fs::path& library) { return fs::symlink_status(library, ignored).type() != fs::file_type::not_found; });
+  return files;
+}
+
 PluginReport missing(const fs::path& library) {
   PluginReport report;
   report.file = library;
@@ -213,15 +237,9 @@ Registry::~Registry() = default;
 void Registry::load(const SearchPath& path) {
   for (const fs::path& directory : path.directories) {
     std::error_code error;
-    std::vector<fs::path> files;
-    for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
-      if (entry->path().extension() == ".so") files.push_back(entry->path());
-      if (entry->path().extension() == ".provides") {
-        const fs::path library = fs::absolute(fs::path(entry->path()).replace_extension(".so")).lexically_normal();
-        std::error_code ignored;
-        if (fs::symlink_status(library, ignored).type() == fs::file_type::not_found) state_->reports.push_back(missing(library));
-      }
-    }
+    state_->searched.push_back(fs::absolute(directory, error).lexically_normal());
+    const std::vector<fs::path> files = libraries_in(directory, error);
+    for (const fs::path& library : announced_without_file(directory)) state_->reports.push_back(missing(library));
     if (error && error != std::errc::no_such_file_or_directory) {
       PluginReport report;
       report.file = directory;
@@ -230,8 +248,20 @@ void Registry::load(const SearchPath& path) {
       report.fix = "check its permissions, or take it off the search path";
       state_->reports.push_back(std::move(report));
     }
-    std::sort(files.begin(), files.end());
     for (const fs::path& file : files) load_file(file);
+  }
+}
+
+void Registry::refuse(const fs::path& directory, const std::string& reason, const std::string& fix) {
+  std::error_code unreadable;
+  for (const fs::path& file : libraries_in(directory, unreadable)) {
+    PluginReport report;
+    report.file = file;
+    report.name = file.stem().string();
+    report.reason = reason;
+    report.fix = fix;
+    report.components = announced(file);
+    state_->reports.push_back(std::move(report));
   }
 }
 
@@ -280,6 +310,7 @@ std::string_view to_string(PluginReport::State state) noexcept {
 }
 
 const std::vector<PluginReport>& Registry::reports() const { return state_->reports; }
+const std::vector<fs::path>& Registry::searched() const { return state_->searched; }
 
 std::vector<std::string> Registry::backends() const { return names(state_->catalogue.backends); }
 std::vector<std::string> Registry::observers() const { return names(state_->catalogue.observers); }
@@ -362,6 +393,15 @@ std::shared_ptr<Observer> Registry::make_observer(std::string_view name, const O
                           const RegistryFactory factory(*this);
                           return entry.create({context.model, context.backend, &factory}, p);
                         });
+}
+
+std::vector<Diagnostic> Registry::check_metric(std::string_view name, const MetricContext& context, const Params& params) const {
+  const auto& provided = require(*this, state_->catalogue.metrics, "metric", name);
+  const std::string component = fmt::format("metric \"{}\"", name);
+  Params complete = params;
+  std::vector<Diagnostic> problems = provided.entry.info.schema.complete(complete);
+  if (!problems.empty() || !provided.entry.check) return problems;
+  return guarded(provided.plugin, component, [&] { return provided.entry.check(context, complete); });
 }
 
 std::shared_ptr<Metric> Registry::make_metric(std::string_view name, const Params& params) const {
@@ -447,7 +487,9 @@ std::shared_ptr<const InputDesigner> Registry::make_designer(std::string_view na
 void Registry::add(void (*register_components)(Registrar&)) {
   Batch batch(state_->catalogue, "");
   register_components(batch);
-  if (!batch.problems().empty()) throw Error(Errc::invalid, fmt::format("{}", fmt::join(batch.problems(), "; ")));
+  std::vector<std::string> problems = batch.problems();
+  problems.insert(problems.end(), batch.left_out().begin(), batch.left_out().end());
+  if (!problems.empty()) throw Error(Errc::invalid, fmt::format("{}", fmt::join(problems, "; ")));
   batch.commit(state_->catalogue);
 }
 

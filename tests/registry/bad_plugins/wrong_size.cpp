@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "nothing.hpp"
+#include "trace.hpp"
 
 static void register_components(cordon::Registrar&) { std::abort(); }  // must never be called
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ABI tag: a text of everything that changes the layout of a shared type or the allocator behind it. Host and plugin
-// compare it before any code of the plugin runs; built with other flags, a plugin would corrupt memory instead.
+// compare it in the plugin's file, before the library is opened; built with other flags, a plugin would corrupt memory instead.
 #pragma once
 
 #include <Eigen/Core>
 
 #include "cordon/registry/headers_hash.hpp"  // generated: CORDON_HEADERS_HASH
 
-#define CORDON_ABI_VERSION 1u
+#define CORDON_ABI_VERSION 2u
 
 #define CORDON_ABI_TEXT_(x) #x
 #define CORDON_ABI_TEXT(x) CORDON_ABI_TEXT_(x)
@@ -42,6 +42,13 @@
 #if !defined(CORDON_ABI_TSAN)
 #define CORDON_ABI_TSAN "0"
 #endif
+// Arithmetic that the compiler may reorder or take to be finite proves nothing.
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
+    (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#define CORDON_ABI_FAST_MATH "1"
+#else
+#define CORDON_ABI_FAST_MATH "0"
+#endif
 
 #define CORDON_ABI_TAG \
   "gxx_abi=" CORDON_ABI_TEXT(__GXX_ABI_VERSION) ";cxx11_abi=" CORDON_ABI_TEXT(_GLIBCXX_USE_CXX11_ABI)            \
@@ -49,4 +56,4 @@
       EIGEN_MAJOR_VERSION) "." CORDON_ABI_TEXT(EIGEN_MINOR_VERSION) ";order=" CORDON_ABI_ORDER                   \
   ";index=" CORDON_ABI_TEXT(EIGEN_DEFAULT_DENSE_INDEX_TYPE) ";align=" CORDON_ABI_TEXT(EIGEN_MAX_ALIGN_BYTES)     \
   ";malloc=" CORDON_ABI_TEXT(EIGEN_MALLOC_ALREADY_ALIGNED) ";asan=" CORDON_ABI_ASAN ";tsan=" CORDON_ABI_TSAN     \
-  ";headers=" CORDON_HEADERS_HASH
+  ";fast_math=" CORDON_ABI_FAST_MATH ";headers=" CORDON_HEADERS_HASH

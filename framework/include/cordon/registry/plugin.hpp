@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a plugin is: a shared library with one exported descriptor. A plugin author includes this file. Keep static objects
-// trivial: their constructors run before the ABI tag is compared, and what they throw ends the program.
+// What a plugin is: a shared library with one exported descriptor. A plugin author includes this file. The
+// descriptor is read from the file before the library is opened. Keep static objects trivial all the same: what their
+// constructors throw ends the process, and the plugin is refused.
 //
 //   void register_components(cordon::Registrar& registrar) { registrar.backend({...}); }
 //   CORDON_PLUGIN("my_box", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "axis-aligned boxes", register_components)
@@ -115,9 +116,15 @@ struct PlantEntry {
   ComponentInfo info;
   std::function<std::unique_ptr<Plant>(const Params&)> create;
 };
+/// What a metric measures the estimates of.
+struct MetricContext {
+  const Model& model;
+};
 struct MetricEntry {
   ComponentInfo info;
   std::function<std::unique_ptr<Metric>(const Params&)> create;
+  /// Problems of this combination of model and parameters, as for observers; may be left out.
+  std::function<std::vector<Diagnostic>(const MetricContext&, const Params&)> check = {};
 };
 
 /// Handed to a plugin's register function; what was added is rolled back if that function throws or breaks a rule. Names of
@@ -135,22 +142,25 @@ class Registrar {
   virtual void designer(DesignerEntry entry) = 0;
 };
 
-/// Plain data, read before any code of the plugin runs. Layout changes only with `abi_version`.
+/// Plain data, read from the plugin's file before any code of the plugin runs: texts stand in it whole, ended by 0, since
+/// pointers to them would not be known before the library is opened. Layout changes only with `abi_version`; the first two
+/// members stay.
 struct PluginDescriptor {
   std::uint32_t size;         ///< sizeof(PluginDescriptor)
   std::uint32_t abi_version;  ///< CORDON_ABI_VERSION
-  const char* abi_tag;        ///< CORDON_ABI_TAG: everything that changes layout or allocator
-  const char* name;           ///< unique among plugins
-  const char* version;
-  const char* license;
-  const char* author;
-  const char* summary;
+  char abi_tag[512];          ///< CORDON_ABI_TAG: everything that changes layout or allocator
+  char name[64];              ///< unique among plugins
+  char version[64];
+  char license[64];
+  char author[128];
+  char summary[256];
   void (*register_components)(Registrar&);
 };
 
 }  // namespace cordon
 
-/// Exports the descriptor under the one symbol that the host looks for.
+/// Exports the descriptor under the one symbol that the host looks for. The texts are literals; one that is too long does not
+/// compile.
 #define CORDON_PLUGIN(plugin_name, plugin_version, plugin_license, plugin_author, plugin_summary, register_function) \
   extern "C" __attribute__((visibility("default"))) const ::cordon::PluginDescriptor cordon_plugin_descriptor;       \
   extern "C" const ::cordon::PluginDescriptor cordon_plugin_descriptor{sizeof(::cordon::PluginDescriptor),           \

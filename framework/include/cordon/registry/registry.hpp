@@ -24,6 +24,8 @@ struct PluginReport {
   std::string reason;                   ///< refused: why; shadowed: by which file
   std::string fix;                      ///< refused: what to do
   std::vector<std::string> components;  ///< "backend zonotope", "observer descriptor", …; refused: what it was about to register
+  /// Loaded: components that were left out, with the reason: somebody else has their names.
+  std::vector<std::string> left_out = {};
 };
 std::string_view to_string(PluginReport::State state) noexcept;
 
@@ -32,7 +34,7 @@ std::string_view to_string(PluginReport::State state) noexcept;
 struct SearchPath {
   std::vector<std::filesystem::path> directories;
 };
-/// `extra` (from a study, already absolute), CORDON_PLUGIN_PATH (colon-separated), `<exe>/../lib/cordon/plugins-v1`, the
+/// `extra` (from the command line), CORDON_PLUGIN_PATH (colon-separated), `<exe>/../lib/cordon/plugins-v1`, the
 /// installed directory.
 SearchPath default_search_path(std::span<const std::filesystem::path> extra = {});
 
@@ -47,8 +49,14 @@ class Registry {
   /// Loads every `*.so` of the directories (in order; names sorted). Refusals are recorded, never thrown. Directories that do not
   /// exist are skipped.
   void load(const SearchPath& path);
+  /// Reports every `*.so` of a directory as refused, with this reason, and opens none.
+  void refuse(const std::filesystem::path& directory, const std::string& reason, const std::string& fix);
+  /// The directories of all calls of `load`, in order.
+  const std::vector<std::filesystem::path>& searched() const;
   /// Loads one library. The same checks; the report tells the outcome and stays valid until the next call that loads or unloads.
-  /// A file that is loaded already is left as it is; one that was refused before is tried again.
+  /// A file that is loaded already is left as it is; one that was refused before is tried again. Nothing of a library is executed
+  /// before its descriptor was read from the file and accepted; a file that is new is then opened in a child process first, so
+  /// that one that crashes, hangs or ends the process is a refusal. The outcome is kept in the user's cache.
   const PluginReport& load_file(const std::filesystem::path& file);
   /// Closes a plugin's library and forgets its report. Throws Errc::plugin, naming the number, while backends, observers or
   /// metrics of it live (a set keeps its backend alive); Errc::invalid if no such plugin is loaded.
@@ -84,6 +92,7 @@ class Registry {
   std::shared_ptr<const SetBackend> make_backend(std::string_view name, const Params& params) const;
   std::vector<Diagnostic> check_observer(std::string_view name, const ObserverContext& context, const Params& params) const;
   std::shared_ptr<Observer> make_observer(std::string_view name, const ObserverContext& context, const Params& params) const;
+  std::vector<Diagnostic> check_metric(std::string_view name, const MetricContext& context, const Params& params) const;
   std::shared_ptr<Metric> make_metric(std::string_view name, const Params& params) const;
   std::vector<Diagnostic> check_diagnoser(std::string_view name, const ModeBank& bank, std::shared_ptr<const SetBackend> backend,
                                           const Params& params) const;

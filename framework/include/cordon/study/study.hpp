@@ -126,11 +126,20 @@ struct Study {
 /// The nominal mode first, then the others in the order of the study.
 ModeBank bank_of(const Study& study);
 
-/// Reads, loads plugins from the directories that the study names and then from `path` (the first plugin of a name wins, so hand
-/// in a registry without plugins), validates against the registry, and resolves. Throws InputError with every problem at once
-/// (pointer, line, reason, suggestion), or Errc::plugin if nothing is wrong but components that are missing because their plugin
-/// was refused. Writes nothing.
-Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path = default_search_path());
+/// What becomes of plugins in directories that a study names. Plugins are programs, and a study may come from anywhere:
+/// directories count as trusted if they are on `path` or the registry was told to search them before. The others are
+enum class StudyPlugins {
+  refuse,  ///< reported, each with its place, and nothing of them is loaded
+  ignore,  ///< not loaded, with a warning each; components found nowhere else are reported as not checked
+  load     ///< trusted too
+};
+
+/// Reads, loads plugins from the directories that the study names, as far as `plugins` says, and then from `path` (the first
+/// plugin of a name wins), validates against the registry, and resolves. Throws InputError with every problem at once (pointer,
+/// line, reason, suggestion), or Errc::plugin if nothing is wrong but components that are missing because their plugin was
+/// refused, or directories that are not trusted. Writes nothing.
+Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path = default_search_path(),
+                 StudyPlugins plugins = StudyPlugins::refuse);
 
 /// JSON Schema (2020-12) of study files, with the components that the registry knows. For editors.
 std::string study_json_schema(const Registry& registry);

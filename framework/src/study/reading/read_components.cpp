@@ -355,7 +355,7 @@ std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& sys
   return specs;
 }
 
-std::vector<ComponentSpec> read_metrics(const Cursor& at, const ComponentContext& context) {
+std::vector<ComponentSpec> read_metrics(const Cursor& at, const SystemPart& system, const ComponentContext& context) {
   std::vector<ComponentSpec> specs;
   if (!at.expect(Kind::array, "a list of metrics: [\"radius\", ...]")) return specs;
   std::map<std::string, std::size_t> seen;
@@ -364,6 +364,9 @@ std::vector<ComponentSpec> read_metrics(const Cursor& at, const ComponentContext
     if (!spec) continue;
     const auto [first, fresh] = seen.emplace(spec->type, i);
     if (!fresh) at.item(i).error("repeats " + child(at.pointer(), first->second), "remove one of the two");
+    if (system.good) {
+      ask(at.item(i), context, [&] { return context.registry.check_metric(spec->type, {system.model}, spec->params); });
+    }
     specs.push_back(std::move(*spec));
   }
   return specs;

@@ -131,7 +131,8 @@ void read_plant(const Cursor& plant, const SystemPart& system, SimulateSpec& spe
 /// Asks the algorithms of the pipelines for which `asks` is true whether they can work with the model.
 std::vector<PipelineSpec> read_pipelines(const Cursor& pipelines, const SystemPart& system, const ComponentContext& context,
                                          const std::function<bool(std::size_t)>& asks);
-std::vector<ComponentSpec> read_metrics(const Cursor& metrics, const ComponentContext& context);
+/// Asks the metrics whether they can work with the model.
+std::vector<ComponentSpec> read_metrics(const Cursor& metrics, const SystemPart& system, const ComponentContext& context);
 
 /// Do simulations start where pipelines assume it, and can the experiments of designers be simulated? For studies that have no
 /// other problem. `only`: of this pipeline alone.

@@ -82,7 +82,7 @@ void TreeReader::read_sections() {
       return (!options_.only || *options_.only == i) && (!options_.asks || options_.asks(i));
     });
   }
-  if (const auto at = root_.find("metrics")) study.metrics = read_metrics(*at, context);
+  if (const auto at = root_.find("metrics")) study.metrics = read_metrics(*at, system, context);
   study.model = std::move(system.model);
   study.nominal = std::move(system.nominal);
   study.modes = std::move(system.modes);
