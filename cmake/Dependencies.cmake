@@ -20,19 +20,26 @@ add_library(cddgmp INTERFACE)
 target_include_directories(cddgmp SYSTEM INTERFACE "${CDD_INCLUDE_DIR}")
 target_compile_definitions(cddgmp INTERFACE GMPRATIONAL)
 target_link_libraries(cddgmp INTERFACE "${CDDGMP_LIBRARY}" gmp)
-# SDPA, a static library over MUMPS, LAPACK and BLAS. What it does with the process (std::cout, exit, abort) goes to solvers/sdp_sdpa.cpp;
-# nothing of it is exported.
+# SDPA, a static library, over the reference LAPACK and BLAS, static too. A tuned BLAS picks its kernels by the processor, and each rounds
+# in its own way: gains would differ from machine to machine, and OpenBLAS starts threads as soon as it is loaded. So the archives are
+# taken by their packages' own places; the names one level above are what the machine's alternatives say. Nothing of them is exported.
+# What SDPA does with the process (std::cout, exit, abort) goes to solvers/sdp_sdpa.cpp, which also answers in place of MUMPS.
 find_path(SDPA_INCLUDE_DIR sdpa_call.h REQUIRED)
-find_path(MUMPS_SEQ_INCLUDE_DIR mpi.h PATH_SUFFIXES mumps_seq REQUIRED)
-find_library(SDPA_LIBRARY sdpa REQUIRED)
-find_library(MUMPS_SEQ_LIBRARY dmumps_seq REQUIRED)
-find_library(LAPACK_LIBRARY lapack REQUIRED)
-find_library(BLAS_LIBRARY blas REQUIRED)
+find_path(MUMPS_SEQ_INCLUDE_DIR mpi.h PATH_SUFFIXES mumps_seq REQUIRED)  # SDPA's headers include those of MUMPS
+find_library(SDPA_LIBRARY libsdpa.a REQUIRED)
+foreach(name LAPACK BLAS)
+  string(TOLOWER ${name} package)
+  find_library(REFERENCE_${name} lib${package}.a PATHS "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/${package}" NO_DEFAULT_PATH)
+  if(NOT REFERENCE_${name})
+    message(FATAL_ERROR "The static reference ${name} is missing: scripts/install-dependencies, or apt-get install lib${package}-dev; "
+                        "elsewhere set REFERENCE_${name} to its lib${package}.a")
+  endif()
+endforeach()
 find_package(Threads REQUIRED)
 add_library(sdpa INTERFACE)
 target_include_directories(sdpa SYSTEM INTERFACE "${SDPA_INCLUDE_DIR}" "${MUMPS_SEQ_INCLUDE_DIR}")
-target_link_libraries(sdpa INTERFACE "${SDPA_LIBRARY}" "${MUMPS_SEQ_LIBRARY}" "${LAPACK_LIBRARY}" "${BLAS_LIBRARY}" Threads::Threads)
-target_link_options(sdpa INTERFACE "LINKER:--wrap=exit,--wrap=abort,--wrap=_ZSt4cout,--exclude-libs,libsdpa.a")
+target_link_libraries(sdpa INTERFACE "${SDPA_LIBRARY}" "${REFERENCE_LAPACK}" "${REFERENCE_BLAS}" Threads::Threads)
+target_link_options(sdpa INTERFACE "LINKER:--wrap=exit,--wrap=abort,--wrap=_ZSt4cout,--exclude-libs,libsdpa.a:liblapack.a:libblas.a")
 # MAT-files of MATLAB.
 find_path(MATIO_INCLUDE_DIR matio.h)
 find_library(MATIO_LIBRARY matio)

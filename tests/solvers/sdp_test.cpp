@@ -108,6 +108,49 @@ Errc code_of(const SemidefiniteProgram& program, const SdpOptions& options = {})
   return Errc::internal;
 }
 
+/// ⟨constant, Y⟩ = -1 and ⟨F_i, Y⟩ = 0, summed over 1 to 3 inequalities of size 2 to 6, for 1 to 12 variables and a random Y ⪰ 0,
+/// of less than full rank if `on_a_face`; rows and variables in units between 10^-spread and 10^spread.
+SemidefiniteProgram infeasible_program(std::uint64_t seed, double spread, bool on_a_face) {
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto m = static_cast<Index>(1 + engine() % 12), blocks = static_cast<Index>(1 + engine() % 3);
+  const auto symmetric = [](const Matrix& F) { return Matrix((F + F.transpose()) / 2); };
+  SemidefiniteProgram program;
+  program.cost = Vector::Ones(m);
+  std::vector<Matrix> Y;
+  std::vector<Vector> units;
+  double norm = 0;
+  for (Index j = 0; j < blocks; ++j) {
+    const auto n = static_cast<Index>(2 + engine() % 5);
+    Matrix S = Matrix::NullaryExpr(n, n, [&] { return uniform(engine); });
+    if (on_a_face) S.rightCols(n - static_cast<Index>(1 + engine() % static_cast<std::uint64_t>(n))).setZero();
+    Y.push_back(symmetric(S * S.transpose() + (on_a_face ? 0. : .1) * Matrix::Identity(n, n)));
+    norm += Y.back().squaredNorm();
+    units.push_back(Vector::NullaryExpr(n, [&] { return std::pow(10., spread * uniform(engine)); }));
+    program.inequalities.push_back({Matrix::Zero(n, n), {}});
+  }
+  for (Index i = -1; i < m; ++i) {
+    std::vector<Matrix> F;
+    double sum = 0;
+    for (const Matrix& part : Y) {
+      const Matrix R = Matrix::NullaryExpr(part.rows(), part.rows(), [&] { return uniform(engine); });
+      F.push_back(symmetric(R));
+      sum += F.back().cwiseProduct(part).sum();
+    }
+    const double unit = i < 0 ? 1 : std::pow(10., spread * uniform(engine));
+    for (std::size_t j = 0; j < Y.size(); ++j) {
+      F[j] += ((i < 0 ? -1 : 0) - sum) / norm * Y[j];
+      F[j] = unit * symmetric(units[j].asDiagonal() * F[j] * units[j].asDiagonal());
+      if (i < 0) {
+        program.inequalities[j].constant = F[j];
+      } else {
+        program.inequalities[j].terms.emplace_back(i, F[j]);
+      }
+    }
+  }
+  return program;
+}
+
 /// x ≥ 1 and x ≤ 0.
 SemidefiniteProgram contradiction() {
   return {Vector::Ones(1), {{scalar(-1), {{0, scalar(1)}}}, {scalar(0), {{0, scalar(-1)}}}}};
@@ -213,6 +256,52 @@ TEST_CASE("proofs on a face: Y is semidefinite for the numbers themselves") {
     const SemidefiniteProgram program{Vector::Ones(1), {{turned(constant), {{0, turned(term)}}}}};
     check_proof(program, solve(program), 1e8);
   }
+}
+
+TEST_CASE("terms that depend on each other: a point far away, that seems feasible for its size, hides no proof") {
+  // Up to 8 variables for the two directions beside Y.
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    std::mt19937_64 engine(seed);
+    const Matrix Y = random_definite(2, engine);
+    const auto with_product = [&](double product) {
+      const Matrix F = random_symmetric(2, engine);
+      return Matrix(F + (product - F.cwiseProduct(Y).sum()) / Y.squaredNorm() * Y);
+    };
+    SemidefiniteProgram program{Vector::Ones(static_cast<Index>(3 + seed % 6)), {{with_product(-1), {}}}};
+    for (Index i = 0; i < program.cost.size(); ++i) program.inequalities[0].terms.emplace_back(i, with_product(0));
+    const SdpSolution s = solve(program);
+    INFO(seed, s.why);
+    CHECK(s.status == SdpStatus::infeasible);
+  }
+}
+
+TEST_CASE("units of rows and variables hide no proof") {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const SdpSolution s = solve(infeasible_program(seed, 2, false));
+    INFO(seed, s.why);
+    CHECK(s.status == SdpStatus::infeasible);
+  }
+}
+
+TEST_CASE("proofs on faces") {
+  for (std::uint64_t seed = 1400; seed < 1600; ++seed) {
+    const SdpSolution s = solve(infeasible_program(seed, 0, true));
+    INFO(seed, s.why);
+    CHECK(s.status == SdpStatus::infeasible);
+  }
+}
+
+TEST_CASE("more variables than SDPA takes for few, each in a matrix of its own") {
+  // |x_i - i| ≤ 1 and the least sum: x_i = i - 1. Its linear systems are diagonal.
+  const Index m = 150;
+  SemidefiniteProgram program{Vector::Ones(m), {}};
+  for (Index i = 0; i < m; ++i) {
+    const auto value = static_cast<double>(i);
+    program.inequalities.push_back({Matrix{{1, -value}, {-value, 1}}, {{i, Matrix{{0, 1}, {1, 0}}}}});
+  }
+  const SdpSolution s = solve(program);
+  check_solved(program, s);
+  CHECK(s.value == Approx(150. * 149 / 2 - 150).epsilon(1e-7));
 }
 
 TEST_CASE("what holds beyond the bound of x only is neither solved nor infeasible without a proof for the bound") {

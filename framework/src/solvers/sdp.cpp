@@ -76,6 +76,7 @@ struct ScaledProgram {
   double cost_scale = 1;
   std::vector<Index> variables;  ///< that are there
   bool without_bound = false;    ///< one that is not has a cost
+  bool exact = true;             ///< no coefficient has left the range of numbers: a proof of one program is one of the other
 };
 
 double power_of_two(double value) { return std::exp2(std::round(std::log2(value))); }
@@ -128,9 +129,14 @@ ScaledProgram scale(const SemidefiniteProgram& program) {
   scaled.program.cost *= scaled.cost_scale;
   for (std::size_t j = 0; j < program.inequalities.size(); ++j) {
     const auto d = scaled.row_scale[j].asDiagonal();
-    MatrixInequality F{d * program.inequalities[j].constant * d, {}};
+    const auto scaled_by = [&](const Matrix& F, double factor) {
+      Matrix other = factor * (d * F * d);
+      scaled.exact = scaled.exact && (d.inverse() * other * d.inverse()) / factor == F;
+      return other;
+    };
+    MatrixInequality F{scaled_by(program.inequalities[j].constant, 1), {}};
     for (const auto& [i, term] : program.inequalities[j].terms) {
-      if (place[i] >= 0) F.terms.emplace_back(place[i], scaled.variable_scale[i] * (d * term * d));
+      if (place[i] >= 0) F.terms.emplace_back(place[i], scaled_by(term, scaled.variable_scale[i]));
     }
     scaled.program.inequalities.push_back(std::move(F));
   }
@@ -205,9 +211,9 @@ SdpSolution assess(const SemidefiniteProgram& program, const ScaledProgram& scal
   return s;
 }
 
-/// Y ⪰ 0 proves that no x with |x_i| ≤ R is feasible, if Σ ⟨constant, Y⟩ + R Σ |⟨F_i, Y⟩| < 0: for a feasible x, the sum of
+/// Y ⪰ 0 proves that no x with |x_i| ≤ R_i is feasible, if Σ ⟨constant, Y⟩ + Σ R_i |⟨F_i, Y⟩| < 0: for a feasible x, the sum of
 /// ⟨F(x), Y⟩ is not negative. Rounding errors are bounded; Y is shifted until its smallest eigenvalue is certainly not negative.
-bool proves_infeasible(const SemidefiniteProgram& program, std::vector<Matrix>& Y, double R) {
+bool proves_infeasible(const SemidefiniteProgram& program, std::vector<Matrix>& Y, const Vector& R) {
   double rounding = 0, terms = 0;
   for (std::size_t j = 0; j < Y.size(); ++j) {
     const auto size = static_cast<double>(Y[j].rows());
@@ -221,91 +227,124 @@ bool proves_infeasible(const SemidefiniteProgram& program, std::vector<Matrix>& 
     const double unit = (size * size + static_cast<double>(program.cost.size()) + 8) * epsilon;
     terms += inner_of_magnitudes(F.constant, Y[j]);
     rounding += unit * inner_of_magnitudes(F.constant, Y[j]);
-    for (const auto& [i, term] : F.terms) rounding += R * unit * inner_of_magnitudes(term, Y[j]);
+    for (const auto& [i, term] : F.terms) rounding += R[i] * unit * inner_of_magnitudes(term, Y[j]);
   }
-  const double sum = inner_constant(program, Y) + R * inner_products(program, Y).cwiseAbs().sum();
+  const double sum = inner_constant(program, Y) + R.dot(inner_products(program, Y).cwiseAbs());
   return terms > 0 && sum + 2 * rounding < -1e-10 * terms;
 }
 
-/// Y within the span of its eigenvectors above a share of the largest eigenvalue, and there moved to ⟨F_i, Y⟩ = 0 for all i.
-std::vector<Matrix> on_its_face(const SemidefiniteProgram& program, const std::vector<Matrix>& Y, double share) {
-  const Index m = program.cost.size();
-  double largest = 0;
+/// Y of the rank that eigenvalues above a share of the largest leave it, moved to ⟨F_i, Y⟩ = 0 for all i: Gauss-Newton steps for
+/// the factors L_j of Y_j = L_j L_jᵀ, so that it stays semidefinite and the face that it lies on may turn.
+std::vector<Matrix> moved_to_zero(const SemidefiniteProgram& program, const std::vector<Matrix>& Y, double share) {
   std::vector<linalg::SymmetricEigen> eigen;
+  double largest = 0;
   for (const Matrix& part : Y) {
     eigen.push_back(linalg::symmetric_eigen(part));
     largest = std::max(largest, eigen.back().values.maxCoeff());
   }
-  std::vector<Matrix> basis;
+  std::vector<Matrix> L;
   Index unknowns = 0;
   for (const linalg::SymmetricEigen& one : eigen) {
     const Index rank = (one.values.array() > share * largest).count();
-    basis.push_back(one.vectors.rightCols(rank));
-    unknowns += rank * rank;
+    L.push_back(one.vectors.rightCols(rank) * one.values.tail(rank).cwiseSqrt().asDiagonal());
+    unknowns += L.back().size();
   }
-  // Columns of `map`: the entries of S in Y = V S Vᵀ.
-  Matrix map = Matrix::Zero(m, unknowns);
-  Vector S(unknowns);
-  Index at = 0;
-  for (std::size_t j = 0; j < Y.size(); ++j) {
-    const Matrix& V = basis[j];
-    const Index rank = V.cols();
-    if (rank == 0) continue;
-    S.segment(at, rank * rank) = Matrix(eigen[j].values.tail(rank).asDiagonal()).reshaped();
-    for (const auto& [i, term] : program.inequalities[j].terms) {
-      map.row(i).segment(at, rank * rank) = linalg::product(linalg::transposed_product(V, term), V).reshaped().transpose();
+  std::vector<Matrix> moved(Y.size());
+  for (int step = 0;; ++step) {
+    for (std::size_t j = 0; j < Y.size(); ++j) moved[j] = linalg::gram(L[j]);
+    if (step == 4 || unknowns == 0) return moved;
+    // Column by column of the factors: the change of ⟨F_i, L Lᵀ⟩ is 2 ⟨F_i L, change of L⟩.
+    Matrix slope = Matrix::Zero(program.cost.size(), unknowns);
+    Index at = 0;
+    for (std::size_t j = 0; j < Y.size(); at += L[j++].size()) {
+      for (const auto& [i, term] : program.inequalities[j].terms) {
+        slope.row(i).segment(at, L[j].size()) = 2 * linalg::product(term, L[j]).reshaped().transpose();
+      }
     }
-    at += rank * rank;
+    const Vector change = linalg::product(linalg::pseudo_inverse(slope, 1e-9), inner_products(program, moved));
+    at = 0;
+    for (Matrix& factor : L) {
+      factor -= change.segment(at, factor.size()).reshaped(factor.rows(), factor.cols());
+      at += factor.size();
+    }
   }
-  if (unknowns > 0) S -= linalg::product(linalg::pseudo_inverse(map), linalg::product(map, S));
-  std::vector<Matrix> moved;
-  at = 0;
-  for (const Matrix& V : basis) {
-    const Index rank = V.cols();
-    const Matrix part = V * S.segment(at, rank * rank).reshaped(rank, rank) * V.transpose();
-    moved.push_back(semidefinite_part((part + part.transpose()) / 2));
-    at += rank * rank;
-  }
-  return moved;
 }
 
-/// The least t with F(x) + t I ⪰ 0, |x_i| ≤ 10⁴ (less if `largest_x` is) and t ≥ -1, in the scaled program's units. Its dual
-/// matrices prove that t = 0 is out of reach, if they do.
-SemidefiniteProgram feasibility_program(const ScaledProgram& scaled, double largest_x) {
-  const Index m = scaled.program.cost.size();
+/// Entries of all inequalities' matrices for one variable (or the constants), one below the other, so that inner products are
+/// those of the matrices.
+Matrix stacked_terms(const SemidefiniteProgram& program) {
+  Index entries = 0;
+  for (const MatrixInequality& F : program.inequalities) entries += F.constant.size();
+  Matrix stacked = Matrix::Zero(entries, program.cost.size());
+  Index at = 0;
+  for (const MatrixInequality& F : program.inequalities) {
+    for (const auto& [i, term] : F.terms) stacked.col(i).segment(at, term.size()) = term.reshaped();
+    at += F.constant.size();
+  }
+  return stacked;
+}
+
+/// The same set of matrices F(x) as an affine space with an orthonormal basis: terms that depend on each other, exactly or
+/// nearly, leave the solver's linear systems singular, and nothing of a proof needs them.
+SemidefiniteProgram with_orthonormal_terms(const SemidefiniteProgram& program) {
+  const Matrix basis = linalg::range_basis(stacked_terms(program), 1e-12);
+  SemidefiniteProgram same;
+  same.cost = Vector::Zero(basis.cols());
+  Index at = 0;
+  for (const MatrixInequality& F : program.inequalities) {
+    const Index size = F.constant.rows();
+    MatrixInequality G{F.constant, {}};
+    for (Index k = 0; k < basis.cols(); ++k) {
+      const Matrix term = basis.col(k).segment(at, size * size).reshaped(size, size);
+      if (!term.isZero(0)) G.terms.emplace_back(k, (term + term.transpose()) / 2);
+    }
+    at += size * size;
+    same.inequalities.push_back(std::move(G));
+  }
+  return same;
+}
+
+/// The least t with F(x) + t I ⪰ 0, |x_i| ≤ radius_i and t ≥ -1. Its dual matrices prove that t = 0 is out of reach, if they do.
+SemidefiniteProgram feasibility_program(const SemidefiniteProgram& program, const Vector& radius) {
+  const Index m = program.cost.size();
   SemidefiniteProgram phase;
   phase.cost = 1024 * Vector::Unit(m + 1, m);
-  phase.inequalities = scaled.program.inequalities;
+  phase.inequalities = program.inequalities;
   for (MatrixInequality& F : phase.inequalities) {
     F.terms.emplace_back(m, Matrix::Identity(F.constant.rows(), F.constant.rows()));
   }
   const Matrix one = Matrix::Ones(1, 1);
   phase.inequalities.push_back({one, {{m, one}}});
   for (Index i = 0; i < m; ++i) {
-    const double radius = std::min(1e4, largest_x / scaled.variable_scale[scaled.variables[static_cast<std::size_t>(i)]]);
-    phase.inequalities.push_back({radius * one, {{i, one}}});
-    phase.inequalities.push_back({radius * one, {{i, -one}}});
+    phase.inequalities.push_back({radius[i] * one, {{i, one}}});
+    phase.inequalities.push_back({radius[i] * one, {{i, -one}}});
   }
   return phase;
 }
 
 constexpr SdpTuning tunings[] = {{1e4, .1, .9}, {1e2, .1, .9}, {1e6, .2, .7}};
 
-void prove_infeasible(const SemidefiniteProgram& program, const ScaledProgram& scaled, const SdpOptions& options,
-                      SdpSolution& s) {
-  const SemidefiniteProgram phase = feasibility_program(scaled, options.largest_x);
+/// Proofs are checked in the scaled program, where rounding errors weigh least. Scaling is exact, and so is the way back.
+void prove_infeasible(const ScaledProgram& scaled, const SdpOptions& options, SdpSolution& s) {
+  if (!scaled.exact) return;
+  const SemidefiniteProgram orthonormal = with_orthonormal_terms(scaled.program);
+  const SemidefiniteProgram phase = feasibility_program(orthonormal, Vector::Constant(orthonormal.cost.size(), 1e4));
+  Vector largest_x(scaled.program.cost.size());
+  for (Index i = 0; i < largest_x.size(); ++i) {
+    largest_x[i] = options.largest_x / scaled.variable_scale[scaled.variables[static_cast<std::size_t>(i)]];
+  }
   for (const SdpTuning& tuning : tunings) {
     SdpProposal proposal = run_sdpa(phase, options.accuracy, options.iterations, tuning);
     if (!proposal.x) continue;
-    proposal.Y.resize(program.inequalities.size());
+    proposal.Y.resize(scaled.program.inequalities.size());
     // As it is, which serves where the bound of x matters; then without what an unlimited x must not meet.
     for (const double share : {0., 1e-8, 1e-6, 1e-4, 1e-2}) {
-      std::vector<Matrix> Y = unscaled(scaled, share == 0 ? proposal.Y : on_its_face(scaled.program, proposal.Y, share), 1);
-      if (!proves_infeasible(program, Y, options.largest_x)) continue;
+      std::vector<Matrix> Y = share == 0 ? proposal.Y : moved_to_zero(orthonormal, proposal.Y, share);
+      if (!proves_infeasible(scaled.program, Y, largest_x)) continue;
       s = {};
       s.status = SdpStatus::infeasible;
       s.solver_status = proposal.phase;
-      s.proof = std::move(Y);
+      s.proof = unscaled(scaled, std::move(Y), 1);
       return;
     }
   }
@@ -334,7 +373,7 @@ SdpSolution solve(const SemidefiniteProgram& program, const SdpOptions& options)
     if (answer.status == SdpStatus::solved) return answer;
     any_feasible = any_feasible || feasible;
   }
-  if (!any_feasible) prove_infeasible(program, scaled, options, answer);
+  prove_infeasible(scaled, options, answer);
   return answer;
 }
 

@@ -4,7 +4,8 @@
 // std::cout; where it finds a defect it ends the process, with status 0, and where memory runs out it aborts. The linker sends
 // all three to this file (wrap options in cmake/Dependencies.cmake): the stream to nowhere, the ends of the process to an
 // exception.
-#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <mutex>
 #include <new>
 #include <ostream>
@@ -23,33 +24,19 @@ extern "C" {
 [[noreturn, gnu::visibility("hidden")]] void __wrap_exit(int) { throw GaveUp{}; }
 [[noreturn, gnu::visibility("hidden")]] void __wrap_abort() { throw GaveUp{}; }
 [[gnu::visibility("hidden")]] std::ostream __wrap__ZSt4cout(nullptr);
-// OpenBLAS, if the BLAS is that.
-[[gnu::weak]] int openblas_get_num_threads();
-[[gnu::weak]] void openblas_set_num_threads(int threads);
+[[noreturn, gnu::visibility("hidden")]] void xerbla_(const char*, const int*, std::size_t) { throw GaveUp{}; }
+// SDPA asks MUMPS, for more than 100 variables, what a sparse factorisation of its linear systems costs. The answer is: more than
+// a dense one, which the programs here fill anyway. It never asks for more then, and MUMPS (CeCILL-C) need not be linked.
+[[gnu::visibility("hidden")]] void dmumps_c(DMUMPS_STRUC_C* question) {
+  question->infog[0] = 0;
+  question->infog[19] = -std::numeric_limits<int>::max();  // millions of entries
+  question->rinfog[0] = std::numeric_limits<double>::max();
+}
 }
 
 namespace cordon {
 
 namespace {
-
-/// Threads of OpenBLAS cost more than they give at these sizes: they wait by spinning.
-class OneBlasThread {
- public:
-  OneBlasThread() {
-    if (openblas_get_num_threads && openblas_set_num_threads) {
-      before_ = openblas_get_num_threads();
-      openblas_set_num_threads(1);
-    }
-  }
-  ~OneBlasThread() {
-    if (before_ > 0) openblas_set_num_threads(before_);
-  }
-  OneBlasThread(const OneBlasThread&) = delete;
-  OneBlasThread& operator=(const OneBlasThread&) = delete;
-
- private:
-  int before_ = 0;
-};
 
 void input_matrix(SDPA& problem, int k, int block, const Matrix& F, double sign) {
   for (Index j = 0; j < F.cols(); ++j) {
@@ -106,7 +93,6 @@ SdpProposal output(SDPA& problem, const SemidefiniteProgram& program) {
 SdpProposal run_sdpa(const SemidefiniteProgram& program, double accuracy, int iterations, const SdpTuning& tuning) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
-  const OneBlasThread one_thread;
   try {
     SDPA problem;
     problem.setDisplay(nullptr);
