@@ -112,7 +112,8 @@ class VolumeGain {
       chosen = j;
     }
     Vector lambda = chosen < 0 ? unchanged() : along(chosen);
-    if (all_directions && n > 2 && chosen >= 0 && best > 0) improve(W, best, lambda);  // in one and two dimensions the best λ is parallel to a generator
+    if (all_directions && n > 2 && chosen >= 0 && best > 0)
+      improve(W, best, lambda);  // in one and two dimensions the best λ is parallel to a generator
     return sigma_ * best < whole ? lambda : unchanged();
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strips that repeat what a set says already: equal, proportional and dependent rows, outputs without noise, sets without interior.
-// What is left of a direction then is rounding, from which nothing may be concluded. The points are made of integers and powers of
-// two, so that they lie in the exact intersection.
+// Strips that repeat what a set says already: equal, proportional and dependent rows, outputs without noise, sets without
+// interior. What is left of a direction then is rounding, from which nothing may be concluded. The points are made of integers
+// and powers of two, so that they lie in the exact intersection.
 #include <doctest/doctest.h>
 
 #include "cordon/sets/generator_reduction.hpp"
