@@ -142,9 +142,12 @@ struct Zonotopes {
 ParamSchema schema() {
   ParamSchema schema;
   plugins::add_reduction(schema);
-  schema.choice("strip",
-                "how a strip is intersected: smallest F-radius, smallest volume among parallel strips, or smallest volume",
-                {"segment", "bravo", "volume"}, "segment");
+  schema.choice(
+      "strip",
+      "how a strip is intersected: smallest F-radius (segment), smallest volume among zonotopes cut along one generator "
+      "(bravo), or smallest volume of all; both volumes are compared by squared determinants, volume as bravo, where g "
+      "generators in n dimensions have more than 20,000 subsets of n - 1",
+      {"segment", "bravo", "volume"}, "segment");
   plugins::add_rounding(schema);
   return schema;
 }

@@ -19,16 +19,6 @@ namespace cordon::sets {
 
 namespace {
 
-/// `sizes` = |c| + |G| 1.
-void take_reach(const LineZonotope& X, Vector& sizes) {
-  sizes = X.c.cwiseAbs();
-  const Index n = X.dim();
-  const double* entry = X.G.data();
-  for (Index j = 0; j < X.generators(); ++j) {
-    for (Index i = 0; i < n; ++i) sizes[i] += std::abs(*entry++);
-  }
-}
-
 void require_no_overflow(const LineZonotope& X) {
   for (const Matrix* block : {&X.M, &X.G, &X.S, &X.A}) {
     if (!vectors::all_finite(*block)) throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
@@ -84,7 +74,7 @@ LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span
     const Index l = Z.lines(), g = Z.generators(), rows = Z.constraints();
     if (l > 0) Y.M.middleCols(line, l) = linalg::denoised_product(T, Z.M);
     linalg::product(T, Z.G, Y.G.middleCols(generator, g));
-    take_reach(Z, size);
+    take_reach(Z.c, Z.G, size);
     for (Index k = 0; k < T.cols(); ++k) {
       Y.c += T.col(k) * Z.c[k];
       terms.state += T.col(k).cwiseAbs() * size[k];
@@ -132,8 +122,8 @@ LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, M
 
   Terms terms = no_terms(Y);
   Vector of_X, of_V;
-  take_reach(X, of_X);
-  take_reach(V, of_V);
+  take_reach(X.c, X.G, of_X);
+  take_reach(V.c, V.G, of_V);
   std::vector<Index> kept(static_cast<std::size_t>(old));
   std::iota(kept.begin(), kept.end(), Index{0});
   kept.reserve(static_cast<std::size_t>(old + p));

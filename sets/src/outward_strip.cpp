@@ -70,13 +70,13 @@ bool intersect(Widened& X, VectorIn rho, Strip strip, StripMethod method) {
     strip.sigma = std::max({directed::plus(high, -strip.d).upper, directed::plus(strip.d, -low).upper,
                             directed::plus(low, -strip.d).upper, directed::plus(strip.d, -high).upper});
   }
-  const Vector lambda = strip_gain(X.Z.G, rho, strip.sigma, method);
-  if (lambda.isZero(0) || !lambda.allFinite()) return true;
-
   Tracked shift{strip.d, 0};
   shift.subtract(seen.middle.value);
   shift.widen(seen.middle.error);
   const double doubt_of_row = plus_up(seen.r, shift.error);
+  const Vector lambda = strip_gain(X.Z.G, rho, plus_up(strip.sigma, doubt_of_row), method);
+  if (lambda.isZero(0) || !lambda.allFinite()) return true;
+
   const Index n = X.Z.dim(), g = X.Z.generators();
   Matrix G(n, g + 1);
   for (Index i = 0; i < n; ++i) {

@@ -90,6 +90,15 @@ bool is_wide(const LineForm& X, const Vector& noise) {
 
 }  // namespace
 
+void take_reach(const Vector& c, const Matrix& G, Vector& sizes) {
+  sizes = c.cwiseAbs();
+  const Index n = c.size();
+  const double* entry = G.data();
+  for (Index j = 0; j < G.cols(); ++j) {
+    for (Index i = 0; i < n; ++i) sizes[i] += std::abs(*entry++);
+  }
+}
+
 LineForm with_residue(LineForm X, const Terms& terms) {
   if (have_own_factors(X, terms)) return X;
   const Index n = X.dim(), m = X.constraints();
@@ -101,6 +110,13 @@ LineForm with_residue(LineForm X, const Terms& terms) {
   noise *= nominal_noise;
   if (is_wide(X, noise)) return X;
   return with_radii(X, nominal_noise * terms.rows, nominal_noise * terms.state);
+}
+
+Zonotope with_residue(Zonotope Z, const Vector& state) {
+  const Index n = Z.dim(), g = Z.generators();
+  LineForm X{Matrix(n, 0), std::move(Z.G), std::move(Z.c), Matrix(0, 0), Matrix(0, g), Vector(0)};
+  X = with_residue(std::move(X), {Vector(0), state});
+  return {std::move(X.c), std::move(X.G)};
 }
 
 }  // namespace cordon::sets

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cordon/core/line_form.hpp"
+#include "cordon/sets/zonotope.hpp"
 
 namespace cordon::sets {
 
@@ -18,8 +19,13 @@ struct Terms {
 };
 inline Terms no_terms(const LineForm& X) { return {Vector::Zero(X.constraints()), Vector::Zero(X.dim())}; }
 
+/// `sizes` = |c| + |G| 1.
+void take_reach(const Vector& c, const Matrix& G, Vector& sizes);
+
 /// X, computed from such terms. Where the lifted zonotope [G; A] is so flat that the margin of proofs does not cover 1e-14 of the
 /// terms, these get factors of their own: the set becomes larger by them.
 LineForm with_residue(LineForm X, const Terms& terms);
+/// Likewise of a zonotope whose coordinates were computed from terms of the sizes `state`.
+Zonotope with_residue(Zonotope Z, const Vector& state);
 
 }  // namespace cordon::sets

@@ -2,12 +2,14 @@
 #include "cordon/sets/zonotope.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
 #include "require.hpp"
+#include "residue.hpp"
 
 namespace cordon::sets {
 
@@ -94,11 +96,16 @@ Zonotope affine_sum(const Zonotope& Z, MatrixIn A, VectorIn f, std::span<const M
     columns += summand.set.generators();
   }
   Zonotope sum{f, Matrix(A.rows(), columns)};
+  Vector terms = f.cwiseAbs(), size;
   Index at = 0;
   const auto add = [&](MatrixIn T, const Zonotope& X) {
+    take_reach(X.c, X.G, size);
     for (Index i = 0; i < T.rows(); ++i) {
       double center = 0;
-      for (Index k = 0; k < T.cols(); ++k) center += T(i, k) * X.c[k];
+      for (Index k = 0; k < T.cols(); ++k) {
+        center += T(i, k) * X.c[k];
+        terms[i] += std::abs(T(i, k)) * size[k];
+      }
       sum.c[i] += center;
     }
     linalg::product(T, X.G, sum.G.middleCols(at, X.generators()));
@@ -106,7 +113,8 @@ Zonotope affine_sum(const Zonotope& Z, MatrixIn A, VectorIn f, std::span<const M
   };
   add(A, Z);
   for (const MappedZonotope& summand : summands) add(summand.T, summand.set);
-  return sum;
+  if (summands.empty()) return sum;
+  return with_residue(std::move(sum), terms);
 }
 
 Zonotope cartesian_product(const Zonotope& X, const Zonotope& Y) {

@@ -100,6 +100,30 @@ class CorrectMirrorsNoise final : public Reference {
   }
 };
 
+class CorrectIgnoresPointNoise final : public Reference {
+  using Reference::Reference;
+  Made do_correct(const Set& X, const Correct& c) const override {
+    const bool point = form(*c.noise.set).generators() == 0;
+    const Matrix T = point ? Matrix(Matrix::Zero(c.noise.T.rows(), c.noise.T.cols())) : Matrix(c.noise.T);
+    return {make(corrected(X, c.C, c.z, T, *c.noise.set)), Tightness::exact};
+  }
+};
+
+/// Where a set knows C_i x already, rounding decides where it moves.
+class DividesByNoise final : public Reference {
+  using Reference::Reference;
+  Made do_correct(const Set& X, const Correct& c) const override {
+    LineForm known = form(X);
+    for (Index i = 0; i < c.C.rows(); ++i) {
+      const Box seen = cordon::interval_hull(cordon::affine_map(known, c.C.row(i), Vector::Zero(1)));
+      if (seen.upper[0] - seen.lower[0] <= 1e-9 * known.G.cwiseAbs().sum()) known.G.setZero();
+      const LineForm noise = cordon::affine_map(form(*c.noise.set), -c.noise.T.row(i), c.z.segment(i, 1));
+      known = cordon::intersection(known, c.C.row(i), noise);
+    }
+    return {make(known), Tightness::exact};
+  }
+};
+
 class IntervalMapIgnoresRadius final : public Reference {
   using Reference::Reference;
   Made do_interval_map(const Set& X, const IntervalMatrix& A) const override {
@@ -177,6 +201,12 @@ std::vector<Mutant> mutants_of_operations() {
       {"correct_forgets_noise_map", "soundness.correct", "z - C x ∈ V instead of T V", create<CorrectForgetsNoiseMap>},
       {"correct_mirrors_noise", "soundness.correct", "C x - z ∈ T V: right for symmetric noise only",
        create<CorrectMirrorsNoise>},
+      {"correct_ignores_point_noise", "soundness.point_noise", "z - C x ∈ T V without T V if V is a point",
+       create<CorrectIgnoresPointNoise>},
+      {"divides_by_noise",
+       "soundness.repeated_strips soundness.proportional_strips soundness.dependent_strips soundness.flat_strips "
+       "soundness.noise_free_steps",
+       "a row that says what is known moves the set", create<DividesByNoise>},
       {"interval_map_ignores_radius", "soundness.interval_map", "only the centre of [A] is used",
        create<IntervalMapIgnoresRadius>},
       {"hull_of_first", "soundness.convex_hull", "the hull is the first operand", create<HullOfFirst>},

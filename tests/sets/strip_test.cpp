@@ -151,6 +151,25 @@ TEST_CASE("in three dimensions the linear program beats the generators' directio
   CHECK(interval_hull(best).upper[0] == doctest::Approx(.1));
 }
 
+TEST_CASE("beyond the limit of subsets, the smallest volume is no worse than among parallel strips") {
+  // 20,349 and 26,334 subsets of five generators
+  for (const Index g : {21, 22}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      CAPTURE(g);
+      CAPTURE(seed);
+      Random random(seed);
+      Zonotope Z{Vector::Zero(6), Matrix(6, g)};
+      for (Index j = 0; j < g; ++j) Z.G.col(j) = random.cube(6);
+      const Vector rho = random.cube(6);
+      const double whole = *volume(Z), bravo = *volume(*intersect_strip(Z, rho, .3, .2, StripMethod::bravo));
+      const Zonotope best = *intersect_strip(Z, rho, .3, .2, StripMethod::volume);
+      CHECK(*volume(best) <= bravo * (1 + 1e-9));
+      CHECK(*volume(best) < whole);
+      CHECK(f_radius(best) > f_radius(*intersect_strip(Z, rho, .3, .2, StripMethod::segment)));
+    }
+  }
+}
+
 TEST_CASE("volume of the enclosures: volume ≤ bravo ≤ Z") {
   CHECK(rc::check([] {
     const Index n = arbitrary_dim(4);

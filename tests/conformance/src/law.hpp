@@ -73,6 +73,7 @@ struct LawEntry {
 
 using LawList = std::vector<LawEntry>;
 void add_soundness(LawList& list);
+void add_measurements(LawList& list);
 void add_tightness(LawList& list);
 void add_algebra(LawList& list);
 void add_questions(LawList& list);

@@ -170,26 +170,8 @@ TestCase generate_correct(const Setting& s) {
   return test;
 }
 
-/// z = C x₀ + T v₀ + e.
 Applied apply_correct(const Context& context, const TestCase& test) {
-  const Operand X = import_operand(context, test.set(0)), V = import_operand(context, test.set(1));
-  const Matrix &C = test.matrix(0), &T = test.matrix(1);
-  const Vector z = C * X.points.front() + T * V.points.front() + test.vector(0);
-  Applied a;
-  a.derived.emplace_back("z", describe_vector(z));
-  a.result = context.backend->correct(X.set, {C, z, {T, V.set}});
-  if (test.tame() && X.sure && V.sure && test.vector(0).isZero(0)) a.points.push_back(X.points.front());
-  const double rows = stretch(C) * X.size + stretch(T) * V.size + largest(z);
-  a.truth.add(intersection(X.form, C, affine_map(V.form, -T, z)), a.points, X.size, rows);
-  a.sure = test.tame() && X.sure && V.sure;
-  a.complete = X.equal && V.equal;
-  show_held(a, "X", X, test.set(0));
-  show_held(a, "V", V, test.set(1));
-  a.exact = [&test, z] {
-    const Polytope noise = Polytope::from(test.set(1).form).affine_map(-test.matrix(1), z);
-    return Polytope::from(test.set(0).form).intersection(test.matrix(0), noise);
-  };
-  return a;
+  return apply_measurement(context, test, {test.matrix(0), test.matrix(1), test.vector(0)});
 }
 
 TestCase generate_predict(const Setting& s) {
@@ -317,6 +299,27 @@ Applied apply_reduce(const Context& context, const TestCase& test) {
 }
 
 }  // namespace
+
+Applied apply_measurement(const Context& context, const TestCase& test, const Measurement& m, Index times) {
+  const Operand X = import_operand(context, test.set(0)), V = import_operand(context, test.set(1));
+  const Vector z = m.C * X.points.front() + m.T * V.points.front() + m.miss;
+  Applied a;
+  a.derived.emplace_back("z", describe_vector(z));
+  a.result = X.set;
+  for (Index k = 0; k < times; ++k) a.result = context.backend->correct(a.result, {m.C, z, {m.T, V.set}});
+  if (test.tame() && X.sure && V.sure && m.miss.isZero(0)) a.points.push_back(X.points.front());
+  const double rows = stretch(m.C) * X.size + stretch(m.T) * V.size + largest(z);
+  a.truth.add(intersection(X.form, m.C, affine_map(V.form, -m.T, z)), a.points, X.size, rows);
+  a.sure = test.tame() && X.sure && V.sure;
+  a.complete = X.equal && V.equal;
+  show_held(a, "X", X, test.set(0));
+  show_held(a, "V", V, test.set(1));
+  a.exact = [&test, m, z] {
+    const Polytope noise = Polytope::from(test.set(1).form).affine_map(-m.T, z);
+    return Polytope::from(test.set(0).form).intersection(m.C, noise);
+  };
+  return a;
+}
 
 Operand import_operand(const Context& context, const TestSet& X) {
   Operand operand;

@@ -40,6 +40,14 @@ const std::vector<Operation>& operations();
 /// Imports a set of the case.
 Operand import_operand(const Context& context, const TestSet& X);
 
+/// Rows of a measurement z = C x₀ + T v₀ + e, x₀ and v₀ being the known points of the case's first two sets.
+struct Measurement {
+  Matrix C, T;
+  Vector miss;  ///< e
+};
+/// The correction, carried out so many times.
+Applied apply_measurement(const Context& context, const TestCase& test, const Measurement& m, Index times = 1);
+
 /// The result's support function is no smaller than the truth's. If the points are `sure`, the result is not called empty and
 /// none of them is said to lie outside.
 Verdict encloses(const Context& context, const Enclosure& result, Truth& truth, const std::vector<Vector>& points, bool sure,

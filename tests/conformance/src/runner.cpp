@@ -138,6 +138,7 @@ const LawList& law_list() {
     LawList all;
     add_lifetime(all);  // first: afterwards a library may be pinned by what other laws made it do
     add_soundness(all);
+    add_measurements(all);
     add_tightness(all);
     add_algebra(all);
     add_questions(all);

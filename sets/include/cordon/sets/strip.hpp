@@ -8,9 +8,10 @@
 // An intersection that is proven empty is no zonotope: nothing is returned. The gap must exceed the rounding errors of the test
 // and 1e-12 of the sizes involved, for a zonotope carries the rounding errors of the operations that made it.
 // A flat Z stays flat: λ is chosen in the range of G, where the volume of its own dimension counts.
-// A strip that cuts Z on one side only is first narrowed to what Z meets of it. Generators of which ρ sees less than 1e-6 are
-// not used for λ.
-// Rounding: nominal. Errors: Errc::invalid for σ < 0, Errc::dimension, Errc::not_finite.
+// A strip that cuts Z on one side only is first narrowed to what Z meets of it. Directions of which ρ sees less than 1e-6, in the
+// coordinates of Z, are not used for λ: what is left of them may be rounding.
+// Rounding: nominal. The rounding errors of ρᵀx are multiplied by λ, whatever its size; they widen the strip. Errors:
+// Errc::invalid for σ < 0, Errc::dimension, Errc::not_finite.
 #pragma once
 
 #include <optional>
@@ -26,14 +27,15 @@ enum class StripMethod {
   volume    ///< smallest volume of all λ: a convex piecewise linear problem, solved as a linear program [Alamo2005]
 };
 
-/// Outer; exact if Z lies in the strip. The volume methods need the (n-1)-subsets of the generators; beyond 20,000 of them
-/// the sum of squared instead of absolute determinants is minimised: its minimiser over all λ is that of `segment`.
-/// O(n g) for segment, O(n³ C(g, n-1)) for the others.
+/// Outer; exact if Z lies in the strip. The volume methods need the (n-1)-subsets of the generators. Beyond 20,000 of them both
+/// take, among Z and the λ of `bravo`, the smallest sum of squared instead of absolute determinants (over all λ, `segment` would
+/// minimise that). O(n g) for segment, O(n³ C(g, n-1)) for the others, O(n² g) beyond the limit.
 std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double d, double sigma,
                                         StripMethod method = StripMethod::segment);
 
 /// A zonotope around {x ∈ Z : z - C x ∈ T V}, row by row with the strips |C_i x - (z_i - T_i c_V)| ≤ ‖(T G_V)_i‖₁.
-/// T with no columns: C x = z. At most one generator more per row. Outer.
+/// T with no columns: C x = z. Rows may be dependent, and repeat what earlier ones said. At most one generator more per row, and,
+/// where the result is so flat that later operations could take rounding errors for the set, one more per coordinate. Outer.
 std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, MatrixIn T, const Zonotope& V,
                                 StripMethod method = StripMethod::segment);
 

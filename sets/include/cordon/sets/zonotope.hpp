@@ -38,7 +38,8 @@ struct MappedZonotope {
   const Zonotope& set;
 };
 
-/// A Z ⊕ {f} ⊕ Σ Tᵢ Zᵢ; exact, assembled without temporaries. A is m×n, Tᵢ is m×dim Zᵢ. O(m Σ nᵢ gᵢ).
+/// A Z ⊕ {f} ⊕ Σ Tᵢ Zᵢ; exact, assembled without temporaries. A is m×n, Tᵢ is m×dim Zᵢ. With summands, where the sum is so flat
+/// that later operations could take rounding errors for the set, one generator per coordinate covers them. O(m Σ nᵢ gᵢ).
 Zonotope affine_sum(const Zonotope& Z, MatrixIn A, VectorIn f, std::span<const MappedZonotope> summands);
 
 /// X × Y; exact. O(n g).
