@@ -29,6 +29,7 @@
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/interfaces/descriptor_matrix.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
 #include "observers/interval_spread.hpp"
@@ -68,7 +69,7 @@ struct Transformed {
     const Vector units = m.is_descriptor() ? equation_scales(m) : Vector(Vector::Ones(n));
     const linalg::Svd d = linalg::svd(m.is_descriptor() ? Matrix(units.asDiagonal() * m.E) : Matrix(Matrix::Identity(n, n)));
     sigma = d.sigma;
-    const Index rank = d.sigma.size() && d.sigma[0] > 0 ? (d.sigma.array() > rank_tolerance * d.sigma[0]).count() : 0;
+    const Index rank = m.is_descriptor() ? descriptor_rank(m.E) : n;
     Vector scale = Vector::Ones(n);
     for (Index i = 0; i < rank; ++i) scale[i] = 1 / d.sigma[i];
     const Matrix left = scale.asDiagonal() * denoised(d.U).transpose() * units.asDiagonal();

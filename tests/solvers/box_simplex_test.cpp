@@ -77,7 +77,7 @@ class Programs {
 };
 
 ExactProgram::Result exact_maximum(const Program& p) {
-  return ExactProgram{Matrix(p.b.size(), 0), p.A, p.b, Vector(0), p.g}.maximum();
+  return ExactProgram{Matrix(p.b.size(), 0), p.A, rational::exact(p.b), {}, rational::exact(p.g)}.maximum();
 }
 
 /// What rounding in the coefficients may hide: the sum of all terms.

@@ -367,3 +367,14 @@ TEST_CASE("threads share polytopes") {
   second.join();
   CHECK(wrong == 0);
 }
+
+TEST_CASE("the exchange form has no rows that say nothing") {
+  const Polytope flat = Polytope::from_generators(Matrix{{0., 1., 0.}, {0., 0., 1.}, {.5, .5, .5}});
+  const Polytope::Export out = flat.to_line_form();
+  CHECK(out.tightness == Tightness::exact);
+  CHECK(out.form.constraints() == 1);  // x1 + x2 ≤ 1; x3 = .5 is the centre's
+  for (Index i = 0; i < out.form.constraints(); ++i) CHECK_FALSE(out.form.A.row(i).isZero(0));
+  CHECK(Polytope::from(out.form) == flat);
+  const Polytope point = Polytope::from_generators(Matrix{{1.}, {2.}});
+  CHECK(point.to_line_form().form.constraints() == 0);
+}

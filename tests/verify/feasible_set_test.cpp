@@ -86,3 +86,62 @@ TEST_CASE("a draw that leaves no state gives way to one that does") {
   CHECK(second(scalar(.45, .01), 3).is_empty());
   CHECK(second(scalar(0, .01), 1.1).is_empty());
 }
+
+TEST_CASE("a set that gets flatter with every step stays what it is") {
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = Matrix{{.5, .3}, {.3, .2}};
+  m.B = m.Bw = Matrix(2, 0);
+  m.C = Matrix{{0., 0.}};
+  m.D = m.Dv = Matrix(1, 0);
+  model.X0 = make_box({Vector{{-1., -1.}}, Vector{{1., 1.}}});
+  model.W = model.V = make_point(Vector(0));
+  FeasibleSets sets(model, model.X0, std::nullopt);
+  Polytope F = sets.step(sample(0, 0));
+  Matrix power = Matrix::Identity(2, 2);
+  for (Index k = 1; k <= 40; ++k) {
+    F = sets.step(sample(k, 0));
+    power = m.A * power;
+    const Vector reach = power.cwiseAbs().rowwise().sum();
+    for (Index i = 0; i < 2; ++i) CHECK(F.support(Vector::Unit(2, i)).upper == doctest::Approx(reach[i]).epsilon(1e-13));
+    CHECK(F.generators().vertices.cols() == 4);
+  }
+}
+
+TEST_CASE("numbers that have grown too long are refused, not rounded") {
+  Model model = scalar(0, 1);
+  model.linear.A = Matrix{{.1}};
+  model.X0 = make_box({Vector{{-1. / 3}}, Vector{{1. / 3}}});
+  model.linear.Bw = Matrix(1, 0);
+  model.W = make_point(Vector(0));
+  FeasibleSets sets(model, model.X0, std::nullopt);
+  std::size_t bits = 0;
+  for (Index k = 0; k < 50; ++k) {
+    const std::size_t before = bits;
+    bits = sets.step(sample(k, 0)).bits();
+    CHECK(bits > before);
+    CHECK(bits <= most_bits);
+  }
+}
+
+TEST_CASE("an E that is singular up to rounding restricts as one that is singular") {
+  Model model;
+  LinearModel& m = model.linear;
+  m.E = Matrix{{.1, .3}, {.3, .9}};
+  m.A = Matrix::Identity(2, 2);
+  m.B = Matrix(2, 0);
+  m.Bw = Matrix(2, 0);
+  m.C = Matrix{{1., 0.}};
+  m.D = Matrix(1, 0);
+  m.Dv = Matrix::Identity(1, 1);
+  model.X0 = make_box({Vector{{-1., -1.}}, Vector{{1., 1.}}});
+  model.W = make_point(Vector(0));
+  model.V = make_box({Vector{{-5.}}, Vector{{5.}}});
+  FeasibleSets sets(model, model.X0, std::nullopt);
+  Polytope F = sets.step(sample(0, 0));
+  // 3 x1 = x2 is the static row of both times; without noise x1 keeps its value: .1 x1 + .3 x2 = x1 before
+  CHECK(F.support(Vector{{1., 0.}}).upper == doctest::Approx(1. / 3));
+  CHECK(F.support(Vector{{3., -1.}}).upper == doctest::Approx(0).epsilon(1e-12));
+  F = sets.step(sample(1, 0));
+  CHECK(F.support(Vector{{1., 0.}}).upper == doctest::Approx(1. / 3).epsilon(1e-12));
+}

@@ -298,3 +298,40 @@ TEST_CASE("numbers at the ends of the range end in a verdict, not in a crash") {
     }
   }
 }
+
+TEST_CASE("answers and bounds without a certificate are decided by the recorded set") {
+  const auto without_proofs = [](Json& set) {
+    set["proof"] = {{"kind", "none"}};
+    set.erase("hull_proofs");
+  };
+  for (std::size_t p = 0; p < pipelines; ++p) {
+    CAPTURE(p);
+    Outcome outcome = run().with_set(p * steps + 1, without_proofs);
+    CAPTURE(outcome.out);
+    CHECK(outcome.exit == unharmed);
+    outcome = run().with_set(p * steps + 1, [&](Json& set) {
+      without_proofs(set);
+      for (Json& row : set["G"]) {
+        for (Json& entry : row) entry = 1.5 * entry.get<double>();
+      }
+    });
+    CAPTURE(outcome.out);
+    CHECK(outcome.exit == violated);
+  }
+  const Outcome outcome = run().verify([](const fs::path& copy) {
+    Json results = Json::parse(read(copy / "results.json"));
+    results["pipelines"][0]["steps"][1]["consistent"] = "no";
+    write(copy / "results.json", results.dump());
+    std::istringstream lines(read(copy / "sets.jsonl"));
+    std::string all, text;
+    for (std::size_t i = 0; std::getline(lines, text); ++i) {
+      Json set = Json::parse(text);
+      if (i == 1) set["proof"] = {{"kind", "none"}};
+      all += set.dump() + "\n";
+    }
+    write(copy / "sets.jsonl", all);
+  });
+  CAPTURE(outcome.out);
+  CHECK(outcome.exit == violated);
+  CHECK(names(outcome, "without a proof"));
+}

@@ -4,6 +4,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
+#include "cordon/interfaces/descriptor_matrix.hpp"
 
 namespace cordon::designers {
 
@@ -32,6 +33,7 @@ class TubeBuilder {
         X0_(backend.import(model.X0)->line_form()),
         W_(backend.import(model.W)->line_form()),
         V_(backend.import(model.V)->line_form()) {
+    if (m_.is_descriptor()) E_.emplace(m_.E);
     if (span.admissible_set && m_.is_descriptor()) XA_ = backend.import(*span.admissible_set)->line_form();
   }
 
@@ -42,10 +44,12 @@ class TubeBuilder {
     const Index admissible = XA_ ? N : 0;
     const LineForm none{};
     const LineForm& XA = XA_ ? *XA_ : none;
-    const Index lines = X0_.lines() + equations * (W_.lines() + n_) + noises * V_.lines() + admissible * (XA.lines() + n_);
+    const Index inner = E_ && !E_->as_written ? E_->rank : 0;  // z of core z = right x⁺
+    const Index lines = X0_.lines() + equations * (W_.lines() + n_ + inner) + noises * V_.lines() +
+                        admissible * (XA.lines() + determined().rows());
     const Index factors =
         X0_.generators() + equations * W_.generators() + noises * V_.generators() + admissible * XA.generators();
-    const Index rows = X0_.constraints() + equations * (W_.constraints() + n_) + noises * V_.constraints() +
+    const Index rows = X0_.constraints() + equations * (W_.constraints() + n_ + inner) + noises * V_.constraints() +
                        admissible * (XA.constraints() + n_);
     const Index outputs = m_.outputs() * noises;
     tube_ = {Matrix::Zero(outputs, lines), Matrix::Zero(outputs, factors), Matrix::Zero(outputs, inputs), Vector::Zero(outputs),
@@ -90,19 +94,33 @@ class TubeBuilder {
 
   /// E x⁺ - A x - Bw w = B u_k
   void next_state(Index k, const Part& x, const Part& w, const Part& next) {
-    add(row_, m_.is_descriptor() ? mapped(m_.E, next) : next);
+    if (E_ && !E_->as_written) {
+      const Part z = take_free(E_->rank);
+      add(row_, mapped(E_->core, z));
+      add(row_, mapped(-E_->right, next));
+      row_ += E_->rank;
+      add(row_, mapped(E_->left, z));
+    } else {
+      add(row_, E_ ? mapped(E_->left, next) : next);
+    }
     add(row_, mapped(-m_.A, x));
     add(row_, mapped(-m_.Bw, w));
     tube_.Omega.block(row_, k * m_.inputs(), n_, m_.inputs()) = m_.B;
     row_ += n_;
   }
 
+  /// Rows that span the range of Eᵀ.
+  const Matrix& determined() const {
+    static const Matrix none;
+    return !E_ ? none : E_->as_written ? E_->left : E_->right;
+  }
+
   /// x - x_A - Eᵀλ = 0: x and x_A agree in what E does not determine.
   void admit(const Part& x, const LineForm& XA) {
-    const Part a = take(XA), lambda = take_free(n_);
+    const Part a = take(XA), lambda = take_free(determined().rows());
     add(row_, x);
     add(row_, mapped(-Matrix::Identity(n_, n_), a));
-    add(row_, mapped(-m_.E.transpose(), lambda));
+    add(row_, mapped(-determined().transpose(), lambda));
     row_ += n_;
   }
 
@@ -120,6 +138,7 @@ class TubeBuilder {
   Index n_;
   LineForm X0_, W_, V_;
   std::optional<LineForm> XA_;
+  std::optional<DescriptorMatrix> E_;
   OutputTube tube_;
   Index line_ = 0, factor_ = 0, row_ = 0;
 };

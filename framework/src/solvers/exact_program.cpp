@@ -19,16 +19,18 @@ using rational::Rational;
 class Tableau {
  public:
   explicit Tableau(const ExactProgram& p) : lines_(p.S.cols()), factors_(p.A.cols()) {
-    const Index m = p.b.size(), cols = lines_ + factors_ + 1;
-    for (Index i = 0; i <= m; ++i) {
-      Vector row = Vector::Zero(cols);
-      if (i < m) {
-        row << p.S.row(i).transpose(), p.A.row(i).transpose(), p.b[i];
-      } else {
-        row << p.f, p.g, 0.0;
-      }
+    const Index m = static_cast<Index>(p.b.size());
+    for (Index i = 0; i < m; ++i) {
+      Vector coefficients(lines_ + factors_);
+      coefficients << p.S.row(i).transpose(), p.A.row(i).transpose();
+      rational::RationalVector row = rational::exact(coefficients);
+      row.push_back(p.b[index(i)]);
       push_integers(row);
     }
+    rational::RationalVector objective = p.f;
+    objective.insert(objective.end(), p.g.begin(), p.g.end());
+    objective.emplace_back(0);
+    push_integers(objective);
     basic_.assign(rows_.size() - 1, -1);
   }
 
@@ -107,13 +109,12 @@ class Tableau {
   using Row = std::vector<mpz_class>;
   static std::size_t index(Index j) { return static_cast<std::size_t>(j); }
 
-  /// Multiplied by a power of two to integers: doubles have no other denominators. The last row's factor is kept.
-  void push_integers(const Vector& row) {
-    const rational::RationalVector exact = rational::exact(row);
+  /// Multiplied by the common denominator to integers. The last row's factor is kept.
+  void push_integers(const rational::RationalVector& row) {
     mpz_class common = 1;
-    for (const Rational& value : exact) common = lcm(common, value.get_den());
+    for (const Rational& value : row) common = lcm(common, value.get_den());
     Row integers;
-    for (const Rational& value : exact) integers.push_back(value.get_num() * (common / value.get_den()));
+    for (const Rational& value : row) integers.push_back(value.get_num() * (common / value.get_den()));
     rows_.push_back(std::move(integers));
     objective_scale_ = common;
   }
@@ -149,6 +150,12 @@ class Tableau {
   mpz_class scale_ = 1, objective_scale_ = 1;
 };
 
+Vector nearest(const rational::RationalVector& x) {
+  Vector out(static_cast<Index>(x.size()));
+  std::transform(x.begin(), x.end(), out.begin(), [](const Rational& value) { return rational::nearest(value); });
+  return out;
+}
+
 /// Factors by their distance from the bounds at the floating-point optimum, and its values.
 std::vector<Index> proposed_order(const ExactProgram& p, Vector& xi) {
   const Index l = p.S.cols(), g = p.A.cols();
@@ -156,13 +163,14 @@ std::vector<Index> proposed_order(const ExactProgram& p, Vector& xi) {
   std::iota(order.begin(), order.end(), Index{0});
   xi = Vector::Zero(g);
   if (g == 0) return order;
-  Matrix rows(p.b.size(), l + g);
+  Matrix rows(p.S.rows(), l + g);
   rows << p.S, p.A;
-  Vector b = p.b, cost(l + g), upper = Vector::Ones(l + g);
+  Vector b = nearest(p.b), cost(l + g), upper = Vector::Ones(l + g);
   const Vector scales = linalg::row_scales(rows);
   rows = scales.asDiagonal() * rows;
   b = scales.cwiseProduct(b);
-  cost << p.f, p.g;
+  cost << nearest(p.f), nearest(p.g);
+  if (!b.allFinite() || !cost.allFinite()) return order;
   upper.head(l).setConstant(std::numeric_limits<double>::infinity());
   try {
     const LinearProgram::Solution solution = LinearProgram(rows, b, -upper, upper).maximize(cost);

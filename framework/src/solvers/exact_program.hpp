@@ -8,15 +8,16 @@
 
 namespace cordon {
 
-/// max{fᵀδ + gᵀξ : Sδ + Aξ = b, ‖ξ‖∞ ≤ 1} over free δ and boxed ξ, for numbers that are doubles.
+/// max{fᵀδ + gᵀξ : Sδ + Aξ = b, ‖ξ‖∞ ≤ 1} over free δ and boxed ξ. Coefficients are doubles; the right-hand side and the
+/// objective may be any rationals.
 ///
 /// Bounded dual simplex method on one fraction-free tableau (entries are minors, all divisions are exact), so that no answer
 /// rests on a tolerance. Lines are pivoted first; every basis of what remains is then dual feasible by the choice of bounds. The
 /// floating- point solver proposes the first basis; that saves pivots and decides nothing.
 struct ExactProgram {
   Matrix S, A;
-  Vector b;
-  Vector f, g;  ///< zero (of full size) for a mere question of feasibility
+  rational::RationalVector b;
+  rational::RationalVector f, g;  ///< zero (of full size) for a mere question of feasibility
 
   enum class Status { optimal, infeasible, unbounded };
   struct Result {

@@ -6,12 +6,14 @@
 
 #include "cordon/core/error.hpp"
 #include "solvers/exact_program.hpp"
+#include "solvers/rational_questions.hpp"
 
 namespace cordon::exact {
 
 namespace {
 
 using Status = ExactProgram::Status;
+using rational::RationalVector;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check_size(Index columns, Index rows, const char* question) {
@@ -21,7 +23,9 @@ void check_size(Index columns, Index rows, const char* question) {
                                      std::to_string(max_columns) + " with " + std::to_string(max_rows) + " are supported");
 }
 
-ExactProgram feasibility(const LineForm& X) { return {X.S, X.A, X.b, Vector::Zero(X.lines()), Vector::Zero(X.generators())}; }
+RationalVector zeros(Index size) { return RationalVector(static_cast<std::size_t>(size)); }
+
+ExactProgram feasibility(const LineForm& X) { return {X.S, X.A, rational::exact(X.b), zeros(X.lines()), zeros(X.generators())}; }
 
 }  // namespace
 
@@ -31,51 +35,57 @@ Answer is_empty(const LineForm& X) {
   return feasibility(X).maximum().status == Status::infeasible ? Answer::yes : Answer::no;
 }
 
-Answer contains(const LineForm& X, VectorIn x) {
-  check(X, "exact::contains");
+bool contains(const LineForm& X, const RationalVector& x, VectorIn margin, VectorIn slack) {
   const Index n = X.dim(), m = X.constraints(), l = X.lines(), g = X.generators();
-  if (x.size() != n) throw Error(Errc::dimension, "exact::contains: the point has another dimension than the set");
-  if (!x.allFinite()) throw Error(Errc::not_finite, "exact::contains: the point has a NaN or infinite entry");
-  check_size(l + g, m, "exact::contains");
-  // Mδ + Gξ + c·η = x with the constant factor η = 1: the difference x - c would be rounded
-  ExactProgram program;
-  program.S.resize(m + n + 1, l);
-  program.A = Matrix::Zero(m + n + 1, g + 1);
-  program.b.resize(m + n + 1);
-  program.S << X.S, X.M, Matrix::Zero(1, l);
+  const Index wide = (margin.array() != 0).count() + (slack.array() != 0).count();
+  check_size(l + g + wide, m, "exact::contains");
+  ExactProgram program{Matrix(m + n, l), Matrix::Zero(m + n, g + wide), rational::exact(X.b), zeros(l), zeros(g + wide)};
+  program.S << X.S, X.M;
   program.A.topLeftCorner(m, g) = X.A;
   program.A.block(m, 0, n, g) = X.G;
-  program.A.block(m, g, n, 1) = X.c;
-  program.A(m + n, g) = 1;
-  program.b << X.b, x, 1.0;
-  program.f = Vector::Zero(l);
-  program.g = Vector::Zero(g + 1);
-  return program.maximum().status == Status::infeasible ? Answer::no : Answer::yes;
+  Index next = g;
+  for (Index i = 0; i < slack.size(); ++i) {
+    if (slack[i] != 0) program.A(i, next++) = slack[i];
+  }
+  for (Index i = 0; i < n; ++i) {
+    if (margin[i] != 0) program.A(m + i, next++) = margin[i];
+    program.b.push_back(x[static_cast<std::size_t>(i)] - rational::exact(X.c[i]));
+  }
+  return program.maximum().status != Status::infeasible;
 }
 
-rounding::Range support(const LineForm& X, VectorIn d) {
-  check(X, "exact::support");
+Answer contains(const LineForm& X, VectorIn x) {
+  check(X, "exact::contains");
+  if (x.size() != X.dim()) throw Error(Errc::dimension, "exact::contains: the point has another dimension than the set");
+  if (!x.allFinite()) throw Error(Errc::not_finite, "exact::contains: the point has a NaN or infinite entry");
+  return contains(X, rational::exact(x), Vector::Zero(x.size())) ? Answer::yes : Answer::no;
+}
+
+Support support(const LineForm& X, const RationalVector& d) {
   const Index n = X.dim(), m = X.constraints(), l = X.lines(), g = X.generators();
-  if (d.size() != n) throw Error(Errc::dimension, "exact::support: the direction has another dimension than the set");
-  if (!d.allFinite()) throw Error(Errc::not_finite, "exact::support: the direction has a NaN or infinite entry");
   check_size(l + g, m, "exact::support");
   // max dᵀy over free y = Mδ + Gξ: the products Mᵀd and Gᵀd would be rounded
-  ExactProgram program;
-  program.S = Matrix::Zero(m + n, l + n);
-  program.A.resize(m + n, g);
+  ExactProgram program{Matrix::Zero(m + n, l + n), Matrix(m + n, g), rational::exact(X.b), zeros(l), zeros(g)};
   program.S.topLeftCorner(m, l) = X.S;
   program.S.block(m, 0, n, l) = X.M;
   program.S.block(m, l, n, n) = -Matrix::Identity(n, n);
   program.A << X.A, X.G;
-  program.b = Vector::Zero(m + n);
-  program.b.head(m) = X.b;
-  program.f = Vector::Zero(l + n);
-  program.f.tail(n) = d;
-  program.g = Vector::Zero(g);
+  program.b.resize(static_cast<std::size_t>(m + n));
+  program.f.insert(program.f.end(), d.begin(), d.end());
   const ExactProgram::Result result = program.maximum();
-  if (result.status == Status::infeasible) return {-infinity, -infinity};
-  if (result.status == Status::unbounded) return {infinity, infinity};
-  return rational::enclose(result.value + rational::dot(rational::exact(d), rational::exact(X.c)));
+  if (result.status == Status::infeasible) return {Support::Kind::empty, 0};
+  if (result.status == Status::unbounded) return {Support::Kind::unbounded, 0};
+  return {Support::Kind::finite, result.value + rational::dot(d, rational::exact(X.c))};
+}
+
+rounding::Range support(const LineForm& X, VectorIn d) {
+  check(X, "exact::support");
+  if (d.size() != X.dim()) throw Error(Errc::dimension, "exact::support: the direction has another dimension than the set");
+  if (!d.allFinite()) throw Error(Errc::not_finite, "exact::support: the direction has a NaN or infinite entry");
+  const Support reached = support(X, rational::exact(d));
+  if (reached.kind == Support::Kind::empty) return {-infinity, -infinity};
+  if (reached.kind == Support::Kind::unbounded) return {infinity, infinity};
+  return rational::enclose(reached.value);
 }
 
 }  // namespace cordon::exact

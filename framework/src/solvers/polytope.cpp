@@ -190,6 +190,14 @@ bool Polytope::is_bounded() const {
   return std::all_of(rows.begin(), rows.end(), [](const RationalVector& row) { return sgn(row[0]) != 0; });
 }
 
+std::size_t Polytope::bits() const {
+  std::size_t sum = 0;
+  for (const RationalVector& row : representation_->generators().rows) {
+    for (const Rational& x : row) sum += mpz_sizeinbase(x.get_num_mpz_t(), 2) + mpz_sizeinbase(x.get_den_mpz_t(), 2);
+  }
+  return sum;
+}
+
 bool Polytope::contains(VectorIn x) const {
   require(x.size() == dim(), "the point has another dimension than the set");
   require_finite(x, "the point");

@@ -80,6 +80,10 @@ class Rows {
       entries[i] = rounded(entry);
       error += abs(rational::exact(entries[i]) - entry);
     }
+    if (entries.isZero(0)) {  // 0 = 0, up to underflow: nothing is said
+      if (sgn(error) != 0 || sgn(offset) != 0) exact_ = false;
+      return;
+    }
     for (const RationalVector& vertex : generators.rows) slack = std::max(slack, rational::dot(row, vertex));
     if (is_equation) {
       const double b = rounded(-offset);

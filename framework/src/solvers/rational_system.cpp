@@ -54,25 +54,24 @@ Rational distance(const System& s, const RationalVector& g, const RationalVector
   return sum;
 }
 
-/// The rows for the exact simplex method, which takes doubles: plus - minus is written with a factor that a row of its own fixes
-/// to
+/// The rows for the exact simplex method: plus - minus is written with a factor that a row of its own fixes to
 /// 1. `right` in place of the right-hand side: 0, and the right-hand side times a last factor, which the method maximises.
 ExactProgram program_of(const Rows& rows, bool scaled) {
   const Index m = rows.plus.size(), g = rows.A.cols(), l = rows.S.cols();
   const bool shifted = !rows.minus.isZero(0);
   const Index extra_row = shifted ? 1 : 0, constant = g, tau = g + extra_row, cols = tau + (scaled ? 1 : 0);
-  ExactProgram p{Matrix::Zero(m + extra_row, l), Matrix::Zero(m + extra_row, cols), Vector::Zero(m + extra_row), Vector::Zero(l),
-                 Vector::Zero(cols)};
+  ExactProgram p{Matrix::Zero(m + extra_row, l), Matrix::Zero(m + extra_row, cols), RationalVector(at(m + extra_row)),
+                 RationalVector(at(l)), RationalVector(at(cols))};
   p.S.topRows(m) = rows.S;
   p.A.topLeftCorner(m, g) = rows.A;
   if (shifted) p.A.block(0, constant, m, 1) = rows.minus;
   if (scaled) {
     p.A.block(0, tau, m, 1) = -rows.plus;
     if (shifted) p.A(m, constant) = 1, p.A(m, tau) = -1;
-    p.g[tau] = 1;
+    p.g[at(tau)] = 1;
   } else {
-    p.b.head(m) = rows.plus;
-    if (shifted) p.A(m, constant) = 1, p.b[m] = 1;
+    for (Index i = 0; i < m; ++i) p.b[at(i)] = exact(rows.plus[i]);
+    if (shifted) p.A(m, constant) = 1, p.b[at(m)] = 1;
   }
   return p;
 }
@@ -192,13 +191,13 @@ Finding settle(const Rows& rows) {
   // max τ < 1 with the right-hand side scaled by τ: its multipliers y solve [L B]ᵀy = (0, cost of B) for the basis B
   const ExactProgram scaled = program_of(rows, true);
   const ExactProgram::Result gap = scaled.maximum();
-  const Index all = scaled.b.size(), basic = static_cast<Index>(gap.basis.size());
+  const Index all = scaled.A.rows(), basic = static_cast<Index>(gap.basis.size());
   RationalMatrix equations(l + basic, all);
   RationalVector costs(at(l + basic));
   for (Index j = 0; j < l + basic; ++j) {
     const Index column = j < l ? j : gap.basis[at(j - l)];
     for (Index i = 0; i < all; ++i) equations(j, i) = exact(j < l ? scaled.S(i, column) : scaled.A(i, column));
-    if (j >= l) costs[at(j)] = exact(scaled.g[column]);
+    if (j >= l) costs[at(j)] = scaled.g[at(column)];
   }
   auto y = solve(std::move(equations), std::move(costs), Vector::Ones(all));
   if (!y) return {false, Vector::Zero(m)};

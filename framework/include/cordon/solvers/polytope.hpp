@@ -37,6 +37,7 @@ class Polytope {
   Index dim() const;
   bool is_empty() const;
   bool is_bounded() const;
+  std::size_t bits() const;  ///< digits of all numbers of the vertices, rays and lines: the cost of going on with them
   bool contains(VectorIn x) const;
   bool contains(const Polytope& X) const;  ///< X ⊆ *this
   friend bool operator==(const Polytope& X, const Polytope& Y);
@@ -79,8 +80,11 @@ class Polytope {
   };
   Export to_line_form() const;
 
- private:
+  /// The rational numbers themselves, for the framework's own sources (solvers/polytope_representation.hpp).
   struct Representation;
+  const Representation& representation() const { return *representation_; }
+
+ private:
   explicit Polytope(std::shared_ptr<const Representation> representation) : representation_(std::move(representation)) {}
   std::shared_ptr<const Representation> representation_;
 };

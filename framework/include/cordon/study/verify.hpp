@@ -60,8 +60,8 @@ struct VerifyOutcome {
 ///   3. Where the step claims `exact`: X_k ⊆ F_k (in directions: X_k ⊆ those successors, which contain F_k).
 /// Of a model with interval matrices, F_k is computed for matrices drawn from them, anew at every step: a subset of the states
 /// that are consistent, so that whatever lies outside is a violation, but an estimate that holds F_k may still miss others.
-/// Claims of `exact` stay undecided there. Tolerance: 1e-9 of each coordinate's size for nominal rounding, 1e-14 for outward (a
-/// vertex is rounded to doubles). Throws InputError for files that are missing or wrong, with place and reason.
+/// Claims of `exact` stay undecided there. Margins for rounding errors: docs/results_format.md; none for claims of `exact` with
+/// outward rounding. Throws InputError for files that are missing or wrong, with place and reason.
 VerifyOutcome verify_run(const std::filesystem::path& directory, const VerifyOptions& options = {});
 
 }  // namespace cordon

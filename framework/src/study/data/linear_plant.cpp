@@ -3,6 +3,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/interfaces/descriptor_matrix.hpp"
 
 namespace cordon::detail {
 
@@ -43,8 +44,7 @@ void LinearPlant::split_E() {
     if (model_.E.row(i).isZero(0)) units[i] = of_A[i];
   }
   const linalg::Svd svd = linalg::svd(units.asDiagonal() * model_.E);
-  Index r = 0;
-  while (r < svd.sigma.size() && svd.sigma[r] > rank_tolerance * svd.sigma[0]) ++r;
+  const Index r = descriptor_rank(model_.E);
   V_ = svd.V;
   const Matrix rows = svd.U.transpose() * units.asDiagonal();
   dynamic_ = rows.topRows(r);

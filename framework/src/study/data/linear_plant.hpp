@@ -11,7 +11,7 @@ namespace cordon::detail {
 /// E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with E singular of index 1, regular, or the identity. Additive faults n are
 /// further inputs: (u, n) and [B F] take the places of u and B from here on, and the outputs do not show n.
 ///
-/// With E = U Σ Vᵀ (rank r by singular values above 1e-10 σ₁), z = Vᵀx = (z̃, ž) and Uᵀ splits the rows [Rego2025, (13)]:
+/// With E = U Σ Vᵀ (r = descriptor_rank(E)), z = Vᵀx = (z̃, ž) and Uᵀ splits the rows [Rego2025, (13)]:
 ///   z̃⁺ = Σ̃⁻¹ Ũᵀ(A x + B u + Bw w)     (r dynamic rows)
 ///   0  = Ǔᵀ(A x + B u + Bw w)          (n - r static rows; they hold at every k with the w of the same k)
 /// The static rows are solved for ž: Ǔᵀ A V̌ must be regular, else the index is above 1 and the constructor throws InputError.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/interfaces/descriptor_matrix.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/reading/read_sets.hpp"
 
@@ -23,6 +24,7 @@ class SystemReader {
   bool has_cols(const char* key, const std::optional<Matrix>& A, std::optional<Index> cols, const char* like);
   void read_dynamics(bool descriptor);
   void read_descriptor_matrix();
+  void warn_of_rank(const Matrix& E);
   void read_outputs();
   void read_faults();
   void read_sets(std::optional<Index> disturbances, std::optional<Index> noises);
@@ -113,7 +115,21 @@ void SystemReader::read_descriptor_matrix() {
     system_.find("E")->error("is " + shape(E->rows(), E->cols()) + ", must be square");
   } else if (has_rows("E", E, part_.sizes.states, "A")) {
     part_.model.linear.E = *E;
+    warn_of_rank(*E);
   }
+}
+
+/// Tells of an E whose rank depends on how its numbers are read.
+void SystemReader::warn_of_rank(const Matrix& E) {
+  const Index used = descriptor_rank(E);
+  if (used == E.rows()) return;
+  const Index doubles = rank_of_doubles(E), decimals = rank_of_decimals(E);
+  if (doubles == used && decimals == used) return;
+  const Cursor at = *system_.find("E");
+  warnings_.push_back(at.pointer() + " (line " + std::to_string(at.value().line) + "): has rank " + std::to_string(decimals) +
+                      " as it is written in decimals, " + std::to_string(doubles) + " as doubles, and " + std::to_string(used) +
+                      " up to rounding errors; rank " + std::to_string(used) +
+                      " is used throughout: a singular value below 1e-10 of the largest counts as zero");
 }
 
 void SystemReader::read_outputs() {

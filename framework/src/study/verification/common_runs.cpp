@@ -31,13 +31,14 @@ struct Shared {
 void add_run(Equations& rows, const Model& model, const Shared& shared, const std::optional<LineForm>& admissible_set) {
   const LinearModel& m = model.linear;
   const Index n = m.states(), last = static_cast<Index>(shared.u.size()) - 1;
-  const Matrix E = m.is_descriptor() ? m.E : identity(n);
+  const DescriptorMatrix E(m.is_descriptor() ? m.E : identity(n));
+  const Matrix& determined = E.as_written ? E.left : E.right;  // its rows span the range of Eᵀ
   Equations::Line x = rows.element(model.X0);
   for (Index k = 0; k <= last; ++k) {
     const auto at = static_cast<std::size_t>(k);
     if (k > 0 && m.is_descriptor() && admissible_set) {
-      const Equations::Line a = rows.element(*admissible_set), lambda = rows.line(n);
-      rows.add(n, {{x, identity(n)}, {a, -identity(n)}, {lambda, -E.transpose()}});
+      const Equations::Line a = rows.element(*admissible_set), lambda = rows.line(determined.rows());
+      rows.add(n, {{x, identity(n)}, {a, -identity(n)}, {lambda, -determined.transpose()}});
     }
     if (shared.y[at].size > 0) {
       const Equations::Line v = rows.element(model.V);
@@ -45,7 +46,7 @@ void add_run(Equations& rows, const Model& model, const Shared& shared, const st
     }
     if (k == last && !m.is_descriptor()) break;
     const Equations::Line w = rows.element(model.W), next = rows.line(n);
-    rows.add(n, {{next, E}, {x, -m.A}, {shared.u[at], -m.B}, {w, -m.Bw}});
+    rows.add(n, {rows.product(E, next), {x, -m.A}, {shared.u[at], -m.B}, {w, -m.Bw}});
     x = next;
   }
 }

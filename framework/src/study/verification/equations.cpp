@@ -34,6 +34,13 @@ void Equations::add(Index rows, const std::vector<Term>& terms) {
   for (const Term& term : terms) put(row, term.variable, term.coefficient);
 }
 
+Equations::Term Equations::product(const DescriptorMatrix& E, const Line& x) {
+  if (E.as_written) return {x, E.left};
+  const Line z = line(E.rank);
+  add(E.rank, {{z, E.core}, {x, -E.right}});
+  return {z, E.left};
+}
+
 LineForm Equations::project(const Line& x) const {
   LineForm X{Matrix::Zero(x.size, lines_), Matrix::Zero(x.size, factors_), Vector::Zero(x.size),
              Matrix::Zero(rows_, lines_),  Matrix::Zero(rows_, factors_),  b_};

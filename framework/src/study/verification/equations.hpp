@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cordon/core/line_form.hpp"
+#include "cordon/interfaces/descriptor_matrix.hpp"
 
 namespace cordon::verification {
 
@@ -28,6 +29,8 @@ class Equations {
   };
   /// Σ coefficient · variable = 0.
   void add(Index rows, const std::vector<Term>& terms);
+  /// E x, with lines and rows of its own where E is not used as it is written.
+  Term product(const DescriptorMatrix& E, const Line& x);
 
   /// The set of all values of `x`; of a line of size 0: the rows alone.
   LineForm project(const Line& x) const;

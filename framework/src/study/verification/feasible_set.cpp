@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/verification/feasible_set.hpp"
 
+#include <string>
+
+#include "cordon/core/error.hpp"
 #include "study/data/random.hpp"
 #include "study/verification/equations.hpp"
 
@@ -8,7 +11,6 @@ namespace cordon::verification {
 
 namespace {
 
-constexpr int steps_between_rounding = 8;
 constexpr int most_draws = 6;
 constexpr double almost_all = 0.999;  // of a radius: no rounding leads out of the interval
 
@@ -19,20 +21,11 @@ Polytope image(MatrixIn T, VectorIn x) { return Polytope::from_generators(x).aff
 
 Matrix identity(Index n) { return Matrix::Identity(n, n); }
 
-/// An enclosing polytope with doubles as coefficients, larger by some units in the last place: exact numbers grow with every
-/// step, and all work with them. Unbounded and flat sets stay as they are.
-Polytope with_short_numbers(const Polytope& X) {
-  if (!X.is_bounded() || X.is_empty()) return X;
-  Polytope::Inequalities faces = X.inequalities();
-  if (faces.Q.rows() > 0) return X;
-  for (Index i = 0; i < faces.h.size(); ++i) faces.h[i] = X.support(faces.H.row(i)).upper;
-  return Polytope::from_inequalities(faces.H, faces.h);
-}
-
 }  // namespace
 
 FeasibleSets::FeasibleSets(const Model& model, const LineForm& initial_set, const std::optional<LineForm>& admissible_set)
     : model_(model.linear),
+      E_(model.linear.is_descriptor() ? model.linear.E : identity(model.linear.states())),
       initial_(Polytope::from(initial_set)),
       admissible_(admissible_set ? std::optional(Polytope::from(*admissible_set)) : std::nullopt),
       disturbance_(Polytope::from(model.W).affine_map(model.linear.Bw, zero(model.linear.states()))),
@@ -46,14 +39,17 @@ Polytope FeasibleSets::measured(const LinearModel& m, const Polytope& X, const S
   return X.intersection(m.C, target);
 }
 
+/// {x : E x ∈ A P_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W}.
+Polytope FeasibleSets::next(const LinearModel& m) const {
+  const Polytope f = P_->affine_map(m.A, zero(m.states())).minkowski_sum(image(m.B, before_->u)).minkowski_sum(disturbance_);
+  if (!m.is_descriptor()) return f;
+  if (E_.as_written) return f.preimage(E_.left, zero(m.states()));
+  return f.preimage(E_.left, zero(m.states())).affine_map(E_.core, zero(E_.rank)).preimage(E_.right, zero(E_.rank));
+}
+
 /// P_k with the matrices of `m`.
 Polytope FeasibleSets::reached(const LinearModel& m, const Sample& now) const {
-  const Index n = m.states();
-  Polytope P = initial_;
-  if (P_) {
-    const Polytope next = P_->affine_map(m.A, zero(n)).minkowski_sum(image(m.B, before_->u)).minkowski_sum(disturbance_);
-    P = m.is_descriptor() ? next.preimage(m.E, zero(n)) : next;
-  }
+  Polytope P = P_ ? next(m) : initial_;
   if (admissible_) P = P.intersection(*admissible_);
   return measured(m, P, now);
 }
@@ -64,11 +60,14 @@ Polytope FeasibleSets::step(const Sample& now) {
   for (int draw = 1; model_.is_uncertain() && draw < most_draws && P.is_empty(); ++draw) {
     P = reached(drawn(model_, now.k, draw), now);
   }
+  if (P.bits() > most_bits) {
+    throw Error(Errc::unsupported, "the numbers of the exact set have " + std::to_string(P.bits()) + " binary digits; at most " +
+                                       std::to_string(most_bits) + " are supported");
+  }
   P_ = std::move(P);
-  if (++steps_ % steps_between_rounding == 0) P_ = with_short_numbers(*P_);
   before_ = now;
   if (!model_.is_descriptor()) return *P_;
-  const Polytope range = Polytope::from_generators(zero(n), Matrix(n, 0), model_.E);
+  const Polytope range = Polytope::from_generators(zero(n), Matrix(n, 0), E_.left);
   const Polytope target = minus_disturbance_.minkowski_sum(image(-model_.B, now.u)).minkowski_sum(range);
   return P_->intersection(model_.A, target);
 }
@@ -89,7 +88,7 @@ LineForm successors(const Model& model, const LineForm& X, const std::optional<L
                     const Transition& transition) {
   const LinearModel& m = model.linear;
   const Index n = m.states(), p = m.outputs();
-  const Matrix E = m.is_descriptor() ? m.E : identity(n);
+  const DescriptorMatrix E(m.is_descriptor() ? m.E : identity(n));
   Equations rows;
   const auto measured = [&](const Equations::Line& x, const Sample& sample) {
     const Equations::Line u = rows.constant(sample.u), y = rows.constant(sample.y), v = rows.element(model.V);
@@ -98,7 +97,7 @@ LineForm successors(const Model& model, const LineForm& X, const std::optional<L
   };
   const auto follows = [&](const Equations::Line& next, const Equations::Line& x, const Equations::Line& u) {
     const Equations::Line w = rows.element(model.W);
-    rows.add(n, {{next, E}, {x, -m.A}, {u, -m.B}, {w, -m.Bw}});
+    rows.add(n, {rows.product(E, next), {x, -m.A}, {u, -m.B}, {w, -m.Bw}});
   };
   Equations::Line x = rows.element(X);
   if (transition.before) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "cordon/interfaces/descriptor_matrix.hpp"
 #include "cordon/interfaces/model.hpp"
 #include "cordon/solvers/polytope.hpp"
 
@@ -14,10 +15,12 @@ namespace cordon::verification {
 /// Rⁿ:
 ///   P_0 = X_0 ∩ X_A ∩ Y_0,   P_k = {x : E x ∈ A P_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W} ∩ X_A ∩ Y_k,
 ///   F_k = {x ∈ P_k : A x + B u_k ∈ E Rⁿ ⊕ (-Bw W)},   Y_k = {x : y_k - D u_k - C x ∈ Dv V}.
-/// Where A, B and C are interval matrices, those of every step are drawn from them: F_k then holds some of the consistent states,
-/// and is of use as long as it is not empty. Of several draws the first that leaves a state is taken. Every few steps the numbers
-/// are rounded outward to doubles, a few units in the last place: otherwise they grow without bound. Throws Errc::unsupported
-/// where polyhedra grow too large.
+/// E is that of DescriptorMatrix. Nothing is rounded from the numbers of model and data on, so that F_k is the set itself, flat
+/// or not: no enclosure of it would do, since what lies in an enclosure only refutes nothing. Numbers grow by some digits with
+/// every step that forgets nothing. Where A, B and C are interval matrices, those of every step are drawn from them: F_k then
+/// holds some of the consistent states, and is of use as long as it is not empty. Of several draws the first that leaves a state
+/// is taken. Throws Errc::unsupported where polyhedra grow too large, in their numbers of vertices or in their digits
+/// (`most_bits`).
 class FeasibleSets {
  public:
   FeasibleSets(const Model& model, const LineForm& initial_set, const std::optional<LineForm>& admissible_set);
@@ -29,13 +32,17 @@ class FeasibleSets {
   Polytope reached(const LinearModel& m, const Sample& now) const;
   Polytope measured(const LinearModel& m, const Polytope& X, const Sample& now) const;
 
+  Polytope next(const LinearModel& m) const;
+
   const LinearModel& model_;
+  DescriptorMatrix E_;
   Polytope initial_;
   std::optional<Polytope> admissible_, P_;
   Polytope disturbance_, minus_disturbance_, minus_noise_;  ///< Bw W, -Bw W, -Dv V
   std::optional<Sample> before_;
-  int steps_ = 0;
 };
+
+inline constexpr std::size_t most_bits = std::size_t{1} << 22;  ///< of all numbers of one F_k
 
 /// The model with A, B and C drawn from their intervals, by k and the number of the draw: close to vertices, or in the middle for
 /// draw 1. Of exact and of descriptor models, the model itself.

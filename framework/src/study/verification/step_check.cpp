@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/verification/step_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -13,14 +14,23 @@
 #include "cordon/solvers/certificate.hpp"
 #include "cordon/solvers/exact_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "solvers/polytope_representation.hpp"
+#include "solvers/rational_questions.hpp"
 
 namespace cordon::verification {
 
 namespace {
 
+using rational::Rational;
+using rational::RationalVector;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Of a coordinate's size: rounding errors that nominal operations add up to, and those of a vertex written as doubles.
-constexpr double nominal_tolerance = 1e-9, outward_tolerance = 1e-14;
+/// Of a coordinate's size: what nominal operations add up to at least, and the rounding of a box to centre and radius.
+constexpr double nominal_tolerance = 1e-9, box_tolerance = 1e-14;
+constexpr double row_tolerance = 1e-13;        ///< of a nominal constraint's terms
+constexpr double direction_tolerance = 1e-12;  ///< of bounds that floating-point proofs attain
+constexpr double almost_all = 0.999;           ///< of a margin: what is left covers the rounding of a vertex or a facet
+
+std::size_t index(Index i) { return static_cast<std::size_t>(i); }
 
 std::string text(VectorIn x) {
   std::string out = "(";
@@ -30,16 +40,21 @@ std::string text(VectorIn x) {
 
 }  // namespace
 
-StepCheck::StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding)
-    : step_(step),
-      row_(row),
-      size_(Vector::Ones(step.hull.dim())),
-      tolerance_(rounding == Rounding::nominal ? nominal_tolerance : outward_tolerance) {
+StepCheck::StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding, const Vector& margin)
+    : step_(step), row_(row), size_(row.set.c.cwiseAbs() + row.set.G.cwiseAbs().rowwise().sum()) {
   for (Index i = 0; i < size_.size(); ++i) {
     const double reach = std::max(std::abs(step.hull.lower[i]), std::abs(step.hull.upper[i]));
-    if (std::isfinite(reach) && reach > 0) size_[i] = reach;
+    if (std::isfinite(reach) && !reported_empty()) size_[i] = reach;
+    if (!std::isfinite(size_[i])) size_[i] = 0;
   }
-  widened_ = minkowski_sum(row.set, make_box({-tolerance_ * size_, tolerance_ * size_}));
+  margin_ = margin;
+  claim_margin_ = Vector::Zero(size_.size());
+  row_margin_ = Vector::Zero(row.set.constraints());
+  if (rounding == Rounding::nominal) {
+    margin_ = claim_margin_ = margin.cwiseMax(nominal_tolerance * size_);
+    row_margin_ = row_tolerance * (row.set.b.cwiseAbs() + row.set.A.cwiseAbs().rowwise().sum());
+  }
+  widened_ = minkowski_sum(row.set, make_box({-almost_all * margin_, almost_all * margin_}));
 }
 
 void StepCheck::violated(std::string what, bool in_sets_file) {
@@ -62,10 +77,7 @@ void StepCheck::proofs() {
 
 void StepCheck::emptiness_proof() {
   if (step_.consistent == Answer::unknown) return;
-  if (row_.proof.kind == Certificate::Kind::none) {
-    open(fmt::format("\"consistent\" is \"{}\", but no proof was stored", to_string(step_.consistent)));
-    return;
-  }
+  if (row_.proof.kind == Certificate::Kind::none) return emptiness_without_proof();
   if (step_.consistent == Answer::no) {
     if (!proves_empty(row_.set, row_.proof)) {
       return violated("the estimate is called empty, but the stored proof does not hold in rational arithmetic", true);
@@ -76,12 +88,36 @@ void StepCheck::emptiness_proof() {
   ++proofs_;
 }
 
+/// A backend may answer exactly and give no certificate: the recorded set decides, unless it is larger than the one in question.
+void StepCheck::emptiness_without_proof() {
+  const bool called_empty = reported_empty();
+  try {
+    LineForm rows = row_.set;  // of dimension 0: its constraints alone
+    rows.M.resize(0, rows.lines());
+    rows.G.resize(0, rows.generators());
+    rows.c.resize(0);
+    const bool empty = called_empty ? exact::is_empty(rows) == Answer::yes : !exact::contains(rows, {}, Vector(), row_margin_);
+    if (empty == called_empty && (empty || row_.exact_exchange)) {
+      ++proofs_;
+      return;
+    }
+    if (empty != called_empty && row_.exact_exchange) {
+      return violated(fmt::format("the estimate is called {}, without a proof, and the recorded set is not",
+                                  called_empty ? "empty" : "non-empty"),
+                      true);
+    }
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported) throw;
+  }
+  open(fmt::format("\"consistent\" is \"{}\", but no proof was stored", to_string(step_.consistent)));
+}
+
 void StepCheck::bound_proof(Index i, bool upper) {
   const double bound = upper ? step_.hull.upper[i] : -step_.hull.lower[i];
   if (bound == infinity) return;
   const Vector d = Vector::Unit(size_.size(), i) * (upper ? 1.0 : -1.0);
   // Boxes are exported with centre and radius rounded; lines are eliminated nominally.
-  const double slack = (row_.set.lines() > 0 ? tolerance_ : outward_tolerance) * size_[i];
+  const double slack = std::max(box_tolerance * size_[i], row_.set.lines() > 0 ? margin_[i] : 0.0);
   const std::size_t place = static_cast<std::size_t>(2 * i + (upper ? 0 : 1));
   const Certificate none, &why = place < row_.hull_proofs.size() ? row_.hull_proofs[place] : none;
   if (why.kind != Certificate::Kind::none && proves_support(row_.set, d, bound + slack, why)) {
@@ -95,7 +131,18 @@ void StepCheck::bound_proof(Index i, bool upper) {
     return violated(fmt::format("{} lies inside the reported set, which reaches {:.17g}", name, upper ? reached : -reached),
                     false);
   }
-  if (why.kind == Certificate::Kind::none) return open(name + " has no proof");
+  if (why.kind == Certificate::Kind::none) {
+    try {
+      if (exact::support(row_.set, d).upper <= bound + slack) {
+        ++proofs_;
+        return;
+      }
+      return violated(name + " has no proof, and lies inside the recorded set", false);
+    } catch (const Error& error) {
+      if (error.code() != Errc::unsupported) throw;
+    }
+    return open(name + " has no proof");
+  }
   violated(name + " is not what its stored proof proves in rational arithmetic", false);
 }
 
@@ -103,7 +150,7 @@ void StepCheck::bound_proof(Index i, bool upper) {
 /// succeeds with bounded rounding errors: a step of a quarter of the tolerance towards the centre makes room.
 bool StepCheck::holds_nearby(const Vector& x) {
   const LineForm& X = row_.set;
-  if (X.lines() > 0) return false;
+  if (X.lines() > 0 || (margin_.array() == 0).any()) return false;
   if (!center_) center_ = BoxedProgram(X.A, X.b).central_point();
   if (!*center_) return false;
   Matrix rows(X.constraints() + X.dim(), X.generators());
@@ -112,35 +159,43 @@ bool StepCheck::holds_nearby(const Vector& x) {
   right << X.b, x - X.c;
   const auto found = BoxedProgram(rows, right).central_point(1e-6);
   if (!found) return false;
-  const double step = tolerance_ / 4;
+  const double step = std::min(1.0, (margin_.array() / size_.cwiseMax(margin_).array()).minCoeff()) / 4;
   const Vector xi = (1 - step) * found->cwiseMax(-1.0).cwiseMin(1.0) + step * **center_;
   const auto radius = repair_radius(X.A, X.b, xi);
   if (!radius || ((xi.cwiseAbs() + *radius).array() > 1 - rounding::unit * 4).any()) return false;
   const Vector error = rounding::product_error(X.G, xi) + linalg::product(X.G.cwiseAbs(), *radius);
   const Vector off = (x - X.c - linalg::product(X.G, xi)).cwiseAbs();
   const Vector last = 8 * rounding::unit * (x.cwiseAbs() + X.c.cwiseAbs());
-  return ((off + error + last).array() <= tolerance_ * size_.array()).all();
+  return ((off + error + last).array() <= almost_all * margin_.array()).all();
 }
 
-void StepCheck::contains_vertex(const Vector& x) {
+void StepCheck::contains_vertex(const RationalVector& exact) {
+  Vector x(size_.size());
+  for (Index i = 0; i < x.size(); ++i) x[i] = rational::nearest(exact[index(i)]);
   if (reported_empty()) {
     return violated(fmt::format("the estimate is called empty, but the state {} is consistent with model and data", text(x)),
                     true);
   }
   for (Index i = 0; i < x.size(); ++i) {
-    const double slack = tolerance_ * size_[i];
-    if (x[i] <= step_.hull.upper[i] + slack && x[i] >= step_.hull.lower[i] - slack) continue;
+    const double lower = step_.hull.lower[i], upper = step_.hull.upper[i];
+    const Rational slack = rational::exact(margin_[i]);
+    if ((upper == infinity || exact[index(i)] <= rational::exact(upper) + slack) &&
+        (lower == -infinity || exact[index(i)] >= rational::exact(lower) - slack)) {
+      continue;
+    }
     return violated(
         fmt::format("the state {} is consistent with model and data, but lies outside the hull in coordinate {}: {:.17g} is not "
                     "in [{:.17g}, {:.17g}]",
-                    text(x), i + 1, x[i], step_.hull.lower[i], step_.hull.upper[i]),
+                    text(x), i + 1, x[i], lower, upper),
         false);
   }
-  if (holds_nearby(x)) return;
-  const Answer inside = contains(widened_, x);
-  if (inside == Answer::no) {
+  const bool has_room = (margin_.array() > 0).all();
+  if (has_room && (holds_nearby(x) || contains(widened_, x) == Answer::yes)) return;
+  try {
+    if (exact::contains(row_.set, exact, margin_, row_margin_)) return;
     violated(fmt::format("the state {} is consistent with model and data, but lies outside the reported set", text(x)), true);
-  } else if (inside == Answer::unknown) {
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported) throw;
     open(fmt::format("whether the reported set contains the vertex {} of the exact one", text(x)));
   }
 }
@@ -154,37 +209,60 @@ void StepCheck::contains_direction(const Vector& d, bool line) {
 }
 
 /// X_k keeps to the inequality normalᵀx ≤ h of F.
-void StepCheck::within(const Vector& normal, double h, const Polytope& F) {
-  const double slack = tolerance_ * normal.cwiseAbs().dot(size_);
-  if (support(row_.set, normal) <= h + slack) return;
-  const double reached = attained(row_.set, normal);
-  // an outer export may reach beyond the set that the claim is about
-  if (row_.exact_exchange && reached > F.support(normal).upper + slack) {
-    violated(
-        fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where no consistent state lies beyond {:.17g}",
-                    reached, text(normal), h),
-        true);
-  } else {
-    open(fmt::format("whether the estimate keeps to the exact set along {}", text(normal)));
+void StepCheck::within(const RationalVector& normal, const Rational& h) {
+  Rational slack = 0;
+  Vector d(size_.size());
+  for (Index i = 0; i < d.size(); ++i) {
+    d[i] = rational::nearest(normal[index(i)]);
+    slack += abs(normal[index(i)]) * rational::exact(claim_margin_[i]);
   }
+  const double limit = rational::nearest(h), room = rational::nearest(slack);
+  if (room > 0 && support(row_.set, d) <= limit + almost_all * room) return;
+  try {
+    const exact::Support reached = exact::support(row_.set, normal);
+    using Kind = exact::Support::Kind;
+    if (reached.kind == Kind::empty || (reached.kind == Kind::finite && reached.value <= h + slack)) return;
+    if (row_.exact_exchange) {  // an outer export may reach beyond the set that the claim is about
+      const double value = reached.kind == Kind::finite ? rational::nearest(reached.value) : infinity;
+      return violated(
+          fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where no consistent state lies beyond {:.17g}",
+                      value, text(d), limit),
+          true);
+    }
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported) throw;
+  }
+  open(fmt::format("whether the estimate keeps to the exact set along {}", text(d)));
 }
 
 void StepCheck::against(const Polytope& F) {
+  const Description& generators = F.representation().generators();
+  for (std::size_t j = 0; j < generators.rows.size() && !violation_; ++j) {
+    const RationalVector& row = generators.rows[j];
+    if (sgn(row[0]) != 0) contains_vertex({row.begin() + 1, row.end()});
+  }
   const Polytope::Generators g = F.generators();
-  for (Index j = 0; j < g.vertices.cols() && !violation_; ++j) contains_vertex(g.vertices.col(j));
   for (Index j = 0; j < g.rays.cols() && !violation_; ++j) contains_direction(g.rays.col(j), false);
   for (Index j = 0; j < g.lines.cols() && !violation_; ++j) contains_direction(g.lines.col(j), true);
   if (violation_ || step_.tightness != Tightness::exact || reported_empty()) return;
   const std::int64_t before = undecided_;
   if (F.is_empty()) {
-    open("the estimate is claimed exact and is not called empty, but no state is consistent with model and data");
-  } else {
-    const Polytope::Inequalities faces = F.inequalities();
-    for (Index i = 0; i < faces.h.size() && !violation_; ++i) within(faces.H.row(i), faces.h[i], F);
-    for (Index i = 0; i < faces.q.size() && !violation_; ++i) {
-      within(faces.Q.row(i), faces.q[i], F);
-      within(-faces.Q.row(i), -faces.q[i], F);
-    }
+    // data are rounded: with nominal operations as well, there is nothing to compare with
+    if (claim_margin_.isZero(0))
+      open("the estimate is claimed exact and is not called empty, but no state is consistent with model and data");
+    return;
+  }
+  const Description& faces = F.representation().inequalities();
+  for (std::size_t i = 0; i < faces.rows.size() && !violation_; ++i) {
+    // β + aᵀx ≥ 0, divided by the largest entry of a
+    RationalVector row = faces.rows[i];
+    const Rational largest =
+        abs(*std::max_element(row.begin() + 1, row.end(), [](const Rational& a, const Rational& b) { return abs(a) < abs(b); }));
+    for (Rational& entry : row) entry /= largest;
+    RationalVector normal(row.begin() + 1, row.end());
+    if (faces.linear[i]) within(normal, -row[0]);
+    for (Rational& entry : normal) entry = -entry;
+    if (!violation_) within(normal, row[0]);
   }
   exact_holds_ = !violation_ && undecided_ == before;
 }
@@ -193,7 +271,7 @@ void StepCheck::against(const LineForm& successors, const Matrix& directions) {
   const bool claims = step_.tightness == Tightness::exact && !reported_empty() && row_.exact_exchange;
   for (Index j = 0; j < directions.cols() && !violation_; ++j) {
     const Vector d = directions.col(j);
-    const double slack = tolerance_ * d.cwiseAbs().dot(size_);
+    const double slack = (margin_ + direction_tolerance * size_).dot(d.cwiseAbs()) + rounding::tiny;
     Certificate why;
     const double needed = support(successors, d, &why);
     const bool coordinate = (d.array() != 0).count() == 1;
@@ -202,7 +280,7 @@ void StepCheck::against(const LineForm& successors, const Matrix& directions) {
     const double hull = !coordinate ? infinity : d[i] > 0 ? d[i] * step_.hull.upper[i] : d[i] * step_.hull.lower[i];
     const double set = reported_empty() ? -infinity : support(row_.set, d),
                  reached = reported_empty() ? -infinity : attained(row_.set, d);
-    if (claims && reached > needed + slack) {
+    if (claims && needed != -infinity && reached > needed + slack) {
       violated(
           fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where no successor of the set before that is "
                       "consistent with the data lies beyond {:.17g}",

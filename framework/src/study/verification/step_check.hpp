@@ -7,6 +7,7 @@
 
 #include "cordon/solvers/polytope.hpp"
 #include "cordon/study/verify.hpp"
+#include "solvers/rational.hpp"
 #include "study/verification/recorded_run.hpp"
 
 namespace cordon::verification {
@@ -14,7 +15,8 @@ namespace cordon::verification {
 /// A step with its set, and what its checks found.
 class StepCheck {
  public:
-  StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding);
+  /// `margin`: what rounding errors may amount to, per coordinate (RoundingMargin).
+  StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding, const Vector& margin);
 
   void proofs();
   /// F ⊆ X_k and F ⊆ hull, by the vertices of F; where `exact` is claimed, X_k ⊆ F by its inequalities.
@@ -39,18 +41,21 @@ class StepCheck {
   void violated(std::string what, bool in_sets_file);
   void open(std::string what);
   void emptiness_proof();
+  void emptiness_without_proof();
   void bound_proof(Index i, bool upper);
-  void contains_vertex(const Vector& x);
+  void contains_vertex(const rational::RationalVector& exact);
   bool holds_nearby(const Vector& x);
   void contains_direction(const Vector& d, bool line);
-  void within(const Vector& normal, double h, const Polytope& F);
+  void within(const rational::RationalVector& normal, const rational::Rational& h);
   bool reported_empty() const { return step_.consistent == Answer::no; }
 
   const RecordedStep& step_;
   const RecordedSet& row_;
   Vector size_;                                  ///< of each coordinate
-  double tolerance_;                             ///< relative to it
-  LineForm widened_;                             ///< X_k ⊕ the tolerance
+  Vector margin_;                                ///< within which F_k has to lie in X_k and in the hull
+  Vector claim_margin_;                          ///< within which X_k has to lie in F_k, if it is claimed exact
+  Vector row_margin_;                            ///< within which constraints of X_k have to hold
+  LineForm widened_;                             ///< X_k ⊕ margin_
   std::optional<std::optional<Vector>> center_;  ///< factors of a point well inside X_k, once asked for
   std::optional<Finding> violation_;
   std::int64_t proofs_ = 0, undecided_ = 0;

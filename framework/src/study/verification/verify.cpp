@@ -11,6 +11,7 @@
 #include "study/verification/design_check.hpp"
 #include "study/verification/feasible_set.hpp"
 #include "study/verification/recorded_run.hpp"
+#include "study/verification/rounding_margin.hpp"
 #include "study/verification/step_check.hpp"
 
 namespace cordon {
@@ -21,7 +22,7 @@ using namespace verification;
 using Clock = std::chrono::steady_clock;
 
 constexpr Index most_states_of_polytopes = 4;
-constexpr std::size_t most_kept_polytopes = 5000;
+constexpr std::size_t most_kept_polytopes = 5000, most_kept_bits = std::size_t{1} << 31;
 
 bool same(const Matrix& A, const Matrix& B) { return A.rows() == B.rows() && A.cols() == B.cols() && A == B; }
 bool same(const LineForm& X, const LineForm& Y) {
@@ -69,17 +70,22 @@ class FeasibleSequence {
         sets_.reset();
       }
     }
-    if (kept_.size() < most_kept_polytopes) kept_.push_back(F);
+    bits_ += F ? F->bits() : 0;
+    keeps_ = keeps_ && kept_.size() < most_kept_polytopes && bits_ <= most_kept_bits;
+    if (keeps_) kept_.push_back(F);
     return F;
   }
 
-  bool complete(std::size_t steps) const { return steps <= kept_.size() || steps <= most_kept_polytopes; }
+  /// Can the sequence be gone through once more?
+  bool complete(std::size_t steps) const { return keeps_ || steps <= kept_.size(); }
 
  private:
   const RecordedPipeline& pipeline_;
   bool uncertain_;
   std::optional<FeasibleSets> sets_;
   std::vector<std::optional<Polytope>> kept_;
+  std::size_t bits_ = 0;
+  bool keeps_ = true;
 };
 
 /// ±e_i and random directions, as columns.
@@ -170,6 +176,7 @@ class Verification {
     const std::unique_ptr<DataSource> data = open_data(study);
     std::optional<Sample> sample, before;
     std::optional<RecordedSet> row, row_before;
+    RoundingMargin rounding(run_.model, pipeline.initial_set, pipeline.rounding);
     std::size_t read = 0;
     Clock::time_point told = Clock::now();
     for (std::size_t i = 0; i < pipeline.steps.size(); ++i) {
@@ -188,9 +195,11 @@ class Verification {
       }
       row_before = std::move(row);
       row = set_of(pipeline, step);
-      if (static_cast<std::int64_t>(i) % options_.every != 0) continue;
       const bool follows = row_before && before && row_before->k + 1 == step.k && before->k + 1 == step.k;
-      check_step(p, i, *row, F, follows ? &*row_before : nullptr, {follows ? &*before : nullptr, *sample});
+      const Transition transition{follows ? &*before : nullptr, *sample};
+      const Vector margin = rounding.next(row->set, transition.before, *sample);
+      if (static_cast<std::int64_t>(i) % options_.every != 0) continue;
+      check_step(p, i, *row, margin, F, follows ? &*row_before : nullptr, transition);
       if (outcome_.violation) return;
       if (options_.progress && Clock::now() - told > std::chrono::milliseconds(50)) {
         options_.progress(names_, p, static_cast<std::int64_t>(i), static_cast<std::int64_t>(pipeline.steps.size()));
@@ -201,13 +210,13 @@ class Verification {
     if (options_.progress) options_.progress(names_, p, total, total);
   }
 
-  void check_step(std::size_t p, std::size_t i, const RecordedSet& row, const std::optional<Polytope>& F,
+  void check_step(std::size_t p, std::size_t i, const RecordedSet& row, const Vector& margin, const std::optional<Polytope>& F,
                   const RecordedSet* row_before, const Transition& transition) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
     VerifiedPipeline& found = outcome_.pipelines.back();
     const bool uncertain = run_.model.linear.is_uncertain();
     const RecordedStep step = uncertain ? without_claim(pipeline.steps[i]) : pipeline.steps[i];
-    StepCheck check(step, row, pipeline.rounding);
+    StepCheck check(step, row, pipeline.rounding, margin);
     check.proofs();
     if (uncertain && pipeline.steps[i].tightness == Tightness::exact) {
       check.skipped("a claim of \"exact\" is not checked where matrices are known by intervals only");

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Random systems of the kinds that have gone wrong, as studies with every pipeline there is.
+#pragma once
+
+#include <cstdint>
+
+#include <nlohmann/json.hpp>
+
+namespace cordon::campaigns {
+
+/// The study of this number: the same on every machine. Up to six states and three outputs; stable, unstable and singular A,
+/// singular and regular E, units from 1e-6 to 1e6, outputs without noise, repeated rows, matrices of zeros. Its pipelines are all
+/// observers on all backends, of which a study may refuse some.
+nlohmann::ordered_json random_study(std::uint64_t number);
+
+}  // namespace cordon::campaigns

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `cordon run` and `cordon verify` on random systems, with every observer on every backend that takes them: nothing is refuted,
+// and little stays undecided.
+//   CORDON_CAMPAIGN_SYSTEMS   how many (40), from number CORDON_CAMPAIGN_FIRST (0) on
+//   CORDON_CAMPAIGN_KEEP      a directory that keeps studies and results of those that were not verified
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <doctest/doctest.h>
+
+#include "random_study.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct Outcome {
+  int exit = -1;
+  std::string out;
+};
+
+Outcome program(const std::string& arguments) {
+  Outcome outcome;
+  const std::string plugins = std::string(CORDON_BINARY_DIR) + "/lib/cordon/plugins-v1";
+  std::FILE* pipe = popen(
+      (std::string("CORDON_PLUGIN_PATH= ") + CORDON_PROGRAM + " --plugins " + plugins + " " + arguments + " 2>&1").c_str(), "r");
+  REQUIRE(pipe);
+  std::array<char, 4096> chunk{};
+  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), pipe)) outcome.out.append(chunk.data(), got);
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) outcome.exit = WEXITSTATUS(status);
+  return outcome;
+}
+
+std::uint64_t asked(const char* variable, std::uint64_t otherwise) {
+  const char* text = std::getenv(variable);
+  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+/// Takes the pipelines out of the study that a message names. False: it names something else.
+bool drop_refused(Json& study, const std::string& message) {
+  std::set<std::size_t, std::greater<>> refused;
+  std::size_t lines = 0;
+  static const std::regex place(R"(\n  /pipelines/(\d+)/)"), any(R"(\n  /)");
+  for (std::sregex_iterator it(message.begin(), message.end(), place), end; it != end; ++it) refused.insert(std::stoul((*it)[1]));
+  for (std::sregex_iterator it(message.begin(), message.end(), any), end; it != end; ++it) ++lines;
+  std::size_t named = 0;
+  for (std::sregex_iterator it(message.begin(), message.end(), place), end; it != end; ++it) ++named;
+  for (const std::size_t i : refused) study["pipelines"].erase(i);
+  return named > 0 && named == lines;
+}
+
+/// Does the message name a pipeline with nominal rounding?
+bool concerns_nominal(const Json& study, const std::string& message) {
+  for (const Json& pipeline : study["pipelines"]) {
+    if (pipeline["backend"]["rounding"] == "nominal" &&
+        message.find('"' + pipeline["name"].get<std::string>() + '"') != std::string::npos)
+      return true;
+  }
+  return false;
+}
+
+/// Runs what the program takes of the study; false if that is nothing.
+bool run(Json study, const fs::path& home, Outcome& outcome) {
+  for (int tries = 0; tries < 10 && !study["pipelines"].empty(); ++tries) {
+    std::ofstream(home / "study.json") << study.dump(1) << '\n';
+    fs::remove_all(home / "out");
+    outcome = program("run --quiet --no-report --out " + (home / "out").string() + " " + (home / "study.json").string());
+    if (outcome.exit != 2 || !drop_refused(study, outcome.out)) return fs::exists(home / "out" / "results.json");
+  }
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("no result of a random system is refuted, and of up to four states at most two in a hundred stay undecided") {
+  const std::uint64_t first = asked("CORDON_CAMPAIGN_FIRST", 0), count = asked("CORDON_CAMPAIGN_SYSTEMS", 40);
+  const char* keep = std::getenv("CORDON_CAMPAIGN_KEEP");
+  const fs::path home = fs::temp_directory_path() / ("cordon_campaign_" + std::to_string(::getpid()));
+  std::uint64_t verified = 0, refused = 0, small = 0, undecided = 0, contradictory = 0;
+  for (std::uint64_t number = first; number < first + count; ++number) {
+    fs::remove_all(home);
+    fs::create_directories(home);
+    const Json study = cordon::campaigns::random_study(number);
+    const bool few_states = study["system"]["A"].size() <= 4;
+    Outcome outcome;
+    const bool ran = run(study, home, outcome);
+    CAPTURE(number);
+    if (ran) {
+      CAPTURE(outcome.out);
+      // data are rounded: with outward rounding they may contradict a model in the last digits, which leaves no true state
+      const bool contradicts = outcome.exit == 4 && !concerns_nominal(study, outcome.out);
+      CHECK((outcome.exit == 0 || contradicts));
+      contradictory += contradicts ? 1 : 0;
+      outcome = program("verify --directions 2 " + (home / "out").string());
+    }
+    CAPTURE(outcome.out);
+    if (!ran) {
+      ++refused;  // an index above 1, E too near to singular, …
+    } else if (outcome.exit == 5) {
+      small += few_states ? 1 : 0;
+      undecided += few_states ? 1 : 0;
+      MESSAGE("undecided: system ", number, "\n", outcome.out);
+    } else {
+      CHECK(outcome.exit == 0);
+      small += few_states ? 1 : 0;
+      ++verified;
+    }
+    if (keep && (outcome.exit != 0 || !ran))
+      fs::copy(home, fs::path(keep) / std::to_string(number), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  }
+  fs::remove_all(home);
+  MESSAGE(verified, " verified, ", refused, " refused by the program, ", contradictory, " with data outside the model, ",
+          undecided, " of ", small, " with up to four states undecided");
+  CHECK(refused * 4 <= count);
+  CHECK(undecided * 50 <= small);
+}

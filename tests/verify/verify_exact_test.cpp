@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Results at the edge of rounding: what is right is not refuted, what is wrong by more is.
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct Outcome {
+  int exit = -1;
+  std::string out;
+};
+
+Outcome program(const std::string& arguments) {
+  Outcome outcome;
+  const std::string plugins = std::string(CORDON_BINARY_DIR) + "/lib/cordon/plugins-v1";
+  std::FILE* pipe = popen(
+      (std::string("CORDON_PLUGIN_PATH= ") + CORDON_PROGRAM + " --plugins " + plugins + " " + arguments + " 2>&1").c_str(), "r");
+  REQUIRE(pipe);
+  std::array<char, 4096> chunk{};
+  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), pipe)) outcome.out.append(chunk.data(), got);
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) outcome.exit = WEXITSTATUS(status);
+  return outcome;
+}
+
+/// A study of one pipeline, run in a directory of its own.
+class Run {
+ public:
+  Run(const char* system, const char* data, const char* pipeline)
+      : home_(fs::temp_directory_path() / ("cordon_verify_exact_" + std::to_string(::getpid()))) {
+    fs::remove_all(home_);
+    fs::create_directories(home_);
+    Json study{{"cordon", 1}, {"title", "edge"}};
+    study["system"] = Json::parse(system);
+    study["data"]["simulate"] = Json::parse(data);
+    study["pipelines"] = Json::array({Json::parse(pipeline)});
+    std::ofstream(home_ / "study.json") << study.dump(1);
+    ran_ = program("run --no-report --out " + (home_ / "out").string() + " " + (home_ / "study.json").string());
+    CAPTURE(ran_.out);
+    REQUIRE(ran_.exit == 0);
+  }
+  ~Run() { fs::remove_all(home_); }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  const std::string& said() const { return ran_.out; }
+  Outcome verify() const { return program("verify " + (home_ / "out").string()); }
+  void widen_hull(std::size_t step, double by) const {
+    Json results = Json::parse(std::ifstream(home_ / "out" / "results.json"));
+    Json& hull = results["pipelines"][0]["steps"][step]["hull"];
+    for (Json& bound : hull["lower"]) bound = bound.get<double>() - by;
+    for (Json& bound : hull["upper"]) bound = bound.get<double>() + by;
+    std::ofstream(home_ / "out" / "results.json") << results.dump();
+  }
+  /// What `verify` says after a change of the set of one line.
+  Outcome with_set(std::size_t line, const std::function<void(Json&)>& change) const {
+    std::ifstream stream(home_ / "out" / "sets.jsonl");
+    std::string all, text;
+    for (std::size_t i = 0; std::getline(stream, text); ++i) {
+      Json set = Json::parse(text);
+      if (i == line) change(set);
+      all += set.dump() + "\n";
+    }
+    std::ofstream(home_ / "out" / "sets.jsonl") << all;
+    return verify();
+  }
+
+ private:
+  fs::path home_;
+  Outcome ran_;
+};
+
+bool names(const Outcome& outcome, const std::string& text) { return outcome.out.find(text) != std::string::npos; }
+
+constexpr const char* scalar = R"({"type": "lti", "A": [[-1.15]], "C": [[1]], "Bw": [[]],
+  "X0": {"type": "box", "lower": [-1], "upper": [1]}, "V": {"type": "box", "lower": [-0.1], "upper": [0.1]}})";
+
+}  // namespace
+
+TEST_CASE("a hull of a set that is nearly flat is not refuted") {
+  const Run run(R"({"type": "lti", "A": [[0.5, 0.3], [0.3, 0.2]], "C": [[0, 0]], "Bw": [[], []], "Dv": [[]],
+                    "X0": {"type": "box", "lower": [-1, -1], "upper": [1, 1]}})",
+                R"({"steps": 9})", R"({"name": "Z", "backend": "zonotope", "observer": "prediction_correction"})");
+  const Outcome outcome = run.verify();
+  CAPTURE(outcome.out);
+  CHECK(outcome.exit == 0);
+}
+
+TEST_CASE("nominal claims of exact hold up to the rounding of the terms, and not beyond") {
+  for (const char* backend : {"interval", "line_zonotope", "constrained_zonotope"}) {
+    CAPTURE(backend);
+    const std::string pipeline =
+        std::string(R"({"name": "P", "backend": ")") + backend + R"(", "observer": "prediction_correction"})";
+    const Run run(scalar, R"({"steps": 5, "noise": "vertex"})", pipeline.c_str());
+    Outcome outcome = run.verify();
+    CAPTURE(outcome.out);
+    CHECK(outcome.exit == 0);
+    // x_1 is 0 up to rounding, and was computed from terms of 0.23
+    run.widen_hull(1, 1e-9);
+    outcome = run.with_set(1, [](Json& set) {
+      Json grown = Json::array();
+      for (const Json& entry : set["G"][0]) grown.push_back(entry);
+      grown.push_back(1e-10);
+      set["G"][0] = grown;
+      set["generators"] = set["generators"].get<int>() + 1;
+      for (Json& row : set["A"]) row.push_back(0.0);
+      if (set["proof"]["kind"] == "point") set["proof"]["data"].push_back(0.0);
+    });
+    CAPTURE(outcome.out);
+    CHECK(outcome.exit == 4);
+    CHECK(names(outcome, "claimed exact"));
+  }
+}
+
+TEST_CASE("with outward rounding a claim of exact is taken literally") {
+  const Run run(
+      scalar, R"({"steps": 1, "noise": "zero"})",
+      R"({"name": "P", "backend": {"type": "line_zonotope", "rounding": "outward"}, "observer": "prediction_correction"})");
+  Outcome outcome = run.verify();
+  CAPTURE(outcome.out);
+  CHECK(outcome.exit == 0);
+  outcome = run.with_set(0, [](Json& set) {
+    REQUIRE(set["tightness"] == "exact");
+    set["c"][0] = set["c"][0].get<double>() + 1e-17;
+  });
+  CAPTURE(outcome.out);
+  CHECK(outcome.exit == 4);
+  CHECK(names(outcome, "claimed exact"));
+}
+
+TEST_CASE("an E that is singular in decimals only is told of, and read by all alike") {
+  const Run run(R"({"type": "descriptor", "E": [[0.1, 0.3], [0.3, 0.9]], "A": [[0.5, 0.1], [0.2, 0.8]], "C": [[1, 0]],
+                    "X0": {"type": "box", "lower": [-1, -1], "upper": [1, 1]},
+                    "W": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
+                    "V": {"type": "box", "lower": [-0.1], "upper": [0.1]}})",
+                R"({"steps": 5, "x0": [0, 0]})", R"({"name": "L", "backend": "line_zonotope", "observer": "descriptor"})");
+  CAPTURE(run.said());
+  CHECK(run.said().find("/system/E (line ") != std::string::npos);
+  CHECK(run.said().find("has rank 1 as it is written in decimals, 2 as doubles, and 1 up to rounding errors; rank 1 is used") !=
+        std::string::npos);
+  const Outcome outcome = run.verify();
+  CAPTURE(outcome.out);
+  CHECK(outcome.exit == 0);
+}
