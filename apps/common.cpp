@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <system_error>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -21,6 +22,7 @@ const char* const exit_codes_help =
     "  3    a plugin was refused or failed\n"
     "  4    a claimed guarantee was violated\n"
     "  5    a solver gave no answer in its limit\n"
+    "  6    not enough memory, or threads that cannot be started\n"
     "  130  interrupted by SIGINT or SIGTERM\n"
     "Plugins are searched in: --plugins, the study's \"plugins\" (with --trust-plugins), CORDON_PLUGIN_PATH, beside the program, "
     "the installed directory.";
@@ -44,6 +46,9 @@ Exit exit_for(Errc code) noexcept {
   return Exit::internal;
 }
 
+/// Memory or a thread that the machine does not give.
+constexpr Exit no_resources = static_cast<Exit>(6);
+
 Exit report_current_exception() noexcept try {
   try {
     throw;
@@ -51,7 +56,12 @@ Exit report_current_exception() noexcept try {
     complain(error.what());
     return exit_for(error.code());
   } catch (const std::bad_alloc&) {
-    complain("out of memory");
+    complain("not enough memory: the machine has no more, or the process may use no more (ulimit -v)");
+    return no_resources;
+  } catch (const std::system_error& error) {
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    complain(no_thread ? error.what() : fmt::format("internal error: {}", error.what()));
+    if (no_thread) return no_resources;
   } catch (const std::exception& error) {
     complain(fmt::format("internal error: {}", error.what()));
   } catch (...) {

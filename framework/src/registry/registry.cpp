@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <new>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -48,6 +50,11 @@ auto guarded(const std::string& plugin, const std::string& component, Call&& cal
     throw InputError(error.file(), error.diagnostics());
   } catch (const Error& error) {
     throw Error(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::system_error& error) {  // a thread that cannot be started
+    if (error.code() != std::errc::resource_unavailable_try_again) throw broken(error.what());
+    throw std::system_error(error);
   } catch (const std::exception& error) {
     throw broken(error.what());
   } catch (...) {

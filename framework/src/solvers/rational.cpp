@@ -2,12 +2,31 @@
 #include "solvers/rational.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "cordon/core/error.hpp"
 
 namespace cordon::rational {
+
+namespace {
+
+// Where memory runs out, GMP itself ends the process.
+void* allocate(std::size_t size) {
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+
+void* reallocate(void* old, std::size_t, std::size_t size) {
+  if (void* memory = std::realloc(old, size)) return memory;
+  throw std::bad_alloc();
+}
+
+[[maybe_unused]] const bool gmp_throws = (mp_set_memory_functions(allocate, reallocate, nullptr), true);
+
+}  // namespace
 
 RationalVector RationalMatrix::row(Index i) const {
   const auto begin = data_.begin() + i * cols_;

@@ -116,7 +116,7 @@ SdpProposal run_sdpa(const SemidefiniteProgram& program, double accuracy, int it
     problem.terminate();
     return proposal;
   } catch (const GaveUp&) {
-    return {"gave up", {}, {}};
+    return {"gave up: no memory or thread, or a defect of its own", {}, {}};
   }
 }
 

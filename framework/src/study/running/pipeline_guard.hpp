@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <new>
+#include <system_error>
+
 #include "cordon/study/run.hpp"
 
 namespace cordon::detail {
@@ -13,13 +16,19 @@ void stop(Outcome& outcome, Errc code, const std::string& message) {
   outcome.error = message.empty() ? std::string(to_string(code)) : message;
 }
 
-/// Runs code of components: what it throws stops this pipeline and no other.
+/// Runs code of components: what it throws stops this pipeline and no other. What the machine does not give (memory, a thread) is
+/// no fault of a component: it is thrown on, and ends the run.
 template <class Outcome, class Work>
 void guarded(Outcome& outcome, Work&& work) {
   try {
     work();
   } catch (const Error& error) {
     stop(outcome, error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::resource_unavailable_try_again) throw;
+    stop(outcome, Errc::plugin, error.what());
   } catch (const std::exception& error) {
     stop(outcome, Errc::plugin, error.what());
   } catch (...) {

@@ -5,8 +5,12 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <optional>
+#include <system_error>
 #include <thread>
+
+#include <fmt/format.h>
 
 #include "cordon/registry/build.hpp"
 #include "study/reading/point_study.hpp"
@@ -92,6 +96,11 @@ class PointRunner {
       fail(result, error.code(), text_of(error, study_));
     } catch (const Error& error) {
       fail(result, error.code(), error.what());
+    } catch (const std::bad_alloc&) {
+      throw;  // no fault of this point: the sweep ends, and can go on where there is more
+    } catch (const std::system_error& error) {
+      if (error.code() == std::errc::resource_unavailable_try_again) throw;
+      fail(result, Errc::internal, error.what());
     } catch (const std::exception& error) {
       fail(result, Errc::internal, error.what());
     } catch (...) {
@@ -236,10 +245,22 @@ class SweepRun {
         std::atomic<bool>& stop;
         ~StopAtEnd() { stop = true; }
       } stop_at_end{stop_};  // before the threads are joined, also if one of them cannot be made
-      for (; working_ < jobs; ++working_) threads.emplace_back([this] { work_on_points(); });
+      start(threads, jobs);
       watch();
     }
     if (failure_) std::rethrow_exception(failure_);
+  }
+
+  /// None of them takes a point before all have started: if they cannot, nothing is left behind that did not finish.
+  void start(std::vector<std::jthread>& threads, std::int64_t jobs) {
+    const std::lock_guard guard(sharing_);
+    try {
+      for (; working_ < jobs; ++working_) threads.emplace_back([this] { work_on_points(); });
+    } catch (const std::system_error& error) {
+      stop_ = true;
+      if (rows_.size() == 0) journal_->remove();
+      throw std::system_error(error.code(), fmt::format("cannot start {} threads, give fewer with --jobs", jobs));
+    }
   }
 
   void watch() {
@@ -280,6 +301,7 @@ class SweepRun {
 
   std::optional<SweepPoint> next() {
     const std::lock_guard guard(sharing_);
+    if (stop_) return std::nullopt;
     while (next_ < grid_.size() && (!is_mine(next_) || rows_.has(next_))) ++next_;
     if (next_ == grid_.size()) return std::nullopt;
     return grid_[next_++];
