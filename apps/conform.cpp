@@ -25,7 +25,7 @@ struct Arguments {
   std::uint64_t seed = 1;
   Index cases = 300;
   double timeout_s = 20;
-  bool json = false, list = false;
+  bool json = false, list = false, in_process = false;
 };
 
 /// The outcome for one backend with one set of parameters.
@@ -33,6 +33,7 @@ struct Conformed {
   Candidate candidate;
   std::vector<LawReport> laws;
   double seconds = 0;
+  std::string problem = {};  ///< no law can be checked
 
   Index count(State state) const {
     return std::count_if(laws.begin(), laws.end(), [&](const LawReport& r) { return r.state == state; });
@@ -100,6 +101,7 @@ bool is_violation(const LawReport& report) { return report.state != State::passe
 std::string as_text(const Conformed& c, const std::string& plugin) {
   const Paint paint(stdout);
   std::string text = paint.bold("backend " + title_of(c.candidate)) + " (plugin " + plugin + ")\n";
+  if (!c.problem.empty()) return text + "no law was checked: " + c.problem + "\n";
   std::vector<std::vector<std::string>> rows{{"LAW", "CASES", "RESULT", "NOTE"}};
   for (const LawReport& report : c.laws) {
     // colours would count as width: the result stands in the last column but one, padded by hand
@@ -130,6 +132,8 @@ std::string as_text(const Conformed& c, const std::string& plugin) {
 }
 
 Json as_json(const Conformed& c) {
+  if (!c.problem.empty())
+    return {{"backend", c.candidate.backend}, {"params", Json::parse(c.candidate.params)}, {"problem", c.problem}};
   Json laws = Json::array();
   for (const LawReport& report : c.laws) {
     const conformance::Result& r = report.result;
@@ -193,17 +197,21 @@ Exit conform(const Program& program, const Arguments& arguments) {
   Exit exit = Exit::done;
   for (std::size_t k = 0; k < found.candidates.size(); ++k) {
     Conformed c{found.candidates[k], {}, 0};
+    c.problem = problem_of_making(library, c.candidate);
     const ConformRequest request{library,
                                  c.candidate,
                                  {arguments.laws, arguments.seed, arguments.cases},
                                  arguments.timeout_s,
                                  replay_command(program, arguments, c.candidate)};
-    c.laws = check_in_child(request, [&](std::size_t law, std::size_t laws, const std::string&) {
+    const LawProgress progress = [&](std::size_t law, std::size_t laws) {
       bar.show(k, static_cast<std::int64_t>(law), static_cast<std::int64_t>(laws));
-    });
+    };
+    if (c.problem.empty())
+      c.laws = arguments.in_process ? check_in_process(request, progress) : check_in_child(request, progress);
     for (const LawReport& report : c.laws) c.seconds += report.seconds;
     if (c.count(State::failed) > 0) exit = Exit::violated;
-    if (c.count(State::crashed) + c.count(State::timed_out) > 0 && exit == Exit::done) exit = Exit::plugin;
+    const bool broken = !c.problem.empty() || c.count(State::crashed) + c.count(State::timed_out) > 0;
+    if (broken && exit == Exit::done) exit = Exit::plugin;
     text += (text.empty() ? "" : "\n") + as_text(c, found.plugin);
     backends.push_back(as_json(c));
   }
@@ -235,10 +243,13 @@ void add_conform(CLI::App& app, Program& program) {
   command->add_option("--timeout", arguments->timeout_s, "Seconds that one case may take [20]")
       ->check(CLI::Range(0.1, 86400.0))
       ->option_text("S");
+  command->add_flag("--in-process", arguments->in_process,
+                    "Check in this process, for debuggers: a crash ends it, and --timeout is not kept");
   command->add_flag("--list", arguments->list, "List the laws and check nothing");
   command->add_flag("--json", arguments->json, "Print JSON for programs");
   command->footer(
-      "Laws run in child processes: a crash or a hang is reported with the law that was running. A backend with a parameter\n"
+      "Laws run in child processes: a crash or a hang is reported with the law that was running; `gdb --args cordon conform\n"
+      "PLUGIN --law LAW --in-process` shows where. A backend with a parameter\n"
       "\"rounding\" is checked with each of its values. Exit code 0: all laws hold; 4: one is violated; 3: the plugin was "
       "refused\n"
       "or crashed.");

@@ -277,8 +277,10 @@ Result result_from(const Json& json) {
   return r;
 }
 
-/// Body of a child: the laws from `first` on.
-void check_laws(int fd, const ConformRequest& request, const std::vector<std::string>& laws, std::size_t first) {
+using Tell = std::function<void(const Json& message)>;
+
+/// The laws from `first` on; results, progress and what goes wrong are told as messages.
+void check_laws(const Tell& tell, const ConformRequest& request, const std::vector<std::string>& laws, std::size_t first) {
   conformance::Subject subject;
   ParamSchema schema;
   const std::string backend = request.candidate.backend;
@@ -287,9 +289,9 @@ void check_laws(int fd, const ConformRequest& request, const std::vector<std::st
     load_only(registry, request.library);
     schema = registry.backend_info(backend)->schema;
     subject.params = params_from(request.candidate.params, schema);
-    send(fd, {{"unbounded", registry.make_backend(backend, subject.params)->info().unbounded}});
+    tell({{"unbounded", registry.make_backend(backend, subject.params)->info().unbounded}});
   } catch (...) {
-    send(fd, {{"broken", current_text()}});
+    tell({{"broken", current_text()}});
     return;
   }
   subject.schema = &schema;
@@ -302,13 +304,13 @@ void check_laws(int fd, const ConformRequest& request, const std::vector<std::st
     load_only(registry, request.library);
     return registry.make_backend(backend, params);
   };
-  const auto progress = [&](const conformance::Law&, Index number, Index) { send(fd, {{"case", number}}); };
+  const auto progress = [&](const conformance::Law&, Index number, Index) { tell({{"case", number}}); };
   for (std::size_t k = first; k < laws.size(); ++k) {
-    send(fd, {{"start", k}});
+    tell({{"start", k}});
     try {
-      send(fd, {{"result", as_json(conformance::check(subject, laws[k], request.options, progress))}});
+      tell({{"result", as_json(conformance::check(subject, laws[k], request.options, progress))}});
     } catch (...) {
-      send(fd, {{"broken", current_text()}});
+      tell({{"broken", current_text()}});
     }
   }
 }
@@ -381,58 +383,124 @@ Discovery discover(const std::filesystem::path& library, const std::string& back
   return found;
 }
 
-std::vector<LawReport> check_in_child(
-    const ConformRequest& request,
-    const std::function<void(std::size_t law, std::size_t laws, const std::string& name)>& progress) {
+std::string problem_of_making(const std::filesystem::path& library, const Candidate& candidate) {
+  Child child([&](int fd) {
+    std::string problem;
+    try {
+      Registry registry;
+      load_only(registry, library);
+      registry.make_backend(candidate.backend, params_from(candidate.params, registry.backend_info(candidate.backend)->schema));
+    } catch (...) {
+      problem = current_text();
+    }
+    send(fd, {{"problem", problem}});
+  });
+  Json message;
+  switch (child.wait(60, message)) {
+    case Child::Event::message:
+      return message.at("problem");
+    case Child::Event::timeout:
+      child.kill_now();
+      return "making it does not end within 60 s";
+    case Child::Event::ended:
+      break;
+  }
+  const std::string how = child.finish();
+  return "making it ends the process: " + (how.empty() ? "exit code 0" : how);
+}
+
+namespace {
+
+std::vector<std::string> wanted_laws(const ConformRequest& request) {
   std::vector<std::string> laws;
   for (const conformance::Law& law : conformance::laws()) {
     if (conformance::matches(request.options.laws, law.name)) laws.push_back(law.name);
   }
-  std::vector<LawReport> reports;
-  bool unbounded = false;
-  while (reports.size() < laws.size()) {
-    Child child([&](int fd) { check_laws(fd, request, laws, reports.size()); });
-    Index number = -1;
-    Clock::time_point begin = Clock::now();
-    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-    for (bool alive = true; alive && reports.size() < laws.size();) {
-      const std::string& law = laws[reports.size()];
-      progress(reports.size(), laws.size(), law);
+  return laws;
+}
+
+/// Makes reports of the messages about laws.
+class Reports {
+ public:
+  Reports(const ConformRequest& request, const LawProgress& progress)
+      : request_(request), laws_(wanted_laws(request)), progress_(progress) {
+    progress_(0, laws_.size());
+  }
+
+  const std::vector<std::string>& laws() const { return laws_; }
+  std::size_t size() const { return reports_.size(); }
+  bool complete() const { return reports_.size() == laws_.size(); }
+  std::vector<LawReport> take() { return std::move(reports_); }
+
+  void begin() { number_ = -1, begin_ = Clock::now(); }
+  void take_in(const Json& message) {
+    if (message.contains("unbounded")) unbounded_ = message.at("unbounded");
+    if (message.contains("start")) begin();
+    if (message.contains("case")) number_ = message.at("case");
+    if (message.contains("result")) {
+      LawReport report{{}, result_from(message.at("result")), 0};
+      report.state = static_cast<LawReport::State>(report.result.status);
+      add(std::move(report));
+    }
+    if (message.contains("broken")) lose(LawReport::State::crashed, "an exception: " + message.at("broken").get<std::string>());
+  }
+  /// The law that is being checked does not come to its end.
+  void lose(LawReport::State state, const std::string& how) {
+    if (!complete()) add(lost(request_, laws_[reports_.size()], number_, unbounded_, state, how));
+  }
+
+ private:
+  void add(LawReport report) {
+    report.seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
+    reports_.push_back(std::move(report));
+    progress_(reports_.size(), laws_.size());
+  }
+
+  const ConformRequest& request_;
+  const std::vector<std::string> laws_;
+  const LawProgress& progress_;
+  std::vector<LawReport> reports_;
+  Index number_ = -1;
+  bool unbounded_ = false;
+  Clock::time_point begin_ = Clock::now();
+};
+
+}  // namespace
+
+std::vector<LawReport> check_in_child(const ConformRequest& request, const LawProgress& progress) {
+  Reports reports(request, progress);
+  while (!reports.complete()) {
+    reports.begin();
+    Child child(
+        [&](int fd) { check_laws([&](const Json& message) { send(fd, message); }, request, reports.laws(), reports.size()); });
+    for (bool alive = true; alive && !reports.complete();) {
       Json message;
       switch (child.wait(request.timeout_s, message)) {
         case Child::Event::message:
-          if (message.contains("unbounded")) unbounded = message.at("unbounded");
-          if (message.contains("start")) number = -1, begin = Clock::now();
-          if (message.contains("case")) number = message.at("case");
-          if (message.contains("result")) {
-            LawReport report{{}, result_from(message.at("result")), seconds()};
-            report.state = static_cast<LawReport::State>(report.result.status);
-            reports.push_back(std::move(report));
-          }
-          if (message.contains("broken")) {
-            reports.push_back(lost(request, law, number, unbounded, LawReport::State::crashed,
-                                   "an exception: " + message.at("broken").get<std::string>()));
-          }
+          reports.take_in(message);
           break;
         case Child::Event::ended: {
           const std::string how = child.finish();
-          reports.push_back(lost(request, law, number, unbounded, LawReport::State::crashed,
-                                 "the process ended by " + (how.empty() ? "exit code 0" : how)));
-          reports.back().seconds = seconds();
+          reports.lose(LawReport::State::crashed, "the process ended by " + (how.empty() ? "exit code 0" : how));
           alive = false;
           break;
         }
         case Child::Event::timeout:
           child.kill_now();
-          reports.push_back(lost(request, law, number, unbounded, LawReport::State::timed_out,
-                                 fmt::format("no answer within {} s", request.timeout_s)));
-          reports.back().seconds = seconds();
+          reports.lose(LawReport::State::timed_out, fmt::format("no answer within {} s", request.timeout_s));
           alive = false;
           break;
       }
     }
   }
-  return reports;
+  return reports.take();
+}
+
+std::vector<LawReport> check_in_process(const ConformRequest& request, const LawProgress& progress) {
+  Reports reports(request, progress);
+  check_laws([&](const Json& message) { reports.take_in(message); }, request, reports.laws(), 0);
+  while (!reports.complete()) reports.lose(LawReport::State::crashed, "the backend could not be made again");
+  return reports.take();
 }
 
 }  // namespace cordon::apps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs laws in a child process, where a backend may crash or hang.
+// Runs laws, in a child process unless it is told otherwise: a backend may crash or hang.
 #pragma once
 
 #include <filesystem>
@@ -25,6 +25,8 @@ struct Discovery {
 };
 /// Loads the plugin in a child process. `backend` "" stands for all; `params` must fit each of them.
 Discovery discover(const std::filesystem::path& library, const std::string& backend, const std::string& params);
+/// Makes the backend in a child process: why no law can be checked on it; "" if nothing is wrong.
+std::string problem_of_making(const std::filesystem::path& library, const Candidate& candidate);
 
 /// What became of a law.
 struct LawReport {
@@ -42,9 +44,10 @@ struct ConformRequest {
   double timeout_s = 20;  ///< of one case
   std::string command;    ///< of the replay line
 };
+using LawProgress = std::function<void(std::size_t law, std::size_t laws)>;
 /// Checks the laws one by one; after a crash or a hang the next law runs in a new process.
-std::vector<LawReport> check_in_child(
-    const ConformRequest& request,
-    const std::function<void(std::size_t law, std::size_t laws, const std::string& name)>& progress);
+std::vector<LawReport> check_in_child(const ConformRequest& request, const LawProgress& progress);
+/// The same in this process, for debuggers: a crash ends it, a hang hangs it.
+std::vector<LawReport> check_in_process(const ConformRequest& request, const LawProgress& progress);
 
 }  // namespace cordon::apps

@@ -46,9 +46,11 @@ std::string to_snake_case(std::string_view text) {
 
 /// Refuses a name that is no plugin name, or that Cordon or a plugin on the search path has taken.
 void require_free_name(const Program& program, const std::string& name) {
-  if (const std::string mend = to_snake_case(name); mend != name) {
-    throw Error(Errc::invalid, fmt::format("\"{}\" is no plugin name: it must be in snake_case with at most {} characters{}",
-                                           name, longest_name, mend.empty() ? "" : fmt::format("; did you mean \"{}\"?", mend)));
+  if (const std::string mend = to_snake_case(name); mend.empty() || mend != name) {
+    throw Error(
+        Errc::invalid,
+        fmt::format("NAME \"{}\" is no plugin name: it must be in snake_case, a letter first, with at most {} characters; {}",
+                    name, longest_name, mend.empty() ? "such as \"my_set\"" : "did you mean \"" + mend + "\"?"));
   }
   const auto taken = [&](const std::string& by) {
     throw Error(Errc::invalid, fmt::format("the name \"{}\" is taken by {}; try \"{}\"", name, by, "my_" + name));

@@ -132,3 +132,13 @@ TEST_CASE("no bound across a line that is normal to the direction up to rounding
   const LineForm strip{Matrix{{1}, {1}}, Matrix{{1}, {0}}, Vector{{1, 2}}, Matrix(0, 1), Matrix(0, 1), Vector(0)};
   CHECK(Reference(strip).upper(Vector{{1, -1}}) == 0);
 }
+
+TEST_CASE("a set without factors is not empty by nothing or by rounding only") {
+  LineForm X = make_point(Vector{{1, 2}});
+  CHECK(Reference(X).robust());
+  X.S = X.A = Matrix(1, 0);
+  X.b = Vector{{0}};
+  CHECK_FALSE(Reference(X).robust());
+  X.b[0] = 1;
+  CHECK_FALSE(Reference(X).robust());
+}

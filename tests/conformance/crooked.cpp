@@ -3,6 +3,7 @@
 // process on points, `hanging` never returns from a hull.
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <memory>
 #include <thread>
 
@@ -61,7 +62,13 @@ void add(Registrar& registrar, const std::string& name) {
                      }});
 }
 
+/// Backends that cannot be made.
+std::unique_ptr<SetBackend> not_made(const Params&) { throw Error(Errc::invalid, "the table of half axes is missing"); }
+std::unique_ptr<SetBackend> not_survived(const Params&) { std::_Exit(7); }
+
 void register_components(Registrar& registrar) {
+  registrar.backend({{"unmade", "a backend with a defect", "", {}}, not_made});
+  registrar.backend({{"unsurvived", "a backend with a defect", "", {}}, not_survived});
   add<Defect::lossy>(registrar, "lossy");
   add<Defect::crashing>(registrar, "crashing");
   add<Defect::hanging>(registrar, "hanging");

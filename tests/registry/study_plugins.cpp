@@ -46,8 +46,9 @@ TEST_CASE("validate opens nothing that only the study names, and says what it co
   CHECK_FALSE(needed.was_opened());
   CHECK_MESSAGE(contains(outcome.err, "/metrics/"), outcome.err);
   CHECK(contains(outcome.err, "no metric \"tracing\""));
-  CHECK(contains(outcome.err, needed.plugins() + "/tracing.so was refused: it was not opened and nothing of it is checked, since only "
-                                                 "the study names its directory"));
+  CHECK(contains(outcome.err, needed.plugins() +
+                                  "/tracing.so was refused: it was not opened and nothing of it is checked, since only "
+                                  "the study names its directory"));
   CHECK(contains(outcome.err, "give --trust-plugins, or that directory by --plugins or CORDON_PLUGIN_PATH"));
   CHECK(json::parse(needed.run("validate --json " + needed.file).out).at("studies").at(0).at("valid") == false);
 
@@ -55,7 +56,8 @@ TEST_CASE("validate opens nothing that only the study names, and says what it co
   const Outcome fine = not_needed.run("validate " + not_needed.file);
   CHECK(fine.code == 0);
   CHECK_FALSE(not_needed.was_opened());
-  CHECK_MESSAGE(contains(fine.err, "warning: plugin " + not_needed.plugins() + "/tracing.so was refused: it was not opened"), fine.err);
+  CHECK_MESSAGE(contains(fine.err, "warning: plugin " + not_needed.plugins() + "/tracing.so was refused: it was not opened"),
+                fine.err);
 }
 
 TEST_CASE("commands that need the whole study ask for trust, and write nothing") {

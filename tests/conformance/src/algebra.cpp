@@ -155,11 +155,14 @@ Verdict check_sum_associates(const Context& context, const TestCase& test) {
 
 // ---- maps ----
 
+/// The maps are tame where X has lines: rounding of T₁T₂ turns the image of a line, or makes a plane of it, and between two lines
+/// that are not parallel no distance is small. T₁T₂ is exact then, and both sides are the same set whatever X is.
 TestCase generate_two_maps(const Setting& s) {
   const Index p = s.random.between(1, 3), q = s.random.between(1, 3);
   TestCase test = sets(s, {"X"});
-  test.matrices.push_back({"T2", 'p', 'n', s.make().map(p, s.n)});
-  test.matrices.push_back({"T1", 'q', 'p', s.make().map(q, p)});
+  Generator make{s.random, test.set(0).form.lines() > 0 ? Style::tame : s.style};
+  test.matrices.push_back({"T2", 'p', 'n', make.map(p, s.n)});
+  test.matrices.push_back({"T1", 'q', 'p', make.map(q, p)});
   return test;
 }
 

@@ -42,6 +42,7 @@ Reference::Reference(const LineForm& X, std::vector<Vector> known, double terms,
 Reference::Reference(LinesEliminated eliminated, std::vector<Vector> known, double terms, double row_terms)
     : X_(std::move(eliminated.set)),
       row_magnitude_(std::move(eliminated.row_magnitude)),
+      vanished_(eliminated.vanished),
       program_(X_.A, X_.b, {row_magnitude_, {}}),
       known_(std::move(known)),
       terms_(std::max(terms, size_of(X_))),
@@ -109,12 +110,14 @@ double Reference::tolerance(VectorIn d) {
 }
 
 bool Reference::robust() {
+  if (vanished_ > 0) return false;  // rows that agree up to rounding, or do not
   if (X_.constraints() == 0) return true;
+  if (X_.generators() == 0) return false;  // 0 = b: any rounding error decides
   const auto xi = program_.central_point();
   if (!xi) return false;
   const double slack = 1 - xi->cwiseAbs().maxCoeff();
   for (Index i = 0; i < X_.constraints(); ++i) {
-    const double reach = X_.generators() ? X_.A.row(i).cwiseAbs().sum() : 0.0;
+    const double reach = X_.A.row(i).cwiseAbs().sum();
     const double magnitude = i < row_magnitude_.size() ? row_magnitude_[i] : 0.0;
     if (!(slack * reach > nominal * (std::abs(X_.b[i]) + row_terms_ + magnitude + reach))) return false;
   }

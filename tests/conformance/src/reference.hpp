@@ -47,6 +47,7 @@ class Reference {
   std::optional<LineForm> whole_;  ///< before the elimination, if there were lines
   LineForm X_;
   Vector row_magnitude_;
+  Index vanished_ = 0;  ///< rows that elimination has made 0 = 0, up to rounding
   BoxedProgram program_;
   std::vector<Vector> known_;
   double terms_, row_terms_;

@@ -3,7 +3,7 @@
 
 #include "nothing.hpp"
 
-static const int ended = [] () -> int { std::_Exit(0); }();
+static const int ended = []() -> int { std::_Exit(0); }();
 
 static void register_components(cordon::Registrar& registrar) { registrar.metric(nothing("after_the_end")); }
 

@@ -3,7 +3,7 @@
 
 #include "nothing.hpp"
 
-static const int thrown = [] () -> int { throw std::runtime_error("no room for static objects"); }();
+static const int thrown = []() -> int { throw std::runtime_error("no room for static objects"); }();
 
 static void register_components(cordon::Registrar& registrar) { registrar.metric(nothing("after_the_throw")); }
 
