@@ -46,9 +46,6 @@ Exit exit_for(Errc code) noexcept {
   return Exit::internal;
 }
 
-/// Memory or a thread that the machine does not give.
-constexpr Exit no_resources = static_cast<Exit>(6);
-
 Exit report_current_exception() noexcept try {
   try {
     throw;
@@ -57,11 +54,11 @@ Exit report_current_exception() noexcept try {
     return exit_for(error.code());
   } catch (const std::bad_alloc&) {
     complain("not enough memory: the machine has no more, or the process may use no more (ulimit -v)");
-    return no_resources;
+    return Exit::resources;
   } catch (const std::system_error& error) {
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
     complain(no_thread ? error.what() : fmt::format("internal error: {}", error.what()));
-    if (no_thread) return no_resources;
+    if (no_thread) return Exit::resources;
   } catch (const std::exception& error) {
     complain(fmt::format("internal error: {}", error.what()));
   } catch (...) {

@@ -16,11 +16,12 @@ namespace cordon::apps {
 
 enum class Exit {
   done = 0,
-  internal = 1,   ///< a defect of this program
-  invalid = 2,    ///< invalid input, or a file that cannot be read or written
-  plugin = 3,     ///< a plugin that is needed was refused, or failed
-  violated = 4,   ///< a claimed guarantee was violated
-  unanswered = 5  ///< a solver gave no answer in its limit
+  internal = 1,    ///< a defect of this program
+  invalid = 2,     ///< invalid input, or a file that cannot be read or written
+  plugin = 3,      ///< a plugin that is needed was refused, or failed
+  violated = 4,    ///< a claimed guarantee was violated
+  unanswered = 5,  ///< a solver gave no answer in its limit
+  resources = 6    ///< memory, or a thread, that the machine does not give
 };
 /// For the footer of --help.
 extern const char* const exit_codes_help;
