@@ -16,6 +16,7 @@ namespace {
 
 ComponentSpec steady_kalman() { return {"kalman", Params().set("steady", true)}; }
 
+/// Claims no exact estimate: a measurement enters by a gain, one step late.
 class Luenberger final : public Observer {
  public:
   Luenberger(const ObserverContext& context, const Params& params)
@@ -32,9 +33,7 @@ class Luenberger final : public Observer {
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
     const Enclosure start = X0 ? *X0 : backend().import(X0_);
     limit_.start(recursion_, start);
-    X_ = timed(Phase::reduce, [&] { return recursion_.reduced(start); });
-    X_.tightness = Tightness::outer;  // what the measurement of the same time says is left out
-    return X_;
+    return X_ = timed(Phase::reduce, [&] { return recursion_.reduced(start); });
   }
   Enclosure do_step(const Sample& before, const Sample&) override {
     Vector open;
@@ -46,7 +45,6 @@ class Luenberger final : public Observer {
       limit_.step(recursion_, before, open);
       return limit_.apply(backend(), recursion_.reduced(next));
     });
-    X_.tightness = Tightness::outer;
     return X_;
   }
   void do_replace(const Enclosure& X) override {
