@@ -50,11 +50,6 @@ std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t i
   return text.substr(0, end) + "…";
 }
 
-std::string csv_text(const std::string& text) {
-  const bool formula = !text.empty() && (text.find_first_of("=+-@") == 0 || is_control(text[0]));
-  return csv_field(formula && !parse_number(text).problem.empty() ? "'" + text : text);
-}
-
 std::string latex_text(std::string_view text) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 21> pairs{{{"\\", "\\textbackslash{}"},
                                                                                         {"{", "\\{"},
