@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "study/results/numbers.hpp"
+#include "core/text.hpp"
 #include "study/results/results_parts.hpp"
 
 namespace cordon::detail {
@@ -43,7 +43,7 @@ std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t i
     const nlohmann::json parsed = nlohmann::json::parse(text, nullptr, false);
     if (parsed.is_string()) text = parsed.get<std::string>();
   }
-  for (char& c : text) c = is_control(c) ? '?' : c;
+  text = printable(text);
   if (text.size() <= limit) return text;
   std::size_t end = limit;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;  // never inside a character

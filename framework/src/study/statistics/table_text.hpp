@@ -9,8 +9,8 @@
 
 namespace cordon::detail {
 
-/// A value of an axis as people write it: texts without their quotes, everything else as JSON; control characters are replaced
-/// by "?", and what is longer than `limit` bytes is cut.
+/// A value of an axis as people write it: texts without their quotes, everything else as JSON; printable, and what is
+/// longer than `limit` bytes is cut.
 std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t index, std::size_t limit = 32);
 
 /// Text for LaTeX: special characters escaped, control characters as blanks. Other characters stay as they are, in UTF-8.
