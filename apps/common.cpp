@@ -2,6 +2,7 @@
 #include "common.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -11,6 +12,8 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
+
+#include "core/text.hpp"
 
 namespace cordon::apps {
 
@@ -71,9 +74,33 @@ Exit report_current_exception() noexcept try {
   return Exit::internal;
 }
 
-void print(const std::string& text) {
+namespace {
+
+/// The sequences of colours that this program writes, to a stream that takes them.
+constexpr std::array<std::string_view, 5> colours{"\x1b[0m", "\x1b[1m", "\x1b[1;31m", "\x1b[33m", "\x1b[32m"};
+
+/// What is printed, whatever names it holds: only line ends and colours steer the terminal.
+std::string shown(std::string_view text, const Paint& paint) {
+  std::string out;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t escape = std::min(text.find('\x1b', begin), text.size());
+    out += detail::printable_lines(text.substr(begin, escape - begin));
+    const auto colour =
+        std::find_if(colours.begin(), colours.end(), [&](std::string_view one) { return text.substr(escape).starts_with(one); });
+    const bool is_colour = !paint.bold("").empty() && colour != colours.end();
+    const std::size_t length = is_colour ? colour->size() : std::min<std::size_t>(1, text.size() - escape);
+    out += is_colour ? std::string(*colour) : detail::printable(text.substr(escape, length));
+    begin = escape + length;
+  }
+  return out;
+}
+
+}  // namespace
+
+void print(const std::string& whole) {
   static bool reader_is_gone = false;
   if (reader_is_gone) return;
+  const std::string text = shown(whole, Paint(stdout));
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
   if (errno != EPIPE) throw Error(Errc::io, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
@@ -82,7 +109,8 @@ void print(const std::string& text) {
 
 namespace {
 
-void to_stderr(const std::string& text) {
+void to_stderr(const std::string& whole) {
+  const std::string text = shown(whole, Paint(stderr));
   std::fwrite(text.data(), 1, text.size(), stderr);  // nobody is left to be told if this fails
 }
 
@@ -121,7 +149,9 @@ std::size_t width(const std::string& text) {
 
 }  // namespace
 
-std::string table(const std::vector<std::vector<std::string>>& rows, const Paint& paint) {
+std::string table(const std::vector<std::vector<std::string>>& cells, const Paint& paint) {
+  std::vector<std::vector<std::string>> rows = cells;
+  for (auto& row : rows) std::transform(row.begin(), row.end(), row.begin(), detail::printable);
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));

@@ -9,6 +9,7 @@
 
 #include "common.hpp"
 #include "cordon/study/comparison_table.hpp"
+#include "core/text.hpp"
 #include "observer_report.hpp"
 
 namespace cordon::apps {
@@ -129,13 +130,6 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
 std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
 ordered_json test_json(const std::optional<TimeTest>& test) {
@@ -220,7 +214,7 @@ std::string compare_markdown(const Comparison& comparison) {
 
 std::string compare_csv(const Comparison& comparison) {
   std::string text = "measure,measured,pipeline";
-  for (const std::string& axis : comparison.axes) text += fmt::format(",{}", csv_field(axis));
+  for (const std::string& axis : comparison.axes) text += fmt::format(",{}", detail::csv_field(axis));
   text +=
       ",run,directory,points,failed,count,infinite,mean,deviation,median,difference,ratio,common,finished,different,median_ratio,"
       "lower,upper,p\n";
@@ -229,12 +223,14 @@ std::string compare_csv(const Comparison& comparison) {
       for (std::size_t i = 0; i < row.runs.size(); ++i) {
         const ComparedNumber& number = row.runs[i];
         const Statistics& found = number.statistics;
-        text += fmt::format("{},{},{}", csv_field(measure.column.name), measure.column.measured ? 1 : 0, csv_field(row.pipeline));
-        for (const std::string& value : row.at) text += fmt::format(",{}", csv_field(value_text(value)));
-        text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{}", letter(i), csv_field(comparison.runs[i].directory),
-                            number.points, number.failed, found.count, found.infinite, csv_number(found.mean),
-                            csv_number(found.deviation), csv_number(found.median), csv_number(number.difference),
-                            csv_number(number.ratio), number.common, number.finished, number.different);
+        text += fmt::format("{},{},{}", detail::csv_field(measure.column.name), measure.column.measured ? 1 : 0,
+                            detail::csv_field(row.pipeline));
+        for (const std::string& value : row.at) text += fmt::format(",{}", detail::csv_field(value_text(value)));
+        text +=
+            fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{}", letter(i), detail::csv_field(comparison.runs[i].directory),
+                        number.points, number.failed, found.count, found.infinite, csv_number(found.mean),
+                        csv_number(found.deviation), csv_number(found.median), csv_number(number.difference),
+                        csv_number(number.ratio), number.common, number.finished, number.different);
         if (const auto& test = number.test) {
           text +=
               fmt::format(",{},{},{},{}\n", csv_number(test->ratio), csv_number(test->lower), csv_number(test->upper), test->p);

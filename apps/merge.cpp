@@ -35,8 +35,11 @@ void add_merge(CLI::App& app, Program& program) {
   command->add_option("DIR", arguments->parts, "Directories of all parts, in any order")
       ->required()
       ->check(CLI::Validator(path_problem, "", ""))
-     ->option_text(" ");
-  command->add_option("--out", arguments->out, "Directory for the whole sweep")->required()->check(CLI::Validator(path_problem, "", ""))->option_text("DIR");
+      ->option_text(" ");
+  command->add_option("--out", arguments->out, "Directory for the whole sweep")
+      ->required()
+      ->check(CLI::Validator(path_problem, "", ""))
+      ->option_text("DIR");
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->footer(

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "core/text.hpp"
+
 namespace cordon::apps {
 
 namespace {
@@ -35,7 +37,7 @@ std::string progress_line(const SweepProgress& progress) {
 }
 
 std::string progress_line(const std::string& name, double fraction, std::int64_t done, std::int64_t total, double elapsed_s) {
-  const std::string shown = fmt::format("{:.20}", name);
+  const std::string shown = fmt::format("{:.20}", detail::printable(name));
   if (total <= 0) return fmt::format("{}  {}", shown, done);
   const std::string left = fraction > 0 ? duration(elapsed_s * (1 - fraction) / fraction) + " left" : "";
   return fmt::format("{}  {}  {}/{}  {}", bar_of(fraction), shown, done, total, left);

@@ -32,7 +32,7 @@ void add_report(CLI::App& app, Program& program) {
   command->add_option("DIR", arguments->directory, "Directory of the results")
       ->required()
       ->check(CLI::Validator(path_problem, "", ""))
-     ->option_text(" ");
+      ->option_text(" ");
   command->add_flag("--svg", arguments->options.svg, "Write every figure as figures/NAME.svg too");
   command->add_flag("--csv", arguments->options.csv, "Write the numbers of every figure as figures/NAME.csv too");
   command->add_flag("--quiet", arguments->quiet, "Do not print the names of the files");

@@ -93,12 +93,12 @@ TEST_CASE("a report that fails says why and leaves the old one") {
   const std::string page = files.read("report.html");
   files.replace("steps.csv", "a,1,", "a,x,");
   std::vector<std::filesystem::path> written;
-  CHECK(try_report(files.path(), written).find("steps.csv") != std::string::npos);
+  CHECK(try_report(cordon::detail::DirectoryLock(files.path()), written).find("steps.csv") != std::string::npos);
   CHECK(written.empty());
   CHECK(files.read("report.html") == page);
   CHECK_THROWS_WITH_AS(write_report(files.path() / "nothing"), doctest::Contains("is no directory"), InputError);
   CHECK_THROWS_AS(write_report(files.path() / "steps.csv"), InputError);
   files.replace("steps.csv", "a,x,", "a,1,");
-  CHECK(try_report(files.path(), written).empty());
+  CHECK(try_report(cordon::detail::DirectoryLock(files.path()), written).empty());
   CHECK(written.size() == 1);
 }

@@ -80,15 +80,18 @@ const std::vector<Reader>& readers() {
       {"compare",
        "run 1",
        {"results.json", "run.json"},
-       [](const fs::path& d, const Results& results) { compare_results({results / "run 2", d}); }},
+       [](const fs::path& d, const Results& results) {
+         compare_results({results / "run 2", d});
+       }},
       {"convert",
        "run 1",
        {"results.json", "data.csv", "sets.jsonl"},
-       [](const fs::path& d, const Results& results) { results_to_mat(d, {results / "out.mat", true}, true); }},
-      {"merge",
-       "part 1",
-       {"results.json", "run.json"},
-       [](const fs::path& d, const Results& results) { merge_sweeps({d, results / "part 2"}, results / "whole"); }}};
+       [](const fs::path& d, const Results& results) {
+         results_to_mat(d, {results / "out.mat", true}, true);
+       }},
+      {"merge", "part 1", {"results.json", "run.json"}, [](const fs::path& d, const Results& results) {
+         merge_sweeps({d, results / "part 2"}, results / "whole");
+       }}};
   return all;
 }
 
@@ -162,6 +165,21 @@ TEST_CASE("files without an end, and files that cannot be read") {
         refused("cannot be read to its end", [&] { fs::create_symlink("/proc/self/mem", at); });
       }
     }
+  }
+}
+
+TEST_CASE("figures are not written where a link leads") {
+  const Results results;
+  const fs::path run = results / "run 1", mine = results / "mine";
+  fs::create_directory(mine);
+  std::ofstream(mine / "table.csv") << "mine";
+  fs::create_directory_symlink(mine, run / "figures");
+  for (const auto& [svg, csv] : {std::pair(true, false), std::pair(false, true)}) {
+    ReportOptions options;
+    options.svg = svg;
+    options.csv = csv;
+    CHECK_THROWS_WITH_AS(write_report(run, options), doctest::Contains("is a symbolic link"), InputError);
+    CHECK(tree(mine).size() == 1);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
+#include "core/text.hpp"
 #include "run/scratch.hpp"
 #include "study/results/string_sink.hpp"
 #include "study/statistics/table_text.hpp"
@@ -167,16 +168,16 @@ TEST_CASE("names that try to break out") {
 }
 
 TEST_CASE("fields of CSV files") {
-  CHECK(detail::csv_text("") == "");
-  CHECK(detail::csv_text("plain text") == "plain text");
-  CHECK(detail::csv_text("a,b") == "\"a,b\"");
-  CHECK(detail::csv_text("a\"b") == "\"a\"\"b\"");
-  CHECK(detail::csv_text("+1e3") == "+1e3");
-  CHECK(detail::csv_text("+1+1") == "'+1+1");
-  CHECK(detail::csv_text("-a") == "'-a");
-  CHECK(detail::csv_text("@a") == "'@a");
-  CHECK(detail::csv_text("a=b") == "a=b");
-  CHECK(detail::csv_text("\tx") == "'\tx");
+  CHECK(detail::csv_field("") == "");
+  CHECK(detail::csv_field("plain text") == "plain text");
+  CHECK(detail::csv_field("a,b") == "\"a,b\"");
+  CHECK(detail::csv_field("a\"b") == "\"a\"\"b\"");
+  CHECK(detail::csv_field("+1e3") == "+1e3");
+  CHECK(detail::csv_field("+1+1") == "'+1+1");
+  CHECK(detail::csv_field("-a") == "'-a");
+  CHECK(detail::csv_field("@a") == "'@a");
+  CHECK(detail::csv_field("a=b") == "a=b");
+  CHECK(detail::csv_field("\tx") == "'\tx");
 }
 
 TEST_CASE("rows that begin with a bracket, a star or a dollar") {

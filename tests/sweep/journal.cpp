@@ -257,8 +257,8 @@ TEST_CASE("two processes do not write one journal") {
   const Scratch scratch;
   for (const Start start : {Start::fresh, Start::resume, Start::restart}) {
     const Journal journal(scratch.path(), head(), Start::restart, {});
-    CHECK_THROWS_WITH_AS(Journal(scratch.path(), head(), start, {}),
-                         doctest::Contains("is writing results into this directory"), InputError);
+    CHECK_THROWS_WITH_AS(Journal(scratch.path(), head(), start, {}), doctest::Contains("is writing results into this directory"),
+                         InputError);
     const pid_t child = ::fork();
     REQUIRE(child >= 0);
     if (child == 0) {

@@ -96,8 +96,8 @@ inline Outcome run(const Scratch& scratch, const std::vector<std::string>& argum
 
 /// The files of a sweep that do not hold times.
 inline std::map<std::string, std::string> reproducible(const std::filesystem::path& out) {
-  static const std::set<std::string> with_times{"run.json",   "times.csv",      "summary.tex",
-                                                "summary.md", "benchmarks.csv", "report.html", "manifest.json"};
+  static const std::set<std::string> with_times{"run.json",       "times.csv",   "summary.tex",  "summary.md",
+                                                "benchmarks.csv", "report.html", "manifest.json"};
   std::map<std::string, std::string> files = tree(out);
   std::erase_if(files, [](const auto& file) { return with_times.count(file.first) > 0; });
   return files;

@@ -4,17 +4,20 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/text.hpp"
+
 namespace cordon {
 
 namespace {
 
 std::string render(const std::string& file, const std::vector<Diagnostic>& diagnostics) {
-  std::string text = file + ": " + std::to_string(diagnostics.size()) + (diagnostics.size() == 1 ? " error" : " errors");
+  std::string text =
+      detail::printable(file) + ": " + std::to_string(diagnostics.size()) + (diagnostics.size() == 1 ? " error" : " errors");
   for (const Diagnostic& d : diagnostics) {
-    text += "\n  " + (d.pointer.empty() ? std::string("(document)") : d.pointer);
+    text += "\n  " + (d.pointer.empty() ? std::string("(document)") : detail::printable(d.pointer));
     if (d.line > 0) text += " (line " + std::to_string(d.line) + ")";
-    text += ": " + d.message;
-    if (!d.suggestion.empty()) text += "; " + d.suggestion;
+    text += ": " + detail::printable_lines(d.message);
+    if (!d.suggestion.empty()) text += "; " + detail::printable_lines(d.suggestion);
   }
   return text;
 }

@@ -194,9 +194,12 @@ namespace {
 
 /// The components that `NAME.provides` beside a library announces, a line each; none if there is no such file.
 std::vector<std::string> announced(const fs::path& library) {
-  constexpr std::size_t most = 1000;  // the file is input like any other
-  std::ifstream file(fs::path(library).replace_extension(".provides"));
+  constexpr std::size_t most = 1000, most_bytes = std::size_t{1} << 20;  // the file is input like any other
+  const fs::path name = fs::path(library).replace_extension(".provides");
   std::vector<std::string> components;
+  std::error_code error;
+  if (!fs::is_regular_file(name, error) || fs::file_size(name, error) > most_bytes) return components;
+  std::ifstream file(name);
   for (std::string line; components.size() < most && std::getline(file, line);) {
     if (!line.empty() && line.size() < 200) components.push_back(line);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever the bytes of a file are, it is accepted, or refused by an error that says why: no crash, no other exception, no reading
-// without end, no memory beyond a limit. Every kind of file that is read is made CORDON_CAMPAIGN_FILES times (default 150) from valid
-// examples, with the seed CORDON_CAMPAIGN_SEED (default 1).
+// Whatever the bytes of a file are, it is accepted, or refused by an error that says why: no crash, no other exception, no
+// reading without end, no memory beyond a limit. Every kind of file that is read is made CORDON_CAMPAIGN_FILES times (default
+// 150) from valid examples, with the seed CORDON_CAMPAIGN_SEED (default 1).
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -99,7 +99,8 @@ void campaign_of(const char* kind, const std::vector<std::string>& examples, con
       }
     } catch (const Error& error) {
       ++refused;
-      if (error.code() == Errc::internal || *error.what() == '\0') broken = std::string("not an error of the input: ") + error.what();
+      if (error.code() == Errc::internal || *error.what() == '\0')
+        broken = std::string("not an error of the input: ") + error.what();
     } catch (const std::exception& error) {
       broken = std::string("another exception: ") + error.what();
     } catch (...) {
@@ -126,7 +127,8 @@ std::vector<std::string> studies() {
   const std::string pipelines = R"("pipelines": [
     {"name": "Zonotope", "backend": {"type": "zonotope"}, "observer": {"type": "prediction_correction", "max_generators": 8}},
     {"name": "Interval", "backend": "interval", "observer": "prediction_correction"}])";
-  const std::string data = R"("data": {"simulate": {"steps": 6, "seed": 3, "x0": [1, -1], "input": [{"type": "constant", "offset": 1}]}})";
+  const std::string data =
+      R"("data": {"simulate": {"steps": 6, "seed": 3, "x0": [1, -1], "input": [{"type": "constant", "offset": 1}]}})";
   std::vector<std::string> all;
   all.push_back("{\n  \"cordon\": 1, \"title\": \"plain\",\n  " + system + "},\n  " + data + ",\n  " + pipelines +
                 ",\n  \"metrics\": [\"radius\", \"volume\", \"contains_truth\"]\n}\n");
@@ -134,8 +136,8 @@ std::vector<std::string> studies() {
                 ",\n  \"sweep\": [{\"name\": \"seed\", \"path\": \"/data/simulate/seed\", \"range\": [1, 2]},"
                 " {\"name\": \"w\", \"path\": \"/system/W/upper/0\", \"values\": [0.5, 1]}]\n}\n");
   all.push_back("{\n  \"cordon\": 1, \"title\": \"csv\",\n  " + system +
-                "},\n  \"data\": {\"csv\": {\"file\": \"data.csv\", \"inputs\": [\"u\"], \"outputs\": [\"y\"]}},\n  " + pipelines +
-                "\n}\n");
+                "},\n  \"data\": {\"csv\": {\"file\": \"data.csv\", \"inputs\": [\"u\"], \"outputs\": [\"y\"]}},\n  " +
+                pipelines + "\n}\n");
   for (const char* name : {"descriptor_four_representations", "cstr_actuator_faults", "interval_observers_monotone",
                            "active_diagnosis_unbounded", "compare_representations"}) {
     all.push_back(bytes_of(fs::path(CORDON_SOURCE_DIR) / "examples/studies" / (std::string(name) + ".json")));
@@ -188,7 +190,8 @@ void results_campaign(const char* kind, const std::string& of, const std::vector
                       const std::function<void(const fs::path&)>& read) {
   for (const char* name : names) {
     const fs::path directory = finished().copy(of, false);
-    campaign_of((std::string(kind) + "-" + name).c_str(), {bytes_of(directory / name)}, directory / name, [&] { read(directory); });
+    campaign_of((std::string(kind) + "-" + name).c_str(), {bytes_of(directory / name)}, directory / name,
+                [&] { read(directory); });
   }
 }
 
@@ -247,13 +250,16 @@ TEST_CASE("results that are drawn") {
 }
 
 TEST_CASE("results that are compared, converted and merged") {
-  results_campaign("compare", "run", {"results.json", "run.json"},
-                   [](const fs::path& d) { compare_results({finished() / "run", d}); });
+  results_campaign("compare", "run", {"results.json", "run.json"}, [](const fs::path& d) {
+    compare_results({finished() / "run", d});
+  });
   const Scratch scratch;
-  results_campaign("convert", "run", {"results.json", "sets.jsonl", "data.csv"},
-                   [&](const fs::path& d) { results_to_mat(d, {scratch / "out.mat", true}, true); });
-  results_campaign("merge", "part 1", {"results.json", "run.json"},
-                   [&](const fs::path& d) { merge_sweeps({d, finished() / "part 2"}, scratch / "whole"); });
+  results_campaign("convert", "run", {"results.json", "sets.jsonl", "data.csv"}, [&](const fs::path& d) {
+    results_to_mat(d, {scratch / "out.mat", true}, true);
+  });
+  results_campaign("merge", "part 1", {"results.json", "run.json"}, [&](const fs::path& d) {
+    merge_sweeps({d, finished() / "part 2"}, scratch / "whole");
+  });
 }
 
 TEST_CASE("manifests") {

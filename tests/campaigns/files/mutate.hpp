@@ -49,12 +49,47 @@ inline std::string repeated(std::string_view text, std::size_t count) {
 }
 
 inline std::string hostile_word(Random& random) {
-  static const std::vector<std::string> words{
-      "1e308",  "-1e308",   "1e-320",   "1e999",  "-1e999",     "9007199254740993", "99999999999999999999",
-      "-0",     "NaN",      "Infinity", "-inf",   "\"inf\"",    "\"-inf\"",         "\"nan\"",
-      "0x10",   "1e",       ".5",       "00012",  "1e5",        "4294967296",       "-9223372036854775808",
-      "2.5",    "null",     "true",     "[]",     "{}",         "[[]]",             "\"\"",
-      "\"\\u0000\"", "\"\\ud800\"", "\"../../x\"", "\"=1+1\"", "\"\\u202e\"", "\"type\"", "\"box\"", "\"space\"", "\xff", "\r", "\"", "{", "]"};
+  static const std::vector<std::string> words{"1e308",
+                                              "-1e308",
+                                              "1e-320",
+                                              "1e999",
+                                              "-1e999",
+                                              "9007199254740993",
+                                              "99999999999999999999",
+                                              "-0",
+                                              "NaN",
+                                              "Infinity",
+                                              "-inf",
+                                              "\"inf\"",
+                                              "\"-inf\"",
+                                              "\"nan\"",
+                                              "0x10",
+                                              "1e",
+                                              ".5",
+                                              "00012",
+                                              "1e5",
+                                              "4294967296",
+                                              "-9223372036854775808",
+                                              "2.5",
+                                              "null",
+                                              "true",
+                                              "[]",
+                                              "{}",
+                                              "[[]]",
+                                              "\"\"",
+                                              "\"\\u0000\"",
+                                              "\"\\ud800\"",
+                                              "\"../../x\"",
+                                              "\"=1+1\"",
+                                              "\"\\u202e\"",
+                                              "\"type\"",
+                                              "\"box\"",
+                                              "\"space\"",
+                                              "\xff",
+                                              "\r",
+                                              "\"",
+                                              "{",
+                                              "]"};
   return words[below(random, words.size())];
 }
 
@@ -71,9 +106,10 @@ inline std::string very_long(Random& random) {
 
 /// Another number in the place of one, so that the file keeps its form; nothing if none is found.
 inline void mutate_number(Random& random, std::string& text) {
-  static const std::vector<std::string> numbers{"0",    "-0",    "1",    "-1",  "2",      "3",      "0.1",        "-2.5",
-                                                "1e-9", "1e9",   "1e15", "1e5", "-1e300", "1e308",  "-1e308",     "5e-324",
-                                                "1e20", "1e-20", "1e150", "64", "1000",   "100000", "4294967296", "9007199254740993"};
+  static const std::vector<std::string> numbers{"0",      "-0",    "1",      "-1",     "2",          "3",
+                                                "0.1",    "-2.5",  "1e-9",   "1e9",    "1e15",       "1e5",
+                                                "-1e300", "1e308", "-1e308", "5e-324", "1e20",       "1e-20",
+                                                "1e150",  "64",    "1000",   "100000", "4294967296", "9007199254740993"};
   for (int trial = 0; trial < 50; ++trial) {
     const Span word = token(random, text);
     if (word.length == 0 || !(std::isdigit(static_cast<unsigned char>(text[word.at])) || text[word.at] == '-')) continue;
@@ -138,7 +174,8 @@ inline void mutate(Random& random, std::string& text) {
 
 inline std::string mutated(Random& random, std::string text) {
   const bool keeps_form = below(random, 2) == 0;
-  for (std::size_t changes = 1 + below(random, 3); changes-- > 0;) keeps_form ? mutate_number(random, text) : mutate(random, text);
+  for (std::size_t changes = 1 + below(random, 3); changes-- > 0;)
+    keeps_form ? mutate_number(random, text) : mutate(random, text);
   return text;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two runs into one directory, and runs that are killed: what is left is the results of one of them. CORDON_CAMPAIGN_PAIRS pairs and
-// kills (default 5).
+// Two runs into one directory, and runs that are killed: what is left is the results of one of them. CORDON_CAMPAIGN_PAIRS pairs
+// and kills (default 5).
 #include <cstdlib>
 #include <iostream>
 #include <random>
@@ -83,7 +83,7 @@ TEST_CASE("killed at any time, a run leaves the earlier results or its own") {
   std::map<int, std::map<std::string, std::string>> expected;
   double lasted = 0;
   const auto arguments = [&](int seed, const fs::path& out) {
-    return std::vector<std::string>{"run",   scratch / ("study " + std::to_string(seed) + ".json"), "--out", out, "--quiet",
+    return std::vector<std::string>{"run",        scratch / ("study " + std::to_string(seed) + ".json"), "--out", out, "--quiet",
                                     "--no-report"};
   };
   for (const int seed : {1, 2}) {

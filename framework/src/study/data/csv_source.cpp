@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include "core/text.hpp"
+#include "study/reading/json_text.hpp"
 #include "study/results/numbers.hpp"
 
 namespace cordon::detail {
@@ -16,13 +18,6 @@ std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string::npos) return "";
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-/// A name of a file for a message: printable.
-std::string shown(const std::string& name) {
-  std::string out = "\"";
-  for (const char c : name.substr(0, 60)) out += static_cast<unsigned char>(c) < ' ' || c == 0x7f ? '?' : c;
-  return out + "\"";
 }
 
 void require_file(const std::filesystem::path& file) {
@@ -114,7 +109,7 @@ void CsvSource::locate(const CsvRow& row) {
   std::set<std::string> seen, told;
   for (const std::string& name : header) {
     if (name.empty() || seen.insert(name).second || !told.insert(name).second) continue;
-    report("/data/csv/file", row.line, "the column " + shown(name) + " appears more than once", "rename one of them");
+    report("/data/csv/file", row.line, "the column " + json::in_quotes(name) + " appears more than once", "rename one of them");
   }
   for (Columns* columns : {&inputs_, &outputs_, &truth_, &mode_}) find_columns(*columns, header);
 }
@@ -129,7 +124,7 @@ void CsvSource::find_columns(Columns& columns, const std::vector<std::string>& h
       if (candidates.size() < 30 && name.size() <= 60) candidates.push_back(name);
     }
     report(&columns == &mode_ ? columns.pointer : columns.pointer + "/" + std::to_string(i), 1,
-           "there is no column " + shown(columns.names[i]) + " in the header", suggest(columns.names[i], candidates));
+           "there is no column " + json::in_quotes(columns.names[i]) + " in the header", suggest(columns.names[i], candidates));
   }
 }
 
@@ -156,7 +151,7 @@ std::optional<Vector> CsvSource::numbers(const CsvRow& row, const Columns& colum
     values[static_cast<Index>(i)] = number.value;
     if (number.problem.empty()) continue;
     good = false;
-    report("/data/csv/file", row.line, "column " + shown(columns.names[i]) + ": " + number.problem);
+    report("/data/csv/file", row.line, "column " + json::in_quotes(columns.names[i]) + ": " + number.problem);
   }
   return good ? std::optional<Vector>(std::move(values)) : std::nullopt;
 }
@@ -167,9 +162,11 @@ std::optional<Index> CsvSource::mode(const CsvRow& row) {
   const std::string& field = row.fields[mode_.at.front()];
   const std::string name = trimmed(field);
   if (name.empty()) return -1;
-  const auto found = std::find_if(modes_.begin(), modes_.end(), [&](const std::string& m) { return m == field || m == name; });
+  const auto found = std::find_if(modes_.begin(), modes_.end(),
+                                  [&](const std::string& m) { return m == field || m == name || no_formula(m) == field; });
   if (found != modes_.end()) return static_cast<Index>(found - modes_.begin());
-  report("/data/csv/file", row.line, "column " + shown(mode_.names.front()) + ": there is no mode " + shown(name),
+  report("/data/csv/file", row.line,
+         "column " + json::in_quotes(mode_.names.front()) + ": there is no mode " + json::in_quotes(name),
          suggest(name.substr(0, 200), modes_));
   return std::nullopt;
 }

@@ -2,9 +2,8 @@
 #include "study/reading/json_text.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
+#include "core/text.hpp"
 #include "study/reading/input_file.hpp"
 
 namespace cordon::json {
@@ -13,22 +12,12 @@ namespace {
 
 constexpr std::size_t max_problems = 1000;
 
+/// Printable, cut at a character after about `limit` bytes.
 std::string escaped(std::string_view word, std::size_t limit) {
-  std::string text;
-  std::size_t i = 0;
-  for (; i < word.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(word[i]);
-    if (text.size() >= limit && (byte & 0xC0u) != 0x80u) break;  // never inside a character
-    if (byte < 0x20 || byte == 0x7F) {
-      std::array<char, 8> code{};
-      std::snprintf(code.data(), code.size(), "\\u%04x", byte);
-      text += code.data();
-    } else {
-      text += word[i];
-    }
-  }
-  if (i < word.size()) text += "...";
-  return text;
+  if (word.size() <= limit) return detail::printable(word);
+  std::size_t end = limit;
+  while (end < word.size() && (static_cast<unsigned char>(word[end]) & 0xC0u) == 0x80u) ++end;
+  return detail::printable(word.substr(0, end)) + (end < word.size() ? "..." : "");
 }
 
 const Parts& no_parts() {

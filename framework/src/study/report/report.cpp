@@ -40,6 +40,10 @@ namespace {
 
 Files write_figures(const std::filesystem::path& directory, const ReportOptions& options) {
   Files files;
+  // Others' figures go from that folder: a link in its place could lead to files that are none of this program's.
+  if ((options.svg || options.csv) && std::filesystem::is_symlink(directory / "figures")) {
+    throw InputError((directory / "figures").string(), {{"", "is a symbolic link", "remove the link"}});
+  }
   if (options.html || options.svg) {
     const report::Report page = report::read_report(directory);
     if (options.html) {

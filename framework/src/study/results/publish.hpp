@@ -15,8 +15,8 @@ using Rename = std::function<int(const char* from, const char* to)>;
 int rename_file(const char* from, const char* to);
 
 /// Moves what is in TARGET/.committed, if there is such a folder, into TARGET: first the manifest, so that a reader of whatever
-/// comes later sees that it has changed, then the files. Before that, files of earlier results that the manifest does not list go.
-/// Can be ended at any time and begun again. The caller holds the target's lock. Throws InputError, Errc::io.
+/// comes later sees that it has changed, then the files. Before that, files of earlier results that the manifest does not list
+/// go. Can be ended at any time and begun again. The caller holds the target's lock. Throws InputError, Errc::io.
 void publish(const std::filesystem::path& target, const Rename& rename = rename_file);
 
 /// Waits until the names in a directory are on the disk, where the file system can; files are there already.

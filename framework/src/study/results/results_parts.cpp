@@ -7,13 +7,6 @@
 
 namespace cordon::detail {
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
 std::string csv_number(double value) { return std::isnan(value) ? "" : to_text(value); }
 
 std::string csv_time(std::int64_t k) { return k < 0 ? "" : std::to_string(k); }

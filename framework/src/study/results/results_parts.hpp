@@ -11,12 +11,11 @@
 #include "cordon/core/line_form.hpp"
 #include "cordon/study/result_table.hpp"
 #include "cordon/study/run.hpp"
+#include "core/text.hpp"
 #include "study/results/json_writer.hpp"
 
 namespace cordon::detail {
 
-/// RFC 4180: quoted where needed.
-std::string csv_field(const std::string& text);
 std::string csv_number(double value);                        ///< NaN: empty
 std::string csv_time(std::int64_t k);                        ///< a time index that may not exist: negative ones are empty
 std::string joined(const std::vector<std::string>& fields);  ///< one row with its line end

@@ -22,7 +22,7 @@ constexpr std::size_t whole = std::string::npos;  ///< values of axes are not cu
 void write_statistics(Sink& file, const ResultTable& table, const Summary& summary, bool measured) {
   std::vector<std::string> header{"pipeline"};
   for (const SweepAxis& axis : table.axes) {
-    if (!axis.repeat) header.push_back(csv_text(axis.name));
+    if (!axis.repeat) header.push_back(csv_field(axis.name));
   }
   for (const char* name : {"measure", "points", "failed", "count", "infinite", "mean", "deviation", "min", "q05", "q25", "median",
                            "q75", "q95", "max", "relative"}) {
@@ -30,15 +30,15 @@ void write_statistics(Sink& file, const ResultTable& table, const Summary& summa
   }
   file.write(joined(header));
   for (const SummaryRow& row : summary.rows) {
-    std::vector<std::string> beginning{csv_text(table.pipelines[row.pipeline])};
+    std::vector<std::string> beginning{csv_field(table.pipelines[row.pipeline])};
     for (std::size_t i = 0; i < table.axes.size(); ++i) {
-      if (!table.axes[i].repeat) beginning.push_back(csv_text(axis_value(table, i, row.at[i], whole)));
+      if (!table.axes[i].repeat) beginning.push_back(csv_field(axis_value(table, i, row.at[i], whole)));
     }
     for (std::size_t column = 0; column < table.columns.size(); ++column) {
       const Statistics& found = row.columns[column];
       if (table.columns[column].measured != measured || found.count + found.infinite == 0) continue;
       std::vector<std::string> fields = beginning;
-      fields.push_back(csv_text(table.columns[column].name));
+      fields.push_back(csv_field(table.columns[column].name));
       for (const std::int64_t count : {row.points, row.failed, found.count, found.infinite})
         fields.push_back(std::to_string(count));
       for (const double x : {found.mean, found.deviation, found.min, found.q05, found.q25, found.median, found.q75, found.q95,
@@ -93,7 +93,7 @@ void write_benchmarks(Sink& file, const ResultTable& table) {
       instance += fmt::format("{}{}={}", i == 0 ? " " : ",", table.axes[i].name, axis_value(table, i, row.at[i], whole));
     }
     const std::string time = wall < row.values.size() ? csv_number(row.values[wall]) : "";
-    file.write(joined({csv_text(table.title), csv_text(instance), verdict(table, row), time}));
+    file.write(joined({csv_field(table.title), csv_field(instance), verdict(table, row), time}));
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "study/results/numbers.hpp"
+#include "core/text.hpp"
 #include "study/results/results_parts.hpp"
 
 namespace cordon::detail {
@@ -43,16 +43,11 @@ std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t i
     const nlohmann::json parsed = nlohmann::json::parse(text, nullptr, false);
     if (parsed.is_string()) text = parsed.get<std::string>();
   }
-  for (char& c : text) c = is_control(c) ? '?' : c;
+  text = printable(text);
   if (text.size() <= limit) return text;
   std::size_t end = limit;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;  // never inside a character
   return text.substr(0, end) + "…";
-}
-
-std::string csv_text(const std::string& text) {
-  const bool formula = !text.empty() && (text.find_first_of("=+-@") == 0 || is_control(text[0]));
-  return csv_field(formula && !parse_number(text).problem.empty() ? "'" + text : text);
 }
 
 std::string latex_text(std::string_view text) {

@@ -9,13 +9,9 @@
 
 namespace cordon::detail {
 
-/// A value of an axis as people write it: texts without their quotes, everything else as JSON; control characters are replaced
-/// by "?", and what is longer than `limit` bytes is cut.
+/// A value of an axis as people write it: texts without their quotes, everything else as JSON; printable, and what is
+/// longer than `limit` bytes is cut.
 std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t index, std::size_t limit = 32);
-
-/// A field of a CSV file (RFC 4180). A text that a spreadsheet would run as a formula, one that begins with =, +, -, @ or a
-/// control character and is no number, gets an apostrophe in front.
-std::string csv_text(const std::string& text);
 
 /// Text for LaTeX: special characters escaped, control characters as blanks. Other characters stay as they are, in UTF-8.
 std::string latex_text(std::string_view text);

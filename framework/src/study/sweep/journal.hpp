@@ -47,10 +47,10 @@ class Journal {
   static bool is_in(const std::filesystem::path& out);
 
   const DirectoryLock& lock() const { return lock_; }  ///< of OUT
-  const JournalHead& head() const { return head_; }  ///< `started` is that of the first process
-  void add(const std::string& line);                 ///< of line_of; from any thread
-  void sync();                                       ///< returns when all is on the disk
-  void remove();                                     ///< the sweep is finished
+  const JournalHead& head() const { return head_; }    ///< `started` is that of the first process
+  void add(const std::string& line);                   ///< of line_of; from any thread
+  void sync();                                         ///< returns when all is on the disk
+  void remove();                                       ///< the sweep is finished
 
  private:
   void make_folder() const;

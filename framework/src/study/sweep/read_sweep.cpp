@@ -48,8 +48,9 @@ Frame read_points(const fs::path& file, const std::function<void(const Frame&)>&
       json::Problems problems;
       const json::Value tree = json::parse(line, problems);
       const Cursor at(tree, "", problems);
-      if (!point(at) || problems.any()) throw InputError(file.string(), {{"", "this line is no point of a sweep", mend,
-                                         static_cast<int>(std::min<std::int64_t>(input.lines(), 1'000'000'000))}});
+      if (!point(at) || problems.any())
+        throw InputError(file.string(), {{"", "this line is no point of a sweep", mend,
+                                          static_cast<int>(std::min<std::int64_t>(input.lines(), 1'000'000'000))}});
       continue;
     }
     if (place == Place::head && line == "  \"points\": [") {

@@ -79,7 +79,7 @@ void write_run(Sink& file, const SweepFiles& sweep, const ResultTable& table) {
 std::string csv_value(const std::string& json) {
   json::Problems problems;
   const json::Value value = json::parse(json, problems);
-  return csv_text(value.kind == json::Value::Kind::text ? value.text() : json);
+  return csv_field(value.kind == json::Value::Kind::text ? value.text() : json);
 }
 
 /// The name of an axis, or another one if a number or an axis has it.
@@ -102,22 +102,22 @@ void write_table(Sink& file, const ResultTable& table) {
   std::vector<std::string> fields{"point", "pipeline"};
   std::vector<std::vector<std::string>> values;  // per axis
   for (const SweepAxis& axis : table.axes) {
-    fields.push_back(csv_text(column_of(table, axis)));
+    fields.push_back(csv_field(column_of(table, axis)));
     values.emplace_back();
     for (const std::string& value : axis.values) values.back().push_back(csv_value(value));
   }
   for (const ResultColumn& column : table.columns) {
-    if (!column.measured) fields.push_back(csv_text(column.name));
+    if (!column.measured) fields.push_back(csv_field(column.name));
   }
   fields.emplace_back("error");
   file.write(joined(fields));
   for (const ResultRow& row : table.rows) {
-    fields = {std::to_string(index_of(table, row)), csv_text(table.pipelines[row.pipeline])};
+    fields = {std::to_string(index_of(table, row)), csv_field(table.pipelines[row.pipeline])};
     for (std::size_t i = 0; i < table.axes.size(); ++i) fields.push_back(values[i][row.at[i]]);
     for (std::size_t j = 0; j < table.columns.size(); ++j) {
       if (!table.columns[j].measured) fields.push_back(csv_number(row.values[j]));
     }
-    fields.push_back(csv_text(row.error));
+    fields.push_back(csv_field(row.error));
     file.write(joined(fields));
   }
 }

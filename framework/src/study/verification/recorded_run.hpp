@@ -68,7 +68,8 @@ RecordedRun read_run(const std::filesystem::path& directory);
 class SetReader {
  public:
   explicit SetReader(const detail::RecordedFiles& files);
-  /// The next line; nothing at the end, where `files` must be unchanged. Lines of times that are not `wanted` are passed over unread. Throws InputError.
+  /// The next line; nothing at the end, where `files` must be unchanged. Lines of times that are not `wanted` are passed over
+  /// unread. Throws InputError.
   std::optional<RecordedSet> next(const std::function<bool(Index)>& wanted = {});
 
  private:

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "core/text.hpp"
 #include "study/report/figures/outline.hpp"
 
 namespace cordon::report {
@@ -15,6 +17,7 @@ namespace {
 
 using namespace json;
 using Kind = Value::Kind;
+using detail::printable;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t name_limit = 1000;
@@ -53,7 +56,9 @@ void add_texts(const Cursor& object, const std::string& prefix, std::vector<std:
   if (!object.is(Kind::object)) return;
   for (std::size_t i = 0; i < object.size(); ++i) {
     const Cursor item = object.item(i);
-    if (item.is(Kind::text)) out.emplace_back(prefix + object.value().keys()[i], item.value().text().substr(0, name_limit));
+    if (item.is(Kind::text)) {
+      out.emplace_back(prefix + printable(object.value().keys()[i]), printable(item.value().text().substr(0, name_limit)));
+    }
   }
 }
 
@@ -73,7 +78,7 @@ double value_of(const Cursor& object, std::string_view key) {
 std::string text_of(const Cursor& object, std::string_view key) {
   const auto at = object.find(key);
   if (!at || at->is(Kind::null) || !at->expect(Kind::text, mend())) return "";
-  return at->value().text();
+  return detail::printable_lines(at->value().text());
 }
 
 std::vector<Cursor> items_of(const Cursor& object, std::string_view key) {
@@ -87,7 +92,7 @@ std::vector<Cursor> items_of(const Cursor& object, std::string_view key) {
 RunFiles::RunFiles(std::filesystem::path directory, Detail detail) : files_(std::move(directory)), detail_(detail) {
   const Outline outline = outline_of(files_.file("results.json"));
   tree_ = parse(outline.text, problems_);
-  study_ = outline.study;
+  study_ = detail::printable_lines(outline.study);
   const Cursor root(tree_, "", problems_);
   if (root.expect(Kind::object, "a results file of \"cordon run\" is an object")) read_head(root);
   check();
@@ -105,6 +110,7 @@ void RunFiles::read_head(const Cursor& root) {
     if (pipelines->size() > max_pipelines) pipelines->error("has more than " + std::to_string(max_pipelines) + " pipelines");
     for (std::size_t i = 0; i < std::min(pipelines->size(), max_pipelines); ++i) {
       pipelines_.push_back(read_pipeline(pipelines->item(i)));
+      keys_.push_back(std::exchange(pipelines_.back().name, printable(pipelines_.back().name)));
       const std::string& name = pipelines_.back().name;
       const auto same = std::find_if(pipelines_.begin(), pipelines_.end() - 1, [&](const auto& p) { return p.name == name; });
       if (same != pipelines_.end() - 1) pipelines->item(i).error("repeats the name " + in_quotes(name), mend());
@@ -164,7 +170,7 @@ bool RunFiles::any(PipelineHead::Kind kind) const {
 
 int RunFiles::pipeline(const std::string& name, const std::string& file) const {
   for (std::size_t i = 0; i < pipelines_.size(); ++i) {
-    if (pipelines_[i].name == name) return static_cast<int>(i);
+    if (keys_[i] == name || detail::no_formula(keys_[i]) == name) return static_cast<int>(i);
   }
   throw InputError((directory() / file).string(),
                    {{"", "names the pipeline " + in_quotes(name) + ", which results.json does not have", mend(), 0}});

@@ -67,6 +67,7 @@ class RunFiles {
   bool is_sweep_ = false;
   std::string title_, study_;
   std::vector<PipelineHead> pipelines_;
+  std::vector<std::string> keys_;  ///< their names as the files have them
   std::vector<std::string> modes_;
   std::vector<std::pair<std::string, std::string>> versions_;
   std::vector<Thinner> step_times_;
@@ -74,7 +75,7 @@ class RunFiles {
 
 /// A number, "inf", "-inf" or null (NaN); NaN if it is missing.
 double value_of(const json::Cursor& object, std::string_view key);
-/// A text; "" if it is null or missing.
+/// A text to be shown; "" if it is null or missing.
 std::string text_of(const json::Cursor& object, std::string_view key);
 /// The items of a list; none if it is null or missing.
 std::vector<json::Cursor> items_of(const json::Cursor& object, std::string_view key);

@@ -8,6 +8,7 @@
 #include "cordon/study/comparison_table.hpp"
 #include "cordon/study/result_table.hpp"
 #include "cordon/study/statistics.hpp"
+#include "core/text.hpp"
 #include "study/report/figures/figures.hpp"
 #include "study/results/numbers.hpp"
 #include "study/statistics/comparable.hpp"
@@ -248,10 +249,20 @@ void add_failed(const ResultTable& table, Report& report) {
                                      table.pipelines[first->pipeline], first->error));
 }
 
+/// Names as they are printed.
+ResultTable shown(ResultTable table) {
+  table.title = detail::printable(table.title);
+  for (std::string& name : table.pipelines) name = detail::printable(name);
+  for (SweepAxis& axis : table.axes) axis.name = detail::printable(axis.name);
+  for (ResultColumn& column : table.columns) column.name = detail::printable(column.name);
+  for (ResultRow& row : table.rows) row.error = detail::printable_lines(row.error);
+  return table;
+}
+
 }  // namespace
 
 void add_comparisons(const RunFiles& files, Report& report) {
-  const ResultTable table = read_result_table(files.directory());
+  const ResultTable table = shown(read_result_table(files.directory()));
   const Summary summary = summarise(table);
   const ComparisonTable comparison = comparison_table(table, summary);
   const std::vector<Measure> measures = measures_of(table, comparison);
