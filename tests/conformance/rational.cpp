@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Backends whose every answer is that of rational arithmetic: no law may find fault with them. One holds what it is given and asks
-// about it exactly, one holds polyhedra.
+// Backends whose every answer is that of rational arithmetic: no law may find fault with them. One holds what it is given and
+// asks about it exactly, one holds polyhedra.
 #include "cordon/core/error.hpp"
 #include "cordon/registry/plugin.hpp"
 #include "cordon/solvers/exact_questions.hpp"
@@ -98,4 +98,5 @@ void register_components(Registrar& registrar) {
 
 }  // namespace
 
-CORDON_PLUGIN("rational", "1.0.0", "GPL-3.0-or-later", "the Cordon authors", "backends in rational arithmetic", register_components)
+CORDON_PLUGIN("rational", "1.0.0", "GPL-3.0-or-later", "the Cordon authors", "backends in rational arithmetic",
+              register_components)

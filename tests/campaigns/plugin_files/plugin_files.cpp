@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Damaged plugin files: each is refused or works, `cordon list` lives, and what else there is goes on working. CORDON_PLUGIN_FILES
-// sets how many (150 by default; the nightly test takes 10,000), CORDON_CAMPAIGN_SEED which.
+// Damaged plugin files: each is refused or works, `cordon list` lives, and what else there is goes on working.
+// CORDON_PLUGIN_FILES sets how many (150 by default; the nightly test takes 10,000), CORDON_CAMPAIGN_SEED which.
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <elf.h>
+#include <link.h>
 #include <map>
 #include <random>
 
 #include <doctest/doctest.h>
-#include <elf.h>
-#include <link.h>
 
 #include "registry/program.hpp"
 
