@@ -142,12 +142,11 @@ struct Zonotopes {
 ParamSchema schema() {
   ParamSchema schema;
   plugins::add_reduction(schema);
-  schema.choice(
-      "strip",
-      "how a strip is intersected: smallest F-radius (segment), smallest volume among zonotopes cut along one generator "
-      "(bravo), or smallest volume of all; both volumes are compared by squared determinants, volume as bravo, where g "
-      "generators in n dimensions have more than 20,000 subsets of n - 1",
-      {"segment", "bravo", "volume"}, "segment");
+  schema.choice("strip",
+                "how a strip is intersected: smallest F-radius, smallest interval hull, smallest volume among zonotopes cut "
+                "along one generator (bravo), or smallest volume of all; where g generators in n dimensions have more than "
+                "20,000 subsets of n - 1, volume is bravo, and both compare squared determinants",
+                {"segment", "hull", "bravo", "volume"}, "segment");
   plugins::add_rounding(schema);
   return schema;
 }
@@ -161,7 +160,8 @@ std::unique_ptr<SetBackend> create(const Params& params) {
   Zonotopes zonotopes;
   zonotopes.reduction = plugins::reduction_from(params);
   const std::string& strip = params.text("strip");
-  zonotopes.strip = strip == "bravo"    ? sets::StripMethod::bravo
+  zonotopes.strip = strip == "hull"     ? sets::StripMethod::hull
+                    : strip == "bravo"  ? sets::StripMethod::bravo
                     : strip == "volume" ? sets::StripMethod::volume
                                         : sets::StripMethod::segment;
   zonotopes.outward = info.rounding == Rounding::outward;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "determinant.hpp"
@@ -19,6 +20,8 @@ namespace {
 constexpr Index max_normals = 20000;
 /// A part ρᵀx that is a smaller fraction of |ρ|ᵀ|x| gives no gain: it would magnify rounding errors.
 constexpr double smallest_part = 1e-6;
+/// A strip whose share of what Z meets is no larger counts as a hyperplane.
+constexpr double hyperplane = 1e-10;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// ρᵀx, or 0 where too much of it has cancelled. This is decided in the coordinates of the set: in any other basis the terms
@@ -37,6 +40,39 @@ Vector segment_gain(MatrixIn G, VectorIn rho, double sigma) {
   p /= scale;
   const double denominator = p.squaredNorm() + (sigma / scale) * (sigma / scale);
   return linalg::product(G, p) / (denominator * scale);
+}
+
+/// The λ that makes every edge of the interval hull smallest: λ_i minimises Σ_j |G_ij - λ_i p_j| + σ |λ_i|, p_j = ρᵀg_j, and is a
+/// median of 0 with weight σ and the G_ij / p_j with weights |p_j|; of several the one next to 0. A hyperplane is left to the
+/// F-radius: its Z(λ) lies in it.
+Vector hull_gain(MatrixIn G, VectorIn rho, double sigma) {
+  struct Break {
+    double place, weight;
+  };
+  Vector parts(G.cols()), lambda = Vector::Zero(G.rows());
+  for (Index j = 0; j < G.cols(); ++j) parts[j] = part_of(G.col(j), rho);
+  const double reach = parts.lpNorm<1>(), all = sigma + reach;
+  if (sigma <= hyperplane * reach) return segment_gain(G, rho, sigma);
+  std::vector<Break> breaks;
+  for (Index i = 0; i < G.rows(); ++i) {
+    breaks.clear();
+    double above = 0, below = 0;  // weights on either side of 0
+    for (Index j = 0; j < G.cols(); ++j) {
+      if (parts[j] == 0 || G(i, j) == 0) continue;
+      breaks.push_back({G(i, j) / parts[j], std::abs(parts[j])});
+      (breaks.back().place > 0 ? above : below) += breaks.back().weight;
+    }
+    const double side = above > below ? 1 : -1;
+    double beyond = std::max(above, below);
+    std::sort(breaks.begin(), breaks.end(), [&](Break a, Break b) { return side * a.place < side * b.place; });
+    for (const Break& next : breaks) {
+      if (2 * beyond <= all) break;
+      if (side * next.place < 0) continue;
+      lambda[i] = next.place;
+      beyond -= next.weight;
+    }
+  }
+  return lambda;
 }
 
 /// Columns w_J, one for each (n-1)-subset J of the generators, with w_Jᵀλ = det [G_J λ]. Then the volume of Z(λ) is
@@ -157,7 +193,16 @@ class VolumeGain {
 }  // namespace
 
 Vector strip_gain(MatrixIn G, VectorIn rho, double sigma, StripMethod method) {
-  return method == StripMethod::segment ? segment_gain(G, rho, sigma) : VolumeGain(G, rho, sigma).best(method);
+  switch (method) {
+    case StripMethod::segment:
+      return segment_gain(G, rho, sigma);
+    case StripMethod::hull:
+      return hull_gain(G, rho, sigma);
+    case StripMethod::bravo:
+    case StripMethod::volume:
+      return VolumeGain(G, rho, sigma).best(method);
+  }
+  throw Error(Errc::invalid, "strip intersection: unknown method");
 }
 
 }  // namespace cordon::sets

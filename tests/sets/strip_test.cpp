@@ -27,7 +27,7 @@ Zonotope zonotope(std::initializer_list<double> c, std::initializer_list<std::in
   return Z;
 }
 
-constexpr StripMethod methods[] = {StripMethod::segment, StripMethod::bravo, StripMethod::volume};
+constexpr StripMethod methods[] = {StripMethod::hull, StripMethod::segment, StripMethod::bravo, StripMethod::volume};
 
 }  // namespace
 
@@ -139,6 +139,59 @@ TEST_CASE("the segment gain has the smallest F-radius of the family") {
   for (const StripMethod other : {StripMethod::bravo, StripMethod::volume})
     CHECK(best <= f_radius(*intersect_strip(Z, rho, .3, .4, other)));
   CHECK(best < f_radius(Z));
+}
+
+TEST_CASE("the hull gain gives the smallest interval hull of the family") {
+  CHECK(rc::check([] {
+    const Index n = arbitrary_dim(4);
+    const Zonotope Z = arbitrary_zonotope(n, Vector::Ones(n));
+    const Vector rho = arbitrary_vector(n);
+    const double sigma = .01 + std::abs(arbitrary_number()), offset = rho.dot(Z.c) + arbitrary_number();
+    const auto best = intersect_strip(Z, rho, offset, sigma, StripMethod::hull);
+    if (!best) return;
+    const auto radii = [](const Zonotope& X) { return Vector(X.G.cwiseAbs().rowwise().sum()); };
+    const Vector most = radii(*best), room = 1e-9 * sizes_of(Z);
+    RC_ASSERT((most.array() <= (radii(Z) + room).array()).all());
+    for (const StripMethod other : methods) {
+      RC_ASSERT((most.array() <= (radii(*intersect_strip(Z, rho, offset, sigma, other)) + room).array()).all());
+    }
+  }));
+}
+
+TEST_CASE("the unit of a state changes nothing") {
+  CHECK(rc::check([] {
+    const Index n = arbitrary_dim(4), p = arbitrary_dim(2);
+    const Zonotope Z{arbitrary_vector(n), arbitrary_matrix(n, *rc::gen::inRange<Index>(1, 9))},
+        V{Vector::Zero(p), Matrix::Identity(p, p)};
+    const Matrix C = arbitrary_matrix(p, n);
+    Random random = arbitrary_random();
+    const Vector z = C * point_of(Z, random);
+    Vector units = Vector::Ones(n);
+    units[*rc::gen::inRange<Index>(0, n)] = *rc::gen::element(1e3, 1e-3, 2.54);
+    const Matrix to = units.asDiagonal(), back = units.cwiseInverse().asDiagonal();
+    for (const StripMethod method : methods) {
+      const auto X = correct(Z, C, z, Matrix::Identity(p, p), V, method),
+                 Y = correct(affine_map(Z, to, Vector::Zero(n)), C * back, z, Matrix::Identity(p, p), V, method);
+      RC_ASSERT(X && Y);
+      // of several λ that are equally good rounding may choose another one, but for `segment` there is one
+      if (method != StripMethod::segment && method != StripMethod::hull) continue;
+      const Box expected = interval_hull(*X), found = interval_hull(affine_map(*Y, back, Vector::Zero(n)));
+      RC_ASSERT(((expected.upper - found.upper).cwiseAbs().array() <= 1e-9 * sizes_of(Z).array()).all());
+      RC_ASSERT(((expected.lower - found.lower).cwiseAbs().array() <= 1e-9 * sizes_of(Z).array()).all());
+    }
+  }));
+  // with one best generator the smallest volume is determined as well
+  const Zonotope Z = zonotope({.3, -.2, .1}, {{1, .5, .1, 2, .7}, {.2, 1, -.3, 1, .4}, {.2, .1, 1, -1, .3}});
+  const Vector rho{{1, -.5, 2}}, units{{1, 1e3, 1}};
+  for (const StripMethod method : methods) {
+    CAPTURE(static_cast<int>(method));
+    const Zonotope X = *intersect_strip(Z, rho, .3, .4, method),
+                   Y = *intersect_strip({units.cwiseProduct(Z.c), units.asDiagonal() * Z.G}, rho.cwiseQuotient(units), .3, .4,
+                                        method);
+    REQUIRE(X.generators() == Y.generators());
+    CHECK((units.cwiseInverse().asDiagonal() * Y.G - X.G).cwiseAbs().maxCoeff() < 1e-9);
+    CHECK((Y.c.cwiseQuotient(units) - X.c).cwiseAbs().maxCoeff() < 1e-9);
+  }
 }
 
 TEST_CASE("in three dimensions the linear program beats the generators' directions") {

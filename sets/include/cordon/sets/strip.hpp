@@ -10,6 +10,7 @@
 // A flat Z stays flat: λ is chosen in the range of G, where the volume of its own dimension counts.
 // A strip that cuts Z on one side only is first narrowed to what Z meets of it. Directions of which ρ sees less than 1e-6, in the
 // coordinates of Z, are not used for λ: what is left of them may be rounding.
+// Units: λ follows a change of the coordinates' units in all methods, up to ties.
 // Rounding: nominal. The rounding errors of ρᵀx are multiplied by λ, whatever its size; they widen the strip. Errors:
 // Errc::invalid for σ < 0, Errc::dimension, Errc::not_finite.
 #pragma once
@@ -23,13 +24,14 @@ namespace cordon::sets {
 /// Choice of λ.
 enum class StripMethod {
   segment,  ///< smallest F-radius: λ = GGᵀρ / (ρᵀGGᵀρ + σ²) [Alamo2005]
+  hull,     ///< smallest interval hull: each edge is the shortest that any λ gives it; hyperplanes (σ = 0) as `segment`
   bravo,    ///< smallest volume among Z and the g zonotopes with λ = g_j / ρᵀg_j [Bravo2006]
   volume    ///< smallest volume of all λ: a convex piecewise linear problem, solved as a linear program [Alamo2005]
 };
 
 /// Outer; exact if Z lies in the strip. The volume methods need the (n-1)-subsets of the generators. Beyond 20,000 of them both
 /// take, among Z and the λ of `bravo`, the smallest sum of squared instead of absolute determinants (over all λ, `segment` would
-/// minimise that). O(n g) for segment, O(n³ C(g, n-1)) for the others, O(n² g) beyond the limit.
+/// minimise that). O(n g) for segment, O(n g log g) for hull, O(n³ C(g, n-1)) for the others, O(n² g) beyond the limit.
 std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double d, double sigma,
                                         StripMethod method = StripMethod::segment);
 
