@@ -78,6 +78,10 @@ void Effectiveness::input(MatrixIn B, VectorIn u, Vector& image) const {
   }
 }
 
+bool Effectiveness::inputs_enter_as_sets() const {
+  return backend_.info().rounding != Rounding::nominal && model_.linear.actuator.dim() == 0;
+}
+
 Matrix Effectiveness::input_spread(MatrixIn B, VectorIn u) const {
   Matrix spread(B.rows(), static_cast<Index>(ranged_inputs_.size()));
   for (Index column = 0; column < spread.cols(); ++column) {
@@ -139,6 +143,11 @@ Matrix Effectiveness::interval_columns(const Vector& open) const {
 Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& now) const {
   const LinearModel& m = model_.linear;
   if (m.outputs() == 0) return X;
+  if (plain_outputs_ && inputs_enter_as_sets() && !m.D.isZero(0)) {
+    Matrix T(m.outputs(), m.noises() + m.inputs());
+    T << m.Dv, m.D;
+    return backend_.correct(X, {C, now.y, {T, backend_.product(V_, backend_.point(now.u))}});
+  }
   if (plain_outputs_) return backend_.correct(X, {C, now.y - input(m.D, now.u), {m.Dv, V_}});
 
   Vector open = Vector::Zero(m.outputs()), zeta = open;

@@ -30,6 +30,9 @@ class Effectiveness {
   /// B diag(f̂) u.
   Vector input(MatrixIn B, VectorIn u) const;
   void input(MatrixIn B, VectorIn u, Vector& image) const;  ///< the same into a vector of that size
+  /// Are the products B u and D u left to the backend, as images of the point u? With outward rounding it encloses them, which
+  /// the vector `input` does not. Of actuators with known effectiveness only.
+  bool inputs_enter_as_sets() const;
   /// B diag(f̌) diag(u), the columns of inputs with a range only.
   Matrix input_spread(MatrixIn B, VectorIn u) const;
   /// The set of φ: a unit box with one coordinate per input with a range.

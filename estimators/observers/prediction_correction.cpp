@@ -39,7 +39,11 @@ class PredictionCorrection final : public Observer {
       std::vector<Term> terms{{m.Bw, W_}};
       if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
       if (effectiveness_.has_open_states()) terms.push_back({unit, open});
-      Enclosure next = backend().predict(X_, {m.A, effectiveness_.input(m.B, before.u), terms});
+      const bool as_set = effectiveness_.inputs_enter_as_sets() && m.inputs() > 0;
+      const Enclosure u = as_set ? backend().point(before.u) : Enclosure{};
+      if (as_set) terms.push_back({m.B, u});
+      const Vector shift = as_set ? Vector(Vector::Zero(m.states())) : effectiveness_.input(m.B, before.u);
+      Enclosure next = backend().predict(X_, {m.A, shift, terms});
       if (effectiveness_.has_open_states()) next.tightness = Tightness::outer;
       return next;
     });

@@ -140,6 +140,20 @@ TEST_CASE("with outward rounding a claim of exact is taken literally") {
   CHECK(names(outcome, "claimed exact"));
 }
 
+TEST_CASE("with outward rounding products with the input are enclosed") {
+  for (const char* backend : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
+    CAPTURE(backend);
+    const std::string pipeline = std::string(R"({"name": "P", "backend": {"type": ")") + backend +
+                                 R"(", "rounding": "outward"}, "observer": "prediction_correction"})";
+    const Run run(R"({"type": "lti", "A": [[0.5]], "B": [[0.1]], "C": [[1]], "D": [[0.7]], "Bw": [[]],
+                      "X0": {"type": "box", "lower": [-1], "upper": [1]}, "V": {"type": "box", "lower": [-0.5], "upper": [0.5]}})",
+                  R"({"steps": 3, "input": [{"type": "constant", "offset": 0.3}]})", pipeline.c_str());
+    const Outcome outcome = run.verify();
+    CAPTURE(outcome.out);
+    CHECK(outcome.exit == 0);  // a claim of exact for the rounded 0.1 · 0.3 would be false
+  }
+}
+
 TEST_CASE("an E that is singular in decimals only is told of, and read by all alike") {
   const Run run(R"({"type": "descriptor", "E": [[0.1, 0.3], [0.3, 0.9]], "A": [[0.5, 0.1], [0.2, 0.8]], "C": [[1, 0]],
                     "X0": {"type": "box", "lower": [-1, -1], "upper": [1, 1]},
