@@ -348,3 +348,30 @@ TEST_CASE("hostile programs end in a proof or in none, never in a wrong one") {
     CHECK_FALSE(gram.distance(Vector{{inf, 0, 0, 0}}) <= 1);
   }
 }
+
+TEST_CASE("a question of feasibility in exact arithmetic takes a few pivots per row, not hundreds") {
+  // Corners of the box a little too far out: nothing but ties among the costs, which are all 0.
+  int infeasible = 0;
+  for (const unsigned seed : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}) {
+    std::mt19937_64 engine(seed);
+    const auto uniform = [&] { return 2 * static_cast<double>(engine() >> 11) * 0x1p-53 - 1; };
+    const Index rows = 20, columns = 56;
+    Matrix A(rows, columns);
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < columns; ++j) A(i, j) = std::ldexp(uniform(), -static_cast<int>(engine() % 40));
+    }
+    const Vector corner = 1.02 * Vector::NullaryExpr(columns, [&] { return uniform() < 0 ? -1. : 1.; });
+    Program p{A, A * corner, Vector::Zero(columns)};
+    const ExactProgram::Result exact = exact_maximum(p);
+    infeasible += exact.status == ExactProgram::Status::infeasible;
+    CHECK(exact.pivots <= 5 * rows);
+    // The share of the right-hand side that can be met says the same.
+    Matrix with_share(rows, columns + 1);
+    with_share << p.A, -p.b;
+    const ExactProgram::Result share = exact_maximum({with_share, Vector::Zero(rows), Vector::Unit(columns + 1, columns)});
+    CHECK(share.status == ExactProgram::Status::optimal);
+    CHECK((share.value == 1) == (exact.status == ExactProgram::Status::optimal));
+    CHECK(share.pivots <= 5 * rows);
+  }
+  CHECK(infeasible >= 3);
+}

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 #include "cordon/core/error.hpp"
@@ -75,6 +76,13 @@ class Tableau {
   const mpz_class& entry(std::size_t row, Index factor) const { return rows_[row][index(lines_ + factor)]; }
   const mpz_class& cost(Index factor) const { return rows_.back()[index(lines_ + factor)]; }
 
+  /// Costs of second rank, integers for the factors that are not in the basis: they break ties among the costs.
+  void add_second_costs(const std::vector<int>& costs) {
+    second_.assign(rows_.back().size(), 0);
+    for (Index j = 0; j < factors_; ++j) second_[index(lines_ + j)] = costs[index(j)] * scale_;
+  }
+  const mpz_class& second_cost(Index factor) const { return second_[index(lines_ + factor)]; }
+
   void enter(std::size_t row, Index factor) {
     pivot(static_cast<Index>(row), lines_ + factor);
     basic_[row] = factor;
@@ -132,20 +140,24 @@ class Tableau {
       for (mpz_class& x : pivot_row) x = -x;
     }
     const mpz_class p = pivot_row[index(c)];
-    for (Row& row : rows_) {
-      if (&row == &pivot_row) continue;
+    const auto reduce = [&](Row& row) {
       const mpz_class factor = row[index(c)];
       for (std::size_t j = 0; j < row.size(); ++j) {
         row[j] *= p;
         if (factor != 0) mpz_submul(row[j].get_mpz_t(), factor.get_mpz_t(), pivot_row[j].get_mpz_t());
         mpz_divexact(row[j].get_mpz_t(), row[j].get_mpz_t(), scale_.get_mpz_t());
       }
+    };
+    for (Row& row : rows_) {
+      if (&row != &pivot_row) reduce(row);
     }
+    if (!second_.empty()) reduce(second_);
     scale_ = p;
   }
 
   Index lines_, factors_;
   std::vector<Row> rows_;     ///< the objective is the last one
+  Row second_;                ///< empty, or an objective that breaks its ties
   std::vector<Index> basic_;  ///< factor of each row; -1: none yet
   mpz_class scale_ = 1, objective_scale_ = 1;
 };
@@ -182,10 +194,13 @@ std::vector<Index> proposed_order(const ExactProgram& p, Vector& xi) {
   return order;
 }
 
-/// |a| / |b| < |c| / |d|, for b, d ≠ 0.
-bool smaller_ratio(const mpz_class& a, const mpz_class& b, const mpz_class& c, const mpz_class& d) {
-  return abs(a * d) < abs(c * b);
+/// The sign of |a| / |b| - |c| / |d| for b, d ≠ 0, or, where a and c have signs of their own, of a / |b| - c / |d|.
+int compare_ratios(const mpz_class& a, const mpz_class& b, const mpz_class& c, const mpz_class& d) {
+  return cmp(a * abs(d), c * abs(b));
 }
+
+/// A number of 16 bits that no structure of a program repeats (a linear congruence).
+int weight(Index j) { return 1 + static_cast<int>((static_cast<std::uint64_t>(j + 1) * 6364136223846793005ULL) >> 49); }
 
 }  // namespace
 
@@ -202,8 +217,13 @@ ExactProgram::Result ExactProgram::maximum() const {
     at[static_cast<std::size_t>(j)] = sign != 0 ? sign : xi[j] < 0 ? -1 : 1;
   }
   for (const Index j : tableau.basis()) at[static_cast<std::size_t>(j)] = 0;
+  // Where costs are 0, as in every question of feasibility, ties would leave the method without a sense of progress: it wanders
+  // through thousands of bases. Costs of second rank, all different and at first on the side of the bounds, break them.
+  std::vector<int> second = at;
+  for (Index j = 0; j < count; ++j) second[static_cast<std::size_t>(j)] *= weight(j);
+  tableau.add_second_costs(second);
 
-  constexpr int fast_pivots = 200, most_pivots = 100'000;
+  constexpr int fast_pivots = 1000, most_pivots = 100'000;
   for (int pivots = 0; pivots < most_pivots; ++pivots) {
     // Leaving row: the largest violation while things go well, then the smallest index (Bland), which cannot cycle.
     std::size_t leaving = tableau.basis().size();
@@ -217,8 +237,8 @@ ExactProgram::Result ExactProgram::maximum() const {
       if (better) leaving = i, violation = excess, side = sgn(value);
     }
     if (side == 0) {
-      if (tableau.objective_has_lines()) return {Status::unbounded, 0};
-      return {Status::optimal, tableau.objective(at), tableau.solution(at), tableau.basis()};
+      if (tableau.objective_has_lines()) return {Status::unbounded, 0, {}, {}, pivots};
+      return {Status::optimal, tableau.objective(at), tableau.solution(at), tableau.basis(), pivots};
     }
     // Entering factor: one that can move the leaving one back; the smallest ratio keeps all costs on the right side.
     Index entering = -1;
@@ -226,10 +246,18 @@ ExactProgram::Result ExactProgram::maximum() const {
       const int bound = at[static_cast<std::size_t>(j)];
       const mpz_class& entry = tableau.entry(leaving, j);
       if (bound == 0 || sgn(entry) * bound * side >= 0) continue;
-      if (entering < 0 || smaller_ratio(tableau.cost(j), entry, tableau.cost(entering), tableau.entry(leaving, entering)))
-        entering = j;
+      if (entering >= 0) {
+        const mpz_class& other = tableau.entry(leaving, entering);
+        const int other_bound = at[static_cast<std::size_t>(entering)];
+        int smaller = compare_ratios(abs(tableau.cost(j)), entry, abs(tableau.cost(entering)), other);
+        if (smaller == 0)
+          smaller = compare_ratios(bound * tableau.second_cost(j), entry, other_bound * tableau.second_cost(entering), other);
+        if (smaller >= 0) continue;
+      }
+      entering = j;
     }
-    if (entering < 0) return {Status::infeasible, 0};  // the leaving factor is as near to its bound as the others let it
+    if (entering < 0)
+      return {Status::infeasible, 0, {}, {}, pivots};  // the leaving factor is as near to its bound as the others let it
     at[static_cast<std::size_t>(tableau.basis()[leaving])] = side;
     at[static_cast<std::size_t>(entering)] = 0;
     tableau.enter(leaving, entering);

@@ -25,6 +25,7 @@ struct ExactProgram {
     rational::Rational value;                 ///< for `optimal`, like the rest
     std::vector<rational::Rational> xi = {};  ///< a maximiser's boxed part
     std::vector<Index> basis = {};  ///< boxed variables whose columns, with those of the lines, solve for the multipliers
+    int pivots = 0;                 ///< after those that filled the first basis
   };
   /// Errc::solver after an absurd number of pivots.
   Result maximum() const;

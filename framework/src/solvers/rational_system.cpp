@@ -54,25 +54,23 @@ Rational distance(const System& s, const RationalVector& g, const RationalVector
   return sum;
 }
 
-/// The rows for the exact simplex method: plus - minus is written with a factor that a row of its own fixes to
-/// 1. `right` in place of the right-hand side: 0, and the right-hand side times a last factor, which the method maximises.
-ExactProgram program_of(const Rows& rows, bool scaled) {
+/// max τ for the rows with the right-hand side times τ ∈ [-1, 1], for the exact simplex method: plus - minus is written with a
+/// factor that a row of its own fixes to τ, too. The rows have a solution if and only if τ reaches 1.
+ExactProgram share_of_right_side(const Rows& rows) {
   const Index m = rows.plus.size(), g = rows.A.cols(), l = rows.S.cols();
   const bool shifted = !rows.minus.isZero(0);
-  const Index extra_row = shifted ? 1 : 0, constant = g, tau = g + extra_row, cols = tau + (scaled ? 1 : 0);
+  const Index extra_row = shifted ? 1 : 0, constant = g, tau = g + extra_row, cols = tau + 1;
   ExactProgram p{Matrix::Zero(m + extra_row, l), Matrix::Zero(m + extra_row, cols), RationalVector(at(m + extra_row)),
                  RationalVector(at(l)), RationalVector(at(cols))};
   p.S.topRows(m) = rows.S;
   p.A.topLeftCorner(m, g) = rows.A;
-  if (shifted) p.A.block(0, constant, m, 1) = rows.minus;
-  if (scaled) {
-    p.A.block(0, tau, m, 1) = -rows.plus;
-    if (shifted) p.A(m, constant) = 1, p.A(m, tau) = -1;
-    p.g[at(tau)] = 1;
-  } else {
-    for (Index i = 0; i < m; ++i) p.b[at(i)] = exact(rows.plus[i]);
-    if (shifted) p.A(m, constant) = 1, p.b[at(m)] = 1;
+  p.A.block(0, tau, m, 1) = -rows.plus;
+  if (shifted) {
+    p.A.block(0, constant, m, 1) = rows.minus;
+    p.A(m, constant) = 1;
+    p.A(m, tau) = -1;
   }
+  p.g[at(tau)] = 1;
   return p;
 }
 
@@ -182,15 +180,14 @@ std::optional<RationalVector> solution_near(const System& s, VectorIn data) {
 
 Finding settle(const Rows& rows) {
   const Index m = rows.plus.size(), l = rows.S.cols(), g = rows.A.cols();
-  const ExactProgram::Result found = program_of(rows, false).maximum();
-  if (found.status != ExactProgram::Status::infeasible) {
+  const ExactProgram scaled = share_of_right_side(rows);
+  const ExactProgram::Result gap = scaled.maximum();
+  if (gap.value == 1) {
     Vector data = Vector::Zero(l + g);  // the lines follow from the factors
-    data.tail(g) = rounded(found.xi, g);
+    data.tail(g) = rounded(gap.xi, g);
     return {true, std::move(data)};
   }
-  // max τ < 1 with the right-hand side scaled by τ: its multipliers y solve [L B]ᵀy = (0, cost of B) for the basis B
-  const ExactProgram scaled = program_of(rows, true);
-  const ExactProgram::Result gap = scaled.maximum();
+  // The multipliers y solve [L B]ᵀy = (0, cost of B) for the basis B.
   const Index all = scaled.A.rows(), basic = static_cast<Index>(gap.basis.size());
   RationalMatrix equations(l + basic, all);
   RationalVector costs(at(l + basic));
