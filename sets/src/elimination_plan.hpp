@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "cordon/sets/constraint_elimination.hpp"
@@ -26,5 +27,9 @@ std::vector<EliminationStep> plan_elimination(const LineForm& X, Index max_const
 /// `eliminate_constraints` of a set that was computed itself, from terms of these sizes.
 Reduced eliminate_constraints(const LineForm& X, const Terms& before, Index max_constraints,
                               const ConstraintElimination& options);
+
+/// Constraints of a set of dimension n whose lifted generators are reduced to so many: a reduction needs two for each row of
+/// [G; A].
+inline Index most_constraints(Index n, Index max_generators) { return std::max<Index>(0, max_generators / 2 - n); }
 
 }  // namespace cordon::sets

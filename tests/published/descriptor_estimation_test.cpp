@@ -292,3 +292,24 @@ TEST_CASE("an E that is singular up to a hair is refused with its singular value
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].message.find("nearly singular") != std::string::npos);
 }
+
+TEST_CASE("a larger budget is not worse, however many constraints it allows") {
+  const Plugins plugins;
+  const auto mean_radius = [&](std::int64_t generators, std::int64_t constraints) {
+    const auto observer =
+        plugins.observer("descriptor", descriptor_example(), plugins.backend("line_zonotope"), budget(generators, constraints));
+    observer->start();
+    double sum = 0;
+    for (const Row& row : recorded()) {
+      const Box hull = observer->step(row.sample).set->interval_hull();
+      sum += row.sample.k == 0 ? 0 : ((hull.upper - hull.lower) / 2).maxCoeff();
+    }
+    return sum / static_cast<double>(recorded().size() - 1);
+  };
+  const double small = mean_radius(30, 5);
+  for (const auto& [generators, constraints] : {std::pair{30, 12}, {60, 20}, {60, 28}, {60, 30}, {200, 100}}) {
+    CAPTURE(generators);
+    CAPTURE(constraints);
+    CHECK(mean_radius(generators, constraints) <= 1.01 * small);
+  }
+}

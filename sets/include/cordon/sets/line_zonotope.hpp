@@ -37,8 +37,8 @@ struct LineReduction {
 };
 
 /// Encloses X by a set of at most `max_generators` and `max_constraints`: lines are eliminated (exact), then constraints, then
-/// the generators of the lifted zonotope [G; A] are reduced. If max_generators < n + constraints, more constraints are
-/// eliminated. Needs max_generators ≥ n.
+/// the generators of the lifted zonotope [G; A] are reduced. With fewer than two of them for each of its n + constraints rows
+/// that would leave little more than a parallelotope: more constraints are eliminated first. Needs max_generators ≥ n.
 Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraints, const LineReduction& how = {});
 
 }  // namespace cordon::sets
