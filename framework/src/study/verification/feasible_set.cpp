@@ -114,4 +114,27 @@ LineForm successors(const Model& model, const LineForm& X, const std::optional<L
   return rows.project(x);
 }
 
+Model widened(Model model, const Vector& radius) {
+  const Index p = radius.size();
+  Matrix Dv(p, model.linear.noises() + p);
+  Dv << model.linear.Dv, Matrix::Identity(p, p);
+  model.linear.Dv = Dv;
+  model.V = cartesian_product(model.V, make_box({-radius, radius}));
+  return model;
+}
+
+LineForm widened(LineForm X) {
+  constexpr double share = 1e-13;
+  const Index n = X.dim(), m = X.constraints(), g = X.generators();
+  const Vector rows = share * (X.b.cwiseAbs() + X.A.cwiseAbs().rowwise().sum());
+  const Vector coordinates = share * (X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
+  X.G.conservativeResize(n, g + n + m);
+  X.G.rightCols(n + m).setZero();
+  X.G.middleCols(g, n) = coordinates.asDiagonal();
+  X.A.conservativeResize(m, g + n + m);
+  X.A.rightCols(n + m).setZero();
+  X.A.rightCols(m) = rows.asDiagonal();
+  return X;
+}
+
 }  // namespace cordon::verification

@@ -58,4 +58,9 @@ struct Transition {
 LineForm successors(const Model& model, const LineForm& X, const std::optional<LineForm>& admissible_set,
                     const Transition& transition);
 
+/// The model with each output widened by `radius`, and X with each coordinate and constraint widened by 1e-13 of its terms: what
+/// nominal operations may make of them.
+Model widened(Model model, const Vector& radius);
+LineForm widened(LineForm X);
+
 }  // namespace cordon::verification

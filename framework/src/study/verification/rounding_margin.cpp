@@ -57,6 +57,7 @@ Vector RoundingMargin::next(const LineForm& X, const Sample* before, const Sampl
   largest_ = largest_.cwiseMax(terms);
   error_ += of_a_step_ * terms;
   const Vector data = now.y.cwiseAbs() + model_.D.cwiseAbs() * now.u.cwiseAbs() + noise_;
+  of_outputs_ = of_operations * (data + model_.C.cwiseAbs() * terms);
   Vector from_outputs = Vector::Zero(terms.size());
   for (Index j = 0; j < data.size(); ++j) {
     Index i = 0;

@@ -25,6 +25,9 @@ class RoundingMargin {
   /// τ_k. For every recorded step, in order; `before` is the sample of k-1, or null if X_{k-1} was not recorded.
   Vector next(const LineForm& X, const Sample* before, const Sample& now);
 
+  /// Per output, 1e-13 of the terms of y_k = C x_k + D u_k + Dv v_k for the last step.
+  const Vector& of_outputs() const { return of_outputs_; }
+
  private:
   Vector forces(VectorIn u) const;
 
@@ -34,7 +37,7 @@ class RoundingMargin {
   Matrix dynamic_, static_;  ///< M, N
   Matrix mixed_;             ///< |V||Vᵀ|
   Vector disturbance_, noise_;
-  Vector reach_, error_, largest_;
+  Vector reach_, error_, largest_, of_outputs_;
 };
 
 }  // namespace cordon::verification

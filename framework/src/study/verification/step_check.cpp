@@ -209,7 +209,7 @@ void StepCheck::contains_direction(const Vector& d, bool line) {
 }
 
 /// X_k keeps to the inequality normalᵀx ≤ h of F.
-void StepCheck::within(const RationalVector& normal, const Rational& h) {
+void StepCheck::within(const RationalVector& normal, const Rational& h, const std::function<LineForm()>& relaxed) {
   Rational slack = 0;
   Vector d(size_.size());
   for (Index i = 0; i < d.size(); ++i) {
@@ -222,6 +222,10 @@ void StepCheck::within(const RationalVector& normal, const Rational& h) {
     const exact::Support reached = exact::support(row_.set, normal);
     using Kind = exact::Support::Kind;
     if (reached.kind == Kind::empty || (reached.kind == Kind::finite && reached.value <= h + slack)) return;
+    if (room > 0 && reached.kind == Kind::finite) {
+      const exact::Support allowed = exact::support(relaxed(), normal);
+      if (allowed.kind == Kind::unbounded || (allowed.kind == Kind::finite && reached.value <= allowed.value + slack)) return;
+    }
     if (row_.exact_exchange) {  // an outer export may reach beyond the set that the claim is about
       const double value = reached.kind == Kind::finite ? rational::nearest(reached.value) : infinity;
       return violated(
@@ -235,7 +239,7 @@ void StepCheck::within(const RationalVector& normal, const Rational& h) {
   open(fmt::format("whether the estimate keeps to the exact set along {}", text(d)));
 }
 
-void StepCheck::against(const Polytope& F) {
+void StepCheck::against(const Polytope& F, const std::function<LineForm()>& relaxed) {
   const Description& generators = F.representation().generators();
   for (std::size_t j = 0; j < generators.rows.size() && !violation_; ++j) {
     const RationalVector& row = generators.rows[j];
@@ -260,9 +264,9 @@ void StepCheck::against(const Polytope& F) {
         abs(*std::max_element(row.begin() + 1, row.end(), [](const Rational& a, const Rational& b) { return abs(a) < abs(b); }));
     for (Rational& entry : row) entry /= largest;
     RationalVector normal(row.begin() + 1, row.end());
-    if (faces.linear[i]) within(normal, -row[0]);
+    if (faces.linear[i]) within(normal, -row[0], relaxed);
     for (Rational& entry : normal) entry = -entry;
-    if (!violation_) within(normal, row[0]);
+    if (!violation_) within(normal, row[0], relaxed);
   }
   exact_holds_ = !violation_ && undecided_ == before;
 }

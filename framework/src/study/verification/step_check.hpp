@@ -2,6 +2,7 @@
 // The single checks of one reported step.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,7 +21,8 @@ class StepCheck {
 
   void proofs();
   /// F ⊆ X_k and F ⊆ hull, by the vertices of F; where `exact` is claimed, X_k ⊆ F by its inequalities.
-  void against(const Polytope& F);
+  /// `relaxed` makes the successors of X_{k-1} with outputs and rows that hold up to rounding: a nominal claim may reach as far.
+  void against(const Polytope& F, const std::function<LineForm()>& relaxed);
   /// The same inclusions for the set that `successors` holds, in the directions of the columns.
   void against(const LineForm& successors, const Matrix& directions);
 
@@ -46,7 +48,7 @@ class StepCheck {
   void contains_vertex(const rational::RationalVector& exact);
   bool holds_nearby(const Vector& x);
   void contains_direction(const Vector& d, bool line);
-  void within(const rational::RationalVector& normal, const rational::Rational& h);
+  void within(const rational::RationalVector& normal, const rational::Rational& h, const std::function<LineForm()>& relaxed);
   bool reported_empty() const { return step_.consistent == Answer::no; }
 
   const RecordedStep& step_;

@@ -218,9 +218,10 @@ class Verification {
       row = set_of(pipeline, step);
       const bool follows = row_before && before && row_before->k + 1 == step.k && before->k + 1 == step.k;
       const Transition transition{follows ? &*before : nullptr, *sample};
-      const Vector margin = rounding.next(row->set, transition.before, *sample);
+      const Vector outputs_before = rounding.of_outputs(), margin = rounding.next(row->set, transition.before, *sample);
+      const Vector outputs = follows ? Vector(rounding.of_outputs().cwiseMax(outputs_before)) : rounding.of_outputs();
       if (static_cast<std::int64_t>(i) % options_.every != 0) continue;
-      check_step(p, i, *row, margin, F, follows ? &*row_before : nullptr, transition);
+      check_step(p, i, *row, {margin, outputs}, F, follows ? &*row_before : nullptr, transition);
       if (outcome_.violation) return;
       if (options_.progress && Clock::now() - told > std::chrono::milliseconds(50)) {
         options_.progress(names_, p, static_cast<std::int64_t>(i), static_cast<std::int64_t>(pipeline.steps.size()));
@@ -231,20 +232,28 @@ class Verification {
     if (options_.progress) options_.progress(names_, p, total, total);
   }
 
-  void check_step(std::size_t p, std::size_t i, const RecordedSet& row, const Vector& margin, const std::optional<Polytope>& F,
+  struct Margins {
+    Vector states, outputs;
+  };
+
+  void check_step(std::size_t p, std::size_t i, const RecordedSet& row, const Margins& margins, const std::optional<Polytope>& F,
                   const RecordedSet* row_before, const Transition& transition) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
     VerifiedPipeline& found = outcome_.pipelines.back();
     const bool uncertain = run_.model.linear.is_uncertain();
     const RecordedStep step = uncertain ? without_claim(pipeline.steps[i]) : pipeline.steps[i];
-    StepCheck check(step, row, pipeline.rounding, margin);
+    StepCheck check(step, row, pipeline.rounding, margins.states);
     check.proofs();
     if (uncertain && pipeline.steps[i].tightness == Tightness::exact) {
       check.skipped("a claim of \"exact\" is not checked where matrices are known by intervals only");
     }
     if (!check.violation()) {
       if (F) {
-        check.against(*F);
+        check.against(*F, [&] {
+          if (i > 0 && !row_before) return make_empty(row.set.dim());
+          const LineForm start = widened(row_before ? row_before->set : pipeline.initial_set);
+          return successors(widened(run_.model, margins.outputs), start, pipeline.admissible_set, transition);
+        });
         ++found.by_polytopes;
       } else if (i > 0 && !row_before) {
         check.skipped("the step does not follow the one before: its successors are not checked");
