@@ -101,32 +101,47 @@ TEST_CASE("doctor returns 0 when nothing was refused, and the environment variab
   CHECK(contains(outcome.out, "loaded    " CORDON_GOOD_PLUGINS "/test_box.so"));
 }
 
-TEST_CASE("what was learned of a plugin is kept in the cache, and without one everything works") {
+TEST_CASE("a working plugin is tried in every process, with any cache or none") {
   const TemporaryDirectory cache, plugins;
   plugins.add(fs::path(CORDON_TRACING_PLUGINS) / "tracing.so");
   const std::string trace = (cache / "trace").string(), list = "list --plugins " + plugins.path().string();
-  const auto openings = [&](const std::string& place) {
+  for (const std::string& place : {cache.path().string(), cache.path().string(), std::string("/proc/nowhere"),
+                                   std::string("/dev/null"), std::string("relative HOME=")}) {
     fs::remove(trace);
     const Outcome outcome = cordon_with(list, "CORDON_TEST_TRACE=" + trace + " XDG_CACHE_HOME=" + place);
     CHECK(outcome.code == 0);
     CHECK(contains(outcome.out, "tracing"));
     CHECK(outcome.err.empty());
     const std::string text = read(trace);
-    return std::count(text.begin(), text.end(), '\n');
-  };
-  const std::string place = cache.path().string();
-  CHECK(openings(place) == 2);  // tried, then loaded
-  CHECK(openings(place) == 1);
-  for (const auto& entry : fs::directory_iterator(cache / "cordon/plugins")) {
-    CHECK_FALSE(entry.path().filename().string().starts_with("."));
-    std::ofstream(entry.path()) << "no entry at all\n";
+    CHECK(std::count(text.begin(), text.end(), '\n') == 2);
   }
-  CHECK(openings(place) == 2);
-  CHECK(openings(place) == 1);
-  CHECK(openings("/proc/nowhere") == 2);
-  CHECK(openings("/dev/null") == 2);
-  CHECK(openings("relative HOME=") == 2);
   CHECK_FALSE(fs::exists("relative"));
+}
+
+TEST_CASE("a refusal by trial is kept in the cache") {
+  const TemporaryDirectory cache, plugins;
+  plugins.add(bad("ends_the_process"));
+  const auto told = [&](const std::string& text) {
+    const std::string list = "list --plugins " + plugins.path().string();
+    return contains(cordon_with(list, "XDG_CACHE_HOME=" + cache.path().string()).err, text);
+  };
+  const auto rewrite = [&](auto&& change) {
+    for (const auto& entry : fs::directory_iterator(cache / "cordon/plugins")) {
+      CHECK_FALSE(entry.path().filename().string().starts_with("."));
+      std::string text = read(entry.path());
+      change(text);
+      std::ofstream(entry.path(), std::ios::binary) << text;
+    }
+  };
+  CHECK(told("when it is opened: exit code 0"));
+  rewrite([](std::string& text) {
+    if (const auto at = text.find("exit code 0"); at != std::string::npos) text.replace(at, 11, "as remembered");
+  });
+  CHECK(told("when it is opened: as remembered"));
+  rewrite([](std::string& text) { text = "no entry at all\n"; });
+  CHECK(told("when it is opened: exit code 0"));
+  std::ofstream(plugins / "ends_the_process.so", std::ios::binary | std::ios::app) << "behind its end";
+  CHECK(told("when it is opened: exit code 0"));
 }
 
 TEST_CASE("a component whose name is taken is named, and makes doctor's exit code") {

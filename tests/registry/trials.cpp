@@ -65,7 +65,7 @@ TEST_CASE("nothing runs of a plugin that is shadowed") {
   CHECK(traces.count() == 0);
 }
 
-TEST_CASE("a new file is tried in a child process once, and again when it has changed") {
+TEST_CASE("a new file is tried in a child process once in a process, and again when it has changed") {
   const TemporaryDirectory directory, cache;
   const Variable place("XDG_CACHE_HOME", cache.path().string());
   const fs::path file = directory.add(fs::path(CORDON_TRACING_PLUGINS) / "tracing.so");
@@ -81,7 +81,7 @@ TEST_CASE("a new file is tried in a child process once, and again when it has ch
   CHECK(openings() == 1);
   fs::last_write_time(file, fs::last_write_time(file) + std::chrono::seconds(1));
   CHECK(openings() == 2);
-  CHECK(std::distance(fs::directory_iterator(cache / "cordon/plugins"), {}) == 1);  // its one place, and nothing half written
+  CHECK_FALSE(fs::exists(cache / "cordon"));  // another process has to see for itself
 }
 
 TEST_CASE("a library that never ends is a refusal, which is remembered") {
@@ -89,7 +89,7 @@ TEST_CASE("a library that never ends is a refusal, which is remembered") {
   Registry registry;
   const PluginReport report = registry.load_file(file);
   CHECK(report.state == PluginReport::State::refused);
-  CHECK(report.reason == "it does not come back from being opened: stopped after 5 s of computing");
+  CHECK_MESSAGE(report.reason.starts_with("it does not come back from being opened"), report.reason);  // by either limit
   CHECK(registry.load_file(file).reason == report.reason);
   CHECK(registry.load_file(good("test_box")).state == PluginReport::State::loaded);
 }

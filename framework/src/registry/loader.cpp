@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registry/loader.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <cstring>
@@ -11,6 +12,7 @@
 
 #include "registry/descriptor.hpp"
 #include "registry/elf_file.hpp"
+#include "registry/search_path.hpp"
 #include "registry/trial.hpp"
 #include "registry/verdicts.hpp"
 
@@ -80,6 +82,11 @@ std::optional<Refusal> open(const fs::path& file, const PluginDescriptor& announ
   return {};
 }
 
+bool is_shipped(const fs::path& file) {
+  const std::vector<fs::path> own = shipped_directories();
+  return std::find(own.begin(), own.end(), file.parent_path()) != own.end();
+}
+
 /// What becomes of a process that opens the library, lets it register and closes it again; refusals by a rule are found again by
 /// the process that asks.
 std::optional<Refusal> try_out(const fs::path& file, const ElfFile& elf, const PluginDescriptor& announced) {
@@ -92,7 +99,9 @@ std::optional<Refusal> try_out(const fs::path& file, const ElfFile& elf, const P
     Batch batch(empty, announced.name);
     register_into(batch, *opened.descriptor);
   });
-  if (trial.repeats) remember(identity, {trial.refusal});
+  // A damaged library may do well at some addresses and crash at others: what a child of this process survives, this process
+  // does, and not the next one. Only refusals last, and what is said of the plugins that came with the program.
+  if (trial.repeats) remember(identity, {trial.refusal}, trial.refusal || is_shipped(file));
   return trial.refusal;
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "registry/search_path.hpp"
+
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
@@ -29,6 +31,15 @@ void append(SearchPath& path, const fs::path& directory) {
 
 }  // namespace
 
+std::vector<fs::path> registry::shipped_directories() {
+  SearchPath path;
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) append(path, program.parent_path().parent_path() / "lib/cordon/plugins-v1");
+  append(path, CORDON_INSTALLED_PLUGINS);
+  return path.directories;
+}
+
 SearchPath default_search_path(std::span<const fs::path> extra) {
   SearchPath path;
   for (const fs::path& directory : extra) append(path, directory);
@@ -39,10 +50,7 @@ SearchPath default_search_path(std::span<const fs::path> extra) {
       rest.remove_prefix(std::min(colon + 1, rest.size()));
     }
   }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) append(path, program.parent_path().parent_path() / "lib/cordon/plugins-v1");
-  append(path, CORDON_INSTALLED_PLUGINS);
+  for (const fs::path& directory : registry::shipped_directories()) append(path, directory);
   return path;
 }
 

@@ -117,11 +117,11 @@ std::optional<Verdict> recall(const FileIdentity& file) {
   return verdict;
 }
 
-void remember(const FileIdentity& file, const Verdict& verdict) {
+void remember(const FileIdentity& file, const Verdict& verdict, bool lasting) {
   Memory& mine = memory();
   const std::lock_guard lock(mine.mutex);
   std::string& entry = mine.entries[file.slot] = entry_of(file, verdict);
-  if (const fs::path directory = cache_directory(); !directory.empty()) write_entry(directory, file.slot, entry);
+  if (const fs::path directory = cache_directory(); lasting && !directory.empty()) write_entry(directory, file.slot, entry);
 }
 
 }  // namespace cordon::registry

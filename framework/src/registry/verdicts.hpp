@@ -23,6 +23,7 @@ struct Verdict {
   std::optional<Refusal> refusal;
 };
 std::optional<Verdict> recall(const FileIdentity& file);
-void remember(const FileIdentity& file, const Verdict& verdict);
+/// `lasting`: in the cache as well.
+void remember(const FileIdentity& file, const Verdict& verdict, bool lasting);
 
 }  // namespace cordon::registry
