@@ -36,6 +36,8 @@ Exit exit_for(Errc code) noexcept {
     case Errc::solver:
     case Errc::time_limit:
       return Exit::unanswered;
+    case Errc::violated:
+      return Exit::violated;
     case Errc::plugin:
       return Exit::plugin;
     case Errc::internal:

@@ -17,8 +17,6 @@ using Names = std::vector<std::string>;
 using Rows = std::vector<std::vector<std::string>>;
 using nlohmann::ordered_json;
 
-constexpr double touching = 1e-9;  ///< κ up to here: tubes that are said to meet may be apart by this, as for `cordon verify`
-
 Names mode_names(const Study& study) {
   Names names;
   for (const Mode& mode : bank_of(study).modes) names.push_back(mode.name);
@@ -35,39 +33,58 @@ std::string pair_name(const Names& modes, Index i, Index j) {
   return modes[static_cast<std::size_t>(i)] + ", " + modes[static_cast<std::size_t>(j)];
 }
 
-/// Without colours: cells of a table are aligned by their length.
-std::string separation(Answer disjoint) {
-  return disjoint == Answer::yes ? "disjoint (proven)" : disjoint == Answer::no ? "meet (proven)" : "not decided";
+/// What of it is proven, else what the designer claims. Without colours: cells of a table are aligned by their length.
+std::string separation(Answer claimed, const ExactPair* exact) {
+  const bool proven = exact && exact->disjoint != Answer::unknown;
+  const Answer disjoint = proven ? exact->disjoint : claimed;
+  if (disjoint == Answer::unknown) return "not decided";
+  return fmt::format("{} ({})", disjoint == Answer::yes ? "disjoint" : "meet", proven ? "proven" : "claimed");
 }
 
-/// What is known of the cost of every separating input.
+/// What is said of the cost of every separating input.
 std::string bound_text(const DesignOutcome& outcome) {
   if (std::isinf(outcome.lower_bound)) return "no lower bound is known";
-  const std::string of = outcome.bounded_problem.empty() ? "" : fmt::format(" of {}", outcome.bounded_problem);
-  return fmt::format("lower bound{} {}", of, number(outcome.lower_bound));
+  return fmt::format("claimed lower bound {}", number(outcome.lower_bound));
 }
 
-std::string status_text(const DesignOutcome& outcome, const Paint& paint) {
-  const double cost = outcome.best ? outcome.best->cost : 0;
+/// What was searched in place of the problem.
+std::string restriction_text(const DesignOutcome& outcome) {
+  if (!outcome.restriction) return "";
+  const double bound = outcome.restriction->lower_bound;
+  const std::string known =
+      std::isfinite(bound) ? fmt::format("; that one costs at least {}, the problem itself may cost less", number(bound)) : "";
+  return fmt::format("Searched in place of the problem: {}{}\n", outcome.restriction->name, known);
+}
+
+/// The separation that is proven, or else the one that is claimed: green, red or yellow.
+std::string separated_text(const InputDesign& best, const ExactSeparation* exact, const Paint& paint) {
+  const Answer proven = exact ? exact->separates() : Answer::unknown;
+  if (proven == Answer::yes) return paint.green("separated (proven)");
+  if (proven == Answer::no) return paint.red("not separated (proven)");
+  return paint.yellow(best.separates() == Answer::yes  ? "separated (claimed)"
+                      : best.separates() == Answer::no ? "not separated (claimed)"
+                                                       : "not proven to be separated");
+}
+
+std::string status_text(const DesignOutcome& outcome, const std::string& designer, const ExactSeparation* exact,
+                        const Paint& paint) {
+  const std::string cost = fmt::format("cost {}", number(outcome.best ? outcome.best->cost : 0));
   switch (outcome.status) {
     case DesignStatus::optimal:
-      return paint.green("Optimal") + fmt::format(": cost {}, {}", number(cost), bound_text(outcome));
+      return paint.green("Optimal") + fmt::format(" (claimed by {}): {}, {}", designer, cost, bound_text(outcome));
     case DesignStatus::feasible: {
-      const std::string gap = std::isfinite(outcome.gap()) ? fmt::format(" with gap {:.3g} %", 100 * outcome.gap()) : "";
-      return paint.yellow(fmt::format("Feasible{}", gap)) + fmt::format(": cost {}, {}", number(cost), bound_text(outcome));
+      const std::string gap = std::isfinite(outcome.gap()) ? fmt::format(" with claimed gap {:.3g} %", 100 * outcome.gap()) : "";
+      return paint.yellow(fmt::format("Feasible{}", gap)) + fmt::format(": {}, {}", cost, bound_text(outcome));
     }
     case DesignStatus::infeasible:
-      return paint.yellow("Proven infeasible") + ": no input of the input set separates the modes";
+      return paint.yellow("Infeasible") +
+             fmt::format(" (claimed by {}): no input of the input set separates the modes", designer);
     case DesignStatus::unknown:
       return paint.yellow(outcome.stopped ? "No answer within the limit" : "No answer") + ": " + bound_text(outcome);
     case DesignStatus::given:
       break;
   }
-  const Answer separates = outcome.best->separates();
-  return fmt::format("Given: cost {}, the modes are {}", number(cost),
-                     separates == Answer::yes  ? paint.green("separated (proven)")
-                     : separates == Answer::no ? paint.red("not separated (proven)")
-                                               : paint.yellow("not proven to be separated"));
+  return fmt::format("Given: {}, the modes are {}", cost, separated_text(*outcome.best, exact, paint));
 }
 
 std::string inputs_table(const Matrix& u, const Paint& paint) {
@@ -82,21 +99,17 @@ std::string inputs_table(const Matrix& u, const Paint& paint) {
 
 std::string pairs_table(const Names& modes, const InputDesign& design, const ExactSeparation* exact, const Paint& paint) {
   Rows rows{{"PAIR", "κ", "AT LEAST", "OUTPUT TUBES"}};
-  if (exact) rows[0].insert(rows[0].end(), {"EXACT: AT LEAST", "OUTPUT TUBES"});
   for (std::size_t q = 0; q < design.pairs.size(); ++q) {
     const PairSeparation& pair = design.pairs[q];
-    const bool apart = pair.disjoint == Answer::yes;
-    rows.push_back({pair_name(modes, pair.i, pair.j), number(pair.kappa), apart ? number(pair.kappa_lower) : "-",
-                    separation(pair.disjoint)});
-    if (!exact) continue;
-    const ExactPair& proven = exact->pairs[q];
-    rows.back().push_back(proven.disjoint == Answer::yes ? number(proven.kappa_lower) : "-");
-    rows.back().push_back(separation(proven.disjoint));
+    const ExactPair* proven = exact ? &exact->pairs[q] : nullptr;
+    const bool apart = proven && proven->disjoint == Answer::yes;
+    rows.push_back({pair_name(modes, pair.i, pair.j), number(pair.kappa), apart ? number(proven->kappa_lower) : "-",
+                    separation(pair.disjoint, proven)});
   }
   return table(rows, paint);
 }
 
-/// Modes whose tube is proven empty, by the design or by the exact proof.
+/// Modes whose tube is empty, as the designer says or by the exact proof.
 Names empty_modes(const Names& modes, const std::vector<Answer>& empty, const ExactSeparation* exact) {
   Names found;
   for (std::size_t i = 0; i < empty.size(); ++i) {
@@ -151,19 +164,29 @@ std::string exact_text(const Names& modes, const ExactSeparation& exact, const P
   return text + fmt::format("In exact arithmetic: {} ({:.3g} s)\n", verdict, exact.wall_s);
 }
 
+std::string refuted_text(const Names& refuted, const Paint& paint) {
+  std::string text;
+  for (const std::string& claim : refuted) text += paint.red("Proven false") + ": " + claim + "\n";
+  return text;
+}
+
+/// What there is to say of an input: the sequence, the pairs of modes, and what is proven of them.
+std::string input_text(const Names& modes, const InputDesign& best, const ExactSeparation* exact, const Paint& paint) {
+  std::string text = fmt::format("\n{}\n{}\n", inputs_table(best.u, paint), pairs_table(modes, best, exact, paint));
+  const Names empty = empty_modes(modes, best.empty, exact);
+  if (!empty.empty()) text += paint.red("Modelling error") + ": " + empty_text(empty) + "\n";
+  return exact ? text + exact_text(modes, *exact, paint) : text;
+}
+
 std::string design_text(const Names& modes, const PipelineDesign& design, const Paint& paint) {
   std::string text = fmt::format("{}  {}, {}\n", paint.bold(design.name), design.backend, design.designer);
   if (design.outcome) {
     const DesignOutcome& outcome = *design.outcome;
-    text += status_text(outcome, paint) + "\n" + horizon_text(outcome) + reason_text(outcome);
-    if (outcome.best) {
-      const ExactSeparation* exact = design.exact ? &*design.exact : nullptr;
-      text += fmt::format("\n{}\n{}\n", inputs_table(outcome.best->u, paint), pairs_table(modes, *outcome.best, exact, paint));
-      const Names empty = empty_modes(modes, outcome.best->empty, exact);
-      if (!empty.empty()) text += paint.red("Modelling error") + ": " + empty_text(empty) + "\n";
-      if (exact) text += exact_text(modes, *exact, paint);
-    }
-    text += search_text(outcome, design.design_s);
+    const ExactSeparation* exact = design.exact ? &*design.exact : nullptr;
+    text += status_text(outcome, design.designer, exact, paint) + "\n" + restriction_text(outcome) + horizon_text(outcome) +
+            reason_text(outcome);
+    if (outcome.best) text += input_text(modes, *outcome.best, exact, paint);
+    text += refuted_text(design.refuted, paint) + search_text(outcome, design.design_s);
   }
   if (!design.error.empty()) text += paint.red(fmt::format("Stopped: {}", design.error)) + "\n";
   return text;
@@ -200,25 +223,8 @@ std::string unused_samples_text(const Study& study, const PipelineOutcome& pipel
       needed, needed);
 }
 
-/// What the design claims and the exact proof refutes. That tubes meet is claimed up to rounding.
-std::vector<std::string> refuted(const Names& modes, const PipelineDesign& design) {
-  std::vector<std::string> found;
-  if (!design.exact) return found;
-  const InputDesign& best = *design.outcome->best;
-  for (std::size_t q = 0; q < best.pairs.size(); ++q) {
-    const ExactPair& exact = design.exact->pairs[q];
-    const Answer claim = best.pairs[q].disjoint;
-    const std::string tubes = "the output tubes of " + pair_name(modes, exact.i, exact.j);
-    if (claim == Answer::yes && exact.disjoint == Answer::no) found.push_back(tubes + " are called disjoint, and meet");
-    if (claim == Answer::no && exact.disjoint == Answer::yes && exact.kappa_lower > touching) {
-      found.push_back(tubes + " are said to meet, and are disjoint");
-    }
-  }
-  return found;
-}
-
+/// Does the exact proof leave a question open?
 bool open(const PipelineDesign& design) {
-  if (design.outcome && design.outcome->status == DesignStatus::unknown) return true;
   if (!design.exact) return false;
   const auto unknown = [](const auto& answer) { return answer == Answer::unknown; };
   return std::any_of(design.exact->empty.begin(), design.exact->empty.end(), unknown) ||
@@ -237,6 +243,13 @@ std::string designs_text(const Study& study, const std::vector<PipelineDesign>& 
   return text;
 }
 
+ordered_json exact_json(const std::optional<ExactSeparation>& exact, const Names& modes) {
+  if (!exact) return nullptr;
+  ordered_json json = ordered_json::parse(json_of(*exact, modes));
+  json["wall_s"] = exact->wall_s;
+  return json;
+}
+
 std::string designs_json(const Study& study, const std::vector<PipelineDesign>& designs) {
   const Names modes = mode_names(study);
   ordered_json report{{"modes", modes}, {"pipelines", ordered_json::array()}};
@@ -246,26 +259,34 @@ std::string designs_json(const Study& study, const std::vector<PipelineDesign>& 
          {"backend", design.backend},
          {"designer", design.designer},
          {"design", design.outcome ? ordered_json::parse(json_of(*design.outcome, modes)) : ordered_json(nullptr)},
-         {"exact", design.exact ? ordered_json::parse(json_of(*design.exact, modes)) : ordered_json(nullptr)},
+         {"exact", exact_json(design.exact, modes)},
+         {"refuted", design.refuted},
          {"design_s", design.design_s},
          {"error", design.error.empty() ? ordered_json(nullptr) : ordered_json(design.error)}});
   }
   return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::vector<std::string> complaints(const Study& study, const std::vector<PipelineDesign>& designs) {
+std::vector<std::string> refutations(const std::string& pipeline, const std::vector<std::string>& refuted) {
+  Names found;
+  for (const std::string& claim : refuted) {
+    found.push_back(
+        fmt::format("pipeline \"{}\" violates its guarantee: {}. This is a defect of its designer or backend", pipeline, claim));
+  }
+  return found;
+}
+
+std::vector<std::string> complaints(const Study& study, const std::vector<PipelineDesign>& designs, bool all_proven) {
   const Names modes = mode_names(study);
   std::vector<std::string> found;
   for (const PipelineDesign& design : designs) {
     const std::string name = fmt::format("pipeline \"{}\"", design.name);
     if (!design.error.empty()) found.push_back(fmt::format("{} stopped: {}", name, design.error));
-    for (const std::string& claim : refuted(modes, design)) {
-      found.push_back(fmt::format("{} violates its guarantee: {}. This is a defect of its backend or designer", name, claim));
-    }
+    for (std::string& claim : refutations(design.name, design.refuted)) found.push_back(std::move(claim));
     if (!design.outcome) continue;
     if (design.outcome->status == DesignStatus::unknown) {
       found.push_back(name + (design.outcome->stopped ? ": no input was found within the limit" : ": no input was found"));
-    } else if (open(design)) {
+    } else if (all_proven && open(design)) {
       found.push_back(name + ": the exact proof leaves a question open");
     }
     if (!design.outcome->best) continue;
@@ -275,23 +296,27 @@ std::vector<std::string> complaints(const Study& study, const std::vector<Pipeli
   return found;
 }
 
-Exit exit_of(const std::vector<PipelineDesign>& designs) {
+Exit exit_of(const std::vector<PipelineDesign>& designs, bool all_proven) {
   Exit exit = Exit::done;
   const auto worst = [&](Exit other) { exit = exit == Exit::done || exit == Exit::unanswered ? other : exit; };
   for (const PipelineDesign& design : designs) {
-    Names numbered(design.outcome && design.outcome->best ? design.outcome->best->empty.size() : 0);
-    if (!refuted(numbered, design).empty()) return Exit::violated;
+    if (!design.refuted.empty() || design.error_code == Errc::violated) return Exit::violated;
     if (!design.error.empty()) worst(exit_for(design.error_code.value_or(Errc::internal)));
-    const bool empty =
-        !numbered.empty() && !empty_modes(numbered, design.outcome->best->empty, design.exact ? &*design.exact : nullptr).empty();
-    if (empty) worst(Exit::invalid);
-    if (open(design) && exit == Exit::done) exit = Exit::unanswered;
+    if (design.outcome && design.outcome->best) {
+      const std::vector<Answer>& claimed = design.outcome->best->empty;
+      const bool empty = !empty_modes(Names(claimed.size()), claimed, design.exact ? &*design.exact : nullptr).empty();
+      if (empty) worst(Exit::invalid);
+    }
+    const bool unknown = design.outcome && design.outcome->status == DesignStatus::unknown;
+    if ((unknown || (all_proven && open(design))) && exit == Exit::done) exit = Exit::unanswered;
   }
   return exit;
 }
 
-std::vector<std::string> empty_tubes(const Study& study, const DesignOutcome& outcome) {
-  return outcome.best ? empty_modes(mode_names(study), outcome.best->empty, nullptr) : Names{};
+std::vector<std::string> empty_tubes(const Study& study, const PipelineOutcome& pipeline) {
+  const auto& design = pipeline.design;
+  if (!design || !design->best) return {};
+  return empty_modes(mode_names(study), design->best->empty, pipeline.exact ? &*pipeline.exact : nullptr);
 }
 
 std::string design_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint) {
@@ -300,11 +325,11 @@ std::string design_text(const Study& study, const PipelineOutcome& pipeline, con
   std::string text = fmt::format("{}  {}, {}{}\n", paint.bold(pipeline.name), pipeline.backend, pipeline.designer, diagnoser);
   if (pipeline.design) {
     const DesignOutcome& outcome = *pipeline.design;
-    text += status_text(outcome, paint) + "\n" + horizon_text(outcome) + reason_text(outcome);
+    const ExactSeparation* exact = pipeline.exact ? &*pipeline.exact : nullptr;
+    text += status_text(outcome, pipeline.designer, exact, paint) + "\n" + restriction_text(outcome) + horizon_text(outcome) +
+            reason_text(outcome);
     if (outcome.best) {
-      text += fmt::format("\n{}\n{}", inputs_table(outcome.best->u, paint), pairs_table(modes, *outcome.best, nullptr, paint));
-      const Names empty = empty_tubes(study, outcome);
-      if (!empty.empty()) text += paint.red("Modelling error") + ": " + empty_text(empty) + "\n";
+      text += input_text(modes, *outcome.best, exact, paint);
       if (pipeline.diagnoser.empty())
         text += "\nNo experiments: name a \"diagnoser\" beside the designer to try the input on every mode\n";
     } else {
@@ -312,7 +337,7 @@ std::string design_text(const Study& study, const PipelineOutcome& pipeline, con
     }
   }
   if (!pipeline.experiments.empty()) text += fmt::format("\n{}", experiments_text(modes, pipeline.experiments, paint));
-  text += unused_samples_text(study, pipeline) + assumption_text(pipeline, paint);
+  text += refuted_text(pipeline.refuted, paint) + unused_samples_text(study, pipeline) + assumption_text(study, pipeline, paint);
   if (!pipeline.error.empty()) text += paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
   return text;
 }

@@ -223,32 +223,34 @@ std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline, 
   if (left > 0) text += fmt::format("… and {} more, in results.json\n", left);
   text += "\n";
   if (!pipeline.error.empty()) return text + paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
-  return text + score_text(study, found, paint) + faults_text(found, paint) + assumption_text(pipeline, paint);
+  return text + score_text(study, found, paint) + faults_text(found, paint) + assumption_text(study, pipeline, paint);
 }
 
-std::string assumption_text(const PipelineOutcome& pipeline, const Paint& paint) {
-  if (pipeline.assumptions_until < 0) return "";
-  return paint.yellow("Assumption failed") +
-         (pipeline.assumptions_until == 0
-              ? ": x_0 lies outside X0 of its mode, on which all exclusions rest"
-              : fmt::format(
-                    ": at k = {} the state lies outside an admissible set of the pipeline. Exclusions from then on rest on it "
-                    "and prove nothing: widen the set",
-                    pipeline.assumptions_until)) +
-         "\n";
+std::string assumption_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint) {
+  if (!pipeline.failed_assumption) return "";
+  using What = FailedAssumption::What;
+  const FailedAssumption& failed = *pipeline.failed_assumption;
+  Names modes;
+  for (const Mode& mode : bank_of(study).modes) modes.push_back(mode.name);
+  const char* mend = "widen the set";
+  if (failed.what == What::W || failed.what == What::V) mend = "widen the set, or improve the model";
+  if (failed.what == What::U) mend = "widen the set, or choose smaller inputs";
+  const std::string seed = failed.seed_offset > 0 ? fmt::format(" (seed offset {})", failed.seed_offset) : "";
+  return fmt::format("{}: {}{}. What is said from k = {} on rests on it and proves nothing: {}\n",
+                     paint.yellow("Assumption failed"), text_of(failed, modes), seed, failed.from, mend);
 }
 
 std::string diagnosis_violation(const PipelineOutcome& pipeline) {
   if (const auto& outside = pipeline.diagnosis->fault_outside; outside && outside->k == pipeline.violated_at) {
     return fmt::format(
         "pipeline \"{}\" violates its guarantee: at k = {} the true additive fault {} of k = {} lies outside its bounds (seed "
-        "offset {}). This is a defect of its backend or diagnoser, or x0 lies outside X0",
+        "offset {}). This is a defect of its backend or diagnoser",
         pipeline.name, outside->k, outside->fault + 1, outside->at, outside->seed_offset);
   }
   const TrueModeExcluded& excluded = *pipeline.diagnosis->true_mode_excluded;
   return fmt::format(
       "pipeline \"{}\" violates its guarantee: at k = {} it excludes the mode \"{}\", in which the plant has been since k = {} "
-      "(seed offset {}). This is a defect of its backend or diagnoser, or its initial set does not hold the state",
+      "(seed offset {}). This is a defect of its backend or diagnoser",
       pipeline.name, excluded.k, name_of(pipeline.diagnosis->modes, excluded.mode), excluded.since, excluded.seed_offset);
 }
 

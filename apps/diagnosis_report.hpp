@@ -17,8 +17,8 @@ std::string box_text(const Box& box, Digits digits = Digits::significant);
 /// The timeline of the first seed, then delays and counts over all seeds, of modes and of additive faults.
 std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint);
 
-/// A line about `assumptions_until` of a pipeline with a diagnoser or a designer; "" if nothing failed.
-std::string assumption_text(const PipelineOutcome& pipeline, const Paint& paint);
+/// A line about the assumption that has failed first; "" if none has.
+std::string assumption_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint);
 
 /// What to say of a pipeline that has excluded the true mode, or bounds without the true fault (`violated_at`).
 std::string diagnosis_violation(const PipelineOutcome& pipeline);

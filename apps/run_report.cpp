@@ -115,6 +115,17 @@ ordered_json time_or_null(std::int64_t k) { return k < 0 ? ordered_json(nullptr)
 
 ordered_json error_of(const PipelineOutcome& p) { return p.error.empty() ? ordered_json(nullptr) : ordered_json(p.error); }
 
+ordered_json assumption_json(const PipelineOutcome& p, const std::vector<std::string>& modes) {
+  if (!p.failed_assumption) return nullptr;
+  const FailedAssumption& failed = *p.failed_assumption;
+  const bool named = failed.mode >= 0 && static_cast<std::size_t>(failed.mode) < modes.size();
+  return {{"what", to_string(failed.what)},
+          {"k", failed.k},
+          {"mode", named ? ordered_json(modes[static_cast<std::size_t>(failed.mode)]) : ordered_json(nullptr)},
+          {"seed_offset", failed.seed_offset},
+          {"text", text_of(failed, modes)}};
+}
+
 ordered_json json_of_diagnosis(const PipelineOutcome& p) {
   const auto& guarantees = p.diagnosis->guarantees;
   return {
@@ -124,6 +135,7 @@ ordered_json json_of_diagnosis(const PipelineOutcome& p) {
       {"modes", p.diagnosis->modes},
       {"steps", p.steps},
       {"assumptions_until", time_or_null(p.assumptions_until)},
+      {"failed_assumption", assumption_json(p, p.diagnosis->modes)},
       {"violated_at", time_or_null(p.violated_at)},
       {"error", error_of(p)},
       {"guarantees", guarantees ? ordered_json::parse(cordon::json_of(*guarantees, p.diagnosis->modes)) : ordered_json(nullptr)},
@@ -151,9 +163,12 @@ ordered_json json_of_design(const PipelineOutcome& p, const std::vector<std::str
           {"diagnoser", p.diagnoser.empty() ? ordered_json(nullptr) : ordered_json(p.diagnoser)},
           {"modes", modes},
           {"assumptions_until", time_or_null(p.assumptions_until)},
+          {"failed_assumption", assumption_json(p, modes)},
           {"violated_at", time_or_null(p.violated_at)},
+          {"refuted", p.refuted},
           {"error", error_of(p)},
           {"design", p.design ? ordered_json::parse(cordon::json_of(*p.design, modes)) : ordered_json(nullptr)},
+          {"exact", p.exact ? ordered_json::parse(cordon::json_of(*p.exact, modes)) : ordered_json(nullptr)},
           {"experiments", std::move(experiments)},
           {"median_step_us", p.median_step_us}};
 }
@@ -178,6 +193,7 @@ ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& m
           {"undecided", p.undecided},
           {"inconsistent_from", time_or_null(p.inconsistent_from)},
           {"assumptions_until", time_or_null(p.assumptions_until)},
+          {"failed_assumption", assumption_json(p, modes)},
           {"outside_from", time_or_null(p.outside_from)},
           {"violated_at", time_or_null(p.violated_at)},
           {"inner_steps", p.inner_steps},
@@ -208,7 +224,14 @@ std::string report_text(const Study& study, const RunOutcome& outcome, const std
   }
   const std::string title = study.title.empty() ? "" : paint.bold(study.title) + "\n\n";
   const std::string comparison = observed.pipelines.empty() && !diagnoses.empty() ? "" : observer_table(observed, paint) + "\n";
-  const std::string details = gains_text(observed, paint) + widths_text(observed, paint) + inner_text(observed, paint);
+  std::string assumptions;
+  for (const PipelineOutcome& pipeline : observed.pipelines) {
+    const std::string failed = assumption_text(study, pipeline, paint);
+    if (!failed.empty()) assumptions += pipeline.name + ": " + failed;
+  }
+  if (!assumptions.empty()) assumptions += "\n";
+  const std::string details =
+      assumptions + gains_text(observed, paint) + widths_text(observed, paint) + inner_text(observed, paint);
   return title + comparison + details + diagnoses + "Results are in " + out.string() + "\n";
 }
 
@@ -229,7 +252,8 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
       found.push_back(fmt::format("pipeline \"{}\" stopped after {} steps: {}", pipeline.name, pipeline.steps, pipeline.error));
     }
     if (pipeline.design) {
-      for (const std::string& mode : empty_tubes(study, *pipeline.design)) {
+      for (std::string& claim : refutations(pipeline.name, pipeline.refuted)) found.push_back(std::move(claim));
+      for (const std::string& mode : empty_tubes(study, pipeline)) {
         found.push_back(fmt::format("pipeline \"{}\": no output of mode \"{}\" fits its input: the model contradicts itself",
                                     pipeline.name, mode));
       }
@@ -248,7 +272,7 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
     } else if (pipeline.violated_at >= 0) {
       found.push_back(fmt::format(
           "pipeline \"{}\" violates its guarantee: at k = {} the true state is proven outside the estimate. This is a "
-          "defect of its backend or observer, or x0 lies outside X0",
+          "defect of its backend or observer",
           pipeline.name, pipeline.violated_at));
     }
     if (pipeline.inner_outside >= 0) {
@@ -261,16 +285,26 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
   return found;
 }
 
+namespace {
+
+bool has_empty_tube(const PipelineOutcome& pipeline) {
+  const auto any = [](const std::vector<Answer>& empty) {
+    return std::find(empty.begin(), empty.end(), Answer::yes) != empty.end();
+  };
+  return (pipeline.design->best && any(pipeline.design->best->empty)) || (pipeline.exact && any(pipeline.exact->empty));
+}
+
+}  // namespace
+
 Exit exit_of(const RunOutcome& outcome) {
   Exit exit = Exit::done;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    if (pipeline.violated_at >= 0 || pipeline.inner_outside >= 0) return Exit::violated;
+    const bool refuted = !pipeline.refuted.empty() || pipeline.error_code == Errc::violated;
+    if (pipeline.violated_at >= 0 || pipeline.inner_outside >= 0 || refuted) return Exit::violated;
     const bool answered = exit != Exit::done && exit != Exit::unanswered;
     if (!answered && !pipeline.error.empty()) exit = exit_for(pipeline.error_code.value_or(Errc::internal));
     if (!pipeline.design || answered) continue;
-    const auto& best = pipeline.design->best;
-    const bool empty = best && std::find(best->empty.begin(), best->empty.end(), Answer::yes) != best->empty.end();
-    if (empty) exit = Exit::invalid;
+    if (has_empty_tube(pipeline)) exit = Exit::invalid;
     if (pipeline.design->status == DesignStatus::unknown && exit == Exit::done) exit = Exit::unanswered;
   }
   return exit;

@@ -32,6 +32,11 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
       {"pipeline", "backend", "rounding", "steps", "exact sets", "directions", "proofs", "exact claims", "undecided"}};
   std::string passed_over;
   for (const VerifiedPipeline& p : outcome.pipelines) {
+    if (!p.failed_assumption.empty()) {
+      passed_over += fmt::format("{} of {}: {}. What is said from k = {} on rests on it and proves nothing{}\n",
+                                 paint.yellow("assumption failed"), p.name, p.failed_assumption, p.assumptions_until,
+                                 p.fails_again == Answer::yes ? " (proven again)" : "");
+    }
     if (!p.checked) {
       passed_over += fmt::format("not re-checked: {} (a diagnosis; its sets are not stored)\n", p.name);
       continue;
@@ -48,6 +53,11 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
         "checked\n";
   }
   return (rows.size() > 1 || passed_over.empty() ? table(rows, paint) : "") + passed_over;
+}
+
+nlohmann::ordered_json assumption_json(const VerifiedPipeline& p) {
+  if (p.failed_assumption.empty()) return nullptr;
+  return {{"text", p.failed_assumption}, {"assumptions_until", p.assumptions_until}, {"proven_again", to_string(p.fails_again)}};
 }
 
 std::string report_json(const VerifyOutcome& outcome) {
@@ -67,7 +77,8 @@ std::string report_json(const VerifyOutcome& outcome) {
                                    {"proofs", p.proofs},
                                    {"exact_claims", p.exact_claims},
                                    {"undecided", p.undecided},
-                                   {"first_undecided", p.first_undecided}});
+                                   {"first_undecided", p.first_undecided},
+                                   {"failed_assumption", assumption_json(p)}});
   }
   if (const auto& v = outcome.violation) {
     report["violation"] = {{"pipeline", v->pipeline}, {"k", v->k}, {"what", v->what}, {"pointer", v->pointer}};
@@ -82,6 +93,13 @@ std::int64_t undecided(const VerifyOutcome& outcome) {
     count += p.undecided;
   }
   return count;
+}
+
+std::string final_text(const VerifyOutcome& outcome) {
+  const bool assumed = std::none_of(outcome.pipelines.begin(), outcome.pipelines.end(),
+                                    [](const VerifiedPipeline& p) { return !p.failed_assumption.empty(); });
+  return assumed ? "Every claim that was checked holds.\n"
+                 : "Every claim that was checked holds, as long as its assumptions do.\n";
 }
 
 Exit verify(Arguments& arguments) {
@@ -109,7 +127,7 @@ Exit verify(Arguments& arguments) {
     return Exit::unanswered;
   }
   const bool any = std::any_of(outcome.pipelines.begin(), outcome.pipelines.end(), [](const auto& p) { return p.checked; });
-  if (!arguments.quiet && !arguments.json && (any || outcome.pipelines.empty())) print("Every claim that was checked holds.\n");
+  if (!arguments.quiet && !arguments.json && (any || outcome.pipelines.empty())) print(final_text(outcome));
   return Exit::done;
 }
 

@@ -44,7 +44,7 @@ struct SearchResult {
   DesignStatus status = DesignStatus::unknown;
   std::optional<Vector> u;
   double cost = 0, lower_bound = -std::numeric_limits<double>::infinity();
-  std::string bounded_problem = {};  ///< as in DesignOutcome
+  std::optional<RestrictedProblem> restriction = {};  ///< as in DesignOutcome
   bool stopped = false;
   std::string reason = {}, suggestion = {};
   std::int64_t nodes = 0, programs = 0, facets = 0;

@@ -112,7 +112,7 @@ DesignOutcome without_answer(DesignOutcome outcome, std::string reason, std::str
   outcome.status = DesignStatus::unknown;
   outcome.best = std::nullopt;
   outcome.lower_bound = -std::numeric_limits<double>::infinity();
-  outcome.bounded_problem.clear();
+  outcome.restriction.reset();
   outcome.nodes = outcome.programs = outcome.facets = 0;
   outcome.stopped = true;
   outcome.reason = std::move(reason);
@@ -171,7 +171,7 @@ DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
     SearchResult found = search(*problem, std::max(watch.left(), least_time), control);
     outcome.status = found.status;
     outcome.lower_bound = found.lower_bound;
-    outcome.bounded_problem = std::move(found.bounded_problem);
+    outcome.restriction = std::move(found.restriction);
     outcome.stopped = found.stopped;
     outcome.reason = std::move(found.reason);
     outcome.suggestion = std::move(found.suggestion);

@@ -147,13 +147,13 @@ class SingularValueObserver final : public Observer {
 
   LineForm initial_set() const override { return X0_; }
   const Set* admissible_set() const override { return admissible_.set.get(); }
+  Tightness claim() const override { return recursion_; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
     const Enclosure start = X0 ? *X0 : backend().import(X0_);
     Z_ = to_z(start);
     if (static_at_start_) Z_ = with_static_rows(Z_, first.u);
-    Z_.tightness = meet(Z_.tightness, recursion_);
     return finish(Z_, first);
   }
 
@@ -166,8 +166,8 @@ class SingularValueObserver final : public Observer {
       if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(to_x(Z_), before.u) : Enclosure{};
       if (effectiveness_.has_open_states()) terms.push_back({stacked_rows_, open});
-      Enclosure Z = backend().predict(Z_, {stacked_A_, effectiveness_.input(stacked_B_, before.u), {terms.data(), terms.size()}});
-      Z.tightness = meet(Z.tightness, recursion_);
+      const Enclosure Z =
+          backend().predict(Z_, {stacked_A_, effectiveness_.input(stacked_B_, before.u), {terms.data(), terms.size()}});
       return with_static_rows(Z, now.u);
     });
     return finish(predicted, now);
@@ -241,6 +241,7 @@ Matrix stacked_E_C(const LinearModel& m) {
   return stacked;
 }
 
+/// Claims no exact estimate: the first measurement enters with the second, by a gain, and v_{k-1} twice.
 class PseudoInverseObserver final : public Observer {
  public:
   PseudoInverseObserver(const ObserverContext& context, const Params& params)
@@ -280,10 +281,8 @@ class PseudoInverseObserver final : public Observer {
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
-    X_ = X0 ? *X0 : backend().import(X0_);
-    X_.tightness = Tightness::outer;  // the first measurement enters with the second
-    unit_ = 0;                        // no gain of an earlier run is kept
-    return X_;
+    unit_ = 0;  // no gain of an earlier run is kept
+    return X_ = X0 ? *X0 : backend().import(X0_);
   }
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
@@ -314,9 +313,7 @@ class PseudoInverseObserver final : public Observer {
       add_output(N_, now);
       return backend().predict(X_, {map_, shift_, {terms.data(), terms.size()}});
     });
-    X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
-    X_.tightness = Tightness::outer;  // the measurement enters by a gain, and v_{k-1} twice
-    return X_;
+    return X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
   }
 
   void do_replace(const Enclosure& X) override { X_ = X; }

@@ -15,6 +15,7 @@ namespace {
 
 ComponentSpec steady_kalman() { return {"kalman", Params().set("steady", true)}; }
 
+/// Claims no exact estimate: a measurement enters by a gain, one step late.
 class Luenberger final : public Observer {
  public:
   Luenberger(const ObserverContext& context, const Params& params)
@@ -29,18 +30,14 @@ class Luenberger final : public Observer {
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
     const Enclosure start = X0 ? *X0 : backend().import(X0_);
-    X_ = timed(Phase::reduce, [&] { return recursion_.reduced(start); });
-    X_.tightness = Tightness::outer;  // what the measurement of the same time says is left out
-    return X_;
+    return X_ = timed(Phase::reduce, [&] { return recursion_.reduced(start); });
   }
   Enclosure do_step(const Sample& before, const Sample&) override {
     const Enclosure next = timed(Phase::predict, [&] {
       if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_for(gain_, model(), X_));
       return recursion_.next(X_, before);
     });
-    X_ = timed(Phase::reduce, [&] { return recursion_.reduced(next); });
-    X_.tightness = Tightness::outer;
-    return X_;
+    return X_ = timed(Phase::reduce, [&] { return recursion_.reduced(next); });
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
 

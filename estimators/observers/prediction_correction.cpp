@@ -24,6 +24,7 @@ class PredictionCorrection final : public Observer {
         recursion_(effectiveness_.recursion({&model().linear.B, &model().linear.D})) {}
 
   LineForm initial_set() const override { return X0_; }
+  Tightness claim() const override { return recursion_; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
@@ -48,8 +49,7 @@ class PredictionCorrection final : public Observer {
   void do_replace(const Enclosure& X) override { X_ = X; }
 
   Enclosure corrected(const Enclosure& X, const Sample& now) {
-    Enclosure narrowed = timed(Phase::correct, [&] { return effectiveness_.correct(X, model().linear.C, now); });
-    narrowed.tightness = meet(narrowed.tightness, recursion_);
+    const Enclosure narrowed = timed(Phase::correct, [&] { return effectiveness_.correct(X, model().linear.C, now); });
     return timed(Phase::reduce, [&] { return backend().reduce(narrowed, budget_); });
   }
 

@@ -38,7 +38,7 @@ TEST_CASE("The published example: horizons 1 and 2 are refused by proof, 3 is op
   REQUIRE(outcome.best);
   CHECK(outcome.best->cost == doctest::Approx(9.2005343602499).epsilon(1e-9));
   CHECK(outcome.gap() <= 1e-9);
-  CHECK(outcome.bounded_problem.empty());
+  CHECK_FALSE(outcome.restriction);
   CHECK(outcome.best->separates() == Answer::yes);
   for (const PairSeparation& pair : outcome.best->pairs) CHECK(pair.kappa_lower > 1e-4 - 1e-8);
   CHECK(outcome.best->u.row(0).isApprox(numbers({.5, -1}).transpose()));

@@ -31,9 +31,11 @@ void check_found(const SeparationProblem& problem, const SearchResult& found, do
   REQUIRE(found.u);
   CHECK(found.cost == doctest::Approx(cost).epsilon(1e-5));
   CHECK(found.cost == doctest::Approx(problem.cost.at(*found.u)));
-  CHECK(found.lower_bound <= found.cost);
-  CHECK(found.lower_bound >= found.cost - 2e-6 * (1 + found.cost));
-  CHECK(found.bounded_problem.find("generators per pair, as GLPK bounds it") != std::string::npos);
+  CHECK(found.lower_bound == -infinity);  // of the problem itself nothing is known
+  REQUIRE(found.restriction);
+  CHECK(found.restriction->lower_bound <= found.cost);
+  CHECK(found.restriction->lower_bound >= found.cost - 2e-6 * (1 + found.cost));
+  CHECK(found.restriction->name.find("generators per pair, as GLPK bounds it") != std::string::npos);
   CHECK(found.reason.find("may separate the modes too") != std::string::npos);
   for (const PairProgram& pair : problem.pairs) CHECK(separation(pair, *found.u).kappa >= problem.epsilon - 1e-6);
   const Vector ones = problem.U.G.cwiseAbs().rowwise().sum();
@@ -87,7 +89,7 @@ TEST_CASE("Other costs of the scalar models") {
     const SearchResult found = search(problem, generators(3));
     CHECK(found.status == DesignStatus::feasible);
     CHECK(found.cost == doctest::Approx(0));
-    CHECK(found.lower_bound <= found.cost);
+    CHECK(found.restriction->lower_bound <= found.cost);
   }
   SUBCASE("a reference on one side") {
     problem.cost.reference = numbers({0, .5, 0, 0});
@@ -182,7 +184,7 @@ TEST_CASE("Without a solution nothing is claimed but what is proven") {
     CHECK(none.status == DesignStatus::unknown);
     CHECK_FALSE(none.u);
     CHECK_FALSE(none.stopped);
-    CHECK(none.lower_bound == -infinity);
+    CHECK(none.restriction->lower_bound == -infinity);
     CHECK(none.reason.find("as GLPK says") != std::string::npos);
     CHECK(none.suggestion.find("facets") != std::string::npos);
   }
@@ -197,7 +199,7 @@ TEST_CASE("Without a solution nothing is claimed but what is proven") {
     const SearchResult none = search(problem, generators(3));
     CHECK(none.status == DesignStatus::unknown);
     CHECK_FALSE(none.u);
-    CHECK(none.lower_bound == -infinity);  // 1.5 is the first pair's, but GLPK's word
+    CHECK(none.restriction->lower_bound == -infinity);  // 1.5 is the first pair's, but GLPK's word
     CHECK(none.reason.find("as GLPK says") != std::string::npos);
     problem.pairs.pop_back();
     check_found(problem, search(problem, generators(3)), 1.5 * (1 + 1e-4));
@@ -272,7 +274,7 @@ TEST_CASE("The search is watched, and ends when told to") {
   CHECK(ended.stopped);
   CHECK(ended.status == DesignStatus::feasible);
   REQUIRE(ended.u);
-  CHECK(ended.lower_bound < ended.cost);
+  CHECK(ended.restriction->lower_bound < ended.cost);
   CHECK(soon.calls < 100);
 }
 
@@ -282,7 +284,7 @@ TEST_CASE("A time limit leaves what was found") {
   CHECK(ended.stopped);
   CHECK(ended.status == (ended.u ? DesignStatus::feasible : DesignStatus::unknown));  // on a slow machine there may be none
   CHECK(ended.reason.find("the time limit is over") != std::string::npos);
-  if (ended.u) CHECK(ended.lower_bound < ended.cost);
+  if (ended.u) CHECK(ended.restriction->lower_bound < ended.cost);
   ended = search(problem, {8, 2, 1e-6, 1e-9});
   CHECK(ended.stopped);
   CHECK(ended.status == DesignStatus::unknown);

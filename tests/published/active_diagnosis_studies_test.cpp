@@ -21,7 +21,6 @@ struct Loaded {
     study = read_study(CORDON_SOURCE_DIR "/examples/studies/active_diagnosis_" + name + ".json", registry,
                        {{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
     DesignOptions options;
-    options.verify = true;
     designs = design_study(study, registry, options);
   }
 

@@ -3,6 +3,7 @@
 #include "design_report.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -67,23 +68,28 @@ TEST_CASE("a design on paper") {
   PipelineDesign d = design();
   std::string shown = text(d);
   CHECK(has(shown, "AFD  line_zonotope, facets\n"));
-  CHECK(has(shown, "Optimal: cost 9.25, lower bound 9.25\n"));
+  CHECK(has(shown, "Optimal (claimed by facets): cost 9.25, claimed lower bound 9.25\n"));
   CHECK(has(shown, "Horizon N = 1: inputs and outputs of k = 0 … 1\n"));
   CHECK(has(shown, "tried before: N = 0, infeasible: no output depends on u_0\n"));
   CHECK(has(shown, "k  u_1\n0  0.5\n1  -7.0632\n"));
-  CHECK(has(shown, "healthy, leak  0.1875  0.125     disjoint (proven)\n"));
+  CHECK(has(shown, "healthy, leak  0.1875  -         disjoint (claimed)\n"));
   CHECK(has(shown, "Search: 12 nodes, 138 linear programs, 100 facets, 0.25 s\n"));
   CHECK_FALSE(has(shown, "exact"));
+  CHECK_FALSE(has(shown, "roven"));
   CHECK_FALSE(has(shown, "Modelling error"));
 
   d.outcome->status = DesignStatus::feasible;
   d.outcome->best->cost = 18.5;
-  d.outcome->bounded_problem = "the reduced problem";
+  d.outcome->lower_bound = -std::numeric_limits<double>::infinity();
+  d.outcome->restriction = RestrictedProblem{"the reduced problem", 18.25};
   d.outcome->stopped = true;
   d.outcome->last_output_only = true;
   d.outcome->best->pairs[0].disjoint = Answer::unknown;
   shown = text(d);
-  CHECK(has(shown, "Feasible with gap 50 %: cost 18.5, lower bound of the reduced problem 9.25\n"));
+  CHECK(has(shown, "Feasible: cost 18.5, no lower bound is known\n"));
+  CHECK(
+      has(shown, "Searched in place of the problem: the reduced problem; that one costs at least 18.25, the problem itself may"));
+  CHECK_FALSE(has(shown, "gap"));
   CHECK(has(shown, "the last output"));
   CHECK(has(shown, "ended by the limit"));
   CHECK(has(shown, "0.1875  -         not decided"));
@@ -91,22 +97,28 @@ TEST_CASE("a design on paper") {
   d.outcome->status = DesignStatus::given;
   CHECK(has(text(d), "Given: cost 18.5, the modes are not proven to be separated\n"));
   d.outcome->best->pairs[0].disjoint = Answer::no;
-  CHECK(has(text(d), "the modes are not separated (proven)\n"));
-  CHECK(has(text(d), "meet (proven)"));
+  CHECK(has(text(d), "the modes are not separated (claimed)\n"));
+  CHECK(has(text(d), "meet (claimed)"));
   d.outcome->best->pairs[0].disjoint = Answer::yes;
+  CHECK(has(text(d), "the modes are separated (claimed)\n"));
+  d.exact = exact(Answer::yes);
   CHECK(has(text(d), "the modes are separated (proven)\n"));
+  d.exact = exact(Answer::no);
+  CHECK(has(text(d), "the modes are not separated (proven)\n"));
+  d.exact.reset();
   d.outcome->best->empty[1] = Answer::yes;
   CHECK(has(text(d), "Modelling error: no output of leak fits this input"));
 }
 
 TEST_CASE("designs without an input") {
-  CHECK(has(text(without(DesignStatus::infeasible)), "Proven infeasible: no input of the input set separates the modes\n"));
+  CHECK(has(text(without(DesignStatus::infeasible)),
+            "Infeasible (claimed by facets): no input of the input set separates the modes\n"));
   PipelineDesign open = without(DesignStatus::unknown);
   const std::string unknown = text(open);
-  CHECK(has(unknown, "No answer: lower bound 9.25\n"));
+  CHECK(has(unknown, "No answer: claimed lower bound 9.25\n"));
   CHECK_FALSE(has(unknown, "limit"));
   open.outcome->stopped = true;
-  CHECK(has(text(open), "No answer within the limit: lower bound 9.25\n"));
+  CHECK(has(text(open), "No answer within the limit: claimed lower bound 9.25\n"));
   CHECK(has(unknown, "a reason\nTo try: a longer horizon\n"));
   PipelineDesign broken = design();
   broken.outcome.reset();
@@ -118,8 +130,7 @@ TEST_CASE("the exact proof beside the design") {
   PipelineDesign d = design();
   d.exact = exact(Answer::yes);
   std::string shown = text(d);
-  CHECK(has(shown, "EXACT: AT LEAST"));
-  CHECK(has(shown, "disjoint (proven)  0.0625           disjoint (proven)\n"));
+  CHECK(has(shown, "0.1875  0.0625    disjoint (proven)\n"));
   CHECK(has(shown, "In exact arithmetic: the modes are separated (0.5 s)\n"));
   d.exact = exact(Answer::unknown);
   CHECK(has(text(d), "Not decided exactly: healthy, leak: too large\n"));
@@ -131,39 +142,39 @@ TEST_CASE("the exact proof beside the design") {
 }
 
 TEST_CASE("exit codes, and a sentence for each that is not 0") {
-  const auto expect = [&](const std::vector<PipelineDesign>& designs, apps::Exit exit, const std::string& sentence) {
-    CHECK(apps::exit_of(designs) == exit);
-    const std::vector<std::string> said = apps::complaints(study(), designs);
+  const auto expect = [&](const std::vector<PipelineDesign>& designs, apps::Exit exit, const std::string& sentence,
+                          bool all_proven = false) {
+    CHECK(apps::exit_of(designs, all_proven) == exit);
+    const std::vector<std::string> said = apps::complaints(study(), designs, all_proven);
     CHECK(said.empty() == sentence.empty());
     if (!said.empty()) CHECK_MESSAGE(has(said.back(), sentence), said.back());
   };
   PipelineDesign proven = design(), open = design(), wrong = design(), empty = design(), exactly_empty = design(),
-                 broken = design();
+                 broken = design(), crooked = design();
   proven.exact = exact(Answer::yes);
   open.exact = exact(Answer::unknown);
   wrong.exact = exact(Answer::no);
+  wrong.refuted = {"the output tubes of a and b are called disjoint, and meet"};
   empty.outcome->best->empty[0] = Answer::yes;
   exactly_empty.exact = exact(Answer::yes, Answer::yes);
   broken.outcome.reset();
   broken.error = "out of ideas";
   broken.error_code = Errc::plugin;
+  crooked.outcome.reset();
+  crooked.error = "its input is too short";
+  crooked.error_code = Errc::violated;
   const PipelineDesign infeasible = without(DesignStatus::infeasible), unknown = without(DesignStatus::unknown);
   expect({design(), infeasible, proven}, apps::Exit::done, "");
   expect({unknown}, apps::Exit::unanswered, "no input was found");
-  expect({open}, apps::Exit::unanswered, "leaves a question open");
+  expect({open}, apps::Exit::done, "");
+  expect({open}, apps::Exit::unanswered, "leaves a question open", true);
   expect({empty}, apps::Exit::invalid, "contradicts itself");
   expect({exactly_empty}, apps::Exit::invalid, "no output of healthy fits");
   expect({unknown, broken}, apps::Exit::plugin, "out of ideas");
   expect({broken, empty}, apps::Exit::plugin, "contradicts itself");
-  expect({empty, broken, wrong}, apps::Exit::violated, "are called disjoint, and meet");
-  wrong.outcome->best->pairs[0].disjoint = Answer::unknown;  // then nothing was claimed
-  expect({wrong}, apps::Exit::done, "");
-  PipelineDesign apart = design();
-  apart.exact = exact(Answer::yes);
-  apart.outcome->best->pairs[0].disjoint = Answer::no;
-  expect({apart}, apps::Exit::violated, "are said to meet, and are disjoint");
-  apart.exact->pairs[0].kappa_lower = 1e-12;  // that tubes meet is said up to rounding
-  expect({apart}, apps::Exit::done, "");
+  expect({empty, broken, wrong}, apps::Exit::violated, "violates its guarantee: the output tubes of a and b are called disjoint");
+  expect({empty, crooked}, apps::Exit::violated, "its input is too short");
+  CHECK(has(text(wrong), "Proven false: the output tubes of a and b are called disjoint, and meet\n"));
 }
 
 TEST_CASE("designs for programs") {
@@ -203,7 +214,7 @@ TEST_CASE("a design in a run, with its experiments") {
   outcome.pipelines = {p};
   const std::string shown = apps::report_text(study(), outcome, "out");
   CHECK(has(shown, "AFD  line_zonotope, facets, tube_membership\n"));
-  CHECK(has(shown, "Optimal: cost 9.25"));
+  CHECK(has(shown, "Optimal (claimed by facets): cost 9.25"));
   CHECK(has(shown, "healthy    500   500      12    488       0      0     12         1.5\n"));
   CHECK(has(shown, "leak       500   0        500   499       1      0     0          -\n"));
   CHECK_FALSE(has(shown, "PIPELINE"));
@@ -219,12 +230,20 @@ TEST_CASE("a design in a run, with its experiments") {
   CHECK(report["assumptions_until"].is_null());
   CHECK_FALSE(has(shown, "Assumption"));
 
+  using What = FailedAssumption::What;
   outcome.pipelines[0].assumptions_until = 2;
+  outcome.pipelines[0].failed_assumption = FailedAssumption{What::admissible_set, 2, 2, -1, 0};
   CHECK(apps::exit_of(outcome) == apps::Exit::done);
-  CHECK(has(apps::report_text(study(), outcome, "out"), "Assumption failed: at k = 2 the state lies outside an admissible set"));
-  CHECK(json::parse(apps::report_json(study(), outcome))["pipelines"][0]["assumptions_until"] == 2);
-  outcome.pipelines[0].assumptions_until = 0;
-  CHECK(has(apps::report_text(study(), outcome, "out"), "Assumption failed: x_0 lies outside X0"));
+  CHECK(has(apps::report_text(study(), outcome, "out"), "Assumption failed: x_2 lies outside an admissible set"));
+  const json told = json::parse(apps::report_json(study(), outcome))["pipelines"][0];
+  CHECK(told["assumptions_until"] == 2);
+  CHECK(told["failed_assumption"]["what"] == "admissible_set");
+  outcome.pipelines[0].failed_assumption = FailedAssumption{What::initial_set, 0, 0, 1, 0};
+  CHECK(has(apps::report_text(study(), outcome, "out"), "Assumption failed: x_0 lies outside X0 of mode \"leak\""));
+  outcome.pipelines[0] = p;
+  outcome.pipelines[0].refuted = {"u_k is outside"};
+  CHECK(apps::exit_of(outcome) == apps::Exit::violated);
+  CHECK(has(apps::complaints(study(), outcome).at(0), "violates its guarantee: u_k is outside"));
   outcome.pipelines[0] = p;
   outcome.pipelines[0].violated_at = 2;
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);

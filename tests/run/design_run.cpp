@@ -193,7 +193,10 @@ TEST_CASE("what the files hold") {
   CHECK(design["cost"] == 5);
   CHECK(design["lower_bound"] == 4);
   CHECK(design["gap"] == .2);
-  CHECK(design["bounded_problem"].is_null());
+  CHECK(design["restriction"].is_null());
+  CHECK(found["exact"]["separates"] == "no");  // the modes are equal, whatever the designer says
+  CHECK(found["summary"]["refuted"].size() == 3);
+  CHECK(results["pipelines"][2]["exact"].is_null());
   CHECK(design["outputs"] == "all");
   CHECK(design["admissible_set"].is_null());
   CHECK(design["u"] == json({{1.}, {1.}, {1.}}));
@@ -222,7 +225,7 @@ TEST_CASE("what the files hold") {
   const std::string summary = bytes_of(scratch / "one/summary.csv");
   CHECK(summary.find("designer,experiment_diagnoser,design_status,horizon,cost,lower_bound,separates,experiments,"
                      "experiments_isolated,experiments_wrong") != std::string::npos);
-  CHECK(summary.find("designing,telling,feasible,2,5,4,yes,6,6,0") != std::string::npos);
+  CHECK(summary.find("designing,telling,feasible,2,5,4,no,6,6,0") != std::string::npos);
   CHECK(summary.find("designing,,unknown,2,,-inf,,,,") != std::string::npos);
   CHECK(json::parse(bytes_of(scratch / "one/run.json"))["pipelines"].size() == 3);
 }
@@ -264,22 +267,20 @@ TEST_CASE("designs without a run") {
   CHECK(designs[0].backend == "box");
   CHECK(designs[0].designer == "designing");
   CHECK(designs[0].outcome);
-  CHECK_FALSE(designs[0].exact);
+  REQUIRE(designs[0].exact);
+  CHECK(designs[0].exact->separates() == Answer::no);  // three equal modes
+  REQUIRE(designs[0].refuted.size() == 3);
+  CHECK(designs[0].refuted[0] == "the output tubes of healthy and leak are called disjoint, and meet");
   CHECK(designs[1].error == "out of ideas");
   CHECK(designs[1].error_code == Errc::unsupported);
   CHECK_FALSE(designs[1].outcome);
   CHECK(designs[2].outcome->status == DesignStatus::infeasible);
 
   options.pipeline = "three";
-  options.verify = true;
   designs = design_study(study, registry(), options);
   REQUIRE(designs.size() == 1);
   CHECK(designs[0].index == 3);
   CHECK_FALSE(designs[0].exact);  // there is no input
-  options.pipeline = "one";
-  designs = design_study(study, registry(), options);
-  REQUIRE(designs[0].exact);
-  CHECK(designs[0].exact->separates() == Answer::no);  // three equal modes
   options.pipeline = "observer";
   CHECK_THROWS_WITH_AS(design_study(study, registry(), options), doctest::Contains("has no designer"), InputError);
   options.pipeline = "thre";

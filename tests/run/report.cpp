@@ -122,8 +122,10 @@ TEST_CASE("an assumption that failed is told") {
   PipelineOutcome p = diagnosis();
   CHECK_FALSE(has(apps::diagnosis_text(study(), p, apps::Paint(stdout)), "Assumption"));
   p.assumptions_until = 3;
-  CHECK(has(apps::diagnosis_text(study(), p, apps::Paint(stdout)),
-            "Assumption failed: at k = 3 the state lies outside an admissible set"));
+  p.failed_assumption = FailedAssumption{FailedAssumption::What::restart_set, 2, 3, -1, 0};
+  CHECK(has(
+      apps::diagnosis_text(study(), p, apps::Paint(stdout)),
+      "Assumption failed: x_2 lies outside the restart set, from which all modes begin anew at k = 2. What is said from k = 3"));
   RunOutcome outcome;
   outcome.pipelines = {p};
   CHECK(json::parse(apps::report_json({}, outcome))["pipelines"][0]["assumptions_until"] == 3);

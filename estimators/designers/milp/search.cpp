@@ -30,9 +30,9 @@ class Search {
       : problem_(problem), limits_(limits), control_(control), begin_(std::chrono::steady_clock::now()) {}
 
   SearchResult run() {
-    result_.bounded_problem =
-        fmt::format("the program with at most {} generators per pair, as GLPK bounds it", limits_.max_generators);
     if (!reduce()) return std::move(result_);
+    result_.restriction = RestrictedProblem{
+        fmt::format("the program with at most {} generators per pair, as GLPK bounds it", limits_.max_generators), -infinity};
     LocalSearch local(problem_, pairs_, [this] { return left_to_start(); });
     look_for_starts(local);
     InputProgram inputs(problem_);
@@ -55,6 +55,10 @@ class Search {
 
   /// The first input is worth more of the time than better ones.
   double left_to_start() const { return left(result_.u ? share_of_starts : share_of_first_start); }
+
+  /// What is known of the reduced program's optimum, which is no bound of the problem itself.
+  double bound() const { return result_.restriction->lower_bound; }
+  void raise_bound(double bound) { result_.restriction->lower_bound = std::max(this->bound(), bound); }
 
   bool reduce();
   bool settled(const PairProgram& pair);
@@ -141,7 +145,7 @@ void Search::offer(const Vector& u) {
   }
   result_.u = u;
   result_.cost = cost;
-  control_.progress(problem_.horizon, cost, result_.lower_bound);
+  control_.progress(problem_.horizon, cost, -infinity);
 }
 
 void Search::look_for_starts(LocalSearch& local) {
@@ -194,11 +198,11 @@ bool Search::bound_single_pairs(InputProgram& inputs, const std::vector<double>&
       return false;
     }
     alone[q] = std::isfinite(solution.bound) ? solution.bound : 0;
-    result_.lower_bound = std::max(result_.lower_bound, alone[q]);
+    raise_bound(alone[q]);
   }
   std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return alone[a] > alone[b]; });
-  if (result_.lower_bound > 0) inputs.demand_cost(result_.lower_bound * (1 - tolerance));
-  control_.progress(problem_.horizon, result_.u ? result_.cost : infinity, result_.lower_bound);
+  if (bound() > 0) inputs.demand_cost(bound() * (1 - tolerance));
+  control_.progress(problem_.horizon, result_.u ? result_.cost : infinity, -infinity);
   return true;
 }
 
@@ -210,15 +214,15 @@ void Search::branch(InputProgram whole, const std::vector<double>& most) {
   while (left(1) > 0) {
     MipOptions limits = options(1, ordered);
     if (result_.u) limits.start = start(whole, columns);
-    limits.watch = [this](double best, double bound) {
+    limits.watch = [this](double best, double) {
       const double known = result_.u ? result_.cost : infinity;
-      control_.progress(problem_.horizon, std::min(best, known), std::max(bound, result_.lower_bound));
+      control_.progress(problem_.horizon, std::min(best, known), -infinity);
       return control_.stop();
     };
     const MipSolution solution = solve(whole.program(), limits);
     result_.nodes += solution.nodes;
     impossible_ = solution.status == MipStatus::infeasible && !result_.u;
-    if (std::isfinite(solution.bound)) result_.lower_bound = std::max(result_.lower_bound, solution.bound);
+    if (std::isfinite(solution.bound)) raise_bound(solution.bound);
     if (solution.x.size() == 0) return;
     const Vector u = solution.x.head(whole.inputs());
     offer(u);
@@ -254,7 +258,7 @@ void Search::conclude() {
   const std::string ended = control_.stop() ? "the search was ended from outside" : "the time limit is over";
   if (result_.u) {
     result_.status = DesignStatus::feasible;
-    result_.lower_bound = std::min(result_.lower_bound, result_.cost);
+    if (bound() > result_.cost) result_.restriction->lower_bound = result_.cost;
     result_.reason = closed_ ? "this is the optimum of the program after its reduction, as GLPK says; an input that costs less "
                                "may separate the modes too"
                      : result_.stopped ? ended
@@ -267,7 +271,7 @@ void Search::conclude() {
   result_.suggestion = "more generators, or \"facets\", which needs none to be reduced";
   if (impossible_) {
     result_.reason = "the program has no solution after its reduction, as GLPK says; the problem itself may have one";
-    result_.lower_bound = -infinity;
+    result_.restriction->lower_bound = -infinity;
   } else if (unproven_) {
     result_.reason = "an input was found, but that it separates the modes is not proven";
   } else {

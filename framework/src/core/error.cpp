@@ -55,6 +55,8 @@ std::string_view to_string(Errc code) noexcept {
       return "plugin";
     case Errc::io:
       return "io";
+    case Errc::violated:
+      return "violated";
     case Errc::internal:
       return "internal";
   }

@@ -41,6 +41,7 @@ Estimate Observer::step(const Sample& now) {
     estimate.set->is_empty(&estimate.why);
   } else {
     estimate.set = before_ ? do_step(*before_, now) : do_start(X0_, now);
+    estimate.set.tightness = meet(estimate.set.tightness, claim());
     const Stopwatch watch(times_.question);
     estimate.consistent = negate(estimate.set->is_empty(&estimate.why));
     inconsistent_ = estimate.consistent == Answer::no;

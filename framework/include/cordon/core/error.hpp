@@ -19,6 +19,7 @@ enum class Errc {
   time_limit,   ///< a limit of time was reached before there was an answer
   plugin,       ///< a plugin was refused or broke its contract
   io,           ///< reading or writing failed
+  violated,     ///< a component said something that is proven false
   internal      ///< a defect of this program
 };
 

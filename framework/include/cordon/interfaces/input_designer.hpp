@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cordon/interfaces/backend.hpp"
@@ -20,8 +21,8 @@ struct PairSeparation {
   Index i = 0, j = 0;                 ///< i < j, indices in the bank
   double kappa = 0;                   ///< as computed; +inf: the tubes do not meet however far the box is widened
   double kappa_lower = 0;             ///< κ is at least this, by `why`
-  Answer disjoint = Answer::unknown;  ///< `yes`: proven by a Farkas vector; `no`: proven to meet
-  Certificate why = {};               ///< about the rows of the pair with all lines eliminated
+  Answer disjoint = Answer::unknown;  ///< `yes`: by a Farkas vector; `no`: they meet. A claim until the host has proven it
+  Certificate why = {};               ///< about rows of the designer's own making: the host rests nothing on it
 };
 
 /// An input sequence and what it does to the modes.
@@ -32,15 +33,16 @@ struct InputDesign {
   std::vector<Answer> empty;  ///< per mode: is its tube empty under u? `yes`: the model contradicts itself, a modelling error
   std::vector<Box> outputs;   ///< per mode: hull of its output tube, (N+1)·n_y by time; n_y where only the last output counts
 
-  /// `yes`: every pair is proven disjoint and no tube is empty, proven as well; `no`: a pair is proven to meet.
+  /// What the designer claims of them. `yes`: every pair is disjoint and no tube is empty; `no`: a pair meets.
   Answer separates() const;
 };
 
-/// What became of a search at one horizon.
+/// What became of a search at one horizon, as the designer says. That `best` keeps to the input set and to a first input, and
+/// that it separates the modes, the host checks; that nothing is cheaper, or that there is no such input, it does not.
 enum class DesignStatus {
-  optimal,     ///< `best` costs at most the designer's gap more than the proven lower bound
+  optimal,     ///< `best` costs at most the designer's gap more than its lower bound
   feasible,    ///< an input was found; how much cheaper another one may be is told by the lower bound
-  infeasible,  ///< proven: no input of the input set separates the modes
+  infeasible,  ///< no input of the input set separates the modes
   unknown,     ///< nothing was found in the limit, and nothing is proven
   given        ///< the input was given, nothing was searched for
 };
@@ -53,14 +55,21 @@ struct HorizonTrial {
   std::string reason;
 };
 
+/// A narrower problem that was searched in place of the problem itself, and what is known of it. Its solutions are solutions of
+/// the problem, so that its bound does not bound the problem: other inputs may cost less.
+struct RestrictedProblem {
+  std::string name;                                               ///< for people
+  double lower_bound = -std::numeric_limits<double>::infinity();  ///< of the cost of its own solutions
+};
+
 struct DesignOutcome {
   DesignStatus status = DesignStatus::unknown;
   Index horizon = 0;                                              ///< N: inputs u_0 … u_N, outputs y_0 … y_N
   std::optional<InputDesign> best;                                ///< `optimal`, `feasible`, `given`
-  double lower_bound = -std::numeric_limits<double>::infinity();  ///< of the cost of every separating input, proven
-  std::string bounded_problem = {};  ///< empty: `lower_bound` speaks of the problem itself; else of which restriction of it
-  bool stopped = false;              ///< the search ended early: time limit, or from outside
-  std::string reason = {};           ///< why there is no better answer, for people; empty if `optimal`
+  double lower_bound = -std::numeric_limits<double>::infinity();  ///< of the cost of every separating input
+  std::optional<RestrictedProblem> restriction = {};              ///< the search looked at this one only
+  bool stopped = false;                                           ///< the search ended early: time limit, or from outside
+  std::string reason = {};  ///< why there is no better answer, for people; empty if `optimal`
   std::string suggestion = {};
   std::int64_t nodes = 0, programs = 0,
                facets = 0;               ///< size of the search: nodes, linear programs solved, facets of forbidden sets
@@ -70,7 +79,7 @@ struct DesignOutcome {
   bool last_output_only = false;                ///< the outputs y_N, not those of all times
   std::optional<LineForm> admissible_set = {};  ///< holds x_k for k ≥ 1 as far as E does not determine it; nothing: not assumed
 
-  /// (cost - lower bound) / cost; infinite without both.
+  /// (cost - lower bound) / cost, of the problem itself; infinite without both.
   double gap() const;
 };
 
@@ -90,7 +99,8 @@ class InputDesigner {
   InputDesigner(const InputDesigner&) = delete;
   InputDesigner& operator=(const InputDesigner&) = delete;
 
-  /// The outcome fits the bank: sizes are checked (Errc::internal for a designer that breaks this).
+  /// The outcome fits the bank: Errc::violated for a designer that gives an input, pairs or tubes of other sizes, pairs in
+  /// another order, or numbers that are none.
   DesignOutcome design(DesignControl& control) const;
 
   const ModeBank& bank() const { return bank_; }

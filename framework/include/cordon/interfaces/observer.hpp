@@ -52,6 +52,13 @@ class Observer {
   /// The gains it works with, with what is known about them; of gains that vary in time those of the steady state.
   virtual std::vector<Gain> gains() const { return {}; }
 
+  /// What the recursion itself promises where every set operation in it is exact. `exact`: its estimate at k is then the set of
+  /// all states that the model, the assumptions and all samples up to k allow. No recursion is that by itself: one that leaves
+  /// out a measurement, an input or the previous sample only encloses this set, however exact its operations are. The claim of an
+  /// estimate is the meet of this one and of its set's, so that `exact` is said only where an observer states it here, and
+  /// `cordon verify` compares the sets.
+  virtual Tightness claim() const { return Tightness::outer; }
+
   /// A box inside the hull of the last estimate, made of trajectories that the observer must enclose: what is left between the
   /// two is the price of the enclosure. Never an enclosure itself. Nothing: not offered.
   virtual std::optional<Box> inner_estimate() const { return std::nullopt; }

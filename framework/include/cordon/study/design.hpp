@@ -34,9 +34,15 @@ struct ExactSeparation {
 /// `stop` (may be null) ends it early: what is open then is `unknown`.
 ExactSeparation verify_design(const ModeBank& bank, const DesignOutcome& outcome, const std::atomic<bool>* stop = nullptr);
 
+/// What of a designer's answer is proven false: by the exact separation of its input, and by what the study asks for in the
+/// parameters of these names, where the designer has them: `horizon`, `max_horizon`, `input`, `input_set` (absent: U of the
+/// nominal mode), `first_input`, `epsilon`, `outputs`, `admissible_set`. An input is outside the set, or another than the one
+/// that was asked for, if it is so by more than rounding (1e-9 of its size). One sentence each; none: nothing is contradicted.
+std::vector<std::string> refuted_claims(const ModeBank& bank, const ComponentSpec& designer, const DesignOutcome& outcome,
+                                        const ExactSeparation* exact);
+
 struct DesignOptions {
   std::string pipeline;                     ///< this one only; empty: all that have a designer
-  bool verify = false;                      ///< prove every input again by `verify_design`
   const std::atomic<bool>* stop = nullptr;  ///< set from a signal handler: searches end, and say so
   /// Called now and then: pipeline index, horizon, cheapest input so far (+inf: none), lower bound.
   std::function<void(std::size_t, Index, double, double)> progress;
@@ -46,17 +52,18 @@ struct PipelineDesign {
   std::size_t index = 0;  ///< in the study
   std::string name, backend, designer;
   std::optional<DesignOutcome> outcome;
-  std::optional<ExactSeparation> exact;
-  double design_s = 0;     ///< wall-clock time of the design
-  std::string error = {};  ///< the designer ended with this error
+  std::optional<ExactSeparation> exact;   ///< what is proven of the input, if there is one
+  std::vector<std::string> refuted = {};  ///< of the designer's answer
+  double design_s = 0;                    ///< wall-clock time of the design
+  std::string error = {};                 ///< the designer ended with this error
   std::optional<Errc> error_code = {};
 };
 
-/// Designs the inputs of all pipelines with a designer, one after another. Throws InputError if `pipeline` is unknown or has no
-/// designer. An exception of a component ends its pipeline only.
+/// Designs the inputs of all pipelines with a designer, one after another, and checks every answer. Throws InputError if
+/// `pipeline` is unknown or has no designer. An exception of a component ends its pipeline only.
 std::vector<PipelineDesign> design_study(const Study& study, const Registry& registry, const DesignOptions& options);
 
-/// The same as JSON objects (docs/results_format.md).
+/// The same as JSON objects (docs/results_format.md). What is exact has no time in it, so that it repeats.
 std::string json_of(const DesignOutcome& outcome, const std::vector<std::string>& modes);
 std::string json_of(const ExactSeparation& exact, const std::vector<std::string>& modes);
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cordon/study/data.hpp"
+#include "cordon/study/design.hpp"
 #include "cordon/study/study.hpp"
 
 namespace cordon {
@@ -138,17 +139,40 @@ struct ExperimentRow {
   DelayStatistics isolation = {};                                          ///< first k from which on the true mode is isolated
 };
 
+/// An assumption that the simulated truth is proven not to keep, by more than rounding.
+struct FailedAssumption {
+  enum class What {
+    initial_set,     ///< x_0: the observer's initial set, of a diagnoser X0 of the true mode
+    restart_set,     ///< x_k: the set that a diagnoser begins anew from, at a reset at k
+    admissible_set,  ///< x_k
+    U,               ///< u_k, of statements made in advance
+    W,               ///< what leads from x_k to x_{k+1} in the true mode
+    V                ///< what leads from x_k to y_k in the true mode
+  };
+  What what = What::initial_set;
+  Index k = 0;                   ///< of the x, u, w or v that lies outside
+  Index from = 0;                ///< the first time that statements rest on it
+  Index mode = -1;               ///< whose X0, W or V it is; -1: the pipeline's or the study's own
+  std::int64_t seed_offset = 0;  ///< of the run
+};
+std::string_view to_string(FailedAssumption::What what) noexcept;
+/// "W of mode \"healthy\" does not hold what leads from x_4 to x_5": for people.
+std::string text_of(const FailedAssumption& failed, const std::vector<std::string>& modes);
+
 struct PipelineOutcome {
   std::string name, backend, observer;
   std::string diagnoser;                      ///< if there is one, `observer` is empty
   std::optional<DiagnosisOutcome> diagnosis;  ///< and this tells what it found; the counts of sets below stay 0
   std::string designer;                       ///< if there is one, `observer` is empty
   std::optional<DesignOutcome> design;        ///< and this is what it designed
+  std::optional<ExactSeparation> exact;       ///< what is proven of the input, if there is one
+  std::vector<std::string> refuted;           ///< what of the designer's answer is proven false: a defect
   std::vector<ExperimentRow> experiments;     ///< by true mode, if the pipeline has a diagnoser too
   std::int64_t steps = 0;
   std::int64_t consistent = 0, inconsistent = 0, undecided = 0;  ///< answers to "is the estimate non-empty?"
   std::int64_t inconsistent_from = -1;                           ///< first k with an estimate proven empty
-  std::int64_t assumptions_until = -1;  ///< first k at which the truth is proven outside the pipeline's own assumptions
+  std::int64_t assumptions_until = -1;                ///< from this k on nothing is promised: `failed_assumption->from`
+  std::optional<FailedAssumption> failed_assumption;  ///< the earliest
   std::int64_t outside_from = -1;  ///< first k with the truth proven outside the estimate, by more than rounding (1e-9 relative)
   std::int64_t violated_at = -1;   ///< a defect: `outside_from` where all assumptions hold, which is known of simulated data only
                                    ///< (in the nominal mode so far, and not of a Plant); or the true mode excluded

@@ -42,6 +42,11 @@ struct VerifiedPipeline {
   std::int64_t exact_claims = 0;  ///< claims of `exact` that are true
   std::int64_t undecided = 0;     ///< single checks that neither succeeded nor failed
   std::string first_undecided;    ///< the first of them
+  /// An assumption that the simulated truth does not keep, as the run has told it: nothing is promised from `assumptions_until`
+  /// on.
+  std::string failed_assumption = {};
+  std::int64_t assumptions_until = -1;
+  Answer fails_again = Answer::unknown;  ///< is that proven again from data.csv?
 };
 
 struct VerifyOutcome {

@@ -66,8 +66,12 @@ void write(JsonWriter& json, const DesignOutcome& outcome, const ModeNames& mode
   json.member("epsilon", outcome.epsilon).member("outputs", outcome.last_output_only ? "last" : "all").key("admissible_set");
   outcome.admissible_set ? write(json, *outcome.admissible_set) : void(json.null());
   write_best(json, outcome, modes);
-  json.member("lower_bound", outcome.lower_bound);
-  text_or_null(json, "bounded_problem", outcome.bounded_problem);
+  json.member("lower_bound", outcome.lower_bound).key("restriction");
+  if (const auto& restriction = outcome.restriction) {
+    json.begin_object().member("problem", restriction->name).member("lower_bound", restriction->lower_bound).end_object();
+  } else {
+    json.null();
+  }
   json.member("gap", std::isfinite(outcome.gap()) ? outcome.gap() : none).member("stopped", outcome.stopped);
   text_or_null(json, "reason", outcome.reason);
   text_or_null(json, "suggestion", outcome.suggestion);
@@ -97,7 +101,7 @@ void write(JsonWriter& json, const ExactSeparation& exact, const ModeNames& mode
     write_mode(json, "mode", modes, static_cast<Index>(i));
     json.member("empty", to_string(exact.empty[i])).end_object();
   }
-  json.end_array().member("wall_s", exact.wall_s).end_object();
+  json.end_array().end_object();
 }
 
 void write(JsonWriter& json, const std::vector<ExperimentRow>& experiments, const ModeNames& modes) {

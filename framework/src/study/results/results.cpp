@@ -223,7 +223,9 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
   results_.member("steps", outcome.steps).member("consistent", outcome.consistent).member("inconsistent", outcome.inconsistent);
   results_.member("undecided", outcome.undecided);
   write_time(results_, "inconsistent_from", outcome.inconsistent_from);
-  write_time(results_, "assumptions_until", outcome.assumptions_until);
+  std::vector<std::string> modes;
+  for (const Mode& mode : bank_of(study_).modes) modes.push_back(mode.name);
+  write_assumptions(results_, outcome, modes);
   write_time(results_, "outside_from", outcome.outside_from);
   write_time(results_, "violated_at", outcome.violated_at);
   write_inner(results_, outcome);

@@ -29,7 +29,7 @@ std::vector<std::string> summary_fields(const PipelineOutcome& outcome) {
     fields.push_back(std::to_string(design->horizon));
     fields.push_back(best ? csv_number(best->cost) : "");
     fields.push_back(csv_number(design->lower_bound));
-    fields.push_back(best ? std::string(to_string(best->separates())) : "");
+    fields.push_back(outcome.exact ? std::string(to_string(outcome.exact->separates())) : "");
   }
   if (outcome.experiments.empty()) return fields;
   std::int64_t runs = 0, isolated = 0, wrong = 0;
@@ -73,10 +73,15 @@ void Results::design(const PipelineSpec& spec, std::optional<Rounding> rounding,
   for (const std::string& mode : modes) results_.value(mode);
   results_.end_array().key("design");
   outcome.design ? write(results_, *outcome.design, modes) : void(results_.null());
+  results_.key("exact");
+  outcome.exact ? write(results_, *outcome.exact, modes) : void(results_.null());
   results_.key("experiments");
   write(results_, outcome.experiments, modes);
   results_.key("summary").begin_object(Layout::lines);
-  write_time(results_, "assumptions_until", outcome.assumptions_until);
+  write_assumptions(results_, outcome, modes);
+  results_.key("refuted").begin_array(outcome.refuted.empty() ? Layout::line : Layout::lines);
+  for (const std::string& claim : outcome.refuted) results_.value(claim);
+  results_.end_array();
   write_time(results_, "violated_at", outcome.violated_at);
   results_.key("error");
   outcome.error.empty() ? results_.null() : results_.value(outcome.error);

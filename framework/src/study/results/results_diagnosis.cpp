@@ -138,7 +138,7 @@ void Results::diagnosis(const DiagnosisResult& result) {
 void Results::end_diagnosis(const PipelineOutcome& outcome) {
   results_.end_array().key("summary").begin_object(Layout::lines).member("steps", outcome.steps);
   write_members(results_, *outcome.diagnosis);
-  write_time(results_, "assumptions_until", outcome.assumptions_until);
+  write_assumptions(results_, outcome, modes_);
   write_time(results_, "violated_at", outcome.violated_at);
   results_.key("error");
   outcome.error.empty() ? results_.null() : results_.value(outcome.error);

@@ -49,6 +49,17 @@ void write_numbers(JsonWriter& json, const std::vector<ResultNumber>& numbers, b
   json.end_object();
 }
 
+void write_assumptions(JsonWriter& json, const PipelineOutcome& outcome, const std::vector<std::string>& modes) {
+  write_time(json, "assumptions_until", outcome.assumptions_until);
+  json.key("failed_assumption");
+  if (!outcome.failed_assumption) return void(json.null());
+  const FailedAssumption& failed = *outcome.failed_assumption;
+  json.begin_object().member("what", to_string(failed.what)).member("k", failed.k).key("mode");
+  const bool named = failed.mode >= 0 && static_cast<std::size_t>(failed.mode) < modes.size();
+  named ? json.value(modes[static_cast<std::size_t>(failed.mode)]) : json.null();
+  json.member("seed_offset", failed.seed_offset).member("text", text_of(failed, modes)).end_object();
+}
+
 void write(JsonWriter& json, const LineForm& X) {
   json.begin_object();
   write_blocks(json, X);

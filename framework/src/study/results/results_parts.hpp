@@ -10,6 +10,7 @@
 #include "cordon/core/box.hpp"
 #include "cordon/core/line_form.hpp"
 #include "cordon/study/result_table.hpp"
+#include "cordon/study/run.hpp"
 #include "study/results/json_writer.hpp"
 
 namespace cordon::detail {
@@ -25,6 +26,8 @@ void write_blocks(JsonWriter& json, const LineForm& X);  ///< the members of an 
 void write_box(JsonWriter& json, std::string_view key, const Box& box);  ///< {lower, upper}
 /// "numbers": {name: number} of those that are measured, or of the others; NaN is left out.
 void write_numbers(JsonWriter& json, const std::vector<ResultNumber>& numbers, bool measured);
+/// "assumptions_until" and "failed_assumption".
+void write_assumptions(JsonWriter& json, const PipelineOutcome& outcome, const std::vector<std::string>& modes);
 void write(JsonWriter& json, const LineForm& X);
 void write(JsonWriter& json, const Certificate& why);
 

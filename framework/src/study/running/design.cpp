@@ -46,7 +46,9 @@ PipelineDesign design_one(const Study& study, std::size_t index, const Registry&
   });
   made.design_s = seconds_since(begin);
   detail::guarded(made, [&] {
-    if (options.verify && made.outcome && made.outcome->best) made.exact = verify_design(bank, *made.outcome, options.stop);
+    if (!made.outcome) return;
+    if (made.outcome->best) made.exact = verify_design(bank, *made.outcome, options.stop);
+    made.refuted = refuted_claims(bank, *spec.designer, *made.outcome, made.exact ? &*made.exact : nullptr);
   });
   return made;
 }

@@ -2,15 +2,16 @@
 #include "study/running/design_run.hpp"
 
 #include <chrono>
+#include <map>
 
-#include "cordon/solvers/set_questions.hpp"
 #include "study/data/experiment.hpp"
 #include "study/results/median.hpp"
-#include "study/running/admissible_sets.hpp"
+#include "study/running/assumption_check.hpp"
 #include "study/running/design.hpp"
 #include "study/running/diagnosis_run.hpp"
 #include "study/running/diagnosis_score.hpp"
 #include "study/running/pipeline_guard.hpp"
+#include "study/verification/common_runs.hpp"
 
 namespace cordon::detail {
 
@@ -23,8 +24,8 @@ double seconds_since(Clock::time_point begin) { return std::chrono::duration<dou
 /// A designer and a diagnoser with what they have found so far.
 class DesignPipeline {
  public:
-  DesignPipeline(const Study& study, const PipelineSpec& spec, const TimeLimit& limit)
-      : study_(study), bank_(bank_of(study)), limit_(limit) {
+  DesignPipeline(const Study& study, const PipelineSpec& spec, const TimeLimit& limit, const std::atomic<bool>* stop)
+      : study_(study), bank_(bank_of(study)), limit_(limit), stop_(stop) {
     outcome_.name = spec.name;
     outcome_.backend = spec.backend.type;
     outcome_.designer = spec.designer->type;
@@ -36,12 +37,22 @@ class DesignPipeline {
       backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
       outcome_.design = registry.make_designer(spec.designer->type, bank_, backend_, spec.designer->params)->design(control);
       if (control.stopped()) limit_.check(0);
+      prove(spec);
       if (outcome_.design->best && spec.diagnoser) {
         diagnoser_ = registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
-        admissible_ = admissible_sets(*spec.diagnoser);
-        if (const auto& assumed = outcome_.design->admissible_set) admissible_.push_back(*assumed);
+        PipelineAssumptions assumed = assumptions_of(*spec.diagnoser);
+        assumed.inputs = false;  // the input of an experiment is known beforehand
+        if (const auto& admissible = outcome_.design->admissible_set) assumed.admissible_sets.push_back(*admissible);
+        check_.emplace(study_, std::move(assumed));
       }
     });
+  }
+
+  /// What the designer says of its input is proven anew, or refuted.
+  void prove(const PipelineSpec& spec) {
+    const DesignOutcome& design = *outcome_.design;
+    if (design.best) outcome_.exact = verify_design(bank_, design, stop_);
+    outcome_.refuted = refuted_claims(bank_, *spec.designer, design, outcome_.exact ? &*outcome_.exact : nullptr);
   }
 
   std::optional<Rounding> rounding() const { return backend_ ? std::optional(backend_->info().rounding) : std::nullopt; }
@@ -56,18 +67,20 @@ class DesignPipeline {
   /// One experiment; false if the pipeline has stopped.
   bool run(Index mode, std::int64_t seed_offset) {
     std::optional<Diagnosis> last;
-    Index isolated_at = -1, assumptions_until = -1;
+    Index isolated_at = -1;
+    Matrix shown(outcome_.design->best->u.rows(), bank_[mode].model.linear.outputs());
     DiagnosisScore score([](const DiagnosisSegment&) {});
     guarded(outcome_, [&] {
       const auto data = open_experiment(study_, bank_, mode, outcome_.design->best->u, static_cast<std::uint64_t>(seed_offset));
       diagnoser_->start();
+      check_->begin_run(seed_offset);
       while (const std::optional<Record> record = data->next()) {
         limit_.check(outcome_.steps);
-        if (assumptions_until < 0 && record->truth && !may_be(mode, record->sample.k, *record->truth)) {
-          assumptions_until = record->sample.k;
-        }
+        check_->step(*record);
         last = diagnoser_->step(record->sample);
         check_fits(*last, bank_, outcome_.diagnoser);
+        if (last->reset) check_->restarted();
+        shown.row(record->sample.k) = record->sample.y.transpose();
         score.step(mode, *last);
         median_.add(diagnoser_->step_us());
         ++outcome_.steps;
@@ -82,13 +95,11 @@ class DesignPipeline {
       outcome_.error += " (experiment with mode \"" + bank_[mode].name + "\", seed " + std::to_string(seed_offset + 1) + ")";
       return false;
     }
-    if (assumptions_until >= 0 && (outcome_.assumptions_until < 0 || assumptions_until < outcome_.assumptions_until)) {
-      outcome_.assumptions_until = assumptions_until;
-    }
     const auto& excluded = score.true_mode_excluded();
-    if (excluded && (assumptions_until < 0 || excluded->k < assumptions_until) && outcome_.violated_at < 0) {
+    if (excluded && !check_->excuses(excluded->k, excluded->since) && outcome_.violated_at < 0) {
       outcome_.violated_at = excluded->k;
     }
+    if (last && !check_->excuses(last->k)) compare_with_claims(mode, seed_offset, *last, shown);
     if (isolated_at >= 0) ++isolated_at_[isolated_at];
     if (last) count(*last);
     return true;
@@ -99,6 +110,7 @@ class DesignPipeline {
   PipelineOutcome finish(double wall_s) {
     outcome_.median_step_us = median_.value();
     outcome_.wall_s = wall_s;
+    if (check_) tell(check_->failed(), outcome_);
     return std::move(outcome_);
   }
 
@@ -107,10 +119,28 @@ class DesignPipeline {
     return diagnosis.decision == Decision::monitoring && diagnosis.mode == mode;
   }
 
-  /// Does the state keep to what the pipeline assumes of it: to X0 of the mode, later to the admissible sets of designer and
-  /// diagnoser?
-  bool may_be(Index mode, Index k, const Vector& x) const {
-    return k == 0 ? contains(bank_[mode].model.X0, x) != Answer::no : !leaves(admissible_, k, x);
+  /// Outputs of the true mode that lie in the tube of another one refute that both are disjoint. Asked where that is not decided
+  /// yet and the diagnoser leaves both modes.
+  void compare_with_claims(Index mode, std::int64_t seed_offset, const Diagnosis& last, const Matrix& shown) {
+    const DesignOutcome& design = *outcome_.design;
+    for (std::size_t q = 0; q < design.best->pairs.size(); ++q) {
+      const PairSeparation& claim = design.best->pairs[q];
+      const Index other = claim.i == mode ? claim.j : claim.j == mode ? claim.i : -1;
+      const bool open = !outcome_.exact || outcome_.exact->pairs[q].disjoint == Answer::unknown;
+      if (other < 0 || claim.disjoint != Answer::yes || !open || contradicted_[{claim.i, claim.j}]) continue;
+      if (!last.modes[static_cast<std::size_t>(other)].candidate) continue;
+      const LineForm tube =
+          verification::output_tube(bank_[other].model, {design.best->u, design.last_output_only, design.admissible_set});
+      const Matrix counted = design.last_output_only ? Matrix(shown.bottomRows(1)) : shown;
+      const LineForm runs =
+          intersection(tube, Matrix::Identity(tube.dim(), tube.dim()), make_point(counted.transpose().reshaped()));
+      if (verification::exact_emptiness(runs).empty != Answer::no) continue;
+      contradicted_[{claim.i, claim.j}] = true;
+      outcome_.refuted.push_back("the output tubes of " + bank_[claim.i].name + " and " + bank_[claim.j].name +
+                                 " are called disjoint, and in the experiment with mode \"" + bank_[mode].name + "\" and seed " +
+                                 std::to_string(seed_offset + 1) + " of " + std::to_string(seeds_of(study_)) +
+                                 " the outputs are those of both");
+    }
   }
 
   /// The end of an experiment.
@@ -135,9 +165,11 @@ class DesignPipeline {
   const Study& study_;
   ModeBank bank_;
   const TimeLimit& limit_;
+  const std::atomic<bool>* stop_;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Diagnoser> diagnoser_;
-  std::vector<LineForm> admissible_;
+  std::optional<AssumptionCheck> check_;
+  std::map<std::pair<Index, Index>, bool> contradicted_;  ///< pairs of modes, by experiments
   Delays isolated_at_;
   Median median_;
   PipelineOutcome outcome_;
@@ -150,7 +182,7 @@ std::optional<PipelineOutcome> run_design(const Study& study, std::size_t index,
   const PipelineSpec& spec = study.pipelines[index];
   const auto stopped = [&] { return options.stop && options.stop->load(); };
   const Clock::time_point begin = Clock::now();
-  DesignPipeline pipeline(study, spec, limit);
+  DesignPipeline pipeline(study, spec, limit, options.stop);
   WatchedDesign control([&] { return stopped() || limit.reached(); },
                         [&](Index, double, double) {
                           if (options.progress) options.progress(index, 0, 0);

@@ -4,9 +4,8 @@
 #include <chrono>
 #include <limits>
 
-#include "cordon/solvers/set_questions.hpp"
 #include "study/results/median.hpp"
-#include "study/running/admissible_sets.hpp"
+#include "study/running/assumption_check.hpp"
 #include "study/running/diagnosis_score.hpp"
 #include "study/running/fault_score.hpp"
 #include "study/running/pipeline_guard.hpp"
@@ -40,7 +39,7 @@ class DiagnosisPipeline {
       : bank_(bank_of(study)),
         own_model_(is_own_model(study)),
         first_other_fault_(first_other_fault(study)),
-        admissible_(admissible_sets(*spec.diagnoser)),
+        check_(study, assumptions_of(*spec.diagnoser)),
         seeds_(seeds_of(study)),
         fault_score_(study.model.linear.faults()) {
     outcome_.name = spec.name;
@@ -69,8 +68,7 @@ class DiagnosisPipeline {
 
   void begin_run(std::int64_t seed_offset) {
     seed_offset_ = seed_offset;
-    start_holds_ = true;
-    assumptions_until_.reset();
+    check_.begin_run(seed_offset);
     fault_score_.begin_run(seed_offset);
     timeline_.emplace();
     score_.emplace([this](const DiagnosisSegment& segment) {
@@ -84,14 +82,14 @@ class DiagnosisPipeline {
     std::optional<Diagnosis> diagnosis;
     std::vector<JudgedBound> faults;
     guarded(outcome_, [&] {
+      check_.step(record);
       diagnosis = diagnoser_->step(record.sample);
       check_fits(*diagnosis, bank_, outcome_.diagnoser);
       faults = fault_score_.step(record.sample.k < first_other_fault_ ? record.fault : std::nullopt, *diagnosis);
     });
     if (failed()) return;
     if (found_.steps == 0 && record.mode) found_.truth_known = true;
-    if (record.mode && record.truth && record.sample.k == 0) check_start(*record.mode, *record.truth);
-    if (record.truth) check_state(record.sample.k, *record.truth);
+    if (diagnosis->reset) check_.restarted();
     ++found_.steps;
     if (seed_offset_ == 0) {
       ++outcome_.steps;
@@ -116,6 +114,7 @@ class DiagnosisPipeline {
   PipelineOutcome finish(double wall_s) {
     outcome_.median_step_us = median_.value();
     outcome_.wall_s = wall_s;
+    tell(check_.failed(), outcome_);
     found_.statistics = tally_.statistics();
     found_.detection = tally_.detection();
     found_.isolation = tally_.isolation();
@@ -125,37 +124,30 @@ class DiagnosisPipeline {
   }
 
  private:
-  /// The first exclusion of a true mode, and the first bounds without the true fault.
+  /// The first exclusion of a true mode, and the first bounds without the true fault; where no failed assumption excuses one,
+  /// that.
   void judge_run() {
-    auto excluded = score_->true_mode_excluded();
-    if (excluded && !found_.true_mode_excluded) {
+    if (auto excluded = score_->true_mode_excluded()) {
       excluded->seed_offset = seed_offset_;
-      found_.true_mode_excluded = excluded;
-      if (start_holds_ || excluded->since > 0) blame(excluded->k);
+      const bool defect = blame(excluded->k, excluded->since);
+      if (!found_.true_mode_excluded || (defect && exclusion_excused_)) {
+        found_.true_mode_excluded = excluded;
+        exclusion_excused_ = !defect;
+      }
     }
     if (fault_score_.outside() && !found_.fault_outside) {
       found_.fault_outside = fault_score_.outside();
-      blame(found_.fault_outside->k);
+      blame(found_.fault_outside->k, 0);
     }
     if (violated_in_run_ && outcome_.violated_at < 0) outcome_.violated_at = *violated_in_run_;
     violated_in_run_.reset();
   }
 
   /// A statement that is proven false: a defect where the data are made by the model itself, and keep to what is assumed.
-  void blame(Index k) {
-    if (own_model_ && (!assumptions_until_ || k < *assumptions_until_))
-      violated_in_run_ = std::min(k, violated_in_run_.value_or(k));
-  }
-
-  /// A statement about a mode since the first sample rests on that mode's X0.
-  void check_start(Index mode, const Vector& x0) {
-    if (mode >= 0 && mode != bank_.nominal) start_holds_ = contains(bank_[mode].model.X0, x0) != Answer::no;
-  }
-
-  void check_state(Index k, const Vector& x) {
-    if (assumptions_until_ || !leaves(admissible_, k, x)) return;
-    assumptions_until_ = k;
-    if (outcome_.assumptions_until < 0 || k < outcome_.assumptions_until) outcome_.assumptions_until = k;
+  bool blame(Index k, Index since) {
+    if (!own_model_ || check_.excuses(k, since)) return false;
+    violated_in_run_ = std::min(k, violated_in_run_.value_or(k));
+    return true;
   }
 
   template <class Item>
@@ -168,10 +160,9 @@ class DiagnosisPipeline {
   }
 
   ModeBank bank_;
-  bool own_model_, start_holds_ = true;
+  bool own_model_;
   Index first_other_fault_;
-  std::vector<LineForm> admissible_;
-  std::optional<Index> assumptions_until_;  ///< of this run
+  AssumptionCheck check_;
   std::int64_t seeds_, seed_offset_ = 0;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Diagnoser> diagnoser_;
@@ -179,6 +170,7 @@ class DiagnosisPipeline {
   std::optional<DiagnosisScore> score_;
   DiagnosisTally tally_;
   FaultScore fault_score_;
+  bool exclusion_excused_ = false;  ///< that of `true_mode_excluded` is
   std::optional<Index> violated_in_run_;
   Median median_;
   DiagnosisOutcome found_;

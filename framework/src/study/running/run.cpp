@@ -9,6 +9,7 @@
 #include "study/report/try_report.hpp"
 #include "study/results/median.hpp"
 #include "study/results/results.hpp"
+#include "study/running/assumption_check.hpp"
 #include "study/running/design_run.hpp"
 #include "study/running/diagnosis_run.hpp"
 #include "study/running/inner_check.hpp"
@@ -20,6 +21,7 @@ namespace cordon {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using detail::AssumptionCheck;
 using detail::Assumptions;
 using detail::InnerCheck;
 using detail::Median;
@@ -80,6 +82,9 @@ class Pipeline {
       observer_->start();
       assumptions_ = {observer_->initial_set(), std::nullopt};
       if (const Set* admissible = observer_->admissible_set()) assumptions_->admissible_set = admissible->line_form();
+      detail::PipelineAssumptions assumed{.initial_set = assumptions_->initial_set};
+      if (assumptions_->admissible_set) assumed.admissible_sets.push_back(*assumptions_->admissible_set);
+      check_.emplace(study_, std::move(assumed));
       outcome_.gains = observer_->gains();
     });
   }
@@ -107,7 +112,7 @@ class Pipeline {
       inner = observer_->inner_estimate();
       if (inner) inner_.step(estimate->k, *inner, hull);
       const Vector* truth = judge(record, *estimate);
-      const bool assumptions_hold = nominal_ && outcome_.assumptions_until < 0;
+      const bool assumptions_hold = nominal_ && !check_->excuses(record.sample.k);
       values = &board_->step({*estimate, hull, truth, assumptions_hold, observer_->times()});
       if (results) results->check_columns(*values);
     });
@@ -129,6 +134,7 @@ class Pipeline {
     outcome_.median_hull_us = medians_.hull.value();
     outcome_.median_step_us = medians_.step.value();
     outcome_.wall_s = wall_s;
+    if (check_) detail::tell(check_->failed(), outcome_);
     outcome_.inner_steps = inner_.steps();
     outcome_.inner_outside = inner_.outside();
     if (inner_.steps() > 0) outcome_.inner_share = inner_.share();
@@ -144,14 +150,11 @@ class Pipeline {
     detail::guarded(outcome_, std::forward<Work>(work));
   }
 
-  /// Keeps count of assumptions and containment; returns the truth at the estimate's time, if the data have it.
+  /// Looks at assumptions and containment; returns the truth at the estimate's time, if the data have it.
   const Vector* judge(const Record& record, const Estimate& estimate) {
+    check_->step(record);
     if (!record.truth) return nullptr;
     truths_.emplace_back(record.sample.k, *record.truth);
-    const Set* admissible = observer_->admissible_set();
-    if (outcome_.assumptions_until < 0 && admissible && holds(*admissible, *record.truth) == Answer::no) {
-      outcome_.assumptions_until = record.sample.k;
-    }
     while (!truths_.empty() && truths_.front().first < estimate.k) truths_.pop_front();  // estimates may lag behind the samples
     if (truths_.empty() || truths_.front().first != estimate.k) return nullptr;
     const Vector& truth = truths_.front().second;
@@ -159,7 +162,7 @@ class Pipeline {
     if (still_inside && (estimate.consistent == Answer::no ||
                          (holds(*estimate.set, truth) == Answer::no && clearly_outside(*estimate.set, truth)))) {
       outcome_.outside_from = estimate.k;
-      if (own_model_ && nominal_ && outcome_.assumptions_until < 0) outcome_.violated_at = estimate.k;
+      if (own_model_ && nominal_ && !check_->excuses(record.sample.k)) outcome_.violated_at = estimate.k;
     }
     return &truth;
   }
@@ -200,6 +203,7 @@ class Pipeline {
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Observer> observer_;
   std::optional<Assumptions> assumptions_;
+  std::optional<AssumptionCheck> check_;
   std::optional<MetricBoard> board_;
   std::deque<std::pair<Index, Vector>> truths_;
   std::vector<Certificate> hull_proofs_;

@@ -133,6 +133,17 @@ double bound_of(const DesignOutcome& design) {
   return design.lower_bound == -infinity ? none : design.lower_bound;
 }
 
+/// What is proven of the κ of every pair: 0 or less where it is not proven to be apart.
+double smallest_kappa(const PipelineOutcome& outcome) {
+  if (!outcome.design->best || outcome.design->best->pairs.empty()) return none;
+  double kappa = std::numeric_limits<double>::infinity();
+  for (std::size_t q = 0; q < outcome.design->best->pairs.size(); ++q) {
+    const bool apart = outcome.exact && outcome.exact->pairs[q].disjoint == Answer::yes;
+    kappa = std::min(kappa, apart ? outcome.exact->pairs[q].kappa_lower : std::min(0.0, outcome.design->best->pairs[q].kappa));
+  }
+  return kappa;
+}
+
 void add_design(Numbers& numbers, const PipelineOutcome& outcome) {
   numbers.time("assumptions_until", outcome.assumptions_until);
   numbers.time("violated_at", outcome.violated_at);
@@ -145,10 +156,9 @@ void add_design(Numbers& numbers, const PipelineOutcome& outcome) {
     const bool searched = design->status != DesignStatus::given;
     numbers.add("optimal", searched ? static_cast<double>(design->status == DesignStatus::optimal) : none);
     numbers.add("infeasible", searched ? static_cast<double>(design->status == DesignStatus::infeasible) : none);
-    numbers.answer("separates", best ? best->separates() : Answer::unknown);
-    double kappa = best && !best->pairs.empty() ? std::numeric_limits<double>::infinity() : none;
-    for (std::size_t i = 0; best && i < best->pairs.size(); ++i) kappa = std::min(kappa, best->pairs[i].kappa_lower);
-    numbers.add("kappa_min", kappa);
+    numbers.answer("separates", outcome.exact ? outcome.exact->separates() : Answer::unknown);
+    numbers.add("kappa_min", smallest_kappa(outcome));
+    numbers.count("refuted_claims", static_cast<std::int64_t>(outcome.refuted.size()));
     numbers.count("nodes", design->nodes);
   }
   if (outcome.experiments.empty()) return;

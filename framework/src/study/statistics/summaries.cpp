@@ -70,13 +70,14 @@ void write_markdown(Sink& file, const std::string& title, const ComparisonTable&
 }
 
 /// Did everything hold that the pipeline claims? "1", "0", or nothing if it did not come to its end or has no answer; of a design
-/// "infeasible" if it is proven that no input separates the modes.
+/// "infeasible" if its designer says that no input separates the modes.
 std::string verdict(const ResultTable& table, const ResultRow& row) {
   if (!row.error.empty()) return "";
   const auto value = [&](std::string_view name) {
     const std::size_t column = column_of(table, name);
     return column < row.values.size() ? row.values[column] : std::nan("");
   };
+  if (value("refuted_claims") > 0) return "0";
   if (!std::isnan(value("violated_at")) || !std::isnan(value("inner_outside")) || value("inconsistent") > 0) return "0";
   if (value("infeasible") == 1) return "infeasible";
   if (!std::isnan(value("horizon"))) return std::isnan(value("separates")) ? "" : to_text(value("separates"));

@@ -144,13 +144,15 @@ ResultTable SweepRows::table(const Study& study) const {
 }
 
 std::int64_t violations(const ResultTable& table) {
-  std::vector<std::size_t> columns;
+  std::vector<std::pair<std::size_t, double>> columns;  // of a time, or of a count: values from here on are violations
   for (std::size_t j = 0; j < table.columns.size(); ++j) {
     const std::string& name = table.columns[j].name;
-    if (name == "violated_at" || name == "inner_outside") columns.push_back(j);
+    if (name == "violated_at" || name == "inner_outside") columns.emplace_back(j, 0);
+    if (name == "refuted_claims") columns.emplace_back(j, 1);
   }
   return std::count_if(table.rows.begin(), table.rows.end(), [&](const ResultRow& row) {
-    return std::any_of(columns.begin(), columns.end(), [&](std::size_t j) { return row.values[j] >= 0; });
+    return std::any_of(columns.begin(), columns.end(),
+                       [&](const auto& column) { return row.values[column.first] >= column.second; });
   });
 }
 

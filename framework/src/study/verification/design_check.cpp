@@ -47,14 +47,13 @@ class DesignCheck {
     if (++found.undecided == 1) found.first_undecided = std::move(what);
   }
   void refute(std::string what, const char* list, std::size_t index) {
-    if (!found.refuted) found.refuted = {std::move(what), list + std::to_string(index)};
+    found.refuted.push_back({std::move(what), list + std::to_string(index)});
   }
 };
 
 }  // namespace
 
-DesignFindings check_design(const ModeBank& bank, const DesignOutcome& outcome, const std::atomic<bool>* stop) {
-  const ExactSeparation exact = verify_design(bank, outcome, stop);
+DesignFindings compare_design(const ModeBank& bank, const DesignOutcome& outcome, const ExactSeparation& exact) {
   DesignCheck check;
   for (std::size_t q = 0; q < exact.pairs.size(); ++q) {
     const ExactPair& pair = exact.pairs[q];

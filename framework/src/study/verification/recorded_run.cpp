@@ -176,6 +176,13 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
   } else if (at.find("diagnoser")) {
     pipeline.is_diagnosis = true;
   }
+  if (const auto summary = at.find("summary"); summary && summary->is(Kind::object)) {
+    pipeline.failed = read_failed_assumption(*summary, system);
+    const auto refuted = summary->find("refuted");
+    for (std::size_t i = 0; refuted && refuted->is(Kind::array) && i < refuted->size(); ++i) {
+      pipeline.refuted.push_back(read_text(refuted->item(i), 10'000).value_or(""));
+    }
+  }
   if (pipeline.is_design || pipeline.is_diagnosis) {
     if (const auto rounding = at.find("rounding"); rounding && !rounding->is(Kind::null))
       pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);

@@ -13,6 +13,7 @@
 #include "cordon/study/design.hpp"
 #include "cordon/study/study.hpp"
 #include "study/reading/json_cursor.hpp"
+#include "study/verification/recorded_assumption.hpp"
 
 namespace cordon::verification {
 
@@ -26,6 +27,8 @@ struct RecordedStep {
 
 struct RecordedPipeline {
   std::string name, backend;
+  std::optional<RecordedAssumption> failed;  ///< that the run found to fail
+  std::vector<std::string> refuted;          ///< what of a designer's answer the run found to be false
   bool is_diagnosis = false;                 ///< of a diagnoser: nothing else is read, no sets are stored
   bool is_design = false;                    ///< of a designer: only `design` is read
   std::optional<DesignOutcome> design = {};  ///< horizon, input, what is said of pairs and tubes; nothing: there is no input

@@ -111,6 +111,8 @@ class Verification {
       outcome_.pipelines.back().backend = pipeline.backend;
       outcome_.pipelines.back().rounding = pipeline.rounding;
       outcome_.pipelines.back().checked = !pipeline.is_diagnosis;
+      repeat(p);
+      if (outcome_.violation) return std::move(outcome_);
       if (pipeline.is_diagnosis) continue;
       if (pipeline.is_design) {
         if (pipeline.design) check_input(p, *pipeline.design);
@@ -142,6 +144,25 @@ class Verification {
     return std::move(*row);
   }
 
+  /// What the run itself has found: an assumption that fails, claims of a designer that are false.
+  void repeat(std::size_t p) {
+    const RecordedPipeline& pipeline = run_.pipelines[p];
+    VerifiedPipeline& found = outcome_.pipelines.back();
+    if (!pipeline.refuted.empty()) {
+      const Index horizon = pipeline.design ? pipeline.design->horizon : 0;
+      outcome_.violation = {pipeline.name, horizon, pipeline.refuted[0], fmt::format("/pipelines/{}/summary/refuted/0", p)};
+    }
+    if (!pipeline.failed) return;
+    found.failed_assumption = pipeline.failed->text;
+    found.assumptions_until = pipeline.failed->failed.from;
+    found.fails_again = fails_again(run_, pipeline);
+    if (found.fails_again == Answer::no) {
+      ++found.undecided;
+      found.first_undecided = fmt::format("k = {}: that an assumption fails is not proven again: {}", pipeline.failed->failed.k,
+                                          found.failed_assumption);
+    }
+  }
+
   /// A design claims nothing if there is no input.
   void check_input(std::size_t p, const DesignOutcome& design) {
     VerifiedPipeline& found = outcome_.pipelines.back();
@@ -151,11 +172,11 @@ class Verification {
       return;
     }
     found.proofs = claims.hold;
-    found.undecided = claims.undecided;
-    found.first_undecided = std::move(claims.first_undecided);
-    if (claims.refuted) {
-      outcome_.violation = {found.name, design.horizon, std::move(claims.refuted->what),
-                            fmt::format("/pipelines/{}/design{}", p, claims.refuted->pointer)};
+    if (found.undecided == 0) found.first_undecided = std::move(claims.first_undecided);
+    found.undecided += claims.undecided;
+    if (!claims.refuted.empty()) {
+      outcome_.violation = {found.name, design.horizon, claims.refuted[0].what,
+                            fmt::format("/pipelines/{}/design{}", p, claims.refuted[0].pointer)};
     }
   }
 

@@ -122,6 +122,16 @@ void add_failures(const RunFiles& files, Report& report) {
       report.notes.push_back(
           fmt::format("A guarantee of \"{}\" was violated at k = {}: a defect, please report it.", name, shown(k, 15)));
     }
+    for (const Cursor& claim : items_of(*summary, "refuted")) {
+      report.notes.push_back(fmt::format("What the designer of \"{}\" says is proven false: {}. A defect, please report it.",
+                                         name, json::read_text(claim, 10000).value_or("")));
+    }
+    if (const auto failed = object_of(*summary, "failed_assumption")) {
+      report.notes.push_back(
+          fmt::format("An assumption of \"{}\" fails: {}. What is said from k = {} on rests on it and proves "
+                      "nothing.",
+                      name, text_of(*failed, "text"), shown(value_of(*summary, "assumptions_until"), 15)));
+    }
     if (const double k = value_of(*summary, "inner_outside"); !std::isnan(k)) {
       report.notes.push_back(fmt::format("The inner estimate of \"{}\" leaves its bounds at k = {}: a defect, please report it.",
                                          name, shown(k, 15)));

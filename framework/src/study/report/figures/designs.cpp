@@ -39,7 +39,8 @@ struct Design {
   Matrix u;
   bool last_output_only = false;
   std::optional<LineForm> admissible_set;
-  std::vector<Box> tubes;  ///< by mode; dimension 0: not told
+  std::vector<Box> tubes;          ///< by mode; dimension 0: not told
+  std::vector<Cursor> exact = {};  ///< pairs, as far as they are proven
 };
 
 std::optional<Vector> bounds(const Cursor& box, const char* key) {
@@ -63,6 +64,7 @@ std::optional<Design> design_of(const RunFiles& files, std::size_t pipeline, Ind
     }
     design.tubes.push_back(std::move(box));
   }
+  if (const auto exact = tree.find("exact"); exact && exact->is(Kind::object)) design.exact = items_of(*exact, "pairs");
   return design;
 }
 
@@ -153,19 +155,34 @@ Index best_coordinate(const Box& X, const Box& Y) {
   return best;
 }
 
-std::string verdict_of(const Cursor& pair) {
-  const std::string disjoint = text_of(pair, "disjoint");
-  if (disjoint == "yes") return fmt::format("proven disjoint, κ ≥ {}", shown(value_of(pair, "kappa_lower")));
-  return disjoint == "no" ? "proven to meet" : "not decided";
+/// The proof of a pair, if there is one.
+const Cursor* proof_of(const Design& design, std::size_t q) {
+  const bool told = q < design.exact.size() && design.exact[q].is(Kind::object);
+  return told && text_of(design.exact[q], "disjoint") != "unknown" ? &design.exact[q] : nullptr;
+}
+
+/// What of a pair is proven, else what its designer claims.
+std::string verdict_of(const Cursor& claim, const Cursor* proof) {
+  const std::string disjoint = text_of(proof ? *proof : claim, "disjoint");
+  if (disjoint == "yes" && proof) return fmt::format("proven disjoint, κ ≥ {}", shown(value_of(*proof, "kappa_lower")));
+  if (disjoint == "yes") return "claimed to be disjoint";
+  if (disjoint == "no") return proof ? "proven to meet" : "claimed to meet";
+  return "not decided";
 }
 
 /// One pair of modes, along what separates them.
 std::optional<Intervals::Row> row_of(const Design& design, const std::vector<LineForm>& tubes, std::size_t i, std::size_t j,
-                                     const Cursor& pair) {
+                                     const Cursor& pair, const Cursor* proof) {
   const Box &X = design.tubes[i], &Y = design.tubes[j];
-  Intervals::Row row{
-      fmt::format("{} – {}", design.modes[i], design.modes[j]), design.modes[i], design.modes[j], 0, 0, 0, 0, verdict_of(pair)};
-  const bool apart = text_of(pair, "disjoint") == "yes";
+  Intervals::Row row{fmt::format("{} – {}", design.modes[i], design.modes[j]),
+                     design.modes[i],
+                     design.modes[j],
+                     0,
+                     0,
+                     0,
+                     0,
+                     verdict_of(pair, proof)};
+  const bool apart = text_of(proof ? *proof : pair, "disjoint") == "yes";
   if (apart && !tubes.empty()) {
     try {
       if (const auto d = separating_direction(tubes[i], tubes[j])) {
@@ -197,7 +214,7 @@ void add_pairs(const RunFiles& files, const Design& design, const std::vector<co
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = i + 1; j < count; ++j, ++q) {
       if (!pairs[q].expect(Kind::object, "")) continue;
-      if (auto row = row_of(design, tubes, i, j, pairs[q])) intervals.rows.push_back(std::move(*row));
+      if (auto row = row_of(design, tubes, i, j, pairs[q], proof_of(design, q))) intervals.rows.push_back(std::move(*row));
     }
   }
   if (intervals.rows.empty()) return;
@@ -240,26 +257,39 @@ void add_experiments(const RunFiles& files, std::size_t pipeline, Report& report
        std::move(table), static_cast<int>(pipeline)});
 }
 
+/// Does the input separate the modes? With "(claimed)" where that is not proven.
+std::string separates(const RunFiles& files, const Design& design) {
+  const auto exact = files.tree(design.pipeline).find("exact");
+  const std::string proven = exact && exact->is(Kind::object) ? text_of(*exact, "separates") : "unknown";
+  if (proven != "unknown") return proven;
+  const std::string claim = text_of(design.tree, "separates");
+  return claim == "yes" || claim == "no" ? claim + " (claimed)" : claim;
+}
+
 void add_overview(const RunFiles& files, const std::vector<Design>& designs, Report& report) {
-  Table table{{"Pipeline", "Designer", "Status", "Horizon", "Cost", "Lower bound", "Gap", "Separates", "Smallest κ proven"}, {}};
+  Table table{{"Pipeline", "Designer", "Status", "Horizon", "Cost", "Claimed lower bound", "Claimed gap", "Separates",
+               "Smallest κ proven"},
+              {}};
   for (const Design& design : designs) {
     const PipelineHead& head = files.pipelines()[design.pipeline];
     double kappa = std::numeric_limits<double>::infinity();
     const std::vector<Cursor> pairs = items_of(design.tree, "pairs");
-    for (const Cursor& pair : pairs) {
-      const bool apart = pair.is(Kind::object) && text_of(pair, "disjoint") == "yes";
-      kappa = std::min(kappa, apart ? value_of(pair, "kappa_lower") : 0.0);
+    for (std::size_t q = 0; q < pairs.size(); ++q) {
+      const Cursor* proof = proof_of(design, q);
+      const bool apart = proof && text_of(*proof, "disjoint") == "yes";
+      kappa = std::min(kappa, apart ? value_of(*proof, "kappa_lower") : 0.0);
     }
     table.rows.push_back({text_cell(head.name), text_cell(head.component), text_cell(text_of(design.tree, "status")),
                           number_cell(value_of(design.tree, "horizon")), number_cell(value_of(design.tree, "cost"), 6),
                           number_cell(value_of(design.tree, "lower_bound"), 6), number_cell(value_of(design.tree, "gap")),
-                          text_cell(text_of(design.tree, "separates")), number_cell(pairs.empty() ? std::nan("") : kappa)});
+                          text_cell(separates(files, design)), number_cell(pairs.empty() ? std::nan("") : kappa)});
   }
   if (!table.rows.empty()) {
-    report.figures.push_back({"designs", section::designs, "Designs",
-                              "Cost of the input and proven lower bound of any input's; the input separates if every pair of "
-                              "modes is proven disjoint.",
-                              std::move(table)});
+    report.figures.push_back(
+        {"designs", section::designs, "Designs",
+         "Cost of the input and lower bound of any input's, as the designer says; the input separates if every "
+         "pair of modes is proven disjoint in exact arithmetic.",
+         std::move(table)});
   }
 }
 

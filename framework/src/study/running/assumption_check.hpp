@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The assumptions of a study beside the simulated truth: which of them fails first, and when.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cordon/study/run.hpp"
+
+namespace cordon::detail {
+
+/// What a pipeline assumes beside X0, W and V of the modes.
+struct PipelineAssumptions {
+  std::optional<LineForm> initial_set = {};        ///< holds x at the first sample, in place of X0 of the true mode
+  std::vector<LineForm> admissible_sets = {};      ///< hold x_k for k ≥ `admissible_from`
+  Index admissible_from = 0;
+  std::optional<LineForm> restart_set = {};        ///< holds x_k where a diagnoser begins anew at k
+  bool inputs = false;                             ///< statements made in advance rest on u_k ∈ U
+};
+
+/// What a diagnoser assumes by the word of the study: its parameters "admissible_set" and "restart_set", those of components
+/// nested in it, and U. Of x_0 it is X0 of the mode that is assumed.
+PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser);
+
+/// Follows the runs of one pipeline. Where the truth is known:
+///   x_0 ∈ X0, x_k in the sets of the pipeline, u_k ∈ U: outside by more than 1e-9 of their size;
+///   of a `Plant`, which is no linear model, w and v are what is missing in the model of the true mode,
+///     E x_{k+1} - A x_k - B diag(f) u_k ∈ Bw W,   y_k - diag(g) (C x_k + D diag(f) u_k) ∈ Dv V
+///   with intervals of A, B, C and ranges of f and g as boxes: outside by more than 1e-12 of the terms of a row, which the
+///   operations of the plant may have rounded. What linear models simulate is drawn from W and V.
+/// Every "outside" is proven by a certificate. Memory is constant.
+class AssumptionCheck {
+ public:
+  AssumptionCheck(const Study& study, PipelineAssumptions assumed);
+
+  void begin_run(std::int64_t seed_offset);
+  /// Records come in order; to be called before what is said at this time is judged.
+  void step(const Record& record);
+  /// The diagnoser has begun anew at the last record.
+  void restarted();
+
+  /// Does a statement of time k about the times from `since` on rest on an assumption that has failed? What has begun anew does not
+  /// rest on the initial set.
+  bool excuses(Index k, Index since = 0) const;
+  /// The earliest over all runs.
+  const std::optional<FailedAssumption>& failed() const { return earliest_; }
+
+ private:
+  void check_start(const Record& record);
+  void check_sets(const Record& record);
+  void check_plant(const Record& record);
+  void fail(FailedAssumption::What what, Index k, Index from, Index mode = -1);
+
+  const Study& study_;
+  ModeBank bank_;
+  PipelineAssumptions assumed_;
+  bool by_plant_;
+  std::int64_t seed_offset_ = 0;
+  std::optional<Record> last_;
+  std::optional<FailedAssumption> start_, other_;  ///< of this run: of the initial set, and the first of the others
+  std::optional<FailedAssumption> earliest_;
+};
+
+/// Writes it where results are made of it.
+void tell(const std::optional<FailedAssumption>& failed, PipelineOutcome& outcome);
+
+}  // namespace cordon::detail

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points that are outside a set by more than rounding.
+#pragma once
+
+#include "cordon/core/line_form.hpp"
+
+namespace cordon::detail {
+
+/// Is x proven to lie outside X, with all that is within `margin` of it in every coordinate? By a certificate that the box around x
+/// and X are disjoint.
+bool clearly_outside(const LineForm& X, VectorIn x, double margin);
+bool clearly_outside(const LineForm& X, VectorIn x, VectorIn margin);
+
+/// The same with 1e-9 of the larger of x and of X without its lines, by their largest coordinates: states and inputs are made of
+/// numbers of that size.
+bool clearly_outside(const LineForm& X, VectorIn x);
+
+}  // namespace cordon::detail

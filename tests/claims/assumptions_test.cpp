@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An assumption that the simulated truth does not keep is named, with its step, and not put down to the program.
+#include <doctest/doctest.h>
+
+#include "claims/program.hpp"
+#include "cordon/solvers/set_questions.hpp"
+#include "study/running/assumption_check.hpp"
+#include "study/running/outside.hpp"
+
+using namespace claims;
+using namespace cordon;
+
+namespace {
+
+Json box(std::initializer_list<double> radii) {
+  Json lower = Json::array(), upper = Json::array();
+  for (const double radius : radii) {
+    lower.push_back(-radius);
+    upper.push_back(radius);
+  }
+  return {{"type", "box"}, {"lower", lower}, {"upper", upper}};
+}
+
+/// Two tanks with a pump each; modes without their set to begin anew.
+Json tanks(const Json& restart_set) {
+  Json made = Json::parse(R"({
+    "cordon": 1, "title": "two tanks",
+    "system": {"type": "lti", "A": [[0.8, 0.1], [0.1, 0.7]], "B": [[500, 0], [0, 0.5]], "C": [[1, 0], [0, 1]],
+      "X0": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
+      "W": {"type": "polytope", "lower": [-1, -1], "upper": [1, 1], "H": [[1, 1]], "h": [0.5]},
+      "V": {"type": "box", "lower": [-1e-12, -1e-12], "upper": [1e-12, 1e-12]}, "nominal": "healthy",
+      "modes": [{"name": "first pump weak", "actuator": [0.5, 1]}, {"name": "second pump weak", "actuator": [1, [0.4, 0.6]]},
+        {"name": "second sensor dead", "sensor": [1, 0]}]},
+    "data": {"simulate": {"steps": 6, "seed": 1, "seeds": 2,
+      "input": [{"type": "constant", "offset": 1}, {"type": "sine", "amplitude": 1, "omega": 0.3, "offset": 1}],
+      "faults": [{"mode": "first pump weak", "from": 2, "to": 4}]}},
+    "pipelines": [{"name": "Bank", "backend": "constrained_zonotope", "diagnoser": {"type": "consistency_bank",
+      "observer": {"type": "prediction_correction", "max_generators": 5, "max_constraints": 5}, "waiting_time": 10}}]})");
+  made["pipelines"][0]["diagnoser"]["restart_set"] = restart_set;
+  return made;
+}
+
+/// A scalar plant beside the linear model .5 x + u, which misses .01 x², and .02 x³ in the output. It rests in x = 1.
+Json bent(double w, double v, const Json& changes = Json::object()) {
+  Json made = Json::parse(R"({
+    "cordon": 1, "title": "a bent plant",
+    "system": {"type": "lti", "A": [[0.5]], "B": [[1]], "C": [[1]], "X0": {"type": "box", "lower": [-2], "upper": [2]}},
+    "data": {"simulate": {"plant": "bent", "steps": 6, "x0": [1], "noise": "zero", "input": [{"type": "constant", "offset": 0.49}]}},
+    "pipelines": [{"name": "P", "backend": "zonotope", "observer": "prediction_correction"}], "metrics": ["radius"]})");
+  made["system"]["W"] = box({w});
+  made["system"]["V"] = box({v});
+  made.merge_patch(changes);
+  return made;
+}
+
+void check_failed(const Program& program, const std::string& what, Index k, Index from, const std::string& text) {
+  const Said run = program.run();
+  CAPTURE(run.out);
+  CHECK(run.code == 0);
+  CHECK(run.has("Assumption failed: "));
+  CHECK(run.has(text));
+  CHECK(run.has("What is said from k = " + std::to_string(from) + " on rests on it"));
+  const Json summary = program.results()["pipelines"][0]["summary"];
+  REQUIRE(summary["failed_assumption"].is_object());
+  CHECK(summary["failed_assumption"]["what"] == what);
+  CHECK(summary["failed_assumption"]["k"] == k);
+  CHECK(summary["assumptions_until"] == from);
+  CHECK(summary["violated_at"].is_null());
+  CHECK(program.file("report.html").find("An assumption of") != std::string::npos);
+  const Said verified = program.verify();
+  CAPTURE(verified.out);
+  CHECK(verified.code == 0);
+  CHECK(verified.has("assumption failed"));
+  CHECK(verified.has(text));
+  CHECK_FALSE(verified.has("Every claim that was checked holds.\n"));
+}
+
+void check_kept(const Program& program) {
+  const Said run = program.run();
+  CAPTURE(run.out);
+  CHECK(run.code == 0);
+  CHECK_FALSE(run.has("Assumption failed"));
+  CHECK(program.results()["pipelines"][0]["summary"]["failed_assumption"].is_null());
+  CHECK(program.verify().code == 0);
+}
+
+}  // namespace
+
+TEST_CASE("a restart set that does not hold the state is named, at the reset that begins from it") {
+  const Program program(tanks(box({20, 20})));
+  const Said run = program.run();
+  CAPTURE(run.out);
+  CAPTURE(run.err);
+  CHECK(run.code == 0);
+  CHECK(run.has("lies outside the restart set, from which all modes begin anew at k = "));
+  const Json summary = program.results()["pipelines"][0]["summary"], failed = summary["failed_assumption"];
+  CHECK(failed["what"] == "restart_set");
+  CHECK(summary["assumptions_until"] == failed["k"].get<Index>() + 1);
+  CHECK(summary["violated_at"].is_null());
+  CHECK(program.verify().has("lies outside the restart set"));
+  const Program wide(tanks(box({5000, 5000})));
+  CHECK(wide.run().code == 0);
+  CHECK(wide.results()["pipelines"][0]["summary"]["failed_assumption"].is_null());
+}
+
+TEST_CASE("a plant that leaves W") {
+  check_failed(Program(bent(.005, .1)), "W", 0, 1, "no w in W of mode \"healthy\" leads from x_0 to x_1");
+  const Json later =
+      Json::parse(R"({"data": {"simulate": {"input": [{"type": "step", "offset": 0.49, "amplitude": 0.5, "from": 3}]}}})");
+  check_failed(Program(bent(.015, .5, later)), "W", 4, 5, "leads from x_4 to x_5");
+}
+
+TEST_CASE("a plant that leaves V") {
+  check_failed(Program(bent(.1, .015)), "V", 0, 0, "no v in V of mode \"healthy\" leads from x_0 to y_0");
+  const Json later =
+      Json::parse(R"({"data": {"simulate": {"input": [{"type": "step", "offset": 0.49, "amplitude": 0.5, "from": 3}]}}})");
+  check_failed(Program(bent(.1, .03, later)), "V", 4, 4, "leads from x_4 to y_4");
+}
+
+TEST_CASE("on the boundary is inside, whatever was rounded on the way") {
+  check_kept(Program(bent(.01, .02)));
+  check_failed(Program(bent(.01 * (1 - 1e-9), .02)), "W", 0, 1, "no w in W");
+  const Json vertices = Json::parse(R"({"data": {"simulate": {"plant": null, "noise": "vertex", "steps": 300}}})");
+  check_kept(Program(bent(.01, .02, vertices)));
+}
+
+TEST_CASE("a plant that its model bounds says nothing") { check_kept(Program(bent(.1, .1))); }
+
+TEST_CASE("what an assumption does not hold is not excused before it fails") {
+  Study study;
+  study.model.linear.A = Matrix{{.5}};
+  study.model.linear.B = study.model.linear.C = study.model.linear.Bw = study.model.linear.Dv = Matrix{{1.}};
+  study.model.linear.D = Matrix{{0.}};
+  study.model.X0 = study.model.W = study.model.V = make_box({-Vector::Ones(1), Vector::Ones(1)});
+  study.model.U = make_box({-Vector::Ones(1), Vector::Ones(1)});
+  study.data = SimulateSpec{};
+  const auto record = [](Index k, double x, double u = 0) { return Record{{k, Vector{{u}}, Vector{{x}}}, Vector{{x}}, 0, {}}; };
+  detail::PipelineAssumptions assumed;
+  assumed.restart_set = make_box({-Vector::Ones(1), Vector::Ones(1)});
+  assumed.admissible_sets = {make_box({-Vector::Constant(1, 9), Vector::Constant(1, 9)})};
+  assumed.inputs = true;
+  detail::AssumptionCheck check(study, assumed);
+  SUBCASE("nothing fails") {
+    check.begin_run(0);
+    for (Index k = 0; k < 4; ++k) check.step(record(k, 1, -1));
+    check.restarted();
+    CHECK_FALSE(check.failed());
+    CHECK_FALSE(check.excuses(3));
+  }
+  SUBCASE("the start: statements since then are excused, not those of what has begun anew") {
+    check.begin_run(3);
+    check.step(record(0, 1.5));
+    check.step(record(1, .5));
+    check.restarted();
+    CHECK(check.excuses(0));
+    CHECK(check.excuses(2, 0));
+    CHECK_FALSE(check.excuses(2, 1));
+    REQUIRE(check.failed());
+    CHECK(check.failed()->what == FailedAssumption::What::initial_set);
+    CHECK(check.failed()->mode == 0);
+    CHECK(check.failed()->seed_offset == 3);
+    CHECK(text_of(*check.failed(), {"healthy"}) == "x_0 lies outside X0 of mode \"healthy\"");
+  }
+  SUBCASE("the restart set: the reset itself rests on what was before") {
+    check.begin_run(0);
+    for (Index k = 0; k < 3; ++k) check.step(record(k, k == 0 ? 0 : 5));
+    check.restarted();
+    CHECK_FALSE(check.excuses(2, 2));
+    CHECK(check.excuses(3, 2));
+    CHECK(check.failed()->what == FailedAssumption::What::restart_set);
+    CHECK(check.failed()->k == 2);
+  }
+  SUBCASE("an admissible set, and an input") {
+    check.begin_run(0);
+    check.step(record(0, 0));
+    check.step(record(1, 9.5));
+    CHECK(check.failed()->what == FailedAssumption::What::admissible_set);
+    CHECK(check.failed()->from == 1);
+    CHECK_FALSE(check.excuses(0));
+    check.begin_run(1);
+    CHECK_FALSE(check.excuses(5));
+    check.step(record(0, 0, 1.5));
+    CHECK(check.excuses(0));
+    CHECK(check.failed()->what == FailedAssumption::What::U);  // earlier than that of the other run
+  }
+}
+
+TEST_CASE("outside by more than rounding") {
+  const LineForm X = make_box({-Vector::Ones(2), Vector::Ones(2)});
+  CHECK_FALSE(detail::clearly_outside(X, Vector{{1., 1.}}));
+  CHECK_FALSE(detail::clearly_outside(X, Vector{{1 + 1e-10, 0.}}));
+  CHECK(detail::clearly_outside(X, Vector{{1 + 1e-8, 0.}}));
+  CHECK_FALSE(detail::clearly_outside(X, Vector{{2., 2., 2.}}));  // of another dimension: nothing is said
+  const LineForm small = make_box({-Vector::Constant(1, 1e-12), Vector::Constant(1, 1e-12)});
+  CHECK(detail::clearly_outside(small, Vector{{1.1e-12}}));
+  CHECK_FALSE(detail::clearly_outside(make_space(1), Vector{{1e300}}));
+}
