@@ -83,6 +83,9 @@ void StepCheck::emptiness_proof() {
       return violated("the estimate is called empty, but the stored proof does not hold in rational arithmetic", true);
     }
   } else if (row_.exact_exchange && !proves_not_empty(row_.set, row_.proof)) {
+    // rows of flat sets contradict each other in the last digits, which is not taken for emptiness with nominal rounding
+    const bool may_be_rounding = row_.proof.kind == Certificate::Kind::point && (row_margin_.array() > 0).any();
+    if (may_be_rounding) return emptiness_without_proof();
     return violated("the estimate is called non-empty, but the stored proof does not hold in rational arithmetic", true);
   }
   ++proofs_;
