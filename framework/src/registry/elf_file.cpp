@@ -129,7 +129,7 @@ std::optional<Refusal> ElfFile::check_extent(const Header& header) {
 /// What a header describes must lie in memory that is loaded: tables for exceptions among it, which are read when one is thrown.
 bool ElfFile::is_loaded(const Segment& part) const {
   constexpr Address page = 1u << 16;  // the largest in use; a part may end with its page
-  if (part.p_type == PT_LOAD) return part.p_memsz >= part.p_filesz;
+  if (part.p_type == PT_LOAD) return part.p_memsz >= part.p_filesz && part.p_memsz <= largest_library;
   if (part.p_type == PT_NULL || part.p_type == PT_GNU_STACK || part.p_memsz == 0) return true;
   return std::any_of(segments_.begin(), segments_.end(), [&](const Segment& s) {
     return s.p_type == PT_LOAD && part.p_vaddr >= s.p_vaddr &&
