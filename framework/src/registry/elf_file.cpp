@@ -121,8 +121,21 @@ std::optional<Refusal> ElfFile::check_extent(const Header& header) {
   std::memcpy(segments_.data(), bytes_.data() + header.e_phoff, segments_.size() * sizeof(Segment));
   for (const Segment& segment : segments_) {
     if (segment.p_type != PT_NULL && !fits(segment.p_offset, segment.p_filesz, 1, size)) return truncated;
+    if (!is_loaded(segment)) return Refusal{"its program headers are damaged", copy_again};
   }
   return {};
+}
+
+/// What a header describes must lie in memory that is loaded: tables for exceptions among it, which are read when one is thrown.
+bool ElfFile::is_loaded(const Segment& part) const {
+  constexpr Address page = 1u << 16;  // the largest in use; a part may end with its page
+  if (part.p_type == PT_LOAD) return part.p_memsz >= part.p_filesz && part.p_memsz <= largest_library;
+  if (part.p_type == PT_NULL || part.p_type == PT_GNU_STACK || part.p_memsz == 0) return true;
+  return std::any_of(segments_.begin(), segments_.end(), [&](const Segment& s) {
+    return s.p_type == PT_LOAD && part.p_vaddr >= s.p_vaddr &&
+           fits(part.p_vaddr - s.p_vaddr, part.p_memsz, 1, s.p_memsz + page) &&
+           (part.p_type == PT_GNU_RELRO || part.p_filesz == 0 || part.p_vaddr - s.p_vaddr == part.p_offset - s.p_offset);
+  });
 }
 
 /// What stands in the file at an address, to the end of its segment.

@@ -35,6 +35,7 @@ class ElfFile {
   using Symbol = ElfW(Sym);
 
   std::optional<Refusal> check_extent(const ElfW(Ehdr) & header);
+  bool is_loaded(const Segment& part) const;
   bool read_dynamic();
   bool relocations_are_sound() const;
   bool table_is_sound(std::int64_t address_tag, std::int64_t size_tag, std::uint64_t entry) const;

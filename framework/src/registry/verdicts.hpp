@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What trials of library files have shown is kept, in this process and in the user's cache directory: $XDG_CACHE_HOME/cordon or
-// ~/.cache/cordon. Of bounded size; where nothing can be written, files are tried in every process.
+// What trials of library files have shown is kept in this process and, where it lasts, in the user's cache directory:
+// $XDG_CACHE_HOME/cordon or ~/.cache/cordon. Of bounded size; where nothing can be written, files are tried in every process.
 #pragma once
 
 #include <filesystem>

@@ -56,7 +56,7 @@ class Registry {
   /// Loads one library. The same checks; the report tells the outcome and stays valid until the next call that loads or unloads.
   /// A file that is loaded already is left as it is; one that was refused before is tried again. Nothing of a library is executed
   /// before its descriptor was read from the file and accepted; a file that is new is then opened in a child process first, so
-  /// that one that crashes, hangs or ends the process is a refusal. The outcome is kept in the user's cache.
+  /// that one that crashes, hangs or ends the process is a refusal. Refusals are kept in the user's cache.
   const PluginReport& load_file(const std::filesystem::path& file);
   /// Closes a plugin's library and forgets its report. Throws Errc::plugin, naming the number, while backends, observers or
   /// metrics of it live (a set keeps its backend alive); Errc::invalid if no such plugin is loaded.
