@@ -87,17 +87,19 @@ bool is_shipped(const fs::path& file) {
   return std::find(own.begin(), own.end(), file.parent_path()) != own.end();
 }
 
-/// What becomes of a process that opens the library, lets it register and closes it again; refusals by a rule are found again by
-/// the process that asks.
+/// What becomes of a process that opens the library, lets it register and closes it again. What such a process cannot open, this
+/// one does not try: it has less memory, and a library that asks for all of it would end whoever has more.
 std::optional<Refusal> try_out(const fs::path& file, const ElfFile& elf, const PluginDescriptor& announced) {
   const FileIdentity identity(file, elf.bytes());
   if (auto known = recall(identity)) return known->refusal;
   Trial trial = try_in_child([&] {
     const Catalogue empty;
     Opened opened;
-    if (open(file, announced, opened)) return;
+    std::optional<Refusal> refusal = open(file, announced, opened);
+    if (refusal) return refusal;
     Batch batch(empty, announced.name);
-    register_into(batch, *opened.descriptor);
+    register_into(batch, *opened.descriptor);  // what breaks a rule is found again, with its place
+    return refusal;
   });
   // A damaged library may do well at some addresses and crash at others: what a child of this process survives, this process
   // does, and not the next one. Only refusals last, and what is said of the plugins that came with the program.

@@ -44,8 +44,21 @@ Arithmetic arithmetic() {
 
 /// Written by the child, read by the parent.
 struct Message {
-  volatile bool finished, same_arithmetic, subnormals;
+  volatile bool finished, refused, same_arithmetic, subnormals;
+  char reason[1024], fix[256];  ///< where refused
 };
+
+template <std::size_t size>
+void put(char (&text)[size], const std::string& words) {
+  const std::size_t count = std::min(words.size(), size - 1);
+  std::memcpy(text, words.data(), count);
+  text[count] = '\0';
+}
+/// The process that wrote it may have been damaged.
+template <std::size_t size>
+std::string words_of(const char (&text)[size]) {
+  return {text, strnlen(text, size)};
+}
 
 /// Memory and a file without a name that both processes share.
 class Shared {
@@ -108,7 +121,7 @@ void limit(decltype(RLIMIT_CPU) what, rlim_t soft, rlim_t hard) {
   _exit(1);
 }
 
-[[noreturn]] void be_the_child(const Shared& shared, pid_t parent, const std::function<void()>& body) {
+[[noreturn]] void be_the_child(const Shared& shared, pid_t parent, const TrialBody& body) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
   limit(RLIMIT_CORE, 0, 0);
@@ -121,9 +134,14 @@ void limit(decltype(RLIMIT_CPU) what, rlim_t soft, rlim_t hard) {
   dup2(shared.output(), STDERR_FILENO);
   std::set_new_handler(out_of_memory);
   const Arithmetic before = arithmetic();
-  body();
+  const std::optional<Refusal> refusal = body();
   const Arithmetic after = arithmetic();
   Message& message = shared.message();
+  if (refusal) {
+    put(message.reason, refusal->reason);
+    put(message.fix, refusal->fix);
+    message.refused = true;
+  }
   message.same_arithmetic = before == after;
   message.subnormals = after.subnormals || !before.subnormals;
   message.finished = true;
@@ -154,6 +172,7 @@ std::string ending(int status) {
 }
 
 std::optional<Refusal> judge(const Message& message) {
+  if (message.refused) return Refusal{words_of(message.reason), words_of(message.fix)};
   if (message.same_arithmetic) return {};
   const char* what = message.subnormals ? "its rounding or its traps" : "subnormal numbers become zero";
   return Refusal{fmt::format("it changes the floating-point arithmetic of the whole process when it is opened: {}", what),
@@ -163,7 +182,7 @@ std::optional<Refusal> judge(const Message& message) {
 
 }  // namespace
 
-Trial try_in_child(const std::function<void()>& body) {
+Trial try_in_child(const TrialBody& body) {
   const Shared shared;
   std::fflush(nullptr);  // else the child might write again what waits in buffers
   const pid_t parent = getpid(), child = shared.is_good() ? fork() : -1;
@@ -176,8 +195,9 @@ Trial try_in_child(const std::function<void()>& body) {
   if (!wait_for(child, status)) {
     return {Refusal{fmt::format("it does not come back from being opened within {} s{}", waiting.count(), shared.said()), mend}};
   }
-  if (!shared.message().finished) return {Refusal{ending(status) + shared.said(), mend}};
-  return {judge(shared.message())};
+  const Message& message = shared.message();
+  if (!message.finished) return {Refusal{ending(status) + shared.said(), mend}};
+  return {judge(message), !message.refused};
 }
 
 }  // namespace cordon::registry
