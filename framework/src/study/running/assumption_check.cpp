@@ -121,8 +121,8 @@ void AssumptionCheck::check_plant(const Record& now) {
     const Vector w = left - linalg::product(m.A, x) - linalg::product(m.B, pushed);
     const Vector radius = spread(m.A_radius, x, m.states()) + spread(m.B_radius, u, m.states()) +
                           product_of_sizes(m.B, m.actuator_radius().cwiseProduct(u));
-    const Vector terms = (m.is_descriptor() ? product_of_sizes(m.E, next) : Vector(next.cwiseAbs())) +
-                         product_of_sizes(m.A, x) + product_of_sizes(m.B, pushed);
+    const Vector terms = (m.is_descriptor() ? product_of_sizes(m.E, next) : Vector(next.cwiseAbs())) + product_of_sizes(m.A, x) +
+                         product_of_sizes(m.B, pushed);
     if (is_missing(model.W, m.Bw, w, radius, terms)) fail(What::W, k - 1, k, mode);
   }
   if (const Index mode = mode_of(now); !other_ && mode >= 0) {
@@ -131,8 +131,7 @@ void AssumptionCheck::check_plant(const Record& now) {
     const Vector &x = *now.truth, &u = now.sample.u, g = m.sensor_center(), ranges = m.sensor_radius();
     const Vector pushed = m.actuator_center().cwiseProduct(u);
     const Vector shown = linalg::product(m.C, x) + linalg::product(m.D, pushed);
-    const Vector shown_radius =
-        spread(m.C_radius, x, m.outputs()) + product_of_sizes(m.D, m.actuator_radius().cwiseProduct(u));
+    const Vector shown_radius = spread(m.C_radius, x, m.outputs()) + product_of_sizes(m.D, m.actuator_radius().cwiseProduct(u));
     const Vector v = now.sample.y - g.cwiseProduct(shown);
     const Vector radius = (g + ranges).cwiseProduct(shown_radius) + ranges.cwiseProduct(shown.cwiseAbs());
     const Vector terms = now.sample.y.cwiseAbs() + g.cwiseProduct(product_of_sizes(m.C, x) + product_of_sizes(m.D, pushed));

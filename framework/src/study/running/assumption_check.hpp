@@ -12,11 +12,11 @@ namespace cordon::detail {
 
 /// What a pipeline assumes beside X0, W and V of the modes.
 struct PipelineAssumptions {
-  std::optional<LineForm> initial_set = {};        ///< holds x at the first sample, in place of X0 of the true mode
-  std::vector<LineForm> admissible_sets = {};      ///< hold x_k for k ≥ `admissible_from`
+  std::optional<LineForm> initial_set = {};    ///< holds x at the first sample, in place of X0 of the true mode
+  std::vector<LineForm> admissible_sets = {};  ///< hold x_k for k ≥ `admissible_from`
   Index admissible_from = 0;
-  std::optional<LineForm> restart_set = {};        ///< holds x_k where a diagnoser begins anew at k
-  bool inputs = false;                             ///< statements made in advance rest on u_k ∈ U
+  std::optional<LineForm> restart_set = {};  ///< holds x_k where a diagnoser begins anew at k
+  bool inputs = false;                       ///< statements made in advance rest on u_k ∈ U
 };
 
 /// What a diagnoser assumes by the word of the study: its parameters "admissible_set" and "restart_set", those of components
@@ -40,8 +40,8 @@ class AssumptionCheck {
   /// The diagnoser has begun anew at the last record.
   void restarted();
 
-  /// Does a statement of time k about the times from `since` on rest on an assumption that has failed? What has begun anew does not
-  /// rest on the initial set.
+  /// Does a statement of time k about the times from `since` on rest on an assumption that has failed? What has begun anew does
+  /// not rest on the initial set.
   bool excuses(Index k, Index since = 0) const;
   /// The earliest over all runs.
   const std::optional<FailedAssumption>& failed() const { return earliest_; }

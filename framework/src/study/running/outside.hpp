@@ -6,8 +6,8 @@
 
 namespace cordon::detail {
 
-/// Is x proven to lie outside X, with all that is within `margin` of it in every coordinate? By a certificate that the box around x
-/// and X are disjoint.
+/// Is x proven to lie outside X, with all that is within `margin` of it in every coordinate? By a certificate that the box around
+/// x and X are disjoint.
 bool clearly_outside(const LineForm& X, VectorIn x, double margin);
 bool clearly_outside(const LineForm& X, VectorIn x, VectorIn margin);
 

@@ -127,7 +127,8 @@ class Refutation {
       const bool proves_other = why.kind == Kind::point;
       if (pair.disjoint != Answer::yes || (!proves_nothing && !proves_other)) continue;
       refute("it calls the output tubes of {} and {} disjoint by a certificate that proves {}", bank_[pair.i].name,
-             bank_[pair.j].name, proves_other ? "that they meet" : "nothing: its margin is not positive, or its numbers are none");
+             bank_[pair.j].name,
+             proves_other ? "that they meet" : "nothing: its margin is not positive, or its numbers are none");
     }
   }
 
