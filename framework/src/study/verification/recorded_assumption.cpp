@@ -55,7 +55,7 @@ Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   if (failed.seed_offset != 0 || pipeline.is_design || failed.what == What::restart_set) return Answer::unknown;
   if (failed.what == What::admissible_set && of_diagnoser) return Answer::unknown;
   Study study;
-  study.file = run.directory / "results.json";
+  study.file = run.files.directory() / "results.json";
   study.model = run.model;
   study.modes.assign(run.bank.modes.begin() + 1, run.bank.modes.end());
   detail::PipelineAssumptions assumed{.inputs = failed.what == What::U};
