@@ -29,7 +29,10 @@ Reduced eliminate_constraints(const LineForm& X, const Terms& before, Index max_
                               const ConstraintElimination& options);
 
 /// Constraints of a set of dimension n whose lifted generators are reduced to so many: a reduction needs two for each row of
-/// [G; A].
-inline Index most_constraints(Index n, Index max_generators) { return std::max<Index>(0, max_generators / 2 - n); }
+/// [G; A]. A few rows are worth more than that, where there is room for them at all.
+inline Index most_constraints(Index n, Index max_generators) {
+  constexpr Index few = 3;
+  return std::max(max_generators / 2 - n, std::min(few, max_generators - n));
+}
 
 }  // namespace cordon::sets

@@ -204,7 +204,7 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
   reduced.set = drop_zero_generators(std::move(reduced.set));
   if (has_false_row(reduced.set)) return {make_empty(n), true};
   if (reduced.set.generators() <= max_generators) return reduced;
-  if (2 * (n + reduced.set.constraints()) > max_generators) {
+  if (reduced.set.constraints() > most_constraints(n, max_generators)) {
     Reduced fewer = eliminate_constraints(reduced.set, most_constraints(n, max_generators), how.constraints);
     reduced = {drop_zero_generators(std::move(fewer.set)), reduced.exact && fewer.exact};
     if (has_false_row(reduced.set)) return {make_empty(n), true};

@@ -249,7 +249,7 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
   };
   eliminate(max_constraints);
   if (has_false_row(Y)) return {make_empty(n), true};
-  if (2 * (n + Y.constraints()) > max_generators && !fits()) {
+  if (Y.constraints() > most_constraints(n, max_generators) && !fits()) {
     eliminate(most_constraints(n, max_generators));
     if (has_false_row(Y) || has_row_out_of_reach(Y)) return {make_empty(n), true};
   }

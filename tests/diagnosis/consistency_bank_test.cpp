@@ -26,6 +26,7 @@ class Puppet final : public Observer {
  public:
   explicit Puppet(const ObserverContext& context)
       : Observer(context.model, context.backend), mode_(static_cast<std::size_t>(context.model.linear.A(0, 0))) {}
+  Tightness claim() const override { return Tightness::exact; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {

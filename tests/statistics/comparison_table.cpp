@@ -202,7 +202,7 @@ TEST_CASE("values of axes: texts without quotes, long ones cut, no control chara
   for (std::size_t i = 0; i < 3; ++i) table.rows.push_back({0, {i}, {1}, ""});
   const ComparisonTable found = compared(table);
   CHECK(texts(found, 0)[0] == "line \"zonotope\"");
-  CHECK(texts(found, 1)[0] == "tab?and é?");
+  CHECK(texts(found, 1)[0] == "tab\\u0009and é\\u0001");
   CHECK(texts(found, 2)[0] == "[[1, 2, 3, 4, 5], [6, 7, 8, 9, 1…");
   CHECK(found.groups == std::vector<std::size_t>{0, 1, 2});
 }

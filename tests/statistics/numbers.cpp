@@ -241,6 +241,9 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   design.lower_bound = 8;
   design.best->pairs = {{0, 1, .5, .375, Answer::yes}, {0, 2, .5, .125, Answer::yes}, {1, 2, .5, .25, Answer::yes}};
   design.best->empty = {Answer::no, Answer::no, Answer::no};
+  outcome.exact.emplace();  // what is proven counts, not what the designer says
+  outcome.exact->pairs = {{0, 1, Answer::yes, .375}, {0, 2, Answer::yes, .125}, {1, 2, Answer::yes, .25}};
+  outcome.exact->empty = {Answer::no, Answer::no, Answer::no};
   outcome.experiments = {{0, 5, {}, 4, 1, 0, 0, {}}, {1, 6, {}, 3, 0, 1, 2, {}}};
   repeat = found(outcome).repeat;
   design.status = DesignStatus::optimal;
@@ -255,9 +258,9 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   CHECK(repeat.at("experiments") == 11);
   CHECK(repeat.at("experiments_isolated") == 7);
   CHECK(repeat.at("experiments_wrong") == 1);
-  design.best->pairs[1].disjoint = Answer::no;
+  outcome.exact->pairs[1].disjoint = Answer::no;
   CHECK(found(outcome).repeat.at("separates") == 0);
-  design.best->pairs[1].disjoint = Answer::unknown;
+  outcome.exact->pairs[1].disjoint = Answer::unknown;
   CHECK(is_none(found(outcome).repeat, "separates"));
   design.best->pairs.clear();
   CHECK(is_none(found(outcome).repeat, "kappa_min"));

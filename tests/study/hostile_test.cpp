@@ -62,7 +62,7 @@ const std::vector<std::string> tokens = {"{",         "}",
 
 TEST_CASE("truncated at every byte") {
   const Scratch scratch;
-  for (const std::string text : {valid_study, diagnosis_study, uncertain_study, design_study, sweep_study}) {
+  for (const std::string text : {valid_study, diagnosis_study, uncertain_study, study_test::design_study, sweep_study}) {
     for (std::size_t size = 0; size + 2 < text.size(); ++size) CHECK_FALSE(survives(scratch, text.substr(0, size)));
   }
 }
@@ -70,7 +70,7 @@ TEST_CASE("truncated at every byte") {
 TEST_CASE("random bytes and tokens exchanged") {
   const Scratch scratch;
   CHECK(rc::check("damaged studies", [&] {
-    std::string text = *rc::gen::element(valid_study, diagnosis_study, uncertain_study, design_study, sweep_study);
+    std::string text = *rc::gen::element(valid_study, diagnosis_study, uncertain_study, study_test::design_study, sweep_study);
     for (int edits = *rc::gen::inRange(1, 6); edits > 0; --edits) {
       const auto at = *rc::gen::inRange<std::size_t>(0, text.size());
       switch (*rc::gen::inRange(0, 4)) {
@@ -96,7 +96,7 @@ TEST_CASE("every value exchanged for every token") {
   const Scratch scratch;
   int valid = 0, refused = 0;
   std::mt19937_64 random(99);
-  for (const std::string text : {valid_study, diagnosis_study, uncertain_study, design_study, sweep_study}) {
+  for (const std::string text : {valid_study, diagnosis_study, uncertain_study, study_test::design_study, sweep_study}) {
     for (std::size_t at = 0; at < text.size(); ++at) {
       const bool starts = text[at] == '[' || text[at] == '{' || text[at] == '"' || (text[at] >= '0' && text[at] <= '9');
       if (!starts) continue;

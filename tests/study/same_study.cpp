@@ -115,7 +115,7 @@ bool same(const Study& a, const Study& b) {
 Study read_file(const std::filesystem::path& file) {
   Registry registry;
   registry.add(register_fakes);
-  return read_study(file, registry, SearchPath{});
+  return read_study(file, registry, SearchPath{}, StudyPlugins::load);
 }
 
 void expect_round_trip(const Study& study, const std::filesystem::path& folder) {

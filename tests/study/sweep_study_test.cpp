@@ -201,7 +201,7 @@ TEST_CASE("what paths lead into") {
     CHECK(third("/pipelines/1/backend/type", "[\"zonotope\", \"interval\"]", 1).pipelines[1].name == "zonotope");
   }
   SUBCASE("metrics") {
-    CHECK(third("/metrics/*/level", "[0.25, 0.75]", 1).metrics[1].params.real("level") == 0.75);
+    CHECK(third("/metrics/*/level", "[0.25, 0.5]", 1).metrics[1].params.real("level") == 0.5);
     CHECK(third("/metrics", "[[], [\"volume\"]]", 1).metrics[0].type == "volume");
   }
   SUBCASE("a backend for all") {

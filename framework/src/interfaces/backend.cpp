@@ -213,6 +213,37 @@ SetBackend::Made SetBackend::do_predict(const Set& X, const Predict& p) const {
   return through_exchange(info_, do_import(sum));
 }
 
+namespace {
+
+/// Of rows of a correction whose noise has no extent: the size of the terms that they are made of; 0 for the others.
+Vector noise_free_terms(const Correct& c, const LineForm& state, const LineForm& noise, Vector terms) {
+  const Matrix& T = c.noise.T;
+  terms += linalg::product(c.C.cwiseAbs(), state.G.cwiseAbs().rowwise().sum());
+  for (const Matrix& part : {noise.G, noise.M}) {
+    const Vector extent = linalg::product(T.cwiseAbs(), part.cwiseAbs()).rowwise().sum();
+    terms = (extent.array() > 0).select(0.0, terms);
+  }
+  return terms;
+}
+
+/// The last rows of X with a factor of their own, for the rounding errors of their coefficients: where the noise has no extent,
+/// rows that repeat each other, or meet a set that is flat, would else turn these into statements.
+LineForm with_room(LineForm X, const Vector& terms) {
+  const Index rows = X.constraints(), first = rows - terms.size();
+  for (Index i = 0; i < terms.size(); ++i) {
+    if (terms[i] == 0) continue;
+    const Index g = X.generators();
+    X.G.conservativeResize(Eigen::NoChange, g + 1);
+    X.A.conservativeResize(Eigen::NoChange, g + 1);
+    X.G.col(g).setZero();
+    X.A.col(g).setZero();
+    X.A(first + i, g) = product_noise * terms[i];
+  }
+  return X;
+}
+
+}  // namespace
+
 SetBackend::Made SetBackend::do_correct(const Set& X, const Correct& c) const {
   // z - C x ∈ T V  ⇔  C x ∈ z ⊕ (-T V)
   const LineForm state = X.line_form(), noise = c.noise.set->line_form();
@@ -222,6 +253,7 @@ SetBackend::Made SetBackend::do_correct(const Set& X, const Correct& c) const {
                        linalg::product(c.C.cwiseAbs(), state.c.cwiseAbs());
   auto right = kept.b.tail(c.z.size());
   right = (right.array().abs() <= product_noise * terms.array()).select(0.0, right).eval();
+  if (info_.rounding == Rounding::nominal) kept = with_room(std::move(kept), noise_free_terms(c, state, noise, terms));
   return through_exchange(info_, do_import(kept));
 }
 
