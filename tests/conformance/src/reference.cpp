@@ -84,6 +84,7 @@ double Reference::lower(VectorIn d) {
   if (!moderate_ || X_.generators() > 16 || X_.constraints() > 8) return value;
   // +inf here is a direction that misses being normal to a line by its own rounding
   const double exact = exact::support(X_, d).lower;
+  if (exact == -infinity && !whole_) return exact;  // empty by a hair: the known points were rounded
   return exact < infinity ? std::max(value, exact) : value;
 }
 
