@@ -33,7 +33,7 @@ struct Zonotopes {
   using Result = plugins::ResultOf<MaybeZonotope>;
 
   sets::GeneratorReduction reduction = sets::GeneratorReduction::adaptive;
-  sets::StripMethod strip = sets::StripMethod::segment;
+  sets::StripMethod strip = sets::StripMethod::box;
   bool outward = false;
 
   static Result result(sets::Zonotope Z, Tightness tightness) {
@@ -143,10 +143,12 @@ ParamSchema schema() {
   ParamSchema schema;
   plugins::add_reduction(schema);
   schema.choice("strip",
-                "how a strip is intersected: smallest F-radius, smallest interval hull, smallest volume among zonotopes cut "
+                "how a strip is intersected: smallest F-radius of Z (segment) or of a box around it along its principal axes "
+                "(box), smallest "
+                "interval hull (hull), smallest volume among zonotopes cut "
                 "along one generator (bravo), or smallest volume of all; where g generators in n dimensions have more than "
                 "20,000 subsets of n - 1, volume is bravo, and both compare squared determinants",
-                {"segment", "hull", "bravo", "volume"}, "segment");
+                {"box", "segment", "hull", "bravo", "volume"}, "box");
   plugins::add_rounding(schema);
   return schema;
 }
@@ -160,10 +162,11 @@ std::unique_ptr<SetBackend> create(const Params& params) {
   Zonotopes zonotopes;
   zonotopes.reduction = plugins::reduction_from(params);
   const std::string& strip = params.text("strip");
-  zonotopes.strip = strip == "hull"     ? sets::StripMethod::hull
+  zonotopes.strip = strip == "segment"  ? sets::StripMethod::segment
+                    : strip == "hull"   ? sets::StripMethod::hull
                     : strip == "bravo"  ? sets::StripMethod::bravo
                     : strip == "volume" ? sets::StripMethod::volume
-                                        : sets::StripMethod::segment;
+                                        : sets::StripMethod::box;
   zonotopes.outward = info.rounding == Rounding::outward;
   return std::make_unique<plugins::ValueBackend<Zonotopes>>(info, zonotopes);
 }

@@ -8,6 +8,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/sets/generator_reduction.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "determinant.hpp"
 #include "row_scales.hpp"
@@ -40,6 +41,16 @@ Vector segment_gain(MatrixIn G, VectorIn rho, double sigma) {
   p /= scale;
   const double denominator = p.squaredNorm() + (sigma / scale) * (sigma / scale);
   return linalg::product(G, p) / (denominator * scale);
+}
+
+/// λ of the smallest F-radius for a box around the generators along their principal axes, rows scaled by the widths.
+Vector box_gain(MatrixIn G, VectorIn rho, double sigma) {
+  const Index n = G.rows();
+  if (G.cols() <= n) return segment_gain(G, rho, sigma);
+  Vector widths = G.cwiseAbs().rowwise().sum();
+  for (double& width : widths) width = width > 0 ? width : 1;
+  const Matrix box = reduce_generators(widths.cwiseInverse().asDiagonal() * G, n, GeneratorReduction::pca);
+  return segment_gain(widths.asDiagonal() * box, rho, sigma);
 }
 
 /// The λ that makes every edge of the interval hull smallest: λ_i minimises Σ_j |G_ij - λ_i p_j| + σ |λ_i|, p_j = ρᵀg_j, and is a
@@ -194,6 +205,8 @@ class VolumeGain {
 
 Vector strip_gain(MatrixIn G, VectorIn rho, double sigma, StripMethod method) {
   switch (method) {
+    case StripMethod::box:
+      return box_gain(G, rho, sigma);
     case StripMethod::segment:
       return segment_gain(G, rho, sigma);
     case StripMethod::hull:

@@ -15,7 +15,8 @@ using namespace cordon::test;
 
 namespace {
 
-constexpr StripMethod methods[] = {StripMethod::hull, StripMethod::segment, StripMethod::bravo, StripMethod::volume};
+constexpr StripMethod methods[] = {StripMethod::box, StripMethod::hull, StripMethod::segment, StripMethod::bravo,
+                                   StripMethod::volume};
 
 Zonotope point(const Vector& x) { return {x, Matrix(x.size(), 0)}; }
 Zonotope no_noise() { return point(Vector(0)); }

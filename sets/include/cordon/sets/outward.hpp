@@ -56,7 +56,7 @@ Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction me
 /// A zonotope around {x ∈ Z : z - C x ∈ T V}: for λ as the nominal method chooses it, Z(λ) with its rounding errors. Nothing if
 /// the intersection is proven empty.
 std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, MatrixIn T, const Zonotope& V,
-                                StripMethod method = StripMethod::segment);
+                                StripMethod method = StripMethod::box);
 
 /// A zonotope around conv(X ∪ Y).
 Zonotope convex_hull(const Zonotope& X, const Zonotope& Y);

@@ -23,6 +23,8 @@ namespace cordon::sets {
 
 /// Choice of λ.
 enum class StripMethod {
+  box,      ///< as `segment`, but of the smallest box around Z along its principal axes in place of Z: unlike the squares of many
+            ///< short generators, those of n long ones say how wide the set is
   segment,  ///< smallest F-radius: λ = GGᵀρ / (ρᵀGGᵀρ + σ²) [Alamo2005]
   hull,     ///< smallest interval hull: each edge is the shortest that any λ gives it; hyperplanes (σ = 0) as `segment`
   bravo,    ///< smallest volume among Z and the g zonotopes with λ = g_j / ρᵀg_j [Bravo2006]
@@ -31,14 +33,15 @@ enum class StripMethod {
 
 /// Outer; exact if Z lies in the strip. The volume methods need the (n-1)-subsets of the generators. Beyond 20,000 of them both
 /// take, among Z and the λ of `bravo`, the smallest sum of squared instead of absolute determinants (over all λ, `segment` would
-/// minimise that). O(n g) for segment, O(n g log g) for hull, O(n³ C(g, n-1)) for the others, O(n² g) beyond the limit.
+/// minimise that). O(n g) for segment, O(n² g + n³) for box, O(n g log g) for hull, O(n³ C(g, n-1)) for the others, O(n² g)
+/// beyond the limit.
 std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double d, double sigma,
-                                        StripMethod method = StripMethod::segment);
+                                        StripMethod method = StripMethod::box);
 
 /// A zonotope around {x ∈ Z : z - C x ∈ T V}, row by row with the strips |C_i x - (z_i - T_i c_V)| ≤ ‖(T G_V)_i‖₁.
 /// T with no columns: C x = z. Rows may be dependent, and repeat what earlier ones said. At most one generator more per row, and,
 /// where the result is so flat that later operations could take rounding errors for the set, one more per coordinate. Outer.
 std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, MatrixIn T, const Zonotope& V,
-                                StripMethod method = StripMethod::segment);
+                                StripMethod method = StripMethod::box);
 
 }  // namespace cordon::sets
