@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An assumption that the simulated truth does not keep is named, with its step, and not put down to the program.
+#include <cmath>
+
 #include <doctest/doctest.h>
 
 #include "claims/program.hpp"
@@ -183,6 +185,79 @@ TEST_CASE("what an assumption does not hold is not excused before it fails") {
     CHECK(check.excuses(0));
     CHECK(check.failed()->what == FailedAssumption::What::U);  // earlier than that of the other run
   }
+}
+
+namespace {
+
+/// A state that forgets itself, and a sensor that sees the input alone: its noise is drawn on the boundary, and then rounded.
+Json on_the_boundary(const std::string& noise, const std::string& rounding) {
+  Json made = Json::parse(R"({
+    "cordon": 1, "title": "three sensors",
+    "system": {"type": "lti", "A": [[0]], "B": [[1.51]], "Bw": [[-1.03]], "C": [[-1.5], [-1.13], [0]],
+      "D": [[0.98], [0.58], [-1.46]]},
+    "data": {"simulate": {"steps": 10, "seed": 13, "input": [{"type": "sine", "amplitude": 1, "omega": 0.3}]}},
+    "pipelines": [{"name": "P", "backend": {"type": "constrained_zonotope", "precondition": "gauss_jordan", "rescale": true},
+      "observer": "prediction_correction"}],
+    "metrics": ["radius"]})");
+  made["system"]["X0"] = box({1});
+  made["system"]["W"] = box({.1});
+  made["system"]["V"] = box({1, 1, 1});
+  made["data"]["simulate"]["noise"] = noise;
+  made["pipelines"][0]["backend"]["rounding"] = rounding;
+  return made;
+}
+
+}  // namespace
+
+TEST_CASE("data that the simulation has rounded out of the model are no defect of a pipeline that takes them as they are") {
+  const Program program(on_the_boundary("vertex", "outward"));
+  const Said run = program.run();
+  CAPTURE(run.out);
+  CAPTURE(run.err);
+  CHECK(run.code == 0);
+  CHECK(run.has("which the simulation has rounded"));
+  const Json summary = program.results()["pipelines"][0]["summary"], failed = summary["failed_assumption"];
+  REQUIRE(failed.is_object());
+  CHECK((failed["what"] == "V_exactly" || failed["what"] == "W_exactly"));
+  CHECK(summary["violated_at"].is_null());
+  CHECK(summary["outside_from"] >= summary["assumptions_until"]);
+  const Said verified = program.verify();
+  CAPTURE(verified.out);
+  CHECK(verified.code != 4);
+  CHECK(verified.has("which the simulation has rounded"));
+  check_kept(Program(on_the_boundary("uniform", "outward")));
+  check_kept(Program(on_the_boundary("vertex", "nominal")));
+}
+
+TEST_CASE("exact data excuse nothing") {
+  Study study;
+  study.model.linear.A = study.model.linear.C = Matrix{{.5}};
+  study.model.linear.B = study.model.linear.D = Matrix(1, 0);
+  study.model.linear.Bw = study.model.linear.Dv = Matrix{{1.}};
+  study.model.X0 = study.model.W = study.model.V = make_box({Vector::Zero(1), Vector::Ones(1)});
+  study.data = SimulateSpec{};
+  const auto record = [](Index k, double x, double y) { return Record{{k, Vector(0), Vector{{y}}}, Vector{{x}}, 0, {}}; };
+  detail::AssumptionCheck check(study, {.exact_data = true});
+  check.begin_run(0);
+  check.step(record(0, 1, 1.5));
+  check.step(record(1, 1.5, 1.75));
+  CHECK_FALSE(check.excuses_by_rounding(1));
+  check.step(record(2, 1.75, 1.875));
+  check.step(record(3, 1.75, std::nextafter(.875, 0)));
+  CHECK_FALSE(check.excuses_by_rounding(2));
+  CHECK(check.excuses_by_rounding(3));
+  CHECK(check.failed()->what == FailedAssumption::What::V_exactly);
+  CHECK(check.failed()->k == 3);
+  check.begin_run(1);
+  check.step(record(0, 1, 1.5));
+  check.step(record(1, std::nextafter(1.5, 2), 1.75));
+  CHECK(check.excuses_by_rounding(1));
+  CHECK(check.failed()->what == FailedAssumption::What::W_exactly);  // earlier than that of the other run
+  CHECK(check.failed()->from == 1);
+  check.begin_run(2);
+  check.step(record(0, 1, 1.5));
+  check.step(record(1, 3, 3.5));
+  CHECK_FALSE(check.excuses_by_rounding(1));  // no rounding is that large
 }
 
 TEST_CASE("outside by more than rounding") {

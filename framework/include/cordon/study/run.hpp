@@ -149,7 +149,8 @@ struct WidthGrowth {
 /// What may be behind it, and what to do.
 std::string advice_on(const WidthGrowth& growth);
 
-/// An assumption that the simulated truth is proven not to keep, by more than rounding.
+/// An assumption that the simulated truth is proven not to keep: by more than rounding, or, where outward rounding excludes the
+/// truth, by rounding alone.
 struct FailedAssumption {
   enum class What {
     initial_set,     ///< x_0: the observer's initial set, of a diagnoser X0 of the true mode
@@ -157,7 +158,9 @@ struct FailedAssumption {
     admissible_set,  ///< x_k
     U,               ///< u_k, of statements made in advance
     W,               ///< what leads from x_k to x_{k+1} in the true mode
-    V                ///< what leads from x_k to y_k in the true mode
+    V,               ///< what leads from x_k to y_k in the true mode
+    W_exactly,       ///< the same as W, by the rounding of the simulation
+    V_exactly        ///< the same as V, by the rounding of the simulation
   };
   What what = What::initial_set;
   Index k = 0;                   ///< of the x, u, w or v that lies outside
@@ -201,6 +204,7 @@ struct PipelineOutcome {
   std::size_t reproducible = 0;       ///< the first so many of `summary` repeat from run to run; the others are measured
   PhaseTimes median_us;               ///< medians over the steps up to the first estimate proven empty, phase by phase
   double median_step_us = 0;          ///< median of predict + correct + reduce
+  double largest_step_us = 0;         ///< the largest of them
   double median_hull_us = 0;          ///< median of the interval hulls, which are not part of a step
   double wall_s = 0;                  ///< wall-clock time of the whole pipeline, data and results included
 };

@@ -8,6 +8,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "study/running/outside.hpp"
+#include "study/running/rounded_data.hpp"
 
 namespace cordon::detail {
 
@@ -16,6 +17,7 @@ namespace {
 using What = FailedAssumption::What;
 
 constexpr double row_rounding = 1e-12;
+constexpr std::size_t most_kept = 10'000;
 
 bool is_by_plant(const Study& study) {
   const auto* simulate = std::get_if<SimulateSpec>(&study.data);
@@ -47,15 +49,43 @@ bool is_missing(const LineForm& set, const Matrix& T, const Vector& value, const
   return clearly_outside(image, value, row_rounding * (terms + radius));
 }
 
+/// w, what leads from one record to the next, is none of W, by more than rounding.
+bool leaves_W(const Model& model, const Record& before, const Record& now) {
+  const LinearModel& m = model.linear;
+  const Vector &x = *before.truth, &u = before.sample.u, &next = *now.truth;
+  const Vector pushed = m.actuator_center().cwiseProduct(u);
+  const Vector left = m.is_descriptor() ? Vector(linalg::product(m.E, next)) : next;
+  const Vector w = left - linalg::product(m.A, x) - linalg::product(m.B, pushed);
+  const Vector radius = spread(m.A_radius, x, m.states()) + spread(m.B_radius, u, m.states()) +
+                        product_of_sizes(m.B, m.actuator_radius().cwiseProduct(u));
+  const Vector terms = (m.is_descriptor() ? product_of_sizes(m.E, next) : Vector(next.cwiseAbs())) + product_of_sizes(m.A, x) +
+                       product_of_sizes(m.B, pushed);
+  return is_missing(model.W, m.Bw, w, radius, terms);
+}
+
+/// The same of v.
+bool leaves_V(const Model& model, const Record& now) {
+  const LinearModel& m = model.linear;
+  const Vector &x = *now.truth, &u = now.sample.u, g = m.sensor_center(), ranges = m.sensor_radius();
+  const Vector pushed = m.actuator_center().cwiseProduct(u);
+  const Vector shown = linalg::product(m.C, x) + linalg::product(m.D, pushed);
+  const Vector shown_radius = spread(m.C_radius, x, m.outputs()) + product_of_sizes(m.D, m.actuator_radius().cwiseProduct(u));
+  const Vector v = now.sample.y - g.cwiseProduct(shown);
+  const Vector radius = (g + ranges).cwiseProduct(shown_radius) + ranges.cwiseProduct(shown.cwiseAbs());
+  const Vector terms = now.sample.y.cwiseAbs() + g.cwiseProduct(product_of_sizes(m.C, x) + product_of_sizes(m.D, pushed));
+  return is_missing(model.V, m.Dv, v, radius, terms);
+}
+
 bool earlier(const FailedAssumption& a, const std::optional<FailedAssumption>& b) { return !b || a.from < b->from; }
 
 }  // namespace
 
-PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser) {
+PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser, std::optional<Rounding> rounding) {
   PipelineAssumptions found;
   collect(diagnoser, found);
   found.admissible_from = 1;
   found.inputs = true;
+  found.exact_data = rounding && *rounding != Rounding::nominal;
   return found;
 }
 
@@ -65,6 +95,7 @@ AssumptionCheck::AssumptionCheck(const Study& study, PipelineAssumptions assumed
 void AssumptionCheck::begin_run(std::int64_t seed_offset) {
   seed_offset_ = seed_offset;
   last_.reset();
+  kept_.clear();
   start_.reset();
   other_.reset();
 }
@@ -74,6 +105,10 @@ void AssumptionCheck::step(const Record& record) {
   if (!other_) {
     check_sets(record);
     if (by_plant_) check_plant(record);
+  }
+  if (assumed_.exact_data && !by_plant_ && record.truth) {
+    kept_.push_back(record);
+    if (kept_.size() > most_kept) kept_.pop_front();
   }
   last_ = record;
 }
@@ -86,6 +121,24 @@ void AssumptionCheck::restarted() {
 
 bool AssumptionCheck::excuses(Index k, Index since) const {
   return (start_ && since <= start_->k && start_->from <= k) || (other_ && other_->from <= k);
+}
+
+bool AssumptionCheck::excuses_by_rounding(Index k) {
+  const Record* before = nullptr;
+  for (const Record& now : kept_) {
+    const Index time = now.sample.k;
+    if (time > k || other_) break;
+    const Index from = before ? mode_of(*before) : -1, shown = mode_of(now);
+    if (from >= 0 && contradicts_dynamics(bank_[from].model, *before, now)) {
+      if (leaves_W(bank_[from].model, *before, now)) return false;  // that is no rounding
+      fail(What::W_exactly, time - 1, time, from);
+    } else if (shown >= 0 && contradicts_outputs(bank_[shown].model, now)) {
+      if (leaves_V(bank_[shown].model, now)) return false;
+      fail(What::V_exactly, time, time, shown);
+    }
+    before = &now;
+  }
+  return other_ && other_->from <= k;
 }
 
 /// X0 is that of the mode that makes the first sample; outside the bank nothing is assumed.
@@ -110,33 +163,11 @@ void AssumptionCheck::check_sets(const Record& record) {
 
 void AssumptionCheck::check_plant(const Record& now) {
   if (!now.truth) return;
-  const auto mode_of = [&](const Record& record) { return record.mode.value_or(bank_.nominal); };
   const Index k = now.sample.k;
   if (const Index mode = last_ ? mode_of(*last_) : -1; !other_ && mode >= 0 && last_->sample.k + 1 == k) {
-    const Model& model = bank_[mode].model;
-    const LinearModel& m = model.linear;
-    const Vector &x = *last_->truth, &u = last_->sample.u, &next = *now.truth;
-    const Vector pushed = m.actuator_center().cwiseProduct(u);
-    const Vector left = m.is_descriptor() ? Vector(linalg::product(m.E, next)) : next;
-    const Vector w = left - linalg::product(m.A, x) - linalg::product(m.B, pushed);
-    const Vector radius = spread(m.A_radius, x, m.states()) + spread(m.B_radius, u, m.states()) +
-                          product_of_sizes(m.B, m.actuator_radius().cwiseProduct(u));
-    const Vector terms = (m.is_descriptor() ? product_of_sizes(m.E, next) : Vector(next.cwiseAbs())) + product_of_sizes(m.A, x) +
-                         product_of_sizes(m.B, pushed);
-    if (is_missing(model.W, m.Bw, w, radius, terms)) fail(What::W, k - 1, k, mode);
+    if (leaves_W(bank_[mode].model, *last_, now)) fail(What::W, k - 1, k, mode);
   }
-  if (const Index mode = mode_of(now); !other_ && mode >= 0) {
-    const Model& model = bank_[mode].model;
-    const LinearModel& m = model.linear;
-    const Vector &x = *now.truth, &u = now.sample.u, g = m.sensor_center(), ranges = m.sensor_radius();
-    const Vector pushed = m.actuator_center().cwiseProduct(u);
-    const Vector shown = linalg::product(m.C, x) + linalg::product(m.D, pushed);
-    const Vector shown_radius = spread(m.C_radius, x, m.outputs()) + product_of_sizes(m.D, m.actuator_radius().cwiseProduct(u));
-    const Vector v = now.sample.y - g.cwiseProduct(shown);
-    const Vector radius = (g + ranges).cwiseProduct(shown_radius) + ranges.cwiseProduct(shown.cwiseAbs());
-    const Vector terms = now.sample.y.cwiseAbs() + g.cwiseProduct(product_of_sizes(m.C, x) + product_of_sizes(m.D, pushed));
-    if (is_missing(model.V, m.Dv, v, radius, terms)) fail(What::V, k, k, mode);
-  }
+  if (const Index mode = mode_of(now); !other_ && mode >= 0 && leaves_V(bank_[mode].model, now)) fail(What::V, k, k, mode);
 }
 
 void AssumptionCheck::fail(What what, Index k, Index from, Index mode) {
@@ -168,6 +199,10 @@ std::string_view to_string(FailedAssumption::What what) noexcept {
       return "W";
     case FailedAssumption::What::V:
       return "V";
+    case FailedAssumption::What::W_exactly:
+      return "W_exactly";
+    case FailedAssumption::What::V_exactly:
+      return "V_exactly";
   }
   return "initial_set";
 }
@@ -189,6 +224,11 @@ std::string text_of(const FailedAssumption& failed, const std::vector<std::strin
       return fmt::format("no w in W{} leads from x_{} to x_{}, the states of the simulated plant", of, k, k + 1);
     case FailedAssumption::What::V:
       return fmt::format("no v in V{} leads from x_{} to y_{}, the output of the simulated plant", of, k, k);
+    case FailedAssumption::What::W_exactly:
+      return fmt::format("no w in W{} leads from x_{} to the very numbers of x_{}, which the simulation has rounded", of, k,
+                         k + 1);
+    case FailedAssumption::What::V_exactly:
+      return fmt::format("no v in V{} leads from x_{} to the very numbers of y_{}, which the simulation has rounded", of, k, k);
   }
   return "";
 }

@@ -2,6 +2,7 @@
 // The assumptions of a study beside the simulated truth: which of them fails first, and when.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,11 +18,13 @@ struct PipelineAssumptions {
   Index admissible_from = 0;
   std::optional<LineForm> restart_set = {};  ///< holds x_k where a diagnoser begins anew at k
   bool inputs = false;                       ///< statements made in advance rest on u_k ∈ U
+  bool exact_data =
+      false;  ///< with outward or rational rounding: statements rest on data that keep to the model in the last digit
 };
 
 /// What a diagnoser assumes by the word of the study: its parameters "admissible_set" and "restart_set", those of components
 /// nested in it, and U. Of x_0 it is X0 of the mode that is assumed.
-PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser);
+PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser, std::optional<Rounding> rounding);
 
 /// Follows the runs of one pipeline. Where the truth is known:
 ///   x_0 ∈ X0, x_k in the sets of the pipeline, u_k ∈ U: outside by more than 1e-9 of their size;
@@ -29,7 +32,7 @@ PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser);
 ///     E x_{k+1} - A x_k - B diag(f) u_k ∈ Bw W,   y_k - diag(g) (C x_k + D diag(f) u_k) ∈ Dv V
 ///   with intervals of A, B, C and ranges of f and g as boxes: outside by more than 1e-12 of the terms of a row, which the
 ///   operations of the plant may have rounded. What linear models simulate is drawn from W and V.
-/// Every "outside" is proven by a certificate. Memory is constant.
+/// Every "outside" is proven by a certificate. Memory is constant, but for the last 10,000 records where data must be exact.
 class AssumptionCheck {
  public:
   AssumptionCheck(const Study& study, PipelineAssumptions assumed);
@@ -43,6 +46,11 @@ class AssumptionCheck {
   /// Does a statement of time k about the times from `since` on rest on an assumption that has failed? What has begun anew does
   /// not rest on the initial set.
   bool excuses(Index k, Index since = 0) const;
+  /// To be asked where the statement is proven false, and nothing above excuses it. Was it made of data that contradict the
+  /// equations of the true mode, of time k or before, by rounding alone? A simulation rounds: without noise, or at the boundary
+  /// of W and V, no w or v may lead to the very doubles that it shows, and outward rounding excludes the truth rightly. Proven in
+  /// exact arithmetic; with nominal rounding, which leaves room for it, always false.
+  bool excuses_by_rounding(Index k);
   /// The earliest over all runs.
   const std::optional<FailedAssumption>& failed() const { return earliest_; }
 
@@ -50,6 +58,7 @@ class AssumptionCheck {
   void check_start(const Record& record);
   void check_sets(const Record& record);
   void check_plant(const Record& record);
+  Index mode_of(const Record& record) const { return record.mode.value_or(bank_.nominal); }
   void fail(FailedAssumption::What what, Index k, Index from, Index mode = -1);
 
   const Study& study_;
@@ -58,6 +67,7 @@ class AssumptionCheck {
   bool by_plant_;
   std::int64_t seed_offset_ = 0;
   std::optional<Record> last_;
+  std::deque<Record> kept_;                        ///< for data that must be exact
   std::optional<FailedAssumption> start_, other_;  ///< of this run: of the initial set, and the first of the others
   std::optional<FailedAssumption> earliest_;
 };

@@ -40,7 +40,7 @@ class DesignPipeline {
       prove(spec);
       if (outcome_.design->best && spec.diagnoser) {
         diagnoser_ = registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
-        PipelineAssumptions assumed = assumptions_of(*spec.diagnoser);
+        PipelineAssumptions assumed = assumptions_of(*spec.diagnoser, rounding());
         assumed.inputs = false;  // the input of an experiment is known beforehand
         if (const auto& admissible = outcome_.design->admissible_set) assumed.admissible_sets.push_back(*admissible);
         check_.emplace(study_, std::move(assumed));
@@ -96,7 +96,8 @@ class DesignPipeline {
       return false;
     }
     const auto& excluded = score.true_mode_excluded();
-    if (excluded && !check_->excuses(excluded->k, excluded->since) && outcome_.violated_at < 0) {
+    if (excluded && outcome_.violated_at < 0 && !check_->excuses(excluded->k, excluded->since) &&
+        !check_->excuses_by_rounding(excluded->k)) {
       outcome_.violated_at = excluded->k;
     }
     if (last && !check_->excuses(last->k)) compare_with_claims(mode, seed_offset, *last, shown);
@@ -109,6 +110,7 @@ class DesignPipeline {
 
   PipelineOutcome finish(double wall_s) {
     outcome_.median_step_us = median_.value();
+    outcome_.largest_step_us = median_.largest();
     outcome_.wall_s = wall_s;
     if (check_) tell(check_->failed(), outcome_);
     return std::move(outcome_);

@@ -36,10 +36,10 @@ Index first_other_fault(const Study& study) {
 class DiagnosisPipeline {
  public:
   DiagnosisPipeline(const Study& study, const PipelineSpec& spec)
-      : bank_(bank_of(study)),
+      : study_(study),
+        bank_(bank_of(study)),
         own_model_(is_own_model(study)),
         first_other_fault_(first_other_fault(study)),
-        check_(study, assumptions_of(*spec.diagnoser)),
         seeds_(seeds_of(study)),
         fault_score_(study.model.linear.faults()) {
     outcome_.name = spec.name;
@@ -53,6 +53,7 @@ class DiagnosisPipeline {
       backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
       diagnoser_ = registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
       found_.guarantees = diagnoser_->guarantees();
+      check_.emplace(study_, assumptions_of(*spec.diagnoser, rounding()));
     });
   }
 
@@ -68,7 +69,7 @@ class DiagnosisPipeline {
 
   void begin_run(std::int64_t seed_offset) {
     seed_offset_ = seed_offset;
-    check_.begin_run(seed_offset);
+    check_->begin_run(seed_offset);
     fault_score_.begin_run(seed_offset);
     timeline_.emplace();
     score_.emplace([this](const DiagnosisSegment& segment) {
@@ -82,14 +83,14 @@ class DiagnosisPipeline {
     std::optional<Diagnosis> diagnosis;
     std::vector<JudgedBound> faults;
     guarded(outcome_, [&] {
-      check_.step(record);
+      check_->step(record);
       diagnosis = diagnoser_->step(record.sample);
       check_fits(*diagnosis, bank_, outcome_.diagnoser);
       faults = fault_score_.step(record.sample.k < first_other_fault_ ? record.fault : std::nullopt, *diagnosis);
     });
     if (failed()) return;
     if (found_.steps == 0 && record.mode) found_.truth_known = true;
-    if (diagnosis->reset) check_.restarted();
+    if (diagnosis->reset) check_->restarted();
     ++found_.steps;
     if (seed_offset_ == 0) {
       ++outcome_.steps;
@@ -113,8 +114,9 @@ class DiagnosisPipeline {
 
   PipelineOutcome finish(double wall_s) {
     outcome_.median_step_us = median_.value();
+    outcome_.largest_step_us = median_.largest();
     outcome_.wall_s = wall_s;
-    tell(check_.failed(), outcome_);
+    if (check_) tell(check_->failed(), outcome_);
     found_.statistics = tally_.statistics();
     found_.detection = tally_.detection();
     found_.isolation = tally_.isolation();
@@ -145,7 +147,7 @@ class DiagnosisPipeline {
 
   /// A statement that is proven false: a defect where the data are made by the model itself, and keep to what is assumed.
   bool blame(Index k, Index since) {
-    if (!own_model_ || check_.excuses(k, since)) return false;
+    if (!own_model_ || check_->excuses(k, since) || check_->excuses_by_rounding(k)) return false;
     violated_in_run_ = std::min(k, violated_in_run_.value_or(k));
     return true;
   }
@@ -159,10 +161,11 @@ class DiagnosisPipeline {
     }
   }
 
+  const Study& study_;
   ModeBank bank_;
   bool own_model_;
   Index first_other_fault_;
-  AssumptionCheck check_;
+  std::optional<AssumptionCheck> check_;
   std::int64_t seeds_, seed_offset_ = 0;
   std::shared_ptr<const SetBackend> backend_;
   std::shared_ptr<Diagnoser> diagnoser_;

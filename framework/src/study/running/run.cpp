@@ -83,7 +83,8 @@ class Pipeline {
       observer_->start();
       assumptions_ = {observer_->initial_set(), std::nullopt};
       if (const Set* admissible = observer_->admissible_set()) assumptions_->admissible_set = admissible->line_form();
-      detail::PipelineAssumptions assumed{.initial_set = assumptions_->initial_set};
+      detail::PipelineAssumptions assumed{.initial_set = assumptions_->initial_set,
+                                          .exact_data = backend_->info().rounding != Rounding::nominal};
       if (assumptions_->admissible_set) assumed.admissible_sets.push_back(*assumptions_->admissible_set);
       check_.emplace(study_, std::move(assumed));
       outcome_.gains = observer_->gains();
@@ -135,6 +136,7 @@ class Pipeline {
     outcome_.median_us = {medians_.predict.value(), medians_.correct.value(), medians_.reduce.value(), medians_.question.value()};
     outcome_.median_hull_us = medians_.hull.value();
     outcome_.median_step_us = medians_.step.value();
+    outcome_.largest_step_us = medians_.step.largest();
     outcome_.wall_s = wall_s;
     outcome_.growth = growth_.growth();
     if (check_) detail::tell(check_->failed(), outcome_);
@@ -165,7 +167,8 @@ class Pipeline {
     if (still_inside && (estimate.consistent == Answer::no ||
                          (holds(*estimate.set, truth) == Answer::no && clearly_outside(*estimate.set, truth)))) {
       outcome_.outside_from = estimate.k;
-      if (own_model_ && nominal_ && !check_->excuses(record.sample.k)) outcome_.violated_at = estimate.k;
+      const Index k = record.sample.k;
+      if (own_model_ && nominal_ && !check_->excuses(k) && !check_->excuses_by_rounding(k)) outcome_.violated_at = estimate.k;
     }
     return &truth;
   }

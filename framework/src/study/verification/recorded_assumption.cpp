@@ -15,7 +15,8 @@ using namespace json;
 using Kind = Value::Kind;
 using What = FailedAssumption::What;
 
-constexpr std::array all{What::initial_set, What::restart_set, What::admissible_set, What::U, What::W, What::V};
+constexpr std::array all{What::initial_set, What::restart_set, What::admissible_set, What::U,
+                         What::W,           What::V,           What::W_exactly,      What::V_exactly};
 
 const char* const mend = "the file is not as \"cordon run\" wrote it; run the study again";
 
@@ -58,7 +59,8 @@ Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   study.file = run.files.directory() / "results.json";
   study.model = run.model;
   study.modes.assign(run.bank.modes.begin() + 1, run.bank.modes.end());
-  detail::PipelineAssumptions assumed{.inputs = failed.what == What::U};
+  const bool by_rounding = failed.what == What::W_exactly || failed.what == What::V_exactly;
+  detail::PipelineAssumptions assumed{.inputs = failed.what == What::U, .exact_data = by_rounding};
   const bool from_start = failed.what == What::initial_set || failed.k == 0;
   if (!of_diagnoser && from_start) assumed.initial_set = pipeline.initial_set;
   if (pipeline.admissible_set) assumed.admissible_sets.push_back(*pipeline.admissible_set);
@@ -71,7 +73,7 @@ Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   study.data = by_plant;
   detail::AssumptionCheck check(study, std::move(assumed));
   check.begin_run(0);
-  const Index last = failed.what == What::W ? failed.k + 1 : failed.k;
+  const Index last = failed.what == What::W || failed.what == What::W_exactly ? failed.k + 1 : failed.k;
   while (std::optional<Record> record = data->next()) {
     const Index k = record->sample.k;
     if (k > last) break;
@@ -79,6 +81,7 @@ Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
     record->mode = failed.mode >= 0 ? failed.mode : run.bank.nominal;
     check.step(*record);
   }
+  check.excuses_by_rounding(last);
   const auto& again = check.failed();
   return again && again->what == failed.what && again->k == failed.k ? Answer::yes : Answer::no;
 }
