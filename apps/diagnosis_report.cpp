@@ -214,9 +214,9 @@ std::string box_text(const Box& box, Digits digits) {
 
 std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint) {
   const DiagnosisOutcome& found = *pipeline.diagnosis;
-  std::string text =
-      fmt::format("{}  {}, {}, {} mode{}, {:.1f} µs/step\n\n", paint.bold(pipeline.name), pipeline.backend, pipeline.diagnoser,
-                  found.modes.size(), found.modes.size() == 1 ? "" : "s", pipeline.median_step_us);
+  std::string text = fmt::format("{}  {}, {}, {} mode{}, {:.1f} µs/step, at most {:.1f}\n\n", paint.bold(pipeline.name),
+                                 pipeline.backend, pipeline.diagnoser, found.modes.size(), found.modes.size() == 1 ? "" : "s",
+                                 pipeline.median_step_us, pipeline.largest_step_us);
   std::int64_t left = 0;
   const Rows rows = timeline(study, found, left);
   if (rows.size() > 1) text += table(rows, paint);

@@ -97,6 +97,8 @@ std::vector<Column> columns(const RunOutcome& outcome) {
   }
   found.push_back(
       {"µs/STEP", "", [](const PipelineOutcome& p) { return p.steps ? fmt::format("{:.1f}", p.median_step_us) : "-"; }});
+  found.push_back(
+      {"LARGEST", "", [](const PipelineOutcome& p) { return p.steps ? fmt::format("{:.1f}", p.largest_step_us) : "-"; }});
   return found;
 }
 
@@ -140,7 +142,8 @@ ordered_json json_of_diagnosis(const PipelineOutcome& p) {
       {"error", error_of(p)},
       {"guarantees", guarantees ? ordered_json::parse(cordon::json_of(*guarantees, p.diagnosis->modes)) : ordered_json(nullptr)},
       {"diagnosis", ordered_json::parse(cordon::json_of(*p.diagnosis))},
-      {"median_step_us", p.median_step_us}};
+      {"median_step_us", p.median_step_us},
+      {"largest_step_us", p.largest_step_us}};
 }
 
 ordered_json json_of_design(const PipelineOutcome& p, const std::vector<std::string>& modes) {
@@ -170,7 +173,8 @@ ordered_json json_of_design(const PipelineOutcome& p, const std::vector<std::str
           {"design", p.design ? ordered_json::parse(cordon::json_of(*p.design, modes)) : ordered_json(nullptr)},
           {"exact", p.exact ? ordered_json::parse(cordon::json_of(*p.exact, modes)) : ordered_json(nullptr)},
           {"experiments", std::move(experiments)},
-          {"median_step_us", p.median_step_us}};
+          {"median_step_us", p.median_step_us},
+          {"largest_step_us", p.largest_step_us}};
 }
 
 ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& modes) {
@@ -205,6 +209,7 @@ ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& m
           {"error", error_of(p)},
           {"metrics", std::move(metrics)},
           {"median_step_us", p.median_step_us},
+          {"largest_step_us", p.largest_step_us},
           {"median_hull_us", p.median_hull_us}};
 }
 

@@ -16,6 +16,7 @@ TEST_CASE("exact for few samples") {
   CHECK(m.value() == 3);
   m.add(4);
   CHECK(m.value() == 3.5);
+  CHECK(m.largest() == 5);
 }
 
 TEST_CASE("within half a percent for many, over all magnitudes") {

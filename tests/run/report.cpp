@@ -27,6 +27,7 @@ PipelineOutcome diagnosis() {
   p.diagnoser = "observer_bank";
   p.steps = 161;
   p.median_step_us = 12.34;
+  p.largest_step_us = 98.76;
   DiagnosisOutcome d;
   d.modes = {"healthy", "fault 1", "fault 2"};
   d.truth_known = true;
@@ -66,7 +67,7 @@ TEST_CASE("the timeline: one line per event, with its evidence") {
   const std::string text = apps::diagnosis_text(study(), diagnosis(), apps::Paint(stdout));
   CHECK(
       text ==
-      "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step\n"
+      "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step, at most 98.8\n"
       "\n"
       "k    EVENT          MODE                    EVIDENCE\n"
       "0    starts         healthy\n"

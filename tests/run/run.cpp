@@ -184,6 +184,7 @@ TEST_CASE("run.json holds what differs from run to run") {
   CHECK(pipeline["steps"][5]["time_us"]["correct"] > 0);
   CHECK(pipeline["steps"][5]["step_time"] > 0);
   CHECK(pipeline["summary"]["median_step_us"] > 0);
+  CHECK(pipeline["summary"]["largest_step_us"] >= pipeline["summary"]["median_step_us"]);
   CHECK(pipeline["summary"]["steps_timed"] == 1);
 }
 

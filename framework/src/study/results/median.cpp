@@ -25,6 +25,7 @@ double center_of(std::size_t bin) { return bin == 0 ? 0 : smallest * std::pow(ra
 
 void Median::add(double value) {
   ++count_;
+  largest_ = std::max(largest_, value);
   if (bins_.empty()) {
     samples_.push_back(value);
     if (samples_.size() <= exact_limit) return;

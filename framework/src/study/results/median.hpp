@@ -12,11 +12,13 @@ class Median {
  public:
   void add(double value);
   double value() const;
+  double largest() const { return largest_; }  ///< 0 without samples
 
  private:
   std::vector<double> samples_;      ///< while there are few
   std::vector<std::uint32_t> bins_;  ///< afterwards
   std::uint64_t count_ = 0;
+  double largest_ = 0;
 };
 
 }  // namespace cordon::detail

@@ -264,7 +264,9 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
   summaries_.push_back(std::move(row));
   run_.end_array().key("summary").begin_object(Layout::lines).key("median_time_us");
   write_times(run_, outcome.median_us, outcome.median_hull_us);
-  run_.member("median_step_us", outcome.median_step_us).member("wall_s", outcome.wall_s);
+  run_.member("median_step_us", outcome.median_step_us)
+      .member("largest_step_us", outcome.largest_step_us)
+      .member("wall_s", outcome.wall_s);
   for (const MetricValue& metric : summary.measured) write(run_, metric);
   write_numbers(run_, numbers, true);
   run_.end_object().end_object();

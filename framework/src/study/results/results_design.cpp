@@ -102,7 +102,10 @@ void Results::design(const PipelineSpec& spec, std::optional<Rounding> rounding,
   row.design = summary_fields(outcome);
   summaries_.push_back(std::move(row));
   run_.begin_object(Layout::lines).member("name", spec.name).key("steps").begin_array().end_array();
-  run_.key("summary").begin_object(Layout::lines).member("median_step_us", outcome.median_step_us);
+  run_.key("summary")
+      .begin_object(Layout::lines)
+      .member("median_step_us", outcome.median_step_us)
+      .member("largest_step_us", outcome.largest_step_us);
   run_.member("wall_s", outcome.wall_s);
   write_numbers(run_, numbers, true);
   run_.end_object().end_object();

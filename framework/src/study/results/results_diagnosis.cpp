@@ -158,7 +158,9 @@ void Results::end_diagnosis(const PipelineOutcome& outcome) {
   row.diagnosis = summary_fields(outcome);
   summaries_.push_back(std::move(row));
   run_.end_array().key("summary").begin_object(Layout::lines);
-  run_.member("median_step_us", outcome.median_step_us).member("wall_s", outcome.wall_s);
+  run_.member("median_step_us", outcome.median_step_us)
+      .member("largest_step_us", outcome.largest_step_us)
+      .member("wall_s", outcome.wall_s);
   write_numbers(run_, numbers, true);
   run_.end_object().end_object();
 }
