@@ -64,7 +64,7 @@ TEST_CASE("commands that need the whole study ask for trust, and write nothing")
   for (const bool needs : {true, false}) {
     Received study(needs);
     for (const std::string& command : {"run " + study.file + " --out " + study.out(), "guarantees " + study.file,
-                                      "design " + study.file, "convert " + study.file + " " + study.out() + ".mat"}) {
+                                       "design " + study.file, "convert " + study.file + " " + study.out() + ".mat"}) {
       const Outcome outcome = study.run(command);
       INFO(command, ": ", outcome.err);
       CHECK(outcome.code == 3);
