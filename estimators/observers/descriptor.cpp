@@ -33,6 +33,7 @@
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
 #include "observers/interval_spread.hpp"
+#include "observers/rounding_room.hpp"
 
 namespace cordon::estimators {
 
@@ -133,6 +134,10 @@ class SingularValueObserver final : public Observer {
     stacked_A_.topRows(transformed_.rank()) = transformed_.A;
     stacked_Bw_ = Matrix::Zero(n, transformed_.Bw.cols());
     stacked_Bw_.topRows(transformed_.rank()) = transformed_.Bw;
+    disturbance_ = linalg::product(stacked_Bw_, model().W.c);
+    disturbance_widths_ = half_widths(model().W, stacked_Bw_);
+    static_disturbance_ = linalg::product(transformed_.static_Bw, model().W.c);
+    static_widths_ = half_widths(model().W, transformed_.static_Bw);
     stacked_rows_ = Matrix::Zero(n, n);
     stacked_rows_.topRows(transformed_.rank()) = transformed_.rows;
     if (model().linear.is_uncertain()) recursion_ = Tightness::outer;
@@ -167,8 +172,11 @@ class SingularValueObserver final : public Observer {
       if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(to_x(Z_), before.u) : Enclosure{};
       if (effectiveness_.has_open_states()) terms.push_back({stacked_rows_, open});
-      const Enclosure Z =
-          backend().predict(Z_, {stacked_A_, effectiveness_.input(stacked_B_, before.u), {terms.data(), terms.size()}});
+      const Vector shift = effectiveness_.input(stacked_B_, before.u);
+      const Vector sizes = effectiveness_.input_terms(stacked_B_, before.u) + disturbance_.cwiseAbs();
+      const RoundingRoom room(backend(), shift + disturbance_, sizes, disturbance_widths_);
+      if (room.is_needed()) terms.push_back(room.term());
+      const Enclosure Z = backend().predict(Z_, {stacked_A_, shift, {terms.data(), terms.size()}});
       return with_static_rows(Z, now.u);
     });
     return finish(predicted, now);
@@ -189,11 +197,13 @@ class SingularValueObserver final : public Observer {
     const Vector f = -effectiveness_.input(transformed_.static_B, u);
     Matrix entries(transformed_.static_rows(), static_W_->dim());
     entries << transformed_.static_Bw, effectiveness_.input_spread(transformed_.static_B, u);
-    if (!effectiveness_.has_open_states()) return backend().correct(Z, {transformed_.static_A, f, {entries, static_W_}});
+    const Vector sizes = effectiveness_.input_terms(transformed_.static_B, u) + static_disturbance_.cwiseAbs();
+    const RoundingRoom room(backend(), f - static_disturbance_, sizes, static_widths_);
+    if (!effectiveness_.has_open_states()) return room.correct(Z, {transformed_.static_A, f, {entries, static_W_}});
     const Enclosure noise = backend().product(static_W_, effectiveness_.open_states(to_x(Z), u));
     Matrix open_entries(entries.rows(), noise->dim());
     open_entries << entries, transformed_.static_rows_map;
-    return backend().correct(Z, {transformed_.static_A, f, {open_entries, noise}});
+    return room.correct(Z, {transformed_.static_A, f, {open_entries, noise}});
   }
 
   Enclosure finish(const Enclosure& predicted, const Sample& now) {
@@ -212,8 +222,10 @@ class SingularValueObserver final : public Observer {
   LineForm X0_;
   Enclosure W_;
   Effectiveness effectiveness_;
-  Enclosure static_W_;  ///< W × factors of inputs
-  Matrix measured_;     ///< C T
+  Enclosure static_W_;                         ///< W × factors of inputs
+  Vector disturbance_, disturbance_widths_;    ///< center and half widths of Bw W, dynamic rows
+  Vector static_disturbance_, static_widths_;  ///< the same, static rows
+  Matrix measured_;                            ///< C T
   Matrix stacked_A_, stacked_B_, stacked_Bw_, stacked_rows_;
   Tightness recursion_ = Tightness::exact;
   Enclosure admissible_, free_, Z_;
@@ -264,6 +276,8 @@ class PseudoInverseObserver final : public Observer {
     TBw_ = linalg::product(T_, used_.Bw);
     minus_ND_ = -linalg::product(N_, used_.D);
     minus_NDv_ = -linalg::product(N_, used_.Dv);
+    disturbance_ = linalg::product(TBw_, model().W.c) + linalg::product(minus_NDv_, model().V.c);
+    disturbance_widths_ = half_widths(model().W, TBw_) + half_widths(model().V, minus_NDv_);
     noise_generators_ = linalg::product(used_.Dv, model().V.G);
     C_transposed_ = used_.C.transpose();
     TA_transposed_ = TA_.transpose();
@@ -310,8 +324,13 @@ class PseudoInverseObserver final : public Observer {
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
       if (effectiveness_.has_open_states()) terms.push_back({T_, open});
       effectiveness_.input(TB_, before.u, shift_);
+      sizes_ = effectiveness_.input_terms(TB_, before.u);
       add_output(L_, before);
       add_output(N_, now);
+      const Vector center = disturbance_ + linalg::product(minus_LDv_, model().V.c);
+      const Vector widths = disturbance_widths_ + half_widths(model().V, minus_LDv_);
+      const RoundingRoom room(backend(), shift_ + center, sizes_ + center.cwiseAbs(), widths);
+      if (room.is_needed()) terms.push_back(room.term());
       return backend().predict(X_, {map_, shift_, {terms.data(), terms.size()}});
     });
     return X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
@@ -335,6 +354,7 @@ class PseudoInverseObserver final : public Observer {
     output_ = is_used_.cwiseProduct(sample.y) - output_;
     linalg::product(M, output_, part_);
     shift_ += part_;
+    sizes_ += linalg::product(M.cwiseAbs(), sample.y.cwiseAbs() + effectiveness_.input_terms(used_.D, sample.u));
   }
 
   /// L minimises the F-radius of the next estimate, as far as the last measurement decides it.
@@ -399,7 +419,8 @@ class PseudoInverseObserver final : public Observer {
   double unit_ = 0;             ///< of solved_P_; 0: none
   // Kept from step to step, so that no step takes memory for them.
   Matrix scaled_, P_, CP_, S_, cross_, noise_gram_;
-  Vector shift_, output_, part_;
+  Vector disturbance_, disturbance_widths_;  ///< center and half widths of T Bw W ⊕ (-N Dv V)
+  Vector shift_, output_, part_, sizes_;     ///< sizes_: the magnitudes of the terms of shift_, added up
 };
 
 bool by_singular_values(const SetBackend& backend) { return backend.info().intersections; }

@@ -8,6 +8,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
 #include "observers/interval_spread.hpp"
+#include "observers/rounding_room.hpp"
 
 namespace cordon::estimators {
 
@@ -42,6 +43,7 @@ Effectiveness::Effectiveness(const Model& model, const SetBackend& backend)
     : model_(model),
       backend_(backend),
       V_(backend.import(model.V)),
+      noise_widths_(half_widths(model.V, model.linear.Dv)),
       f_(model.linear.actuator_center()),
       f_radius_(model.linear.actuator_radius()),
       g_(model.linear.sensor_center()),
@@ -76,6 +78,10 @@ void Effectiveness::input(MatrixIn B, VectorIn u, Vector& image) const {
   } else {
     linalg::product(B, f_.cwiseProduct(u), image);
   }
+}
+
+Vector Effectiveness::input_terms(MatrixIn B, VectorIn u) const {
+  return linalg::product(B.cwiseAbs(), f_.cwiseProduct(u).cwiseAbs());
 }
 
 bool Effectiveness::inputs_enter_as_sets() const {
@@ -148,7 +154,13 @@ Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& n
     T << m.Dv, m.D;
     return backend_.correct(X, {C, now.y, {T, backend_.product(V_, backend_.point(now.u))}});
   }
-  if (plain_outputs_) return backend_.correct(X, {C, now.y - input(m.D, now.u), {m.Dv, V_}});
+  const bool has_inputs = !m.D.isZero(0);
+  if (plain_outputs_ && !has_inputs) return backend_.correct(X, {C, now.y, {m.Dv, V_}});
+  const Vector through = input(m.D, now.u);
+  const Vector terms =
+      has_inputs ? Vector(now.y.cwiseAbs() + g_.cwiseProduct(input_terms(m.D, now.u))) : Vector(now.y.cwiseAbs());
+  const Vector z = now.y - g_.cwiseProduct(through);
+  if (plain_outputs_) return RoundingRoom(backend_, z, terms, noise_widths_).correct(X, {C, z, {m.Dv, V_}});
 
   Vector open = Vector::Zero(m.outputs()), zeta = open;
   if (!interval_outputs_.empty()) open = interval_spread(m.C_radius, magnitudes(X), m.outputs());
@@ -167,9 +179,9 @@ Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& n
   if (used.empty()) return X;
   Matrix T(m.outputs(), noise_->dim());
   T << m.Dv, g_.asDiagonal() * input_spread(m.D, now.u), output_spread(zeta), interval_columns(open);
-  const Vector z = now.y - g_.cwiseProduct(input(m.D, now.u));
   const Matrix scaled = g_.asDiagonal() * C;
-  Enclosure corrected = backend_.correct(X, {scaled(used, Eigen::all), z(used), {T(used, Eigen::all), noise_}});
+  const RoundingRoom room(backend_, z(used), terms(used), noise_widths_(used));
+  Enclosure corrected = room.correct(X, {scaled(used, Eigen::all), z(used), {T(used, Eigen::all), noise_}});
   if (has_output_ranges() || !interval_outputs_.empty()) corrected.tightness = Tightness::outer;
   return corrected;
 }

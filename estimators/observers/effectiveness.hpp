@@ -30,6 +30,8 @@ class Effectiveness {
   /// B diag(f̂) u.
   Vector input(MatrixIn B, VectorIn u) const;
   void input(MatrixIn B, VectorIn u, Vector& image) const;  ///< the same into a vector of that size
+  /// |B| diag(f̂) |u|: the magnitudes of the terms of `input`.
+  Vector input_terms(MatrixIn B, VectorIn u) const;
   /// Are the products B u and D u left to the backend, as images of the point u? With outward rounding it encloses them, which
   /// the vector `input` does not. Of actuators with known effectiveness only.
   bool inputs_enter_as_sets() const;
@@ -69,6 +71,7 @@ class Effectiveness {
   const Model& model_;
   const SetBackend& backend_;
   Enclosure V_;
+  Vector noise_widths_;  ///< half widths of Dv V
   Vector f_, f_radius_, g_, g_radius_;
   std::vector<Index> ranged_inputs_, ranged_outputs_;
   std::vector<Index> interval_outputs_;  ///< rows of C with a radius

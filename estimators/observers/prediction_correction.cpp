@@ -6,8 +6,10 @@
 // Exact with constrained and line zonotopes until a reduction bites; zonotopes intersect strip by strip, intervals contract.
 #include "components.hpp"
 #include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
+#include "observers/rounding_room.hpp"
 
 namespace cordon::estimators {
 
@@ -20,6 +22,8 @@ class PredictionCorrection final : public Observer {
         budget_(budget_from(params)),
         X0_(initial_set_from(model(), params)),
         W_(backend().import(model().W)),
+        disturbance_(linalg::product(model().linear.Bw, model().W.c)),
+        disturbance_widths_(half_widths(model().W, model().linear.Bw)),
         effectiveness_(model(), backend()),
         recursion_(effectiveness_.recursion({&model().linear.B, &model().linear.D})) {}
 
@@ -43,6 +47,8 @@ class PredictionCorrection final : public Observer {
       const Enclosure u = as_set ? backend().point(before.u) : Enclosure{};
       if (as_set) terms.push_back({m.B, u});
       const Vector shift = as_set ? Vector(Vector::Zero(m.states())) : effectiveness_.input(m.B, before.u);
+      const RoundingRoom room = room_of(shift, before.u);
+      if (room.is_needed()) terms.push_back(room.term());
       Enclosure next = backend().predict(X_, {m.A, shift, terms});
       if (effectiveness_.has_open_states()) next.tightness = Tightness::outer;
       return next;
@@ -52,6 +58,12 @@ class PredictionCorrection final : public Observer {
 
   void do_replace(const Enclosure& X) override { X_ = X; }
 
+  /// For B u beside the center of Bw W.
+  RoundingRoom room_of(const Vector& shift, VectorIn u) const {
+    const Vector terms = effectiveness_.input_terms(model().linear.B, u) + disturbance_.cwiseAbs();
+    return {backend(), shift + disturbance_, terms, disturbance_widths_};
+  }
+
   Enclosure corrected(const Enclosure& X, const Sample& now) {
     const Enclosure narrowed = timed(Phase::correct, [&] { return effectiveness_.correct(X, model().linear.C, now); });
     return timed(Phase::reduce, [&] { return backend().reduce(narrowed, budget_); });
@@ -60,6 +72,7 @@ class PredictionCorrection final : public Observer {
   Budget budget_;
   LineForm X0_;
   Enclosure W_, X_;
+  Vector disturbance_, disturbance_widths_;  ///< center and half widths of Bw W
   Effectiveness effectiveness_;
   Tightness recursion_;
 };

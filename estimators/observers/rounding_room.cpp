@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observers/rounding_room.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "cordon/core/linalg.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr double share = 1e-14;
+constexpr double negligible = 1e-10;  // of a half width
+constexpr double cancelled = 0.25;
+
+}  // namespace
+
+RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms, VectorIn half_widths) : backend_(backend) {
+  std::vector<Index> rows;
+  for (Index i = 0; i < sum.size() && backend.info().rounding == Rounding::nominal; ++i) {
+    if (std::abs(sum[i]) < cancelled * terms[i] && share * terms[i] > negligible * half_widths[i]) rows.push_back(i);
+  }
+  columns_ = Matrix::Zero(sum.size(), static_cast<Index>(rows.size()));
+  if (rows.empty()) return;
+  for (Index column = 0; column < columns_.cols(); ++column) {
+    const Index i = rows[static_cast<std::size_t>(column)];
+    columns_(i, column) = share * terms[i];
+  }
+  const Vector ones = Vector::Ones(columns_.cols());
+  factors_ = backend.box({-ones, ones});
+}
+
+Enclosure RoundingRoom::correct(const Enclosure& X, const Correct& measurement) const {
+  if (!is_needed()) return backend_.correct(X, measurement);
+  Matrix T(columns_.rows(), measurement.noise.T.cols() + columns_.cols());
+  T << measurement.noise.T, columns_;
+  return backend_.correct(X, {measurement.C, measurement.z, {T, backend_.product(measurement.noise.set, factors_)}});
+}
+
+Vector half_widths(const LineForm& X, MatrixIn T) {
+  Vector widths = linalg::product(T, X.G).cwiseAbs().rowwise().sum();
+  const Vector lines = linalg::product(T, X.M).cwiseAbs().rowwise().sum();
+  for (Index i = 0; i < widths.size(); ++i) {
+    if (lines[i] > 0) widths[i] = std::numeric_limits<double>::infinity();
+  }
+  return widths;
+}
+
+}  // namespace cordon::estimators
