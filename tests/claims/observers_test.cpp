@@ -61,3 +61,17 @@ TEST_CASE("recursions that are exact still say so, and it holds") {
   CHECK(tightness(program) == "exact exact exact exact ");
   CHECK(program.verify().code == 0);
 }
+
+TEST_CASE("estimates with lines are exact up to the rounding of the lines' directions") {
+  const Program program(Json::parse(R"({
+    "cordon": 1, "title": "two sensors of three states that nothing bounds",
+    "system": {"type": "lti", "A": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "C": [[3, 1, 2], [1, 5, 7]],
+      "W": {"type": "box", "lower": [-0.1, -0.1, -0.1], "upper": [0.1, 0.1, 0.1]},
+      "V": {"type": "box", "lower": [-1, -1], "upper": [1, 1]}},
+    "data": {"simulate": {"steps": 3, "x0": [1, 2, 3], "noise": "zero"}},
+    "pipelines": [{"name": "P", "backend": "line_zonotope", "observer": "prediction_correction"}], "metrics": ["radius"]})"));
+  CHECK(program.run().code == 0);
+  const Said verified = program.verify();
+  CAPTURE(verified.out);
+  CHECK(verified.code == 0);
+}

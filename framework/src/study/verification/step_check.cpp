@@ -9,6 +9,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/line_elimination.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/certificate.hpp"
@@ -179,9 +180,13 @@ void StepCheck::contains_vertex(const RationalVector& exact) {
     return violated(fmt::format("the estimate is called empty, but the state {} is consistent with model and data", text(x)),
                     true);
   }
+  const bool has_room = (margin_.array() > 0).all();
+  Vector margin = margin_;
+  // along lines a set turns by the rounding of their directions: far out by more than where it is bounded
+  if (has_room && row_.set.lines() > 0) margin.array() += nominal_tolerance * x.cwiseAbs().maxCoeff();
   for (Index i = 0; i < x.size(); ++i) {
     const double lower = step_.hull.lower[i], upper = step_.hull.upper[i];
-    const Rational slack = rational::exact(margin_[i]);
+    const Rational slack = rational::exact(margin[i]);
     if ((upper == infinity || exact[index(i)] <= rational::exact(upper) + slack) &&
         (lower == -infinity || exact[index(i)] >= rational::exact(lower) - slack)) {
       continue;
@@ -192,10 +197,9 @@ void StepCheck::contains_vertex(const RationalVector& exact) {
                     text(x), i + 1, x[i], lower, upper),
         false);
   }
-  const bool has_room = (margin_.array() > 0).all();
   if (has_room && (holds_nearby(x) || contains(widened_, x) == Answer::yes)) return;
   try {
-    if (exact::contains(row_.set, exact, margin_, row_margin_)) return;
+    if (exact::contains(row_.set, exact, margin, row_margin_)) return;
     violated(fmt::format("the state {} is consistent with model and data, but lies outside the reported set", text(x)), true);
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported) throw;
@@ -209,6 +213,17 @@ void StepCheck::contains_direction(const Vector& d, bool line) {
   const double off = beyond.norm() / d.norm();
   if (!reported_empty() && off <= nominal_tolerance) return;
   violated(fmt::format("the exact set is unbounded along {}{}, the reported set is not", line ? "±" : "", text(d)), true);
+}
+
+/// Does X_k keep to dᵀx ≤ limit but for lines that leave it by the rounding of their directions alone?
+bool StepCheck::keeps_across_lines(const Vector& d, double limit) const {
+  LineForm X = eliminate_lines(row_.set);
+  const Vector off = linalg::transposed_product(X.M, d).cwiseAbs();
+  const Vector terms = linalg::transposed_product(Matrix(X.M.cwiseAbs()), d.cwiseAbs());
+  if ((off.array() > nominal_tolerance * terms.array()).any()) return false;
+  X.M.resize(X.dim(), 0);
+  X.S.resize(X.constraints(), 0);
+  return support(X, d) <= limit;
 }
 
 /// X_k keeps to the inequality normalᵀx ≤ h of F.
@@ -225,6 +240,7 @@ void StepCheck::within(const RationalVector& normal, const Rational& h, const st
     const exact::Support reached = exact::support(row_.set, normal);
     using Kind = exact::Support::Kind;
     if (reached.kind == Kind::empty || (reached.kind == Kind::finite && reached.value <= h + slack)) return;
+    if (room > 0 && reached.kind == Kind::unbounded && keeps_across_lines(d, limit + almost_all * room)) return;
     if (room > 0 && reached.kind == Kind::finite) {
       const exact::Support allowed = exact::support(relaxed(), normal);
       if (allowed.kind == Kind::unbounded || (allowed.kind == Kind::finite && reached.value <= allowed.value + slack)) return;

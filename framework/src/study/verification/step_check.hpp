@@ -48,6 +48,7 @@ class StepCheck {
   void contains_vertex(const rational::RationalVector& exact);
   bool holds_nearby(const Vector& x);
   void contains_direction(const Vector& d, bool line);
+  bool keeps_across_lines(const Vector& d, double limit) const;
   void within(const rational::RationalVector& normal, const rational::Rational& h, const std::function<LineForm()>& relaxed);
   bool reported_empty() const { return step_.consistent == Answer::no; }
 

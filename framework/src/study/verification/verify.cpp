@@ -23,6 +23,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr Index most_states_of_polytopes = 4;
 constexpr std::size_t most_kept_polytopes = 5000, most_kept_bits = std::size_t{1} << 31;
+constexpr std::size_t most_bits_in_all = std::size_t{1} << 25;  // of the exact sets of a run
 
 bool same(const Matrix& A, const Matrix& B) { return A.rows() == B.rows() && A.cols() == B.cols() && A == B; }
 bool same(const LineForm& X, const LineForm& Y) {
@@ -71,6 +72,7 @@ class FeasibleSequence {
       }
     }
     bits_ += F ? F->bits() : 0;
+    if (bits_ > most_bits_in_all) sets_.reset();  // a long run goes on by directions
     keeps_ = keeps_ && kept_.size() < most_kept_polytopes && bits_ <= most_kept_bits;
     if (keeps_) kept_.push_back(F);
     return F;
