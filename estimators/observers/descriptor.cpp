@@ -21,8 +21,10 @@
 // Interval matrices A and B add a box to every equation, of the size that effectiveness.hpp tells for the states before: to the
 // dynamic rows that of the last estimate, to the static rows that of the predicted set. A static row that holds a state without a
 // bound says nothing then. C may be an interval matrix where intersections are exact; else y_k enters before x_k is bounded.
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <boost/container/small_vector.hpp>
 
@@ -247,6 +249,11 @@ LinearModel with_bounded_outputs(LinearModel m) {
   return m;
 }
 
+/// The largest sum of magnitudes of a row.
+double row_norm(const Matrix& A) { return A.size() ? A.cwiseAbs().rowwise().sum().maxCoeff() : 0.0; }
+
+double largest(VectorIn x) { return x.size() ? x.lpNorm<Eigen::Infinity>() : 0.0; }
+
 /// [E; C].
 Matrix stacked_E_C(const LinearModel& m) {
   Matrix stacked(m.states() + m.outputs(), m.states());
@@ -278,6 +285,9 @@ class PseudoInverseObserver final : public Observer {
     minus_NDv_ = -linalg::product(N_, used_.Dv);
     disturbance_ = linalg::product(TBw_, model().W.c) + linalg::product(minus_NDv_, model().V.c);
     disturbance_widths_ = half_widths(model().W, TBw_) + half_widths(model().V, minus_NDv_);
+    least_width_ = disturbance_widths_.size() ? disturbance_widths_.minCoeff() : 0;
+    const Vector f = model().linear.actuator_center();
+    input_norms_ = {row_norm(TB_ * f.asDiagonal()), row_norm(used_.D * f.asDiagonal())};
     noise_generators_ = linalg::product(used_.Dv, model().V.G);
     C_transposed_ = used_.C.transpose();
     TA_transposed_ = TA_.transpose();
@@ -324,13 +334,10 @@ class PseudoInverseObserver final : public Observer {
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
       if (effectiveness_.has_open_states()) terms.push_back({T_, open});
       effectiveness_.input(TB_, before.u, shift_);
-      sizes_ = effectiveness_.input_terms(TB_, before.u);
       add_output(L_, before);
       add_output(N_, now);
-      const Vector center = disturbance_ + linalg::product(minus_LDv_, model().V.c);
-      const Vector widths = disturbance_widths_ + half_widths(model().V, minus_LDv_);
-      const RoundingRoom room(backend(), shift_ + center, sizes_ + center.cwiseAbs(), widths);
-      if (room.is_needed()) terms.push_back(room.term());
+      const std::optional<RoundingRoom> room = room_of(before, now);
+      if (room && room->is_needed()) terms.push_back(room->term());
       return backend().predict(X_, {map_, shift_, {terms.data(), terms.size()}});
     });
     return X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
@@ -354,7 +361,23 @@ class PseudoInverseObserver final : public Observer {
     output_ = is_used_.cwiseProduct(sample.y) - output_;
     linalg::product(M, output_, part_);
     shift_ += part_;
-    sizes_ += linalg::product(M.cwiseAbs(), sample.y.cwiseAbs() + effectiveness_.input_terms(used_.D, sample.u));
+  }
+
+  /// For what has been added up in shift_.
+  std::optional<RoundingRoom> room_of(const Sample& before, const Sample& now) const {
+    const double u = std::max(largest(before.u), largest(now.u));
+    const double y = std::max(largest(before.y), largest(now.y)) + input_norms_[1] * u;
+    const double centers = largest(disturbance_) + row_norm(minus_LDv_) * largest(model().V.c);
+    const double most = input_norms_[0] * u + (row_norm(L_) + row_norm(N_)) * y + centers;
+    if (!RoundingRoom::may_be_needed(most, least_width_)) return std::nullopt;
+    const auto seen = [&](const Sample& sample) {
+      return Vector(sample.y.cwiseAbs() + effectiveness_.input_terms(used_.D, sample.u));
+    };
+    const Vector center = disturbance_ + linalg::product(minus_LDv_, model().V.c);
+    const Vector terms = effectiveness_.input_terms(TB_, before.u) + linalg::product(L_.cwiseAbs(), seen(before)) +
+                         linalg::product(N_.cwiseAbs(), seen(now)) + center.cwiseAbs();
+    const Vector widths = disturbance_widths_ + half_widths(model().V, minus_LDv_);
+    return std::optional<RoundingRoom>(std::in_place, backend(), shift_ + center, terms, widths);
   }
 
   /// L minimises the F-radius of the next estimate, as far as the last measurement decides it.
@@ -420,7 +443,9 @@ class PseudoInverseObserver final : public Observer {
   // Kept from step to step, so that no step takes memory for them.
   Matrix scaled_, P_, CP_, S_, cross_, noise_gram_;
   Vector disturbance_, disturbance_widths_;  ///< center and half widths of T Bw W ⊕ (-N Dv V)
-  Vector shift_, output_, part_, sizes_;     ///< sizes_: the magnitudes of the terms of shift_, added up
+  double least_width_ = 0;
+  std::array<double, 2> input_norms_{};  ///< of T B and D
+  Vector shift_, output_, part_;
 };
 
 bool by_singular_values(const SetBackend& backend) { return backend.info().intersections; }

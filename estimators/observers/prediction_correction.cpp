@@ -4,6 +4,8 @@
 //   X̄_k = A X̂_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W,   X̂_k = {x ∈ X̄_k : y_k - D u_k - C x ∈ Dv V}, reduced to the budget.
 // Ranges of effectiveness and interval matrices: effectiveness.hpp.
 // Exact with constrained and line zonotopes until a reduction bites; zonotopes intersect strip by strip, intervals contract.
+#include <optional>
+
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
@@ -47,8 +49,8 @@ class PredictionCorrection final : public Observer {
       const Enclosure u = as_set ? backend().point(before.u) : Enclosure{};
       if (as_set) terms.push_back({m.B, u});
       const Vector shift = as_set ? Vector(Vector::Zero(m.states())) : effectiveness_.input(m.B, before.u);
-      const RoundingRoom room = room_of(shift, before.u);
-      if (room.is_needed()) terms.push_back(room.term());
+      const std::optional<RoundingRoom> room = m.inputs() > 0 && !as_set ? std::optional(room_of(shift, before.u)) : std::nullopt;
+      if (room && room->is_needed()) terms.push_back(room->term());
       Enclosure next = backend().predict(X_, {m.A, shift, terms});
       if (effectiveness_.has_open_states()) next.tightness = Tightness::outer;
       return next;

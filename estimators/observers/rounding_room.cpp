@@ -32,6 +32,8 @@ RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn ter
   factors_ = backend.box({-ones, ones});
 }
 
+bool RoundingRoom::may_be_needed(double most, double least_width) { return share * most > negligible * least_width; }
+
 Enclosure RoundingRoom::correct(const Enclosure& X, const Correct& measurement) const {
   if (!is_needed()) return backend_.correct(X, measurement);
   Matrix T(columns_.rows(), measurement.noise.T.cols() + columns_.cols());

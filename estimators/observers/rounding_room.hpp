@@ -16,6 +16,9 @@ class RoundingRoom {
   /// Per row `sum`, the magnitudes of its terms added up, and the half width of the set that it is the center of (may be +inf).
   RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms, VectorIn half_widths);
 
+  /// Can any row need room whose terms add up to `most`, and whose set is no narrower than `least_width`? At no cost.
+  static bool may_be_needed(double most, double least_width);
+
   bool is_needed() const { return columns_.cols() > 0; }
   /// The box, to be added to what is predicted. Lives as long as the room.
   Term term() const { return {columns_, factors_}; }
