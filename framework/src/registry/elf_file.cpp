@@ -123,7 +123,22 @@ std::optional<Refusal> ElfFile::check_extent(const Header& header) {
     if (segment.p_type != PT_NULL && !fits(segment.p_offset, segment.p_filesz, 1, size)) return truncated;
     if (!is_loaded(segment)) return Refusal{"its program headers are damaged", copy_again};
   }
+  if (!segments_are_apart()) return Refusal{"its program headers are damaged", copy_again};
   return {};
+}
+
+/// Loaded parts come in the order of their addresses and share no page: where one reaches into the next, or beyond what is
+/// reserved for all, it depends on the addresses of a process what is overwritten.
+bool ElfFile::segments_are_apart() const {
+  constexpr Address page = 1u << 12;
+  Address end = 0;
+  for (const Segment& s : segments_) {
+    if (s.p_type != PT_LOAD) continue;
+    const bool aligned = s.p_align >= page && (s.p_align & (s.p_align - 1)) == 0 && (s.p_vaddr - s.p_offset) % s.p_align == 0;
+    if (!aligned || s.p_vaddr / page * page < end || s.p_vaddr > largest_library) return false;
+    end = (s.p_vaddr + s.p_memsz + page - 1) / page * page;
+  }
+  return true;
 }
 
 /// What a header describes must lie in memory that is loaded: tables for exceptions among it, which are read when one is thrown.

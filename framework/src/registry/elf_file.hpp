@@ -35,6 +35,7 @@ class ElfFile {
   using Symbol = ElfW(Sym);
 
   std::optional<Refusal> check_extent(const ElfW(Ehdr) & header);
+  bool segments_are_apart() const;
   bool is_loaded(const Segment& part) const;
   bool read_dynamic();
   bool relocations_are_sound() const;
