@@ -20,7 +20,8 @@ constexpr double cancelled = 0.25;
 RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms, VectorIn half_widths) : backend_(backend) {
   std::vector<Index> rows;
   for (Index i = 0; i < sum.size() && backend.info().rounding == Rounding::nominal; ++i) {
-    if (std::abs(sum[i]) < cancelled * terms[i] && share * terms[i] > negligible * half_widths[i]) rows.push_back(i);
+    const bool stands = std::abs(sum[i]) >= cancelled * terms[i], is_small = share * terms[i] <= negligible * half_widths[i];
+    if (!stands && !is_small) rows.push_back(i);  // NaN, of terms that overflow, is left to the backend's refusal
   }
   columns_ = Matrix::Zero(sum.size(), static_cast<Index>(rows.size()));
   if (rows.empty()) return;
@@ -32,7 +33,7 @@ RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn ter
   factors_ = backend.box({-ones, ones});
 }
 
-bool RoundingRoom::may_be_needed(double most, double least_width) { return share * most > negligible * least_width; }
+bool RoundingRoom::may_be_needed(double most, double least_width) { return !(share * most <= negligible * least_width); }
 
 Enclosure RoundingRoom::correct(const Enclosure& X, const Correct& measurement) const {
   if (!is_needed()) return backend_.correct(X, measurement);
