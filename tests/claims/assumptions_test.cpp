@@ -56,12 +56,12 @@ Json bent(double w, double v, const Json& changes = Json::object()) {
 }
 
 void check_failed(const Program& program, const std::string& what, Index k, Index from, const std::string& text) {
-  const Said run = program.run();
+  const Outcome run = program.run();
   CAPTURE(run.out);
   CHECK(run.code == 0);
-  CHECK(run.has("Assumption failed: "));
-  CHECK(run.has(text));
-  CHECK(run.has("What is said from k = " + std::to_string(from) + " on rests on it"));
+  CHECK(run.says("Assumption failed: "));
+  CHECK(run.says(text));
+  CHECK(run.says("What is said from k = " + std::to_string(from) + " on rests on it"));
   const Json summary = program.results()["pipelines"][0]["summary"];
   REQUIRE(summary["failed_assumption"].is_object());
   CHECK(summary["failed_assumption"]["what"] == what);
@@ -69,19 +69,19 @@ void check_failed(const Program& program, const std::string& what, Index k, Inde
   CHECK(summary["assumptions_until"] == from);
   CHECK(summary["violated_at"].is_null());
   CHECK(program.file("report.html").find("An assumption of") != std::string::npos);
-  const Said verified = program.verify();
+  const Outcome verified = program.verify();
   CAPTURE(verified.out);
   CHECK(verified.code == 0);
-  CHECK(verified.has("assumption failed"));
-  CHECK(verified.has(text));
-  CHECK_FALSE(verified.has("Every claim that was checked holds.\n"));
+  CHECK(verified.says("assumption failed"));
+  CHECK(verified.says(text));
+  CHECK_FALSE(verified.says("Every claim that was checked holds.\n"));
 }
 
 void check_kept(const Program& program) {
-  const Said run = program.run();
+  const Outcome run = program.run();
   CAPTURE(run.out);
   CHECK(run.code == 0);
-  CHECK_FALSE(run.has("Assumption failed"));
+  CHECK_FALSE(run.says("Assumption failed"));
   CHECK(program.results()["pipelines"][0]["summary"]["failed_assumption"].is_null());
   CHECK(program.verify().code == 0);
 }
@@ -90,16 +90,16 @@ void check_kept(const Program& program) {
 
 TEST_CASE("a restart set that does not hold the state is named, at the reset that begins from it") {
   const Program program(tanks(box({20, 20})));
-  const Said run = program.run();
+  const Outcome run = program.run();
   CAPTURE(run.out);
   CAPTURE(run.err);
   CHECK(run.code == 0);
-  CHECK(run.has("lies outside the restart set, from which all modes begin anew at k = "));
+  CHECK(run.says("lies outside the restart set, from which all modes begin anew at k = "));
   const Json summary = program.results()["pipelines"][0]["summary"], failed = summary["failed_assumption"];
   CHECK(failed["what"] == "restart_set");
   CHECK(summary["assumptions_until"] == failed["k"].get<Index>() + 1);
   CHECK(summary["violated_at"].is_null());
-  CHECK(program.verify().has("lies outside the restart set"));
+  CHECK(program.verify().says("lies outside the restart set"));
   const Program wide(tanks(box({5000, 5000})));
   CHECK(wide.run().code == 0);
   CHECK(wide.results()["pipelines"][0]["summary"]["failed_assumption"].is_null());
@@ -211,20 +211,20 @@ Json on_the_boundary(const std::string& noise, const std::string& rounding) {
 
 TEST_CASE("data that the simulation has rounded out of the model are no defect of a pipeline that takes them as they are") {
   const Program program(on_the_boundary("vertex", "outward"));
-  const Said run = program.run();
+  const Outcome run = program.run();
   CAPTURE(run.out);
   CAPTURE(run.err);
   CHECK(run.code == 0);
-  CHECK(run.has("which the simulation has rounded"));
+  CHECK(run.says("which the simulation has rounded"));
   const Json summary = program.results()["pipelines"][0]["summary"], failed = summary["failed_assumption"];
   REQUIRE(failed.is_object());
   CHECK((failed["what"] == "V_exactly" || failed["what"] == "W_exactly"));
   CHECK(summary["violated_at"].is_null());
   CHECK(summary["outside_from"] >= summary["assumptions_until"]);
-  const Said verified = program.verify();
+  const Outcome verified = program.verify();
   CAPTURE(verified.out);
   CHECK(verified.code != 4);
-  CHECK(verified.has("which the simulation has rounded"));
+  CHECK(verified.says("which the simulation has rounded"));
   check_kept(Program(on_the_boundary("uniform", "outward")));
   check_kept(Program(on_the_boundary("vertex", "nominal")));
 }

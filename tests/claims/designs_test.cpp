@@ -28,7 +28,7 @@ Json study(const Json& designer = Json::object(), bool experiments = true) {
 void check_violated(const Json& designer, const std::string& why) {
   CAPTURE(designer.dump());
   const Program program(study(designer));
-  const Said designed = program.design(), run = program.run();
+  const Outcome designed = program.design(), run = program.run();
   CHECK(designed.code == 4);
   CHECK_MESSAGE(designed.complains("pipeline \"P\" violates its guarantee: "), designed.err);
   CHECK_MESSAGE(designed.complains(why), designed.err);
@@ -46,12 +46,12 @@ void check_violated(const Json& designer, const std::string& why) {
 
 TEST_CASE("what is true is proven, although the designer proves nothing") {
   const Program program(study());
-  const Said designed = program.design("--verify"), run = program.run();
+  const Outcome designed = program.design("--verify"), run = program.run();
   CHECK(designed.code == 0);
-  CHECK_MESSAGE(designed.has("disjoint (proven)"), designed.out);
-  CHECK(designed.has("In exact arithmetic: the modes are separated"));
+  CHECK_MESSAGE(designed.says("disjoint (proven)"), designed.out);
+  CHECK(designed.says("In exact arithmetic: the modes are separated"));
   CHECK(run.code == 0);
-  CHECK(run.has("disjoint (proven)"));
+  CHECK(run.says("disjoint (proven)"));
   const Json pipeline = program.results()["pipelines"][0];
   CHECK(pipeline["exact"]["separates"] == "yes");
   CHECK(pipeline["exact"]["pairs"][0]["disjoint"] == "yes");
@@ -65,9 +65,9 @@ TEST_CASE("a separation without a proof, or with a false one") {
   for (const char* lie : {"nothing", "certificate"}) {
     const Json designer{{"lie", lie}, {"first", .1}};
     check_violated(designer, "the output tubes of healthy and opposite are called disjoint, and meet");
-    const Said said = Program(study(designer)).design();
-    CHECK(said.has("meet (proven)"));
-    CHECK_FALSE(said.has("disjoint (proven)"));
+    const Outcome said = Program(study(designer)).design();
+    CHECK(said.says("meet (proven)"));
+    CHECK_FALSE(said.says("disjoint (proven)"));
   }
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("an input that is found separates, whatever is said of the pairs") {
   check_violated({{"lie", "silent"}, {"first", .1}},
                  "it calls its input feasible, and the outputs of healthy and opposite can be the same");
   check_violated({{"lie", "meet"}}, "are said to meet, and are disjoint");
-  CHECK(Program(study({{"lie", "silent"}})).design().has("disjoint (proven)"));
+  CHECK(Program(study({{"lie", "silent"}})).design().says("disjoint (proven)"));
 }
 
 TEST_CASE("an input outside the input set") {
@@ -112,7 +112,7 @@ TEST_CASE("answers that do not fit the bank end the pipeline, as a violation") {
                                  std::pair("order", "pair 1 is not that of \"healthy\" and \"opposite\""),
                                  std::pair("nan", "its bound of κ is not a number")}) {
     const Program program(study({{"lie", lie}}));
-    const Said designed = program.design(), run = program.run();
+    const Outcome designed = program.design(), run = program.run();
     CHECK(designed.code == 4);
     CHECK_MESSAGE(designed.complains(why), designed.err);
     CHECK(designed.complains("violates its contract"));
@@ -122,32 +122,32 @@ TEST_CASE("answers that do not fit the bank end the pipeline, as a violation") {
 }
 
 TEST_CASE("that nothing is cheaper, or that there is no input, is a claim") {
-  Said said = Program(study({{"lie", "optimal"}})).design();
+  Outcome said = Program(study({{"lie", "optimal"}})).design();
   CHECK(said.code == 0);
-  CHECK_MESSAGE(said.has("Optimal (claimed by lying): cost 3, claimed lower bound 3"), said.out);
+  CHECK_MESSAGE(said.says("Optimal (claimed by lying): cost 3, claimed lower bound 3"), said.out);
   said = Program(study({{"lie", "infeasible"}})).design();
   CHECK(said.code == 0);
-  CHECK_MESSAGE(said.has("Infeasible (claimed by lying)"), said.out);
+  CHECK_MESSAGE(said.says("Infeasible (claimed by lying)"), said.out);
 }
 
 TEST_CASE("beyond the limits of the exact proof there are claims only, which experiments can refute") {
   const int horizon = 60;
   const Json far{{"horizon", horizon}};
   const Program open(study(far, false));
-  const Said said = open.design(), strict = open.design("--verify"), run = open.run();
+  const Outcome said = open.design(), strict = open.design("--verify"), run = open.run();
   CHECK(said.code == 0);
-  CHECK_MESSAGE(said.has("disjoint (claimed)"), said.out);
-  CHECK_FALSE(said.has("disjoint (proven)"));
+  CHECK_MESSAGE(said.says("disjoint (claimed)"), said.out);
+  CHECK_FALSE(said.says("disjoint (proven)"));
   CHECK(strict.code == 5);
   CHECK(strict.complains("leaves a question open"));
   CHECK(run.code == 0);
-  CHECK(run.has("disjoint (claimed)"));
+  CHECK(run.says("disjoint (claimed)"));
   CHECK(open.file("report.html").find("claimed to be disjoint") != std::string::npos);
   CHECK(open.file("summary.csv").find(",unknown") != std::string::npos);
   Json lie = study({{"horizon", horizon}, {"first", 0}});
   lie["pipelines"][0]["diagnoser"]["horizon"] = 8;
   const Program refuted(lie);
-  const Said found = refuted.run();
+  const Outcome found = refuted.run();
   CHECK(found.code == 4);
   CHECK_MESSAGE(found.complains("are called disjoint, and in the experiment with mode \"healthy\" and seed 1 of 3"), found.err);
 }
@@ -171,13 +171,13 @@ TEST_CASE("the optimum of a narrower problem is no optimum, and its bound no bou
     system["V"] = noise;
   }
   const Program program(motor);
-  const Said said = program.design();
+  const Outcome said = program.design();
   CHECK_MESSAGE(said.code == 0, said.err);
-  CHECK_MESSAGE(said.has("Feasible: cost 22.9233, no lower bound is known"), said.out);
-  CHECK(said.has(
+  CHECK_MESSAGE(said.says("Feasible: cost 22.9233, no lower bound is known"), said.out);
+  CHECK(said.says(
       "Searched in place of the problem: the program with at most 8 generators per pair, as GLPK bounds it; that one costs "
       "at least 22.9233, the problem itself may cost less"));
-  CHECK_FALSE(said.has("gap"));
+  CHECK_FALSE(said.says("gap"));
   const Json pipelines = Json::parse(program.design("--json").out)["pipelines"], reduced = pipelines[0]["design"],
              whole = pipelines[1]["design"];
   CHECK(reduced["lower_bound"] == "-inf");

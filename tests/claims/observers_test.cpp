@@ -46,7 +46,7 @@ TEST_CASE("who claims to be exact without being it is refuted") {
   const Program program(study({{"type", "blind"}, {"boast", true}}));
   CHECK(program.run().code == 0);
   CHECK(tightness(program) == "exact exact exact exact ");
-  const Said said = program.verify();
+  const Outcome said = program.verify();
   CHECK(said.code == 4);
   CHECK_MESSAGE(said.complains("exact"), said.err);
   // the claim is met with that of the operations
@@ -71,7 +71,7 @@ TEST_CASE("estimates with lines are exact up to the rounding of the lines' direc
     "data": {"simulate": {"steps": 3, "x0": [1, 2, 3], "noise": "zero"}},
     "pipelines": [{"name": "P", "backend": "line_zonotope", "observer": "prediction_correction"}], "metrics": ["radius"]})"));
   CHECK(program.run().code == 0);
-  const Said verified = program.verify();
+  const Outcome verified = program.verify();
   CAPTURE(verified.out);
   CHECK(verified.code == 0);
 }

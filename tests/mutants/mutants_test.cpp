@@ -3,16 +3,16 @@
 // names, with a witness and a command that repeats the failure. Backends without a defect have to pass every law.
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <set>
 #include <sstream>
 #include <string>
-#include <sys/wait.h>
 #include <thread>
 #include <vector>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
+
+#include "run/program.hpp"
 
 using nlohmann::json;
 
@@ -25,15 +25,8 @@ struct Outcome {
 
 /// Runs a command line of cordon, given without the program, and reads its JSON.
 Outcome cordon_json(const std::string& arguments) {
-  std::FILE* pipe = popen(("\"" CORDON_PROGRAM "\" " + arguments + " --json 2>/dev/null").c_str(), "r");
-  if (!pipe) return {};
-  std::string text;
-  char block[4096];
-  for (std::size_t size = std::fread(block, 1, sizeof block, pipe); size > 0; size = std::fread(block, 1, sizeof block, pipe)) {
-    text.append(block, size);
-  }
-  const int status = pclose(pipe);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, json::parse(text, nullptr, false)};
+  const test::Outcome outcome = test::cordon_with(arguments + " --json");
+  return {outcome.code, json::parse(outcome.out, nullptr, false)};
 }
 
 /// The entry of one law in the report about one backend; null if there is none.

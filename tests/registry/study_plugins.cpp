@@ -3,7 +3,8 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "registry/program.hpp"
+#include "registry/temporary.hpp"
+#include "run/program.hpp"
 
 using namespace test;
 using nlohmann::json;

@@ -52,6 +52,8 @@ inline std::string read(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
 /// Is the library part of this process now?
 inline bool is_mapped(const fs::path& file) { return read("/proc/self/maps").find(file.string()) != std::string::npos; }
 

@@ -1,36 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The commands validate and schema as a user runs them, with the plugins of this build.
-#include <array>
-#include <cstdio>
 #include <fstream>
 #include <set>
-#include <sys/wait.h>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "run/scratch.hpp"
+#include "run/program.hpp"
 #include "study/fakes.hpp"
 
 using namespace study_test;
+using test::Outcome;
 
 namespace {
 
-struct Outcome {
-  int exit = -1;
-  std::string out;
-};
-
-Outcome run(const std::string& arguments, const std::string& streams) {
-  Outcome outcome;
-  std::FILE* pipe = popen((std::string("CORDON_PLUGIN_PATH= ") + CORDON_PROGRAM + " " + arguments + " " + streams).c_str(), "r");
-  REQUIRE(pipe);
-  std::array<char, 4096> chunk{};
-  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), pipe)) outcome.out.append(chunk.data(), got);
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.exit = WEXITSTATUS(status);
-  return outcome;
-}
+Outcome run(const std::string& arguments, const std::string& streams) { return test::cordon_with(arguments + " " + streams); }
 
 const std::string examples = std::string(CORDON_SOURCE_DIR) + "/examples/studies/";
 const std::string main_study = examples + "descriptor_four_representations.json";
@@ -49,7 +33,7 @@ void expect_resolved_again(const Scratch& scratch, const std::string& study) {
 TEST_CASE("the examples are valid with the plugins of this build") {
   const Outcome outcome =
       run("validate " + main_study + " " + examples + "linear_two_states.json " + examples + "recorded_walk.json", "2>&1");
-  CHECK(outcome.exit == 0);
+  CHECK(outcome.code == 0);
   CHECK(outcome.out.find("descriptor, 3 states, 2 inputs, 2 outputs, 3 disturbances, 2 noises") != std::string::npos);
   CHECK(outcome.out.find("LZ: line_zonotope, descriptor") != std::string::npos);
 }
@@ -58,7 +42,7 @@ TEST_CASE("errors go to stderr, exit code 2, the other studies are looked at all
   const Scratch scratch;
   const std::string bad = scratch.write("bad.json", "{\"cordon\": 1}").string();
   const Outcome err = run("validate " + bad + " " + main_study, "2>&1 >/dev/null");
-  CHECK(err.exit == 2);
+  CHECK(err.code == 2);
   CHECK(err.out.find("bad.json: 3 errors") != std::string::npos);
   CHECK(run("validate " + bad + " " + main_study, "2>/dev/null").out.find("ok") != std::string::npos);
   const auto json = nlohmann::json::parse(run("validate --json " + bad + " " + main_study, "2>/dev/null").out);
@@ -80,7 +64,7 @@ TEST_CASE("the manual of study files shows valid studies, and every component of
     if (block.front() == '{') {
       const Outcome outcome = run("validate " + scratch.write("s.json", block).string(), "2>&1");
       CAPTURE(outcome.out);
-      CHECK(outcome.exit == 0);
+      CHECK(outcome.code == 0);
       if (block.find("interval_lti") != std::string::npos) {
         CHECK(outcome.out.find("uncertain lti, 2 states, 1 input, 1 output, 2 disturbances, 1 noise, 2 additive faults") !=
               std::string::npos);
@@ -114,7 +98,7 @@ TEST_CASE("bad rows of recorded data are found by validate") {
   scratch.write("walk.json", std::string(std::istreambuf_iterator<char>(study), {}));
   scratch.write("recorded_walk.csv", "k,px_m,py_m,vx_mps,vy_mps,zx_m,zy_m\n0,0,0,0,0,0,0\n1,0,0,0,0,oops,0\n");
   const Outcome outcome = run("validate " + (scratch.path() / "walk.json").string(), "2>&1");
-  CHECK(outcome.exit == 2);
+  CHECK(outcome.code == 2);
   CHECK(outcome.out.find("oops") != std::string::npos);
 }
 
@@ -128,7 +112,7 @@ TEST_CASE("validate opens the recorded data of every value of a sweep") {
   scratch.write("bad.csv", good + "1,0,0,0,0,oops,0\n");
   scratch.write("worse.csv", good + "1,0,0,0,0,0,alas\n");
   const Outcome bad = run("validate " + file, "2>&1");
-  CHECK(bad.exit == 2);
+  CHECK(bad.code == 2);
   CHECK(bad.out.find("bad.csv") != std::string::npos);
   CHECK(bad.out.find("oops") != std::string::npos);
   CHECK(bad.out.find("alas") != std::string::npos);  // every error at once
@@ -138,7 +122,7 @@ TEST_CASE("validate opens the recorded data of every value of a sweep") {
   CHECK(told[0]["errors"].size() == 2);
   scratch.write("bad.csv", good);
   scratch.write("worse.csv", good);
-  CHECK(run("validate " + file, "2>&1").exit == 0);
+  CHECK(run("validate " + file, "2>&1").code == 0);
 }
 
 TEST_CASE("a refused plugin that the study needs is exit code 3") {
@@ -149,13 +133,13 @@ TEST_CASE("a refused plugin that the study needs is exit code 3") {
   const std::string study =
       scratch.write("s.json", exchanged(text, "{\"type\": \"interval\"}", "{\"type\": \"ellipsoid\"}")).string();
   const Outcome outcome = run("--plugins " + scratch.path().string() + " validate " + study, "2>&1");
-  CHECK(outcome.exit == 3);
+  CHECK(outcome.code == 3);
   CHECK(outcome.out.find("ellipsoid.so was refused") != std::string::npos);
 }
 
 TEST_CASE("modes, faults, plants and diagnosers are described, and resolved texts are valid again") {
   const Outcome outcome = run("validate " + examples + "cstr_actuator_faults.json " + examples + "cstr_nonlinear.json", "2>&1");
-  CHECK(outcome.exit == 0);
+  CHECK(outcome.code == 0);
   for (const char* part : {"modes     healthy, fault 1, fault 2", "faults    fault 1 from k = 50 to 99",
                            "zonotope, observer_bank", "simulated by stirred_tank"}) {
     CAPTURE(part);
@@ -179,7 +163,7 @@ TEST_CASE("list and info know every kind of component") {
 
 TEST_CASE("schema prints JSON with the components of this build") {
   const Outcome outcome = run("schema", "2>/dev/null");
-  CHECK(outcome.exit == 0);
+  CHECK(outcome.code == 0);
   const auto schema = nlohmann::json::parse(outcome.out);
   CHECK(schema["$defs"]["backend"]["oneOf"].size() == 5);  // four, and their names alone
   CHECK(schema["properties"]["sweep"]["items"]["required"] == nlohmann::json{"name", "path"});
@@ -187,7 +171,7 @@ TEST_CASE("schema prints JSON with the components of this build") {
 
 TEST_CASE("info shows a component as text without colours, and as JSON with its details") {
   const Outcome text = run("info luenberger", "2>/dev/null");
-  CHECK(text.exit == 0);
+  CHECK(text.code == 0);
   CHECK(text.out.starts_with("observer luenberger (plugin estimators)\n"));
   CHECK(text.out.find("\nPARAMETER ") != std::string::npos);
   CHECK(text.out.find('\x1b') == std::string::npos);

@@ -1,47 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Results at the edge of rounding: what is right is not refuted, what is wrong by more is.
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <sstream>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "run/program.hpp"
+
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using test::Outcome;
 
-struct Outcome {
-  int exit = -1;
-  std::string out;
-};
-
-Outcome program(const std::string& arguments) {
-  Outcome outcome;
-  const std::string plugins = std::string(CORDON_BINARY_DIR) + "/lib/cordon/plugins-v1";
-  std::FILE* pipe = popen(
-      (std::string("CORDON_PLUGIN_PATH= ") + CORDON_PROGRAM + " --plugins " + plugins + " " + arguments + " 2>&1").c_str(), "r");
-  REQUIRE(pipe);
-  std::array<char, 4096> chunk{};
-  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), pipe)) outcome.out.append(chunk.data(), got);
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.exit = WEXITSTATUS(status);
-  return outcome;
-}
+Outcome program(const std::string& arguments) { return test::cordon_with(arguments + " 2>&1"); }
 
 /// A study of one pipeline, run in a directory of its own.
 class Run {
  public:
-  Run(const char* system, const char* data, const char* pipeline)
-      : home_(fs::temp_directory_path() / ("cordon_verify_exact_" + std::to_string(::getpid()))) {
-    fs::remove_all(home_);
-    fs::create_directories(home_);
+  Run(const char* system, const char* data, const char* pipeline) {
     Json study{{"cordon", 1}, {"title", "edge"}};
     study["system"] = Json::parse(system);
     study["data"]["simulate"] = Json::parse(data);
@@ -49,12 +28,8 @@ class Run {
     std::ofstream(home_ / "study.json") << study.dump(1);
     ran_ = program("run --no-report --out " + (home_ / "out").string() + " " + (home_ / "study.json").string());
     CAPTURE(ran_.out);
-    REQUIRE(ran_.exit == 0);
+    REQUIRE(ran_.code == 0);
   }
-  ~Run() { fs::remove_all(home_); }
-  Run(const Run&) = delete;
-  Run& operator=(const Run&) = delete;
-
   const std::string& said() const { return ran_.out; }
   Outcome verify() const { return program("verify " + (home_ / "out").string()); }
   void widen_hull(std::size_t step, double by) const {
@@ -80,7 +55,7 @@ class Run {
   }
 
  private:
-  fs::path home_;
+  Scratch home_;
   Outcome ran_;
 };
 
@@ -97,7 +72,7 @@ TEST_CASE("a hull of a set that is nearly flat is not refuted") {
                 R"({"steps": 9})", R"({"name": "Z", "backend": "zonotope", "observer": "prediction_correction"})");
   const Outcome outcome = run.verify();
   CAPTURE(outcome.out);
-  CHECK(outcome.exit == 0);
+  CHECK(outcome.code == 0);
 }
 
 TEST_CASE("nominal claims of exact hold up to the rounding of the terms, and not beyond") {
@@ -108,7 +83,7 @@ TEST_CASE("nominal claims of exact hold up to the rounding of the terms, and not
     const Run run(scalar, R"({"steps": 5, "noise": "vertex"})", pipeline.c_str());
     Outcome outcome = run.verify();
     CAPTURE(outcome.out);
-    CHECK(outcome.exit == 0);
+    CHECK(outcome.code == 0);
     // x_1 is 0 up to rounding, and was computed from terms of 0.23
     run.widen_hull(1, 1e-9);
     outcome = run.with_set(1, [](Json& set) {
@@ -121,7 +96,7 @@ TEST_CASE("nominal claims of exact hold up to the rounding of the terms, and not
       if (set["proof"]["kind"] == "point") set["proof"]["data"].push_back(0.0);
     });
     CAPTURE(outcome.out);
-    CHECK(outcome.exit == 4);
+    CHECK(outcome.code == 4);
     CHECK(names(outcome, "claimed exact"));
   }
 }
@@ -132,13 +107,13 @@ TEST_CASE("with outward rounding a claim of exact is taken literally") {
       R"({"name": "P", "backend": {"type": "line_zonotope", "rounding": "outward"}, "observer": "prediction_correction"})");
   Outcome outcome = run.verify();
   CAPTURE(outcome.out);
-  CHECK(outcome.exit == 0);
+  CHECK(outcome.code == 0);
   outcome = run.with_set(0, [](Json& set) {
     REQUIRE(set["tightness"] == "exact");
     set["c"][0] = set["c"][0].get<double>() + 1e-17;
   });
   CAPTURE(outcome.out);
-  CHECK(outcome.exit == 4);
+  CHECK(outcome.code == 4);
   CHECK(names(outcome, "claimed exact"));
 }
 
@@ -152,7 +127,7 @@ TEST_CASE("with outward rounding products with the input are enclosed") {
                   R"({"steps": 3, "input": [{"type": "constant", "offset": 0.3}]})", pipeline.c_str());
     const Outcome outcome = run.verify();
     CAPTURE(outcome.out);
-    CHECK(outcome.exit == 0);  // a claim of exact for the rounded 0.1 · 0.3 would be false
+    CHECK(outcome.code == 0);  // a claim of exact for the rounded 0.1 · 0.3 would be false
   }
 }
 
@@ -168,5 +143,5 @@ TEST_CASE("an E that is singular in decimals only is told of, and read by all al
         std::string::npos);
   const Outcome outcome = run.verify();
   CAPTURE(outcome.out);
-  CHECK(outcome.exit == 0);
+  CHECK(outcome.code == 0);
 }

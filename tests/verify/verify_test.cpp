@@ -1,49 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `cordon verify` on one short run: falsified results end with code 4 and name the place, damaged files with code 2 and a
 // message.
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <sstream>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
+
+#include "run/program.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using test::Outcome;
 
 constexpr int unharmed = 0, refused = 2, violated = 4;
 
-struct Outcome {
-  int exit = -1;
-  std::string out;
-};
+Outcome cordon(const std::string& arguments) { return test::cordon_with(arguments + " 2>&1"); }
 
-Outcome cordon(const std::string& arguments) {
-  Outcome outcome;
-  const std::string plugins = std::string(CORDON_BINARY_DIR) + "/lib/cordon/plugins-v1";
-  std::FILE* pipe = popen(
-      (std::string("CORDON_PLUGIN_PATH= ") + CORDON_PROGRAM + " --plugins " + plugins + " " + arguments + " 2>&1").c_str(), "r");
-  REQUIRE(pipe);
-  std::array<char, 4096> chunk{};
-  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), pipe)) outcome.out.append(chunk.data(), got);
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.exit = WEXITSTATUS(status);
-  return outcome;
-}
-
-std::string read(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
 
 Json pipeline(const std::string& backend, const std::string& rounding) {
@@ -55,9 +32,7 @@ Json pipeline(const std::string& backend, const std::string& rounding) {
 /// A run of four steps that every test copies.
 class Run {
  public:
-  Run() : home_(fs::temp_directory_path() / ("cordon_verify_" + std::to_string(::getpid()))) {
-    fs::remove_all(home_);
-    fs::create_directories(home_);
+  Run() {
     const auto box = [](const Json& lower, const Json& upper) {
       return Json{{"type", "box"}, {"lower", lower}, {"upper", upper}};
     };
@@ -77,12 +52,8 @@ class Run {
     write(home_ / "study.json", study.dump());
     const Outcome outcome = cordon("run --quiet --out " + original().string() + " " + (home_ / "study.json").string());
     CAPTURE(outcome.out);
-    REQUIRE(outcome.exit == 0);
+    REQUIRE(outcome.code == 0);
   }
-  ~Run() { fs::remove_all(home_); }
-  Run(const Run&) = delete;
-  Run& operator=(const Run&) = delete;
-
   fs::path original() const { return home_ / "original"; }
 
   /// What `verify` says of a copy after `change`.
@@ -96,14 +67,14 @@ class Run {
   }
   Outcome with_results(const std::function<void(Json&)>& change) const {
     return verify([&](const fs::path& copy) {
-      Json results = Json::parse(read(copy / "results.json"));
+      Json results = Json::parse(bytes_of(copy / "results.json"));
       change(results);
       write(copy / "results.json", results.dump());
     });
   }
   Outcome with_set(std::size_t line, const std::function<void(Json&)>& change) const {
     return verify([&](const fs::path& copy) {
-      std::istringstream lines(read(copy / "sets.jsonl"));
+      std::istringstream lines(bytes_of(copy / "sets.jsonl"));
       std::string all, text;
       for (std::size_t i = 0; std::getline(lines, text); ++i) {
         Json set = Json::parse(text);
@@ -115,7 +86,7 @@ class Run {
   }
   Outcome with_text(const char* file, const std::string& old, const std::string& now) const {
     return verify([&](const fs::path& copy) {
-      std::string text = read(copy / file);
+      std::string text = bytes_of(copy / file);
       const std::size_t at = text.find(old);
       REQUIRE(at != std::string::npos);
       write(copy / file, text.replace(at, old.size(), now));
@@ -123,7 +94,7 @@ class Run {
   }
 
  private:
-  fs::path home_;
+  Scratch home_;
 };
 
 const Run& run() {
@@ -140,7 +111,7 @@ constexpr std::size_t pipelines = 4, steps = 4;
 TEST_CASE("a run that was not touched is verified") {
   const Outcome outcome = run().verify([](const fs::path&) {});
   CAPTURE(outcome.out);
-  CHECK(outcome.exit == unharmed);
+  CHECK(outcome.code == unharmed);
 }
 
 TEST_CASE("diagnoses are passed over and named; what surrounds them is checked") {
@@ -155,7 +126,7 @@ TEST_CASE("diagnoses are passed over and named; what surrounds them is checked")
   };
   Outcome outcome = run().with_results(amid);
   CAPTURE(outcome.out);
-  CHECK(outcome.exit == unharmed);
+  CHECK(outcome.code == unharmed);
   CHECK(names(outcome, "not re-checked: bank of observers"));
   CHECK(names(outcome, "Every claim that was checked holds."));
   outcome = run().with_results([&](Json& results) {
@@ -163,20 +134,20 @@ TEST_CASE("diagnoses are passed over and named; what surrounds them is checked")
     Json& bound = results["pipelines"][4]["steps"][2]["hull"]["upper"][0];
     bound = bound.get<double>() - 1e-6;
   });
-  CHECK(outcome.exit == violated);
+  CHECK(outcome.code == violated);
   CHECK(names(outcome, "/pipelines/4/steps/2/hull"));
   outcome = run().verify([&](const fs::path& copy) {
-    Json results = Json::parse(read(copy / "results.json"));
+    Json results = Json::parse(bytes_of(copy / "results.json"));
     results["pipelines"] = {diagnosis};
     write(copy / "results.json", results.dump());
     write(copy / "sets.jsonl", "");
   });
-  CHECK(outcome.exit == unharmed);
+  CHECK(outcome.code == unharmed);
   CHECK(names(outcome, "not re-checked: bank of observers"));
   CHECK_FALSE(names(outcome, "Every claim"));
   Json damaged = diagnosis;
   damaged["rounding"] = "sideways";
-  CHECK(run().with_results([&](Json& results) { results["pipelines"].push_back(damaged); }).exit == refused);
+  CHECK(run().with_results([&](Json& results) { results["pipelines"].push_back(damaged); }).code == refused);
 }
 
 TEST_CASE("a bound moved inward by 1e-6 is found, for every backend and coordinate") {
@@ -191,7 +162,7 @@ TEST_CASE("a bound moved inward by 1e-6 is found, for every backend and coordina
         CAPTURE(i);
         CAPTURE(side);
         CAPTURE(outcome.out);
-        CHECK(outcome.exit == violated);
+        CHECK(outcome.code == violated);
         CHECK(names(outcome, "/pipelines/" + std::to_string(p) + "/steps/3/hull"));
       }
     }
@@ -201,7 +172,7 @@ TEST_CASE("a bound moved inward by 1e-6 is found, for every backend and coordina
 TEST_CASE("falsified sets, answers, claims and proofs are found where they stand") {
   const auto found = [](const Outcome& outcome, const std::string& place) {
     CAPTURE(outcome.out);
-    CHECK(outcome.exit == violated);
+    CHECK(outcome.code == violated);
     CHECK(names(outcome, place));
   };
   for (const std::size_t p : {std::size_t{0}, std::size_t{1}}) {
@@ -235,7 +206,7 @@ TEST_CASE("falsified sets, answers, claims and proofs are found where they stand
         "sets.jsonl:12");
   // a measurement that the model does not allow for the sets that were recorded
   found(run().verify([](const fs::path& copy) {
-    std::istringstream lines(read(copy / "data.csv"));
+    std::istringstream lines(bytes_of(copy / "data.csv"));
     std::string all, text;
     for (int row = 0; std::getline(lines, text); ++row) {
       if (row == 3) {
@@ -253,7 +224,7 @@ TEST_CASE("falsified sets, answers, claims and proofs are found where they stand
 TEST_CASE("damaged files are refused with their place") {
   const auto refuses = [](const Outcome& outcome, const std::string& place) {
     CAPTURE(outcome.out);
-    CHECK(outcome.exit == refused);
+    CHECK(outcome.code == refused);
     CHECK(names(outcome, place));
   };
   for (const char* file : {"results.json", "sets.jsonl", "data.csv"}) {
@@ -261,7 +232,7 @@ TEST_CASE("damaged files are refused with their place") {
     refuses(run().verify([&](const fs::path& copy) { fs::remove(copy / file); }), file);
     refuses(run().verify([&](const fs::path& copy) { write(copy / file, ""); }), file);
     refuses(run().verify([&](const fs::path& copy) {
-      const std::string text = read(copy / file);
+      const std::string text = bytes_of(copy / file);
       write(copy / file, text.substr(0, text.size() / 2));
     }),
             file);
@@ -273,7 +244,7 @@ TEST_CASE("damaged files are refused with their place") {
   refuses(run().with_text("sets.jsonl", "\"k\": 0", "\"k\": 0, \"k\": 0"), "repeated");
   refuses(run().with_text("sets.jsonl", "\"k\": 0", "\"k\": 1"), "k = 0");
   refuses(run().verify([](const fs::path& copy) {
-    const std::string text = read(copy / "sets.jsonl");
+    const std::string text = bytes_of(copy / "sets.jsonl");
     const std::size_t first = text.find('\n') + 1, second = text.find('\n', first) + 1;
     write(copy / "sets.jsonl", text.substr(first, second - first) + text.substr(0, first) + text.substr(second));
   }),
@@ -281,7 +252,7 @@ TEST_CASE("damaged files are refused with their place") {
   refuses(run().with_text("data.csv", "y_1", "w_1"), "y_1");
   refuses(run().with_text("data.csv", "\n1,", "\n7,"), "k = 1");
   refuses(run().verify([](const fs::path& copy) {
-    const std::string text = read(copy / "data.csv");
+    const std::string text = bytes_of(copy / "data.csv");
     write(copy / "data.csv", text.substr(0, text.find('\n', text.find('\n') + 1) + 1));
   }),
           "k = 1");
@@ -294,7 +265,7 @@ TEST_CASE("numbers at the ends of the range end in a verdict, not in a crash") {
                                    run().with_text("sets.jsonl", "\"A\": [[1", "\"A\": [[" + std::string(huge)),
                                    run().with_text("sets.jsonl", "\"data\": [1", "\"data\": [" + std::string(huge))}) {
       CAPTURE(outcome.out);
-      CHECK((outcome.exit == unharmed || outcome.exit == refused || outcome.exit == violated || outcome.exit == 5));
+      CHECK((outcome.code == unharmed || outcome.code == refused || outcome.code == violated || outcome.code == 5));
     }
   }
 }
@@ -308,7 +279,7 @@ TEST_CASE("answers and bounds without a certificate are decided by the recorded 
     CAPTURE(p);
     Outcome outcome = run().with_set(p * steps + 1, without_proofs);
     CAPTURE(outcome.out);
-    CHECK(outcome.exit == unharmed);
+    CHECK(outcome.code == unharmed);
     outcome = run().with_set(p * steps + 1, [&](Json& set) {
       without_proofs(set);
       for (Json& row : set["G"]) {
@@ -316,13 +287,13 @@ TEST_CASE("answers and bounds without a certificate are decided by the recorded 
       }
     });
     CAPTURE(outcome.out);
-    CHECK(outcome.exit == violated);
+    CHECK(outcome.code == violated);
   }
   const Outcome outcome = run().verify([](const fs::path& copy) {
-    Json results = Json::parse(read(copy / "results.json"));
+    Json results = Json::parse(bytes_of(copy / "results.json"));
     results["pipelines"][0]["steps"][1]["consistent"] = "no";
     write(copy / "results.json", results.dump());
-    std::istringstream lines(read(copy / "sets.jsonl"));
+    std::istringstream lines(bytes_of(copy / "sets.jsonl"));
     std::string all, text;
     for (std::size_t i = 0; std::getline(lines, text); ++i) {
       Json set = Json::parse(text);
@@ -332,6 +303,6 @@ TEST_CASE("answers and bounds without a certificate are decided by the recorded 
     write(copy / "sets.jsonl", all);
   });
   CAPTURE(outcome.out);
-  CHECK(outcome.exit == violated);
+  CHECK(outcome.code == violated);
   CHECK(names(outcome, "without a proof"));
 }

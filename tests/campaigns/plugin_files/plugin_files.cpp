@@ -11,7 +11,8 @@
 
 #include <doctest/doctest.h>
 
-#include "registry/program.hpp"
+#include "registry/temporary.hpp"
+#include "run/program.hpp"
 
 using namespace test;
 

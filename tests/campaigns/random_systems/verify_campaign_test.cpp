@@ -4,42 +4,25 @@
 //   CORDON_CAMPAIGN_SYSTEMS   how many (40), from number CORDON_CAMPAIGN_FIRST (0) on
 //   CORDON_CAMPAIGN_STATES    those with more states are left out (6)
 //   CORDON_CAMPAIGN_KEEP      a directory that keeps studies and results of those that were not verified
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <regex>
 #include <set>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <doctest/doctest.h>
 
 #include "random_study.hpp"
+#include "run/program.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using test::Outcome;
 
-struct Outcome {
-  int exit = -1;
-  std::string out;
-};
-
-Outcome program(const std::string& arguments) {
-  Outcome outcome;
-  const std::string plugins = std::string(CORDON_BINARY_DIR) + "/lib/cordon/plugins-v1";
-  std::FILE* pipe = popen(
-      (std::string("CORDON_PLUGIN_PATH= ") + CORDON_PROGRAM + " --plugins " + plugins + " " + arguments + " 2>&1").c_str(), "r");
-  REQUIRE(pipe);
-  std::array<char, 4096> chunk{};
-  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), pipe)) outcome.out.append(chunk.data(), got);
-  const int status = pclose(pipe);
-  if (WIFEXITED(status)) outcome.exit = WEXITSTATUS(status);
-  return outcome;
-}
+Outcome program(const std::string& arguments) { return test::cordon_with(arguments + " 2>&1"); }
 
 std::uint64_t asked(const char* variable, std::uint64_t otherwise) {
   const char* text = std::getenv(variable);
@@ -75,7 +58,7 @@ bool run(Json study, const fs::path& home, Outcome& outcome) {
     std::ofstream(home / "study.json") << study.dump(1) << '\n';
     fs::remove_all(home / "out");
     outcome = program("run --quiet --no-report --out " + (home / "out").string() + " " + (home / "study.json").string());
-    if (outcome.exit != 2 || !drop_refused(study, outcome.out)) return fs::exists(home / "out" / "results.json");
+    if (outcome.code != 2 || !drop_refused(study, outcome.out)) return fs::exists(home / "out" / "results.json");
   }
   return false;
 }
@@ -100,24 +83,24 @@ TEST_CASE("no result of a random system is refuted, and of up to four states at 
     if (ran) {
       CAPTURE(outcome.out);
       // data are rounded: with outward rounding they may contradict a model in the last digits, which leaves no true state
-      const bool contradicts = outcome.exit == 4 && !concerns_nominal(study, outcome.out);
-      CHECK((outcome.exit == 0 || contradicts));
+      const bool contradicts = outcome.code == 4 && !concerns_nominal(study, outcome.out);
+      CHECK((outcome.code == 0 || contradicts));
       contradictory += contradicts ? 1 : 0;
       outcome = program("verify --directions 2 " + (home / "out").string());
     }
     CAPTURE(outcome.out);
     if (!ran) {
       ++refused;  // an index above 1, E too near to singular, …
-    } else if (outcome.exit == 5) {
+    } else if (outcome.code == 5) {
       small += few_states ? 1 : 0;
       undecided += few_states ? 1 : 0;
       MESSAGE("undecided: system ", number, "\n", outcome.out);
     } else {
-      CHECK(outcome.exit == 0);
+      CHECK(outcome.code == 0);
       small += few_states ? 1 : 0;
       ++verified;
     }
-    if (keep && (outcome.exit != 0 || !ran))
+    if (keep && (outcome.code != 0 || !ran))
       fs::copy(home, fs::path(keep) / std::to_string(number), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
   }
   fs::remove_all(home);
