@@ -88,6 +88,14 @@ std::uint32_t gnu_hash(std::string_view name) {
   return hash;
 }
 
+/// The beginning of a table of hashed names: a filter, `buckets` numbers of symbols and the chains that start there follow.
+struct GnuHash {
+  std::uint32_t buckets, first, filter_words, filter_shift;
+
+  ElfW(Addr) first_bucket(ElfW(Addr) table) const { return table + sizeof(GnuHash) + filter_words * sizeof(ElfW(Addr)); }
+  ElfW(Addr) first_chain(ElfW(Addr) table) const { return first_bucket(table) + ElfW(Addr){4} * buckets; }
+};
+
 std::uint64_t symbol_of(ElfW(Xword) info) {
 #if __ELF_NATIVE_CLASS == 64
   return ELF64_R_SYM(info);
@@ -108,7 +116,7 @@ std::optional<Refusal> ElfFile::read(const fs::path& file) {
   std::memcpy(&header, bytes_.data(), sizeof header);
   if (auto refusal = check_header(header)) return refusal;
   if (auto refusal = check_extent(header)) return refusal;
-  if (!read_dynamic() || !relocations_are_sound()) return Refusal{"its tables are damaged", copy_again};
+  if (!read_dynamic() || !symbols_are_sound() || !relocations_are_sound()) return Refusal{"its tables are damaged", copy_again};
   return {};
 }
 
@@ -197,6 +205,83 @@ bool ElfFile::read_dynamic() {
   return std::all_of(names.begin(), names.end(), [&](Address name) { return name < size; });
 }
 
+/// Those that can be found by name, and what stands before them. Nothing where the hash table does not lie within the file.
+std::optional<std::uint64_t> ElfFile::symbol_count() const {
+  if (const auto older = dynamic(DT_HASH)) {
+    const auto chains = get<std::uint32_t>(*older + 4);
+    return chains ? std::optional<std::uint64_t>(*chains) : std::nullopt;
+  }
+  const auto table = dynamic(DT_GNU_HASH);
+  const auto head = table ? get<GnuHash>(*table) : std::nullopt;
+  const bool is_whole = head && head->filter_words != 0 && (head->filter_words & (head->filter_words - 1)) == 0 &&
+                        fits(head->first_bucket(0), head->buckets, 4, at(*table).size());
+  if (!is_whole) return std::nullopt;
+  std::uint64_t last = 0;
+  for (std::uint32_t i = 0; i < head->buckets; ++i) {
+    const std::uint32_t first = get<std::uint32_t>(head->first_bucket(*table) + Address{4} * i).value_or(1);
+    if (first != 0 && first < head->first) return std::nullopt;
+    last = std::max<std::uint64_t>(last, first);
+  }
+  if (last == 0) return head->first;  // nothing is exported
+  for (;; ++last) {
+    const auto link = get<std::uint32_t>(head->first_chain(*table) + 4 * (last - head->first));
+    if (!link) return std::nullopt;
+    if (*link & 1) return last + 1;  // the end of its chain
+  }
+}
+
+/// The versions that are needed and defined have numbers below this one. Nothing where their lists leave the file.
+std::optional<std::uint64_t> ElfFile::version_count() const {
+  constexpr std::size_t most = 10'000;  // records that stand in a circle end here
+  std::uint64_t count = 2;              // local and global
+  std::size_t records = 0;
+  const Address names = *dynamic(DT_STRSZ);
+  const auto note = [&](std::uint64_t number) { count = std::max(count, (number & 0x7fff) + 1); };
+  Address next = dynamic(DT_VERNEED).value_or(0);
+  while (next != 0) {
+    const auto library = get<ElfW(Verneed)>(next);
+    if (!library || library->vn_version != VER_NEED_CURRENT || library->vn_file >= names) return std::nullopt;
+    Address part = next + library->vn_aux;
+    for (bool more = true; more;) {
+      const auto version = get<ElfW(Vernaux)>(part);
+      if (!version || version->vna_name >= names || ++records > most) return std::nullopt;
+      note(version->vna_other);
+      more = version->vna_next != 0;
+      part += version->vna_next;
+    }
+    next = library->vn_next != 0 ? next + library->vn_next : 0;
+  }
+  next = dynamic(DT_VERDEF).value_or(0);
+  while (next != 0) {
+    const auto version = get<ElfW(Verdef)>(next);
+    if (!version || version->vd_version != VER_DEF_CURRENT || ++records > most) return std::nullopt;
+    const auto name = get<ElfW(Verdaux)>(next + version->vd_aux);
+    if (!name || name->vda_name >= names) return std::nullopt;
+    note(version->vd_ndx);
+    next = version->vd_next != 0 ? next + version->vd_next : 0;
+  }
+  return count;
+}
+
+/// Has it a name, and one of the versions that there are?
+bool ElfFile::symbol_is_sound(std::uint64_t index) const {
+  const auto symbol = get<Symbol>(*dynamic(DT_SYMTAB) + index * sizeof(Symbol));
+  if (!symbol || symbol->st_name >= *dynamic(DT_STRSZ)) return false;
+  if (!dynamic(DT_VERSYM)) return true;
+  const auto version = get<ElfW(Versym)>(*dynamic(DT_VERSYM) + index * sizeof(ElfW(Versym)));
+  return version && (*version & 0x7fff) < versions_;
+}
+
+bool ElfFile::symbols_are_sound() {
+  const auto symbols = symbol_count(), versions = version_count();
+  if (!symbols || !versions) return false;
+  versions_ = *versions;
+  for (std::uint64_t i = 0; i < *symbols; ++i) {
+    if (!symbol_is_sound(i)) return false;
+  }
+  return true;
+}
+
 bool ElfFile::is_writable(Address address) const {
   return std::any_of(segments_.begin(), segments_.end(), [&](const Segment& s) {
     return s.p_type == PT_LOAD && (s.p_flags & PF_W) && address >= s.p_vaddr && s.p_memsz >= sizeof(Address) &&
@@ -214,7 +299,7 @@ bool ElfFile::table_is_sound(std::int64_t address_tag, std::int64_t size_tag, st
     ElfW(Rel) relocation;  // those with an addend begin alike
     std::memcpy(&relocation, table.data() + i, sizeof relocation);
     const std::uint64_t symbol = symbol_of(relocation.r_info);
-    if (!is_writable(relocation.r_offset) || !get<Symbol>(*dynamic(DT_SYMTAB) + symbol * sizeof(Symbol))) return false;
+    if (!is_writable(relocation.r_offset) || !symbol_is_sound(symbol)) return false;
   }
   return true;
 }
@@ -235,18 +320,13 @@ std::optional<ElfFile::Symbol> ElfFile::defined_as(std::string_view name, std::u
 }
 
 std::optional<ElfFile::Symbol> ElfFile::find_by_gnu_hash(Address table, std::string_view name) const {
-  struct Head {
-    std::uint32_t buckets, first, filter_words, filter_shift;
-  };
-  const auto head = get<Head>(table);
+  const auto head = get<GnuHash>(table);
   if (!head || head->buckets == 0) return std::nullopt;
   const std::uint32_t hash = gnu_hash(name);
-  const Address buckets = table + sizeof(Head) + head->filter_words * sizeof(Address);
-  const Address chains = buckets + Address{4} * head->buckets;
-  const auto first = get<std::uint32_t>(buckets + Address{4} * (hash % head->buckets));
+  const auto first = get<std::uint32_t>(head->first_bucket(table) + Address{4} * (hash % head->buckets));
   if (!first || *first < head->first) return std::nullopt;
   for (std::uint64_t index = *first;; ++index) {
-    const auto link = get<std::uint32_t>(chains + 4 * (index - head->first));
+    const auto link = get<std::uint32_t>(head->first_chain(table) + 4 * (index - head->first));
     if (!link) return std::nullopt;
     if ((*link | 1) == (hash | 1)) {
       if (const auto symbol = defined_as(name, index)) return symbol;

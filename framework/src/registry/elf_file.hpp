@@ -20,8 +20,9 @@ namespace cordon::registry {
 class ElfFile {
  public:
   /// Reads the file. Refused, and of no further use, unless it is a regular, readable ELF shared object of this machine whose
-  /// segments and tables lie within it, with relocations that write into its own data only. The loader checks none of that: it
-  /// dies of SIGBUS on a truncated library, and writes wherever a damaged relocation leads. O(bytes).
+  /// segments and tables lie within it, with relocations that write into its own data only, and symbols that have a name and a
+  /// version. The loader checks none of that: it dies of SIGBUS on a truncated library, writes wherever a damaged relocation
+  /// leads, and takes whatever stands behind the table of versions for one. O(bytes).
   std::optional<Refusal> read(const std::filesystem::path& file);
 
   const std::string& bytes() const { return bytes_; }
@@ -38,6 +39,10 @@ class ElfFile {
   bool segments_are_apart() const;
   bool is_loaded(const Segment& part) const;
   bool read_dynamic();
+  std::optional<std::uint64_t> symbol_count() const;
+  std::optional<std::uint64_t> version_count() const;
+  bool symbol_is_sound(std::uint64_t index) const;
+  bool symbols_are_sound();
   bool relocations_are_sound() const;
   bool table_is_sound(std::int64_t address_tag, std::int64_t size_tag, std::uint64_t entry) const;
   bool is_writable(Address address) const;
@@ -52,6 +57,7 @@ class ElfFile {
   std::string bytes_;
   std::vector<Segment> segments_;
   std::map<std::int64_t, Address> dynamic_;
+  std::uint64_t versions_ = 0;  ///< their numbers are less
 };
 
 }  // namespace cordon::registry

@@ -5,16 +5,20 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <limits>
+#include <map>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -121,6 +125,23 @@ void limit(decltype(RLIMIT_CPU) what, rlim_t soft, rlim_t hard) {
   _exit(1);
 }
 
+/// Uses what damaged code likes to write over: the environment, the heap, the stack, the tables for exceptions. Whoever finds it
+/// damaged crashes here.
+void use_everything() {
+  std::size_t size = 0;
+  for (char** variable = environ; variable && *variable; ++variable) {
+    const std::string text = *variable;
+    if (std::getenv(text.substr(0, text.find('=')).c_str())) size += text.size();
+  }
+  std::map<std::size_t, std::vector<std::string>> kept;
+  for (std::size_t i = 0; i < 200; ++i) kept[(37 * i) % 101].emplace_back((53 * i) % 4099, 'x');
+  try {
+    throw std::runtime_error(std::to_string(size));
+  } catch (const std::exception& error) {
+    kept[0].emplace_back(error.what());
+  }
+}
+
 [[noreturn]] void be_the_child(const Shared& shared, pid_t parent, const TrialBody& body) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
@@ -135,6 +156,7 @@ void limit(decltype(RLIMIT_CPU) what, rlim_t soft, rlim_t hard) {
   std::set_new_handler(out_of_memory);
   const Arithmetic before = arithmetic();
   const std::optional<Refusal> refusal = body();
+  use_everything();
   const Arithmetic after = arithmetic();
   Message& message = shared.message();
   if (refusal) {

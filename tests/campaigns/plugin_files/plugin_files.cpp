@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Damaged plugin files: each is refused or works, `cordon list` lives, and what else there is goes on working.
-// CORDON_PLUGIN_FILES sets how many (150 by default; the nightly test takes 10,000), CORDON_CAMPAIGN_SEED which.
+//   CORDON_PLUGIN_FILES    how many (150; the nightly test takes 10,000), from number CORDON_CAMPAIGN_FIRST (0) on
+//   CORDON_CAMPAIGN_SEED   which (1)
+//   CORDON_CAMPAIGN_KEEP   a directory that keeps the files on which a check failed
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -124,6 +126,8 @@ Became listed(const fs::path& file, const std::string& cache) {
 
 TEST_CASE("a damaged plugin file is refused or works, and nothing else suffers") {
   const std::size_t files = number_in("CORDON_PLUGIN_FILES", 150), seed = number_in("CORDON_CAMPAIGN_SEED", 1);
+  const std::size_t begin = number_in("CORDON_CAMPAIGN_FIRST", 0);
+  const char* keep = std::getenv("CORDON_CAMPAIGN_KEEP");
   fs::create_directories(CORDON_ALONE "/bin");
   fs::create_directories(CORDON_ALONE "/lib/cordon/plugins-v1");
   fs::copy_file(CORDON_BUILT_PROGRAM, CORDON_PROGRAM, fs::copy_options::overwrite_existing);
@@ -133,14 +137,17 @@ TEST_CASE("a damaged plugin file is refused or works, and nothing else suffers")
   const fs::path file = directory.write("damaged.so", bytes);
   REQUIRE(listed(file, cache.path().string()) == Became::working);
   std::map<std::string, std::array<std::size_t, 2>> counts;
-  for (std::size_t k = 0; k < files; ++k) {
+  for (std::size_t k = begin; k < begin + files; ++k) {
     Damage damage(bytes, 1'000'003 * seed + k);
     directory.write("damaged.so", damage.make());
     INFO("seed ", seed, ", file ", k, ": ", damage.kind);
     const Became first = listed(file, cache.path().string());
     CHECK(first != Became::neither);
     // once more, with what is remembered of the first time; at other addresses a damaged library may do otherwise
-    CHECK(listed(file, cache.path().string()) != Became::neither);
+    const Became second = listed(file, cache.path().string());
+    CHECK(second != Became::neither);
+    if (keep && (first == Became::neither || second == Became::neither))
+      fs::copy_file(file, fs::path(keep) / (std::to_string(k) + ".so"), fs::copy_options::overwrite_existing);
     ++counts[damage.kind][first == Became::refused];
   }
   for (const auto& [kind, count] : counts) MESSAGE(kind << ": " << count[1] << " refused, " << count[0] << " work");
