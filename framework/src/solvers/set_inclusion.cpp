@@ -39,6 +39,27 @@ double subsets(Index n, Index k) {
   return count;
 }
 
+/// A unit vector normal to the columns, which may be scaled; nothing where they are dependent. In the plane and in space without
+/// a decomposition: the sine of the angle between two columns takes the place of their singular values.
+std::optional<Vector> normal_of(const Matrix& columns) {
+  constexpr double dependent = 1e-10;
+  if (columns.rows() == 2 || columns.rows() == 3) {
+    const Vector size = columns.colwise().norm();
+    if (!(size.minCoeff() > dependent * size.maxCoeff())) return std::nullopt;
+    Vector normal(columns.rows());
+    if (columns.rows() == 2) {
+      normal << -columns(1, 0) / size[0], columns(0, 0) / size[0];
+    } else {
+      const Vector a = columns.col(0) / size[0], b = columns.col(1) / size[1];
+      normal << a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0];
+    }
+    const double sine = normal.norm();
+    return sine > dependent ? std::optional<Vector>(normal / sine) : std::nullopt;
+  }
+  const Matrix basis = linalg::null_space(columns.transpose(), dependent);
+  return basis.cols() == 1 ? std::optional<Vector>(basis.col(0)) : std::nullopt;
+}
+
 /// Unit normals of all facets of the zonotope with generators L (full rank): cross products of (n-1)-subsets. Nothing when there
 /// are too many.
 std::optional<std::vector<Vector>> facet_normals(const Matrix& L) {
@@ -47,11 +68,10 @@ std::optional<std::vector<Vector>> facet_normals(const Matrix& L) {
   std::vector<Vector> normals;
   std::vector<Index> subset(static_cast<std::size_t>(n - 1));
   for (Index i = 0; i < n - 1; ++i) subset[static_cast<std::size_t>(i)] = i;
+  Matrix chosen(n, n - 1);
   do {
-    Matrix chosen(n, n - 1);
     for (Index i = 0; i < n - 1; ++i) chosen.col(i) = L.col(subset[static_cast<std::size_t>(i)]);
-    const Matrix normal = linalg::null_space(chosen.transpose(), 1e-10);
-    if (normal.cols() == 1) normals.emplace_back(normal.col(0));
+    if (auto normal = normal_of(chosen)) normals.push_back(std::move(*normal));
   } while (next_subset(subset, g));
   return normals;
 }
@@ -78,14 +98,14 @@ Answer within_facets(const LineForm& X, const LineForm& Y, double terms) {
   if (linalg::rank(lifted) < n + m) return Answer::unknown;  // flat: no facets with interior
   const auto normals = facet_normals(lifted);
   if (!normals) return Answer::unknown;
+  const double size = center.cwiseAbs().maxCoeff() + lifted.cwiseAbs().rowwise().sum().maxCoeff() + terms;
   for (const Vector& normal : *normals) {
+    const double spread = rounding::norm_1(linalg::transposed_product(lifted, normal)).lower;
     for (const double sign : {1.0, -1.0}) {
       const Vector d = sign * normal;
-      const double reach =
-          rounding::down(rounding::dot(d, center).lower + rounding::norm_1(linalg::transposed_product(lifted, d)).lower);
+      const double reach = rounding::down(rounding::dot(d, center).lower + spread);
       const double needed = support(X, d.head(n));
-      const double scale = center.cwiseAbs().maxCoeff() + lifted.cwiseAbs().rowwise().sum().maxCoeff() + std::abs(needed) + terms;
-      if (!(needed <= reach - 1e-12 * scale)) return Answer::unknown;
+      if (!(needed <= reach - 1e-12 * (size + std::abs(needed)))) return Answer::unknown;
     }
   }
   return Answer::yes;
