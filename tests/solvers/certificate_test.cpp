@@ -54,6 +54,17 @@ TEST_CASE("a proof of emptiness holds, and a spoiled one does not") {
   CHECK_FALSE(proves_empty(X, {Kind::farkas, Vector{{std::nan("")}}, 1}));
 }
 
+TEST_CASE("a point near the boundary is moved by all factors where one alone has too little room") {
+  const double room = 3e-14;
+  const LineForm X = with_rows(make_zonotope(Vector{{0.0}}, Matrix{{1.0, 1.0}}), Matrix(1, 0), Matrix{{1.0, 1.0}},
+                               Vector{{2 - 1.5 * room}});  // beyond (1 - room, 1 - room) by half of it
+  CHECK(proves_not_empty(X, {Kind::point, Vector{{1 - room, 1 - room}}, room}));
+  CHECK(proves_not_empty(X, {Kind::point, Vector{{1 - 5 * room, 1 - room}}, room}));
+  LineForm beyond = X;
+  beyond.b[0] = 2 + room;
+  CHECK_FALSE(proves_not_empty(beyond, {Kind::point, Vector{{1 - room, 1 - room}}, room}));
+}
+
 TEST_CASE("a proof with lines is one about the rows as given") {
   // δ + ξ = 1, 3δ + 3ξ = 4: contradictory after the line is gone, and 3 · 1/3 is no number of the machine
   LineForm X = make_space(1);

@@ -151,6 +151,48 @@ std::optional<Rational> dual_bound(const System& s, const RationalVector& t, con
   return Rational(dot(s.r, *moved) + distance(s, g, *moved));
 }
 
+namespace {
+
+/// The sum of both, if it keeps the bounds of the factors that change.
+std::optional<RationalVector> within_bounds(const System& s, RationalVector point, const RationalVector& change) {
+  for (Index j = 0; j < s.K.cols(); ++j) {
+    if (sgn(change[at(j)]) == 0) continue;
+    point[at(j)] += change[at(j)];
+    if (j >= s.lines && abs(point[at(j)]) > 1) return std::nullopt;
+  }
+  return point;
+}
+
+/// The solution W Kᵀy of K x = gap, W the squares of `room`: every variable takes its share, where one alone has too little room.
+std::optional<RationalVector> spread(const System& s, RationalVector gap, const Vector& room) {
+  const Index m = s.K.rows(), all = s.K.cols();
+  RationalMatrix WKt(all, m), N(m, m);
+  for (Index j = 0; j < all; ++j) {
+    const Rational square = exact(std::ldexp(1.0, 2 * std::ilogb(room[j])));  // few digits
+    for (Index i = 0; i < m; ++i) {
+      if (sgn(s.K(i, j)) != 0) WKt(j, i) = square * s.K(i, j);
+    }
+  }
+  for (Index i = 0; i < m; ++i) {
+    for (Index k = 0; k < m; ++k) {
+      for (Index j = 0; j < all; ++j) {
+        if (sgn(s.K(i, j)) != 0 && sgn(WKt(j, k)) != 0) N(i, k) += s.K(i, j) * WKt(j, k);
+      }
+    }
+  }
+  const auto y = solve(std::move(N), std::move(gap), Vector::Ones(m));
+  if (!y) return std::nullopt;
+  RationalVector x(at(all));
+  for (Index j = 0; j < all; ++j) {
+    for (Index i = 0; i < m; ++i) {
+      if (sgn(WKt(j, i)) != 0) x[at(j)] += WKt(j, i) * (*y)[at(i)];
+    }
+  }
+  return x;
+}
+
+}  // namespace
+
 std::optional<RationalVector> solution_near(const System& s, VectorIn data) {
   if (data.size() != s.K.cols() || !data.allFinite()) return std::nullopt;
   Vector start = data, preference(s.K.cols());
@@ -168,14 +210,11 @@ std::optional<RationalVector> solution_near(const System& s, VectorIn data) {
     holds = holds && sgn(gap[at(i)]) == 0;
   }
   if (holds) return point;
-  const auto change = solve(s.K, std::move(gap), preference);
-  if (!change) return std::nullopt;
-  for (Index j = 0; j < s.K.cols(); ++j) {
-    if (sgn((*change)[at(j)]) == 0) continue;
-    point[at(j)] += (*change)[at(j)];
-    if (j >= s.lines && abs(point[at(j)]) > 1) return std::nullopt;
+  if (const auto change = solve(s.K, gap, preference)) {
+    if (auto moved = within_bounds(s, point, *change)) return moved;
   }
-  return point;
+  const auto change = spread(s, std::move(gap), preference);
+  return change ? within_bounds(s, point, *change) : std::nullopt;
 }
 
 Finding settle(const Rows& rows) {
