@@ -304,6 +304,27 @@ TEST_CASE("rotating a descriptor system changes nothing but coordinates") {
   }
 }
 
+TEST_CASE("states of unlike sizes lose no digits to each other") {
+  LinearModel model;
+  model.E = Matrix{{.0625, .5, 0}, {0, 0, 0}, {-.03125, -.25, 0}};
+  model.A = Matrix{{.125, -.186, 1.4e-7}, {0, 262144, .061}, {0, 0, 1.2e-7}};
+  model.B = model.Bw = Matrix(3, 0);
+  model.C = Matrix{{1, 0, 0}};
+  model.D = model.Dv = Matrix(1, 0);
+  LinearPlant plant(model, "study.json");
+  plant.start(Vector{{80422.0, 5572.0, -2.4e10}});
+  const Vector none(0);
+  Vector before = plant.step(none, none, none).x;
+  for (int k = 0; k < 3; ++k) {
+    const Vector now = plant.step(none, none, none).x;
+    const Vector left = model.E * now, right = model.A * before;
+    const Vector terms = model.E.cwiseAbs() * now.cwiseAbs() + model.A.cwiseAbs() * before.cwiseAbs();
+    CAPTURE(Vector(left - right).transpose());
+    CHECK(((left - right).cwiseAbs().array() <= 4e-16 * terms.array()).all());
+    before = now;
+  }
+}
+
 TEST_CASE("wrong sizes are reported together, an overflow with its time") {
   SimulateSpec spec = two_state_spec(Noise::uniform);
   spec.input.clear();

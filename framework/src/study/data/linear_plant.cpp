@@ -45,7 +45,7 @@ void LinearPlant::split_E() {
   }
   const linalg::Svd svd = linalg::svd(units.asDiagonal() * model_.E);
   const Index r = descriptor_rank(model_.E);
-  V_ = svd.V;
+  V_ = (svd.V.array().abs() <= 1e-15).select(0.0, svd.V);
   const Matrix rows = svd.U.transpose() * units.asDiagonal();
   dynamic_ = rows.topRows(r);
   for (Index i = 0; i < r; ++i) dynamic_.row(i) /= svd.sigma[i];
@@ -90,10 +90,18 @@ void LinearPlant::start(VectorIn x0) { z_ = linalg::product(V_.leftCols(z_.size(
 Vector LinearPlant::state(VectorIn u, VectorIn w) const {
   const Index r = z_.size(), n = V_.rows();
   if (!model_.is_descriptor()) return z_;
-  const Vector x = linalg::product(V_.leftCols(r), z_);
+  Vector x = linalg::product(V_.leftCols(r), z_);
   if (r == n) return x;
-  const Vector rest = linalg::product(static_A_, x) + linalg::product(static_B_, u) + linalg::product(static_Bw_, w);
-  return x + linalg::product(V_.rightCols(n - r), linalg::product(solve_, rest));
+  const Vector inputs = linalg::product(static_B_, u) + linalg::product(static_Bw_, w);
+  const auto solve_static_rows = [&] {
+    const Vector rest = linalg::product(static_A_, x) + inputs;
+    x += linalg::product(V_.rightCols(n - r), linalg::product(solve_, rest));
+  };
+  solve_static_rows();
+  // coordinates of unlike sizes lose digits to each other: what is missing is added
+  x += linalg::product(V_.leftCols(r), z_ - linalg::product(V_.leftCols(r).transpose(), x));
+  solve_static_rows();
+  return x;
 }
 
 LinearPlant::Output LinearPlant::step(VectorIn u, VectorIn w, VectorIn v, VectorIn sensor) {
