@@ -229,6 +229,30 @@ TEST_CASE("data that the simulation has rounded out of the model are no defect o
   check_kept(Program(on_the_boundary("vertex", "nominal")));
 }
 
+TEST_CASE("rounding that later steps amplify is no defect of a nominal pipeline, and a loss beyond it is one") {
+  Study study;
+  study.model.linear.A = study.model.linear.C = Matrix{{.5}};
+  study.model.linear.B = study.model.linear.D = study.model.linear.Bw = study.model.linear.Dv = Matrix(1, 0);
+  study.model.X0 = make_box({-Vector::Ones(1), Vector::Ones(1)});
+  study.model.W = study.model.V = make_box({Vector(0), Vector(0)});
+  study.data = SimulateSpec{};
+  detail::AssumptionCheck check(study, {});
+  check.begin_run(0);
+  check.step({{0, Vector(0), Vector{{std::nextafter(.25, 0)}}}, Vector{{.5}}, 0, {}});
+  CHECK_FALSE(check.excuses_by_rounding(0));
+  CHECK(check.excuses_by_rounding(0, true));
+  const LineForm X = make_box({Vector{{.5}}, Vector{{.75}}});
+  CHECK(detail::barely_outside(X, Vector{{.75 + 1e-7}}));
+  CHECK_FALSE(detail::barely_outside(X, Vector{{.75 + 1e-5}}));
+  LineForm empty = make_zonotope(Vector{{.5}}, Matrix{{.25}});  // ξ = 1 + 1e-7
+  empty.S = Matrix(1, 0);
+  empty.A = Matrix{{1.}};
+  empty.b = Vector{{1 + 1e-7}};
+  CHECK(detail::barely_outside(empty, Vector{{.75}}));
+  empty.b[0] = 1 + 1e-4;
+  CHECK_FALSE(detail::barely_outside(empty, Vector{{.75}}));
+}
+
 TEST_CASE("exact data excuse nothing") {
   Study study;
   study.model.linear.A = study.model.linear.C = Matrix{{.5}};

@@ -106,7 +106,7 @@ void AssumptionCheck::step(const Record& record) {
     check_sets(record);
     if (by_plant_) check_plant(record);
   }
-  if (assumed_.exact_data && !by_plant_ && record.truth) {
+  if (!by_plant_ && record.truth) {
     kept_.push_back(record);
     if (kept_.size() > most_kept) kept_.pop_front();
   }
@@ -123,7 +123,8 @@ bool AssumptionCheck::excuses(Index k, Index since) const {
   return (start_ && since <= start_->k && start_->from <= k) || (other_ && other_->from <= k);
 }
 
-bool AssumptionCheck::excuses_by_rounding(Index k) {
+bool AssumptionCheck::excuses_by_rounding(Index k, bool barely) {
+  if (!assumed_.exact_data && !barely) return false;
   const Record* before = nullptr;
   for (const Record& now : kept_) {
     const Index time = now.sample.k;

@@ -3,13 +3,15 @@
 
 #include <algorithm>
 
+#include "cordon/core/error.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "solvers/rational_questions.hpp"
 
 namespace cordon::detail {
 
 namespace {
 
-constexpr double rounding = 1e-9;
+constexpr double rounding = 1e-9, barely = 1e-6;
 
 double largest(VectorIn x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
 
@@ -28,6 +30,18 @@ bool clearly_outside(const LineForm& X, VectorIn x) {
   if (X.dim() != x.size()) return false;
   const double size = largest(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
   return clearly_outside(X, x, rounding * std::max(size, largest(x)));
+}
+
+bool barely_outside(const LineForm& X, VectorIn x) {
+  if (X.dim() != x.size()) return false;
+  const Vector margin = barely * x.cwiseAbs().cwiseMax(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
+  const Vector row_margin = barely * (X.b.cwiseAbs() + X.A.cwiseAbs().rowwise().sum());
+  try {
+    return exact::contains(X, rational::exact(x), margin, row_margin);
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported) throw;
+    return false;
+  }
 }
 
 }  // namespace cordon::detail

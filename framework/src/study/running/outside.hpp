@@ -15,4 +15,8 @@ bool clearly_outside(const LineForm& X, VectorIn x, VectorIn margin);
 /// numbers of that size.
 bool clearly_outside(const LineForm& X, VectorIn x);
 
+/// Is x proven to lie in X, if every row of X may be off by 1e-6 of its terms, and every coordinate by 1e-6 of the larger of x
+/// and X? Exact arithmetic; false where the set is too large for it.
+bool barely_outside(const LineForm& X, VectorIn x);
+
 }  // namespace cordon::detail

@@ -14,6 +14,7 @@
 #include "study/running/diagnosis_run.hpp"
 #include "study/running/growth.hpp"
 #include "study/running/inner_check.hpp"
+#include "study/running/outside.hpp"
 #include "study/running/pipeline_guard.hpp"
 #include "study/running/time_limit.hpp"
 
@@ -24,6 +25,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using detail::AssumptionCheck;
 using detail::Assumptions;
+using detail::barely_outside;
+using detail::clearly_outside;
 using detail::InnerCheck;
 using detail::Median;
 using detail::MetricBoard;
@@ -32,14 +35,6 @@ using detail::Results;
 using detail::TimeLimit;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-/// Is x, which is not in X, outside by more than the rounding errors of its own simulation? A box of relative size 1e-9 around x
-/// is proven disjoint from X.
-bool clearly_outside(const Set& X, const Vector& x) {
-  const double margin = 1e-9 * std::max(1.0, x.size() ? x.cwiseAbs().maxCoeff() : 0.0);
-  const Enclosure around = X.backend().box({x.array() - margin, x.array() + margin});
-  return X.is_disjoint_from(*around) == Answer::yes;
-}
 
 struct Medians {
   Median predict, correct, reduce, question, hull, step;
@@ -165,10 +160,12 @@ class Pipeline {
     const Vector& truth = truths_.front().second;
     const bool still_inside = outcome_.outside_from < 0;
     if (still_inside && (estimate.consistent == Answer::no ||
-                         (holds(*estimate.set, truth) == Answer::no && clearly_outside(*estimate.set, truth)))) {
+                         (holds(*estimate.set, truth) == Answer::no && clearly_outside(estimate.set->line_form(), truth)))) {
       outcome_.outside_from = estimate.k;
       const Index k = record.sample.k;
-      if (own_model_ && nominal_ && !check_->excuses(k) && !check_->excuses_by_rounding(k)) outcome_.violated_at = estimate.k;
+      if (own_model_ && nominal_ && !check_->excuses(k) &&
+          !check_->excuses_by_rounding(k, barely_outside(estimate.set->line_form(), truth)))
+        outcome_.violated_at = estimate.k;
     }
     return &truth;
   }
