@@ -46,7 +46,9 @@ class SingularValueObserver final : public Observer {
     static_widths_ = half_widths(model().W, transformed_.static_Bw);
     stacked_rows_ = Matrix::Zero(n, n);
     stacked_rows_.topRows(transformed_.rank()) = transformed_.rows;
-    if (model().linear.is_uncertain()) recursion_ = Tightness::outer;
+    // operations that round outward are taken at their word, and these coordinates are rounded before them
+    const bool is_rounded = backend().info().rounding == Rounding::outward && !transformed_.is_exact;
+    if (model().linear.is_uncertain() || is_rounded) recursion_ = Tightness::outer;
     if (params.has("admissible_set")) {
       recursion_ = Tightness::outer;  // of the set only the part that E does not determine is used
       admissible_ = backend().import(params.set_form("admissible_set"));

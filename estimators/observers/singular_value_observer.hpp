@@ -8,7 +8,8 @@
 // recursion an outer one, and the estimate says so.
 //
 // Ranges of effectiveness: effectiveness.hpp. An input with a range that enters dynamic rows, static rows or outputs alike has
-// its factor taken once for each, which makes the recursion an outer one.
+// its factor taken once for each, which makes the recursion an outer one. So do coordinates that are rounded,
+// where the backend rounds outward and its claims are taken at their word.
 //
 // Interval matrices A and B add a box to every equation, of the size that effectiveness.hpp tells for the states before: to the
 // dynamic rows that of the last estimate, to the static rows that of the predicted set. A static row that holds a state without a

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/static_rows.hpp"
 
+#include <cmath>
+
 #include "cordon/interfaces/descriptor_matrix.hpp"
 
 namespace cordon::estimators {
@@ -21,6 +23,16 @@ Vector equation_scales(const LinearModel& m) {
   return scale;
 }
 
+/// One power of two in each row.
+bool scales_exactly(const Matrix& left) {
+  for (Index i = 0; i < left.rows(); ++i) {
+    if ((left.row(i).array() != 0).count() != 1) return false;
+    int exponent = 0;
+    if (std::frexp(left.row(i).cwiseAbs().maxCoeff(), &exponent) != 0.5) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 StaticRows::StaticRows(const LinearModel& m) {
@@ -33,6 +45,7 @@ StaticRows::StaticRows(const LinearModel& m) {
   for (Index i = 0; i < rank; ++i) scale[i] = 1 / d.sigma[i];
   const Matrix left = scale.asDiagonal() * denoised(d.U).transpose() * units.asDiagonal();
   T = denoised(d.V);
+  is_exact = T.isIdentity(0) && scales_exactly(left);
   const Matrix all_A = linalg::denoised_product(left, linalg::denoised_product(m.A, T));
   const Matrix all_B = linalg::denoised_product(left, m.B), all_Bw = linalg::denoised_product(left, m.Bw);
   A = all_A.topRows(rank);

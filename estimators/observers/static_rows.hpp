@@ -18,6 +18,8 @@ struct StaticRows {
   Matrix free_part;                      ///< [0; I]: where ž enters
   Vector sigma;                          ///< singular values of the scaled E
 
+  bool is_exact = true;  ///< nothing was rounded: T = I, and equations were scaled by powers of two at most
+
   explicit StaticRows(const LinearModel& model);
 
   Index rank() const { return A.rows(); }

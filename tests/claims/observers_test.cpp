@@ -62,6 +62,38 @@ TEST_CASE("recursions that are exact still say so, and it holds") {
   CHECK(program.verify().code == 0);
 }
 
+/// Nothing is known of the start. Each has been refuted: by residues in another coordinate's units, by a plane of lines that is
+/// known in the units of another state, by data that are all 0, by sensors that are parallel but for rounding.
+TEST_CASE("estimates with lines hold in any units") {
+  for (
+      const char* system :
+      {R"({"A": [[-0.58, 433047], [-6.9e-7, 0.545]], "C": [[0, -910904.57]], "V": {"type": "box", "lower": [-0.076], "upper": [0.076]}})",
+       R"({"A": [[0.296, 7.4e-4, -1.36], [16.1, 0.028, -47.1], [0, -307975, 0]], "C": [[-13.5, -0.176, 2.9e-6]],
+               "V": {"type": "box", "lower": [-0.05], "upper": [0.05]}})",
+       R"({"A": [[-0.54, -0.26, 0.26], [-0.14, 0.63, 0.53], [0, -0.65, 0]], "C": [[1.19, -0.61, 0]],
+               "V": {"type": "box", "lower": [0], "upper": [0]}})",
+       R"({"A": [[1.06, -16.8, 9.3e-6], [-0.13, 1.22, 0], [-102169.5, -581650, 0]],
+               "C": [[-125.94305402422812, -15870.718373702348, 0], [-1259430.5402422813, -158707183.73702344, 0]], "Dv": [[], []]})"}) {
+    CAPTURE(system);
+    Json made = Json::parse(R"({"cordon": 1, "title": "units", "data": {"simulate": {"steps": 2, "noise": "uniform"}},
+      "pipelines": [{"name": "P", "backend": "line_zonotope", "observer": "prediction_correction"},
+        {"name": "Q", "backend": {"type": "line_zonotope", "rounding": "outward"}, "observer": "prediction_correction"}]})");
+    made["system"] = Json::parse(system);
+    made["system"]["type"] = "lti";
+    const std::size_t n = made["system"]["A"].size();
+    made["system"]["Bw"] = Json::array();
+    for (std::size_t i = 0; i < n; ++i) made["system"]["Bw"].push_back(Json::array());
+    for (const double far : {0.0, 1e6}) {
+      made["data"]["simulate"]["x0"] = std::vector<double>(n, far);
+      const Program program(made);
+      CHECK(program.run().code == 0);
+      const Outcome verified = program.verify();
+      CAPTURE(verified.out);
+      CHECK(verified.code != 4);
+    }
+  }
+}
+
 TEST_CASE("estimates with lines are exact up to the rounding of the lines' directions") {
   const Program program(Json::parse(R"({
     "cordon": 1, "title": "two sensors of three states that nothing bounds",

@@ -220,10 +220,17 @@ LineForm remainder(const Tableau& tableau, const LineForm& X, const Pivots& pivo
   return Y;
 }
 
-Vector largest(const RowMajor& magnitude, const std::vector<Index>& rows) {
+/// Largest terms of the factors and of the right-hand side. Those of lines do not count: a line may have any length.
+Vector largest(const Tableau& tableau, const std::vector<Index>& rows) {
   Vector sizes(static_cast<Index>(rows.size()));
-  for (Index k = 0; k < sizes.size(); ++k) sizes[k] = magnitude.row(rows[static_cast<std::size_t>(k)]).maxCoeff();
+  for (Index k = 0; k < sizes.size(); ++k)
+    sizes[k] = tableau.magnitude.row(rows[static_cast<std::size_t>(k)]).tail(tableau.width - tableau.lines).maxCoeff();
   return sizes;
+}
+
+/// Likewise of the state, added up.
+Vector state_terms(const Tableau& tableau, Index n) {
+  return tableau.magnitude.bottomRightCorner(n, tableau.width - tableau.lines).rowwise().sum();
 }
 
 }  // namespace
@@ -236,7 +243,7 @@ LinesSolved solve_for_lines(const LineForm& X) {
   const Pivots pivots = eliminate(tableau);
   std::vector<Index> kept;
   LineForm set = remainder(tableau, X, pivots, kept);
-  return {std::move(set), largest(tableau.magnitude, kept), tableau.magnitude.bottomRows(X.dim()).rowwise().sum()};
+  return {std::move(set), largest(tableau, kept), state_terms(tableau, X.dim())};
 }
 
 LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) {
@@ -263,7 +270,7 @@ LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) 
   for (Index k = 0; k < rows.rows(); ++k) rows.row(k) = tableau.trace.row(kept[static_cast<std::size_t>(k)]);
   const Index vanished = all - static_cast<Index>(pivots.size()) - set.constraints();
   return {std::move(set),
-          largest(tableau.magnitude, kept),
+          largest(tableau, kept),
           std::move(rows),
           Matrix(tableau.trace.bottomRows(n)),
           std::move(lines_by_factors),

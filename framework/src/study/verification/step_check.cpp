@@ -27,6 +27,10 @@ using rational::RationalVector;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Of a coordinate's size: what nominal operations add up to at least, and the rounding of a box to centre and radius.
 constexpr double nominal_tolerance = 1e-9, box_tolerance = 1e-14;
+/// Of the direction of a line that an observer has found: operations enclose, its own coordinates are rounded.
+constexpr double outward_line_tolerance = 1e-12;
+constexpr double underflow = 1e-300;           ///< of bounds that are 0 but for the smallest numbers there are
+constexpr double ill_conditioned = 1e-6;       ///< rounding moves an inequality by more than this share of it
 constexpr double row_tolerance = 1e-13;        ///< of a nominal constraint's terms
 constexpr double direction_tolerance = 1e-12;  ///< of bounds that floating-point proofs attain
 constexpr double almost_all = 0.999;           ///< of a margin: what is left covers the rounding of a vertex or a facet
@@ -39,10 +43,35 @@ std::string text(VectorIn x) {
   return out + ")";
 }
 
+/// The largest entry of each coordinate among the lines: how far off their directions are is a share of it.
+Vector reach_of(const Matrix& lines) {
+  return lines.cols() ? Vector(lines.cwiseAbs().rowwise().maxCoeff()) : Vector(Vector::Zero(lines.rows()));
+}
+/// How many times as large as the lines' entries x is.
+double length_along(const Vector& reach, const Vector& x) {
+  double length = 0;
+  for (Index i = 0; i < x.size(); ++i) {
+    if (reach[i] > 0) length = std::max(length, x[i] / reach[i]);
+  }
+  return length;
+}
+/// Their largest entries, for divisions: where no line has an entry, that of d, or 1 where that is 0 too.
+Vector units_of(const Matrix& lines, const Vector& d) {
+  Vector units = reach_of(lines);
+  for (Index i = 0; i < units.size(); ++i) {
+    if (units[i] == 0) units[i] = d[i] != 0 ? std::abs(d[i]) : 1;
+  }
+  return units;
+}
+
 }  // namespace
 
 StepCheck::StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding, const Vector& margin)
-    : step_(step), row_(row), size_(row.set.c.cwiseAbs() + row.set.G.cwiseAbs().rowwise().sum()) {
+    : step_(step),
+      row_(row),
+      nominal_(rounding == Rounding::nominal),
+      line_tolerance_(rounding == Rounding::nominal ? nominal_tolerance : outward_line_tolerance),
+      size_(row.set.c.cwiseAbs() + row.set.G.cwiseAbs().rowwise().sum()) {
   for (Index i = 0; i < size_.size(); ++i) {
     const double reach = std::max(std::abs(step.hull.lower[i]), std::abs(step.hull.upper[i]));
     if (std::isfinite(reach) && !reported_empty()) size_[i] = reach;
@@ -173,6 +202,12 @@ bool StepCheck::holds_nearby(const Vector& x) {
   return ((off + error + last).array() <= almost_all * margin_.array()).all();
 }
 
+/// By how much a set that turns by the rounding of its lines' directions may miss x.
+Vector StepCheck::turned_by(const Vector& x) const {
+  const Vector reach = reach_of(row_.set.M);
+  return line_tolerance_ * length_along(reach, x.cwiseAbs()) * reach;
+}
+
 void StepCheck::contains_vertex(const RationalVector& exact) {
   Vector x(size_.size());
   for (Index i = 0; i < x.size(); ++i) x[i] = rational::nearest(exact[index(i)]);
@@ -181,9 +216,7 @@ void StepCheck::contains_vertex(const RationalVector& exact) {
                     true);
   }
   const bool has_room = (margin_.array() > 0).all();
-  Vector margin = margin_;
-  // along lines a set turns by the rounding of their directions: far out by more than where it is bounded
-  if (has_room && row_.set.lines() > 0) margin.array() += nominal_tolerance * x.cwiseAbs().maxCoeff();
+  const Vector margin = margin_ + turned_by(x);
   for (Index i = 0; i < x.size(); ++i) {
     const double lower = step_.hull.lower[i], upper = step_.hull.upper[i];
     const Rational slack = rational::exact(margin[i]);
@@ -208,10 +241,12 @@ void StepCheck::contains_vertex(const RationalVector& exact) {
 }
 
 void StepCheck::contains_direction(const Vector& d, bool line) {
-  const Matrix basis = lineality_space(row_.set);
-  const Vector beyond = d - linalg::product(basis, linalg::transposed_product(basis, d));
-  const double off = beyond.norm() / d.norm();
-  if (!reported_empty() && off <= nominal_tolerance) return;
+  const Matrix lines = eliminate_lines(row_.set).M;
+  const Vector units = units_of(lines, d);
+  const Matrix basis = linalg::range_basis(units.cwiseInverse().asDiagonal() * lines);
+  const Vector scaled = d.cwiseQuotient(units);
+  const Vector beyond = scaled - linalg::product(basis, linalg::transposed_product(basis, scaled));
+  if (!reported_empty() && beyond.norm() <= line_tolerance_ * scaled.norm()) return;
   violated(fmt::format("the exact set is unbounded along {}{}, the reported set is not", line ? "±" : "", text(d)), true);
 }
 
@@ -219,11 +254,12 @@ void StepCheck::contains_direction(const Vector& d, bool line) {
 bool StepCheck::keeps_across_lines(const Vector& d, double limit) const {
   LineForm X = eliminate_lines(row_.set);
   const Vector off = linalg::transposed_product(X.M, d).cwiseAbs();
-  const Vector terms = linalg::transposed_product(Matrix(X.M.cwiseAbs()), d.cwiseAbs());
-  if ((off.array() > nominal_tolerance * terms.array()).any()) return false;
+  const Matrix scaled = units_of(X.M, d).cwiseInverse().asDiagonal() * X.M;
+  const Vector lengths = scaled.colwise().lpNorm<Eigen::Infinity>();
+  if ((off.array() > line_tolerance_ * d.cwiseAbs().dot(reach_of(X.M)) * lengths.array()).any()) return false;
   X.M.resize(X.dim(), 0);
   X.S.resize(X.constraints(), 0);
-  return support(X, d) <= limit;
+  return support(X, d) <= limit + underflow;
 }
 
 /// X_k keeps to the inequality normalᵀx ≤ h of F.
@@ -240,12 +276,18 @@ void StepCheck::within(const RationalVector& normal, const Rational& h, const st
     const exact::Support reached = exact::support(row_.set, normal);
     using Kind = exact::Support::Kind;
     if (reached.kind == Kind::empty || (reached.kind == Kind::finite && reached.value <= h + slack)) return;
-    if (room > 0 && reached.kind == Kind::unbounded && keeps_across_lines(d, limit + almost_all * room)) return;
-    if (room > 0 && reached.kind == Kind::finite) {
+    if (reached.kind == Kind::unbounded && keeps_across_lines(d, limit + almost_all * room)) return;
+    bool may_be_one = false;  // two rows that are parallel but for rounding, of which nominal operations make one
+    if (nominal_) {
       const exact::Support allowed = exact::support(relaxed(), normal);
-      if (allowed.kind == Kind::unbounded || (allowed.kind == Kind::finite && reached.value <= allowed.value + slack)) return;
+      if (allowed.kind == Kind::unbounded) return;
+      const bool both = allowed.kind == Kind::finite && reached.kind == Kind::finite;
+      if (both && reached.value <= allowed.value + slack) return;
+      const double size = std::abs(limit) + d.cwiseAbs().dot(size_ + reach_of(row_.set.M));
+      may_be_one = reached.kind == Kind::unbounded && allowed.kind == Kind::finite &&
+                   allowed.value - h > rational::exact(ill_conditioned * size);
     }
-    if (row_.exact_exchange) {  // an outer export may reach beyond the set that the claim is about
+    if (row_.exact_exchange && !may_be_one) {  // an outer export may reach beyond the set that the claim is about
       const double value = reached.kind == Kind::finite ? rational::nearest(reached.value) : infinity;
       return violated(
           fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where no consistent state lies beyond {:.17g}",

@@ -48,12 +48,15 @@ class StepCheck {
   void contains_vertex(const rational::RationalVector& exact);
   bool holds_nearby(const Vector& x);
   void contains_direction(const Vector& d, bool line);
+  Vector turned_by(const Vector& x) const;
   bool keeps_across_lines(const Vector& d, double limit) const;
   void within(const rational::RationalVector& normal, const rational::Rational& h, const std::function<LineForm()>& relaxed);
   bool reported_empty() const { return step_.consistent == Answer::no; }
 
   const RecordedStep& step_;
   const RecordedSet& row_;
+  bool nominal_;                                 ///< operations were rounded to nearest
+  double line_tolerance_;                        ///< of the directions of lines
   Vector size_;                                  ///< of each coordinate
   Vector margin_;                                ///< within which F_k has to lie in X_k and in the hull
   Vector claim_margin_;                          ///< within which X_k has to lie in F_k, if it is claimed exact
