@@ -64,7 +64,7 @@ Matrix with_norm(Matrix A, double norm) {
 
 class StudyMaker {
  public:
-  explicit StudyMaker(std::uint64_t number) : draw_(0x9e3779b97f4a7c15 * (number + 1)), number_(number) {}
+  StudyMaker(std::uint64_t number, Start start) : draw_(0x9e3779b97f4a7c15 * (number + 1)), number_(number), start_(start) {}
 
   Json make() {
     draw_.write_decimals(!draw_.one_in(3));
@@ -178,7 +178,8 @@ class StudyMaker {
   }
 
   Json system() const {
-    Json system{{"type", descriptor_ ? "descriptor" : "lti"}, {"A", to_json(A_)}, {"C", to_json(C_)}, {"X0", box(x0_, X0_)}};
+    Json system{{"type", descriptor_ ? "descriptor" : "lti"}, {"A", to_json(A_)}, {"C", to_json(C_)}};
+    if (start_ == Start::bounded) system["X0"] = box(x0_, X0_);
     if (descriptor_) system["E"] = to_json(E_);
     if (B_.cols() > 0) system["B"] = to_json(B_), system["D"] = to_json(D_);
     system["Bw"] = to_json(Bw_);
@@ -194,6 +195,10 @@ class StudyMaker {
   Json data() {
     const std::vector<std::string> noise{"uniform", "vertex", "sine", "zero"};
     Json spec{{"steps", 10}, {"seed", number_ + 1}, {"noise", noise[static_cast<std::size_t>(draw_.below(4))]}};
+    if (start_ == Start::unknown) {
+      spec["steps"] = 3;
+      spec["x0"] = box(x0_, std::pow(10.0, static_cast<double>(draw_.below(8))) * X0_);
+    }
     for (Index i = 0; i < B_.cols(); ++i) {
       spec["input"].push_back({{"type", "sine"}, {"amplitude", 1.0}, {"omega", 0.3 + 0.2 * static_cast<double>(i)}});
     }
@@ -205,17 +210,17 @@ class StudyMaker {
       std::string type;
       Json options;
     };
-    // strips "bravo" and "volume" are left out: see the tests of the strip's kernels
     const std::vector<Choice> backends{{"interval", Json::object()},
                                        {"zonotope", Json::object()},
-                                       {"zonotope", {{"reduction", "girard"}}},
-                                       {"zonotope", {{"reduction", "pca"}}},
+                                       {"zonotope", {{"reduction", "girard"}, {"strip", "volume"}}},
+                                       {"zonotope", {{"reduction", "pca"}, {"strip", "bravo"}}},
                                        {"constrained_zonotope", Json::object()},
                                        {"constrained_zonotope", {{"precondition", "gauss_jordan"}, {"rescale", true}}},
                                        {"line_zonotope", Json::object()},
                                        {"line_zonotope", {{"reduction", "combastel"}, {"rescale", true}}}};
     Json list = Json::array();
     for (const Choice& choice : backends) {
+      if (start_ == Start::unknown && choice.type != "line_zonotope") continue;  // others hold bounded sets only
       if (n_ > 4 && !choice.options.empty()) continue;  // along directions every check is a linear program
       for (const std::string rounding : {"nominal", "outward"}) {
         Json backend{{"type", choice.type}, {"rounding", rounding}};
@@ -246,7 +251,7 @@ class StudyMaker {
     Json correction{{"type", "prediction_correction"}, {"max_generators", generators}};
     if (constrained) correction["max_constraints"] = constraints;
     list.push_back(std::move(correction));
-    if (n_ > 4) return list;
+    if (n_ > 4 || start_ == Start::unknown) return list;
     for (const char* type : {"luenberger", "zonotope_uncertain"}) {
       list.push_back({{"type", type}, {"gain", {{"type", "kalman"}}}, {"max_generators", generators}});
     }
@@ -256,6 +261,7 @@ class StudyMaker {
 
   Draw draw_;
   std::uint64_t number_;
+  Start start_;
   Index n_ = 1, p_ = 1;
   bool descriptor_ = false, without_noise_ = false;
   Matrix A_, B_, Bw_, C_, D_, E_;
@@ -264,6 +270,6 @@ class StudyMaker {
 
 }  // namespace
 
-Json random_study(std::uint64_t number) { return StudyMaker(number).make(); }
+Json random_study(std::uint64_t number, Start start) { return StudyMaker(number, start).make(); }
 
 }  // namespace cordon::campaigns
