@@ -155,6 +155,7 @@ namespace {
 struct Computed {
   LineZonotope set;
   Terms terms;
+  bool is_whole;  ///< nothing was forgotten
 };
 
 /// Lines eliminated; what cancelled there counts as in a measurement.
@@ -166,7 +167,7 @@ Computed without_lines(const LineZonotope& X) {
   }
   Terms terms{std::move(made.row_magnitude), std::move(made.state_magnitude)};
   keep_rows(made.set, terms, kept);
-  return {std::move(made.set), std::move(terms)};
+  return {std::move(made.set), std::move(terms), made.is_whole};
 }
 
 /// Zero columns carry nothing, except in a set proven wrong by its rows alone, which keeps its rows.
@@ -196,8 +197,9 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
   }
   Reduced reduced;
   if (X.lines() > 0) {
-    const auto [set, terms] = without_lines(X);
+    const auto [set, terms, is_whole] = without_lines(X);
     reduced = eliminate_constraints(set, terms, max_constraints, how.constraints);
+    reduced.exact = reduced.exact && is_whole;
   } else {
     reduced = eliminate_constraints(X, max_constraints, how.constraints);
   }

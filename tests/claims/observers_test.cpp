@@ -62,6 +62,44 @@ TEST_CASE("recursions that are exact still say so, and it holds") {
   CHECK(program.verify().code == 0);
 }
 
+/// A constant gain bounds the error for all times: a box around the set before has successors that no state has.
+TEST_CASE("an observer that knows more than its last set is not refuted by that set") {
+  Json made = Json::parse(R"({"cordon": 1, "title": "three spirals",
+    "system": {"type": "lti", "C": [[1, 0, 0, 0, 0, 0]], "A": [[0.6, -0.6, 0, 0, 0, 0], [0.6, 0.6, 0, 0, 0, 0], [0, 0, 0.6, -0.6, 0, 0],
+      [0, 0, 0.6, 0.6, 0, 0], [0, 0, 0, 0, 0.6, -0.6], [0, 0, 0, 0, 0.6, 0.6]], "V": {"type": "box", "lower": [-10], "upper": [10]}},
+    "data": {"simulate": {"steps": 12}},
+    "pipelines": [{"name": "P", "backend": "interval", "observer": {"type": "luenberger", "gain": [[0], [0], [0], [0], [0], [0]]}}]})");
+  for (const char* name : {"X0", "W"}) {
+    const std::vector<double> radius(6, name[0] == 'X' ? 1 : .001), least(6, name[0] == 'X' ? -1 : -.001);
+    made["system"][name] = {{"type", "box"}, {"lower", least}, {"upper", radius}};
+  }
+  const Program limited(made);
+  CHECK(limited.run().code == 0);
+  CHECK(limited.verify().code == 5);
+  made["pipelines"][0]["observer"]["widening_limit"] = 0;
+  const Program recursive(made);
+  CHECK(recursive.run().code == 0);
+  CHECK(recursive.verify().code == 0);
+}
+
+/// The exact set, a parallelogram, has a vertex at x_1 = 233338495.18; one line was solved for by 6.75e-13 of its terms.
+TEST_CASE("sensors that hardly differ do not decide where a state is") {
+  Json made = Json::parse(R"({"cordon": 1, "title": "two sensors",
+    "system": {"type": "lti", "A": [[1, 0], [0, 1]], "C": [[0.4, 0.27], [0.400000000001, 0.27]],
+      "W": {"type": "box", "lower": [-1, -1], "upper": [1, 1]}, "V": {"type": "box", "lower": [-1e-4, -1e-4], "upper": [1e-4, 1e-4]}},
+    "data": {"simulate": {"steps": 2, "noise": "vertex", "x0": [2e8, -3e8]}},
+    "pipelines": [{"name": "P", "backend": "line_zonotope", "observer": "prediction_correction"},
+      {"name": "Q", "backend": {"type": "line_zonotope", "rounding": "outward"}, "observer": "prediction_correction"}]})");
+  for (const double nearly : {0.40000001, 0.400000000001, 0.40000000000004}) {
+    made["system"]["C"][1][0] = nearly;
+    const Program program(made);
+    CHECK(program.run().code == 0);
+    const Outcome verified = program.verify();
+    CAPTURE(verified.out);
+    CHECK(verified.code != 4);
+  }
+}
+
 /// Nothing is known of the start. Each has been refuted: by residues in another coordinate's units, by a plane of lines that is
 /// known in the units of another state, by data that are all 0, by sensors that are parallel but for rounding.
 TEST_CASE("estimates with lines hold in any units") {

@@ -9,6 +9,7 @@ namespace cordon {
 namespace {
 
 constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a coefficient is zero
+constexpr double vague = 1e-6;   ///< to this one, it is no pivot
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -56,15 +57,20 @@ struct Tableau {
     for (Index i = 0; i < rows; ++i) candidates.push_back(candidate(i));
   }
 
+  /// An entry that has cancelled to little is known with few digits: what is divided by it would be as vague.
   Candidate candidate(Index i) const {
     Candidate best;
     if (lines == 0) return best;
     const double scale = T.row(i).head(width - 1).cwiseAbs().maxCoeff();
     for (Index j = 0; j < lines; ++j) {
-      if (T(i, j) != 0 && std::abs(T(i, j)) / scale > best.size) best = {std::abs(T(i, j)) / scale, j};
+      if (!(std::abs(T(i, j)) > vague * magnitude(i, j))) continue;
+      if (std::abs(T(i, j)) / scale > best.size) best = {std::abs(T(i, j)) / scale, j};
     }
     return best;
   }
+
+  /// Rows that hold lines still say nothing that can be used without them.
+  bool holds_lines(Index row) const { return !T.row(row).head(lines).isZero(0); }
 
   /// The largest equilibrated entry of S among unused rows; false if none is left.
   bool find_pivot(Index& row, Index& col) const {
@@ -194,7 +200,7 @@ Pivots eliminate(Tableau& tableau) {
 LineForm remainder(const Tableau& tableau, const LineForm& X, const Pivots& pivots, std::vector<Index>& kept) {
   const Index n = X.dim(), g = X.generators();
   for (Index i = 0; i < tableau.rows; ++i) {
-    if (!tableau.used[static_cast<std::size_t>(i)] && !tableau.vanished(i)) kept.push_back(i);
+    if (!tableau.used[static_cast<std::size_t>(i)] && !tableau.vanished(i) && !tableau.holds_lines(i)) kept.push_back(i);
   }
   std::vector<bool> gone(static_cast<std::size_t>(X.lines()), false);
   for (const auto& [row, col] : pivots) gone[static_cast<std::size_t>(col)] = true;
@@ -243,7 +249,10 @@ LinesSolved solve_for_lines(const LineForm& X) {
   const Pivots pivots = eliminate(tableau);
   std::vector<Index> kept;
   LineForm set = remainder(tableau, X, pivots, kept);
-  return {std::move(set), largest(tableau, kept), state_terms(tableau, X.dim())};
+  bool is_whole = true;
+  for (Index i = 0; i < tableau.rows; ++i)
+    is_whole = is_whole && (tableau.used[static_cast<std::size_t>(i)] || !tableau.holds_lines(i));
+  return {std::move(set), largest(tableau, kept), state_terms(tableau, X.dim()), is_whole};
 }
 
 LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) {

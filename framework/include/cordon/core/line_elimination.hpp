@@ -9,7 +9,9 @@ namespace cordon {
 /// which span the lineality space, and no S. The same set: a line is unbounded, so that solving a row for it loses nothing.
 /// Pivots are chosen over the whole of S, largest in its equilibrated row first. An entry that cancelled to less than 1e-13 of
 /// the terms it was computed from counts as zero; an entry that is small but was not cancelled is used. Rows that become 0 = 0
-/// are dropped, a row 0 = b ≠ 0 stays (X is ∅). O((n + m)(l + g) min(l, m)). [Rego2025, Alg. 1]
+/// are dropped, a row 0 = b ≠ 0 stays (X is ∅). An entry that cancelled to less than 1e-6 of its terms is known with few digits
+/// and is no pivot; rows in which no other is left are dropped, and the set becomes larger. O((n + m)(l + g) min(l, m)).
+/// [Rego2025, Alg. 1]
 LineForm eliminate_lines(const LineForm& X);
 
 /// The same, with the sizes of the terms that were added up: what is left of them after cancellation is known up to a share only.
@@ -17,6 +19,7 @@ struct LinesSolved {
   LineForm set;
   Vector row_magnitude;    ///< of every row of `set`, the largest over its entries
   Vector state_magnitude;  ///< of every coordinate, summed over its entries
+  bool is_whole = true;    ///< no row with lines was dropped
 };
 LinesSolved solve_for_lines(const LineForm& X);
 

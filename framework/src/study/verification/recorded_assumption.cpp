@@ -15,7 +15,7 @@ using namespace json;
 using Kind = Value::Kind;
 using What = FailedAssumption::What;
 
-constexpr std::array all{What::initial_set, What::restart_set, What::admissible_set, What::U,
+constexpr std::array all{What::initial_set, What::restart_set, What::admissible_set, What::U,        What::modes,
                          What::W,           What::V,           What::W_exactly,      What::V_exactly};
 
 const char* const mend = "the file is not as \"cordon run\" wrote it; run the study again";
@@ -53,7 +53,8 @@ std::optional<RecordedAssumption> read_failed_assumption(const Cursor& summary, 
 Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   const FailedAssumption& failed = pipeline.failed->failed;
   const bool of_diagnoser = pipeline.is_diagnosis || pipeline.is_design;
-  if (failed.seed_offset != 0 || pipeline.is_design || failed.what == What::restart_set) return Answer::unknown;
+  if (failed.seed_offset != 0 || pipeline.is_design || failed.what == What::restart_set || failed.what == What::modes)
+    return Answer::unknown;
   if (failed.what == What::admissible_set && of_diagnoser) return Answer::unknown;
   Study study;
   study.file = run.files.directory() / "results.json";

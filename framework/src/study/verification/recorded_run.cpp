@@ -205,6 +205,17 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
   return pipeline;
 }
 
+/// `study`: the pipeline in the study of the results.
+bool follows_its_sets(const Cursor& study) {
+  const auto observer = study.is(Kind::object) ? study.find("observer") : std::nullopt;
+  const auto type = observer && observer->is(Kind::object) ? observer->find("type") : std::nullopt;
+  const std::string name = type ? read_text(*type, 1000).value_or("") : "";
+  if (name == "prediction_correction" || name == "descriptor") return true;
+  if (name != "luenberger" && name != "zonotope_uncertain") return false;
+  const auto limit = observer->find("widening_limit");
+  return limit && read_number(*limit).value_or(1) == 0;
+}
+
 int line_number(const detail::InputFile& file) { return static_cast<int>(std::min<std::int64_t>(file.lines(), 1'000'000'000)); }
 
 CsvSpec data_of(std::filesystem::path file, const LinearModel& model) {
@@ -268,8 +279,11 @@ RecordedRun read_run(const std::filesystem::path& directory) {
     std::vector<std::string> warnings;
     SystemPart part = system ? read_system(*system, warnings) : SystemPart{};
     if (part.good && pipelines && pipelines->expect(Kind::array, mend())) {
+      const auto studied = study->find("pipelines");
       for (std::size_t i = 0; i < pipelines->size(); ++i) {
         if (auto pipeline = read_pipeline(pipelines->item(i), part)) {
+          pipeline->follows_its_sets =
+              studied && studied->is(Kind::array) && i < studied->size() && follows_its_sets(studied->item(i));
           run.pipelines.push_back(std::move(*pipeline));
         }
       }

@@ -34,6 +34,9 @@ struct RecordedPipeline {
   bool is_design = false;                    ///< of a designer: only `design` is read
   std::optional<DesignOutcome> design = {};  ///< horizon, input, what is said of pairs and tubes; nothing: there is no input
   Rounding rounding = Rounding::nominal;
+  /// Each set holds all successors of the one before that are consistent with the data. Observers that know more than their last
+  /// set, as a bound of their error for all times, may keep to less.
+  bool follows_its_sets = false;
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
   std::vector<RecordedStep> steps;

@@ -332,7 +332,7 @@ void StepCheck::against(const Polytope& F, const std::function<LineForm()>& rela
   exact_holds_ = !violation_ && undecided_ == before;
 }
 
-void StepCheck::against(const LineForm& successors, const Matrix& directions) {
+void StepCheck::against(const LineForm& successors, const Matrix& directions, bool holds_them_all) {
   const bool claims = step_.tightness == Tightness::exact && !reported_empty() && row_.exact_exchange;
   for (Index j = 0; j < directions.cols() && !violation_; ++j) {
     const Vector d = directions.col(j);
@@ -360,7 +360,7 @@ void StepCheck::against(const LineForm& successors, const Matrix& directions) {
     if (shown && needed + 0.5 * slack <= std::min(hull, reached) + slack) continue;
     try {
       const rounding::Range exact = exact::support(successors, d);
-      if (exact.lower > allowed + slack) {
+      if (exact.lower > allowed + slack && holds_them_all) {
         violated(
             fmt::format("a successor of the set before, consistent with the data, reaches {:.17g} along {}; the reported {} only "
                         "{:.17g}",

@@ -23,8 +23,9 @@ class StepCheck {
   /// F ⊆ X_k and F ⊆ hull, by the vertices of F; where `exact` is claimed, X_k ⊆ F by its inequalities.
   /// `relaxed` makes the successors of X_{k-1} with outputs and rows that hold up to rounding: a nominal claim may reach as far.
   void against(const Polytope& F, const std::function<LineForm()>& relaxed);
-  /// The same inclusions for the set that `successors` holds, in the directions of the columns.
-  void against(const LineForm& successors, const Matrix& directions);
+  /// The same inclusions for the set that `successors` holds, in the directions of the columns. Is X_k an estimate that
+  /// `holds_them_all`? Else one that it does not hold decides nothing.
+  void against(const LineForm& successors, const Matrix& directions, bool holds_them_all);
 
   /// An inclusion could not be checked at all.
   void skipped(std::string why) { open(std::move(why)); }

@@ -265,7 +265,7 @@ class Verification {
         Model model = run_.model;
         for (int draw = 0; draw < (uncertain ? 2 : 1); ++draw) {
           model.linear = drawn(run_.model.linear, row.k, draw);
-          check.against(successors(model, start, pipeline.admissible_set, transition), directions);
+          check.against(successors(model, start, pipeline.admissible_set, transition), directions, pipeline.follows_its_sets);
         }
         ++found.by_supports;
       }
