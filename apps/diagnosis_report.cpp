@@ -234,6 +234,7 @@ std::string assumption_text(const Study& study, const PipelineOutcome& pipeline,
   for (const Mode& mode : bank_of(study).modes) modes.push_back(mode.name);
   const char* mend = "widen the set";
   if (failed.what == What::W || failed.what == What::V) mend = "widen the set, or improve the model";
+  if (failed.what == What::modes) mend = "describe what acts there by a mode";
   if (failed.what == What::U) mend = "widen the set, or choose smaller inputs";
   const std::string seed = failed.seed_offset > 0 ? fmt::format(" (seed offset {})", failed.seed_offset) : "";
   return fmt::format("{}: {}{}. What is said from k = {} on rests on it and proves nothing: {}\n",

@@ -253,6 +253,39 @@ TEST_CASE("rounding that later steps amplify is no defect of a nominal pipeline,
   CHECK_FALSE(detail::barely_outside(empty, Vector{{.75}}));
 }
 
+/// The leak has spoilt the states from which the bank's bound of errors starts; the filter's output of k = 10 is spoilt already.
+TEST_CASE("after a fault that a diagnoser does not know nothing is promised, and nobody is blamed") {
+  Json bank = Json::parse(R"({
+    "cordon": 1, "title": "a leak that nobody listed",
+    "system": {"type": "lti", "A": [[0.5]], "B": [[1]], "C": [[1]], "modes": [{"name": "weak", "actuator": [0.5]}]},
+    "data": {"simulate": {"steps": 40, "input": [{"type": "constant", "offset": 1}], "faults": [{"name": "leak", "from": 10, "to": 20,
+      "additive": {"F": [[1]], "f": {"type": "box", "lower": [30], "upper": [31]}}}]}},
+    "pipelines": [{"name": "P", "backend": "zonotope", "diagnoser": {"type": "observer_bank", "waiting_time": 3, "gain": [[0.1]]}}]})");
+  bank["system"]["X0"] = box({1});
+  bank["system"]["W"] = bank["system"]["V"] = box({.01});
+  bank["system"]["U"] = box({1});
+  Json filter = Json::parse(R"({
+    "cordon": 1, "title": "a sensor beside additive faults",
+    "system": {"type": "lti", "A": [[0.5]], "B": [[1]], "C": [[1]], "F": [[1]], "modes": [{"name": "half", "sensor": [0.5]}]},
+    "data": {"simulate": {"steps": 20, "input": [{"type": "constant", "offset": 10}], "faults": [{"mode": "half", "from": 10}]}},
+    "pipelines": [{"name": "P", "backend": "zonotope", "diagnoser": "fault_estimation_filter"}]})");
+  filter["system"]["X0"] = box({1});
+  filter["system"]["W"] = filter["system"]["V"] = box({.01});
+  filter["system"]["U"] = box({20});
+  for (const Json& study : {bank, filter}) {
+    const Program program(study);
+    const Outcome run = program.run();
+    CAPTURE(run.out);
+    CAPTURE(run.err);
+    CHECK(run.code == 0);
+    CHECK(run.says("the plant at k = 10 follows no mode that the diagnoser knows"));
+    CHECK(program.results()["pipelines"][0]["summary"]["failed_assumption"]["what"] == "modes");
+    CHECK(program.verify().code == 0);
+  }
+  bank["data"]["simulate"]["faults"] = Json::parse(R"([{"mode": "weak", "from": 10, "to": 20}])");
+  CHECK_FALSE(Program(bank).run().says("Assumption failed"));
+}
+
 TEST_CASE("exact data excuse nothing") {
   Study study;
   study.model.linear.A = study.model.linear.C = Matrix{{.5}};

@@ -256,7 +256,7 @@ TEST_CASE("the files of a diagnosis") {
   const std::vector<std::string> summaries = lines(bytes_of(scratch / "one" / "summary.csv"));
   CHECK(summaries[0].find(",error,diagnoser,runs,segments,isolated,missed,outside_the_bank,unknown_fault,false_alarms,") !=
         std::string::npos);
-  CHECK(summaries[2].starts_with("\"a, b\",box,,nominal,21,,,,,,,,,,,scripted,2,4,2,0,2,0,0,0,"));
+  CHECK(summaries[2].starts_with("\"a, b\",box,,nominal,21,,,,,15,,,,,,scripted,2,4,2,0,2,0,0,0,"));
   CHECK(std::count(summaries[1].begin(), summaries[1].end(), ',') == std::count(summaries[0].begin(), summaries[0].end(), ','));
   const json times = json::parse(bytes_of(scratch / "one" / "run.json"));
   CHECK(times["pipelines"][1]["summary"].contains("median_step_us"));

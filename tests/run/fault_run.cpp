@@ -111,8 +111,8 @@ TEST_CASE("a true fault outside its bounds violates the guarantee of simulated d
     std::get<SimulateSpec>(study.data).faults = {other};
     outcome = run(study);
     CHECK(outcome.violated_at == -1);
-    CHECK(outcome.diagnosis->faults[0].checked == 9);  // k = 0 … 8
-    std::get<SimulateSpec>(study.data).faults[0].from = 10;
+    CHECK(outcome.diagnosis->faults[0].checked == 8);  // k = 0 … 7: the bound of 8 uses y_9
+    std::get<SimulateSpec>(study.data).faults[0].from = 13;
     CHECK(run(study).violated_at == 12);
   }
 }

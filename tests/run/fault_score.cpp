@@ -49,6 +49,17 @@ TEST_CASE("a bound is compared with the truth of its own time") {
   CHECK(found[1].rms_error == 1);
 }
 
+TEST_CASE("a bound of an earlier time is not judged where the diagnoser promises nothing any more") {
+  FaultScore score(1);
+  score.begin_run(0);
+  score.step(Vector::Zero(1), bounded(0, {}));
+  const auto judged = score.step(Vector::Zero(1), bounded(1, {{0, 0, 1, 2, 1.5}}), false);
+  CHECK_FALSE(judged[0].truth);
+  CHECK_FALSE(score.outside());
+  score.step(Vector::Zero(1), bounded(1, {{0, 0, 1, 2, 1.5}}), true);
+  CHECK(score.outside());
+}
+
 TEST_CASE("sums over steps and seeds; the last half width is the first seed's") {
   FaultScore score(1);
   score.begin_run(0);

@@ -157,6 +157,7 @@ struct FailedAssumption {
     restart_set,     ///< x_k: the set that a diagnoser begins anew from, at a reset at k
     admissible_set,  ///< x_k
     U,               ///< u_k, of statements made in advance
+    modes,           ///< the plant follows a mode that the diagnoser knows, up to k and at k
     W,               ///< what leads from x_k to x_{k+1} in the true mode
     V,               ///< what leads from x_k to y_k in the true mode
     W_exactly,       ///< the same as W, by the rounding of the simulation

@@ -102,6 +102,7 @@ void AssumptionCheck::begin_run(std::int64_t seed_offset) {
 
 void AssumptionCheck::step(const Record& record) {
   if (!last_) check_start(record);
+  if (!other_ && leaves_modes(record)) fail(What::modes, record.sample.k, record.sample.k);
   if (!other_) {
     check_sets(record);
     if (by_plant_) check_plant(record);
@@ -153,6 +154,14 @@ void AssumptionCheck::check_start(const Record& record) {
   }
 }
 
+bool AssumptionCheck::leaves_modes(const Record& record) const {
+  using Modes = PipelineAssumptions::Modes;
+  if (!record.mode || assumed_.modes == Modes::any) return false;
+  if (assumed_.modes == Modes::of_the_bank) return *record.mode < 0;
+  const bool has_fault = record.fault && !record.fault->isZero(0);
+  return *record.mode != bank_.nominal && !(*record.mode < 0 && has_fault);
+}
+
 void AssumptionCheck::check_sets(const Record& record) {
   const Index k = record.sample.k;
   for (const LineForm& set : assumed_.admissible_sets) {
@@ -196,6 +205,8 @@ std::string_view to_string(FailedAssumption::What what) noexcept {
       return "admissible_set";
     case FailedAssumption::What::U:
       return "U";
+    case FailedAssumption::What::modes:
+      return "modes";
     case FailedAssumption::What::W:
       return "W";
     case FailedAssumption::What::V:
@@ -221,6 +232,9 @@ std::string text_of(const FailedAssumption& failed, const std::vector<std::strin
       return fmt::format("x_{} lies outside an admissible set of the pipeline", k);
     case FailedAssumption::What::U:
       return fmt::format("u_{} lies outside the input set U, on which statements made in advance rest", k);
+    case FailedAssumption::What::modes:
+      return fmt::format("the plant at k = {} follows no mode that the diagnoser knows, and what it does then lasts in the state",
+                         k);
     case FailedAssumption::What::W:
       return fmt::format("no w in W{} leads from x_{} to x_{}, the states of the simulated plant", of, k, k + 1);
     case FailedAssumption::What::V:

@@ -17,7 +17,13 @@ struct PipelineAssumptions {
   std::vector<LineForm> admissible_sets = {};  ///< hold x_k for k ≥ `admissible_from`
   Index admissible_from = 0;
   std::optional<LineForm> restart_set = {};  ///< holds x_k where a diagnoser begins anew at k
-  bool inputs = false;                       ///< statements made in advance rest on u_k ∈ U
+  /// Of a diagnoser, which rests on them at all times, not only at that of a statement.
+  enum class Modes {
+    any,                ///< nothing is assumed
+    of_the_bank,        ///< one of the bank
+    nominal_and_faults  ///< the nominal one, with additive faults
+  } modes = Modes::any;
+  bool inputs = false;  ///< statements made in advance rest on u_k ∈ U
   bool exact_data =
       false;  ///< with outward or rational rounding: statements rest on data that keep to the model in the last digit
 };
@@ -32,6 +38,7 @@ PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser, std::optional
 ///     E x_{k+1} - A x_k - B diag(f) u_k ∈ Bw W,   y_k - diag(g) (C x_k + D diag(f) u_k) ∈ Dv V
 ///   with intervals of A, B, C and ranges of f and g as boxes: outside by more than 1e-12 of the terms of a row, which the
 ///   operations of the plant may have rounded. What linear models simulate is drawn from W and V.
+///   modes: by the data's word.
 /// Every "outside" is proven by a certificate. Memory is constant, but for the last 10,000 records.
 class AssumptionCheck {
  public:
@@ -59,6 +66,7 @@ class AssumptionCheck {
   void check_start(const Record& record);
   void check_sets(const Record& record);
   void check_plant(const Record& record);
+  bool leaves_modes(const Record& record) const;
   Index mode_of(const Record& record) const { return record.mode.value_or(bank_.nominal); }
   void fail(FailedAssumption::What what, Index k, Index from, Index mode = -1);
 

@@ -53,7 +53,11 @@ class DiagnosisPipeline {
       backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
       diagnoser_ = registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
       found_.guarantees = diagnoser_->guarantees();
-      check_.emplace(study_, assumptions_of(*spec.diagnoser, rounding()));
+      PipelineAssumptions assumed = assumptions_of(*spec.diagnoser, rounding());
+      const DiagnoserEntry* const entry = registry.diagnoser_entry(spec.diagnoser->type);
+      using Modes = PipelineAssumptions::Modes;
+      assumed.modes = entry && !entry->needs_modes ? Modes::nominal_and_faults : Modes::of_the_bank;
+      check_.emplace(study_, std::move(assumed));
     });
   }
 
@@ -86,7 +90,7 @@ class DiagnosisPipeline {
       check_->step(record);
       diagnosis = diagnoser_->step(record.sample);
       check_fits(*diagnosis, bank_, outcome_.diagnoser);
-      faults = fault_score_.step(record.sample.k < first_other_fault_ ? record.fault : std::nullopt, *diagnosis);
+      faults = fault_score_.step(record.fault, *diagnosis, record.sample.k < first_other_fault_);
     });
     if (failed()) return;
     if (found_.steps == 0 && record.mode) found_.truth_known = true;

@@ -24,13 +24,13 @@ void FaultScore::begin_run(std::int64_t seed_offset) {
   truths_.clear();
 }
 
-std::vector<JudgedBound> FaultScore::step(const std::optional<Vector>& truth, const Diagnosis& now) {
+std::vector<JudgedBound> FaultScore::step(const std::optional<Vector>& truth, const Diagnosis& now, bool promises) {
   check(now);
   if (truth && truth->size() == faults_) truths_.emplace_back(now.k, *truth);
   if (truths_.size() > most_remembered) truths_.pop_front();
   std::vector<JudgedBound> judged;
   for (const FaultBound& bound : now.faults) {
-    judged.push_back({bound, truth_of(bound)});
+    judged.push_back({bound, promises ? truth_of(bound) : std::nullopt});
     judge(now.k, judged.back());
   }
   return judged;

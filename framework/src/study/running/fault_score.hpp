@@ -18,10 +18,11 @@ class FaultScore {
   explicit FaultScore(Index faults) : faults_(faults), entries_(static_cast<std::size_t>(faults)) {}
 
   void begin_run(std::int64_t seed_offset);
-  /// `truth` is n_k of the sample's time; nothing: not known, or nothing that the bounds speak of. Throws Errc::plugin for bounds
+  /// `truth` is n_k of the sample's time; nothing: not known. Bounds are compared with it where the
+  /// diagnoser `promises` something at this time. Throws Errc::plugin for bounds
   /// that are none: of a fault that does not exist or twice of one, of times to come, in the wrong order, or with an estimate
   /// outside.
-  std::vector<JudgedBound> step(const std::optional<Vector>& truth, const Diagnosis& now);
+  std::vector<JudgedBound> step(const std::optional<Vector>& truth, const Diagnosis& now, bool promises = true);
 
   /// Of every column of F, if there was a bound of any.
   std::vector<FaultStatistics> statistics() const;
