@@ -40,6 +40,13 @@ void register_then_throw(Registrar& registrar) {
 
 }  // namespace
 
+TEST_CASE("a word is no spelling of another that shares no letter with it") {
+  CHECK(suggest("tset_box", {"test_box", "u"}) == "did you mean \"test_box\"?");
+  CHECK(suggest("e", {"A", "E"}) == "did you mean \"E\"?");
+  CHECK(suggest("Z", {"A", "E"}) == "there are \"A\", \"E\"");
+  CHECK(suggest("", {"W"}) == "there is only \"W\"");
+}
+
 TEST_CASE("a good plugin tells what it is, and its components are known") {
   Registry registry;
   const PluginReport& report = registry.load_file(good("test_box"));

@@ -2,6 +2,7 @@
 #include "cordon/core/error.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 
 #include "core/text.hpp"
@@ -72,13 +73,23 @@ InputError::~InputError() = default;
 InputError::InputError(std::string file, std::vector<Diagnostic> diagnostics)
     : Error(Errc::invalid, render(file, diagnostics)), file_(std::move(file)), diagnostics_(std::move(diagnostics)) {}
 
+namespace {
+
+/// Another word altogether is no spelling of one with a single letter, or with none.
+bool same_letters(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+}  // namespace
+
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   if (word.size() > 200) return "";  // hostile input: the distance is quadratic
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
+    if (distance < best_distance && (distance < word.size() || same_letters(word, candidate))) {
       best = candidate;
       best_distance = distance;
     }
