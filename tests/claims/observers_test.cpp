@@ -100,6 +100,23 @@ TEST_CASE("sensors that hardly differ do not decide where a state is") {
   }
 }
 
+/// T E + N C = I was off by 2e-10, as the small output decides what the large one hides.
+TEST_CASE("a descriptor observer keeps its digits where outputs have unlike units") {
+  const Program program(Json::parse(R"({"cordon": 1, "title": "microamperes beside kilovolts",
+    "system": {"type": "descriptor", "E": [[1e-6, 0], [0, 1e-8]], "A": [[1.85e-5, 1.8e-8], [3.5e-5, 3e-9]], "B": [[0], [0.00196]],
+      "Bw": [[-0.000194, -0.0001], [-0.00024, 0]], "C": [[0, -125], [-6.3e-5, 9e-8]],
+      "X0": {"type": "box", "lower": [-10, -10000], "upper": [10, 10000]},
+      "W": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
+      "V": {"type": "box", "lower": [-100000, -0.0001], "upper": [100000, 0.0001]}},
+    "data": {"simulate": {"steps": 10, "seed": 1200, "noise": "zero", "input": [{"type": "sine", "amplitude": 1, "omega": 0.3}]}},
+    "pipelines": [{"name": "P", "backend": {"type": "interval", "rounding": "outward"}, "observer": "descriptor"},
+      {"name": "Q", "backend": {"type": "zonotope", "rounding": "outward"}, "observer": "descriptor"}]})"));
+  CHECK(program.run().code == 0);
+  const Outcome verified = program.verify();
+  CAPTURE(verified.out);
+  CHECK(verified.code == 0);
+}
+
 /// Nothing is known of the start. Each has been refuted: by residues in another coordinate's units, by a plane of lines that is
 /// known in the units of another state, by data that are all 0, by sensors that are parallel but for rounding.
 TEST_CASE("estimates with lines hold in any units") {
