@@ -50,11 +50,13 @@ Matrix stacked_E_C(const LinearModel& m) {
 }
 
 /// The pseudo-inverse [T N] of K, with T E + N C = I to the last digits: where outputs have unlike units, a decomposition knows
-/// its small entries by few. Newton's iteration doubles the digits.
+/// its small entries by few. Newton's iteration doubles the digits; it is left out where they are there.
 Matrix left_inverse(const Matrix& K) {
+  constexpr double enough = 1e-13;
   Matrix inverse = linalg::pseudo_inverse(K);
   for (int i = 0; i < 2; ++i) {
     const Matrix rest = Matrix::Identity(K.cols(), K.cols()) - linalg::product(inverse, K);
+    if (rest.cwiseAbs().maxCoeff() <= enough) break;
     inverse += linalg::product(rest, inverse);
   }
   return inverse;
