@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t slots = 512;
+constexpr std::uint64_t slots = 4096;
 constexpr std::size_t longest_entry = 16384;  // bytes; the file is input like any other
 constexpr const char* works = "works";
 
