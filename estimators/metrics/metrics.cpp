@@ -151,7 +151,7 @@ void add(Registrar& registrar, const char* name, const char* summary) {
 void register_metrics(Registrar& registrar) {
   add<Radius>(registrar, "radius", "half the longest edge of the interval hull");
   add<VolumeOfSet>(registrar, "volume",
-                   "volume: exact up to dimension 3 where the representation offers it, else of the interval hull");
+                   "volume of the set where its representation has an exact one, else of its interval hull");
   add<ContainsTruth>(registrar, "contains_truth",
                      "certified containment of the true state while the pipeline's assumptions hold");
   add<Size>(registrar, "complexity", "generators, lines and constraints of the estimate");

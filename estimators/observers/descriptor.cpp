@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Observer for descriptor systems E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with singular E. The recursion follows from what
-// the backend can do: singular_value_observer.hpp where intersections are exact, else pseudo_inverse_observer.hpp.
+// the backend can do: semi_explicit_observer.hpp where intersections are exact, else pseudo_inverse_observer.hpp.
 #include "components.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/interfaces/descriptor_matrix.hpp"
 #include "observer_parameters.hpp"
 #include "observers/interval_spread.hpp"
 #include "observers/pseudo_inverse_observer.hpp"
-#include "observers/singular_value_observer.hpp"
-#include "observers/static_rows.hpp"
+#include "observers/semi_explicit_observer.hpp"
 
 namespace cordon::estimators {
 
 namespace {
 
-bool by_singular_values(const SetBackend& backend) { return backend.info().intersections; }
+bool in_semi_explicit_form(const SetBackend& backend) { return backend.info().intersections; }
 
 std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
   std::vector<Diagnostic> problems = check_common(context, params);
   const LinearModel& m = context.model.linear;
   const BackendInfo& info = context.backend->info();
-  const StaticRows t(m);
-  for (Index i = 0; i < t.sigma.size(); ++i) {
-    const double share = t.sigma[0] > 0 ? t.sigma[i] / t.sigma[0] : 0;
+  const Vector sigma = m.is_descriptor() ? linalg::svd(linalg::row_scales(m.E).asDiagonal() * m.E).sigma : Vector();
+  for (Index i = 0; i < sigma.size(); ++i) {
+    const double share = sigma[0] > 0 ? sigma[i] / sigma[0] : 0;
     if (share > 1e-13 && share < 1e-7) {
       problems.push_back({"",
                           "E is nearly singular (its singular values differ by a factor of " + std::to_string(1 / share) +
@@ -29,10 +30,10 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
       break;
     }
   }
-  if (by_singular_values(*context.backend)) {
+  if (in_semi_explicit_form(*context.backend)) {
     if (params.has("admissible_set")) {
       check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
-    } else if (!info.unbounded && t.static_rows() > 0) {
+    } else if (!info.unbounded && m.is_descriptor() && descriptor_rank(m.E) < m.states()) {
       problems.push_back({"/admissible_set",
                           "is missing: the backend \"" + info.name +
                               "\" holds bounded sets only, so the part of the state that E does not determine needs a bound",
@@ -72,7 +73,7 @@ void register_descriptor(Registrar& registrar) {
   registrar.observer({{"descriptor", "descriptor systems with singular E, any backend", "Rego2025; Rego2020b; Wang2018a", schema},
                       check,
                       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
-                        if (by_singular_values(*context.backend)) return singular_value_observer(context, params);
+                        if (in_semi_explicit_form(*context.backend)) return semi_explicit_observer(context, params);
                         return pseudo_inverse_observer(context, params);
                       },
                       true,

@@ -42,6 +42,17 @@ double row_norm(const Matrix& A) { return A.size() ? A.cwiseAbs().rowwise().sum(
 
 double largest(VectorIn x) { return x.size() ? x.lpNorm<Eigen::Infinity>() : 0.0; }
 
+/// |A| x for x ≥ 0 with infinite entries.
+Vector amplified(const Matrix& A, const Vector& x) {
+  Vector sum = Vector::Zero(A.rows());
+  for (Index j = 0; j < A.cols(); ++j) {
+    for (Index i = 0; i < A.rows(); ++i) {
+      if (A(i, j) != 0 && x[j] != 0) sum[i] += std::abs(A(i, j)) * x[j];
+    }
+  }
+  return sum;
+}
+
 /// [E; C].
 Matrix stacked_E_C(const LinearModel& m) {
   Matrix stacked(m.states() + m.outputs(), m.states());
@@ -72,7 +83,8 @@ class PseudoInverseObserver final : public Observer {
         V_(backend().import(model().V)),
         effectiveness_(model(), backend()),
         used_(with_bounded_outputs(model().linear)),
-        is_used_(used_.outputs()) {
+        is_used_(used_.outputs()),
+        rounds_outward_(backend().info().rounding == Rounding::outward) {
     const Index n = used_.states();
     for (Index i = 0; i < is_used_.size(); ++i) is_used_[i] = Effectiveness::is_bounded_by_measurement(model().linear, i);
     const Matrix inverse = left_inverse(stacked_E_C(used_));
@@ -83,6 +95,13 @@ class PseudoInverseObserver final : public Observer {
     TBw_ = linalg::product(T_, used_.Bw);
     minus_ND_ = -linalg::product(N_, used_.D);
     minus_NDv_ = -linalg::product(N_, used_.Dv);
+    if (rounds_outward_) {
+      const Matrix E_C = stacked_E_C(used_);
+      inverse_error_ = (linalg::product(inverse, E_C) - Matrix::Identity(n, n)).cwiseAbs() +
+                       accumulated(used_) * linalg::product(inverse.cwiseAbs(), E_C.cwiseAbs());
+      identity_ = Matrix::Identity(n, n);
+      zero_ = Vector::Zero(n);
+    }
     disturbance_ = linalg::product(TBw_, model().W.c) + linalg::product(minus_NDv_, model().V.c);
     disturbance_widths_ = half_widths(model().W, TBw_) + half_widths(model().V, minus_NDv_);
     least_width_ = disturbance_widths_.size() ? disturbance_widths_.minCoeff() : 0;
@@ -138,6 +157,13 @@ class PseudoInverseObserver final : public Observer {
       add_output(N_, now);
       const std::optional<RoundingRoom> room = room_of(before, now);
       if (room && room->is_needed()) terms.push_back(room->term());
+      Enclosure own;
+      if (rounds_outward_) {
+        const Vector errors =
+            own_errors(before, now, effectiveness_.has_open_states() ? open->interval_hull() : Box{zero_, zero_});
+        own = backend().box({-errors, errors});
+        terms.push_back({identity_, own});
+      }
       return backend().predict(X_, {map_, shift_, {terms.data(), terms.size()}});
     });
     return X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
@@ -178,6 +204,32 @@ class PseudoInverseObserver final : public Observer {
                          linalg::product(N_.cwiseAbs(), seen(now)) + center.cwiseAbs();
     const Vector widths = disturbance_widths_ + half_widths(model().V, minus_LDv_);
     return std::optional<RoundingRoom>(std::in_place, backend(), shift_ + center, terms, widths);
+  }
+
+  /// Bound of what the products and sums of this recursion, all but the backend's, have lost: (number of terms + 8) ε of them,
+  /// and what T E + N C lacks of the identity, times x_k.
+  Vector own_errors(const Sample& before, const Sample& now, const Box& open) const {
+    const auto magnitude = [](const Box& box) { return Vector(box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs())); };
+    const auto reach = [](const LineForm& X) { return Vector(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum()); };
+    const Vector x = magnitude(X_->interval_hull()), v = amplified(used_.Dv, reach(model().V));
+    const auto seen = [&](const Sample& sample) {
+      return Vector(is_used_.cwiseProduct(sample.y.cwiseAbs()) + amplified(used_.D, sample.u.cwiseAbs()) + v);
+    };
+    const Vector forces = amplified(used_.A, x) + amplified(used_.B, before.u.cwiseAbs()) + amplified(used_.Bw, reach(model().W));
+    const Vector outputs_before = amplified(used_.C, x) + seen(before), outputs_now = seen(now);
+    const Vector terms = amplified(T_, forces + magnitude(open)) + amplified(L_, outputs_before) + amplified(N_, outputs_now);
+    // |x_k| ≤ b + |R||x_k| for b, the magnitudes of its terms, gives |x_k| ≤ 2 b where |R| b ≤ b / 2
+    Vector next = terms, lacking = amplified(inverse_error_, next);
+    next += 2 * lacking;
+    lacking = amplified(inverse_error_, next);
+    if ((lacking.array() > 0.5 * next.array()).any()) lacking.setConstant(std::numeric_limits<double>::infinity());
+    return 1.01 * (accumulated(used_) * terms + 2 * lacking);
+  }
+
+  /// Relative error of sums of as many terms as a step has.
+  static double accumulated(const LinearModel& m) {
+    const Index terms = 3 * m.states() + m.inputs() + 2 * m.outputs() + m.disturbances() + m.noises() + 8;
+    return static_cast<double>(terms) * std::numeric_limits<double>::epsilon();
   }
 
   /// L minimises the F-radius of the next estimate, as far as the last measurement decides it.
@@ -234,6 +286,9 @@ class PseudoInverseObserver final : public Observer {
   Effectiveness effectiveness_;
   LinearModel used_;  ///< weighted by the sensors' effectiveness
   Vector is_used_;    ///< per output: 1 or 0
+  bool rounds_outward_;
+  Matrix inverse_error_, identity_;  ///< |T E + N C - I|, where the backend rounds outward
+  Vector zero_;
   Matrix T_, N_, TA_, TB_, TBw_, minus_ND_, minus_NDv_;
   Matrix noise_generators_;  ///< Dv Gv
   Matrix C_transposed_, TA_transposed_;

@@ -4,6 +4,7 @@
 // for every gain L; L_k = T A P Cᵀ (C P Cᵀ + Q)⁻¹ with P = G Gᵀ of the estimate and Q = Dv Gv Gvᵀ Dvᵀ minimises the F-radius.
 // Outputs whose sensors can fail altogether are left out: y_k enters before anything is known of x_k. For the same reason C is
 // exact. Ranges of effectiveness and interval matrices A and B: effectiveness.hpp.
+// With a backend that rounds outward the rounding errors of all these products are added as a box.
 // Claims no exact estimate: the first measurement enters with the second, by a gain, and v_{k-1} twice.
 #pragma once
 

@@ -2,23 +2,22 @@
 // A descriptor system in coordinates that part its dynamic rows from its static ones. [Rego2025, sec. 4]
 #pragma once
 
-#include "cordon/core/linalg.hpp"
 #include "cordon/interfaces/model.hpp"
 
 namespace cordon::estimators {
 
-/// The system in the coordinates z = Vᵀ x: dynamic rows above, static rows below. With E = U Σ Vᵀ, n_z = rank E:
+/// The system in the coordinates z = T⁻¹ x of cordon/interfaces/semi_explicit.hpp, n_z = rank E:
 ///   z̃_k = Ã z_{k-1} + B̃ u_{k-1} + B̃w w_{k-1},   0 = Ǎ z_k + B̌ u_k + B̌w w_k
-/// A model without E has dynamic rows only.
+/// A model without E has dynamic rows only. Any coordinates in which z̃ is what E x determines give the same sets; those of the
+/// singular values, which the source takes, mix states of unlike units.
 struct StaticRows {
-  Matrix T;                              ///< x = T z
-  Matrix A, B, Bw;                       ///< dynamic rows, n_z of them, divided by the singular values
-  Matrix static_A, static_B, static_Bw;  ///< static rows
+  Matrix T, T_inverse;                   ///< x = T z, z = T⁻¹ x
+  Matrix A, B, Bw;                       ///< dynamic rows, n_z of them
+  Matrix static_A, static_B, static_Bw;  ///< static rows, scaled by powers of two to entries of about 1
   Matrix rows, static_rows_map;          ///< what makes the dynamic and the static rows of those of the model
   Matrix free_part;                      ///< [0; I]: where ž enters
-  Vector sigma;                          ///< singular values of the scaled E
 
-  bool is_exact = true;  ///< nothing was rounded: T = I, and equations were scaled by powers of two at most
+  bool is_exact = true;  ///< no number was rounded
 
   explicit StaticRows(const LinearModel& model);
 

@@ -88,27 +88,6 @@ Index modular_rank(MatrixIn E, Residue (*number)(double)) {
 
 Matrix scaled(MatrixIn E) { return linalg::row_scales(E).asDiagonal() * E; }
 
-/// Rows and columns of the first r pivots of Gaussian elimination with complete pivoting.
-struct Pivots {
-  std::vector<Index> rows, cols;
-};
-
-Pivots complete_pivots(Matrix E, Index r) {
-  Pivots pivots;
-  for (Index k = 0; k < r; ++k) {
-    Index row = 0, col = 0;
-    E.cwiseAbs().maxCoeff(&row, &col);
-    pivots.rows.push_back(row);
-    pivots.cols.push_back(col);
-    const Vector column = E.col(col) / E(row, col);
-    const Vector across = E.row(row);
-    E -= column * across.transpose();
-    E.row(row).setZero();
-    E.col(col).setZero();
-  }
-  return pivots;
-}
-
 }  // namespace
 
 DescriptorMatrix::DescriptorMatrix(MatrixIn E) : rank(descriptor_rank(E)) {
@@ -119,10 +98,31 @@ DescriptorMatrix::DescriptorMatrix(MatrixIn E) : rank(descriptor_rank(E)) {
     core = right = Matrix::Identity(n, n);
     return;
   }
-  const Pivots pivots = complete_pivots(scaled(E), rank);
+  const Pivots pivots = pivots_of(E);
   left = E(Eigen::all, pivots.cols);
   right = E(pivots.rows, Eigen::all);
   core = right(Eigen::all, pivots.cols);
+}
+
+DescriptorMatrix::Pivots DescriptorMatrix::pivots_of(MatrixIn E) {
+  const Index r = descriptor_rank(E);
+  Matrix rest = scaled(E);
+  const Matrix with_columns = rest * linalg::row_scales(rest.transpose()).asDiagonal();
+  // a column that is rounding noise as a whole must not become a pivot's
+  if (linalg::rank(with_columns, rank_tolerance) == r) rest = with_columns;
+  Pivots pivots;
+  for (Index k = 0; k < r; ++k) {
+    Index row = 0, col = 0;
+    rest.cwiseAbs().maxCoeff(&row, &col);
+    pivots.rows.push_back(row);
+    pivots.cols.push_back(col);
+    const Vector column = rest.col(col) / rest(row, col);
+    const Vector across = rest.row(row);
+    rest -= column * across.transpose();
+    rest.row(row).setZero();
+    rest.col(col).setZero();
+  }
+  return pivots;
 }
 
 Index descriptor_rank(MatrixIn E) {

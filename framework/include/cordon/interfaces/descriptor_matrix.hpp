@@ -3,6 +3,8 @@
 // static.
 #pragma once
 
+#include <vector>
+
 #include "cordon/core/types.hpp"
 
 namespace cordon {
@@ -25,6 +27,13 @@ struct DescriptorMatrix {
   /// Errc::dimension if E is not square. O(n³). The rank of the doubles is found modulo a prime: it may, for a matrix made for
   /// the purpose, come out too small, never too large, so that an E of smaller rank is always used as it stands.
   explicit DescriptorMatrix(MatrixIn E);
+
+  /// Rows and columns of the r pivots of Gaussian elimination with complete pivoting, in their order; rows are scaled by powers
+  /// of two to entries of about 1, and so are columns where that leaves the rank at r. Errc::dimension as above.
+  struct Pivots {
+    std::vector<Index> rows, cols;
+  };
+  static Pivots pivots_of(MatrixIn E);
 };
 
 /// r alone.

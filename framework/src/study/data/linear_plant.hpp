@@ -5,17 +5,18 @@
 #include <string>
 
 #include "cordon/interfaces/model.hpp"
+#include "cordon/interfaces/semi_explicit.hpp"
 
 namespace cordon::detail {
 
 /// E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with E singular of index 1, regular, or the identity. Additive faults n are
 /// further inputs: (u, n) and [B F] take the places of u and B from here on, and the outputs do not show n.
 ///
-/// With E = U Σ Vᵀ (r = descriptor_rank(E)), z = Vᵀx = (z̃, ž) and Uᵀ splits the rows [Rego2025, (13)]:
-///   z̃⁺ = Σ̃⁻¹ Ũᵀ(A x + B u + Bw w)     (r dynamic rows)
-///   0  = Ǔᵀ(A x + B u + Bw w)          (n - r static rows; they hold at every k with the w of the same k)
-/// The static rows are solved for ž: Ǔᵀ A V̌ must be regular, else the index is above 1 and the constructor throws InputError.
-/// r = n: no static rows, any E of full rank. One step is O(n (n + n_u + n_w + n_y)).
+/// In the coordinates z = T⁻¹x = (z̃, ž) of cordon/interfaces/semi_explicit.hpp:
+///   z̃⁺ = Λ (A x + B u + Bw w)     (r dynamic rows)
+///   0  = Σ (A x + B u + Bw w)     (n - r static rows; they hold at every k with the w of the same k)
+/// The static rows are solved for ž: Σ A Ť (Ť: columns of T of ž) must be regular, else the index is above 1 and the constructor
+/// throws InputError. r = n: no static rows, any E of full rank. One step is O(n (n + n_u + n_w + n_y)).
 class LinearPlant {
  public:
   /// `pointer`: where the model stands in the study.
@@ -45,16 +46,14 @@ class LinearPlant {
   const Matrix& static_Bw() const { return static_Bw_; }
 
  private:
-  void split_E();
   void split_rows();
 
   LinearModel model_;  ///< with [B F] and [D 0]
   std::string file_, pointer_;
-  Matrix V_;                                   ///< n×n: (Ṽ, V̌)
-  Matrix dynamic_, static_;                    ///< Σ̃⁻¹ Ũᵀ, Ǔᵀ
-  Matrix dynamic_A_, dynamic_B_, dynamic_Bw_;  ///< Σ̃⁻¹ Ũᵀ (A, B, Bw)
-  Matrix static_A_, static_B_, static_Bw_;     ///< Ǔᵀ (A, B, Bw)
-  Matrix solve_;                               ///< -(Ǔᵀ A V̌)⁻¹
+  SemiExplicitForm form_;
+  Matrix dynamic_A_, dynamic_B_, dynamic_Bw_;  ///< Λ (A, B, Bw)
+  Matrix static_A_, static_B_, static_Bw_;     ///< Σ (A, B, Bw), scaled by powers of two
+  Matrix solve_;                               ///< -(Σ A Ť)⁻¹
   Vector z_;                                   ///< z̃_k
 };
 

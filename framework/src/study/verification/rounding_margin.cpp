@@ -2,7 +2,7 @@
 #include "study/verification/rounding_margin.hpp"
 
 #include "cordon/core/linalg.hpp"
-#include "cordon/interfaces/descriptor_matrix.hpp"
+#include "cordon/interfaces/semi_explicit.hpp"
 
 namespace cordon::verification {
 
@@ -39,17 +39,18 @@ RoundingMargin::RoundingMargin(const Model& model, const LineForm& initial_set, 
       largest_(Vector::Zero(model.linear.states())) {
   if (!model_.is_descriptor()) return;
   const Index n = model_.states();
-  const Matrix units = linalg::row_scales(model_.E).asDiagonal();
-  const Index r = descriptor_rank(model_.E);
-  const linalg::Svd parts = linalg::svd(units * model_.E);
-  const Matrix left = parts.U.transpose() * units;
-  const Matrix V = (parts.V.array().abs() <= 1e-15).select(0.0, parts.V.array().abs());
-  mixed_ = V * V.transpose();
+  const SemiExplicitForm form(model_.E);
+  const Index r = form.rank();
+  const Matrix to_dynamic = form.dynamic_part(Matrix::Identity(n, n)).rows,
+               to_static = form.static_part(Matrix::Identity(n, n)).rows;
+  mixed_ = form.T().cwiseAbs() * form.T_inverse().cwiseAbs();
   Matrix rows(n, n);
-  rows << linalg::product(left.topRows(r), model_.E), linalg::product(left.bottomRows(n - r), model_.A);
-  const Matrix solved = linalg::pseudo_inverse(rows, 1e-14);
-  dynamic_ = (solved.leftCols(r) * left.topRows(r)).cwiseAbs();
-  static_ = (solved.rightCols(n - r) * left.bottomRows(n - r)).cwiseAbs();
+  rows << form.T_inverse().topRows(r), form.static_part(model_.A).rows;
+  const Vector of_rows = linalg::row_scales(rows), of_cols = linalg::row_scales(rows.transpose());
+  const Matrix solved = of_cols.asDiagonal() * linalg::pseudo_inverse(of_rows.asDiagonal() * rows * of_cols.asDiagonal(), 1e-14) *
+                        of_rows.asDiagonal();
+  dynamic_ = (solved.leftCols(r) * to_dynamic).cwiseAbs();
+  static_ = (solved.rightCols(n - r) * to_static).cwiseAbs();
 }
 
 Vector RoundingMargin::forces(VectorIn u) const { return model_.B.cwiseAbs() * u.cwiseAbs() + disturbance_; }

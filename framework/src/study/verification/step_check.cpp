@@ -208,35 +208,65 @@ Vector StepCheck::turned_by(const Vector& x) const {
   return line_tolerance_ * length_along(reach, x.cwiseAbs()) * reach;
 }
 
-void StepCheck::contains_vertex(const RationalVector& exact) {
+/// The first coordinate in which x is outside the hull by more than the margin.
+std::optional<Index> StepCheck::outside_hull(const RationalVector& x, const Vector& margin) const {
+  for (Index i = 0; i < margin.size(); ++i) {
+    const double lower = step_.hull.lower[i], upper = step_.hull.upper[i];
+    const Rational slack = rational::exact(margin[i]);
+    if (upper < infinity && x[index(i)] > rational::exact(upper) + slack) return i;
+    if (lower > -infinity && x[index(i)] < rational::exact(lower) - slack) return i;
+  }
+  return std::nullopt;
+}
+
+/// By how much farther the successors with relaxed rows reach than F, along each coordinate; infinite ones, and what cannot be
+/// found out, as infinity.
+Vector StepCheck::moved_by_rounding(const Polytope& F, const Relaxed& relaxed) {
+  if (moved_) return *moved_;
+  moved_ = Vector::Zero(size_.size());
+  if (!nominal_) return *moved_;
+  const LineForm wide = relaxed();
+  for (Index i = 0; i < size_.size(); ++i) {
+    for (const double sign : {-1.0, 1.0}) {
+      const Vector d = sign * Vector::Unit(size_.size(), i);
+      const double least = F.support(d).lower;
+      if (least < infinity) (*moved_)[i] = std::max((*moved_)[i], support(wide, d) - least);
+    }
+  }
+  return *moved_;
+}
+
+void StepCheck::contains_vertex(const RationalVector& exact, const Polytope& F, const Relaxed& relaxed) {
   Vector x(size_.size());
   for (Index i = 0; i < x.size(); ++i) x[i] = rational::nearest(exact[index(i)]);
   if (reported_empty()) {
     return violated(fmt::format("the estimate is called empty, but the state {} is consistent with model and data", text(x)),
                     true);
   }
+  const std::string whether = fmt::format("whether the reported set contains the vertex {} of the exact one", text(x));
   const bool has_room = (margin_.array() > 0).all();
-  const Vector margin = margin_ + turned_by(x);
-  for (Index i = 0; i < x.size(); ++i) {
-    const double lower = step_.hull.lower[i], upper = step_.hull.upper[i];
-    const Rational slack = rational::exact(margin[i]);
-    if ((upper == infinity || exact[index(i)] <= rational::exact(upper) + slack) &&
-        (lower == -infinity || exact[index(i)] >= rational::exact(lower) - slack)) {
-      continue;
-    }
+  Vector margin = margin_ + turned_by(x);
+  if (nominal_ && outside_hull(exact, margin)) margin += moved_by_rounding(F, relaxed);
+  if (!margin.allFinite()) return open(whether);
+  if (const auto i = outside_hull(exact, margin)) {
     return violated(
         fmt::format("the state {} is consistent with model and data, but lies outside the hull in coordinate {}: {:.17g} is not "
                     "in [{:.17g}, {:.17g}]",
-                    text(x), i + 1, x[i], lower, upper),
+                    text(x), *i + 1, x[*i], step_.hull.lower[*i], step_.hull.upper[*i]),
         false);
   }
   if (has_room && (holds_nearby(x) || contains(widened_, x) == Answer::yes)) return;
   try {
     if (exact::contains(row_.set, exact, margin, row_margin_)) return;
+    if (nominal_) {
+      margin = margin_ + turned_by(x) + moved_by_rounding(F, relaxed);
+      if (!margin.allFinite()) return open(whether);
+      if (exact::contains(row_.set, exact, margin, row_margin_)) return;
+    }
     violated(fmt::format("the state {} is consistent with model and data, but lies outside the reported set", text(x)), true);
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported) throw;
-    open(fmt::format("whether the reported set contains the vertex {} of the exact one", text(x)));
+    open(whether);
   }
 }
 
@@ -263,7 +293,7 @@ bool StepCheck::keeps_across_lines(const Vector& d, double limit) const {
 }
 
 /// X_k keeps to the inequality normalᵀx ≤ h of F.
-void StepCheck::within(const RationalVector& normal, const Rational& h, const std::function<LineForm()>& relaxed) {
+void StepCheck::within(const RationalVector& normal, const Rational& h, const Relaxed& relaxed) {
   Rational slack = 0;
   Vector d(size_.size());
   for (Index i = 0; i < d.size(); ++i) {
@@ -300,11 +330,11 @@ void StepCheck::within(const RationalVector& normal, const Rational& h, const st
   open(fmt::format("whether the estimate keeps to the exact set along {}", text(d)));
 }
 
-void StepCheck::against(const Polytope& F, const std::function<LineForm()>& relaxed) {
+void StepCheck::against(const Polytope& F, const Relaxed& relaxed) {
   const Description& generators = F.representation().generators();
   for (std::size_t j = 0; j < generators.rows.size() && !violation_; ++j) {
     const RationalVector& row = generators.rows[j];
-    if (sgn(row[0]) != 0) contains_vertex({row.begin() + 1, row.end()});
+    if (sgn(row[0]) != 0) contains_vertex({row.begin() + 1, row.end()}, F, relaxed);
   }
   const Polytope::Generators g = F.generators();
   for (Index j = 0; j < g.rays.cols() && !violation_; ++j) contains_direction(g.rays.col(j), false);
@@ -332,11 +362,17 @@ void StepCheck::against(const Polytope& F, const std::function<LineForm()>& rela
   exact_holds_ = !violation_ && undecided_ == before;
 }
 
-void StepCheck::against(const LineForm& successors, const Matrix& directions, bool holds_them_all) {
+void StepCheck::against(const LineForm& successors, const Matrix& directions, bool holds_them_all, const Relaxed& relaxed) {
+  std::optional<LineForm> wide;
+  const auto moved_along = [&](const Vector& d, double needed) {
+    if (!nominal_) return 0.0;
+    if (!wide) wide = relaxed();
+    return std::max(0.0, support(*wide, d) - needed);
+  };
   const bool claims = step_.tightness == Tightness::exact && !reported_empty() && row_.exact_exchange;
   for (Index j = 0; j < directions.cols() && !violation_; ++j) {
     const Vector d = directions.col(j);
-    const double slack = (margin_ + direction_tolerance * size_).dot(d.cwiseAbs()) + rounding::tiny;
+    double slack = (margin_ + direction_tolerance * size_).dot(d.cwiseAbs()) + rounding::tiny;
     Certificate why;
     const double needed = support(successors, d, &why);
     const bool coordinate = (d.array() != 0).count() == 1;
@@ -345,7 +381,7 @@ void StepCheck::against(const LineForm& successors, const Matrix& directions, bo
     const double hull = !coordinate ? infinity : d[i] > 0 ? d[i] * step_.hull.upper[i] : d[i] * step_.hull.lower[i];
     const double set = reported_empty() ? -infinity : support(row_.set, d),
                  reached = reported_empty() ? -infinity : attained(row_.set, d);
-    if (claims && needed != -infinity && reached > needed + slack) {
+    if (claims && needed != -infinity && reached > needed + slack && reached > needed + slack + moved_along(d, needed)) {
       violated(
           fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where no successor of the set before that is "
                       "consistent with the data lies beyond {:.17g}",
@@ -360,6 +396,7 @@ void StepCheck::against(const LineForm& successors, const Matrix& directions, bo
     if (shown && needed + 0.5 * slack <= std::min(hull, reached) + slack) continue;
     try {
       const rounding::Range exact = exact::support(successors, d);
+      if (exact.lower > allowed + slack && exact.lower < infinity) slack += moved_along(d, exact.lower);
       if (exact.lower > allowed + slack && holds_them_all) {
         violated(
             fmt::format("a successor of the set before, consistent with the data, reaches {:.17g} along {}; the reported {} only "
@@ -369,6 +406,7 @@ void StepCheck::against(const LineForm& successors, const Matrix& directions, bo
         continue;
       }
       if (exact.upper <= std::min(hull, reached) + slack) continue;
+      if (!reported_empty() && exact.upper <= std::min(hull, exact::support(row_.set, d).lower) + slack) continue;
     } catch (const Error& error) {
       if (error.code() != Errc::unsupported) throw;
     }

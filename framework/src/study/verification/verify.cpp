@@ -249,13 +249,14 @@ class Verification {
     if (uncertain && pipeline.steps[i].tightness == Tightness::exact) {
       check.skipped("a claim of \"exact\" is not checked where matrices are known by intervals only");
     }
+    const auto relaxed = [&](const Model& model) {
+      if (i > 0 && !row_before) return make_empty(row.set.dim());
+      const LineForm start = widened(row_before ? row_before->set : pipeline.initial_set);
+      return successors(widened(model, margins.outputs), start, pipeline.admissible_set, transition);
+    };
     if (!check.violation()) {
       if (F) {
-        check.against(*F, [&] {
-          if (i > 0 && !row_before) return make_empty(row.set.dim());
-          const LineForm start = widened(row_before ? row_before->set : pipeline.initial_set);
-          return successors(widened(run_.model, margins.outputs), start, pipeline.admissible_set, transition);
-        });
+        check.against(*F, [&] { return relaxed(run_.model); });
         ++found.by_polytopes;
       } else if (i > 0 && !row_before) {
         check.skipped("the step does not follow the one before: its successors are not checked");
@@ -265,7 +266,8 @@ class Verification {
         Model model = run_.model;
         for (int draw = 0; draw < (uncertain ? 2 : 1); ++draw) {
           model.linear = drawn(run_.model.linear, row.k, draw);
-          check.against(successors(model, start, pipeline.admissible_set, transition), directions, pipeline.follows_its_sets);
+          check.against(successors(model, start, pipeline.admissible_set, transition), directions, pipeline.follows_its_sets,
+                        [&] { return relaxed(model); });
         }
         ++found.by_supports;
       }

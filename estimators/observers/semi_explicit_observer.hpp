@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Observer for descriptor systems on backends with exact intersections [Rego2025, sec. 4], in the coordinates of static_rows.hpp,
-// z = Vᵀ x = (z̃, ž):
+// z = T⁻¹ x = (z̃, ž):
 //   Z̄_k = {([Ã z + B̃ u + B̃w w]; ž) : z ∈ Ẑ_{k-1}, w ∈ W, ž ∈ R^{n-n_z}} cut by the static rows with a second copy of W, then by
 //   the measurement.
 // ž is free with lines; without, it is taken from an admissible set X_A that holds x_k for all k. Exact if no generator of W
@@ -22,6 +22,6 @@
 
 namespace cordon::estimators {
 
-std::unique_ptr<Observer> singular_value_observer(const ObserverContext& context, const Params& params);
+std::unique_ptr<Observer> semi_explicit_observer(const ObserverContext& context, const Params& params);
 
 }  // namespace cordon::estimators

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "observers/singular_value_observer.hpp"
+#include "observers/semi_explicit_observer.hpp"
 
 #include <optional>
 
 #include <boost/container/small_vector.hpp>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
 #include "observers/interval_spread.hpp"
@@ -16,9 +17,9 @@ namespace cordon::estimators {
 
 namespace {
 
-class SingularValueObserver final : public Observer {
+class SemiExplicitObserver final : public Observer {
  public:
-  SingularValueObserver(const ObserverContext& context, const Params& params)
+  SemiExplicitObserver(const ObserverContext& context, const Params& params)
       : Observer(context.model, context.backend),
         transformed_(model().linear),
         same_coordinates_(transformed_.T.isIdentity(0)),
@@ -52,7 +53,7 @@ class SingularValueObserver final : public Observer {
     if (params.has("admissible_set")) {
       recursion_ = Tightness::outer;  // of the set only the part that E does not determine is used
       admissible_ = backend().import(params.set_form("admissible_set"));
-      const Matrix lower = transformed_.T.transpose().bottomRows(free);
+      const Matrix lower = transformed_.T_inverse.bottomRows(free);
       free_ = backend().affine_map(admissible_, lower, Vector::Zero(free));
     } else {
       free_ = backend().space(free);
@@ -93,7 +94,7 @@ class SingularValueObserver final : public Observer {
   void do_replace(const Enclosure& X) override { Z_ = to_z(X); }
 
   Enclosure to_z(const Enclosure& X) const {
-    return same_coordinates_ ? X : backend().affine_map(X, transformed_.T.transpose(), Vector::Zero(X->dim()));
+    return same_coordinates_ ? X : backend().affine_map(X, transformed_.T_inverse, Vector::Zero(X->dim()));
   }
   Enclosure to_x(const Enclosure& Z) const {
     return same_coordinates_ ? Z : backend().affine_map(Z, transformed_.T, Vector::Zero(Z->dim()));
@@ -141,8 +142,8 @@ class SingularValueObserver final : public Observer {
 
 }  // namespace
 
-std::unique_ptr<Observer> singular_value_observer(const ObserverContext& context, const Params& params) {
-  return std::make_unique<SingularValueObserver>(context, params);
+std::unique_ptr<Observer> semi_explicit_observer(const ObserverContext& context, const Params& params) {
+  return std::make_unique<SemiExplicitObserver>(context, params);
 }
 
 }  // namespace cordon::estimators

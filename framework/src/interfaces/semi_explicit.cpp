@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/interfaces/semi_explicit.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "cordon/core/error.hpp"
+#include "cordon/interfaces/descriptor_matrix.hpp"
+#include "solvers/rational.hpp"
+
+namespace cordon {
+
+namespace {
+
+using rational::Rational;
+using rational::RationalMatrix;
+
+std::vector<Index> others(const std::vector<Index>& chosen, Index n) {
+  std::vector<Index> rest;
+  for (Index i = 0; i < n; ++i) {
+    if (std::find(chosen.begin(), chosen.end(), i) == chosen.end()) rest.push_back(i);
+  }
+  return rest;
+}
+
+RationalMatrix product(const RationalMatrix& A, const RationalMatrix& B) {
+  RationalMatrix out(A.rows(), B.cols());
+  for (Index i = 0; i < A.rows(); ++i) {
+    for (Index k = 0; k < A.cols(); ++k) {
+      if (sgn(A(i, k)) == 0) continue;
+      for (Index j = 0; j < B.cols(); ++j) {
+        if (sgn(B(k, j)) != 0) out(i, j) += A(i, k) * B(k, j);
+      }
+    }
+  }
+  return out;
+}
+
+SemiExplicitForm::Part rounded(const RationalMatrix& A) {
+  SemiExplicitForm::Part part{Matrix(A.rows(), A.cols()), true};
+  for (Index i = 0; i < A.rows(); ++i) {
+    for (Index j = 0; j < A.cols(); ++j) {
+      part.rows(i, j) = rational::nearest(A(i, j));
+      part.is_exact = part.is_exact && Rational(part.rows(i, j)) == A(i, j);
+    }
+  }
+  if (!part.rows.allFinite()) throw Error(Errc::not_finite, "an equation of the descriptor system, solved, overflows");
+  return part;
+}
+
+/// [E_RP⁻¹, E_RP⁻¹ E_RQ].
+RationalMatrix solved_core(MatrixIn E, const DescriptorMatrix::Pivots& pivots, const std::vector<Index>& Q) {
+  const auto r = static_cast<Index>(pivots.rows.size());
+  RationalMatrix rows(r, 2 * r + static_cast<Index>(Q.size()));
+  for (Index i = 0; i < r; ++i) {
+    const Index row = pivots.rows[static_cast<std::size_t>(i)];
+    for (Index j = 0; j < r; ++j) rows(i, j) = rational::exact(E(row, pivots.cols[static_cast<std::size_t>(j)]));
+    rows(i, r + i) = 1;
+    for (std::size_t j = 0; j < Q.size(); ++j) rows(i, 2 * r + static_cast<Index>(j)) = rational::exact(E(row, Q[j]));
+  }
+  if (static_cast<Index>(reduce_rows(rows, r).size()) < r) throw Error(Errc::invalid, "the pivots of E are not regular");
+  RationalMatrix out(r, rows.cols() - r);
+  for (Index i = 0; i < r; ++i) {
+    for (Index j = 0; j < out.cols(); ++j) out(i, j) = rows(i, r + j);
+  }
+  return out;
+}
+
+}  // namespace
+
+struct SemiExplicitForm::Rows {
+  RationalMatrix dynamic, fixed;
+};
+
+SemiExplicitForm::SemiExplicitForm(Index n) : SemiExplicitForm(Matrix::Identity(n, n)) {}
+
+SemiExplicitForm::SemiExplicitForm(MatrixIn E) {
+  DescriptorMatrix::Pivots pivots = DescriptorMatrix::pivots_of(E);
+  std::sort(pivots.rows.begin(), pivots.rows.end());
+  std::sort(pivots.cols.begin(), pivots.cols.end());
+  const Index n = E.rows();
+  rank_ = static_cast<Index>(pivots.rows.size());
+  const std::vector<Index> Q = others(pivots.cols, n), S = others(pivots.rows, n);
+  const RationalMatrix core = solved_core(E, pivots, Q);
+  RationalMatrix dynamic(rank_, n), fixed(n - rank_, n);
+  for (Index i = 0; i < rank_; ++i) {
+    for (Index j = 0; j < rank_; ++j) dynamic(i, pivots.rows[static_cast<std::size_t>(j)]) = core(i, j);
+  }
+  for (Index i = 0; i < n - rank_; ++i) {
+    const Index row = S[static_cast<std::size_t>(i)];
+    for (Index k = 0; k < rank_; ++k) {
+      const double coefficient = E(row, pivots.cols[static_cast<std::size_t>(k)]);
+      if (coefficient == 0) continue;
+      for (Index j = 0; j < n; ++j) fixed(i, j) -= Rational(coefficient) * dynamic(k, j);
+    }
+    fixed(i, row) = 1;
+  }
+  rows_ = std::make_shared<const Rows>(Rows{std::move(dynamic), std::move(fixed)});
+
+  T_ = T_inverse_ = Matrix::Zero(n, n);
+  for (Index i = 0; i < rank_; ++i) T_(pivots.cols[static_cast<std::size_t>(i)], i) = 1;
+  for (Index j = 0; j < n - rank_; ++j) T_(Q[static_cast<std::size_t>(j)], rank_ + j) = 1;
+  T_inverse_ = T_.transpose();
+  for (Index i = 0; i < rank_; ++i) {
+    for (Index j = 0; j < n - rank_; ++j) {
+      const double share = rational::nearest(core(i, rank_ + j));
+      T_(pivots.cols[static_cast<std::size_t>(i)], rank_ + j) = share == 0 ? 0 : -share;
+      T_inverse_(i, Q[static_cast<std::size_t>(j)]) = share;
+      is_exact_ = is_exact_ && Rational(share) == core(i, rank_ + j);
+    }
+  }
+}
+
+SemiExplicitForm::Part SemiExplicitForm::dynamic_part(MatrixIn M) const {
+  return rounded(product(rows_->dynamic, rational::exact_matrix(M)));
+}
+
+SemiExplicitForm::Part SemiExplicitForm::static_part(MatrixIn M) const {
+  return rounded(product(rows_->fixed, rational::exact_matrix(M)));
+}
+
+SemiExplicitForm::Part SemiExplicitForm::dynamic_part_of_state(MatrixIn A) const {
+  return rounded(product(rows_->dynamic, product(rational::exact_matrix(A), rational::exact_matrix(T_))));
+}
+
+SemiExplicitForm::Part SemiExplicitForm::static_part_of_state(MatrixIn A) const {
+  return rounded(product(rows_->fixed, product(rational::exact_matrix(A), rational::exact_matrix(T_))));
+}
+
+}  // namespace cordon
