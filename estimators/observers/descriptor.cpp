@@ -2,12 +2,14 @@
 // Observer for descriptor systems E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with singular E. The recursion follows from what
 // the backend can do: semi_explicit_observer.hpp where intersections are exact, else pseudo_inverse_observer.hpp.
 #include "components.hpp"
+#include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/interfaces/descriptor_matrix.hpp"
 #include "observer_parameters.hpp"
 #include "observers/interval_spread.hpp"
 #include "observers/pseudo_inverse_observer.hpp"
 #include "observers/semi_explicit_observer.hpp"
+#include "observers/static_rows.hpp"
 
 namespace cordon::estimators {
 
@@ -31,6 +33,11 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
     }
   }
   if (in_semi_explicit_form(*context.backend)) {
+    try {
+      StaticRows{m};
+    } catch (const Error& error) {
+      problems.push_back({"", error.what(), "write the equations in other units"});
+    }
     if (params.has("admissible_set")) {
       check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
     } else if (!info.unbounded && m.is_descriptor() && descriptor_rank(m.E) < m.states()) {

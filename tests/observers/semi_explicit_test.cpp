@@ -90,4 +90,5 @@ TEST_CASE("the form says the same as E, to the last digit of every entry, in any
 TEST_CASE("what is no descriptor matrix is refused") {
   CHECK_THROWS_AS(SemiExplicitForm(Matrix(2, 3).setZero()), Error);
   CHECK_THROWS_AS(SemiExplicitForm(Matrix{{1, std::nan("")}, {0, 1}}), Error);
+  CHECK_THROWS_AS(SemiExplicitForm(Matrix{{1e-300, 0}, {0, 1}}).dynamic_part(Matrix{{1e300, 1}, {1, 1}}), Error);  // overflows
 }

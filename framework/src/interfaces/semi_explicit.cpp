@@ -2,6 +2,7 @@
 #include "cordon/interfaces/semi_explicit.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "cordon/core/error.hpp"
@@ -36,15 +37,20 @@ RationalMatrix product(const RationalMatrix& A, const RationalMatrix& B) {
   return out;
 }
 
+/// Errc::not_finite for numbers beyond the range of doubles.
+double in_doubles(const Rational& q, bool& is_exact) {
+  const double nearest = rational::nearest(q);
+  if (!std::isfinite(nearest))
+    throw Error(Errc::not_finite, "an equation of the descriptor system, solved for its states, overflows");
+  is_exact = is_exact && Rational(nearest) == q;
+  return nearest;
+}
+
 SemiExplicitForm::Part rounded(const RationalMatrix& A) {
   SemiExplicitForm::Part part{Matrix(A.rows(), A.cols()), true};
   for (Index i = 0; i < A.rows(); ++i) {
-    for (Index j = 0; j < A.cols(); ++j) {
-      part.rows(i, j) = rational::nearest(A(i, j));
-      part.is_exact = part.is_exact && Rational(part.rows(i, j)) == A(i, j);
-    }
+    for (Index j = 0; j < A.cols(); ++j) part.rows(i, j) = in_doubles(A(i, j), part.is_exact);
   }
-  if (!part.rows.allFinite()) throw Error(Errc::not_finite, "an equation of the descriptor system, solved, overflows");
   return part;
 }
 
@@ -72,7 +78,7 @@ struct SemiExplicitForm::Rows {
   RationalMatrix dynamic, fixed;
 };
 
-SemiExplicitForm::SemiExplicitForm(Index n) : SemiExplicitForm(Matrix::Identity(n, n)) {}
+SemiExplicitForm::SemiExplicitForm(Index n) : rank_(n), T_(Matrix::Identity(n, n)), T_inverse_(T_) {}
 
 SemiExplicitForm::SemiExplicitForm(MatrixIn E) {
   DescriptorMatrix::Pivots pivots = DescriptorMatrix::pivots_of(E);
@@ -103,27 +109,30 @@ SemiExplicitForm::SemiExplicitForm(MatrixIn E) {
   T_inverse_ = T_.transpose();
   for (Index i = 0; i < rank_; ++i) {
     for (Index j = 0; j < n - rank_; ++j) {
-      const double share = rational::nearest(core(i, rank_ + j));
+      const double share = in_doubles(core(i, rank_ + j), is_exact_);
       T_(pivots.cols[static_cast<std::size_t>(i)], rank_ + j) = share == 0 ? 0 : -share;
       T_inverse_(i, Q[static_cast<std::size_t>(j)]) = share;
-      is_exact_ = is_exact_ && Rational(share) == core(i, rank_ + j);
     }
   }
 }
 
 SemiExplicitForm::Part SemiExplicitForm::dynamic_part(MatrixIn M) const {
+  if (!rows_) return {M, true};
   return rounded(product(rows_->dynamic, rational::exact_matrix(M)));
 }
 
 SemiExplicitForm::Part SemiExplicitForm::static_part(MatrixIn M) const {
+  if (!rows_) return {Matrix(0, M.cols()), true};
   return rounded(product(rows_->fixed, rational::exact_matrix(M)));
 }
 
 SemiExplicitForm::Part SemiExplicitForm::dynamic_part_of_state(MatrixIn A) const {
+  if (!rows_) return {A, true};
   return rounded(product(rows_->dynamic, product(rational::exact_matrix(A), rational::exact_matrix(T_))));
 }
 
 SemiExplicitForm::Part SemiExplicitForm::static_part_of_state(MatrixIn A) const {
+  if (!rows_) return {Matrix(0, A.cols()), true};
   return rounded(product(rows_->fixed, product(rational::exact_matrix(A), rational::exact_matrix(T_))));
 }
 

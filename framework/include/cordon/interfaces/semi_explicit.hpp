@@ -21,7 +21,7 @@ class SemiExplicitForm {
  public:
   /// The identity, where x_{k+1} is given as it stands.
   explicit SemiExplicitForm(Index n);
-  /// Errc::dimension if E is not square, Errc::not_finite.
+  /// Errc::dimension if E is not square; Errc::not_finite, here and below, for NaN and infinity and where a result overflows.
   explicit SemiExplicitForm(MatrixIn E);
 
   Index states() const { return T_.rows(); }
@@ -47,7 +47,7 @@ class SemiExplicitForm {
   Part static_part_of_state(MatrixIn A) const;
 
  private:
-  struct Rows;  // in rationals
+  struct Rows;  // in rationals; none: the identity
   std::shared_ptr<const Rows> rows_;
   Index rank_ = 0;
   bool is_exact_ = true;

@@ -17,26 +17,40 @@ Matrix beside(const Matrix& A, const Matrix& B) {
   return both;
 }
 
+/// What `make` returns; numbers beyond the range of doubles are an error of the study.
+template <class Make>
+auto in_doubles(const std::string& file, const std::string& pointer, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (error.code() != Errc::not_finite) throw;
+    throw InputError(file, {{pointer, error.what(), "write the equations in other units"}});
+  }
+}
+
+SemiExplicitForm form_of(const LinearModel& model, const std::string& file, const std::string& pointer) {
+  if (!model.is_descriptor()) return SemiExplicitForm(model.states());
+  return in_doubles(file, pointer, [&] { return SemiExplicitForm(model.E); });
+}
+
 }  // namespace
 
 LinearPlant::LinearPlant(const LinearModel& model, const std::string& file, const std::string& pointer)
-    : model_(model),
-      file_(file),
-      pointer_(pointer),
-      form_(model.is_descriptor() ? SemiExplicitForm(model.E) : SemiExplicitForm(model.states())),
-      z_(Vector::Zero(form_.rank())) {
+    : model_(model), file_(file), pointer_(pointer), form_(form_of(model, file, pointer)), z_(Vector::Zero(form_.rank())) {
   model_.B = beside(model.B, model.F);
   model_.D = beside(model.D, Matrix::Zero(model.outputs(), model.faults()));
   split_rows();
 }
 
 void LinearPlant::split_rows() {
-  dynamic_A_ = form_.dynamic_part(model_.A).rows;
-  dynamic_B_ = form_.dynamic_part(model_.B).rows;
-  dynamic_Bw_ = form_.dynamic_part(model_.Bw).rows;
-  static_A_ = form_.static_part(model_.A).rows;
-  static_B_ = form_.static_part(model_.B).rows;
-  static_Bw_ = form_.static_part(model_.Bw).rows;
+  in_doubles(file_, pointer_, [&] {
+    dynamic_A_ = form_.dynamic_part(model_.A).rows;
+    dynamic_B_ = form_.dynamic_part(model_.B).rows;
+    dynamic_Bw_ = form_.dynamic_part(model_.Bw).rows;
+    static_A_ = form_.static_part(model_.A).rows;
+    static_B_ = form_.static_part(model_.B).rows;
+    static_Bw_ = form_.static_part(model_.Bw).rows;
+  });
   if (form_.static_rows() == 0) return;
   const Vector units = linalg::row_scales(static_A_);
   for (Matrix* part : {&static_A_, &static_B_, &static_Bw_}) *part = units.asDiagonal() * *part;
