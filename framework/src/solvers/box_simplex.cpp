@@ -53,13 +53,13 @@ BoxSimplex::BoxSimplex(const Matrix& A, VectorIn b)
   b_.head(m_) = b;
 }
 
-BoxSimplex::Status BoxSimplex::maximize(VectorIn g, VectorIn scores, double enough) {
+BoxSimplex::Status BoxSimplex::maximize(VectorIn g, VectorIn scores, double enough, Index most) {
   cost_.head(g_) = g;
   objective_ = g;
   nudged_ = false;
   order_by(scores);
   build_basis();
-  return solve(enough);
+  return solve(enough, most);
 }
 
 /// The m best come first and in order, of equal ones the first; one that is no number comes last. The others follow in any order.
@@ -291,12 +291,12 @@ BoxSimplex::Status BoxSimplex::concluded(Status status) {
   return status;
 }
 
-BoxSimplex::Status BoxSimplex::solve(double enough) {
+BoxSimplex::Status BoxSimplex::solve(double enough, Index most) {
   iterations_ = 0;
   if (!take_objective()) return Status::unsolved;
   bool rebuilt = false;
   Index idle = 0;
-  for (const Index limit = 200 + 20 * (m_ + g_); iterations_ < limit; ++iterations_) {
+  for (const Index limit = std::min(most, 200 + 20 * (m_ + g_)); iterations_ < limit; ++iterations_) {
     const bool is_below = enough > any && objective() < enough;
     const Index row = is_below ? none : leaving_row();
     if (row == none && nudged_) {

@@ -31,8 +31,8 @@ class BoxSimplex {
   static constexpr double any = -std::numeric_limits<double>::infinity();
 
   /// The first basis consists of the columns with the smallest scores, as far as they are independent. Ends early once the
-  /// maximum is known to be < enough.
-  Status maximize(VectorIn g, VectorIn scores, double enough = any);
+  /// maximum is known to be < enough, and unsolved after `most` iterations.
+  Status maximize(VectorIn g, VectorIn scores, double enough = any, Index most = std::numeric_limits<Index>::max());
 
   VectorIn multipliers() const { return y_.head(m_); }
   /// gᵀξ of the last basic solution.
@@ -61,7 +61,7 @@ class BoxSimplex {
   void nudge_costs();
   bool take_back_nudges();
   Status concluded(Status status);
-  Status solve(double enough);
+  Status solve(double enough, Index most);
   Index leaving_row() const;
   void price(Index row);
   Index entering_variable(double infeasibility);

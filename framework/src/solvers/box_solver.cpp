@@ -12,6 +12,8 @@ namespace {
 
 /// Coefficients below this share of their row are left out: proposals need no more, and pivots on noise are bad ones.
 constexpr double noise = 1e-13;
+constexpr Index some_rows = 40, many_rows = 100;  ///< from which on simplex iterations are counted, and not tried first
+constexpr Index long_way = 4;                     ///< as many iterations per row
 
 /// The power of two that brings the largest entry into [1, 2).
 int power_of(VectorIn g) {
@@ -66,14 +68,36 @@ void BoxSolver::take_objective(VectorIn g) {
   shift(objective_, -power_);
 }
 
+/// For `objective_`, with the solution in `simplex_`, or in `interior_` and `point_`.
+BoxSolver::Status BoxSolver::solve(double enough) {
+  const Index rows = rows_.A.rows();
+  if (rows >= many_rows) return solve_from_inside(enough);
+  if (!guess_) guess_.emplace(rows_.A, b_);
+  if (rows < some_rows) return simplex_.maximize(objective_, guess_->scores(objective_), enough);
+  const Status status = simplex_.maximize(objective_, guess_->scores(objective_), enough, long_way * rows);
+  return status == Status::unsolved ? solve_from_inside(enough) : status;
+}
+
+BoxSolver::Status BoxSolver::solve_from_inside(double enough) {
+  if (!interior_) interior_.emplace(rows_.A, b_);
+  if (!interior_->maximize(objective_)) {
+    if (!guess_) guess_.emplace(rows_.A, b_);
+    return simplex_.maximize(objective_, guess_->scores(objective_), enough);
+  }
+  const Index few = 20 + rows_.A.rows() / 4;
+  const Status status = simplex_.maximize(objective_, interior_->scores(), enough, few);
+  if (status != Status::unsolved) return status;
+  point_ = interior_->point();
+  return Status::optimal;
+}
+
 BoxSolver::Status BoxSolver::maximize(VectorIn g, double enough) {
   take_objective(g);
-  if (!guess_) guess_.emplace(rows_.A, b_);
   point_.reset();
-  const Status status = simplex_.maximize(objective_, guess_->scores(objective_), std::ldexp(enough - idle_, -power_));
+  const Status status = solve(std::ldexp(enough - idle_, -power_));
   if (status == Status::unsolved) return second_opinion(g);
-  value_ = std::ldexp(simplex_.objective(), power_) + idle_;
-  y_ = simplex_.multipliers();
+  value_ = std::ldexp(point_ ? interior_->value() : simplex_.objective(), power_) + idle_;
+  y_ = point_ ? VectorIn(interior_->multipliers()) : simplex_.multipliers();
   if (status != Status::infeasible) shift(y_, power_);
   y_.array() *= rows_.scale.array();
   return status;
