@@ -121,10 +121,12 @@ class PointedCone {
       for (std::size_t k = 0; k < ray.z.size(); ++k) {
         mpz_addmul(ray.value.get_mpz_t(), rows_[row][k].get_mpz_t(), ray.z[k].get_mpz_t());
       }
+      work_ += static_cast<double>(ray.z.size() * digits_of(rows_[row]) * digits_of(ray.z));
       const int sign = sgn(ray.value);
       if (sign > 0) inside.push_back(&ray);
       if (sign < 0) outside.push_back(&ray);
     }
+    check_work();
     if (!outside.empty() && !inside.empty()) find_incidence();
     std::vector<Ray> created;
     BitSet common(rows_.size());
@@ -132,6 +134,8 @@ class PointedCone {
       for (const Ray* q : outside) {
         if (!adjacent(*p, *q, common)) continue;
         created.push_back({combination(*p, *q), common});
+        const std::size_t digits = digits_of(p->z) + digits_of(q->z) + mpz_size(p->value.get_mpz_t());
+        work_ += static_cast<double>(p->z.size() * digits * digits);  // products, and a greatest common divisor
         created.back().zeros.insert(row);
         check_count(rays_.size() + created.size());
       }
@@ -141,6 +145,13 @@ class PointedCone {
       if (sgn(ray.value) == 0) ray.zeros.insert(row);
     }
     std::move(created.begin(), created.end(), std::back_inserter(rays_));
+  }
+
+  /// Words of the largest number.
+  static std::size_t digits_of(const Integers& z) {
+    std::size_t most = 1;
+    for (const mpz_class& x : z) most = std::max(most, mpz_size(x.get_mpz_t()));
+    return most;
   }
 
   void find_incidence() {
@@ -187,7 +198,7 @@ class PointedCone {
     if (count > most_rays) refuse("rows", static_cast<double>(count), static_cast<double>(most_rays));
   }
   void check_work() const {
-    if (work_ > most_work) refuse("comparisons", work_, most_work);
+    if (work_ > most_work) refuse("operations", work_, most_work);
   }
   [[noreturn]] void refuse(const char* what, double amount, double limit) const {
     throw Error(Errc::unsupported, "polytope: converting " + std::to_string(rows_.size()) + " rows in dimension " +

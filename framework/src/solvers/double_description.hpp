@@ -24,7 +24,7 @@ struct Description {
 
 /// Minimal generators of {x : inequalities}: no rows for ∅, (1) alone for n = 0. Points and rays are determined up to lines.
 /// Both conversions: Errc::unsupported above `most_dimensions` or `most_rows`, and when `most_rays` intermediate ones or
-/// `most_work` comparisons are exceeded, which takes seconds.
+/// `most_work` operations are exceeded, which takes seconds.
 Description generators_of(const Description& inequalities);
 
 /// Minimal inequalities of conv(points) ⊕ cone(rays) ⊕ span(lines). ∅ (no rows) gives the one row -1 ≥ 0.
@@ -32,6 +32,6 @@ Description inequalities_of(const Description& generators);
 
 inline constexpr Index most_dimensions = 20;
 inline constexpr std::size_t most_rows = 20'000, most_rays = 20'000;
-inline constexpr double most_work = 4e8;  ///< words of bit sets
+inline constexpr double most_work = 1e8;  ///< on words, of bit sets and of numbers
 
 }  // namespace cordon

@@ -7,6 +7,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/study/data.hpp"
+#include "solvers/polytope_representation.hpp"
 #include "study/data/random.hpp"
 #include "study/verification/design_check.hpp"
 #include "study/verification/feasible_set.hpp"
@@ -62,16 +63,17 @@ class FeasibleSequence {
     if (sets_) {
       try {
         F = sets_->step(sample);
+        bits_ += F->bits();
         if (uncertain_ && F->is_empty()) {  // which says nothing about other matrices of the intervals
           F.reset();
           sets_.reset();
         }
       } catch (const Error& error) {
         if (error.code() != Errc::unsupported) throw;
+        F.reset();
         sets_.reset();
       }
     }
-    bits_ += F ? F->bits() : 0;
     if (bits_ > most_bits_in_all) sets_.reset();  // a long run goes on by directions
     keeps_ = keeps_ && kept_.size() < most_kept_polytopes && bits_ <= most_kept_bits;
     if (keeps_) kept_.push_back(F);
@@ -100,6 +102,19 @@ Matrix directions_of(Index n, const VerifyOptions& options, Index k) {
     for (Index i = 0; i < n; ++i) D(i, j) = random.symmetric();
   }
   return D;
+}
+
+/// False where F cannot be converted into vertices and inequalities, which is found out before anything is checked.
+bool against_polytope(StepCheck& check, const Polytope& F, const StepCheck::Relaxed& relaxed) {
+  try {
+    F.representation().generators();
+    F.representation().inequalities();
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported) throw;
+    return false;
+  }
+  check.against(F, relaxed);
+  return true;
 }
 
 class Verification {
@@ -255,8 +270,7 @@ class Verification {
       return successors(widened(model, margins.outputs), start, pipeline.admissible_set, transition);
     };
     if (!check.violation()) {
-      if (F) {
-        check.against(*F, [&] { return relaxed(run_.model); });
+      if (F && against_polytope(check, *F, [&] { return relaxed(run_.model); })) {
         ++found.by_polytopes;
       } else if (i > 0 && !row_before) {
         check.skipped("the step does not follow the one before: its successors are not checked");
