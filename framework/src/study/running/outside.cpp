@@ -11,6 +11,7 @@ namespace cordon::detail {
 
 namespace {
 
+constexpr double last_digits = 1e-14;
 constexpr double rounding = 1e-9, barely = 1e-6;
 
 double largest(VectorIn x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
@@ -27,6 +28,12 @@ bool clearly_outside(const LineForm& X, VectorIn x, double margin) {
 }
 
 bool clearly_outside(const LineForm& X, VectorIn x) {
+  if (X.dim() != x.size()) return false;
+  const Vector sizes = x.cwiseAbs().cwiseMax(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
+  return clearly_outside(X, x, Vector(rounding * sizes.array() + last_digits * largest(sizes)));
+}
+
+bool outside_by_its_size(const LineForm& X, VectorIn x) {
   if (X.dim() != x.size()) return false;
   const double size = largest(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
   return clearly_outside(X, x, rounding * std::max(size, largest(x)));

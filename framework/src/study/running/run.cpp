@@ -159,8 +159,8 @@ class Pipeline {
     if (truths_.empty() || truths_.front().first != estimate.k) return nullptr;
     const Vector& truth = truths_.front().second;
     const bool still_inside = outcome_.outside_from < 0;
-    if (still_inside && (estimate.consistent == Answer::no ||
-                         (holds(*estimate.set, truth) == Answer::no && clearly_outside(estimate.set->line_form(), truth)))) {
+    if (still_inside && (estimate.consistent == Answer::no || (holds(*estimate.set, truth) == Answer::no &&
+                                                               detail::outside_by_its_size(estimate.set->line_form(), truth)))) {
       outcome_.outside_from = estimate.k;
       const Index k = record.sample.k;
       if (own_model_ && nominal_ && !check_->excuses(k) &&
