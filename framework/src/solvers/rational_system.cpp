@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solvers/rational_system.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solvers/exact_program.hpp"
 
@@ -35,7 +37,7 @@ std::optional<RationalVector> multipliers(const System& s, const RationalVector&
   if (holds) return moved;
   const double largest = y.size() ? y.cwiseAbs().maxCoeff() : 0;
   const Vector preference = y.cwiseAbs().cwiseMax(1e-6 * largest + 1e-300);  // large entries bear a change best
-  const auto change = solve(std::move(equations), std::move(missing), preference);
+  const auto change = solve(equations, missing, preference);
   if (!change) return std::nullopt;
   for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += (*change)[i];
   return moved;
@@ -74,6 +76,97 @@ ExactProgram share_of_right_side(const Rows& rows) {
   return p;
 }
 
+/// K x = r in integers, row by row without common factors: their products need no greatest common divisors, and the numbers stay
+/// as short as determinants are [Bareiss1968]. Columns that no pivot may come from are left out.
+class IntegerSystem {
+ public:
+  IntegerSystem(const RationalMatrix& K, const RationalVector& r, const Vector& preference) {
+    for (Index j = 0; j < K.cols(); ++j) {
+      if (preference[j] == 0) continue;
+      columns_.push_back(j);
+      preference_.push_back(preference[j]);
+    }
+    for (Index i = 0; i < K.rows(); ++i) {
+      RationalVector row;
+      for (const Index j : columns_) row.push_back(K(i, j));
+      row.push_back(r[at(i)]);
+      make_primitive(row);
+      rows_.emplace_back();
+      for (const Rational& x : row) rows_.back().push_back(x.get_num());
+    }
+  }
+
+  /// False: a row says 0 = r ≠ 0.
+  bool eliminate() {
+    std::vector<bool> used(columns_.size(), false);
+    mpz_class before = 1;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const auto col = best_column(rows_[i], used);
+      if (!col) {
+        if (sgn(rows_[i].back()) != 0) return false;
+        continue;
+      }
+      used[*col] = true;
+      pivots_.emplace_back(i, *col);
+      const mpz_class pivot = rows_[i][*col];
+      for (std::size_t k = i + 1; k < rows_.size(); ++k) subtract(rows_[k], rows_[i], *col, pivot, before);
+      before = pivot;
+    }
+    return true;
+  }
+
+  Index rank() const { return static_cast<Index>(pivots_.size()); }
+
+  /// By substitution from the last pivot on; of `size` entries, those without a pivot are 0.
+  RationalVector solution(Index size) const {
+    RationalVector x(at(size));
+    for (auto it = pivots_.rbegin(); it != pivots_.rend(); ++it) {
+      const auto& [i, col] = *it;
+      Rational left = rows_[i].back();
+      for (auto later = pivots_.rbegin(); later != it; ++later) {
+        if (sgn(rows_[i][later->second]) != 0) left -= rows_[i][later->second] * x[at(columns_[later->second])];
+      }
+      x[at(columns_[col])] = left / rows_[i][col];
+    }
+    return x;
+  }
+
+ private:
+  using Row = std::vector<mpz_class>;
+
+  static void subtract(Row& row, const Row& from, std::size_t col, const mpz_class& pivot, const mpz_class& before) {
+    const mpz_class factor = row[col];
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      row[j] *= pivot;
+      if (sgn(factor) != 0) mpz_submul(row[j].get_mpz_t(), factor.get_mpz_t(), from[j].get_mpz_t());
+      mpz_divexact(row[j].get_mpz_t(), row[j].get_mpz_t(), before.get_mpz_t());
+    }
+  }
+
+  /// With the largest |entry| · preference; nothing if all are 0.
+  std::optional<std::size_t> best_column(const Row& row, const std::vector<bool>& used) const {
+    std::optional<std::size_t> found;
+    double best = 0;
+    long unit = 0;
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+      if (used[j] || sgn(row[j]) == 0) continue;
+      long exponent = 0;
+      const double size = std::abs(mpz_get_d_2exp(&exponent, row[j].get_mpz_t())) * preference_[j];
+      if (!found) unit = exponent;
+      const double score = std::ldexp(size, static_cast<int>(std::clamp(exponent - unit, -2000L, 2000L)));
+      if (found && !(score > best)) continue;
+      best = score;
+      found = j;
+    }
+    return found;
+  }
+
+  std::vector<Row> rows_;  ///< the right-hand side comes last
+  std::vector<Index> columns_;
+  std::vector<double> preference_;
+  std::vector<std::pair<std::size_t, std::size_t>> pivots_;
+};
+
 /// Doubles of about 1 at most: multipliers may be scaled.
 Vector rounded(const RationalVector& x, Index size) {
   Vector y(size);
@@ -83,44 +176,11 @@ Vector rounded(const RationalVector& x, Index size) {
 
 }  // namespace
 
-std::optional<RationalVector> solve(RationalMatrix K, RationalVector r, const Vector& preference, Index* rank) {
-  std::vector<std::pair<Index, Index>> pivots;
-  std::vector<bool> used(at(K.cols()), false);
-  for (Index i = 0; i < K.rows(); ++i) {
-    Index col = -1;
-    double best = 0;
-    for (Index j = 0; j < K.cols(); ++j) {
-      if (used[at(j)] || preference[j] == 0 || sgn(K(i, j)) == 0) continue;
-      const double score = std::abs(K(i, j).get_d()) * preference[j];
-      if (col < 0 || score > best) {
-        best = score;
-        col = j;
-      }
-    }
-    if (col < 0) {
-      if (sgn(r[at(i)]) != 0) return std::nullopt;
-      continue;
-    }
-    used[at(col)] = true;
-    pivots.emplace_back(i, col);
-    const Rational pivot = K(i, col);
-    for (Index j = 0; j < K.cols(); ++j) {
-      if (sgn(K(i, j)) != 0) K(i, j) /= pivot;
-    }
-    r[at(i)] /= pivot;
-    for (Index k = 0; k < K.rows(); ++k) {
-      if (k == i || sgn(K(k, col)) == 0) continue;
-      const Rational factor = K(k, col);
-      for (Index j = 0; j < K.cols(); ++j) {
-        if (sgn(K(i, j)) != 0) K(k, j) -= factor * K(i, j);
-      }
-      r[at(k)] -= factor * r[at(i)];
-    }
-  }
-  if (rank) *rank = static_cast<Index>(pivots.size());
-  RationalVector x(at(K.cols()));
-  for (const auto& [row, col] : pivots) x[at(col)] = r[at(row)];
-  return x;
+std::optional<RationalVector> solve(const RationalMatrix& K, const RationalVector& r, const Vector& preference, Index* rank) {
+  IntegerSystem system(K, r, preference);
+  if (!system.eliminate()) return std::nullopt;
+  if (rank) *rank = system.rank();
+  return system.solution(K.cols());
 }
 
 System::System(const Rows& rows) : K(rows.plus.size(), rows.S.cols() + rows.A.cols()), r(exact(rows.plus)), lines(rows.S.cols()) {
@@ -180,7 +240,7 @@ std::optional<RationalVector> spread(const System& s, RationalVector gap, const 
       }
     }
   }
-  const auto y = solve(std::move(N), std::move(gap), Vector::Ones(m));
+  const auto y = solve(N, gap, Vector::Ones(m));
   if (!y) return std::nullopt;
   RationalVector x(at(all));
   for (Index j = 0; j < all; ++j) {
@@ -235,7 +295,7 @@ Finding settle(const Rows& rows) {
     for (Index i = 0; i < all; ++i) equations(j, i) = exact(j < l ? scaled.S(i, column) : scaled.A(i, column));
     if (j >= l) costs[at(j)] = scaled.g[at(column)];
   }
-  auto y = solve(std::move(equations), std::move(costs), Vector::Ones(all));
+  auto y = solve(equations, costs, Vector::Ones(all));
   if (!y) return {false, Vector::Zero(m)};
   scale_to_one(*y);
   Vector data = -rounded(*y, m);

@@ -50,9 +50,10 @@ struct Finding {
 };
 Finding settle(const Rows& rows);
 
-/// K x = r by Gauss-Jordan elimination; x is 0 outside the pivot columns, which are chosen by |entry| · preference (a column of
-/// preference 0 is never one). Nothing if the system is inconsistent on those columns. `rank` (may be null) receives the number
-/// of pivots.
-std::optional<RationalVector> solve(RationalMatrix K, RationalVector r, const Vector& preference, Index* rank = nullptr);
+/// K x = r by elimination in integers [Bareiss1968]; x is 0 outside the pivot columns, which are chosen by |entry| · preference
+/// (a column of preference 0 is never one). Nothing if the system is inconsistent on those columns. `rank` (may be null) receives
+/// the number of pivots.
+std::optional<RationalVector> solve(const RationalMatrix& K, const RationalVector& r, const Vector& preference,
+                                    Index* rank = nullptr);
 
 }  // namespace cordon::rational
