@@ -150,8 +150,7 @@ void add(Registrar& registrar, const char* name, const char* summary) {
 
 void register_metrics(Registrar& registrar) {
   add<Radius>(registrar, "radius", "half the longest edge of the interval hull");
-  add<VolumeOfSet>(registrar, "volume",
-                   "volume of the set where its representation has an exact one, else of its interval hull");
+  add<VolumeOfSet>(registrar, "volume", "volume of the set where its representation has an exact one, else of its interval hull");
   add<ContainsTruth>(registrar, "contains_truth",
                      "certified containment of the true state while the pipeline's assumptions hold");
   add<Size>(registrar, "complexity", "generators, lines and constraints of the estimate");
