@@ -38,6 +38,24 @@ std::vector<Point> strictly_convex(std::vector<Point> points, double tolerance) 
   return points;
 }
 
+/// The corners of the convex hull, counter-clockwise, by two chains in the order of the abscissa.
+std::vector<Point> convex_hull(std::vector<Point> points) {
+  std::sort(points.begin(), points.end(),
+            [](const Point& a, const Point& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Point> hull;
+  const auto add = [&](const Point& p, std::size_t least) {
+    while (hull.size() >= least && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) hull.pop_back();
+    hull.push_back(p);
+  };
+  for (const Point& p : points) add(p, 2);
+  const std::size_t lower = hull.size() + 1;
+  for (auto p = points.rbegin() + 1; p != points.rend(); ++p) add(*p, lower);
+  hull.pop_back();
+  return hull;
+}
+
 Matrix columns(const std::vector<Point>& points) {
   Matrix vertices(2, static_cast<Index>(points.size()));
   Index i = 0;
@@ -85,7 +103,9 @@ Matrix polygon(const SupportOracle& X, double tolerance) {
       open.emplace_back(p, r);
     }
   }
-  return set.restore(columns(strictly_convex(std::move(found), tolerance)));
+  // Points of the boundary are known up to rounding: where two come in the wrong order, the whole set lies beyond their edge, and
+  // it is gone around twice.
+  return set.restore(columns(strictly_convex(convex_hull(std::move(found)), tolerance)));
 }
 
 Matrix polygon(const Zonotope& Z) {

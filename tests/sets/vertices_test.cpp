@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include <random>
+
 #include <doctest/doctest.h>
 
 #include "cordon/core/error.hpp"
@@ -154,4 +156,25 @@ TEST_CASE("volume by queries equals the determinant formula") {
     RC_ASSERT(v.upper >= exact * (1 - 1e-8) - noise);
     RC_ASSERT(v.upper <= exact * (1 + 1e-8) + noise);
   }));
+}
+
+TEST_CASE("support points that are known up to rounding do not lead around a polygon twice") {
+  std::mt19937 random(5);
+  const auto draw = [&](double size) { return size * (static_cast<double>(random()) / 2147483648.0 - 1); };
+  for (int trial = 0; trial < 300; ++trial) {
+    CAPTURE(trial);
+    Matrix corners(2, 3 + trial % 6);
+    for (Index j = 0; j < corners.cols(); ++j) corners.col(j) = Eigen::Vector2d(draw(1), draw(1));
+    const auto oracle = [&](double offset, double noise) {
+      return [&, offset, noise](const Vector& d) {
+        Index best = 0;
+        const double h = (d.transpose() * corners).maxCoeff(&best) + d.sum() * offset;
+        const Vector x = corners.col(best) + Vector{{offset + draw(noise), offset + draw(noise)}};
+        return SupportPoint{h, x};
+      };
+    };
+    const double expected = area(polygon(oracle(0, 0)));
+    CHECK(area(polygon(oracle(300, 1e-9))) == doctest::Approx(expected).epsilon(1e-6));
+    CHECK(area(polygon(oracle(1e4, 1e-8))) == doctest::Approx(expected).epsilon(1e-5));
+  }
 }

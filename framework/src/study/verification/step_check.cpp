@@ -219,24 +219,22 @@ std::optional<Index> StepCheck::outside_hull(const RationalVector& x, const Vect
   return std::nullopt;
 }
 
-/// By how much farther the successors with relaxed rows reach than F, along each coordinate; infinite ones, and what cannot be
-/// found out, as infinity.
-Vector StepCheck::moved_by_rounding(const Polytope& F, const Relaxed& relaxed) {
+/// By how much farther the successors reach along each coordinate if rows are relaxed; infinity for what cannot be found out.
+Vector StepCheck::moved_by_rounding(const Successors& successors) {
   if (moved_) return *moved_;
   moved_ = Vector::Zero(size_.size());
-  if (!nominal_) return *moved_;
-  const LineForm wide = relaxed();
+  const LineForm strict = successors.exact(), relaxed = successors.relaxed();
   for (Index i = 0; i < size_.size(); ++i) {
     for (const double sign : {-1.0, 1.0}) {
       const Vector d = sign * Vector::Unit(size_.size(), i);
-      const double least = F.support(d).lower;
-      if (least < infinity) (*moved_)[i] = std::max((*moved_)[i], support(wide, d) - least);
+      const double least = exact::support(strict, d).lower;
+      if (std::isfinite(least)) (*moved_)[i] = std::max((*moved_)[i], support(relaxed, d) - least);
     }
   }
   return *moved_;
 }
 
-void StepCheck::contains_vertex(const RationalVector& exact, const Polytope& F, const Relaxed& relaxed) {
+void StepCheck::contains_vertex(const RationalVector& exact, const Successors& successors) {
   Vector x(size_.size());
   for (Index i = 0; i < x.size(); ++i) x[i] = rational::nearest(exact[index(i)]);
   if (reported_empty()) {
@@ -246,20 +244,21 @@ void StepCheck::contains_vertex(const RationalVector& exact, const Polytope& F, 
   const std::string whether = fmt::format("whether the reported set contains the vertex {} of the exact one", text(x));
   const bool has_room = (margin_.array() > 0).all();
   Vector margin = margin_ + turned_by(x);
-  if (nominal_ && outside_hull(exact, margin)) margin += moved_by_rounding(F, relaxed);
-  if (!margin.allFinite()) return open(whether);
-  if (const auto i = outside_hull(exact, margin)) {
-    return violated(
-        fmt::format("the state {} is consistent with model and data, but lies outside the hull in coordinate {}: {:.17g} is not "
-                    "in [{:.17g}, {:.17g}]",
-                    text(x), *i + 1, x[*i], step_.hull.lower[*i], step_.hull.upper[*i]),
-        false);
-  }
-  if (has_room && (holds_nearby(x) || contains(widened_, x) == Answer::yes)) return;
   try {
+    if (nominal_ && outside_hull(exact, margin)) margin += moved_by_rounding(successors);
+    if (!margin.allFinite()) return open(whether);
+    if (const auto i = outside_hull(exact, margin)) {
+      return violated(
+          fmt::format(
+              "the state {} is consistent with model and data, but lies outside the hull in coordinate {}: {:.17g} is not "
+              "in [{:.17g}, {:.17g}]",
+              text(x), *i + 1, x[*i], step_.hull.lower[*i], step_.hull.upper[*i]),
+          false);
+    }
+    if (has_room && (holds_nearby(x) || contains(widened_, x) == Answer::yes)) return;
     if (exact::contains(row_.set, exact, margin, row_margin_)) return;
     if (nominal_) {
-      margin = margin_ + turned_by(x) + moved_by_rounding(F, relaxed);
+      margin = margin_ + turned_by(x) + moved_by_rounding(successors);
       if (!margin.allFinite()) return open(whether);
       if (exact::contains(row_.set, exact, margin, row_margin_)) return;
     }
@@ -293,7 +292,7 @@ bool StepCheck::keeps_across_lines(const Vector& d, double limit) const {
 }
 
 /// X_k keeps to the inequality normalᵀx ≤ h of F.
-void StepCheck::within(const RationalVector& normal, const Rational& h, const Relaxed& relaxed) {
+void StepCheck::within(const RationalVector& normal, const Rational& h, const Successors& successors) {
   Rational slack = 0;
   Vector d(size_.size());
   for (Index i = 0; i < d.size(); ++i) {
@@ -309,13 +308,15 @@ void StepCheck::within(const RationalVector& normal, const Rational& h, const Re
     if (reached.kind == Kind::unbounded && keeps_across_lines(d, limit + almost_all * room)) return;
     bool may_be_one = false;  // two rows that are parallel but for rounding, of which nominal operations make one
     if (nominal_) {
-      const exact::Support allowed = exact::support(relaxed(), normal);
-      if (allowed.kind == Kind::unbounded) return;
-      const bool both = allowed.kind == Kind::finite && reached.kind == Kind::finite;
-      if (both && reached.value <= allowed.value + slack) return;
-      const double size = std::abs(limit) + d.cwiseAbs().dot(size_ + reach_of(row_.set.M));
-      may_be_one = reached.kind == Kind::unbounded && allowed.kind == Kind::finite &&
-                   allowed.value - h > rational::exact(ill_conditioned * size);
+      const exact::Support strict = exact::support(successors.exact(), normal);
+      const exact::Support relaxed = exact::support(successors.relaxed(), normal);
+      if (strict.kind == Kind::finite && relaxed.kind == Kind::unbounded) return;
+      if (strict.kind == Kind::finite && relaxed.kind == Kind::finite) {
+        const Rational moved = relaxed.value - strict.value;
+        if (reached.kind == Kind::finite && reached.value <= h + slack + moved) return;
+        const double size = std::abs(limit) + d.cwiseAbs().dot(size_ + reach_of(row_.set.M));
+        may_be_one = reached.kind == Kind::unbounded && moved > rational::exact(ill_conditioned * size);
+      }
     }
     if (row_.exact_exchange && !may_be_one) {  // an outer export may reach beyond the set that the claim is about
       const double value = reached.kind == Kind::finite ? rational::nearest(reached.value) : infinity;
@@ -330,11 +331,11 @@ void StepCheck::within(const RationalVector& normal, const Rational& h, const Re
   open(fmt::format("whether the estimate keeps to the exact set along {}", text(d)));
 }
 
-void StepCheck::against(const Polytope& F, const Relaxed& relaxed) {
+void StepCheck::against(const Polytope& F, const Successors& successors) {
   const Description& generators = F.representation().generators();
   for (std::size_t j = 0; j < generators.rows.size() && !violation_; ++j) {
     const RationalVector& row = generators.rows[j];
-    if (sgn(row[0]) != 0) contains_vertex({row.begin() + 1, row.end()}, F, relaxed);
+    if (sgn(row[0]) != 0) contains_vertex({row.begin() + 1, row.end()}, successors);
   }
   const Polytope::Generators g = F.generators();
   for (Index j = 0; j < g.rays.cols() && !violation_; ++j) contains_direction(g.rays.col(j), false);
@@ -355,19 +356,20 @@ void StepCheck::against(const Polytope& F, const Relaxed& relaxed) {
         abs(*std::max_element(row.begin() + 1, row.end(), [](const Rational& a, const Rational& b) { return abs(a) < abs(b); }));
     for (Rational& entry : row) entry /= largest;
     RationalVector normal(row.begin() + 1, row.end());
-    if (faces.linear[i]) within(normal, -row[0], relaxed);
+    if (faces.linear[i]) within(normal, -row[0], successors);
     for (Rational& entry : normal) entry = -entry;
-    if (!violation_) within(normal, row[0], relaxed);
+    if (!violation_) within(normal, row[0], successors);
   }
   exact_holds_ = !violation_ && undecided_ == before;
 }
 
-void StepCheck::against(const LineForm& successors, const Matrix& directions, bool holds_them_all, const Relaxed& relaxed) {
-  std::optional<LineForm> wide;
+void StepCheck::against(const Successors& of_the_set_before, const Matrix& directions, bool holds_them_all) {
+  const LineForm successors = of_the_set_before.exact();
+  std::optional<LineForm> relaxed;
   const auto moved_along = [&](const Vector& d, double needed) {
     if (!nominal_) return 0.0;
-    if (!wide) wide = relaxed();
-    return std::max(0.0, support(*wide, d) - needed);
+    if (!relaxed) relaxed = of_the_set_before.relaxed();
+    return std::max(0.0, support(*relaxed, d) - needed);
   };
   const bool claims = step_.tightness == Tightness::exact && !reported_empty() && row_.exact_exchange;
   for (Index j = 0; j < directions.cols() && !violation_; ++j) {

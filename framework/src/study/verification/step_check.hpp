@@ -20,16 +20,18 @@ class StepCheck {
   StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding, const Vector& margin);
 
   void proofs();
-  /// Makes the successors of X_{k-1} with outputs and rows that hold up to rounding. A nominal claim may reach as far, and by as
-  /// much as they reach farther than the exact ones, nominal operations may fall short: the rounding of rows that nearly depend
-  /// on each other, or that leave hardly anything, moves a set by far more than itself.
-  using Relaxed = std::function<LineForm()>;
+  /// Successors of X_{k-1}: as they are, and with outputs and rows that hold up to rounding. By as much as these reach farther, a
+  /// nominal claim may do so too, and nominal operations may fall short: the rounding of rows that nearly depend on each other,
+  /// or that leave hardly anything, moves a set by far more than itself.
+  struct Successors {
+    std::function<LineForm()> exact, relaxed;
+  };
 
   /// F ⊆ X_k and F ⊆ hull, by the vertices of F; where `exact` is claimed, X_k ⊆ F by its inequalities.
-  void against(const Polytope& F, const Relaxed& relaxed);
-  /// The same inclusions for the set that `successors` holds, in the directions of the columns. Is X_k an estimate that
-  /// `holds_them_all`? Else one that it does not hold decides nothing.
-  void against(const LineForm& successors, const Matrix& directions, bool holds_them_all, const Relaxed& relaxed);
+  void against(const Polytope& F, const Successors& successors);
+  /// The same inclusions for the successors, in the directions of the columns. Is X_k an estimate that `holds_them_all`? Else one
+  /// that it does not hold decides nothing.
+  void against(const Successors& successors, const Matrix& directions, bool holds_them_all);
 
   /// An inclusion could not be checked at all.
   void skipped(std::string why) { open(std::move(why)); }
@@ -50,26 +52,26 @@ class StepCheck {
   void emptiness_proof();
   void emptiness_without_proof();
   void bound_proof(Index i, bool upper);
-  void contains_vertex(const rational::RationalVector& exact, const Polytope& F, const Relaxed& relaxed);
+  void contains_vertex(const rational::RationalVector& exact, const Successors& successors);
   std::optional<Index> outside_hull(const rational::RationalVector& exact, const Vector& margin) const;
-  Vector moved_by_rounding(const Polytope& F, const Relaxed& relaxed);
+  Vector moved_by_rounding(const Successors& successors);
   bool holds_nearby(const Vector& x);
   void contains_direction(const Vector& d, bool line);
   Vector turned_by(const Vector& x) const;
   bool keeps_across_lines(const Vector& d, double limit) const;
-  void within(const rational::RationalVector& normal, const rational::Rational& h, const Relaxed& relaxed);
+  void within(const rational::RationalVector& normal, const rational::Rational& h, const Successors& successors);
   bool reported_empty() const { return step_.consistent == Answer::no; }
 
   const RecordedStep& step_;
   const RecordedSet& row_;
-  bool nominal_;                                 ///< operations were rounded to nearest
-  double line_tolerance_;                        ///< of the directions of lines
-  Vector size_;                                  ///< of each coordinate
-  Vector margin_;                                ///< within which F_k has to lie in X_k and in the hull
-  Vector claim_margin_;                          ///< within which X_k has to lie in F_k, if it is claimed exact
-  Vector row_margin_;                            ///< within which constraints of X_k have to hold
-  LineForm widened_;                             ///< X_k ⊕ margin_
-  std::optional<Vector> moved_;                  ///< per coordinate, by how much the rounding of rows moves F, once asked for
+  bool nominal_;                 ///< operations were rounded to nearest
+  double line_tolerance_;        ///< of the directions of lines
+  Vector size_;                  ///< of each coordinate
+  Vector margin_;                ///< within which F_k has to lie in X_k and in the hull
+  Vector claim_margin_;          ///< within which X_k has to lie in F_k, if it is claimed exact
+  Vector row_margin_;            ///< within which constraints of X_k have to hold
+  LineForm widened_;             ///< X_k ⊕ margin_
+  std::optional<Vector> moved_;  ///< per coordinate, by how much the rounding of rows moves the set, once asked for
   std::optional<std::optional<Vector>> center_;  ///< factors of a point well inside X_k, once asked for
   std::optional<Finding> violation_;
   std::int64_t proofs_ = 0, undecided_ = 0;

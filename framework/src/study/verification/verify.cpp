@@ -105,7 +105,7 @@ Matrix directions_of(Index n, const VerifyOptions& options, Index k) {
 }
 
 /// False where F cannot be converted into vertices and inequalities, which is found out before anything is checked.
-bool against_polytope(StepCheck& check, const Polytope& F, const StepCheck::Relaxed& relaxed) {
+bool against_polytope(StepCheck& check, const Polytope& F, const StepCheck::Successors& successors) {
   try {
     F.representation().generators();
     F.representation().inequalities();
@@ -113,8 +113,14 @@ bool against_polytope(StepCheck& check, const Polytope& F, const StepCheck::Rela
     if (error.code() != Errc::unsupported) throw;
     return false;
   }
-  check.against(F, relaxed);
+  check.against(F, successors);
   return true;
+}
+
+/// Where the set before is not recorded: rounding is not taken to move anything.
+StepCheck::Successors unknown_successors(Index n) {
+  const auto none = [n] { return make_empty(n); };
+  return {none, none};
 }
 
 class Verification {
@@ -264,24 +270,24 @@ class Verification {
     if (uncertain && pipeline.steps[i].tightness == Tightness::exact) {
       check.skipped("a claim of \"exact\" is not checked where matrices are known by intervals only");
     }
-    const auto relaxed = [&](const Model& model) {
-      if (i > 0 && !row_before) return make_empty(row.set.dim());
-      const LineForm start = widened(row_before ? row_before->set : pipeline.initial_set);
-      return successors(widened(model, margins.outputs), start, pipeline.admissible_set, transition);
+    const LineForm& start = row_before ? row_before->set : pipeline.initial_set;
+    const auto successors_in = [&](const Model& model) {
+      return StepCheck::Successors{
+          [&] { return successors(model, start, pipeline.admissible_set, transition); },
+          [&] { return successors(widened(model, margins.outputs), widened(start), pipeline.admissible_set, transition); }};
     };
+    const bool follows = i == 0 || row_before;
     if (!check.violation()) {
-      if (F && against_polytope(check, *F, [&] { return relaxed(run_.model); })) {
+      if (F && against_polytope(check, *F, follows ? successors_in(run_.model) : unknown_successors(row.set.dim()))) {
         ++found.by_polytopes;
-      } else if (i > 0 && !row_before) {
+      } else if (!follows) {
         check.skipped("the step does not follow the one before: its successors are not checked");
       } else {
-        const LineForm& start = row_before ? row_before->set : pipeline.initial_set;
         const Matrix directions = directions_of(run_.model.linear.states(), options_, row.k);
         Model model = run_.model;
         for (int draw = 0; draw < (uncertain ? 2 : 1); ++draw) {
           model.linear = drawn(run_.model.linear, row.k, draw);
-          check.against(successors(model, start, pipeline.admissible_set, transition), directions, pipeline.follows_its_sets,
-                        [&] { return relaxed(model); });
+          check.against(successors_in(model), directions, pipeline.follows_its_sets);
         }
         ++found.by_supports;
       }
