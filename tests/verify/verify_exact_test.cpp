@@ -32,13 +32,17 @@ class Run {
   }
   const std::string& said() const { return ran_.out; }
   Outcome verify() const { return program("verify " + (home_ / "out").string()); }
-  void widen_hull(std::size_t step, double by) const {
+  void change_step(std::size_t step, const std::function<void(Json&)>& change) const {
     Json results = Json::parse(std::ifstream(home_ / "out" / "results.json"));
-    Json& hull = results["pipelines"][0]["steps"][step]["hull"];
     std::filesystem::remove(home_ / "out" / "manifest.json");  // which knows it as it was
-    for (Json& bound : hull["lower"]) bound = bound.get<double>() - by;
-    for (Json& bound : hull["upper"]) bound = bound.get<double>() + by;
+    change(results["pipelines"][0]["steps"][step]);
     std::ofstream(home_ / "out" / "results.json") << results.dump();
+  }
+  void widen_hull(std::size_t step, double by) const {
+    change_step(step, [by](Json& changed) {
+      for (Json& bound : changed["hull"]["lower"]) bound = bound.get<double>() - by;
+      for (Json& bound : changed["hull"]["upper"]) bound = bound.get<double>() + by;
+    });
   }
   /// What `verify` says after a change of the set of one line.
   Outcome with_set(std::size_t line, const std::function<void(Json&)>& change) const {
@@ -95,6 +99,43 @@ TEST_CASE("nominal claims of exact hold up to the rounding of the terms, and not
       for (Json& row : set["A"]) row.push_back(0.0);
       if (set["proof"]["kind"] == "point") set["proof"]["data"].push_back(0.0);
     });
+    CAPTURE(outcome.out);
+    CHECK(outcome.code == 4);
+    CHECK(names(outcome, "claimed exact"));
+  }
+}
+
+TEST_CASE("a set that is wrong is refuted, however loose the one before it was") {
+  const Run run(R"({"type": "lti", "A": [[0.5]], "Bw": [[1]], "C": [[1]], "X0": {"type": "box", "lower": [-1], "upper": [1]},
+                    "W": {"type": "box", "lower": [-0.125], "upper": [0.125]},
+                    "V": {"type": "box", "lower": [-1000], "upper": [1000]}})",
+                R"({"steps": 2})", R"({"name": "P", "backend": "interval", "observer": "prediction_correction"})");
+  const auto become = [](double center, double radius) {
+    return [=](Json& set) {
+      set["c"][0] = center;
+      set["G"][0] = Json::array({radius});
+    };
+  };
+  run.change_step(1, [](Json& step) {
+    step["hull"] = {{"lower", {-100}}, {"upper", {100}}};
+    step["tightness"] = "outer";
+  });
+  Outcome outcome = run.with_set(1, [&](Json& set) {
+    become(0, 100)(set);
+    set["tightness"] = "outer";
+  });
+  CAPTURE(outcome.out);
+  CHECK(outcome.code == 0);  // sound, only loose
+  SUBCASE("it loses every state") {
+    run.change_step(2, [](Json& step) { step["hull"] = {{"lower", {39}}, {"upper", {41}}}; });
+    outcome = run.with_set(2, become(40, 1));
+    CAPTURE(outcome.out);
+    CHECK(outcome.code == 4);
+    CHECK(names(outcome, "outside the hull"));
+  }
+  SUBCASE("it is called exact, and is not") {
+    run.change_step(2, [](Json& step) { step["hull"] = {{"lower", {-50}}, {"upper", {50}}}; });
+    outcome = run.with_set(2, become(0, 50));
     CAPTURE(outcome.out);
     CHECK(outcome.code == 4);
     CHECK(names(outcome, "claimed exact"));

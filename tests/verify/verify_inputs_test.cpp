@@ -117,6 +117,25 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
   REQUIRE(called_empty.violation);
   CHECK(called_empty.violation->pointer == "/pipelines/0/design/tubes/1");
 
+  SUBCASE("what the host has proven is proven again") {
+    const auto refuted = [&](const std::function<void(Json&)>& change) {
+      const VerifyOutcome outcome = run.with(change);
+      return outcome.violation ? outcome.violation->pointer : "";
+    };
+    CHECK(refuted([](Json& p) { p[1]["exact"]["separates"] = "yes"; }) == "/pipelines/1/exact/separates");
+    CHECK(refuted([](Json& p) { p[1]["design"]["separates"] = "yes"; }) == "/pipelines/1/design/separates");
+    CHECK(refuted([](Json& p) {
+            p[1]["exact"]["pairs"][0]["disjoint"] = "yes";
+            p[1]["exact"]["pairs"][0]["kappa_lower"] = 1;
+          }) == "/pipelines/1/exact/pairs/0");
+    CHECK(refuted([](Json& p) { p[0]["exact"]["pairs"][0]["disjoint"] = "no"; }) == "/pipelines/0/exact/pairs/0");
+    CHECK(refuted([](Json& p) {
+            Json& kappa = p[0]["exact"]["pairs"][0]["kappa_lower"];
+            kappa = kappa.get<double>() * (1 + 1e-12);
+          }) == "/pipelines/0/exact/pairs/0");
+    CHECK(refuted([](Json& p) { p[0]["exact"]["tubes"][1]["empty"] = "yes"; }) == "/pipelines/0/exact/tubes/1");
+    CHECK(refuted([](Json& p) { p[0]["exact"] = nullptr; }) == "");
+  }
   SUBCASE("a bound of κ that is too large stays open") {
     const VerifyOutcome larger = run.with([](Json& p) {
       Json& pair = p[0]["design"]["pairs"][0];
@@ -132,8 +151,10 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
   SUBCASE("what claims nothing is passed over") {
     const auto nothing = run.with([](Json& p) {
       p[0]["design"]["pairs"][0]["disjoint"] = "unknown";
+      p[0]["design"]["separates"] = "unknown";
       p[1]["design"]["u"] = nullptr;
     });
+    REQUIRE(nothing.pipelines.size() == 2);
     CHECK(nothing.pipelines[0].proofs == 2);
     CHECK(nothing.pipelines[1].proofs == 0);
     CHECK(run.with([](Json& p) { p[1]["design"] = nullptr; }).pipelines[1].proofs == 0);

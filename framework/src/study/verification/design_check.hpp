@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cordon/study/design.hpp"
+#include "study/verification/recorded_run.hpp"
 
 namespace cordon::verification {
 
@@ -16,17 +17,20 @@ struct DesignFindings {
   std::string first_undecided = {};
   struct Refuted {
     std::string what;
-    std::string pointer;  ///< relative to the design
+    std::string pointer;  ///< relative to the pipeline
   };
   std::vector<Refuted> refuted = {};
 };
 
 /// "disjoint", bounds of κ, "meet" and "empty" by `verify_design`. A claim that tubes meet is made up to rounding: it is false
-/// only if κ exceeds 1e-9. Bounds of κ have to be proven up to 1e-9 of 1 + κ, and up to
-/// 1e9.
+/// only if κ exceeds 1e-9. Bounds of κ have to be proven up to 1e-9 of 1 + κ, and up to 1e9.
 DesignFindings compare_design(const ModeBank& bank, const DesignOutcome& outcome, const ExactSeparation& exact);
-inline DesignFindings check_design(const ModeBank& bank, const DesignOutcome& outcome, const std::atomic<bool>* stop) {
-  return compare_design(bank, outcome, verify_design(bank, outcome, stop));
+
+/// These, and of a pipeline with a design what the host has recorded as proven, which has to be proven again, bound for bound;
+/// "separates" has to be what pairs and tubes say.
+DesignFindings compare_recorded(const ModeBank& bank, const RecordedPipeline& recorded, const ExactSeparation& exact);
+inline DesignFindings check_design(const ModeBank& bank, const RecordedPipeline& recorded, const std::atomic<bool>* stop) {
+  return compare_recorded(bank, recorded, verify_design(bank, *recorded.design, stop));
 }
 
 }  // namespace cordon::verification

@@ -162,6 +162,18 @@ std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& sys
   return outcome;
 }
 
+/// What beside the input stands in "design" and "exact".
+void read_separation(const Cursor& at, Index modes, RecordedPipeline& pipeline) {
+  const auto word = [](const Cursor& object) {
+    return read_word(object, "separates", {Answer::yes, Answer::no, Answer::unknown}).value_or(Answer::unknown);
+  };
+  if (const auto design = at.find("design"); pipeline.design && design) pipeline.claimed_separation = word(*design);
+  const auto exact = at.find("exact");
+  if (!exact || exact->is(Kind::null) || !exact->expect(Kind::object, mend())) return;
+  pipeline.proven_separation = word(*exact);
+  read_claims(*exact, pipeline.proven.emplace(), modes);
+}
+
 std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart& system) {
   if (!at.expect(Kind::object, mend())) return std::nullopt;
   const Index n = system.model.linear.states();
@@ -173,6 +185,7 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
   if (at.find("designer")) {
     pipeline.is_design = true;
     if (const auto design = at.need("design", mend())) pipeline.design = read_design(*design, system);
+    read_separation(at, static_cast<Index>(system.modes.size()) + 1, pipeline);
   } else if (at.find("diagnoser")) {
     pipeline.is_diagnosis = true;
   }

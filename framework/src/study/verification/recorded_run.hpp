@@ -33,6 +33,9 @@ struct RecordedPipeline {
   bool is_diagnosis = false;                 ///< of a diagnoser: nothing else is read, no sets are stored
   bool is_design = false;                    ///< of a designer: only `design` is read
   std::optional<DesignOutcome> design = {};  ///< horizon, input, what is said of pairs and tubes; nothing: there is no input
+  /// What results say of the design: the designer, and what the host has proven of its pairs and tubes.
+  Answer claimed_separation = Answer::unknown, proven_separation = Answer::unknown;
+  std::optional<InputDesign> proven = {};
   Rounding rounding = Rounding::nominal;
   /// Each set holds all successors of the one before that are consistent with the data. Observers that know more than their last
   /// set, as a bound of their error for all times, may keep to less.

@@ -144,7 +144,7 @@ class Verification {
       if (outcome_.violation) return std::move(outcome_);
       if (pipeline.is_diagnosis) continue;
       if (pipeline.is_design) {
-        if (pipeline.design) check_input(p, *pipeline.design);
+        if (pipeline.design) check_input(p, pipeline);
         if (outcome_.violation || outcome_.interrupted) return std::move(outcome_);
         continue;
       }
@@ -195,9 +195,9 @@ class Verification {
   }
 
   /// A design claims nothing if there is no input.
-  void check_input(std::size_t p, const DesignOutcome& design) {
+  void check_input(std::size_t p, const RecordedPipeline& pipeline) {
     VerifiedPipeline& found = outcome_.pipelines.back();
-    DesignFindings claims = check_design(run_.bank, design, options_.stop);
+    DesignFindings claims = check_design(run_.bank, pipeline, options_.stop);
     if (options_.stop && options_.stop->load()) {
       outcome_.interrupted = true;
       return;
@@ -206,8 +206,8 @@ class Verification {
     if (found.undecided == 0) found.first_undecided = std::move(claims.first_undecided);
     found.undecided += claims.undecided;
     if (!claims.refuted.empty()) {
-      outcome_.violation = {found.name, design.horizon, claims.refuted[0].what,
-                            fmt::format("/pipelines/{}/design{}", p, claims.refuted[0].pointer)};
+      outcome_.violation = {found.name, pipeline.design->horizon, claims.refuted[0].what,
+                            fmt::format("/pipelines/{}{}", p, claims.refuted[0].pointer)};
     }
   }
 
