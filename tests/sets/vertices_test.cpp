@@ -2,7 +2,6 @@
 #include "cordon/sets/vertices.hpp"
 
 #include <limits>
-
 #include <random>
 
 #include <doctest/doctest.h>
