@@ -223,7 +223,8 @@ PartialSum partial_sum(const Decay& decay, const Zonotope& D, MatrixIn T_out, do
     }
     if (finished) break;
     if (k * std::max<Index>(g, 1) > most_terms)
-      throw Error(Errc::unsupported, "a partial sum has too many generators for its accuracy");
+      throw Error(Errc::unsupported,
+                  "the errors decay so slowly that a sum of them has too many generators: a larger \"accuracy\" takes fewer");
     parts.push_back(product(rows, D.G));
     widths += parts.back().cwiseAbs().rowwise().sum();
     center += product(rows, D.c);
