@@ -32,6 +32,6 @@ Description inequalities_of(const Description& generators);
 
 inline constexpr Index most_dimensions = 20;
 inline constexpr std::size_t most_rows = 20'000, most_rays = 20'000;
-inline constexpr double most_work = 1e8;  ///< on words, of bit sets and of numbers
+inline constexpr double most_work = 4e8;  ///< on words, of bit sets and of numbers
 
 }  // namespace cordon
