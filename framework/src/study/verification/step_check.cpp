@@ -394,11 +394,17 @@ void StepCheck::against(const Successors& of_the_set_before, const Matrix& direc
     const double allowed = std::min(hull, set);
     // nothing beyond: a rational proof that the successors keep below a value that the set is proven to reach
     if (allowed == infinity && needed == infinity && row_.set.lines() > 0) continue;
+    const std::string whether =
+        fmt::format("whether the reported set reaches as far along {} as the successors of the set before", text(d));
     const bool shown = needed == -infinity || proves_support(successors, d, needed + 0.5 * slack, why);
     if (shown && needed + 0.5 * slack <= std::min(hull, reached) + slack) continue;
     try {
       const rounding::Range exact = exact::support(successors, d);
       if (exact.lower > allowed + slack && exact.lower < infinity) slack += moved_along(d, exact.lower);
+      if (!std::isfinite(slack)) {
+        open(whether);
+        continue;
+      }
       if (exact.lower > allowed + slack && holds_them_all) {
         violated(
             fmt::format("a successor of the set before, consistent with the data, reaches {:.17g} along {}; the reported {} only "
@@ -412,7 +418,7 @@ void StepCheck::against(const Successors& of_the_set_before, const Matrix& direc
     } catch (const Error& error) {
       if (error.code() != Errc::unsupported) throw;
     }
-    open(fmt::format("whether the reported set reaches as far along {} as the successors of the set before", text(d)));
+    open(whether);
   }
   exact_holds_ = claims && !violation_;
 }
