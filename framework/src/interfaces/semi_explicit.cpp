@@ -24,19 +24,6 @@ std::vector<Index> others(const std::vector<Index>& chosen, Index n) {
   return rest;
 }
 
-RationalMatrix product(const RationalMatrix& A, const RationalMatrix& B) {
-  RationalMatrix out(A.rows(), B.cols());
-  for (Index i = 0; i < A.rows(); ++i) {
-    for (Index k = 0; k < A.cols(); ++k) {
-      if (sgn(A(i, k)) == 0) continue;
-      for (Index j = 0; j < B.cols(); ++j) {
-        if (sgn(B(k, j)) != 0) out(i, j) += A(i, k) * B(k, j);
-      }
-    }
-  }
-  return out;
-}
-
 /// Errc::not_finite for numbers beyond the range of doubles.
 double in_doubles(const Rational& q, bool& is_exact) {
   const double nearest = rational::nearest(q);

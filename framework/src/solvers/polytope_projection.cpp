@@ -29,19 +29,6 @@ double binomial(Index n, Index k) {
   return value;
 }
 
-RationalMatrix product(const RationalMatrix& A, const RationalMatrix& B) {
-  RationalMatrix C(A.rows(), B.cols());
-  for (Index i = 0; i < A.rows(); ++i) {
-    for (Index k = 0; k < A.cols(); ++k) {
-      if (sgn(A(i, k)) == 0) continue;
-      for (Index j = 0; j < B.cols(); ++j) {
-        if (sgn(B(k, j)) != 0) C(i, j) += A(i, k) * B(k, j);
-      }
-    }
-  }
-  return C;
-}
-
 RationalMatrix transpose(const RationalMatrix& A) {
   RationalMatrix B(A.cols(), A.rows());
   for (Index i = 0; i < A.rows(); ++i) {

@@ -66,6 +66,19 @@ Rational dot(const RationalVector& x, const RationalVector& y) {
   return sum;
 }
 
+RationalMatrix product(const RationalMatrix& A, const RationalMatrix& B) {
+  RationalMatrix C(A.rows(), B.cols());
+  for (Index i = 0; i < A.rows(); ++i) {
+    for (Index k = 0; k < A.cols(); ++k) {
+      if (sgn(A(i, k)) == 0) continue;
+      for (Index j = 0; j < B.cols(); ++j) {
+        if (sgn(B(k, j)) != 0) C(i, j) += A(i, k) * B(k, j);
+      }
+    }
+  }
+  return C;
+}
+
 rounding::Range enclose(const Rational& q) {
   constexpr double largest = std::numeric_limits<double>::max(), infinity = std::numeric_limits<double>::infinity();
   if (q > Rational(largest)) return {largest, infinity};

@@ -37,6 +37,8 @@ RationalVector exact(VectorIn x);
 RationalMatrix exact_matrix(MatrixIn A);
 
 Rational dot(const RationalVector& x, const RationalVector& y);
+/// A B; zeros cost nothing.
+RationalMatrix product(const RationalMatrix& A, const RationalMatrix& B);
 
 /// The largest double below or at q and the smallest one above or at q; ±inf beyond the range of doubles.
 rounding::Range enclose(const Rational& q);

@@ -7,9 +7,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <regex>
 #include <set>
 #include <unistd.h>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -63,13 +65,18 @@ bool run(Json study, const fs::path& home, Outcome& outcome) {
   return false;
 }
 
-void verify_all(cordon::campaigns::Start start, std::uint64_t usual_count) {
-  const std::uint64_t first = asked("CORDON_CAMPAIGN_FIRST", 0), count = asked("CORDON_CAMPAIGN_SYSTEMS", usual_count);
+std::vector<std::uint64_t> numbers(std::uint64_t usual_count) {
+  std::vector<std::uint64_t> all(asked("CORDON_CAMPAIGN_SYSTEMS", usual_count));
+  std::iota(all.begin(), all.end(), asked("CORDON_CAMPAIGN_FIRST", 0));
+  return all;
+}
+
+void verify_all(cordon::campaigns::Start start, const std::vector<std::uint64_t>& systems) {
   const std::uint64_t most_states = asked("CORDON_CAMPAIGN_STATES", 6);
   const char* keep = std::getenv("CORDON_CAMPAIGN_KEEP");
   const fs::path home = fs::temp_directory_path() / ("cordon_campaign_" + std::to_string(::getpid()));
   std::uint64_t verified = 0, refused = 0, small = 0, undecided = 0, contradictory = 0;
-  for (std::uint64_t number = first; number < first + count; ++number) {
+  for (const std::uint64_t number : systems) {
     fs::remove_all(home);
     fs::create_directories(home);
     const Json study = cordon::campaigns::random_study(number, start);
@@ -106,14 +113,20 @@ void verify_all(cordon::campaigns::Start start, std::uint64_t usual_count) {
   fs::remove_all(home);
   MESSAGE(verified, " verified, ", refused, " refused by the program, ", contradictory, " with data outside the model, ",
           undecided, " of ", small, " with up to four states undecided");
-  CHECK(refused * 4 <= count);
+  CHECK(refused * 4 <= systems.size());
   CHECK(undecided * 50 <= small);
 }
 
 }  // namespace
 
 TEST_CASE("no result of a random system is refuted, and of up to four states at most two in a hundred stay undecided") {
-  verify_all(cordon::campaigns::Start::bounded, 40);
+  verify_all(cordon::campaigns::Start::bounded, numbers(40));
 }
 
-TEST_CASE("nor of one that starts nobody knows where") { verify_all(cordon::campaigns::Start::unknown, 150); }
+TEST_CASE("nor of one that starts nobody knows where") { verify_all(cordon::campaigns::Start::unknown, numbers(150)); }
+
+// An admissible set that is left by a small state beside a large one; descriptor systems in unlike units; a rounded
+// pseudo-inverse beside an outward zonotope; exact outputs that hardly differ.
+TEST_CASE("nor of those that once were refuted, or called defective") {
+  verify_all(cordon::campaigns::Start::bounded, {227, 1311, 1350, 1829, 1831});
+}

@@ -64,6 +64,11 @@ Vector units_of(const Matrix& lines, const Vector& d) {
   return units;
 }
 
+/// Is nothing left of a set but for the rounding of its rows? By how much that moves it cannot be told.
+bool empty_by_rounding(const LineForm& strict, const LineForm& relaxed) {
+  return exact::is_empty(strict) == Answer::yes && is_empty(relaxed) != Answer::yes;
+}
+
 }  // namespace
 
 StepCheck::StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding, const Vector& margin)
@@ -224,6 +229,7 @@ Vector StepCheck::moved_by_rounding(const Successors& successors) {
   if (moved_) return *moved_;
   moved_ = Vector::Zero(size_.size());
   const LineForm strict = successors.exact(), relaxed = successors.relaxed();
+  if (empty_by_rounding(strict, relaxed)) moved_->setConstant(infinity);
   for (Index i = 0; i < size_.size(); ++i) {
     for (const double sign : {-1.0, 1.0}) {
       const Vector d = sign * Vector::Unit(size_.size(), i);
@@ -310,6 +316,9 @@ void StepCheck::within(const RationalVector& normal, const Rational& h, const Su
     if (nominal_) {
       const exact::Support strict = exact::support(successors.exact(), normal);
       const exact::Support relaxed = exact::support(successors.relaxed(), normal);
+      if (strict.kind == Kind::empty && relaxed.kind != Kind::empty) {
+        return open(fmt::format("whether the estimate keeps to the exact set along {}", text(d)));
+      }
       if (strict.kind == Kind::finite && relaxed.kind == Kind::unbounded) return;
       if (strict.kind == Kind::finite && relaxed.kind == Kind::finite) {
         const Rational moved = relaxed.value - strict.value;
