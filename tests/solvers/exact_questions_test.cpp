@@ -95,8 +95,9 @@ TEST_CASE("what does not fit is refused") {
     return "";
   };
   CHECK(refusal(exact::max_columns, 1).empty());
-  CHECK(refusal(exact::max_columns + 1, 1).find("201") != std::string::npos);
+  CHECK(refusal(exact::max_columns + 1, 1).find("2001") != std::string::npos);
   CHECK(refusal(2, exact::max_rows + 1).find("101") != std::string::npos);
+  CHECK(refusal(1251, 40).find("1251 lines and generators with 40 constraints") != std::string::npos);
 }
 
 TEST_CASE("extreme numbers stay exact") {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Results at the edge of rounding: what is right is not refuted, what is wrong by more is.
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <sstream>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -185,4 +187,32 @@ TEST_CASE("an E that is singular in decimals only is told of, and read by all al
   const Outcome outcome = run.verify();
   CAPTURE(outcome.out);
   CHECK(outcome.code == 0);
+}
+
+TEST_CASE("sets with more factors than rational arithmetic takes are decided along directions") {
+  constexpr int states = 5, disturbances = 40;
+  Json system{{"type", "lti"}};
+  for (int i = 0; i < states; ++i) {
+    for (int j = 0; j < states; ++j) system["A"][i][j] = (i == j ? .45 : .1) * std::cos(3 * i + 2 * j);
+    for (int j = 0; j < disturbances; ++j) system["Bw"][i][j] = std::sin(7 * i + j);
+    for (int r = 0; r < 2; ++r) system["C"][r][i] = std::cos(i + 5 * r);
+  }
+  const auto box = [](int size, double radius) {
+    return Json{{"type", "box"}, {"lower", std::vector<double>(size, -radius)}, {"upper", std::vector<double>(size, radius)}};
+  };
+  system["Dv"] = {{1, 0}, {0, 1}};
+  system["W"] = box(disturbances, .01);
+  system["V"] = box(2, .3);
+  system["X0"] = box(states, 1);
+  const std::string text = system.dump();
+  for (const char* rounding : {"nominal", "outward"}) {
+    const Json pipeline{{"name", rounding},
+                        {"backend", {{"type", "constrained_zonotope"}, {"rounding", rounding}}},
+                        {"observer", {{"type", "prediction_correction"}, {"max_generators", 1000}, {"max_constraints", 1000}}}};
+    const Run run(text.c_str(), R"({"steps": 5, "seed": 1})", pipeline.dump().c_str());
+    const Outcome verified = run.verify();
+    CAPTURE(verified.out);
+    CHECK(verified.code == 0);
+    CHECK_FALSE(names(verified, "undecided at"));
+  }
 }

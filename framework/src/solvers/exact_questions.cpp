@@ -17,10 +17,12 @@ using rational::RationalVector;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check_size(Index columns, Index rows, const char* question) {
-  if (columns <= max_columns && rows <= max_rows) return;
+  if (columns <= max_columns && rows <= max_rows && columns * rows * rows <= max_work) return;
   throw Error(Errc::unsupported, std::string(question) + ": " + std::to_string(columns) + " lines and generators with " +
                                      std::to_string(rows) + " constraints; in rational arithmetic at most " +
-                                     std::to_string(max_columns) + " with " + std::to_string(max_rows) + " are supported");
+                                     std::to_string(max_columns) + " with " + std::to_string(max_rows) +
+                                     " are supported, and at most " + std::to_string(max_work) +
+                                     " for columns times rows squared");
 }
 
 RationalVector zeros(Index size) { return RationalVector(static_cast<std::size_t>(size)); }

@@ -10,9 +10,10 @@ namespace cordon::exact {
 
 /// X = ∅? Always `yes` or `no`.
 /// All functions here: Errc::dimension and Errc::not_finite for operands that do not fit, Errc::unsupported above `max_columns`
-/// lines and generators or `max_rows` constraints (with both numbers in the message). No lock, any number of threads. Bounded
-/// dual simplex method on a fraction-free tableau, started from the floating-point solver's basis: milliseconds for tens of
-/// columns and ordinary numbers, seconds at the limit; numbers spread over hundreds of decades take a hundred times as long.
+/// lines and generators, `max_rows` constraints or a product columns · rows² of `max_work` (with the numbers in the message). No
+/// lock, any number of threads. Bounded dual simplex method on a fraction-free tableau, started from the floating-point solver's
+/// basis: milliseconds for tens of columns and ordinary numbers, seconds at the limit; numbers spread over hundreds of decades
+/// take a hundred times as long.
 Answer is_empty(const LineForm& X);
 
 /// x ∈ X? Always `yes` or `no`.
@@ -22,6 +23,6 @@ Answer contains(const LineForm& X, VectorIn x);
 /// if X is empty.
 rounding::Range support(const LineForm& X, VectorIn d);
 
-inline constexpr Index max_columns = 200, max_rows = 100;
+inline constexpr Index max_columns = 2000, max_rows = 100, max_work = 2'000'000;
 
 }  // namespace cordon::exact

@@ -2,6 +2,7 @@
 // The single checks of one reported step.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "cordon/solvers/polytope.hpp"
 #include "cordon/study/verify.hpp"
 #include "solvers/rational.hpp"
+#include "study/verification/enclosed_successors.hpp"
 #include "study/verification/recorded_run.hpp"
 
 namespace cordon::verification {
@@ -25,13 +27,14 @@ class StepCheck {
   /// or that leave hardly anything, moves a set by far more than itself.
   struct Successors {
     std::function<LineForm()> exact, relaxed;
+    std::function<std::optional<Enclosure>()> enclosed;  ///< of the exact ones, if there is one
   };
 
   /// F ⊆ X_k and F ⊆ hull, by the vertices of F; where `exact` is claimed, X_k ⊆ F by its inequalities.
   void against(const Polytope& F, const Successors& successors);
   /// The same inclusions for the successors, in the directions of the columns. Is X_k an estimate that `holds_them_all`? Else one
-  /// that it does not hold decides nothing.
-  void against(const Successors& successors, const Matrix& directions, bool holds_them_all);
+  /// that it does not hold decides nothing. Ends early, with nothing decided, once `stop` is set.
+  void against(const Successors& successors, const Matrix& directions, bool holds_them_all, const std::atomic<bool>* stop);
 
   /// An inclusion could not be checked at all.
   void skipped(std::string why) { open(std::move(why)); }

@@ -10,6 +10,7 @@
 #include "solvers/polytope_representation.hpp"
 #include "study/data/random.hpp"
 #include "study/verification/design_check.hpp"
+#include "study/verification/enclosed_successors.hpp"
 #include "study/verification/feasible_set.hpp"
 #include "study/verification/recorded_run.hpp"
 #include "study/verification/rounding_margin.hpp"
@@ -120,7 +121,7 @@ bool against_polytope(StepCheck& check, const Polytope& F, const StepCheck::Succ
 /// Where the set before is not recorded: rounding is not taken to move anything.
 StepCheck::Successors unknown_successors(Index n) {
   const auto none = [n] { return make_empty(n); };
-  return {none, none};
+  return {none, none, [] { return std::nullopt; }};
 }
 
 class Verification {
@@ -274,7 +275,8 @@ class Verification {
     const auto successors_in = [&](const Model& model) {
       return StepCheck::Successors{
           [&] { return successors(model, start, pipeline.admissible_set, transition); },
-          [&] { return successors(widened(model, margins.outputs), widened(start), pipeline.admissible_set, transition); }};
+          [&] { return successors(widened(model, margins.outputs), widened(start), pipeline.admissible_set, transition); },
+          [&] { return enclosed_successors(model, start, pipeline.admissible_set, transition); }};
     };
     const bool follows = i == 0 || row_before;
     if (!check.violation()) {
@@ -287,7 +289,7 @@ class Verification {
         Model model = run_.model;
         for (int draw = 0; draw < (uncertain ? 2 : 1); ++draw) {
           model.linear = drawn(run_.model.linear, row.k, draw);
-          check.against(successors_in(model), directions, pipeline.follows_its_sets);
+          check.against(successors_in(model), directions, pipeline.follows_its_sets, options_.stop);
         }
         ++found.by_supports;
       }
