@@ -24,6 +24,10 @@ add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -fno-tr
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
   add_compile_options(-Wno-restrict)
 endif()
+# Libraries call the templates that they were compiled with, not those of the same name that a program brings along: it may have been
+# compiled with other options.
+add_link_options($<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,SHARED_LIBRARY>:-Wl,-Bsymbolic-functions>
+                 $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,MODULE_LIBRARY>:-Wl,-Bsymbolic-functions>)
 if(CORDON_WARNINGS_AS_ERRORS)
   add_compile_options(-Werror)
 endif()
