@@ -3,6 +3,7 @@
 #include "cordon/interfaces/semi_explicit.hpp"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <doctest/doctest.h>
@@ -90,5 +91,6 @@ TEST_CASE("the form says the same as E, to the last digit of every entry, in any
 TEST_CASE("what is no descriptor matrix is refused") {
   CHECK_THROWS_AS(SemiExplicitForm(Matrix(2, 3).setZero()), Error);
   CHECK_THROWS_AS(SemiExplicitForm(Matrix{{1, std::nan("")}, {0, 1}}), Error);
+  CHECK_THROWS_AS(DescriptorMatrix(Matrix{{1, 0}, {std::numeric_limits<double>::infinity(), 1}}), Error);
   CHECK_THROWS_AS(SemiExplicitForm(Matrix{{1e-300, 0}, {0, 1}}).dynamic_part(Matrix{{1e300, 1}, {1, 1}}), Error);  // overflows
 }

@@ -127,6 +127,7 @@ DescriptorMatrix::Pivots DescriptorMatrix::pivots_of(MatrixIn E) {
 
 Index descriptor_rank(MatrixIn E) {
   if (E.rows() != E.cols()) throw Error(Errc::dimension, "the descriptor matrix is not square");
+  if (!E.allFinite()) throw Error(Errc::not_finite, "the descriptor matrix has a NaN or infinite entry");
   return linalg::rank(scaled(E), rank_tolerance);
 }
 
