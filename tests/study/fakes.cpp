@@ -154,7 +154,7 @@ void add_gains(Registrar& registrar) {
     const Matrix& L = params.matrix("matrix");
     std::vector<Diagnostic> problems;
     if (L.rows() != context.model.linear.states()) problems.push_back({"/matrix", "has a wrong number of rows", "one per state"});
-    if (L(0, 0) < 0) problems.push_back({"/matrix/0/0", "is negative", ""});
+    if (L.size() > 0 && L(0, 0) < 0) problems.push_back({"/matrix/0/0", "is negative", ""});
     return problems;
   };
   registrar.gain({{"given", "a fake", "", given}, check, create});
