@@ -80,6 +80,19 @@ TEST_CASE("bounds exceed the optimum of the simplex method by 1e-8 of it at most
   CHECK(iterations <= 4 * solved);  // a corner apart, in the mean
 }
 
+TEST_CASE("the last rounds of long windows stay on the rows") {
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    CAPTURE(seed);
+    const Window window(20, 20, seed);
+    InteriorPoint interior(window.A, window.b);
+    for (Index i = 0; i < 10; ++i) {
+      CAPTURE(i);
+      CHECK(interior.maximize(window.G.row(i).transpose()));
+      CHECK((window.A * interior.point() - window.b).lpNorm<Eigen::Infinity>() <= 1e-9);
+    }
+  }
+}
+
 TEST_CASE("an empty program is not solved") {
   Window window(4, 3, 1);
   window.b *= 100;

@@ -11,7 +11,7 @@ namespace cordon {
 
 namespace {
 
-constexpr Index most_rounds = 40, group_size = 32;
+constexpr Index most_rounds = 40, most_refinements = 3, group_size = 32;
 constexpr double enough = 1e-9;    ///< gap between bound and value, of 1 + |value|
 constexpr double almost = 0.9995;  ///< of the way to the nearest bound
 
@@ -91,13 +91,26 @@ bool InteriorPoint::factor() {
   return true;
 }
 
+/// v ← (A D⁻¹ Aᵀ)⁻¹ v.
+void InteriorPoint::solve_normal(Vector& v) const {
+  factor_.triangularView<Eigen::Lower>().solveInPlace(v);
+  factor_.triangularView<Eigen::Lower>().transpose().solveInPlace(v);
+}
+
 /// The step that meets rows and costs and changes z⁺(1 - ξ), z⁻(1 + ξ) by the rests, to first order.
 void InteriorPoint::solve(const Vector& rest_above, const Vector& rest_below, Direction& step) const {
   const Vector push = costs_left_ - rest_above.cwiseQuotient(to_upper_) + rest_below.cwiseQuotient(to_lower_);
   step.y = linalg::product(A_, push.cwiseQuotient(D_)) - rows_left_;
-  factor_.triangularView<Eigen::Lower>().solveInPlace(step.y);
-  factor_.triangularView<Eigen::Lower>().transpose().solveInPlace(step.y);
+  solve_normal(step.y);
   step.xi = (push - linalg::transposed_product(A_, step.y)).cwiseQuotient(D_);
+  // Near the optimum D spans many orders of magnitude: the step as computed would leave the rows.
+  for (Index k = 0; k < most_refinements; ++k) {
+    Vector missed = linalg::product(A_, step.xi) - rows_left_;
+    if (!(missed.lpNorm<Eigen::Infinity>() > enough / 100)) break;
+    solve_normal(missed);
+    step.y += missed;
+    step.xi -= linalg::transposed_product(A_, missed).cwiseQuotient(D_);
+  }
   step.above = (rest_above + above_.cwiseProduct(step.xi)).cwiseQuotient(to_upper_);
   step.below = (rest_below - below_.cwiseProduct(step.xi)).cwiseQuotient(to_lower_);
 }

@@ -37,6 +37,7 @@ class InteriorPoint {
 
   void arrange();
   bool factor();
+  void solve_normal(Vector& v) const;
   void solve(const Vector& rest_above, const Vector& rest_below, Direction& step) const;
   std::pair<double, double> lengths(const Direction& step) const;
   double centrality() const;
