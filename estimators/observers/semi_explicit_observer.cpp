@@ -29,7 +29,8 @@ class SemiExplicitObserver final : public Observer {
         W_(backend().import(model().W)),
         effectiveness_(model(), backend()),
         static_W_(effectiveness_.has_input_ranges() ? backend().product(W_, effectiveness_.input_factors()) : W_),
-        measured_(linalg::product(model().linear.C, transformed_.T)) {
+        measured_(linalg::product(model().linear.C, transformed_.T)),
+        inputs_enter_as_sets_(effectiveness_.inputs_enter_as_sets() && model().linear.inputs() > 0) {
     const Index n = model().linear.states(), free = transformed_.static_rows();
     // Without the static rows of k = 0 every estimate is that of a larger initial set.
     const bool whole = transformed_.static_rows() == 0 || static_at_start_;
@@ -81,12 +82,17 @@ class SemiExplicitObserver final : public Observer {
       if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(to_x(Z_), before.u) : Enclosure{};
       if (effectiveness_.has_open_states()) terms.push_back({stacked_rows_, open});
+      if (inputs_enter_as_sets_) {
+        const Enclosure input = backend().point(before.u);
+        const Vector none = Vector::Zero(stacked_B_.rows());
+        terms.push_back({stacked_B_, input});
+        return with_static_rows(backend().predict(Z_, {stacked_A_, none, {terms.data(), terms.size()}}), now.u);
+      }
       const Vector shift = effectiveness_.input(stacked_B_, before.u);
       const Vector sizes = effectiveness_.input_terms(stacked_B_, before.u) + disturbance_.cwiseAbs();
       const RoundingRoom room(backend(), shift + disturbance_, sizes, disturbance_widths_);
       if (room.is_needed()) terms.push_back(room.term());
-      const Enclosure Z = backend().predict(Z_, {stacked_A_, shift, {terms.data(), terms.size()}});
-      return with_static_rows(Z, now.u);
+      return with_static_rows(backend().predict(Z_, {stacked_A_, shift, {terms.data(), terms.size()}}), now.u);
     });
     return finish(predicted, now);
   }
@@ -103,6 +109,7 @@ class SemiExplicitObserver final : public Observer {
   /// 0 = Ǎ z + B̌ diag(f) u + B̌w w with a fresh w ∈ W.
   Enclosure with_static_rows(const Enclosure& Z, VectorIn u) const {
     if (transformed_.static_rows() == 0) return Z;
+    if (inputs_enter_as_sets_) return with_static_inputs(Z, u);
     const Vector f = -effectiveness_.input(transformed_.static_B, u);
     Matrix entries(transformed_.static_rows(), static_W_->dim());
     entries << transformed_.static_Bw, effectiveness_.input_spread(transformed_.static_B, u);
@@ -113,6 +120,20 @@ class SemiExplicitObserver final : public Observer {
     Matrix open_entries(entries.rows(), noise->dim());
     open_entries << entries, transformed_.static_rows_map;
     return room.correct(Z, {transformed_.static_A, f, {open_entries, noise}});
+  }
+
+  /// The same with u as a set.
+  Enclosure with_static_inputs(const Enclosure& Z, VectorIn u) const {
+    const Index rows = transformed_.static_rows();
+    Enclosure noise = backend().product(W_, backend().point(u));
+    Matrix entries(rows, noise->dim());
+    entries << transformed_.static_Bw, transformed_.static_B;
+    if (effectiveness_.has_open_states()) {
+      noise = backend().product(noise, effectiveness_.open_states(to_x(Z), u));
+      entries.conservativeResize(Eigen::NoChange, noise->dim());
+      entries.rightCols(transformed_.static_rows_map.cols()) = transformed_.static_rows_map;
+    }
+    return backend().correct(Z, {transformed_.static_A, Vector::Zero(rows), {entries, noise}});
   }
 
   Enclosure finish(const Enclosure& predicted, const Sample& now) {
@@ -135,6 +156,7 @@ class SemiExplicitObserver final : public Observer {
   Vector disturbance_, disturbance_widths_;    ///< center and half widths of Bw W, dynamic rows
   Vector static_disturbance_, static_widths_;  ///< the same, static rows
   Matrix measured_;                            ///< C T
+  bool inputs_enter_as_sets_;                  ///< B u and B̌ u are left to the backend
   Matrix stacked_A_, stacked_B_, stacked_Bw_, stacked_rows_;
   Tightness recursion_ = Tightness::exact;
   Enclosure admissible_, free_, Z_;

@@ -24,12 +24,13 @@ struct DescriptorMatrix {
   bool as_written = true;
   Matrix left, core, right;  ///< E, identity and identity where E is used as it stands
 
-  /// Errc::dimension if E is not square. O(n³). The rank of the doubles is found modulo a prime: it may, for a matrix made for
-  /// the purpose, come out too small, never too large, so that an E of smaller rank is always used as it stands.
+  /// Errc::dimension if E is not square, Errc::not_finite for NaN and infinity. O(n³). The rank of the doubles is found modulo a
+  /// prime: it may, for a matrix made for the purpose, come out too small, never too large, so that an E of smaller rank is
+  /// always used as it stands.
   explicit DescriptorMatrix(MatrixIn E);
 
   /// Rows and columns of the r pivots of Gaussian elimination with complete pivoting, in their order; rows are scaled by powers
-  /// of two to entries of about 1, and so are columns where that leaves the rank at r. Errc::dimension as above.
+  /// of two to entries of about 1, and so are columns where that leaves the rank at r. Errors as above.
   struct Pivots {
     std::vector<Index> rows, cols;
   };

@@ -29,19 +29,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nominal_tolerance = 1e-9, box_tolerance = 1e-14;
 /// Of the direction of a line that an observer has found: operations enclose, its own coordinates are rounded.
 constexpr double outward_line_tolerance = 1e-12;
-constexpr double underflow = 1e-300;           ///< of bounds that are 0 but for the smallest numbers there are
-constexpr double ill_conditioned = 1e-6;       ///< rounding moves an inequality by more than this share of it
-constexpr double row_tolerance = 1e-13;        ///< of a nominal constraint's terms
-constexpr double direction_tolerance = 1e-12;  ///< of bounds that floating-point proofs attain
-constexpr double almost_all = 0.999;           ///< of a margin: what is left covers the rounding of a vertex or a facet
+constexpr double underflow = 1e-300;      ///< of bounds that are 0 but for the smallest numbers there are
+constexpr double ill_conditioned = 1e-6;  ///< rounding moves an inequality by more than this share of it
+constexpr double row_tolerance = 1e-13;   ///< of a nominal constraint's terms
+constexpr double almost_all = 0.999;      ///< of a margin: what is left covers the rounding of a vertex or a facet
 
 std::size_t index(Index i) { return static_cast<std::size_t>(i); }
-
-std::string text(VectorIn x) {
-  std::string out = "(";
-  for (Index i = 0; i < x.size(); ++i) out += fmt::format("{}{}", i ? ", " : "", x[i] + 0.0);
-  return out + ")";
-}
 
 /// The largest entry of each coordinate among the lines: how far off their directions are is a share of it.
 Vector reach_of(const Matrix& lines) {
@@ -64,47 +57,18 @@ Vector units_of(const Matrix& lines, const Vector& d) {
   return units;
 }
 
-/// Of a margin: what a proof in rational arithmetic of a bound found in floating point may take.
-constexpr double share_of_proof = 0.125;
-
-/// A bound of dᵀx in X, and whether rational arithmetic proves it but for a share of the slack.
-struct Bound {
-  Bound(const LineForm& X, const Vector& d, double slack) {
-    Certificate why;
-    value = support(X, d, &why);
-    shown = value == -infinity || proves_support(X, d, value + share_of_proof * slack, why);
-  }
-  /// With multipliers of the set as it was rounded: |y|ᵀ|Δb| is what a change of b moves.
-  Bound(const Enclosure& X, const Vector& d, double slack) {
-    Certificate why;
-    value = support(X.set, d, &why);
-    if (value == -infinity) {
-      shown = proves_empty(X.widened, why);
-    } else {
-      if (why.data.size() == X.rows.size()) value += why.data.cwiseAbs().dot(X.rows) + d.cwiseAbs().dot(X.center);
-      shown = proves_support(X.widened, d, value + share_of_proof * slack, why);
-    }
-  }
-  double value;
-  bool shown;
-};
-
-/// By rational arithmetic, where proofs with bounded rounding errors fail: rows that depend on each other.
-double least_support(const LineForm& X, const Vector& d) {
-  try {
-    return exact::support(X, d).lower;
-  } catch (const Error& error) {
-    if (error.code() != Errc::unsupported) throw;
-    return -infinity;
-  }
-}
-
 /// Is nothing left of a set but for the rounding of its rows? By how much that moves it cannot be told.
 bool empty_by_rounding(const LineForm& strict, const LineForm& relaxed) {
   return exact::is_empty(strict) == Answer::yes && is_empty(relaxed) != Answer::yes;
 }
 
 }  // namespace
+
+std::string text(VectorIn x) {
+  std::string out = "(";
+  for (Index i = 0; i < x.size(); ++i) out += fmt::format("{}{}", i ? ", " : "", x[i] + 0.0);
+  return out + ")";
+}
 
 StepCheck::StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding, const Vector& margin)
     : step_(step),
@@ -405,77 +369,6 @@ void StepCheck::against(const Polytope& F, const Successors& successors) {
     if (!violation_) within(normal, row[0], successors);
   }
   exact_holds_ = !violation_ && undecided_ == before;
-}
-
-void StepCheck::against(const Successors& of_the_set_before, const Matrix& directions, bool holds_them_all,
-                        const std::atomic<bool>* stop) {
-  const LineForm successors = of_the_set_before.exact();
-  const std::optional<Enclosure> enclosed = of_the_set_before.enclosed();
-  std::optional<LineForm> relaxed;
-  const auto moved_along = [&](const Vector& d, double needed) {
-    if (!nominal_) return 0.0;
-    if (!relaxed) relaxed = of_the_set_before.relaxed();
-    return std::max(0.0, support(*relaxed, d) - needed);
-  };
-  const bool claims = step_.tightness == Tightness::exact && !reported_empty() && row_.exact_exchange;
-  for (Index j = 0; j < directions.cols() && !violation_; ++j) {
-    if (stop && stop->load()) return;
-    const Vector d = directions.col(j);
-    double slack = (margin_ + direction_tolerance * size_).dot(d.cwiseAbs()) + rounding::tiny;
-    const bool coordinate = (d.array() != 0).count() == 1;
-    Index i = 0;
-    d.cwiseAbs().maxCoeff(&i);
-    const double hull = !coordinate ? infinity : d[i] > 0 ? d[i] * step_.hull.upper[i] : d[i] * step_.hull.lower[i];
-    const double set = reported_empty() ? -infinity : support(row_.set, d);
-    double reached = reported_empty() ? -infinity : attained(row_.set, d);
-    const auto settled = [&](const Bound& bound) {
-      return bound.shown && bound.value + share_of_proof * slack <= std::min(hull, reached) + slack;
-    };
-    if (enclosed) {
-      const Bound bound(*enclosed, d, slack);
-      const bool in_hull = bound.shown && bound.value + share_of_proof * slack <= hull + slack;
-      if (in_hull && !settled(bound) && !reported_empty()) reached = std::max(reached, least_support(row_.set, d));
-      if (settled(bound) && !(claims && reached > bound.value + slack)) continue;
-    }
-    const Bound bound(successors, d, slack);
-    const double needed = bound.value;
-    if (claims && needed != -infinity && reached > needed + slack && reached > needed + slack + moved_along(d, needed)) {
-      violated(
-          fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where no successor of the set before that is "
-                      "consistent with the data lies beyond {:.17g}",
-                      reached, text(d), needed),
-          true);
-      continue;
-    }
-    const double allowed = std::min(hull, set);
-    // nothing beyond: a rational proof that the successors keep below a value that the set is proven to reach
-    if (allowed == infinity && needed == infinity && row_.set.lines() > 0) continue;
-    const std::string whether =
-        fmt::format("whether the reported set reaches as far along {} as the successors of the set before", text(d));
-    if (settled(bound)) continue;
-    try {
-      const rounding::Range exact = exact::support(successors, d);
-      if (exact.lower > allowed + slack && exact.lower < infinity) slack += moved_along(d, exact.lower);
-      if (!std::isfinite(slack)) {
-        open(whether);
-        continue;
-      }
-      if (exact.lower > allowed + slack && holds_them_all) {
-        violated(
-            fmt::format("a successor of the set before, consistent with the data, reaches {:.17g} along {}; the reported {} only "
-                        "{:.17g}",
-                        exact.lower, text(d), allowed == hull && coordinate ? "hull" : "set", allowed),
-            !(allowed == hull && coordinate));
-        continue;
-      }
-      if (exact.upper <= std::min(hull, reached) + slack) continue;
-      if (!reported_empty() && exact.upper <= std::min(hull, exact::support(row_.set, d).lower) + slack) continue;
-    } catch (const Error& error) {
-      if (error.code() != Errc::unsupported) throw;
-    }
-    open(whether);
-  }
-  exact_holds_ = claims && !violation_;
 }
 
 }  // namespace cordon::verification

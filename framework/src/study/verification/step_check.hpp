@@ -15,6 +15,9 @@
 
 namespace cordon::verification {
 
+/// x as messages name it: (1, 2.5).
+std::string text(VectorIn x);
+
 /// A step with its set, and what its checks found.
 class StepCheck {
  public:
@@ -50,6 +53,8 @@ class StepCheck {
   bool exact_claim_holds() const { return exact_holds_; }
 
  private:
+  struct Along;
+  void along(const Vector& d, Along& by);
   void violated(std::string what, bool in_sets_file);
   void open(std::string what);
   void emptiness_proof();
