@@ -33,17 +33,20 @@ std::string text(const MetricValue* metric) {
   return std::isnan(number) ? "-" : fmt::format("{:.4g}", number);
 }
 
-/// Steps whose set is proven to contain the truth, of those where the question was asked.
+/// Steps whose set is proven to contain the truth, of those where the question was asked; those that could not be decided are
+/// told, so that nobody takes them for a truth outside.
 std::string contained(const PipelineOutcome& pipeline) {
-  Index yes = 0, all = 0;
+  Index yes = 0, unknown = 0, all = 0;
   for (const char* answer : {"yes", "no", "unknown"}) {
     const MetricValue* count = find(pipeline, std::string("contains_truth_") + answer);
     const Index* number = count ? std::get_if<Index>(&count->value) : nullptr;
     if (!number) return "-";
     all += *number;
     if (answer == std::string_view("yes")) yes = *number;
+    if (answer == std::string_view("unknown")) unknown = *number;
   }
-  return all == 0 ? "-" : fmt::format("{}/{}", yes, all);
+  if (all == 0) return "-";
+  return unknown == 0 ? fmt::format("{}/{}", yes, all) : fmt::format("{}/{}, {} unknown", yes, all, unknown);
 }
 
 std::string consistency(const PipelineOutcome& pipeline) {

@@ -102,6 +102,19 @@ TEST_CASE("a run of diagnosers only has no table of observers, a mixed one has b
   CHECK(has(text, "Results are in out\n"));
 }
 
+TEST_CASE("steps at which it is not known whether the truth is inside are no losses of it") {
+  RunOutcome outcome;
+  outcome.pipelines.resize(1);
+  const auto counted = [&](Index yes, Index no, Index unknown) {
+    outcome.pipelines[0].summary = {{"contains_truth_yes", yes}, {"contains_truth_no", no}, {"contains_truth_unknown", unknown}};
+    return apps::report_text(study(), outcome, "out");
+  };
+  CHECK(has(counted(21, 0, 0), "21/21 "));
+  CHECK_FALSE(has(counted(21, 0, 0), "unknown"));
+  CHECK(has(counted(11, 0, 10), "11/21, 10 unknown"));
+  CHECK(has(counted(18, 1, 2), "18/21, 2 unknown"));
+}
+
 TEST_CASE("an excluded true mode, data without modes, and a pipeline that stopped are said") {
   PipelineOutcome p = diagnosis();
   p.diagnosis->true_mode_excluded = TrueModeExcluded{77, 52, 1, 4};
