@@ -20,6 +20,8 @@ using plugins::Operand;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// A point that is outside by less than this share of the bound may be so by rounding errors.
 constexpr double nominal_tolerance = 1e-10;
+/// Of its terms, an output may be off by this: it was rounded before it came here.
+constexpr double rounding_of_data = 1e-14;
 
 bool is_plain_box(const LineForm& X) {
   const auto axis_parallel = [](const Matrix& columns) {
@@ -149,7 +151,8 @@ struct Intervals {
   }
   Result correct(const Box& X, MatrixIn C, VectorIn z, const Operand<Box>& noise) const {
     const bool exact = !outward && sets::has_monomial_rows(C) && sets::is_monomial(noise.T);
-    return {sets::contract(X, C, z, noise.T, noise.value), exact ? Tightness::exact : Tightness::outer};
+    const double off = outward ? 0 : rounding_of_data;
+    return {sets::contract(X, C, z, noise.T, noise.value, off), exact ? Tightness::exact : Tightness::outer};
   }
   Result interval_map(const Box& X, const IntervalMatrix& A) const { return {sets::interval_map(X, A), Tightness::outer}; }
   Result intersection(const Box& X, MatrixIn R, const Box& Y) const {

@@ -60,14 +60,16 @@ Matrix stacked_E_C(const LinearModel& m) {
   return stacked;
 }
 
-/// The pseudo-inverse [T N] of K, with T E + N C = I to the last digits: where outputs have unlike units, a decomposition knows
-/// its small entries by few. Newton's iteration doubles the digits; it is left out where they are there.
+/// The pseudo-inverse [T N] of K, with T E + N C = I to the last digits of each of its products: where states or outputs have
+/// unlike units, a decomposition knows small entries by few digits or none, and states of 1e17 ask for them. Newton's iteration
+/// doubles the digits; it is left out where they are there.
 Matrix left_inverse(const Matrix& K) {
-  constexpr double enough = 1e-13;
+  constexpr double enough = 1e-14;
   Matrix inverse = linalg::pseudo_inverse(K);
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < 3; ++i) {
     const Matrix rest = Matrix::Identity(K.cols(), K.cols()) - linalg::product(inverse, K);
-    if (rest.cwiseAbs().maxCoeff() <= enough) break;
+    const Matrix terms = linalg::product(inverse.cwiseAbs(), K.cwiseAbs());
+    if ((rest.cwiseAbs().array() <= enough * terms.array()).all()) break;
     inverse += linalg::product(rest, inverse);
   }
   return inverse;

@@ -49,7 +49,8 @@ enum class Progress { none, some, empty };
 /// from the left and from the right. A single free coordinate can be contracted; two or more block the row.
 class RowContractor {
  public:
-  explicit RowContractor(Index n) : after_(static_cast<std::size_t>(n) + 1) {}
+  /// `off`: y may be off by this share of its terms.
+  RowContractor(Index n, double off) : after_(static_cast<std::size_t>(n) + 1), off_(off) {}
 
   /// `size`: of the terms that y was computed from.
   Progress contract(Box& X, const Row& row, Range y, double size) {
@@ -68,7 +69,8 @@ class RowContractor {
       after(j) = directed::plus(after(j + 1), own);
       terms += largest(own);
     }
-    const double doubt = nominal_error * terms;
+    const double doubt = nominal_error * terms, room = off_ * terms;
+    if (room > nominal_error * (y.upper - y.lower)) y = directed::plus(y, Range{-room, room});
     if (frees == 0 && (after(0).lower - y.upper > doubt || y.lower - after(0).upper > doubt)) return Progress::empty;
     Progress progress = Progress::none;
     Range before{0, 0};
@@ -108,6 +110,7 @@ class RowContractor {
   }
 
   std::vector<Range> after_;
+  double off_;
 };
 
 }  // namespace
@@ -242,7 +245,7 @@ Box convex_hull(const Box& X, const Box& Y) {
   return {X.lower.cwiseMin(Y.lower), X.upper.cwiseMax(Y.upper)};
 }
 
-Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V) {
+Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V, double off) {
   constexpr const char* name = "contraction of a box";
   check(X, name);
   check(V, name);
@@ -262,7 +265,7 @@ Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V) {
     y[static_cast<std::size_t>(i)] = directed::is_finite(noise) ? directed::minus(Range{z[i], z[i]}, noise) : noise;
   }
   Box Y = X;
-  RowContractor rows(X.dim());
+  RowContractor rows(X.dim(), off);
   for (int sweep = 0; sweep < 20; ++sweep) {
     bool progress = false;
     for (Index i = 0; i < C.rows(); ++i) {

@@ -332,5 +332,5 @@ TEST_CASE("each state leaves a set in its own units") {
   const LineForm X = make_box({Vector{{-1e7, -0.04}}, Vector{{1e7, 0.04}}});  // 1e-9 of 1e7 are a quarter of .04
   CHECK(detail::clearly_outside(X, Vector{{1e6, 0.045}}));
   CHECK_FALSE(detail::clearly_outside(X, Vector{{1e6, 0.04 * (1 + 1e-10)}}));
-  CHECK_FALSE(detail::outside_by_its_size(X, Vector{{1e6, 0.045}}));
+  CHECK_FALSE(detail::outside_by_its_size(X, Vector{{1e6, 0.045}}, Vector::Zero(2)));
 }

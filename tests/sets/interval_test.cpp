@@ -114,6 +114,21 @@ TEST_CASE("contraction") {
   CHECK(contract(X, Matrix{{1, 1}}, Vector::Zero(1), T, Box::empty(1)).is_empty());
 }
 
+TEST_CASE("rows that are nearly parallel do not magnify the last digit of a measurement") {
+  const Matrix C{{-37.596644763762015, -0.21206315167432166}, {6838330.9793896675, 92.11783338672649}};
+  const Vector x{{-0.00011897692324074719, -8.622444414700462}}, z{{1.8329758708361996, -1607.8844780093555}};  // C x, rounded
+  const Box X{Vector{{-0.00013956808569939654, -8.6224444147004622}}, Vector{{-0.00011897692324074718, -8.218272903012485}}};
+  const Matrix none(2, 0);
+  REQUIRE(X.contains(x));
+  const Box Y = contract(X, C, z, none, Box{Vector(0), Vector(0)}, 1e-14);
+  CHECK(Y.contains(x));
+  CHECK((Y.upper - Y.lower).cwiseQuotient(x.cwiseAbs()).maxCoeff() < 1e-9);
+  // rows with noise are as they were
+  const Matrix T = Matrix::Identity(2, 2);
+  const Box V{Vector{{-1, -1}}, Vector{{1, 1}}};
+  CHECK(same(contract(X, C, z, T, V, 1e-14), contract(X, C, z, T, V)));
+}
+
 TEST_CASE("monomial matrices") {
   CHECK(is_monomial(Matrix{{0, 2}, {0, 0}, {-1, 0}}));
   CHECK_FALSE(is_monomial(Matrix{{1, 1}}));

@@ -100,6 +100,17 @@ TEST_CASE("known traps do not make a set empty") {
   CHECK(interval_hull(steep).upper[0] == doctest::Approx(6e12));
 }
 
+TEST_CASE("what is left of a right-hand side is kept where a line is eliminated, however large it was") {
+  // δ = 1e15, δ + 100 ξ = 1e15 + 30, x = δ + 2 - 1e15
+  const LineForm X{Matrix{{1}}, Matrix{{0}}, Vector{{2 - 1e15}}, Matrix{{1}, {1}}, Matrix{{0}, {100}}, Vector{{1e15, 1e15 + 30}}};
+  const LineForm Y = eliminate_lines(X);
+  REQUIRE(Y.constraints() == 1);
+  CHECK(Y.lines() == 0);
+  CHECK(std::abs(Y.b[0] / Y.A(0, 0)) == doctest::Approx(.3));
+  CHECK(Y.c[0] == 2);
+  CHECK(is_empty(Y) == Answer::no);
+}
+
 TEST_CASE("lines keep their directions, whatever their scale") {
   const LineForm plane = affine_map(make_space(2), Matrix{{1e6, 0.0}, {0.0, 1e-6}}, Vector::Zero(2));
   CHECK(interval_hull(plane).upper[1] == inf);

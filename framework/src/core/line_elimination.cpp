@@ -94,7 +94,8 @@ struct Tableau {
     }
   }
 
-  /// Terms inherit the magnitude of the pivot row: what cancelled there is noise here too.
+  /// Terms inherit the magnitude of the pivot row: what cancelled there is noise here too. Of b and c nothing is left out: where
+  /// states are large and their sets small, 1e-13 of them is more than the set.
   void eliminate(Index row, Index col) {
     used[static_cast<std::size_t>(row)] = true;
     const double divisor = T(row, col);
@@ -106,9 +107,11 @@ struct Tableau {
     for (Index i = 0; i < T.rows(); ++i) {
       const double factor = T(i, col);
       if (i == row || factor == 0) continue;
+      const double right = T(i, width - 1) - factor * pivot[width - 1];
       for (const Run& run : runs) {
         subtract(factor, pivot.data(), pivot_magnitude.data(), run, T.row(i).data(), magnitude.row(i).data());
       }
+      T(i, width - 1) = right;
       T(i, col) = 0;
       if (i < rows && used[static_cast<std::size_t>(i)]) continue;
       for (const auto& [first, last] : trace_runs) {

@@ -7,8 +7,9 @@ namespace cordon {
 
 /// X with as many lines eliminated as its constraints allow: {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Aξ = b} with independent columns of M,
 /// which span the lineality space, and no S. The same set: a line is unbounded, so that solving a row for it loses nothing.
-/// Pivots are chosen over the whole of S, largest in its equilibrated row first. An entry that cancelled to less than 1e-13 of
-/// the terms it was computed from counts as zero; an entry that is small but was not cancelled is used. Rows that become 0 = 0
+/// Pivots are chosen over the whole of S, largest in its equilibrated row first. A coefficient that cancelled to less than 1e-13
+/// of the terms it was computed from counts as zero; one that is small but was not cancelled is used, and so is whatever is left
+/// of b and c. Rows that become 0 = 0, up to as much,
 /// are dropped, a row 0 = b ≠ 0 stays (X is ∅). An entry that cancelled to less than 1e-6 of its terms is known with few digits
 /// and is no pivot; rows in which no other is left are dropped, and the set becomes larger. O((n + m)(l + g) min(l, m)).
 /// [Rego2025, Alg. 1]

@@ -12,7 +12,7 @@ namespace cordon::detail {
 namespace {
 
 constexpr double last_digits = 1e-14;
-constexpr double rounding = 1e-9, barely = 1e-6;
+constexpr double of_size = 1e-9, barely = 1e-6;
 
 double largest(VectorIn x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
 
@@ -30,13 +30,13 @@ bool clearly_outside(const LineForm& X, VectorIn x, double margin) {
 bool clearly_outside(const LineForm& X, VectorIn x) {
   if (X.dim() != x.size()) return false;
   const Vector sizes = x.cwiseAbs().cwiseMax(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
-  return clearly_outside(X, x, Vector(rounding * sizes.array() + last_digits * largest(sizes)));
+  return clearly_outside(X, x, Vector(of_size * sizes.array() + last_digits * largest(sizes)));
 }
 
-bool outside_by_its_size(const LineForm& X, VectorIn x) {
-  if (X.dim() != x.size()) return false;
+bool outside_by_its_size(const LineForm& X, VectorIn x, VectorIn rounding) {
+  if (X.dim() != x.size() || rounding.size() != x.size()) return false;
   const double size = largest(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
-  return clearly_outside(X, x, rounding * std::max(size, largest(x)));
+  return clearly_outside(X, x, Vector(rounding.cwiseMax(of_size * std::max(size, largest(x)))));
 }
 
 bool barely_outside(const LineForm& X, VectorIn x) {

@@ -16,6 +16,7 @@
 #include "study/running/inner_check.hpp"
 #include "study/running/outside.hpp"
 #include "study/running/pipeline_guard.hpp"
+#include "study/running/rounding_margin.hpp"
 #include "study/running/time_limit.hpp"
 
 namespace cordon {
@@ -32,6 +33,7 @@ using detail::Median;
 using detail::MetricBoard;
 using detail::MetricValues;
 using detail::Results;
+using detail::RoundingMargin;
 using detail::TimeLimit;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
@@ -82,6 +84,7 @@ class Pipeline {
                                           .exact_data = backend_->info().rounding != Rounding::nominal};
       if (assumptions_->admissible_set) assumed.admissible_sets.push_back(*assumptions_->admissible_set);
       check_.emplace(study_, std::move(assumed));
+      rounding_.emplace(study_.model, assumptions_->initial_set, backend_->info().rounding);
       outcome_.gains = observer_->gains();
     });
   }
@@ -154,13 +157,14 @@ class Pipeline {
   const Vector* judge(const Record& record, const Estimate& estimate) {
     check_->step(record);
     if (!record.truth) return nullptr;
-    truths_.emplace_back(record.sample.k, *record.truth);
-    while (!truths_.empty() && truths_.front().first < estimate.k) truths_.pop_front();  // estimates may lag behind the samples
-    if (truths_.empty() || truths_.front().first != estimate.k) return nullptr;
-    const Vector& truth = truths_.front().second;
-    const bool still_inside = outcome_.outside_from < 0;
-    if (still_inside && (estimate.consistent == Answer::no || (holds(*estimate.set, truth) == Answer::no &&
-                                                               detail::outside_by_its_size(estimate.set->line_form(), truth)))) {
+    passed_.push_back({record.sample, *record.truth});
+    while (!passed_.empty() && passed_.front().sample.k < estimate.k) {  // estimates may lag behind the samples
+      before_ = std::move(passed_.front().sample);
+      passed_.pop_front();
+    }
+    if (passed_.empty() || passed_.front().sample.k != estimate.k) return nullptr;
+    const Vector& truth = passed_.front().truth;
+    if (outcome_.outside_from < 0 && is_outside(estimate, truth)) {
       outcome_.outside_from = estimate.k;
       const Index k = record.sample.k;
       if (own_model_ && nominal_ && !check_->excuses(k) &&
@@ -168,6 +172,15 @@ class Pipeline {
         outcome_.violated_at = estimate.k;
     }
     return &truth;
+  }
+
+  /// By more than rounding errors may amount to.
+  bool is_outside(const Estimate& estimate, const Vector& truth) {
+    if (estimate.consistent == Answer::no) return true;
+    const LineForm X = estimate.set->line_form();
+    const bool follows = before_ && before_->k + 1 == estimate.k;
+    const Vector margin = rounding_->next(X, follows ? &*before_ : nullptr, passed_.front().sample);
+    return holds(*estimate.set, truth) == Answer::no && detail::outside_by_its_size(X, truth, margin);
   }
 
   Answer holds(const Set& X, const Vector& x) {
@@ -208,7 +221,13 @@ class Pipeline {
   std::optional<Assumptions> assumptions_;
   std::optional<AssumptionCheck> check_;
   std::optional<MetricBoard> board_;
-  std::deque<std::pair<Index, Vector>> truths_;
+  struct Passed {
+    Sample sample;
+    Vector truth;
+  };
+  std::deque<Passed> passed_;     ///< whose estimate is still to come, or has just come
+  std::optional<Sample> before_;  ///< the sample before these
+  std::optional<RoundingMargin> rounding_;
   std::vector<Certificate> hull_proofs_;
   Medians medians_;
   InnerCheck inner_;

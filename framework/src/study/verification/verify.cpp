@@ -9,11 +9,11 @@
 #include "cordon/study/data.hpp"
 #include "solvers/polytope_representation.hpp"
 #include "study/data/random.hpp"
+#include "study/running/rounding_margin.hpp"
 #include "study/verification/design_check.hpp"
 #include "study/verification/enclosed_successors.hpp"
 #include "study/verification/feasible_set.hpp"
 #include "study/verification/recorded_run.hpp"
-#include "study/verification/rounding_margin.hpp"
 #include "study/verification/step_check.hpp"
 
 namespace cordon {
@@ -221,7 +221,7 @@ class Verification {
     const std::unique_ptr<DataSource> data = open_data(study);
     std::optional<Sample> sample, before;
     std::optional<RecordedSet> row, row_before;
-    RoundingMargin rounding(run_.model, pipeline.initial_set, pipeline.rounding);
+    detail::RoundingMargin rounding(run_.model, pipeline.initial_set, pipeline.rounding);
     std::size_t read = 0;
     Clock::time_point told = Clock::now();
     for (std::size_t i = 0; i < pipeline.steps.size(); ++i) {

@@ -56,6 +56,9 @@ Box convex_hull(const Box& X, const Box& Y);
 /// A box around {x ∈ X : z - C x ∈ T V} by forward and backward contraction row by row, repeated until no width shrinks by
 /// more than 1e-9 of itself or 20 sweeps are done. A result that is empty is proven empty. T with no columns: C x = z.
 /// Exact if has_monomial_rows(C) and is_monomial(T), else outer. O(p n) per sweep.
-Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V);
+/// `off`: z may be off by this share of the terms of its row. Rows that T V leaves narrower than 1e10 times that get as much
+/// room: a box that loses x by the last digit of z loses it by some hundred times as much in every sweep over rows that are
+/// nearly parallel.
+Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V, double off = 0);
 
 }  // namespace cordon::sets

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "cordon/interfaces/model.hpp"
-#include "study/verification/recorded_run.hpp"
+#include "cordon/interfaces/observer.hpp"
 
-namespace cordon::verification {
+namespace cordon::detail {
 
 /// Per coordinate a bound τ_k of what nominal operations and the observer's own arithmetic may add up to, from the recorded sets
 /// alone. With s_k, the magnitude of the terms that x_k is made of:
@@ -45,4 +45,4 @@ class RoundingMargin {
   Vector reach_, error_, largest_, of_outputs_;
 };
 
-}  // namespace cordon::verification
+}  // namespace cordon::detail

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/verification/rounding_margin.hpp"
+#include "study/running/rounding_margin.hpp"
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/interfaces/semi_explicit.hpp"
 
-namespace cordon::verification {
+namespace cordon::detail {
 
 namespace {
 
@@ -95,4 +95,4 @@ Vector RoundingMargin::next(const LineForm& X, const Sample* before, const Sampl
   return error_.cwiseMin(of_all * largest_).unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
 }
 
-}  // namespace cordon::verification
+}  // namespace cordon::detail
