@@ -264,7 +264,6 @@ class Elimination {
       b_[i] -= factor * b_[row];
       b_terms_[i] = std::max(b_terms_[i], size * b_terms_[row]);
       before_.rows[i] = std::max(before_.rows[i], size * before_.rows[row]);
-      if (std::abs(b_[i]) <= noise * b_terms_[i]) b_[i] = 0;
     }
     A_(i, col) = 0;
   }
