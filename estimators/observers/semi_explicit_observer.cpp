@@ -82,13 +82,10 @@ class SemiExplicitObserver final : public Observer {
       if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(to_x(Z_), before.u) : Enclosure{};
       if (effectiveness_.has_open_states()) terms.push_back({stacked_rows_, open});
-      if (inputs_enter_as_sets_) {
-        const Enclosure input = backend().point(before.u);
-        const Vector none = Vector::Zero(stacked_B_.rows());
-        terms.push_back({stacked_B_, input});
-        return with_static_rows(backend().predict(Z_, {stacked_A_, none, {terms.data(), terms.size()}}), now.u);
-      }
-      const Vector shift = effectiveness_.input(stacked_B_, before.u);
+      const Enclosure input = inputs_enter_as_sets_ ? backend().point(before.u) : Enclosure{};
+      if (inputs_enter_as_sets_) terms.push_back({stacked_B_, input});
+      const Vector shift =
+          inputs_enter_as_sets_ ? Vector(Vector::Zero(stacked_B_.rows())) : effectiveness_.input(stacked_B_, before.u);
       const Vector sizes = effectiveness_.input_terms(stacked_B_, before.u) + disturbance_.cwiseAbs();
       const RoundingRoom room(backend(), shift + disturbance_, sizes, disturbance_widths_);
       if (room.is_needed()) terms.push_back(room.term());
@@ -108,32 +105,21 @@ class SemiExplicitObserver final : public Observer {
 
   /// 0 = Ǎ z + B̌ diag(f) u + B̌w w with a fresh w ∈ W.
   Enclosure with_static_rows(const Enclosure& Z, VectorIn u) const {
-    if (transformed_.static_rows() == 0) return Z;
-    if (inputs_enter_as_sets_) return with_static_inputs(Z, u);
-    const Vector f = -effectiveness_.input(transformed_.static_B, u);
-    Matrix entries(transformed_.static_rows(), static_W_->dim());
-    entries << transformed_.static_Bw, effectiveness_.input_spread(transformed_.static_B, u);
-    const Vector sizes = effectiveness_.input_terms(transformed_.static_B, u) + static_disturbance_.cwiseAbs();
-    const RoundingRoom room(backend(), f - static_disturbance_, sizes, static_widths_);
-    if (!effectiveness_.has_open_states()) return room.correct(Z, {transformed_.static_A, f, {entries, static_W_}});
-    const Enclosure noise = backend().product(static_W_, effectiveness_.open_states(to_x(Z), u));
-    Matrix open_entries(entries.rows(), noise->dim());
-    open_entries << entries, transformed_.static_rows_map;
-    return room.correct(Z, {transformed_.static_A, f, {open_entries, noise}});
-  }
-
-  /// The same with u as a set.
-  Enclosure with_static_inputs(const Enclosure& Z, VectorIn u) const {
-    const Index rows = transformed_.static_rows();
-    Enclosure noise = backend().product(W_, backend().point(u));
+    const StaticRows& form = transformed_;
+    const Index rows = form.static_rows();
+    if (rows == 0) return Z;
+    Enclosure noise = inputs_enter_as_sets_ ? backend().product(W_, backend().point(u)) : static_W_;
     Matrix entries(rows, noise->dim());
-    entries << transformed_.static_Bw, transformed_.static_B;
+    entries << form.static_Bw, inputs_enter_as_sets_ ? form.static_B : effectiveness_.input_spread(form.static_B, u);
     if (effectiveness_.has_open_states()) {
       noise = backend().product(noise, effectiveness_.open_states(to_x(Z), u));
       entries.conservativeResize(Eigen::NoChange, noise->dim());
-      entries.rightCols(transformed_.static_rows_map.cols()) = transformed_.static_rows_map;
+      entries.rightCols(form.static_rows_map.cols()) = form.static_rows_map;
     }
-    return backend().correct(Z, {transformed_.static_A, Vector::Zero(rows), {entries, noise}});
+    const Vector f = inputs_enter_as_sets_ ? Vector(Vector::Zero(rows)) : Vector(-effectiveness_.input(form.static_B, u));
+    const Vector sizes = effectiveness_.input_terms(form.static_B, u) + static_disturbance_.cwiseAbs();
+    const RoundingRoom room(backend(), f - static_disturbance_, sizes, static_widths_);
+    return room.correct(Z, {form.static_A, f, {entries, noise}});
   }
 
   Enclosure finish(const Enclosure& predicted, const Sample& now) {

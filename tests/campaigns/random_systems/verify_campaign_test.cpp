@@ -126,20 +126,21 @@ Counts ran_and_verified(cordon::campaigns::Start start, const std::vector<std::u
   return count;
 }
 
-void check(const Counts& count) {
-  CHECK(count.false_statements == 0);
-  CHECK(count.refused * 4 <= count.systems);
-  CHECK(count.undecided * 50 <= count.small);
-}
+/// At most two in a hundred undecided, and a quarter refused.
+bool most_are_decided(const Counts& count) { return count.undecided * 50 <= count.small && count.refused * 4 <= count.systems; }
 
 }  // namespace
 
 TEST_CASE("no result of a random system is refuted, and of up to four states at most two in a hundred stay undecided") {
-  check(ran_and_verified(cordon::campaigns::Start::bounded, numbers(40)));
+  const Counts count = ran_and_verified(cordon::campaigns::Start::bounded, numbers(40));
+  CHECK(count.false_statements == 0);
+  CHECK(most_are_decided(count));
 }
 
 TEST_CASE("nor of one that starts nobody knows where") {
-  check(ran_and_verified(cordon::campaigns::Start::unknown, numbers(150)));
+  const Counts count = ran_and_verified(cordon::campaigns::Start::unknown, numbers(150));
+  CHECK(count.false_statements == 0);
+  CHECK(most_are_decided(count));
 }
 
 // An admissible set that is left by a small state beside a large one; descriptor systems in unlike units; a rounded
