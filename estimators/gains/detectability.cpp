@@ -6,16 +6,18 @@
 #include <complex>
 #include <cstdio>
 
+#include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/solvers/exact_modes.hpp"
 
 namespace cordon::estimators {
 
 namespace {
 
 constexpr double tolerance = 1e-10;
-constexpr double cleaned = 1e-9;              // entries of a direction below this share of the largest are noise
-constexpr double row_tolerance = 1e-8;        // above what cleaning can leave in a row
-constexpr double least_unstable = 1 - 1e-12;  // 1, up to the rounding of eigenvalues
+constexpr double cleaned = 1e-9;           // entries of a direction below this share of the largest are noise
+constexpr double row_tolerance = 1e-8;     // above what cleaning can leave in a row
+constexpr double rounded_one = 1 - 1e-12;  // 1, up to the rounding of eigenvalues
 
 std::string number(double x) {
   char text[32];
@@ -69,23 +71,56 @@ std::optional<Eigen::VectorXcd> hidden(const Matrix& A, const Matrix& C, std::co
   return silent && stays ? std::optional(found) : std::nullopt;
 }
 
+/// In words, but for how it shows: "the mode 1.2 of A, along (0, 1)".
 std::optional<std::string> hidden_mode(const Matrix& A, const Matrix& C, double least_modulus) {
   if (A.rows() == 0) return std::nullopt;
   const Eigen::VectorXcd values = linalg::eigenvalues(A);
   for (const std::complex<double>& value : values) {
     if (std::abs(value) < least_modulus || value.imag() < 0) continue;  // of a pair the upper one
-    const auto v = hidden(A, C, value);
-    if (v) {
-      return "the mode " + number(value) + " of A, along " + direction(*v) + ", does not show in the outputs";
-    }
+    if (const auto v = hidden(A, C, value)) return "the mode " + number(value) + " of A, along " + direction(*v) + ",";
   }
   return std::nullopt;
 }
 
+Obstacle proven(std::string mode) { return {Answer::no, std::move(mode) + " does not show in the outputs"}; }
+Obstacle nearly(std::string mode) { return {Answer::unknown, std::move(mode) + " hardly shows in the outputs"}; }
+
+/// Nothing for a system that is too large.
+std::optional<exact::HiddenModes> exactly_hidden(const Matrix& A, const Matrix& C, double rate) {
+  try {
+    return exact::hidden_modes(A, C, rate);
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported) throw;
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
-std::optional<std::string> undetectable_mode(const Matrix& A, const Matrix& C) { return hidden_mode(A, C, least_unstable); }
+std::optional<Obstacle> undetectable_mode(const Matrix& A, const Matrix& C, double rate) {
+  std::optional<std::string> mode = hidden_mode(A, C, std::sqrt(rate) * rounded_one);
+  if (!mode) return std::nullopt;
+  // |λ|² ≥ the next double above a rate is > rate; a mode on the unit circle itself is no longer detectable
+  const double above = rate == 1 ? rate : std::nextafter(rate, 2 * rate);
+  const std::optional<exact::HiddenModes> modes = exactly_hidden(A, C, above);
+  if (!modes) return nearly(std::move(*mode));
+  if (!modes->decay) return proven(std::move(*mode));
+  if (modes->count > 0) return std::nullopt;
+  return nearly(std::move(*mode));
+}
 
-std::optional<std::string> unobservable_mode(const Matrix& A, const Matrix& C) { return hidden_mode(A, C, 0); }
+std::string not_detectable(const Obstacle& hidden) {
+  const bool is_proven = hidden.gain_exists == Answer::no;
+  return std::string(is_proven ? "no gain exists, the pair (A, C) is not detectable: "
+                               : "no gain was sought, the pair (A, C) is detectable by rounding errors at most: ") +
+         hidden.reason;
+}
+
+std::optional<Obstacle> unobservable_mode(const Matrix& A, const Matrix& C) {
+  std::optional<std::string> mode = hidden_mode(A, C, 0);
+  if (!mode) return std::nullopt;
+  const std::optional<exact::HiddenModes> modes = exactly_hidden(A, C, 1);
+  return modes && modes->count > 0 ? proven(std::move(*mode)) : nearly(std::move(*mode));
+}
 
 }  // namespace cordon::estimators

@@ -27,6 +27,15 @@ Matrix disturbances(const Model& model, const Matrix& L, const Matrix& theta) {
 
 Matrix mean_outputs(const LinearModel& model) { return model.sensor_center().asDiagonal() * model.C; }
 
+Matrix shown_outputs(const LinearModel& model) {
+  const Vector gains = model.sensor_center();
+  Matrix C = model.C;
+  for (Index i = 0; i < C.rows(); ++i) {
+    if (gains[i] == 0) C.row(i).setZero();
+  }
+  return C;
+}
+
 GainCertificate certify(const Model& model, const Matrix& L, const Matrix& theta) {
   const Matrix closed = model.linear.A - linalg::product(L, mean_outputs(model.linear));
   GainCertificate certificate;

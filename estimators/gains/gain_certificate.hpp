@@ -13,6 +13,10 @@ GainCertificate certify(const Model& model, const Matrix& L, const Matrix& theta
 /// C̄ = mid(g) C.
 Matrix mean_outputs(const LinearModel& model);
 
+/// C, with zero rows where the mean gain of a sensor is zero: what diag(mean) C shows, without its rounding. Scaling a row
+/// changes what gains exist by its factor only.
+Matrix shown_outputs(const LinearModel& model);
+
 /// Why L is no gain for the model: another shape, entries that are no numbers, or A - L C̄ with an eigenvalue outside the unit
 /// circle; "" if it is one.
 std::string gain_problem(const Model& model, const Matrix& L);

@@ -37,7 +37,7 @@ class HInfinity final : public GainDesigner {
   GainDesign design(const Model& model) const override {
     const Matrix theta = theta_of(model, theta_);
     const ErrorDynamics errors = error_dynamics(model, theta);
-    if (std::optional<GainDesign> none = without_gain(errors)) return std::move(*none);
+    if (std::optional<GainDesign> none = without_gain(model, errors)) return std::move(*none);
     return h_infinity_design(model, theta, errors, false);
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The gain with the least bound of the H∞ norm among those with A - L C ≥ 0 in every entry.
 #include "components.hpp"
+#include "gains/gain_certificate.hpp"
 #include "gains/h_infinity_lmi.hpp"
 #include "gains/monotone.hpp"
 #include "gains/theta.hpp"
@@ -34,10 +35,11 @@ class HInfinityMonotone final : public GainDesigner {
   GainDesign design(const Model& model) const override {
     const Matrix theta = theta_of(model, theta_);
     const ErrorDynamics errors = error_dynamics(model, theta);
-    if (std::optional<std::string> reason = no_monotone_gain(errors.A, errors.C)) {
-      return no_gain(Answer::no, std::move(*reason), "an observer that needs no monotone gain, or states in which there is one");
+    if (std::optional<Obstacle> why = no_monotone_gain(errors.A, shown_outputs(model.linear))) {
+      return no_gain(why->gain_exists, std::move(why->reason),
+                     "an observer that needs no monotone gain, or states in which there is one");
     }
-    if (std::optional<GainDesign> none = without_gain(errors)) return std::move(*none);
+    if (std::optional<GainDesign> none = without_gain(model, errors)) return std::move(*none);
     return h_infinity_design(model, theta, errors, true);
   }
 

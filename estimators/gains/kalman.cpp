@@ -25,8 +25,8 @@ class Kalman final : public GainDesigner {
 
   GainDesign design(const Model& model) const override {
     const std::string mend = "measure what is unstable, or use an observer without a gain";
-    if (auto hidden = undetectable_mode(model.linear.A, mean_outputs(model.linear))) {
-      return {Answer::no, {}, "no gain exists, the pair (A, C) is not detectable: " + std::move(*hidden), mend};
+    if (auto hidden = undetectable_mode(model.linear.A, shown_outputs(model.linear))) {
+      return {hidden->gain_exists, {}, not_detectable(*hidden), mend};
     }
     Gain gain;
     try {

@@ -125,9 +125,9 @@ GainDesign unsolved(const SdpSolution& s) {
                  "other units for states and disturbances, or another gain");
 }
 
-std::optional<GainDesign> without_gain(const ErrorDynamics& errors) {
-  if (std::optional<std::string> mode = undetectable_mode(errors.A, errors.C)) {
-    return no_gain(Answer::no, "no gain makes A - L C stable: " + std::move(*mode), "measure what shows this mode");
+std::optional<GainDesign> without_gain(const Model& model, const ErrorDynamics& errors) {
+  if (const std::optional<Obstacle> hidden = undetectable_mode(errors.A, shown_outputs(model.linear))) {
+    return no_gain(hidden->gain_exists, not_detectable(*hidden), "measure what shows this mode");
   }
   if (errors.unit == 0) {
     return no_gain(Answer::unknown,

@@ -58,6 +58,6 @@ GainDesign no_gain(Answer feasible, std::string reason, std::string suggestion =
 GainDesign unsolved(const SdpSolution& s);
 
 /// What every design finds out first: a mode that no gain stabilises, or nothing that disturbs the errors.
-std::optional<GainDesign> without_gain(const ErrorDynamics& errors);
+std::optional<GainDesign> without_gain(const Model& model, const ErrorDynamics& errors);
 
 }  // namespace cordon::estimators

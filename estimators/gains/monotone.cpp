@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gains/monotone.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <vector>
 
+#include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/solvers/exact_questions.hpp"
 #include "cordon/solvers/lp.hpp"
 
 namespace cordon::estimators {
@@ -31,13 +34,28 @@ bool is_zero(const Matrix& C, const Vector& x) {
   return ((C * x).cwiseAbs().array() <= equal * (C.cwiseAbs() * x.cwiseAbs()).array()).all();
 }
 
-std::optional<std::string> by_structure(const Matrix& A, const Matrix& C) {
+/// Is max{costᵀx : K x = 0, 0 ≤ x_j ≤ 2^bits_j} positive? In rational arithmetic; `unknown` if that is too much.
+Answer is_positive(const Vector& cost, const Matrix& K, const std::vector<int>& bits) {
+  try {
+    return exact::maximum(cost, K, Vector::Zero(K.rows()), bits).lower > 0 ? Answer::yes : Answer::no;
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported && error.code() != Errc::invalid) throw;
+    return Answer::unknown;
+  }
+}
+
+Obstacle obstacle(Answer proof, const std::string& why) {
+  if (proof == Answer::yes) return {Answer::no, "no monotone gain exists: " + why};
+  return {Answer::unknown, "no monotone gain was sought: but for rounding, " + why};
+}
+
+std::optional<Obstacle> by_structure(const Matrix& A, const Matrix& C) {
   for (Index j = 0; j < A.cols(); ++j) {
     if (!C.col(j).isZero(0)) continue;
     for (Index i = 0; i < A.rows(); ++i) {
       if (A(i, j) >= 0) continue;
       const std::string row = std::to_string(i + 1), column = std::to_string(j + 1);
-      return "column " + column + " of C is zero and A(" + row + "," + column + ") < 0";
+      return obstacle(Answer::yes, "column " + column + " of C is zero and A(" + row + "," + column + ") < 0");
     }
   }
   return std::nullopt;
@@ -50,7 +68,7 @@ Vector cleaned(const Vector& x) {
   return (x / size).unaryExpr([](double value) { return value < noise ? 0.0 : value; });
 }
 
-std::optional<std::string> by_row(const Matrix& A, const Matrix& C) {
+std::optional<Obstacle> by_row(const Matrix& A, const Matrix& C) {
   const Index n = A.rows();
   LinearProgram program(C, Vector::Zero(C.rows()), Vector::Zero(n), Vector::Ones(n));
   for (Index i = 0; i < n; ++i) {
@@ -59,14 +77,35 @@ std::optional<std::string> by_row(const Matrix& A, const Matrix& C) {
     if (solution.status != LinearProgram::Status::optimal || !(solution.objective > 0)) continue;
     const Vector mu = cleaned(solution.x);
     if (!(row.dot(mu) < -margin * row.cwiseAbs().dot(mu)) || !is_zero(C, mu)) continue;
-    return "the outputs do not show the direction " + direction(mu) + ", and row " + std::to_string(i + 1) +
-           " of A makes a negative number of it";
+    const Answer proof = is_positive(-row, C, std::vector<int>(static_cast<std::size_t>(n), 0));
+    return obstacle(proof, "the outputs do not show the direction " + direction(mu) + ", and row " + std::to_string(i + 1) +
+                               " of A makes a negative number of it");
   }
   return std::nullopt;
 }
 
-/// Variables x, y_1, …, y_n and a slack per row: A_i x - A_i y_i - x_i - s_i = 0, C x - C y_i = 0.
-std::optional<std::string> by_growth(const Matrix& A, const Matrix& C) {
+/// x, y_1, …, y_n and a slack s per row with A_i x - A_i y_i - x_i - s_i = 0 and C x - C y_i = 0, x ≤ 1 and y, s at most twice as
+/// large as the largest of a solution. x enters twice, as A_ii - 1 need not be a double.
+Answer is_growth_proven(const Matrix& A, const Matrix& C, double largest) {
+  const Index n = A.rows(), p = C.rows(), columns = n + n * n + n + n;
+  Matrix K = Matrix::Zero(2 * n + n * p, columns);
+  for (Index i = 0; i < n; ++i) {
+    K.block(i, 0, 1, n) = A.row(i);
+    K.block(i, n + i * n, 1, n) = -A.row(i);
+    K(i, n + n * n + i) = K(i, n + n * n + n + i) = -1;
+    K(n + i, i) = 1;
+    K(n + i, n + n * n + n + i) = -1;
+    K.block(2 * n + i * p, 0, p, n) = C;
+    K.block(2 * n + i * p, n + i * n, p, n) = -C;
+  }
+  std::vector<int> bits(static_cast<std::size_t>(columns), std::max(1, std::ilogb(largest) + 2));
+  for (Index i = 0; i < n; ++i) bits[static_cast<std::size_t>(i)] = bits[static_cast<std::size_t>(columns - 1 - i)] = 0;
+  Vector sum = Vector::Zero(columns);
+  sum.head(n).setOnes();
+  return is_positive(sum, K, bits);
+}
+
+std::optional<Obstacle> by_growth(const Matrix& A, const Matrix& C) {
   const Index n = A.rows(), p = C.rows(), columns = n + n * n + n;
   Matrix M = Matrix::Zero(n + n * p, columns);
   for (Index i = 0; i < n; ++i) {
@@ -91,16 +130,17 @@ std::optional<std::string> by_growth(const Matrix& A, const Matrix& C) {
     const double terms = x[i] + A.row(i).cwiseAbs().dot(size);
     if (A.row(i).dot(x - y) < x[i] - equal * terms) return std::nullopt;
   }
-  return "every monotone A - L C leaves the states " + direction(cleaned(x)) + " as large as they are, and is not stable";
+  const Answer proof = is_growth_proven(A, C, std::max(1.0, solution.x.maxCoeff()));
+  return obstacle(
+      proof, "every monotone A - L C leaves the states " + direction(cleaned(x)) + " as large as they are, and is not stable");
 }
 
 }  // namespace
 
-std::optional<std::string> no_monotone_gain(const Matrix& A, const Matrix& C) {
-  std::optional<std::string> why = by_structure(A, C);
+std::optional<Obstacle> no_monotone_gain(const Matrix& A, const Matrix& C) {
+  std::optional<Obstacle> why = by_structure(A, C);
   if (!why) why = by_row(A, C);
   if (!why) why = by_growth(A, C);
-  if (why) why = "no monotone gain exists: " + *why;
   return why;
 }
 

@@ -95,7 +95,9 @@ class Peak final : public GainDesigner {
       return {Answer::unknown, {}, error.what(), "give bounded sets W and V"};
     }
     const std::string otherwise = "use a designer that does not ask for a monotone A - L C, such as \"kalman\"";
-    if (auto why = no_monotone_gain(m.A, C)) return {Answer::no, {}, std::move(*why), otherwise};
+    if (auto why = no_monotone_gain(m.A, shown_outputs(m))) {
+      return {why->gain_exists, {}, std::move(why->reason), otherwise};
+    }
     const Vector r = Ew.cwiseAbs().rowwise().sum() + theta.cwiseAbs().rowwise().sum();
     const Program made = program(m.A, C, r, Ev);
     const LinearProgram::Solution solution = LinearProgram(made.M, made.b, made.lower, made.upper).maximize(made.objective);

@@ -9,6 +9,7 @@
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/solvers/exact_modes.hpp"
 #include "gains/detectability.hpp"
 #include "gains/gain_certificate.hpp"
 #include "gains/pole_placement.hpp"
@@ -67,11 +68,12 @@ class Poles final : public GainDesigner {
     if (static_cast<Index>(poles_.size()) != model.linear.states()) {
       return {Answer::no, {}, "there must be as many poles as states", "give the real part of every pole"};
     }
-    if (auto hidden = unobservable_mode(A, C)) {
-      return {
-          Answer::no, {}, "the pair (A, C) is not observable: " + std::move(*hidden), "use \"kalman\", which leaves such modes"};
+    const Matrix shown = shown_outputs(model.linear);
+    if (const auto hidden = unobservable_mode(A, shown)) {
+      const std::string what = hidden->gain_exists == Answer::no ? " is not observable: " : " is hardly observable: ";
+      return {hidden->gain_exists, {}, "the pair (A, C)" + what + hidden->reason, "use \"kalman\", which leaves such modes"};
     }
-    const Index rank = linalg::rank(C);
+    const Index rank = exact::rank(shown);
     for (const auto& [pole, count] : counted(poles_)) {
       if (count <= rank) continue;
       return {Answer::no,

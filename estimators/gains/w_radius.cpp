@@ -74,11 +74,10 @@ class WRadius final : public GainDesigner {
   GainDesign design(const Model& model) const override {
     const Matrix theta = theta_of(model, theta_);
     const ErrorDynamics errors = error_dynamics(model, theta);
-    if (std::optional<GainDesign> none = without_gain(errors)) return std::move(*none);
-    if (undetectable_mode(errors.A / std::sqrt(rho_), errors.C)) {
-      return no_gain(Answer::no,
-                     "no gain contracts by rho: a mode of A that does not show in the outputs decays slower than √rho",
-                     "a larger rho");
+    if (std::optional<GainDesign> none = without_gain(model, errors)) return std::move(*none);
+    if (const auto slow = undetectable_mode(errors.A, shown_outputs(model.linear), rho_)) {
+      const std::string none = slow->gain_exists == Answer::no ? "no gain contracts by rho: " : "no gain was sought: ";
+      return no_gain(slow->gain_exists, none + slow->reason + " and decays slower than √rho", "a larger rho");
     }
     const WRadiusProgram program = w_radius_program(errors, rho_);
     const SdpSolution s = solve(program.program, {1e-8});

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "components.hpp"
+#include "gains/gain_certificate.hpp"
 #include "gains/monotone.hpp"
 #include "observers/interval_observer.hpp"
 
@@ -42,9 +43,9 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   const LinearModel& m = context.model.linear;
   const std::string negative = negative_entries(context.model, observer_gain(context, params, "gain", absent()).gain.L);
   if (negative.empty()) return problems;
-  const std::optional<std::string> never = no_monotone_gain(m.A, m.sensor_center().asDiagonal() * m.C);
+  const std::optional<Obstacle> never = no_monotone_gain(m.A, shown_outputs(m));
   problems.push_back({params.has("gain") ? "/gain" : "", negative,
-                      never ? *never + ": use the observer \"interval_trajectory\""
+                      never ? never->reason + ": use the observer \"interval_trajectory\""
                             : "use the gain \"peak\" or \"h_infinity_monotone\", or the observer \"interval_trajectory\""});
   return problems;
 }

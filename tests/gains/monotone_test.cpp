@@ -24,14 +24,35 @@ Matrix random_matrix(Index rows, Index cols, double low, double high) {
 }  // namespace
 
 TEST_CASE("three reasons why there is no monotone gain") {
-  CHECK(no_monotone_gain(Matrix{{.8, -.1, .3}, {0, .8, .2}, {.01, 0, .8}}, Matrix{{0, 0, 1}}).value() ==
+  CHECK(no_monotone_gain(Matrix{{.8, -.1, .3}, {0, .8, .2}, {.01, 0, .8}}, Matrix{{0, 0, 1}}).value().reason ==
         "no monotone gain exists: column 2 of C is zero and A(1,2) < 0");
-  CHECK(no_monotone_gain(Matrix{{.5, 0}, {-.3, .2}}, Matrix{{1, -1}}).value() ==
+  CHECK(no_monotone_gain(Matrix{{.5, 0}, {-.3, .2}}, Matrix{{1, -1}}).value().reason ==
         "no monotone gain exists: the outputs do not show the direction (1, 1), and row 2 of A makes a negative number of it");
-  CHECK(no_monotone_gain(Matrix{{1.2, 0}, {0, .5}}, Matrix{{0, 1}}).value() ==
+  CHECK(no_monotone_gain(Matrix{{1.2, 0}, {0, .5}}, Matrix{{0, 1}}).value().reason ==
         "no monotone gain exists: every monotone A - L C leaves the states (1, 0) as large as they are, and is not stable");
   // detectable, yet whoever takes the first state's growth away makes an entry negative
   CHECK(no_monotone_gain(Matrix{{1.2, .1}, {.3, .5}}, Matrix{{1, 1}}).has_value());
+}
+
+TEST_CASE("a reason that holds but for rounding is no proof") {
+  const auto answer = [](const Matrix& A, const Matrix& C) { return no_monotone_gain(A, C).value().gain_exists; };
+  const Matrix row{{.5, 0}, {-.3, .2}}, grows{{1.2, 0}, {0, .5}};
+  CHECK(answer(row, Matrix{{1, -1}}) == Answer::no);
+  CHECK(answer(row, Matrix{{1, -1}, {1, -1 - 1e-12}}) == Answer::unknown);  // C is regular
+  CHECK(answer(grows, Matrix{{0, 1}}) == Answer::no);
+  CHECK(answer(grows, Matrix{{1e-3, 1}}) == Answer::no);
+  CHECK(answer(Matrix{{.9999999999999}}, Matrix{{0}}) == Answer::unknown);
+  CHECK(answer(Matrix{{1.2, .1}, {.3, .5}}, Matrix{{1, 1}}) == Answer::no);
+}
+
+TEST_CASE("proofs in rational arithmetic reach as far as 10 states") {
+  CHECK(rc::check("unstable plants, one output", [] {
+    const Index n = 10;
+    const Matrix A = 2 * Matrix::Identity(n, n) + random_matrix(n, n, 0, .1), C = random_matrix(2, n, .5, 1);
+    const auto why = no_monotone_gain(A, C);
+    RC_ASSERT(why.has_value());
+    RC_ASSERT(why->gain_exists == Answer::no);
+  }));
 }
 
 TEST_CASE("nothing is said where there is one") {

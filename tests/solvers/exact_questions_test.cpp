@@ -145,3 +145,21 @@ TEST_CASE("the fast questions never contradict the exact ones") {
     if (X.lines() == 0) RC_ASSERT(support(X, d) >= h.lower);
   }));
 }
+
+TEST_CASE("linear programs over boxes of non-negative numbers") {
+  const auto maximum = [](const Vector& c, const Matrix& K, const Vector& r, const std::vector<int>& bits) {
+    return exact::maximum(c, K, r, bits);
+  };
+  const double third = 1.0 / 3;
+  const rounding::Range one = maximum(Vector{{1, 0}}, Matrix{{3, 1}}, Vector{{1}}, {0, 0});  // 3x + y = 1
+  CHECK(one.lower <= third);
+  CHECK(one.upper >= third);
+  CHECK(one.upper == std::nextafter(one.lower, 1));
+  CHECK(maximum(Vector{{1, 1}}, Matrix(0, 2), Vector(), {3, -1}).upper == 8.5);
+  CHECK(maximum(Vector{{1, 0}}, Matrix{{1, -1}}, Vector{{2}}, {0, 0}).upper == -inf);  // x = 2 + y > 1
+  CHECK(maximum(Vector{{1}}, Matrix{{1}, {.1}}, Vector{{.5, .05}}, {0}).lower == .5);
+  CHECK(maximum(Vector{{1}}, Matrix{{3}, {.3}}, Vector{{1, .1}}, {0}).upper == -inf);  // 3 · .1 ≠ .3, for the doubles
+  CHECK_THROWS_AS(maximum(Vector{{1}}, Matrix{{1e-320}}, Vector{{1}}, {-20}), Error);
+  CHECK_THROWS_AS(maximum(Vector{{1}}, Matrix{{1}}, Vector{{1}}, {0, 0}), Error);
+  CHECK_THROWS_AS(maximum(Vector{{inf}}, Matrix{{1}}, Vector{{1}}, {0}), Error);
+}

@@ -78,7 +78,7 @@ bool find_T_and_N(const Matrix& E, const Matrix& C, const Matrix& S, FilterDesig
   if (const Matrix unseen = linalg::null_space(theta); unseen.cols() > 0) {
     problems.push_back({"/type",
                         "rank [E; C] is " + std::to_string(n - unseen.cols()) + ", the state has " + std::to_string(n) +
-                            ": neither E nor C sees the direction " + text_of(unseen.col(0)),
+                            ", as far as doubles tell: neither E nor C sees the direction " + text_of(unseen.col(0)),
                         "measure it, or describe its dynamics in E"});
     return false;
   }
@@ -110,9 +110,8 @@ bool find_responses(const LinearModel& model, FilterDesign& design, std::vector<
   design.Phi = product(TA, design.Psi);
   if (silent.empty()) return true;
   problems.push_back({"/free_matrix",
-                      names_of(silent) + (silent.size() == 1 ? " never shows" : " never show") +
-                          " in the outputs: C (TA)^j T f = 0 "
-                          "for all j",
+                      names_of(silent) + (silent.size() == 1 ? " does" : " do") +
+                          " not show in the outputs: C (TA)^j T f = 0 for all j, as far as doubles tell",
                       "measure what it acts on; if it acts in rows where E is 0 only, give a free_matrix S with T f ≠ 0"});
   return false;
 }
@@ -139,9 +138,11 @@ bool find_M_and_Omega(FilterDesign& design, std::vector<Diagnostic>& problems) {
   const Vector scale = design.Upsilon.colwise().norm().cwiseInverse();
   const Matrix normalised = design.Upsilon * scale.asDiagonal();
   if (const auto faults = alike(normalised); !faults.empty()) {
-    problems.push_back(
-        {"/type", names_of(faults) + " act alike on the outputs: their first responses C (TA)^(ρ-1) T f are linearly dependent",
-         "take one of them out of F, or measure more"});
+    problems.push_back({"/type",
+                        names_of(faults) +
+                            " act alike on the outputs: their first responses C (TA)^(ρ-1) T f are linearly dependent, "
+                            "as far as doubles tell",
+                        "take one of them out of F, or measure more"});
     return false;
   }
   design.M = scale.asDiagonal() * linalg::pseudo_inverse(normalised);

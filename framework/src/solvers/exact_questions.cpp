@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/solvers/exact_questions.hpp"
 
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -88,6 +89,35 @@ rounding::Range support(const LineForm& X, VectorIn d) {
   if (reached.kind == Support::Kind::empty) return {-infinity, -infinity};
   if (reached.kind == Support::Kind::unbounded) return {infinity, infinity};
   return rational::enclose(reached.value);
+}
+
+rounding::Range maximum(VectorIn c, MatrixIn K, VectorIn r, const std::vector<int>& bits) {
+  const Index columns = K.cols(), rows = K.rows();
+  if (c.size() != columns || r.size() != rows || static_cast<Index>(bits.size()) != columns) {
+    throw Error(Errc::dimension, "exact::maximum: the sizes of c, K, r and the bounds do not fit");
+  }
+  check_size(columns, rows, "exact::maximum");
+  // x = 2^(bits - 1) (1 + ξ)
+  ExactProgram program{Matrix(rows, 0), Matrix(rows, columns), rational::exact(r), {}, rational::exact(c)};
+  rational::Rational constant = 0;
+  for (Index j = 0; j < columns; ++j) {
+    const int half = bits[static_cast<std::size_t>(j)] - 1;
+    rational::Rational& cost = program.g[static_cast<std::size_t>(j)];
+    if (half >= 0) mpq_mul_2exp(cost.get_mpq_t(), cost.get_mpq_t(), static_cast<mp_bitcnt_t>(half));
+    if (half < 0) mpq_div_2exp(cost.get_mpq_t(), cost.get_mpq_t(), static_cast<mp_bitcnt_t>(-half));
+    constant += cost;
+    for (Index i = 0; i < rows; ++i) {
+      const double scaled = std::ldexp(K(i, j), half);
+      if (!std::isfinite(scaled) || std::ldexp(scaled, -half) != K(i, j)) {
+        throw Error(Errc::invalid, "exact::maximum: an entry of K times its bound is no double");
+      }
+      program.A(i, j) = scaled;
+      program.b[static_cast<std::size_t>(i)] -= rational::exact(scaled);
+    }
+  }
+  const ExactProgram::Result result = program.maximum();
+  if (result.status == Status::infeasible) return {-infinity, -infinity};
+  return rational::enclose(result.value + constant);
 }
 
 }  // namespace cordon::exact

@@ -3,6 +3,8 @@
 // by orders of magnitude than set_questions.hpp; used where a claim is checked and where rounding leaves a question open.
 #pragma once
 
+#include <vector>
+
 #include "cordon/core/line_form.hpp"
 #include "cordon/core/rounding.hpp"
 
@@ -22,6 +24,10 @@ Answer contains(const LineForm& X, VectorIn x);
 /// h_X(d) = sup{dᵀx : x ∈ X} between two neighbouring doubles (one, if it is a double); (+inf, +inf) if unbounded, (-inf, -inf)
 /// if X is empty.
 rounding::Range support(const LineForm& X, VectorIn d);
+
+/// max{cᵀx : K x = r, 0 ≤ x_j ≤ 2^bits_j} between two neighbouring doubles; (-inf, -inf) if there is no such x. One entry of
+/// `bits` per column of K, and products of K's entries with 2^(bits_j - 1) must be doubles: else Errc::invalid.
+rounding::Range maximum(VectorIn c, MatrixIn K, VectorIn r, const std::vector<int>& bits);
 
 inline constexpr Index max_columns = 2000, max_rows = 100, max_work = 2'000'000;
 
