@@ -192,7 +192,7 @@ std::string fault_guarantees_text(const Guarantees& guarantees, const Paint& pai
   if (guarantees.faults.empty()) return "";
   Rows rows{{"ADDITIVE FAULT", "DELAY", "HALF WIDTH IN STEADY STATE"}};
   for (const FaultGuarantee& fault : guarantees.faults) {
-    const std::string width = std::isinf(fault.half_width) ? "grows without limit" : fmt::format("{:.6g}", fault.half_width);
+    const std::string width = std::isinf(fault.half_width) ? "no bound is proven" : fmt::format("{:.6g}", fault.half_width);
     rows.push_back({fmt::format("{}", fault.fault + 1), fmt::format("{}", fault.delay), width});
   }
   return table(rows, paint);

@@ -282,3 +282,64 @@ TEST_CASE("one fault grows: infinite for it alone, or for all where the numbers 
     CHECK(std::isinf(told[1]) == (pole > 2));
   }
 }
+
+TEST_CASE("a mode that is slower than any run is in the bound, or there is none") {
+  for (const auto& [pole, drift, limit] :
+       {std::tuple{.9999, 1.3e-5, .77}, {.999, 2.5e-5, .675}, {.999, 4e-5, .69}, {.9, 1e-3, .66}}) {
+    CAPTURE(pole);
+    CAPTURE(drift);
+    LinearModel m;
+    m.A = Matrix{{.5, 1}, {0, pole}};
+    m.F = Matrix{{1}, {0}};
+    m.C = Matrix{{1, 0}};
+    const FilterDesign d = design(m, Matrix::Zero(2, 3));
+    for (const Index columns : {0, 20}) {
+      CAPTURE(columns);
+      FilterRecursion r(d, m, {Matrix{{.5, 0}, {0, drift}}, Matrix{{.1}}}, columns, NoiseCoupling::shared);
+      const Matrix start{{.1}, {0}};
+      const double told = lasting_half_widths(r, start)[0];
+      CHECK(told >= limit * .98);
+      if (columns == 0) CHECK(told <= limit * 1.03);
+      if (pole < .99) CHECK(std::isfinite(told));
+      r.start(start);
+      for (int k = 0; k < (columns == 0 ? 3000 : 60'000); ++k) {
+        r.advance();
+        if (k > 400 && r.half_widths()[0] > told * (1 + 1e-9)) FAIL("step ", k, ": ", r.half_widths()[0], " > ", told);
+      }
+    }
+  }
+}
+
+TEST_CASE("a bound told in advance holds from the start of the steady state on, for random systems") {
+  Index told = 0, all = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    CAPTURE(seed);
+    Draw draw{std::mt19937_64(seed)};
+    const Index n = 2 + static_cast<Index>(seed % 5), p = 1 + static_cast<Index>(seed % 3);
+    LinearModel m;
+    m.A = draw.matrix(n, n);
+    m.A *= (seed % 4 == 0 ? .999 : .9) / m.A.cwiseAbs().rowwise().sum().maxCoeff();
+    m.F = draw.matrix(n, 1);
+    m.C = draw.matrix(p, n);
+    const FilterDesign d = design(m, Matrix::Zero(n, n + p));
+    for (const Index columns : {Index{0}, 2 * n, Index{20}}) {
+      CAPTURE(columns);
+      const auto coupling = seed % 2 == 0 ? NoiseCoupling::shared : NoiseCoupling::independent;
+      FilterRecursion r(d, m, {draw.matrix(n, 1), .1 * draw.matrix(p, p)}, columns, coupling);
+      const double width = lasting_half_widths(r, Matrix::Identity(n, n))[0];
+      ++all;
+      if (std::isinf(width)) continue;
+      ++told;
+      r.start(Matrix::Identity(n, n));
+      const int settled = columns == 0 ? 400 : 50'000, steps = columns == 0 ? 700 : 51'000;
+      double largest = 0;
+      for (int k = 0; k < steps; ++k) {
+        r.advance();
+        if (k >= settled) largest = std::max(largest, r.half_widths()[0]);
+      }
+      CHECK(largest <= width * (1 + 1e-12));
+      if (columns > 0) CHECK(largest >= width * (1 - 1e-12));
+    }
+  }
+  CHECK(told * 5 >= all * 4);
+}

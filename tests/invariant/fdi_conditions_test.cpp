@@ -213,9 +213,33 @@ TEST_CASE("iterations that do not contain the limit promise nothing by themselve
   options.iterations = {0};
   options.start_set = make_point(Vector{{1}});
   const Guarantees all = fdi_guarantees(bank, {Matrix{{0}}, Matrix{{0}}}, options);
-  CHECK(pair(all, 1, 0, 2).residual.lower[0] == doctest::Approx(1));
+  CHECK(pair(all, 1, 0, 2).iterated.lower[0] == doctest::Approx(1));
+  CHECK(pair(all, 1, 0, 2).residual.lower[0] <= -.4 * (1 - 1e-9));  // the limit: 2 · .1 / (1 - .5)
   CHECK(pair(all, 1, 0, 2).holds == Answer::no);
-  CHECK(pair(all, 0, 0, 2).holds == Answer::no);
+  CHECK(pair(all, 0, 0, 2).holds == Answer::yes);
+}
+
+TEST_CASE("one iteration from 0 is no promise: the box holds residuals for long") {
+  // A = .9, L = .1: errors shrink by .8 a step only
+  ModeBank bank;
+  for (const double effectiveness : {1.0, .5}) {
+    Model model = model_of(Matrix{{.9}}, Matrix{{effectiveness}}, Matrix{{1}});
+    model.W = model.V = box_around(Vector{{0}}, Vector{{.1}});
+    model.U = box_around(Vector{{0}}, Vector{{1}});
+    bank.modes.push_back({effectiveness == 1 ? "healthy" : "weak", model});
+  }
+  OfflineOptions options;
+  options.invariant = Invariant::iterate;
+  options.iterations = {1};
+  const std::vector<Matrix> gains{Matrix{{.1}}, Matrix{{.1}}};
+  const Guarantees one = fdi_guarantees(bank, gains, options), limit = fdi_guarantees(bank, gains, {});
+  for (Index i = 0; i < 2; ++i) {
+    for (Index j = 0; j < 2; ++j) {
+      CHECK(pair(one, i, j, 2).iterated.upper[0] < .9 * pair(limit, i, j, 2).residual.upper[0]);
+      CHECK(pair(one, i, j, 2).residual.upper[0] == pair(limit, i, j, 2).residual.upper[0]);
+      CHECK(pair(one, i, j, 2).residual.lower[0] == pair(limit, i, j, 2).residual.lower[0]);
+    }
+  }
 }
 
 TEST_CASE("error sets of other shapes") {

@@ -336,7 +336,7 @@ TEST_CASE("statements in advance about additive faults") {
       "Method: recursion of the error sets\n"
       "ADDITIVE FAULT  DELAY  HALF WIDTH IN STEADY STATE\n"
       "1               1      0.123457\n"
-      "2               4      grows without limit\n";
+      "2               4      no bound is proven\n";
   CHECK(apps::guarantees_text(g, {"healthy"}, paint) == table);
   g.pairs = {{0, 0, interval(-1, 1), Answer::yes}};
   CHECK(has(apps::guarantees_text(g, {"healthy"}, paint), table + "OBSERVER"));

@@ -298,6 +298,37 @@ TEST_CASE("what does not fit is refused") {
   CHECK_FALSE(code(bank, given(Matrix{{1.}})));
 }
 
+TEST_CASE("products with effectiveness are those of the numbers, not of their rounding") {
+  // y = 3 f u + v₁ + v₂ with f = 0 and f = .1: .1 · 3 is rounded up by 3e-17
+  const auto bank = [](double noise, Index through) {
+    ModeBank modes{{scalar(0, 0), scalar(0, 0)}, 0};
+    for (Index i = 0; i < 2; ++i) {
+      Model& model = modes.modes[static_cast<std::size_t>(i)].model;
+      LinearModel& m = model.linear;
+      m.C.setZero();
+      m.Dv = Matrix{{1, 1}};
+      model.V = make_box({Vector{{-noise, -2e-17}}, Vector{{noise, 2e-17}}});
+      const Box f{Vector{{i * .1}}, Vector{{i * .1}}};
+      if (through == 0) m.D(0, 0) = 3, m.actuator = f;
+      if (through == 1) m.D(0, 0) = 3, m.sensor = f;
+      if (through == 2) m.B(0, 0) = 3, m.C(0, 0) = 1, m.actuator = f;
+      if (through == 3) m.B(0, 0) = 1, m.C(0, 0) = 3, m.sensor = f;
+      if (through >= 2) model.W = make_point(Vector::Zero(1));
+      m = with_exact_effectiveness_applied(m);
+    }
+    return modes;
+  };
+  for (Index through = 0; through < 4; ++through) {
+    CAPTURE(through);
+    const Matrix u = Matrix::Ones(through < 2 ? 1 : 2, 1);
+    CHECK(verify_design(bank(.15, through), given(u)).separates() == Answer::no);
+    CHECK(verify_design(bank(.1499999999999999, through), given(u)).separates() == Answer::yes);
+    const ModeBank plain = bank(.15, through);
+    CHECK(plain[0].model.linear.unscaled == nullptr);  // a product with 0 is exact
+    CHECK(plain[1].model.linear.unscaled != nullptr);
+  }
+}
+
 TEST_CASE("what is too large for the simplex method is decided by restored proofs") {
   const ModeBank bank = signs();
   const Matrix apart = Matrix::Constant(30, 1, 1.5), together = Matrix::Constant(30, 1, .5);

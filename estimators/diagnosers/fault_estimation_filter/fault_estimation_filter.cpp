@@ -179,7 +179,10 @@ class FaultEstimationFilter final : public Diagnoser {
   std::optional<Guarantees> do_guarantees() const override {
     Guarantees result;
     result.method =
-        "the filter's own recursion of gains and error sets, which does not depend on the data, until its bounds no longer grow";
+        recursion_.is_reduced()
+            ? "the filter's own recursion of gains and error sets, which does not depend on the data, until it repeats bit by bit"
+            : "the filter's own recursion of gains and error sets, which does not depend on the data, and from its last gain on "
+              "the sum of the powers of its error map";
     const Vector widths = lasting_half_widths(recursion_, model_.X0.G);
     for (Index i = 0; i < widths.size(); ++i) {
       result.faults.push_back({i, design_.delays[static_cast<std::size_t>(i)], widths[i]});
@@ -270,7 +273,8 @@ constexpr const char* details =
     "of row sums of |[M C R̄, M Dv]| with \"noise_coupling\": \"independent\", as published. With \"shared\"\n"
     "the noise v(k), which is in the error and in the output, is one value: e = a - N Dv v, and h are\n"
     "the row sums of |[M C Ā, M (I - C N) Dv]|, a of its own recursion with the same gains. On the\n"
-    "published example that halves the bounds. Neither depends on the data.\n"
+    "published example that halves the bounds. Neither depends on the data. With \"max_columns\": 0 the\n"
+    "gain of step 400 stays, which gives the bounds a limit that is told in advance.\n"
     "\n"
     "Bounds that exclude 0 exclude the nominal mode, and speak of the time k - ρ_i. In a bank of several\n"
     "modes the decision is then \"isolating\", since another mode may be the reason, and \"ambiguous\" later; of one,\n"

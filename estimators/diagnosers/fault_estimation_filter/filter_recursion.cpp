@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/invariant/minimal.hpp"
 #include "cordon/sets/generator_reduction.hpp"
 
 namespace cordon::estimators {
@@ -15,12 +17,19 @@ using linalg::product;
 
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 /// S̃ is kept so far from singular, relative to the terms of its diagonal: Ḡ is free, and must not be rounding noise.
 constexpr double regularisation = 1e-13;
 /// Squares below this have no digits left.
 constexpr double smallest_square = 1e-280;
 /// Ω annihilates what its outputs have in common up to this: the rest is rounding, and no gain may rest on it.
 constexpr double annihilated = 1e-13;
+
+Matrix joined(const Matrix& left, const Matrix& right) {
+  Matrix both(left.rows(), left.cols() + right.cols());
+  both << left, right;
+  return both;
+}
 
 /// A B without the entries that have cancelled.
 Matrix without_noise(const Matrix& A, const Matrix& B) {
@@ -51,7 +60,7 @@ void FilterRecursion::start(const Matrix& H) {
   R_ = H;
   reduce(R_);
   A_ = R_;
-  first_ = true;
+  steps_ = 0;
   find_half_widths();
 }
 
@@ -63,6 +72,7 @@ void FilterRecursion::reduce(Matrix& columns) const {
 void FilterRecursion::find_gain() {
   image_ = product(base_, R_);
   seen_ = product(Omega_C_, R_);
+  if (has_last_gain()) return;
   Matrix S = product(seen_, seen_.transpose()) + rest_noise_;
   const Vector states = R_.rowwise().squaredNorm();
   const Vector terms = product(Omega_C_.cwiseAbs2(), states) + rest_noise_.diagonal();
@@ -75,33 +85,41 @@ void FilterRecursion::find_gain() {
 
 void FilterRecursion::advance() {
   find_gain();
-  if (coupling_ == NoiseCoupling::shared) advance_shared();
-  const Index old = R_.cols(), w = TDw_.cols(), v = Dv_.cols();
-  Matrix next(R_.rows(), old + w + 2 * v);
-  next << image_ - product(reduced_gain_, seen_), TDw_, -product(G_, Dv_), -NDv_;
-  R_ = std::move(next);
+  if (coupling_ == NoiseCoupling::shared) {
+    A_ = joined(product(error_map(), A_), shared_noise());
+    reduce(A_);
+  }
+  R_ = joined(image_ - product(reduced_gain_, seen_), independent_noise());
   reduce(R_);
-  first_ = false;
+  ++steps_;
   find_half_widths();
+}
+
+Matrix FilterRecursion::independent_noise() const {
+  Matrix noise(TDw_.rows(), TDw_.cols() + 2 * Dv_.cols());
+  noise << TDw_, -product(G_, Dv_), -NDv_;
+  return noise;
+}
+
+Matrix FilterRecursion::shared_noise() const {
+  Matrix own = product(G_, Dv_);
+  if (steps_ > 0) own += product(error_map(), NDv_);
+  return joined(TDw_, -own);
+}
+
+Matrix FilterRecursion::noise() const { return coupling_ == NoiseCoupling::shared ? shared_noise() : independent_noise(); }
+
+bool FilterRecursion::is_same(const FilterRecursion& other) const {
+  const auto same = [](const Matrix& X, const Matrix& Y) { return X.rows() == Y.rows() && X.cols() == Y.cols() && X == Y; };
+  return (steps_ == 0) == (other.steps_ == 0) && same(R_, other.R_) && (coupling_ != NoiseCoupling::shared || same(A_, other.A_));
 }
 
 Vector FilterRecursion::seen(const Matrix& errors) const { return product(MC_, errors).cwiseAbs().rowwise().sum(); }
 
 Matrix FilterRecursion::error_map() const { return base_ - product(reduced_gain_, Omega_C_); }
 
-void FilterRecursion::advance_shared() {
-  const Matrix map = error_map();
-  Matrix own = product(G_, Dv_);
-  if (!first_) own += product(map, NDv_);
-  Matrix next(A_.rows(), A_.cols() + TDw_.cols() + own.cols());
-  next << product(map, A_), TDw_, -own;
-  A_ = std::move(next);
-  reduce(A_);
-}
-
 void FilterRecursion::find_half_widths() {
-  const Matrix& errors = coupling_ == NoiseCoupling::shared ? A_ : R_;
-  half_width_ = own_noise_ + seen(errors);
+  half_width_ = own_noise_ + seen(seen_errors());
   if (!half_width_.allFinite()) {
     throw Error(Errc::not_finite, "the error bounds of the fault estimation filter have outgrown the numbers");
   }
@@ -112,7 +130,7 @@ namespace {
 /// For each fault: does what an error of any direction adds to it die out, from here on? Compared are two stretches of 200 steps.
 std::vector<bool> forgets_errors(FilterRecursion recursion) {
   constexpr double least_decay = 1e-6;
-  const Index n = recursion.error_map().rows();
+  const Index n = recursion.errors().rows();
   Matrix errors = Matrix::Identity(n, n);
   Vector largest[2];
   for (Vector& stretch : largest) {
@@ -130,30 +148,93 @@ std::vector<bool> forgets_errors(FilterRecursion recursion) {
 
 }  // namespace
 
-Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H) {
-  constexpr double infinity = std::numeric_limits<double>::infinity(), same = 1e-9, grown = .01;
-  recursion.start(H);
-  Vector largest = Vector::Constant(recursion.half_widths().size(), infinity), before;
-  const Index last = recursion.is_reduced() ? 12'800 : 400;
-  for (Index steps = 50; steps <= last; steps *= 2) {
-    before = std::exchange(largest, Vector::Zero(largest.size()));
-    try {
-      for (Index k = 0; k < steps; ++k) {
+namespace {
+
+/// The largest half widths of the circle that the recursion ends in; nothing if none has closed. After Brent: the state is kept
+/// at powers of two, and every later one is compared with it.
+std::optional<Vector> largest_of_circle(FilterRecursion recursion) {
+  constexpr Index most_steps = 50'000;
+  FilterRecursion kept = recursion;
+  Index until = 64, length = 0;
+  for (Index k = 0; k < most_steps; ++k, ++length) {
+    recursion.advance();
+    if (recursion.is_same(kept)) {
+      Vector largest = recursion.half_widths();
+      for (Index j = 0; j < length; ++j) {
         recursion.advance();
         largest = largest.cwiseMax(recursion.half_widths());
       }
-    } catch (const Error& error) {
-      if (error.code() != Errc::not_finite) throw;
-      return Vector::Constant(largest.size(), infinity);  // so would the filter end
+      return largest;
     }
-    if (((largest - before).cwiseAbs().array() <= same * largest.array()).all()) break;
+    if (length < until) continue;
+    kept = recursion;
+    until *= 2;
+    length = -1;
   }
-  largest = (largest.array() <= (1 + grown) * before.array()).select(largest, infinity);
-  const std::vector<bool> forgets = forgets_errors(std::move(recursion));
-  for (Index i = 0; i < largest.size(); ++i) {
-    if (!forgets[static_cast<std::size_t>(i)]) largest[i] = infinity;
+  return std::nullopt;
+}
+
+/// The coordinates that r, r Φ, r Φ², … have entries in.
+std::vector<Index> reached(VectorIn r, const Matrix& map) {
+  std::vector<Index> found;
+  std::vector<bool> known(static_cast<std::size_t>(r.size()));
+  const auto add = [&](auto&& row) {
+    for (Index j = 0; j < row.size(); ++j) {
+      if (row[j] == 0 || known[static_cast<std::size_t>(j)]) continue;
+      known[static_cast<std::size_t>(j)] = true;
+      found.push_back(j);
+    }
+  };
+  add(r);
+  for (std::size_t k = 0; k < found.size(); ++k) add(map.row(found[k]));
+  return found;
+}
+
+/// sup_t [‖r Φᵗ now‖₁ + Σ_{s<t} ‖r Φˢ noise‖₁], or nothing without a proof that the powers decay.
+std::optional<double> bound_of_powers(VectorIn r, const Matrix& map, const Matrix& now, const Matrix& noise) {
+  constexpr double accuracy = 1e-10;
+  const std::vector<Index> part = reached(r, map);
+  const Vector zero = Vector::Zero(static_cast<Index>(part.size()));
+  const sets::Zonotope start{zero, now(part, Eigen::all)}, drive{zero, noise(part, Eigen::all)};
+  const Vector size = start.G.cwiseAbs().rowwise().sum() + drive.G.cwiseAbs().rowwise().sum();
+  try {
+    const invariant::Decay decay(Matrix(map(part, part)), size);
+    return invariant::switched_supports(decay, {drive}, {start}, Vector(r(part)), accuracy).plus;
+  } catch (const Error& error) {
+    if (error.code() != Errc::invalid && error.code() != Errc::unsupported && error.code() != Errc::not_finite) throw;
+    return std::nullopt;
   }
-  return largest;
+}
+
+/// Of a recursion whose gain stays, at all times from now on.
+Vector bounds_of_powers(const FilterRecursion& recursion) {
+  const Matrix map = recursion.error_map(), noise = recursion.noise();
+  Vector widths = recursion.own_noise();
+  for (Index i = 0; i < widths.size(); ++i) {
+    const Vector row = recursion.output_map().row(i).transpose();
+    widths[i] += bound_of_powers(row, map, recursion.seen_errors(), noise).value_or(infinity);
+  }
+  return widths;
+}
+
+}  // namespace
+
+Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H) {
+  recursion.start(H);
+  const Vector none = Vector::Constant(recursion.half_widths().size(), infinity);
+  try {
+    while (!recursion.is_reduced() && !recursion.has_last_gain()) recursion.advance();
+    Vector widths = recursion.is_reduced() ? largest_of_circle(recursion).value_or(none) : bounds_of_powers(recursion);
+    if (!widths.array().isFinite().any()) return none;
+    const std::vector<bool> forgets = forgets_errors(std::move(recursion));
+    for (Index i = 0; i < widths.size(); ++i) {
+      if (!forgets[static_cast<std::size_t>(i)]) widths[i] = infinity;
+    }
+    return widths;
+  } catch (const Error& error) {
+    if (error.code() != Errc::not_finite) throw;
+    return none;  // so would the filter end
+  }
 }
 
 }  // namespace cordon::estimators

@@ -20,12 +20,15 @@ struct FilterNoise {
 /// `shared`: e = a - N Dv v(k), where a does not depend on v(k):
 ///   A_{k+1} = [(TA - G_k C) Ā_k, T Dw, -((TA - G_k C) N + G_k) Dv],   a ∈ <0, A>,   row sums of |[M C Ā, M (I - C N) Dv]|
 /// with the same gains. At the first step a = e, and the last block is -G_0 Dv.
-/// Reduction [Combastel2003]: the smallest columns become a box. O(n² l) a step.
+/// Reduction [Combastel2003]: the smallest columns become a box. Without reduction the gain stays after `steps_of_gains` steps,
+/// so that there is a limit that can be told in advance; sets hold for any gain. O(n² l) a step.
 class FilterRecursion {
  public:
   /// `max_columns` of R̄ and Ā, n or more; 0: they are not reduced, and grow with each step.
   FilterRecursion(const FilterDesign& design, const LinearModel& model, FilterNoise noise, Index max_columns,
                   NoiseCoupling coupling);
+
+  static constexpr Index steps_of_gains = 400;
 
   /// e(0) ∈ <0, H>.
   void start(const Matrix& H);
@@ -33,15 +36,23 @@ class FilterRecursion {
   void advance();
 
   bool is_reduced() const { return max_columns_ > 0; }
-  const Matrix& gain() const { return G_; }                  ///< G_k of the last `advance`
-  Matrix error_map() const;                                  ///< TA - G_k C
-  Vector seen(const Matrix& errors) const;                   ///< row sums of |M C errors|
-  const Matrix& errors() const { return R_; }                ///< R̄
+  bool has_last_gain() const { return !is_reduced() && steps_ >= steps_of_gains; }
+  const Matrix& gain() const { return G_; }    ///< G_k of the last `advance`
+  Matrix error_map() const;                    ///< TA - G_k C; after a first `advance`
+  Vector seen(const Matrix& errors) const;     ///< row sums of |M C errors|
+  const Matrix& errors() const { return R_; }  ///< R̄
+  const Matrix& seen_errors() const { return coupling_ == NoiseCoupling::shared ? A_ : R_; }  ///< whose images are seen: Ā or R̄
+  Matrix noise() const;                                   ///< what the next step adds to them; not of the first step
+  const Matrix& output_map() const { return MC_; }        ///< M C
+  const Vector& own_noise() const { return own_noise_; }  ///< what half widths have besides
+  /// The same columns, bit by bit: with equal design and noise all steps to come are the same.
+  bool is_same(const FilterRecursion& other) const;
   const Vector& half_widths() const { return half_width_; }  ///< of the faults that are bounded at this time
 
  private:
   void find_gain();
-  void advance_shared();
+  Matrix independent_noise() const;
+  Matrix shared_noise() const;
   void find_half_widths();
   void reduce(Matrix& columns) const;
 
@@ -58,13 +69,16 @@ class FilterRecursion {
   Matrix G_;
   Matrix image_, seen_, reduced_gain_;  ///< (TA - Φ M C) R̄, Ω C R̄, Ḡ
   Vector half_width_;
-  bool first_ = true;
+  Index steps_ = 0;  ///< since the start
 };
 
-/// For each fault the largest half width of a long run, once it is past the start: reductions choose columns, so that half widths
-/// may go round in circles. Stretches of 50, 100, 200, … steps are compared until their largest values agree to 1e-9; infinite
-/// where the last stretch, of 12 800 steps (400, if the columns are not reduced), has still grown by a hundredth, or where
-/// errors that the run has not stirred up, rounding among them, would not die out of the fault's estimate.
+/// For each fault a bound of its half widths at all times of the steady state, with a proof; infinite where there is none.
+///   reduced    the recursion is one of doubles, and so goes round in a circle in the end: it is run until a state comes again,
+///              bit by bit, and the bound is the largest half width of the circle. At most 50 000 steps.
+///   unreduced  after `steps_of_gains` steps the error map Φ stays, and what follows is bounded by the sum of its powers
+///              (cordon/invariant/minimal.hpp): sup_t [h_{A_N}((Φᵗ)ᵀ r) + Σ_{s<t} h_E((Φˢ)ᵀ r)] for the rows r of M C.
+/// Infinite also where errors that the run has not stirred up, rounding among them, would not die out of the estimate of the
+/// fault.
 Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H);
 
 }  // namespace cordon::estimators

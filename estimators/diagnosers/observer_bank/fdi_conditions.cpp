@@ -157,12 +157,17 @@ std::optional<Zonotope> iterated_residual(const PairDynamics& pair, const Offlin
 
 /// What iterations promise. From a closed form they contain the limit; from another start the limit has to agree.
 PairGuarantee judge(const Pair& pair, const Zonotope& residual, const OfflineOptions& options) {
-  PairGuarantee result{pair.mode, pair.observer, sets::interval_hull(residual)};
+  const Box iterated = sets::interval_hull(residual);
+  PairGuarantee result{pair.mode, pair.observer, iterated};
+  if (options.invariant == Invariant::iterate) {  // an iteration may not have come near its limit yet
+    result.iterated = iterated;
+    result.residual = {iterated.lower.cwiseMin(pair.limit.outer.lower), iterated.upper.cwiseMax(pair.limit.outer.upper)};
+  }
   const Vector zero = Vector::Zero(residual.dim());
   const Answer zero_inside =
-      zero_in_box(result.residual) == Answer::no ? Answer::no : contains(make_zonotope(residual.c, residual.G), zero);
+      zero_in_box(iterated) == Answer::no ? Answer::no : contains(make_zonotope(residual.c, residual.G), zero);
   if (pair.mode == pair.observer) {
-    result.holds = zero_inside;
+    result.holds = zero_in_limit(pair, options.accuracy);
     return result;
   }
   const bool contains_limit = options.invariant == Invariant::rpi;

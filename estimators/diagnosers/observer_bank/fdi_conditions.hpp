@@ -40,7 +40,8 @@ Box input_bounds(const ModeBank& bank);
 /// with ranges f_i, f_j, checked copies w̌, v̌ of the noises, and what ranges of sensors leave open, |δ| ≤ rad(g) |C x + D f u|. If
 /// modes differ in A or C̄ the invariant set is that of (x, e), and the plant has to be stable.
 ///   holds  i = j: 0 ∈ R̊_ii.  i ≠ j: 0 ∉ R̊_ij, first axis by axis as in [Xu2013, (21)], then by a certified separation. `no` if 0
-///          is in a part of the limit. `iterate` says `yes` only where the limit itself agrees.
+///          is in a part of the limit. `iterate` says `yes` only where the limit itself agrees, and its boxes hold the limit too:
+///          what the iterations alone came to is `iterated`.
 /// One `gains[j]` (n×n_y) per mode. Nominal: supports and their tails are bounded with all rounding errors, but from system
 /// matrices computed in doubles. Errors: Errc::invalid for an A - L C or a plant that is not Schur, and for whatever
 /// `check_offline` reports but an error set that is too small; Errc::unsupported for unbounded sets. O(N² (n_y + n) T n g) for N

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/interfaces/model.hpp"
 
+#include <cmath>
+
 #include "cordon/core/error.hpp"
 
 namespace cordon {
@@ -34,19 +36,47 @@ Vector take_exact(Box& effectiveness) {
   return factors;
 }
 
+/// Is fl(a b) = a b? In doubt no.
+bool is_exact(double a, double b) {
+  constexpr double smallest = 1e-290;  // below, the error itself may be no double
+  const double product = a * b;
+  return a == 0 || b == 0 || (std::abs(product) >= smallest && std::fma(a, b, -product) == 0);
+}
+
+/// Are the products of diag(g) M diag(f) exact, one after the other as they are taken? A vector without entries stands for ones.
+bool is_exact(const Vector& g, const Matrix& M, const Vector& f) {
+  for (Index i = 0; i < M.rows(); ++i) {
+    for (Index j = 0; j < M.cols(); ++j) {
+      if (f.size() != 0 && !is_exact(M(i, j), f[j])) return false;
+      if (g.size() != 0 && !is_exact(g[i], f.size() != 0 ? M(i, j) * f[j] : M(i, j))) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 LinearModel with_exact_effectiveness_applied(LinearModel model) {
+  Vector f, g;
   if (model.actuator.dim() != 0) {
     check(model.actuator, model.inputs(), "actuators");
-    const Vector f = take_exact(model.actuator);
+    f = take_exact(model.actuator);
+  }
+  if (model.sensor.dim() != 0) {
+    check(model.sensor, model.outputs(), "sensors");
+    g = take_exact(model.sensor);
+  }
+  if (!is_exact({}, model.B, f) || !is_exact(g, model.C, {}) || !is_exact(g, model.D, f)) {
+    const auto ones_if_none = [](const Vector& factors, Index size) { return factors.size() ? factors : Vector::Ones(size); };
+    model.unscaled = std::make_shared<LinearModel::Unscaled>(
+        LinearModel::Unscaled{model.B, model.C, model.D, ones_if_none(f, model.inputs()), ones_if_none(g, model.outputs())});
+  }
+  if (f.size() != 0) {
     model.B = model.B * f.asDiagonal();
     model.D = model.D * f.asDiagonal();
     if (model.B_radius.size() != 0) model.B_radius = model.B_radius * f.asDiagonal();
   }
-  if (model.sensor.dim() != 0) {
-    check(model.sensor, model.outputs(), "sensors");
-    const Vector g = take_exact(model.sensor);
+  if (g.size() != 0) {
     model.C = g.asDiagonal() * model.C;
     model.D = g.asDiagonal() * model.D;
     if (model.C_radius.size() != 0) model.C_radius = g.asDiagonal() * model.C_radius;

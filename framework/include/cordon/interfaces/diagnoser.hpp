@@ -59,6 +59,8 @@ struct PairGuarantee {
                  ///< reductions and coarser representations add to them
   Answer holds =
       Answer::unknown;  ///< the FDI condition, 0 ∈ R̊_ii or 0 ∉ R̊_ij; `no`: it is proven to fail; `unknown`: not guaranteed
+  Box iterated = {};    ///< where a published iteration was asked for, what it came to: it need not hold the limit, `residual`
+                        ///< does; else of dimension 0
 };
 
 /// The set X̃ that must hold the errors of the point observers, centres in place of sets, whatever the modes have been, and how
@@ -75,7 +77,7 @@ struct ErrorSetCheck {
 struct FaultGuarantee {
   Index fault = 0;
   Index delay = 0;        ///< n(k - delay) is bounded at k
-  double half_width = 0;  ///< of the bounds in the steady state, whatever the data are; infinite: they grow without limit
+  double half_width = 0;  ///< at all times of the steady state, whatever the data are; infinite: no bound is proven
 };
 
 struct Guarantees {

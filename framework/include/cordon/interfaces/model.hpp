@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,12 +22,21 @@ namespace cordon {
 /// ± C_radius entrywise and may change from step to step as well; a radius of size 0×0 stands for 0.
 ///
 /// F (n×n_f) holds the directions of additive faults n, in a column each; n = 0 in every mode, so that only who looks for n reads
-/// F. 0 columns or 0×0: there are none. Member names equal the JSON keys, but for the radii, which JSON holds with their centres.
+/// F. 0 columns or 0×0: there are none. Member names equal the JSON keys, but for the radii, which JSON holds with their centres,
+/// and for `unscaled`.
 struct LinearModel {
+  /// B diag(actuator), diag(sensor) C and diag(sensor) D diag(actuator) are the model's matrices but for rounding.
+  struct Unscaled {
+    Matrix B, C, D;
+    Vector actuator, sensor;
+  };
+
   Matrix E, A, B, Bw, C, D, Dv;
   Box actuator = {}, sensor = {};
   Matrix A_radius = {}, B_radius = {}, C_radius = {};
   Matrix F = {};
+  /// What `with_exact_effectiveness_applied` has multiplied, where a product was rounded; for proofs in rational arithmetic.
+  std::shared_ptr<const Unscaled> unscaled = {};
 
   bool is_descriptor() const { return E.size() != 0; }
   /// Is a matrix known by an interval only?
@@ -56,7 +66,8 @@ struct LinearModel {
 };
 
 /// The same model with the exactly known part of the effectiveness moved into B, C and D: columns of B and D are scaled by exact
-/// f_i, rows of C and D by exact g_i (radii as their centres), and these entries become 1. Boxes without any range become empty,
+/// f_i, rows of C and D by exact g_i (radii as their centres), and these entries become 1. Products are rounded to doubles, which
+/// are the model from here on; `unscaled` keeps what they are products of. Boxes without any range become empty,
 /// so that whoever ignores effectiveness still sees the right model when `has_ranges()` is false. Throws Errc::dimension, and
 /// Errc::invalid for bounds outside [0,1] or in the wrong order.
 LinearModel with_exact_effectiveness_applied(LinearModel model);

@@ -180,6 +180,7 @@ void write(JsonWriter& json, const Guarantees& guarantees, const Names& modes) {
     write_mode(json, "observer", modes, pair.observer);
     write_mode(json, "true_mode", modes, pair.mode);
     write_box(json, "residual", pair.residual);
+    if (pair.iterated.dim() > 0) write_box(json, "iterated", pair.iterated);
     json.member("holds", to_string(pair.holds)).end_object();
   }
   json.end_array().key("error_set");

@@ -28,8 +28,46 @@ struct Shared {
   std::vector<Equations::Line> u, y;  ///< by time; y of size 0 where the output does not count
 };
 
+/// What the model's matrices are products of, if they still are.
+const LinearModel::Unscaled* unscaled(const LinearModel& m) {
+  if (!m.unscaled) return nullptr;
+  const LinearModel::Unscaled& s = *m.unscaled;
+  const Matrix D = s.D * s.actuator.asDiagonal();
+  const bool same =
+      m.B == s.B * s.actuator.asDiagonal() && m.C == s.sensor.asDiagonal() * s.C && m.D == s.sensor.asDiagonal() * D;
+  return same ? &s : nullptr;
+}
+
+/// B diag(f) u and diag(g) (C x + D diag(f) u) without their rounding: f and g stand in rows of their own.
+class Scaled {
+ public:
+  explicit Scaled(const LinearModel& m) : m_(m), unscaled_(unscaled(m)) {}
+
+  const Matrix& B() const { return unscaled_ ? unscaled_->B : m_.B; }
+  /// diag(f) u, for B.
+  Equations::Line input(Equations& rows, const Equations::Line& u) const {
+    if (!unscaled_) return u;
+    const Equations::Line effective = rows.line(u.size);
+    rows.add(u.size, {{effective, identity(u.size)}, {u, -unscaled_->actuator.asDiagonal().toDenseMatrix()}});
+    return effective;
+  }
+  /// y = diag(g) (C x + D input) + Dv v
+  void output(Equations& rows, const Equations::Line& y, const Equations::Line& x, const Equations::Line& input,
+              const Equations::Line& v) const {
+    if (!unscaled_) return rows.add(y.size, {{y, identity(y.size)}, {x, -m_.C}, {input, -m_.D}, {v, -m_.Dv}});
+    const Equations::Line healthy = rows.line(y.size);
+    rows.add(y.size, {{healthy, identity(y.size)}, {x, -unscaled_->C}, {input, -unscaled_->D}});
+    rows.add(y.size, {{y, identity(y.size)}, {healthy, -unscaled_->sensor.asDiagonal().toDenseMatrix()}, {v, -m_.Dv}});
+  }
+
+ private:
+  const LinearModel& m_;
+  const LinearModel::Unscaled* unscaled_;
+};
+
 void add_run(Equations& rows, const Model& model, const Shared& shared, const std::optional<LineForm>& admissible_set) {
   const LinearModel& m = model.linear;
+  const Scaled scaled(m);
   const Index n = m.states(), last = static_cast<Index>(shared.u.size()) - 1;
   const DescriptorMatrix E(m.is_descriptor() ? m.E : identity(n));
   const Matrix& determined = E.as_written ? E.left : E.right;  // its rows span the range of Eᵀ
@@ -40,13 +78,11 @@ void add_run(Equations& rows, const Model& model, const Shared& shared, const st
       const Equations::Line a = rows.element(*admissible_set), lambda = rows.line(determined.rows());
       rows.add(n, {{x, identity(n)}, {a, -identity(n)}, {lambda, -determined.transpose()}});
     }
-    if (shared.y[at].size > 0) {
-      const Equations::Line v = rows.element(model.V);
-      rows.add(m.outputs(), {{shared.y[at], identity(m.outputs())}, {x, -m.C}, {shared.u[at], -m.D}, {v, -m.Dv}});
-    }
+    const Equations::Line u = scaled.input(rows, shared.u[at]);
+    if (shared.y[at].size > 0) scaled.output(rows, shared.y[at], x, u, rows.element(model.V));
     if (k == last && !m.is_descriptor()) break;
     const Equations::Line w = rows.element(model.W), next = rows.line(n);
-    rows.add(n, {rows.product(E, next), {x, -m.A}, {shared.u[at], -m.B}, {w, -m.Bw}});
+    rows.add(n, {rows.product(E, next), {x, -m.A}, {u, -scaled.B()}, {w, -m.Bw}});
     x = next;
   }
 }

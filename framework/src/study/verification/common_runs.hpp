@@ -23,7 +23,7 @@ struct Experiment {
 /// of each, with the same u_k and, where outputs count, the same y_k. Without E the equation of k = N says nothing and is left
 /// out. With an admissible set X_A also x_k = a + Eᵀλ, a ∈ X_A, for k = 1 … N: the part of x_k that E does not determine is that
 /// of a. A set of dimension 0, empty if and only if the models' outputs differ; of one model, if and only if its tube is empty.
-/// Every entry is a number of the models.
+/// Every entry is a number of the models; effectiveness that is known exactly multiplies in rows of its own.
 LineForm common_runs(std::span<const Model* const> models, const Experiment& experiment);
 
 /// The outputs of all times that count, one below the other, which a model can show under the inputs, by the same rows.
