@@ -117,8 +117,10 @@ Counts ran_and_verified(cordon::campaigns::Start start, const std::vector<std::u
       count.false_statements += outcome.code == 0 ? 0 : 1;
       count.verified += outcome.code == 0 ? 1 : 0;
     }
-    if (keep && (is_kept || outcome.code != 0))
+    if (keep && (is_kept || outcome.code != 0)) {
+      fs::create_directories(keep);
       fs::copy(home, fs::path(keep) / std::to_string(number), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    }
   }
   fs::remove_all(home);
   MESSAGE(count.verified, " verified, ", count.refused, " refused by the program, ", count.contradictory,
