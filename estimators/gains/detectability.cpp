@@ -82,7 +82,19 @@ std::optional<std::string> hidden_mode(const Matrix& A, const Matrix& C, double 
   return std::nullopt;
 }
 
-Obstacle proven(std::string mode) { return {Answer::no, std::move(mode) + " does not show in the outputs"}; }
+/// Named is the mode of the largest modulus in the part that is proven to be hidden, not one that nearly is.
+Obstacle proven(const exact::HiddenModes& modes) {
+  const std::string hides = " does not show in the outputs";
+  if (!modes.map.allFinite() || !modes.basis.allFinite()) return {Answer::no, "a mode of A" + hides};
+  std::complex<double> largest = 0;
+  for (const std::complex<double>& value : linalg::eigenvalues(modes.map)) {
+    if (value.imag() >= 0 && std::abs(value) >= std::abs(largest)) largest = value;
+  }
+  const std::string name = "the mode " + number(largest) + " of A";
+  const auto inside = hidden(modes.map, Matrix(0, modes.count), largest);
+  if (!inside) return {Answer::no, name + hides};
+  return {Answer::no, name + ", along " + direction(modes.basis.cast<std::complex<double>>() * *inside) + "," + hides};
+}
 Obstacle nearly(std::string mode) { return {Answer::unknown, std::move(mode) + " hardly shows in the outputs"}; }
 
 /// Nothing for a system that is too large.
@@ -104,7 +116,7 @@ std::optional<Obstacle> undetectable_mode(const Matrix& A, const Matrix& C, doub
   const double above = rate == 1 ? rate : std::nextafter(rate, 2 * rate);
   const std::optional<exact::HiddenModes> modes = exactly_hidden(A, C, above);
   if (!modes) return nearly(std::move(*mode));
-  if (!modes->decay) return proven(std::move(*mode));
+  if (!modes->decay) return proven(*modes);
   if (modes->count > 0) return std::nullopt;
   return nearly(std::move(*mode));
 }
@@ -112,7 +124,7 @@ std::optional<Obstacle> undetectable_mode(const Matrix& A, const Matrix& C, doub
 std::string not_detectable(const Obstacle& hidden) {
   const bool is_proven = hidden.gain_exists == Answer::no;
   return std::string(is_proven ? "no gain exists, the pair (A, C) is not detectable: "
-                               : "no gain was sought, the pair (A, C) is detectable by rounding errors at most: ") +
+                               : "no gain was sought, the pair (A, C) is hardly detectable: ") +
          hidden.reason;
 }
 
@@ -120,7 +132,7 @@ std::optional<Obstacle> unobservable_mode(const Matrix& A, const Matrix& C) {
   std::optional<std::string> mode = hidden_mode(A, C, 0);
   if (!mode) return std::nullopt;
   const std::optional<exact::HiddenModes> modes = exactly_hidden(A, C, 1);
-  return modes && modes->count > 0 ? proven(std::move(*mode)) : nearly(std::move(*mode));
+  return modes && modes->count > 0 ? proven(*modes) : nearly(std::move(*mode));
 }
 
 }  // namespace cordon::estimators

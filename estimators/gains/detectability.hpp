@@ -11,7 +11,7 @@ namespace cordon::estimators {
 
 /// A mode of A that does not show in C x and does not decay: (A, C) is not detectable. Sought among the eigenvalues as computed,
 /// |λ| ≥ 1, by singular values of [λI - A; C] below 1e-10 of the largest; decided in rational arithmetic (exact_modes.hpp):
-///   `no`       proven: "the mode 1.2 of A, along (0, 1), does not show in the outputs";
+///   `no`       proven: "the mode 1.2 of A, along (0, 1), does not show in the outputs", the largest of what is hidden;
 ///   `unknown`  it shows by rounding errors or little more: "… hardly shows in the outputs". So is what is too large to decide.
 /// Nothing if there is none, or if all that is hidden decays. With a `rate` below 1: modes with |λ|² > rate in place of |λ| ≥ 1.
 /// A and C finite, n×n and p×n.

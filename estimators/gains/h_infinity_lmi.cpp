@@ -57,6 +57,9 @@ HInfinityProgram h_infinity_program(const ErrorDynamics& errors, const Matrix& T
   return design;
 }
 
+/// Solutions are right to some 1e-8 of the largest disturbance: of a γ that is smaller than this, four digits would not be.
+constexpr double least_value = 1e-3;
+
 /// What the solution is worth: its gain with the certificate, or why it is not accepted. `P` is that of e.
 GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics& errors, bool monotone, const SdpSolution& s,
                     const Matrix& P, const Matrix& PL) {
@@ -69,6 +72,12 @@ GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics
   if (const std::string problem = gain_problem(model, L); !problem.empty()) {
     return no_gain(Answer::unknown, "the gain of the matrix inequality " + problem);
   }
+  if (s.value < least_value) {
+    return no_gain(
+        Answer::unknown,
+        "the least norm lies below a thousandth of the largest disturbance, where the solver's errors are too much of it",
+        "\"kalman\", or other units for outputs and disturbances");
+  }
   GainDesign design;
   design.gain.certificate = certify(model, L, theta);
   design.gain.L = std::move(L);
@@ -77,6 +86,9 @@ GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics
   c.optimum = errors.unit * s.value;
   c.optimum_bound = errors.unit * s.bound;
   c.margin = s.least_eigenvalue[0];
+  if (!monotone && !(c.norm_upper >= c.optimum_bound * (1 - 1e-4))) {  // monotone: γ by a diagonal P may be above the norm
+    return no_gain(Answer::unknown, "the bound of the matrix inequality is none: its gain has a smaller norm");
+  }
   if (!(c.norm_lower <= c.optimum * (1 + 1e-4))) {
     return no_gain(Answer::unknown, "the gain of the matrix inequality does not keep what the inequality promises: its norm is " +
                                         std::to_string(c.norm_lower) + " at least, not " + std::to_string(c.optimum));

@@ -78,8 +78,8 @@ std::optional<Obstacle> by_row(const Matrix& A, const Matrix& C) {
     const Vector mu = cleaned(solution.x);
     if (!(row.dot(mu) < -margin * row.cwiseAbs().dot(mu)) || !is_zero(C, mu)) continue;
     const Answer proof = is_positive(-row, C, std::vector<int>(static_cast<std::size_t>(n), 0));
-    return obstacle(proof, "the outputs do not show the direction " + direction(mu) + ", and row " + std::to_string(i + 1) +
-                               " of A makes a negative number of it");
+    return obstacle(proof, "the outputs do not show the direction " + direction(mu) + ", to four digits, and row " +
+                               std::to_string(i + 1) + " of A makes a negative number of it");
   }
   return std::nullopt;
 }
@@ -131,8 +131,8 @@ std::optional<Obstacle> by_growth(const Matrix& A, const Matrix& C) {
     if (A.row(i).dot(x - y) < x[i] - equal * terms) return std::nullopt;
   }
   const Answer proof = is_growth_proven(A, C, std::max(1.0, solution.x.maxCoeff()));
-  return obstacle(
-      proof, "every monotone A - L C leaves the states " + direction(cleaned(x)) + " as large as they are, and is not stable");
+  return obstacle(proof, "every monotone A - L C leaves the states " + direction(cleaned(x)) +
+                             ", to four digits, as large as they are, and is not stable");
 }
 
 }  // namespace

@@ -75,3 +75,12 @@ TEST_CASE("what is said to have no gain has none in exact arithmetic; what round
   CHECK(unobservable_mode(Matrix{{.5, 0}, {0, .5}}, both)->gain_exists == Answer::no);
   CHECK(unobservable_mode(Matrix{{.5, 0}, {0, .5 + 1e-12}}, both)->gain_exists == Answer::unknown);
 }
+
+TEST_CASE("the mode that is named is the one that is hidden, not one that nearly is") {
+  // 2 along (1, 1, 0, 0) shows by 1e-10; what never shows is 1.5, along the fourth axis
+  const Matrix A{{1, 1, 0, 0}, {1, 1, 0, 0}, {0, 0, .5, 0}, {0, 0, 0, 1.5}}, C{{.01, -.0100000001, 1, 0}};
+  const std::string told = "the mode 1.5 of A, along (0, 0, 0, 1), does not show in the outputs";
+  CHECK(undetectable_mode(A, C).value().reason == told);
+  CHECK(unobservable_mode(A, C).value().reason == told);
+  CHECK(undetectable_mode(A.topLeftCorner(3, 3), C.leftCols(3)).value().gain_exists == Answer::unknown);
+}

@@ -261,3 +261,16 @@ TEST_CASE("random plants: a monotone gain is monotone, and not better than the b
   INFO(solved, " of ", possible);
   CHECK(solved == possible);
 }
+
+TEST_CASE("an optimum that the solver cannot resolve is not told") {
+  // x⁺ = .5 x + w, y = x + v: the gain 0 has the norm |W| / (1 - .5)
+  for (const auto& [w, v] : {std::pair{1e-9, 1.0}, {1e-10, 1.0}, {1e-6, 100.0}, {0.0, 1.0}, {1e-3, 1.0}, {.1, .1}}) {
+    CAPTURE(w);
+    Model model = interval_plants::with_unit_boxes(Matrix{{.5}}, Matrix(1, 0), Matrix{{1}}, w, v);
+    for (const char* type : {"h_infinity", "h_infinity_monotone"}) {
+      const GainDesign found = design(type, model);
+      CHECK(found.feasible == (w >= 1e-3 ? Answer::yes : Answer::unknown));
+      if (found.feasible == Answer::yes) CHECK(found.gain.certificate.optimum_bound <= 2 * w * (1 + 1e-4));
+    }
+  }
+}

@@ -27,9 +27,11 @@ TEST_CASE("three reasons why there is no monotone gain") {
   CHECK(no_monotone_gain(Matrix{{.8, -.1, .3}, {0, .8, .2}, {.01, 0, .8}}, Matrix{{0, 0, 1}}).value().reason ==
         "no monotone gain exists: column 2 of C is zero and A(1,2) < 0");
   CHECK(no_monotone_gain(Matrix{{.5, 0}, {-.3, .2}}, Matrix{{1, -1}}).value().reason ==
-        "no monotone gain exists: the outputs do not show the direction (1, 1), and row 2 of A makes a negative number of it");
+        "no monotone gain exists: the outputs do not show the direction (1, 1), to four digits, and row 2 of A makes a negative "
+        "number of it");
   CHECK(no_monotone_gain(Matrix{{1.2, 0}, {0, .5}}, Matrix{{0, 1}}).value().reason ==
-        "no monotone gain exists: every monotone A - L C leaves the states (1, 0) as large as they are, and is not stable");
+        "no monotone gain exists: every monotone A - L C leaves the states (1, 0), to four digits, as large as they are, and is "
+        "not stable");
   // detectable, yet whoever takes the first state's growth away makes an entry negative
   CHECK(no_monotone_gain(Matrix{{1.2, .1}, {.3, .5}}, Matrix{{1, 1}}).has_value());
 }

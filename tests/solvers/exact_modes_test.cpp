@@ -54,6 +54,8 @@ TEST_CASE("the hidden part of a system that was built around it") {
     const exact::HiddenModes modes = hidden_modes(T * A * back, C * back);
     RC_ASSERT(modes.count == d);
     RC_ASSERT(modes.decay == (largest < 1));
+    RC_ASSERT(((T * A * back) * modes.basis - modes.basis * modes.map).cwiseAbs().maxCoeff() < 1e-9);
+    RC_ASSERT((C * back * modes.basis).cwiseAbs().maxCoeff() < 1e-9);
     const double rate = *rc::gen::elementOf(std::vector<double>{.25, .5, 1.5625, 2});
     RC_ASSERT(hidden_modes(T * A * back, C * back, rate).decay == (largest * largest < rate));
   }));
@@ -88,5 +90,5 @@ TEST_CASE("what does not fit is refused") {
   CHECK_THROWS_AS(hidden_modes(I, I, 0), Error);
   CHECK_THROWS_AS(hidden_modes(I, I, std::numeric_limits<double>::quiet_NaN()), Error);
   CHECK_THROWS_AS(hidden_modes(Matrix(I * std::numeric_limits<double>::infinity()), Matrix(0, 2)), Error);
-  CHECK_THROWS_AS(hidden_modes(Matrix::Identity(101, 101), Matrix(0, 101)), Error);
+  CHECK_THROWS_AS(hidden_modes(Matrix::Identity(41, 41), Matrix(0, 41)), Error);
 }

@@ -135,6 +135,10 @@ PairSeparation separation(const PairProgram& pair, VectorIn u) {
   if (result.why.kind == Certificate::Kind::farkas) {
     result.kappa_lower = std::max(result.kappa_lower, proven_kappa(pair.G, d, error, result.why.data));
   }
+  // the solver's κ is right to its tolerance; it does not contradict what is proven
+  if (result.kappa < result.kappa_lower) result.kappa = result.kappa_lower;
+  if (result.disjoint == Answer::yes && result.kappa < 0) result.kappa = 0;
+  if (result.disjoint == Answer::no && result.kappa > 0) result.kappa = 0;
   return result;
 }
 

@@ -127,44 +127,35 @@ void FilterRecursion::find_half_widths() {
 
 namespace {
 
-/// For each fault: does what an error of any direction adds to it die out, from here on? Compared are two stretches of 200 steps.
-std::vector<bool> forgets_errors(FilterRecursion recursion) {
-  constexpr double least_decay = 1e-6;
-  const Index n = recursion.errors().rows();
-  Matrix errors = Matrix::Identity(n, n);
-  Vector largest[2];
-  for (Vector& stretch : largest) {
-    stretch = Vector::Zero(recursion.half_widths().size());
-    for (int k = 0; k < 200; ++k) {
-      recursion.advance();
-      errors = product(recursion.error_map(), errors);
-      stretch = stretch.cwiseMax(recursion.seen(errors));
-    }
+/// Do errors of any direction die out under this map? `size` as for Decay. Proven, or no.
+std::optional<invariant::Decay> decay_of(const Matrix& map, const Vector& size) {
+  try {
+    return invariant::Decay(map, size, "TA - G C");
+  } catch (const Error& error) {
+    if (error.code() != Errc::invalid && error.code() != Errc::unsupported && error.code() != Errc::not_finite) throw;
+    return std::nullopt;
   }
-  std::vector<bool> forgets;
-  for (Index i = 0; i < largest[0].size(); ++i) forgets.push_back(largest[1][i] <= (1 - least_decay) * largest[0][i]);
-  return forgets;
 }
 
-}  // namespace
-
-namespace {
-
-/// The largest half widths of the circle that the recursion ends in; nothing if none has closed. After Brent: the state is kept
-/// at powers of two, and every later one is compared with it.
+/// The largest half widths of the circle that the recursion ends in; nothing if none has closed, or if errors that its columns do
+/// not have, rounding among them, are not shown to die out from round to round. After Brent: the state is kept at powers of two,
+/// and every later one is compared with it.
 std::optional<Vector> largest_of_circle(FilterRecursion recursion) {
   constexpr Index most_steps = 50'000;
+  const Index n = recursion.errors().rows();
   FilterRecursion kept = recursion;
   Index until = 64, length = 0;
   for (Index k = 0; k < most_steps; ++k, ++length) {
     recursion.advance();
     if (recursion.is_same(kept)) {
       Vector largest = recursion.half_widths();
-      for (Index j = 0; j < length; ++j) {
+      Matrix round = Matrix::Identity(n, n);
+      for (Index j = 0; j <= length; ++j) {
         recursion.advance();
         largest = largest.cwiseMax(recursion.half_widths());
+        round = product(recursion.error_map(), round);
       }
-      return largest;
+      return decay_of(round, Vector::Ones(n)) ? std::optional(largest) : std::nullopt;
     }
     if (length < until) continue;
     kept = recursion;
@@ -174,45 +165,18 @@ std::optional<Vector> largest_of_circle(FilterRecursion recursion) {
   return std::nullopt;
 }
 
-/// The coordinates that r, r Φ, r Φ², … have entries in.
-std::vector<Index> reached(VectorIn r, const Matrix& map) {
-  std::vector<Index> found;
-  std::vector<bool> known(static_cast<std::size_t>(r.size()));
-  const auto add = [&](auto&& row) {
-    for (Index j = 0; j < row.size(); ++j) {
-      if (row[j] == 0 || known[static_cast<std::size_t>(j)]) continue;
-      known[static_cast<std::size_t>(j)] = true;
-      found.push_back(j);
-    }
-  };
-  add(r);
-  for (std::size_t k = 0; k < found.size(); ++k) add(map.row(found[k]));
-  return found;
-}
-
-/// sup_t [‖r Φᵗ now‖₁ + Σ_{s<t} ‖r Φˢ noise‖₁], or nothing without a proof that the powers decay.
-std::optional<double> bound_of_powers(VectorIn r, const Matrix& map, const Matrix& now, const Matrix& noise) {
-  constexpr double accuracy = 1e-10;
-  const std::vector<Index> part = reached(r, map);
-  const Vector zero = Vector::Zero(static_cast<Index>(part.size()));
-  const sets::Zonotope start{zero, now(part, Eigen::all)}, drive{zero, noise(part, Eigen::all)};
-  const Vector size = start.G.cwiseAbs().rowwise().sum() + drive.G.cwiseAbs().rowwise().sum();
-  try {
-    const invariant::Decay decay(Matrix(map(part, part)), size);
-    return invariant::switched_supports(decay, {drive}, {start}, Vector(r(part)), accuracy).plus;
-  } catch (const Error& error) {
-    if (error.code() != Errc::invalid && error.code() != Errc::unsupported && error.code() != Errc::not_finite) throw;
-    return std::nullopt;
-  }
-}
-
 /// Of a recursion whose gain stays, at all times from now on.
-Vector bounds_of_powers(const FilterRecursion& recursion) {
-  const Matrix map = recursion.error_map(), noise = recursion.noise();
+std::optional<Vector> bounds_of_powers(const FilterRecursion& recursion) {
+  constexpr double accuracy = 1e-10;
+  const Vector zero = Vector::Zero(recursion.errors().rows());
+  const sets::Zonotope noise{zero, recursion.noise()}, now{zero, recursion.seen_errors()};
+  const Vector size = noise.G.cwiseAbs().rowwise().sum() + now.G.cwiseAbs().rowwise().sum();
+  const auto decay = decay_of(recursion.error_map(), size);
+  if (!decay) return std::nullopt;
   Vector widths = recursion.own_noise();
   for (Index i = 0; i < widths.size(); ++i) {
     const Vector row = recursion.output_map().row(i).transpose();
-    widths[i] += bound_of_powers(row, map, recursion.seen_errors(), noise).value_or(infinity);
+    widths[i] += invariant::switched_supports(*decay, {noise}, {now}, row, accuracy).plus;
   }
   return widths;
 }
@@ -223,17 +187,12 @@ Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H) {
   recursion.start(H);
   const Vector none = Vector::Constant(recursion.half_widths().size(), infinity);
   try {
-    while (!recursion.is_reduced() && !recursion.has_last_gain()) recursion.advance();
-    Vector widths = recursion.is_reduced() ? largest_of_circle(recursion).value_or(none) : bounds_of_powers(recursion);
-    if (!widths.array().isFinite().any()) return none;
-    const std::vector<bool> forgets = forgets_errors(std::move(recursion));
-    for (Index i = 0; i < widths.size(); ++i) {
-      if (!forgets[static_cast<std::size_t>(i)]) widths[i] = infinity;
-    }
-    return widths;
+    if (recursion.is_reduced()) return largest_of_circle(std::move(recursion)).value_or(none);
+    while (!recursion.has_last_gain()) recursion.advance();
+    return bounds_of_powers(recursion).value_or(none);
   } catch (const Error& error) {
-    if (error.code() != Errc::not_finite) throw;
-    return none;  // so would the filter end
+    if (error.code() != Errc::not_finite && error.code() != Errc::unsupported) throw;
+    return none;  // the numbers end, and so would the filter; or too many powers
   }
 }
 

@@ -77,8 +77,8 @@ class FilterRecursion {
 ///              bit by bit, and the bound is the largest half width of the circle. At most 50 000 steps.
 ///   unreduced  after `steps_of_gains` steps the error map Φ stays, and what follows is bounded by the sum of its powers
 ///              (cordon/invariant/minimal.hpp): sup_t [h_{A_N}((Φᵗ)ᵀ r) + Σ_{s<t} h_E((Φˢ)ᵀ r)] for the rows r of M C.
-/// Infinite also where errors that the run has not stirred up, rounding among them, would not die out of the estimate of the
-/// fault.
+/// In both cases errors of any direction must be shown to die out, by the powers of Φ or of the product of the circle's maps:
+/// what the run has not stirred up, rounding will.
 Vector lasting_half_widths(FilterRecursion recursion, const Matrix& H);
 
 }  // namespace cordon::estimators

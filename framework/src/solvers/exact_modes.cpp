@@ -15,7 +15,7 @@ using rational::Rational;
 using rational::RationalMatrix;
 using rational::RationalVector;
 
-constexpr Index most_states = 100;
+constexpr Index most_states = 40;
 
 RationalVector times(const RationalVector& row, const RationalMatrix& A) {
   RationalVector image(static_cast<std::size_t>(A.cols()));
@@ -80,6 +80,14 @@ RationalMatrix restricted(const RationalMatrix& A, const RationalMatrix& basis) 
   return M;
 }
 
+Matrix rounded(const RationalMatrix& M) {
+  Matrix doubles(M.rows(), M.cols());
+  for (Index i = 0; i < M.rows(); ++i) {
+    for (Index j = 0; j < M.cols(); ++j) doubles(i, j) = rational::nearest(M(i, j));
+  }
+  return doubles;
+}
+
 /// Coefficients of det(zI - M), that of zʲ at j, by the traces of Faddeev and Le Verrier.
 RationalVector characteristic(const RationalMatrix& M) {
   const Index d = M.rows();
@@ -128,9 +136,11 @@ HiddenModes hidden_modes(MatrixIn A, MatrixIn C, double rate) {
   }
   const RationalMatrix exact_A = rational::exact_matrix(A);
   const RationalMatrix hidden = rational::null_space(shown_rows(exact_A, rational::exact_matrix(C)));
-  HiddenModes modes{hidden.rows()};
+  HiddenModes modes{hidden.rows(), true, Matrix(n, 0), Matrix(0, 0)};
   if (modes.count == 0) return modes;
   RationalMatrix M = restricted(exact_A, hidden);
+  modes.basis = rounded(hidden).transpose();
+  modes.map = rounded(M);
   if (rate != 1) {
     M = rational::product(M, M);
     const Rational factor = rational::exact(rate);
