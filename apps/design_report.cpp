@@ -97,14 +97,21 @@ std::string inputs_table(const Matrix& u, const Paint& paint) {
   return table(rows, paint);
 }
 
+/// The designer's κ, as computed, as far as it agrees with what is proven.
+double shown_kappa(double kappa, const ExactPair* proven) {
+  if (proven && proven->disjoint == Answer::yes) return std::max(kappa, proven->kappa_lower);
+  if (proven && proven->disjoint == Answer::no) return std::min(kappa, 0.0);
+  return kappa;
+}
+
 std::string pairs_table(const Names& modes, const InputDesign& design, const ExactSeparation* exact, const Paint& paint) {
   Rows rows{{"PAIR", "κ", "AT LEAST", "OUTPUT TUBES"}};
   for (std::size_t q = 0; q < design.pairs.size(); ++q) {
     const PairSeparation& pair = design.pairs[q];
     const ExactPair* proven = exact ? &exact->pairs[q] : nullptr;
     const bool apart = proven && proven->disjoint == Answer::yes;
-    rows.push_back({pair_name(modes, pair.i, pair.j), number(pair.kappa), apart ? number(proven->kappa_lower) : "-",
-                    separation(pair.disjoint, proven)});
+    rows.push_back({pair_name(modes, pair.i, pair.j), number(shown_kappa(pair.kappa, proven)),
+                    apart ? number(proven->kappa_lower) : "-", separation(pair.disjoint, proven)});
   }
   return table(rows, paint);
 }
