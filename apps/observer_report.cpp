@@ -60,12 +60,13 @@ ordered_json numbers(const Vector& values) {
 }  // namespace
 
 std::string gains_text(const RunOutcome& outcome, const Paint& paint) {
-  Rows rows{{"PIPELINE", "PARAMETER", "GAIN", "L", "SPECTRAL RADIUS", "MONOTONE", "‖G‖∞", "OPTIMUM"}};
+  Rows rows{{"PIPELINE", "PARAMETER", "GAIN", "L", "SPECTRAL RADIUS ≤", "MONOTONE", "‖G‖∞", "OPTIMUM"}};
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     for (const Gain& gain : pipeline.gains) {
       const GainCertificate& known = gain.certificate;
       rows.push_back({pipeline.name, gain.name, gain.type, matrix_text(gain.L), number_text(known.spectral_radius),
-                      known.monotone ? "yes" : "no", norm_text(known), objective_text(known)});
+                      known.monotone == Answer::unknown ? "but for rounding" : std::string(to_string(known.monotone)),
+                      norm_text(known), objective_text(known)});
     }
   }
   return titled("Gains", rows, paint);
@@ -131,9 +132,13 @@ ordered_json gains_json(const PipelineOutcome& pipeline) {
     for (Index i = 0; i < gain.L.rows(); ++i) matrix.push_back(numbers(gain.L.row(i).transpose()));
     const bool has_norm = !std::isnan(known.norm_lower) || !std::isnan(known.norm_upper);
     const ordered_json norm{{"lower", json_number(known.norm_lower)}, {"upper", json_number(known.norm_upper)}};
-    ordered_json one{{"name", gain.name},           {"type", gain.type},
-                     {"matrix", std::move(matrix)}, {"spectral_radius", json_number(known.spectral_radius)},
-                     {"monotone", known.monotone},  {"norm", has_norm ? norm : ordered_json(nullptr)}};
+    ordered_json one{
+        {"name", gain.name},
+        {"type", gain.type},
+        {"matrix", std::move(matrix)},
+        {"spectral_radius", json_number(known.spectral_radius)},
+        {"monotone", known.monotone == Answer::unknown ? ordered_json(nullptr) : ordered_json(known.monotone == Answer::yes)},
+        {"norm", has_norm ? norm : ordered_json(nullptr)}};
     if (!known.objective.empty()) {
       one["objective"] = known.objective;
       one["optimum"] = json_number(known.optimum);

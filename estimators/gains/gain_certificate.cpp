@@ -39,8 +39,9 @@ Matrix shown_outputs(const LinearModel& model) {
 GainCertificate certify(const Model& model, const Matrix& L, const Matrix& theta) {
   const Matrix closed = model.linear.A - linalg::product(L, mean_outputs(model.linear));
   GainCertificate certificate;
-  certificate.spectral_radius = invariant::spectral_radius(closed);
-  certificate.monotone = (closed.array() >= 0).all();
+  const invariant::ClosedLoop known = invariant::closed_loop(model.linear.A, L, mean_outputs(model.linear));
+  certificate.spectral_radius = known.radius.upper;
+  certificate.monotone = known.nonnegative;
   try {
     const NormBounds norm = h_infinity_norm(closed, disturbances(model, L, theta));
     certificate.norm_lower = norm.lower;
@@ -58,12 +59,9 @@ std::string gain_problem(const Model& model, const Matrix& L) {
            " × " + std::to_string(m.outputs());
   }
   if (!L.allFinite()) return "has entries that are no numbers";
-  try {
-    invariant::require_schur(m.A - linalg::product(L, mean_outputs(m)), "A - L C");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  const Matrix C = mean_outputs(m);
+  const Answer schur = invariant::closed_loop(m.A, L, C).schur;
+  return schur == Answer::yes ? "" : "A - L C " + invariant::not_schur(schur, m.A - linalg::product(L, C));
 }
 
 }  // namespace cordon::estimators

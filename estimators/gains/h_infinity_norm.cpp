@@ -69,7 +69,8 @@ Interval interval(const Value& from, const Value& to) {
 NormBounds h_infinity_norm(MatrixIn A, MatrixIn B) {
   if (A.rows() != A.cols() || B.rows() != A.rows()) throw Error(Errc::dimension, "A must be square, B of as many rows");
   if (!B.allFinite()) throw Error(Errc::not_finite, "the norm needs finite entries");
-  if (invariant::spectral_radius(A) >= 1) return {infinite, infinite};
+  const Answer schur = invariant::is_schur(A);
+  if (schur != Answer::yes) return {schur == Answer::no ? infinite : 0, infinite};
   if (B.size() == 0 || B.isZero(0)) return {0, 0};
   const double size = B.cwiseAbs().maxCoeff();  // extreme sizes would overflow when squared
   const Matrix scaled = B / size;

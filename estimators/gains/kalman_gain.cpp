@@ -71,7 +71,9 @@ Matrix steady_kalman_gain(const Model& model) {
     P = next;
     if (change <= tolerance * scale || (waited >= patience && change <= settled * scale)) return L;
   }
-  throw Error(Errc::invalid, "no gain was found: the pair (A, C) is not detectable, or nearly so");
+  throw Error(Errc::invalid,
+              "no gain was found: the recursion of the covariation did not settle, as where (A, C) is nearly undetectable or "
+              "its numbers differ much in size");
 }
 
 }  // namespace cordon::estimators

@@ -25,7 +25,7 @@ Json study(const Json& designer = Json::object(), bool experiments = true) {
 }
 
 /// A violation, by both commands: in the message, in the results, and as the first thing that a check of the results repeats.
-void check_violated(const Json& designer, const std::string& why) {
+Outcome check_violated(const Json& designer, const std::string& why) {
   CAPTURE(designer.dump());
   const Program program(study(designer));
   const Outcome designed = program.design(), run = program.run();
@@ -40,6 +40,7 @@ void check_violated(const Json& designer, const std::string& why) {
   CHECK(program.file("report.html").find("proven false") != std::string::npos);
   CHECK(program.file("benchmarks.csv").find(",0,") != std::string::npos);
   CHECK(program.verify().code == 4);
+  return run;
 }
 
 }  // namespace
@@ -64,7 +65,7 @@ TEST_CASE("what is true is proven, although the designer proves nothing") {
 TEST_CASE("a separation without a proof, or with a false one") {
   for (const char* lie : {"nothing", "certificate"}) {
     const Json designer{{"lie", lie}, {"first", .1}};
-    check_violated(designer, "the output tubes of healthy and opposite are called disjoint, and meet");
+    CHECK(check_violated(designer, "the output tubes of healthy and opposite are called disjoint, and meet").code == 4);
     const Outcome said = Program(study(designer)).design();
     CHECK(said.says("meet (proven)"));
     CHECK_FALSE(said.says("disjoint (proven)"));
@@ -72,39 +73,40 @@ TEST_CASE("a separation without a proof, or with a false one") {
 }
 
 TEST_CASE("a certificate that does not prove what it is given for") {
-  check_violated({{"lie", "void_certificate"}}, "disjoint by a certificate that proves nothing");
-  check_violated({{"lie", "point"}}, "disjoint by a certificate that proves that they meet");
+  CHECK(check_violated({{"lie", "void_certificate"}}, "disjoint by a certificate that proves nothing").code == 4);
+  CHECK(check_violated({{"lie", "point"}}, "disjoint by a certificate that proves that they meet").code == 4);
 }
 
 TEST_CASE("an input that is found separates, whatever is said of the pairs") {
-  check_violated({{"lie", "silent"}, {"first", .1}},
-                 "it calls its input feasible, and the outputs of healthy and opposite can be the same");
-  check_violated({{"lie", "meet"}}, "are said to meet, and are disjoint");
+  CHECK(check_violated({{"lie", "silent"}, {"first", .1}},
+                       "it calls its input feasible, and the outputs of healthy and opposite can be the same")
+            .code == 4);
+  CHECK(check_violated({{"lie", "meet"}}, "are said to meet, and are disjoint").code == 4);
   CHECK(Program(study({{"lie", "silent"}})).design().says("disjoint (proven)"));
 }
 
 TEST_CASE("an input outside the input set") {
-  check_violated({{"first", 4.5}}, "u_k is proven to lie outside the input set U of the study at k = 0");
+  CHECK(check_violated({{"first", 4.5}}, "u_k is proven to lie outside the input set U of the study at k = 0").code == 4);
   CHECK(Program(study({{"first", 4}})).design().code == 0);          // on its boundary
   CHECK(Program(study({{"first", 4 + 1e-10}})).design().code == 0);  // outside by rounding
-  check_violated({{"first", 4 + 1e-7}}, "outside the input set U");
+  CHECK(check_violated({{"first", 4 + 1e-7}}, "outside the input set U").code == 4);
   const Json narrow{{"type", "box"}, {"lower", {-2}}, {"upper", {2}}};
-  check_violated({{"input_set", narrow}}, "u_k is proven to lie outside \"input_set\" at k = 0");
-  check_violated({{"lie", "given"}, {"first", 4.5}}, "outside the input set U");  // the study gives no input
+  CHECK(check_violated({{"input_set", narrow}}, "u_k is proven to lie outside \"input_set\" at k = 0").code == 4);
+  CHECK(check_violated({{"lie", "given"}, {"first", 4.5}}, "outside the input set U").code == 4);  // the study gives no input
 }
 
 TEST_CASE("a first input that is not kept to") {
-  check_violated({{"first_input", {2.5}}}, "u_0 is another than the study's \"first_input\"");
+  CHECK(check_violated({{"first_input", {2.5}}}, "u_0 is another than the study's \"first_input\"").code == 4);
   CHECK(Program(study({{"first_input", {3}}})).design().code == 0);
 }
 
 TEST_CASE("another horizon, another question") {
-  check_violated({{"lie", "horizon"}}, "it answers for the horizon 1, and \"horizon\" is 2");
-  check_violated({{"lie", "last"}}, "it compares the last output only, and \"outputs\" is \"all\"");
-  check_violated({{"lie", "assumes"}}, "it assumes an admissible set, and the study gives none");
-  check_violated({{"epsilon", .2}}, "it asks for κ ≥ 0.1, and \"epsilon\" is 0.2");
-  check_violated({{"lie", "bound"}}, "its input costs 3, less than its lower bound 6");
-  check_violated({{"lie", "empty"}}, "the output tube of opposite is called empty, and is not");
+  CHECK(check_violated({{"lie", "horizon"}}, "it answers for the horizon 1, and \"horizon\" is 2").code == 4);
+  CHECK(check_violated({{"lie", "last"}}, "it compares the last output only, and \"outputs\" is \"all\"").code == 4);
+  CHECK(check_violated({{"lie", "assumes"}}, "it assumes an admissible set, and the study gives none").code == 4);
+  CHECK(check_violated({{"epsilon", .2}}, "it asks for κ ≥ 0.1, and \"epsilon\" is 0.2").code == 4);
+  CHECK(check_violated({{"lie", "bound"}}, "its input costs 3, less than its lower bound 6").code == 4);
+  CHECK(check_violated({{"lie", "empty"}}, "the output tube of opposite is called empty, and is not").code == 4);
 }
 
 TEST_CASE("answers that do not fit the bank end the pipeline, as a violation") {

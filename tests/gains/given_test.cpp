@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <random>
+
 #include <doctest/doctest.h>
 
 #include "published/study_models.hpp"
@@ -35,7 +37,7 @@ TEST_CASE("a given gain is told with what it is worth") {
   REQUIRE(design.feasible == Answer::yes);
   const GainCertificate& c = design.gain.certificate;
   CHECK(c.spectral_radius == doctest::Approx(.8));
-  CHECK(c.monotone);
+  CHECK(c.monotone == Answer::yes);
   // (zI - [.5 .1; 0 .8])⁻¹ (.3, -.2; 0 0): √(.09 + .04) / .5 at ω = 0
   CHECK(c.norm_upper == doctest::Approx(std::sqrt(.13) / .5).epsilon(1e-8));
   CHECK(c.norm_lower <= c.norm_upper);
@@ -46,7 +48,7 @@ TEST_CASE("a given gain is told with what it is worth") {
   CHECK(wider == doctest::Approx(std::sqrt(.13 + .0009) / .5).epsilon(1e-8));
 
   made.linear.A(0, 1) = -.1;
-  CHECK_FALSE(designer->design(made).gain.certificate.monotone);
+  CHECK(designer->design(made).gain.certificate.monotone == Answer::no);
 
   made.W = make_space(1);
   const GainCertificate without = designer->design(made).gain.certificate;
@@ -79,4 +81,35 @@ TEST_CASE("a gain of another shape and one that does not stabilise are refused")
     CHECK(design.reason.find(words) != std::string::npos);
   }
   CHECK_THROWS_AS(plugins.registry.make_gain("given", {}), InputError);
+}
+
+TEST_CASE("a loop far from normal: what doubles call stable and is not, and the other way round") {
+  // T S T⁻¹ with S¹² = last I, T a product of integer steps
+  const auto loop = [](double last) {
+    Matrix A = Matrix::Zero(12, 12);
+    for (Index i = 0; i < 11; ++i) A(i, i + 1) = 1;
+    A(11, 0) = last;
+    std::mt19937_64 engine(1);
+    for (int k = 0; k < 70; ++k) {
+      const Index i = static_cast<Index>(engine() % 12), j = static_cast<Index>(engine() % 12);
+      if (i == j) continue;
+      A.row(i) += A.row(j);
+      A.col(j) -= A.col(i);
+    }
+    return A;
+  };
+  const Plugins plugins;
+  Model made = model();
+  LinearModel& m = made.linear;
+  const auto feasible = [&](double last) {
+    m.A = loop(last);
+    m.B = Matrix(12, 0);
+    m.Bw = Matrix::Identity(12, 1);
+    m.C = Matrix::Identity(1, 12);
+    made.X0 = make_box(cube(12, 1));
+    return plugins.registry.make_gain("given", matrix(Matrix::Zero(12, 1)))->design(made).feasible;
+  };
+  CHECK(feasible(1.25) != Answer::yes);
+  CHECK(feasible(.5) == Answer::yes);
+  CHECK(feasible(0) == Answer::yes);
 }

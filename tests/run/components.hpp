@@ -73,8 +73,9 @@ class Offering final : public Recursive {
 
   std::vector<Gain> gains() const override {
     Gain designed{"upper_gain", "designed", Matrix{{.5}, {-.25}}, {}}, given{"gain", "given", Matrix{{.5}, {0}}, {}};
-    designed.certificate = {.75, true, 2.5, 2.5, "γ", 2.5, 2.4375, .001};
+    designed.certificate = {.75, Answer::yes, 2.5, 2.5, "γ", 2.5, 2.4375, .001};
     given.certificate.spectral_radius = 1.25;
+    given.certificate.monotone = Answer::no;
     given.certificate.norm_lower = given.certificate.norm_upper = std::numeric_limits<double>::infinity();
     return {designed, given};
   }

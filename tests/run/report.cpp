@@ -222,8 +222,9 @@ TEST_CASE("gains, widths at the end and inner estimates have a table each, and o
   offers.last_hull = {Vector{{.25, 0.}}, Vector{{.25, 1.5e-5}}};
   Gain designed{"upper_gain", "h_infinity", Matrix{{.5, 1. / 3}, {-.25, 0}}, {}},
       given{"gain", "given", Matrix::Ones(6, 6) / 3, {}};
-  designed.certificate = {.75, true, 2.49999999, 2.5, "γ", 2.5, 2.4375, .001};
+  designed.certificate = {.75, Answer::yes, 2.49999999, 2.5, "γ", 2.5, 2.4375, .001};
   given.certificate.spectral_radius = .5;
+  given.certificate.monotone = Answer::no;
   given.certificate.norm_lower = 1;
   given.certificate.norm_upper = std::numeric_limits<double>::infinity();
   offers.gains = {designed, given};
@@ -232,9 +233,9 @@ TEST_CASE("gains, widths at the end and inner estimates have a table each, and o
   text = apps::report_text(study(), outcome, "out");
   CHECK(has(text,
             "Gains\n"
-            "PIPELINE  PARAMETER   GAIN        L                      SPECTRAL RADIUS  MONOTONE  ‖G‖∞    OPTIMUM\n"
-            "offers    upper_gain  h_infinity  [0.5 0.3333; -0.25 0]  0.75             yes       2.5     γ = 2.5\n"
-            "offers    gain        given       6×6                    0.5              no        [1, ∞]  -\n"
+            "PIPELINE  PARAMETER   GAIN        L                      SPECTRAL RADIUS ≤  MONOTONE  ‖G‖∞    OPTIMUM\n"
+            "offers    upper_gain  h_infinity  [0.5 0.3333; -0.25 0]  0.75               yes       2.5     γ = 2.5\n"
+            "offers    gain        given       6×6                    0.5                no        [1, ∞]  -\n"
             "\n"
             "Widths at the last step\n"
             "PIPELINE  x1        x2\n"

@@ -92,3 +92,28 @@ TEST_CASE("what does not fit is refused") {
   CHECK_THROWS_AS(hidden_modes(Matrix(I * std::numeric_limits<double>::infinity()), Matrix(0, 2)), Error);
   CHECK_THROWS_AS(hidden_modes(Matrix::Identity(41, 41), Matrix(0, 41)), Error);
 }
+
+TEST_CASE("A - L C without rounding") {
+  CHECK(rc::check("a triangle in other coordinates, closed by L", [] {
+    const Index n = *rc::gen::inRange<Index>(1, 6), p = *rc::gen::inRange<Index>(0, 3);
+    Matrix M = Matrix::Zero(n, n);
+    double largest = 0;
+    for (Index i = 0; i < n; ++i) {
+      M(i, i) = *rc::gen::inRange(-10, 11) / 8.0;
+      largest = std::max(largest, std::abs(M(i, i)));
+      for (Index j = 0; j < i; ++j) M(i, j) = *rc::gen::inRange(-2, 3);
+    }
+    const auto [T, back] = coordinates(n);
+    const Matrix closed = T * M * back, L = integers(n, p), C = integers(p, n), A = closed + L * C;
+    RC_ASSERT(exact::is_schur(A, L, C) == (largest < 1));
+    RC_ASSERT(exact::is_nonnegative(A, L, C) == (closed.array() >= 0).all());
+  }));
+  const double e = std::ldexp(1., -60);  // 1 ∓ e · e, which doubles round to 1
+  CHECK(exact::is_schur(Matrix{{1}}, Matrix{{e}}, Matrix{{e}}));
+  CHECK_FALSE(exact::is_schur(Matrix{{1}}, Matrix{{-e}}, Matrix{{e}}));
+  CHECK_FALSE(exact::is_nonnegative(Matrix{{.3}}, Matrix{{.1}}, Matrix{{3}}));
+  CHECK(exact::is_schur(Matrix(0, 0), Matrix(0, 1), Matrix(1, 0)));
+  CHECK_THROWS_AS(exact::is_schur(Matrix(2, 2), Matrix(1, 1), Matrix(1, 2)), Error);
+  CHECK_THROWS_AS(exact::is_schur(Matrix::Identity(41, 41), Matrix(41, 0), Matrix(0, 41)), Error);
+  CHECK_THROWS_AS(exact::is_nonnegative(Matrix{{std::nan("")}}, Matrix(1, 0), Matrix(0, 1)), Error);
+}

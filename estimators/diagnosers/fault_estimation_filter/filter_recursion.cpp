@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/rounding.hpp"
 #include "cordon/invariant/minimal.hpp"
+#include "cordon/invariant/schur.hpp"
 #include "cordon/sets/generator_reduction.hpp"
 
 namespace cordon::estimators {
@@ -149,13 +151,16 @@ std::optional<Vector> largest_of_circle(FilterRecursion recursion) {
     recursion.advance();
     if (recursion.is_same(kept)) {
       Vector largest = recursion.half_widths();
-      Matrix round = Matrix::Identity(n, n);
+      Matrix round = Matrix::Identity(n, n), error = Matrix::Zero(n, n);
       for (Index j = 0; j <= length; ++j) {
         recursion.advance();
         largest = largest.cwiseMax(recursion.half_widths());
-        round = product(recursion.error_map(), round);
+        const Matrix map = recursion.error_map();
+        error = (product(map.cwiseAbs(), error) + rounding::product_error(map, round)) * (1 + 2 * rounding::gamma(n + 8));
+        round = product(map, round);
       }
-      return decay_of(round, Vector::Ones(n)) ? std::optional(largest) : std::nullopt;
+      if (!round.allFinite() || !error.allFinite()) return std::nullopt;
+      return invariant::radius_bounds(round, error).upper < 1 ? std::optional(largest) : std::nullopt;
     }
     if (length < until) continue;
     kept = recursion;

@@ -49,7 +49,7 @@ StateBounds::StateBounds(const ModeBank& bank, const std::vector<ModeDynamics>& 
     return;
   }
   const bool same = std::all_of(modes.begin(), modes.end(), [&](const ModeDynamics& mode) { return mode.A == first.A; });
-  if (!same || !(invariant::spectral_radius(first.A) < 1)) return;
+  if (!same || invariant::is_schur(first.A) != Answer::yes) return;
   for (const ModeDynamics& mode : modes) drives_.push_back(plant_drive(mode));
   starts_ = plant_starts(bank, options);
   decay_.emplace(first.A, size_of(drives_, n), "A");
@@ -119,7 +119,7 @@ Vector observer_slack(const ModeDynamics& observer, const invariant::Decay& deca
   }
   const Vector constant = observer.g_rad.cwiseProduct(observer.feedthrough + state + error);
   const std::optional<Matrix> s = linalg::solve(Matrix::Identity(q, q) - K, constant);
-  if (s && (s->array() >= 0).all() && invariant::spectral_radius(K) < 1) {
+  if (s && (s->array() >= 0).all() && invariant::is_schur(K) == Answer::yes) {
     const Vector raised = s->col(0) * (1 + 1e-12);
     if (((product(K, raised) + constant).array() <= raised.array()).all() || constant.isZero(0)) return raised;
   }

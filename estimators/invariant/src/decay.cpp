@@ -52,7 +52,8 @@ Vector decay_weights(MatrixIn A, VectorIn size) {
 }
 
 Decay::Decay(MatrixIn A, VectorIn size, const std::string& what) : A_(A) {
-  require_schur(A, what);
+  if (A_.rows() != A_.cols()) throw Error(Errc::dimension, "a decay bound needs a square matrix");
+  if (!A_.allFinite()) throw Error(Errc::not_finite, "a decay bound needs finite entries");
   const Index n = A_.rows();
   if (size.size() != n) throw Error(Errc::dimension, "the sizes of a decay bound need one entry per state");
   if (!size.allFinite()) throw Error(Errc::not_finite, "the sizes of a decay bound are not finite");
@@ -77,6 +78,7 @@ Decay::Decay(MatrixIn A, VectorIn size, const std::string& what) : A_(A) {
     if (!std::isfinite(sum_)) break;
     base = powers.back();
   }
+  require_schur(A, what);
   throw Error(Errc::unsupported,
               "no decay of the powers of " + what + " can be proven: its largest eigenvalue is too near to the unit circle");
 }

@@ -104,8 +104,27 @@ RationalVector characteristic(const RationalMatrix& M) {
   return coefficients;
 }
 
+RationalMatrix closed_loop(MatrixIn A, MatrixIn L, MatrixIn C) {
+  if (A.cols() != A.rows() || L.rows() != A.rows() || C.cols() != A.rows() || L.cols() != C.rows()) {
+    throw Error(Errc::dimension, "A - L C: the shapes of A, L and C do not fit");
+  }
+  RationalMatrix closed = rational::exact_matrix(A);
+  const RationalMatrix shown = rational::product(rational::exact_matrix(L), rational::exact_matrix(C));
+  for (Index i = 0; i < closed.rows(); ++i) {
+    for (Index j = 0; j < closed.cols(); ++j) closed(i, j) -= shown(i, j);
+  }
+  return closed;
+}
+
+void check_states(Index n) {
+  if (n > most_states) {
+    throw Error(Errc::unsupported, "exact modes: " + std::to_string(n) + " states; at most " + std::to_string(most_states) +
+                                       " are supported in rational arithmetic");
+  }
+}
+
 /// Are all roots of Σ p_j zʲ inside the unit circle? |p_0| < |p_d|, and so for (p_d p(z) - p_0 zᵈ p(1/z)) / z.
-bool is_schur(RationalVector p) {
+bool inside_circle(RationalVector p) {
   while (p.size() > 1) {
     rational::make_primitive(p);
     const Rational first = p.front(), last = p.back();
@@ -130,10 +149,7 @@ HiddenModes hidden_modes(MatrixIn A, MatrixIn C, double rate) {
     throw Error(Errc::dimension, "exact::hidden_modes: A must be square, with as many columns as C");
   }
   if (!(rate > 0) || !std::isfinite(rate)) throw Error(Errc::invalid, "exact::hidden_modes: the rate must be a positive number");
-  if (n > most_states) {
-    throw Error(Errc::unsupported, "exact::hidden_modes: " + std::to_string(n) + " states; at most " +
-                                       std::to_string(most_states) + " are supported in rational arithmetic");
-  }
+  check_states(n);
   const RationalMatrix exact_A = rational::exact_matrix(A);
   const RationalMatrix hidden = rational::null_space(shown_rows(exact_A, rational::exact_matrix(C)));
   HiddenModes modes{hidden.rows(), true, Matrix(n, 0), Matrix(0, 0)};
@@ -148,8 +164,23 @@ HiddenModes hidden_modes(MatrixIn A, MatrixIn C, double rate) {
       for (Index j = 0; j < M.cols(); ++j) M(i, j) /= factor;
     }
   }
-  modes.decay = is_schur(characteristic(M));
+  modes.decay = inside_circle(characteristic(M));
   return modes;
+}
+
+bool is_schur(MatrixIn A, MatrixIn L, MatrixIn C) {
+  check_states(A.rows());
+  return inside_circle(characteristic(closed_loop(A, L, C)));
+}
+
+bool is_nonnegative(MatrixIn A, MatrixIn L, MatrixIn C) {
+  const RationalMatrix closed = closed_loop(A, L, C);
+  for (Index i = 0; i < closed.rows(); ++i) {
+    for (Index j = 0; j < closed.cols(); ++j) {
+      if (sgn(closed(i, j)) < 0) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace cordon::exact

@@ -14,8 +14,10 @@ namespace cordon {
 struct GainCertificate {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-  double spectral_radius = none;  ///< of A - L C̄
-  bool monotone = false;          ///< A - L C̄ ≥ 0 in every entry, as computed
+  /// A bound of that of A - L C̄ from above, proven, and equal to it where A - L C̄ is not far from normal
+  double spectral_radius = none;
+  /// A - L C̄ ≥ 0 in every entry, without rounding; `unknown`: not so, but no entry is below zero by more than its rounding
+  Answer monotone = Answer::unknown;
   /// Bounds of ‖G_ed‖∞, G_ed(z) = (zI - (A - L C̄))⁻¹ [Eθ, Bw G_W, -L Dv G_V], with the shapes G of zonotopes around W and V; Eθ
   /// holds the directions of the parameter uncertainty in the design. Infinite if A - L C̄ is not stable.
   double norm_lower = none, norm_upper = none;

@@ -21,4 +21,11 @@ struct HiddenModes {
 /// Errc::unsupported for n > 40. O(n⁴) products of long numbers: milliseconds for 10 states, seconds for 30.
 HiddenModes hidden_modes(MatrixIn A, MatrixIn C, double rate = 1);
 
+/// |λ| < 1 for each eigenvalue λ of A - L C (A n×n, L n×p, C p×n), the product and the difference taken without rounding. Tested
+/// as above; same errors and costs.
+bool is_schur(MatrixIn A, MatrixIn L, MatrixIn C);
+
+/// A - L C ≥ 0 in every entry, without rounding. Errc::dimension, Errc::not_finite. O(n² p).
+bool is_nonnegative(MatrixIn A, MatrixIn L, MatrixIn C);
+
 }  // namespace cordon::exact

@@ -14,7 +14,8 @@ void write(JsonWriter& json, const std::vector<Gain>& gains) {
   for (const Gain& gain : gains) {
     const GainCertificate& known = gain.certificate;
     json.begin_object().member("name", gain.name).member("type", gain.type).key("matrix").matrix(gain.L);
-    json.member("spectral_radius", known.spectral_radius).member("monotone", known.monotone);
+    json.member("spectral_radius", known.spectral_radius).key("monotone");
+    known.monotone == Answer::unknown ? json.null() : json.value(known.monotone == Answer::yes);
     json.key("norm");
     if (std::isnan(known.norm_lower) && std::isnan(known.norm_upper)) {
       json.null();

@@ -67,8 +67,9 @@ void add_observers(const RunFiles& files, const Curves& curves, Report& report) 
 }
 
 void add_gains(const RunFiles& files, Report& report) {
-  Table table{
-      {"Pipeline", "Gain", "Designed by", "Spectral radius", "Monotone", "Norm", "Objective", "Optimum", "Bound of optimum"}, {}};
+  Table table{{"Pipeline", "Gain", "Designed by", "Spectral radius at most", "Monotone", "Norm", "Objective", "Optimum",
+               "Bound of optimum"},
+              {}};
   for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
     for (const Cursor& gain : items_of(files.tree(p), "gains")) {
       if (!gain.expect(Kind::object, "")) continue;
@@ -79,7 +80,7 @@ void add_gains(const RunFiles& files, Report& report) {
            text_cell(text_of(gain, "name")),
            text_cell(text_of(gain, "type")),
            number_cell(value_of(gain, "spectral_radius")),
-           text_cell(monotone && monotone->is(Kind::boolean) ? (monotone->value().flag ? "yes" : "no") : "–"),
+           text_cell(monotone && monotone->is(Kind::boolean) ? (monotone->value().flag ? "yes" : "no") : "but for rounding"),
            {norm ? fmt::format("{} … {}", shown(value_of(*norm, "lower")), shown(value_of(*norm, "upper"))) : "–", false, 0,
             true},
            text_cell(text_of(gain, "objective")),
@@ -89,7 +90,8 @@ void add_gains(const RunFiles& files, Report& report) {
   }
   if (table.rows.empty()) return;
   report.figures.push_back({"gains", section::answers, "Gains of observers",
-                            "A spectral radius below 1: the error dies out. The norm bounds the amplification from disturbances "
+                            "A spectral radius below 1: the error dies out. Monotone: no entry of A - L C is negative. The norm "
+                            "bounds the amplification from disturbances "
                             "and noise to the error.",
                             std::move(table)});
 }
