@@ -60,6 +60,7 @@ std::string gain_problem(const Model& model, const Matrix& L) {
   }
   if (!L.allFinite()) return "has entries that are no numbers";
   const Matrix C = mean_outputs(m);
+  if (!(m.A - linalg::product(L, C)).allFinite()) return "makes A - L C leave the range of numbers";
   const Answer schur = invariant::closed_loop(m.A, L, C).schur;
   return schur == Answer::yes ? "" : "A - L C " + invariant::not_schur(schur, m.A - linalg::product(L, C));
 }

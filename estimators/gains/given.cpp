@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The gain as a matrix of the study. What is told about it is found out here as for every other.
 #include "components.hpp"
+#include "cordon/invariant/schur.hpp"
 #include "gains/gain_certificate.hpp"
 #include "gains/theta.hpp"
 
@@ -16,7 +17,7 @@ class Given final : public GainDesigner {
 
   GainDesign design(const Model& model) const override {
     if (std::string problem = gain_problem(model, L_); !problem.empty()) {
-      return {Answer::no, {}, "the gain " + std::move(problem), mend};
+      return {refuted(model) ? Answer::no : Answer::unknown, {}, "the gain " + std::move(problem), mend};
     }
     Gain gain;
     gain.L = L_;
@@ -25,6 +26,13 @@ class Given final : public GainDesigner {
   }
 
  private:
+  /// Of a loop with many states it may be open whether it is stable.
+  bool refuted(const Model& model) const {
+    const LinearModel& m = model.linear;
+    const bool fits = L_.rows() == m.states() && L_.cols() == m.outputs() && L_.allFinite();
+    return !fits || invariant::closed_loop(m.A, L_, mean_outputs(m)).schur != Answer::unknown;
+  }
+
   Matrix L_;
 };
 

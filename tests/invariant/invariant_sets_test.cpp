@@ -392,4 +392,7 @@ TEST_CASE("signs and stability of A - L C are those of the numbers as they are w
   CHECK(is_schur(2 * Matrix::Identity(41, 41)) == Answer::no);
   CHECK(is_schur(.5 * Matrix::Identity(41, 41)) == Answer::yes);
   message([] { require_schur(Matrix::Identity(41, 41), "A"); }, Errc::unsupported);
+  CHECK(closed_loop(Matrix{{1.7e308}}, Matrix{{1.7e154}}, Matrix{{1e154}}).schur == Answer::no);  // 0 ± 1e294
+  CHECK(closed_loop(Matrix{{0}}, Matrix{{1e300}}, Matrix{{1e10}}).schur == Answer::no);
+  CHECK(is_schur(Matrix{{0, 1.7e308}, {0, 0}}) == Answer::yes);
 }

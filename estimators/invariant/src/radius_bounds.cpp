@@ -142,12 +142,14 @@ RadiusBounds by_eigenvectors(const Matrix& A, const Matrix& error) {
     const double slack = 4 * rounding::unit * M->value.middleRows(first, size).middleCols(first, size).cwiseAbs().sum(),
                  modulus = std::hypot(a, b);
     const double r = raised(row.cwiseAbs().sum() + M->error.middleRows(first, size).sum() + slack, 2 * A.rows());
+    if (!std::isfinite(r) || !std::isfinite(modulus)) return {};
     largest = std::max(largest, modulus * (1 - 4 * rounding::unit));
     upper = std::max(upper, (modulus + r) * (1 + 8 * rounding::unit));
     all += r;
     first += size;
   }
-  return {std::max(0.0, (largest - 2 * raised(all, A.rows())) * (1 - 8 * rounding::unit)), upper};
+  // the union around the largest has two discs of each pair, which a path crosses once
+  return {std::max(0.0, (largest - 4 * raised(all, A.rows())) * (1 - 8 * rounding::unit)), upper};
 }
 
 }  // namespace

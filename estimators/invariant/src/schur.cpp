@@ -49,7 +49,7 @@ ClosedLoop closed_loop(MatrixIn A, MatrixIn L, MatrixIn C) {
     error = rounding::product_error(L, C) + 2 * rounding::unit * (A.cwiseAbs() + 2 * shown.cwiseAbs());
   }
   ClosedLoop known;
-  known.radius = radius_bounds(closed, error);
+  if (closed.allFinite() && error.allFinite()) known.radius = radius_bounds(closed, error);
   if (known.radius.upper < 1) {
     known.schur = Answer::yes;
   } else if (known.radius.lower > 1) {
