@@ -19,7 +19,10 @@ namespace {
 constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a coefficient is zero
 constexpr double unreliable =
     1e-5;  ///< a row cancelled to this share of its terms is dropped: what is left is too uncertain to prove anything
-constexpr double pivot_floor = 1e-9;  ///< pivots below this share of their row are not used
+constexpr double rescaling_room =
+    1e-12;  ///< of its terms: a bound that a factor is rescaled to, above what roundings of many steps add up to
+constexpr double exact_share = 1e-10;  ///< of its size: a coordinate moved by less counts as exact
+constexpr double pivot_floor = 1e-9;   ///< pivots below this share of their row are not used
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -45,7 +48,7 @@ class Elimination {
   }
 
   void exchange(MemoryExchange& memory) {
-    memory.swap(G_, A_, A_terms_, c_, b_, b_terms_, before_.rows, before_.state, free_, lower_, upper_, allowed_lower_);
+    memory.swap(G_, A_, A_terms_, c_, b_, b_terms_, before_.rows, before_.state, free_, lower_, upper_, room_, allowed_lower_);
     memory.swap(allowed_upper_, share_, binding_row_, in_row_, live_rows_, live_factors_);
     scores_.exchange(memory);
   }
@@ -124,10 +127,13 @@ class Elimination {
     }
   }
 
-  /// Bounds E_j of ξ_j over all feasible ξ, by two passes of interval propagation over the rows.
+  /// Bounds E_j of ξ_j over all feasible ξ, by two passes of interval propagation over the rows. What earlier roundings missed
+  /// may lie beyond [-1,1] and beyond the rows: rescaling makes a set as small as these bounds, an unstable plant lets it grow
+  /// again, and what was a last digit would be a wall.
   void tighten() {
-    lower_ = -Vector::Ones(factors());
-    upper_ = Vector::Ones(factors());
+    lower_ = Vector::Constant(factors(), -1 - rescaling_room);
+    upper_ = -lower_;
+    room_ = upper_.array() - 1;
     for (int pass = 0; pass < 2; ++pass) {
       for (Index i = 0; i < rows(); ++i) {
         if (in_row_[at(i)]) tighten_by_row(i);
@@ -135,20 +141,26 @@ class Elimination {
     }
   }
 
-  /// ξ = mid(E) + rad(E) ξ': exact, as E holds every feasible ξ.
+  /// ξ = mid(E) + rad(E) ξ': exact but for the room that E leaves, as it holds every feasible ξ.
   void rescale() {
+    Vector moved = Vector::Zero(c_.size());
     for (Index j = 0; j < factors(); ++j) {
       if (free_[j] == 0 || !(lower_[j] <= upper_[j])) continue;
       const double mid = (lower_[j] + upper_[j]) / 2, rad = (upper_[j] - lower_[j]) / 2;
-      if (mid == 0 && rad == 1) continue;
+      if (rad >= 1 - exact_share) continue;  // cut by nothing, or next to nothing
       c_ += mid * G_.col(j);
       rescaled_ = true;
       before_.state = before_.state.cwiseMax((G_.col(j).array() != 0).select(c_.cwiseAbs() + G_.col(j).cwiseAbs(), 0.0));
+      moved += room_[j] * G_.col(j).cwiseAbs();
       b_ -= mid * A_.col(j);
       b_terms_ = b_terms_.cwiseMax(std::abs(mid) * A_terms_.col(j));
       G_.col(j) *= rad;
       A_.col(j) *= rad;
       A_terms_.col(j) *= rad;
+    }
+    if (rescaled_) {
+      const Vector size = c_.cwiseAbs() + G_.cwiseAbs().rowwise().sum();
+      exact_ = exact_ && (moved.array() <= exact_share * size.array()).all();
     }
     drop_unreliable_rows();
   }
@@ -275,7 +287,9 @@ class Elimination {
       low += a > 0 ? a * lower_[j] : a * upper_[j];
       high += a > 0 ? a * upper_[j] : a * lower_[j];
     }
-    const double floor = pivot_floor * scale(i), rounding = noise * (A_terms_.row(i).sum() + b_terms_[i]);
+    const double floor = pivot_floor * scale(i);
+    const double terms = A_terms_.row(i).sum() + b_terms_[i] + before_.rows[i];
+    const double rounding = rescaling_room * terms;
     for (Index j = 0; j < factors(); ++j) {
       const double a = A_(i, j);
       if (free_[j] == 0 || std::abs(a) <= floor) continue;
@@ -288,6 +302,7 @@ class Elimination {
       if (!(new_lower <= new_upper)) continue;  // ∅ up to rounding: left to the question of emptiness
       low += a > 0 ? a * (new_lower - lower_[j]) : a * (new_upper - upper_[j]);
       high += a > 0 ? a * (new_upper - upper_[j]) : a * (new_lower - lower_[j]);
+      if (new_lower > lower_[j] || new_upper < upper_[j]) room_[j] = std::max(room_[j], rounding / std::abs(a));
       lower_[j] = new_lower;
       upper_[j] = new_upper;
     }
@@ -305,7 +320,7 @@ class Elimination {
   std::vector<EliminationStep> steps_;
   std::vector<Index> in_row_;  ///< 1, or 0 for rows that were eliminated or dropped
   Vector free_;                ///< 1, or 0 for factors that were eliminated
-  Vector lower_, upper_, allowed_lower_, allowed_upper_, share_, binding_row_;
+  Vector lower_, upper_, room_, allowed_lower_, allowed_upper_, share_, binding_row_;
   std::vector<Index> live_rows_, live_factors_;
   EliminationScores scores_;
   bool scored_ = false;
