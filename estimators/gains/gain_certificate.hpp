@@ -8,7 +8,8 @@ namespace cordon::estimators {
 /// What a gain L (n×n_y) is worth, whoever found it: a bound of the spectral radius and signs of A - L C̄, C̄ = mid(g) C, proven
 /// for the numbers that A, L and C̄ hold, and bounds of
 /// ‖(zI - (A - L C̄))⁻¹ [Eθ, Bw G_W, -L Dv G_V]‖∞ with `theta` as Eθ (n rows, or 0×0 for none) and the shapes G of zonotopes
-/// around W and V; no bounds where W or V has none. `objective` and what belongs to it are left to the designer.
+/// around W and V, the rounding of its products included; no bounds where W or V has none. `objective` and what belongs to it are
+/// left to the designer.
 GainCertificate certify(const Model& model, const Matrix& L, const Matrix& theta);
 
 /// C̄ = mid(g) C.

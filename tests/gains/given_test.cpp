@@ -83,6 +83,33 @@ TEST_CASE("a gain of another shape and one that does not stabilise are refused")
   CHECK_THROWS_AS(plugins.registry.make_gain("given", {}), InputError);
 }
 
+TEST_CASE("where A - L C cancels, the norm is that of the numbers as they are written") {
+  const Plugins plugins;
+  Model made = model();
+  LinearModel& m = made.linear;
+  m.A = Matrix{{34899.71432053099}};
+  m.B = Matrix(1, 0);
+  m.Bw = Matrix{{1}};
+  m.C = Matrix{{2.7126114260768057}};
+  m.Dv = Matrix{{1}};
+  made.X0 = make_box(cube(1, 1));
+  made.W = make_box(cube(1, .01));
+  made.V = make_box(cube(1, .1));
+  const auto certificate = [&](double L) {
+    return plugins.registry.make_gain("given", matrix(Matrix{{L}}))->design(made).gain.certificate;
+  };
+  const double exact = 45352157.0321;  // √(.01² + (.1 L)²) / (1 - |A - L C|) in rational arithmetic; of doubles .9 less
+  CHECK(certificate(12865.356981619727).norm_lower <= exact);
+  CHECK(certificate(12865.356981619727).norm_upper >= exact);
+  CHECK(certificate(12865.356981619727).norm_upper <= exact * (1 + 1e-5));
+
+  m.A = Matrix{{1}};
+  m.C = Matrix{{1e-10}};
+  CHECK(certificate(1e-10).spectral_radius == 1);  // 1 - 1e-20, above all doubles below 1
+  CHECK(certificate(1e-10).norm_lower == 0);
+  CHECK(std::isinf(certificate(1e-10).norm_upper));
+}
+
 TEST_CASE("a loop far from normal: what doubles call stable and is not, and the other way round") {
   // T S T⁻¹ with S¹² = last I, T a product of integer steps
   const auto loop = [](double last) {

@@ -83,6 +83,19 @@ TEST_CASE("an unstable system has no finite norm, also if the input does not rea
   CHECK(std::isinf(h_infinity_norm(Matrix{{.5, 0}, {0, 2}}, Matrix{{1}, {0}}).lower));
 }
 
+TEST_CASE("bounds hold for all matrices within the errors, and are attained by one") {
+  const NormBounds norm = h_infinity_norm(Matrix{{.5}}, Matrix{{1}}, .1, .2);
+  CHECK(norm.upper == doctest::Approx(1.2 / (1 - .6)).epsilon(.01));
+  CHECK(norm.lower == doctest::Approx(.8 / (1 - .4)).epsilon(1e-8));
+  const NormBounds nothing = h_infinity_norm(Matrix{{.5}}, Matrix{{1}}, .5, 0);
+  CHECK(std::isinf(nothing.upper));
+  CHECK(nothing.lower == doctest::Approx(1).epsilon(1e-8));
+  CHECK(h_infinity_norm(Matrix{{.5}}, Matrix{{0}}, 0, .25).upper >= .5);
+  CHECK(h_infinity_norm(Matrix{{.5}}, Matrix{{0}}, 0, .25).upper <= .55);
+  CHECK(h_infinity_norm(Matrix{{1}}, Matrix{{1}}, 1e-16).lower == 0);  // 1 - 1e-16 may be meant
+  CHECK(std::isinf(h_infinity_norm(Matrix{{1}}, Matrix{{1}}, 1e-16).upper));
+}
+
 TEST_CASE("shapes that do not fit and numbers that are none are refused") {
   CHECK_THROWS_AS(h_infinity_norm(Matrix{{.5, 0}}, Matrix{{1}}), Error);
   CHECK_THROWS_AS(h_infinity_norm(Matrix{{.5}}, Matrix{{1}, {1}}), Error);

@@ -375,6 +375,18 @@ TEST_CASE("bounds of the radius are tight where the matrix is not far from norma
   CHECK_THROWS_AS(radius_bounds(Matrix{{1}}, Matrix(2, 2)), Error);
 }
 
+TEST_CASE("no eigenvalue is named that there is not") {
+  Matrix companion = Matrix::Zero(12, 12);  // of (z - 1)¹²; doubles find 1.09
+  const double binomial[] = {1, 12, 66, 220, 495, 792, 924, 792, 495, 220, 66, 12};
+  for (Index k = 0; k < 12; ++k) {
+    if (k < 11) companion(k, k + 1) = 1;
+    companion(11, k) = k % 2 == 0 ? -binomial[k] : binomial[k];
+  }
+  const std::string text = message([&] { require_schur(companion, "A"); }, Errc::invalid);
+  CHECK(has(text, "A is not Schur: an eigenvalue is proven not to lie inside the unit circle (doubles find 1.0"));
+  CHECK(has(message([] { require_schur(Matrix{{1.25, 3}, {0, .5}}, "A"); }, Errc::invalid), "it has the eigenvalue 1.25"));
+}
+
 TEST_CASE("signs and stability of A - L C are those of the numbers as they are written") {
   // .3 - .1 · 3 = -2.8e-17 in exact arithmetic; as computed -5.6e-17, and 0 for the second
   const ClosedLoop below = closed_loop(Matrix{{.3}}, Matrix{{.1}}, Matrix{{3}});
@@ -386,6 +398,7 @@ TEST_CASE("signs and stability of A - L C are those of the numbers as they are w
   const double e = std::ldexp(1., -30);
   CHECK(closed_loop(Matrix{{1}}, Matrix{{e}}, Matrix{{-e}}).schur == Answer::no);
   CHECK(closed_loop(Matrix{{1}}, Matrix{{e}}, Matrix{{e}}).schur == Answer::yes);
+  CHECK(closed_loop(Matrix{{1}}, Matrix{{e}}, Matrix{{e}}).radius.upper == 1);  // no double is between
   CHECK(is_schur(Matrix{{1}}) == Answer::no);
   CHECK(is_schur(Matrix{{0, 1}, {-1, 0}}) == Answer::no);
   CHECK(is_schur(Matrix::Identity(41, 41)) == Answer::unknown);

@@ -16,6 +16,8 @@ namespace {
 
 using linalg::product;
 
+constexpr double shown_digits = 1e-6;  ///< to which an eigenvalue is right that is shown
+
 std::string number(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", x);
@@ -43,13 +45,14 @@ double spectral_radius(MatrixIn A) { return std::abs(dominant_eigenvalue(A)); }
 
 ClosedLoop closed_loop(MatrixIn A, MatrixIn L, MatrixIn C) {
   check(A);
-  const Matrix shown = product(L, C), closed = A - shown;
-  Matrix error = Matrix::Zero(A.rows(), A.rows());
-  if (L.cols() > 0) {
-    error = rounding::product_error(L, C) + 2 * rounding::unit * (A.cwiseAbs() + 2 * shown.cwiseAbs());
-  }
+  const Matrix shown = product(L, C);
   ClosedLoop known;
-  if (closed.allFinite() && error.allFinite()) known.radius = radius_bounds(closed, error);
+  known.value = A - shown;
+  known.error = Matrix::Zero(A.rows(), A.rows());
+  if (L.cols() > 0) {
+    known.error = rounding::product_error(L, C) + 2 * rounding::unit * (A.cwiseAbs() + 2 * shown.cwiseAbs());
+  }
+  if (known.value.allFinite() && known.error.allFinite()) known.radius = radius_bounds(known.value, known.error);
   if (known.radius.upper < 1) {
     known.schur = Answer::yes;
   } else if (known.radius.lower > 1) {
@@ -57,7 +60,7 @@ ClosedLoop closed_loop(MatrixIn A, MatrixIn L, MatrixIn C) {
   } else {
     try {
       known.schur = exact::is_schur(A, L, C) ? Answer::yes : Answer::no;
-      if (known.schur == Answer::yes) known.radius.upper = std::nextafter(1.0, 0.0);
+      if (known.schur == Answer::yes) known.radius.upper = 1;
       if (known.schur == Answer::no) known.radius.lower = 1;
     } catch (const Error& failure) {
       if (failure.code() != Errc::unsupported) throw;
@@ -65,7 +68,7 @@ ClosedLoop closed_loop(MatrixIn A, MatrixIn L, MatrixIn C) {
   }
   if (exact::is_nonnegative(A, L, C)) {
     known.nonnegative = Answer::yes;
-  } else if (!((closed + error).array() >= 0).all()) {
+  } else if (!((known.value + known.error).array() >= 0).all()) {
     known.nonnegative = Answer::no;
   }
   return known;
@@ -79,8 +82,11 @@ std::string not_schur(Answer schur, MatrixIn A) {
   if (value.imag() != 0) text += " + " + number(value.imag()) + "i";
   text += " (modulus " + number(std::abs(value)) + ")";
   if (schur != Answer::no) return "could not be proven Schur: its largest eigenvalue comes out as " + text;
-  if (std::abs(value) >= 1) return "is not Schur: it has the eigenvalue " + text;
-  return "is not Schur: in rational arithmetic an eigenvalue is not inside the unit circle, though doubles find " + text;
+  const RadiusBounds radius = radius_bounds(A);
+  const bool agrees = std::abs(value) >= 1 && std::abs(value) <= radius.upper * (1 + shown_digits) &&
+                      std::abs(value) >= radius.lower * (1 - shown_digits);
+  if (agrees && radius.upper <= radius.lower * (1 + shown_digits)) return "is not Schur: it has the eigenvalue " + text;
+  return "is not Schur: an eigenvalue is proven not to lie inside the unit circle (doubles find " + text + ")";
 }
 
 void require_schur(MatrixIn A, const std::string& what) {

@@ -28,9 +28,10 @@ RadiusBounds radius_bounds(MatrixIn A, MatrixIn error = Matrix());
 /// A closed loop A - L C (C p×n, L n×p) for the numbers that the three hold, no rounding in between.
 struct ClosedLoop {
   Answer schur = Answer::unknown;  ///< ρ < 1, proven; `unknown` only beyond 40 states, or at the limits of doubles
-  RadiusBounds radius;             ///< consistent with `schur`
+  RadiusBounds radius;             ///< upper ≤ 1 if Schur (1 if no more is known), lower ≥ 1 if not
   /// A - L C ≥ 0 in every entry; `unknown`: not so, but no entry is below zero by more than its own rounding
   Answer nonnegative = Answer::unknown;
+  Matrix value, error;  ///< A - L C as computed, and |A - L C - value| ≤ error; not finite where doubles end
 };
 
 /// By bounds of the radius where they decide, else in rational arithmetic [Jury1964]: milliseconds for 10 states, seconds for 30.
@@ -44,7 +45,8 @@ Answer is_schur(MatrixIn A);
 /// 1.1)", or whose radius is not known, with Errc::unsupported. n = 0 is Schur. Other errors as above.
 void require_schur(MatrixIn A, const std::string& what);
 
-/// What is wrong with a matrix that is not Schur, or not proven so: "is not Schur: …". `A` gives the numbers to show.
+/// What is wrong with a matrix that is not Schur, or not proven so: "is not Schur: …". `A` gives the numbers to show; an
+/// eigenvalue is named as one only where its modulus agrees with bounds that are proven.
 std::string not_schur(Answer schur, MatrixIn A);
 
 }  // namespace cordon::invariant
