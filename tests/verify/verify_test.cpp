@@ -249,6 +249,15 @@ TEST_CASE("damaged files are refused with their place") {
     write(copy / "sets.jsonl", text.substr(first, second - first) + text.substr(0, first) + text.substr(second));
   }),
           "line 1");
+  refuses(run().verify([](const fs::path& copy) {  // a step that is in no file any more
+    Json results = Json::parse(bytes_of(copy / "results.json"));
+    results["pipelines"][0]["steps"].erase(1);
+    write(copy / "results.json", results.dump());
+    const std::string text = bytes_of(copy / "sets.jsonl");
+    const std::size_t first = text.find('\n') + 1, second = text.find('\n', first) + 1;
+    write(copy / "sets.jsonl", text.substr(0, first) + text.substr(second));
+  }),
+          "has no step k = 1");
   refuses(run().with_text("data.csv", "y_1", "w_1"), "y_1");
   refuses(run().with_text("data.csv", "\n1,", "\n7,"), "k = 1");
   refuses(run().verify([](const fs::path& copy) {

@@ -234,6 +234,9 @@ class Verification {
       while (!sample || sample->k < step.k) {
         std::optional<Record> record = data->next();
         if (!record) refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
+        if (record->sample.k < step.k) {
+          refuse(0, fmt::format("has no step k = {} of pipeline \"{}\", which data.csv has", record->sample.k, pipeline.name));
+        }
         before = std::move(sample);
         sample = std::move(record->sample);
         F = feasible.at(read++, *sample);
