@@ -29,12 +29,6 @@ Enclosure unit_box(const SetBackend& backend, std::size_t n) {
   return backend.box({-ones, ones});
 }
 
-/// The largest magnitudes of the points of X.
-Vector magnitudes(const Enclosure& X) {
-  const Box hull = X->interval_hull();
-  return hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs());
-}
-
 double upwards(double value, Index terms) { return rounding::up(value * (1 + rounding::gamma(2 * terms + 4))); }
 
 }  // namespace

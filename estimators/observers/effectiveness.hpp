@@ -32,6 +32,8 @@ class Effectiveness {
   void input(MatrixIn B, VectorIn u, Vector& image) const;  ///< the same into a vector of that size
   /// |B| diag(f̂) |u|: the magnitudes of the terms of `input`.
   Vector input_terms(MatrixIn B, VectorIn u) const;
+  /// |f u| at most.
+  Vector largest_input(VectorIn u) const { return (f_ + f_radius_).cwiseProduct(u.cwiseAbs()); }
   /// Are the products B u and D u left to the backend, as images of the point u? With outward rounding it encloses them, which
   /// the vector `input` does not. Of actuators with known effectiveness only.
   bool inputs_enter_as_sets() const;

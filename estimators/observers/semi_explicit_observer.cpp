@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/semi_explicit_observer.hpp"
 
+#include <cmath>
 #include <optional>
+#include <vector>
 
 #include <boost/container/small_vector.hpp>
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/rounding.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
 #include "observers/interval_spread.hpp"
@@ -17,11 +20,20 @@ namespace cordon::estimators {
 
 namespace {
 
+/// Operations that round outward are taken at their word, and need numbers that were not rounded before them. Where those of
+/// z = T⁻¹ x were and ž has no bound that an error could be a share of, the states keep their coordinates.
+StaticRows rows_for(const LinearModel& model, const SetBackend& backend, const Params& params) {
+  StaticRows rows(model);
+  const bool outward = backend.info().rounding == Rounding::outward;
+  const bool keep_states = outward && !rows.is_exact && backend.info().unbounded && !params.has("admissible_set");
+  return keep_states ? StaticRows(model, true) : rows;
+}
+
 class SemiExplicitObserver final : public Observer {
  public:
   SemiExplicitObserver(const ObserverContext& context, const Params& params)
       : Observer(context.model, context.backend),
-        transformed_(model().linear),
+        transformed_(rows_for(model().linear, backend(), params)),
         same_coordinates_(transformed_.T.isIdentity(0)),
         budget_(budget_from(params)),
         static_at_start_(params.flag("static_at_start")),
@@ -32,32 +44,36 @@ class SemiExplicitObserver final : public Observer {
         measured_(linalg::product(model().linear.C, transformed_.T)),
         inputs_enter_as_sets_(effectiveness_.inputs_enter_as_sets() && model().linear.inputs() > 0) {
     const Index n = model().linear.states(), free = transformed_.static_rows();
+    keeps_states_ = transformed_.E.rows() > 0;
+    rows_come_last_ = keeps_states_ && !transformed_.static_exact;
+    is_rounded_ = backend().info().rounding == Rounding::outward && !transformed_.is_exact;
     // Without the static rows of k = 0 every estimate is that of a larger initial set.
     const bool whole = transformed_.static_rows() == 0 || static_at_start_;
     recursion_ = whole && !transformed_.share_disturbances(model().W) ? Tightness::exact : Tightness::outer;
     recursion_ = meet(recursion_, effectiveness_.recursion({&transformed_.B, &transformed_.static_B, &model().linear.D}));
-    stacked_B_ = Matrix::Zero(n, transformed_.B.cols());
-    stacked_B_.topRows(transformed_.rank()) = transformed_.B;
-    stacked_A_ = Matrix::Zero(n, n);
-    stacked_A_.topRows(transformed_.rank()) = transformed_.A;
-    stacked_Bw_ = Matrix::Zero(n, transformed_.Bw.cols());
-    stacked_Bw_.topRows(transformed_.rank()) = transformed_.Bw;
+    stacked_A_ = stacked(transformed_.A);
+    stacked_B_ = stacked(transformed_.B);
+    stacked_Bw_ = stacked(transformed_.Bw);
+    stacked_rows_ = stacked(transformed_.rows);
     disturbance_ = linalg::product(stacked_Bw_, model().W.c);
     disturbance_widths_ = half_widths(model().W, stacked_Bw_);
     static_disturbance_ = linalg::product(transformed_.static_Bw, model().W.c);
     static_widths_ = half_widths(model().W, transformed_.static_Bw);
-    stacked_rows_ = Matrix::Zero(n, n);
-    stacked_rows_.topRows(transformed_.rank()) = transformed_.rows;
-    // operations that round outward are taken at their word, and these coordinates are rounded before them
-    const bool is_rounded = backend().info().rounding == Rounding::outward && !transformed_.is_exact;
-    if (model().linear.is_uncertain() || is_rounded) recursion_ = Tightness::outer;
+    if (model().linear.is_uncertain() || is_rounded_) recursion_ = Tightness::outer;
     if (params.has("admissible_set")) {
       recursion_ = Tightness::outer;  // of the set only the part that E does not determine is used
       admissible_ = backend().import(params.set_form("admissible_set"));
       const Matrix lower = transformed_.T_inverse.bottomRows(free);
       free_ = backend().affine_map(admissible_, lower, Vector::Zero(free));
     } else {
-      free_ = backend().space(free);
+      free_ = backend().space(keeps_states_ ? n : free);
+    }
+    if (is_rounded_) largest_w_ = magnitudes(W_);
+    if (is_rounded_ && !keeps_states_) {
+      const Matrix lower = transformed_.T_inverse.bottomRows(free);
+      const Matrix phi = linalg::product(transformed_.T_inverse.topRows(transformed_.rank()), lower.transpose());
+      dynamic_rows_ = stacked(Matrix::Identity(transformed_.rank(), transformed_.rank()));
+      free_rounding_ = interval_spread(rounding_radius(phi), magnitudes(free_), phi.rows());
     }
   }
 
@@ -69,8 +85,8 @@ class SemiExplicitObserver final : public Observer {
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
     const Enclosure start = X0 ? *X0 : backend().import(X0_);
     Z_ = to_z(start);
-    if (static_at_start_) Z_ = with_static_rows(Z_, first.u);
-    return finish(Z_, first);
+    if (static_at_start_ && !rows_come_last_) Z_ = with_static_rows(Z_, first.u);
+    return finish(Z_, first, static_at_start_);
   }
 
   Enclosure do_step(const Sample& before, const Sample& now) override {
@@ -78,7 +94,7 @@ class SemiExplicitObserver final : public Observer {
       const Matrix spread = effectiveness_.input_spread(stacked_B_, before.u);
       boost::container::small_vector<Term, 4> terms;  // without memory of its own
       terms.push_back({stacked_Bw_, W_});
-      if (transformed_.static_rows() > 0) terms.push_back({transformed_.free_part, free_});
+      if (transformed_.static_rows() > 0 && !keeps_states_) terms.push_back({transformed_.free_part, free_});
       if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
       const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(to_x(Z_), before.u) : Enclosure{};
       if (effectiveness_.has_open_states()) terms.push_back({stacked_rows_, open});
@@ -89,12 +105,49 @@ class SemiExplicitObserver final : public Observer {
       const Vector sizes = effectiveness_.input_terms(stacked_B_, before.u) + disturbance_.cwiseAbs();
       const RoundingRoom room(backend(), shift + disturbance_, sizes, disturbance_widths_);
       if (room.is_needed()) terms.push_back(room.term());
-      return with_static_rows(backend().predict(Z_, {stacked_A_, shift, {terms.data(), terms.size()}}), now.u);
+      const Enclosure rounding = is_rounded_ && !keeps_states_ ? dynamic_rounding(before.u, open) : Enclosure{};
+      if (rounding.set) terms.push_back({dynamic_rows_, rounding});
+      const Enclosure next = solved(backend().predict(Z_, {stacked_A_, shift, {terms.data(), terms.size()}}));
+      return rows_come_last_ ? next : with_static_rows(next, now.u);
     });
-    return finish(predicted, now);
+    return finish(predicted, now, true);
   }
 
   void do_replace(const Enclosure& X) override { Z_ = to_z(X); }
+
+  /// M in the dynamic rows, above zeros for ž.
+  Matrix stacked(const Matrix& M) const {
+    if (keeps_states_) return M;
+    Matrix rows = Matrix::Zero(model().linear.states(), M.cols());
+    rows.topRows(M.rows()) = M;
+    return rows;
+  }
+
+  /// {x : Ẽ x ∈ F}, where states keep their coordinates.
+  Enclosure solved(const Enclosure& F) const {
+    if (!keeps_states_) return F;
+    const Index rows = transformed_.rank();
+    return backend().correct(free_, {transformed_.E, Vector::Zero(rows), {-Matrix::Identity(rows, rows), F}});
+  }
+
+  /// What the rounding of matrices can add to M_A z + M_B u + M_w w + M_o o.
+  Vector rounding_of(const Matrix& M_A, const Vector& z, const Matrix& M_B, VectorIn u, const Matrix& M_w, const Matrix& M_o,
+                     const Enclosure& o) const {
+    const Index rows = M_A.rows();
+    Vector sum = interval_spread(rounding_radius(M_A), z, rows) +
+                 interval_spread(rounding_radius(M_B), effectiveness_.largest_input(u), rows) +
+                 interval_spread(rounding_radius(M_w), largest_w_, rows);
+    if (o.set) sum += interval_spread(rounding_radius(M_o), magnitudes(o), rows);
+    return sum * (1 + 8 * rounding::unit);
+  }
+
+  /// Of z̃, which holds ž times the error of T⁻¹ besides.
+  Enclosure dynamic_rounding(VectorIn u, const Enclosure& open) const {
+    const StaticRows& form = transformed_;
+    const Vector rows = rounding_of(form.A, magnitudes(Z_), form.B, u, form.Bw, form.rows, open);
+    const Vector widths = (rows + free_rounding_) * (1 + 2 * rounding::unit);
+    return backend().box({-widths, widths});
+  }
 
   Enclosure to_z(const Enclosure& X) const {
     return same_coordinates_ ? X : backend().affine_map(X, transformed_.T_inverse, Vector::Zero(X->dim()));
@@ -111,28 +164,53 @@ class SemiExplicitObserver final : public Observer {
     Enclosure noise = inputs_enter_as_sets_ ? backend().product(W_, backend().point(u)) : static_W_;
     Matrix entries(rows, noise->dim());
     entries << form.static_Bw, inputs_enter_as_sets_ ? form.static_B : effectiveness_.input_spread(form.static_B, u);
+    Enclosure open;
     if (effectiveness_.has_open_states()) {
-      noise = backend().product(noise, effectiveness_.open_states(to_x(Z), u));
+      open = effectiveness_.open_states(to_x(Z), u);
+      noise = backend().product(noise, open);
       entries.conservativeResize(Eigen::NoChange, noise->dim());
       entries.rightCols(form.static_rows_map.cols()) = form.static_rows_map;
     }
     const Vector f = inputs_enter_as_sets_ ? Vector(Vector::Zero(rows)) : Vector(-effectiveness_.input(form.static_B, u));
+    if (is_rounded_ && !form.static_exact) return with_rounded_rows(Z, f, entries, noise, u, open);
     const Vector sizes = effectiveness_.input_terms(form.static_B, u) + static_disturbance_.cwiseAbs();
     const RoundingRoom room(backend(), f - static_disturbance_, sizes, static_widths_);
     return room.correct(Z, {form.static_A, f, {entries, noise}});
   }
 
-  Enclosure finish(const Enclosure& predicted, const Sample& now) {
+  /// The same where the rows were rounded: each gets room for that. One that holds a state without a bound says nothing.
+  Enclosure with_rounded_rows(const Enclosure& Z, const Vector& f, const Matrix& entries, const Enclosure& noise, VectorIn u,
+                              const Enclosure& open) const {
+    const StaticRows& form = transformed_;
+    const Vector widths = rounding_of(form.static_A, magnitudes(Z), form.static_B, u, form.static_Bw, form.static_rows_map, open);
+    std::vector<Index> used;
+    for (Index i = 0; i < widths.size(); ++i) {
+      if (std::isfinite(widths[i])) used.push_back(i);
+    }
+    if (used.empty()) return Z;
+    const Vector room = widths(used);
+    Matrix columns(room.size(), entries.cols() + room.size());
+    columns << entries(used, Eigen::all), Matrix::Identity(room.size(), room.size());
+    const Enclosure all = backend().product(noise, backend().box({-room, room}));
+    return backend().correct(Z, {form.static_A(used, Eigen::all), f(used), {columns, all}});
+  }
+
+  Enclosure finish(const Enclosure& predicted, const Sample& now, bool has_static_rows) {
     const Enclosure corrected = timed(Phase::correct, [&] {
-      if (!has_spread(model().linear.C_radius)) return effectiveness_.correct(predicted, measured_, now);
-      return to_z(effectiveness_.correct(to_x(predicted), model().linear.C, now));
+      const bool as_it_stands = has_spread(model().linear.C_radius) || is_rounded_;  // C T is rounded
+      if (!as_it_stands) return effectiveness_.correct(predicted, measured_, now);
+      const Enclosure measured = to_z(effectiveness_.correct(to_x(predicted), model().linear.C, now));
+      return has_static_rows && rows_come_last_ ? with_static_rows(measured, now.u) : measured;
     });
     Z_ = timed(Phase::reduce, [&] { return backend().reduce(corrected, budget_); });
     return to_x(Z_);
   }
 
   StaticRows transformed_;
-  bool same_coordinates_;  ///< z = x
+  bool same_coordinates_;        ///< z = x
+  bool keeps_states_ = false;    ///< and dynamic rows stand as Ẽ x
+  bool is_rounded_ = false;      ///< numbers were rounded, and operations round outward
+  bool rows_come_last_ = false;  ///< static rows that were rounded need states that the outputs have bounded
   Budget budget_;
   bool static_at_start_;
   LineForm X0_;
@@ -141,9 +219,10 @@ class SemiExplicitObserver final : public Observer {
   Enclosure static_W_;                         ///< W × factors of inputs
   Vector disturbance_, disturbance_widths_;    ///< center and half widths of Bw W, dynamic rows
   Vector static_disturbance_, static_widths_;  ///< the same, static rows
+  Vector largest_w_, free_rounding_;           ///< magnitudes of W; what the rounding of T⁻¹ adds to z̃
   Matrix measured_;                            ///< C T
   bool inputs_enter_as_sets_;                  ///< B u and B̌ u are left to the backend
-  Matrix stacked_A_, stacked_B_, stacked_Bw_, stacked_rows_;
+  Matrix stacked_A_, stacked_B_, stacked_Bw_, stacked_rows_, dynamic_rows_;
   Tightness recursion_ = Tightness::exact;
   Enclosure admissible_, free_, Z_;
 };

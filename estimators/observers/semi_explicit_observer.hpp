@@ -8,8 +8,13 @@
 // recursion an outer one, and the estimate says so.
 //
 // Ranges of effectiveness: effectiveness.hpp. An input with a range that enters dynamic rows, static rows or outputs alike has
-// its factor taken once for each, which makes the recursion an outer one. So do coordinates that are rounded,
-// where the backend rounds outward and its claims are taken at their word.
+// its factor taken once for each, which makes the recursion an outer one.
+//
+// Coordinates that are rounded, where the backend rounds outward and is taken at its word: each number M_ij of the form is known
+// up to u |M_ij|, which makes the recursion an outer one. With an admissible set, equations get boxes u |M| |z| of room, the
+// dynamic ones u |Φ| |ž| besides, and outputs are taken as C x. Without, ž has no bound: states keep their coordinates, X_k is
+// {x : Ẽ x ∈ Ã X_{k-1} ⊕ …} with rows of the model, and static rows that were rounded come after the outputs; one that still
+// holds a state without a bound says nothing.
 //
 // Interval matrices A and B add a box to every equation, of the size that effectiveness.hpp tells for the states before: to the
 // dynamic rows that of the last estimate, to the static rows that of the predicted set. A static row that holds a state without a

@@ -32,9 +32,7 @@ constexpr double outward_line_tolerance = 1e-12;
 constexpr double underflow = 1e-300;      ///< of bounds that are 0 but for the smallest numbers there are
 constexpr double ill_conditioned = 1e-6;  ///< rounding moves an inequality by more than this share of it
 constexpr double row_tolerance = 1e-13;   ///< of a nominal constraint's terms
-/// Of an outward constraint's terms: operations enclose, the matrices that an observer computes for them are rounded.
-constexpr double outward_row_tolerance = 1e-14;
-constexpr double almost_all = 0.999;  ///< of a margin: what is left covers the rounding of a vertex or a facet
+constexpr double almost_all = 0.999;      ///< of a margin: what is left covers the rounding of a vertex or a facet
 
 std::size_t index(Index i) { return static_cast<std::size_t>(i); }
 
@@ -58,9 +56,6 @@ Vector units_of(const Matrix& lines, const Vector& d) {
   }
   return units;
 }
-
-/// |b| + |A| 1, what the roundings of rows are shares of.
-Vector row_terms(const LineForm& X) { return X.b.cwiseAbs() + X.A.cwiseAbs().rowwise().sum(); }
 
 /// Is nothing left of a set but for the rounding of its rows? By how much that moves it cannot be told.
 bool empty_by_rounding(const LineForm& strict, const LineForm& relaxed) {
@@ -88,8 +83,11 @@ StepCheck::StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding 
   }
   margin_ = margin;
   claim_margin_ = Vector::Zero(size_.size());
-  row_margin_ = (nominal_ ? row_tolerance : outward_row_tolerance) * row_terms(row.set);
-  if (nominal_) margin_ = claim_margin_ = margin.cwiseMax(nominal_tolerance * size_);
+  row_margin_ = Vector::Zero(row.set.constraints());
+  if (nominal_) {
+    margin_ = claim_margin_ = margin.cwiseMax(nominal_tolerance * size_);
+    row_margin_ = row_tolerance * (row.set.b.cwiseAbs() + row.set.A.cwiseAbs().rowwise().sum());
+  }
   widened_ = minkowski_sum(row.set, make_box({-almost_all * margin_, almost_all * margin_}));
 }
 
@@ -120,7 +118,7 @@ void StepCheck::emptiness_proof() {
     }
   } else if (row_.exact_exchange && !proves_not_empty(row_.set, row_.proof)) {
     // rows of flat sets contradict each other in the last digits, which is not taken for emptiness with nominal rounding
-    const bool may_be_rounding = nominal_ && row_.proof.kind == Certificate::Kind::point && (row_margin_.array() > 0).any();
+    const bool may_be_rounding = row_.proof.kind == Certificate::Kind::point && (row_margin_.array() > 0).any();
     if (may_be_rounding) return emptiness_without_proof();
     return violated("the estimate is called non-empty, but the stored proof does not hold in rational arithmetic", true);
   }
@@ -135,8 +133,7 @@ void StepCheck::emptiness_without_proof() {
     rows.M.resize(0, rows.lines());
     rows.G.resize(0, rows.generators());
     rows.c.resize(0);
-    const Vector slack = nominal_ ? row_margin_ : Vector::Zero(row_margin_.size());
-    const bool empty = called_empty ? exact::is_empty(rows) == Answer::yes : !exact::contains(rows, {}, Vector(), slack);
+    const bool empty = called_empty ? exact::is_empty(rows) == Answer::yes : !exact::contains(rows, {}, Vector(), row_margin_);
     if (empty == called_empty && (empty || row_.exact_exchange)) {
       ++proofs_;
       return;
