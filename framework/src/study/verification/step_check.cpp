@@ -62,6 +62,15 @@ bool empty_by_rounding(const LineForm& strict, const LineForm& relaxed) {
   return exact::is_empty(strict) == Answer::yes && is_empty(relaxed) != Answer::yes;
 }
 
+bool is_proven_empty(const LineForm& X) {
+  try {
+    return exact::is_empty(X) == Answer::yes;
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported) throw;
+    return false;
+  }
+}
+
 }  // namespace
 
 std::string text(VectorIn x) {
@@ -352,7 +361,8 @@ void StepCheck::against(const Polytope& F, const Successors& successors) {
   const std::int64_t before = undecided_;
   if (F.is_empty()) {
     // data are rounded: with nominal operations as well, there is nothing to compare with
-    if (claim_margin_.isZero(0))
+    exact_holds_ = claim_margin_.isZero(0) && is_proven_empty(row_.set);
+    if (claim_margin_.isZero(0) && !exact_holds_)
       open("the estimate is claimed exact and is not called empty, but no state is consistent with model and data");
     return;
   }
