@@ -150,8 +150,8 @@ TEST_CASE("nor of one that starts nobody knows where") {
 // set that shrinks from 1e-4 to 1e-15; states of 1e15 whose sets are of size 1; entries of a pseudo-inverse without a digit;
 // factors rescaled to bounds that held but for rounding.
 TEST_CASE("nor of those that once were refuted, or called defective") {
-  const Counts count =
-      ran_and_verified(cordon::campaigns::Start::bounded, {227, 1311, 1350, 1829, 1831, 10244, 10860, 10961, 11499, 11721, 50376});
+  const Counts count = ran_and_verified(cordon::campaigns::Start::bounded,
+                                        {227, 1311, 1350, 1829, 1831, 10244, 10860, 10961, 11499, 11721, 50376});
   CHECK(count.false_statements == 0);
   CHECK(count.verified > 0);
 }
