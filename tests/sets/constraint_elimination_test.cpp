@@ -108,3 +108,17 @@ TEST_CASE("a factor is forgotten without loss only if one row bounds it by itsel
   X.b = Vector{{-1.0}};
   CHECK_FALSE(sets::eliminate_constraints(X, 0).exact);
 }
+
+TEST_CASE("a set is not called exact where only rounding leaves it a line") {
+  LineForm X{Matrix::Identity(2, 2), Matrix::Zero(2, 1), Vector::Zero(2), Matrix(2, 2), Matrix(2, 1), Vector::Zero(2)};
+  X.S << 1.5500000000000002e-06, 0.18, 1550, 179999999.99999997;  // proportional but for the last digits
+  X.A << 0, 1000;
+  const sets::Reduced bounded = sets::reduce(X, 10, 10, {});
+  CHECK(bounded.set.lines() == 1);
+  CHECK_FALSE(bounded.exact);
+
+  X.S.row(1) = 0x1p40 * X.S.row(0);
+  const sets::Reduced unbounded = sets::reduce(X, 10, 10, {});
+  CHECK(unbounded.set.lines() == 1);
+  CHECK(unbounded.exact);
+}

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "exact_rank.hpp"
+
 namespace cordon {
 
 namespace {
@@ -242,6 +244,13 @@ Vector state_terms(const Tableau& tableau, Index n) {
   return tableau.magnitude.bottomRightCorner(n, tableau.width - tableau.lines).rowwise().sum();
 }
 
+/// Whether S has more independent rows than pivots were found: what cancelled to noise was there, and held lines.
+bool rank_was_lost(const LineForm& X, const Pivots& pivots) {
+  const auto found = static_cast<Index>(pivots.size());
+  if (found == X.lines() || found == (X.S.array() != 0).rowwise().any().count()) return false;
+  return rank_modulo_prime(X.S) > found;
+}
+
 }  // namespace
 
 LineForm eliminate_lines(const LineForm& X) { return solve_for_lines(X).set; }
@@ -252,7 +261,7 @@ LinesSolved solve_for_lines(const LineForm& X) {
   const Pivots pivots = eliminate(tableau);
   std::vector<Index> kept;
   LineForm set = remainder(tableau, X, pivots, kept);
-  bool is_whole = true;
+  bool is_whole = !rank_was_lost(X, pivots);
   for (Index i = 0; i < tableau.rows; ++i)
     is_whole = is_whole && (tableau.used[static_cast<std::size_t>(i)] || !tableau.holds_lines(i));
   return {std::move(set), largest(tableau, kept), state_terms(tableau, X.dim()), is_whole};

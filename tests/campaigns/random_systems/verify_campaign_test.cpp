@@ -155,3 +155,10 @@ TEST_CASE("nor of those that once were refuted, or called defective") {
   CHECK(count.false_statements == 0);
   CHECK(count.verified > 0);
 }
+
+// Two outputs whose rows are proportional but for their last digit: they bound a direction, at 3e14.
+TEST_CASE("nor of those that started nobody knew where") {
+  const Counts count = ran_and_verified(cordon::campaigns::Start::unknown, {62101});
+  CHECK(count.false_statements == 0);
+  CHECK(count.verified > 0);
+}

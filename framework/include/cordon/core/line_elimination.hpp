@@ -20,7 +20,7 @@ struct LinesSolved {
   LineForm set;
   Vector row_magnitude;    ///< of every row of `set`, the largest over its entries
   Vector state_magnitude;  ///< of every coordinate, summed over its entries
-  bool is_whole = true;    ///< no row with lines was dropped
+  bool is_whole = true;    ///< no row with lines was dropped, and none is left without them by rounding only
 };
 LinesSolved solve_for_lines(const LineForm& X);
 
