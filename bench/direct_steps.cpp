@@ -33,7 +33,7 @@ class DirectObserver {
     const sets::Summand summands[] = {{dynamic_Bw_, m_.W}, {free_part_, free_}};
     Vector f = linalg::product(m_.linear.B, before.u);
     f[2] = 0;
-    const LineForm open = sets::affine_sum(X_, dynamic_A_, f, summands);
+    const LineForm open = sets::affine_sum(X_, dynamic_A_, f, summands).set;
     const Vector right = -linalg::product(m_.linear.B.bottomRows(1), now.u);
     const LineForm predicted = sets::strip_intersection(open, static_A_, right, static_Bw_, m_.W);
     X_ = sets::reduce(measured(predicted, now), 30, 5).set;

@@ -86,7 +86,7 @@ ConstrainedForm::Result ConstrainedForm::predict(const Value& X, MatrixIn A, Vec
   Few<sets::Summand> summands;
   for (const auto& operand : operands) summands.push_back({operand.T, operand.value});
   if (outward) return made(sets::outward::affine_sum(X, A, f, {summands.data(), summands.size()}));
-  return {sets::affine_sum(X, A, f, {summands.data(), summands.size()}), Tightness::exact};
+  return made(sets::affine_sum(X, A, f, {summands.data(), summands.size()}));
 }
 
 ConstrainedForm::Result ConstrainedForm::correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {
@@ -104,14 +104,14 @@ ConstrainedForm::Result ConstrainedForm::interval_map(const Value& X, const Inte
     return made(std::move(image));
   }
   // A x = mid(A) x + Δ x with |Δ x| ≤ rad(A) |x|, |x| bounded by the interval hull
-  const LineForm mapped = cordon::affine_map(X, A.center, Vector::Zero(A.rows()));
-  if (A.is_exact()) return {mapped, Tightness::exact};
+  sets::Reduced image = sets::affine_sum(X, A.center, Vector::Zero(A.rows()), {});
+  if (A.is_exact()) return made(std::move(image));
   const Box hull = cordon::interval_hull(X);
   if (hull.is_empty()) return {make_empty(A.rows()), Tightness::exact};
   const Box spread = sets::interval_map(hull, IntervalMatrix(Matrix::Zero(A.rows(), A.cols()), A.radius));
   if (!lines && !spread.is_bounded())
     throw Error(Errc::unsupported, "constrained_zonotope: the image under the interval matrix has no proven bound");
-  return {minkowski_sum(mapped, make_box(spread)), Tightness::outer};
+  return {minkowski_sum(image.set, make_box(spread)), Tightness::outer};
 }
 
 ConstrainedForm::Result ConstrainedForm::intersection(const Value& X, MatrixIn R, const Value& Y) const {

@@ -12,6 +12,7 @@
 #include "cordon/core/vectors.hpp"
 #include "elimination_plan.hpp"
 #include "false_row.hpp"
+#include "line_image.hpp"
 #include "require.hpp"
 #include "residue.hpp"
 
@@ -53,13 +54,18 @@ bool is_vague(double terms, double reach, double b) {
 
 }  // namespace
 
-LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands) {
+Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands) {
   constexpr const char* name = "sum of mapped sets";
   const Index m = A.rows();
   require_size(f.size(), m, name, "the translation");
-  Index lines = X.lines(), generators = X.generators(), constraints = X.constraints();
+  require_map(A, X.dim(), name, "the map");
+  std::vector<LineImage> images{line_image(A, X)};
+  Index lines = images.front().M.cols(), generators = X.generators(), constraints = X.constraints();
   for (const Summand& s : summands) {
-    lines += s.set.lines();
+    require_size(s.T.rows(), m, name, "the number of rows of a summand's map");
+    require_map(s.T, s.set.dim(), name, "the map");
+    images.push_back(line_image(s.T, s.set));
+    lines += images.back().M.cols();
     generators += s.set.generators();
     constraints += s.set.constraints();
   }
@@ -68,11 +74,11 @@ LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span
   Terms terms{Vector::Zero(constraints), f.cwiseAbs()};
   Vector size;  // of a summand's coordinates
   Index line = 0, generator = 0, row = 0;
-  const auto add = [&](MatrixIn T, const LineZonotope& Z) {
-    require_size(T.rows(), m, name, "the number of rows of a summand's map");
-    require_map(T, Z.dim(), name, "the map");
-    const Index l = Z.lines(), g = Z.generators(), rows = Z.constraints();
-    if (l > 0) Y.M.middleCols(line, l) = linalg::denoised_product(T, Z.M);
+  bool exact = true;
+  const auto add = [&](MatrixIn T, const LineZonotope& Z, const LineImage& image) {
+    const Index l = image.M.cols(), g = Z.generators(), rows = Z.constraints();
+    if (l > 0) Y.M.middleCols(line, l) = image.M;
+    exact = exact && image.exact;
     linalg::product(T, Z.G, Y.G.middleCols(generator, g));
     take_reach(Z.c, Z.G, size);
     for (Index k = 0; k < T.cols(); ++k) {
@@ -80,7 +86,7 @@ LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span
       terms.state += T.col(k).cwiseAbs() * size[k];
     }
     if (rows > 0) {
-      Y.S.block(row, line, rows, l) = Z.S;
+      if (l >= Z.lines()) Y.S.block(row, line, rows, Z.lines()) = Z.S;
       Y.A.block(row, generator, rows, g) = Z.A;
       Y.b.segment(row, rows) = Z.b;
     }
@@ -88,11 +94,11 @@ LineZonotope affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span
     generator += g;
     row += rows;
   };
-  add(A, X);
-  for (const Summand& s : summands) add(s.T, s.set);
+  add(A, X, images.front());
+  for (std::size_t i = 0; i < summands.size(); ++i) add(summands[i].T, summands[i].set, images[i + 1]);
   require_no_overflow(Y);
-  if (summands.empty()) return Y;
-  return with_residue(std::move(Y), terms);
+  if (summands.empty()) return {std::move(Y), exact};
+  return {with_residue(std::move(Y), terms), exact};
 }
 
 LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T, const LineZonotope& V) {

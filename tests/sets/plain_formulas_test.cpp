@@ -220,12 +220,16 @@ TEST_CASE("predictions and corrections assembled in place") {
     const Matrix A = arbitrary_matrix(m, n), T = arbitrary_matrix(m, p);
     const Vector f = arbitrary_vector(m);
     const sets::Summand summand{T, W};
-    const LineForm sum = sets::affine_sum(X, A, f, {&summand, 1});
+    const LineForm sum = sets::affine_sum(X, A, f, {&summand, 1}).set;
     const LineForm plain = minkowski_sum(affine_map(X, A, f), affine_map(W, T, Vector::Zero(m)));
     RC_ASSERT(near(sum.c, plain.c, 1e-13));
     RC_ASSERT(near(sum.G.leftCols(plain.generators()), plain.G, 1e-13));
     RC_ASSERT(sum.generators() == plain.generators() || linalg::rank(plain.G) < m);
-    if (sum.generators() == plain.generators()) RC_ASSERT(near(sum, plain));
+    if (sum.lines() == plain.lines()) {
+      if (sum.generators() == plain.generators()) RC_ASSERT(near(sum, plain));
+    } else {  // what depends on other lines is left out
+      RC_ASSERT(linalg::rank(sum.M) == linalg::rank(plain.M));
+    }
 
     const Matrix C = arbitrary_matrix(p, n), N = Matrix::Identity(p, p);
     const LineForm cut = sets::strip_intersection(X, C, arbitrary_vector(p), N, W);

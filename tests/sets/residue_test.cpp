@@ -20,7 +20,7 @@ LineForm sum(const LineForm& X, const Matrix& A) {
   const LineForm nothing = make_point(Vector(0));
   const Matrix none(A.rows(), 0);
   const sets::Summand summand{none, nothing};
-  return sets::affine_sum(X, A, Vector::Zero(A.rows()), {&summand, 1});
+  return sets::affine_sum(X, A, Vector::Zero(A.rows()), {&summand, 1}).set;
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ TEST_CASE("a sum that cancels is as wide as its errors") {
   const LineForm opposite = make_point(Vector{{-.3}});
   const Matrix one{{1}};
   const sets::Summand summand{one, opposite};
-  CHECK(sets::affine_sum(make_point(Vector{{0}}), one, Vector{{.1 + .2}}, {&summand, 1}).generators() == 1);
+  CHECK(sets::affine_sum(make_point(Vector{{0}}), one, Vector{{.1 + .2}}, {&summand, 1}).set.generators() == 1);
   CHECK(sum(interval(1, 1), Matrix{{2}}).generators() == 1);
   CHECK(sum(interval(1, 1e-3), Matrix{{2}}).generators() == 1);
   CHECK(sum(interval(1, 1e-6), Matrix{{2}}).generators() == 2);

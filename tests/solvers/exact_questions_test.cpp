@@ -76,6 +76,22 @@ TEST_CASE("degenerate sets") {
   CHECK(exact::support(X, Vector{{1.0}}).upper == -inf);
 }
 
+TEST_CASE("the directions without a bound are exact") {
+  const auto lines = [](Matrix M, Matrix S) {
+    const Index n = M.rows(), m = S.rows();
+    return LineForm{std::move(M), Matrix(n, 0), Vector::Zero(n), std::move(S), Matrix(m, 0), Vector::Zero(m)};
+  };
+  CHECK(exact::lineality_space(make_zonotope(Vector{{0.0, 0.0}}, Matrix{{1.0}, {0.0}})).cols() == 0);
+  CHECK(exact::lineality_space(lines(Matrix{{1, 3}, {3, 9}}, Matrix(0, 2))).cols() == 1);
+  CHECK(exact::lineality_space(lines(Matrix{{.1, .3}, {.3, .9}}, Matrix(0, 2))).cols() == 2);  // by the last digit
+  CHECK(exact::lineality_space(lines(Matrix::Identity(2, 2), Matrix{{.1, .3}, {.3, .9}})).cols() == 0);
+  const Matrix one = exact::lineality_space(lines(Matrix::Identity(2, 2), Matrix{{1e-200, -3e-200}}));
+  REQUIRE(one.cols() == 1);
+  CHECK(one(0, 0) == 3 * one(1, 0));
+  CHECK(one.cwiseAbs().maxCoeff() >= .5);
+  CHECK(one.cwiseAbs().maxCoeff() < 2);
+}
+
 TEST_CASE("what does not fit is refused") {
   const LineForm X = make_space(2);
   CHECK_THROWS_AS(exact::contains(X, Vector::Zero(3)), Error);

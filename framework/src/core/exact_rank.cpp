@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exact_rank.hpp"
+#include "cordon/core/exact_rank.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -31,15 +31,20 @@ std::uint64_t residue(double value) {
   return value < 0 ? negative(size) : size;
 }
 
-}  // namespace
+using Rows = std::vector<std::vector<std::uint64_t>>;
 
-Index rank_modulo_prime(const Matrix& A) {
-  std::vector<std::vector<std::uint64_t>> rows(static_cast<std::size_t>(A.rows()));
+Rows residues(MatrixIn A) {
+  Rows rows(static_cast<std::size_t>(A.rows()));
   for (Index i = 0; i < A.rows(); ++i) {
     for (Index j = 0; j < A.cols(); ++j) rows[static_cast<std::size_t>(i)].push_back(residue(A(i, j)));
   }
+  return rows;
+}
+
+Index rank_of(Rows rows) {
+  const std::size_t columns = rows.empty() ? 0 : rows.front().size();
   std::size_t rank = 0;
-  for (std::size_t col = 0; col < static_cast<std::size_t>(A.cols()) && rank < rows.size(); ++col) {
+  for (std::size_t col = 0; col < columns && rank < rows.size(); ++col) {
     std::size_t pivot = rank;
     while (pivot < rows.size() && rows[pivot][col] == 0) ++pivot;
     if (pivot == rows.size()) continue;
@@ -56,6 +61,23 @@ Index rank_modulo_prime(const Matrix& A) {
     ++rank;
   }
   return static_cast<Index>(rank);
+}
+
+}  // namespace
+
+Index rank_modulo_prime(MatrixIn A) { return rank_of(residues(A)); }
+
+Index product_rank_modulo_prime(MatrixIn A, MatrixIn B) {
+  const Rows left = residues(A), right = residues(B);
+  Rows product(left.size(), std::vector<std::uint64_t>(static_cast<std::size_t>(B.cols())));
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    for (std::size_t k = 0; k < right.size(); ++k) {
+      for (std::size_t j = 0; j < product[i].size(); ++j) {
+        product[i][j] = reduced(Product{left[i][k]} * right[k][j] + product[i][j]);
+      }
+    }
+  }
+  return rank_of(product);
 }
 
 }  // namespace cordon

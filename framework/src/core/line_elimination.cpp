@@ -4,7 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "exact_rank.hpp"
+#include "cordon/core/column_elimination.hpp"
+#include "cordon/core/exact_rank.hpp"
 
 namespace cordon {
 
@@ -201,34 +202,54 @@ Pivots eliminate(Tableau& tableau) {
   return pivots;
 }
 
-/// What is left of X; row k of the set is row kept[k] of the tableau.
-LineForm remainder(const Tableau& tableau, const LineForm& X, const Pivots& pivots, std::vector<Index>& kept) {
+/// The columns of M that are left, and the sizes of their terms.
+struct LinesLeft {
+  Matrix M, terms;
+};
+LinesLeft lines_left(const Tableau& tableau, const LineForm& X, const Pivots& pivots) {
+  const Index n = X.dim();
+  std::vector<bool> gone(static_cast<std::size_t>(X.lines()), false);
+  for (const auto& [row, col] : pivots) gone[static_cast<std::size_t>(col)] = true;
+  std::vector<Index> kept;
+  for (Index j = 0; j < X.lines(); ++j) {
+    if (!gone[static_cast<std::size_t>(j)]) kept.push_back(j);
+  }
+  return {tableau.T.bottomRows(n)(Eigen::all, kept), tableau.magnitude.bottomRows(n)(Eigen::all, kept)};
+}
+
+/// Where rounding hides how many of the lines left are independent, adds the coordinates that they may reach. Was nothing added?
+bool hold_hidden_lines(LinesLeft& lines, const LineForm& X, const Pivots& pivots) {
+  if (lines.M.cols() == 0) return true;
+  const ColumnElimination known(lines.M, lines.terms);
+  if (known.kept == lines.M.cols()) return true;
+  Matrix all(X.constraints() + X.dim(), X.lines());
+  all << X.S, X.M;
+  if (rank_modulo_prime(all) <= known.kept + static_cast<Index>(pivots.size())) return true;
+  lines.M = with_unit_vectors(std::move(lines.M), known.reached());
+  return false;
+}
+
+/// What is left of X but for its lines; row k of the set is row kept[k] of the tableau.
+LineForm remainder(const Tableau& tableau, const LineForm& X, std::vector<Index>& kept) {
   const Index n = X.dim(), g = X.generators();
   for (Index i = 0; i < tableau.rows; ++i) {
     if (!tableau.used[static_cast<std::size_t>(i)] && !tableau.vanished(i) && !tableau.holds_lines(i)) kept.push_back(i);
   }
-  std::vector<bool> gone(static_cast<std::size_t>(X.lines()), false);
-  for (const auto& [row, col] : pivots) gone[static_cast<std::size_t>(col)] = true;
-  std::vector<Index> kept_lines;
-  for (Index j = 0; j < X.lines(); ++j) {
-    if (!gone[static_cast<std::size_t>(j)]) kept_lines.push_back(j);
-  }
   const Index m = static_cast<Index>(kept.size());
-  LineForm Y{Matrix(n, static_cast<Index>(kept_lines.size())),
-             tableau.T.block(tableau.rows, X.lines(), n, g),
-             -tableau.T.bottomRightCorner(n, 1),
-             Matrix(),
-             Matrix(m, g),
-             Vector(m)};
-  for (Index k = 0; k < Y.M.cols(); ++k) Y.M.col(k) = tableau.T.col(kept_lines[static_cast<std::size_t>(k)]).tail(n);
+  LineForm Y{
+      Matrix(n, 0), tableau.T.block(tableau.rows, X.lines(), n, g), -tableau.T.bottomRightCorner(n, 1), Matrix(), Matrix(m, g),
+      Vector(m)};
   for (Index k = 0; k < m; ++k) {
     const Index i = kept[static_cast<std::size_t>(k)];
     Y.A.row(k) = tableau.T.row(i).segment(X.lines(), g);
     Y.b[k] = tableau.T(i, tableau.width - 1);
   }
-  if (Y.M.cols() > 0) Y.M = independent_columns(std::move(Y.M));
-  Y.S = Matrix::Zero(m, Y.M.cols());
   return Y;
+}
+
+void set_lines(LineForm& Y, Matrix M) {
+  Y.M = M.cols() > 0 ? independent_columns(std::move(M)) : std::move(M);
+  Y.S = Matrix::Zero(Y.constraints(), Y.M.cols());
 }
 
 /// Largest terms of the factors and of the right-hand side. Those of lines do not count: a line may have any length.
@@ -251,21 +272,26 @@ bool rank_was_lost(const LineForm& X, const Pivots& pivots) {
   return rank_modulo_prime(X.S) > found;
 }
 
-}  // namespace
-
-LineForm eliminate_lines(const LineForm& X) { return solve_for_lines(X).set; }
-
-LinesSolved solve_for_lines(const LineForm& X) {
+LinesSolved solved(const LineForm& X, bool hold_hidden) {
   if (X.lines() == 0) return {X, Vector::Zero(X.constraints()), Vector::Zero(X.dim())};
   Tableau& tableau = tableau_of(X, Vector(0), false);
   const Pivots pivots = eliminate(tableau);
   std::vector<Index> kept;
-  LineForm set = remainder(tableau, X, pivots, kept);
+  LineForm set = remainder(tableau, X, kept);
+  LinesLeft lines = lines_left(tableau, X, pivots);
   bool is_whole = !rank_was_lost(X, pivots);
+  if (hold_hidden) is_whole = hold_hidden_lines(lines, X, pivots) && is_whole;
+  set_lines(set, std::move(lines.M));
   for (Index i = 0; i < tableau.rows; ++i)
     is_whole = is_whole && (tableau.used[static_cast<std::size_t>(i)] || !tableau.holds_lines(i));
   return {std::move(set), largest(tableau, kept), state_terms(tableau, X.dim()), is_whole};
 }
+
+}  // namespace
+
+LineForm eliminate_lines(const LineForm& X) { return solved(X, false).set; }
+
+LinesSolved solve_for_lines(const LineForm& X) { return solved(X, true); }
 
 LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) {
   const Index n = X.dim(), g = X.generators(), all = X.constraints();
@@ -286,7 +312,8 @@ LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) 
     lines_offset[col] = tableau.T(row, tableau.width - 1);
   }
   std::vector<Index> kept;
-  LineForm set = remainder(tableau, X, pivots, kept);
+  LineForm set = remainder(tableau, X, kept);
+  set_lines(set, lines_left(tableau, X, pivots).M);
   Matrix rows(static_cast<Index>(kept.size()), all);
   for (Index k = 0; k < rows.rows(); ++k) rows.row(k) = tableau.trace.row(kept[static_cast<std::size_t>(k)]);
   const Index vanished = all - static_cast<Index>(pivots.size()) - set.constraints();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cordon/core/error.hpp"
 #include "solvers/exact_program.hpp"
@@ -29,6 +31,33 @@ void check_size(Index columns, Index rows, const char* question) {
 RationalVector zeros(Index size) { return RationalVector(static_cast<std::size_t>(size)); }
 
 ExactProgram feasibility(const LineForm& X) { return {X.S, X.A, rational::exact(X.b), zeros(X.lines()), zeros(X.generators())}; }
+
+/// Gauss-Jordan with the largest entry of all as pivot, vectors scaled to about 1: a basis in the first places that stays one
+/// when it is rounded. Returns how many there are.
+std::size_t reduce_to_basis(std::vector<rational::RationalVector>& vectors) {
+  for (std::size_t rank = 0; rank < vectors.size(); ++rank) {
+    std::size_t best = rank, pivot = 0;
+    rational::Rational largest = 0;
+    for (std::size_t i = rank; i < vectors.size(); ++i) {
+      rational::scale_to_one(vectors[i]);
+      for (std::size_t j = 0; j < vectors[i].size(); ++j) {
+        if (abs(vectors[i][j]) <= largest) continue;
+        largest = abs(vectors[i][j]);
+        best = i;
+        pivot = j;
+      }
+    }
+    if (largest == 0) return rank;
+    std::swap(vectors[rank], vectors[best]);
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+      if (i == rank || vectors[i][pivot] == 0) continue;
+      const rational::Rational factor = vectors[i][pivot] / vectors[rank][pivot];
+      for (std::size_t j = 0; j < vectors[i].size(); ++j) vectors[i][j] -= factor * vectors[rank][j];
+    }
+  }
+  for (rational::RationalVector& vector : vectors) rational::scale_to_one(vector);
+  return vectors.size();
+}
 
 }  // namespace
 
@@ -89,6 +118,21 @@ rounding::Range support(const LineForm& X, VectorIn d) {
   if (reached.kind == Support::Kind::empty) return {-infinity, -infinity};
   if (reached.kind == Support::Kind::unbounded) return {infinity, infinity};
   return rational::enclose(reached.value);
+}
+
+Matrix lineality_space(const LineForm& X) {
+  if (X.lines() == 0) return Matrix(X.dim(), 0);
+  rational::RationalMatrix images =
+      rational::product(rational::null_space(rational::exact_matrix(X.S)), rational::exact_matrix(X.M.transpose()));
+  std::vector<rational::RationalVector> basis;
+  for (Index i = 0; i < images.rows(); ++i) basis.push_back(images.row(i));
+  const std::size_t rank = reduce_to_basis(basis);
+  Matrix columns(X.dim(), static_cast<Index>(rank));
+  for (std::size_t j = 0; j < rank; ++j) {
+    for (Index i = 0; i < X.dim(); ++i)
+      columns(i, static_cast<Index>(j)) = rational::nearest(basis[j][static_cast<std::size_t>(i)]);
+  }
+  return columns;
 }
 
 rounding::Range maximum(VectorIn c, MatrixIn K, VectorIn r, const std::vector<int>& bits) {

@@ -25,6 +25,10 @@ Answer contains(const LineForm& X, VectorIn x);
 /// if X is empty.
 rounding::Range support(const LineForm& X, VectorIn d);
 
+/// A basis of the directions in which X is unbounded, if it is not empty: {Mδ : Sδ = 0}, eliminated exactly and rounded at the
+/// end. The largest entry of every column is in [1/2, 2). No limit of size: it is elimination alone, O(m²l + l²n) on fractions.
+Matrix lineality_space(const LineForm& X);
+
 /// max{cᵀx : K x = r, 0 ≤ x_j ≤ 2^bits_j} between two neighbouring doubles; (-inf, -inf) if there is no such x. One entry of
 /// `bits` per column of K, and products of K's entries with 2^(bits_j - 1) must be doubles: else Errc::invalid.
 rounding::Range maximum(VectorIn c, MatrixIn K, VectorIn r, const std::vector<int>& bits);

@@ -24,6 +24,10 @@ class StepCheck {
   /// `margin`: what rounding errors may amount to, per coordinate (RoundingMargin).
   StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding, const Vector& margin);
 
+  /// X_k or the set before it has lines, and the model takes them to directions of which nominal operations keep few digits: what
+  /// is missed along them is undecided.
+  void lines_have_few_digits() { few_digits_ = nominal_; }
+
   void proofs();
   /// Successors of X_{k-1}: as they are, and with outputs and rows that hold up to rounding. By as much as these reach farther, a
   /// nominal claim may do so too, and nominal operations may fall short: the rounding of rows that nearly depend on each other,
@@ -56,6 +60,7 @@ class StepCheck {
   struct Along;
   void along(const Vector& d, Along& by);
   void violated(std::string what, bool in_sets_file);
+  void missed(std::string what, bool in_sets_file);
   void open(std::string what);
   void emptiness_proof();
   void emptiness_without_proof();
@@ -73,6 +78,7 @@ class StepCheck {
   const RecordedStep& step_;
   const RecordedSet& row_;
   bool nominal_;                 ///< operations were rounded to nearest
+  bool few_digits_ = false;      ///< of the directions of lines
   double line_tolerance_;        ///< of the directions of lines
   Vector size_;                  ///< of each coordinate
   Vector margin_;                ///< within which F_k has to lie in X_k and in the hull

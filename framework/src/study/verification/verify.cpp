@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/verify.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include <fmt/format.h>
 
+#include "cordon/core/column_elimination.hpp"
 #include "cordon/core/error.hpp"
+#include "cordon/core/exact_rank.hpp"
+#include "cordon/core/linalg.hpp"
 #include "cordon/study/data.hpp"
 #include "solvers/polytope_representation.hpp"
 #include "study/data/random.hpp"
@@ -22,6 +26,13 @@ namespace {
 
 using namespace verification;
 using Clock = std::chrono::steady_clock;
+
+/// Are there directions that A takes to next to nothing, beside others or by entries that cancel, and not to nothing?
+bool hides_directions(const Matrix& A) {
+  constexpr double little = 1e-6;
+  const Index known = std::min(ColumnElimination(A, A.cwiseAbs()).kept, linalg::range_basis(A, little).cols());
+  return known < A.cols() && known < rank_modulo_prime(A);
+}
 
 constexpr Index most_states_of_polytopes = 4;
 constexpr std::size_t most_kept_polytopes = 5000, most_kept_bits = std::size_t{1} << 31;
@@ -270,11 +281,12 @@ class Verification {
     const bool uncertain = run_.model.linear.is_uncertain();
     const RecordedStep step = uncertain ? without_claim(pipeline.steps[i]) : pipeline.steps[i];
     StepCheck check(step, row, pipeline.rounding, margins.states);
+    const LineForm& start = row_before ? row_before->set : pipeline.initial_set;
+    if ((start.lines() > 0 || row.set.lines() > 0) && hides_directions(run_.model.linear.A)) check.lines_have_few_digits();
     check.proofs();
     if (uncertain && pipeline.steps[i].tightness == Tightness::exact) {
       check.skipped("a claim of \"exact\" is not checked where matrices are known by intervals only");
     }
-    const LineForm& start = row_before ? row_before->set : pipeline.initial_set;
     const auto successors_in = [&](const Model& model) {
       return StepCheck::Successors{
           [&] { return successors(model, start, pipeline.admissible_set, transition); },
