@@ -17,9 +17,11 @@ namespace cordon::apps {
 /// What the commands share with main.
 struct Program {
   std::vector<std::filesystem::path> plugins;  ///< --plugins, searched first
-  bool trust_plugins = false;                  ///< --trust-plugins: of directories that studies name
+  bool trust_plugins = false;  ///< --trust-plugins: of directories that studies name
   /// For commands that need the whole study.
-  StudyPlugins study_plugins() const { return trust_plugins ? StudyPlugins::load : StudyPlugins::refuse; }
+  StudyPlugins study_plugins() const {
+    return trust_plugins ? StudyPlugins::load : StudyPlugins::refuse;
+  }
   Exit exit = Exit::done;
 };
 

@@ -27,7 +27,8 @@ const char* const exit_codes_help =
     "  5    a solver gave no answer in its limit\n"
     "  6    not enough memory, or threads that cannot be started\n"
     "  130  interrupted by SIGINT or SIGTERM\n"
-    "Plugins are searched in: --plugins, the study's \"plugins\" (with --trust-plugins), CORDON_PLUGIN_PATH, beside the program, "
+    "Plugins are searched in: --plugins, the study's \"plugins\" (with --trust-plugins), "
+    "CORDON_PLUGIN_PATH, beside the program, "
     "the installed directory.";
 
 Exit exit_for(Errc code) noexcept {
@@ -58,7 +59,8 @@ Exit report_current_exception() noexcept try {
     complain(error.what());
     return exit_for(error.code());
   } catch (const std::bad_alloc&) {
-    complain("not enough memory: the machine has no more, or the process may use no more (ulimit -v)");
+    complain(
+        "not enough memory: the machine has no more, or the process may use no more (ulimit -v)");
     return Exit::resources;
   } catch (const std::system_error& error) {
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
@@ -77,7 +79,8 @@ Exit report_current_exception() noexcept try {
 namespace {
 
 /// The sequences of colours that this program writes, to a stream that takes them.
-constexpr std::array<std::string_view, 5> colours{"\x1b[0m", "\x1b[1m", "\x1b[1;31m", "\x1b[33m", "\x1b[32m"};
+constexpr std::array<std::string_view, 5> colours{"\x1b[0m", "\x1b[1m", "\x1b[1;31m", "\x1b[33m",
+                                                  "\x1b[32m"};
 
 /// What is printed, whatever names it holds: only line ends and colours steer the terminal.
 std::string shown(std::string_view text, const Paint& paint) {
@@ -85,10 +88,12 @@ std::string shown(std::string_view text, const Paint& paint) {
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t escape = std::min(text.find('\x1b', begin), text.size());
     out += detail::printable_lines(text.substr(begin, escape - begin));
-    const auto colour =
-        std::find_if(colours.begin(), colours.end(), [&](std::string_view one) { return text.substr(escape).starts_with(one); });
+    const auto colour = std::find_if(colours.begin(), colours.end(), [&](std::string_view one) {
+      return text.substr(escape).starts_with(one);
+    });
     const bool is_colour = !paint.bold("").empty() && colour != colours.end();
-    const std::size_t length = is_colour ? colour->size() : std::min<std::size_t>(1, text.size() - escape);
+    const std::size_t length =
+        is_colour ? colour->size() : std::min<std::size_t>(1, text.size() - escape);
     out += is_colour ? std::string(*colour) : detail::printable(text.substr(escape, length));
     begin = escape + length;
   }
@@ -102,8 +107,10 @@ void print(const std::string& whole) {
   if (reader_is_gone) return;
   const std::string text = shown(whole, Paint(stdout));
   errno = 0;
-  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return;
-  if (errno != EPIPE) throw Error(Errc::io, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
+    return;
+  if (errno != EPIPE)
+    throw Error(Errc::io, fmt::format("cannot write to standard output: {}", std::strerror(errno)));
   reader_is_gone = true;
 }
 
@@ -117,12 +124,20 @@ void to_stderr(const std::string& whole) {
 }  // namespace
 
 void note(const std::string& text) { to_stderr(text + "\n"); }
-void warn(const std::string& text) { to_stderr(Paint(stderr).yellow("warning:") + " " + text + "\n"); }
-void complain(const std::string& text) { to_stderr(Paint(stderr).red("error:") + " " + text + "\n"); }
+void warn(const std::string& text) {
+  to_stderr(Paint(stderr).yellow("warning:") + " " + text + "\n");
+}
+void complain(const std::string& text) {
+  to_stderr(Paint(stderr).red("error:") + " " + text + "\n");
+}
 
-std::string path_problem(const std::string& text) { return text.empty() ? "the name is empty; name a directory" : ""; }
+std::string path_problem(const std::string& text) {
+  return text.empty() ? "the name is empty; name a directory" : "";
+}
 
-std::filesystem::path as_operand(const std::filesystem::path& path) { return path.string().starts_with('-') ? "." / path : path; }
+std::filesystem::path as_operand(const std::filesystem::path& path) {
+  return path.string().starts_with('-') ? "." / path : path;
+}
 
 Paint::Paint(std::FILE* stream) : on_(isatty(fileno(stream)) == 1) {
   const char *none = std::getenv("NO_COLOR"), *terminal = std::getenv("TERM");
@@ -135,7 +150,8 @@ std::string Paint::wrap(const char* code, const std::string& text) const {
 
 namespace {
 
-/// Number of code points, every byte that does not continue one, without the combining marks U+0300 … U+036F.
+/// Number of code points, every byte that does not continue one, without the combining marks U+0300
+/// … U+036F.
 std::size_t width(const std::string& text) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -170,19 +186,23 @@ std::string table(const std::vector<std::vector<std::string>>& cells, const Pain
 }
 
 std::string quoted(const std::string& word) {
-  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:+@%=";
+  constexpr const char* plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:+@%=";
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
 }
 
-void load_plugins(Registry& registry, std::span<const std::filesystem::path> first) { registry.load(default_search_path(first)); }
+void load_plugins(Registry& registry, std::span<const std::filesystem::path> first) {
+  registry.load(default_search_path(first));
+}
 
 void warn_refused(const Registry& registry) {
   for (const PluginReport& report : registry.reports()) {
     for (const std::string& component : report.left_out)
-      warn(fmt::format("{}: {}; rename it, or remove one of the two", report.file.string(), component));
+      warn(fmt::format("{}: {}; rename it, or remove one of the two", report.file.string(),
+                       component));
     if (report.state != PluginReport::State::refused) continue;
     warn(fmt::format("{} was refused: {}; {}", report.file.string(), report.reason, report.fix));
   }
@@ -192,7 +212,8 @@ std::vector<Component> components(const Registry& registry) {
   std::vector<Component> found;
   const auto add = [&](const char* kind, const std::vector<std::string>& names,
                        const ComponentInfo* (Registry::*info)(std::string_view) const) {
-    for (const std::string& name : names) found.push_back({kind, (registry.*info)(name), registry.plugin_of(kind, name)});
+    for (const std::string& name : names)
+      found.push_back({kind, (registry.*info)(name), registry.plugin_of(kind, name)});
   };
   add("backend", registry.backends(), &Registry::backend_info);
   add("observer", registry.observers(), &Registry::observer_info);
@@ -207,7 +228,8 @@ std::vector<Component> components(const Registry& registry) {
 std::string default_text(const ParamSpec& spec) {
   if (spec.required) return "(required)";
   if (!spec.fallback) return "";
-  if (const auto* integer = std::get_if<std::int64_t>(&*spec.fallback)) return fmt::format("{}", *integer);
+  if (const auto* integer = std::get_if<std::int64_t>(&*spec.fallback))
+    return fmt::format("{}", *integer);
   if (const auto* real = std::get_if<double>(&*spec.fallback)) return fmt::format("{}", *real);
   if (const auto* flag = std::get_if<bool>(&*spec.fallback)) return *flag ? "true" : "false";
   if (const auto* text = std::get_if<std::string>(&*spec.fallback)) return *text;
@@ -215,7 +237,8 @@ std::string default_text(const ParamSpec& spec) {
 }
 
 std::string range_text(const ParamSpec& spec) {
-  if (spec.kind == ParamKind::component) return spec.component_kind + (spec.matrix_type.empty() ? "" : ", or a matrix");
+  if (spec.kind == ParamKind::component)
+    return spec.component_kind + (spec.matrix_type.empty() ? "" : ", or a matrix");
   if (spec.kind == ParamKind::choice) return fmt::format("{}", fmt::join(spec.choices, " | "));
   if (spec.kind != ParamKind::integer && spec.kind != ParamKind::real) return "";
   const bool whole = spec.kind == ParamKind::integer;

@@ -33,8 +33,8 @@ Exit report_current_exception() noexcept;
 /// Before the reason why a report could not be written.
 inline const std::string no_report = "the results are complete, but report.html was not written: ";
 
-/// Results: to stdout, flushed. A reader that has gone away (closed pipe) is not an error: the rest is dropped. Throws Errc::io
-/// otherwise.
+/// Results: to stdout, flushed. A reader that has gone away (closed pipe) is not an error: the rest
+/// is dropped. Throws Errc::io otherwise.
 void print(const std::string& text);
 /// Progress, warnings, errors: to stderr; "error: …" and "warning: …" are coloured on a terminal.
 void note(const std::string& text);
@@ -43,7 +43,8 @@ void complain(const std::string& text);
 
 /// A word or a path as a shell reads it, in quotes where it needs them.
 std::string quoted(const std::string& word);
-/// Why a text names no file, for options; empty if it does. An empty one would name files in the working directory.
+/// Why a text names no file, for options; empty if it does. An empty one would name files in the
+/// working directory.
 std::string path_problem(const std::string& text);
 /// The same file, named so that a program cannot take it for an option.
 std::filesystem::path as_operand(const std::filesystem::path& path);
@@ -67,7 +68,8 @@ std::string table(const std::vector<std::vector<std::string>>& rows, const Paint
 
 /// Loads the default search path with `first` before it.
 void load_plugins(Registry& registry, std::span<const std::filesystem::path> first);
-/// One warning per refused plugin and per component that was left out, for commands that can do without.
+/// One warning per refused plugin and per component that was left out, for commands that can do
+/// without.
 void warn_refused(const Registry& registry);
 
 /// One component of any kind.

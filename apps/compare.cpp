@@ -35,20 +35,25 @@ Exit compare(const Arguments& arguments) {
 }  // namespace
 
 void add_compare(CLI::App& app, Program& program) {
-  CLI::App* command = app.add_subcommand("compare", "Compare finished runs or sweeps, also of different versions");
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare finished runs or sweeps, also of different versions");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("DIR", arguments->directories, "Directories with results; the others are compared with the first")
+  command
+      ->add_option("DIR", arguments->directories,
+                   "Directories with results; the others are compared with the first")
       ->required()
       ->check(CLI::Validator(path_problem, "", ""))
       ->expected(2, 100)
       ->option_text("...");
   CLI::Option* json = command->add_flag("--json", arguments->json, "Print JSON for programs");
-  CLI::Option* markdown = command->add_flag("--markdown", arguments->markdown, "Print tables in Markdown");
+  CLI::Option* markdown =
+      command->add_flag("--markdown", arguments->markdown, "Print tables in Markdown");
   CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print every number as CSV");
   json->excludes(markdown)->excludes(csv);
   markdown->excludes(csv);
   command->footer(
-      "Numbers that repeat are equal or different; times are tested (Mann-Whitney), over the repetitions of sweeps or the steps\n"
+      "Numbers that repeat are equal or different; times are tested (Mann-Whitney), over the "
+      "repetitions of sweeps or the steps\n"
       "of runs. The exit code tells of errors only.");
   command->callback([&program, arguments] { program.exit = compare(*arguments); });
 }

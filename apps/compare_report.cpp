@@ -21,7 +21,8 @@ using Rows = std::vector<std::vector<std::string>>;
 
 /// A, B, …, Z, run 27, …
 std::string letter(std::size_t run) {
-  return run < 26 ? std::string(1, static_cast<char>('A' + static_cast<char>(run))) : fmt::format("run {}", run + 1);
+  return run < 26 ? std::string(1, static_cast<char>('A' + static_cast<char>(run)))
+                  : fmt::format("run {}", run + 1);
 }
 
 /// An axis value without the quotes of a text.
@@ -35,7 +36,8 @@ std::string mean_text(const ComparedNumber& number) {
   std::string text = found.count > 0 ? number_text(found.mean) : found.infinite > 0 ? "∞" : "–";
   if (found.count > 0 && found.deviation > 0) text += " ± " + number_text(found.deviation, 2);
   if (found.count > 0 && found.infinite > 0) text += fmt::format(" (∞: {})", found.infinite);
-  return number.failed > 0 ? text + fmt::format(" (failed: {}/{})", number.failed, number.points) : text;
+  return number.failed > 0 ? text + fmt::format(" (failed: {}/{})", number.failed, number.points)
+                           : text;
 }
 
 /// Whole measures that are told in a word each.
@@ -53,7 +55,8 @@ Sorted sorted(const Comparison& comparison) {
   };
   const bool whole = has("horizon") || !has("step_us");  // designs take their time as a whole
   for (const ComparedMeasure& measure : comparison.measures) {
-    const bool is_main = measure.column.name == "step_us" || (measure.column.name == "wall_s" && whole);
+    const bool is_main =
+        measure.column.name == "step_us" || (measure.column.name == "wall_s" && whole);
     if (measure.column.measured && !is_main) {
       ++result.left_out;
     } else if (!measure.column.measured && measure.is_equal()) {
@@ -71,7 +74,9 @@ Rows rows_of(const Comparison& comparison, const ComparedMeasure& measure) {
   for (const std::string& axis : comparison.axes) rows[0].push_back(axis);
   for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
     rows[0].push_back(letter(i));
-    if (i > 0) rows[0].insert(rows[0].end(), {fmt::format("{} - A", letter(i)), fmt::format("{} / A", letter(i)), "VERDICT"});
+    if (i > 0)
+      rows[0].insert(rows[0].end(), {fmt::format("{} - A", letter(i)),
+                                     fmt::format("{} / A", letter(i)), "VERDICT"});
   }
   for (const ComparedRow& row : measure.rows) {
     auto& cells = rows.emplace_back();
@@ -90,17 +95,22 @@ Rows rows_of(const Comparison& comparison, const ComparedMeasure& measure) {
 
 std::string closing_text(const Sorted& found) {
   std::string text;
-  if (found.equal.empty() && found.shown.empty() && found.left_out == 0) text += "There is no number to compare.\n";
-  if (!found.equal.empty()) text += fmt::format("Equal in all runs, point by point: {}\n", fmt::join(found.equal, ", "));
+  if (found.equal.empty() && found.shown.empty() && found.left_out == 0)
+    text += "There is no number to compare.\n";
+  if (!found.equal.empty())
+    text += fmt::format("Equal in all runs, point by point: {}\n", fmt::join(found.equal, ", "));
   if (found.left_out > 0) {
-    text += fmt::format("{} more times of the same steps and runs: --csv and --json have them\n", found.left_out);
+    text += fmt::format("{} more times of the same steps and runs: --csv and --json have them\n",
+                        found.left_out);
   }
   return text;
 }
 
 constexpr const char* explanation =
-    "Ratios in verdicts are medians over all pairs of measurements, with intervals at the confidence of the verdict; p of\n"
-    "Mann–Whitney tests, two-sided, adjusted for their number in the table (Holm). That times differ does not say why: the load "
+    "Ratios in verdicts are medians over all pairs of measurements, with intervals at the "
+    "confidence of the verdict; p of\n"
+    "Mann–Whitney tests, two-sided, adjusted for their number in the table (Holm). That times "
+    "differ does not say why: the load "
     "of the machine moves all times of a run.\n"
     "Repeat the runs in turn before you put it down to the programs.\n";
 
@@ -146,14 +156,17 @@ ordered_json test_json(const std::optional<TimeTest>& test) {
 
 }  // namespace
 
-std::string verdict_of(const ResultColumn& column, const ComparedNumber& first, const ComparedNumber& other) {
+std::string verdict_of(const ResultColumn& column, const ComparedNumber& first,
+                       const ComparedNumber& other) {
   if (other.common == 0) return "no common points";
   if (other.finished == 0) return "failed at every common point";
   if (!column.measured) {
     const bool whole = other.finished == first.points && other.finished == other.points;
-    if (other.different == 0) return whole ? "equal" : fmt::format("equal at {} common points", other.finished);
+    if (other.different == 0)
+      return whole ? "equal" : fmt::format("equal at {} common points", other.finished);
     if (other.finished == 1 && whole) return "different";
-    return fmt::format("different at {} of {} {}points", other.different, other.finished, whole ? "" : "common ");
+    return fmt::format("different at {} of {} {}points", other.different, other.finished,
+                       whole ? "" : "common ");
   }
   if (!other.test) return other.paired == 0 ? "no common measurement" : "one measurement each";
   const TimeTest& test = *other.test;
@@ -164,8 +177,8 @@ std::string verdict_of(const ResultColumn& column, const ComparedNumber& first, 
   if (test.too_few()) return "too few repetitions to tell" + interval;
   if (!test.significant()) return "not significant" + interval;
   const bool slower = std::isnan(test.ratio) ? other.difference > 0 : test.ratio > 1;
-  return fmt::format("{}{}, p {} {:.1g}", slower ? "slower" : "faster", interval, test.p < 1e-6 ? "<" : "=",
-                     std::max(test.p, 1e-6));
+  return fmt::format("{}{}, p {} {:.1g}", slower ? "slower" : "faster", interval,
+                     test.p < 1e-6 ? "<" : "=", std::max(test.p, 1e-6));
 }
 
 std::string compare_text(const Comparison& comparison) {
@@ -178,7 +191,8 @@ std::string compare_text(const Comparison& comparison) {
   const Sorted found = sorted(comparison);
   std::string text = table(runs, paint) + "\n";
   for (const ComparedMeasure* measure : found.shown) {
-    text += paint.bold(measure->column.name) + "\n" + table(rows_of(comparison, *measure), paint) + "\n";
+    text += paint.bold(measure->column.name) + "\n" + table(rows_of(comparison, *measure), paint) +
+            "\n";
   }
   return text + closing_text(found) + (any_test(comparison) ? explanation : "");
 }
@@ -205,35 +219,41 @@ std::string compare_markdown(const Comparison& comparison) {
   const Sorted found = sorted(comparison);
   std::string text = as_table(runs) + "\n";
   for (const ComparedMeasure* measure : found.shown) {
-    text += fmt::format("### {}\n\n{}\n", escaped(measure->column.name), as_table(rows_of(comparison, *measure)));
+    text += fmt::format("### {}\n\n{}\n", escaped(measure->column.name),
+                        as_table(rows_of(comparison, *measure)));
   }
   text += escaped(closing_text(found)) + (any_test(comparison) ? explanation : "");
-  for (const std::string& warning : comparison.warnings) text += fmt::format("\nWarning: {}\n", escaped(warning));
+  for (const std::string& warning : comparison.warnings)
+    text += fmt::format("\nWarning: {}\n", escaped(warning));
   return text;
 }
 
 std::string compare_csv(const Comparison& comparison) {
   std::string text = "measure,measured,pipeline";
-  for (const std::string& axis : comparison.axes) text += fmt::format(",{}", detail::csv_field(axis));
+  for (const std::string& axis : comparison.axes)
+    text += fmt::format(",{}", detail::csv_field(axis));
   text +=
-      ",run,directory,points,failed,count,infinite,mean,deviation,median,difference,ratio,common,finished,different,median_ratio,"
+      ",run,directory,points,failed,count,infinite,mean,deviation,median,difference,ratio,common,"
+      "finished,different,median_ratio,"
       "lower,upper,p\n";
   for (const ComparedMeasure& measure : comparison.measures) {
     for (const ComparedRow& row : measure.rows) {
       for (std::size_t i = 0; i < row.runs.size(); ++i) {
         const ComparedNumber& number = row.runs[i];
         const Statistics& found = number.statistics;
-        text += fmt::format("{},{},{}", detail::csv_field(measure.column.name), measure.column.measured ? 1 : 0,
-                            detail::csv_field(row.pipeline));
-        for (const std::string& value : row.at) text += fmt::format(",{}", detail::csv_field(value_text(value)));
-        text +=
-            fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{}", letter(i), detail::csv_field(comparison.runs[i].directory),
-                        number.points, number.failed, found.count, found.infinite, csv_number(found.mean),
-                        csv_number(found.deviation), csv_number(found.median), csv_number(number.difference),
-                        csv_number(number.ratio), number.common, number.finished, number.different);
+        text += fmt::format("{},{},{}", detail::csv_field(measure.column.name),
+                            measure.column.measured ? 1 : 0, detail::csv_field(row.pipeline));
+        for (const std::string& value : row.at)
+          text += fmt::format(",{}", detail::csv_field(value_text(value)));
+        text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{}", letter(i),
+                            detail::csv_field(comparison.runs[i].directory), number.points,
+                            number.failed, found.count, found.infinite, csv_number(found.mean),
+                            csv_number(found.deviation), csv_number(found.median),
+                            csv_number(number.difference), csv_number(number.ratio), number.common,
+                            number.finished, number.different);
         if (const auto& test = number.test) {
-          text +=
-              fmt::format(",{},{},{},{}\n", csv_number(test->ratio), csv_number(test->lower), csv_number(test->upper), test->p);
+          text += fmt::format(",{},{},{},{}\n", csv_number(test->ratio), csv_number(test->lower),
+                              csv_number(test->upper), test->p);
         } else {
           text += ",,,,\n";
         }
@@ -246,13 +266,17 @@ std::string compare_csv(const Comparison& comparison) {
 std::string compare_json(const Comparison& comparison) {
   ordered_json runs = ordered_json::array(), measures = ordered_json::array();
   for (const ComparedRun& run : comparison.runs) {
-    runs.push_back({{"directory", run.directory}, {"version", run.version}, {"study_hash", run.study_hash}, {"host", run.host}});
+    runs.push_back({{"directory", run.directory},
+                    {"version", run.version},
+                    {"study_hash", run.study_hash},
+                    {"host", run.host}});
   }
   for (const ComparedMeasure& measure : comparison.measures) {
     ordered_json rows = ordered_json::array();
     for (const ComparedRow& row : measure.rows) {
       ordered_json at = ordered_json::object(), numbers = ordered_json::array();
-      for (std::size_t i = 0; i < row.at.size(); ++i) at[comparison.axes[i]] = ordered_json::parse(row.at[i]);
+      for (std::size_t i = 0; i < row.at.size(); ++i)
+        at[comparison.axes[i]] = ordered_json::parse(row.at[i]);
       for (const ComparedNumber& number : row.runs) {
         numbers.push_back({{"points", number.points},
                            {"failed", number.failed},
@@ -268,14 +292,18 @@ std::string compare_json(const Comparison& comparison) {
                            {"different", number.different},
                            {"test", test_json(number.test)}});
       }
-      rows.push_back({{"pipeline", row.pipeline}, {"at", std::move(at)}, {"runs", std::move(numbers)}});
+      rows.push_back(
+          {{"pipeline", row.pipeline}, {"at", std::move(at)}, {"runs", std::move(numbers)}});
     }
     measures.push_back({{"name", measure.column.name},
                         {"measured", measure.column.measured},
-                        {"equal", measure.column.measured ? ordered_json(nullptr) : ordered_json(measure.is_equal())},
+                        {"equal", measure.column.measured ? ordered_json(nullptr)
+                                                          : ordered_json(measure.is_equal())},
                         {"rows", std::move(rows)}});
   }
-  const ordered_json report{{"runs", std::move(runs)}, {"measures", std::move(measures)}, {"warnings", comparison.warnings}};
+  const ordered_json report{{"runs", std::move(runs)},
+                            {"measures", std::move(measures)},
+                            {"warnings", comparison.warnings}};
   return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

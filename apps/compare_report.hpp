@@ -8,10 +8,13 @@
 
 namespace cordon::apps {
 
-/// What a row of a comparison says in words: "equal", "different at 3 of 50 points", "12 % faster, p = 0.001", "not significant".
-std::string verdict_of(const ResultColumn& column, const ComparedNumber& first, const ComparedNumber& other);
+/// What a row of a comparison says in words: "equal", "different at 3 of 50 points", "12 % faster,
+/// p = 0.001", "not significant".
+std::string verdict_of(const ResultColumn& column, const ComparedNumber& first,
+                       const ComparedNumber& other);
 
-/// The runs, a table per number that differs and is shown in comparison tables, the others by name, and warnings.
+/// The runs, a table per number that differs and is shown in comparison tables, the others by name,
+/// and warnings.
 std::string compare_text(const Comparison& comparison);
 std::string compare_markdown(const Comparison& comparison);
 /// Every number, one row per run.

@@ -36,7 +36,8 @@ struct Conformed {
   std::string problem = {};  ///< no law can be checked
 
   Index count(State state) const {
-    return std::count_if(laws.begin(), laws.end(), [&](const LawReport& r) { return r.state == state; });
+    return std::count_if(laws.begin(), laws.end(),
+                         [&](const LawReport& r) { return r.state == state; });
   }
 };
 
@@ -44,7 +45,8 @@ struct Conformed {
 fs::path find_plugin(const Program& program, const std::string& plugin) {
   std::error_code error;
   if (plugin.find('/') != std::string::npos || plugin.ends_with(".so")) {
-    if (!fs::is_regular_file(plugin, error)) throw Error(Errc::io, fmt::format("no file {}", plugin));
+    if (!fs::is_regular_file(plugin, error))
+      throw Error(Errc::io, fmt::format("no file {}", plugin));
     return fs::absolute(plugin);
   }
   std::vector<std::string> names;
@@ -55,13 +57,16 @@ fs::path find_plugin(const Program& program, const std::string& plugin) {
       names.push_back(entry.path().stem().string());
     }
   }
-  throw Error(Errc::invalid, fmt::format("no plugin \"{}\" on the search path; {}", plugin,
-                                         names.empty() ? "give the path of its file" : suggest(plugin, names)));
+  throw Error(Errc::invalid,
+              fmt::format("no plugin \"{}\" on the search path; {}", plugin,
+                          names.empty() ? "give the path of its file" : suggest(plugin, names)));
 }
 
-std::string replay_command(const Program& program, const Arguments& arguments, const Candidate& candidate) {
+std::string replay_command(const Program& program, const Arguments& arguments,
+                           const Candidate& candidate) {
   std::string text = "cordon";
-  for (const fs::path& directory : program.plugins) text += " --plugins " + quoted(directory.string());
+  for (const fs::path& directory : program.plugins)
+    text += " --plugins " + quoted(directory.string());
   text += " conform " + quoted(arguments.plugin) + " --backend " + candidate.backend;
   if (candidate.params != "{}") text += " --params " + quoted(candidate.params);
   return text;
@@ -78,7 +83,8 @@ std::string note_of(const LawReport& report) {
   if (r.unsupported > 0) notes.push_back(fmt::format("{} refused", r.unsupported));
   if (r.inapplicable > 0) notes.push_back(fmt::format("{} do not bear on it", r.inapplicable));
   if (r.questions > 0 && r.unknown > 0) {
-    notes.push_back(fmt::format("{:.0f} % unknown", 100.0 * static_cast<double>(r.unknown) / static_cast<double>(r.questions)));
+    notes.push_back(fmt::format("{:.0f} % unknown", 100.0 * static_cast<double>(r.unknown) /
+                                                        static_cast<double>(r.questions)));
   }
   return fmt::format("{}", fmt::join(notes, ", "));
 }
@@ -96,7 +102,9 @@ std::string statement_of(const std::string& law) {
   return "";
 }
 
-bool is_violation(const LawReport& report) { return report.state != State::passed && report.state != State::skipped; }
+bool is_violation(const LawReport& report) {
+  return report.state != State::passed && report.state != State::skipped;
+}
 
 std::string as_text(const Conformed& c, const std::string& plugin) {
   const Paint paint(stdout);
@@ -105,15 +113,18 @@ std::string as_text(const Conformed& c, const std::string& plugin) {
   std::vector<std::vector<std::string>> rows{{"LAW", "CASES", "RESULT", "NOTE"}};
   for (const LawReport& report : c.laws) {
     // colours would count as width: the result stands in the last column but one, padded by hand
-    std::string result = report.state == State::timed_out ? "timed out" : std::string(to_string(report.state));
+    std::string result =
+        report.state == State::timed_out ? "timed out" : std::string(to_string(report.state));
     const std::string padding(9 - std::min<std::size_t>(9, result.size()), ' ');
-    rows.push_back({report.result.law, std::to_string(report.result.cases), result + padding, note_of(report)});
+    rows.push_back({report.result.law, std::to_string(report.result.cases), result + padding,
+                    note_of(report)});
   }
   text += table(rows, paint);
   for (const LawReport& report : c.laws) {
     if (!is_violation(report)) continue;
-    text += fmt::format("\n{}: {}\n  {}\n  {}\n", shown(report.state, paint), paint.bold(report.result.law),
-                        statement_of(report.result.law), report.result.reason);
+    text += fmt::format("\n{}: {}\n  {}\n  {}\n", shown(report.state, paint),
+                        paint.bold(report.result.law), statement_of(report.result.law),
+                        report.result.reason);
     std::string line;
     for (const char letter : report.result.witness) {
       if (letter != '\n') {
@@ -125,15 +136,19 @@ std::string as_text(const Conformed& c, const std::string& plugin) {
     }
     text += "  replay: " + report.result.replay + "\n";
   }
-  const Index violated = c.count(State::failed), died = c.count(State::crashed) + c.count(State::timed_out);
-  text += fmt::format("\n{} laws hold, {} violated, {} crashed or hung, {} do not apply; {:.1f} s\n", c.count(State::passed),
-                      violated, died, c.count(State::skipped), c.seconds);
+  const Index violated = c.count(State::failed),
+              died = c.count(State::crashed) + c.count(State::timed_out);
+  text +=
+      fmt::format("\n{} laws hold, {} violated, {} crashed or hung, {} do not apply; {:.1f} s\n",
+                  c.count(State::passed), violated, died, c.count(State::skipped), c.seconds);
   return text;
 }
 
 Json as_json(const Conformed& c) {
   if (!c.problem.empty())
-    return {{"backend", c.candidate.backend}, {"params", Json::parse(c.candidate.params)}, {"problem", c.problem}};
+    return {{"backend", c.candidate.backend},
+            {"params", Json::parse(c.candidate.params)},
+            {"problem", c.problem}};
   Json laws = Json::array();
   for (const LawReport& report : c.laws) {
     const conformance::Result& r = report.result;
@@ -150,7 +165,10 @@ Json as_json(const Conformed& c) {
     if (is_violation(report)) entry.update({{"witness", r.witness}, {"replay", r.replay}});
     laws.push_back(std::move(entry));
   }
-  return {{"backend", c.candidate.backend}, {"params", Json::parse(c.candidate.params)}, {"seconds", c.seconds}, {"laws", laws}};
+  return {{"backend", c.candidate.backend},
+          {"params", Json::parse(c.candidate.params)},
+          {"seconds", c.seconds},
+          {"laws", laws}};
 }
 
 Exit list_laws(const Arguments& arguments) {
@@ -172,13 +190,15 @@ void require_laws(const std::string& pattern) {
     names.push_back(law.name);
   }
   const std::string near = nearest(pattern, names);
-  throw Error(Errc::invalid, fmt::format("no law matches \"{}\"; {}\"cordon conform --list\" shows all", pattern,
-                                         near.empty() ? std::string() : "did you mean \"" + near + "\"? "));
+  throw Error(Errc::invalid,
+              fmt::format("no law matches \"{}\"; {}\"cordon conform --list\" shows all", pattern,
+                          near.empty() ? std::string() : "did you mean \"" + near + "\"? "));
 }
 
 Exit conform(const Program& program, const Arguments& arguments) {
   if (arguments.list) return list_laws(arguments);
-  if (arguments.plugin.empty()) throw Error(Errc::invalid, "conform: PLUGIN is required; `cordon conform --help` tells more");
+  if (arguments.plugin.empty())
+    throw Error(Errc::invalid, "conform: PLUGIN is required; `cordon conform --help` tells more");
   require_laws(arguments.laws);
   const fs::path library = find_plugin(program, arguments.plugin);
   const Discovery found = discover(library, arguments.backend, arguments.params);
@@ -187,7 +207,8 @@ Exit conform(const Program& program, const Arguments& arguments) {
     return found.invalid ? Exit::invalid : Exit::plugin;
   }
   if (found.candidates.empty())
-    throw Error(Errc::invalid, fmt::format("{} has no backend; there is nothing to check", library.string()));
+    throw Error(Errc::invalid,
+                fmt::format("{} has no backend; there is nothing to check", library.string()));
 
   std::vector<std::string> titles;
   for (const Candidate& candidate : found.candidates) titles.push_back(title_of(candidate));
@@ -207,18 +228,21 @@ Exit conform(const Program& program, const Arguments& arguments) {
       bar.show(k, static_cast<std::int64_t>(law), static_cast<std::int64_t>(laws));
     };
     if (c.problem.empty())
-      c.laws = arguments.in_process ? check_in_process(request, progress) : check_in_child(request, progress);
+      c.laws = arguments.in_process ? check_in_process(request, progress)
+                                    : check_in_child(request, progress);
     for (const LawReport& report : c.laws) c.seconds += report.seconds;
     if (c.count(State::failed) > 0) exit = Exit::violated;
-    const bool broken = !c.problem.empty() || c.count(State::crashed) + c.count(State::timed_out) > 0;
+    const bool broken =
+        !c.problem.empty() || c.count(State::crashed) + c.count(State::timed_out) > 0;
     if (broken && exit == Exit::done) exit = Exit::plugin;
     text += (text.empty() ? "" : "\n") + as_text(c, found.plugin);
     backends.push_back(as_json(c));
   }
   bar.clear();
   if (arguments.json) {
-    const Json report{{"plugin", found.plugin},         {"version", found.version}, {"file", library.string()},
-                      {"seed", arguments.seed},         {"cases", arguments.cases}, {"conforms", exit == Exit::done},
+    const Json report{{"plugin", found.plugin},         {"version", found.version},
+                      {"file", library.string()},       {"seed", arguments.seed},
+                      {"cases", arguments.cases},       {"conforms", exit == Exit::done},
                       {"backends", std::move(backends)}};
     text = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
@@ -229,28 +253,42 @@ Exit conform(const Program& program, const Arguments& arguments) {
 }  // namespace
 
 void add_conform(CLI::App& app, Program& program) {
-  CLI::App* command = app.add_subcommand("conform", "Check a plugin's backends against the laws that every backend keeps");
+  CLI::App* command = app.add_subcommand(
+      "conform", "Check a plugin's backends against the laws that every backend keeps");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("PLUGIN", arguments->plugin, "File of a plugin, or the name of one on the search path")->option_text(" ");
-  command->add_option("--backend", arguments->backend, "Check this backend only")->option_text("NAME");
-  command->add_option("--law", arguments->laws, "Check the laws whose names match, such as 'soundness.*' [*]")
+  command
+      ->add_option("PLUGIN", arguments->plugin,
+                   "File of a plugin, or the name of one on the search path")
+      ->option_text(" ");
+  command->add_option("--backend", arguments->backend, "Check this backend only")
+      ->option_text("NAME");
+  command
+      ->add_option("--law", arguments->laws,
+                   "Check the laws whose names match, such as 'soundness.*' [*]")
       ->option_text("GLOB");
   command->add_option("--seed", arguments->seed, "Of the random cases [1]")->option_text("N");
-  command->add_option("--cases", arguments->cases, "Cases per law; expensive laws take a share [300]")
+  command
+      ->add_option("--cases", arguments->cases, "Cases per law; expensive laws take a share [300]")
       ->check(CLI::Range(Index{1}, Index{1'000'000}))
       ->option_text("N");
-  command->add_option("--params", arguments->params, "Parameters of the backend, as a JSON object [{}]")->option_text("JSON");
+  command
+      ->add_option("--params", arguments->params,
+                   "Parameters of the backend, as a JSON object [{}]")
+      ->option_text("JSON");
   command->add_option("--timeout", arguments->timeout_s, "Seconds that one case may take [20]")
       ->check(CLI::Range(0.1, 86400.0))
       ->option_text("S");
-  command->add_flag("--in-process", arguments->in_process,
-                    "Check in this process, for debuggers: a crash ends it, and --timeout is not kept");
+  command->add_flag(
+      "--in-process", arguments->in_process,
+      "Check in this process, for debuggers: a crash ends it, and --timeout is not kept");
   command->add_flag("--list", arguments->list, "List the laws and check nothing");
   command->add_flag("--json", arguments->json, "Print JSON for programs");
   command->footer(
-      "Laws run in child processes: a crash or a hang is reported with the law that was running; `gdb --args cordon conform\n"
+      "Laws run in child processes: a crash or a hang is reported with the law that was running; "
+      "`gdb --args cordon conform\n"
       "PLUGIN --law LAW --in-process` shows where. A backend with a parameter\n"
-      "\"rounding\" is checked with each of its values. Exit code 0: all laws hold; 4: one is violated; 3: the plugin was "
+      "\"rounding\" is checked with each of its values. Exit code 0: all laws hold; 4: one is "
+      "violated; 3: the plugin was "
       "refused\n"
       "or crashed.");
   command->callback([&program, arguments] { program.exit = conform(program, *arguments); });

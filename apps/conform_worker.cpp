@@ -41,11 +41,13 @@ class Child {
  public:
   explicit Child(const std::function<void(int fd)>& body) {
     int ends[2];
-    if (pipe(ends) != 0) throw Error(Errc::io, fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+    if (pipe(ends) != 0)
+      throw Error(Errc::io, fmt::format("cannot make a pipe: {}", std::strerror(errno)));
     std::fflush(nullptr);
     const pid_t parent = getpid();
     pid_ = fork();
-    if (pid_ < 0) throw Error(Errc::io, fmt::format("cannot start a process: {}", std::strerror(errno)));
+    if (pid_ < 0)
+      throw Error(Errc::io, fmt::format("cannot start a process: {}", std::strerror(errno)));
     if (pid_ == 0) {
       close(ends[0]);
       prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -69,14 +71,16 @@ class Child {
 
   enum class Event { message, ended, timeout };
   Event wait(double timeout_s, Json& message) {
-    const Clock::time_point end = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(1000 * timeout_s));
+    const Clock::time_point end =
+        Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(1000 * timeout_s));
     for (;;) {
       if (const std::size_t line = buffer_.find('\n'); line != std::string::npos) {
         message = Json::parse(buffer_.substr(0, line));
         buffer_.erase(0, line + 1);
         return Event::message;
       }
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
+      const auto left =
+          std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
       if (left <= 0) return Event::timeout;
       pollfd watched{fd_, POLLIN, 0};
       if (poll(&watched, 1, static_cast<int>(left)) <= 0) continue;
@@ -100,8 +104,10 @@ class Child {
       }
     }
     pid_ = -1;
-    if (WIFSIGNALED(status)) return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
-    if (WIFEXITED(status) && WEXITSTATUS(status) != 0) return fmt::format("exit code {}", WEXITSTATUS(status));
+    if (WIFSIGNALED(status))
+      return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    if (WIFEXITED(status) && WEXITSTATUS(status) != 0)
+      return fmt::format("exit code {}", WEXITSTATUS(status));
     return "";
   }
   void kill_now() {
@@ -165,7 +171,8 @@ Params::Value value_from(const Json& json, const ParamSpec& spec) {
       Matrix A(static_cast<Index>(json.size()), first.size());
       for (std::size_t i = 0; i < json.size(); ++i) {
         const Vector row = vector_from(json[i], spec.name);
-        if (row.size() != first.size()) wrong_param(spec.name, "an array of rows of the same length");
+        if (row.size() != first.size())
+          wrong_param(spec.name, "an array of rows of the same length");
         A.row(static_cast<Index>(i)) = row.transpose();
       }
       return A;
@@ -175,8 +182,8 @@ Params::Value value_from(const Json& json, const ParamSpec& spec) {
     case ParamKind::component:
       break;
   }
-  throw Error(Errc::invalid,
-              fmt::format("--params: \"{}\" is a {}, which cannot be given here", spec.name, to_string(spec.kind)));
+  throw Error(Errc::invalid, fmt::format("--params: \"{}\" is a {}, which cannot be given here",
+                                         spec.name, to_string(spec.kind)));
 }
 
 /// Throws InputError or Errc::invalid for parameters that do not fit the schema.
@@ -187,17 +194,20 @@ Params params_from(const std::string& text, const ParamSchema& schema) {
   } catch (const Json::exception& error) {
     throw Error(Errc::invalid, fmt::format("--params is no JSON: {}", error.what()));
   }
-  if (!json.is_object()) throw Error(Errc::invalid, "--params must be a JSON object, such as '{\"rounding\": \"outward\"}'");
+  if (!json.is_object())
+    throw Error(Errc::invalid,
+                "--params must be a JSON object, such as '{\"rounding\": \"outward\"}'");
   Params params;
   for (const auto& [name, value] : json.items()) {
     const ParamSpec* spec = schema.find(name);
     if (!spec) {
-      throw Error(Errc::invalid,
-                  fmt::format("--params: the backend has no parameter \"{}\"; {}", name, suggest(name, schema.names())));
+      throw Error(Errc::invalid, fmt::format("--params: the backend has no parameter \"{}\"; {}",
+                                             name, suggest(name, schema.names())));
     }
     params.set(name, value_from(value, *spec));
   }
-  if (const auto problems = schema.complete(params); !problems.empty()) throw InputError("--params", problems);
+  if (const auto problems = schema.complete(params); !problems.empty())
+    throw InputError("--params", problems);
   return params;
 }
 
@@ -205,7 +215,8 @@ Params params_from(const std::string& text, const ParamSchema& schema) {
 void load_only(Registry& registry, const std::filesystem::path& library) {
   const PluginReport& report = registry.load_file(library);
   if (report.state == PluginReport::State::loaded) return;
-  throw Error(Errc::plugin, fmt::format("{} was refused: {}; {}", library.string(), report.reason, report.fix));
+  throw Error(Errc::plugin,
+              fmt::format("{} was refused: {}; {}", library.string(), report.reason, report.fix));
 }
 
 /// The ways of rounding that a backend offers, unless the parameters choose one.
@@ -215,17 +226,20 @@ std::vector<std::string> roundings(const ParamSchema& schema, const Json& params
   return spec->choices;
 }
 
-void discover_in_child(int fd, const std::filesystem::path& library, const std::string& backend, const std::string& params) {
+void discover_in_child(int fd, const std::filesystem::path& library, const std::string& backend,
+                       const std::string& params) {
   try {
     Registry registry;
     load_only(registry, library);
     const PluginReport& report = registry.reports().back();
-    Json message{{"plugin", report.name}, {"version", report.version}, {"candidates", Json::array()}};
+    Json message{
+        {"plugin", report.name}, {"version", report.version}, {"candidates", Json::array()}};
     std::vector<std::string> names = registry.backends();
     if (!backend.empty()) {
       if (!registry.backend_info(backend)) {
         const std::string mend = names.empty() ? "it has none" : suggest(backend, names);
-        throw Error(Errc::invalid, fmt::format("{} has no backend \"{}\"; {}", library.string(), backend, mend));
+        throw Error(Errc::invalid,
+                    fmt::format("{} has no backend \"{}\"; {}", library.string(), backend, mend));
       }
       names = {backend};
     }
@@ -234,7 +248,8 @@ void discover_in_child(int fd, const std::filesystem::path& library, const std::
       params_from(params, schema);
       const Json given = Json::parse(params);
       const auto choices = roundings(schema, given);
-      if (choices.empty()) message["candidates"].push_back({{"backend", name}, {"params", given.dump()}});
+      if (choices.empty())
+        message["candidates"].push_back({{"backend", name}, {"params", given.dump()}});
       for (const std::string& choice : choices) {
         Json chosen = given;
         chosen["rounding"] = choice;
@@ -280,7 +295,8 @@ Result result_from(const Json& json) {
 using Tell = std::function<void(const Json& message)>;
 
 /// The laws from `first` on; results, progress and what goes wrong are told as messages.
-void check_laws(const Tell& tell, const ConformRequest& request, const std::vector<std::string>& laws, std::size_t first) {
+void check_laws(const Tell& tell, const ConformRequest& request,
+                const std::vector<std::string>& laws, std::size_t first) {
   conformance::Subject subject;
   ParamSchema schema;
   const std::string backend = request.candidate.backend;
@@ -304,7 +320,9 @@ void check_laws(const Tell& tell, const ConformRequest& request, const std::vect
     load_only(registry, request.library);
     return registry.make_backend(backend, params);
   };
-  const auto progress = [&](const conformance::Law&, Index number, Index) { tell({{"case", number}}); };
+  const auto progress = [&](const conformance::Law&, Index number, Index) {
+    tell({{"case", number}});
+  };
   for (std::size_t k = first; k < laws.size(); ++k) {
     tell({{"start", k}});
     try {
@@ -316,8 +334,8 @@ void check_laws(const Tell& tell, const ConformRequest& request, const std::vect
 }
 
 /// A law that did not come to its end.
-LawReport lost(const ConformRequest& request, const std::string& law, Index number, bool unbounded, LawReport::State state,
-               const std::string& how) {
+LawReport lost(const ConformRequest& request, const std::string& law, Index number, bool unbounded,
+               LawReport::State state, const std::string& how) {
   LawReport report;
   report.state = state;
   Result& r = report.result;
@@ -332,7 +350,8 @@ LawReport lost(const ConformRequest& request, const std::string& law, Index numb
     info.unbounded = unbounded;
     r.witness = conformance::describe_case(law, request.options, info, number);
   }
-  r.replay = fmt::format("{} --law {} --seed {} --cases {}", request.command, law, request.options.seed, request.options.cases);
+  r.replay = fmt::format("{} --law {} --seed {} --cases {}", request.command, law,
+                         request.options.seed, request.options.cases);
   return report;
 }
 
@@ -354,19 +373,21 @@ std::string_view to_string(LawReport::State state) noexcept {
   return "";
 }
 
-Discovery discover(const std::filesystem::path& library, const std::string& backend, const std::string& params) {
+Discovery discover(const std::filesystem::path& library, const std::string& backend,
+                   const std::string& params) {
   Child child([&](int fd) { discover_in_child(fd, library, backend, params); });
   Discovery found;
   Json message;
   switch (child.wait(60, message)) {
     case Child::Event::timeout:
       child.kill_now();
-      found.problem = fmt::format("{} does not come back from being loaded within 60 s", library.string());
+      found.problem =
+          fmt::format("{} does not come back from being loaded within 60 s", library.string());
       return found;
     case Child::Event::ended: {
       const std::string how = child.finish();
-      found.problem =
-          fmt::format("{} ends the process while it is loaded: {}", library.string(), how.empty() ? "exit code 0" : how);
+      found.problem = fmt::format("{} ends the process while it is loaded: {}", library.string(),
+                                  how.empty() ? "exit code 0" : how);
       return found;
     }
     case Child::Event::message:
@@ -379,7 +400,8 @@ Discovery discover(const std::filesystem::path& library, const std::string& back
   }
   found.plugin = message.at("plugin");
   found.version = message.at("version");
-  for (const Json& entry : message.at("candidates")) found.candidates.push_back({entry.at("backend"), entry.at("params")});
+  for (const Json& entry : message.at("candidates"))
+    found.candidates.push_back({entry.at("backend"), entry.at("params")});
   return found;
 }
 
@@ -389,7 +411,9 @@ std::string problem_of_making(const std::filesystem::path& library, const Candid
     try {
       Registry registry;
       load_only(registry, library);
-      registry.make_backend(candidate.backend, params_from(candidate.params, registry.backend_info(candidate.backend)->schema));
+      registry.make_backend(
+          candidate.backend,
+          params_from(candidate.params, registry.backend_info(candidate.backend)->schema));
     } catch (...) {
       problem = current_text();
     }
@@ -442,7 +466,8 @@ class Reports {
       report.state = static_cast<LawReport::State>(report.result.status);
       add(std::move(report));
     }
-    if (message.contains("broken")) lose(LawReport::State::crashed, "an exception: " + message.at("broken").get<std::string>());
+    if (message.contains("broken"))
+      lose(LawReport::State::crashed, "an exception: " + message.at("broken").get<std::string>());
   }
   /// The law that is being checked does not come to its end.
   void lose(LawReport::State state, const std::string& how) {
@@ -471,8 +496,10 @@ std::vector<LawReport> check_in_child(const ConformRequest& request, const LawPr
   Reports reports(request, progress);
   while (!reports.complete()) {
     reports.begin();
-    Child child(
-        [&](int fd) { check_laws([&](const Json& message) { send(fd, message); }, request, reports.laws(), reports.size()); });
+    Child child([&](int fd) {
+      check_laws([&](const Json& message) { send(fd, message); }, request, reports.laws(),
+                 reports.size());
+    });
     for (bool alive = true; alive && !reports.complete();) {
       Json message;
       switch (child.wait(request.timeout_s, message)) {
@@ -481,13 +508,15 @@ std::vector<LawReport> check_in_child(const ConformRequest& request, const LawPr
           break;
         case Child::Event::ended: {
           const std::string how = child.finish();
-          reports.lose(LawReport::State::crashed, "the process ended by " + (how.empty() ? "exit code 0" : how));
+          reports.lose(LawReport::State::crashed,
+                       "the process ended by " + (how.empty() ? "exit code 0" : how));
           alive = false;
           break;
         }
         case Child::Event::timeout:
           child.kill_now();
-          reports.lose(LawReport::State::timed_out, fmt::format("no answer within {} s", request.timeout_s));
+          reports.lose(LawReport::State::timed_out,
+                       fmt::format("no answer within {} s", request.timeout_s));
           alive = false;
           break;
       }
@@ -496,10 +525,12 @@ std::vector<LawReport> check_in_child(const ConformRequest& request, const LawPr
   return reports.take();
 }
 
-std::vector<LawReport> check_in_process(const ConformRequest& request, const LawProgress& progress) {
+std::vector<LawReport> check_in_process(const ConformRequest& request,
+                                        const LawProgress& progress) {
   Reports reports(request, progress);
   check_laws([&](const Json& message) { reports.take_in(message); }, request, reports.laws(), 0);
-  while (!reports.complete()) reports.lose(LawReport::State::crashed, "the backend could not be made again");
+  while (!reports.complete())
+    reports.lose(LawReport::State::crashed, "the backend could not be made again");
   return reports.take();
 }
 

@@ -28,7 +28,8 @@ Exit design(const Program& program, Arguments& arguments) {
   options.stop = stop_on_signals();  // reading checks what was read, which may take a while
   Registry registry;
   registry.load({program.plugins});
-  const Study study = read_study(arguments.study, registry, default_search_path(), program.study_plugins());
+  const Study study =
+      read_study(arguments.study, registry, default_search_path(), program.study_plugins());
   if (!arguments.quiet) {
     for (const std::string& warning : study.warnings) warn(warning);
   }
@@ -45,32 +46,44 @@ Exit design(const Program& program, Arguments& arguments) {
     return interrupted;
   }
   if (designs.empty()) {
-    throw InputError(study.file.string(),
-                     {{"/pipelines", "no pipeline has a designer", "add one: {\"backend\": …, \"designer\": …}"}});
+    throw InputError(study.file.string(), {{"/pipelines", "no pipeline has a designer",
+                                            "add one: {\"backend\": …, \"designer\": …}"}});
   }
-  if (!arguments.quiet) print(arguments.json ? designs_json(study, designs) : designs_text(study, designs, Paint(stdout)));
-  for (const std::string& complaint : complaints(study, designs, arguments.verify)) complain(complaint);
+  if (!arguments.quiet)
+    print(arguments.json ? designs_json(study, designs)
+                         : designs_text(study, designs, Paint(stdout)));
+  for (const std::string& complaint : complaints(study, designs, arguments.verify))
+    complain(complaint);
   return exit_of(designs, arguments.verify);
 }
 
 }  // namespace
 
 void add_design(CLI::App& app, Program& program) {
-  CLI::App* command = app.add_subcommand("design", "Design inputs that tell the modes of a study apart");
+  CLI::App* command =
+      app.add_subcommand("design", "Design inputs that tell the modes of a study apart");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("STUDY", arguments->study, "Study file (JSON)")->required()->option_text(" ");
-  command->add_option("--pipeline", arguments->options.pipeline, "This pipeline only")->option_text("NAME");
-  command->add_flag("--verify", arguments->verify, "Do not be content with claims: exit code 5 where a proof stays open");
+  command->add_option("--pipeline", arguments->options.pipeline, "This pipeline only")
+      ->option_text("NAME");
+  command->add_flag("--verify", arguments->verify,
+                    "Do not be content with claims: exit code 5 where a proof stays open");
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->footer(
-      "An input separates two modes if no disturbances within their bounds give both the same outputs; κ tells by how much\n"
-      "all bounds could grow. What is said of pairs is proven in exact arithmetic, from the study's own numbers and without the\n"
-      "designer, or else called claimed; that no input is cheaper, or that there is none, is the designer's claim.\n"
-      "Exit code 0 for every answer, infeasible included; 2 if the model contradicts itself under the input, so that a mode has\n"
-      "no output at all; 4 if a claim is proven false, or the input is not what the study asks for; 5 if no input was found in "
+      "An input separates two modes if no disturbances within their bounds give both the same "
+      "outputs; κ tells by how much\n"
+      "all bounds could grow. What is said of pairs is proven in exact arithmetic, from the "
+      "study's own numbers and without the\n"
+      "designer, or else called claimed; that no input is cheaper, or that there is none, is the "
+      "designer's claim.\n"
+      "Exit code 0 for every answer, infeasible included; 2 if the model contradicts itself under "
+      "the input, so that a mode has\n"
+      "no output at all; 4 if a claim is proven false, or the input is not what the study asks "
+      "for; 5 if no input was found in "
       "the\n"
-      "limit, or with --verify if the exact proof left a question open; 130 after SIGINT or SIGTERM, with nothing printed.");
+      "limit, or with --verify if the exact proof left a question open; 130 after SIGINT or "
+      "SIGTERM, with nothing printed.");
   command->callback([&program, arguments] { program.exit = design(program, *arguments); });
 }
 

@@ -33,12 +33,14 @@ std::string pair_name(const Names& modes, Index i, Index j) {
   return modes[static_cast<std::size_t>(i)] + ", " + modes[static_cast<std::size_t>(j)];
 }
 
-/// What of it is proven, else what the designer claims. Without colours: cells of a table are aligned by their length.
+/// What of it is proven, else what the designer claims. Without colours: cells of a table are
+/// aligned by their length.
 std::string separation(Answer claimed, const ExactPair* exact) {
   const bool proven = exact && exact->disjoint != Answer::unknown;
   const Answer disjoint = proven ? exact->disjoint : claimed;
   if (disjoint == Answer::unknown) return "not decided";
-  return fmt::format("{} ({})", disjoint == Answer::yes ? "disjoint" : "meet", proven ? "proven" : "claimed");
+  return fmt::format("{} ({})", disjoint == Answer::yes ? "disjoint" : "meet",
+                     proven ? "proven" : "claimed");
 }
 
 /// What is said of the cost of every separating input.
@@ -52,12 +54,16 @@ std::string restriction_text(const DesignOutcome& outcome) {
   if (!outcome.restriction) return "";
   const double bound = outcome.restriction->lower_bound;
   const std::string known =
-      std::isfinite(bound) ? fmt::format("; that one costs at least {}, the problem itself may cost less", number(bound)) : "";
+      std::isfinite(bound)
+          ? fmt::format("; that one costs at least {}, the problem itself may cost less",
+                        number(bound))
+          : "";
   return fmt::format("Searched in place of the problem: {}{}\n", outcome.restriction->name, known);
 }
 
 /// The separation that is proven, or else the one that is claimed: green, red or yellow.
-std::string separated_text(const InputDesign& best, const ExactSeparation* exact, const Paint& paint) {
+std::string separated_text(const InputDesign& best, const ExactSeparation* exact,
+                           const Paint& paint) {
   const Answer proven = exact ? exact->separates() : Answer::unknown;
   if (proven == Answer::yes) return paint.green("separated (proven)");
   if (proven == Answer::no) return paint.red("not separated (proven)");
@@ -66,25 +72,32 @@ std::string separated_text(const InputDesign& best, const ExactSeparation* exact
                                                        : "not proven to be separated");
 }
 
-std::string status_text(const DesignOutcome& outcome, const std::string& designer, const ExactSeparation* exact,
-                        const Paint& paint) {
+std::string status_text(const DesignOutcome& outcome, const std::string& designer,
+                        const ExactSeparation* exact, const Paint& paint) {
   const std::string cost = fmt::format("cost {}", number(outcome.best ? outcome.best->cost : 0));
   switch (outcome.status) {
     case DesignStatus::optimal:
-      return paint.green("Optimal") + fmt::format(" (claimed by {}): {}, {}", designer, cost, bound_text(outcome));
+      return paint.green("Optimal") +
+             fmt::format(" (claimed by {}): {}, {}", designer, cost, bound_text(outcome));
     case DesignStatus::feasible: {
-      const std::string gap = std::isfinite(outcome.gap()) ? fmt::format(" with claimed gap {:.3g} %", 100 * outcome.gap()) : "";
-      return paint.yellow(fmt::format("Feasible{}", gap)) + fmt::format(": {}, {}", cost, bound_text(outcome));
+      const std::string gap = std::isfinite(outcome.gap())
+                                  ? fmt::format(" with claimed gap {:.3g} %", 100 * outcome.gap())
+                                  : "";
+      return paint.yellow(fmt::format("Feasible{}", gap)) +
+             fmt::format(": {}, {}", cost, bound_text(outcome));
     }
     case DesignStatus::infeasible:
       return paint.yellow("Infeasible") +
-             fmt::format(" (claimed by {}): no input of the input set separates the modes", designer);
+             fmt::format(" (claimed by {}): no input of the input set separates the modes",
+                         designer);
     case DesignStatus::unknown:
-      return paint.yellow(outcome.stopped ? "No answer within the limit" : "No answer") + ": " + bound_text(outcome);
+      return paint.yellow(outcome.stopped ? "No answer within the limit" : "No answer") + ": " +
+             bound_text(outcome);
     case DesignStatus::given:
       break;
   }
-  return fmt::format("Given: {}, the modes are {}", cost, separated_text(*outcome.best, exact, paint));
+  return fmt::format("Given: {}, the modes are {}", cost,
+                     separated_text(*outcome.best, exact, paint));
 }
 
 std::string inputs_table(const Matrix& u, const Paint& paint) {
@@ -104,7 +117,8 @@ double shown_kappa(double kappa, const ExactPair* proven) {
   return kappa;
 }
 
-std::string pairs_table(const Names& modes, const InputDesign& design, const ExactSeparation* exact, const Paint& paint) {
+std::string pairs_table(const Names& modes, const InputDesign& design, const ExactSeparation* exact,
+                        const Paint& paint) {
   Rows rows{{"PAIR", "κ", "AT LEAST", "OUTPUT TUBES"}};
   for (std::size_t q = 0; q < design.pairs.size(); ++q) {
     const PairSeparation& pair = design.pairs[q];
@@ -117,17 +131,20 @@ std::string pairs_table(const Names& modes, const InputDesign& design, const Exa
 }
 
 /// Modes whose tube is empty, as the designer says or by the exact proof.
-Names empty_modes(const Names& modes, const std::vector<Answer>& empty, const ExactSeparation* exact) {
+Names empty_modes(const Names& modes, const std::vector<Answer>& empty,
+                  const ExactSeparation* exact) {
   Names found;
   for (std::size_t i = 0; i < empty.size(); ++i) {
-    if (empty[i] == Answer::yes || (exact && exact->empty[i] == Answer::yes)) found.push_back(modes[i]);
+    if (empty[i] == Answer::yes || (exact && exact->empty[i] == Answer::yes))
+      found.push_back(modes[i]);
   }
   return found;
 }
 
 std::string empty_text(const Names& empty) {
   return fmt::format(
-      "no output of {} fits this input: the model contradicts itself, and being apart from it says nothing. Check the admissible "
+      "no output of {} fits this input: the model contradicts itself, and being apart from it says "
+      "nothing. Check the admissible "
       "set, X0 and the static rows",
       fmt::join(empty, ", "));
 }
@@ -135,7 +152,8 @@ std::string empty_text(const Names& empty) {
 std::string horizon_text(const DesignOutcome& outcome) {
   std::string text =
       fmt::format("Horizon N = {}: {} of k = 0 … {}\n", outcome.horizon,
-                  outcome.last_output_only ? "inputs, and the last output," : "inputs and outputs", outcome.horizon);
+                  outcome.last_output_only ? "inputs, and the last output," : "inputs and outputs",
+                  outcome.horizon);
   for (const HorizonTrial& trial : outcome.tried) {
     text += fmt::format("  tried before: N = {}, {}{}{}\n", trial.horizon, to_string(trial.status),
                         trial.reason.empty() ? "" : ": ", trial.reason);
@@ -152,17 +170,21 @@ std::string reason_text(const DesignOutcome& outcome) {
 std::string search_text(const DesignOutcome& outcome, double design_s) {
   if (outcome.programs == 0) return fmt::format("Time: {:.3g} s\n", design_s);
   const std::string facets = outcome.facets > 0 ? fmt::format(", {} facets", outcome.facets) : "";
-  return fmt::format("Search: {} nodes, {} linear programs{}, {:.3g} s{}\n", outcome.nodes, outcome.programs, facets, design_s,
+  return fmt::format("Search: {} nodes, {} linear programs{}, {:.3g} s{}\n", outcome.nodes,
+                     outcome.programs, facets, design_s,
                      outcome.stopped ? ", ended by the limit" : "");
 }
 
 std::string exact_text(const Names& modes, const ExactSeparation& exact, const Paint& paint) {
   std::string text;
   for (const ExactPair& pair : exact.pairs) {
-    if (!pair.reason.empty()) text += fmt::format("Not decided exactly: {}: {}\n", pair_name(modes, pair.i, pair.j), pair.reason);
+    if (!pair.reason.empty())
+      text += fmt::format("Not decided exactly: {}: {}\n", pair_name(modes, pair.i, pair.j),
+                          pair.reason);
   }
   for (std::size_t i = 0; i < exact.empty.size(); ++i) {
-    if (exact.empty[i] == Answer::unknown) text += fmt::format("Not decided exactly: has {} an output at all?\n", modes[i]);
+    if (exact.empty[i] == Answer::unknown)
+      text += fmt::format("Not decided exactly: has {} an output at all?\n", modes[i]);
   }
   const Answer separates = exact.separates();
   const std::string verdict = separates == Answer::yes  ? paint.green("the modes are separated")
@@ -178,20 +200,23 @@ std::string refuted_text(const Names& refuted, const Paint& paint) {
 }
 
 /// What there is to say of an input: the sequence, the pairs of modes, and what is proven of them.
-std::string input_text(const Names& modes, const InputDesign& best, const ExactSeparation* exact, const Paint& paint) {
-  std::string text = fmt::format("\n{}\n{}\n", inputs_table(best.u, paint), pairs_table(modes, best, exact, paint));
+std::string input_text(const Names& modes, const InputDesign& best, const ExactSeparation* exact,
+                       const Paint& paint) {
+  std::string text = fmt::format("\n{}\n{}\n", inputs_table(best.u, paint),
+                                 pairs_table(modes, best, exact, paint));
   const Names empty = empty_modes(modes, best.empty, exact);
   if (!empty.empty()) text += paint.red("Modelling error") + ": " + empty_text(empty) + "\n";
   return exact ? text + exact_text(modes, *exact, paint) : text;
 }
 
 std::string design_text(const Names& modes, const PipelineDesign& design, const Paint& paint) {
-  std::string text = fmt::format("{}  {}, {}\n", paint.bold(design.name), design.backend, design.designer);
+  std::string text =
+      fmt::format("{}  {}, {}\n", paint.bold(design.name), design.backend, design.designer);
   if (design.outcome) {
     const DesignOutcome& outcome = *design.outcome;
     const ExactSeparation* exact = design.exact ? &*design.exact : nullptr;
-    text += status_text(outcome, design.designer, exact, paint) + "\n" + restriction_text(outcome) + horizon_text(outcome) +
-            reason_text(outcome);
+    text += status_text(outcome, design.designer, exact, paint) + "\n" + restriction_text(outcome) +
+            horizon_text(outcome) + reason_text(outcome);
     if (outcome.best) text += input_text(modes, *outcome.best, exact, paint);
     text += refuted_text(design.refuted, paint) + search_text(outcome, design.design_s);
   }
@@ -200,7 +225,8 @@ std::string design_text(const Names& modes, const PipelineDesign& design, const 
 }
 
 /// Which modes were possible at the ends of the experiments with each, and what was decided.
-std::string experiments_text(const Names& modes, const std::vector<ExperimentRow>& experiments, const Paint& paint) {
+std::string experiments_text(const Names& modes, const std::vector<ExperimentRow>& experiments,
+                             const Paint& paint) {
   Rows rows{{"TRUE MODE", "RUNS"}};
   for (const std::string& mode : modes) rows[0].push_back(mode);
   rows[0].insert(rows[0].end(), {"ISOLATED", "WRONG", "NONE", "UNDECIDED", "ISOLATED AT k"});
@@ -212,22 +238,29 @@ std::string experiments_text(const Names& modes, const std::vector<ExperimentRow
     }
     rows.back().push_back(row.isolation.count > 0 ? fmt::format("{}", row.isolation.median) : "-");
   }
-  return fmt::format("Experiments with every mode: at their ends, how often each mode is possible (k: the median)\n{}",
-                     table(rows, paint));
+  return fmt::format(
+      "Experiments with every mode: at their ends, how often each mode is possible (k: the "
+      "median)\n{}",
+      table(rows, paint));
 }
 
-/// Why experiments may have stayed open: samples after the horizon of `tube_membership` decide nothing.
+/// Why experiments may have stayed open: samples after the horizon of `tube_membership` decide
+/// nothing.
 std::string unused_samples_text(const Study& study, const PipelineOutcome& pipeline) {
-  const auto spec = std::find_if(study.pipelines.begin(), study.pipelines.end(),
-                                 [&](const PipelineSpec& candidate) { return candidate.name == pipeline.name; });
+  const auto spec =
+      std::find_if(study.pipelines.begin(), study.pipelines.end(),
+                   [&](const PipelineSpec& candidate) { return candidate.name == pipeline.name; });
   const bool undecided = std::any_of(pipeline.experiments.begin(), pipeline.experiments.end(),
                                      [](const ExperimentRow& row) { return row.undecided > 0; });
-  if (!undecided || spec == study.pipelines.end() || !spec->diagnoser || spec->diagnoser->type != "tube_membership") return "";
+  if (!undecided || spec == study.pipelines.end() || !spec->diagnoser ||
+      spec->diagnoser->type != "tube_membership")
+    return "";
   const Index last = spec->diagnoser->params.integer("horizon"), needed = pipeline.design->horizon;
   if (last >= needed) return "";
   return fmt::format(
-      "Undecided: the diagnoser takes no sample after k = {}, the input goes on to k = {}. To try: a \"horizon\" of {}\n", last,
-      needed, needed);
+      "Undecided: the diagnoser takes no sample after k = {}, the input goes on to k = {}. To try: "
+      "a \"horizon\" of {}\n",
+      last, needed, needed);
 }
 
 /// Does the exact proof leave a question open?
@@ -235,12 +268,14 @@ bool open(const PipelineDesign& design) {
   if (!design.exact) return false;
   const auto unknown = [](const auto& answer) { return answer == Answer::unknown; };
   return std::any_of(design.exact->empty.begin(), design.exact->empty.end(), unknown) ||
-         std::any_of(design.exact->pairs.begin(), design.exact->pairs.end(), [&](const auto& p) { return unknown(p.disjoint); });
+         std::any_of(design.exact->pairs.begin(), design.exact->pairs.end(),
+                     [&](const auto& p) { return unknown(p.disjoint); });
 }
 
 }  // namespace
 
-std::string designs_text(const Study& study, const std::vector<PipelineDesign>& designs, const Paint& paint) {
+std::string designs_text(const Study& study, const std::vector<PipelineDesign>& designs,
+                         const Paint& paint) {
   const Names modes = mode_names(study);
   std::string text = study.title.empty() ? "" : paint.bold(study.title) + "\n";
   for (const PipelineDesign& design : designs) {
@@ -265,7 +300,8 @@ std::string designs_json(const Study& study, const std::vector<PipelineDesign>& 
         {{"name", design.name},
          {"backend", design.backend},
          {"designer", design.designer},
-         {"design", design.outcome ? ordered_json::parse(json_of(*design.outcome, modes)) : ordered_json(nullptr)},
+         {"design", design.outcome ? ordered_json::parse(json_of(*design.outcome, modes))
+                                   : ordered_json(nullptr)},
          {"exact", exact_json(design.exact, modes)},
          {"refuted", design.refuted},
          {"design_s", design.design_s},
@@ -274,30 +310,36 @@ std::string designs_json(const Study& study, const std::vector<PipelineDesign>& 
   return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::vector<std::string> refutations(const std::string& pipeline, const std::vector<std::string>& refuted) {
+std::vector<std::string> refutations(const std::string& pipeline,
+                                     const std::vector<std::string>& refuted) {
   Names found;
   for (const std::string& claim : refuted) {
-    found.push_back(
-        fmt::format("pipeline \"{}\" violates its guarantee: {}. This is a defect of its designer or backend", pipeline, claim));
+    found.push_back(fmt::format(
+        "pipeline \"{}\" violates its guarantee: {}. This is a defect of its designer or backend",
+        pipeline, claim));
   }
   return found;
 }
 
-std::vector<std::string> complaints(const Study& study, const std::vector<PipelineDesign>& designs, bool all_proven) {
+std::vector<std::string> complaints(const Study& study, const std::vector<PipelineDesign>& designs,
+                                    bool all_proven) {
   const Names modes = mode_names(study);
   std::vector<std::string> found;
   for (const PipelineDesign& design : designs) {
     const std::string name = fmt::format("pipeline \"{}\"", design.name);
     if (!design.error.empty()) found.push_back(fmt::format("{} stopped: {}", name, design.error));
-    for (std::string& claim : refutations(design.name, design.refuted)) found.push_back(std::move(claim));
+    for (std::string& claim : refutations(design.name, design.refuted))
+      found.push_back(std::move(claim));
     if (!design.outcome) continue;
     if (design.outcome->status == DesignStatus::unknown) {
-      found.push_back(name + (design.outcome->stopped ? ": no input was found within the limit" : ": no input was found"));
+      found.push_back(name + (design.outcome->stopped ? ": no input was found within the limit"
+                                                      : ": no input was found"));
     } else if (all_proven && open(design)) {
       found.push_back(name + ": the exact proof leaves a question open");
     }
     if (!design.outcome->best) continue;
-    const Names empty = empty_modes(modes, design.outcome->best->empty, design.exact ? &*design.exact : nullptr);
+    const Names empty =
+        empty_modes(modes, design.outcome->best->empty, design.exact ? &*design.exact : nullptr);
     if (!empty.empty()) found.push_back(fmt::format("{}: {}", name, empty_text(empty)));
   }
   return found;
@@ -305,13 +347,17 @@ std::vector<std::string> complaints(const Study& study, const std::vector<Pipeli
 
 Exit exit_of(const std::vector<PipelineDesign>& designs, bool all_proven) {
   Exit exit = Exit::done;
-  const auto worst = [&](Exit other) { exit = exit == Exit::done || exit == Exit::unanswered ? other : exit; };
+  const auto worst = [&](Exit other) {
+    exit = exit == Exit::done || exit == Exit::unanswered ? other : exit;
+  };
   for (const PipelineDesign& design : designs) {
     if (!design.refuted.empty() || design.error_code == Errc::violated) return Exit::violated;
     if (!design.error.empty()) worst(exit_for(design.error_code.value_or(Errc::internal)));
     if (design.outcome && design.outcome->best) {
       const std::vector<Answer>& claimed = design.outcome->best->empty;
-      const bool empty = !empty_modes(Names(claimed.size()), claimed, design.exact ? &*design.exact : nullptr).empty();
+      const bool empty =
+          !empty_modes(Names(claimed.size()), claimed, design.exact ? &*design.exact : nullptr)
+               .empty();
       if (empty) worst(Exit::invalid);
     }
     const bool unknown = design.outcome && design.outcome->status == DesignStatus::unknown;
@@ -323,28 +369,35 @@ Exit exit_of(const std::vector<PipelineDesign>& designs, bool all_proven) {
 std::vector<std::string> empty_tubes(const Study& study, const PipelineOutcome& pipeline) {
   const auto& design = pipeline.design;
   if (!design || !design->best) return {};
-  return empty_modes(mode_names(study), design->best->empty, pipeline.exact ? &*pipeline.exact : nullptr);
+  return empty_modes(mode_names(study), design->best->empty,
+                     pipeline.exact ? &*pipeline.exact : nullptr);
 }
 
 std::string design_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint) {
   const Names modes = mode_names(study);
-  const std::string diagnoser = pipeline.diagnoser.empty() ? "" : fmt::format(", {}", pipeline.diagnoser);
-  std::string text = fmt::format("{}  {}, {}{}\n", paint.bold(pipeline.name), pipeline.backend, pipeline.designer, diagnoser);
+  const std::string diagnoser =
+      pipeline.diagnoser.empty() ? "" : fmt::format(", {}", pipeline.diagnoser);
+  std::string text = fmt::format("{}  {}, {}{}\n", paint.bold(pipeline.name), pipeline.backend,
+                                 pipeline.designer, diagnoser);
   if (pipeline.design) {
     const DesignOutcome& outcome = *pipeline.design;
     const ExactSeparation* exact = pipeline.exact ? &*pipeline.exact : nullptr;
-    text += status_text(outcome, pipeline.designer, exact, paint) + "\n" + restriction_text(outcome) + horizon_text(outcome) +
-            reason_text(outcome);
+    text += status_text(outcome, pipeline.designer, exact, paint) + "\n" +
+            restriction_text(outcome) + horizon_text(outcome) + reason_text(outcome);
     if (outcome.best) {
       text += input_text(modes, *outcome.best, exact, paint);
       if (pipeline.diagnoser.empty())
-        text += "\nNo experiments: name a \"diagnoser\" beside the designer to try the input on every mode\n";
+        text +=
+            "\nNo experiments: name a \"diagnoser\" beside the designer to try the input on every "
+            "mode\n";
     } else {
       text += "No experiments: there is no input to try\n";
     }
   }
-  if (!pipeline.experiments.empty()) text += fmt::format("\n{}", experiments_text(modes, pipeline.experiments, paint));
-  text += refuted_text(pipeline.refuted, paint) + unused_samples_text(study, pipeline) + assumption_text(study, pipeline, paint);
+  if (!pipeline.experiments.empty())
+    text += fmt::format("\n{}", experiments_text(modes, pipeline.experiments, paint));
+  text += refuted_text(pipeline.refuted, paint) + unused_samples_text(study, pipeline) +
+          assumption_text(study, pipeline, paint);
   if (!pipeline.error.empty()) text += paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
   return text;
 }

@@ -28,7 +28,8 @@ struct Promise {
   std::optional<Guarantees> guarantees;
 };
 
-std::vector<Promise> promises(const Study& study, const Registry& registry, const std::string& name) {
+std::vector<Promise> promises(const Study& study, const Registry& registry,
+                              const std::string& name) {
   std::vector<Promise> found;
   std::vector<std::string> names;
   for (const PipelineSpec& pipeline : study.pipelines) {
@@ -37,11 +38,14 @@ std::vector<Promise> promises(const Study& study, const Registry& registry, cons
     found.push_back({&pipeline, std::nullopt});
     if (!pipeline.diagnoser) continue;
     const auto backend = registry.make_backend(pipeline.backend.type, pipeline.backend.params);
-    found.back().guarantees =
-        registry.make_diagnoser(pipeline.diagnoser->type, bank_of(study), backend, pipeline.diagnoser->params)->guarantees();
+    found.back().guarantees = registry
+                                  .make_diagnoser(pipeline.diagnoser->type, bank_of(study), backend,
+                                                  pipeline.diagnoser->params)
+                                  ->guarantees();
   }
   if (found.empty() && !name.empty()) {
-    throw InputError(study.file.string(), {{"/pipelines", "there is no pipeline \"" + name + "\"", suggest(name, names)}});
+    throw InputError(study.file.string(), {{"/pipelines", "there is no pipeline \"" + name + "\"",
+                                            suggest(name, names)}});
   }
   return found;
 }
@@ -61,9 +65,11 @@ std::string report_text(const Study& study, const std::vector<Promise>& all) {
       text += fmt::format("{}  has no diagnoser\n", paint.bold(pipeline->name));
       continue;
     }
-    text += fmt::format("{}  {}, {}\n", paint.bold(pipeline->name), pipeline->backend.type, pipeline->diagnoser->type);
-    text += guarantees ? guarantees_text(*guarantees, mode_names(study), paint)
-                       : fmt::format("{} makes no statements in advance\n", pipeline->diagnoser->type);
+    text += fmt::format("{}  {}, {}\n", paint.bold(pipeline->name), pipeline->backend.type,
+                        pipeline->diagnoser->type);
+    text += guarantees
+                ? guarantees_text(*guarantees, mode_names(study), paint)
+                : fmt::format("{} makes no statements in advance\n", pipeline->diagnoser->type);
   }
   return text;
 }
@@ -72,10 +78,11 @@ std::string report_json(const Study& study, const std::vector<Promise>& all) {
   const std::vector<std::string> modes = mode_names(study);
   Json report{{"modes", modes}, {"pipelines", Json::array()}};
   for (const auto& [pipeline, guarantees] : all) {
-    report["pipelines"].push_back({{"name", pipeline->name},
-                                   {"backend", pipeline->backend.type},
-                                   {"diagnoser", pipeline->diagnoser ? Json(pipeline->diagnoser->type) : Json(nullptr)},
-                                   {"guarantees", guarantees ? Json::parse(json_of(*guarantees, modes)) : Json(nullptr)}});
+    report["pipelines"].push_back(
+        {{"name", pipeline->name},
+         {"backend", pipeline->backend.type},
+         {"diagnoser", pipeline->diagnoser ? Json(pipeline->diagnoser->type) : Json(nullptr)},
+         {"guarantees", guarantees ? Json::parse(json_of(*guarantees, modes)) : Json(nullptr)}});
   }
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -83,7 +90,8 @@ std::string report_json(const Study& study, const std::vector<Promise>& all) {
 Exit guarantees(const Program& program, const Arguments& arguments) {
   Registry registry;
   registry.load({program.plugins});
-  const Study study = read_study(arguments.study, registry, default_search_path(), program.study_plugins());
+  const Study study =
+      read_study(arguments.study, registry, default_search_path(), program.study_plugins());
   for (const std::string& warning : study.warnings) warn(warning);
   const std::vector<Promise> all = promises(study, registry, arguments.pipeline);
   print(arguments.json ? report_json(study, all) : report_text(study, all));
@@ -93,14 +101,17 @@ Exit guarantees(const Program& program, const Arguments& arguments) {
 }  // namespace
 
 void add_guarantees(CLI::App& app, Program& program) {
-  CLI::App* command = app.add_subcommand("guarantees", "Say which faults of a study can be told apart, before any experiment");
+  CLI::App* command = app.add_subcommand(
+      "guarantees", "Say which faults of a study can be told apart, before any experiment");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("STUDY", arguments->study, "Study file (JSON)")->required()->option_text(" ");
   command->add_option("--pipeline", arguments->pipeline, "This pipeline only")->option_text("NAME");
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
   command->footer(
-      "For each observer of a bank and each true mode: the set that holds all residuals in steady state, and whether the\n"
-      "observer of the true mode is consistent with it and the others are not. \"not guaranteed\" means that this was not\n"
+      "For each observer of a bank and each true mode: the set that holds all residuals in steady "
+      "state, and whether the\n"
+      "observer of the true mode is consistent with it and the others are not. \"not guaranteed\" "
+      "means that this was not\n"
       "shown, \"no\" that it is proven to fail. The exit code is 0 whatever the answer.");
   command->callback([&program, arguments] { program.exit = guarantees(program, *arguments); });
 }

@@ -20,9 +20,13 @@ Json number(double value) {
 }
 
 Json as_json(const ParamSpec& spec) {
-  Json json{{"name", spec.name}, {"type", to_string(spec.kind)}, {"required", spec.required}, {"doc", spec.doc}};
+  Json json{{"name", spec.name},
+            {"type", to_string(spec.kind)},
+            {"required", spec.required},
+            {"doc", spec.doc}};
   if (spec.fallback) {
-    if (const auto* integer = std::get_if<std::int64_t>(&*spec.fallback)) json["default"] = *integer;
+    if (const auto* integer = std::get_if<std::int64_t>(&*spec.fallback))
+      json["default"] = *integer;
     if (const auto* real = std::get_if<double>(&*spec.fallback)) json["default"] = number(*real);
     if (const auto* flag = std::get_if<bool>(&*spec.fallback)) json["default"] = *flag;
     if (const auto* text = std::get_if<std::string>(&*spec.fallback)) json["default"] = *text;
@@ -51,13 +55,17 @@ Json as_json(const Component& component) {
 
 std::string as_text(const Component& component, const Paint& paint) {
   const ComponentInfo& info = *component.info;
-  std::string text = paint.bold(component.kind + " " + info.name) + " (plugin " + component.plugin + ")\n" + info.summary + "\n";
+  std::string text = paint.bold(component.kind + " " + info.name) + " (plugin " + component.plugin +
+                     ")\n" + info.summary + "\n";
   if (!info.citation.empty()) text += "Source: " + info.citation + "\n";
-  if (!info.details.empty()) text += "\n" + info.details + (info.details.ends_with('\n') ? "" : "\n");
-  if (info.schema.specs().empty()) return text + (info.details.empty() ? "" : "\n") + "It takes no parameters.\n";
+  if (!info.details.empty())
+    text += "\n" + info.details + (info.details.ends_with('\n') ? "" : "\n");
+  if (info.schema.specs().empty())
+    return text + (info.details.empty() ? "" : "\n") + "It takes no parameters.\n";
   std::vector<std::vector<std::string>> rows{{"PARAMETER", "TYPE", "DEFAULT", "RANGE", "MEANING"}};
   for (const ParamSpec& spec : info.schema.specs()) {
-    rows.push_back({spec.name, std::string(to_string(spec.kind)), default_text(spec), range_text(spec), spec.doc});
+    rows.push_back({spec.name, std::string(to_string(spec.kind)), default_text(spec),
+                    range_text(spec), spec.doc});
   }
   return text + "\n" + table(rows, paint);
 }
@@ -72,10 +80,11 @@ std::vector<Component> matching(const Registry& registry, const std::string& nam
   }
   if (!matches.empty()) return matches;
   if (const PluginReport* refused = registry.refused_provider(name)) {
-    throw Error(Errc::plugin, fmt::format("no component \"{}\": {} was refused: {}; {}", name, refused->file.string(),
-                                          refused->reason, refused->fix));
+    throw Error(Errc::plugin, fmt::format("no component \"{}\": {} was refused: {}; {}", name,
+                                          refused->file.string(), refused->reason, refused->fix));
   }
-  const std::string mend = names.empty() ? "no plugin was found, see `cordon doctor`" : suggest(name, names);
+  const std::string mend =
+      names.empty() ? "no plugin was found, see `cordon doctor`" : suggest(name, names);
   throw Error(Errc::invalid, fmt::format("no component \"{}\"; {}", name, mend));
 }
 
@@ -87,12 +96,15 @@ Exit info(const Program& program, const std::string& name, bool json) {
   if (json) {
     Json entries = Json::array();
     for (const Component& component : matches) entries.push_back(as_json(component));
-    print(Json{{"components", std::move(entries)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    print(Json{{"components", std::move(entries)}}.dump(2, ' ', false,
+                                                        Json::error_handler_t::replace) +
+          "\n");
     return Exit::done;
   }
   const Paint paint(stdout);
   std::string text;
-  for (const Component& component : matches) text += (text.empty() ? "" : "\n") + as_text(component, paint);
+  for (const Component& component : matches)
+    text += (text.empty() ? "" : "\n") + as_text(component, paint);
   print(text);
   return Exit::done;
 }
@@ -105,7 +117,8 @@ void add_info(CLI::App& app, Program& program) {
   const auto json = std::make_shared<bool>(false);
   command
       ->add_option("COMPONENT", *name,
-                   "Name of a backend, observer, diagnoser, metric, plant, gain or designer (see `cordon list`)")
+                   "Name of a backend, observer, diagnoser, metric, plant, gain or designer (see "
+                   "`cordon list`)")
       ->required();
   command->add_flag("--json", *json, "Print JSON for programs");
   command->callback([&program, name, json] { program.exit = info(program, *name, *json); });

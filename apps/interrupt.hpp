@@ -8,10 +8,12 @@
 
 namespace cordon::apps {
 
-inline constexpr Exit interrupted = static_cast<Exit>(130);  // as a shell reports a process that SIGINT ended
+inline constexpr Exit interrupted =
+    static_cast<Exit>(130);  // as a shell reports a process that SIGINT ended
 
-/// A flag that the first SIGINT or SIGTERM sets; the next one gets the system's default and kills. Signals that the process was
-/// started to ignore stay ignored. A limit of file size becomes an error of writing instead of the end of the process.
+/// A flag that the first SIGINT or SIGTERM sets; the next one gets the system's default and kills.
+/// Signals that the process was started to ignore stay ignored. A limit of file size becomes an
+/// error of writing instead of the end of the process.
 const std::atomic<bool>* stop_on_signals();
 
 }  // namespace cordon::apps

@@ -19,14 +19,15 @@ std::string as_json(const std::vector<Component>& found) {
                        {"summary", c.info->summary},
                        {"citation", c.info->citation}});
   }
-  return nlohmann::ordered_json{{"components", std::move(entries)}}.dump(2, ' ', false,
-                                                                         nlohmann::json::error_handler_t::replace) +
+  return nlohmann::ordered_json{{"components", std::move(entries)}}.dump(
+             2, ' ', false, nlohmann::json::error_handler_t::replace) +
          "\n";
 }
 
 std::string as_table(const std::vector<Component>& found) {
   std::vector<std::vector<std::string>> rows{{"KIND", "NAME", "PLUGIN", "SUMMARY"}};
-  for (const Component& c : found) rows.push_back({c.kind, c.info->name, c.plugin, c.info->summary});
+  for (const Component& c : found)
+    rows.push_back({c.kind, c.info->name, c.plugin, c.info->summary});
   return table(rows, Paint(stdout));
 }
 
@@ -35,7 +36,8 @@ Exit list(const Program& program, bool json) {
   load_plugins(registry, program.plugins);
   warn_refused(registry);
   const auto found = components(registry);
-  if (found.empty()) warn("no components were found; `cordon doctor` tells where plugins are searched");
+  if (found.empty())
+    warn("no components were found; `cordon doctor` tells where plugins are searched");
   print(json ? as_json(found) : as_table(found));
   return Exit::done;
 }
@@ -43,8 +45,9 @@ Exit list(const Program& program, bool json) {
 }  // namespace
 
 void add_list(CLI::App& app, Program& program) {
-  CLI::App* command =
-      app.add_subcommand("list", "List backends, observers, diagnosers, metrics, plants, gains and designers with their plugins");
+  CLI::App* command = app.add_subcommand("list",
+                                         "List backends, observers, diagnosers, metrics, plants, "
+                                         "gains and designers with their plugins");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON for programs");
   command->callback([&program, json] { program.exit = list(program, *json); });

@@ -34,17 +34,21 @@ Exit answer(const CLI::App& app, const CLI::ParseError& outcome) {
 
 Exit run(int argc, char** argv) {
   Program program;
-  CLI::App app("Cordon: guaranteed set-based state estimation with interchangeable set representations", "cordon");
+  CLI::App app(
+      "Cordon: guaranteed set-based state estimation with interchangeable set representations",
+      "cordon");
   app.footer(exit_codes_help);
   app.fallthrough();
   app.require_subcommand(1);
   app.set_version_flag("--version", "cordon " + cordon::build_info().version);
-  app.add_option("--plugins", program.plugins, "Directory with plugins, searched before all others (may be repeated)")
+  app.add_option("--plugins", program.plugins,
+                 "Directory with plugins, searched before all others (may be repeated)")
       ->check(CLI::ExistingDirectory)
       ->option_text("DIR")
       ->allow_extra_args(false);
   app.add_flag("--trust-plugins", program.trust_plugins,
-               "Load plugins from the directories that a study names: programs, which can do all that you can");
+               "Load plugins from the directories that a study names: programs, which can do all "
+               "that you can");
   add_run(app, program);
   add_merge(app, program);
   add_report(app, program);
@@ -71,7 +75,9 @@ Exit run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves is an error code of write, not the end of the process
+  std::signal(
+      SIGPIPE,
+      SIG_IGN);  // a reader that leaves is an error code of write, not the end of the process
   Exit exit = Exit::internal;
   try {
     exit = run(argc, argv);

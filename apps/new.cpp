@@ -24,20 +24,24 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t longest_name = 64;  ///< file names are made from it
 
-/// The nearest text in lower-case letters, digits and single underscores, a letter first; "" if nothing is left. "MyBox" becomes
-/// "my_box".
+/// The nearest text in lower-case letters, digits and single underscores, a letter first; "" if
+/// nothing is left. "MyBox" becomes "my_box".
 std::string to_snake_case(std::string_view text) {
   std::string name;
   char before = '_';
   for (const char c : text) {
-    const bool upper = c >= 'A' && c <= 'Z', lower = c >= 'a' && c <= 'z', digit = c >= '0' && c <= '9';
-    const bool before_is_small = (before >= 'a' && before <= 'z') || (before >= '0' && before <= '9');
+    const bool upper = c >= 'A' && c <= 'Z', lower = c >= 'a' && c <= 'z',
+               digit = c >= '0' && c <= '9';
+    const bool before_is_small =
+        (before >= 'a' && before <= 'z') || (before >= '0' && before <= '9');
     if ((upper && before_is_small) || !(upper || lower || digit)) name += '_';
     if (upper) name += static_cast<char>(c - 'A' + 'a');
     if (lower || digit) name += c;
     before = c;
   }
-  name.erase(std::unique(name.begin(), name.end(), [](char a, char b) { return a == '_' && b == '_'; }), name.end());
+  name.erase(
+      std::unique(name.begin(), name.end(), [](char a, char b) { return a == '_' && b == '_'; }),
+      name.end());
   name.erase(0, std::min(name.find_first_of("abcdefghijklmnopqrstuvwxyz"), name.size()));
   name.resize(std::min(name.size(), longest_name));
   while (name.ends_with('_')) name.pop_back();
@@ -49,11 +53,14 @@ void require_free_name(const Program& program, const std::string& name) {
   if (const std::string mend = to_snake_case(name); mend.empty() || mend != name) {
     throw Error(
         Errc::invalid,
-        fmt::format("NAME \"{}\" is no plugin name: it must be in snake_case, a letter first, with at most {} characters; {}",
-                    name, longest_name, mend.empty() ? "such as \"my_set\"" : "did you mean \"" + mend + "\"?"));
+        fmt::format("NAME \"{}\" is no plugin name: it must be in snake_case, a letter first, with "
+                    "at most {} characters; {}",
+                    name, longest_name,
+                    mend.empty() ? "such as \"my_set\"" : "did you mean \"" + mend + "\"?"));
   }
   const auto taken = [&](const std::string& by) {
-    throw Error(Errc::invalid, fmt::format("the name \"{}\" is taken by {}; try \"{}\"", name, by, "my_" + name));
+    throw Error(Errc::invalid,
+                fmt::format("the name \"{}\" is taken by {}; try \"{}\"", name, by, "my_" + name));
   };
   if (name == "cordon") taken("the framework itself");
   Registry registry;
@@ -62,7 +69,8 @@ void require_free_name(const Program& program, const std::string& name) {
     if (report.name == name) taken(fmt::format("the plugin {}", report.file.string()));
   }
   for (const Component& component : components(registry)) {
-    if (component.info->name == name) taken(fmt::format("the {} of the plugin \"{}\"", component.kind, component.plugin));
+    if (component.info->name == name)
+      taken(fmt::format("the {} of the plugin \"{}\"", component.kind, component.plugin));
   }
 }
 
@@ -85,7 +93,9 @@ std::string with_name(std::string_view text, const std::string& name) {
 class PartialDirectory {
  public:
   explicit PartialDirectory(const fs::path& target)
-      : target_(target), path_(target.parent_path() / fmt::format(".partial-{}-{}", target.filename().string(), getpid())) {
+      : target_(target),
+        path_(target.parent_path() /
+              fmt::format(".partial-{}-{}", target.filename().string(), getpid())) {
     std::error_code error;
     if (!fs::create_directory(path_, error)) {
       fail(fmt::format("cannot create {}", path_.string()), error ? error.value() : EEXIST);
@@ -124,23 +134,27 @@ class PartialDirectory {
 /// What CMake must be told to find this program's package; `installed` says if it has one.
 std::string prefix_option(bool& installed) {
   std::error_code error;
-  const fs::path programs = fs::read_symlink("/proc/self/exe", error).parent_path(), prefix = programs.parent_path();
+  const fs::path programs = fs::read_symlink("/proc/self/exe", error).parent_path(),
+                 prefix = programs.parent_path();
   installed = !error && fs::exists(programs / package_from_programs / "cordonConfig.cmake", error);
   if (!installed) return " -DCMAKE_PREFIX_PATH=PREFIX";
   return prefix == "/usr" || prefix == "/usr/local" ? "" : " -DCMAKE_PREFIX_PATH=" + quoted(prefix);
 }
 
 Exit new_plugin(const Program& program, const std::string& name, const fs::path& wanted) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file size is an error of write, not the end of the process
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // a limit of file size is an error of write, not the end of the process
   require_free_name(program, name);
   const fs::path shown = wanted.empty() ? fs::path(name) : wanted;
   fs::path target = fs::absolute(shown).lexically_normal();
   if (!target.has_filename()) target = target.parent_path();  // "dir/" is "dir"
   if (std::error_code error; fs::exists(fs::symlink_status(target, error))) {
-    throw Error(Errc::invalid, fmt::format("{} exists already; give another directory with --dir", shown.string()));
+    throw Error(Errc::invalid, fmt::format("{} exists already; give another directory with --dir",
+                                           shown.string()));
   }
   if (std::error_code error; !fs::is_directory(target.parent_path(), error)) {
-    throw Error(Errc::invalid, fmt::format("{} is no directory; create it first", target.parent_path().string()));
+    throw Error(Errc::invalid,
+                fmt::format("{} is no directory; create it first", target.parent_path().string()));
   }
   PartialDirectory directory(target);
   std::vector<std::string> files;
@@ -150,11 +164,17 @@ Exit new_plugin(const Program& program, const std::string& name, const fs::path&
   }
   directory.keep();
   bool installed = false;
-  const std::string option = prefix_option(installed), source = quoted(shown), build = quoted(shown / "build");
+  const std::string option = prefix_option(installed), source = quoted(shown),
+                    build = quoted(shown / "build");
   note(fmt::format("Wrote {}: {}\nNext:", shown.string(), fmt::join(files, ", ")));
-  print(fmt::format("cmake -S {} -B {} -DCMAKE_BUILD_TYPE=Release{}\ncmake --build {}\nctest --test-dir {} --output-on-failure\n",
-                    source, build, option, build, build));
-  if (!installed) note("PREFIX: where `cmake --install BUILD --prefix PREFIX` has put Cordon; this program is not installed");
+  print(
+      fmt::format("cmake -S {} -B {} -DCMAKE_BUILD_TYPE=Release{}\ncmake --build {}\nctest "
+                  "--test-dir {} --output-on-failure\n",
+                  source, build, option, build, build));
+  if (!installed)
+    note(
+        "PREFIX: where `cmake --install BUILD --prefix PREFIX` has put Cordon; this program is not "
+        "installed");
   return Exit::done;
 }
 
@@ -163,13 +183,19 @@ Exit new_plugin(const Program& program, const std::string& name, const fs::path&
 void add_new(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("new", "Write the beginning of something of your own");
   command->require_subcommand(1);
-  CLI::App* plugin = command->add_subcommand("plugin", "Write a project that builds a plugin with a set representation");
+  CLI::App* plugin = command->add_subcommand(
+      "plugin", "Write a project that builds a plugin with a set representation");
   plugin->fallthrough();
   const auto name = std::make_shared<std::string>();
   const auto directory = std::make_shared<fs::path>();
-  plugin->add_option("NAME", *name, "Name of the plugin and of its backend, in snake_case")->required();
-  plugin->add_option("--dir", *directory, "The directory to write, which must not exist (default: NAME)")->option_text("DIR");
-  plugin->callback([&program, name, directory] { program.exit = new_plugin(program, *name, *directory); });
+  plugin->add_option("NAME", *name, "Name of the plugin and of its backend, in snake_case")
+      ->required();
+  plugin
+      ->add_option("--dir", *directory,
+                   "The directory to write, which must not exist (default: NAME)")
+      ->option_text("DIR");
+  plugin->callback(
+      [&program, name, directory] { program.exit = new_plugin(program, *name, *directory); });
   add_new_study(*command, program);
 }
 

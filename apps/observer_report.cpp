@@ -31,7 +31,8 @@ std::string matrix_text(const Matrix& L) {
   std::string text = "[";
   for (Index i = 0; i < L.rows(); ++i) {
     text += i > 0 ? "; " : "";
-    for (Index j = 0; j < L.cols(); ++j) text += fmt::format("{}{:.4g}", j > 0 ? " " : "", L(i, j) + 0.0);
+    for (Index j = 0; j < L.cols(); ++j)
+      text += fmt::format("{}{:.4g}", j > 0 ? " " : "", L(i, j) + 0.0);
   }
   return text.size() < longest_matrix ? text + "]" : fmt::format("{}×{}", L.rows(), L.cols());
 }
@@ -48,7 +49,9 @@ std::string norm_text(const GainCertificate& known) {
 }
 
 std::string objective_text(const GainCertificate& known) {
-  return known.objective.empty() ? "-" : fmt::format("{} = {}", known.objective, number_text(known.optimum));
+  return known.objective.empty()
+             ? "-"
+             : fmt::format("{} = {}", known.objective, number_text(known.optimum));
 }
 
 ordered_json numbers(const Vector& values) {
@@ -60,12 +63,15 @@ ordered_json numbers(const Vector& values) {
 }  // namespace
 
 std::string gains_text(const RunOutcome& outcome, const Paint& paint) {
-  Rows rows{{"PIPELINE", "PARAMETER", "GAIN", "L", "SPECTRAL RADIUS ≤", "MONOTONE", "‖G‖∞", "OPTIMUM"}};
+  Rows rows{
+      {"PIPELINE", "PARAMETER", "GAIN", "L", "SPECTRAL RADIUS ≤", "MONOTONE", "‖G‖∞", "OPTIMUM"}};
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     for (const Gain& gain : pipeline.gains) {
       const GainCertificate& known = gain.certificate;
-      rows.push_back({pipeline.name, gain.name, gain.type, matrix_text(gain.L), number_text(known.spectral_radius),
-                      known.monotone == Answer::unknown ? "but for rounding" : std::string(to_string(known.monotone)),
+      rows.push_back({pipeline.name, gain.name, gain.type, matrix_text(gain.L),
+                      number_text(known.spectral_radius),
+                      known.monotone == Answer::unknown ? "but for rounding"
+                                                        : std::string(to_string(known.monotone)),
                       norm_text(known), objective_text(known)});
     }
   }
@@ -77,7 +83,8 @@ std::string widths_text(const RunOutcome& outcome, const Paint& paint) {
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     const Box& hull = pipeline.last_hull;
     if (hull.dim() == 0 || hull.dim() > most_states) continue;
-    for (Index i = static_cast<Index>(rows[0].size()); i <= hull.dim(); ++i) rows[0].push_back(fmt::format("x{}", i));
+    for (Index i = static_cast<Index>(rows[0].size()); i <= hull.dim(); ++i)
+      rows[0].push_back(fmt::format("x{}", i));
     rows.push_back({pipeline.name});
     for (Index i = 0; i < hull.dim(); ++i) {
       rows.back().push_back(hull.is_empty() ? "empty" : width_text(hull.upper[i] - hull.lower[i]));
@@ -91,7 +98,8 @@ std::string inner_text(const RunOutcome& outcome, const Paint& paint) {
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     if (pipeline.inner_steps == 0) continue;
     const bool inside = pipeline.inner_outside < 0;
-    rows.push_back({pipeline.name, fmt::format("{}", pipeline.inner_steps), number_text(pipeline.inner_share),
+    rows.push_back({pipeline.name, fmt::format("{}", pipeline.inner_steps),
+                    number_text(pipeline.inner_share),
                     inside ? "always" : fmt::format("NOT at k = {}", pipeline.inner_outside)});
   }
   return titled("Inner estimates", rows, paint);
@@ -103,19 +111,25 @@ std::string growth_text(const RunOutcome& outcome, const Paint& paint) {
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     if (!pipeline.growth) continue;
     const WidthGrowth& growth = *pipeline.growth;
-    rows.push_back({pipeline.name, fmt::format("x{}", growth.state + 1), width_text(growth.smallest),
-                    fmt::format("{}", growth.smallest_at), width_text(growth.last), fmt::format("{:.4g}", growth.factor)});
+    rows.push_back({pipeline.name, fmt::format("x{}", growth.state + 1),
+                    width_text(growth.smallest), fmt::format("{}", growth.smallest_at),
+                    width_text(growth.last), fmt::format("{:.4g}", growth.factor)});
     advice = advice_on(growth);
   }
   const std::string text = titled("Warning: bounds that grow", rows, paint);
-  return text.empty() ? "" : text.substr(0, text.size() - 1) + "Cause and remedy: " + advice + "\n\n";
+  return text.empty() ? ""
+                      : text.substr(0, text.size() - 1) + "Cause and remedy: " + advice + "\n\n";
 }
 
 ordered_json growth_json(const PipelineOutcome& pipeline) {
   if (!pipeline.growth) return nullptr;
   const WidthGrowth& growth = *pipeline.growth;
-  return {{"state", growth.state + 1},        {"smallest", json_number(growth.smallest)}, {"smallest_at", growth.smallest_at},
-          {"last", json_number(growth.last)}, {"factor", json_number(growth.factor)},     {"advice", advice_on(growth)}};
+  return {{"state", growth.state + 1},
+          {"smallest", json_number(growth.smallest)},
+          {"smallest_at", growth.smallest_at},
+          {"last", json_number(growth.last)},
+          {"factor", json_number(growth.factor)},
+          {"advice", advice_on(growth)}};
 }
 
 ordered_json json_number(double value) {
@@ -131,14 +145,16 @@ ordered_json gains_json(const PipelineOutcome& pipeline) {
     ordered_json matrix = ordered_json::array();
     for (Index i = 0; i < gain.L.rows(); ++i) matrix.push_back(numbers(gain.L.row(i).transpose()));
     const bool has_norm = !std::isnan(known.norm_lower) || !std::isnan(known.norm_upper);
-    const ordered_json norm{{"lower", json_number(known.norm_lower)}, {"upper", json_number(known.norm_upper)}};
-    ordered_json one{
-        {"name", gain.name},
-        {"type", gain.type},
-        {"matrix", std::move(matrix)},
-        {"spectral_radius", json_number(known.spectral_radius)},
-        {"monotone", known.monotone == Answer::unknown ? ordered_json(nullptr) : ordered_json(known.monotone == Answer::yes)},
-        {"norm", has_norm ? norm : ordered_json(nullptr)}};
+    const ordered_json norm{{"lower", json_number(known.norm_lower)},
+                            {"upper", json_number(known.norm_upper)}};
+    ordered_json one{{"name", gain.name},
+                     {"type", gain.type},
+                     {"matrix", std::move(matrix)},
+                     {"spectral_radius", json_number(known.spectral_radius)},
+                     {"monotone", known.monotone == Answer::unknown
+                                      ? ordered_json(nullptr)
+                                      : ordered_json(known.monotone == Answer::yes)},
+                     {"norm", has_norm ? norm : ordered_json(nullptr)}};
     if (!known.objective.empty()) {
       one["objective"] = known.objective;
       one["optimum"] = json_number(known.optimum);

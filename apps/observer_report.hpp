@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is printed about pipelines with an observer beside their comparison: gains, widths at the end, inner estimates.
+// What is printed about pipelines with an observer beside their comparison: gains, widths at the
+// end, inner estimates.
 #pragma once
 
 #include <string>

@@ -21,35 +21,46 @@ std::string duration(double seconds) {
 
 std::string bar_of(double fraction) {
   const auto filled = static_cast<std::size_t>(30 * fraction);
-  return fmt::format("[{}] {:3.0f} %", std::string(filled, '#') + std::string(30 - filled, ' '), 100 * fraction);
+  return fmt::format("[{}] {:3.0f} %", std::string(filled, '#') + std::string(30 - filled, ' '),
+                     100 * fraction);
 }
 
 }  // namespace
 
 std::string progress_line(const SweepProgress& progress) {
-  const double fraction = progress.total > 0 ? static_cast<double>(progress.done) / static_cast<double>(progress.total) : 1;
-  std::string line = fmt::format("{}  {}/{} points", bar_of(fraction), progress.done, progress.total);
+  const double fraction =
+      progress.total > 0 ? static_cast<double>(progress.done) / static_cast<double>(progress.total)
+                         : 1;
+  std::string line =
+      fmt::format("{}  {}/{} points", bar_of(fraction), progress.done, progress.total);
   if (progress.failed > 0) line += fmt::format("  {} failed", progress.failed);
-  const std::int64_t done_here = progress.done - progress.resumed, left = progress.total - progress.done;
+  const std::int64_t done_here = progress.done - progress.resumed,
+                     left = progress.total - progress.done;
   if (done_here <= 0) return line;
-  return line +
-         fmt::format("  {} left", duration(progress.elapsed_s * static_cast<double>(left) / static_cast<double>(done_here)));
+  return line + fmt::format("  {} left", duration(progress.elapsed_s * static_cast<double>(left) /
+                                                  static_cast<double>(done_here)));
 }
 
-std::string progress_line(const std::string& name, double fraction, std::int64_t done, std::int64_t total, double elapsed_s) {
+std::string progress_line(const std::string& name, double fraction, std::int64_t done,
+                          std::int64_t total, double elapsed_s) {
   const std::string shown = fmt::format("{:.20}", detail::printable(name));
   if (total <= 0) return fmt::format("{}  {}", shown, done);
-  const std::string left = fraction > 0 ? duration(elapsed_s * (1 - fraction) / fraction) + " left" : "";
+  const std::string left =
+      fraction > 0 ? duration(elapsed_s * (1 - fraction) / fraction) + " left" : "";
   return fmt::format("{}  {}  {}/{}  {}", bar_of(fraction), shown, done, total, left);
 }
 
 ProgressBar::ProgressBar(std::vector<std::string> pipelines, bool visible)
-    : pipelines_(std::move(pipelines)), visible_(visible), begin_(Clock::now()), drawn_at_(begin_) {}
+    : pipelines_(std::move(pipelines)),
+      visible_(visible),
+      begin_(Clock::now()),
+      drawn_at_(begin_) {}
 
 void ProgressBar::show(std::size_t pipeline, std::int64_t done, std::int64_t total) {
   if (pipeline >= pipelines_.size() || !is_due()) return;
   const double part = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0;
-  const double fraction = (static_cast<double>(pipeline) + part) / static_cast<double>(pipelines_.size());
+  const double fraction =
+      (static_cast<double>(pipeline) + part) / static_cast<double>(pipelines_.size());
   const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
   draw(progress_line(pipelines_[pipeline], fraction, done, total, elapsed));
 }
@@ -60,7 +71,9 @@ void ProgressBar::show(const std::string& line) {
 
 bool ProgressBar::is_due() {
   const Clock::time_point now = Clock::now();
-  if (!visible_ || now - begin_ < std::chrono::seconds(1) || now - drawn_at_ < std::chrono::milliseconds(100)) return false;
+  if (!visible_ || now - begin_ < std::chrono::seconds(1) ||
+      now - drawn_at_ < std::chrono::milliseconds(100))
+    return false;
   drawn_at_ = now;
   return true;
 }

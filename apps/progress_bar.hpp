@@ -11,7 +11,8 @@
 
 namespace cordon::apps {
 
-/// Appears on stderr after one second, with the remaining time; nothing at all where stderr is no terminal.
+/// Appears on stderr after one second, with the remaining time; nothing at all where stderr is no
+/// terminal.
 class ProgressBar {
  public:
   ProgressBar(std::vector<std::string> pipelines, bool visible);
@@ -36,8 +37,10 @@ class ProgressBar {
   Clock::time_point begin_, drawn_at_;
 };
 
-/// "[#####     ]  50 %  name  10/20  3 s left"; without a total "name  10". Names are cut to 20 characters.
-std::string progress_line(const std::string& name, double fraction, std::int64_t done, std::int64_t total, double elapsed_s);
+/// "[#####     ]  50 %  name  10/20  3 s left"; without a total "name  10". Names are cut to 20
+/// characters.
+std::string progress_line(const std::string& name, double fraction, std::int64_t done,
+                          std::int64_t total, double elapsed_s);
 
 /// "[#####     ]  50 %  10/20 points  1 failed  3 s left", the time by the rate of this process.
 std::string progress_line(const SweepProgress& progress);

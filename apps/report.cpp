@@ -19,7 +19,8 @@ struct Arguments {
 
 Exit report(const Arguments& arguments) {
   std::string text;
-  for (const std::filesystem::path& file : write_report(arguments.directory, arguments.options)) text += file.string() + '\n';
+  for (const std::filesystem::path& file : write_report(arguments.directory, arguments.options))
+    text += file.string() + '\n';
   if (!arguments.quiet) print(text);
   return Exit::done;
 }
@@ -34,12 +35,15 @@ void add_report(CLI::App& app, Program& program) {
       ->check(CLI::Validator(path_problem, "", ""))
       ->option_text(" ");
   command->add_flag("--svg", arguments->options.svg, "Write every figure as figures/NAME.svg too");
-  command->add_flag("--csv", arguments->options.csv, "Write the numbers of every figure as figures/NAME.csv too");
+  command->add_flag("--csv", arguments->options.csv,
+                    "Write the numbers of every figure as figures/NAME.csv too");
   command->add_flag("--quiet", arguments->quiet, "Do not print the names of the files");
   command->footer(
-      "Writes report.html, one file that needs nothing else, from the files in DIR; no plugin is loaded. On the page long "
+      "Writes report.html, one file that needs nothing else, from the files in DIR; no plugin is "
+      "loaded. On the page long "
       "curves\n"
-      "are thinned out so that bands still enclose what they stand for; tables of figures hold every number.");
+      "are thinned out so that bands still enclose what they stand for; tables of figures hold "
+      "every number.");
   command->callback([&program, arguments] { program.exit = report(*arguments); });
 }
 

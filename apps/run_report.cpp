@@ -20,8 +20,8 @@ namespace {
 using nlohmann::ordered_json;
 
 const MetricValue* find(const PipelineOutcome& pipeline, std::string_view name) {
-  const auto found =
-      std::find_if(pipeline.summary.begin(), pipeline.summary.end(), [&](const MetricValue& m) { return m.name == name; });
+  const auto found = std::find_if(pipeline.summary.begin(), pipeline.summary.end(),
+                                  [&](const MetricValue& m) { return m.name == name; });
   return found == pipeline.summary.end() ? nullptr : &*found;
 }
 
@@ -33,8 +33,8 @@ std::string text(const MetricValue* metric) {
   return std::isnan(number) ? "-" : fmt::format("{:.4g}", number);
 }
 
-/// Steps whose set is proven to contain the truth, of those where the question was asked; those that could not be decided are
-/// told, so that nobody takes them for a truth outside.
+/// Steps whose set is proven to contain the truth, of those where the question was asked; those
+/// that could not be decided are told, so that nobody takes them for a truth outside.
 std::string contained(const PipelineOutcome& pipeline) {
   Index yes = 0, unknown = 0, all = 0;
   for (const char* answer : {"yes", "no", "unknown"}) {
@@ -46,14 +46,16 @@ std::string contained(const PipelineOutcome& pipeline) {
     if (answer == std::string_view("unknown")) unknown = *number;
   }
   if (all == 0) return "-";
-  return unknown == 0 ? fmt::format("{}/{}", yes, all) : fmt::format("{}/{}, {} unknown", yes, all, unknown);
+  return unknown == 0 ? fmt::format("{}/{}", yes, all)
+                      : fmt::format("{}/{}, {} unknown", yes, all, unknown);
 }
 
 std::string consistency(const PipelineOutcome& pipeline) {
   if (!pipeline.error.empty()) return fmt::format("error after {} steps", pipeline.steps);
   if (pipeline.violated_at >= 0) return fmt::format("VIOLATED at k = {}", pipeline.violated_at);
   if (pipeline.inner_outside >= 0) return fmt::format("VIOLATED at k = {}", pipeline.inner_outside);
-  if (pipeline.inconsistent_from >= 0) return fmt::format("empty from k = {}", pipeline.inconsistent_from);
+  if (pipeline.inconsistent_from >= 0)
+    return fmt::format("empty from k = {}", pipeline.inconsistent_from);
   if (pipeline.undecided > 0) return fmt::format("undecided at {} steps", pipeline.undecided);
   return "consistent";
 }
@@ -65,10 +67,12 @@ struct Column {
 };
 
 Column metric_column(std::string header, const std::string& name) {
-  return {std::move(header), name, [name](const PipelineOutcome& p) { return text(find(p, name)); }};
+  return {std::move(header), name,
+          [name](const PipelineOutcome& p) { return text(find(p, name)); }};
 }
 
-/// The usual columns, in the order of interest; metrics that are not among the usual ones follow under their own names.
+/// The usual columns, in the order of interest; metrics that are not among the usual ones follow
+/// under their own names.
 std::vector<Column> columns(const RunOutcome& outcome) {
   std::vector<Column> found{
       {"PIPELINE", "", [](const PipelineOutcome& p) { return p.name; }},
@@ -82,26 +86,32 @@ std::vector<Column> columns(const RunOutcome& outcome) {
       metric_column("LINES", "lines_max"),
       metric_column("CONSTR", "constraints_max"),
   };
-  static const std::vector<std::string> usual{"radius_unbounded_steps", "volume_of_hull_steps", "contains_truth_no",
-                                              "contains_truth_unknown", "exact_share",          "step_time_us_mean",
-                                              "step_time_us_max"};
+  static const std::vector<std::string> usual{
+      "radius_unbounded_steps", "volume_of_hull_steps", "contains_truth_no",
+      "contains_truth_unknown", "exact_share",          "step_time_us_mean",
+      "step_time_us_max"};
   const auto has = [](const RunOutcome& o, const std::string& name) {
     return std::any_of(o.pipelines.begin(), o.pipelines.end(),
                        [&](const PipelineOutcome& p) { return find(p, name) != nullptr; });
   };
-  std::erase_if(found, [&](const Column& column) { return !column.metric.empty() && !has(outcome, column.metric); });
+  std::erase_if(found, [&](const Column& column) {
+    return !column.metric.empty() && !has(outcome, column.metric);
+  });
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     for (const MetricValue& metric : pipeline.summary) {
-      const bool shown =
-          std::any_of(found.begin(), found.end(), [&](const Column& column) { return column.metric == metric.name; });
+      const bool shown = std::any_of(found.begin(), found.end(), [&](const Column& column) {
+        return column.metric == metric.name;
+      });
       if (!shown && std::find(usual.begin(), usual.end(), metric.name) == usual.end())
         found.push_back(metric_column(metric.name, metric.name));
     }
   }
-  found.push_back(
-      {"µs/STEP", "", [](const PipelineOutcome& p) { return p.steps ? fmt::format("{:.1f}", p.median_step_us) : "-"; }});
-  found.push_back(
-      {"LARGEST", "", [](const PipelineOutcome& p) { return p.steps ? fmt::format("{:.1f}", p.largest_step_us) : "-"; }});
+  found.push_back({"µs/STEP", "", [](const PipelineOutcome& p) {
+                     return p.steps ? fmt::format("{:.1f}", p.median_step_us) : "-";
+                   }});
+  found.push_back({"LARGEST", "", [](const PipelineOutcome& p) {
+                     return p.steps ? fmt::format("{:.1f}", p.largest_step_us) : "-";
+                   }});
   return found;
 }
 
@@ -116,9 +126,13 @@ std::string observer_table(const RunOutcome& outcome, const Paint& paint) {
   return table(rows, paint);
 }
 
-ordered_json time_or_null(std::int64_t k) { return k < 0 ? ordered_json(nullptr) : ordered_json(k); }
+ordered_json time_or_null(std::int64_t k) {
+  return k < 0 ? ordered_json(nullptr) : ordered_json(k);
+}
 
-ordered_json error_of(const PipelineOutcome& p) { return p.error.empty() ? ordered_json(nullptr) : ordered_json(p.error); }
+ordered_json error_of(const PipelineOutcome& p) {
+  return p.error.empty() ? ordered_json(nullptr) : ordered_json(p.error);
+}
 
 ordered_json assumption_json(const PipelineOutcome& p, const std::vector<std::string>& modes) {
   if (!p.failed_assumption) return nullptr;
@@ -126,42 +140,46 @@ ordered_json assumption_json(const PipelineOutcome& p, const std::vector<std::st
   const bool named = failed.mode >= 0 && static_cast<std::size_t>(failed.mode) < modes.size();
   return {{"what", to_string(failed.what)},
           {"k", failed.k},
-          {"mode", named ? ordered_json(modes[static_cast<std::size_t>(failed.mode)]) : ordered_json(nullptr)},
+          {"mode", named ? ordered_json(modes[static_cast<std::size_t>(failed.mode)])
+                         : ordered_json(nullptr)},
           {"seed_offset", failed.seed_offset},
           {"text", text_of(failed, modes)}};
 }
 
 ordered_json json_of_diagnosis(const PipelineOutcome& p) {
   const auto& guarantees = p.diagnosis->guarantees;
-  return {
-      {"name", p.name},
-      {"backend", p.backend},
-      {"diagnoser", p.diagnoser},
-      {"modes", p.diagnosis->modes},
-      {"steps", p.steps},
-      {"assumptions_until", time_or_null(p.assumptions_until)},
-      {"failed_assumption", assumption_json(p, p.diagnosis->modes)},
-      {"violated_at", time_or_null(p.violated_at)},
-      {"error", error_of(p)},
-      {"guarantees", guarantees ? ordered_json::parse(cordon::json_of(*guarantees, p.diagnosis->modes)) : ordered_json(nullptr)},
-      {"diagnosis", ordered_json::parse(cordon::json_of(*p.diagnosis))},
-      {"median_step_us", p.median_step_us},
-      {"largest_step_us", p.largest_step_us}};
+  return {{"name", p.name},
+          {"backend", p.backend},
+          {"diagnoser", p.diagnoser},
+          {"modes", p.diagnosis->modes},
+          {"steps", p.steps},
+          {"assumptions_until", time_or_null(p.assumptions_until)},
+          {"failed_assumption", assumption_json(p, p.diagnosis->modes)},
+          {"violated_at", time_or_null(p.violated_at)},
+          {"error", error_of(p)},
+          {"guarantees", guarantees
+                             ? ordered_json::parse(cordon::json_of(*guarantees, p.diagnosis->modes))
+                             : ordered_json(nullptr)},
+          {"diagnosis", ordered_json::parse(cordon::json_of(*p.diagnosis))},
+          {"median_step_us", p.median_step_us},
+          {"largest_step_us", p.largest_step_us}};
 }
 
 ordered_json json_of_design(const PipelineOutcome& p, const std::vector<std::string>& modes) {
   ordered_json experiments = ordered_json::array();
   for (const ExperimentRow& row : p.experiments) {
     const DelayStatistics& k = row.isolation;
-    experiments.push_back({{"mode", modes[static_cast<std::size_t>(row.mode)]},
-                           {"runs", row.runs},
-                           {"possible", row.possible},
-                           {"isolated", row.isolated},
-                           {"wrong", row.wrong},
-                           {"unknown_fault", row.unknown_fault},
-                           {"undecided", row.undecided},
-                           {"isolation", k.count == 0 ? ordered_json(nullptr)
-                                                      : ordered_json{{"min", k.min}, {"median", k.median}, {"max", k.max}}}});
+    experiments.push_back(
+        {{"mode", modes[static_cast<std::size_t>(row.mode)]},
+         {"runs", row.runs},
+         {"possible", row.possible},
+         {"isolated", row.isolated},
+         {"wrong", row.wrong},
+         {"unknown_fault", row.unknown_fault},
+         {"undecided", row.undecided},
+         {"isolation", k.count == 0
+                           ? ordered_json(nullptr)
+                           : ordered_json{{"min", k.min}, {"median", k.median}, {"max", k.max}}}});
   }
   return {{"name", p.name},
           {"backend", p.backend},
@@ -173,8 +191,10 @@ ordered_json json_of_design(const PipelineOutcome& p, const std::vector<std::str
           {"violated_at", time_or_null(p.violated_at)},
           {"refuted", p.refuted},
           {"error", error_of(p)},
-          {"design", p.design ? ordered_json::parse(cordon::json_of(*p.design, modes)) : ordered_json(nullptr)},
-          {"exact", p.exact ? ordered_json::parse(cordon::json_of(*p.exact, modes)) : ordered_json(nullptr)},
+          {"design", p.design ? ordered_json::parse(cordon::json_of(*p.design, modes))
+                              : ordered_json(nullptr)},
+          {"exact",
+           p.exact ? ordered_json::parse(cordon::json_of(*p.exact, modes)) : ordered_json(nullptr)},
           {"experiments", std::move(experiments)},
           {"median_step_us", p.median_step_us},
           {"largest_step_us", p.largest_step_us}};
@@ -218,8 +238,10 @@ ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& m
 
 }  // namespace
 
-std::string report_text(const Study& study, const RunOutcome& outcome, const std::filesystem::path& out) {
-  RunOutcome observed;  // pipelines with a diagnoser or a designer have nothing to tell in the columns of this table
+std::string report_text(const Study& study, const RunOutcome& outcome,
+                        const std::filesystem::path& out) {
+  RunOutcome observed;  // pipelines with a diagnoser or a designer have nothing to tell in the
+                        // columns of this table
   std::string diagnoses;
   const Paint paint(stdout);
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
@@ -232,15 +254,18 @@ std::string report_text(const Study& study, const RunOutcome& outcome, const std
     }
   }
   const std::string title = study.title.empty() ? "" : paint.bold(study.title) + "\n\n";
-  const std::string comparison = observed.pipelines.empty() && !diagnoses.empty() ? "" : observer_table(observed, paint) + "\n";
+  const std::string comparison = observed.pipelines.empty() && !diagnoses.empty()
+                                     ? ""
+                                     : observer_table(observed, paint) + "\n";
   std::string assumptions;
   for (const PipelineOutcome& pipeline : observed.pipelines) {
     const std::string failed = assumption_text(study, pipeline, paint);
     if (!failed.empty()) assumptions += pipeline.name + ": " + failed;
   }
   if (!assumptions.empty()) assumptions += "\n";
-  const std::string details = assumptions + gains_text(observed, paint) + widths_text(observed, paint) +
-                              inner_text(observed, paint) + growth_text(observed, paint);
+  const std::string details = assumptions + gains_text(observed, paint) +
+                              widths_text(observed, paint) + inner_text(observed, paint) +
+                              growth_text(observed, paint);
   return title + comparison + details + diagnoses + "Results are in " + out.string() + "\n";
 }
 
@@ -248,7 +273,8 @@ std::string report_json(const Study& study, const RunOutcome& outcome) {
   std::vector<std::string> modes;
   for (const Mode& mode : bank_of(study).modes) modes.push_back(mode.name);
   ordered_json pipelines = ordered_json::array(), files = ordered_json::array();
-  for (const PipelineOutcome& pipeline : outcome.pipelines) pipelines.push_back(json_of(pipeline, modes));
+  for (const PipelineOutcome& pipeline : outcome.pipelines)
+    pipelines.push_back(json_of(pipeline, modes));
   for (const std::filesystem::path& file : outcome.files) files.push_back(file.string());
   const ordered_json report{{"pipelines", std::move(pipelines)}, {"files", std::move(files)}};
   return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
@@ -258,13 +284,17 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
   std::vector<std::string> found;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     if (!pipeline.error.empty()) {
-      found.push_back(fmt::format("pipeline \"{}\" stopped after {} steps: {}", pipeline.name, pipeline.steps, pipeline.error));
+      found.push_back(fmt::format("pipeline \"{}\" stopped after {} steps: {}", pipeline.name,
+                                  pipeline.steps, pipeline.error));
     }
     if (pipeline.design) {
-      for (std::string& claim : refutations(pipeline.name, pipeline.refuted)) found.push_back(std::move(claim));
+      for (std::string& claim : refutations(pipeline.name, pipeline.refuted))
+        found.push_back(std::move(claim));
       for (const std::string& mode : empty_tubes(study, pipeline)) {
-        found.push_back(fmt::format("pipeline \"{}\": no output of mode \"{}\" fits its input: the model contradicts itself",
-                                    pipeline.name, mode));
+        found.push_back(
+            fmt::format("pipeline \"{}\": no output of mode \"{}\" fits its input: the model "
+                        "contradicts itself",
+                        pipeline.name, mode));
       }
       if (pipeline.design->status == DesignStatus::unknown) {
         found.push_back(fmt::format("pipeline \"{}\": no input was found{}", pipeline.name,
@@ -273,20 +303,23 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
     }
     if (pipeline.violated_at >= 0 && !pipeline.designer.empty()) {
       found.push_back(
-          fmt::format("pipeline \"{}\" violates its guarantee: at k = {} of an experiment its diagnoser excludes the true mode. "
+          fmt::format("pipeline \"{}\" violates its guarantee: at k = {} of an experiment its "
+                      "diagnoser excludes the true mode. "
                       "This is a defect of its backend or diagnoser",
                       pipeline.name, pipeline.violated_at));
     } else if (pipeline.violated_at >= 0 && pipeline.diagnosis) {
       found.push_back(diagnosis_violation(pipeline));
     } else if (pipeline.violated_at >= 0) {
-      found.push_back(fmt::format(
-          "pipeline \"{}\" violates its guarantee: at k = {} the true state is proven outside the estimate. This is a "
-          "defect of its backend or observer",
-          pipeline.name, pipeline.violated_at));
+      found.push_back(
+          fmt::format("pipeline \"{}\" violates its guarantee: at k = {} the true state is proven "
+                      "outside the estimate. This is a "
+                      "defect of its backend or observer",
+                      pipeline.name, pipeline.violated_at));
     }
     if (pipeline.inner_outside >= 0) {
       found.push_back(fmt::format(
-          "pipeline \"{}\" violates its guarantee: at k = {} its inner estimate, of trajectories that it must enclose, "
+          "pipeline \"{}\" violates its guarantee: at k = {} its inner estimate, of trajectories "
+          "that it must enclose, "
           "leaves the hull of its estimate. This is a defect of its backend or observer",
           pipeline.name, pipeline.inner_outside));
     }
@@ -300,7 +333,8 @@ bool has_empty_tube(const PipelineOutcome& pipeline) {
   const auto any = [](const std::vector<Answer>& empty) {
     return std::find(empty.begin(), empty.end(), Answer::yes) != empty.end();
   };
-  return (pipeline.design->best && any(pipeline.design->best->empty)) || (pipeline.exact && any(pipeline.exact->empty));
+  return (pipeline.design->best && any(pipeline.design->best->empty)) ||
+         (pipeline.exact && any(pipeline.exact->empty));
 }
 
 }  // namespace
@@ -311,10 +345,12 @@ Exit exit_of(const RunOutcome& outcome) {
     const bool refuted = !pipeline.refuted.empty() || pipeline.error_code == Errc::violated;
     if (pipeline.violated_at >= 0 || pipeline.inner_outside >= 0 || refuted) return Exit::violated;
     const bool answered = exit != Exit::done && exit != Exit::unanswered;
-    if (!answered && !pipeline.error.empty()) exit = exit_for(pipeline.error_code.value_or(Errc::internal));
+    if (!answered && !pipeline.error.empty())
+      exit = exit_for(pipeline.error_code.value_or(Errc::internal));
     if (!pipeline.design || answered) continue;
     if (has_empty_tube(pipeline)) exit = Exit::invalid;
-    if (pipeline.design->status == DesignStatus::unknown && exit == Exit::done) exit = Exit::unanswered;
+    if (pipeline.design->status == DesignStatus::unknown && exit == Exit::done)
+      exit = Exit::unanswered;
   }
   return exit;
 }

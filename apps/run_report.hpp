@@ -11,9 +11,11 @@
 
 namespace cordon::apps {
 
-/// A table with one row per pipeline with an observer, then gains, widths and inner estimates where there are any, a timeline for
-/// each pipeline with a diagnoser, designs with their experiments, and where the results are.
-std::string report_text(const Study& study, const RunOutcome& outcome, const std::filesystem::path& out);
+/// A table with one row per pipeline with an observer, then gains, widths and inner estimates where
+/// there are any, a timeline for each pipeline with a diagnoser, designs with their experiments,
+/// and where the results are.
+std::string report_text(const Study& study, const RunOutcome& outcome,
+                        const std::filesystem::path& out);
 std::string report_json(const Study& study, const RunOutcome& outcome);
 
 /// What went wrong, a sentence each: pipelines that stopped, guarantees that were violated.

@@ -19,8 +19,8 @@ Exit schema(const Program& program) {
 }  // namespace
 
 void add_schema(CLI::App& app, Program& program) {
-  CLI::App* command =
-      app.add_subcommand("schema", "Print the JSON Schema of study files, with the components found, for editors");
+  CLI::App* command = app.add_subcommand(
+      "schema", "Print the JSON Schema of study files, with the components found, for editors");
   command->callback([&program] { program.exit = schema(program); });
 }
 

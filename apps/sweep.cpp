@@ -17,9 +17,11 @@ namespace {
 
 /// The command that goes on with a sweep, as a shell takes it.
 std::string command_to_go_on(const RunArguments& arguments, const std::filesystem::path& out) {
-  std::string command = "cordon run " + quoted(arguments.study.string()) + " --out " + quoted(out.string()) + " --resume";
+  std::string command = "cordon run " + quoted(arguments.study.string()) + " --out " +
+                        quoted(out.string()) + " --resume";
   if (arguments.jobs) command += fmt::format(" --jobs {}", *arguments.jobs);
-  if (arguments.point_limit_s) command += fmt::format(" --point-limit {}", *arguments.point_limit_s);
+  if (arguments.point_limit_s)
+    command += fmt::format(" --point-limit {}", *arguments.point_limit_s);
   if (!arguments.shard.empty()) command += " --shard " + arguments.shard;
   return command;
 }
@@ -32,8 +34,10 @@ Shard shard_of(const std::string& text) {
   const auto first = std::from_chars(begin, end, shard.part);
   const bool slash = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
   const auto second = slash ? std::from_chars(first.ptr + 1, end, shard.of) : first;
-  if (!slash || second.ec != std::errc() || second.ptr != end || shard.part < 1 || shard.of < shard.part) {
-    throw Error(Errc::invalid, fmt::format("--shard {}: write I/N with 1 ≤ I ≤ N, for example --shard 2/4", text));
+  if (!slash || second.ec != std::errc() || second.ptr != end || shard.part < 1 ||
+      shard.of < shard.part) {
+    throw Error(Errc::invalid,
+                fmt::format("--shard {}: write I/N with 1 ≤ I ≤ N, for example --shard 2/4", text));
   }
   return shard;
 }
@@ -50,24 +54,29 @@ void check_options(const RunArguments& arguments, const Study& study) {
   if (study.sweep.empty()) {
     add(arguments.point_limit_s.has_value(), "--point-limit");
     add(arguments.point.has_value(), "--point");
-    if (!given.empty()) throw Error(Errc::invalid, given + ": this study has no \"sweep\"; run it without");
+    if (!given.empty())
+      throw Error(Errc::invalid, given + ": this study has no \"sweep\"; run it without");
   } else if (arguments.point && !given.empty()) {
-    throw Error(Errc::invalid, given + ": --point runs one point as an ordinary run; leave out the one or the other");
+    throw Error(
+        Errc::invalid,
+        given + ": --point runs one point as an ordinary run; leave out the one or the other");
   }
 }
 
 Exit exit_of(const SweepOutcome& outcome) {
   if (outcome.violated > 0) return Exit::violated;
-  const bool all_failed = outcome.progress.total > 0 && outcome.progress.failed == outcome.progress.total;
+  const bool all_failed =
+      outcome.progress.total > 0 && outcome.progress.failed == outcome.progress.total;
   return all_failed && outcome.first_error ? exit_for(*outcome.first_error) : Exit::done;
 }
 
-Exit run_all_points(const Study& study, const Registry& registry, const RunArguments& arguments, const std::filesystem::path& out,
-                    const std::atomic<bool>* stop) {
+Exit run_all_points(const Study& study, const Registry& registry, const RunArguments& arguments,
+                    const std::filesystem::path& out, const std::atomic<bool>* stop) {
   ProgressBar bar({}, !arguments.quiet && isatty(STDERR_FILENO) == 1);
   SweepOptions options;
   options.out = out;
-  options.jobs = arguments.jobs.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  options.jobs =
+      arguments.jobs.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
   options.resume = arguments.resume;
   options.restart = arguments.restart;
   if (arguments.point_limit_s) options.point_limit_s = *arguments.point_limit_s;
@@ -78,18 +87,22 @@ Exit run_all_points(const Study& study, const Registry& registry, const RunArgum
   const SweepOutcome outcome = run_sweep(study, registry, options);
   bar.clear();
   if (outcome.interrupted) {
-    complain(fmt::format("interrupted: {} of {} points are finished and kept; go on with\n  {}", outcome.progress.done,
-                         outcome.progress.total, command_to_go_on(arguments, out)));
+    complain(fmt::format("interrupted: {} of {} points are finished and kept; go on with\n  {}",
+                         outcome.progress.done, outcome.progress.total,
+                         command_to_go_on(arguments, out)));
     return interrupted;
   }
   if (!arguments.quiet) {
-    if (outcome.files.empty()) note(fmt::format("finished before: {} holds this sweep, nothing was run", out.string()));
+    if (outcome.files.empty())
+      note(fmt::format("finished before: {} holds this sweep, nothing was run", out.string()));
     print(arguments.json ? sweep_report_json(outcome) : sweep_report_text(outcome, out));
   }
   if (!outcome.report_error.empty()) warn(no_report + outcome.report_error);
   if (outcome.violated > 0)
-    complain(fmt::format("a guarantee was violated at {} of {} points", outcome.violated, outcome.progress.total));
-  if (outcome.progress.failed > 0 && outcome.progress.failed == outcome.progress.total) complain("every point failed");
+    complain(fmt::format("a guarantee was violated at {} of {} points", outcome.violated,
+                         outcome.progress.total));
+  if (outcome.progress.failed > 0 && outcome.progress.failed == outcome.progress.total)
+    complain("every point failed");
   return exit_of(outcome);
 }
 

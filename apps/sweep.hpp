@@ -29,8 +29,8 @@ Shard shard_of(const std::string& text);
 void check_options(const RunArguments& arguments, const Study& study);
 
 /// Runs all points and tells what came out.
-Exit run_all_points(const Study& study, const Registry& registry, const RunArguments& arguments, const std::filesystem::path& out,
-                    const std::atomic<bool>* stop);
+Exit run_all_points(const Study& study, const Registry& registry, const RunArguments& arguments,
+                    const std::filesystem::path& out, const std::atomic<bool>* stop);
 
 /// After a sweep or a merger: a violated guarantee, or the first error if every point failed.
 Exit exit_of(const SweepOutcome& outcome);

@@ -21,8 +21,8 @@ constexpr std::size_t most_rows = 120, most_failures = 5;
 std::string upper(std::string text) {
   const std::size_t unit = text.find("µs");
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool small =
-        text[i] >= 'a' && text[i] <= 'z' && (unit == std::string::npos || i != unit + std::string_view("µ").size());
+    const bool small = text[i] >= 'a' && text[i] <= 'z' &&
+                       (unit == std::string::npos || i != unit + std::string_view("µ").size());
     if (small) text[i] = static_cast<char>(text[i] - 'a' + 'A');
   }
   return text;
@@ -48,7 +48,9 @@ std::string failures_text(const ResultTable& table) {
   }
   if (failed == 0) return "";
   if (failed > shown) text += fmt::format("  and {} more, in points.csv\n", failed - shown);
-  return fmt::format("{} of {} points failed and count nowhere else:\n", failed, table.rows.size()) + text + "\n";
+  return fmt::format("{} of {} points failed and count nowhere else:\n", failed,
+                     table.rows.size()) +
+         text + "\n";
 }
 
 ordered_json statistics_json(const Statistics& found, double relative) {
@@ -70,7 +72,8 @@ ordered_json statistics_json(const Statistics& found, double relative) {
 ordered_json values_json(const ResultTable& table, const std::vector<std::size_t>& at) {
   ordered_json values = ordered_json::object();
   for (std::size_t i = 0; i < table.axes.size(); ++i) {
-    if (!table.axes[i].repeat) values[table.axes[i].name] = ordered_json::parse(table.axes[i].values[at[i]]);
+    if (!table.axes[i].repeat)
+      values[table.axes[i].name] = ordered_json::parse(table.axes[i].values[at[i]]);
   }
   return values;
 }
@@ -83,7 +86,8 @@ std::string comparison_text(const ComparisonTable& table, std::size_t limit) {
   bool any_best = false;
   const std::size_t shown = std::min(limit, table.rows.size());
   for (std::size_t i = 0; i < shown; ++i) {
-    const bool begins = std::find(table.groups.begin(), table.groups.end(), i) != table.groups.end();
+    const bool begins =
+        std::find(table.groups.begin(), table.groups.end(), i) != table.groups.end();
     if (begins && i > 0 && table.groups.size() < table.rows.size()) rows.emplace_back();
     auto& cells = rows.emplace_back();
     for (const ComparisonCell& cell : table.rows[i]) {
@@ -92,7 +96,8 @@ std::string comparison_text(const ComparisonTable& table, std::size_t limit) {
     }
   }
   std::string text = apps::table(rows, Paint(stdout));
-  if (shown < table.rows.size()) text += fmt::format("… and {} more rows, in summary.md\n", table.rows.size() - shown);
+  if (shown < table.rows.size())
+    text += fmt::format("… and {} more rows, in summary.md\n", table.rows.size() - shown);
   if (any_best) text += "\n*: the best beside it.";
   for (const std::string& note : table.notes) text += (text.ends_with('\n') ? "\n" : " ") + note;
   return text.ends_with('\n') ? text : text + "\n";
@@ -104,7 +109,8 @@ std::string sweep_report_text(const SweepOutcome& outcome, const std::filesystem
   text += comparison_text(comparison_table(table, summarise(table)), most_rows) + "\n";
   text += failures_text(table);
   text += fmt::format(
-      "{} points are in {}: report.html to look at, summary.tex and summary.md to print, points.csv and summary.csv to go on "
+      "{} points are in {}: report.html to look at, summary.tex and summary.md to print, "
+      "points.csv and summary.csv to go on "
       "with\n",
       table.rows.size(), out.string());
   return text;

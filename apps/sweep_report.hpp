@@ -10,10 +10,12 @@
 
 namespace cordon::apps {
 
-/// The comparison as text: the best cells of each group have a "*", groups are an empty line apart. At most `limit` rows.
+/// The comparison as text: the best cells of each group have a "*", groups are an empty line apart.
+/// At most `limit` rows.
 std::string comparison_text(const ComparisonTable& table, std::size_t limit);
 
-/// Title, comparison of the pipelines over the repetitions, points that failed, and where the files are.
+/// Title, comparison of the pipelines over the repetitions, points that failed, and where the files
+/// are.
 std::string sweep_report_text(const SweepOutcome& outcome, const std::filesystem::path& out);
 std::string sweep_report_json(const SweepOutcome& outcome);
 

@@ -28,28 +28,34 @@ struct Arguments {
 bool is_design(const VerifiedPipeline& p) { return p.steps == 0 && p.proofs + p.undecided > 0; }
 
 std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
-  std::vector<std::vector<std::string>> rows{
-      {"pipeline", "backend", "rounding", "steps", "exact sets", "directions", "proofs", "exact claims", "undecided"}};
+  std::vector<std::vector<std::string>> rows{{"pipeline", "backend", "rounding", "steps",
+                                              "exact sets", "directions", "proofs", "exact claims",
+                                              "undecided"}};
   std::string passed_over;
   for (const VerifiedPipeline& p : outcome.pipelines) {
     if (!p.failed_assumption.empty()) {
-      passed_over += fmt::format("{} of {}: {}. What is said from k = {} on rests on it and proves nothing{}\n",
-                                 paint.yellow("assumption failed"), p.name, p.failed_assumption, p.assumptions_until,
-                                 p.fails_again == Answer::yes ? " (proven again)" : "");
+      passed_over += fmt::format(
+          "{} of {}: {}. What is said from k = {} on rests on it and proves nothing{}\n",
+          paint.yellow("assumption failed"), p.name, p.failed_assumption, p.assumptions_until,
+          p.fails_again == Answer::yes ? " (proven again)" : "");
     }
     if (!p.checked) {
-      passed_over += fmt::format("not re-checked: {} (a diagnosis; its sets are not stored)\n", p.name);
+      passed_over +=
+          fmt::format("not re-checked: {} (a diagnosis; its sets are not stored)\n", p.name);
       continue;
     }
     if (is_design(p))
-      passed_over += fmt::format("not re-checked: the experiments of {} (of its design, the separation is)\n", p.name);
+      passed_over += fmt::format(
+          "not re-checked: the experiments of {} (of its design, the separation is)\n", p.name);
     rows.push_back({p.name, p.backend, std::string(to_string(p.rounding)), std::to_string(p.steps),
-                    std::to_string(p.by_polytopes), std::to_string(p.by_supports), std::to_string(p.proofs),
-                    std::to_string(p.exact_claims), std::to_string(p.undecided)});
+                    std::to_string(p.by_polytopes), std::to_string(p.by_supports),
+                    std::to_string(p.proofs), std::to_string(p.exact_claims),
+                    std::to_string(p.undecided)});
   }
   if (outcome.by_samples) {
     passed_over +=
-        "matrices are known by intervals only: checked for some drawn from them, not for all; claims of \"exact\" are not "
+        "matrices are known by intervals only: checked for some drawn from them, not for all; "
+        "claims of \"exact\" are not "
         "checked\n";
   }
   return (rows.size() > 1 || passed_over.empty() ? table(rows, paint) : "") + passed_over;
@@ -57,7 +63,9 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
 
 nlohmann::ordered_json assumption_json(const VerifiedPipeline& p) {
   if (p.failed_assumption.empty()) return nullptr;
-  return {{"text", p.failed_assumption}, {"assumptions_until", p.assumptions_until}, {"proven_again", to_string(p.fails_again)}};
+  return {{"text", p.failed_assumption},
+          {"assumptions_until", p.assumptions_until},
+          {"proven_again", to_string(p.fails_again)}};
 }
 
 std::string report_json(const VerifyOutcome& outcome) {
@@ -81,7 +89,8 @@ std::string report_json(const VerifyOutcome& outcome) {
                                    {"failed_assumption", assumption_json(p)}});
   }
   if (const auto& v = outcome.violation) {
-    report["violation"] = {{"pipeline", v->pipeline}, {"k", v->k}, {"what", v->what}, {"pointer", v->pointer}};
+    report["violation"] = {
+        {"pipeline", v->pipeline}, {"k", v->k}, {"what", v->what}, {"pointer", v->pointer}};
   }
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -89,15 +98,17 @@ std::string report_json(const VerifyOutcome& outcome) {
 std::int64_t undecided(const VerifyOutcome& outcome) {
   std::int64_t count = 0;
   for (const VerifiedPipeline& p : outcome.pipelines) {
-    if (p.undecided > 0) warn(fmt::format("pipeline \"{}\": undecided at {}", p.name, p.first_undecided));
+    if (p.undecided > 0)
+      warn(fmt::format("pipeline \"{}\": undecided at {}", p.name, p.first_undecided));
     count += p.undecided;
   }
   return count;
 }
 
 std::string final_text(const VerifyOutcome& outcome) {
-  const bool assumed = std::none_of(outcome.pipelines.begin(), outcome.pipelines.end(),
-                                    [](const VerifiedPipeline& p) { return !p.failed_assumption.empty(); });
+  const bool assumed =
+      std::none_of(outcome.pipelines.begin(), outcome.pipelines.end(),
+                   [](const VerifiedPipeline& p) { return !p.failed_assumption.empty(); });
   return assumed ? "Every claim that was checked holds.\n"
                  : "Every claim that was checked holds, as long as its assumptions do.\n";
 }
@@ -106,7 +117,8 @@ Exit verify(Arguments& arguments) {
   VerifyOptions& options = arguments.options;
   const bool visible = !arguments.quiet && isatty(STDERR_FILENO) == 1;
   std::optional<ProgressBar> bar;
-  options.progress = [&](const std::vector<std::string>& names, std::size_t pipeline, std::int64_t done, std::int64_t total) {
+  options.progress = [&](const std::vector<std::string>& names, std::size_t pipeline,
+                         std::int64_t done, std::int64_t total) {
     if (!bar) bar.emplace(names, visible);
     bar->show(pipeline, done, total);
   };
@@ -117,24 +129,29 @@ Exit verify(Arguments& arguments) {
     complain("interrupted: the run is not verified");
     return interrupted;
   }
-  if (!arguments.quiet) print(arguments.json ? report_json(outcome) : report_text(outcome, Paint(stdout)));
+  if (!arguments.quiet)
+    print(arguments.json ? report_json(outcome) : report_text(outcome, Paint(stdout)));
   if (const auto& v = outcome.violation) {
-    complain(fmt::format("violated at {}, pipeline \"{}\", k = {}: {}", v->pointer, v->pipeline, v->k, v->what));
+    complain(fmt::format("violated at {}, pipeline \"{}\", k = {}: {}", v->pointer, v->pipeline,
+                         v->k, v->what));
     return Exit::violated;
   }
   if (const std::int64_t open = undecided(outcome); open > 0) {
     complain(fmt::format("{} checks could not be decided; all others hold", open));
     return Exit::unanswered;
   }
-  const bool any = std::any_of(outcome.pipelines.begin(), outcome.pipelines.end(), [](const auto& p) { return p.checked; });
-  if (!arguments.quiet && !arguments.json && (any || outcome.pipelines.empty())) print(final_text(outcome));
+  const bool any = std::any_of(outcome.pipelines.begin(), outcome.pipelines.end(),
+                               [](const auto& p) { return p.checked; });
+  if (!arguments.quiet && !arguments.json && (any || outcome.pipelines.empty()))
+    print(final_text(outcome));
   return Exit::done;
 }
 
 }  // namespace
 
 void add_verify(CLI::App& app, Program& program) {
-  CLI::App* command = app.add_subcommand("verify", "Check the results of a run again, in exact arithmetic");
+  CLI::App* command =
+      app.add_subcommand("verify", "Check the results of a run again, in exact arithmetic");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("DIR", arguments->directory, "Directory that \"cordon run\" wrote")
       ->required()
@@ -142,18 +159,25 @@ void add_verify(CLI::App& app, Program& program) {
   command->add_option("--every", arguments->options.every, "Check every M-th step")
       ->option_text("M [1]")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
-  command->add_option("--directions", arguments->options.directions, "Random directions where exact polytopes are too large")
+  command
+      ->add_option("--directions", arguments->options.directions,
+                   "Random directions where exact polytopes are too large")
       ->option_text("N [32]")
       ->check(CLI::Range(0, 100000));
-  command->add_option("--seed", arguments->options.seed, "Seed of these directions")->option_text("N [1]");
+  command->add_option("--seed", arguments->options.seed, "Seed of these directions")
+      ->option_text("N [1]");
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of the table");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->footer(
-      "Checks for each step that the reported set and hull contain every state that model, data and the pipeline's own\n"
-      "assumptions allow, that the stored proofs hold, and that claims of \"exact\" are true; of designed inputs, what is said "
+      "Checks for each step that the reported set and hull contain every state that model, data "
+      "and the pipeline's own\n"
+      "assumptions allow, that the stored proofs hold, and that claims of \"exact\" are true; of "
+      "designed inputs, what is said "
       "of\n"
-      "pairs of modes and of empty tubes (their experiments are not re-checked). No plugin is loaded.\n"
-      "Exit code 4 and the first violation if a claim is false; 5 if a check could not be decided.");
+      "pairs of modes and of empty tubes (their experiments are not re-checked). No plugin is "
+      "loaded.\n"
+      "Exit code 4 and the first violation if a claim is false; 5 if a check could not be "
+      "decided.");
   command->callback([&program, arguments] { program.exit = verify(*arguments); });
 }
 

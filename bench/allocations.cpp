@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts allocations by standing in front of those of the C library, which operator new and Eigen call (glibc only).
+// Counts allocations by standing in front of those of the C library, which operator new and Eigen
+// call (glibc only).
 #include "allocations.hpp"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step of a bank of observers on zonotopes, through plugins as in a run: while a mode is monitored, and while all are
-// candidates.
+// One step of a bank of observers on zonotopes, through plugins as in a run: while a mode is
+// monitored, and while all are candidates.
 #include <cmath>
 #include <memory>
 #include <random>
@@ -17,7 +17,8 @@ LineForm box(const Vector& center, double radius) {
   return make_zonotope(center, radius * Matrix::Identity(center.size(), center.size()));
 }
 
-/// A stable plant with one output per `per_output` states, and modes that differ in effectiveness and disturbance.
+/// A stable plant with one output per `per_output` states, and modes that differ in effectiveness
+/// and disturbance.
 ModeBank random_bank(Index n, Index modes, Index per_output) {
   std::mt19937_64 engine(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -53,7 +54,9 @@ ModeBank random_bank(Index n, Index modes, Index per_output) {
 void steps(benchmark::State& state, const ModeBank& bank, std::int64_t threads, bool isolating) {
   Params zonotopes, parameters;
   zonotopes.set("reduction", std::string("combastel"));
-  parameters.set("waiting_time", std::int64_t{20}).set("max_generators", std::int64_t{20}).set("threads", threads);
+  parameters.set("waiting_time", std::int64_t{20})
+      .set("max_generators", std::int64_t{20})
+      .set("threads", threads);
   const auto backend = registry().make_backend("zonotope", zonotopes);
   const auto diagnoser = registry().make_diagnoser("observer_bank", bank, backend, parameters);
   const LinearModel& m = bank[0].model.linear;
@@ -71,7 +74,8 @@ void steps(benchmark::State& state, const ModeBank& bank, std::int64_t threads, 
   std::int64_t counted = 0;
   for (auto _ : state) {
     Sample sample = next();
-    if (isolating) sample.y.setConstant(1e3);  // no mode explains it: every copy is excluded and made anew
+    if (isolating)
+      sample.y.setConstant(1e3);  // no mode explains it: every copy is excluded and made anew
     diagnoser->step(sample);
     state.SetIterationTime(diagnoser->step_us() * 1e-6);
     ++counted;
@@ -81,9 +85,12 @@ void steps(benchmark::State& state, const ModeBank& bank, std::int64_t threads, 
 
 const int registered = [] {
   static const ModeBank small = random_bank(2, 3, 2), large = random_bank(10, 50, 5);
-  const auto add = [](const char* name, const ModeBank& bank, std::int64_t threads, bool isolating) {
+  const auto add = [](const char* name, const ModeBank& bank, std::int64_t threads,
+                      bool isolating) {
     benchmark::RegisterBenchmark(name,
-                                 [&bank, threads, isolating](benchmark::State& state) { steps(state, bank, threads, isolating); })
+                                 [&bank, threads, isolating](benchmark::State& state) {
+                                   steps(state, bank, threads, isolating);
+                                 })
         ->UseManualTime()
         ->Repetitions(7)
         ->Unit(benchmark::kMicrosecond)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the work that users wait for may take: medians in microseconds on one core of the machine of docs/performance.md.
+// What the work that users wait for may take: medians in microseconds on one core of the machine of
+// docs/performance.md.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Certificates beside the linear programs they certify. The time is that of program and check together; the counters are the
-// medians of both in microseconds, and the check's share of its program. A check has bounded rounding errors or is rational.
+// Certificates beside the linear programs they certify. The time is that of program and check
+// together; the counters are the medians of both in microseconds, and the check's share of its
+// program. A check has bounded rounding errors or is rational.
 #include <chrono>
 
 #include "cordon/core/rounding.hpp"
@@ -19,9 +20,12 @@ using Kind = Certificate::Kind;
 
 constexpr std::uint64_t sets_asked = 8;  ///< of emptiness: as many sets take turns
 
-double microseconds(Clock::duration time) { return std::chrono::duration<double, std::micro>(time).count(); }
+double microseconds(Clock::duration time) {
+  return std::chrono::duration<double, std::micro>(time).count();
+}
 
-/// Each iteration solves one program and checks what it proposes; `check` tells whether the proposal proves the answer.
+/// Each iteration solves one program and checks what it proposes; `check` tells whether the
+/// proposal proves the answer.
 template <class Propose, class Check>
 void certified(benchmark::State& state, Propose propose, Check check) {
   double program = 0, checked = 0;
@@ -64,19 +68,23 @@ void bound(benchmark::State& state, Check check) {
 }
 
 void bound_certificate(benchmark::State& state) {
-  bound(state, [](const LineForm& X, const Vector&, const Vector& g, const LinearProgram::Solution& solution) {
-    const double upper = rounding::up(rounding::dot(X.b, solution.y).upper + rounding::residual_norm_1(g, X.A, solution.y));
+  bound(state, [](const LineForm& X, const Vector&, const Vector& g,
+                  const LinearProgram::Solution& solution) {
+    const double upper = rounding::up(rounding::dot(X.b, solution.y).upper +
+                                      rounding::residual_norm_1(g, X.A, solution.y));
     return upper >= solution.objective - 1e-9 && upper <= solution.objective + 1e-9;
   });
 }
 void bound_rational(benchmark::State& state) {
-  bound(state, [](const LineForm& X, const Vector& d, const Vector&, const LinearProgram::Solution& solution) {
+  bound(state, [](const LineForm& X, const Vector& d, const Vector&,
+                  const LinearProgram::Solution& solution) {
     const double upper = d.dot(X.c) + solution.objective + 1e-9;
     return proves_support(X, d, upper, {Kind::dual, solution.y, upper});
   });
 }
 
-/// max τ with Aξ = τ b, ‖ξ‖∞ ≤ 1, 0 ≤ τ ≤ 2: from the beginning for each set, as emptiness is asked once.
+/// max τ with Aξ = τ b, ‖ξ‖∞ ≤ 1, 0 ≤ τ ≤ 2: from the beginning for each set, as emptiness is asked
+/// once.
 LinearProgram::Solution scaled_solution(const LineForm& X) {
   const Index g = X.generators();
   Matrix rows(X.constraints(), g + 1);
@@ -84,7 +92,8 @@ LinearProgram::Solution scaled_solution(const LineForm& X) {
   Vector lower = Vector::Constant(g + 1, -1), upper = Vector::Ones(g + 1);
   lower[g] = 0;
   upper[g] = 2;
-  return LinearProgram(rows, Vector::Zero(X.constraints()), lower, upper).maximize(Vector::Unit(g + 1, g));
+  return LinearProgram(rows, Vector::Zero(X.constraints()), lower, upper)
+      .maximize(Vector::Unit(g + 1, g));
 }
 
 template <class Check>
@@ -98,13 +107,19 @@ void emptiness(benchmark::State& state, bool empty, Check check) {
   if (sets.empty()) return state.SkipWithError("no set has the answer that is measured");
   certified(
       state, [&](std::size_t i) { return scaled_solution(sets[i % sets.size()]); },
-      [&](std::size_t i, const LinearProgram::Solution& solution) { return check(sets[i % sets.size()], solution); });
+      [&](std::size_t i, const LinearProgram::Solution& solution) {
+        return check(sets[i % sets.size()], solution);
+      });
 }
 
-Vector point_of(const LinearProgram::Solution& solution) { return solution.x.head(solution.x.size() - 1) / solution.objective; }
+Vector point_of(const LinearProgram::Solution& solution) {
+  return solution.x.head(solution.x.size() - 1) / solution.objective;
+}
 
 void empty_certificate(benchmark::State& state) {
-  emptiness(state, true, [](const LineForm& X, const LinearProgram::Solution& s) { return farkas_margin(X.A, X.b, -s.y) > 0; });
+  emptiness(state, true, [](const LineForm& X, const LinearProgram::Solution& s) {
+    return farkas_margin(X.A, X.b, -s.y) > 0;
+  });
 }
 void empty_rational(benchmark::State& state) {
   emptiness(state, true, [](const LineForm& X, const LinearProgram::Solution& s) {
@@ -130,7 +145,12 @@ void paired(benchmark::internal::Benchmark* b) {
 }
 /// Without the largest size, which takes seconds: a point is moved onto its rows by solving them.
 void paired_small(benchmark::internal::Benchmark* b) {
-  b->Args({3, 30, 5})->Args({10, 100, 20})->Repetitions(7)->Unit(benchmark::kMicrosecond)->MinTime(.05)->UseManualTime();
+  b->Args({3, 30, 5})
+      ->Args({10, 100, 20})
+      ->Repetitions(7)
+      ->Unit(benchmark::kMicrosecond)
+      ->MinTime(.05)
+      ->UseManualTime();
 }
 
 BENCHMARK(bound_certificate)->Apply(paired);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The operations of a step of the main study on values of `sets`, without abstract sets, plugins and observers; `interface` is
-// what these add to it, as a share. Both are measured in turns, so that other load on the machine falls on both.
+// The operations of a step of the main study on values of `sets`, without abstract sets, plugins
+// and observers; `interface` is what these add to it, as a share. Both are measured in turns, so
+// that other load on the machine falls on both.
 #include <algorithm>
 #include <chrono>
 #include <vector>
@@ -20,7 +21,8 @@ using namespace cordon;
 /// The descriptor observer where E = diag(1, 1, 0): z = x, the third row is static.
 class DirectObserver {
  public:
-  DirectObserver(const Model& model, LineForm start, LineForm free) : m_(model), X_(std::move(start)), free_(std::move(free)) {
+  DirectObserver(const Model& model, LineForm start, LineForm free)
+      : m_(model), X_(std::move(start)), free_(std::move(free)) {
     dynamic_A_.topRows(2) = m_.linear.A.topRows(2);
     dynamic_Bw_.topRows(2) = m_.linear.Bw.topRows(2);
     static_A_ = m_.linear.A.bottomRows(1);
@@ -53,27 +55,35 @@ class DirectObserver {
 };
 
 double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
   return values[values.size() / 2];
 }
 
 double microseconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
+      .count();
 }
 
-bool are_same(const LineForm& X, const LineForm& Y) { return X.G == Y.G && X.c == Y.c && X.A == Y.A && X.b == Y.b; }
+bool are_same(const LineForm& X, const LineForm& Y) {
+  return X.G == Y.G && X.c == Y.c && X.A == Y.A && X.b == Y.b;
+}
 
 /// Steps k = 2 … 20 of the pipeline by an observer, and the same directly.
-void direct_steps(benchmark::State& state, const char* name, const LineForm& start, const LineForm& free) {
+void direct_steps(benchmark::State& state, const char* name, const LineForm& start,
+                  const LineForm& free) {
   Registry registry;
   registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
-  const Study study = read_study(CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
-  const auto pipeline =
-      std::find_if(study.pipelines.begin(), study.pipelines.end(), [&](const auto& p) { return p.name == name; });
+  const Study study = read_study(
+      CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
+  const auto pipeline = std::find_if(study.pipelines.begin(), study.pipelines.end(),
+                                     [&](const auto& p) { return p.name == name; });
   const auto backend = registry.make_backend(pipeline->backend.type, pipeline->backend.params);
-  const auto observer = registry.make_observer(pipeline->observer.type, {study.model, backend}, pipeline->observer.params);
+  const auto observer = registry.make_observer(pipeline->observer.type, {study.model, backend},
+                                               pipeline->observer.params);
   std::vector<Sample> samples;
-  for (const auto source = open_data(study); samples.size() <= 20;) samples.push_back(source->next()->sample);
+  for (const auto source = open_data(study); samples.size() <= 20;)
+    samples.push_back(source->next()->sample);
 
   std::vector<double> by_observer, directly;
   for (auto _ : state) {
@@ -90,7 +100,8 @@ void direct_steps(benchmark::State& state, const char* name, const LineForm& sta
       direct_time += microseconds_since(begin);
       observer_time += observer->times().step();
     }
-    if (!are_same(direct.set(), estimate.set->line_form())) state.SkipWithError("the sets differ from those of the observer");
+    if (!are_same(direct.set(), estimate.set->line_form()))
+      state.SkipWithError("the sets differ from those of the observer");
     const double steps = static_cast<double>(samples.size() - 2);
     by_observer.push_back(observer_time / steps);
     directly.push_back(direct_time / steps);
@@ -106,7 +117,8 @@ BENCHMARK_CAPTURE(direct_steps, LZ, "LZ", make_space(3), make_space(1))
     ->Repetitions(7)
     ->Unit(benchmark::kMicrosecond)
     ->MinTime(.01);
-BENCHMARK_CAPTURE(direct_steps, CZ, "CZ", make_zonotope(Vector{{.5, .5, .25}}, Matrix(Vector{{.1, 1.5, .6}}.asDiagonal())),
+BENCHMARK_CAPTURE(direct_steps, CZ, "CZ",
+                  make_zonotope(Vector{{.5, .5, .25}}, Matrix(Vector{{.1, 1.5, .6}}.asDiagonal())),
                   bounded)
     ->UseManualTime()
     ->Repetitions(7)

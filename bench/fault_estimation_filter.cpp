@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step of the fault estimation filter on the published descriptor system, through plugins as in a run.
+// One step of the fault estimation filter on the published descriptor system, through plugins as in
+// a run.
 #include <cmath>
 #include <memory>
 
@@ -18,12 +19,13 @@ void steps(benchmark::State& state, const char* coupling) {
       .set("max_columns", std::int64_t{20})
       .set("free_matrix", faults::published_S());
   const ModeBank bank{{{"healthy", faults::published()}}};
-  const auto diagnoser =
-      registry().make_diagnoser("fault_estimation_filter", bank, registry().make_backend("zonotope", {}), parameters);
+  const auto diagnoser = registry().make_diagnoser(
+      "fault_estimation_filter", bank, registry().make_backend("zonotope", {}), parameters);
   Index k = 0;
   const auto next = [&] {
     Sample sample{k, Vector::Zero(2), Vector(3)};
-    for (Index i = 0; i < 3; ++i) sample.y[i] = .01 * std::sin(.3 * static_cast<double>(k * (i + 1)));
+    for (Index i = 0; i < 3; ++i)
+      sample.y[i] = .01 * std::sin(.3 * static_cast<double>(k * (i + 1)));
     ++k;
     return sample;
   };
@@ -39,8 +41,9 @@ void steps(benchmark::State& state, const char* coupling) {
 
 const int registered = [] {
   for (const char* coupling : {"shared", "independent"}) {
-    benchmark::RegisterBenchmark(("fault_estimation_filter/20_columns/" + std::string(coupling)).c_str(),
-                                 [coupling](benchmark::State& state) { steps(state, coupling); })
+    benchmark::RegisterBenchmark(
+        ("fault_estimation_filter/20_columns/" + std::string(coupling)).c_str(),
+        [coupling](benchmark::State& state) { steps(state, coupling); })
         ->UseManualTime()
         ->Repetitions(7)
         ->Unit(benchmark::kMicrosecond)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The design of a gain by each linear matrix inequality, for the published plants with three and two states and for a random one
-// with eight.
+// The design of a gain by each linear matrix inequality, for the published plants with three and
+// two states and for a random one with eight.
 #include <random>
 #include <string>
 
@@ -38,18 +38,21 @@ Model random_plant(Index n, Index outputs) {
 }
 
 const int registered = [] {
-  static const Model three = plant(Matrix{{.8, .1, .3}, {0, .8, .2}, {.01, 0, .8}}, Matrix{{0, 0, 1}}, .08, .2),
-                     two = plant(Matrix{{.9886, 0}, {.0114, .9903}}, Matrix{{0, 1}}, .006, .5), eight = random_plant(8, 3);
+  static const Model three = plant(Matrix{{.8, .1, .3}, {0, .8, .2}, {.01, 0, .8}},
+                                   Matrix{{0, 0, 1}}, .08, .2),
+                     two = plant(Matrix{{.9886, 0}, {.0114, .9903}}, Matrix{{0, 1}}, .006, .5),
+                     eight = random_plant(8, 3);
   for (const char* type : {"h_infinity", "h_infinity_monotone", "w_radius"}) {
-    for (const auto& [name, model] :
-         {std::pair{"2_states", &two}, std::pair{"3_states", &three}, std::pair{"8_states", &eight}}) {
+    for (const auto& [name, model] : {std::pair{"2_states", &two}, std::pair{"3_states", &three},
+                                      std::pair{"8_states", &eight}}) {
       benchmark::RegisterBenchmark(("gain/" + std::string(type) + "/" + name).c_str(),
                                    [type, model = model](benchmark::State& state) {
                                      Params params;
                                      if (std::string(type) == "w_radius") params.set("rho", .98);
                                      const auto designer = registry().make_gain(type, params);
                                      for (auto _ : state) {
-                                       if (designer->design(*model).feasible != Answer::yes) state.SkipWithError("no gain");
+                                       if (designer->design(*model).feasible != Answer::yes)
+                                         state.SkipWithError("no gain");
                                      }
                                    })
           ->Unit(benchmark::kMicrosecond)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Design of a separating input for the four descriptor models of [Rego2025, sec. 6.2] by the search over facets: tubes, pairs,
-// facets, search, and the certificates of what was found.
+// Design of a separating input for the four descriptor models of [Rego2025, sec. 6.2] by the search
+// over facets: tubes, pairs, facets, search, and the certificates of what was found.
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -20,8 +20,9 @@ void design(benchmark::State& state, std::int64_t horizon, const std::string& co
                             .set("reference", reference)
                             .set("first_input", Vector(reference.transpose()))
                             .set("epsilon", 1e-4);
-  const auto designer = registry().make_designer("facets", examples::four_descriptor_models(),
-                                                 registry().make_backend("line_zonotope", {}), params);
+  const auto designer =
+      registry().make_designer("facets", examples::four_descriptor_models(),
+                               registry().make_backend("line_zonotope", {}), params);
   DesignControl control;
   DesignOutcome outcome;
   for (auto _ : state) benchmark::DoNotOptimize(outcome = designer->design(control));
@@ -34,8 +35,10 @@ void design(benchmark::State& state, std::int64_t horizon, const std::string& co
 const int registered = [] {
   for (const std::int64_t horizon : {3, 4}) {
     for (const std::string cost : {"norm_1", "norm_inf", "quadratic"}) {
-      const std::string name = "input_design/facets/" + cost + "/horizon:" + std::to_string(horizon);
-      benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { design(state, horizon, cost); })
+      const std::string name =
+          "input_design/facets/" + cost + "/horizon:" + std::to_string(horizon);
+      benchmark::RegisterBenchmark(name.c_str(),
+                                   [=](benchmark::State& state) { design(state, horizon, cost); })
           ->Unit(benchmark::kMicrosecond)
           ->Repetitions(7);
     }

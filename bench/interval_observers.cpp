@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step of the observers of uncertain systems on the three-state plant of [Pourasghar2021, (68)], whole: with the checks of
-// the sample, the set that is handed out and the question whether it is empty.
+// One step of the observers of uncertain systems on the three-state plant of [Pourasghar2021,
+// (68)], whole: with the checks of the sample, the set that is handed out and the question whether
+// it is empty.
 #include <benchmark/benchmark.h>
 
 #include "registry.hpp"
@@ -26,13 +27,14 @@ Model plant() {
   return model;
 }
 
-void step(benchmark::State& state, const std::string& name, const std::string& backend, Params params) {
-  const auto gain =
-      std::make_shared<const ComponentSpec>(ComponentSpec{"given", Params().set("matrix", Matrix{{.3}, {.2}, {.8}})});
+void step(benchmark::State& state, const std::string& name, const std::string& backend,
+          Params params) {
+  const auto gain = std::make_shared<const ComponentSpec>(
+      ComponentSpec{"given", Params().set("matrix", Matrix{{.3}, {.2}, {.8}})});
   Params sets;
   if (backend == "zonotope") sets.set("reduction", std::string("combastel"));
-  const auto observer =
-      registry().make_observer(name, {plant(), registry().make_backend(backend, sets)}, params.set("gain", gain));
+  const auto observer = registry().make_observer(
+      name, {plant(), registry().make_backend(backend, sets)}, params.set("gain", gain));
   Sample now{0, Vector::Constant(1, .5), Vector::Constant(1, .7)};
   for (auto _ : state) {
     benchmark::DoNotOptimize(observer->step(now));
@@ -40,7 +42,8 @@ void step(benchmark::State& state, const std::string& name, const std::string& b
   }
 }
 
-void add(const std::string& name, const std::string& backend, const std::string& what = "", Params params = {}) {
+void add(const std::string& name, const std::string& backend, const std::string& what = "",
+         Params params = {}) {
   benchmark::RegisterBenchmark((name + "/" + backend + what).c_str(),
                                [=](benchmark::State& state) { step(state, name, backend, params); })
       ->Unit(benchmark::kMicrosecond)
@@ -54,7 +57,8 @@ const int registered = [] {
   add("interval_trajectory", "zonotope");
   add("zonotope_uncertain", "zonotope", "/20", Params().set("max_generators", std::int64_t{20}));
   add("zonotope_uncertain", "interval");
-  add("interval_trajectory", "interval", "/inner_100", Params().set("inner_samples", std::int64_t{100}));
+  add("interval_trajectory", "interval", "/inner_100",
+      Params().set("inner_samples", std::int64_t{100}));
   return 0;
 }();
 

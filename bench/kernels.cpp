@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Operations on random constrained sets of (states, generators, constraints) = (3,30,5), (10,100,20), (20,200,50).
+// Operations on random constrained sets of (states, generators, constraints) = (3,30,5),
+// (10,100,20), (20,200,50).
 #include <map>
 #include <random>
 
@@ -28,19 +29,22 @@ void minkowski_sum_of_sets(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(minkowski_sum(X, Y));
 }
 void generalised_intersection(benchmark::State& state) {
-  const LineForm X = random_set(size(state)), Y = make_box({Vector::Constant(2, -1), Vector::Constant(2, 1)});
+  const LineForm X = random_set(size(state)),
+                 Y = make_box({Vector::Constant(2, -1), Vector::Constant(2, 1)});
   std::mt19937_64 engine(2);
   const Matrix R = random_matrix(engine, 2, X.dim());
   for (auto _ : state) benchmark::DoNotOptimize(intersection(X, R, Y));
 }
 void line_elimination(benchmark::State& state) {
   const LineForm X =
-      intersection(make_space(size(state).n), Matrix::Identity(size(state).n, size(state).n), random_set(size(state)));
+      intersection(make_space(size(state).n), Matrix::Identity(size(state).n, size(state).n),
+                   random_set(size(state)));
   for (auto _ : state) benchmark::DoNotOptimize(eliminate_lines(X));
 }
 void constraint_elimination_of_one(benchmark::State& state) {
   const LineForm X = random_set(size(state));
-  for (auto _ : state) benchmark::DoNotOptimize(sets::eliminate_constraints(X, X.constraints() - 1));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(sets::eliminate_constraints(X, X.constraints() - 1));
 }
 void constraint_elimination_to_5(benchmark::State& state) {
   Size s = size(state);
@@ -76,7 +80,8 @@ void containment_of_inner_point(benchmark::State& state) {
   const Vector x = hull.center();
   for (auto _ : state) benchmark::DoNotOptimize(contains(X, x));
 }
-/// Within 2 % of the boundary, seen from the middle. Found once per size: on the boundary itself exact arithmetic decides.
+/// Within 2 % of the boundary, seen from the middle. Found once per size: on the boundary itself
+/// exact arithmetic decides.
 const Vector& point_near_boundary(Size s, const LineForm& X) {
   static std::map<Index, Vector> found;
   Vector& x = found[s.n];
@@ -94,7 +99,8 @@ const Vector& point_near_boundary(Size s, const LineForm& X) {
 void containment_near_boundary(benchmark::State& state) {
   const LineForm X = random_set(size(state));
   const Vector& x = point_near_boundary(size(state), X);
-  if (contains(X, x) != Answer::yes) state.SkipWithError("the point must be proven to lie in the set");
+  if (contains(X, x) != Answer::yes)
+    state.SkipWithError("the point must be proven to lie in the set");
   for (auto _ : state) benchmark::DoNotOptimize(contains(X, x));
 }
 void strip_of_zonotope(benchmark::State& state) {

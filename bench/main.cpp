@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prints the median of every benchmark in microseconds, the share of its budget (budget.hpp) and its ratio to the stored
-// baseline, where there are such, and the medians of its counters. Options are those of Google Benchmark
+// Prints the median of every benchmark in microseconds, the share of its budget (budget.hpp) and
+// its ratio to the stored baseline, where there are such, and the medians of its counters. Options
+// are those of Google Benchmark
 // (--benchmark_filter=REGEX, …), and
 //   --baseline=FILE       compare with this file instead of bench/baseline.txt
 //   --save-baseline=FILE  write the medians there
@@ -33,16 +34,19 @@ class MedianReporter final : public benchmark::BenchmarkReporter {
   const Medians& medians() const { return medians_; }
 
   bool ReportContext(const Context& context) override {
-    std::printf("%d cores at %.0f MHz; medians of 7 repetitions\n%-46s %13s %8s %10s\n", context.cpu_info.num_cpus,
-                context.cpu_info.cycles_per_second / 1e6, "benchmark", "median", "× budget", "× baseline");
+    std::printf("%d cores at %.0f MHz; medians of 7 repetitions\n%-46s %13s %8s %10s\n",
+                context.cpu_info.num_cpus, context.cpu_info.cycles_per_second / 1e6, "benchmark",
+                "median", "× budget", "× baseline");
     return true;
   }
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
       if (run.run_type != Run::RT_Aggregate || run.aggregate_name != "median") continue;
       std::string name = run.run_name.str();
-      for (const char* suffix : {"/repeats:7", "/manual_time", "/min_time:0.050", "/min_time:0.010"}) {
-        if (const auto at = name.find(suffix); at != std::string::npos) name.erase(at, std::strlen(suffix));
+      for (const char* suffix :
+           {"/repeats:7", "/manual_time", "/min_time:0.050", "/min_time:0.010"}) {
+        if (const auto at = name.find(suffix); at != std::string::npos)
+          name.erase(at, std::strlen(suffix));
       }
       const double median = run.GetAdjustedRealTime();
       medians_[name] = median;
@@ -53,7 +57,8 @@ class MedianReporter final : public benchmark::BenchmarkReporter {
         print_ratio(8, budget ? median / *budget : 0);
         print_ratio(10, before != baseline_.end() ? median / before->second : 0);
       }
-      for (const auto& [counter, value] : run.counters) std::printf("  %s %.3g", counter.c_str(), value.value);
+      for (const auto& [counter, value] : run.counters)
+        std::printf("  %s %.3g", counter.c_str(), value.value);
       std::printf("\n");
       std::fflush(stdout);
     }
@@ -88,7 +93,8 @@ std::string take_option(int& argc, char** argv, const char* name, std::string va
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string baseline = take_option(argc, argv, "--baseline=", CORDON_SOURCE_DIR "/bench/baseline.txt");
+  const std::string baseline =
+      take_option(argc, argv, "--baseline=", CORDON_SOURCE_DIR "/bench/baseline.txt");
   const std::string saved = take_option(argc, argv, "--save-baseline=", "");
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -15,7 +15,8 @@ struct Size {
 
 inline Matrix random_matrix(std::mt19937_64& engine, Index rows, Index cols) {
   Matrix A(rows, cols);
-  for (Index k = 0; k < A.size(); ++k) A.data()[k] = static_cast<double>(engine() >> 11) * 0x1p-52 - 1;
+  for (Index k = 0; k < A.size(); ++k)
+    A.data()[k] = static_cast<double>(engine() >> 11) * 0x1p-52 - 1;
   return A;
 }
 

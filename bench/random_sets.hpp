@@ -8,10 +8,17 @@
 
 namespace cordon::bench {
 
-inline Size size(const benchmark::State& state) { return {state.range(0), state.range(1), state.range(2)}; }
+inline Size size(const benchmark::State& state) {
+  return {state.range(0), state.range(1), state.range(2)};
+}
 
 inline void sizes(benchmark::internal::Benchmark* b) {
-  b->Args({3, 30, 5})->Args({10, 100, 20})->Args({20, 200, 50})->Repetitions(7)->Unit(benchmark::kMicrosecond)->MinTime(.05);
+  b->Args({3, 30, 5})
+      ->Args({10, 100, 20})
+      ->Args({20, 200, 50})
+      ->Repetitions(7)
+      ->Unit(benchmark::kMicrosecond)
+      ->MinTime(.05);
 }
 
 }  // namespace cordon::bench

@@ -30,5 +30,5 @@ void register_components(cordon::Registrar& registrar) {
 
 }  // namespace
 
-CORDON_PLUGIN("estimators", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "set-based observers, diagnosers and metrics",
-              register_components)
+CORDON_PLUGIN("estimators", "0.1.0", "GPL-3.0-or-later", "the Cordon authors",
+              "set-based observers, diagnosers and metrics", register_components)

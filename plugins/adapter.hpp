@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One template between a value type of `sets` and the framework's abstract set. A representation describes itself by a struct:
+// One template between a value type of `sets` and the framework's abstract set. A representation
+// describes itself by a struct:
 //
 //   struct Representation {
 //     using Value = …;                                       the value type
 //     struct Result { Value value; Tightness tightness; };   of an operation alone
-//     Index dim(const Value&); LineForm line_form(const Value&); Complexity complexity(const Value&);
-//     Answer is_empty(const Value&, Certificate*), contains(const Value&, VectorIn, Certificate*), is_bounded(const Value&);
-//     double support(const Value&, VectorIn, Certificate*);  Box interval_hull(const Value&, std::vector<Certificate>*);  double
-//     exact_volume(const Value&); Result import(const LineForm&); Result predict(const Value& X, MatrixIn A, VectorIn f,
-//     std::span<const Operand<Value>>); Result correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise);
-//     Result interval_map(const Value&, const IntervalMatrix&);  Result intersection(const Value&, MatrixIn R, const Value&);
-//     Result convex_hull(const Value&, const Value&);            std::optional<Result> reduce(const Value&, Budget);
+//     Index dim(const Value&); LineForm line_form(const Value&); Complexity complexity(const
+//     Value&); Answer is_empty(const Value&, Certificate*), contains(const Value&, VectorIn,
+//     Certificate*), is_bounded(const Value&); double support(const Value&, VectorIn,
+//     Certificate*);  Box interval_hull(const Value&, std::vector<Certificate>*);  double
+//     exact_volume(const Value&); Result import(const LineForm&); Result predict(const Value& X,
+//     MatrixIn A, VectorIn f, std::span<const Operand<Value>>); Result correct(const Value& X,
+//     MatrixIn C, VectorIn z, const Operand<Value>& noise); Result interval_map(const Value&, const
+//     IntervalMatrix&);  Result intersection(const Value&, MatrixIn R, const Value&); Result
+//     convex_hull(const Value&, const Value&);            std::optional<Result> reduce(const
+//     Value&, Budget);
 //   };
 //
-// All are const member functions; preconditions are those of Set and SetBackend (shapes fit, numbers are finite).
+// All are const member functions; preconditions are those of Set and SetBackend (shapes fit,
+// numbers are finite).
 #pragma once
 
 #include <memory>
@@ -49,17 +54,27 @@ class ValueSet final : public Set {
  public:
   using Value = typename Representation::Value;
   ValueSet(const SetBackend& backend, const Representation& representation, Value value)
-      : Set(backend, representation.dim(value)), representation_(representation), value_(std::move(value)) {}
+      : Set(backend, representation.dim(value)),
+        representation_(representation),
+        value_(std::move(value)) {}
   const Value& value() const { return value_; }
 
  private:
   Complexity do_complexity() const override { return representation_.complexity(value_); }
   LineForm do_line_form() const override { return representation_.line_form(value_); }
-  Answer do_is_empty(Certificate* why) const override { return representation_.is_empty(value_, why); }
-  Answer do_contains(VectorIn x, Certificate* why) const override { return representation_.contains(value_, x, why); }
+  Answer do_is_empty(Certificate* why) const override {
+    return representation_.is_empty(value_, why);
+  }
+  Answer do_contains(VectorIn x, Certificate* why) const override {
+    return representation_.contains(value_, x, why);
+  }
   Answer do_is_bounded() const override { return representation_.is_bounded(value_); }
-  double do_support(VectorIn d, Certificate* why) const override { return representation_.support(value_, d, why); }
-  Box do_interval_hull(std::vector<Certificate>* why) const override { return representation_.interval_hull(value_, why); }
+  double do_support(VectorIn d, Certificate* why) const override {
+    return representation_.support(value_, d, why);
+  }
+  Box do_interval_hull(std::vector<Certificate>* why) const override {
+    return representation_.interval_hull(value_, why);
+  }
   double do_exact_volume() const override { return representation_.exact_volume(value_); }
 
   const Representation& representation_;  // lives in the backend, which the set keeps alive
@@ -80,7 +95,8 @@ class ValueBackend final : public SetBackend {
   static const Value& value(const Set& X) { return static_cast<const Own&>(X).value(); }
 
   Made make(ResultOf<Value> result) const {
-    return {std::make_unique<Own>(*this, representation_, std::move(result.value)), result.tightness};
+    return {std::make_unique<Own>(*this, representation_, std::move(result.value)),
+            result.tightness};
   }
 
   Made do_import(const LineForm& X) const override { return make(representation_.import(X)); }
@@ -91,7 +107,8 @@ class ValueBackend final : public SetBackend {
     return make(representation_.predict(value(X), p.A, p.f, {operands.data(), operands.size()}));
   }
   Made do_correct(const Set& X, const Correct& c) const override {
-    return make(representation_.correct(value(X), c.C, c.z, Operand<Value>{c.noise.T, value(*c.noise.set)}));
+    return make(representation_.correct(value(X), c.C, c.z,
+                                        Operand<Value>{c.noise.T, value(*c.noise.set)}));
   }
   Made do_interval_map(const Set& X, const IntervalMatrix& A) const override {
     return make(representation_.interval_map(value(X), A));
@@ -99,7 +116,9 @@ class ValueBackend final : public SetBackend {
   Made do_intersection(const Set& X, MatrixIn R, const Set& Y) const override {
     return make(representation_.intersection(value(X), R, value(Y)));
   }
-  Made do_convex_hull(const Set& X, const Set& Y) const override { return make(representation_.convex_hull(value(X), value(Y))); }
+  Made do_convex_hull(const Set& X, const Set& Y) const override {
+    return make(representation_.convex_hull(value(X), value(Y)));
+  }
   Made do_reduce(const Set& X, Budget budget) const override {
     auto result = representation_.reduce(value(X), budget);
     return result ? make(std::move(*result)) : Made{};

@@ -28,8 +28,12 @@ ConstrainedForm::Result made(sets::Reduced result) {
 
 }  // namespace
 
-Answer ConstrainedForm::is_empty(const Value& X, Certificate* why) const { return cordon::is_empty(X, why); }
-Answer ConstrainedForm::contains(const Value& X, VectorIn x, Certificate* why) const { return cordon::contains(X, x, why); }
+Answer ConstrainedForm::is_empty(const Value& X, Certificate* why) const {
+  return cordon::is_empty(X, why);
+}
+Answer ConstrainedForm::contains(const Value& X, VectorIn x, Certificate* why) const {
+  return cordon::contains(X, x, why);
+}
 Answer ConstrainedForm::is_bounded(const Value& X) const { return cordon::is_bounded(X); }
 double ConstrainedForm::support(const Value& X, VectorIn d, Certificate* why) const {
   return outward ? cordon::outward::support(X, d, why) : cordon::support(X, d, why);
@@ -53,7 +57,9 @@ double ConstrainedForm::exact_volume(const Value& X) const {
     // the solver's point must be one of the set, and the certified bound its value
     const double size = 1e-9 * (g.lpNorm<1>() + d.cwiseAbs().dot(Y.c.cwiseAbs()));
     const Vector gap = linalg::product(Y.A, *bound.xi) - Y.b;
-    const bool feasible = (gap.array().abs() <= 1e-7 * (Y.b.cwiseAbs() + Y.A.cwiseAbs().rowwise().sum()).array()).all();
+    const bool feasible =
+        (gap.array().abs() <= 1e-7 * (Y.b.cwiseAbs() + Y.A.cwiseAbs().rowwise().sum()).array())
+            .all();
     solved = solved && feasible && bound.upper - g.dot(*bound.xi) <= size;
     return {d.dot(Y.c) + bound.upper, Y.c + linalg::product(Y.G, *bound.xi)};
   };
@@ -76,9 +82,9 @@ ConstrainedForm::Result ConstrainedForm::import(const LineForm& X) const {
     return {sets::line_form(*Z), Tightness::exact};
   }
   if (is_empty(X, nullptr) == Answer::yes) return {make_empty(X.dim()), Tightness::exact};
-  throw Error(
-      Errc::unsupported,
-      "constrained_zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
+  throw Error(Errc::unsupported,
+              "constrained_zonotope: the set is unbounded, which this representation cannot hold; "
+              "use line_zonotope, or bound the set");
 }
 
 ConstrainedForm::Result ConstrainedForm::predict(const Value& X, MatrixIn A, VectorIn f,
@@ -89,18 +95,22 @@ ConstrainedForm::Result ConstrainedForm::predict(const Value& X, MatrixIn A, Vec
   return made(sets::affine_sum(X, A, f, {summands.data(), summands.size()}));
 }
 
-ConstrainedForm::Result ConstrainedForm::correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {
+ConstrainedForm::Result ConstrainedForm::correct(const Value& X, MatrixIn C, VectorIn z,
+                                                 const Operand<Value>& noise) const {
   if (outward) return made(sets::outward::strip_intersection(X, C, z, noise.T, noise.value));
   return {sets::strip_intersection(X, C, z, noise.T, noise.value), Tightness::exact};
 }
 
-ConstrainedForm::Result ConstrainedForm::interval_map(const Value& X, const IntervalMatrix& A) const {
+ConstrainedForm::Result ConstrainedForm::interval_map(const Value& X,
+                                                      const IntervalMatrix& A) const {
   if (outward) {
     const Box hull = A.is_exact() ? Box::space(X.dim()) : interval_hull(X, nullptr);
-    if (!A.is_exact() && X.dim() > 0 && hull.is_empty()) return {make_empty(A.rows()), Tightness::exact};
+    if (!A.is_exact() && X.dim() > 0 && hull.is_empty())
+      return {make_empty(A.rows()), Tightness::exact};
     sets::Reduced image = sets::outward::interval_map(X, A, hull);
     if (!lines && image.set.lines() > 0)
-      throw Error(Errc::unsupported, "constrained_zonotope: the image under the interval matrix has no proven bound");
+      throw Error(Errc::unsupported,
+                  "constrained_zonotope: the image under the interval matrix has no proven bound");
     return made(std::move(image));
   }
   // A x = mid(A) x + Δ x with |Δ x| ≤ rad(A) |x|, |x| bounded by the interval hull
@@ -108,31 +118,38 @@ ConstrainedForm::Result ConstrainedForm::interval_map(const Value& X, const Inte
   if (A.is_exact()) return made(std::move(image));
   const Box hull = cordon::interval_hull(X);
   if (hull.is_empty()) return {make_empty(A.rows()), Tightness::exact};
-  const Box spread = sets::interval_map(hull, IntervalMatrix(Matrix::Zero(A.rows(), A.cols()), A.radius));
+  const Box spread =
+      sets::interval_map(hull, IntervalMatrix(Matrix::Zero(A.rows(), A.cols()), A.radius));
   if (!lines && !spread.is_bounded())
-    throw Error(Errc::unsupported, "constrained_zonotope: the image under the interval matrix has no proven bound");
+    throw Error(Errc::unsupported,
+                "constrained_zonotope: the image under the interval matrix has no proven bound");
   return {minkowski_sum(image.set, make_box(spread)), Tightness::outer};
 }
 
-ConstrainedForm::Result ConstrainedForm::intersection(const Value& X, MatrixIn R, const Value& Y) const {
+ConstrainedForm::Result ConstrainedForm::intersection(const Value& X, MatrixIn R,
+                                                      const Value& Y) const {
   if (outward) return made(sets::outward::intersection(X, R, Y));
   return {cordon::intersection(X, R, Y), Tightness::exact};
 }
 
 ConstrainedForm::Result ConstrainedForm::convex_hull(const Value& X, const Value& Y) const {
   if (outward) return made(sets::outward::convex_hull(X, Y));
-  return {cordon::convex_hull(X, Y), X.lines() + Y.lines() > 0 ? Tightness::outer : Tightness::exact};
+  return {cordon::convex_hull(X, Y),
+          X.lines() + Y.lines() > 0 ? Tightness::outer : Tightness::exact};
 }
 
-std::optional<ConstrainedForm::Result> ConstrainedForm::reduce(const Value& X, Budget budget) const {
-  if (outward) return made(sets::outward::reduce(X, budget.generators, budget.constraints, reduction));
+std::optional<ConstrainedForm::Result> ConstrainedForm::reduce(const Value& X,
+                                                               Budget budget) const {
+  if (outward)
+    return made(sets::outward::reduce(X, budget.generators, budget.constraints, reduction));
   return made(sets::reduce(X, budget.generators, budget.constraints, reduction));
 }
 
 ParamSchema constrained_schema() {
   ParamSchema schema;
   add_reduction(schema);
-  schema.choice("precondition", "rows as they are, or in Gauss-Jordan form, before constraints are eliminated",
+  schema.choice("precondition",
+                "rows as they are, or in Gauss-Jordan form, before constraints are eliminated",
                 {"raw", "gauss_jordan"}, "raw");
   schema.flag("rescale", "tighten the factors' bounds before constraints are eliminated", false);
   add_rounding(schema);
@@ -142,7 +159,8 @@ ParamSchema constrained_schema() {
 ConstrainedForm constrained_form_from(const Params& params, bool lines) {
   return {lines,
           rounding_from(params) == Rounding::outward,
-          {reduction_from(params), {params.flag("rescale"), params.text("precondition") == "gauss_jordan"}}};
+          {reduction_from(params),
+           {params.flag("rescale"), params.text("precondition") == "gauss_jordan"}}};
 }
 
 }  // namespace cordon::plugins

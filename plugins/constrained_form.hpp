@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the two representations with constraints share: both hold {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}, the constrained zonotope
-// without lines.
+// What the two representations with constraints share: both hold {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ =
+// b}, the constrained zonotope without lines.
 #pragma once
 
 #include <string>
@@ -21,7 +21,9 @@ struct ConstrainedForm {
 
   Index dim(const Value& X) const { return X.dim(); }
   LineForm line_form(const Value& X) const { return X; }
-  Complexity complexity(const Value& X) const { return {X.generators(), X.lines(), X.constraints()}; }
+  Complexity complexity(const Value& X) const {
+    return {X.generators(), X.lines(), X.constraints()};
+  }
   Answer is_empty(const Value& X, Certificate* why) const;
   Answer contains(const Value& X, VectorIn x, Certificate* why) const;
   Answer is_bounded(const Value& X) const;
@@ -30,7 +32,8 @@ struct ConstrainedForm {
   double exact_volume(const Value& X) const;
 
   Result import(const LineForm& X) const;
-  Result predict(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const;
+  Result predict(const Value& X, MatrixIn A, VectorIn f,
+                 std::span<const Operand<Value>> operands) const;
   Result correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const;
   Result interval_map(const Value& X, const IntervalMatrix& A) const;
   Result intersection(const Value& X, MatrixIn R, const Value& Y) const;

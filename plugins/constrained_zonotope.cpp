@@ -15,16 +15,18 @@ std::unique_ptr<SetBackend> create(const Params& params) {
   info.rounding = plugins::rounding_from(params);
   info.summary = "zonotopes with linear constraints: convex polytopes, exact intersections";
   info.citation = "Scott2016";
-  return std::make_unique<plugins::ValueBackend<ConstrainedForm>>(info, plugins::constrained_form_from(params, false));
+  return std::make_unique<plugins::ValueBackend<ConstrainedForm>>(
+      info, plugins::constrained_form_from(params, false));
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"constrained_zonotope", "zonotopes with linear constraints: convex polytopes, exact intersections",
+  registrar.backend({{"constrained_zonotope",
+                      "zonotopes with linear constraints: convex polytopes, exact intersections",
                       "Scott2016", plugins::constrained_schema()},
                      create});
 }
 
 }  // namespace
 
-CORDON_PLUGIN("constrained_zonotope", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "constrained zonotopes",
-              register_components)
+CORDON_PLUGIN("constrained_zonotope", "0.1.0", "GPL-3.0-or-later", "the Cordon authors",
+              "constrained zonotopes", register_components)

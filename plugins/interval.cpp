@@ -33,7 +33,8 @@ bool is_plain_box(const LineForm& X) {
   return X.constraints() == 0 && axis_parallel(X.G) && axis_parallel(X.M);
 }
 
-/// The box of such a form: bounds c ± r without a detour where they are doubles, else the certified ones.
+/// The box of such a form: bounds c ± r without a detour where they are doubles, else the certified
+/// ones.
 Box plain_box(const LineForm& X, bool& exact) {
   Box box = cordon::outward::interval_hull(X);
   exact = true;
@@ -69,7 +70,8 @@ bool only_places(std::span<const MatrixIn* const> maps, VectorIn f) {
   return true;
 }
 
-/// Kernels round outward in either mode. The modes differ in what they call exact and in how the set is read from others.
+/// Kernels round outward in either mode. The modes differ in what they call exact and in how the
+/// set is read from others.
 struct Intervals {
   using Value = Box;
   using Result = plugins::ResultOf<Box>;
@@ -105,7 +107,9 @@ struct Intervals {
     }
     return answer;
   }
-  Answer is_bounded(const Box& X) const { return X.is_empty() || X.is_bounded() ? Answer::yes : Answer::no; }
+  Answer is_bounded(const Box& X) const {
+    return X.is_empty() || X.is_bounded() ? Answer::yes : Answer::no;
+  }
   double support(const Box& X, VectorIn d, Certificate*) const {
     if (X.is_empty()) return -infinity;
     Vector terms = Vector::Zero(X.dim());
@@ -117,7 +121,9 @@ struct Intervals {
     return rounding::sum(terms).upper;
   }
   Box interval_hull(const Box& X, std::vector<Certificate>* why) const {
-    if (why) why->assign(static_cast<std::size_t>(2 * X.dim()), {Certificate::Kind::structure, Vector(0), 0});
+    if (why)
+      why->assign(static_cast<std::size_t>(2 * X.dim()),
+                  {Certificate::Kind::structure, Vector(0), 0});
     return X;
   }
   double exact_volume(const Box& X) const { return (X.upper - X.lower).prod(); }
@@ -130,11 +136,13 @@ struct Intervals {
       return {std::move(box), exact ? Tightness::exact : Tightness::outer};
     }
     const Tightness tightness = is_plain_box(X) ? Tightness::exact : Tightness::outer;
-    if (X.lines() == 0 && X.constraints() == 0) return {sets::interval_hull(sets::Zonotope{X.c, X.G}), tightness};
+    if (X.lines() == 0 && X.constraints() == 0)
+      return {sets::interval_hull(sets::Zonotope{X.c, X.G}), tightness};
     return {cordon::interval_hull(X), tightness};
   }
 
-  Result predict(const Box& X, MatrixIn A, VectorIn f, std::span<const Operand<Box>> operands) const {
+  Result predict(const Box& X, MatrixIn A, VectorIn f,
+                 std::span<const Operand<Box>> operands) const {
     plugins::Few<sets::MappedBox> summands;
     bool exact = sets::is_monomial(A);
     for (const auto& operand : operands) {
@@ -152,17 +160,23 @@ struct Intervals {
   Result correct(const Box& X, MatrixIn C, VectorIn z, const Operand<Box>& noise) const {
     const bool exact = !outward && sets::has_monomial_rows(C) && sets::is_monomial(noise.T);
     const double off = outward ? 0 : rounding_of_data;
-    return {sets::contract(X, C, z, noise.T, noise.value, off), exact ? Tightness::exact : Tightness::outer};
+    return {sets::contract(X, C, z, noise.T, noise.value, off),
+            exact ? Tightness::exact : Tightness::outer};
   }
-  Result interval_map(const Box& X, const IntervalMatrix& A) const { return {sets::interval_map(X, A), Tightness::outer}; }
+  Result interval_map(const Box& X, const IntervalMatrix& A) const {
+    return {sets::interval_map(X, A), Tightness::outer};
+  }
   Result intersection(const Box& X, MatrixIn R, const Box& Y) const {
-    if (R.rows() == R.cols() && R.isIdentity(0)) return {sets::intersection(X, Y), Tightness::exact};
+    if (R.rows() == R.cols() && R.isIdentity(0))
+      return {sets::intersection(X, Y), Tightness::exact};
     // R x ∈ Y ⇔ 0 - R x ∈ -Y
     const Matrix minus = -Matrix::Identity(Y.dim(), Y.dim());
     return {sets::contract(X, R, Vector::Zero(Y.dim()), minus, Y),
             !outward && sets::has_monomial_rows(R) ? Tightness::exact : Tightness::outer};
   }
-  Result convex_hull(const Box& X, const Box& Y) const { return {sets::convex_hull(X, Y), Tightness::outer}; }
+  Result convex_hull(const Box& X, const Box& Y) const {
+    return {sets::convex_hull(X, Y), Tightness::outer};
+  }
   std::optional<Result> reduce(const Box&, Budget) const { return std::nullopt; }
 };
 
@@ -186,9 +200,12 @@ std::unique_ptr<SetBackend> create(const Params& params) {
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"interval", "axis-aligned boxes; a coordinate is bounded or free", "Moore2009", schema()}, create});
+  registrar.backend(
+      {{"interval", "axis-aligned boxes; a coordinate is bounded or free", "Moore2009", schema()},
+       create});
 }
 
 }  // namespace
 
-CORDON_PLUGIN("interval", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "interval vectors", register_components)
+CORDON_PLUGIN("interval", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "interval vectors",
+              register_components)

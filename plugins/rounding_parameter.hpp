@@ -9,7 +9,8 @@ namespace cordon::plugins {
 
 inline void add_rounding(ParamSchema& schema) {
   schema.choice("rounding",
-                "what encloses means: up to rounding errors of double arithmetic, or for the floating-point numbers themselves "
+                "what encloses means: up to rounding errors of double arithmetic, or for the "
+                "floating-point numbers themselves "
                 "(rounding errors are bounded and added to the set)",
                 {"nominal", "outward"}, "nominal");
 }

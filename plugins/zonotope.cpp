@@ -49,17 +49,24 @@ struct Zonotopes {
   static Result empty(Index n) { return {{n, std::nullopt}, Tightness::exact}; }
 
   Index dim(const Value& X) const { return X.n; }
-  LineForm line_form(const Value& X) const { return X.Z ? make_zonotope(X.Z->c, X.Z->G) : make_empty(X.n); }
+  LineForm line_form(const Value& X) const {
+    return X.Z ? make_zonotope(X.Z->c, X.Z->G) : make_empty(X.n);
+  }
   Complexity complexity(const Value& X) const { return {X.Z ? X.Z->generators() : 0, 0, 0}; }
   Answer is_empty(const Value& X, Certificate* why) const {
     if (why) *why = {Certificate::Kind::structure, Vector(0), 0};
     return X.Z ? Answer::no : Answer::yes;
   }
-  Answer contains(const Value& X, VectorIn x, Certificate* why) const { return cordon::contains(line_form(X), x, why); }
+  Answer contains(const Value& X, VectorIn x, Certificate* why) const {
+    return cordon::contains(line_form(X), x, why);
+  }
   Answer is_bounded(const Value&) const { return Answer::yes; }
-  double support(const Value& X, VectorIn d, Certificate*) const { return X.Z ? sets::support(*X.Z, d) : -infinity; }
+  double support(const Value& X, VectorIn d, Certificate*) const {
+    return X.Z ? sets::support(*X.Z, d) : -infinity;
+  }
   Box interval_hull(const Value& X, std::vector<Certificate>* why) const {
-    if (why) why->assign(static_cast<std::size_t>(2 * X.n), {Certificate::Kind::structure, Vector(0), 0});
+    if (why)
+      why->assign(static_cast<std::size_t>(2 * X.n), {Certificate::Kind::structure, Vector(0), 0});
     return X.Z ? sets::interval_hull(*X.Z) : Box::empty(X.n);
   }
   double exact_volume(const Value& X) const { return X.Z ? sets::volume(*X.Z).value_or(-1) : 0; }
@@ -72,8 +79,9 @@ struct Zonotopes {
     if (Y.lines() > 0) refuse_lines();
     if (Y.constraints() == 0) return result({Y.c, Y.G}, Tightness::exact);
     const sets::Reduced reduced = sets::eliminate_constraints(Y, 0, {.rescale = true});
-    return result({reduced.set.c, reduced.set.G},
-                  reduced.exact && reduced.set.constraints() == 0 ? Tightness::exact : Tightness::outer);
+    return result({reduced.set.c, reduced.set.G}, reduced.exact && reduced.set.constraints() == 0
+                                                      ? Tightness::exact
+                                                      : Tightness::outer);
   }
 
   static Result import_outward(const LineForm& X) {
@@ -87,10 +95,12 @@ struct Zonotopes {
   }
   [[noreturn]] static void refuse_lines() {
     throw Error(Errc::unsupported,
-                "zonotope: the set is unbounded, which this representation cannot hold; use line_zonotope, or bound the set");
+                "zonotope: the set is unbounded, which this representation cannot hold; use "
+                "line_zonotope, or bound the set");
   }
 
-  Result predict(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
+  Result predict(const Value& X, MatrixIn A, VectorIn f,
+                 std::span<const Operand<Value>> operands) const {
     if (!X.Z) return empty(A.rows());
     if (outward) return predict_outward(X, A, f, operands);
     plugins::Few<sets::MappedZonotope> summands;
@@ -98,9 +108,11 @@ struct Zonotopes {
       if (!operand.value.Z) return empty(A.rows());
       summands.push_back({operand.T, *operand.value.Z});
     }
-    return result(sets::affine_sum(*X.Z, A, f, {summands.data(), summands.size()}), Tightness::exact);
+    return result(sets::affine_sum(*X.Z, A, f, {summands.data(), summands.size()}),
+                  Tightness::exact);
   }
-  Result predict_outward(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>> operands) const {
+  Result predict_outward(const Value& X, MatrixIn A, VectorIn f,
+                         std::span<const Operand<Value>> operands) const {
     std::vector<LineForm> forms;
     forms.reserve(operands.size());
     std::vector<sets::Summand> summands;
@@ -112,12 +124,15 @@ struct Zonotopes {
   }
   Result correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise) const {
     if (!X.Z || !noise.value.Z) return empty(X.n);
-    if (outward) return {{X.n, sets::outward::correct(*X.Z, C, z, noise.T, *noise.value.Z, strip)}, Tightness::outer};
+    if (outward)
+      return {{X.n, sets::outward::correct(*X.Z, C, z, noise.T, *noise.value.Z, strip)},
+              Tightness::outer};
     return {{X.n, sets::correct(*X.Z, C, z, noise.T, *noise.value.Z, strip)}, Tightness::outer};
   }
   Result interval_map(const Value& X, const IntervalMatrix& A) const {
     if (!X.Z) return empty(A.rows());
-    if (outward) return result(sets::outward::interval_map(line_form(X), A, sets::interval_hull(*X.Z)));
+    if (outward)
+      return result(sets::outward::interval_map(line_form(X), A, sets::interval_hull(*X.Z)));
     return result(sets::interval_map(*X.Z, A), A.is_exact() ? Tightness::exact : Tightness::outer);
   }
   Result intersection(const Value& X, MatrixIn R, const Value& Y) const {
@@ -128,14 +143,16 @@ struct Zonotopes {
   Result convex_hull(const Value& X, const Value& Y) const {
     if (!X.Z) return {Y, Tightness::exact};
     if (!Y.Z) return {X, Tightness::exact};
-    return result(outward ? sets::outward::convex_hull(*X.Z, *Y.Z) : sets::convex_hull(*X.Z, *Y.Z), Tightness::outer);
+    return result(outward ? sets::outward::convex_hull(*X.Z, *Y.Z) : sets::convex_hull(*X.Z, *Y.Z),
+                  Tightness::outer);
   }
   std::optional<Result> reduce(const Value& X, Budget budget) const {
     if (!X.Z || X.Z->generators() <= budget.generators) return std::nullopt;
     const sets::Zonotope& Z = *X.Z;
-    return result({Z.c, outward ? sets::outward::reduce_generators(Z.G, budget.generators, reduction)
-                                : sets::reduce_generators(Z.G, budget.generators, reduction)},
-                  Tightness::outer);
+    return result(
+        {Z.c, outward ? sets::outward::reduce_generators(Z.G, budget.generators, reduction)
+                      : sets::reduce_generators(Z.G, budget.generators, reduction)},
+        Tightness::outer);
   }
 };
 
@@ -143,10 +160,12 @@ ParamSchema schema() {
   ParamSchema schema;
   plugins::add_reduction(schema);
   schema.choice("strip",
-                "how a strip is intersected: smallest F-radius of Z (segment) or of a box around it along its principal axes "
+                "how a strip is intersected: smallest F-radius of Z (segment) or of a box around "
+                "it along its principal axes "
                 "(box), smallest "
                 "interval hull (hull), smallest volume among zonotopes cut "
-                "along one generator (bravo), or smallest volume of all; where g generators in n dimensions have more than "
+                "along one generator (bravo), or smallest volume of all; where g generators in n "
+                "dimensions have more than "
                 "20,000 subsets of n - 1, volume is bravo, and both compare squared determinants",
                 {"box", "segment", "hull", "bravo", "volume"}, "box");
   plugins::add_rounding(schema);
@@ -172,10 +191,12 @@ std::unique_ptr<SetBackend> create(const Params& params) {
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend(
-      {{"zonotope", "centrally symmetric polytopes given by generators", "Combastel2003; Alamo2005", schema()}, create});
+  registrar.backend({{"zonotope", "centrally symmetric polytopes given by generators",
+                      "Combastel2003; Alamo2005", schema()},
+                     create});
 }
 
 }  // namespace
 
-CORDON_PLUGIN("zonotope", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "zonotopes", register_components)
+CORDON_PLUGIN("zonotope", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "zonotopes",
+              register_components)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Work whose instructions scripts/count-instructions counts: kernels NAME runs one kernel, inside `counted`.
+// Work whose instructions scripts/count-instructions counts: kernels NAME runs one kernel, inside
+// `counted`.
 #include <cstdio>
 #include <functional>
 #include <map>
@@ -33,14 +34,16 @@ void emptiness_of_both_kinds() {
   const LineForm full = medium_set();
   LineForm empty = full;
   empty.b *= 16;
-  counted([&] { return static_cast<double>(is_empty(full)) + static_cast<double>(is_empty(empty)); });
+  counted(
+      [&] { return static_cast<double>(is_empty(full)) + static_cast<double>(is_empty(empty)); });
 }
 
 void containment_near_boundary() {
   const LineForm X = medium_set();
   const Box hull = interval_hull(X);
   const Vector x = .5 * hull.center() + .5 * X.c, far = x + .45 * hull.upper - .45 * hull.center();
-  counted([&] { return static_cast<double>(contains(X, x)) + static_cast<double>(contains(X, far)); });
+  counted(
+      [&] { return static_cast<double>(contains(X, x)) + static_cast<double>(contains(X, far)); });
 }
 
 void constraint_elimination_to_5() {
@@ -52,27 +55,32 @@ void constraint_elimination_to_5() {
 void steps_of_main_study() {
   Registry registry;
   registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
-  const Study study = read_study(CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
+  const Study study = read_study(
+      CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
   const PipelineSpec& pipeline = study.pipelines.front();
   const auto backend = registry.make_backend(pipeline.backend.type, pipeline.backend.params);
-  const auto observer = registry.make_observer(pipeline.observer.type, {study.model, backend}, pipeline.observer.params);
+  const auto observer = registry.make_observer(pipeline.observer.type, {study.model, backend},
+                                               pipeline.observer.params);
   std::vector<Sample> samples;
-  for (const auto source = open_data(study); samples.size() <= 20;) samples.push_back(source->next()->sample);
+  for (const auto source = open_data(study); samples.size() <= 20;)
+    samples.push_back(source->next()->sample);
   observer->start();
   observer->step(samples[0]);
   observer->step(samples[1]);
   counted([&] {
     double sum = 0;
-    for (std::size_t k = 2; k < samples.size(); ++k) sum += observer->step(samples[k]).set->interval_hull().upper[0];
+    for (std::size_t k = 2; k < samples.size(); ++k)
+      sum += observer->step(samples[k]).set->interval_hull().upper[0];
     return sum;
   });
 }
 
-const std::map<std::string, void (*)()> kernels{{"interval_hull", interval_hull_of_set},
-                                                {"emptiness", emptiness_of_both_kinds},
-                                                {"containment", containment_near_boundary},
-                                                {"constraint_elimination", constraint_elimination_to_5},
-                                                {"line_zonotope_steps", steps_of_main_study}};
+const std::map<std::string, void (*)()> kernels{
+    {"interval_hull", interval_hull_of_set},
+    {"emptiness", emptiness_of_both_kinds},
+    {"containment", containment_near_boundary},
+    {"constraint_elimination", constraint_elimination_to_5},
+    {"line_zonotope_steps", steps_of_main_study}};
 
 }  // namespace
 

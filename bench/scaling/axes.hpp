@@ -32,7 +32,8 @@ inline std::vector<Axis> all_axes() {
 }
 
 inline const std::vector<std::string>& all_backends() {
-  static const std::vector<std::string> names{"interval", "zonotope", "constrained_zonotope", "line_zonotope"};
+  static const std::vector<std::string> names{"interval", "zonotope", "constrained_zonotope",
+                                              "line_zonotope"};
   return names;
 }
 

@@ -15,8 +15,9 @@ struct Curve {
   std::string backend;
   std::vector<Measurement> measurements;
   std::vector<std::string> troubles;  ///< cases that failed, with the reason
-  std::optional<Size> skipped;        ///< the first case that would have taken too long; the larger ones are skipped with it
-  std::optional<Size> without_hull;   ///< likewise for hulls
+  std::optional<Size> skipped;  ///< the first case that would have taken too long; the larger ones
+                                ///< are skipped with it
+  std::optional<Size> without_hull;  ///< likewise for hulls
 
   /// Exponents of the upper half of the sizes; nothing, where there are too few.
   std::optional<double> time_exponent(const Axis& axis) const;

@@ -8,7 +8,8 @@
 
 namespace cordon::bench {
 
-/// An SVG of the time of a step against each axis, all logarithmic, with the exponents under the panels.
+/// An SVG of the time of a step against each axis, all logarithmic, with the exponents under the
+/// panels.
 std::string figure(const std::vector<AxisResult>& results);
 
 }  // namespace cordon::bench

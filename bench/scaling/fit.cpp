@@ -7,7 +7,8 @@
 
 namespace cordon::bench {
 
-std::optional<double> exponent(const std::vector<double>& sizes, const std::vector<double>& values) {
+std::optional<double> exponent(const std::vector<double>& sizes,
+                               const std::vector<double>& values) {
   const std::size_t first = sizes.size() / 2;
   const auto count = static_cast<double>(sizes.size() - first);
   if (count < 3) return std::nullopt;

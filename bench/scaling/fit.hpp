@@ -7,8 +7,8 @@
 
 namespace cordon::bench {
 
-/// The slope of log(values) over log(sizes) by least squares, over the upper half of the sizes (ascending). Nothing, where fewer
-/// than three sizes or a value that is not positive are left.
+/// The slope of log(values) over log(sizes) by least squares, over the upper half of the sizes
+/// (ascending). Nothing, where fewer than three sizes or a value that is not positive are left.
 std::optional<double> exponent(const std::vector<double>& sizes, const std::vector<double>& values);
 
 /// Two decimals; "–" for nothing.

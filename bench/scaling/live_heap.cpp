@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts live bytes by standing in front of the allocations of the C library, which operator new and Eigen call (glibc only).
+// Counts live bytes by standing in front of the allocations of the C library, which operator new
+// and Eigen call (glibc only).
 #include "live_heap.hpp"
 
 #include <cstddef>
@@ -43,8 +44,12 @@ void* realloc(void* memory, std::size_t size) {
   removed(memory);
   return added(__libc_realloc(memory, size));
 }
-void* memalign(std::size_t alignment, std::size_t size) { return added(__libc_memalign(alignment, size)); }
-void* aligned_alloc(std::size_t alignment, std::size_t size) { return added(__libc_memalign(alignment, size)); }
+void* memalign(std::size_t alignment, std::size_t size) {
+  return added(__libc_memalign(alignment, size));
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  return added(__libc_memalign(alignment, size));
+}
 int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
   constexpr int no_memory = 12;  // ENOMEM
   *memory = added(__libc_memalign(alignment, size));

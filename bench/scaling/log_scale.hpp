@@ -12,9 +12,14 @@ namespace cordon::bench {
 class LogScale {
  public:
   LogScale(double low, double high, double from, double to)
-      : low_(std::log10(low)), high_(std::max(std::log10(high), low_ + 1e-3)), from_(from), to_(to) {}
+      : low_(std::log10(low)),
+        high_(std::max(std::log10(high), low_ + 1e-3)),
+        from_(from),
+        to_(to) {}
 
-  double operator()(double value) const { return from_ + (std::log10(value) - low_) / (high_ - low_) * (to_ - from_); }
+  double operator()(double value) const {
+    return from_ + (std::log10(value) - low_) / (high_ - low_) * (to_ - from_);
+  }
 
   /// The numbers d · 10^k in the range, for each digit d.
   std::vector<double> ticks(const std::vector<int>& digits) const {

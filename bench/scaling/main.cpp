@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How time and memory of a step grow with the states, the generators and the constraints: prints a table.
+// How time and memory of a step grow with the states, the generators and the constraints: prints a
+// table.
 //   --csv FILE  writes the measurements there
 //   --svg FILE  writes a figure of the times there
 #include <cstdio>
@@ -37,7 +38,9 @@ bool failed(const std::vector<AxisResult>& results) {
 bool read_options(int argc, char** argv, Options& options) {
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
-    std::string* const value = name == "--csv" ? &options.csv : name == "--svg" ? &options.svg : nullptr;
+    std::string* const value = name == "--csv"   ? &options.csv
+                               : name == "--svg" ? &options.svg
+                                                 : nullptr;
     if (!value) {
       fmt::print(stderr, "scaling: unknown option {}; there are --csv FILE and --svg FILE\n", name);
       return false;

@@ -31,7 +31,8 @@ Value median(std::vector<Value> values) {
 template <class Work>
 void repeat(std::size_t fewest, std::size_t most, Work work) {
   const auto begin = std::chrono::steady_clock::now();
-  for (std::size_t i = 0; i < most && (i < fewest || seconds_since(begin) < seconds_per_case); ++i) work();
+  for (std::size_t i = 0; i < most && (i < fewest || seconds_since(begin) < seconds_per_case); ++i)
+    work();
 }
 
 class Pipeline {
@@ -40,7 +41,8 @@ class Pipeline {
       : model_(random_system(budget.n, system_seed)),
         simulation_(model_.linear, data_seed),
         backend_(registry.make_backend(backend, {})),
-        observer_(registry.make_observer("prediction_correction", {model_, backend_}, params(budget))) {
+        observer_(
+            registry.make_observer("prediction_correction", {model_, backend_}, params(budget))) {
     observer_->start();
   }
 
@@ -73,12 +75,14 @@ class Pipeline {
       step();
       const Complexity now = set().complexity();
       if (now.generators > most.generators || now.constraints > most.constraints) unchanged = -1;
-      most = {std::max(most.generators, now.generators), now.lines, std::max(most.constraints, now.constraints)};
+      most = {std::max(most.generators, now.generators), now.lines,
+              std::max(most.constraints, now.constraints)};
     }
   }
 
   void check_truth() const {
-    if (set().contains(simulation_.state()) == Answer::no) throw Error(Errc::internal, "the true state is proven outside");
+    if (set().contains(simulation_.state()) == Answer::no)
+      throw Error(Errc::internal, "the true state is proven outside");
   }
 
   /// Ends the observer: the bytes it gives back.
@@ -92,12 +96,14 @@ class Pipeline {
  private:
   static Params params(Size budget) {
     Params params;
-    return params.set("max_generators", std::int64_t{budget.g}).set("max_constraints", std::int64_t{budget.m});
+    return params.set("max_generators", std::int64_t{budget.g})
+        .set("max_constraints", std::int64_t{budget.m});
   }
 
   void take(const Sample& sample) { estimate_ = observer_->step(sample); }
   void check() const {
-    if (estimate_.consistent == Answer::no) throw Error(Errc::internal, "the estimate is proven empty");
+    if (estimate_.consistent == Answer::no)
+      throw Error(Errc::internal, "the estimate is proven empty");
   }
 
   Model model_;
@@ -121,7 +127,8 @@ double hull_time(Pipeline& pipeline) {
 
 }  // namespace
 
-Measurement measure(const Registry& registry, const std::string& backend, Size budget, bool with_hull) {
+Measurement measure(const Registry& registry, const std::string& backend, Size budget,
+                    bool with_hull) {
   Pipeline pipeline(registry, backend, budget);
   pipeline.settle();
   std::vector<long> peaks;  // of the same steps in each run
@@ -132,8 +139,9 @@ Measurement measure(const Registry& registry, const std::string& backend, Size b
     steps.push_back(pipeline.times().step());
     questions.push_back(pipeline.times().question);
   });
-  Measurement result{backend, budget,        {}, static_cast<long>(steps.size()), median(steps), median(questions),
-                     {},      median(peaks), 0};
+  Measurement result{
+      backend, budget,        {}, static_cast<long>(steps.size()), median(steps), median(questions),
+      {},      median(peaks), 0};
   result.used = pipeline.set().complexity();
   pipeline.check_truth();
   if (with_hull) result.hull = hull_time(pipeline);

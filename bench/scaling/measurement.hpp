@@ -18,12 +18,16 @@ struct Measurement {
   double step = 0;             ///< µs: predict, correct and reduce, median
   double question = 0;         ///< µs: the emptiness test that follows, median
   std::optional<double> hull;  ///< µs: certified hull of the estimate, median
-  long step_bytes = 0;         ///< most bytes live in a step and its question, beyond those live before, median
-  long kept_bytes = 0;         ///< what the observer keeps between steps: its set, the model, the last sample
+  long step_bytes =
+      0;  ///< most bytes live in a step and its question, beyond those live before, median
+  long kept_bytes =
+      0;  ///< what the observer keeps between steps: its set, the model, the last sample
 };
 
-/// Runs the observer `prediction_correction` with the backend on a random system, to the steady state and from there on. Throws
-/// Error, also where an estimate is empty or proven not to contain the true state.
-Measurement measure(const Registry& registry, const std::string& backend, Size budget, bool with_hull);
+/// Runs the observer `prediction_correction` with the backend on a random system, to the steady
+/// state and from there on. Throws Error, also where an estimate is empty or proven not to contain
+/// the true state.
+Measurement measure(const Registry& registry, const std::string& backend, Size budget,
+                    bool with_hull);
 
 }  // namespace cordon::bench

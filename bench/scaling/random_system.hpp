@@ -8,9 +8,9 @@
 
 namespace cordon::bench {
 
-/// x⁺ = A x + B u + Bw w, y = C x + Dv v with a dense A whose rows have absolute sums of 0.95, so that boxes stay bounded as
-/// well; one input, max(1, n/2) disturbances that together move no state by more than 0.1, every other state measured with noise
-/// up to 0.1; X0, W and V are unit boxes.
+/// x⁺ = A x + B u + Bw w, y = C x + Dv v with a dense A whose rows have absolute sums of 0.95, so
+/// that boxes stay bounded as well; one input, max(1, n/2) disturbances that together move no state
+/// by more than 0.1, every other state measured with noise up to 0.1; X0, W and V are unit boxes.
 Model random_system(Index n, std::uint64_t seed);
 
 /// The data of such a system: noise uniform in its bounds, the initial state in X0.

@@ -10,7 +10,8 @@ namespace cordon::bench {
 
 namespace {
 
-/// A case is skipped where the growth of the last one, to this power of the size, lets expect longer steps than this.
+/// A case is skipped where the growth of the last one, to this power of the size, lets expect
+/// longer steps than this.
 constexpr double pessimistic_exponent = 3, longest_step = 3e6;
 /// The same for hulls.
 constexpr double pessimistic_hull_exponent = 4, longest_hull = 6e6;
@@ -26,7 +27,8 @@ bool is_bearable(const Axis& axis, const Size& next, Curve& curve) {
     curve.skipped = next;
     return false;
   }
-  if (last.hull && expected(*last.hull, ratio, pessimistic_hull_exponent) > longest_hull) curve.without_hull = next;
+  if (last.hull && expected(*last.hull, ratio, pessimistic_hull_exponent) > longest_hull)
+    curve.without_hull = next;
   return true;
 }
 
@@ -39,7 +41,8 @@ Curve measure_curve(const Registry& registry, const Axis& axis, const std::strin
   for (const Size& size : axis.cases) {
     if (!is_bearable(axis, size, curve)) break;
     try {
-      curve.measurements.push_back(measure(registry, backend, size, axis.hull && !curve.without_hull));
+      curve.measurements.push_back(
+          measure(registry, backend, size, axis.hull && !curve.without_hull));
     } catch (const Error& error) {
       curve.troubles.push_back(failure(size, error));
     }
@@ -69,7 +72,8 @@ std::vector<AxisResult> measure_all(const Registry& registry, int rounds) {
     if (round == 1) {
       for (const Axis& axis : all_axes()) {
         results.push_back({axis, {}});
-        for (const std::string& backend : all_backends()) results.back().curves.push_back(measure_curve(registry, axis, backend));
+        for (const std::string& backend : all_backends())
+          results.back().curves.push_back(measure_curve(registry, axis, backend));
       }
       continue;
     }

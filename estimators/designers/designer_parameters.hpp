@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all designers are told: what is compared over which horizon, which inputs are allowed, and what they cost.
+// What all designers are told: what is compared over which horizon, which inputs are allowed, and
+// what they cost.
 #pragma once
 
 #include <optional>
@@ -16,7 +17,8 @@ ParamSchema& add_search_parameters(ParamSchema& schema);
 
 inline constexpr std::int64_t most_horizon = 100;
 
-/// Problems of the tubes themselves: backend, X0, W, V, admissible set, size. Reads "horizon" or what takes its place.
+/// Problems of the tubes themselves: backend, X0, W, V, admissible set, size. Reads "horizon" or
+/// what takes its place.
 std::vector<Diagnostic> check_tube_data(const DesignerContext& context, const Params& params);
 /// Problems of the statement for this bank and backend.
 std::vector<Diagnostic> check_statement(const DesignerContext& context, const Params& params);
@@ -27,7 +29,8 @@ std::vector<Diagnostic> check_search(const DesignerContext& context, const Param
 
 /// What is compared at horizon N.
 TubeSpan span_from(const Params& params, Index horizon);
-/// The cost at horizon N: the rows of "weights" and "reference" stand for k = 0, 1, …, the last one for all later times.
+/// The cost at horizon N: the rows of "weights" and "reference" stand for k = 0, 1, …, the last one
+/// for all later times.
 Cost cost_from(const Params& params, Index inputs, Index horizon);
 /// The sequences over "input_set", or /system/U, that begin with "first_input" if it is given.
 InputSequences inputs_from(const ModeBank& bank, const Params& params, Index horizon);

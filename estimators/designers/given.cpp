@@ -16,14 +16,17 @@ Vector stacked(const Matrix& input) {
   return Eigen::Map<const Vector>(by_column.data(), by_column.size());
 }
 
-/// Times at which the input is proven to lie outside the set of all inputs, as a sentence; "" if there are none.
+/// Times at which the input is proven to lie outside the set of all inputs, as a sentence; "" if
+/// there are none.
 std::string outside_text(const LineForm& U, const Matrix& input) {
   std::vector<Index> outside;
   for (Index k = 0; k < input.rows(); ++k) {
-    if (U.dim() == input.cols() && contains(U, input.row(k).transpose()) == Answer::no) outside.push_back(k);
+    if (U.dim() == input.cols() && contains(U, input.row(k).transpose()) == Answer::no)
+      outside.push_back(k);
   }
   if (outside.empty()) return "";
-  return fmt::format("u_k lies outside /system/U, the set of all inputs, at k = {}", fmt::join(outside, ", "));
+  return fmt::format("u_k lies outside /system/U, the set of all inputs, at k = {}",
+                     fmt::join(outside, ", "));
 }
 
 class Given final : public InputDesigner {
@@ -46,9 +49,11 @@ class Given final : public InputDesigner {
     if (const auto problem = designers::problem_at(bank(), backend(), params_, horizon, stop)) {
       outcome.best = designers::judge(bank(), backend(), params_, *problem, stacked(input), stop);
     }
-    if (!outcome.best) return designers::without_answer(std::move(outcome), "stopped before the input was judged");
+    if (!outcome.best)
+      return designers::without_answer(std::move(outcome), "stopped before the input was judged");
     outcome.reason = designers::open_question(bank(), *outcome.best, outcome.epsilon);
-    if (const std::string outside = outside_text(bank()[bank().nominal].model.U, input); !outside.empty()) {
+    if (const std::string outside = outside_text(bank()[bank().nominal].model.U, input);
+        !outside.empty()) {
       outcome.reason = outcome.reason.empty() ? outside : outside + "; " + outcome.reason;
       outcome.suggestion = "an input inside the set, or a wider set";
     }
@@ -63,8 +68,8 @@ std::vector<Diagnostic> check(const DesignerContext& context, const Params& para
   const Index inputs = context.bank[0].model.linear.inputs();
   if (input.cols() != inputs || input.rows() < 2) {
     return {{"/input",
-             fmt::format("is {} × {}, must have {} column{}, one per input, and two rows at least", input.rows(), input.cols(),
-                         inputs, inputs == 1 ? "" : "s"),
+             fmt::format("is {} × {}, must have {} column{}, one per input, and two rows at least",
+                         input.rows(), input.cols(), inputs, inputs == 1 ? "" : "s"),
              "a row per time k = 0, 1, …, N with the inputs of that time; N is 1 at least"}};
   }
   std::vector<Diagnostic> problems = designers::check_statement(context, params);
@@ -81,7 +86,9 @@ void register_given_designer(Registrar& registrar) {
   registrar.designer(
       {{"given", "a given input sequence, judged like a designed one", "", std::move(schema)},
        check,
-       [](const DesignerContext& context, const Params& params) { return std::make_unique<Given>(context, params); }});
+       [](const DesignerContext& context, const Params& params) {
+         return std::make_unique<Given>(context, params);
+       }});
 }
 
 }  // namespace cordon::estimators

@@ -21,8 +21,10 @@ double Cost::at(VectorIn u) const {
 
 std::string modes_of(const SeparationProblem& problem, const PairProgram& pair) {
   const auto& names = problem.modes;
-  if (static_cast<Index>(names.size()) <= pair.j) return fmt::format("modes {} and {}", pair.i + 1, pair.j + 1);
-  return fmt::format("\"{}\" and \"{}\"", names[static_cast<std::size_t>(pair.i)], names[static_cast<std::size_t>(pair.j)]);
+  if (static_cast<Index>(names.size()) <= pair.j)
+    return fmt::format("modes {} and {}", pair.i + 1, pair.j + 1);
+  return fmt::format("\"{}\" and \"{}\"", names[static_cast<std::size_t>(pair.i)],
+                     names[static_cast<std::size_t>(pair.j)]);
 }
 
 }  // namespace cordon::designers

@@ -19,7 +19,8 @@ struct Cost {
   double at(VectorIn u) const;
 };
 
-/// U = {c + G ξ : A ξ = b, ‖ξ‖∞ ≤ 1}: bounded, all sequences that may be applied, a fixed u_0 included.
+/// U = {c + G ξ : A ξ = b, ‖ξ‖∞ ≤ 1}: bounded, all sequences that may be applied, a fixed u_0
+/// included.
 struct InputSequences {
   Vector c;
   Matrix G, A;
@@ -39,7 +40,8 @@ struct SeparationProblem {
 /// The modes of a pair, for people: by their names, or by numbers from 1 where these are not given.
 std::string modes_of(const SeparationProblem& problem, const PairProgram& pair);
 
-/// What a search found. A lower bound is one of all feasible u; nothing here rests on a solver's status alone.
+/// What a search found. A lower bound is one of all feasible u; nothing here rests on a solver's
+/// status alone.
 struct SearchResult {
   DesignStatus status = DesignStatus::unknown;
   std::optional<Vector> u;

@@ -21,7 +21,9 @@ Answer is_empty_under(const TubeConditions& rows, VectorIn u) {
   const Answer if_met = rows.vanished == 0 ? Answer::no : Answer::unknown;
   if (rows.b.size() == 0) return if_met;
   const Vector terms = rows.terms(u.cwiseAbs());
-  const Answer empty = BoxedProgram(rows.A, rows.b + linalg::product(rows.Omega, u), {terms, row_noise * terms}).is_empty();
+  const Answer empty =
+      BoxedProgram(rows.A, rows.b + linalg::product(rows.Omega, u), {terms, row_noise * terms})
+          .is_empty();
   return empty == Answer::no ? if_met : empty;
 }
 
@@ -33,32 +35,39 @@ Vector inside_bounds(const InputSequences& U, Vector u) {
   return u.cwiseMax(U.c - radius).cwiseMin(U.c + radius);
 }
 
-std::string name_of(const ModeBank& bank, Index mode) { return fmt::format("\"{}\"", bank[mode].name); }
+std::string name_of(const ModeBank& bank, Index mode) {
+  return fmt::format("\"{}\"", bank[mode].name);
+}
 
 }  // namespace
 
 std::string open_question(const ModeBank& bank, const InputDesign& design, double epsilon) {
   std::vector<std::string> empty;
   for (Index mode = 0; mode < bank.size(); ++mode) {
-    if (design.empty[static_cast<std::size_t>(mode)] == Answer::yes) empty.push_back(name_of(bank, mode));
+    if (design.empty[static_cast<std::size_t>(mode)] == Answer::yes)
+      empty.push_back(name_of(bank, mode));
   }
   if (!empty.empty()) {
     return fmt::format(
-        "under this input the output tube{} of {} {} empty: no states and disturbances that the study allows satisfy the "
+        "under this input the output tube{} of {} {} empty: no states and disturbances that the "
+        "study allows satisfy the "
         "equations. An empty tube is disjoint from every other, and that is no separation",
         empty.size() == 1 ? "" : "s", fmt::join(empty, ", "), empty.size() == 1 ? "is" : "are");
   }
   for (Index mode = 0; mode < bank.size(); ++mode) {
     if (design.empty[static_cast<std::size_t>(mode)] == Answer::no) continue;
-    return fmt::format("whether {} has any output under this input is not decided: it is at the edge of what the equations allow",
-                       name_of(bank, mode));
+    return fmt::format(
+        "whether {} has any output under this input is not decided: it is at the edge of what the "
+        "equations allow",
+        name_of(bank, mode));
   }
   for (const PairSeparation& pair : design.pairs) {
     if (pair.disjoint == Answer::yes) continue;
     const std::string who = name_of(bank, pair.i) + " and " + name_of(bank, pair.j);
     if (pair.kappa > -touching && pair.kappa < touching) {
-      return fmt::format("the tubes of {} touch: an input that separates them costs more, by however little{}", who,
-                         epsilon == 0 ? "; ε > 0 keeps them apart" : "");
+      return fmt::format(
+          "the tubes of {} touch: an input that separates them costs more, by however little{}",
+          who, epsilon == 0 ? "; ε > 0 keeps them apart" : "");
     }
     if (pair.disjoint == Answer::no) return fmt::format("the outputs of {} can be the same", who);
     return fmt::format("whether the outputs of {} can be the same is not decided", who);
@@ -66,8 +75,8 @@ std::string open_question(const ModeBank& bank, const InputDesign& design, doubl
   return {};
 }
 
-std::optional<SeparationProblem> problem_at(const ModeBank& bank, const SetBackend& backend, const Params& params, Index horizon,
-                                            const Stop& stop) {
+std::optional<SeparationProblem> problem_at(const ModeBank& bank, const SetBackend& backend,
+                                            const Params& params, Index horizon, const Stop& stop) {
   SeparationProblem problem;
   problem.horizon = horizon;
   problem.inputs = bank[0].model.linear.inputs();
@@ -80,7 +89,8 @@ std::optional<SeparationProblem> problem_at(const ModeBank& bank, const SetBacke
   for (std::size_t i = 0; i < tubes.size(); ++i) {
     for (std::size_t j = i + 1; j < tubes.size(); ++j) {
       if (stop()) return std::nullopt;
-      problem.pairs.push_back(pair_program(static_cast<Index>(i), tubes[i], static_cast<Index>(j), tubes[j]));
+      problem.pairs.push_back(
+          pair_program(static_cast<Index>(i), tubes[i], static_cast<Index>(j), tubes[j]));
     }
   }
   problem.cost = cost_from(params, problem.inputs, horizon);
@@ -89,21 +99,25 @@ std::optional<SeparationProblem> problem_at(const ModeBank& bank, const SetBacke
   return problem;
 }
 
-std::optional<InputDesign> judge(const ModeBank& bank, const SetBackend& backend, const Params& params,
-                                 const SeparationProblem& problem, VectorIn u, const Stop& stop) {
+std::optional<InputDesign> judge(const ModeBank& bank, const SetBackend& backend,
+                                 const Params& params, const SeparationProblem& problem, VectorIn u,
+                                 const Stop& stop) {
   InputDesign design;
   const Index inputs = problem.inputs;
   design.u.resize(problem.horizon + 1, inputs);
-  for (Index k = 0; k <= problem.horizon; ++k) design.u.row(k) = u.segment(k * inputs, inputs).transpose();
+  for (Index k = 0; k <= problem.horizon; ++k)
+    design.u.row(k) = u.segment(k * inputs, inputs).transpose();
   design.cost = problem.cost.at(u);
   for (const PairProgram& pair : problem.pairs) {
     if (stop()) return std::nullopt;
     design.pairs.push_back(separation(pair, u));
   }
-  for (const TubeConditions& rows : problem.conditions) design.empty.push_back(is_empty_under(rows, u));
+  for (const TubeConditions& rows : problem.conditions)
+    design.empty.push_back(is_empty_under(rows, u));
   for (const Mode& mode : bank.modes) {
     if (stop()) return std::nullopt;
-    design.outputs.push_back(interval_hull(output_tube(mode.model, backend, span_from(params, problem.horizon)).at(u)));
+    design.outputs.push_back(
+        interval_hull(output_tube(mode.model, backend, span_from(params, problem.horizon)).at(u)));
   }
   return design;
 }
@@ -131,14 +145,16 @@ bool leaves_input_set(const ModeBank& bank, const Params& params, const Matrix& 
   return false;
 }
 
-/// The last word on what a search has found. False: it is not shown to be an answer, and is dropped. Without ε the tubes may
-/// touch: the cost is a limit then.
+/// The last word on what a search has found. False: it is not shown to be an answer, and is
+/// dropped. Without ε the tubes may touch: the cost is a limit then.
 bool is_answer(const ModeBank& bank, const Params& params, double epsilon, DesignOutcome& outcome) {
   const InputDesign& found = *outcome.best;
   const bool outside = leaves_input_set(bank, params, found.u);
   const bool limit = epsilon == 0 &&
-                     std::all_of(found.empty.begin(), found.empty.end(), [](Answer empty) { return empty == Answer::no; }) &&
-                     std::all_of(found.pairs.begin(), found.pairs.end(), [](const auto& pair) { return pair.kappa > -touching; });
+                     std::all_of(found.empty.begin(), found.empty.end(),
+                                 [](Answer empty) { return empty == Answer::no; }) &&
+                     std::all_of(found.pairs.begin(), found.pairs.end(),
+                                 [](const auto& pair) { return pair.kappa > -touching; });
   std::string open = outside ? "it leaves the input set" : open_question(bank, found, epsilon);
   if (!outside && (found.separates() == Answer::yes || limit)) {
     if (!open.empty()) outcome.reason = std::move(open);
@@ -147,7 +163,8 @@ bool is_answer(const ModeBank& bank, const Params& params, double epsilon, Desig
   outcome.status = DesignStatus::unknown;
   outcome.best = std::nullopt;
   outcome.reason = "an input was found, but rounding leaves open whether it is an answer: " + open;
-  outcome.suggestion = "a larger epsilon, or numbers of similar size in the models and the input set";
+  outcome.suggestion =
+      "a larger epsilon, or numbers of similar size in the models and the input set";
   return false;
 }
 
@@ -162,9 +179,11 @@ DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
   for (Index horizon = horizons.first; horizon <= horizons.last; ++horizon) {
     outcome.horizon = horizon;
     const Watch watch(control, horizon, params_.real("time_limit"));
-    std::optional<SeparationProblem> problem = problem_at(bank(), backend(), params_, horizon, [&] { return watch.over(); });
+    std::optional<SeparationProblem> problem =
+        problem_at(bank(), backend(), params_, horizon, [&] { return watch.over(); });
     if (!problem || watch.over()) {
-      return without_answer(std::move(outcome), "the end came while the equations of the tubes were still being solved",
+      return without_answer(std::move(outcome),
+                            "the end came while the equations of the tubes were still being solved",
                             "a larger time_limit, a shorter horizon, or fewer modes");
     }
     problem->U = inputs_from(bank(), params_, horizon);
@@ -180,9 +199,12 @@ DesignOutcome TubeDesigner::do_design(DesignControl& control) const {
     outcome.facets = found.facets;
     if (found.u) {
       // However late it is: an input that was found is proven.
-      outcome.best = judge(bank(), backend(), params_, *problem, inside_bounds(problem->U, std::move(*found.u)),
-                           [&] { return control.stop(); });
-      if (!outcome.best) return without_answer(std::move(outcome), "the search was stopped before the input was judged");
+      outcome.best =
+          judge(bank(), backend(), params_, *problem,
+                inside_bounds(problem->U, std::move(*found.u)), [&] { return control.stop(); });
+      if (!outcome.best)
+        return without_answer(std::move(outcome),
+                              "the search was stopped before the input was judged");
       if (is_answer(bank(), params_, problem->epsilon, outcome)) return outcome;
     }
     if (horizon == horizons.last || control.stop()) return outcome;

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passive fault diagnosis by set membership: one observer per mode, on that mode's model. With X̂_k^j the estimate of mode j from
-// the samples of since … k, which contains the state as long as the plant has been in mode j,
+// Passive fault diagnosis by set membership: one observer per mode, on that mode's model. With
+// X̂_k^j the estimate of mode j from the samples of since … k, which contains the state as long as
+// the plant has been in mode j,
 //   mode j is excluded  ⇔  X̂_k^j = ∅ is proven,
-// since no state of mode j agrees with these samples then. `ModeEvidence::why` is the proof about that estimate; `consistent`
-// speaks of all these samples, and is `yes` only where the estimate is exact and proven not to be empty.
+// since no state of mode j agrees with these samples then. `ModeEvidence::why` is the proof about
+// that estimate; `consistent` speaks of all these samples, and is `yes` only where the estimate is
+// exact and proven not to be empty.
 //
-// Excluded modes cost nothing until a reset. At a reset at time k every mode begins anew with the sample k, from a set that holds
-// the state at all times: the parameter `restart_set`, else the observer's admissible set, else Rⁿ where the backend represents
-// it. Where there is none, nothing can begin anew: exclusions stay, speak of the time from the first sample on, and the decision
+// Excluded modes cost nothing until a reset. At a reset at time k every mode begins anew with the
+// sample k, from a set that holds the state at all times: the parameter `restart_set`, else the
+// observer's admissible set, else Rⁿ where the backend represents it. Where there is none, nothing
+// can begin anew: exclusions stay, speak of the time from the first sample on, and the decision
 // ends as `unknown_fault` once no mode is left.
 //
-// What is excluded is decided by the observers: exact sets (constrained and line zonotopes with large budgets) exclude all that
-// the samples contradict, outer ones less, and those whose estimates are never empty (`luenberger`; `descriptor` on zonotopes and
-// intervals) nothing. The decisions do not depend on the number of threads.
+// What is excluded is decided by the observers: exact sets (constrained and line zonotopes with
+// large budgets) exclude all that the samples contradict, outer ones less, and those whose
+// estimates are never empty (`luenberger`; `descriptor` on zonotopes and intervals) nothing. The
+// decisions do not depend on the number of threads.
 #include <algorithm>
 #include <optional>
 
@@ -32,20 +36,25 @@ class ConsistencyBank final : public Diagnoser {
  public:
   ConsistencyBank(const DiagnoserContext& context, const Params& params)
       : Diagnoser(context.bank, context.backend),
-        elimination_(bank().size(), params.integer("waiting_time"),
-                     params.text("start") == "nominal" ? std::optional(bank().nominal) : std::nullopt),
+        elimination_(
+            bank().size(), params.integer("waiting_time"),
+            params.text("start") == "nominal" ? std::optional(bank().nominal) : std::nullopt),
         workers_(params.integer("threads")) {
     for (const Mode& mode : bank().modes) {
-      observers_.push_back(context.make.make_observer(params.component("observer"), {mode.model, context.backend}));
+      observers_.push_back(
+          context.make.make_observer(params.component("observer"), {mode.model, context.backend}));
     }
     restart_ = restart_set(context, params, *observers_.front());
   }
 
   /// The set from which modes begin anew; none: they cannot.
-  static std::optional<Enclosure> restart_set(const DiagnoserContext& context, const Params& params, const Observer& observer) {
+  static std::optional<Enclosure> restart_set(const DiagnoserContext& context, const Params& params,
+                                              const Observer& observer) {
     if (params.has("restart_set")) return context.backend->import(params.set_form("restart_set"));
-    if (const Set* admissible = observer.admissible_set()) return context.backend->import(admissible->line_form());
-    if (context.backend->info().unbounded) return context.backend->space(context.bank[0].model.linear.states());
+    if (const Set* admissible = observer.admissible_set())
+      return context.backend->import(admissible->line_form());
+    if (context.backend->info().unbounded)
+      return context.backend->space(context.bank[0].model.linear.states());
     return {};
   }
 
@@ -59,7 +68,9 @@ class ConsistencyBank final : public Diagnoser {
 
   Diagnosis do_step(const Sample* before, const Sample& now) override {
     if (unfinished_)
-      throw Error(Errc::invalid, "the last step ended with an error, and left estimates of different times; start anew");
+      throw Error(
+          Errc::invalid,
+          "the last step ended with an error, and left estimates of different times; start anew");
     unfinished_ = true;
     if (!before) elimination_.start(now.k);
     if (!ended_) since_ = elimination_.since();
@@ -70,7 +81,8 @@ class ConsistencyBank final : public Diagnoser {
     result.reset = none_left && restart_;
     if (result.reset) {
       for (const auto& observer : observers_) observer->start(restart_);
-      advance(now);  // what this sample alone excludes stays excluded, and is told with the next one
+      advance(
+          now);  // what this sample alone excludes stays excluded, and is told with the next one
     }
     unfinished_ = false;
     return result;
@@ -90,7 +102,9 @@ class ConsistencyBank final : public Diagnoser {
     return estimates;
   }
 
-  static bool is_excluded(const std::optional<Estimate>& estimate) { return estimate && estimate->consistent == Answer::no; }
+  static bool is_excluded(const std::optional<Estimate>& estimate) {
+    return estimate && estimate->consistent == Answer::no;
+  }
 
   static std::vector<bool> excluded_by(const Estimates& estimates) {
     std::vector<bool> excluded;
@@ -98,7 +112,9 @@ class ConsistencyBank final : public Diagnoser {
     return excluded;
   }
 
-  bool is_candidate(std::size_t j) const { return !ended_ && elimination_.is_candidate(static_cast<Index>(j)); }
+  bool is_candidate(std::size_t j) const {
+    return !ended_ && elimination_.is_candidate(static_cast<Index>(j));
+  }
 
   Diagnosis diagnosis(Index k, const Estimates& estimates) const {
     Diagnosis result;
@@ -116,7 +132,8 @@ class ConsistencyBank final : public Diagnoser {
   }
 
   static void set_evidence(ModeEvidence& evidence, const Estimate& estimate) {
-    const bool is_proof = estimate.consistent == Answer::no || estimate.set.tightness == Tightness::exact;
+    const bool is_proof =
+        estimate.consistent == Answer::no || estimate.set.tightness == Tightness::exact;
     if (!is_proof || estimate.consistent == Answer::unknown) return;
     evidence.consistent = estimate.consistent;
     evidence.why = estimate.why;
@@ -131,16 +148,20 @@ class ConsistencyBank final : public Diagnoser {
   ModeWorkers workers_;
 };
 
-/// The problems that the observer has with the modes; the same problem of several modes is told once.
+/// The problems that the observer has with the modes; the same problem of several modes is told
+/// once.
 std::vector<Diagnostic> observer_problems(const DiagnoserContext& context, const Params& params) {
   std::vector<Diagnostic> problems;
   std::vector<std::vector<std::string>> modes;  // by problem
   for (const Mode& mode : context.bank.modes) {
-    for (Diagnostic& p : context.make.check_observer(params.component("observer"), {mode.model, context.backend})) {
+    for (Diagnostic& p :
+         context.make.check_observer(params.component("observer"), {mode.model, context.backend})) {
       p.pointer = "/observer" + p.pointer;
-      const auto same = std::find_if(problems.begin(), problems.end(), [&](const Diagnostic& other) {
-        return other.pointer == p.pointer && other.message == p.message && other.suggestion == p.suggestion;
-      });
+      const auto same =
+          std::find_if(problems.begin(), problems.end(), [&](const Diagnostic& other) {
+            return other.pointer == p.pointer && other.message == p.message &&
+                   other.suggestion == p.suggestion;
+          });
       if (same == problems.end()) {
         problems.push_back(std::move(p));
         modes.push_back({mode.name});
@@ -153,7 +174,8 @@ std::vector<Diagnostic> observer_problems(const DiagnoserContext& context, const
     if (modes[i].size() == context.bank.modes.size() && modes[i].size() > 1) continue;
     std::string names;
     for (const std::string& name : modes[i]) names += (names.empty() ? "\"" : ", \"") + name + "\"";
-    problems[i].message += modes[i].size() == 1 ? " (mode " + names + ")" : " (modes " + names + ")";
+    problems[i].message +=
+        modes[i].size() == 1 ? " (mode " + names + ")" : " (modes " + names + ")";
   }
   return problems;
 }
@@ -163,18 +185,22 @@ std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& par
   if (params.has("restart_set")) {
     const LineForm& set = params.set_form("restart_set");
     const std::size_t before = problems.size();
-    check_set({context.bank[context.bank.nominal].model, context.backend}, set, "/restart_set", problems);
+    check_set({context.bank[context.bank.nominal].model, context.backend}, set, "/restart_set",
+              problems);
     if (problems.size() == before && context.backend->import(set)->is_empty() == Answer::yes) {
-      problems.push_back({"/restart_set", "is empty", "give a set that holds the state at all times, or leave it out"});
+      problems.push_back({"/restart_set", "is empty",
+                          "give a set that holds the state at all times, or leave it out"});
     }
   } else if (problems.empty() && params.text("start") == "nominal") {
-    const auto observer =
-        context.make.make_observer(params.component("observer"), {context.bank[context.bank.nominal].model, context.backend});
+    const auto observer = context.make.make_observer(
+        params.component("observer"), {context.bank[context.bank.nominal].model, context.backend});
     if (!ConsistencyBank::restart_set(context, params, *observer)) {
       problems.push_back({"/restart_set",
-                          "is missing: with \"start\": \"nominal\" the other modes begin at a reset, and the backend \"" +
+                          "is missing: with \"start\": \"nominal\" the other modes begin at a "
+                          "reset, and the backend \"" +
                               context.backend->info().name + "\" cannot represent the whole space",
-                          "give a set that holds the state at all times, use \"start\": \"any\", or \"line_zonotope\""});
+                          "give a set that holds the state at all times, use \"start\": \"any\", "
+                          "or \"line_zonotope\""});
     }
   }
   return problems;
@@ -184,23 +210,32 @@ std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& par
 
 void register_consistency_bank(Registrar& registrar) {
   ParamSchema schema;
-  schema.component("observer", "observer of every mode, on the mode's own model", "observer").required();
-  schema
-      .integer("waiting_time", "steps that a mode lasts at least; several modes that are left after it are ambiguous", {}, 1,
-               most_steps)
+  schema.component("observer", "observer of every mode, on the mode's own model", "observer")
       .required();
-  schema.choice("start", "modes that are possible at the first sample: \"any\", or the \"nominal\" one", {"any", "nominal"},
-                "any");
+  schema
+      .integer(
+          "waiting_time",
+          "steps that a mode lasts at least; several modes that are left after it are ambiguous",
+          {}, 1, most_steps)
+      .required();
+  schema.choice("start",
+                "modes that are possible at the first sample: \"any\", or the \"nominal\" one",
+                {"any", "nominal"}, "any");
   schema.set("restart_set",
-             "set that holds the state at all times, from which all modes begin anew after a reset; when absent: the observer's "
-             "admissible set, or the whole space where the backend represents it; else excluded modes stay excluded");
-  schema.integer("threads", "threads for the modes; 0: one per core; decisions do not depend on it", 1, 0, 1024);
-  registrar.diagnoser({{"consistency_bank", "one observer per mode; a mode is excluded when its estimate is proven empty",
-                        "Rego2025; Rego2020b", schema},
-                       check,
-                       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
-                         return std::make_unique<ConsistencyBank>(context, params);
-                       }});
+             "set that holds the state at all times, from which all modes begin anew after a "
+             "reset; when absent: the observer's "
+             "admissible set, or the whole space where the backend represents it; else excluded "
+             "modes stay excluded");
+  schema.integer("threads", "threads for the modes; 0: one per core; decisions do not depend on it",
+                 1, 0, 1024);
+  registrar.diagnoser(
+      {{"consistency_bank",
+        "one observer per mode; a mode is excluded when its estimate is proven empty",
+        "Rego2025; Rego2020b", schema},
+       check,
+       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
+         return std::make_unique<ConsistencyBank>(context, params);
+       }});
 }
 
 }  // namespace cordon::estimators

@@ -46,7 +46,8 @@ bool ModeElimination::update(Index k, const std::vector<bool>& excluded) {
     conclude(k);
     return false;
   }
-  const bool lasted = k - since_ >= waiting_time_ || (decision_ == Decision::monitoring && !was_reset_);
+  const bool lasted =
+      k - since_ >= waiting_time_ || (decision_ == Decision::monitoring && !was_reset_);
   const bool switched = lasted && decision_ != Decision::unknown_fault;
   reset(k, switched ? Decision::isolating : Decision::unknown_fault);
   return true;

@@ -23,13 +23,16 @@ struct ModeWorkers::Pool {
 };
 
 ModeWorkers::ModeWorkers(Index threads) {
-  const Index wanted = threads == 0 ? static_cast<Index>(std::max(1U, std::thread::hardware_concurrency())) : threads;
+  const Index wanted = threads == 0
+                           ? static_cast<Index>(std::max(1U, std::thread::hardware_concurrency()))
+                           : threads;
   if (wanted <= 1) return;
   try {
     pool_ = std::make_unique<Pool>(static_cast<std::size_t>(wanted));
   } catch (const boost::system::system_error& error) {
-    throw std::system_error(error.code().value(), std::system_category(),
-                            "cannot start " + std::to_string(wanted) + " threads, give fewer in \"threads\"");
+    throw std::system_error(
+        error.code().value(), std::system_category(),
+        "cannot start " + std::to_string(wanted) + " threads, give fewer in \"threads\"");
   }
 }
 

@@ -8,8 +8,9 @@
 
 namespace cordon::estimators {
 
-/// Runs the same work for every mode of a bank, on threads that live as long as this object. What each call computes must not
-/// depend on the others, so that results are the same bit by bit for any number of threads.
+/// Runs the same work for every mode of a bank, on threads that live as long as this object. What
+/// each call computes must not depend on the others, so that results are the same bit by bit for
+/// any number of threads.
 class ModeWorkers {
  public:
   /// 1: in the caller's thread; 0: one thread per core.
@@ -18,7 +19,8 @@ class ModeWorkers {
   ModeWorkers(const ModeWorkers&) = delete;
   ModeWorkers& operator=(const ModeWorkers&) = delete;
 
-  /// work(0), …, work(count - 1), and waits for all of them. Of several exceptions, that of the lowest index is thrown.
+  /// work(0), …, work(count - 1), and waits for all of them. Of several exceptions, that of the
+  /// lowest index is thrown.
   void for_each(Index count, const std::function<void(Index)>& work);
 
  private:

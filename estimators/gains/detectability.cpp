@@ -15,7 +15,8 @@ namespace cordon::estimators {
 namespace {
 
 constexpr double tolerance = 1e-10;
-constexpr double cleaned = 1e-9;           // entries of a direction below this share of the largest are noise
+constexpr double cleaned =
+    1e-9;  // entries of a direction below this share of the largest are noise
 constexpr double row_tolerance = 1e-8;     // above what cleaning can leave in a row
 constexpr double rounded_one = 1 - 1e-12;  // 1, up to the rounding of eigenvalues
 
@@ -44,15 +45,18 @@ std::string direction(Eigen::VectorXcd v) {
 }
 
 /// v ≠ 0 with A v = λ v and C v = 0, or nothing. [X -Y; Y X] stands for the complex matrix X + iY.
-std::optional<Eigen::VectorXcd> hidden(const Matrix& A, const Matrix& C, std::complex<double> lambda) {
+std::optional<Eigen::VectorXcd> hidden(const Matrix& A, const Matrix& C,
+                                       std::complex<double> lambda) {
   const Index n = A.rows(), p = C.rows();
   const auto scaled = [](const Matrix& M) {
     const double size = M.size() == 0 ? 0.0 : M.cwiseAbs().maxCoeff();
     return size > 0 ? Matrix(M / size) : M;
   };
   const double size = std::max(std::abs(lambda), A.cwiseAbs().maxCoeff());
-  const Matrix X = size > 0 ? Matrix((lambda.real() * Matrix::Identity(n, n) - A) / size) : Matrix(Matrix::Zero(n, n));
-  const Matrix Y = size > 0 ? Matrix(lambda.imag() / size * Matrix::Identity(n, n)) : Matrix(Matrix::Zero(n, n));
+  const Matrix X = size > 0 ? Matrix((lambda.real() * Matrix::Identity(n, n) - A) / size)
+                            : Matrix(Matrix::Zero(n, n));
+  const Matrix Y =
+      size > 0 ? Matrix(lambda.imag() / size * Matrix::Identity(n, n)) : Matrix(Matrix::Zero(n, n));
   const Matrix outputs = scaled(C), none = Matrix::Zero(p, n);
   Matrix M(2 * (n + p), 2 * n);
   M << X, -Y, Y, X, outputs, none, none, outputs;
@@ -64,10 +68,13 @@ std::optional<Eigen::VectorXcd> hidden(const Matrix& A, const Matrix& C, std::co
   const double largest = found.cwiseAbs().maxCoeff();
   found = (found.array().abs() <= cleaned * largest).select(0.0, found);
   // Small against the largest entry is not enough: every row must cancel against its own terms.
-  const Vector entries = found.cwiseAbs(), shown = (C.cast<std::complex<double>>() * found).cwiseAbs();
+  const Vector entries = found.cwiseAbs(),
+               shown = (C.cast<std::complex<double>>() * found).cwiseAbs();
   const Vector moved = (A.cast<std::complex<double>>() * found - lambda * found).cwiseAbs();
   const bool silent = (shown.array() <= row_tolerance * (C.cwiseAbs() * entries).array()).all();
-  const bool stays = (moved.array() <= row_tolerance * (A.cwiseAbs() * entries + std::abs(lambda) * entries).array()).all();
+  const bool stays = (moved.array() <=
+                      row_tolerance * (A.cwiseAbs() * entries + std::abs(lambda) * entries).array())
+                         .all();
   return silent && stays ? std::optional(found) : std::nullopt;
 }
 
@@ -77,15 +84,18 @@ std::optional<std::string> hidden_mode(const Matrix& A, const Matrix& C, double 
   const Eigen::VectorXcd values = linalg::eigenvalues(A);
   for (const std::complex<double>& value : values) {
     if (std::abs(value) < least_modulus || value.imag() < 0) continue;  // of a pair the upper one
-    if (const auto v = hidden(A, C, value)) return "the mode " + number(value) + " of A, along " + direction(*v) + ",";
+    if (const auto v = hidden(A, C, value))
+      return "the mode " + number(value) + " of A, along " + direction(*v) + ",";
   }
   return std::nullopt;
 }
 
-/// Named is the mode of the largest modulus in the part that is proven to be hidden, not one that nearly is.
+/// Named is the mode of the largest modulus in the part that is proven to be hidden, not one that
+/// nearly is.
 Obstacle proven(const exact::HiddenModes& modes) {
   const std::string hides = " does not show in the outputs";
-  if (!modes.map.allFinite() || !modes.basis.allFinite()) return {Answer::no, "a mode of A" + hides};
+  if (!modes.map.allFinite() || !modes.basis.allFinite())
+    return {Answer::no, "a mode of A" + hides};
   std::complex<double> largest = 0;
   for (const std::complex<double>& value : linalg::eigenvalues(modes.map)) {
     if (value.imag() >= 0 && std::abs(value) >= std::abs(largest)) largest = value;
@@ -93,9 +103,13 @@ Obstacle proven(const exact::HiddenModes& modes) {
   const std::string name = "the mode " + number(largest) + " of A";
   const auto inside = hidden(modes.map, Matrix(0, modes.count), largest);
   if (!inside) return {Answer::no, name + hides};
-  return {Answer::no, name + ", along " + direction(modes.basis.cast<std::complex<double>>() * *inside) + "," + hides};
+  return {Answer::no, name + ", along " +
+                          direction(modes.basis.cast<std::complex<double>>() * *inside) + "," +
+                          hides};
 }
-Obstacle nearly(std::string mode) { return {Answer::unknown, std::move(mode) + " hardly shows in the outputs"}; }
+Obstacle nearly(std::string mode) {
+  return {Answer::unknown, std::move(mode) + " hardly shows in the outputs"};
+}
 
 /// Nothing for a system that is too large.
 std::optional<exact::HiddenModes> exactly_hidden(const Matrix& A, const Matrix& C, double rate) {
@@ -112,7 +126,8 @@ std::optional<exact::HiddenModes> exactly_hidden(const Matrix& A, const Matrix& 
 std::optional<Obstacle> undetectable_mode(const Matrix& A, const Matrix& C, double rate) {
   std::optional<std::string> mode = hidden_mode(A, C, std::sqrt(rate) * rounded_one);
   if (!mode) return std::nullopt;
-  // |λ|² ≥ the next double above a rate is > rate; a mode on the unit circle itself is no longer detectable
+  // |λ|² ≥ the next double above a rate is > rate; a mode on the unit circle itself is no longer
+  // detectable
   const double above = rate == 1 ? rate : std::nextafter(rate, 2 * rate);
   const std::optional<exact::HiddenModes> modes = exactly_hidden(A, C, above);
   if (!modes) return nearly(std::move(*mode));

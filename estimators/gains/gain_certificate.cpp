@@ -14,7 +14,8 @@ namespace cordon::estimators {
 
 namespace {
 
-/// A product of matrices of which the second is off by at most `error`, and by how much it is off itself.
+/// A product of matrices of which the second is off by at most `error`, and by how much it is off
+/// itself.
 struct Computed {
   Matrix value, error;
 };
@@ -39,18 +40,23 @@ Computed disturbances(const Model& model, const Matrix& L, const Matrix& theta) 
 }
 
 /// At least ‖A‖₂ for A ≥ 0.
-double norm_of_error(const Matrix& A) { return A.norm() * (1 + rounding::gamma(A.size() + 4)) + rounding::tiny; }
+double norm_of_error(const Matrix& A) {
+  return A.norm() * (1 + rounding::gamma(A.size() + 4)) + rounding::tiny;
+}
 
 NormBounds norm_of(const invariant::ClosedLoop& closed, const Computed& B) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   if (closed.schur != Answer::yes) return {closed.schur == Answer::no ? infinite : 0, infinite};
   const double A_error = closed.error.isZero(0) ? 0 : norm_of_error(closed.error);
-  return h_infinity_norm(closed.value, B.value, A_error, B.error.isZero(0) ? 0 : norm_of_error(B.error));
+  return h_infinity_norm(closed.value, B.value, A_error,
+                         B.error.isZero(0) ? 0 : norm_of_error(B.error));
 }
 
 }  // namespace
 
-Matrix mean_outputs(const LinearModel& model) { return model.sensor_center().asDiagonal() * model.C; }
+Matrix mean_outputs(const LinearModel& model) {
+  return model.sensor_center().asDiagonal() * model.C;
+}
 
 Matrix shown_outputs(const LinearModel& model) {
   const Vector gains = model.sensor_center();
@@ -63,7 +69,8 @@ Matrix shown_outputs(const LinearModel& model) {
 
 GainCertificate certify(const Model& model, const Matrix& L, const Matrix& theta) {
   GainCertificate certificate;
-  const invariant::ClosedLoop known = invariant::closed_loop(model.linear.A, L, mean_outputs(model.linear));
+  const invariant::ClosedLoop known =
+      invariant::closed_loop(model.linear.A, L, mean_outputs(model.linear));
   certificate.spectral_radius = known.radius.upper;
   certificate.monotone = known.nonnegative;
   try {
@@ -79,14 +86,16 @@ GainCertificate certify(const Model& model, const Matrix& L, const Matrix& theta
 std::string gain_problem(const Model& model, const Matrix& L) {
   const LinearModel& m = model.linear;
   if (L.rows() != m.states() || L.cols() != m.outputs()) {
-    return "is " + std::to_string(L.rows()) + " × " + std::to_string(L.cols()) + ", must be " + std::to_string(m.states()) +
-           " × " + std::to_string(m.outputs());
+    return "is " + std::to_string(L.rows()) + " × " + std::to_string(L.cols()) + ", must be " +
+           std::to_string(m.states()) + " × " + std::to_string(m.outputs());
   }
   if (!L.allFinite()) return "has entries that are no numbers";
   const Matrix C = mean_outputs(m);
   if (!(m.A - linalg::product(L, C)).allFinite()) return "makes A - L C leave the range of numbers";
   const Answer schur = invariant::closed_loop(m.A, L, C).schur;
-  return schur == Answer::yes ? "" : "A - L C " + invariant::not_schur(schur, m.A - linalg::product(L, C));
+  return schur == Answer::yes
+             ? ""
+             : "A - L C " + invariant::not_schur(schur, m.A - linalg::product(L, C));
 }
 
 }  // namespace cordon::estimators

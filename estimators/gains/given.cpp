@@ -17,7 +17,10 @@ class Given final : public GainDesigner {
 
   GainDesign design(const Model& model) const override {
     if (std::string problem = gain_problem(model, L_); !problem.empty()) {
-      return {refuted(model) ? Answer::no : Answer::unknown, {}, "the gain " + std::move(problem), mend};
+      return {refuted(model) ? Answer::no : Answer::unknown,
+              {},
+              "the gain " + std::move(problem),
+              mend};
     }
     Gain gain;
     gain.L = L_;
@@ -37,7 +40,8 @@ class Given final : public GainDesigner {
 };
 
 std::vector<Diagnostic> check(const GainContext& context, const Params& params) {
-  if (std::string problem = gain_problem(context.model, params.matrix("matrix")); !problem.empty()) {
+  if (std::string problem = gain_problem(context.model, params.matrix("matrix"));
+      !problem.empty()) {
     return {{"/matrix", std::move(problem), mend}};
   }
   return {};
@@ -47,9 +51,12 @@ std::vector<Diagnostic> check(const GainContext& context, const Params& params) 
 
 void register_given_gain(Registrar& registrar) {
   ParamSchema schema;
-  schema.matrix("matrix", "L, a row per state and a column per output, with A - L C stable").required();
+  schema.matrix("matrix", "L, a row per state and a column per output, with A - L C stable")
+      .required();
   registrar.gain(
-      {{"given", "a matrix that is given; where a gain is asked for, the matrix alone may stand as well", "", std::move(schema)},
+      {{"given",
+        "a matrix that is given; where a gain is asked for, the matrix alone may stand as well", "",
+        std::move(schema)},
        check,
        [](const Params& params) { return std::make_unique<Given>(params.matrix("matrix")); }});
 }

@@ -20,9 +20,12 @@ void add_monotonicity(const ErrorDynamics& errors, HInfinityProgram& design) {
   for (Index j = 0; j < n; ++j) {
     for (Index i = 0; i < n; ++i) {
       MatrixInequality entry{Matrix::Zero(1, 1), {}};
-      if (errors.A(i, j) != 0) entry.terms.emplace_back(design.P.first + i, Matrix::Constant(1, 1, errors.A(i, j)));
+      if (errors.A(i, j) != 0)
+        entry.terms.emplace_back(design.P.first + i, Matrix::Constant(1, 1, errors.A(i, j)));
       for (Index k = 0; k < p; ++k) {
-        if (errors.C(k, j) != 0) entry.terms.emplace_back(design.M.first + k * n + i, Matrix::Constant(1, 1, -errors.C(k, j)));
+        if (errors.C(k, j) != 0)
+          entry.terms.emplace_back(design.M.first + k * n + i,
+                                   Matrix::Constant(1, 1, -errors.C(k, j)));
       }
       if (!entry.terms.empty()) design.program.inequalities.push_back(std::move(entry));
     }
@@ -30,14 +33,17 @@ void add_monotonicity(const ErrorDynamics& errors, HInfinityProgram& design) {
 }
 
 /// In coordinates z = T e; the norm is that of e.
-HInfinityProgram h_infinity_program(const ErrorDynamics& errors, const Matrix& T, const Matrix& T_inverse, bool monotone) {
+HInfinityProgram h_infinity_program(const ErrorDynamics& errors, const Matrix& T,
+                                    const Matrix& T_inverse, bool monotone) {
   const Index n = errors.A.rows(), e = errors.E.cols(), v = errors.N.cols();
-  const ErrorDynamics z{linalg::product(linalg::product(T, errors.A), T_inverse), linalg::product(errors.C, T_inverse),
-                        linalg::product(T, errors.E), errors.N, errors.unit};
+  const ErrorDynamics z{linalg::product(linalg::product(T, errors.A), T_inverse),
+                        linalg::product(errors.C, T_inverse), linalg::product(T, errors.E),
+                        errors.N, errors.unit};
   HInfinityProgram design;
   design.P = monotone ? diagonal_variable(0, n) : symmetric_variable(0, n);
   design.M = full_variable(design.P.end(), n, z.C.rows());
-  const MatrixVariable gamma_e{design.M.end(), {Matrix::Identity(e, e)}}, gamma_v{design.M.end(), {Matrix::Identity(v, v)}},
+  const MatrixVariable gamma_e{design.M.end(), {Matrix::Identity(e, e)}},
+      gamma_v{design.M.end(), {Matrix::Identity(v, v)}},
       gamma_n{design.M.end(), {Matrix::Identity(n, n)}};
   design.program.cost = Vector::Unit(gamma_n.end(), gamma_n.first);
   const Matrix I = Matrix::Identity(n, n);
@@ -57,26 +63,30 @@ HInfinityProgram h_infinity_program(const ErrorDynamics& errors, const Matrix& T
   return design;
 }
 
-/// Solutions are right to some 1e-8 of the largest disturbance: of a γ that is smaller than this, four digits would not be.
+/// Solutions are right to some 1e-8 of the largest disturbance: of a γ that is smaller than this,
+/// four digits would not be.
 constexpr double least_value = 1e-3;
 
-/// What the solution is worth: its gain with the certificate, or why it is not accepted. `P` is that of e.
-GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics& errors, bool monotone, const SdpSolution& s,
-                    const Matrix& P, const Matrix& PL) {
+/// What the solution is worth: its gain with the certificate, or why it is not accepted. `P` is
+/// that of e.
+GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics& errors,
+                    bool monotone, const SdpSolution& s, const Matrix& P, const Matrix& PL) {
   const std::optional<Matrix> solved = linalg::solve_spd(P, PL);
-  if (!solved) return no_gain(Answer::unknown, "the matrix P of the solution is not positive definite");
+  if (!solved)
+    return no_gain(Answer::unknown, "the matrix P of the solution is not positive definite");
   Matrix L = monotone ? made_monotone(errors.A, errors.C, *solved) : *solved;
   if (monotone && !is_monotone(errors.A, errors.C, L)) {
-    return no_gain(Answer::unknown, "the gain of the matrix inequality is monotone up to the solver's errors only");
+    return no_gain(Answer::unknown,
+                   "the gain of the matrix inequality is monotone up to the solver's errors only");
   }
   if (const std::string problem = gain_problem(model, L); !problem.empty()) {
     return no_gain(Answer::unknown, "the gain of the matrix inequality " + problem);
   }
   if (s.value < least_value) {
-    return no_gain(
-        Answer::unknown,
-        "the least norm lies below a thousandth of the largest disturbance, where the solver's errors are too much of it",
-        "\"kalman\", or other units for outputs and disturbances");
+    return no_gain(Answer::unknown,
+                   "the least norm lies below a thousandth of the largest disturbance, where the "
+                   "solver's errors are too much of it",
+                   "\"kalman\", or other units for outputs and disturbances");
   }
   GainDesign design;
   design.gain.certificate = certify(model, L, theta);
@@ -86,12 +96,18 @@ GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics
   c.optimum = errors.unit * s.value;
   c.optimum_bound = errors.unit * s.bound;
   c.margin = s.least_eigenvalue[0];
-  if (!monotone && !(c.norm_upper >= c.optimum_bound * (1 - 1e-4))) {  // monotone: γ by a diagonal P may be above the norm
-    return no_gain(Answer::unknown, "the bound of the matrix inequality is none: its gain has a smaller norm");
+  if (!monotone &&
+      !(c.norm_upper >=
+        c.optimum_bound * (1 - 1e-4))) {  // monotone: γ by a diagonal P may be above the norm
+    return no_gain(Answer::unknown,
+                   "the bound of the matrix inequality is none: its gain has a smaller norm");
   }
   if (!(c.norm_lower <= c.optimum * (1 + 1e-4))) {
-    return no_gain(Answer::unknown, "the gain of the matrix inequality does not keep what the inequality promises: its norm is " +
-                                        std::to_string(c.norm_lower) + " at least, not " + std::to_string(c.optimum));
+    return no_gain(Answer::unknown,
+                   "the gain of the matrix inequality does not keep what the inequality promises: "
+                   "its norm is " +
+                       std::to_string(c.norm_lower) + " at least, not " +
+                       std::to_string(c.optimum));
   }
   design.feasible = Answer::yes;
   return design;
@@ -99,7 +115,8 @@ GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics
 
 }  // namespace
 
-GainDesign h_infinity_design(const Model& model, const Matrix& theta, const ErrorDynamics& errors, bool monotone) {
+GainDesign h_infinity_design(const Model& model, const Matrix& theta, const ErrorDynamics& errors,
+                             bool monotone) {
   constexpr double accuracy = 1e-8, coarse = 1e-3;
   constexpr int rounds = 3;
   Matrix T = Matrix::Identity(errors.A.rows(), errors.A.rows()), T_inverse = T;
@@ -111,7 +128,8 @@ GainDesign h_infinity_design(const Model& model, const Matrix& theta, const Erro
     if (s.status == SdpStatus::solved) {
       // P and PL of e are TᵀPT and TᵀPL of z.
       const Matrix P = linalg::transposed_product(T, linalg::product(program.P.value(s.x), T));
-      found = accepted(model, theta, errors, monotone, s, P, linalg::transposed_product(T, program.M.value(s.x)));
+      found = accepted(model, theta, errors, monotone, s, P,
+                       linalg::transposed_product(T, program.M.value(s.x)));
     }
     if (found.feasible == Answer::yes || round == 0) design = std::move(found);
     if (design.feasible == Answer::yes) break;

@@ -23,7 +23,8 @@ constexpr int most_frequencies = 20'000;
 constexpr int first_intervals = 16;
 constexpr double most_error = 0.1;  ///< of a value, relative; with more it counts as unknown
 
-/// What is known at one frequency: σ₁(H), ‖T‖ and the relative error of both that rounding can have made.
+/// What is known at one frequency: σ₁(H), ‖T‖ and the relative error of both that rounding can have
+/// made.
 struct Value {
   double omega = 0, sigma = infinite, spread = infinite, error = 0;
 };
@@ -47,7 +48,8 @@ Value value_at(const Matrix& A, const Matrix& B, double omega) {
   if (!solved || !solved->allFinite()) return {omega};
   const Matrix T = solved->leftCols(2 * n) - Matrix::Identity(2 * n, 2 * n);
   Value value{omega, largest_singular_value(solved->rightCols(2 * m)), largest_singular_value(T)};
-  value.error = 16.0 * static_cast<double>(n + 1) * std::numeric_limits<double>::epsilon() * (1 + M.norm()) * (1 + value.spread);
+  value.error = 16.0 * static_cast<double>(n + 1) * std::numeric_limits<double>::epsilon() *
+                (1 + M.norm()) * (1 + value.spread);
   return value.error < most_error ? value : Value{omega};
 }
 
@@ -60,7 +62,8 @@ struct Interval {
 
 Interval interval(const Value& from, const Value& to) {
   Interval made{from, to};
-  const double h = to.omega - from.omega, spread = std::max(from.spread, to.spread), sigma = std::max(from.sigma, to.sigma);
+  const double h = to.omega - from.omega, spread = std::max(from.spread, to.spread),
+               sigma = std::max(from.sigma, to.sigma);
   const double shrink = 1 - h / 2 * spread * (1 + 1e-9);
   if (!std::isfinite(sigma) || !(shrink > 0)) return made;
   const double grown = spread / shrink, trust = 1 - std::max(from.error, to.error);
@@ -81,8 +84,10 @@ double at_most(double sigma, double spread, Errors error) {
 
 double at_least(const Value& value, Errors error) {
   if (!std::isfinite(value.sigma)) return 0;
-  const double spread = (1 + value.spread) / (1 - value.error), sigma = value.sigma * (1 - value.error);
-  return std::max(0.0, sigma - spread * error.B) / (1 + spread * error.A) * (1 - 16 * rounding::unit);
+  const double spread = (1 + value.spread) / (1 - value.error),
+               sigma = value.sigma * (1 - value.error);
+  return std::max(0.0, sigma - spread * error.B) / (1 + spread * error.A) *
+         (1 - 16 * rounding::unit);
 }
 
 /// The intervals of [0, π], the one with the largest upper bound on top.
@@ -98,7 +103,8 @@ class Division {
   }
 
   void refine() {
-    for (int count = first_intervals + 1; count < most_frequencies && open_.top().upper > largest_ * (1 + gap); ++count) {
+    for (int count = first_intervals + 1;
+         count < most_frequencies && open_.top().upper > largest_ * (1 + gap); ++count) {
       const Interval widest = open_.top();
       const double middle = (widest.from.omega + widest.to.omega) / 2;
       if (!(widest.from.omega < middle && middle < widest.to.omega)) break;
@@ -134,7 +140,8 @@ class Division {
 }  // namespace
 
 NormBounds h_infinity_norm(MatrixIn A, MatrixIn B, double A_error, double B_error) {
-  if (A.rows() != A.cols() || B.rows() != A.rows()) throw Error(Errc::dimension, "A must be square, B of as many rows");
+  if (A.rows() != A.cols() || B.rows() != A.rows())
+    throw Error(Errc::dimension, "A must be square, B of as many rows");
   if (!B.allFinite()) throw Error(Errc::not_finite, "the norm needs finite entries");
   const Answer schur = invariant::is_schur(A);
   if (schur != Answer::yes) return {schur == Answer::no && A_error == 0 ? infinite : 0, infinite};

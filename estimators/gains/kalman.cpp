@@ -11,12 +11,16 @@ namespace cordon::estimators {
 namespace {
 
 constexpr const char* details =
-    "For a set of states whose zonotope has the generators R, and zonotopes with the shapes G_W and G_V around W and V,\n"
+    "For a set of states whose zonotope has the generators R, and zonotopes with the shapes G_W "
+    "and G_V around W and V,\n"
     "  L = A P C' (C P C' + Dv G_V G_V' Dv')⁻¹,   P = R R',\n"
-    "minimises the F-radius of the next set: tr P⁺, P⁺ = (A - L C) P (A - L C)' + L Dv G_V G_V' Dv' L' + Bw G_W G_W' Bw'. P is\n"
-    "that of the reduced set, so that the gain follows what reductions add. Steady, and where an observer keeps one gain for "
+    "minimises the F-radius of the next set: tr P⁺, P⁺ = (A - L C) P (A - L C)' + L Dv G_V G_V' "
+    "Dv' L' + Bw G_W G_W' Bw'. P is\n"
+    "that of the reduced set, so that the gain follows what reductions add. Steady, and where an "
+    "observer keeps one gain for "
     "all\n"
-    "times: the limit of this recursion, both covariations enlarged by 1e-6 of their largest entry so that it exists wherever\n"
+    "times: the limit of this recursion, both covariations enlarged by 1e-6 of their largest entry "
+    "so that it exists wherever\n"
     "(A, C) is detectable.";
 
 class Kalman final : public GainDesigner {
@@ -35,7 +39,10 @@ class Kalman final : public GainDesigner {
       return {Answer::unknown, {}, error.what(), ""};
     }
     if (std::string problem = gain_problem(model, gain.L); !problem.empty()) {
-      return {Answer::unknown, {}, "the limit of the Kalman recursion does not serve: " + std::move(problem), mend};
+      return {Answer::unknown,
+              {},
+              "the limit of the Kalman recursion does not serve: " + std::move(problem),
+              mend};
     }
     gain.certificate = certify(model, gain.L, theta_of(model));
     return {Answer::yes, std::move(gain)};
@@ -52,9 +59,12 @@ class Kalman final : public GainDesigner {
 
 void register_kalman_gain(Registrar& registrar) {
   ParamSchema schema;
-  schema.flag("steady", "the gain of the steady state at all times, in place of one that follows the set", false);
+  schema.flag("steady",
+              "the gain of the steady state at all times, in place of one that follows the set",
+              false);
   registrar.gain(
-      {{"kalman", "the zonotopic Kalman gain, of least F-radius at every step", "Combastel2015", std::move(schema), details},
+      {{"kalman", "the zonotopic Kalman gain, of least F-radius at every step", "Combastel2015",
+        std::move(schema), details},
        {},
        [](const Params& params) { return std::make_unique<Kalman>(params.flag("steady")); }});
 }

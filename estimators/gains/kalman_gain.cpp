@@ -15,10 +15,12 @@ namespace {
 
 constexpr int most_steps = 100'000;
 constexpr double tolerance = 1e-13;  // relative change of P
-constexpr double settled = 1e-6;     // a change that is still above the tolerance, but is rounding: it has stopped decreasing
+constexpr double settled =
+    1e-6;  // a change that is still above the tolerance, but is rounding: it has stopped decreasing
 constexpr int patience = 50;
 constexpr double floor_share = 1e-6;
-constexpr double least_condition = 1e-12;  // below this share of its largest eigenvalue, the smallest one of S is rounding
+constexpr double least_condition =
+    1e-12;  // below this share of its largest eigenvalue, the smallest one of S is rounding
 
 Matrix covariation(const Matrix& T, const LineForm& X, const char* name) {
   const Matrix shape = linalg::product(T, invariant::enclosing_zonotope(X, name).G);
@@ -38,9 +40,11 @@ Matrix kalman_gain(const Model& model, MatrixIn P) {
   const Matrix C = mean_outputs(m), PCt = linalg::product(P, C.transpose());
   Matrix S = linalg::product(C, PCt) + covariation(m.Dv, model.V, "V");
   const Vector values = linalg::symmetric_eigen(S).values;
-  if (!(values[0] > least_condition * values[values.size() - 1])) S.diagonal().array() += floor_of(largest(S));
+  if (!(values[0] > least_condition * values[values.size() - 1]))
+    S.diagonal().array() += floor_of(largest(S));
   const std::optional<Matrix> gain = linalg::solve_spd(S, linalg::product(m.A, PCt).transpose());
-  if (!gain || !gain->allFinite()) throw Error(Errc::not_finite, "no Kalman gain: the set of states is too large");
+  if (!gain || !gain->allFinite())
+    throw Error(Errc::not_finite, "no Kalman gain: the set of states is too large");
   return gain->transpose();
 }
 
@@ -61,8 +65,8 @@ Matrix steady_kalman_gain(const Model& model) {
     const std::optional<Matrix> gain = linalg::solve_spd(S, linalg::product(m.A, PCt).transpose());
     if (!gain) break;
     const Matrix L = gain->transpose();
-    Matrix next =
-        linalg::product(linalg::product(m.A, P), m.A.transpose()) + Q - linalg::product(linalg::product(L, S), L.transpose());
+    Matrix next = linalg::product(linalg::product(m.A, P), m.A.transpose()) + Q -
+                  linalg::product(linalg::product(L, S), L.transpose());
     next = 0.5 * (next + next.transpose()).eval();
     if (!next.allFinite()) break;
     const double change = largest(next - P), scale = largest(next);
@@ -72,7 +76,8 @@ Matrix steady_kalman_gain(const Model& model) {
     if (change <= tolerance * scale || (waited >= patience && change <= settled * scale)) return L;
   }
   throw Error(Errc::invalid,
-              "no gain was found: the recursion of the covariation did not settle, as where (A, C) is nearly undetectable or "
+              "no gain was found: the recursion of the covariation did not settle, as where (A, C) "
+              "is nearly undetectable or "
               "its numbers differ much in size");
 }
 

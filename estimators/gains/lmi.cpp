@@ -56,30 +56,37 @@ MatrixVariable full_variable(Index first, Index rows, Index cols) {
   return V;
 }
 
-BlockInequality::BlockInequality(std::vector<Index> sizes) : sizes_(std::move(sizes)), begins_(sizes_.size(), 0) {
+BlockInequality::BlockInequality(std::vector<Index> sizes)
+    : sizes_(std::move(sizes)), begins_(sizes_.size(), 0) {
   std::partial_sum(sizes_.begin(), sizes_.end() - 1, begins_.begin() + 1);
   const Index size = begins_.back() + sizes_.back();
   inequality_.constant = Matrix::Zero(size, size);
 }
 
-void BlockInequality::place(Matrix& whole, std::size_t i, std::size_t j, const Matrix& block) const {
+void BlockInequality::place(Matrix& whole, std::size_t i, std::size_t j,
+                            const Matrix& block) const {
   whole.block(begins_[i], begins_[j], sizes_[i], sizes_[j]) += block;
   if (i != j) whole.block(begins_[j], begins_[i], sizes_[j], sizes_[i]) += block.transpose();
 }
 
-void BlockInequality::add(std::size_t i, std::size_t j, const MatrixVariable& V, const Matrix& right) {
+void BlockInequality::add(std::size_t i, std::size_t j, const MatrixVariable& V,
+                          const Matrix& right) {
   auto& terms = inequality_.terms;
   for (std::size_t k = 0; k < V.basis.size(); ++k) {
     const Index variable = V.first + static_cast<Index>(k);
-    auto at = std::find_if(terms.begin(), terms.end(), [&](const auto& term) { return term.first == variable; });
+    auto at = std::find_if(terms.begin(), terms.end(),
+                           [&](const auto& term) { return term.first == variable; });
     if (at == terms.end()) {
-      at = terms.emplace(terms.end(), variable, Matrix::Zero(inequality_.constant.rows(), inequality_.constant.cols()));
+      at = terms.emplace(terms.end(), variable,
+                         Matrix::Zero(inequality_.constant.rows(), inequality_.constant.cols()));
     }
     place(at->second, i, j, linalg::product(V.basis[k], right));
   }
 }
 
-void BlockInequality::add(std::size_t i, std::size_t j, const Matrix& constant) { place(inequality_.constant, i, j, constant); }
+void BlockInequality::add(std::size_t i, std::size_t j, const Matrix& constant) {
+  place(inequality_.constant, i, j, constant);
+}
 
 ErrorDynamics error_dynamics(const Model& model, const Matrix& theta) {
   const LinearModel& m = model.linear;
@@ -100,7 +107,8 @@ ErrorDynamics error_dynamics(const Model& model, const Matrix& theta) {
 std::vector<Diagnostic> check_design(const GainContext& context, const Params& params) {
   std::vector<Diagnostic> problems;
   check_theta(context.model, params, problems);
-  for (const auto& [set, name] : {std::pair{&context.model.W, "W"}, std::pair{&context.model.V, "V"}}) {
+  for (const auto& [set, name] :
+       {std::pair{&context.model.W, "W"}, std::pair{&context.model.V, "V"}}) {
     try {
       invariant::enclosing_zonotope(*set, name);
     } catch (const Error& error) {
@@ -119,19 +127,23 @@ GainDesign no_gain(Answer feasible, std::string reason, std::string suggestion) 
 }
 
 GainDesign unsolved(const SdpSolution& s) {
-  return no_gain(Answer::unknown,
-                 "the matrix inequality was not solved: " +
-                     (s.status == SdpStatus::infeasible ? "it has no solution with variables up to 1e8" : s.why),
-                 "other units for states and disturbances, or another gain");
+  return no_gain(
+      Answer::unknown,
+      "the matrix inequality was not solved: " +
+          (s.status == SdpStatus::infeasible ? "it has no solution with variables up to 1e8"
+                                             : s.why),
+      "other units for states and disturbances, or another gain");
 }
 
 std::optional<GainDesign> without_gain(const Model& model, const ErrorDynamics& errors) {
-  if (const std::optional<Obstacle> hidden = undetectable_mode(errors.A, shown_outputs(model.linear))) {
+  if (const std::optional<Obstacle> hidden =
+          undetectable_mode(errors.A, shown_outputs(model.linear))) {
     return no_gain(hidden->gain_exists, not_detectable(*hidden), "measure what shows this mode");
   }
   if (errors.unit == 0) {
     return no_gain(Answer::unknown,
-                   "nothing disturbs the errors (Bw W, Dv V and theta are zero), so that there is nothing to minimise",
+                   "nothing disturbs the errors (Bw W, Dv V and theta are zero), so that there is "
+                   "nothing to minimise",
                    "another gain, such as \"kalman\"");
   }
   return std::nullopt;

@@ -15,7 +15,8 @@ namespace cordon::estimators {
 struct MatrixVariable {
   Index first = 0;
   std::vector<Matrix> basis;
-  Index rows = 0, cols = 0;  ///< of the value where the basis is empty: a gain of a system without outputs
+  Index rows = 0,
+        cols = 0;  ///< of the value where the basis is empty: a gain of a system without outputs
 
   Index end() const { return first + static_cast<Index>(basis.size()); }
   Matrix value(const Vector& x) const;
@@ -24,7 +25,8 @@ MatrixVariable symmetric_variable(Index first, Index n);
 MatrixVariable diagonal_variable(Index first, Index n);
 MatrixVariable full_variable(Index first, Index rows, Index cols);
 
-/// A symmetric inequality that is assembled by blocks of its upper triangle; the blocks below follow.
+/// A symmetric inequality that is assembled by blocks of its upper triangle; the blocks below
+/// follow.
 class BlockInequality {
  public:
   explicit BlockInequality(std::vector<Index> sizes);
@@ -39,8 +41,9 @@ class BlockInequality {
   MatrixInequality inequality_;
 };
 
-/// The errors of an observer with gain L: e⁺ = (A - L C) e + E d - L N v, all d and v in unit boxes; C is C̄ = mid(g) C, E is
-/// [Eθ, Bw G_W], and N is Dv G_V. E and N are divided by `unit`, so that their largest entry is 1 (`unit` 0: both are zero).
+/// The errors of an observer with gain L: e⁺ = (A - L C) e + E d - L N v, all d and v in unit
+/// boxes; C is C̄ = mid(g) C, E is [Eθ, Bw G_W], and N is Dv G_V. E and N are divided by `unit`, so
+/// that their largest entry is 1 (`unit` 0: both are zero).
 struct ErrorDynamics {
   Matrix A, C, E, N;
   double unit = 0;
@@ -53,11 +56,12 @@ std::vector<Diagnostic> check_design(const GainContext& context, const Params& p
 /// No gain: proven (`no`) or not found (`unknown`).
 GainDesign no_gain(Answer feasible, std::string reason, std::string suggestion = {});
 
-/// For an inequality that has a solution, since there is a stable gain: one that the solver did not find, or not within the bound
-/// of its variables.
+/// For an inequality that has a solution, since there is a stable gain: one that the solver did not
+/// find, or not within the bound of its variables.
 GainDesign unsolved(const SdpSolution& s);
 
-/// What every design finds out first: a mode that no gain stabilises, or nothing that disturbs the errors.
+/// What every design finds out first: a mode that no gain stabilises, or nothing that disturbs the
+/// errors.
 std::optional<GainDesign> without_gain(const Model& model, const ErrorDynamics& errors);
 
 }  // namespace cordon::estimators

@@ -34,10 +34,12 @@ bool is_zero(const Matrix& C, const Vector& x) {
   return ((C * x).cwiseAbs().array() <= equal * (C.cwiseAbs() * x.cwiseAbs()).array()).all();
 }
 
-/// Is max{costᵀx : K x = 0, 0 ≤ x_j ≤ 2^bits_j} positive? In rational arithmetic; `unknown` if that is too much.
+/// Is max{costᵀx : K x = 0, 0 ≤ x_j ≤ 2^bits_j} positive? In rational arithmetic; `unknown` if that
+/// is too much.
 Answer is_positive(const Vector& cost, const Matrix& K, const std::vector<int>& bits) {
   try {
-    return exact::maximum(cost, K, Vector::Zero(K.rows()), bits).lower > 0 ? Answer::yes : Answer::no;
+    return exact::maximum(cost, K, Vector::Zero(K.rows()), bits).lower > 0 ? Answer::yes
+                                                                           : Answer::no;
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported && error.code() != Errc::invalid) throw;
     return Answer::unknown;
@@ -55,7 +57,8 @@ std::optional<Obstacle> by_structure(const Matrix& A, const Matrix& C) {
     for (Index i = 0; i < A.rows(); ++i) {
       if (A(i, j) >= 0) continue;
       const std::string row = std::to_string(i + 1), column = std::to_string(j + 1);
-      return obstacle(Answer::yes, "column " + column + " of C is zero and A(" + row + "," + column + ") < 0");
+      return obstacle(Answer::yes,
+                      "column " + column + " of C is zero and A(" + row + "," + column + ") < 0");
     }
   }
   return std::nullopt;
@@ -78,14 +81,16 @@ std::optional<Obstacle> by_row(const Matrix& A, const Matrix& C) {
     const Vector mu = cleaned(solution.x);
     if (!(row.dot(mu) < -margin * row.cwiseAbs().dot(mu)) || !is_zero(C, mu)) continue;
     const Answer proof = is_positive(-row, C, std::vector<int>(static_cast<std::size_t>(n), 0));
-    return obstacle(proof, "the outputs do not show the direction " + direction(mu) + ", to four digits, and row " +
-                               std::to_string(i + 1) + " of A makes a negative number of it");
+    return obstacle(proof, "the outputs do not show the direction " + direction(mu) +
+                               ", to four digits, and row " + std::to_string(i + 1) +
+                               " of A makes a negative number of it");
   }
   return std::nullopt;
 }
 
-/// x, y_1, …, y_n and a slack s per row with A_i x - A_i y_i - x_i - s_i = 0 and C x - C y_i = 0, x ≤ 1 and y, s at most twice as
-/// large as the largest of a solution. x enters twice, as A_ii - 1 need not be a double.
+/// x, y_1, …, y_n and a slack s per row with A_i x - A_i y_i - x_i - s_i = 0 and C x - C y_i = 0, x
+/// ≤ 1 and y, s at most twice as large as the largest of a solution. x enters twice, as A_ii - 1
+/// need not be a double.
 Answer is_growth_proven(const Matrix& A, const Matrix& C, double largest) {
   const Index n = A.rows(), p = C.rows(), columns = n + n * n + n + n;
   Matrix K = Matrix::Zero(2 * n + n * p, columns);
@@ -99,7 +104,8 @@ Answer is_growth_proven(const Matrix& A, const Matrix& C, double largest) {
     K.block(2 * n + i * p, n + i * n, p, n) = -C;
   }
   std::vector<int> bits(static_cast<std::size_t>(columns), std::max(1, std::ilogb(largest) + 2));
-  for (Index i = 0; i < n; ++i) bits[static_cast<std::size_t>(i)] = bits[static_cast<std::size_t>(columns - 1 - i)] = 0;
+  for (Index i = 0; i < n; ++i)
+    bits[static_cast<std::size_t>(i)] = bits[static_cast<std::size_t>(columns - 1 - i)] = 0;
   Vector sum = Vector::Zero(columns);
   sum.head(n).setOnes();
   return is_positive(sum, K, bits);
@@ -126,7 +132,8 @@ std::optional<Obstacle> by_growth(const Matrix& A, const Matrix& C) {
   if (!(x.maxCoeff() > margin)) return std::nullopt;
   for (Index i = 0; i < n; ++i) {
     const Vector y = solution.x.segment(n + i * n, n).cwiseMax(0), size = x + y;
-    if (((C * (x - y)).cwiseAbs().array() > equal * (C.cwiseAbs() * size).array()).any()) return std::nullopt;
+    if (((C * (x - y)).cwiseAbs().array() > equal * (C.cwiseAbs() * size).array()).any())
+      return std::nullopt;
     const double terms = x[i] + A.row(i).cwiseAbs().dot(size);
     if (A.row(i).dot(x - y) < x[i] - equal * terms) return std::nullopt;
   }
@@ -146,8 +153,8 @@ std::optional<Obstacle> no_monotone_gain(const Matrix& A, const Matrix& C) {
 
 namespace {
 
-/// ‖d‖₁ least with A_i - (L_i + d) C ≥ 0. In units of the violation, since the tolerances of linear programs are absolute;
-/// entries that are far from 0 in them do not matter.
+/// ‖d‖₁ least with A_i - (L_i + d) C ≥ 0. In units of the violation, since the tolerances of linear
+/// programs are absolute; entries that are far from 0 in them do not matter.
 Matrix projected(const Matrix& A, const Matrix& C, Matrix L) {
   const Index n = A.rows(), p = C.rows();
   Matrix rows(n, 2 * p + n);
@@ -179,7 +186,8 @@ Matrix raised_to_monotone(const Matrix& A, const Matrix& C, Matrix L) {
     for (int round = 0; round < most_rounds && best < 0; ++round, extra *= 2) {
       std::vector<Index> low;
       for (Index j = 0; j < A.cols(); ++j) {
-        if (closed(0, j) <= extra && closed(0, j) >= -noise * size && !C.col(j).isZero(0)) low.push_back(j);
+        if (closed(0, j) <= extra && closed(0, j) >= -noise * size && !C.col(j).isZero(0))
+          low.push_back(j);
       }
       if (low.empty()) break;
       const Vector lift = (-closed(0, low).transpose()).array() + extra;

@@ -9,7 +9,8 @@ namespace cordon::estimators {
 
 /// What stands in the way of a gain.
 struct Obstacle {
-  Answer gain_exists;  ///< `no`: proven in rational arithmetic; `unknown`: true but for rounding, so that none is sought
+  Answer gain_exists;  ///< `no`: proven in rational arithmetic; `unknown`: true but for rounding,
+                       ///< so that none is sought
   std::string reason;  ///< in words
 };
 

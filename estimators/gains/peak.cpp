@@ -20,12 +20,15 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double dual_tolerance = 1e-7;
 
 constexpr const char* details =
-    "Where A - L C ≥ 0, bounds of the state by intervals settle at the half widths h = (I - (A - L C))⁻¹ (r + |L Ev| 1),\n"
-    "r = |Eω| 1 + |Eθ| 1, with Eω = Bw G_W and Ev = Dv G_V for zonotopes around W and V. Their sum 1ᵀh is least for\n"
+    "Where A - L C ≥ 0, bounds of the state by intervals settle at the half widths h = (I - (A - L "
+    "C))⁻¹ (r + |L Ev| 1),\n"
+    "r = |Eω| 1 + |Eθ| 1, with Eω = Bw G_W and Ev = Dv G_V for zonotopes around W and V. Their sum "
+    "1ᵀh is least for\n"
     "L = diag(λ)⁻¹ Z, where λ, Z and S solve the linear program\n"
     "  minimise λᵀr + 1ᵀS 1   subject to   -S ≤ Z Ev ≤ S,\n"
     "  diag(λ) A - Z C ≥ 0,   λᵀ - 1ᵀ(diag(λ) A - Z C) ≥ 1ᵀ,\n"
-    "which is feasible if and only if some gain makes A - L C monotone and stable: λᵀ is then a bound of 1ᵀ(I - (A - L C))⁻¹.\n"
+    "which is feasible if and only if some gain makes A - L C monotone and stable: λᵀ is then a "
+    "bound of 1ᵀ(I - (A - L C))⁻¹.\n"
     "That there is none is said on a proof only.";
 
 /// Variables: λ (n), Z (n×p by rows), S (n×q by rows), and a slack per inequality.
@@ -37,8 +40,9 @@ struct Program {
 Program program(const Matrix& A, const Matrix& C, const Vector& r, const Matrix& Ev) {
   const Index n = A.rows(), p = C.rows(), q = Ev.cols();
   const Index at_S = n + n * p, at_slack = at_S + n * q, rows = n * n + n + 2 * n * q;
-  Program made{Matrix::Zero(rows, at_slack + rows), Vector::Zero(rows), Vector::Zero(at_slack + rows),
-               Vector::Constant(at_slack + rows, infinite), Vector::Zero(at_slack + rows)};
+  Program made{Matrix::Zero(rows, at_slack + rows), Vector::Zero(rows),
+               Vector::Zero(at_slack + rows), Vector::Constant(at_slack + rows, infinite),
+               Vector::Zero(at_slack + rows)};
   made.lower.segment(n, n * p).setConstant(-infinite);
   made.objective.head(n) = -r;
   made.objective.segment(at_S, n * q).setConstant(-1);
@@ -94,25 +98,34 @@ class Peak final : public GainDesigner {
     } catch (const Error& error) {
       return {Answer::unknown, {}, error.what(), "give bounded sets W and V"};
     }
-    const std::string otherwise = "use a designer that does not ask for a monotone A - L C, such as \"kalman\"";
+    const std::string otherwise =
+        "use a designer that does not ask for a monotone A - L C, such as \"kalman\"";
     if (auto why = no_monotone_gain(m.A, shown_outputs(m))) {
       return {why->gain_exists, {}, std::move(why->reason), otherwise};
     }
     const Vector r = Ew.cwiseAbs().rowwise().sum() + theta.cwiseAbs().rowwise().sum();
     const Program made = program(m.A, C, r, Ev);
-    const LinearProgram::Solution solution = LinearProgram(made.M, made.b, made.lower, made.upper).maximize(made.objective);
+    const LinearProgram::Solution solution =
+        LinearProgram(made.M, made.b, made.lower, made.upper).maximize(made.objective);
     if (solution.status != LinearProgram::Status::optimal) {
       return {Answer::unknown, {}, "the linear program was not solved", otherwise};
     }
     const Index n = m.states(), p = m.outputs();
     Matrix L(n, p);
-    for (Index i = 0; i < n; ++i) L.row(i) = solution.x.segment(n + i * p, p).transpose() / solution.x[i];
+    for (Index i = 0; i < n; ++i)
+      L.row(i) = solution.x.segment(n + i * p, p).transpose() / solution.x[i];
     L = made_monotone(m.A, C, std::move(L));
     if (!is_monotone(m.A, C, L)) {
-      return {Answer::unknown, {}, "the gain of the linear program is monotone up to the solver's errors only", otherwise};
+      return {Answer::unknown,
+              {},
+              "the gain of the linear program is monotone up to the solver's errors only",
+              otherwise};
     }
     if (std::string problem = gain_problem(model, L); !problem.empty()) {
-      return {Answer::unknown, {}, "the solution of the linear program " + std::move(problem), otherwise};
+      return {Answer::unknown,
+              {},
+              "the solution of the linear program " + std::move(problem),
+              otherwise};
     }
     Gain gain;
     gain.certificate = certify(model, L, theta);
@@ -139,7 +152,8 @@ void register_peak_gain(Registrar& registrar) {
   ParamSchema schema;
   add_theta_parameter(schema);
   registrar.gain(
-      {{"peak", "least sum of steady widths with A - L C ≥ 0 in every entry; a linear program", "", std::move(schema), details},
+      {{"peak", "least sum of steady widths with A - L C ≥ 0 in every entry; a linear program", "",
+        std::move(schema), details},
        check,
        [](const Params& params) { return std::make_unique<Peak>(theta_from(params)); }});
 }

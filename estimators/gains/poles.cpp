@@ -22,8 +22,10 @@ namespace {
 constexpr double tolerance = 1e-8;
 
 constexpr const char* details =
-    "The eigenvalues of A - L C are put at the given poles, to 1e-8. For one output L is unique; for several, eigenvectors are\n"
-    "chosen as perpendicular to each other as the outputs allow, so that the poles move least with A. Every mode of A must show "
+    "The eigenvalues of A - L C are put at the given poles, to 1e-8. For one output L is unique; "
+    "for several, eigenvectors are\n"
+    "chosen as perpendicular to each other as the outputs allow, so that the poles move least with "
+    "A. Every mode of A must show "
     "in\n"
     "the outputs, and a pole may be asked for as often as the rank of C.";
 
@@ -36,7 +38,9 @@ std::vector<Pole> poles_from(const Params& params) {
   const Vector& real = params.vector("poles");
   std::vector<Pole> poles;
   for (Index i = 0; i < real.size(); ++i) {
-    poles.push_back({real[i] + 0.0, params.has("poles_imaginary") ? params.vector("poles_imaginary")[i] + 0.0 : 0.0});
+    poles.push_back({real[i] + 0.0, params.has("poles_imaginary")
+                                        ? params.vector("poles_imaginary")[i] + 0.0
+                                        : 0.0});
   }
   return poles;
 }
@@ -49,7 +53,8 @@ std::string text(double x) {
 
 std::string text(const Pole& pole) {
   if (pole.imaginary == 0) return text(pole.real);
-  return text(pole.real) + (pole.imaginary < 0 ? " - " : " + ") + text(std::abs(pole.imaginary)) + "i";
+  return text(pole.real) + (pole.imaginary < 0 ? " - " : " + ") + text(std::abs(pole.imaginary)) +
+         "i";
 }
 
 std::map<Pole, Index> counted(const std::vector<Pole>& poles) {
@@ -66,32 +71,47 @@ class Poles final : public GainDesigner {
     const Matrix& A = model.linear.A;
     const Matrix C = mean_outputs(model.linear);
     if (static_cast<Index>(poles_.size()) != model.linear.states()) {
-      return {Answer::no, {}, "there must be as many poles as states", "give the real part of every pole"};
+      return {Answer::no,
+              {},
+              "there must be as many poles as states",
+              "give the real part of every pole"};
     }
     const Matrix shown = shown_outputs(model.linear);
     if (const auto hidden = unobservable_mode(A, shown)) {
-      const std::string what = hidden->gain_exists == Answer::no ? " is not observable: " : " is hardly observable: ";
-      return {hidden->gain_exists, {}, "the pair (A, C)" + what + hidden->reason, "use \"kalman\", which leaves such modes"};
+      const std::string what =
+          hidden->gain_exists == Answer::no ? " is not observable: " : " is hardly observable: ";
+      return {hidden->gain_exists,
+              {},
+              "the pair (A, C)" + what + hidden->reason,
+              "use \"kalman\", which leaves such modes"};
     }
     const Index rank = exact::rank(shown);
     for (const auto& [pole, count] : counted(poles_)) {
       if (count <= rank) continue;
       return {Answer::no,
               {},
-              "the pole " + text(pole) + " is asked for " + std::to_string(count) + " times, the outputs have rank " +
-                  std::to_string(rank) + ": A - L C would have no basis of eigenvectors",
+              "the pole " + text(pole) + " is asked for " + std::to_string(count) +
+                  " times, the outputs have rank " + std::to_string(rank) +
+                  ": A - L C would have no basis of eigenvectors",
               "ask for different poles"};
     }
     std::vector<std::complex<double>> values;
     for (const Pole& pole : poles_) values.emplace_back(pole.real, pole.imaginary);
     std::optional<PlacedPoles> placed = placed_poles(A, C, values);
     if (!placed || !(placed->error <= tolerance)) {
-      const std::string why = placed ? "they came out " + text(placed->error) + " away, more than 1e-08"
-                                     : "their eigenvectors are too nearly dependent";
-      return {Answer::unknown, {}, "the poles were not placed: " + why, "ask for poles further apart, or nearer to those of A"};
+      const std::string why =
+          placed ? "they came out " + text(placed->error) + " away, more than 1e-08"
+                 : "their eigenvectors are too nearly dependent";
+      return {Answer::unknown,
+              {},
+              "the poles were not placed: " + why,
+              "ask for poles further apart, or nearer to those of A"};
     }
     if (std::string problem = gain_problem(model, placed->L); !problem.empty()) {
-      return {Answer::unknown, {}, "the placed gain does not serve: " + std::move(problem), "ask for poles nearer to 0"};
+      return {Answer::unknown,
+              {},
+              "the placed gain does not serve: " + std::move(problem),
+              "ask for poles nearer to 0"};
     }
     Gain gain;
     gain.certificate = certify(model, placed->L, theta_of(model));
@@ -107,24 +127,28 @@ std::vector<Diagnostic> check(const GainContext& context, const Params& params) 
   const Index n = context.model.linear.states(), count = params.vector("poles").size();
   std::vector<Diagnostic> problems;
   if (count != n) {
-    problems.push_back({"/poles", "holds " + std::to_string(count) + " numbers, there are " + std::to_string(n) + " states",
-                        "give the real part of every pole"});
+    problems.push_back(
+        {"/poles",
+         "holds " + std::to_string(count) + " numbers, there are " + std::to_string(n) + " states",
+         "give the real part of every pole"});
   }
   if (params.has("poles_imaginary") && params.vector("poles_imaginary").size() != count) {
-    problems.push_back(
-        {"/poles_imaginary",
-         "holds " + std::to_string(params.vector("poles_imaginary").size()) + " numbers, poles holds " + std::to_string(count),
-         "give one for every pole, 0 for real ones"});
+    problems.push_back({"/poles_imaginary",
+                        "holds " + std::to_string(params.vector("poles_imaginary").size()) +
+                            " numbers, poles holds " + std::to_string(count),
+                        "give one for every pole, 0 for real ones"});
   }
   if (!problems.empty()) return problems;
   const std::map<Pole, Index> counts = counted(poles_from(params));
   for (const auto& [pole, times] : counts) {
     if (!(std::hypot(pole.real, pole.imaginary) < 1)) {
-      problems.push_back({"/poles", text(pole) + " lies outside the unit circle", "ask for stable poles"});
+      problems.push_back(
+          {"/poles", text(pole) + " lies outside the unit circle", "ask for stable poles"});
     }
     const auto conjugate = counts.find({pole.real, 0.0 - pole.imaginary});
     if (conjugate == counts.end() || conjugate->second != times) {
-      problems.push_back({"/poles_imaginary", text(pole) + " has no conjugate", "give pairs a + ib and a - ib"});
+      problems.push_back(
+          {"/poles_imaginary", text(pole) + " has no conjugate", "give pairs a + ib and a - ib"});
     }
   }
   return problems;
@@ -134,17 +158,23 @@ std::vector<Diagnostic> check(const GainContext& context, const Params& params) 
 
 void register_poles_gain(Registrar& registrar) {
   ParamSchema schema;
-  schema.vector("poles", "eigenvalues of A - L C inside the unit circle, their real parts, one per state").required();
+  schema
+      .vector("poles",
+              "eigenvalues of A - L C inside the unit circle, their real parts, one per state")
+      .required();
   schema.vector("poles_imaginary", "their imaginary parts, in pairs of opposite sign; absent: 0");
-  registrar.gain(
-      {{"poles", "puts the eigenvalues of A - L C where they are asked for", "Kautsky1985", std::move(schema), details},
-       check,
-       [](const Params& params) -> std::unique_ptr<GainDesigner> {
-         const bool same_size =
-             !params.has("poles_imaginary") || params.vector("poles_imaginary").size() == params.vector("poles").size();
-         if (!same_size) throw Error(Errc::invalid, "poles and poles_imaginary must have the same size");
-         return std::make_unique<Poles>(poles_from(params));
-       }});
+  registrar.gain({{"poles", "puts the eigenvalues of A - L C where they are asked for",
+                   "Kautsky1985", std::move(schema), details},
+                  check,
+                  [](const Params& params) -> std::unique_ptr<GainDesigner> {
+                    const bool same_size =
+                        !params.has("poles_imaginary") ||
+                        params.vector("poles_imaginary").size() == params.vector("poles").size();
+                    if (!same_size)
+                      throw Error(Errc::invalid,
+                                  "poles and poles_imaginary must have the same size");
+                    return std::make_unique<Poles>(poles_from(params));
+                  }});
 }
 
 }  // namespace cordon::estimators

@@ -5,7 +5,8 @@ namespace cordon::estimators {
 
 void add_theta_parameter(ParamSchema& schema) {
   schema.matrix("theta",
-                "Eθ, directions in which parameter uncertainty acts in the design, a row per state; absent: a diagonal matrix of "
+                "Eθ, directions in which parameter uncertainty acts in the design, a row per "
+                "state; absent: a diagonal matrix of "
                 "the row sums of A's radius, none where A is exact");
 }
 
@@ -17,8 +18,10 @@ void check_theta(const Model& model, const Params& params, std::vector<Diagnosti
   if (!params.has("theta")) return;
   const Index rows = params.matrix("theta").rows(), n = model.linear.states();
   if (rows == n) return;
-  problems.push_back({"/theta", "has " + std::to_string(rows) + " rows, there are " + std::to_string(n) + " states",
-                      "a row per state, a column per direction"});
+  problems.push_back(
+      {"/theta",
+       "has " + std::to_string(rows) + " rows, there are " + std::to_string(n) + " states",
+       "a row per state, a column per direction"});
 }
 
 Matrix theta_of(const Model& model, const std::optional<Matrix>& given) {

@@ -44,7 +44,8 @@ WRadiusProgram w_radius_program(const ErrorDynamics& errors, double rho) {
   WRadiusProgram design;
   design.W = symmetric_variable(0, n);
   design.Y = full_variable(design.W.end(), n, errors.C.rows());
-  const MatrixVariable for_e = diagonal_variable(design.Y.end(), e), for_v = diagonal_variable(for_e.end(), v);
+  const MatrixVariable for_e = diagonal_variable(design.Y.end(), e),
+                       for_v = diagonal_variable(for_e.end(), v);
   const MatrixVariable tau{for_v.end(), {Matrix::Identity(n, n)}};
   const Matrix I = Matrix::Identity(n, n);
   // Row and column of the last block first, which changes nothing.
@@ -61,9 +62,11 @@ WRadiusProgram w_radius_program(const ErrorDynamics& errors, double rho) {
   size.add(0, 0, design.W, I);
   size.add(0, 0, tau, -I);
   MatrixInequality trace{Matrix::Constant(1, 1, 1 - rho), {}};
-  for (Index i = for_e.first; i < for_v.end(); ++i) trace.terms.emplace_back(i, Matrix::Constant(1, 1, -1));
+  for (Index i = for_e.first; i < for_v.end(); ++i)
+    trace.terms.emplace_back(i, Matrix::Constant(1, 1, -1));
   design.program.cost = -Vector::Unit(tau.end(), tau.first);
-  design.program.inequalities = {std::move(contraction).finish(), std::move(size).finish(), std::move(trace)};
+  design.program.inequalities = {std::move(contraction).finish(), std::move(size).finish(),
+                                 std::move(trace)};
   return design;
 }
 
@@ -76,16 +79,21 @@ class WRadius final : public GainDesigner {
     const ErrorDynamics errors = error_dynamics(model, theta);
     if (std::optional<GainDesign> none = without_gain(model, errors)) return std::move(*none);
     if (const auto slow = undetectable_mode(errors.A, shown_outputs(model.linear), rho_)) {
-      const std::string none = slow->gain_exists == Answer::no ? "no gain contracts by rho: " : "no gain was sought: ";
-      return no_gain(slow->gain_exists, none + slow->reason + " and decays slower than √rho", "a larger rho");
+      const std::string none =
+          slow->gain_exists == Answer::no ? "no gain contracts by rho: " : "no gain was sought: ";
+      return no_gain(slow->gain_exists, none + slow->reason + " and decays slower than √rho",
+                     "a larger rho");
     }
     const WRadiusProgram program = w_radius_program(errors, rho_);
     const SdpSolution s = solve(program.program, {1e-8});
     if (s.status != SdpStatus::solved) return unsolved(s);
     const std::optional<Matrix> L = linalg::solve_spd(program.W.value(s.x), program.Y.value(s.x));
-    if (!L) return no_gain(Answer::unknown, "the matrix W of the solution is not positive definite", "a larger rho");
+    if (!L)
+      return no_gain(Answer::unknown, "the matrix W of the solution is not positive definite",
+                     "a larger rho");
     if (const std::string problem = gain_problem(model, *L); !problem.empty()) {
-      return no_gain(Answer::unknown, "the gain of the matrix inequality " + problem, "a larger rho");
+      return no_gain(Answer::unknown, "the gain of the matrix inequality " + problem,
+                     "a larger rho");
     }
     GainDesign design;
     design.feasible = Answer::yes;
@@ -93,7 +101,8 @@ class WRadius final : public GainDesigner {
     GainCertificate& c = design.gain.certificate;
     c = certify(model, *L, theta);
     c.objective = "τ";
-    // In the units of E and N, which were divided by `unit`, errors are smaller by it, and W larger by its square.
+    // In the units of E and N, which were divided by `unit`, errors are smaller by it, and W larger
+    // by its square.
     c.optimum = -s.value / (errors.unit * errors.unit);
     c.optimum_bound = -s.bound / (errors.unit * errors.unit);
     c.margin = s.least_eigenvalue[0];
@@ -111,13 +120,17 @@ void register_w_radius_gain(Registrar& registrar) {
   ParamSchema schema;
   add_theta_parameter(schema);
   schema.real("rho",
-              "ρ, factor by which the W-radius of the errors shrinks in a step at least, but for what the disturbances add", .9,
-              1e-6, 1 - 1e-6);
-  registrar.gain(
-      {{"w_radius", "the smallest ellipsoid that holds the errors for a given contraction, by a linear matrix inequality",
-        "Pourasghar2021", std::move(schema), details},
-       check_design,
-       [](const Params& params) { return std::make_unique<WRadius>(theta_from(params), params.real("rho")); }});
+              "ρ, factor by which the W-radius of the errors shrinks in a step at least, but for "
+              "what the disturbances add",
+              .9, 1e-6, 1 - 1e-6);
+  registrar.gain({{"w_radius",
+                   "the smallest ellipsoid that holds the errors for a given contraction, by a "
+                   "linear matrix inequality",
+                   "Pourasghar2021", std::move(schema), details},
+                  check_design,
+                  [](const Params& params) {
+                    return std::make_unique<WRadius>(theta_from(params), params.real("rho"));
+                  }});
 }
 
 }  // namespace cordon::estimators

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figures of merit of an estimate.
 //   radius          half the longest edge of the interval hull
-//   volume          exact where the representation offers it (up to dimension 3, zonotopes beyond), else of the interval hull
-//   contains_truth  certified containment of the true state
-//   complexity      generators, lines and constraints
-//   tightness       share of steps whose set is claimed to be exact
-//   step_time       measured time of prediction, correction and reduction
+//   volume          exact where the representation offers it (up to dimension 3, zonotopes beyond),
+//   else of the interval hull contains_truth  certified containment of the true state complexity
+//   generators, lines and constraints tightness       share of steps whose set is claimed to be
+//   exact step_time       measured time of prediction, correction and reduction
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -51,8 +50,9 @@ class Radius final : public Metric {
     return {{"radius", radius}};
   }
   std::vector<MetricValue> summary() const override {
-    return {
-        {"radius_mean", average_.mean()}, {"radius_max", average_.largest()}, {"radius_unbounded_steps", average_.unbounded()}};
+    return {{"radius_mean", average_.mean()},
+            {"radius_max", average_.largest()},
+            {"radius_unbounded_steps", average_.unbounded()}};
   }
 
  private:
@@ -80,13 +80,16 @@ class VolumeOfSet final : public Metric {
 class ContainsTruth final : public Metric {
  public:
   std::vector<MetricValue> step(const StepView& view) override {
-    if (!view.truth || !view.assumptions_hold) return {{"contains_truth", std::string("not_applicable")}};
+    if (!view.truth || !view.assumptions_hold)
+      return {{"contains_truth", std::string("not_applicable")}};
     const Answer answer = view.estimate.set->contains(*view.truth);
     ++(answer == Answer::yes ? yes_ : answer == Answer::no ? no_ : unknown_);
     return {{"contains_truth", std::string(to_string(answer))}};
   }
   std::vector<MetricValue> summary() const override {
-    return {{"contains_truth_yes", yes_}, {"contains_truth_no", no_}, {"contains_truth_unknown", unknown_}};
+    return {{"contains_truth_yes", yes_},
+            {"contains_truth_no", no_},
+            {"contains_truth_unknown", unknown_}};
   }
 
  private:
@@ -102,7 +105,9 @@ class Size final : public Metric {
     return {{"generators", c.generators}, {"lines", c.lines}, {"constraints", c.constraints}};
   }
   std::vector<MetricValue> summary() const override {
-    return {{"generators_max", largest_.generators}, {"lines_max", largest_.lines}, {"constraints_max", largest_.constraints}};
+    return {{"generators_max", largest_.generators},
+            {"lines_max", largest_.lines},
+            {"constraints_max", largest_.constraints}};
   }
 
  private:
@@ -118,7 +123,8 @@ class ExactSteps final : public Metric {
     return {{"exact", std::string(exact ? "yes" : "no")}};
   }
   std::vector<MetricValue> summary() const override {
-    return {{"exact_share", steps_ ? static_cast<double>(exact_) / static_cast<double>(steps_) : not_available}};
+    return {{"exact_share",
+             steps_ ? static_cast<double>(exact_) / static_cast<double>(steps_) : not_available}};
   }
 
  private:
@@ -143,19 +149,25 @@ class StepTime final : public Metric {
 
 template <class M>
 void add(Registrar& registrar, const char* name, const char* summary) {
-  registrar.metric({{name, summary, "", {}}, [](const Params&) -> std::unique_ptr<Metric> { return std::make_unique<M>(); }});
+  registrar.metric({{name, summary, "", {}}, [](const Params&) -> std::unique_ptr<Metric> {
+                      return std::make_unique<M>();
+                    }});
 }
 
 }  // namespace
 
 void register_metrics(Registrar& registrar) {
   add<Radius>(registrar, "radius", "half the longest edge of the interval hull");
-  add<VolumeOfSet>(registrar, "volume", "volume of the set where its representation has an exact one, else of its interval hull");
-  add<ContainsTruth>(registrar, "contains_truth",
-                     "certified containment of the true state while the pipeline's assumptions hold");
+  add<VolumeOfSet>(
+      registrar, "volume",
+      "volume of the set where its representation has an exact one, else of its interval hull");
+  add<ContainsTruth>(
+      registrar, "contains_truth",
+      "certified containment of the true state while the pipeline's assumptions hold");
   add<Size>(registrar, "complexity", "generators, lines and constraints of the estimate");
   add<ExactSteps>(registrar, "tightness", "share of steps whose set is claimed to be exact");
-  add<StepTime>(registrar, "step_time", "measured time of prediction, correction and reduction in microseconds");
+  add<StepTime>(registrar, "step_time",
+                "measured time of prediction, correction and reduction in microseconds");
 }
 
 }  // namespace cordon::estimators

@@ -28,12 +28,13 @@ WRadius w_radius(MatrixIn R, MatrixIn W) {
   const bool exact = scaled.cols() <= most_enumerated;
   if (!exact) {
     if (scaled.rows() > most_enumerated)
-      throw Error(Errc::unsupported, "w_radius takes at most " + std::to_string(most_enumerated) + " states");
+      throw Error(Errc::unsupported,
+                  "w_radius takes at most " + std::to_string(most_enumerated) + " states");
     scaled = sets::reduce_generators(scaled, most_enumerated);
   }
   if (scaled.cols() == 0) return {0, exact};
-  // The maximum of a convex function is attained at a vertex of the box; b and -b give the same. In the order of Gray's code one
-  // sign changes from vertex to vertex.
+  // The maximum of a convex function is attained at a vertex of the box; b and -b give the same. In
+  // the order of Gray's code one sign changes from vertex to vertex.
   Vector point = scaled.rowwise().sum();
   Vector sign = Vector::Ones(scaled.cols());
   double largest = point.squaredNorm();
@@ -51,7 +52,9 @@ namespace {
 
 constexpr double not_available = std::numeric_limits<double>::quiet_NaN();
 
-bool is_weight(const Matrix& W) { return W.rows() == W.cols() && W == W.transpose() && linalg::cholesky(W); }
+bool is_weight(const Matrix& W) {
+  return W.rows() == W.cols() && W == W.transpose() && linalg::cholesky(W);
+}
 
 /// What `Weighted` would find out when it is made, or at the first step of a run.
 std::vector<Diagnostic> check_weight(const MetricContext& context, const Params& params) {
@@ -61,11 +64,13 @@ std::vector<Diagnostic> check_weight(const MetricContext& context, const Params&
   std::vector<Diagnostic> problems;
   if (W.rows() != n || W.cols() != n) {
     problems.push_back({"/weight",
-                        "is " + std::to_string(W.rows()) + " × " + std::to_string(W.cols()) + ", the state has " +
-                            std::to_string(n) + (n == 1 ? " entry" : " entries"),
+                        "is " + std::to_string(W.rows()) + " × " + std::to_string(W.cols()) +
+                            ", the state has " + std::to_string(n) +
+                            (n == 1 ? " entry" : " entries"),
                         "give a row and a column per state"});
   } else if (!is_weight(W)) {
-    problems.push_back({"/weight", "is not symmetric and positive definite", "give W = Wᵀ with positive eigenvalues"});
+    problems.push_back({"/weight", "is not symmetric and positive definite",
+                        "give W = Wᵀ with positive eigenvalues"});
   }
   return problems;
 }
@@ -76,7 +81,8 @@ class Weighted {
   explicit Weighted(const Params& params) {
     if (!params.has("weight")) return;
     weight_ = params.matrix("weight");
-    if (!is_weight(weight_)) throw Error(Errc::invalid, "/weight must be symmetric and positive definite");
+    if (!is_weight(weight_))
+      throw Error(Errc::invalid, "/weight must be symmetric and positive definite");
   }
 
   struct View {
@@ -88,11 +94,13 @@ class Weighted {
     const LineForm form = view.estimate.set->line_form();
     if (weight_.size() == 0) weight_ = Matrix::Identity(form.dim(), form.dim());
     if (weight_.rows() != form.dim()) {
-      throw Error(Errc::dimension, "/weight is " + std::to_string(weight_.rows()) + " × " + std::to_string(weight_.cols()) +
-                                       ", the state has " + std::to_string(form.dim()));
+      throw Error(Errc::dimension, "/weight is " + std::to_string(weight_.rows()) + " × " +
+                                       std::to_string(weight_.cols()) + ", the state has " +
+                                       std::to_string(form.dim()));
     }
     if (view.estimate.consistent == Answer::no || !view.hull.is_bounded()) return std::nullopt;
-    if (form.lines() == 0 && form.constraints() == 0) return View{invariant::enclosing_zonotope(form).G, true};
+    if (form.lines() == 0 && form.constraints() == 0)
+      return View{invariant::enclosing_zonotope(form).G, true};
     return View{view.hull.radius().asDiagonal(), false};
   }
   const Matrix& weight() const { return weight_; }
@@ -109,7 +117,9 @@ class WeightedRadius final : public Metric {
 
   std::vector<MetricValue> step(const StepView& view) override {
     const auto seen = weighted_.see(view);
-    if (!seen) return {{Measure::name, not_available}, {std::string(Measure::name) + "_of", std::string("none")}};
+    if (!seen)
+      return {{Measure::name, not_available},
+              {std::string(Measure::name) + "_of", std::string("none")}};
     const WRadius found = Measure::of(seen->R, weighted_.weight());
     ++count_;
     sum_ += found.value;
@@ -143,19 +153,25 @@ struct SquaredRadius {
 template <class Measure>
 void add(Registrar& registrar, const char* summary) {
   ParamSchema schema;
-  schema.matrix("weight", "W, symmetric and positive definite, a row and a column per state; the identity by default");
-  registrar.metric(
-      {{Measure::name, summary, "Pourasghar2021", std::move(schema)},
-       [](const Params& params) -> std::unique_ptr<Metric> { return std::make_unique<WeightedRadius<Measure>>(params); },
-       check_weight});
+  schema.matrix(
+      "weight",
+      "W, symmetric and positive definite, a row and a column per state; the identity by default");
+  registrar.metric({{Measure::name, summary, "Pourasghar2021", std::move(schema)},
+                    [](const Params& params) -> std::unique_ptr<Metric> {
+                      return std::make_unique<WeightedRadius<Measure>>(params);
+                    },
+                    check_weight});
 }
 
 }  // namespace
 
 void register_weighted_radius(Registrar& registrar) {
-  add<FWRadius>(registrar, "√tr(Rᵀ W R) of the estimate's generators R; of the interval hull where there are constraints");
+  add<FWRadius>(registrar,
+                "√tr(Rᵀ W R) of the estimate's generators R; of the interval hull where there are "
+                "constraints");
   add<SquaredRadius>(registrar,
-                     "largest (z - c)ᵀ W (z - c) over the estimate; an upper bound beyond 16 generators or with constraints");
+                     "largest (z - c)ᵀ W (z - c) over the estimate; an upper bound beyond 16 "
+                     "generators or with constraints");
 }
 
 }  // namespace cordon::estimators

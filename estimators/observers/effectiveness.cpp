@@ -29,7 +29,9 @@ Enclosure unit_box(const SetBackend& backend, std::size_t n) {
   return backend.box({-ones, ones});
 }
 
-double upwards(double value, Index terms) { return rounding::up(value * (1 + rounding::gamma(2 * terms + 4))); }
+double upwards(double value, Index terms) {
+  return rounding::up(value * (1 + rounding::gamma(2 * terms + 4)));
+}
 
 }  // namespace
 
@@ -94,8 +96,9 @@ Matrix Effectiveness::input_spread(MatrixIn B, VectorIn u) const {
 Enclosure Effectiveness::open_states(const Enclosure& X, VectorIn u) const {
   const LinearModel& m = model_.linear;
   const Vector s = has_spread(m.A_radius) ? magnitudes(X) : Vector(Vector::Zero(m.states()));
-  const Vector widths = interval_spread(m.A_radius, s, m.states()) +
-                        interval_spread(m.B_radius, (f_ + f_radius_).cwiseProduct(u.cwiseAbs()), m.states());
+  const Vector widths =
+      interval_spread(m.A_radius, s, m.states()) +
+      interval_spread(m.B_radius, (f_ + f_radius_).cwiseProduct(u.cwiseAbs()), m.states());
   return backend_.box({-widths, widths});
 }
 
@@ -105,16 +108,20 @@ Vector Effectiveness::output_bound(const Sample& now, const Box* reach) const {
   if (ranged_outputs_.empty()) return zeta;
   const Vector through = input(m.D, now.u);
   const Vector spread = input_spread(m.D, now.u).cwiseAbs().rowwise().sum();
-  const Vector terms = linalg::product(m.D.cwiseAbs(), now.u.cwiseAbs());  // at least the size of those of D diag(f) u
+  const Vector terms = linalg::product(
+      m.D.cwiseAbs(), now.u.cwiseAbs());  // at least the size of those of D diag(f) u
   for (const Index i : ranged_outputs_) {
     double bound = infinite;
     if (reach && !reach->is_empty()) {
-      const double size = std::max(std::abs(reach->lower[i] + through[i]), std::abs(reach->upper[i] + through[i])) + spread[i];
+      const double size =
+          std::max(std::abs(reach->lower[i] + through[i]), std::abs(reach->upper[i] + through[i])) +
+          spread[i];
       bound = upwards(size, m.inputs()) + rounding::gamma(2 * m.inputs() + 4) * terms[i];
     }
     const double least = m.sensor.lower[i];
     if (least > 0 && !noise_hull_.is_empty()) {
-      const double size = std::max(std::abs(now.y[i] - noise_hull_.lower[i]), std::abs(now.y[i] - noise_hull_.upper[i]));
+      const double size = std::max(std::abs(now.y[i] - noise_hull_.lower[i]),
+                                   std::abs(now.y[i] - noise_hull_.upper[i]));
       bound = std::min(bound, upwards(size / least, 2));
     }
     zeta[i] = std::isnan(bound) ? infinite : bound;
@@ -151,10 +158,12 @@ Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& n
   const bool has_inputs = !m.D.isZero(0);
   if (plain_outputs_ && !has_inputs) return backend_.correct(X, {C, now.y, {m.Dv, V_}});
   const Vector through = input(m.D, now.u);
-  const Vector terms =
-      has_inputs ? Vector(now.y.cwiseAbs() + g_.cwiseProduct(input_terms(m.D, now.u))) : Vector(now.y.cwiseAbs());
+  const Vector terms = has_inputs
+                           ? Vector(now.y.cwiseAbs() + g_.cwiseProduct(input_terms(m.D, now.u)))
+                           : Vector(now.y.cwiseAbs());
   const Vector z = now.y - g_.cwiseProduct(through);
-  if (plain_outputs_) return RoundingRoom(backend_, z, terms, noise_widths_).correct(X, {C, z, {m.Dv, V_}});
+  if (plain_outputs_)
+    return RoundingRoom(backend_, z, terms, noise_widths_).correct(X, {C, z, {m.Dv, V_}});
 
   Vector open = Vector::Zero(m.outputs()), zeta = open;
   if (!interval_outputs_.empty()) open = interval_spread(m.C_radius, magnitudes(X), m.outputs());
@@ -172,10 +181,12 @@ Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& n
   }
   if (used.empty()) return X;
   Matrix T(m.outputs(), noise_->dim());
-  T << m.Dv, g_.asDiagonal() * input_spread(m.D, now.u), output_spread(zeta), interval_columns(open);
+  T << m.Dv, g_.asDiagonal() * input_spread(m.D, now.u), output_spread(zeta),
+      interval_columns(open);
   const Matrix scaled = g_.asDiagonal() * C;
   const RoundingRoom room(backend_, z(used), terms(used), noise_widths_(used));
-  Enclosure corrected = room.correct(X, {scaled(used, Eigen::all), z(used), {T(used, Eigen::all), noise_}});
+  Enclosure corrected =
+      room.correct(X, {scaled(used, Eigen::all), z(used), {T(used, Eigen::all), noise_}});
   if (has_output_ranges() || !interval_outputs_.empty()) corrected.tightness = Tightness::outer;
   return corrected;
 }
@@ -190,7 +201,8 @@ Tightness Effectiveness::recursion(std::initializer_list<const Matrix*> entries)
 }
 
 bool Effectiveness::is_bounded_by_measurement(const LinearModel& model, Index i) {
-  return model.sensor.dim() == 0 || model.sensor.lower[i] > 0 || model.sensor.upper[i] == model.sensor.lower[i];
+  return model.sensor.dim() == 0 || model.sensor.lower[i] > 0 ||
+         model.sensor.upper[i] == model.sensor.lower[i];
 }
 
 }  // namespace cordon::estimators

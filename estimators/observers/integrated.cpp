@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The interval observer whose gain is monotone, A - L C ≥ 0: set-based and trajectory-based observer coincide. [Pourasghar2021,
-// Theorem 5.3]
+// The interval observer whose gain is monotone, A - L C ≥ 0: set-based and trajectory-based
+// observer coincide. [Pourasghar2021, Theorem 5.3]
 #include <cstdio>
 
 #include "components.hpp"
@@ -41,38 +41,47 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   check_observer_gain(context, params, "gain", absent(), problems);
   if (problems.size() != before) return problems;
   const LinearModel& m = context.model.linear;
-  const std::string negative = negative_entries(context.model, observer_gain(context, params, "gain", absent()).gain.L);
+  const std::string negative =
+      negative_entries(context.model, observer_gain(context, params, "gain", absent()).gain.L);
   if (negative.empty()) return problems;
   const std::optional<Obstacle> never = no_monotone_gain(m.A, shown_outputs(m));
   problems.push_back({params.has("gain") ? "/gain" : "", negative,
                       never ? never->reason + ": use the observer \"interval_trajectory\""
-                            : "use the gain \"peak\" or \"h_infinity_monotone\", or the observer \"interval_trajectory\""});
+                            : "use the gain \"peak\" or \"h_infinity_monotone\", or the observer "
+                              "\"interval_trajectory\""});
   return problems;
 }
 
 constexpr const char* details =
     "Centre and half widths of a box, with Ac = A - L C ≥ 0:\n"
-    "    c⁺ = Ac c + B u + L y,   r⁺ = Ac r + rad(A) (|c| + r) + rad(B) |u| + |L| rad(C) (|c| + r) + |Bw W| + |L Dv V|.\n"
-    "The bounds equal those of \"interval_trajectory\" with the same gain, and the hull of \"zonotope_uncertain\" where\n"
-    "the entries of every generator of X0, Bw W and L Dv V have one sign. A gain that leaves a negative entry in Ac is\n"
-    "refused. Rounding errors are added to the bounds, on any backend. A gain that varies in time is taken at its\n"
+    "    c⁺ = Ac c + B u + L y,   r⁺ = Ac r + rad(A) (|c| + r) + rad(B) |u| + |L| rad(C) (|c| + r) "
+    "+ |Bw W| + |L Dv V|.\n"
+    "The bounds equal those of \"interval_trajectory\" with the same gain, and the hull of "
+    "\"zonotope_uncertain\" where\n"
+    "the entries of every generator of X0, Bw W and L Dv V have one sign. A gain that leaves a "
+    "negative entry in Ac is\n"
+    "refused. Rounding errors are added to the bounds, on any backend. A gain that varies in time "
+    "is taken at its\n"
     "steady state.";
 
 }  // namespace
 
 void register_integrated(Registrar& registrar) {
   ParamSchema schema;
-  add_gain_parameter(schema, "gain", "gain with A - L C ≥ 0 in every entry; absent: \"h_infinity_monotone\"");
+  add_gain_parameter(schema, "gain",
+                     "gain with A - L C ≥ 0 in every entry; absent: \"h_infinity_monotone\"");
   add_interval_parameters(schema);
-  registrar.observer({{"integrated", "interval observer with a monotone gain; standard linear systems with interval matrices",
-                       "Pourasghar2021", std::move(schema), details},
-                      check,
-                      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
-                        return std::make_unique<IntervalObserver>(context, params,
-                                                                  observer_gain(context, params, "gain", absent()).gain);
-                      },
-                      true,
-                      true});
+  registrar.observer(
+      {{"integrated",
+        "interval observer with a monotone gain; standard linear systems with interval matrices",
+        "Pourasghar2021", std::move(schema), details},
+       check,
+       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+         return std::make_unique<IntervalObserver>(
+             context, params, observer_gain(context, params, "gain", absent()).gain);
+       },
+       true,
+       true});
 }
 
 }  // namespace cordon::estimators

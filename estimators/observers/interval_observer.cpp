@@ -9,7 +9,8 @@ namespace {
 constexpr double margin = 1e-10;  // of a proof of emptiness, as a share of the terms of its numbers
 }
 
-IntervalObserver::IntervalObserver(const ObserverContext& context, const Params& params, Gain upper, std::optional<Gain> lower)
+IntervalObserver::IntervalObserver(const ObserverContext& context, const Params& params, Gain upper,
+                                   std::optional<Gain> lower)
     : Observer(context.model, context.backend),
       X0_(initial_set_from(model(), params)),
       upper_gain_(std::move(upper)),
@@ -18,11 +19,13 @@ IntervalObserver::IntervalObserver(const ObserverContext& context, const Params&
       inner_(model(), upper_gain_.L, params) {
   if (lower_gain_) lower_.emplace(model(), lower_gain_->L);
   const Index n = model().linear.states();
-  for (Vector* v : {&c_, &r_, &c_next_, &r_next_, &c_low_, &r_low_, &hull_.lower, &hull_.upper}) v->resize(n);
+  for (Vector* v : {&c_, &r_, &c_next_, &r_next_, &c_low_, &r_low_, &hull_.lower, &hull_.upper})
+    v->resize(n);
 }
 
 std::vector<Gain> IntervalObserver::gains() const {
-  return lower_gain_ ? std::vector<Gain>{upper_gain_, *lower_gain_} : std::vector<Gain>{upper_gain_};
+  return lower_gain_ ? std::vector<Gain>{upper_gain_, *lower_gain_}
+                     : std::vector<Gain>{upper_gain_};
 }
 
 void IntervalObserver::set(const Box& hull) {
@@ -33,7 +36,9 @@ void IntervalObserver::set(const Box& hull) {
 }
 
 /// Claimed outer: what the measurement of the same time says is left out.
-Enclosure IntervalObserver::estimate(const Box& box) const { return {backend().box(box).set, Tightness::outer}; }
+Enclosure IntervalObserver::estimate(const Box& box) const {
+  return {backend().box(box).set, Tightness::outer};
+}
 
 Enclosure IntervalObserver::do_start(const std::optional<Enclosure>& X0, const Sample&) {
   const Enclosure start = X0 ? *X0 : backend().import(X0_);
@@ -85,9 +90,11 @@ bool IntervalObserver::settle_crossing() {
   return proven;
 }
 
-bool check_interval_observer(const ObserverContext& context, const Params& params, std::vector<Diagnostic>& problems) {
+bool check_interval_observer(const ObserverContext& context, const Params& params,
+                             std::vector<Diagnostic>& problems) {
   if (context.model.linear.is_descriptor()) {
-    problems.push_back({"/type", "interval observers take systems of type \"lti\"", "use the observer \"descriptor\""});
+    problems.push_back({"/type", "interval observers take systems of type \"lti\"",
+                        "use the observer \"descriptor\""});
     return false;
   }
   check_bounded_start(context, params, problems);

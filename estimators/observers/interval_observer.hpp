@@ -10,12 +10,13 @@
 
 namespace cordon::estimators {
 
-/// The estimate is [lo, hi] with the bounds of interval_recursion.hpp from the box before, both by the gain `upper`, or lo by
-/// `lower`. It uses the outputs up to k - 1. Bounds of two gains that cross by more than 1e-10 of their terms prove that the data
-/// contradict the model.
+/// The estimate is [lo, hi] with the bounds of interval_recursion.hpp from the box before, both by
+/// the gain `upper`, or lo by `lower`. It uses the outputs up to k - 1. Bounds of two gains that
+/// cross by more than 1e-10 of their terms prove that the data contradict the model.
 class IntervalObserver final : public Observer {
  public:
-  IntervalObserver(const ObserverContext& context, const Params& params, Gain upper, std::optional<Gain> lower = {});
+  IntervalObserver(const ObserverContext& context, const Params& params, Gain upper,
+                   std::optional<Gain> lower = {});
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override;
@@ -41,9 +42,10 @@ class IntervalObserver final : public Observer {
   Box hull_;
 };
 
-/// Problems of model, initial set, noises and inner estimate; the gain is checked apart. False if no gain can be designed for
-/// what is wrong.
-bool check_interval_observer(const ObserverContext& context, const Params& params, std::vector<Diagnostic>& problems);
+/// Problems of model, initial set, noises and inner estimate; the gain is checked apart. False if
+/// no gain can be designed for what is wrong.
+bool check_interval_observer(const ObserverContext& context, const Params& params,
+                             std::vector<Diagnostic>& problems);
 
 /// initial_set, inner_samples, inner_seed.
 void add_interval_parameters(ParamSchema& schema);

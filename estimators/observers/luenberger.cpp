@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Luenberger observer on sets, for x⁺ = A x + B f u + Bw w on any backend: X̂_0 = X0, then the recursion of
-// luenberger_recursion.hpp, reduced to the budget, with one gain for all times or with one for the covariation of each X̂_k. Its
-// estimate at k uses the outputs up to k - 1 and is never empty; that an output contradicts it shows in the residual set, which
-// the diagnoser "observer_bank" watches.
+// The Luenberger observer on sets, for x⁺ = A x + B f u + Bw w on any backend: X̂_0 = X0, then the
+// recursion of luenberger_recursion.hpp, reduced to the budget, with one gain for all times or with
+// one for the covariation of each X̂_k. Its estimate at k uses the outputs up to k - 1 and is never
+// empty; that an output contradicts it shows in the residual set, which the diagnoser
+// "observer_bank" watches.
 #include "components.hpp"
 #include "observer_parameters.hpp"
 #include "observers/interval_spread.hpp"
@@ -63,11 +64,12 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   std::vector<Diagnostic> problems = check_common(context, params);
   const LinearModel& m = context.model.linear;
   if (m.is_descriptor()) {
-    problems.push_back({"/type", "\"luenberger\" takes systems of type \"lti\"", "use the observer \"descriptor\""});
+    problems.push_back({"/type", "\"luenberger\" takes systems of type \"lti\"",
+                        "use the observer \"descriptor\""});
     return problems;
   }
-  const bool grows =
-      has_spread(m.A_radius) || has_spread(m.C_radius) || has_spread(m.sensor_radius());  // with the magnitudes of the states
+  const bool grows = has_spread(m.A_radius) || has_spread(m.C_radius) ||
+                     has_spread(m.sensor_radius());  // with the magnitudes of the states
   if (problems.empty() && grows) check_bounded_start(context, params, problems);
   check_observer_gain(context, params, "gain", steady_kalman(), problems);
   return problems;
@@ -79,10 +81,12 @@ void register_luenberger(Registrar& registrar) {
   ParamSchema schema = common_parameters();
   add_widening_limit(schema);
   add_gain_parameter(schema, "gain",
-                     "L, a matrix with a row per state and a column per output that makes A - L C stable, or a designer of one; "
+                     "L, a matrix with a row per state and a column per output that makes A - L C "
+                     "stable, or a designer of one; "
                      "absent: \"kalman\" with \"steady\"");
   registrar.observer(
-      {{"luenberger", "set recursion with an output gain; standard linear systems, any backend", "Xu2014", std::move(schema)},
+      {{"luenberger", "set recursion with an output gain; standard linear systems, any backend",
+        "Xu2014", std::move(schema)},
        check,
        [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
          return std::make_unique<Luenberger>(context, params);

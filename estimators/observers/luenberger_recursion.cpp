@@ -18,15 +18,19 @@ LineForm moved(const LineForm& X, const Vector& t) {
   return Y;
 }
 
-Vector largest_entries(const Box& box) { return box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()); }
+Vector largest_entries(const Box& box) {
+  return box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs());
+}
 
 }  // namespace
 
-LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L, std::shared_ptr<const SetBackend> backend, Budget budget)
+LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L,
+                                         std::shared_ptr<const SetBackend> backend, Budget budget)
     : backend_(std::move(backend)), budget_(budget) {
   const LinearModel& m = model.linear;
   const Index n = m.states(), p = m.outputs();
-  if (m.is_descriptor()) throw Error(Errc::unsupported, "a Luenberger observer takes systems without E");
+  if (m.is_descriptor())
+    throw Error(Errc::unsupported, "a Luenberger observer takes systems without E");
   const Vector g = m.sensor_center(), rad = m.actuator_radius();
   f_ = m.actuator_center();
   A_ = m.A;
@@ -46,7 +50,8 @@ LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L, std::shar
   minus_Dv_ = -Dv_;
   state_unit_ = Matrix::Identity(n, n);
   output_unit_ = Matrix::Identity(p, p);
-  const sets::Zonotope around_W = invariant::enclosing_zonotope(model.W), around_V = invariant::enclosing_zonotope(model.V);
+  const sets::Zonotope around_W = invariant::enclosing_zonotope(model.W),
+                       around_V = invariant::enclosing_zonotope(model.V);
   const Vector &w = around_W.c, &v = around_V.c;
   W_generators_ = around_W.G;
   V_generators_ = around_V.G;
@@ -90,10 +95,12 @@ Matrix LuenbergerRecursion::error_noise() const {
 }
 
 /// Half widths of Δ, the part of y that ranges of sensors and the radii of C leave open.
-Vector LuenbergerRecursion::output_widths(const Enclosure& X, const Vector& largest, VectorIn u) const {
+Vector LuenbergerRecursion::output_widths(const Enclosure& X, const Vector& largest,
+                                          VectorIn u) const {
   Vector widths = interval_spread(C_radius_, largest, C_.rows());
   if (sensor_radius_.size() != 0) {
-    const Vector outputs = largest_entries(backend_->affine_map(X, raw_C_, Vector::Zero(raw_C_.rows()))->interval_hull());
+    const Vector outputs = largest_entries(
+        backend_->affine_map(X, raw_C_, Vector::Zero(raw_C_.rows()))->interval_hull());
     const Vector reach = outputs + product(raw_D_, u.cwiseAbs());
     widths += (sensor_radius_.array() > 0).select(sensor_radius_.cwiseProduct(reach), 0.0).matrix();
   }
@@ -101,11 +108,14 @@ Vector LuenbergerRecursion::output_widths(const Enclosure& X, const Vector& larg
 }
 
 Enclosure LuenbergerRecursion::bounded_box(const Vector& widths, const std::string& cause) const {
-  if (!widths.allFinite()) throw Error(Errc::unsupported, cause + " needs a bounded set of states: give a bounded initial set");
+  if (!widths.allFinite())
+    throw Error(Errc::unsupported,
+                cause + " needs a bounded set of states: give a bounded initial set");
   return backend_->box({-widths, widths});
 }
 
-void LuenbergerRecursion::add_open(Summands& to, Target target, const Enclosure& X, VectorIn u, bool twice) const {
+void LuenbergerRecursion::add_open(Summands& to, Target target, const Enclosure& X, VectorIn u,
+                                   bool twice) const {
   const bool state = target == Target::state;
   const auto add = [&](const Matrix& T, const Enclosure& set, const Vector& widths) {
     to.terms.push_back({T, set});
@@ -117,11 +127,13 @@ void LuenbergerRecursion::add_open(Summands& to, Target target, const Enclosure&
     to.inputs = (state ? ranges_ : output_ranges_) * u(ranged_).asDiagonal();
     add(to.inputs, unit_, Vector::Ones(to.inputs.cols()));
   }
-  const bool by_A = state && A_radius_.size() != 0, by_B = state && B_radius_.size() != 0, by_C = C_radius_.size() != 0;
+  const bool by_A = state && A_radius_.size() != 0, by_B = state && B_radius_.size() != 0,
+             by_C = C_radius_.size() != 0;
   const Vector largest = by_A || by_C ? largest_entries(X->interval_hull()) : Vector(X->dim());
   if (by_A || by_B) {
     const Vector inputs = most_f_.cwiseProduct(u.cwiseAbs());
-    const Vector widths = interval_spread(A_radius_, largest, A_.rows()) + interval_spread(B_radius_, inputs, A_.rows());
+    const Vector widths = interval_spread(A_radius_, largest, A_.rows()) +
+                          interval_spread(B_radius_, inputs, A_.rows());
     to.parameters = bounded_box(widths, "an interval matrix A");
     add(state_unit_, to.parameters, widths);
   }
@@ -159,14 +171,17 @@ Vector LuenbergerRecursion::residual(VectorIn x, const Sample& now) const {
 }
 
 Vector LuenbergerRecursion::next_size(VectorIn x, const Sample& now) const {
-  return Ao_.cwiseAbs() * x.cwiseAbs() + L_.cwiseAbs() * now.y.cwiseAbs() + input_.cwiseAbs() * now.u.cwiseAbs() + w_.cwiseAbs();
+  return Ao_.cwiseAbs() * x.cwiseAbs() + L_.cwiseAbs() * now.y.cwiseAbs() +
+         input_.cwiseAbs() * now.u.cwiseAbs() + w_.cwiseAbs();
 }
 
 Vector LuenbergerRecursion::residual_size(VectorIn s, const Sample& now) const {
-  return now.y.cwiseAbs() + output_input_.cwiseAbs() * now.u.cwiseAbs() + C_.cwiseAbs() * s + v_.cwiseAbs();
+  return now.y.cwiseAbs() + output_input_.cwiseAbs() * now.u.cwiseAbs() + C_.cwiseAbs() * s +
+         v_.cwiseAbs();
 }
 
-Enclosure LuenbergerRecursion::explained_outputs(const Enclosure& E, VectorIn x, const Sample& now) const {
+Enclosure LuenbergerRecursion::explained_outputs(const Enclosure& E, VectorIn x,
+                                                 const Sample& now) const {
   Summands summands;
   summands.terms.reserve(2);
   const bool needs_X = sensor_radius_.size() != 0 || C_radius_.size() != 0;
@@ -175,7 +190,8 @@ Enclosure LuenbergerRecursion::explained_outputs(const Enclosure& E, VectorIn x,
   return backend_->predict(V0_, {minus_Dv_, residual(x, now), summands.terms});
 }
 
-Enclosure LuenbergerRecursion::errors_within(const Enclosure& E, const Enclosure& outputs, const Matrix* strip_gain) const {
+Enclosure LuenbergerRecursion::errors_within(const Enclosure& E, const Enclosure& outputs,
+                                             const Matrix* strip_gain) const {
   const Index n = C_.cols(), p = C_.rows();
   if (!strip_gain) {
     const Matrix minus = -Matrix::Identity(p, p);
@@ -186,7 +202,8 @@ Enclosure LuenbergerRecursion::errors_within(const Enclosure& E, const Enclosure
   return backend_->predict(E, {rest, Vector::Zero(n), {&term, 1}});
 }
 
-Enclosure LuenbergerRecursion::next_bound(const Enclosure& E, const Enclosure& X, const Sample& now) const {
+Enclosure LuenbergerRecursion::next_bound(const Enclosure& E, const Enclosure& X,
+                                          const Sample& now) const {
   Summands summands;
   summands.terms.reserve(10);
   const Matrix LDv = -minus_LDv_;
@@ -196,7 +213,8 @@ Enclosure LuenbergerRecursion::next_bound(const Enclosure& E, const Enclosure& X
   return backend_->predict(E, {Ao_, Vector::Zero(Ao_.rows()), summands.terms});
 }
 
-Enclosure LuenbergerRecursion::residual_bound(const Enclosure& E, const Enclosure& X, const Sample& now) const {
+Enclosure LuenbergerRecursion::residual_bound(const Enclosure& E, const Enclosure& X,
+                                              const Sample& now) const {
   Summands summands;
   summands.terms.reserve(6);
   for (const Matrix* T : {&Dv_, &minus_Dv_}) summands.terms.push_back({*T, V0_});

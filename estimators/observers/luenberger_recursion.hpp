@@ -11,31 +11,35 @@
 
 namespace cordon::estimators {
 
-/// For x⁺ = A x + B f u + Bw w, y = g (C x + D f u) + Dv v with f, g in diagonal ranges around f̄, ḡ and A, B, C in interval
-/// matrices (A, B, C their centres from here on), and C̄ = ḡ C, D̄ = ḡ D:
-///   X̂⁺ = (A - L C̄) X̂ ⊕ {L y + (B - L D̄) f̄ u} ⊕ P,   P = (B - L D̄) rad(f) diag(u) [-1,1]^p ⊕ (-L Dv) V ⊕ Bw W ⊕ Π ⊕ (-L) Δ
-///   R   = {y - D̄ f̄ u} ⊕ (-C̄) X̂ ⊕ Q,                 Q = D̄ rad(f) diag(u) [-1,1]^p ⊕ (-Dv) V ⊕ Δ
-/// Π and Δ are boxes with the half widths rad(A) |x| + rad(B) |max f u| and rad(g) |C x + D f u| + max g rad(C) |x|, x ∈ X̂; they
-/// are {0} for exact matrices and exactly known sensors. x ∈ X̂ implies x⁺ ∈ X̂⁺ and 0 ∈ R. A diag per input: a single column
-/// rad(f) u would tie the inputs to each other. Models with E are not taken. Constant functions may be used from several threads.
+/// For x⁺ = A x + B f u + Bw w, y = g (C x + D f u) + Dv v with f, g in diagonal ranges around f̄, ḡ
+/// and A, B, C in interval matrices (A, B, C their centres from here on), and C̄ = ḡ C, D̄ = ḡ D:
+///   X̂⁺ = (A - L C̄) X̂ ⊕ {L y + (B - L D̄) f̄ u} ⊕ P,   P = (B - L D̄) rad(f) diag(u) [-1,1]^p ⊕ (-L
+///   Dv) V ⊕ Bw W ⊕ Π ⊕ (-L) Δ R   = {y - D̄ f̄ u} ⊕ (-C̄) X̂ ⊕ Q,                 Q = D̄ rad(f) diag(u)
+///   [-1,1]^p ⊕ (-Dv) V ⊕ Δ
+/// Π and Δ are boxes with the half widths rad(A) |x| + rad(B) |max f u| and rad(g) |C x + D f u| +
+/// max g rad(C) |x|, x ∈ X̂; they are {0} for exact matrices and exactly known sensors. x ∈ X̂
+/// implies x⁺ ∈ X̂⁺ and 0 ∈ R. A diag per input: a single column rad(f) u would tie the inputs to
+/// each other. Models with E are not taken. Constant functions may be used from several threads.
 class LuenbergerRecursion {
  public:
   /// L is n×n_y. Throws Errc::dimension.
-  LuenbergerRecursion(const Model& model, Matrix L, std::shared_ptr<const SetBackend> backend, Budget budget);
+  LuenbergerRecursion(const Model& model, Matrix L, std::shared_ptr<const SetBackend> backend,
+                      Budget budget);
 
   /// The gain from now on; n×n_y. Throws Errc::dimension.
   void use_gain(Matrix L);
 
   const SetBackend& backend() const { return *backend_; }
 
-  /// X̂⁺ before reduction, from X̂ and the sample of the same time. `open`, if asked for: the half widths of the part of P that is
-  /// not W or V, of no entries where there is none.
+  /// X̂⁺ before reduction, from X̂ and the sample of the same time. `open`, if asked for: the half
+  /// widths of the part of P that is not W or V, of no entries where there is none.
   Enclosure next(const Enclosure& X, const Sample& now, Vector* open = nullptr) const;
   Enclosure reduced(const Enclosure& X) const { return backend_->reduce(X, budget_); }
   /// R, in the space of outputs.
   Enclosure residual(const Enclosure& X, const Sample& now) const;
 
-  /// Of the errors x - x̂ around the point observer, e⁺ = F e + N ξ + …, ‖ξ‖∞ ≤ 1: F = A - L C̄, and N = [Bw G_W, -L Dv G_V].
+  /// Of the errors x - x̂ around the point observer, e⁺ = F e + N ξ + …, ‖ξ‖∞ ≤ 1: F = A - L C̄, and
+  /// N = [Bw G_W, -L Dv G_V].
   const Matrix& error_map() const { return Ao_; }
   Matrix error_noise() const;
 
@@ -43,18 +47,22 @@ class LuenbergerRecursion {
   Vector next(VectorIn x, const Sample& now) const;
   Vector residual(VectorIn x, const Sample& now) const;
 
-  /// Sizes of the numbers that x̂⁺ and r are made of, before they cancel: |Ao| |x̂| + |L| |y| + …, and |y| + … + |C̄| s for x̂ of
-  /// size s. What rounding leaves in X̂⁺ and R is a share of them, however small these come out.
+  /// Sizes of the numbers that x̂⁺ and r are made of, before they cancel: |Ao| |x̂| + |L| |y| + …,
+  /// and |y| + … + |C̄| s for x̂ of size s. What rounding leaves in X̂⁺ and R is a share of them,
+  /// however small these come out.
   Vector next_size(VectorIn x, const Sample& now) const;
   Vector residual_size(VectorIn s, const Sample& now) const;
 
-  /// {C̄ e : some noise explains now.y if the state is x̂ + e}, e ∈ E needed for Δ: an enclosure of it.
+  /// {C̄ e : some noise explains now.y if the state is x̂ + e}, e ∈ E needed for Δ: an enclosure of
+  /// it.
   Enclosure explained_outputs(const Enclosure& E, VectorIn x, const Sample& now) const;
-  /// {e ∈ E : C̄ e ∈ outputs}, or an enclosure of it: given λ (n×n_y), (I - λ C̄) E ⊕ λ outputs; else the backend's intersection.
-  Enclosure errors_within(const Enclosure& E, const Enclosure& outputs, const Matrix* strip_gain) const;
+  /// {e ∈ E : C̄ e ∈ outputs}, or an enclosure of it: given λ (n×n_y), (I - λ C̄) E ⊕ λ outputs; else
+  /// the backend's intersection.
+  Enclosure errors_within(const Enclosure& E, const Enclosure& outputs,
+                          const Matrix* strip_gain) const;
 
-  /// Bounds of the matched error set {x} ⊕ (-X̂) and its residual: (A - L C̄) E ⊕ P ⊕ (-P) and C̄ E ⊕ Q ⊕ (-Q), P and Q moved to the
-  /// origin; X̂ is needed for Δ.
+  /// Bounds of the matched error set {x} ⊕ (-X̂) and its residual: (A - L C̄) E ⊕ P ⊕ (-P) and C̄ E ⊕
+  /// Q ⊕ (-Q), P and Q moved to the origin; X̂ is needed for Δ.
   Enclosure next_bound(const Enclosure& E, const Enclosure& X, const Sample& now) const;
   Enclosure residual_bound(const Enclosure& E, const Enclosure& X, const Sample& now) const;
 
@@ -79,7 +87,7 @@ class LuenbergerRecursion {
   Matrix input_, output_input_;                        ///< (B - L D̄) f̄, D̄ f̄
   std::vector<Index> ranged_;                          ///< inputs with rad(f) > 0
   Vector ranged_radius_;                               ///< their radii
-  Matrix ranges_, output_ranges_;                      ///< their columns of (B - L D̄) rad(f) and D̄ rad(f)
+  Matrix ranges_, output_ranges_;  ///< their columns of (B - L D̄) rad(f) and D̄ rad(f)
   Matrix Bw_, minus_Bw_, Dv_, minus_Dv_, minus_LDv_;
   Matrix state_unit_, output_unit_;
   Enclosure W_, V_, W0_, V0_;              ///< W0, V0: moved by -w̄, -v̄

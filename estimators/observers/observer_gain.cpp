@@ -13,14 +13,16 @@ namespace {
 constexpr const char* matrix_type = "given";
 
 /// The gain, or none and its problems.
-ObserverGain designed(const ObserverContext& context, const Params& params, const std::string& name, const ComponentSpec& absent,
-                      std::vector<Diagnostic>& problems) {
+ObserverGain designed(const ObserverContext& context, const Params& params, const std::string& name,
+                      const ComponentSpec& absent, std::vector<Diagnostic>& problems) {
   const bool given = params.has(name);
   const ComponentSpec& spec = given ? params.component(name) : absent;
   const std::string place = given ? "/" + name : "";
-  if (std::vector<Diagnostic> wrong = context.make->check_gain(spec, {context.model}); !wrong.empty()) {
+  if (std::vector<Diagnostic> wrong = context.make->check_gain(spec, {context.model});
+      !wrong.empty()) {
     for (Diagnostic& problem : wrong) {
-      const bool nested = given && !(spec.type == matrix_type && problem.pointer == "/matrix");  // it may stand there alone
+      const bool nested = given && !(spec.type == matrix_type &&
+                                     problem.pointer == "/matrix");  // it may stand there alone
       problem.pointer = nested ? place + problem.pointer : place;
       problems.push_back(std::move(problem));
     }
@@ -30,11 +32,13 @@ ObserverGain designed(const ObserverContext& context, const Params& params, cons
   GainDesign design = made.designer->design(context.model);
   if (design.feasible != Answer::yes) {
     const std::string otherwise = given ? "" : "give \"" + name + "\"";
-    problems.push_back({place, design.reason, design.suggestion.empty() ? otherwise : design.suggestion});
+    problems.push_back(
+        {place, design.reason, design.suggestion.empty() ? otherwise : design.suggestion});
     return {};
   }
   if (const std::string problem = gain_problem(context.model, design.gain.L); !problem.empty()) {
-    problems.push_back({place, "the gain that \"" + spec.type + "\" designed " + problem, "use another one"});
+    problems.push_back(
+        {place, "the gain that \"" + spec.type + "\" designed " + problem, "use another one"});
     return {};
   }
   made.gain = std::move(design.gain);
@@ -49,8 +53,8 @@ void add_gain_parameter(ParamSchema& schema, const std::string& name, const std:
   schema.component(name, doc, "gain").or_matrix(matrix_type);
 }
 
-ObserverGain observer_gain(const ObserverContext& context, const Params& params, const std::string& name,
-                           const ComponentSpec& absent) {
+ObserverGain observer_gain(const ObserverContext& context, const Params& params,
+                           const std::string& name, const ComponentSpec& absent) {
   std::vector<Diagnostic> problems;
   ObserverGain made = designed(context, params, name, absent, problems);
   if (!problems.empty()) throw InputError("the gain of an observer", std::move(problems));
@@ -68,8 +72,9 @@ Matrix gain_for(const ObserverGain& gain, const Model& model, const Enclosure& X
   }
 }
 
-void check_observer_gain(const ObserverContext& context, const Params& params, const std::string& name,
-                         const ComponentSpec& absent, std::vector<Diagnostic>& problems) {
+void check_observer_gain(const ObserverContext& context, const Params& params,
+                         const std::string& name, const ComponentSpec& absent,
+                         std::vector<Diagnostic>& problems) {
   designed(context, params, name, absent, problems);
 }
 

@@ -19,15 +19,19 @@ struct ObserverGain {
   Gain gain;
 };
 
-/// The gain by the parameter `name`, or by `absent` where it is not given. Throws InputError with the reason if there is none.
-ObserverGain observer_gain(const ObserverContext& context, const Params& params, const std::string& name,
-                           const ComponentSpec& absent);
+/// The gain by the parameter `name`, or by `absent` where it is not given. Throws InputError with
+/// the reason if there is none.
+ObserverGain observer_gain(const ObserverContext& context, const Params& params,
+                           const std::string& name, const ComponentSpec& absent);
 
-/// Of a gain that varies in time the one for the states in X; the steady one where no zonotope contains X.
+/// Of a gain that varies in time the one for the states in X; the steady one where no zonotope
+/// contains X.
 Matrix gain_for(const ObserverGain& gain, const Model& model, const Enclosure& X);
 
-/// Adds the problems of that gain: at "/name" or, of its own parameters, below it; at "" if the parameter is not given.
-void check_observer_gain(const ObserverContext& context, const Params& params, const std::string& name,
-                         const ComponentSpec& absent, std::vector<Diagnostic>& problems);
+/// Adds the problems of that gain: at "/name" or, of its own parameters, below it; at "" if the
+/// parameter is not given.
+void check_observer_gain(const ObserverContext& context, const Params& params,
+                         const std::string& name, const ComponentSpec& absent,
+                         std::vector<Diagnostic>& problems);
 
 }  // namespace cordon::estimators

@@ -12,23 +12,30 @@ constexpr std::int64_t most = 100'000;
 
 ParamSchema common_parameters() {
   ParamSchema schema;
-  schema.integer("max_generators", "most generators of an estimate after reduction; at least the number of states", 30, 1, most);
-  schema.integer("max_constraints", "most constraints of an estimate after reduction, where the representation has them", 5, 0,
-                 most);
+  schema.integer("max_generators",
+                 "most generators of an estimate after reduction; at least the number of states",
+                 30, 1, most);
+  schema.integer(
+      "max_constraints",
+      "most constraints of an estimate after reduction, where the representation has them", 5, 0,
+      most);
   schema.set("initial_set", "set of initial states in place of the system's X0");
   return schema;
 }
 
 void add_widening_limit(ParamSchema& schema) {
-  schema.real(
-      "widening_limit",
-      "where reductions have made a set wider, in some coordinate, than this many times the unreduced one, the box around "
-      "the latter takes its place; 0: never. For sets without constraints, gains that do not vary in time, and nominal "
-      "rounding",
-      2, 0, 1e300);
+  schema.real("widening_limit",
+              "where reductions have made a set wider, in some coordinate, than this many times "
+              "the unreduced one, the box around "
+              "the latter takes its place; 0: never. For sets without constraints, gains that do "
+              "not vary in time, and nominal "
+              "rounding",
+              2, 0, 1e300);
 }
 
-Budget budget_from(const Params& params) { return {params.integer("max_generators"), params.integer("max_constraints")}; }
+Budget budget_from(const Params& params) {
+  return {params.integer("max_generators"), params.integer("max_constraints")};
+}
 
 const LineForm& initial_set_from(const Model& model, const Params& params) {
   return params.has("initial_set") ? params.set_form("initial_set") : model.X0;
@@ -38,11 +45,16 @@ void check_set(const ObserverContext& context, const LineForm& set, const std::s
                std::vector<Diagnostic>& problems) {
   const Index n = context.model.linear.states();
   if (set.dim() != n) {
-    problems.push_back({pointer, "has dimension " + std::to_string(set.dim()) + ", the state has " + std::to_string(n),
-                        "give a set of dimension " + std::to_string(n)});
+    problems.push_back(
+        {pointer,
+         "has dimension " + std::to_string(set.dim()) + ", the state has " + std::to_string(n),
+         "give a set of dimension " + std::to_string(n)});
   } else if (!context.backend->info().unbounded && eliminate_lines(set).lines() > 0) {
-    problems.push_back({pointer, "is unbounded, which the backend \"" + context.backend->info().name + "\" cannot represent",
-                        "give a bounded set, or use a backend with lines such as \"line_zonotope\""});
+    problems.push_back(
+        {pointer,
+         "is unbounded, which the backend \"" + context.backend->info().name +
+             "\" cannot represent",
+         "give a bounded set, or use a backend with lines such as \"line_zonotope\""});
   }
 }
 
@@ -50,33 +62,37 @@ std::vector<Diagnostic> check_common(const ObserverContext& context, const Param
   std::vector<Diagnostic> problems;
   const Index n = context.model.linear.states();
   if (params.integer("max_generators") < n) {
-    problems.push_back(
-        {"/max_generators",
-         "is " + std::to_string(params.integer("max_generators")) + ", fewer than the " + std::to_string(n) + " states",
-         "give at least " + std::to_string(n)});
+    problems.push_back({"/max_generators",
+                        "is " + std::to_string(params.integer("max_generators")) +
+                            ", fewer than the " + std::to_string(n) + " states",
+                        "give at least " + std::to_string(n)});
   }
   if (params.has("initial_set")) {
     check_set(context, params.set_form("initial_set"), "/initial_set", problems);
   } else if (!context.backend->info().unbounded && eliminate_lines(context.model.X0).lines() > 0) {
-    problems.push_back(
-        {"",
-         "the system's X0 is unbounded or not given, which the backend \"" + context.backend->info().name + "\" cannot represent",
-         "give X0 in the system or \"initial_set\" here, or use a backend with lines such as \"line_zonotope\""});
+    problems.push_back({"",
+                        "the system's X0 is unbounded or not given, which the backend \"" +
+                            context.backend->info().name + "\" cannot represent",
+                        "give X0 in the system or \"initial_set\" here, or use a backend with "
+                        "lines such as \"line_zonotope\""});
   }
   return problems;
 }
 
-void check_bounded_start(const ObserverContext& context, const Params& params, std::vector<Diagnostic>& problems) {
+void check_bounded_start(const ObserverContext& context, const Params& params,
+                         std::vector<Diagnostic>& problems) {
   const bool own = params.has("initial_set");
   const LineForm& X0 = initial_set_from(context.model, params);
   const Index n = context.model.linear.states();
   if (X0.dim() != n) {
     check_set(context, X0, own ? "/initial_set" : "", problems);
   } else if (eliminate_lines(X0).lines() > 0) {
-    problems.push_back({own ? "/initial_set" : "",
-                        own ? "is unbounded, and this observer needs bounds from the first step on"
-                            : "the system's X0 is unbounded or not given, and this observer needs bounds from the first step on",
-                        own ? "give a bounded set" : "give a bounded X0 in the system or \"initial_set\" here"});
+    problems.push_back(
+        {own ? "/initial_set" : "",
+         own ? "is unbounded, and this observer needs bounds from the first step on"
+             : "the system's X0 is unbounded or not given, and this observer needs bounds from the "
+               "first step on",
+         own ? "give a bounded set" : "give a bounded X0 in the system or \"initial_set\" here"});
   }
 }
 
@@ -86,7 +102,8 @@ void check_noises(const ObserverContext& context, std::vector<Diagnostic>& probl
     try {
       invariant::enclosing_zonotope(*set, std::string("the system's ") + name);
     } catch (const Error& error) {
-      problems.push_back({"", error.what(), std::string("give a bounded ") + name + " that is not empty"});
+      problems.push_back(
+          {"", error.what(), std::string("give a bounded ") + name + " that is not empty"});
     }
   }
 }

@@ -20,16 +20,18 @@ void add_widening_limit(ParamSchema& schema);
 /// X0 of the model, or the parameter `initial_set` in its place.
 const LineForm& initial_set_from(const Model& model, const Params& params);
 
-/// Problems that every observer would have: budget below the dimension, initial set of another dimension, unbounded where the
-/// backend holds bounded sets only, ….
+/// Problems that every observer would have: budget below the dimension, initial set of another
+/// dimension, unbounded where the backend holds bounded sets only, ….
 std::vector<Diagnostic> check_common(const ObserverContext& context, const Params& params);
 
-/// "/name" diagnostics for a set parameter of the wrong dimension or one that the backend cannot hold.
+/// "/name" diagnostics for a set parameter of the wrong dimension or one that the backend cannot
+/// hold.
 void check_set(const ObserverContext& context, const LineForm& set, const std::string& pointer,
                std::vector<Diagnostic>& problems);
 
 /// A problem if the set of initial states is unbounded, or has another dimension than the state.
-void check_bounded_start(const ObserverContext& context, const Params& params, std::vector<Diagnostic>& problems);
+void check_bounded_start(const ObserverContext& context, const Params& params,
+                         std::vector<Diagnostic>& problems);
 
 /// Problems of W and V that no zonotope encloses.
 void check_noises(const ObserverContext& context, std::vector<Diagnostic>& problems);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Prediction and correction for x⁺ = A x + B u + Bw w, y = C x + D u + Dv v on any backend:
 //   X̂_0 = {x ∈ X0 : y_0 - D u_0 - C x ∈ Dv V}
-//   X̄_k = A X̂_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W,   X̂_k = {x ∈ X̄_k : y_k - D u_k - C x ∈ Dv V}, reduced to the budget.
+//   X̄_k = A X̂_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W,   X̂_k = {x ∈ X̄_k : y_k - D u_k - C x ∈ Dv V}, reduced to
+//   the budget.
 // Ranges of effectiveness and interval matrices: effectiveness.hpp.
-// Exact with constrained and line zonotopes until a reduction bites; zonotopes intersect strip by strip, intervals contract.
+// Exact with constrained and line zonotopes until a reduction bites; zonotopes intersect strip by
+// strip, intervals contract.
 #include <optional>
 
 #include "components.hpp"
@@ -40,16 +42,21 @@ class PredictionCorrection final : public Observer {
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const LinearModel& m = model().linear;
     const Enclosure predicted = timed(Phase::predict, [&] {
-      const Matrix spread = effectiveness_.input_spread(m.B, before.u), unit = Matrix::Identity(m.states(), m.states());
-      const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
+      const Matrix spread = effectiveness_.input_spread(m.B, before.u),
+                   unit = Matrix::Identity(m.states(), m.states());
+      const Enclosure open =
+          effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
       std::vector<Term> terms{{m.Bw, W_}};
-      if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
+      if (effectiveness_.has_input_ranges())
+        terms.push_back({spread, effectiveness_.input_factors()});
       if (effectiveness_.has_open_states()) terms.push_back({unit, open});
       const bool as_set = effectiveness_.inputs_enter_as_sets() && m.inputs() > 0;
       const Enclosure u = as_set ? backend().point(before.u) : Enclosure{};
       if (as_set) terms.push_back({m.B, u});
-      const Vector shift = as_set ? Vector(Vector::Zero(m.states())) : effectiveness_.input(m.B, before.u);
-      const std::optional<RoundingRoom> room = m.inputs() > 0 && !as_set ? std::optional(room_of(shift, before.u)) : std::nullopt;
+      const Vector shift =
+          as_set ? Vector(Vector::Zero(m.states())) : effectiveness_.input(m.B, before.u);
+      const std::optional<RoundingRoom> room =
+          m.inputs() > 0 && !as_set ? std::optional(room_of(shift, before.u)) : std::nullopt;
       if (room && room->is_needed()) terms.push_back(room->term());
       Enclosure next = backend().predict(X_, {m.A, shift, terms});
       if (effectiveness_.has_open_states()) next.tightness = Tightness::outer;
@@ -67,7 +74,8 @@ class PredictionCorrection final : public Observer {
   }
 
   Enclosure corrected(const Enclosure& X, const Sample& now) {
-    const Enclosure narrowed = timed(Phase::correct, [&] { return effectiveness_.correct(X, model().linear.C, now); });
+    const Enclosure narrowed =
+        timed(Phase::correct, [&] { return effectiveness_.correct(X, model().linear.C, now); });
     return timed(Phase::reduce, [&] { return backend().reduce(narrowed, budget_); });
   }
 
@@ -82,7 +90,8 @@ class PredictionCorrection final : public Observer {
 std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
   std::vector<Diagnostic> problems = check_common(context, params);
   if (context.model.linear.is_descriptor()) {
-    problems.push_back({"/type", "\"prediction_correction\" takes systems of type \"lti\"", "use the observer \"descriptor\""});
+    problems.push_back({"/type", "\"prediction_correction\" takes systems of type \"lti\"",
+                        "use the observer \"descriptor\""});
   }
   return problems;
 }
@@ -91,7 +100,9 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
 
 void register_prediction_correction(Registrar& registrar) {
   registrar.observer(
-      {{"prediction_correction", "prediction by the model, correction by the measurement; standard linear systems, any backend",
+      {{"prediction_correction",
+        "prediction by the model, correction by the measurement; standard linear systems, any "
+        "backend",
         "Combastel2003; Scott2016", common_parameters()},
        check,
        [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {

@@ -19,9 +19,11 @@ namespace cordon::estimators {
 namespace {
 
 constexpr double rank_tolerance = 1e-10;
-constexpr double steady = 1e-12;  ///< changes of entries of P, relative to their states' sizes, that leave the gain as it is
+constexpr double steady = 1e-12;  ///< changes of entries of P, relative to their states' sizes,
+                                  ///< that leave the gain as it is
 
-/// Outputs that the measurement itself bounds, weighted by the middle of their effectiveness; the others have rows of zeros.
+/// Outputs that the measurement itself bounds, weighted by the middle of their effectiveness; the
+/// others have rows of zeros.
 LinearModel with_bounded_outputs(LinearModel m) {
   const Vector g = m.sensor_center();
   for (Index i = 0; i < m.outputs(); ++i) {
@@ -38,7 +40,9 @@ LinearModel with_bounded_outputs(LinearModel m) {
 }
 
 /// The largest sum of magnitudes of a row.
-double row_norm(const Matrix& A) { return A.size() ? A.cwiseAbs().rowwise().sum().maxCoeff() : 0.0; }
+double row_norm(const Matrix& A) {
+  return A.size() ? A.cwiseAbs().rowwise().sum().maxCoeff() : 0.0;
+}
 
 double largest(VectorIn x) { return x.size() ? x.lpNorm<Eigen::Infinity>() : 0.0; }
 
@@ -60,9 +64,10 @@ Matrix stacked_E_C(const LinearModel& m) {
   return stacked;
 }
 
-/// The pseudo-inverse [T N] of K, with T E + N C = I to the last digits, in units in which the largest entries of K's columns are
-/// 1: where states or outputs have unlike units, a decomposition knows small entries by few digits or none, and states of 1e17
-/// ask for them. Newton's iteration doubles the digits; it is left out where they are there.
+/// The pseudo-inverse [T N] of K, with T E + N C = I to the last digits, in units in which the
+/// largest entries of K's columns are 1: where states or outputs have unlike units, a decomposition
+/// knows small entries by few digits or none, and states of 1e17 ask for them. Newton's iteration
+/// doubles the digits; it is left out where they are there.
 Matrix left_inverse(const Matrix& K) {
   constexpr double enough = 1e-13;
   Vector units = K.cwiseAbs().colwise().maxCoeff();
@@ -70,7 +75,9 @@ Matrix left_inverse(const Matrix& K) {
   Matrix inverse = linalg::pseudo_inverse(K);
   for (int i = 0; i < 3; ++i) {
     const Matrix rest = Matrix::Identity(K.cols(), K.cols()) - linalg::product(inverse, K);
-    if ((units.asDiagonal() * rest.cwiseAbs() * units.cwiseInverse().asDiagonal()).maxCoeff() <= enough) break;
+    if ((units.asDiagonal() * rest.cwiseAbs() * units.cwiseInverse().asDiagonal()).maxCoeff() <=
+        enough)
+      break;
     inverse += linalg::product(rest, inverse);
   }
   return inverse;
@@ -89,7 +96,8 @@ class PseudoInverseObserver final : public Observer {
         is_used_(used_.outputs()),
         rounds_outward_(backend().info().rounding == Rounding::outward) {
     const Index n = used_.states();
-    for (Index i = 0; i < is_used_.size(); ++i) is_used_[i] = Effectiveness::is_bounded_by_measurement(model().linear, i);
+    for (Index i = 0; i < is_used_.size(); ++i)
+      is_used_[i] = Effectiveness::is_bounded_by_measurement(model().linear, i);
     const Matrix inverse = left_inverse(stacked_E_C(used_));
     T_ = inverse.leftCols(n);
     N_ = inverse.rightCols(used_.outputs());
@@ -153,7 +161,8 @@ class PseudoInverseObserver final : public Observer {
         terms.push_back({outputs_before, effectiveness_.output_factors()});
         terms.push_back({outputs_now, effectiveness_.output_factors()});
       }
-      const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
+      const Enclosure open =
+          effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
       if (effectiveness_.has_open_states()) terms.push_back({T_, open});
       effectiveness_.input(TB_, before.u, shift_);
       add_output(L_, before);
@@ -162,8 +171,9 @@ class PseudoInverseObserver final : public Observer {
       if (room && room->is_needed()) terms.push_back(room->term());
       Enclosure own;
       if (rounds_outward_) {
-        const Vector errors =
-            own_errors(before, now, effectiveness_.has_open_states() ? open->interval_hull() : Box{zero_, zero_});
+        const Vector errors = own_errors(
+            before, now,
+            effectiveness_.has_open_states() ? open->interval_hull() : Box{zero_, zero_});
         own = backend().box({-errors, errors});
         terms.push_back({identity_, own});
       }
@@ -179,9 +189,12 @@ class PseudoInverseObserver final : public Observer {
     if (!effectiveness_.has_output_ranges()) return Matrix::Zero(used_.outputs(), 0);
     std::optional<Box> reach;
     if (state_is_known) {
-      reach = backend().affine_map(X_, model().linear.C, Vector::Zero(used_.outputs()))->interval_hull();
+      reach = backend()
+                  .affine_map(X_, model().linear.C, Vector::Zero(used_.outputs()))
+                  ->interval_hull();
     }
-    return is_used_.asDiagonal() * effectiveness_.output_spread(effectiveness_.output_bound(sample, reach ? &*reach : nullptr));
+    return is_used_.asDiagonal() * effectiveness_.output_spread(effectiveness_.output_bound(
+                                       sample, reach ? &*reach : nullptr));
   }
 
   /// shift += M (y - D u), of the outputs that are used.
@@ -203,35 +216,46 @@ class PseudoInverseObserver final : public Observer {
       return Vector(sample.y.cwiseAbs() + effectiveness_.input_terms(used_.D, sample.u));
     };
     const Vector center = disturbance_ + linalg::product(minus_LDv_, model().V.c);
-    const Vector terms = effectiveness_.input_terms(TB_, before.u) + linalg::product(L_.cwiseAbs(), seen(before)) +
+    const Vector terms = effectiveness_.input_terms(TB_, before.u) +
+                         linalg::product(L_.cwiseAbs(), seen(before)) +
                          linalg::product(N_.cwiseAbs(), seen(now)) + center.cwiseAbs();
     const Vector widths = disturbance_widths_ + half_widths(model().V, minus_LDv_);
     return std::optional<RoundingRoom>(std::in_place, backend(), shift_ + center, terms, widths);
   }
 
-  /// Bound of what the products and sums of this recursion, all but the backend's, have lost: (number of terms + 8) ε of them,
-  /// and what T E + N C lacks of the identity, times x_k.
+  /// Bound of what the products and sums of this recursion, all but the backend's, have lost:
+  /// (number of terms + 8) ε of them, and what T E + N C lacks of the identity, times x_k.
   Vector own_errors(const Sample& before, const Sample& now, const Box& open) const {
-    const auto magnitude = [](const Box& box) { return Vector(box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs())); };
-    const auto reach = [](const LineForm& X) { return Vector(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum()); };
+    const auto magnitude = [](const Box& box) {
+      return Vector(box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()));
+    };
+    const auto reach = [](const LineForm& X) {
+      return Vector(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
+    };
     const Vector x = magnitude(X_->interval_hull()), v = amplified(used_.Dv, reach(model().V));
     const auto seen = [&](const Sample& sample) {
-      return Vector(is_used_.cwiseProduct(sample.y.cwiseAbs()) + amplified(used_.D, sample.u.cwiseAbs()) + v);
+      return Vector(is_used_.cwiseProduct(sample.y.cwiseAbs()) +
+                    amplified(used_.D, sample.u.cwiseAbs()) + v);
     };
-    const Vector forces = amplified(used_.A, x) + amplified(used_.B, before.u.cwiseAbs()) + amplified(used_.Bw, reach(model().W));
+    const Vector forces = amplified(used_.A, x) + amplified(used_.B, before.u.cwiseAbs()) +
+                          amplified(used_.Bw, reach(model().W));
     const Vector outputs_before = amplified(used_.C, x) + seen(before), outputs_now = seen(now);
-    const Vector terms = amplified(T_, forces + magnitude(open)) + amplified(L_, outputs_before) + amplified(N_, outputs_now);
-    // |x_k| ≤ b + |R||x_k| for b, the magnitudes of its terms, gives |x_k| ≤ 2 b where |R| b ≤ b / 2
+    const Vector terms = amplified(T_, forces + magnitude(open)) + amplified(L_, outputs_before) +
+                         amplified(N_, outputs_now);
+    // |x_k| ≤ b + |R||x_k| for b, the magnitudes of its terms, gives |x_k| ≤ 2 b where |R| b ≤ b /
+    // 2
     Vector next = terms, lacking = amplified(inverse_error_, next);
     next += 2 * lacking;
     lacking = amplified(inverse_error_, next);
-    if ((lacking.array() > 0.5 * next.array()).any()) lacking.setConstant(std::numeric_limits<double>::infinity());
+    if ((lacking.array() > 0.5 * next.array()).any())
+      lacking.setConstant(std::numeric_limits<double>::infinity());
     return 1.01 * (accumulated(used_) * terms + 2 * lacking);
   }
 
   /// Relative error of sums of as many terms as a step has.
   static double accumulated(const LinearModel& m) {
-    const Index terms = 3 * m.states() + m.inputs() + 2 * m.outputs() + m.disturbances() + m.noises() + 8;
+    const Index terms =
+        3 * m.states() + m.inputs() + 2 * m.outputs() + m.disturbances() + m.noises() + 8;
     return static_cast<double>(terms) * std::numeric_limits<double>::epsilon();
   }
 
@@ -239,8 +263,10 @@ class PseudoInverseObserver final : public Observer {
   void find_gain(const Matrix& spread) {
     const LineForm X = X_->line_form();
     // squares of sets that shrink to a point underflow: L does not depend on the unit
-    const double largest = std::max({largest_entry(noise_generators_), largest_entry(X.G), largest_entry(spread)});
-    const double unit = largest < std::numeric_limits<double>::min() ? 0.0 : std::ldexp(1.0, -std::ilogb(largest));
+    const double largest =
+        std::max({largest_entry(noise_generators_), largest_entry(X.G), largest_entry(spread)});
+    const double unit =
+        largest < std::numeric_limits<double>::min() ? 0.0 : std::ldexp(1.0, -std::ilogb(largest));
     scaled_ = X.G * unit;
     linalg::gram(scaled_, P_);
     if (unit > 0 && unit == unit_ && spread.size() == 0 && is_steady()) return;
@@ -259,7 +285,8 @@ class PseudoInverseObserver final : public Observer {
   bool is_steady() const {
     for (Index j = 0; j < P_.cols(); ++j) {
       for (Index i = 0; i <= j; ++i) {
-        const double size = std::sqrt(solved_P_(i, i) * solved_P_(j, j));  // the units of states do not matter
+        const double size =
+            std::sqrt(solved_P_(i, i) * solved_P_(j, j));  // the units of states do not matter
         if (!(std::abs(P_(i, j) - solved_P_(i, j)) <= steady * size)) return false;
       }
     }
@@ -281,7 +308,9 @@ class PseudoInverseObserver final : public Observer {
     }
   }
 
-  static double largest_entry(const Matrix& M) { return M.size() == 0 ? 0.0 : M.cwiseAbs().maxCoeff(); }
+  static double largest_entry(const Matrix& M) {
+    return M.size() == 0 ? 0.0 : M.cwiseAbs().maxCoeff();
+  }
 
   Budget budget_;
   LineForm X0_;
@@ -308,7 +337,8 @@ class PseudoInverseObserver final : public Observer {
 
 }  // namespace
 
-std::unique_ptr<Observer> pseudo_inverse_observer(const ObserverContext& context, const Params& params) {
+std::unique_ptr<Observer> pseudo_inverse_observer(const ObserverContext& context,
+                                                  const Params& params) {
   return std::make_unique<PseudoInverseObserver>(context, params);
 }
 

@@ -17,11 +17,15 @@ constexpr double cancelled = 0.25;
 
 }  // namespace
 
-RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms, VectorIn half_widths) : backend_(backend) {
+RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms,
+                           VectorIn half_widths)
+    : backend_(backend) {
   std::vector<Index> rows;
   for (Index i = 0; i < sum.size() && backend.info().rounding == Rounding::nominal; ++i) {
-    const bool stands = std::abs(sum[i]) >= cancelled * terms[i], is_small = share * terms[i] <= negligible * half_widths[i];
-    if (!stands && !is_small) rows.push_back(i);  // NaN, of terms that overflow, is left to the backend's refusal
+    const bool stands = std::abs(sum[i]) >= cancelled * terms[i],
+               is_small = share * terms[i] <= negligible * half_widths[i];
+    if (!stands && !is_small)
+      rows.push_back(i);  // NaN, of terms that overflow, is left to the backend's refusal
   }
   columns_ = Matrix::Zero(sum.size(), static_cast<Index>(rows.size()));
   if (rows.empty()) return;
@@ -33,13 +37,16 @@ RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn ter
   factors_ = backend.box({-ones, ones});
 }
 
-bool RoundingRoom::may_be_needed(double most, double least_width) { return !(share * most <= negligible * least_width); }
+bool RoundingRoom::may_be_needed(double most, double least_width) {
+  return !(share * most <= negligible * least_width);
+}
 
 Enclosure RoundingRoom::correct(const Enclosure& X, const Correct& measurement) const {
   if (!is_needed()) return backend_.correct(X, measurement);
   Matrix T(columns_.rows(), measurement.noise.T.cols() + columns_.cols());
   T << measurement.noise.T, columns_;
-  return backend_.correct(X, {measurement.C, measurement.z, {T, backend_.product(measurement.noise.set, factors_)}});
+  return backend_.correct(
+      X, {measurement.C, measurement.z, {T, backend_.product(measurement.noise.set, factors_)}});
 }
 
 Vector half_widths(const LineForm& X, MatrixIn T) {

@@ -6,17 +6,20 @@
 
 namespace cordon::estimators {
 
-/// A vector of products and sums that cancel, y - D u or B u, is off by rounding errors of its terms, however small it is. A
-/// backend of nominal rounding sees what is left alone, and a set that is thinner than these errors would lose the truth: a box
-/// of 1e-14 of the terms makes room for them. None where nothing cancels (the sum is a quarter of its terms or more, so that its
-/// own last digits are as large), where the row's set is 1e10 times as wide, and for backends that round outward: these take the
-/// products as sets.
+/// A vector of products and sums that cancel, y - D u or B u, is off by rounding errors of its
+/// terms, however small it is. A backend of nominal rounding sees what is left alone, and a set
+/// that is thinner than these errors would lose the truth: a box of 1e-14 of the terms makes room
+/// for them. None where nothing cancels (the sum is a quarter of its terms or more, so that its own
+/// last digits are as large), where the row's set is 1e10 times as wide, and for backends that
+/// round outward: these take the products as sets.
 class RoundingRoom {
  public:
-  /// Per row `sum`, the magnitudes of its terms added up, and the half width of the set that it is the center of (may be +inf).
+  /// Per row `sum`, the magnitudes of its terms added up, and the half width of the set that it is
+  /// the center of (may be +inf).
   RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms, VectorIn half_widths);
 
-  /// Can any row need room whose terms add up to `most`, and whose set is no narrower than `least_width`? At no cost.
+  /// Can any row need room whose terms add up to `most`, and whose set is no narrower than
+  /// `least_width`? At no cost.
   static bool may_be_needed(double most, double least_width);
 
   bool is_needed() const { return columns_.cols() > 0; }

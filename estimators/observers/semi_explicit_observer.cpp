@@ -20,12 +20,14 @@ namespace cordon::estimators {
 
 namespace {
 
-/// Operations that round outward are taken at their word, and need numbers that were not rounded before them. Where those of
-/// z = T⁻¹ x were and ž has no bound that an error could be a share of, the states keep their coordinates.
+/// Operations that round outward are taken at their word, and need numbers that were not rounded
+/// before them. Where those of z = T⁻¹ x were and ž has no bound that an error could be a share of,
+/// the states keep their coordinates.
 StaticRows rows_for(const LinearModel& model, const SetBackend& backend, const Params& params) {
   StaticRows rows(model);
   const bool outward = backend.info().rounding == Rounding::outward;
-  const bool keep_states = outward && !rows.is_exact && backend.info().unbounded && !params.has("admissible_set");
+  const bool keep_states =
+      outward && !rows.is_exact && backend.info().unbounded && !params.has("admissible_set");
   return keep_states ? StaticRows(model, true) : rows;
 }
 
@@ -40,17 +42,22 @@ class SemiExplicitObserver final : public Observer {
         X0_(initial_set_from(model(), params)),
         W_(backend().import(model().W)),
         effectiveness_(model(), backend()),
-        static_W_(effectiveness_.has_input_ranges() ? backend().product(W_, effectiveness_.input_factors()) : W_),
+        static_W_(effectiveness_.has_input_ranges()
+                      ? backend().product(W_, effectiveness_.input_factors())
+                      : W_),
         measured_(linalg::product(model().linear.C, transformed_.T)),
-        inputs_enter_as_sets_(effectiveness_.inputs_enter_as_sets() && model().linear.inputs() > 0) {
+        inputs_enter_as_sets_(effectiveness_.inputs_enter_as_sets() &&
+                              model().linear.inputs() > 0) {
     const Index n = model().linear.states(), free = transformed_.static_rows();
     keeps_states_ = transformed_.E.rows() > 0;
     rows_come_last_ = keeps_states_ && !transformed_.static_exact;
     is_rounded_ = backend().info().rounding == Rounding::outward && !transformed_.is_exact;
     // Without the static rows of k = 0 every estimate is that of a larger initial set.
     const bool whole = transformed_.static_rows() == 0 || static_at_start_;
-    recursion_ = whole && !transformed_.share_disturbances(model().W) ? Tightness::exact : Tightness::outer;
-    recursion_ = meet(recursion_, effectiveness_.recursion({&transformed_.B, &transformed_.static_B, &model().linear.D}));
+    recursion_ =
+        whole && !transformed_.share_disturbances(model().W) ? Tightness::exact : Tightness::outer;
+    recursion_ = meet(recursion_, effectiveness_.recursion({&transformed_.B, &transformed_.static_B,
+                                                            &model().linear.D}));
     stacked_A_ = stacked(transformed_.A);
     stacked_B_ = stacked(transformed_.B);
     stacked_Bw_ = stacked(transformed_.Bw);
@@ -71,7 +78,8 @@ class SemiExplicitObserver final : public Observer {
     if (is_rounded_) largest_w_ = magnitudes(W_);
     if (is_rounded_ && !keeps_states_) {
       const Matrix lower = transformed_.T_inverse.bottomRows(free);
-      const Matrix phi = linalg::product(transformed_.T_inverse.topRows(transformed_.rank()), lower.transpose());
+      const Matrix phi =
+          linalg::product(transformed_.T_inverse.topRows(transformed_.rank()), lower.transpose());
       dynamic_rows_ = stacked(Matrix::Identity(transformed_.rank(), transformed_.rank()));
       free_rounding_ = interval_spread(rounding_radius(phi), magnitudes(free_), phi.rows());
     }
@@ -94,20 +102,27 @@ class SemiExplicitObserver final : public Observer {
       const Matrix spread = effectiveness_.input_spread(stacked_B_, before.u);
       boost::container::small_vector<Term, 4> terms;  // without memory of its own
       terms.push_back({stacked_Bw_, W_});
-      if (transformed_.static_rows() > 0 && !keeps_states_) terms.push_back({transformed_.free_part, free_});
-      if (effectiveness_.has_input_ranges()) terms.push_back({spread, effectiveness_.input_factors()});
-      const Enclosure open = effectiveness_.has_open_states() ? effectiveness_.open_states(to_x(Z_), before.u) : Enclosure{};
+      if (transformed_.static_rows() > 0 && !keeps_states_)
+        terms.push_back({transformed_.free_part, free_});
+      if (effectiveness_.has_input_ranges())
+        terms.push_back({spread, effectiveness_.input_factors()});
+      const Enclosure open = effectiveness_.has_open_states()
+                                 ? effectiveness_.open_states(to_x(Z_), before.u)
+                                 : Enclosure{};
       if (effectiveness_.has_open_states()) terms.push_back({stacked_rows_, open});
       const Enclosure input = inputs_enter_as_sets_ ? backend().point(before.u) : Enclosure{};
       if (inputs_enter_as_sets_) terms.push_back({stacked_B_, input});
-      const Vector shift =
-          inputs_enter_as_sets_ ? Vector(Vector::Zero(stacked_B_.rows())) : effectiveness_.input(stacked_B_, before.u);
-      const Vector sizes = effectiveness_.input_terms(stacked_B_, before.u) + disturbance_.cwiseAbs();
+      const Vector shift = inputs_enter_as_sets_ ? Vector(Vector::Zero(stacked_B_.rows()))
+                                                 : effectiveness_.input(stacked_B_, before.u);
+      const Vector sizes =
+          effectiveness_.input_terms(stacked_B_, before.u) + disturbance_.cwiseAbs();
       const RoundingRoom room(backend(), shift + disturbance_, sizes, disturbance_widths_);
       if (room.is_needed()) terms.push_back(room.term());
-      const Enclosure rounding = is_rounded_ && !keeps_states_ ? dynamic_rounding(before.u, open) : Enclosure{};
+      const Enclosure rounding =
+          is_rounded_ && !keeps_states_ ? dynamic_rounding(before.u, open) : Enclosure{};
       if (rounding.set) terms.push_back({dynamic_rows_, rounding});
-      const Enclosure next = solved(backend().predict(Z_, {stacked_A_, shift, {terms.data(), terms.size()}}));
+      const Enclosure next =
+          solved(backend().predict(Z_, {stacked_A_, shift, {terms.data(), terms.size()}}));
       return rows_come_last_ ? next : with_static_rows(next, now.u);
     });
     return finish(predicted, now, true);
@@ -127,12 +142,13 @@ class SemiExplicitObserver final : public Observer {
   Enclosure solved(const Enclosure& F) const {
     if (!keeps_states_) return F;
     const Index rows = transformed_.rank();
-    return backend().correct(free_, {transformed_.E, Vector::Zero(rows), {-Matrix::Identity(rows, rows), F}});
+    return backend().correct(
+        free_, {transformed_.E, Vector::Zero(rows), {-Matrix::Identity(rows, rows), F}});
   }
 
   /// What the rounding of matrices can add to M_A z + M_B u + M_w w + M_o o.
-  Vector rounding_of(const Matrix& M_A, const Vector& z, const Matrix& M_B, VectorIn u, const Matrix& M_w, const Matrix& M_o,
-                     const Enclosure& o) const {
+  Vector rounding_of(const Matrix& M_A, const Vector& z, const Matrix& M_B, VectorIn u,
+                     const Matrix& M_w, const Matrix& M_o, const Enclosure& o) const {
     const Index rows = M_A.rows();
     Vector sum = interval_spread(rounding_radius(M_A), z, rows) +
                  interval_spread(rounding_radius(M_B), effectiveness_.largest_input(u), rows) +
@@ -150,7 +166,9 @@ class SemiExplicitObserver final : public Observer {
   }
 
   Enclosure to_z(const Enclosure& X) const {
-    return same_coordinates_ ? X : backend().affine_map(X, transformed_.T_inverse, Vector::Zero(X->dim()));
+    return same_coordinates_
+               ? X
+               : backend().affine_map(X, transformed_.T_inverse, Vector::Zero(X->dim()));
   }
   Enclosure to_x(const Enclosure& Z) const {
     return same_coordinates_ ? Z : backend().affine_map(Z, transformed_.T, Vector::Zero(Z->dim()));
@@ -163,7 +181,8 @@ class SemiExplicitObserver final : public Observer {
     if (rows == 0) return Z;
     Enclosure noise = inputs_enter_as_sets_ ? backend().product(W_, backend().point(u)) : static_W_;
     Matrix entries(rows, noise->dim());
-    entries << form.static_Bw, inputs_enter_as_sets_ ? form.static_B : effectiveness_.input_spread(form.static_B, u);
+    entries << form.static_Bw,
+        inputs_enter_as_sets_ ? form.static_B : effectiveness_.input_spread(form.static_B, u);
     Enclosure open;
     if (effectiveness_.has_open_states()) {
       open = effectiveness_.open_states(to_x(Z), u);
@@ -171,18 +190,22 @@ class SemiExplicitObserver final : public Observer {
       entries.conservativeResize(Eigen::NoChange, noise->dim());
       entries.rightCols(form.static_rows_map.cols()) = form.static_rows_map;
     }
-    const Vector f = inputs_enter_as_sets_ ? Vector(Vector::Zero(rows)) : Vector(-effectiveness_.input(form.static_B, u));
+    const Vector f = inputs_enter_as_sets_ ? Vector(Vector::Zero(rows))
+                                           : Vector(-effectiveness_.input(form.static_B, u));
     if (is_rounded_ && !form.static_exact) return with_rounded_rows(Z, f, entries, noise, u, open);
-    const Vector sizes = effectiveness_.input_terms(form.static_B, u) + static_disturbance_.cwiseAbs();
+    const Vector sizes =
+        effectiveness_.input_terms(form.static_B, u) + static_disturbance_.cwiseAbs();
     const RoundingRoom room(backend(), f - static_disturbance_, sizes, static_widths_);
     return room.correct(Z, {form.static_A, f, {entries, noise}});
   }
 
-  /// The same where the rows were rounded: each gets room for that. One that holds a state without a bound says nothing.
-  Enclosure with_rounded_rows(const Enclosure& Z, const Vector& f, const Matrix& entries, const Enclosure& noise, VectorIn u,
-                              const Enclosure& open) const {
+  /// The same where the rows were rounded: each gets room for that. One that holds a state without
+  /// a bound says nothing.
+  Enclosure with_rounded_rows(const Enclosure& Z, const Vector& f, const Matrix& entries,
+                              const Enclosure& noise, VectorIn u, const Enclosure& open) const {
     const StaticRows& form = transformed_;
-    const Vector widths = rounding_of(form.static_A, magnitudes(Z), form.static_B, u, form.static_Bw, form.static_rows_map, open);
+    const Vector widths = rounding_of(form.static_A, magnitudes(Z), form.static_B, u,
+                                      form.static_Bw, form.static_rows_map, open);
     std::vector<Index> used;
     for (Index i = 0; i < widths.size(); ++i) {
       if (std::isfinite(widths[i])) used.push_back(i);
@@ -197,9 +220,11 @@ class SemiExplicitObserver final : public Observer {
 
   Enclosure finish(const Enclosure& predicted, const Sample& now, bool has_static_rows) {
     const Enclosure corrected = timed(Phase::correct, [&] {
-      const bool as_it_stands = has_spread(model().linear.C_radius) || is_rounded_;  // C T is rounded
+      const bool as_it_stands =
+          has_spread(model().linear.C_radius) || is_rounded_;  // C T is rounded
       if (!as_it_stands) return effectiveness_.correct(predicted, measured_, now);
-      const Enclosure measured = to_z(effectiveness_.correct(to_x(predicted), model().linear.C, now));
+      const Enclosure measured =
+          to_z(effectiveness_.correct(to_x(predicted), model().linear.C, now));
       return has_static_rows && rows_come_last_ ? with_static_rows(measured, now.u) : measured;
     });
     Z_ = timed(Phase::reduce, [&] { return backend().reduce(corrected, budget_); });
@@ -207,10 +232,11 @@ class SemiExplicitObserver final : public Observer {
   }
 
   StaticRows transformed_;
-  bool same_coordinates_;        ///< z = x
-  bool keeps_states_ = false;    ///< and dynamic rows stand as Ẽ x
-  bool is_rounded_ = false;      ///< numbers were rounded, and operations round outward
-  bool rows_come_last_ = false;  ///< static rows that were rounded need states that the outputs have bounded
+  bool same_coordinates_;      ///< z = x
+  bool keeps_states_ = false;  ///< and dynamic rows stand as Ẽ x
+  bool is_rounded_ = false;    ///< numbers were rounded, and operations round outward
+  bool rows_come_last_ =
+      false;  ///< static rows that were rounded need states that the outputs have bounded
   Budget budget_;
   bool static_at_start_;
   LineForm X0_;
@@ -219,9 +245,9 @@ class SemiExplicitObserver final : public Observer {
   Enclosure static_W_;                         ///< W × factors of inputs
   Vector disturbance_, disturbance_widths_;    ///< center and half widths of Bw W, dynamic rows
   Vector static_disturbance_, static_widths_;  ///< the same, static rows
-  Vector largest_w_, free_rounding_;           ///< magnitudes of W; what the rounding of T⁻¹ adds to z̃
-  Matrix measured_;                            ///< C T
-  bool inputs_enter_as_sets_;                  ///< B u and B̌ u are left to the backend
+  Vector largest_w_, free_rounding_;  ///< magnitudes of W; what the rounding of T⁻¹ adds to z̃
+  Matrix measured_;                   ///< C T
+  bool inputs_enter_as_sets_;         ///< B u and B̌ u are left to the backend
   Matrix stacked_A_, stacked_B_, stacked_Bw_, stacked_rows_, dynamic_rows_;
   Tightness recursion_ = Tightness::exact;
   Enclosure admissible_, free_, Z_;
@@ -229,7 +255,8 @@ class SemiExplicitObserver final : public Observer {
 
 }  // namespace
 
-std::unique_ptr<Observer> semi_explicit_observer(const ObserverContext& context, const Params& params) {
+std::unique_ptr<Observer> semi_explicit_observer(const ObserverContext& context,
+                                                 const Params& params) {
   return std::make_unique<SemiExplicitObserver>(context, params);
 }
 

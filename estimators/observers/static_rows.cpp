@@ -17,12 +17,14 @@ StaticRows::StaticRows(const LinearModel& m, bool keep_states) {
     exact = exact && part.is_exact;
     return part.rows;
   };
-  static_A = take(keep_states ? form.static_part(m.A) : form.static_part_of_state(m.A), static_exact);
+  static_A =
+      take(keep_states ? form.static_part(m.A) : form.static_part_of_state(m.A), static_exact);
   static_B = take(form.static_part(m.B), static_exact);
   static_Bw = take(form.static_part(m.Bw), static_exact);
   static_rows_map = take(form.static_part(Matrix::Identity(n, n)), static_exact);
   const Vector scale = linalg::row_scales(static_A);
-  for (Matrix* part : {&static_A, &static_B, &static_Bw, &static_rows_map}) *part = scale.asDiagonal() * *part;
+  for (Matrix* part : {&static_A, &static_B, &static_Bw, &static_rows_map})
+    *part = scale.asDiagonal() * *part;
   if (keep_states && m.is_descriptor()) {
     T = T_inverse = Matrix::Identity(n, n);
     std::vector<Index> pivots = DescriptorMatrix::pivots_of(m.E).rows;

@@ -11,7 +11,8 @@ namespace {
 
 /// What is left of Fᵏ once it counts for nothing.
 constexpr double negligible = 1e-13;
-/// Rounding errors of the sums, as a share of them: far above those, far below what the limit is about.
+/// Rounding errors of the sums, as a share of them: far above those, far below what the limit is
+/// about.
 constexpr double rounding_share = 1e-9;
 
 Vector row_sums(const Matrix& M) { return M.cwiseAbs().rowwise().sum(); }
@@ -53,7 +54,8 @@ void WideningLimit::start(const LuenbergerRecursion& recursion, const Enclosure&
   errors_.emplace(recursion.error_map(), recursion.error_noise(), half);
 }
 
-void WideningLimit::step(const LuenbergerRecursion& recursion, const Sample& before, const Vector& open) {
+void WideningLimit::step(const LuenbergerRecursion& recursion, const Sample& before,
+                         const Vector& open) {
   if (!errors_) return;
   center_ = recursion.next(center_, before);
   errors_->step(open);
@@ -67,7 +69,8 @@ Enclosure WideningLimit::apply(const SetBackend& backend, const Enclosure& X) co
   if (!half.allFinite()) return X;
   const Box hull = X->interval_hull();
   if (((hull.upper - hull.lower).array() <= 2 * limit_ * half.array()).all()) return X;
-  Enclosure box = backend.box({hull.lower.cwiseMax(center_ - half), hull.upper.cwiseMin(center_ + half)});
+  Enclosure box =
+      backend.box({hull.lower.cwiseMax(center_ - half), hull.upper.cwiseMin(center_ + half)});
   box.tightness = Tightness::outer;
   return box;
 }

@@ -10,16 +10,19 @@
 
 namespace cordon::estimators {
 
-/// Half widths of the interval hull of the errors e⁺ = F e ⊕ N [-1,1]^m ⊕ box(bₖ), |e₀| ≤ h₀, as if nothing were ever reduced:
+/// Half widths of the interval hull of the errors e⁺ = F e ⊕ N [-1,1]^m ⊕ box(bₖ), |e₀| ≤ h₀, as if
+/// nothing were ever reduced:
 ///   hₖ = |Fᵏ| h₀ + Σ_{j<k} |Fʲ N| 1 + (Σ_{j<k} |Fʲ|) max_{i<k} bᵢ,
-/// exact but for b, which may differ from step to step. Bounded for stable F, whatever |F| is. Once Fᵏ is below 1e-13 of what has
-/// been added up the sums are left as they are. O(n² (n + m)) per step until then. [Kofman2007]
+/// exact but for b, which may differ from step to step. Bounded for stable F, whatever |F| is. Once
+/// Fᵏ is below 1e-13 of what has been added up the sums are left as they are. O(n² (n + m)) per
+/// step until then. [Kofman2007]
 class ErrorHull {
  public:
   /// F is n×n, N n×m, h₀ ≥ 0.
   ErrorHull(Matrix F, Matrix N, Vector start);
 
-  /// From k to k + 1; b ≥ 0, of size 0: none. A b that is not finite makes the half widths infinite.
+  /// From k to k + 1; b ≥ 0, of size 0: none. A b that is not finite makes the half widths
+  /// infinite.
   void step(const Vector& b);
   Vector half_widths() const;
 
@@ -30,11 +33,12 @@ class ErrorHull {
   bool settled_ = false;
 };
 
-/// Replaces a reduced set by the box around the unreduced one, where it has become wider in a coordinate than `limit` times that
-/// box: estimates of a stable error then stay below `limit` times what they were without reductions, for every backend, reduction
-/// and budget. The box is around the centre of the recursion; that it holds the unreduced set is Σ above, in the arithmetic of
-/// the caller: for backends with outward rounding nothing is replaced. Sets with constraints or lines, whose hulls take programs,
-/// and gains that vary in time are left alone.
+/// Replaces a reduced set by the box around the unreduced one, where it has become wider in a
+/// coordinate than `limit` times that box: estimates of a stable error then stay below `limit`
+/// times what they were without reductions, for every backend, reduction and budget. The box is
+/// around the centre of the recursion; that it holds the unreduced set is Σ above, in the
+/// arithmetic of the caller: for backends with outward rounding nothing is replaced. Sets with
+/// constraints or lines, whose hulls take programs, and gains that vary in time are left alone.
 class WideningLimit {
  public:
   /// `limit` ≥ 1, or 0: none.
@@ -42,7 +46,8 @@ class WideningLimit {
 
   /// X is the set that the recursion starts from.
   void start(const LuenbergerRecursion& recursion, const Enclosure& X);
-  /// The recursion has taken the sample; `open`: the half widths that it added for ranges and interval matrices.
+  /// The recursion has taken the sample; `open`: the half widths that it added for ranges and
+  /// interval matrices.
   void step(const LuenbergerRecursion& recursion, const Sample& before, const Vector& open);
   void stop() { errors_.reset(); }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The set-based observer of uncertain systems: the recursion of luenberger_recursion.hpp, whose sets are reduced before they are
-// mapped, so that estimates are not. [Pourasghar2021, Proposition 3.1] (As printed, (7b) leaves out the absolute value of the
-// centre in diag(rad(A) |c|), and loses the truth.)
+// The set-based observer of uncertain systems: the recursion of luenberger_recursion.hpp, whose
+// sets are reduced before they are mapped, so that estimates are not. [Pourasghar2021,
+// Proposition 3.1] (As printed, (7b) leaves out the absolute value of the centre in diag(rad(A)
+// |c|), and loses the truth.)
 #include "components.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
@@ -46,7 +47,8 @@ class ZonotopeUncertain final : public Observer {
     return estimate();
   }
   Enclosure do_step(const Sample& before, const Sample&) override {
-    const Enclosure carried = timed(Phase::reduce, [&] { return limit_.apply(backend(), recursion_.reduced(X_)); });
+    const Enclosure carried =
+        timed(Phase::reduce, [&] { return limit_.apply(backend(), recursion_.reduced(X_)); });
     Vector open;
     X_ = timed(Phase::predict, [&] {
       if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_for(gain_, model(), carried));
@@ -76,11 +78,12 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   std::vector<Diagnostic> problems = check_common(context, params);
   const LinearModel& m = context.model.linear;
   if (m.is_descriptor()) {
-    problems.push_back({"/type", "\"zonotope_uncertain\" takes systems of type \"lti\"", "use the observer \"descriptor\""});
+    problems.push_back({"/type", "\"zonotope_uncertain\" takes systems of type \"lti\"",
+                        "use the observer \"descriptor\""});
     return problems;
   }
-  const bool grows =
-      has_spread(m.A_radius) || has_spread(m.C_radius) || has_spread(m.sensor_radius());  // with the magnitudes of the states
+  const bool grows = has_spread(m.A_radius) || has_spread(m.C_radius) ||
+                     has_spread(m.sensor_radius());  // with the magnitudes of the states
   if (problems.empty() && grows) check_bounded_start(context, params, problems);
   check_noises(context, problems);
   if (!problems.empty()) return problems;  // gains are designed for these sets
@@ -88,7 +91,8 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   if (!problems.empty() || params.integer("inner_samples") == 0) return problems;
   InnerEnvelope::check(context, params, problems);
   if (observer_gain(context, params, "gain", absent()).designer->is_time_varying()) {
-    problems.push_back({"/inner_samples", "an inner estimate is made for a gain that does not vary in time",
+    problems.push_back({"/inner_samples",
+                        "an inner estimate is made for a gain that does not vary in time",
                         "leave it out, or give another gain"});
   }
   return problems;
@@ -97,9 +101,12 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
 constexpr const char* details =
     "A zonotope <c, R>, reduced to <c, Ř> with max_generators columns, becomes\n"
     "    c⁺ = (A - L C) c + B u + L y,\n"
-    "    R⁺ = [(A - L C) Ř, diag(rad(A) (|c| + |Ř| 1) + rad(B) |u|), Bw W, -L Dv V, -L diag(rad(C) (|c| + |Ř| 1))];\n"
-    "other representations follow the same sum of sets. The estimate is this set before the next reduction, so that\n"
-    "the budget bounds what is carried from step to step. It uses outputs up to k - 1. A gain that varies in time is\n"
+    "    R⁺ = [(A - L C) Ř, diag(rad(A) (|c| + |Ř| 1) + rad(B) |u|), Bw W, -L Dv V, -L diag(rad(C) "
+    "(|c| + |Ř| 1))];\n"
+    "other representations follow the same sum of sets. The estimate is this set before the next "
+    "reduction, so that\n"
+    "the budget bounds what is carried from step to step. It uses outputs up to k - 1. A gain that "
+    "varies in time is\n"
     "that for <c, Ř>.";
 
 }  // namespace
@@ -107,17 +114,20 @@ constexpr const char* details =
 void register_zonotope_uncertain(Registrar& registrar) {
   ParamSchema schema = common_parameters();
   add_widening_limit(schema);
-  add_gain_parameter(schema, "gain", "output gain, with A - L C stable; absent: the steady gain \"kalman\"");
+  add_gain_parameter(schema, "gain",
+                     "output gain, with A - L C stable; absent: the steady gain \"kalman\"");
   InnerEnvelope::add_parameters(schema);
-  registrar.observer({{"zonotope_uncertain", "set recursion with an output gain; standard linear systems with interval matrices",
-                       "Pourasghar2021", std::move(schema), details},
-                      check,
-                      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
-                        return std::make_unique<ZonotopeUncertain>(context, params,
-                                                                   observer_gain(context, params, "gain", absent()));
-                      },
-                      true,
-                      true});
+  registrar.observer(
+      {{"zonotope_uncertain",
+        "set recursion with an output gain; standard linear systems with interval matrices",
+        "Pourasghar2021", std::move(schema), details},
+       check,
+       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+         return std::make_unique<ZonotopeUncertain>(
+             context, params, observer_gain(context, params, "gain", absent()));
+       },
+       true,
+       true});
 }
 
 }  // namespace cordon::estimators

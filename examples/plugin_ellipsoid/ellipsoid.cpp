@@ -26,37 +26,49 @@ const double fold_share = std::ldexp(1.0, -36);
 /// Sums of bounds that are computed in a handful of operations are enlarged by this.
 constexpr double enlarge = 1 + 64 * unit;
 
-Vector row_sums(const Matrix& A) { return A.cwiseAbs().rowwise().sum() * (1 + rounding::gamma(A.cols() + 1)); }
+Vector row_sums(const Matrix& A) {
+  return A.cwiseAbs().rowwise().sum() * (1 + rounding::gamma(A.cols() + 1));
+}
 /// Upper bound of ‖x‖₂.
-double norm_bound(VectorIn x) { return x.size() ? rounding::up(x.stableNorm() * (1 + rounding::gamma(2 * x.size() + 8))) : 0; }
+double norm_bound(VectorIn x) {
+  return x.size() ? rounding::up(x.stableNorm() * (1 + rounding::gamma(2 * x.size() + 8))) : 0;
+}
 /// Upper bound of |a|ᵀ r for r ≥ 0.
-double weighted(VectorIn a, VectorIn r) { return a.size() ? rounding::dot(a.cwiseAbs(), r).upper : 0; }
+double weighted(VectorIn a, VectorIn r) {
+  return a.size() ? rounding::dot(a.cwiseAbs(), r).upper : 0;
+}
 
 bool is_finite(const Ellipsoid& X) { return X.c.allFinite() && X.L.allFinite() && X.r.allFinite(); }
 
 Ellipsoid checked(Ellipsoid X) {
   if (is_finite(X)) return X;
-  throw cordon::Error(cordon::Errc::unsupported, "ellipsoid: the result is too large for double precision");
+  throw cordon::Error(cordon::Errc::unsupported,
+                      "ellipsoid: the result is too large for double precision");
 }
 
-/// The same set with an L of orthogonal columns, at most n. With L = U diag(σ) Vᵀ + E: L u = U diag(σ) (Vᵀu) + E u, where ‖Vᵀu‖
-/// is 1 up to the defect of V and |E u| is taken up by the rounding box.
+/// The same set with an L of orthogonal columns, at most n. With L = U diag(σ) Vᵀ + E: L u = U
+/// diag(σ) (Vᵀu) + E u, where ‖Vᵀu‖ is 1 up to the defect of V and |E u| is taken up by the
+/// rounding box.
 Ellipsoid with_principal_axes(const Ellipsoid& X) {
   if (X.L.cols() == 0 || X.dim() == 0) return {X.c, Matrix(X.dim(), 0), X.r, X.empty};
   const linalg::Svd svd = linalg::svd(X.L);
   const Index k = svd.sigma.size();
   const Matrix V = svd.V.leftCols(k), axes = svd.U.leftCols(k) * svd.sigma.asDiagonal();
-  const Matrix back = linalg::product(axes, V.transpose()), error = rounding::product_error(axes, V.transpose());
+  const Matrix back = linalg::product(axes, V.transpose()),
+               error = rounding::product_error(axes, V.transpose());
   const Matrix gram = linalg::product(V.transpose(), V);
-  const double defect = (gram - Matrix::Identity(k, k)).norm() + rounding::product_error(V.transpose(), V).norm();
-  Ellipsoid result{X.c, axes * (1 + 2 * defect), X.r + row_sums((X.L - back).cwiseAbs() + error + 2 * unit * X.L.cwiseAbs()),
+  const double defect =
+      (gram - Matrix::Identity(k, k)).norm() + rounding::product_error(V.transpose(), V).norm();
+  Ellipsoid result{X.c, axes * (1 + 2 * defect),
+                   X.r + row_sums((X.L - back).cwiseAbs() + error + 2 * unit * X.L.cwiseAbs()),
                    X.empty};
   result.r = (result.r + 4 * unit * row_sums(result.L)) * enlarge;
   return result;
 }
 
-/// [w₁ B₁, w₂ B₂, …] with Σ 1/wᵢ² ≤ 1, whose ellipsoid encloses the sum of those of the blocks by the Cauchy-Schwarz inequality:
-/// (Σ‖Bᵢᵀd‖)² ≤ Σ 1/wᵢ² · Σ wᵢ²‖Bᵢᵀd‖². wᵢ² = Σsⱼ / sᵢ with sᵢ = ‖Bᵢ‖_F gives the least trace. Zero blocks are left out.
+/// [w₁ B₁, w₂ B₂, …] with Σ 1/wᵢ² ≤ 1, whose ellipsoid encloses the sum of those of the blocks by
+/// the Cauchy-Schwarz inequality: (Σ‖Bᵢᵀd‖)² ≤ Σ 1/wᵢ² · Σ wᵢ²‖Bᵢᵀd‖². wᵢ² = Σsⱼ / sᵢ with sᵢ =
+/// ‖Bᵢ‖_F gives the least trace. Zero blocks are left out.
 struct Stacked {
   Matrix L;
   Index blocks = 0;  ///< that are not zero
@@ -74,7 +86,8 @@ Stacked stack(Index n, std::span<const Matrix> blocks) {
     columns += block.cols();
   }
   // any sᵢ > 0 encloses: tiny ones are raised, so that their weights stay finite
-  const double least = sizes.empty() ? 0 : std::ldexp(*std::max_element(sizes.begin(), sizes.end()), -100);
+  const double least =
+      sizes.empty() ? 0 : std::ldexp(*std::max_element(sizes.begin(), sizes.end()), -100);
   for (double& size : sizes) total += size = std::max(size, least);
   Stacked result{Matrix(n, columns), static_cast<Index>(used.size())};
   const double guard = 1 + 4 * (static_cast<double>(used.size()) + 4) * unit;
@@ -87,7 +100,8 @@ Stacked stack(Index n, std::span<const Matrix> blocks) {
   return result;
 }
 
-/// Takes the rounding box into the ellipsoid when it has become large beside it: {|w| ≤ r} ⊆ {√n diag(r) u}.
+/// Takes the rounding box into the ellipsoid when it has become large beside it: {|w| ≤ r} ⊆ {√n
+/// diag(r) u}.
 Result folded(Ellipsoid X, bool exact) {
   const double size = X.L.size() ? X.L.stableNorm() : 0;
   if (size > 0 && X.r.size() && X.r.maxCoeff() > fold_share * size) {
@@ -101,9 +115,11 @@ Result folded(Ellipsoid X, bool exact) {
   return {checked(std::move(X)), exact};
 }
 
-/// The share κ = a²/b² of the cut ellipsoid for the unit ball and α ≤ t ≤ β, μ = (α+β)/2, h = (β-α)/2 > 0, B = 1 - μ² - h² ≥ 0.
-/// Any κ in (0,1] gives an enclosure; `along` and `across` are the parts of tr(L Lᵀ) along and across the direction, k columns.
-double best_share(Criterion criterion, double mu, double h, double B, double along, double across, double k) {
+/// The share κ = a²/b² of the cut ellipsoid for the unit ball and α ≤ t ≤ β, μ = (α+β)/2, h =
+/// (β-α)/2 > 0, B = 1 - μ² - h² ≥ 0. Any κ in (0,1] gives an enclosure; `along` and `across` are
+/// the parts of tr(L Lᵀ) along and across the direction, k columns.
+double best_share(Criterion criterion, double mu, double h, double B, double along, double across,
+                  double k) {
   const double least = h * h;  // keeps b² = B + h²/κ + μ²κ below 3
   double share = 1;
   if (criterion == Criterion::volume) {
@@ -111,7 +127,9 @@ double best_share(Criterion criterion, double mu, double h, double B, double alo
     share = 2 * (k - 1) * h * h / (B + std::sqrt(B * B + 4 * (k * k - 1) * mu * mu * h * h));
   } else {
     // that of along·κ b² + across·b², whose derivative increases with κ
-    const auto slope = [&](double x) { return along * (B + 2 * mu * mu * x) + across * (mu * mu - h * h / (x * x)); };
+    const auto slope = [&](double x) {
+      return along * (B + 2 * mu * mu * x) + across * (mu * mu - h * h / (x * x));
+    };
     if (slope(1) > 0) {
       double low = least, high = 1;
       for (int step = 0; step < 60 && high > low * (1 + 1e-9); ++step) {
@@ -130,18 +148,21 @@ struct Slab {
   double shift;         ///< points of the slab are within this of α ≤ t ≤ β
 };
 
-/// X shrunk to the slab: with t = ĝᵀu and ρ² = ‖u‖² - t², the ellipsoid (t - m)²/a² + ρ²/b² ≤ 1 contains α ≤ t ≤ β, ρ² ≤ 1 - t².
-/// For a ≤ b the left-hand side is convex in t along ρ² = 1 - t², so that the two ends decide: m = μ(1-κ), b² = 1 - μ² - h² +
-/// h²/κ + μ²κ, a² = κ b². What is uncertain about t moves points by as much along L ĝ, which the rounding box takes up.
+/// X shrunk to the slab: with t = ĝᵀu and ρ² = ‖u‖² - t², the ellipsoid (t - m)²/a² + ρ²/b² ≤ 1
+/// contains α ≤ t ≤ β, ρ² ≤ 1 - t². For a ≤ b the left-hand side is convex in t along ρ² = 1 - t²,
+/// so that the two ends decide: m = μ(1-κ), b² = 1 - μ² - h² + h²/κ + μ²κ, a² = κ b². What is
+/// uncertain about t moves points by as much along L ĝ, which the rounding box takes up.
 Ellipsoid shrunk(const Ellipsoid& X, const Vector& g, const Slab& slab, Criterion criterion) {
   const Index k = X.L.cols();
   const double e = (static_cast<double>(k) + 16) * unit, shift = slab.shift + e;
   const Vector direction = g / g.stableNorm();
   const Matrix column = direction;
   const Vector v = linalg::product(X.L, column);
-  const Vector v_error = row_sums(rounding::product_error(X.L, column)) + e * linalg::product(X.L.cwiseAbs(), column.cwiseAbs());
+  const Vector v_error = row_sums(rounding::product_error(X.L, column)) +
+                         e * linalg::product(X.L.cwiseAbs(), column.cwiseAbs());
   const double mu = (slab.lower + slab.upper) / 2, h = (slab.upper - slab.lower) / 2;
-  const double ball = 1 + 4 * shift, B = std::max(0.0, ball - mu * mu - h * h);  // of the squared radius
+  const double ball = 1 + 4 * shift,
+               B = std::max(0.0, ball - mu * mu - h * h);  // of the squared radius
   double a = 0, b = 0, m = mu;
   if (k == 1) {
     a = b = h * (1 + 16 * unit);  // a segment: nothing lies across
@@ -162,7 +183,8 @@ Ellipsoid shrunk(const Ellipsoid& X, const Vector& g, const Slab& slab, Criterio
   const double length = direction.cwiseAbs().sum();
   const Vector spread = v.cwiseAbs() + v_error;
   result.r = X.r + (shift + e) * spread + (std::abs(m) + std::abs(a - b) * length) * v_error;
-  result.r += 8 * unit * (X.c.cwiseAbs() + spread) + (e + 8 * unit) * (b * row_sums(X.L) + std::abs(a - b) * length * spread);
+  result.r += 8 * unit * (X.c.cwiseAbs() + spread) +
+              (e + 8 * unit) * (b * row_sums(X.L) + std::abs(a - b) * length * spread);
   result.r *= enlarge;
   // of a strip that is thinner than its own uncertainty the guards may outweigh the gain
   const bool worse = criterion == Criterion::trace && result.L.stableNorm() >= X.L.stableNorm();
@@ -186,7 +208,8 @@ Ellipsoid affine_map(const Ellipsoid& X, MatrixIn T, VectorIn t) {
   result.L = linalg::product(T, X.L);
   result.c = linalg::product(T, centre) + t;
   result.r = linalg::product(T.cwiseAbs(), box) * (1 + rounding::gamma(2 * T.cols() + 2)) +
-             row_sums(rounding::product_error(T, X.L)) + row_sums(rounding::product_error(T, centre)) +
+             row_sums(rounding::product_error(T, X.L)) +
+             row_sums(rounding::product_error(T, centre)) +
              2 * unit * (result.c.cwiseAbs() + t.cwiseAbs());
   result.r *= enlarge;
   return checked(std::move(result));
@@ -207,7 +230,8 @@ Result sum(std::span<const Ellipsoid> summands) {
   const Stacked stacked = stack(n, blocks);
   result.L = stacked.L;
   if (stacked.blocks > 1) result.r += 2 * unit * row_sums(result.L);
-  if (summands.size() > 1) result.r += rounding::gamma(2 * static_cast<Index>(summands.size())) * magnitude;
+  if (summands.size() > 1)
+    result.r += rounding::gamma(2 * static_cast<Index>(summands.size())) * magnitude;
   result.r *= 1 + rounding::gamma(4 * static_cast<Index>(summands.size()) + 16);
   return folded(std::move(result), stacked.blocks <= 1);
 }
@@ -221,7 +245,8 @@ Ellipsoid cut(const Ellipsoid& given, const Strip& strip, Criterion criterion) {
   const rounding::Range centre = rounding::dot(strip.a, X.c);
   const double middle = (centre.lower + centre.upper) / 2;
   // everything that aᵀc, g and the rounding box leave open
-  const double slack = ((centre.upper - centre.lower) + norm_bound(rounding::product_error(X.L.transpose(), a).rowwise().sum()) +
+  const double slack = ((centre.upper - centre.lower) +
+                        norm_bound(rounding::product_error(X.L.transpose(), a).rowwise().sum()) +
                         weighted(strip.a, X.r) + strip.error) *
                        enlarge;
   const double beyond = std::max(strip.lower - middle, middle - strip.upper) - reach;
@@ -229,9 +254,11 @@ Ellipsoid cut(const Ellipsoid& given, const Strip& strip, Criterion criterion) {
   const double magnitude = weighted(strip.a, X.c.cwiseAbs()) + reach + std::abs(nearer);
   if (beyond > slack + proof_margin * magnitude) return make_empty(X.dim());
   if (!(reach > 0) || !std::isfinite(slack)) return given;
-  // A wide strip is widened by the slack; of a thin one (an equation) the slack moves points instead, and the cut stays thin.
+  // A wide strip is widened by the slack; of a thin one (an equation) the slack moves points
+  // instead, and the cut stays thin.
   const bool wide = strip.upper - strip.lower > std::ldexp(slack, 20);
-  const double widening = wide ? slack / reach + 16 * unit : 0, shift = wide ? 0 : slack / reach + 16 * unit;
+  const double widening = wide ? slack / reach + 16 * unit : 0,
+               shift = wide ? 0 : slack / reach + 16 * unit;
   if (shift > std::ldexp(1.0, -20)) return given;
   const Slab slab{std::clamp((strip.lower - middle) / reach - widening, -1.0, 1.0),
                   std::clamp((strip.upper - middle) / reach + widening, -1.0, 1.0), shift};
@@ -241,12 +268,15 @@ Ellipsoid cut(const Ellipsoid& given, const Strip& strip, Criterion criterion) {
 
 Ellipsoid intersection(const Ellipsoid& X, MatrixIn R, const Ellipsoid& Y, Criterion criterion) {
   if (X.empty || Y.empty) return make_empty(X.dim());
-  const Matrix directions = Y.L.cols() > 0 ? linalg::svd(Y.L).U : Matrix::Identity(Y.dim(), Y.dim());
-  const Matrix rows = linalg::product(R.transpose(), directions), error = rounding::product_error(R.transpose(), directions);
+  const Matrix directions =
+      Y.L.cols() > 0 ? linalg::svd(Y.L).U : Matrix::Identity(Y.dim(), Y.dim());
+  const Matrix rows = linalg::product(R.transpose(), directions),
+               error = rounding::product_error(R.transpose(), directions);
   Ellipsoid result = X;
   for (Index j = 0; j < directions.cols() && !result.empty; ++j) {
     const Box hull = interval_hull(result);
-    const double uncertain = weighted(error.col(j), hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs()));
+    const double uncertain =
+        weighted(error.col(j), hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs()));
     const Vector d = directions.col(j);
     result = cut(result, {rows.col(j), -support(Y, -d), support(Y, d), uncertain}, criterion);
   }
@@ -266,7 +296,8 @@ Result enclose(const LineForm& X, Criterion criterion) {
   const LineForm form = X.lines() > 0 ? cordon::eliminate_lines(X) : X;
   const Index n = form.dim();
   if (form.constraints() > 0 && cordon::is_empty(form) == Answer::yes) return {make_empty(n), true};
-  if (form.lines() > 0) throw cordon::Error(cordon::Errc::unsupported, "ellipsoid holds bounded sets only");
+  if (form.lines() > 0)
+    throw cordon::Error(cordon::Errc::unsupported, "ellipsoid holds bounded sets only");
   const auto around_zonotope = [&](const Vector& c, const Matrix& G) {
     std::vector<Matrix> generators;
     for (Index j = 0; j < G.cols(); ++j) generators.push_back(G.col(j));
@@ -310,8 +341,10 @@ double support(const Ellipsoid& X, VectorIn d) {
   if (X.empty) return -infinity;
   const Matrix column = d;
   const Vector g = linalg::product(X.L.transpose(), column);
-  const double round = norm_bound(g) + norm_bound(rounding::product_error(X.L.transpose(), column).rowwise().sum());
-  return rounding::up((rounding::dot(d, X.c).upper + rounding::up(rounding::up(round) + weighted(d, X.r))));
+  const double round =
+      norm_bound(g) + norm_bound(rounding::product_error(X.L.transpose(), column).rowwise().sum());
+  return rounding::up(
+      (rounding::dot(d, X.c).upper + rounding::up(rounding::up(round) + weighted(d, X.r))));
 }
 
 Box interval_hull(const Ellipsoid& X) {
@@ -341,8 +374,8 @@ Answer contains(const Ellipsoid& X, VectorIn x) {
   }
   const Matrix factors = u;
   const Vector missing = offset - linalg::product(X.L, factors);
-  const Vector left =
-      missing.cwiseAbs() + row_sums(rounding::product_error(X.L, factors)) + 4 * unit * (x.cwiseAbs() + X.c.cwiseAbs());
+  const Vector left = missing.cwiseAbs() + row_sums(rounding::product_error(X.L, factors)) +
+                      4 * unit * (x.cwiseAbs() + X.c.cwiseAbs());
   const bool repaired_by_box = (left.array() <= X.r.array()).all();
   // with axes in all directions L v = `left` has a solution v with ‖v‖ ≤ ‖left‖ / σ_min
   const double smallest = rank == X.dim() && rank > 0 ? svd.sigma[rank - 1] - 1e-13 * largest : 0;

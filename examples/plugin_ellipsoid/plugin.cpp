@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ellipsoids for every observer of Cordon: the objects of the framework around the arithmetic of ellipsoid.hpp.
+// Ellipsoids for every observer of Cordon: the objects of the framework around the arithmetic of
+// ellipsoid.hpp.
 #include <cordon/core/error.hpp>
 #include <cordon/registry/plugin.hpp>
 
@@ -13,7 +14,8 @@ using ellipsoid::Ellipsoid;
 
 class EllipsoidSet final : public Set {
  public:
-  EllipsoidSet(const SetBackend& backend, Ellipsoid value) : Set(backend, value.dim()), value_(std::move(value)) {}
+  EllipsoidSet(const SetBackend& backend, Ellipsoid value)
+      : Set(backend, value.dim()), value_(std::move(value)) {}
   const Ellipsoid& value() const { return value_; }
 
  private:
@@ -25,11 +27,17 @@ class EllipsoidSet final : public Set {
     if (why) *why = {Certificate::Kind::structure, Vector(0), 0};
     return value_.empty ? Answer::yes : Answer::no;  // the centre is a point of the set
   }
-  Answer do_contains(VectorIn x, Certificate*) const override { return ellipsoid::contains(value_, x); }
+  Answer do_contains(VectorIn x, Certificate*) const override {
+    return ellipsoid::contains(value_, x);
+  }
   Answer do_is_bounded() const override { return Answer::yes; }
-  double do_support(VectorIn d, Certificate*) const override { return ellipsoid::support(value_, d); }
+  double do_support(VectorIn d, Certificate*) const override {
+    return ellipsoid::support(value_, d);
+  }
   Box do_interval_hull(std::vector<Certificate>* why) const override {
-    if (why) why->assign(static_cast<std::size_t>(2 * dim()), {Certificate::Kind::structure, Vector(0), 0});
+    if (why)
+      why->assign(static_cast<std::size_t>(2 * dim()),
+                  {Certificate::Kind::structure, Vector(0), 0});
     return ellipsoid::interval_hull(value_);
   }
   double do_exact_volume() const override { return ellipsoid::volume(value_); }
@@ -40,17 +48,22 @@ class EllipsoidSet final : public Set {
 class EllipsoidBackend final : public SetBackend {
  public:
   explicit EllipsoidBackend(Criterion criterion)
-      : SetBackend(
-            {.name = "ellipsoid", .exact_exchange = false, .summary = "ellipsoids, possibly flat", .citation = "Kurzhanski1997"}),
+      : SetBackend({.name = "ellipsoid",
+                    .exact_exchange = false,
+                    .summary = "ellipsoids, possibly flat",
+                    .citation = "Kurzhanski1997"}),
         criterion_(criterion) {}
 
  private:
   /// The framework hands over sets of this backend only.
-  static const Ellipsoid& value(const Set& X) { return static_cast<const EllipsoidSet&>(X).value(); }
+  static const Ellipsoid& value(const Set& X) {
+    return static_cast<const EllipsoidSet&>(X).value();
+  }
   static const Ellipsoid& value(const Term& term) { return value(*term.set); }
 
   Made make(Ellipsoid X, bool exact) const {
-    return {std::make_unique<EllipsoidSet>(*this, std::move(X)), exact ? Tightness::exact : Tightness::outer};
+    return {std::make_unique<EllipsoidSet>(*this, std::move(X)),
+            exact ? Tightness::exact : Tightness::outer};
   }
   /// Empty only on a proof, and then the exact result; else an enclosure.
   Made make_outer(Ellipsoid X) const {
@@ -80,8 +93,10 @@ class EllipsoidBackend final : public SetBackend {
     for (Index i = 0; i < c.C.rows() && !result.empty; ++i) {
       const Vector row = c.noise.T.row(i).transpose();
       const double above = ellipsoid::support(noise, row), below = ellipsoid::support(noise, -row);
-      const double error = std::numeric_limits<double>::epsilon() * (std::abs(c.z[i]) + std::abs(above) + std::abs(below));
-      result = ellipsoid::cut(result, {c.C.row(i).transpose(), c.z[i] - above, c.z[i] + below, error}, criterion_);
+      const double error = std::numeric_limits<double>::epsilon() *
+                           (std::abs(c.z[i]) + std::abs(above) + std::abs(below));
+      result = ellipsoid::cut(
+          result, {c.C.row(i).transpose(), c.z[i] - above, c.z[i] + below, error}, criterion_);
     }
     return make_outer(std::move(result));
   }
@@ -99,14 +114,18 @@ class EllipsoidBackend final : public SetBackend {
 
 void register_components(Registrar& registrar) {
   ParamSchema schema;
-  schema.choice("criterion", "what a measurement makes smallest: the sum of squared half axes, or the volume",
+  schema.choice("criterion",
+                "what a measurement makes smallest: the sum of squared half axes, or the volume",
                 {"trace", "volume"}, "trace");
-  registrar.backend({{"ellipsoid", "ellipsoids, possibly flat", "Kurzhanski1997", schema}, [](const Params& params) {
+  registrar.backend({{"ellipsoid", "ellipsoids, possibly flat", "Kurzhanski1997", schema},
+                     [](const Params& params) {
                        const bool volume = params.text("criterion") == "volume";
-                       return std::make_unique<EllipsoidBackend>(volume ? Criterion::volume : Criterion::trace);
+                       return std::make_unique<EllipsoidBackend>(volume ? Criterion::volume
+                                                                        : Criterion::trace);
                      }});
 }
 
 }  // namespace
 
-CORDON_PLUGIN("ellipsoid", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "ellipsoids", register_components)
+CORDON_PLUGIN("ellipsoid", "0.1.0", "GPL-3.0-or-later", "the Cordon authors", "ellipsoids",
+              register_components)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A representation of sets as a plugin: bounded axis-aligned boxes. Start from here and replace the box by sets of your own.
+// A representation of sets as a plugin: bounded axis-aligned boxes. Start from here and replace the
+// box by sets of your own.
 #include <cordon/core/error.hpp>
 #include <cordon/core/rounding.hpp>
 #include <cordon/registry/plugin.hpp>
@@ -20,7 +21,9 @@ class BoxSet final : public Set {
 
   // For speed only: without these two the framework asks a solver about the line form.
   Box do_interval_hull(std::vector<Certificate>* why) const override {
-    if (why) why->assign(static_cast<std::size_t>(2 * dim()), {Certificate::Kind::structure, Vector(0), 0});
+    if (why)
+      why->assign(static_cast<std::size_t>(2 * dim()),
+                  {Certificate::Kind::structure, Vector(0), 0});
     return box_;
   }
   double do_support(VectorIn d, Certificate*) const override {
@@ -33,7 +36,8 @@ class BoxSet final : public Set {
   Box box_;
 };
 
-/// Every operation but `import` is left to the framework: it computes the exact result in the common form and imports that.
+/// Every operation but `import` is left to the framework: it computes the exact result in the
+/// common form and imports that.
 class BoxBackend final : public SetBackend {
  public:
   BoxBackend() : SetBackend({.name = "my_box", .summary = "axis-aligned boxes", .citation = ""}) {}
@@ -42,18 +46,23 @@ class BoxBackend final : public SetBackend {
   /// The smallest box around X, as far as proven; equal to X if X is a box itself.
   Made do_import(const LineForm& X) const override {
     Box hull = interval_hull(X);
-    if (hull.is_empty()) return {std::make_unique<BoxSet>(*this, std::move(hull)), Tightness::exact};
+    if (hull.is_empty())
+      return {std::make_unique<BoxSet>(*this, std::move(hull)), Tightness::exact};
     if (!hull.is_bounded()) throw Error(Errc::unsupported, "my_box holds bounded sets only");
     bool is_box = X.lines() == 0 && X.constraints() == 0;
-    for (Index j = 0; j < X.generators(); ++j) is_box = is_box && (X.G.col(j).array() != 0).count() <= 1;
-    return {std::make_unique<BoxSet>(*this, std::move(hull)), is_box ? Tightness::exact : Tightness::outer};
+    for (Index j = 0; j < X.generators(); ++j)
+      is_box = is_box && (X.G.col(j).array() != 0).count() <= 1;
+    return {std::make_unique<BoxSet>(*this, std::move(hull)),
+            is_box ? Tightness::exact : Tightness::outer};
   }
 };
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"my_box", "axis-aligned boxes", "", {}}, [](const Params&) { return std::make_unique<BoxBackend>(); }});
+  registrar.backend({{"my_box", "axis-aligned boxes", "", {}},
+                     [](const Params&) { return std::make_unique<BoxBackend>(); }});
 }
 
 }  // namespace
 
-CORDON_PLUGIN("my_box", "0.1.0", "GPL-3.0-or-later", "A. Uthor", "axis-aligned boxes", register_components)
+CORDON_PLUGIN("my_box", "0.1.0", "GPL-3.0-or-later", "A. Uthor", "axis-aligned boxes",
+              register_components)

@@ -12,8 +12,10 @@ namespace cordon::plants {
 
 namespace {
 constexpr int newton_steps = 100;
-constexpr double newton_tolerance = 1e-12;  // of a step, relative to the state: far above its rounding errors
-constexpr double drift_tolerance = 1e-6;    // at rest, relative to the state: above what rounding errors can grow to in one step
+constexpr double newton_tolerance =
+    1e-12;  // of a step, relative to the state: far above its rounding errors
+constexpr double drift_tolerance =
+    1e-6;  // at rest, relative to the state: above what rounding errors can grow to in one step
 }  // namespace
 
 StirredTank::StirredTank(const StirredTankParameters& parameters)
@@ -23,7 +25,8 @@ StirredTank::StirredTank(const StirredTankParameters& parameters)
   if (!(std::abs(drift[0]) <= drift_tolerance * std::abs(equilibrium_.concentration) &&
         std::abs(drift[1]) <= drift_tolerance * equilibrium_.temperature)) {
     throw Error(Errc::invalid,
-                "the integration leaves the equilibrium: the reaction is too fast for this step, give more substeps");
+                "the integration leaves the equilibrium: the reaction is too fast for this step, "
+                "give more substeps");
   }
 }
 
@@ -31,57 +34,70 @@ double StirredTank::cooling(double coolant_flow) const {
   if (coolant_flow < 0) return std::numeric_limits<double>::quiet_NaN();
   if (coolant_flow == 0) return 0;
   const double capacity = coolant_flow * of_.coolant_density * of_.coolant_specific_heat;
-  return -capacity * std::expm1(-of_.heat_transfer / capacity) / (of_.density * of_.specific_heat * of_.volume);
+  return -capacity * std::expm1(-of_.heat_transfer / capacity) /
+         (of_.density * of_.specific_heat * of_.volume);
 }
 
 StirredTank::State StirredTank::rates(const State& at, double cooling) const {
   const double exchange = of_.feed_flow / of_.volume;
-  const double reaction = of_.rate_factor * at.concentration * std::exp(-of_.activation_temperature / at.temperature);
+  const double reaction =
+      of_.rate_factor * at.concentration * std::exp(-of_.activation_temperature / at.temperature);
   return {exchange * (of_.feed_concentration - at.concentration) - reaction,
-          exchange * (of_.feed_temperature - at.temperature) + of_.reaction_heat / (of_.density * of_.specific_heat) * reaction +
+          exchange * (of_.feed_temperature - at.temperature) +
+              of_.reaction_heat / (of_.density * of_.specific_heat) * reaction +
               cooling * (of_.coolant_temperature - at.temperature)};
 }
 
 void StirredTank::find_equilibrium() {
-  const double exchange = of_.feed_flow / of_.volume, heating = of_.reaction_heat / (of_.density * of_.specific_heat);
+  const double exchange = of_.feed_flow / of_.volume,
+               heating = of_.reaction_heat / (of_.density * of_.specific_heat);
   const double lost = cooling(of_.coolant_flow);
   State& at = equilibrium_;
   for (int step = 0; step < newton_steps; ++step) {
     const State rate = rates(at, lost);
     const double speed = of_.rate_factor * std::exp(-of_.activation_temperature / at.temperature);
-    const double slope = speed * at.concentration * of_.activation_temperature / (at.temperature * at.temperature);
-    const double cc = -exchange - speed, ct = -slope, tc = heating * speed, tt = -exchange + heating * slope - lost;
+    const double slope =
+        speed * at.concentration * of_.activation_temperature / (at.temperature * at.temperature);
+    const double cc = -exchange - speed, ct = -slope, tc = heating * speed,
+                 tt = -exchange + heating * slope - lost;
     const double determinant = cc * tt - ct * tc;
     const State change{(ct * rate.temperature - tt * rate.concentration) / determinant,
                        (tc * rate.concentration - cc * rate.temperature) / determinant};
     at.concentration += change.concentration;
     at.temperature += change.temperature;
-    if (!std::isfinite(at.concentration) || !std::isfinite(at.temperature) || at.temperature <= 0) break;
+    if (!std::isfinite(at.concentration) || !std::isfinite(at.temperature) || at.temperature <= 0)
+      break;
     if (std::abs(change.concentration) <= newton_tolerance * std::abs(at.concentration) &&
         std::abs(change.temperature) <= newton_tolerance * at.temperature) {
       return;
     }
   }
-  throw Error(Errc::invalid, "no equilibrium was found from concentration " + std::to_string(of_.concentration) +
-                                 " and temperature " + std::to_string(of_.temperature) +
+  throw Error(Errc::invalid, "no equilibrium was found from concentration " +
+                                 std::to_string(of_.concentration) + " and temperature " +
+                                 std::to_string(of_.temperature) +
                                  ": give values nearer to one, or another coolant_flow");
 }
 
 Vector StirredTank::next(Index, VectorIn x, VectorIn u) const {
-  const double lost = cooling(of_.coolant_flow + u[0]), h = of_.sampling / static_cast<double>(of_.substeps);
+  const double lost = cooling(of_.coolant_flow + u[0]),
+               h = of_.sampling / static_cast<double>(of_.substeps);
   State at{equilibrium_.concentration + x[0], equilibrium_.temperature + x[1]};
   const auto ahead = [&](const State& rate, double by) {
-    return State{at.concentration + by * rate.concentration, at.temperature + by * rate.temperature};
+    return State{at.concentration + by * rate.concentration,
+                 at.temperature + by * rate.temperature};
   };
   for (std::int64_t i = 0; i < of_.substeps; ++i) {
-    const State k1 = rates(at, lost), k2 = rates(ahead(k1, h / 2), lost), k3 = rates(ahead(k2, h / 2), lost),
-                k4 = rates(ahead(k3, h), lost);
-    at.concentration += h / 6 * (k1.concentration + 2 * k2.concentration + 2 * k3.concentration + k4.concentration);
-    at.temperature += h / 6 * (k1.temperature + 2 * k2.temperature + 2 * k3.temperature + k4.temperature);
+    const State k1 = rates(at, lost), k2 = rates(ahead(k1, h / 2), lost),
+                k3 = rates(ahead(k2, h / 2), lost), k4 = rates(ahead(k3, h), lost);
+    at.concentration +=
+        h / 6 * (k1.concentration + 2 * k2.concentration + 2 * k3.concentration + k4.concentration);
+    at.temperature +=
+        h / 6 * (k1.temperature + 2 * k2.temperature + 2 * k3.temperature + k4.temperature);
     // Arrhenius' law means nothing there, and would give a finite number again.
     if (at.temperature <= 0) return Vector::Constant(2, std::numeric_limits<double>::quiet_NaN());
   }
-  return Vector{{at.concentration - equilibrium_.concentration, at.temperature - equilibrium_.temperature}};
+  return Vector{
+      {at.concentration - equilibrium_.concentration, at.temperature - equilibrium_.temperature}};
 }
 
 Vector StirredTank::output(Index, VectorIn x, VectorIn) const { return x.head(1); }

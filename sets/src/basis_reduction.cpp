@@ -15,15 +15,18 @@ namespace cordon::sets {
 
 namespace {
 
-/// A pivot below this part of its row's scale does not count: the row is then left to the slack of `BasisReduction`.
+/// A pivot below this part of its row's scale does not count: the row is then left to the slack of
+/// `BasisReduction`.
 constexpr double rank_tolerance = 1e-10;
-/// Rounding level of the elimination, relative to a row's scale: below it a computed residual is not distinguishable from 0.
+/// Rounding level of the elimination, relative to a row's scale: below it a computed residual is
+/// not distinguishable from 0.
 constexpr double noise = 1e-14;
 
-/// Method 4 of [Yang2018]: G = [T V] with a basis T of large columns found by full pivoting, R = T⁻¹V. Replacing T and v_j
-/// by T (I + diag|r_j|) adds the volume ∏(1 + |r_ij|) - 1 - Σ|r_ij| (in units of det T); the cheapest column goes first.
-/// A flat G has fewer pivots than rows; what the basis leaves of a removed column in the other rows goes to their slack,
-/// one axis-parallel generator per row. Observers reduce in every step: memory is kept.
+/// Method 4 of [Yang2018]: G = [T V] with a basis T of large columns found by full pivoting, R =
+/// T⁻¹V. Replacing T and v_j by T (I + diag|r_j|) adds the volume ∏(1 + |r_ij|) - 1 - Σ|r_ij| (in
+/// units of det T); the cheapest column goes first. A flat G has fewer pivots than rows; what the
+/// basis leaves of a removed column in the other rows goes to their slack, one axis-parallel
+/// generator per row. Observers reduce in every step: memory is kept.
 class BasisReduction {
  public:
   /// Of G the columns that are not zero.
@@ -37,7 +40,9 @@ class BasisReduction {
     eliminate();
   }
 
-  void exchange(MemoryExchange& memory) { memory.swap(G_, scale_, W_, row_, order_, growth_, slack_, sum_, cost_); }
+  void exchange(MemoryExchange& memory) {
+    memory.swap(G_, scale_, W_, row_, order_, growth_, slack_, sum_, cost_);
+  }
 
   Matrix reduce(Index max_generators) {
     Index slacks = 0;
@@ -48,7 +53,8 @@ class BasisReduction {
   /// Every row without a pivot is given a unit vector, so that the frame is square.
   ReductionSplit split(Index max_generators) {
     const Index n = G_.rows(), g = G_.cols(), last = absorb_cheapest(max_generators - (n - rank_));
-    ReductionSplit parts{columns(rank_, last), Matrix(n, rank_ + g - last), Matrix::Zero(n, n), true};
+    ReductionSplit parts{columns(rank_, last), Matrix(n, rank_ + g - last), Matrix::Zero(n, n),
+                         true};
     parts.replaced << columns(0, rank_), columns(last, g);
     parts.frame.leftCols(rank_) = columns(0, rank_);
     for (Index i = rank_; i < n; ++i) parts.frame(at(row_, i), i) = 1;
@@ -83,7 +89,8 @@ class BasisReduction {
     return false;
   }
 
-  /// W = [I R; 0 E] in the order of rows and columns, by Gauss-Jordan steps with pivots over the whole of E.
+  /// W = [I R; 0 E] in the order of rows and columns, by Gauss-Jordan steps with pivots over the
+  /// whole of E.
   void eliminate() {
     const Index n = G_.rows(), g = G_.cols();
     for (rank_ = 0; rank_ < std::min(n, g) && put_pivot_first(); ++rank_) {
@@ -91,7 +98,8 @@ class BasisReduction {
       W_.row(pivot_row) /= W_(pivot_row, column);
       for (Index i = 0; i < n; ++i) {
         const double factor = W_(i, column);
-        if (i != pivot_row && factor != 0) vectors::add_multiple(W_.cols(), -factor, row(pivot_row), row(i));
+        if (i != pivot_row && factor != 0)
+          vectors::add_multiple(W_.cols(), -factor, row(pivot_row), row(i));
       }
     }
   }
@@ -135,7 +143,8 @@ class BasisReduction {
     return last;
   }
 
-  /// The volume error is summed without cancellation: q collects the terms of second and higher order.
+  /// The volume error is summed without cancellation: q collects the terms of second and higher
+  /// order.
   Index cheapest_place(Index last) {
     sum_.setZero(W_.cols());
     cost_.setZero(W_.cols());
@@ -159,13 +168,15 @@ class BasisReduction {
 
   void absorb(Index column) {
     for (Index i = 0; i < rank_; ++i) growth_[i] += std::abs(W_(at(row_, i), column));
-    for (Index i = 0; i < slack_.size(); ++i) slack_[i] += std::abs(W_(at(row_, rank_ + i), column));
+    for (Index i = 0; i < slack_.size(); ++i)
+      slack_[i] += std::abs(W_(at(row_, rank_ + i), column));
   }
 
   Matrix assemble(Index last) const {
     const Index n = G_.rows(), g = G_.cols();
     Matrix H = Matrix::Zero(n, last + slack_.size());
-    for (Index k = 0; k < last; ++k) H.col(k) = (k < rank_ ? growth_[k] : 1.0) * G_.col(at(order_, k));
+    for (Index k = 0; k < last; ++k)
+      H.col(k) = (k < rank_ ? growth_[k] : 1.0) * G_.col(at(order_, k));
     Index count = last;
     for (Index i = 0; i < slack_.size(); ++i) {
       if (!(slack_[i] > noise * static_cast<double>(g - last))) continue;

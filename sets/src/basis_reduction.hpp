@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reduction `yang_scott`: generators are absorbed one by one into a basis of large ones. [Yang2018, method 4]
+// The reduction `yang_scott`: generators are absorbed one by one into a basis of large ones.
+// [Yang2018, method 4]
 #pragma once
 
 #include "reduction_split.hpp"

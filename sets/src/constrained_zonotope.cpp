@@ -5,7 +5,9 @@
 
 namespace cordon::sets {
 
-LineForm line_form(const ConstrainedZonotope& Z) { return {Matrix(Z.dim(), 0), Z.G, Z.c, Matrix(Z.constraints(), 0), Z.A, Z.b}; }
+LineForm line_form(const ConstrainedZonotope& Z) {
+  return {Matrix(Z.dim(), 0), Z.G, Z.c, Matrix(Z.constraints(), 0), Z.A, Z.b};
+}
 
 std::optional<ConstrainedZonotope> to_constrained_zonotope(const LineForm& X) {
   LineForm Y = eliminate_lines(X);

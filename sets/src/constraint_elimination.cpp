@@ -17,17 +17,17 @@ namespace cordon::sets {
 namespace {
 
 constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a coefficient is zero
-constexpr double unreliable =
-    1e-5;  ///< a row cancelled to this share of its terms is dropped: what is left is too uncertain to prove anything
-constexpr double rescaling_room =
-    1e-12;  ///< of its terms: a bound that a factor is rescaled to, above what roundings of many steps add up to
+constexpr double unreliable = 1e-5;  ///< a row cancelled to this share of its terms is dropped:
+                                     ///< what is left is too uncertain to prove anything
+constexpr double rescaling_room = 1e-12;  ///< of its terms: a bound that a factor is rescaled to,
+                                          ///< above what roundings of many steps add up to
 constexpr double exact_share = 1e-10;  ///< of its size: a coordinate moved by less counts as exact
 constexpr double pivot_floor = 1e-9;   ///< pivots below this share of their row are not used
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The rows and outputs being reduced. Factors and rows are marked instead of moved. Observers eliminate in every step: memory is
-/// kept.
+/// The rows and outputs being reduced. Factors and rows are marked instead of moved. Observers
+/// eliminate in every step: memory is kept.
 class Elimination {
  public:
   /// `before`: of the terms that X was computed from.
@@ -48,7 +48,8 @@ class Elimination {
   }
 
   void exchange(MemoryExchange& memory) {
-    memory.swap(G_, A_, A_terms_, c_, b_, b_terms_, before_.rows, before_.state, free_, lower_, upper_, room_, allowed_lower_);
+    memory.swap(G_, A_, A_terms_, c_, b_, b_terms_, before_.rows, before_.state, free_, lower_,
+                upper_, room_, allowed_lower_);
     memory.swap(allowed_upper_, share_, binding_row_, in_row_, live_rows_, live_factors_);
     scores_.exchange(memory);
   }
@@ -65,12 +66,15 @@ class Elimination {
   }
   Index live_count() const { return std::count(in_row_.begin(), in_row_.end(), 1); }
 
-  /// Drops rows that became 0 = 0 up to rounding, or so small by cancellation that rounding could make them false. Dropping a row
-  /// never shrinks the set; it is no longer exact if more than noise was dropped.
+  /// Drops rows that became 0 = 0 up to rounding, or so small by cancellation that rounding could
+  /// make them false. Dropping a row never shrinks the set; it is no longer exact if more than
+  /// noise was dropped.
   void drop_unreliable_rows() {
     for (Index i = 0; i < rows(); ++i) {
       if (in_row_[at(i)] == 0) continue;
-      const double terms = std::max(b_terms_[i], vectors::largest_product(width(), free_.data(), A_terms_.data() + i * width()));
+      const double terms =
+          std::max(b_terms_[i],
+                   vectors::largest_product(width(), free_.data(), A_terms_.data() + i * width()));
       const double left = std::max(scale(i), std::abs(b_[i]));
       if (left > unreliable * terms) continue;
       in_row_[at(i)] = 0;
@@ -113,9 +117,10 @@ class Elimination {
     }
   }
 
-  /// Of every factor: the interval ρ_j that the rows allow ξ_j while all other factors keep to [-1,1], and the row in which it
-  /// has the largest share of the row's 1-norm. Bounds tightened by rows must not enter here: they would rest on |ξ_j| ≤ 1
-  /// itself, and ρ_j ⊆ [-1,1] would no longer show that this bound may be forgotten.
+  /// Of every factor: the interval ρ_j that the rows allow ξ_j while all other factors keep to
+  /// [-1,1], and the row in which it has the largest share of the row's 1-norm. Bounds tightened by
+  /// rows must not enter here: they would rest on |ξ_j| ≤ 1 itself, and ρ_j ⊆ [-1,1] would no
+  /// longer show that this bound may be forgotten.
   void survey() {
     allowed_lower_.setConstant(width(), -infinity);
     allowed_upper_.setConstant(width(), infinity);
@@ -127,9 +132,10 @@ class Elimination {
     }
   }
 
-  /// Bounds E_j of ξ_j over all feasible ξ, by two passes of interval propagation over the rows. What earlier roundings missed
-  /// may lie beyond [-1,1] and beyond the rows: rescaling makes a set as small as these bounds, an unstable plant lets it grow
-  /// again, and what was a last digit would be a wall.
+  /// Bounds E_j of ξ_j over all feasible ξ, by two passes of interval propagation over the rows.
+  /// What earlier roundings missed may lie beyond [-1,1] and beyond the rows: rescaling makes a set
+  /// as small as these bounds, an unstable plant lets it grow again, and what was a last digit
+  /// would be a wall.
   void tighten() {
     lower_ = Vector::Constant(factors(), -1 - rescaling_room);
     upper_ = -lower_;
@@ -150,7 +156,8 @@ class Elimination {
       if (rad >= 1 - exact_share) continue;  // cut by nothing, or next to nothing
       c_ += mid * G_.col(j);
       rescaled_ = true;
-      before_.state = before_.state.cwiseMax((G_.col(j).array() != 0).select(c_.cwiseAbs() + G_.col(j).cwiseAbs(), 0.0));
+      before_.state = before_.state.cwiseMax(
+          (G_.col(j).array() != 0).select(c_.cwiseAbs() + G_.col(j).cwiseAbs(), 0.0));
       moved += room_[j] * G_.col(j).cwiseAbs();
       b_ -= mid * A_.col(j);
       b_terms_ = b_terms_.cwiseMax(std::abs(mid) * A_terms_.col(j));
@@ -165,8 +172,9 @@ class Elimination {
     drop_unreliable_rows();
   }
 
-  /// The cheapest factor, and the row that binds it most. The choice of the row does not change the set but the rows that remain,
-  /// and with them all later scores. False if no row has a usable pivot. `loss` is the score.
+  /// The cheapest factor, and the row that binds it most. The choice of the row does not change the
+  /// set but the rows that remain, and with them all later scores. False if no row has a usable
+  /// pivot. `loss` is the score.
   bool choose(Index& row, Index& col, double& loss) {
     if (!scored_) scores_.take(G_, A_, live_rows());
     scored_ = true;
@@ -175,9 +183,12 @@ class Elimination {
     col = -1;
     for (Index j = 0; j < factors(); ++j) {
       if (free_[j] == 0 || binding_row_[j] < 0) continue;
-      const double reach = std::max({0.0, std::abs(allowed_lower_[j]) - 1, std::abs(allowed_upper_[j]) - 1});
+      const double reach =
+          std::max({0.0, std::abs(allowed_lower_[j]) - 1, std::abs(allowed_upper_[j]) - 1});
       const double score = scores_.score(j, reach);
-      if (col >= 0 && score >= best * (1 - 1e-9) && !(score <= best * (1 + 1e-9) && share_[j] > best_share)) continue;
+      if (col >= 0 && score >= best * (1 - 1e-9) &&
+          !(score <= best * (1 + 1e-9) && share_[j] > best_share))
+        continue;
       best = score;
       best_share = share_[j];
       row = static_cast<Index>(binding_row_[j]);
@@ -191,13 +202,17 @@ class Elimination {
   void eliminate(Index row, Index col) {
     steps_.push_back({EliminationStep::eliminate, row, col});
     const double pivot = A_(row, col);
-    const double row_terms = std::max({A_terms_.row(row).maxCoeff(), b_terms_[row], before_.rows[row]}) / std::abs(pivot);
+    const double row_terms =
+        std::max({A_terms_.row(row).maxCoeff(), b_terms_[row], before_.rows[row]}) /
+        std::abs(pivot);
     for (Index i = 0; i < G_.rows(); ++i) {
       const double out = G_(i, col);
       if (out == 0) continue;
-      const double terms = std::abs(c_[i]) + G_.row(i).cwiseAbs().maxCoeff() + row_terms * std::abs(out);
+      const double terms =
+          std::abs(c_[i]) + G_.row(i).cwiseAbs().maxCoeff() + row_terms * std::abs(out);
       before_.state[i] = std::max(before_.state[i], terms);
-      vectors::add_multiple(width(), -out / pivot, A_.data() + row * width(), G_.data() + i * width());
+      vectors::add_multiple(width(), -out / pivot, A_.data() + row * width(),
+                            G_.data() + i * width());
       c_[i] += out / pivot * b_[row];
       G_(i, col) = 0;
     }
@@ -219,7 +234,8 @@ class Elimination {
     for (Index j = 0; j < factors(); ++j) {
       if (free_[j] != 0) live_factors_.push_back(j);
     }
-    const Index n = G_.rows(), m = static_cast<Index>(rows_left.size()), g = static_cast<Index>(live_factors_.size());
+    const Index n = G_.rows(), m = static_cast<Index>(rows_left.size()),
+                g = static_cast<Index>(live_factors_.size());
     LineForm X{M, Matrix(n, g), c_, Matrix::Zero(m, M.cols()), Matrix(m, g), Vector(m)};
     const auto copy = [&](const Rows& from, Index row, Matrix& to, Index place) {
       for (Index j = 0; j < g; ++j) to(place, j) = from(row, live_factors_[at(j)]);
@@ -231,7 +247,8 @@ class Elimination {
       copy(A_, row, X.A, i);
       X.b[i] = b_[row];
       // a row 0 = b that was not dropped is false by more than rounding
-      if (scale(row) > 0) terms.rows[i] = std::max({A_terms_.row(row).maxCoeff(), b_terms_[row], before_.rows[row]});
+      if (scale(row) > 0)
+        terms.rows[i] = std::max({A_terms_.row(row).maxCoeff(), b_terms_[row], before_.rows[row]});
     }
     if (steps_.empty() && !rescaled_ && !computed_) return X;
     return with_residue(std::move(X), terms);
@@ -244,8 +261,10 @@ class Elimination {
 
   void survey_row(Index i, double norm, double floor) {
     const double* __restrict const row = A_.data() + i * width();
-    double* __restrict const lowest = allowed_lower_.data(), * __restrict const highest = allowed_upper_.data();
-    double* __restrict const best_share = share_.data(), * __restrict const binding = binding_row_.data();
+    double* __restrict const lowest = allowed_lower_.data(), * __restrict const highest =
+                                                                 allowed_upper_.data();
+    double* __restrict const best_share = share_.data(), * __restrict const binding =
+                                                             binding_row_.data();
     const double right = b_[i], place = static_cast<double>(i), inverse_norm = 1 / norm;
     const Index count = width();
     for (Index j = 0; j < count; ++j) {  // without branches, so that it vectorises
@@ -264,8 +283,10 @@ class Elimination {
     if (factor != 0) {
       const double size = std::abs(factor);
       const double* __restrict const from = A_.data() + row * width(), * __restrict const from_terms =
-                                                                           A_terms_.data() + row * width();
-      double* __restrict const to = A_.data() + i * width(), * __restrict const to_terms = A_terms_.data() + i * width();
+                                                                           A_terms_.data() +
+                                                                           row * width();
+      double* __restrict const to = A_.data() + i * width(), * __restrict const to_terms =
+                                                                 A_terms_.data() + i * width();
       const Index count = width();
       for (Index j = 0; j < count; ++j) {
         const double entry = to[j] - factor * from[j], passed = size * from_terms[j];
@@ -293,16 +314,19 @@ class Elimination {
     for (Index j = 0; j < factors(); ++j) {
       const double a = A_(i, j);
       if (free_[j] == 0 || std::abs(a) <= floor) continue;
-      const double own_low = a > 0 ? a * lower_[j] : a * upper_[j], own_high = a > 0 ? a * upper_[j] : a * lower_[j];
+      const double own_low = a > 0 ? a * lower_[j] : a * upper_[j],
+                   own_high = a > 0 ? a * upper_[j] : a * lower_[j];
       double from = (b_[i] - (high - own_high)) / a, to = (b_[i] - (low - own_low)) / a;
       if (from > to) std::swap(from, to);
       from -= rounding / std::abs(a);
       to += rounding / std::abs(a);
       const double new_lower = std::max(lower_[j], from), new_upper = std::min(upper_[j], to);
-      if (!(new_lower <= new_upper)) continue;  // ∅ up to rounding: left to the question of emptiness
+      if (!(new_lower <= new_upper))
+        continue;  // ∅ up to rounding: left to the question of emptiness
       low += a > 0 ? a * (new_lower - lower_[j]) : a * (new_upper - upper_[j]);
       high += a > 0 ? a * (new_upper - upper_[j]) : a * (new_lower - lower_[j]);
-      if (new_lower > lower_[j] || new_upper < upper_[j]) room_[j] = std::max(room_[j], rounding / std::abs(a));
+      if (new_lower > lower_[j] || new_upper < upper_[j])
+        room_[j] = std::max(room_[j], rounding / std::abs(a));
       lower_[j] = new_lower;
       upper_[j] = new_upper;
     }
@@ -352,7 +376,8 @@ bool run(Elimination& work, Index max_constraints, const ConstraintElimination& 
 
 Reduced eliminate_constraints(const LineForm& X, const Terms& before, Index max_constraints,
                               const ConstraintElimination& options) {
-  if (max_constraints < 0) throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
+  if (max_constraints < 0)
+    throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
   if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0))
     throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
   WithKeptMemory<Elimination> work(KeptFor::constraint_elimination);
@@ -361,11 +386,13 @@ Reduced eliminate_constraints(const LineForm& X, const Terms& before, Index max_
   return {work->result(X.M), exact};
 }
 
-Reduced eliminate_constraints(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
+Reduced eliminate_constraints(const LineForm& X, Index max_constraints,
+                              const ConstraintElimination& options) {
   return eliminate_constraints(X, no_terms(X), max_constraints, options);
 }
 
-std::vector<EliminationStep> plan_elimination(const LineForm& X, Index max_constraints, const ConstraintElimination& options) {
+std::vector<EliminationStep> plan_elimination(const LineForm& X, Index max_constraints,
+                                              const ConstraintElimination& options) {
   WithKeptMemory<Elimination> work(KeptFor::constraint_elimination);
   work->take(X, no_terms(X));
   run(*work, max_constraints, options);

@@ -5,7 +5,8 @@
 
 namespace cordon::sets {
 
-/// det A by elimination with partial pivoting; A is overwritten. 1 for a 0×0 matrix. Allocates nothing.
+/// det A by elimination with partial pivoting; A is overwritten. 1 for a 0×0 matrix. Allocates
+/// nothing.
 double determinant(Matrix& A);
 
 }  // namespace cordon::sets

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scalar intervals rounded outward without changing the rounding mode: the rounding error of one operation is found by an
-// error-free transformation, and a bound moves to the next double only if that error is not zero [Ogita2005].
+// Scalar intervals rounded outward without changing the rounding mode: the rounding error of one
+// operation is found by an error-free transformation, and a bound moves to the next double only if
+// that error is not zero [Ogita2005].
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,8 @@
 
 namespace cordon::sets::directed {
 
-/// Below this magnitude the error of a product or quotient may underflow: bounds are then always moved.
+/// Below this magnitude the error of a product or quotient may underflow: bounds are then always
+/// moved.
 inline constexpr double safe = 1e-290;
 
 /// The sum of two doubles rounded down and up; not finite after an overflow.
@@ -41,7 +43,9 @@ inline rounding::Range over(double a, double b) {
 inline rounding::Range plus(rounding::Range x, rounding::Range y) {
   return {plus(x.lower, y.lower).lower, plus(x.upper, y.upper).upper};
 }
-inline rounding::Range minus(rounding::Range x, rounding::Range y) { return plus(x, {-y.upper, -y.lower}); }
+inline rounding::Range minus(rounding::Range x, rounding::Range y) {
+  return plus(x, {-y.upper, -y.lower});
+}
 inline rounding::Range times(double a, rounding::Range x) {
   return a > 0 ? rounding::Range{times(a, x.lower).lower, times(a, x.upper).upper}
                : rounding::Range{times(a, x.upper).lower, times(a, x.lower).upper};
@@ -55,7 +59,11 @@ inline rounding::Range times(rounding::Range a, rounding::Range x) {
   return {std::min(p.lower, q.lower), std::max(p.upper, q.upper)};
 }
 
-inline bool is_finite(rounding::Range x) { return std::isfinite(x.lower) && std::isfinite(x.upper); }
-inline rounding::Range line() { return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}; }
+inline bool is_finite(rounding::Range x) {
+  return std::isfinite(x.lower) && std::isfinite(x.upper);
+}
+inline rounding::Range line() {
+  return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+}
 
 }  // namespace cordon::sets::directed

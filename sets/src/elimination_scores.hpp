@@ -8,11 +8,13 @@
 
 namespace cordon::sets {
 
-/// P = H - (AH)ᵀ(AHAᵀ)⁻¹(AH) with H = (I + GᵀG)⁻¹, kept as I - FᵀF + QᵀQ: F from one factorisation, a row of Q for every factor
-/// that was eliminated since. O(g (n + m)²), then O(g (n + m)) per elimination. An object may be used again: its memory stays.
+/// P = H - (AH)ᵀ(AHAᵀ)⁻¹(AH) with H = (I + GᵀG)⁻¹, kept as I - FᵀF + QᵀQ: F from one factorisation,
+/// a row of Q for every factor that was eliminated since. O(g (n + m)²), then O(g (n + m)) per
+/// elimination. An object may be used again: its memory stays.
 class EliminationScores {
  public:
-  /// Of the rows of A named `live`. Rows that depend on others up to rounding are left out: scores only order candidates.
+  /// Of the rows of A named `live`. Rows that depend on others up to rounding are left out: scores
+  /// only order candidates.
   void take(const Rows& G, const Rows& A, const std::vector<Index>& live);
 
   /// r² (‖D G P e_j‖² / P_jj + w) / P_jj for r = `reach`.
@@ -20,7 +22,9 @@ class EliminationScores {
   /// ξ_col is no longer bounded.
   void forget(Index col);
 
-  void exchange(MemoryExchange& memory) { memory.swap(F_, Q_, moved_, diagonal_, moved_squares_, K_, independent_); }
+  void exchange(MemoryExchange& memory) {
+    memory.swap(F_, Q_, moved_, diagonal_, moved_squares_, K_, independent_);
+  }
 
  private:
   void sum_squares_of_moves();

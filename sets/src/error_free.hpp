@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sums and products with a bound of what their rounding lost, zero if nothing was lost [Ogita2005]. Each operation's error is
-// known exactly; the bound is the sum of their magnitudes, rounded up.
+// Sums and products with a bound of what their rounding lost, zero if nothing was lost [Ogita2005].
+// Each operation's error is known exactly; the bound is the sum of their magnitudes, rounded up.
 #pragma once
 
 #include <cmath>
@@ -12,9 +12,13 @@
 namespace cordon::sets {
 
 /// a + b ≥ 0, rounded up; exact if one is zero.
-inline double plus_up(double a, double b) { return a == 0 ? b : b == 0 ? a : (a + b) * (1 + 4 * rounding::unit); }
+inline double plus_up(double a, double b) {
+  return a == 0 ? b : b == 0 ? a : (a + b) * (1 + 4 * rounding::unit);
+}
 /// a b ≥ 0, rounded up.
-inline double times_up(double a, double b) { return a == 0 || b == 0 ? 0.0 : a * b * (1 + 4 * rounding::unit) + rounding::tiny; }
+inline double times_up(double a, double b) {
+  return a == 0 || b == 0 ? 0.0 : a * b * (1 + 4 * rounding::unit) + rounding::tiny;
+}
 
 /// A number with |exact - value| ≤ error. After an overflow the value is not finite.
 struct Tracked {

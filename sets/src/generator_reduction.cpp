@@ -22,7 +22,8 @@ namespace {
 
 /// Radii below this share of the largest are rounding of the rotation: flat sets stay flat.
 constexpr double noise = 1e-14;
-/// `adaptive` keeps the result of `yang_scott` as long as it widens no coordinate by more than this factor.
+/// `adaptive` keeps the result of `yang_scott` as long as it widens no coordinate by more than this
+/// factor.
 constexpr double most_widening = 1.01;
 
 /// Half widths of the interval hull, rounded up.
@@ -33,8 +34,8 @@ Vector box_radii(MatrixIn G) {
 
 enum class Size { norm_1_minus_max, norm_2 };
 
-/// 2-norms of the columns. The plain formula is safe, and four times faster, where no square can overflow or vanish beside the
-/// others.
+/// 2-norms of the columns. The plain formula is safe, and four times faster, where no square can
+/// overflow or vanish beside the others.
 Vector norms(MatrixIn G) {
   constexpr double large = 1e150, small = 1e-150;
   const double most = G.size() ? G.cwiseAbs().maxCoeff() : 0.0;
@@ -45,7 +46,9 @@ Vector norms(MatrixIn G) {
 /// [large | small], the largest first by `size`; of equal ones the first stays first.
 Matrix sorted_by_size(MatrixIn G, Size size) {
   const Vector key =
-      size == Size::norm_2 ? norms(G) : Vector((G.colwise().lpNorm<1>() - G.colwise().lpNorm<Eigen::Infinity>()).transpose());
+      size == Size::norm_2
+          ? norms(G)
+          : Vector((G.colwise().lpNorm<1>() - G.colwise().lpNorm<Eigen::Infinity>()).transpose());
   std::vector<Index> order(static_cast<std::size_t>(G.cols()));
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return key[a] > key[b]; });
@@ -56,7 +59,8 @@ Matrix sorted_by_size(MatrixIn G, Size size) {
 
 using Rows = std::vector<Index>;
 
-/// The last of the sorted columns are replaced by a box along the columns of S⁻¹ Q, Q orthogonal, S = diag(scale).
+/// The last of the sorted columns are replaced by a box along the columns of S⁻¹ Q, Q orthogonal, S
+/// = diag(scale).
 struct Box {
   Matrix sorted;
   Index kept = 0;
@@ -82,7 +86,11 @@ struct Box {
 
 Box along_coordinates(const Matrix& G, Index max_generators, Size size) {
   const Index n = G.rows();
-  return {sorted_by_size(G, size), std::min(max_generators - n, G.cols()), Vector::Ones(n), Matrix::Identity(n, n), {}};
+  return {sorted_by_size(G, size),
+          std::min(max_generators - n, G.cols()),
+          Vector::Ones(n),
+          Matrix::Identity(n, n),
+          {}};
 }
 
 /// Radii per coordinate need no rotation, and none is left out.
@@ -93,23 +101,27 @@ Matrix boxed(const Box& box) {
   return nonzero_columns(H);
 }
 
-/// Rows whose largest entries differ by up to 2¹⁶, from the largest downwards. Axes are sought within each group alone: a row of
-/// smaller numbers is as often rounding noise as it is a small unit, and a rotation that mixes both widens the larger one by
-/// what is noise, or swamps the smaller one by rounding errors of the larger.
+/// Rows whose largest entries differ by up to 2¹⁶, from the largest downwards. Axes are sought
+/// within each group alone: a row of smaller numbers is as often rounding noise as it is a small
+/// unit, and a rotation that mixes both widens the larger one by what is noise, or swamps the
+/// smaller one by rounding errors of the larger.
 std::vector<Rows> comparable_rows(MatrixIn G) {
   Rows order(static_cast<std::size_t>(G.rows()));
   std::iota(order.begin(), order.end(), Index{0});
-  const Vector size = G.cols() ? Vector(G.cwiseAbs().rowwise().maxCoeff()) : Vector(Vector::Zero(G.rows()));
+  const Vector size =
+      G.cols() ? Vector(G.cwiseAbs().rowwise().maxCoeff()) : Vector(Vector::Zero(G.rows()));
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return size[a] > size[b]; });
   std::vector<Rows> groups;
   for (const Index i : order) {
-    if (groups.empty() || size[i] <= std::ldexp(size[groups.back().front()], -16)) groups.emplace_back();
+    if (groups.empty() || size[i] <= std::ldexp(size[groups.back().front()], -16))
+      groups.emplace_back();
     groups.back().push_back(i);
   }
   return groups;
 }
 
-/// Orthogonal axes of the columns, group by group: principal ones, or those of a QR decomposition with the longest column first.
+/// Orthogonal axes of the columns, group by group: principal ones, or those of a QR decomposition
+/// with the longest column first.
 enum class Axes { principal, qr };
 
 enum class Units { own, equal };  ///< of the rows: as they are, or by the largest entry of each
@@ -122,12 +134,14 @@ Box along_axes(const Matrix& G, Index max_generators, Size size, Axes kind, Unit
   box.groups = comparable_rows(scaled);
   for (const Rows& rows : box.groups) {
     const Matrix part = scaled(rows, Eigen::all);
-    box.Q(rows, rows) = kind == Axes::principal ? linalg::svd(part).U : linalg::orthogonal_axes(part);
+    box.Q(rows, rows) =
+        kind == Axes::principal ? linalg::svd(part).U : linalg::orthogonal_axes(part);
   }
   return box;
 }
 
-Box box_of(const Matrix& G, Index max_generators, GeneratorReduction method, Units units = Units::own) {
+Box box_of(const Matrix& G, Index max_generators, GeneratorReduction method,
+           Units units = Units::own) {
   switch (method) {
     case GeneratorReduction::pca:
       return along_axes(G, max_generators, Size::norm_1_minus_max, Axes::principal, units);
@@ -170,7 +184,9 @@ Adapted adapt(const Matrix& G, Index max_generators) {
   return best;
 }
 
-ReductionSplit as_split(const Box& box) { return {box.sorted.leftCols(box.kept), box.replaced(), box.directions(), false}; }
+ReductionSplit as_split(const Box& box) {
+  return {box.sorted.leftCols(box.kept), box.replaced(), box.directions(), false};
+}
 
 }  // namespace
 
@@ -186,8 +202,9 @@ Vector enclosing_radii(MatrixIn G) { return box_radii(G); }
 Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction method) {
   if (max_generators < G.rows()) {
     throw Error(Errc::invalid, "generator reduction: " + std::to_string(max_generators) +
-                                   " generators cannot enclose a set of dimension " + std::to_string(G.rows()) +
-                                   "; allow at least " + std::to_string(G.rows()));
+                                   " generators cannot enclose a set of dimension " +
+                                   std::to_string(G.rows()) + "; allow at least " +
+                                   std::to_string(G.rows()));
   }
   require_finite(G, "generator reduction", "the generator matrix");
   if (count_nonzero_columns(G) <= max_generators) return nonzero_columns(G);

@@ -39,14 +39,15 @@ Range image_row(const Box& V, MatrixIn T, Index i) {
 
 using Row = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
 
-/// Rounding errors of the nominal operations that made a measurement or a box, relative to their terms: less is no proof of
-/// emptiness.
+/// Rounding errors of the nominal operations that made a measurement or a box, relative to their
+/// terms: less is no proof of emptiness.
 constexpr double nominal_error = 1e-10;
 
 enum class Progress { none, some, empty };
 
-/// Contracts a box by one condition Σ_j row_j x_j ∈ y with y bounded. The sums of the other terms come from running sums
-/// from the left and from the right. A single free coordinate can be contracted; two or more block the row.
+/// Contracts a box by one condition Σ_j row_j x_j ∈ y with y bounded. The sums of the other terms
+/// come from running sums from the left and from the right. A single free coordinate can be
+/// contracted; two or more block the row.
 class RowContractor {
  public:
   /// `off`: y may be off by this share of its terms.
@@ -71,14 +72,16 @@ class RowContractor {
     }
     const double doubt = nominal_error * terms, room = off_ * terms;
     if (room > nominal_error * (y.upper - y.lower)) y = directed::plus(y, Range{-room, room});
-    if (frees == 0 && (after(0).lower - y.upper > doubt || y.lower - after(0).upper > doubt)) return Progress::empty;
+    if (frees == 0 && (after(0).lower - y.upper > doubt || y.lower - after(0).upper > doubt))
+      return Progress::empty;
     Progress progress = Progress::none;
     Range before{0, 0};
     for (Index j = 0; j < n; ++j) {
       const Range own = term(X, row, j);
       if (row[j] != 0 && (frees == 0 || j == free)) {
         const Range others = directed::plus(before, after(j + 1));
-        const Progress step = tighten(X, j, directed::over(directed::minus(y, others), row[j]), doubt / std::abs(row[j]));
+        const Progress step = tighten(X, j, directed::over(directed::minus(y, others), row[j]),
+                                      doubt / std::abs(row[j]));
         if (step == Progress::empty) return step;
         if (step == Progress::some) progress = step;
       }
@@ -90,7 +93,8 @@ class RowContractor {
  private:
   Range& after(Index j) { return after_[static_cast<std::size_t>(j)]; }
 
-  /// row_j x_j, with 0 for a free coordinate (it is then the only one and left out of its own `others`).
+  /// row_j x_j, with 0 for a free coordinate (it is then the only one and left out of its own
+  /// `others`).
   static Range term(const Box& X, const Row& row, Index j) {
     if (row[j] == 0 || !directed::is_finite(coordinate(X, j))) return {0, 0};
     return directed::times(row[j], coordinate(X, j));
@@ -98,7 +102,8 @@ class RowContractor {
 
   static double largest(Range x) { return std::max(std::abs(x.lower), std::abs(x.upper)); }
 
-  /// X_j ∩ x. They are called disjoint only if they are apart by more than `doubt`; nearer, X_j stays as it is.
+  /// X_j ∩ x. They are called disjoint only if they are apart by more than `doubt`; nearer, X_j
+  /// stays as it is.
   static Progress tighten(Box& X, Index j, Range x, double doubt) {
     if (!directed::is_finite(x)) return Progress::none;
     const double lower = std::max(X.lower[j], x.lower), upper = std::min(X.upper[j], x.upper);
@@ -106,7 +111,8 @@ class RowContractor {
     const double old_width = X.upper[j] - X.lower[j], width = upper - lower;
     X.lower[j] = lower;
     X.upper[j] = upper;
-    return std::isinf(old_width) || old_width - width > 1e-9 * old_width ? Progress::some : Progress::none;
+    return std::isinf(old_width) || old_width - width > 1e-9 * old_width ? Progress::some
+                                                                         : Progress::none;
   }
 
   std::vector<Range> after_;
@@ -119,10 +125,14 @@ void check(const Box& X, const char* what) {
   require_size(X.upper.size(), X.lower.size(), what, "the upper bound");
   for (Index i = 0; i < X.dim(); ++i) {
     const Range x = coordinate(X, i);
-    if (directed::is_finite(x) || (x.lower == directed::line().lower && x.upper == directed::line().upper)) continue;
+    if (directed::is_finite(x) ||
+        (x.lower == directed::line().lower && x.upper == directed::line().upper))
+      continue;
     const std::string where = std::string(what) + ": coordinate " + std::to_string(i);
-    if (std::isnan(x.lower) || std::isnan(x.upper)) throw Error(Errc::not_finite, where + " has a NaN bound");
-    throw Error(Errc::invalid, where + " is bounded on one side only; give two finite bounds or none");
+    if (std::isnan(x.lower) || std::isnan(x.upper))
+      throw Error(Errc::not_finite, where + " has a NaN bound");
+    throw Error(Errc::invalid,
+                where + " is bounded on one side only; give two finite bounds or none");
   }
 }
 
@@ -228,7 +238,9 @@ Box interval_map(const Box& X, const IntervalMatrix& A) {
     for (Index j = 0; j < X.dim(); ++j) {
       if (A.center(i, j) == 0 && A.radius(i, j) == 0) continue;
       const Range x = coordinate(X, j), a = matrix_entry(A, i, j);
-      sum = directed::is_finite(x) && directed::is_finite(a) ? directed::plus(sum, directed::times(a, x)) : directed::line();
+      sum = directed::is_finite(x) && directed::is_finite(a)
+                ? directed::plus(sum, directed::times(a, x))
+                : directed::line();
       if (!directed::is_finite(sum)) break;
     }
     store(Y, i, sum);
@@ -260,9 +272,11 @@ Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V, dou
   for (Index i = 0; i < C.rows(); ++i) {
     const Range noise = image_row(V, T, i);
     for (Index j = 0; j < T.cols(); ++j) {
-      if (T(i, j) != 0) size[i] += std::abs(T(i, j)) * std::max(std::abs(V.lower[j]), std::abs(V.upper[j]));
+      if (T(i, j) != 0)
+        size[i] += std::abs(T(i, j)) * std::max(std::abs(V.lower[j]), std::abs(V.upper[j]));
     }
-    y[static_cast<std::size_t>(i)] = directed::is_finite(noise) ? directed::minus(Range{z[i], z[i]}, noise) : noise;
+    y[static_cast<std::size_t>(i)] =
+        directed::is_finite(noise) ? directed::minus(Range{z[i], z[i]}, noise) : noise;
   }
   Box Y = X;
   RowContractor rows(X.dim(), off);

@@ -22,7 +22,8 @@ namespace {
 
 void require_no_overflow(const LineZonotope& X) {
   for (const Matrix* block : {&X.M, &X.G, &X.S, &X.A}) {
-    if (!vectors::all_finite(*block)) throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
+    if (!vectors::all_finite(*block))
+      throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
   }
   if (!vectors::all_finite(X.c) || !vectors::all_finite(X.b))
     throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
@@ -47,14 +48,17 @@ void keep_rows(LineZonotope& X, Terms& terms, const std::vector<Index>& kept) {
   terms.rows = Vector(terms.rows(kept));
 }
 
-/// Does this row say nothing that could be told from rounding? One that misses the set by less than proofs need is such a row.
+/// Does this row say nothing that could be told from rounding? One that misses the set by less than
+/// proofs need is such a row.
 bool is_vague(double terms, double reach, double b) {
-  return reach + std::abs(b) <= nominal_noise * terms || (std::abs(b) > reach && std::abs(b) <= nominal_margin * terms);
+  return reach + std::abs(b) <= nominal_noise * terms ||
+         (std::abs(b) > reach && std::abs(b) <= nominal_margin * terms);
 }
 
 }  // namespace
 
-Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands) {
+Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f,
+                   std::span<const Summand> summands) {
   constexpr const char* name = "sum of mapped sets";
   const Index m = A.rows();
   require_size(f.size(), m, name, "the translation");
@@ -95,15 +99,18 @@ Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<cons
     row += rows;
   };
   add(A, X, images.front());
-  for (std::size_t i = 0; i < summands.size(); ++i) add(summands[i].T, summands[i].set, images[i + 1]);
+  for (std::size_t i = 0; i < summands.size(); ++i)
+    add(summands[i].T, summands[i].set, images[i + 1]);
   require_no_overflow(Y);
   if (summands.empty()) return {std::move(Y), exact};
   return {with_residue(std::move(Y), terms), exact};
 }
 
-LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T, const LineZonotope& V) {
+LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T,
+                                const LineZonotope& V) {
   constexpr const char* name = "intersection with a measurement";
-  const Index p = C.rows(), lines = X.lines(), g = X.generators(), old = X.constraints() + V.constraints();
+  const Index p = C.rows(), lines = X.lines(), g = X.generators(),
+              old = X.constraints() + V.constraints();
   require_map(C, X.dim(), name, "C");
   require_map(T, V.dim(), name, "T");
   require_size(T.rows(), p, name, "the number of rows of T");
@@ -147,7 +154,8 @@ LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, M
     // z - T c_V - C c_X cancels where the sets touch: a residue is no statement
     Y.b[old + k] = std::abs(right) <= nominal_noise * center_terms ? 0 : right;
     terms.rows[old + k] = all_terms;
-    if (!(Y.lines() > 0 && !Y.S.row(old + k).isZero(0)) && is_vague(all_terms, Y.A.row(old + k).lpNorm<1>(), Y.b[old + k]))
+    if (!(Y.lines() > 0 && !Y.S.row(old + k).isZero(0)) &&
+        is_vague(all_terms, Y.A.row(old + k).lpNorm<1>(), Y.b[old + k]))
       continue;
     kept.push_back(old + k);
   }
@@ -169,14 +177,16 @@ Computed without_lines(const LineZonotope& X) {
   LinesSolved made = solve_for_lines(X);
   std::vector<Index> kept;
   for (Index i = 0; i < made.set.constraints(); ++i) {
-    if (!is_vague(made.row_magnitude[i], made.set.A.row(i).lpNorm<1>(), made.set.b[i])) kept.push_back(i);
+    if (!is_vague(made.row_magnitude[i], made.set.A.row(i).lpNorm<1>(), made.set.b[i]))
+      kept.push_back(i);
   }
   Terms terms{std::move(made.row_magnitude), std::move(made.state_magnitude)};
   keep_rows(made.set, terms, kept);
   return {std::move(made.set), std::move(terms), made.is_whole};
 }
 
-/// Zero columns carry nothing, except in a set proven wrong by its rows alone, which keeps its rows.
+/// Zero columns carry nothing, except in a set proven wrong by its rows alone, which keeps its
+/// rows.
 LineZonotope drop_zero_generators(LineZonotope X) {
   Index kept = 0;
   for (Index j = 0; j < X.generators(); ++j) {
@@ -195,10 +205,12 @@ LineZonotope drop_zero_generators(LineZonotope X) {
 
 }  // namespace
 
-Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraints, const LineReduction& how) {
+Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraints,
+               const LineReduction& how) {
   const Index n = X.dim();
   if (max_generators < n) {
-    throw Error(Errc::invalid, "reduce: " + std::to_string(max_generators) + " generators cannot enclose a set of dimension " +
+    throw Error(Errc::invalid, "reduce: " + std::to_string(max_generators) +
+                                   " generators cannot enclose a set of dimension " +
                                    std::to_string(n) + "; give at least " + std::to_string(n));
   }
   Reduced reduced;
@@ -213,7 +225,8 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
   if (has_false_row(reduced.set)) return {make_empty(n), true};
   if (reduced.set.generators() <= max_generators) return reduced;
   if (reduced.set.constraints() > most_constraints(n, max_generators)) {
-    Reduced fewer = eliminate_constraints(reduced.set, most_constraints(n, max_generators), how.constraints);
+    Reduced fewer =
+        eliminate_constraints(reduced.set, most_constraints(n, max_generators), how.constraints);
     reduced = {drop_zero_generators(std::move(fewer.set)), reduced.exact && fewer.exact};
     if (has_false_row(reduced.set)) return {make_empty(n), true};
     if (reduced.set.generators() <= max_generators) return reduced;

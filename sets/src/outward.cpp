@@ -13,8 +13,9 @@ namespace cordon::sets::outward {
 
 namespace {
 
-/// A right-hand side that cancels to this share of its terms may owe the rest to the rounding of the caller's data. It must not
-/// become a statement, such as 0 = 1e-17: it goes to the radius of its row.
+/// A right-hand side that cancels to this share of its terms may owe the rest to the rounding of
+/// the caller's data. It must not become a statement, such as 0 = 1e-17: it goes to the radius of
+/// its row.
 constexpr double data_noise = 1e-14;
 
 bool is_exact(const Vector& radius) { return radius.size() == 0 || (radius.array() == 0).all(); }
@@ -44,13 +45,15 @@ struct Mapped {
   LineForm X;
   Matrix TM;
 
-  Mapped(MatrixIn map, const LineForm& set) : T(map), X(product_is_exact(map, set.M) ? set : with_state_as_lines(set)) {
+  Mapped(MatrixIn map, const LineForm& set)
+      : T(map), X(product_is_exact(map, set.M) ? set : with_state_as_lines(set)) {
     Vector none = Vector::Zero(T.rows());
     TM = tracked_product(T, X.M, none);
   }
 };
 
-/// Blocks of several sets side by side, their constraints on the diagonal; rows of zeros below for `more` constraints.
+/// Blocks of several sets side by side, their constraints on the diagonal; rows of zeros below for
+/// `more` constraints.
 LineForm side_by_side(std::span<const Mapped> operands, Index n, Index more) {
   Index l = 0, g = 0, m = more;
   for (const Mapped& o : operands) {
@@ -58,7 +61,8 @@ LineForm side_by_side(std::span<const Mapped> operands, Index n, Index more) {
     g += o.X.generators();
     m += o.X.constraints();
   }
-  LineForm Y{Matrix::Zero(n, l), Matrix::Zero(n, g), Vector::Zero(n), Matrix::Zero(m, l), Matrix::Zero(m, g), Vector::Zero(m)};
+  LineForm Y{Matrix::Zero(n, l), Matrix::Zero(n, g), Vector::Zero(n),
+             Matrix::Zero(m, l), Matrix::Zero(m, g), Vector::Zero(m)};
   Index line = 0, generator = 0, row = 0;
   for (const Mapped& o : operands) {
     const Index rows = o.X.constraints();
@@ -74,7 +78,8 @@ LineForm side_by_side(std::span<const Mapped> operands, Index n, Index more) {
 
 }  // namespace
 
-Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<const Summand> summands) {
+Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f,
+                   std::span<const Summand> summands) {
   const Index m = A.rows();
   std::vector<Mapped> operands;
   operands.reserve(summands.size() + 1);
@@ -91,7 +96,8 @@ Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<cons
     line += o.X.lines();
     generator += o.X.generators();
     for (Index i = 0; i < m; ++i) {
-      for (Index k = 0; k < o.T.cols(); ++k) center[static_cast<std::size_t>(i)].add_product(o.T(i, k), o.X.c[k]);
+      for (Index k = 0; k < o.T.cols(); ++k)
+        center[static_cast<std::size_t>(i)].add_product(o.T(i, k), o.X.c[k]);
     }
   }
   for (Index i = 0; i < m; ++i) {
@@ -101,7 +107,8 @@ Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f, std::span<cons
   return {with_radii(Y, Vector::Zero(Y.constraints()), radius), is_exact(radius)};
 }
 
-Reduced strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T, const LineZonotope& V) {
+Reduced strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T,
+                           const LineZonotope& V) {
   // rows C(Mδ + Gξ) + T(M_V δ_V + G_V ξ_V) = z - C c - T c_V below those of X and V
   const Mapped operands[]{{C, X}, {T, V}};
   const Mapped &x = operands[0], &v = operands[1];
@@ -142,7 +149,8 @@ Reduced convex_hull(const LineZonotope& X, const LineZonotope& Y) {
   const LineForm Z = cordon::convex_hull(X, Y);
   const Index p = X.generators(), q = Y.generators();
   // ∅ by a row 0 = b: the other operand came back, as it is
-  if (Z.generators() != p + q + 1 + 2 * (p + q) || Z.constraints() != X.constraints() + Y.constraints() + 2 * (p + q))
+  if (Z.generators() != p + q + 1 + 2 * (p + q) ||
+      Z.constraints() != X.constraints() + Y.constraints() + 2 * (p + q))
     return {Z, true};
   // Rounded were the halves of c_X ± c_Y and, if they underflow, of b.
   Vector state = Vector::Zero(Z.dim()), rows = Vector::Zero(Z.constraints());
@@ -150,7 +158,8 @@ Reduced convex_hull(const LineZonotope& X, const LineZonotope& Y) {
     for (const double sign : {1.0, -1.0}) {
       Tracked sum{X.c[i], 0};
       sum.add(sign * Y.c[i]);
-      sum.widen(std::abs(sum.value) > 0 && std::abs(sum.value) < directed::safe ? rounding::tiny : 0.0);
+      sum.widen(std::abs(sum.value) > 0 && std::abs(sum.value) < directed::safe ? rounding::tiny
+                                                                                : 0.0);
       state[i] = plus_up(state[i], sum.error);
     }
   }
@@ -158,23 +167,29 @@ Reduced convex_hull(const LineZonotope& X, const LineZonotope& Y) {
     const double b = i < X.constraints() ? X.b[i] : Y.b[i - X.constraints()];
     if (b != 0 && std::abs(b) < directed::safe) rows[i] = rounding::tiny;
   }
-  return {with_radii(Z, rows, state), is_exact(state) && is_exact(rows) && X.lines() + Y.lines() == 0};
+  return {with_radii(Z, rows, state),
+          is_exact(state) && is_exact(rows) && X.lines() + Y.lines() == 0};
 }
 
 Reduced interval_map(const LineZonotope& X, const IntervalMatrix& A, const Box& hull) {
   Reduced mapped = affine_sum(X, A.center, Vector::Zero(A.rows()), {});
   if (A.is_exact()) return mapped;
-  const Box spread = sets::interval_map(hull, IntervalMatrix(Matrix::Zero(A.rows(), A.cols()), A.radius));
-  if (!spread.is_bounded()) {  // a free coordinate of the hull: so is the image. The box is centred at 0: the sum does not round.
+  const Box spread =
+      sets::interval_map(hull, IntervalMatrix(Matrix::Zero(A.rows(), A.cols()), A.radius));
+  if (!spread.is_bounded()) {  // a free coordinate of the hull: so is the image. The box is centred
+                               // at 0: the sum does not round.
     return {minkowski_sum(mapped.set, make_box(spread)), false};
   }
-  return {with_radii(mapped.set, Vector::Zero(mapped.set.constraints()), spread.upper.cwiseMax(-spread.lower)), false};
+  return {with_radii(mapped.set, Vector::Zero(mapped.set.constraints()),
+                     spread.upper.cwiseMax(-spread.lower)),
+          false};
 }
 
 Zonotope convex_hull(const Zonotope& X, const Zonotope& Y) {
   Zonotope Z = sets::convex_hull(X, Y);
   if (X.c == Y.c && X.G.cols() == Y.G.cols() && X.G == Y.G) return Z;
-  // Every entry is half a sum, rounded once: |error| ≤ u |entry|, and `tiny` where halving underflows.
+  // Every entry is half a sum, rounded once: |error| ≤ u |entry|, and `tiny` where halving
+  // underflows.
   Vector radius(Z.dim());
   for (Index i = 0; i < Z.dim(); ++i) {
     const double size = std::abs(Z.c[i]) + Z.G.row(i).lpNorm<1>();

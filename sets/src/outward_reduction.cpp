@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reductions with outward rounding: the nominal methods propose, and what they propose is repeated with bounds.
+// Reductions with outward rounding: the nominal methods propose, and what they propose is repeated
+// with bounds.
 #include <algorithm>
 #include <cmath>
 
@@ -19,15 +20,18 @@ namespace cordon::sets::outward {
 
 namespace {
 
-/// A column with a single entry below this share of its row's 1-norm counts as one of rounding errors.
+/// A column with a single entry below this share of its row's 1-norm counts as one of rounding
+/// errors.
 constexpr double rounding_share = 1e-9;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// H, square, with {Wξ} ⊆ {Hη}: the frame's columns, scaled. With R ≈ H⁻¹, E = I - R H and V = Σ_j |R w_j| it holds
-/// Y = Σ_j |H⁻¹ w_j| ≤ V + |E| Y, so that V + |E| 1 ≤ 1, |E| 1 < 1 proves Y ≤ 1. Nothing without a proof.
+/// H, square, with {Wξ} ⊆ {Hη}: the frame's columns, scaled. With R ≈ H⁻¹, E = I - R H and V = Σ_j
+/// |R w_j| it holds Y = Σ_j |H⁻¹ w_j| ≤ V + |E| Y, so that V + |E| 1 ≤ 1, |E| 1 < 1 proves Y ≤ 1.
+/// Nothing without a proof.
 std::optional<Matrix> enclosing_frame(const Matrix& W, const Matrix& directions) {
-  constexpr double flattest = 1e-13;  ///< a column below this share of the largest could not cover the others' rounding errors
+  constexpr double flattest = 1e-13;  ///< a column below this share of the largest could not cover
+                                      ///< the others' rounding errors
   const Index n = W.rows();
   const Vector scale = row_scales(W);
   const Matrix scaled = scale.asDiagonal() * W;
@@ -41,13 +45,17 @@ std::optional<Matrix> enclosing_frame(const Matrix& W, const Matrix& directions)
   for (int pass = 0; pass < 6; ++pass) {
     const Matrix H = frame * size.asDiagonal();
     const Matrix R = size.cwiseInverse().asDiagonal() * *inverse;
-    const Matrix E = (Matrix::Identity(n, n) - linalg::product(R, H)).cwiseAbs() + rounding::product_error(R, H);
-    const Matrix images = linalg::product(R, scaled).cwiseAbs() + rounding::product_error(R, scaled);
+    const Matrix E =
+        (Matrix::Identity(n, n) - linalg::product(R, H)).cwiseAbs() + rounding::product_error(R, H);
+    const Matrix images =
+        linalg::product(R, scaled).cwiseAbs() + rounding::product_error(R, scaled);
     const double slightly_more = 1 + 8 * rounding::gamma(W.cols() + 2 * n + 8);
-    const Vector residual = (E.rowwise().sum() * slightly_more).array() + 4 * static_cast<double>(n) * rounding::unit;
+    const Vector residual =
+        (E.rowwise().sum() * slightly_more).array() + 4 * static_cast<double>(n) * rounding::unit;
     const Vector reach = (images.rowwise().sum() + residual) * slightly_more;
     if (!reach.allFinite()) return std::nullopt;
-    if (reach.maxCoeff() <= 1 && residual.maxCoeff() < 0.5) return Matrix(scale.cwiseInverse().asDiagonal() * H);
+    if (reach.maxCoeff() <= 1 && residual.maxCoeff() < 0.5)
+      return Matrix(scale.cwiseInverse().asDiagonal() * H);
     for (Index i = 0; i < n; ++i) {
       if (reach[i] > 1) size[i] *= reach[i] * (1 + 16 * rounding::unit);
     }
@@ -65,8 +73,9 @@ Matrix without_zero_columns(const Matrix& G) {
   return kept;
 }
 
-/// G apart: columns of rounding errors, added up per coordinate (the same set but for the rounding of the sum), and the others.
-/// The nominal methods then choose among the columns that they would see without rounding errors.
+/// G apart: columns of rounding errors, added up per coordinate (the same set but for the rounding
+/// of the sum), and the others. The nominal methods then choose among the columns that they would
+/// see without rounding errors.
 struct Columns {
   Matrix others;
   Vector radius;
@@ -100,7 +109,8 @@ void follow_plan(TrackedForm& form, Index max_constraints, const ConstraintElimi
   for (const EliminationStep& step : plan_elimination(nominal, max_constraints, options)) {
     const Index row = row_of[at(step.row)];
     const Index col = factor_of.empty() ? 0 : factor_of[at(step.col)];
-    if (step.kind != EliminationStep::drop && form.coefficient(row, col) == 0) {  // cancelled here, not there
+    if (step.kind != EliminationStep::drop &&
+        form.coefficient(row, col) == 0) {  // cancelled here, not there
       form.drop(row);
       continue;
     }
@@ -127,7 +137,8 @@ void eliminate_bounded_lines(TrackedForm& form, const std::vector<BoundedLines::
     pivot_rows.push_back(pivot.row);
     pivot_factors.push_back(pivot.factor);
   }
-  for (Index row = 0, col = 0; form.best_pivot(pivot_rows, pivot_factors, row, col);) form.eliminate(row, col);
+  for (Index row = 0, col = 0; form.best_pivot(pivot_rows, pivot_factors, row, col);)
+    form.eliminate(row, col);
   if (!pivots.empty()) form.drop_vague_rows();
 }
 
@@ -180,8 +191,9 @@ void set_lifted_generators(LineForm& X, const Matrix& lifted) {
 Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction method) {
   if (max_generators < G.rows()) {
     throw Error(Errc::invalid, "generator reduction: " + std::to_string(max_generators) +
-                                   " generators cannot enclose a set of dimension " + std::to_string(G.rows()) +
-                                   "; allow at least " + std::to_string(G.rows()));
+                                   " generators cannot enclose a set of dimension " +
+                                   std::to_string(G.rows()) + "; allow at least " +
+                                   std::to_string(G.rows()));
   }
   require_finite(G, "generator reduction", "the generator matrix");
   const Matrix all = without_zero_columns(G);
@@ -193,11 +205,13 @@ Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction me
   Matrix dense(static_cast<Index>(rows.size()), all.cols());
   for (Index i = 0; i < dense.rows(); ++i) dense.row(i) = all.row(rows[at(i)]);
   const Columns columns(dense);
-  const Matrix reduced =
-      columns.count() <= max_generators ? columns.beside(columns.others) : reduce_columns(columns, max_generators, method);
+  const Matrix reduced = columns.count() <= max_generators
+                             ? columns.beside(columns.others)
+                             : reduce_columns(columns, max_generators, method);
   Matrix H = Matrix::Zero(G.rows(), reduced.cols());
   for (Index i = 0; i < dense.rows(); ++i) H.row(rows[at(i)]) = reduced.row(i);
-  if (!H.allFinite()) throw Error(Errc::not_finite, "generator reduction: overflow; scale the problem");
+  if (!H.allFinite())
+    throw Error(Errc::not_finite, "generator reduction: overflow; scale the problem");
   return without_zero_columns(H);
 }
 
@@ -207,11 +221,14 @@ Reduced enclose_without_lines(const LineZonotope& X) {
   if (bounded.pivots.empty()) return {std::move(bounded.set), true};
   TrackedForm form(std::move(bounded.set));
   eliminate_bounded_lines(form, bounded.pivots);
-  return {form.result(), form.without_rounding()};  // the bounds of the new factors follow from the rows
+  return {form.result(),
+          form.without_rounding()};  // the bounds of the new factors follow from the rows
 }
 
-Reduced eliminate_constraints(const LineZonotope& X, Index max_constraints, const ConstraintElimination& options) {
-  if (max_constraints < 0) throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
+Reduced eliminate_constraints(const LineZonotope& X, Index max_constraints,
+                              const ConstraintElimination& options) {
+  if (max_constraints < 0)
+    throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
   if (X.constraints() <= max_constraints) return {X, true};
   TrackedForm form(X);
   if (options.rescale && !form.rescale()) return {make_empty(X.dim()), true};
@@ -223,25 +240,31 @@ Reduced eliminate_constraints(const LineZonotope& X, Index max_constraints, cons
 
 namespace {
 
-/// A row that no factors satisfy. Rounding errors of an elimination give a false row generators of their own.
+/// A row that no factors satisfy. Rounding errors of an elimination give a false row generators of
+/// their own.
 bool has_row_out_of_reach(const LineForm& X) {
   for (Index i = 0; i < X.constraints(); ++i) {
-    if (X.S.row(i).isZero(0) && std::abs(X.b[i]) > rounding::norm_1(X.A.row(i).transpose()).upper) return true;
+    if (X.S.row(i).isZero(0) && std::abs(X.b[i]) > rounding::norm_1(X.A.row(i).transpose()).upper)
+      return true;
   }
   return false;
 }
 
 }  // namespace
 
-Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraints, const LineReduction& how) {
+Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraints,
+               const LineReduction& how) {
   const Index n = X.dim();
   if (max_generators < n) {
-    throw Error(Errc::invalid, "reduce: " + std::to_string(max_generators) + " generators cannot enclose a set of dimension " +
+    throw Error(Errc::invalid, "reduce: " + std::to_string(max_generators) +
+                                   " generators cannot enclose a set of dimension " +
                                    std::to_string(n) + "; give at least " + std::to_string(n));
   }
   Reduced reduced = enclose_without_lines(X);
   LineForm& Y = reduced.set;
-  const auto fits = [&] { return Y.generators() <= max_generators && Y.constraints() <= max_constraints; };
+  const auto fits = [&] {
+    return Y.generators() <= max_generators && Y.constraints() <= max_constraints;
+  };
   if (fits()) return reduced;
   const auto eliminate = [&](Index most) {
     reduced = outward::eliminate_constraints(Y, most, how.constraints);
@@ -253,7 +276,9 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
     eliminate(most_constraints(n, max_generators));
     if (has_false_row(Y) || has_row_out_of_reach(Y)) return {make_empty(n), true};
   }
-  if (!fits()) set_lifted_generators(Y, outward::reduce_generators(lifted_generators(Y), max_generators, how.generators));
+  if (!fits())
+    set_lifted_generators(
+        Y, outward::reduce_generators(lifted_generators(Y), max_generators, how.generators));
   reduced.exact = false;
   return reduced;
 }

@@ -12,7 +12,8 @@ namespace cordon::sets::outward {
 
 namespace {
 
-/// Gaps below this share of their terms are no proof of emptiness: the data may have been rounded by the caller.
+/// Gaps below this share of their terms are no proof of emptiness: the data may have been rounded
+/// by the caller.
 constexpr double data_error = 1e-10;
 
 /// The zonotope ⊕ the box of half widths `radius`.
@@ -51,24 +52,32 @@ Strip strip_of(double z, VectorIn row, const Zonotope& V) {
     d.subtract_product(row[k], V.c[k]);
     terms += std::abs(row[k] * V.c[k]);
   }
-  for (Index j = 0; j < V.generators(); ++j) sigma = plus_up(sigma, tracked_dot(row, V.G.col(j)).magnitude());
+  for (Index j = 0; j < V.generators(); ++j)
+    sigma = plus_up(sigma, tracked_dot(row, V.G.col(j)).magnitude());
   return {d.value, plus_up(sigma, d.error), terms};
 }
 
-/// Z(λ) = c + λ(d - ρᵀc) + (I - λρᵀ)Gξ + σλη, an enclosure for the λ that is stored; false if the intersection is proven empty.
+/// Z(λ) = c + λ(d - ρᵀc) + (I - λρᵀ)Gξ + σλη, an enclosure for the λ that is stored; false if the
+/// intersection is proven empty.
 bool intersect(Widened& X, VectorIn rho, Strip strip, StripMethod method) {
   const Seen seen(X, rho);
   const double spread = seen.spread();
-  const double lowest = rounding::down(seen.middle.value - spread), highest = rounding::up(seen.middle.value + spread);
-  const double lower = rounding::down(strip.d - strip.sigma), upper = rounding::up(strip.d + strip.sigma);
-  const double doubt = data_error * (strip.terms + strip.sigma + rho.cwiseAbs().dot(X.Z.c.cwiseAbs()) + spread);
+  const double lowest = rounding::down(seen.middle.value - spread),
+               highest = rounding::up(seen.middle.value + spread);
+  const double lower = rounding::down(strip.d - strip.sigma),
+               upper = rounding::up(strip.d + strip.sigma);
+  const double doubt =
+      data_error * (strip.terms + strip.sigma + rho.cwiseAbs().dot(X.Z.c.cwiseAbs()) + spread);
   if (lowest - upper > doubt || lower - highest > doubt) return false;
   if (lower <= lowest && highest <= upper) return true;
-  if (lowest > lower || highest < upper) {  // the part of the strip that Z meets; they may cross by less than the doubt
+  if (lowest > lower ||
+      highest <
+          upper) {  // the part of the strip that Z meets; they may cross by less than the doubt
     const double low = std::max(lower, lowest), high = std::min(upper, highest);
     strip.d = low / 2 + high / 2;
-    strip.sigma = std::max({directed::plus(high, -strip.d).upper, directed::plus(strip.d, -low).upper,
-                            directed::plus(low, -strip.d).upper, directed::plus(strip.d, -high).upper});
+    strip.sigma =
+        std::max({directed::plus(high, -strip.d).upper, directed::plus(strip.d, -low).upper,
+                  directed::plus(low, -strip.d).upper, directed::plus(strip.d, -high).upper});
   }
   Tracked shift{strip.d, 0};
   shift.subtract(seen.middle.value);
@@ -110,7 +119,8 @@ bool intersect(Widened& X, VectorIn rho, Strip strip, StripMethod method) {
 
 }  // namespace
 
-std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, MatrixIn T, const Zonotope& V, StripMethod method) {
+std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, MatrixIn T,
+                                const Zonotope& V, StripMethod method) {
   constexpr const char* name = "correction of a zonotope";
   check(Z, name);
   check(V, name);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volume between an inscribed and a circumscribed polytope. Both come from the hull of points of the set that are moved to a
-// grid: computed in integers, it is exact however near the points are to each other.
+// Volume between an inscribed and a circumscribed polytope. Both come from the hull of points of
+// the set that are moved to a grid: computed in integers, it is exact however near the points are
+// to each other.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,12 +18,15 @@ namespace cordon::sets {
 namespace {
 
 using Point = Eigen::Vector3d;
-using Node = Eigen::Matrix<std::int64_t, 3, 1>;  ///< point of the grid, counted in steps from the origin
+using Node =
+    Eigen::Matrix<std::int64_t, 3, 1>;  ///< point of the grid, counted in steps from the origin
 __extension__ typedef __int128 Wide;
 
-constexpr double flat_tolerance = 1e-12;  ///< thickness, relative to the interval hull, that counts as none
-constexpr double step = 0x1p-36;          ///< of the grid
-constexpr double moved = 0.8661 * step;   ///< how far a point is moved to the grid at most: √3/2 steps
+constexpr double flat_tolerance =
+    1e-12;                        ///< thickness, relative to the interval hull, that counts as none
+constexpr double step = 0x1p-36;  ///< of the grid
+constexpr double moved =
+    0.8661 * step;  ///< how far a point is moved to the grid at most: √3/2 steps
 /// Differences of such nodes are at most 2⁴¹ steps, so that their determinants stay below 2¹²⁶.
 constexpr double largest_coordinate = 16;
 
@@ -30,16 +34,20 @@ Node nearest_node(const Point& x) { return (x / step).array().round().cast<std::
 Point position(const Node& a) { return a.cast<double>() * step; }
 
 Point cross(const Point& a, const Point& b) {
-  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
+          a.x() * b.y() - a.y() * b.x()};
 }
 
 /// The same without rounding errors.
 std::array<Wide, 3> exact_cross(const Node& a, const Node& b) {
-  const auto minor = [&](Index i, Index j) { return static_cast<Wide>(a[i]) * b[j] - static_cast<Wide>(a[j]) * b[i]; };
+  const auto minor = [&](Index i, Index j) {
+    return static_cast<Wide>(a[i]) * b[j] - static_cast<Wide>(a[j]) * b[i];
+  };
   return {minor(1, 2), minor(2, 0), minor(0, 1)};
 }
 
-/// Triangle with its corners counter-clockwise from outside; neighbour i lies across the edge from corner i to corner i + 1.
+/// Triangle with its corners counter-clockwise from outside; neighbour i lies across the edge from
+/// corner i to corner i + 1.
 struct Facet {
   std::array<std::size_t, 3> corner;
   std::array<std::size_t, 3> neighbour{};
@@ -58,8 +66,10 @@ class Hull {
   /// The hull of the origin and the three unit points.
   Hull() {
     const Node origin = Node::Zero();
-    nodes_ = {origin, nearest_node(Point::Unit(0)), nearest_node(Point::Unit(1)), nearest_node(Point::Unit(2))};
-    const std::array<std::array<std::size_t, 3>, 4> corners{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+    nodes_ = {origin, nearest_node(Point::Unit(0)), nearest_node(Point::Unit(1)),
+              nearest_node(Point::Unit(2))};
+    const std::array<std::array<std::size_t, 3>, 4> corners{
+        {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
     for (const auto& corner : corners) add_facet(corner);
     // across 0-2, 2-1, 1-0; 0-1, 1-3, 3-0; 1-2, 2-3, 3-1; 0-3, 3-2, 2-0
     facets_[0].neighbour = {3, 2, 1};
@@ -74,7 +84,8 @@ class Hull {
     double six = 0;
     for (const Facet& f : facets_) {
       if (!f.alive) continue;
-      const Point a = position(nodes_[f.corner[0]]), b = position(nodes_[f.corner[1]]), c = position(nodes_[f.corner[2]]);
+      const Point a = position(nodes_[f.corner[0]]), b = position(nodes_[f.corner[1]]),
+                  c = position(nodes_[f.corner[2]]);
       six += a.dot(cross(b, c));
     }
     return six / 6;
@@ -85,12 +96,13 @@ class Hull {
     return f.exact[0] * d[0] + f.exact[1] * d[1] + f.exact[2] * d[2] > 0;
   }
 
-  /// Replaces the facets that x sees, found from `start` (which it sees), by a cone with apex x. The edges around them form one
-  /// cycle, and no edge is in line with x.
+  /// Replaces the facets that x sees, found from `start` (which it sees), by a cone with apex x.
+  /// The edges around them form one cycle, and no edge is in line with x.
   void insert(std::size_t start, const Node& x) {
     nodes_.push_back(x);
     const std::vector<Edge> horizon = remove_seen(start, x);
-    std::unordered_map<std::size_t, std::size_t> by_start, by_end;  // first and second corner of a horizon edge → its new facet
+    std::unordered_map<std::size_t, std::size_t> by_start,
+        by_end;  // first and second corner of a horizon edge → its new facet
     for (std::size_t k = 0; k < horizon.size(); ++k) {
       by_start[horizon[k].from] = facets_.size() + k;
       by_end[horizon[k].to] = facets_.size() + k;
@@ -103,7 +115,8 @@ class Hull {
   }
 
  private:
-  /// Edge of a removed facet whose other facet, `outside`, stays; it is that one's edge number `side`.
+  /// Edge of a removed facet whose other facet, `outside`, stays; it is that one's edge number
+  /// `side`.
   struct Edge {
     std::size_t from, to, outside, side;
   };
@@ -112,7 +125,8 @@ class Hull {
     Facet f{corner};
     const Node& p = nodes_[corner[0]];
     f.exact = exact_cross(nodes_[corner[1]] - p, nodes_[corner[2]] - p);
-    f.normal = Point(static_cast<double>(f.exact[0]), static_cast<double>(f.exact[1]), static_cast<double>(f.exact[2]));
+    f.normal = Point(static_cast<double>(f.exact[0]), static_cast<double>(f.exact[1]),
+                     static_cast<double>(f.exact[2]));
     f.normal.stableNormalize();
     f.offset = f.normal.dot(position(p));
     facets_.push_back(f);
@@ -137,7 +151,8 @@ class Hull {
         const Facet& outside = facets_[f.neighbour[i]];
         if (outside.seen_by == mark) continue;
         const std::size_t to = f.corner[(i + 1) % 3];
-        const auto side = std::find(outside.corner.begin(), outside.corner.end(), to) - outside.corner.begin();
+        const auto side =
+            std::find(outside.corner.begin(), outside.corner.end(), to) - outside.corner.begin();
         horizon.push_back({f.corner[i], to, f.neighbour[i], static_cast<std::size_t>(side)});
       }
     }
@@ -148,7 +163,8 @@ class Hull {
   std::vector<Facet> facets_;
 };
 
-/// Of the support points along ±d, the one farther from the line or plane through `origin`, measured along d.
+/// Of the support points along ±d, the one farther from the line or plane through `origin`,
+/// measured along d.
 Point farther(const ScaledSet& set, const Point& d, const Point& origin) {
   const Point a = set.query(d).x, b = set.query(-d).x;
   return d.dot(a - origin) >= d.dot(origin - b) ? a : b;
@@ -187,7 +203,8 @@ bool spanning_simplex(const ScaledSet& set, std::array<Point, 4>& p) {
   return std::abs(normal.dot(p[3] - p[0])) > flat_tolerance;
 }
 
-/// A point inside of the first simplex, farther than 0.14 from its facets, and thus from those of every hull.
+/// A point inside of the first simplex, farther than 0.14 from its facets, and thus from those of
+/// every hull.
 Point inner_point() { return Point::Constant(0.25); }
 
 double distance(const Facet& f) { return f.offset - f.normal.dot(inner_point()); }
@@ -205,9 +222,10 @@ bool ask_facets(Hull& hull, const ScaledSet& set, Index& queries, Index max_quer
   return true;
 }
 
-/// With o the inner point, o + λ (hull - o) ⊆ X ⊆ o + μ (hull - o). The outer one holds as every facet's half-space, moved
-/// away from o by its part of μ, holds X. The inner one: the support functions differ by `moved` at most, which is a share of
-/// moved / distance of the hull's. A support below a facet contradicts the points of X and lowers λ in the same way.
+/// With o the inner point, o + λ (hull - o) ⊆ X ⊆ o + μ (hull - o). The outer one holds as every
+/// facet's half-space, moved away from o by its part of μ, holds X. The inner one: the support
+/// functions differ by `moved` at most, which is a share of moved / distance of the hull's. A
+/// support below a facet contradicts the points of X and lowers λ in the same way.
 VolumeBounds bounds_of(Hull& hull) {
   double inner = 1, outer = 1;
   for (const Facet& f : hull.facets()) {
@@ -221,14 +239,16 @@ VolumeBounds bounds_of(Hull& hull) {
   return {volume * inner * inner * inner, volume * outer * outer * outer, false};
 }
 
-/// Adds the farthest point beyond each facet where the gap is more than its share of `aim`. False if there is none.
+/// Adds the farthest point beyond each facet where the gap is more than its share of `aim`. False
+/// if there is none.
 bool grow(Hull& hull, double aim) {
   bool grown = false;
   const std::size_t count = hull.facets().size();
   for (std::size_t i = 0; i < count; ++i) {
     const Facet& f = hull.facets()[i];
     if (!f.alive || f.support - f.offset <= aim / 8 * distance(f)) continue;
-    if (!(f.farthest.cwiseAbs().maxCoeff() <= largest_coordinate)) continue;  // nothing but noise lies there
+    if (!(f.farthest.cwiseAbs().maxCoeff() <= largest_coordinate))
+      continue;  // nothing but noise lies there
     const Node x = nearest_node(f.farthest);
     if (!hull.sees(x, f)) continue;
     hull.insert(i, x);
@@ -237,7 +257,9 @@ bool grow(Hull& hull, double aim) {
   return grown;
 }
 
-bool agree(const VolumeBounds& bounds, double tolerance) { return bounds.upper <= bounds.lower * (1 + tolerance); }
+bool agree(const VolumeBounds& bounds, double tolerance) {
+  return bounds.upper <= bounds.lower * (1 + tolerance);
+}
 
 }  // namespace
 

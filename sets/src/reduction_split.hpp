@@ -13,7 +13,8 @@ struct ReductionSplit {
   bool frame_first = false;  ///< its place in the result: later choices among equals depend on it
 };
 
-/// The split of `reduce_generators` for max_generators ≥ n: kept and frame have at most max_generators columns together.
+/// The split of `reduce_generators` for max_generators ≥ n: kept and frame have at most
+/// max_generators columns together.
 ReductionSplit split_generators(const Matrix& G, Index max_generators, GeneratorReduction method);
 
 /// Half widths of the interval hull of {Gξ}, rounded up.

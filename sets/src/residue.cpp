@@ -27,7 +27,8 @@ bool is_positive_definite(Matrix& K) {
   return true;
 }
 
-/// Rows of [G; A] with noise in units of `noise` / `nominal_margin`, and of them only every `stride`-th factor.
+/// Rows of [G; A] with noise in units of `noise` / `nominal_margin`, and of them only every
+/// `stride`-th factor.
 Rows noisy_rows(const LineForm& X, const Vector& noise, Index count, Index stride) {
   const Index n = X.dim(), taken = (X.generators() + stride - 1) / stride;
   Rows rows = Rows::Zero(count, vectors::padded(taken));
@@ -51,8 +52,8 @@ bool holds_unit_ball(const Rows& H) {
   return is_positive_definite(K);
 }
 
-/// Has every row and coordinate that was computed a factor of its own, in no other row and coordinate, that covers its noise? As
-/// those of disturbances are, which come last.
+/// Has every row and coordinate that was computed a factor of its own, in no other row and
+/// coordinate, that covers its noise? As those of disturbances are, which come last.
 bool have_own_factors(const LineForm& X, const Terms& terms) {
   const Index n = X.dim(), m = X.constraints();
   Index open = (terms.state.array() > 0).count() + (terms.rows.array() > 0).count();
@@ -72,20 +73,23 @@ bool have_own_factors(const LineForm& X, const Terms& terms) {
     if (entries != 1 || covered[static_cast<std::size_t>(place)]) continue;
     const double size = place < n ? X.G(place, j) : X.A(place - n, j);
     const double computed_from = place < n ? terms.state[place] : terms.rows[place - n];
-    if (!(computed_from > 0) || !(nominal_noise * computed_from <= nominal_margin * std::abs(size))) continue;
+    if (!(computed_from > 0) || !(nominal_noise * computed_from <= nominal_margin * std::abs(size)))
+      continue;
     covered[static_cast<std::size_t>(place)] = true;
     --open;
   }
   return open == 0;
 }
 
-/// Does {[G; A]ξ : ‖ξ‖₂ ≤ 1} hold the ellipsoid with the half axes `noise` / `nominal_margin`? Rows without noise do not count.
-/// With a part of the factors it is smaller, so that what holds for some, as it does nearly always, holds for all.
+/// Does {[G; A]ξ : ‖ξ‖₂ ≤ 1} hold the ellipsoid with the half axes `noise` / `nominal_margin`? Rows
+/// without noise do not count. With a part of the factors it is smaller, so that what holds for
+/// some, as it does nearly always, holds for all.
 bool is_wide(const LineForm& X, const Vector& noise) {
   const Index g = X.generators(), count = (noise.array() > 0).count();
   if (count == 0 || g == 0) return count == 0;
   const Index stride = g / (count + 8);
-  return (stride > 1 && holds_unit_ball(noisy_rows(X, noise, count, stride))) || holds_unit_ball(noisy_rows(X, noise, count, 1));
+  return (stride > 1 && holds_unit_ball(noisy_rows(X, noise, count, stride))) ||
+         holds_unit_ball(noisy_rows(X, noise, count, 1));
 }
 
 }  // namespace
@@ -103,9 +107,11 @@ LineForm with_residue(LineForm X, const Terms& terms) {
   if (have_own_factors(X, terms)) return X;
   const Index n = X.dim(), m = X.constraints();
   Vector noise(n + m);
-  noise << terms.state, terms.rows.cwiseMax(X.b.cwiseAbs().cwiseMax(X.A.cwiseAbs().rowwise().sum()));
+  noise << terms.state,
+      terms.rows.cwiseMax(X.b.cwiseAbs().cwiseMax(X.A.cwiseAbs().rowwise().sum()));
   for (Index i = 0; i < m; ++i) {
-    if (X.lines() > 0 && !X.S.row(i).isZero(0)) noise[n + i] = terms.rows[i];  // lines satisfy such a row
+    if (X.lines() > 0 && !X.S.row(i).isZero(0))
+      noise[n + i] = terms.rows[i];  // lines satisfy such a row
   }
   noise *= nominal_noise;
   if (is_wide(X, noise)) return X;

@@ -8,7 +8,8 @@
 
 namespace cordon::sets {
 
-/// Powers of two that bring the largest entry of each row into [1/2, 1); 1 for a zero row. Scaling by them is exact.
+/// Powers of two that bring the largest entry of each row into [1/2, 1); 1 for a zero row. Scaling
+/// by them is exact.
 inline void take_row_scales(MatrixIn G, Vector& scale) {
   scale.resize(G.rows());
   for (Index i = 0; i < G.rows(); ++i) {

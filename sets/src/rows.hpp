@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Matrices by rows. The steps of an observer have some dozens of numbers in each: for these a plain loop is faster than preparing
-// for large ones. Large ones go the usual way.
+// Matrices by rows. The steps of an observer have some dozens of numbers in each: for these a plain
+// loop is faster than preparing for large ones. Large ones go the usual way.
 #pragma once
 
 #include "cordon/core/kept_memory.hpp"

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double line_range = 10;
 
-/// Some (δ, ξ) that satisfies the constraints with the smallest ‖ξ‖∞. Multipliers P with PᵀS = 0 leave rows in ξ alone.
+/// Some (δ, ξ) that satisfies the constraints with the smallest ‖ξ‖∞. Multipliers P with PᵀS = 0
+/// leave rows in ξ alone.
 std::optional<Vector> central_factors(const LineForm& X) {
   const Matrix P = linalg::null_space(X.S.transpose());
   BoxedProgram program(linalg::transposed_product(P, X.A), linalg::transposed_product(P, X.b));
@@ -38,7 +39,8 @@ LineForm equilibrated(LineForm X) {
   return X;
 }
 
-/// Hit-and-run: a random chord of {z₀ + Nt : |z_i - m_i| ≤ r_i} through the present point, a uniform point on it.
+/// Hit-and-run: a random chord of {z₀ + Nt : |z_i - m_i| ≤ r_i} through the present point, a
+/// uniform point on it.
 class Walk {
  public:
   Walk(Vector start, Matrix N, Vector middle, Vector radius)
@@ -56,12 +58,14 @@ class Walk {
     double first = -std::numeric_limits<double>::infinity(), last = -first;
     for (Index i = 0; i < along.size(); ++i) {
       if (along[i] == 0) continue;
-      const double a = (-radius_[i] - offset[i]) / along[i], b = (radius_[i] - offset[i]) / along[i];
+      const double a = (-radius_[i] - offset[i]) / along[i],
+                   b = (radius_[i] - offset[i]) / along[i];
       first = std::max(first, std::min(a, b));
       last = std::min(last, std::max(a, b));
     }
     const double s = random.unit();
-    if (std::isfinite(first) && std::isfinite(last) && first < last) t_ += (first + s * (last - first)) * direction;
+    if (std::isfinite(first) && std::isfinite(last) && first < last)
+      t_ += (first + s * (last - first)) * direction;
   }
 
  private:
@@ -99,7 +103,8 @@ std::optional<Matrix> sample(const LineForm& X, Index count, std::uint64_t seed)
   if (!start || (start->tail(X.generators()).array().abs() > 1 + 1e-9).any()) return std::nullopt;
   Matrix rows(X.constraints(), factors);
   rows << Y.S, Y.A;
-  if ((linalg::product(rows, *start) - Y.b).lpNorm<Eigen::Infinity>() > 1e-9 * (1 + start->lpNorm<Eigen::Infinity>())) {
+  if ((linalg::product(rows, *start) - Y.b).lpNorm<Eigen::Infinity>() >
+      1e-9 * (1 + start->lpNorm<Eigen::Infinity>())) {
     return std::nullopt;
   }
   Vector middle = Vector::Zero(factors), radius = Vector::Ones(factors);

@@ -13,7 +13,8 @@ namespace cordon::sets {
 
 namespace {
 
-/// Accumulated rounding errors of a nominal set, relative to its size: less is no proof of emptiness.
+/// Accumulated rounding errors of a nominal set, relative to its size: less is no proof of
+/// emptiness.
 constexpr double nominal_error = 1e-10;
 
 /// A zonotope that is known up to rounding errors, coordinate by coordinate.
@@ -32,8 +33,10 @@ rounding::Range dot(VectorIn a, VectorIn b) {
   return (a.array() * b.array() != 0).any() ? rounding::dot(a, b) : rounding::Range{0, 0};
 }
 
-/// Z(λ); the generators that vanish up to rounding (those parallel to λ, where ρᵀλ = 1) are dropped.
-Zonotope member_of_family(const Zonotope& Z, VectorIn rho, double shift, double sigma, const Vector& lambda) {
+/// Z(λ); the generators that vanish up to rounding (those parallel to λ, where ρᵀλ = 1) are
+/// dropped.
+Zonotope member_of_family(const Zonotope& Z, VectorIn rho, double shift, double sigma,
+                          const Vector& lambda) {
   Matrix G(Z.dim(), Z.generators() + 1);
   for (Index j = 0; j < Z.generators(); ++j) {
     const auto g = Z.G.col(j);
@@ -45,14 +48,18 @@ Zonotope member_of_family(const Zonotope& Z, VectorIn rho, double shift, double 
   return drop_zero_generators({Z.c + lambda * shift, std::move(G)});
 }
 
-/// Puts Z(λ) in place of Z; false if the intersection is proven empty. The errors of every ρᵀg are multiplied by λ: they widen
-/// the strip. So does the noise of the coordinates, which this operation increases.
+/// Puts Z(λ) in place of Z; false if the intersection is proven empty. The errors of every ρᵀg are
+/// multiplied by λ: they widen the strip. So does the noise of the coordinates, which this
+/// operation increases.
 bool intersect(Computed& X, VectorIn rho, Strip strip, StripMethod method) {
   const Zonotope& Z = X.Z;
   const rounding::Range middle = dot(rho, Z.c);
-  const double spread = Z.generators() == 0 ? 0.0 : rounding::residual_norm_1(Vector::Zero(Z.generators()), Z.G, rho);
-  const double lowest = rounding::down(middle.lower - spread), highest = rounding::up(middle.upper + spread);
-  const double lower = rounding::down(strip.d - strip.sigma), upper = rounding::up(strip.d + strip.sigma);
+  const double spread =
+      Z.generators() == 0 ? 0.0 : rounding::residual_norm_1(Vector::Zero(Z.generators()), Z.G, rho);
+  const double lowest = rounding::down(middle.lower - spread),
+               highest = rounding::up(middle.upper + spread);
+  const double lower = rounding::down(strip.d - strip.sigma),
+               upper = rounding::up(strip.d + strip.sigma);
   const double margin = nominal_error * (strip.terms + rho.cwiseAbs().dot(Z.c.cwiseAbs()) + spread);
   if (lowest - upper > margin || lower - highest > margin) return false;
   if (lower <= lowest && highest <= upper) return true;
@@ -64,8 +71,9 @@ bool intersect(Computed& X, VectorIn rho, Strip strip, StripMethod method) {
     sigma = rounding::up(std::abs(high / 2 - low / 2));
   }
   // d - ρᵀc cancels where Z is far from 0; what is lost there widens the strip.
-  const rounding::Range difference =
-      middle.lower == middle.upper ? rounding::Range{d - middle.lower, d - middle.lower} : rounding::subtract({d, d}, middle);
+  const rounding::Range difference = middle.lower == middle.upper
+                                         ? rounding::Range{d - middle.lower, d - middle.lower}
+                                         : rounding::subtract({d, d}, middle);
   const double shift = difference.lower / 2 + difference.upper / 2;
   sigma += difference.upper / 2 - difference.lower / 2;
   Vector sizes;
@@ -81,20 +89,24 @@ bool intersect(Computed& X, VectorIn rho, Strip strip, StripMethod method) {
 
 }  // namespace
 
-std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double d, double sigma, StripMethod method) {
+std::optional<Zonotope> intersect_strip(const Zonotope& Z, VectorIn rho, double d, double sigma,
+                                        StripMethod method) {
   constexpr const char* name = "strip intersection";
   check(Z, name);
   require_size(rho.size(), Z.dim(), name, "the normal");
   require_finite(rho, name, "the normal");
   require_finite(d, name, "the offset");
   require_finite(sigma, name, "the half width");
-  if (sigma < 0) throw Error(Errc::invalid, "strip intersection: the half width is negative; it must be at least 0");
+  if (sigma < 0)
+    throw Error(Errc::invalid,
+                "strip intersection: the half width is negative; it must be at least 0");
   Computed X{Z, Vector::Zero(Z.dim())};
   if (!intersect(X, rho, {d, sigma, std::abs(d)}, method)) return std::nullopt;
   return std::move(X.Z);
 }
 
-std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, MatrixIn T, const Zonotope& V, StripMethod method) {
+std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, MatrixIn T,
+                                const Zonotope& V, StripMethod method) {
   constexpr const char* name = "correction of a zonotope";
   check(Z, name);
   check(V, name);
@@ -107,7 +119,8 @@ std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, Matri
   for (Index i = 0; i < C.rows(); ++i) {
     const Vector row = T.row(i);
     double d = z[i], sigma = 0;
-    if (V.generators() > 0 && !row.isZero(0)) sigma = rounding::residual_norm_1(Vector::Zero(V.generators()), V.G, row);
+    if (V.generators() > 0 && !row.isZero(0))
+      sigma = rounding::residual_norm_1(Vector::Zero(V.generators()), V.G, row);
     if (const rounding::Range middle = dot(row, V.c); middle.lower < middle.upper) {
       const rounding::Range offset = rounding::subtract({z[i], z[i]}, middle);
       d = offset.lower / 2 + offset.upper / 2;

@@ -19,14 +19,15 @@ namespace cordon::sets {
 namespace {
 
 constexpr Index max_normals = 20000;
-/// A part ρᵀx that is a smaller fraction of |ρ|ᵀ|x| gives no gain: it would magnify rounding errors.
+/// A part ρᵀx that is a smaller fraction of |ρ|ᵀ|x| gives no gain: it would magnify rounding
+/// errors.
 constexpr double smallest_part = 1e-6;
 /// A strip whose share of what Z meets is no larger counts as a hyperplane.
 constexpr double hyperplane = 1e-10;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// ρᵀx, or 0 where too much of it has cancelled. This is decided in the coordinates of the set: in any other basis the terms
-/// that cancelled are no longer seen.
+/// ρᵀx, or 0 where too much of it has cancelled. This is decided in the coordinates of the set: in
+/// any other basis the terms that cancelled are no longer seen.
 double part_of(VectorIn x, VectorIn rho) {
   const double part = rho.dot(x);
   return std::abs(part) <= smallest_part * rho.cwiseAbs().dot(x.cwiseAbs()) ? 0.0 : part;
@@ -36,26 +37,30 @@ double part_of(VectorIn x, VectorIn rho) {
 Vector segment_gain(MatrixIn G, VectorIn rho, double sigma) {
   Vector p = linalg::transposed_product(G, rho);
   const double scale = std::max(p.size() ? p.lpNorm<Eigen::Infinity>() : 0.0, sigma);
-  const double seen = p.size() ? linalg::product(G.cwiseAbs().transpose(), rho.cwiseAbs()).maxCoeff() : 0.0;
-  if (p.size() == 0 || p.lpNorm<Eigen::Infinity>() <= smallest_part * seen) return Vector::Zero(rho.size());
+  const double seen =
+      p.size() ? linalg::product(G.cwiseAbs().transpose(), rho.cwiseAbs()).maxCoeff() : 0.0;
+  if (p.size() == 0 || p.lpNorm<Eigen::Infinity>() <= smallest_part * seen)
+    return Vector::Zero(rho.size());
   p /= scale;
   const double denominator = p.squaredNorm() + (sigma / scale) * (sigma / scale);
   return linalg::product(G, p) / (denominator * scale);
 }
 
-/// λ of the smallest F-radius for a box around the generators along their principal axes, rows scaled by the widths.
+/// λ of the smallest F-radius for a box around the generators along their principal axes, rows
+/// scaled by the widths.
 Vector box_gain(MatrixIn G, VectorIn rho, double sigma) {
   const Index n = G.rows();
   if (G.cols() <= n) return segment_gain(G, rho, sigma);
   Vector widths = G.cwiseAbs().rowwise().sum();
   for (double& width : widths) width = width > 0 ? width : 1;
-  const Matrix box = reduce_generators(widths.cwiseInverse().asDiagonal() * G, n, GeneratorReduction::pca);
+  const Matrix box =
+      reduce_generators(widths.cwiseInverse().asDiagonal() * G, n, GeneratorReduction::pca);
   return segment_gain(widths.asDiagonal() * box, rho, sigma);
 }
 
-/// The λ that makes every edge of the interval hull smallest: λ_i minimises Σ_j |G_ij - λ_i p_j| + σ |λ_i|, p_j = ρᵀg_j, and is a
-/// median of 0 with weight σ and the G_ij / p_j with weights |p_j|; of several the one next to 0. A hyperplane is left to the
-/// F-radius: its Z(λ) lies in it.
+/// The λ that makes every edge of the interval hull smallest: λ_i minimises Σ_j |G_ij - λ_i p_j| +
+/// σ |λ_i|, p_j = ρᵀg_j, and is a median of 0 with weight σ and the G_ij / p_j with weights |p_j|;
+/// of several the one next to 0. A hyperplane is left to the F-radius: its Z(λ) lies in it.
 Vector hull_gain(MatrixIn G, VectorIn rho, double sigma) {
   struct Break {
     double place, weight;
@@ -75,7 +80,8 @@ Vector hull_gain(MatrixIn G, VectorIn rho, double sigma) {
     }
     const double side = above > below ? 1 : -1;
     double beyond = std::max(above, below);
-    std::sort(breaks.begin(), breaks.end(), [&](Break a, Break b) { return side * a.place < side * b.place; });
+    std::sort(breaks.begin(), breaks.end(),
+              [&](Break a, Break b) { return side * a.place < side * b.place; });
     for (const Break& next : breaks) {
       if (2 * beyond <= all) break;
       if (side * next.place < 0) continue;
@@ -86,9 +92,10 @@ Vector hull_gain(MatrixIn G, VectorIn rho, double sigma) {
   return lambda;
 }
 
-/// Columns w_J, one for each (n-1)-subset J of the generators, with w_Jᵀλ = det [G_J λ]. Then the volume of Z(λ) is
-/// 2ⁿ (|1 - ρᵀλ| V + σ N(λ)) with N(λ) = Σ_J |w_Jᵀλ| and V = Σ |det G_K| over the n-subsets. Along each ray of λ that is
-/// piecewise linear with breaks at λ = 0 and ρᵀλ = 1, so that the best λ is 0 or minimises N subject to ρᵀλ = 1.
+/// Columns w_J, one for each (n-1)-subset J of the generators, with w_Jᵀλ = det [G_J λ]. Then the
+/// volume of Z(λ) is 2ⁿ (|1 - ρᵀλ| V + σ N(λ)) with N(λ) = Σ_J |w_Jᵀλ| and V = Σ |det G_K| over the
+/// n-subsets. Along each ray of λ that is piecewise linear with breaks at λ = 0 and ρᵀλ = 1, so
+/// that the best λ is 0 or minimises N subject to ρᵀλ = 1.
 Matrix normals(const Matrix& G) {
   const Index n = G.rows(), g = G.cols();
   Matrix W(n, subset_count(g, n - 1, max_normals));
@@ -108,10 +115,13 @@ Matrix normals(const Matrix& G) {
   return W;
 }
 
-double sum_of_determinants(const Matrix& W, VectorIn lambda) { return linalg::transposed_product(W, lambda).lpNorm<1>(); }
+double sum_of_determinants(const Matrix& W, VectorIn lambda) {
+  return linalg::transposed_product(W, lambda).lpNorm<1>();
+}
 
-/// The direction of min{N(λ) : ρᵀλ = 1}, from its dual max{y : Σ_J w_J ξ_J = y ρ, |ξ_J| ≤ 1}: λ is the multiplier of the rows. No
-/// y exceeds `most`, the N of a λ that is known. The solver's answer is a proposal.
+/// The direction of min{N(λ) : ρᵀλ = 1}, from its dual max{y : Σ_J w_J ξ_J = y ρ, |ξ_J| ≤ 1}: λ is
+/// the multiplier of the rows. No y exceeds `most`, the N of a λ that is known. The solver's answer
+/// is a proposal.
 Vector proposed_by_linear_program(const Matrix& W, VectorIn rho, double most) {
   const Index n = W.rows(), k = W.cols();
   Matrix A(n, k + 1);
@@ -119,11 +129,12 @@ Vector proposed_by_linear_program(const Matrix& W, VectorIn rho, double most) {
   return BoxedProgram(std::move(A), Vector::Zero(n)).maximum(Vector::Unit(k + 1, k)).y;
 }
 
-/// The search for λ in the range of G, where volumes count: rows are scaled alike (ratios of volumes do not change). What ρ sees
-/// of a direction is taken from the coordinates of the set.
+/// The search for λ in the range of G, where volumes count: rows are scaled alike (ratios of
+/// volumes do not change). What ρ sees of a direction is taken from the coordinates of the set.
 class VolumeGain {
  public:
-  VolumeGain(MatrixIn G, VectorIn rho, double sigma) : G_(G), rho_(rho), sigma_(sigma), scale_(row_scales(G)) {
+  VolumeGain(MatrixIn G, VectorIn rho, double sigma)
+      : G_(G), rho_(rho), sigma_(sigma), scale_(row_scales(G)) {
     const Matrix scaled = scale_.asDiagonal() * G;
     Q_ = linalg::range_basis(scaled);
     inner_ = is_full() ? scaled : linalg::transposed_product(Q_, scaled);
@@ -133,7 +144,8 @@ class VolumeGain {
 
   Vector best(StripMethod method) const {
     if (parts_.isZero(0) || Q_.cols() == 0) return unchanged();
-    const bool countable = subset_count(inner_.cols(), inner_.rows() - 1, max_normals) <= max_normals;
+    const bool countable =
+        subset_count(inner_.cols(), inner_.rows() - 1, max_normals) <= max_normals;
     return countable ? by_volume(method == StripMethod::volume) : by_squared_volume();
   }
 
@@ -166,8 +178,8 @@ class VolumeGain {
 
   void improve(const Matrix& W, double& best, Vector& lambda) const {
     const Vector inner_rho = rho_.cwiseQuotient(scale_);
-    const Vector y =
-        proposed_by_linear_program(W, is_full() ? inner_rho : Vector(linalg::transposed_product(Q_, inner_rho)), best);
+    const Vector y = proposed_by_linear_program(
+        W, is_full() ? inner_rho : Vector(linalg::transposed_product(Q_, inner_rho)), best);
     const Vector direction = outside(y);
     const double part = part_of(direction, rho_);
     if (part == 0 || !direction.allFinite()) return;
@@ -177,8 +189,9 @@ class VolumeGain {
     lambda = direction / part;
   }
 
-  /// The sum of squared determinants, det(HHᵀ), H the generators of Z(λ): for λ = 0 it is det(GGᵀ), for λ = g_j/ρᵀg_j that times
-  /// σ² g_jᵀ(GGᵀ)⁻¹g_j / (ρᵀg_j)², of which the middle is the squared length of row j of a basis of G's row space.
+  /// The sum of squared determinants, det(HHᵀ), H the generators of Z(λ): for λ = 0 it is det(GGᵀ),
+  /// for λ = g_j/ρᵀg_j that times σ² g_jᵀ(GGᵀ)⁻¹g_j / (ρᵀg_j)², of which the middle is the squared
+  /// length of row j of a basis of G's row space.
   Vector by_squared_volume() const {
     const Matrix basis = linalg::range_basis(inner_.transpose());
     Index chosen = -1;

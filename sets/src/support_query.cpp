@@ -39,10 +39,12 @@ ScaledSet::ScaledSet(const SupportOracle& X, Index n, const char* operation)
 
 SupportPoint ScaledSet::ask(const Vector& d) const {
   SupportPoint answer = oracle_(d);
-  if (std::isnan(answer.h)) throw Error(Errc::not_finite, std::string(operation_) + ": the support function returned NaN");
+  if (std::isnan(answer.h))
+    throw Error(Errc::not_finite, std::string(operation_) + ": the support function returned NaN");
   if (answer.h == infinity) {
     throw Error(Errc::unsupported,
-                std::string(operation_) + ": the set is unbounded or its bound is not known; intersect it with a box");
+                std::string(operation_) +
+                    ": the set is unbounded or its bound is not known; intersect it with a box");
   }
   if (answer.h != -infinity) {
     require_size(answer.x.size(), d.size(), operation_, "the support point");
@@ -52,12 +54,16 @@ SupportPoint ScaledSet::ask(const Vector& d) const {
 }
 
 SupportPoint ScaledSet::query(const Vector& d) const {
-  const Vector scaled = linalg::transposed_product(inverse_, d), direction = scaled.cwiseQuotient(width_);
+  const Vector scaled = linalg::transposed_product(inverse_, d),
+               direction = scaled.cwiseQuotient(width_);
   const double length = direction.stableNorm();
   const SupportPoint answer = ask(direction / length);
-  if (answer.h == -infinity) throw Error(Errc::invalid, std::string(operation_) + ": the set is empty in one direction only");
+  if (answer.h == -infinity)
+    throw Error(Errc::invalid,
+                std::string(operation_) + ": the set is empty in one direction only");
   const Vector point = (answer.x - center_).cwiseQuotient(width_) - shift_;
-  return {answer.h * length - direction.dot(center_) - scaled.dot(shift_), linalg::product(inverse_, point)};
+  return {answer.h * length - direction.dot(center_) - scaled.dot(shift_),
+          linalg::product(inverse_, point)};
 }
 
 bool ScaledSet::transform(const Vector& shift, const Matrix& B) {
@@ -74,6 +80,8 @@ Matrix ScaledSet::restore(const Matrix& points) const {
   return (width_.asDiagonal() * scaled).colwise() + center_;
 }
 
-double ScaledSet::volume_factor() const { return std::abs(linalg::determinant(B_)) * width_.prod(); }
+double ScaledSet::volume_factor() const {
+  return std::abs(linalg::determinant(B_)) * width_.prod();
+}
 
 }  // namespace cordon::sets

@@ -6,10 +6,12 @@
 
 namespace cordon::sets {
 
-/// {y : center + W (shift + B y) ∈ X}: the diagonal W maps X into [-1,1]ⁿ, B (at first the identity) is any regular matrix.
+/// {y : center + W (shift + B y) ∈ X}: the diagonal W maps X into [-1,1]ⁿ, B (at first the
+/// identity) is any regular matrix.
 class ScaledSet {
  public:
-  /// `operation` names the caller in messages. Throws Errc::unsupported if X is unbounded along an axis.
+  /// `operation` names the caller in messages. Throws Errc::unsupported if X is unbounded along an
+  /// axis.
   ScaledSet(const SupportOracle& X, Index n, const char* operation);
 
   bool is_empty() const { return empty_; }

@@ -32,7 +32,8 @@ void clear(double& coefficient, double& radius) {
 }
 
 void require_finite_radius(const Vector& radius) {
-  if (!radius.allFinite()) throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
+  if (!radius.allFinite())
+    throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
 }
 
 }  // namespace
@@ -58,7 +59,8 @@ void TrackedForm::subtract_multiple(Index i, Index row, double factor) {
   Tracked right{X_.b[i], 0};
   right.subtract_product(factor, X_.b[row]);
   X_.b[i] = right.value;
-  row_radius_[i] = plus_up(row_radius_[i], plus_up(right.error, times_up(std::abs(factor), row_radius_[row])));
+  row_radius_[i] =
+      plus_up(row_radius_[i], plus_up(right.error, times_up(std::abs(factor), row_radius_[row])));
 }
 
 void TrackedForm::subtract(Index i, Index row, Index col) {
@@ -89,7 +91,8 @@ void TrackedForm::eliminate(Index row, Index col) {
   free_[at(col)] = false;
 }
 
-bool TrackedForm::best_pivot(const std::vector<Index>& among_rows, const std::vector<Index>& among_factors, Index& row,
+bool TrackedForm::best_pivot(const std::vector<Index>& among_rows,
+                             const std::vector<Index>& among_factors, Index& row,
                              Index& col) const {
   double best = 0;
   for (const Index i : among_rows) {
@@ -126,13 +129,16 @@ bool TrackedForm::rescale() {
     b[i] = 0;
   }
   const auto unit_box = [](Index n) { return Box{-Vector::Ones(n), Vector::Ones(n)}; };
-  const Box left = contract(unit_box(g), A, b, row_radius_.asDiagonal().toDenseMatrix(), unit_box(m));
+  const Box left =
+      contract(unit_box(g), A, b, row_radius_.asDiagonal().toDenseMatrix(), unit_box(m));
   if (left.is_empty()) return false;
   for (Index j = 0; j < g; ++j) {
     if (!free_[at(j)] || (left.lower[j] == -1 && left.upper[j] == 1)) continue;
     const double mid = left.lower[j] / 2 + left.upper[j] / 2;
-    const double rad = std::max({0.0, directed::plus(left.upper[j], -mid).upper, directed::plus(mid, -left.lower[j]).upper});
-    const auto rescale_row = [&](double& coefficient, double& constant, double sign, double& radius) {
+    const double rad = std::max({0.0, directed::plus(left.upper[j], -mid).upper,
+                                 directed::plus(mid, -left.lower[j]).upper});
+    const auto rescale_row = [&](double& coefficient, double& constant, double sign,
+                                 double& radius) {
       Tracked moved{constant, 0}, scaled;
       moved.add_product(sign * mid, coefficient);
       scaled.add_product(rad, coefficient);
@@ -157,7 +163,8 @@ LineForm TrackedForm::nominal(std::vector<Index>& row_of, std::vector<Index>& fa
   for (Index j = 0; j < factors(); ++j) {
     if (free_[at(j)]) factor_of.push_back(j);
   }
-  const Index m = static_cast<Index>(row_of.size()), g = static_cast<Index>(factor_of.size()), n = X_.dim();
+  const Index m = static_cast<Index>(row_of.size()), g = static_cast<Index>(factor_of.size()),
+              n = X_.dim();
   LineForm Y{Matrix(n, 0), Matrix(n, g), X_.c, Matrix(m, 0), Matrix(m, g), Vector(m)};
   for (Index k = 0; k < g; ++k) {
     Y.G.col(k) = X_.G.col(factor_of[at(k)]);

@@ -17,7 +17,8 @@ using Point = Eigen::Vector2d;
 
 double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Removes points that coincide with their predecessor or lie on the line of their neighbours; the rest is convex.
+/// Removes points that coincide with their predecessor or lie on the line of their neighbours; the
+/// rest is convex.
 std::vector<Point> strictly_convex(std::vector<Point> points, double tolerance) {
   bool changed = true;
   while (changed && points.size() > 1) {
@@ -27,8 +28,10 @@ std::vector<Point> strictly_convex(std::vector<Point> points, double tolerance) 
       const Point& after = points[(i + 1) % points.size()];
       const Point chord = after - before, step = points[i] - before;
       const bool coincides = step.norm() <= tolerance;
-      const bool on_line = chord.norm() > tolerance && cross(step, chord) <= tolerance * chord.norm();
-      const bool between = on_line && step.dot(chord) >= 0 && step.dot(chord) <= chord.squaredNorm();
+      const bool on_line =
+          chord.norm() > tolerance && cross(step, chord) <= tolerance * chord.norm();
+      const bool between =
+          on_line && step.dot(chord) >= 0 && step.dot(chord) <= chord.squaredNorm();
       if (!coincides && !between) continue;
       points.erase(points.begin() + static_cast<std::ptrdiff_t>(i));
       changed = true;
@@ -40,13 +43,15 @@ std::vector<Point> strictly_convex(std::vector<Point> points, double tolerance) 
 
 /// The corners of the convex hull, counter-clockwise, by two chains in the order of the abscissa.
 std::vector<Point> convex_hull(std::vector<Point> points) {
-  std::sort(points.begin(), points.end(),
-            [](const Point& a, const Point& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   std::vector<Point> hull;
   const auto add = [&](const Point& p, std::size_t least) {
-    while (hull.size() >= least && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) hull.pop_back();
+    while (hull.size() >= least && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
+      hull.pop_back();
     hull.push_back(p);
   };
   for (const Point& p : points) add(p, 2);
@@ -78,12 +83,14 @@ SupportOracle support_oracle(const Zonotope& Z) {
   };
 }
 
-// Works in coordinates scaled to the unit square. The stack holds edges whose outer side is not yet explored.
+// Works in coordinates scaled to the unit square. The stack holds edges whose outer side is not yet
+// explored.
 Matrix polygon(const SupportOracle& X, double tolerance) {
   ScaledSet set(X, 2, "polygon");
   if (set.is_empty()) return Matrix(2, 0);
   std::vector<Point> corners;
-  for (const Point& d : {Point(1, 0), Point(0, 1), Point(-1, 0), Point(0, -1)}) corners.push_back(set.query(d).x);
+  for (const Point& d : {Point(1, 0), Point(0, 1), Point(-1, 0), Point(0, -1)})
+    corners.push_back(set.query(d).x);
   std::vector<Point> found;
   Index queries = 0;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -93,7 +100,8 @@ Matrix polygon(const SupportOracle& X, double tolerance) {
       open.pop_back();
       const Point edge = q - p, normal(edge.y(), -edge.x());
       const double length = edge.norm();
-      const SupportPoint beyond = length > tolerance && queries++ < 10000 ? set.query(normal / length) : SupportPoint{0, p};
+      const SupportPoint beyond =
+          length > tolerance && queries++ < 10000 ? set.query(normal / length) : SupportPoint{0, p};
       const Point r = beyond.x;
       if (normal.dot(r - p) <= tolerance * length) {
         found.push_back(p);
@@ -103,8 +111,8 @@ Matrix polygon(const SupportOracle& X, double tolerance) {
       open.emplace_back(p, r);
     }
   }
-  // Points of the boundary are known up to rounding: where two come in the wrong order, the whole set lies beyond their edge, and
-  // it is gone around twice.
+  // Points of the boundary are known up to rounding: where two come in the wrong order, the whole
+  // set lies beyond their edge, and it is gone around twice.
   return set.restore(columns(strictly_convex(convex_hull(std::move(found)), tolerance)));
 }
 
@@ -117,7 +125,8 @@ Matrix polygon(const Zonotope& Z) {
   }
   std::vector<Point> edges;
   for (const auto g : G.colwise()) edges.emplace_back(g);
-  std::sort(edges.begin(), edges.end(), [](const Point& a, const Point& b) { return cross(a, b) > 0; });
+  std::sort(edges.begin(), edges.end(),
+            [](const Point& a, const Point& b) { return cross(a, b) > 0; });
   // from the lowest vertex along the edges by increasing angle, then back along their opposites
   Point p = Z.c - G.rowwise().sum();
   if (edges.empty()) return Z.c;

@@ -36,23 +36,28 @@ struct Pair {
   double saved;
 };
 
-/// Partner in Y of each generator of X (-1: none), greedily by the mean width that a pair saves against two single
-/// generators: |a| + |b| - (|a + b| + |a - b|)/2 ≥ 0, at most min(|a|, |b|), which parallel ones reach.
+/// Partner in Y of each generator of X (-1: none), greedily by the mean width that a pair saves
+/// against two single generators: |a| + |b| - (|a + b| + |a - b|)/2 ≥ 0, at most min(|a|, |b|),
+/// which parallel ones reach.
 std::vector<Index> partners(MatrixIn A, MatrixIn B) {
   std::vector<Pair> pairs;
   pairs.reserve(static_cast<std::size_t>(A.cols() * B.cols()));
   for (Index i = 0; i < A.cols(); ++i) {
     for (Index j = 0; j < B.cols(); ++j) {
       const double apart = A.col(i).stableNorm() + B.col(j).stableNorm();
-      const double paired = ((A.col(i) + B.col(j)).stableNorm() + (A.col(i) - B.col(j)).stableNorm()) / 2;
+      const double paired =
+          ((A.col(i) + B.col(j)).stableNorm() + (A.col(i) - B.col(j)).stableNorm()) / 2;
       pairs.push_back({i, j, apart - paired});
     }
   }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.saved > b.saved; });
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.saved > b.saved; });
   std::vector<Index> partner(static_cast<std::size_t>(A.cols()), -1);
   std::vector<bool> taken(static_cast<std::size_t>(B.cols()), false);
   for (const Pair& pair : pairs) {
-    if (partner[static_cast<std::size_t>(pair.left)] >= 0 || taken[static_cast<std::size_t>(pair.right)]) continue;
+    if (partner[static_cast<std::size_t>(pair.left)] >= 0 ||
+        taken[static_cast<std::size_t>(pair.right)])
+      continue;
     partner[static_cast<std::size_t>(pair.left)] = pair.right;
     taken[static_cast<std::size_t>(pair.right)] = true;
   }
@@ -82,7 +87,8 @@ Zonotope minkowski_sum(const Zonotope& X, const Zonotope& Y) {
   return {X.c + Y.c, beside(X.G, Y.G)};
 }
 
-Zonotope affine_sum(const Zonotope& Z, MatrixIn A, VectorIn f, std::span<const MappedZonotope> summands) {
+Zonotope affine_sum(const Zonotope& Z, MatrixIn A, VectorIn f,
+                    std::span<const MappedZonotope> summands) {
   constexpr const char* name = "sum of mapped zonotopes";
   check(Z, name);
   require_map(A, Z.dim(), name, "the matrix");
@@ -165,7 +171,8 @@ Zonotope interval_map(const Zonotope& Z, const IntervalMatrix& A) {
   for (Index j = 0; j < Z.generators(); ++j) magnitude += Z.G.col(j).cwiseAbs();
   const Vector spread = linalg::product(A.radius, magnitude);
   return {linalg::product(A.center, Z.c),
-          without_zero_columns(beside(linalg::product(A.center, Z.G), spread.asDiagonal().toDenseMatrix()))};
+          without_zero_columns(
+              beside(linalg::product(A.center, Z.G), spread.asDiagonal().toDenseMatrix()))};
 }
 
 Box interval_hull(const Zonotope& Z) {
@@ -186,7 +193,8 @@ double support(const Zonotope& Z, VectorIn d) {
   check(Z, "support of a zonotope");
   require_size(d.size(), Z.dim(), "support of a zonotope", "the direction");
   require_finite(d, "support of a zonotope", "the direction");
-  const double spread = Z.generators() == 0 ? 0.0 : rounding::residual_norm_1(Vector::Zero(Z.generators()), Z.G, d);
+  const double spread =
+      Z.generators() == 0 ? 0.0 : rounding::residual_norm_1(Vector::Zero(Z.generators()), Z.G, d);
   const double h = rounding::up(rounding::dot(d, Z.c).upper + spread);
   return std::isnan(h) ? std::numeric_limits<double>::infinity() : h;
 }

@@ -49,9 +49,11 @@ std::optional<double> volume(const Zonotope& Z, Index max_subsets) {
 double volume_bound(const Zonotope& Z) {
   const Box hull = interval_hull(Z);
   double bound = (hull.upper - hull.lower).prod();
-  for (const GeneratorReduction method : {GeneratorReduction::pca, GeneratorReduction::yang_scott}) {
+  for (const GeneratorReduction method :
+       {GeneratorReduction::pca, GeneratorReduction::yang_scott}) {
     Matrix T = reduce_generators(Z.G, Z.dim(), method);
-    if (T.cols() == Z.dim()) bound = std::min(bound, std::ldexp(std::abs(determinant(T)), static_cast<int>(Z.dim())));
+    if (T.cols() == Z.dim())
+      bound = std::min(bound, std::ldexp(std::abs(determinant(T)), static_cast<int>(Z.dim())));
   }
   return bound;
 }

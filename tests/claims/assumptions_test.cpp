@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An assumption that the simulated truth does not keep is named, with its step, and not put down to the program.
+// An assumption that the simulated truth does not keep is named, with its step, and not put down to
+// the program.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -42,7 +43,8 @@ Json tanks(const Json& restart_set) {
   return made;
 }
 
-/// A scalar plant beside the linear model .5 x + u, which misses .01 x², and .02 x³ in the output. It rests in x = 1.
+/// A scalar plant beside the linear model .5 x + u, which misses .01 x², and .02 x³ in the output.
+/// It rests in x = 1.
 Json bent(double w, double v, const Json& changes = Json::object()) {
   Json made = Json::parse(R"({
     "cordon": 1, "title": "a bent plant",
@@ -56,7 +58,8 @@ Json bent(double w, double v, const Json& changes = Json::object()) {
 }
 
 /// The run, whose results and check name the assumption.
-Outcome check_failed(const Program& program, const std::string& what, Index k, Index from, const std::string& text) {
+Outcome check_failed(const Program& program, const std::string& what, Index k, Index from,
+                     const std::string& text) {
   const Outcome run = program.run();
   CAPTURE(run.out);
   CHECK(run.code == 0);
@@ -99,7 +102,8 @@ TEST_CASE("a restart set that does not hold the state is named, at the reset tha
   CAPTURE(run.err);
   CHECK(run.code == 0);
   CHECK(run.says("lies outside the restart set, from which all modes begin anew at k = "));
-  const Json summary = program.results()["pipelines"][0]["summary"], failed = summary["failed_assumption"];
+  const Json summary = program.results()["pipelines"][0]["summary"],
+             failed = summary["failed_assumption"];
   CHECK(failed["what"] == "restart_set");
   CHECK(summary["assumptions_until"] == failed["k"].get<Index>() + 1);
   CHECK(summary["violated_at"].is_null());
@@ -110,37 +114,47 @@ TEST_CASE("a restart set that does not hold the state is named, at the reset tha
 }
 
 TEST_CASE("a plant that leaves W") {
-  CHECK(check_failed(Program(bent(.005, .1)), "W", 0, 1, "no w in W of mode \"healthy\" leads from x_0 to x_1").code == 0);
-  const Json later =
-      Json::parse(R"({"data": {"simulate": {"input": [{"type": "step", "offset": 0.49, "amplitude": 0.5, "from": 3}]}}})");
+  CHECK(check_failed(Program(bent(.005, .1)), "W", 0, 1,
+                     "no w in W of mode \"healthy\" leads from x_0 to x_1")
+            .code == 0);
+  const Json later = Json::parse(
+      R"({"data": {"simulate": {"input": [{"type": "step", "offset": 0.49, "amplitude": 0.5, "from": 3}]}}})");
   CHECK(check_failed(Program(bent(.015, .5, later)), "W", 4, 5, "leads from x_4 to x_5").code == 0);
 }
 
 TEST_CASE("a plant that leaves V") {
-  CHECK(check_failed(Program(bent(.1, .015)), "V", 0, 0, "no v in V of mode \"healthy\" leads from x_0 to y_0").code == 0);
-  const Json later =
-      Json::parse(R"({"data": {"simulate": {"input": [{"type": "step", "offset": 0.49, "amplitude": 0.5, "from": 3}]}}})");
+  CHECK(check_failed(Program(bent(.1, .015)), "V", 0, 0,
+                     "no v in V of mode \"healthy\" leads from x_0 to y_0")
+            .code == 0);
+  const Json later = Json::parse(
+      R"({"data": {"simulate": {"input": [{"type": "step", "offset": 0.49, "amplitude": 0.5, "from": 3}]}}})");
   CHECK(check_failed(Program(bent(.1, .03, later)), "V", 4, 4, "leads from x_4 to y_4").code == 0);
 }
 
 TEST_CASE("on the boundary is inside, whatever was rounded on the way") {
   CHECK(check_kept(Program(bent(.01, .02))).code == 0);
   CHECK(check_failed(Program(bent(.01 * (1 - 1e-9), .02)), "W", 0, 1, "no w in W").code == 0);
-  const Json vertices = Json::parse(R"({"data": {"simulate": {"plant": null, "noise": "vertex", "steps": 300}}})");
+  const Json vertices =
+      Json::parse(R"({"data": {"simulate": {"plant": null, "noise": "vertex", "steps": 300}}})");
   CHECK(check_kept(Program(bent(.01, .02, vertices))).code == 0);
 }
 
-TEST_CASE("a plant that its model bounds says nothing") { CHECK(check_kept(Program(bent(.1, .1))).code == 0); }
+TEST_CASE("a plant that its model bounds says nothing") {
+  CHECK(check_kept(Program(bent(.1, .1))).code == 0);
+}
 
 TEST_CASE("what an assumption does not hold is not excused before it fails") {
   Study study;
   study.model.linear.A = Matrix{{.5}};
-  study.model.linear.B = study.model.linear.C = study.model.linear.Bw = study.model.linear.Dv = Matrix{{1.}};
+  study.model.linear.B = study.model.linear.C = study.model.linear.Bw = study.model.linear.Dv =
+      Matrix{{1.}};
   study.model.linear.D = Matrix{{0.}};
   study.model.X0 = study.model.W = study.model.V = make_box({-Vector::Ones(1), Vector::Ones(1)});
   study.model.U = make_box({-Vector::Ones(1), Vector::Ones(1)});
   study.data = SimulateSpec{};
-  const auto record = [](Index k, double x, double u = 0) { return Record{{k, Vector{{u}}, Vector{{x}}}, Vector{{x}}, 0, {}}; };
+  const auto record = [](Index k, double x, double u = 0) {
+    return Record{{k, Vector{{u}}, Vector{{x}}}, Vector{{x}}, 0, {}};
+  };
   detail::PipelineAssumptions assumed;
   assumed.restart_set = make_box({-Vector::Ones(1), Vector::Ones(1)});
   assumed.admissible_sets = {make_box({-Vector::Constant(1, 9), Vector::Constant(1, 9)})};
@@ -193,7 +207,8 @@ TEST_CASE("what an assumption does not hold is not excused before it fails") {
 
 namespace {
 
-/// A state that forgets itself, and a sensor that sees the input alone: its noise is drawn on the boundary, and then rounded.
+/// A state that forgets itself, and a sensor that sees the input alone: its noise is drawn on the
+/// boundary, and then rounded.
 Json on_the_boundary(const std::string& noise, const std::string& rounding) {
   Json made = Json::parse(R"({
     "cordon": 1, "title": "three sensors",
@@ -213,14 +228,17 @@ Json on_the_boundary(const std::string& noise, const std::string& rounding) {
 
 }  // namespace
 
-TEST_CASE("data that the simulation has rounded out of the model are no defect of a pipeline that takes them as they are") {
+TEST_CASE(
+    "data that the simulation has rounded out of the model are no defect of a pipeline that takes "
+    "them as they are") {
   const Program program(on_the_boundary("vertex", "outward"));
   const Outcome run = program.run();
   CAPTURE(run.out);
   CAPTURE(run.err);
   CHECK(run.code == 0);
   CHECK(run.says("which the simulation has rounded"));
-  const Json summary = program.results()["pipelines"][0]["summary"], failed = summary["failed_assumption"];
+  const Json summary = program.results()["pipelines"][0]["summary"],
+             failed = summary["failed_assumption"];
   REQUIRE(failed.is_object());
   CHECK((failed["what"] == "V_exactly" || failed["what"] == "W_exactly"));
   CHECK(summary["violated_at"].is_null());
@@ -233,10 +251,13 @@ TEST_CASE("data that the simulation has rounded out of the model are no defect o
   CHECK(check_kept(Program(on_the_boundary("vertex", "nominal"))).code == 0);
 }
 
-TEST_CASE("rounding that later steps amplify is no defect of a nominal pipeline, and a loss beyond it is one") {
+TEST_CASE(
+    "rounding that later steps amplify is no defect of a nominal pipeline, and a loss beyond it is "
+    "one") {
   Study study;
   study.model.linear.A = study.model.linear.C = Matrix{{.5}};
-  study.model.linear.B = study.model.linear.D = study.model.linear.Bw = study.model.linear.Dv = Matrix(1, 0);
+  study.model.linear.B = study.model.linear.D = study.model.linear.Bw = study.model.linear.Dv =
+      Matrix(1, 0);
   study.model.X0 = make_box({-Vector::Ones(1), Vector::Ones(1)});
   study.model.W = study.model.V = make_box({Vector(0), Vector(0)});
   study.data = SimulateSpec{};
@@ -257,8 +278,10 @@ TEST_CASE("rounding that later steps amplify is no defect of a nominal pipeline,
   CHECK_FALSE(detail::barely_outside(empty, Vector{{.75}}));
 }
 
-/// The leak has spoilt the states from which the bank's bound of errors starts; the filter's output of k = 10 is spoilt already.
-TEST_CASE("after a fault that a diagnoser does not know nothing is promised, and nobody is blamed") {
+/// The leak has spoilt the states from which the bank's bound of errors starts; the filter's output
+/// of k = 10 is spoilt already.
+TEST_CASE(
+    "after a fault that a diagnoser does not know nothing is promised, and nobody is blamed") {
   Json bank = Json::parse(R"({
     "cordon": 1, "title": "a leak that nobody listed",
     "system": {"type": "lti", "A": [[0.5]], "B": [[1]], "C": [[1]], "modes": [{"name": "weak", "actuator": [0.5]}]},
@@ -297,7 +320,9 @@ TEST_CASE("exact data excuse nothing") {
   study.model.linear.Bw = study.model.linear.Dv = Matrix{{1.}};
   study.model.X0 = study.model.W = study.model.V = make_box({Vector::Zero(1), Vector::Ones(1)});
   study.data = SimulateSpec{};
-  const auto record = [](Index k, double x, double y) { return Record{{k, Vector(0), Vector{{y}}}, Vector{{x}}, 0, {}}; };
+  const auto record = [](Index k, double x, double y) {
+    return Record{{k, Vector(0), Vector{{y}}}, Vector{{x}}, 0, {}};
+  };
   detail::AssumptionCheck check(study, {.exact_data = true});
   check.begin_run(0);
   check.step(record(0, 1, 1.5));
@@ -313,7 +338,8 @@ TEST_CASE("exact data excuse nothing") {
   check.step(record(0, 1, 1.5));
   check.step(record(1, std::nextafter(1.5, 2), 1.75));
   CHECK(check.excuses_by_rounding(1));
-  CHECK(check.failed()->what == FailedAssumption::What::W_exactly);  // earlier than that of the other run
+  CHECK(check.failed()->what ==
+        FailedAssumption::What::W_exactly);  // earlier than that of the other run
   CHECK(check.failed()->from == 1);
   check.begin_run(2);
   check.step(record(0, 1, 1.5));
@@ -326,14 +352,16 @@ TEST_CASE("outside by more than rounding") {
   CHECK_FALSE(detail::clearly_outside(X, Vector{{1., 1.}}));
   CHECK_FALSE(detail::clearly_outside(X, Vector{{1 + 1e-10, 0.}}));
   CHECK(detail::clearly_outside(X, Vector{{1 + 1e-8, 0.}}));
-  CHECK_FALSE(detail::clearly_outside(X, Vector{{2., 2., 2.}}));  // of another dimension: nothing is said
+  CHECK_FALSE(
+      detail::clearly_outside(X, Vector{{2., 2., 2.}}));  // of another dimension: nothing is said
   const LineForm small = make_box({-Vector::Constant(1, 1e-12), Vector::Constant(1, 1e-12)});
   CHECK(detail::clearly_outside(small, Vector{{1.1e-12}}));
   CHECK_FALSE(detail::clearly_outside(make_space(1), Vector{{1e300}}));
 }
 
 TEST_CASE("each state leaves a set in its own units") {
-  const LineForm X = make_box({Vector{{-1e7, -0.04}}, Vector{{1e7, 0.04}}});  // 1e-9 of 1e7 are a quarter of .04
+  const LineForm X =
+      make_box({Vector{{-1e7, -0.04}}, Vector{{1e7, 0.04}}});  // 1e-9 of 1e7 are a quarter of .04
   CHECK(detail::clearly_outside(X, Vector{{1e6, 0.045}}));
   CHECK_FALSE(detail::clearly_outside(X, Vector{{1e6, 0.04 * (1 + 1e-10)}}));
   CHECK_FALSE(detail::outside_by_its_size(X, Vector{{1e6, 0.045}}, Vector::Zero(2)));

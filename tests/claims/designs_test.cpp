@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the designer of a third party says is proven by the host, or called a claim; what is false is a violated guarantee.
+// What the designer of a third party says is proven by the host, or called a claim; what is false
+// is a violated guarantee.
 #include <doctest/doctest.h>
 
 #include "claims/program.hpp"
@@ -20,11 +21,13 @@ Json study(const Json& designer = Json::object(), bool experiments = true) {
     "data": {"simulate": {"seed": 1, "seeds": 3}},
     "pipelines": [{"name": "P", "backend": "interval", "designer": {"type": "lying"}}]})");
   for (const auto& [name, value] : designer.items()) made["pipelines"][0]["designer"][name] = value;
-  if (experiments) made["pipelines"][0]["diagnoser"] = Json{{"type", "tube_membership"}, {"horizon", 2}};
+  if (experiments)
+    made["pipelines"][0]["diagnoser"] = Json{{"type", "tube_membership"}, {"horizon", 2}};
   return made;
 }
 
-/// A violation, by both commands: in the message, in the results, and as the first thing that a check of the results repeats.
+/// A violation, by both commands: in the message, in the results, and as the first thing that a
+/// check of the results repeats.
 Outcome check_violated(const Json& designer, const std::string& why) {
   CAPTURE(designer.dump());
   const Program program(study(designer));
@@ -56,7 +59,8 @@ TEST_CASE("what is true is proven, although the designer proves nothing") {
   const Json pipeline = program.results()["pipelines"][0];
   CHECK(pipeline["exact"]["separates"] == "yes");
   CHECK(pipeline["exact"]["pairs"][0]["disjoint"] == "yes");
-  CHECK(pipeline["exact"]["pairs"][0]["kappa_lower"].get<double>() > .5);  // the designer's word is .5
+  CHECK(pipeline["exact"]["pairs"][0]["kappa_lower"].get<double>() >
+        .5);  // the designer's word is .5
   CHECK_FALSE(pipeline["exact"].contains("wall_s"));
   CHECK(pipeline["summary"]["refuted"].empty());
   CHECK(program.verify().code == 0);
@@ -65,7 +69,9 @@ TEST_CASE("what is true is proven, although the designer proves nothing") {
 TEST_CASE("a separation without a proof, or with a false one") {
   for (const char* lie : {"nothing", "certificate"}) {
     const Json designer{{"lie", lie}, {"first", .1}};
-    CHECK(check_violated(designer, "the output tubes of healthy and opposite are called disjoint, and meet").code == 4);
+    CHECK(check_violated(designer,
+                         "the output tubes of healthy and opposite are called disjoint, and meet")
+              .code == 4);
     const Outcome said = Program(study(designer)).design();
     CHECK(said.says("meet (proven)"));
     CHECK_FALSE(said.says("disjoint (proven)"));
@@ -73,46 +79,65 @@ TEST_CASE("a separation without a proof, or with a false one") {
 }
 
 TEST_CASE("a certificate that does not prove what it is given for") {
-  CHECK(check_violated({{"lie", "void_certificate"}}, "disjoint by a certificate that proves nothing").code == 4);
-  CHECK(check_violated({{"lie", "point"}}, "disjoint by a certificate that proves that they meet").code == 4);
+  CHECK(
+      check_violated({{"lie", "void_certificate"}}, "disjoint by a certificate that proves nothing")
+          .code == 4);
+  CHECK(check_violated({{"lie", "point"}}, "disjoint by a certificate that proves that they meet")
+            .code == 4);
 }
 
 TEST_CASE("an input that is found separates, whatever is said of the pairs") {
-  CHECK(check_violated({{"lie", "silent"}, {"first", .1}},
-                       "it calls its input feasible, and the outputs of healthy and opposite can be the same")
+  CHECK(check_violated(
+            {{"lie", "silent"}, {"first", .1}},
+            "it calls its input feasible, and the outputs of healthy and opposite can be the same")
             .code == 4);
   CHECK(check_violated({{"lie", "meet"}}, "are said to meet, and are disjoint").code == 4);
   CHECK(Program(study({{"lie", "silent"}})).design().says("disjoint (proven)"));
 }
 
 TEST_CASE("an input outside the input set") {
-  CHECK(check_violated({{"first", 4.5}}, "u_k is proven to lie outside the input set U of the study at k = 0").code == 4);
+  CHECK(check_violated({{"first", 4.5}},
+                       "u_k is proven to lie outside the input set U of the study at k = 0")
+            .code == 4);
   CHECK(Program(study({{"first", 4}})).design().code == 0);          // on its boundary
   CHECK(Program(study({{"first", 4 + 1e-10}})).design().code == 0);  // outside by rounding
   CHECK(check_violated({{"first", 4 + 1e-7}}, "outside the input set U").code == 4);
   const Json narrow{{"type", "box"}, {"lower", {-2}}, {"upper", {2}}};
-  CHECK(check_violated({{"input_set", narrow}}, "u_k is proven to lie outside \"input_set\" at k = 0").code == 4);
-  CHECK(check_violated({{"lie", "given"}, {"first", 4.5}}, "outside the input set U").code == 4);  // the study gives no input
+  CHECK(
+      check_violated({{"input_set", narrow}}, "u_k is proven to lie outside \"input_set\" at k = 0")
+          .code == 4);
+  CHECK(check_violated({{"lie", "given"}, {"first", 4.5}}, "outside the input set U").code ==
+        4);  // the study gives no input
 }
 
 TEST_CASE("a first input that is not kept to") {
-  CHECK(check_violated({{"first_input", {2.5}}}, "u_0 is another than the study's \"first_input\"").code == 4);
+  CHECK(check_violated({{"first_input", {2.5}}}, "u_0 is another than the study's \"first_input\"")
+            .code == 4);
   CHECK(Program(study({{"first_input", {3}}})).design().code == 0);
 }
 
 TEST_CASE("another horizon, another question") {
-  CHECK(check_violated({{"lie", "horizon"}}, "it answers for the horizon 1, and \"horizon\" is 2").code == 4);
-  CHECK(check_violated({{"lie", "last"}}, "it compares the last output only, and \"outputs\" is \"all\"").code == 4);
-  CHECK(check_violated({{"lie", "assumes"}}, "it assumes an admissible set, and the study gives none").code == 4);
+  CHECK(check_violated({{"lie", "horizon"}}, "it answers for the horizon 1, and \"horizon\" is 2")
+            .code == 4);
+  CHECK(check_violated({{"lie", "last"}},
+                       "it compares the last output only, and \"outputs\" is \"all\"")
+            .code == 4);
+  CHECK(
+      check_violated({{"lie", "assumes"}}, "it assumes an admissible set, and the study gives none")
+          .code == 4);
   CHECK(check_violated({{"epsilon", .2}}, "it asks for κ ≥ 0.1, and \"epsilon\" is 0.2").code == 4);
-  CHECK(check_violated({{"lie", "bound"}}, "its input costs 3, less than its lower bound 6").code == 4);
-  CHECK(check_violated({{"lie", "empty"}}, "the output tube of opposite is called empty, and is not").code == 4);
+  CHECK(check_violated({{"lie", "bound"}}, "its input costs 3, less than its lower bound 6").code ==
+        4);
+  CHECK(
+      check_violated({{"lie", "empty"}}, "the output tube of opposite is called empty, and is not")
+          .code == 4);
 }
 
 TEST_CASE("answers that do not fit the bank end the pipeline, as a violation") {
-  for (const auto& [lie, why] : {std::pair("length", "its input is 2 × 1, must be 3 × 1"),
-                                 std::pair("order", "pair 1 is not that of \"healthy\" and \"opposite\""),
-                                 std::pair("nan", "its bound of κ is not a number")}) {
+  for (const auto& [lie, why] :
+       {std::pair("length", "its input is 2 × 1, must be 3 × 1"),
+        std::pair("order", "pair 1 is not that of \"healthy\" and \"opposite\""),
+        std::pair("nan", "its bound of κ is not a number")}) {
     const Program program(study({{"lie", lie}}));
     const Outcome designed = program.design(), run = program.run();
     CHECK(designed.code == 4);
@@ -132,7 +157,8 @@ TEST_CASE("that nothing is cheaper, or that there is no input, is a claim") {
   CHECK_MESSAGE(said.says("Infeasible (claimed by lying)"), said.out);
 }
 
-TEST_CASE("beyond the limits of the exact proof there are claims only, which experiments can refute") {
+TEST_CASE(
+    "beyond the limits of the exact proof there are claims only, which experiments can refute") {
   const int horizon = 60;
   const Json far{{"horizon", horizon}};
   const Program open(study(far, false));
@@ -151,10 +177,14 @@ TEST_CASE("beyond the limits of the exact proof there are claims only, which exp
   const Program refuted(lie);
   const Outcome found = refuted.run();
   CHECK(found.code == 4);
-  CHECK_MESSAGE(found.complains("are called disjoint, and in the experiment with mode \"healthy\" and seed 1 of 3"), found.err);
+  CHECK_MESSAGE(
+      found.complains(
+          "are called disjoint, and in the experiment with mode \"healthy\" and seed 1 of 3"),
+      found.err);
 }
 
-TEST_CASE("the optimum of a narrower problem is no optimum, and its bound no bound of the problem") {
+TEST_CASE(
+    "the optimum of a narrower problem is no optimum, and its bound no bound of the problem") {
   const Json noise{{"type", "box"}, {"lower", {-0.3}}, {"upper", {0.3}}},
       push{{"type", "box"}, {"lower", {-0.01}}, {"upper", {0.01}}};
   Json motor = Json::parse(R"({"cordon": 1, "title": "a motor", "system": {"type": "lti",
@@ -176,12 +206,13 @@ TEST_CASE("the optimum of a narrower problem is no optimum, and its bound no bou
   const Outcome said = program.design();
   CHECK_MESSAGE(said.code == 0, said.err);
   CHECK_MESSAGE(said.says("Feasible: cost 22.9233, no lower bound is known"), said.out);
-  CHECK(said.says(
-      "Searched in place of the problem: the program with at most 8 generators per pair, as GLPK bounds it; that one costs "
-      "at least 22.9233, the problem itself may cost less"));
+  CHECK(
+      said.says("Searched in place of the problem: the program with at most 8 generators per pair, "
+                "as GLPK bounds it; that one costs "
+                "at least 22.9233, the problem itself may cost less"));
   CHECK_FALSE(said.says("gap"));
-  const Json pipelines = Json::parse(program.design("--json").out)["pipelines"], reduced = pipelines[0]["design"],
-             whole = pipelines[1]["design"];
+  const Json pipelines = Json::parse(program.design("--json").out)["pipelines"],
+             reduced = pipelines[0]["design"], whole = pipelines[1]["design"];
   CHECK(reduced["lower_bound"] == "-inf");
   CHECK(reduced["gap"].is_null());
   CHECK(reduced["restriction"]["lower_bound"].get<double>() > whole["cost"].get<double>());

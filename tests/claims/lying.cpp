@@ -9,10 +9,12 @@ namespace {
 
 using namespace cordon;
 
-/// Answers with u = (3, 0, …, 0), and what its parameter tells is wrong with the answer. It computes nothing.
+/// Answers with u = (3, 0, …, 0), and what its parameter tells is wrong with the answer. It
+/// computes nothing.
 class Lying final : public InputDesigner {
  public:
-  Lying(const DesignerContext& context, const Params& params) : InputDesigner(context.bank, context.backend), params_(params) {}
+  Lying(const DesignerContext& context, const Params& params)
+      : InputDesigner(context.bank, context.backend), params_(params) {}
 
  private:
   DesignOutcome do_design(DesignControl&) const override {
@@ -31,7 +33,8 @@ class Lying final : public InputDesigner {
     best.cost = std::abs(best.u(0, 0));
     best.pairs = {{0, 1, 1, .5, Answer::yes, {}}};
     if (lie == "certificate") best.pairs[0].why = {Certificate::Kind::farkas, Vector::Ones(7), 12};
-    if (lie == "void_certificate") best.pairs[0].why = {Certificate::Kind::farkas, Vector::Ones(7), 0};
+    if (lie == "void_certificate")
+      best.pairs[0].why = {Certificate::Kind::farkas, Vector::Ones(7), 0};
     if (lie == "point") best.pairs[0].why = {Certificate::Kind::point, Vector::Zero(7), 1};
     if (lie == "meet") best.pairs[0].disjoint = Answer::no;
     if (lie == "silent") best.pairs[0].disjoint = Answer::unknown;
@@ -80,30 +83,42 @@ class Bent final : public Plant {
   Index states() const override { return 1; }
   Index inputs() const override { return 1; }
   Index outputs() const override { return 1; }
-  Vector next(Index, VectorIn x, VectorIn u) const override { return Vector{{.5 * x[0] + u[0] + .01 * x[0] * x[0]}}; }
-  Vector output(Index, VectorIn x, VectorIn) const override { return Vector{{x[0] + .02 * x[0] * x[0] * x[0]}}; }
+  Vector next(Index, VectorIn x, VectorIn u) const override {
+    return Vector{{.5 * x[0] + u[0] + .01 * x[0] * x[0]}};
+  }
+  Vector output(Index, VectorIn x, VectorIn) const override {
+    return Vector{{x[0] + .02 * x[0] * x[0] * x[0]}};
+  }
 };
 
 void register_components(Registrar& registrar) {
   ParamSchema lie;
-  lie.choice("lie", "what is wrong with the answer",
-             {"nothing", "certificate", "void_certificate", "point", "meet", "silent", "order", "nan", "length", "horizon",
-              "empty", "bound", "optimal", "given", "assumes", "last", "infeasible"},
-             "nothing");
+  lie.choice(
+      "lie", "what is wrong with the answer",
+      {"nothing", "certificate", "void_certificate", "point", "meet", "silent", "order", "nan",
+       "length", "horizon", "empty", "bound", "optimal", "given", "assumes", "last", "infeasible"},
+      "nothing");
   lie.integer("horizon", "N", 2, 1, 1000).real("first", "u_0", 3, -1e9, 1e9);
   lie.set("input_set", "the set of every input").vector("first_input", "u_0, if it is decided");
-  lie.choice("outputs", "what is compared", {"all", "last"}, "all").real("epsilon", "of κ", .1, 0, 1);
-  registrar.designer({{"lying", "says what it is told", "", lie},
-                      [](const DesignerContext&, const Params&) { return std::vector<Diagnostic>{}; },
-                      [](const DesignerContext& c, const Params& p) { return std::make_unique<Lying>(c, p); }});
+  lie.choice("outputs", "what is compared", {"all", "last"}, "all")
+      .real("epsilon", "of κ", .1, 0, 1);
+  registrar.designer(
+      {{"lying", "says what it is told", "", lie},
+       [](const DesignerContext&, const Params&) { return std::vector<Diagnostic>{}; },
+       [](const DesignerContext& c, const Params& p) { return std::make_unique<Lying>(c, p); }});
   ParamSchema boast;
   boast.flag("boast", "claims exact estimates", false);
-  registrar.observer({{"blind", "prediction without measurements", "", boast},
-                      [](const ObserverContext&, const Params&) { return std::vector<Diagnostic>{}; },
-                      [](const ObserverContext& c, const Params& p) { return std::make_unique<OpenLoop>(c, p.flag("boast")); }});
-  registrar.plant({{"bent", "a scalar plant", "", {}}, [](const Params&) { return std::make_unique<Bent>(); }});
+  registrar.observer(
+      {{"blind", "prediction without measurements", "", boast},
+       [](const ObserverContext&, const Params&) { return std::vector<Diagnostic>{}; },
+       [](const ObserverContext& c, const Params& p) {
+         return std::make_unique<OpenLoop>(c, p.flag("boast"));
+       }});
+  registrar.plant(
+      {{"bent", "a scalar plant", "", {}}, [](const Params&) { return std::make_unique<Bent>(); }});
 }
 
 }  // namespace
 
-CORDON_PLUGIN("lying", "1.0.0", "GPL-3.0-or-later", "The Cordon authors", "components that lie, for tests", register_components)
+CORDON_PLUGIN("lying", "1.0.0", "GPL-3.0-or-later", "The Cordon authors",
+              "components that lie, for tests", register_components)

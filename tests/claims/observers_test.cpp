@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An estimate is called exact only where its observer says so, and its set operations as well; whoever says it is checked.
+// An estimate is called exact only where its observer says so, and its set operations as well;
+// whoever says it is checked.
 #include <doctest/doctest.h>
 
 #include "claims/program.hpp"
@@ -33,7 +34,8 @@ std::string tightness(const Program& program) {
 
 }  // namespace
 
-TEST_CASE("an observer that ignores measurements is not exact, however exact its set operations are") {
+TEST_CASE(
+    "an observer that ignores measurements is not exact, however exact its set operations are") {
   for (const char* backend : {"constrained_zonotope", "line_zonotope", "zonotope"}) {
     const Program program(study({{"type", "blind"}}, backend));
     CHECK(program.run().code == 0);
@@ -56,13 +58,15 @@ TEST_CASE("who claims to be exact without being it is refuted") {
 }
 
 TEST_CASE("recursions that are exact still say so, and it holds") {
-  const Program program(study({{"type", "prediction_correction"}, {"max_generators", 50}, {"max_constraints", 50}}));
+  const Program program(
+      study({{"type", "prediction_correction"}, {"max_generators", 50}, {"max_constraints", 50}}));
   CHECK(program.run().code == 0);
   CHECK(tightness(program) == "exact exact exact exact ");
   CHECK(program.verify().code == 0);
 }
 
-/// A constant gain bounds the error for all times: a box around the set before has successors that no state has.
+/// A constant gain bounds the error for all times: a box around the set before has successors that
+/// no state has.
 TEST_CASE("an observer that knows more than its last set is not refuted by that set") {
   Json made = Json::parse(R"({"cordon": 1, "title": "three spirals",
     "system": {"type": "lti", "C": [[1, 0, 0, 0, 0, 0]], "A": [[0.6, -0.6, 0, 0, 0, 0], [0.6, 0.6, 0, 0, 0, 0], [0, 0, 0.6, -0.6, 0, 0],
@@ -70,7 +74,8 @@ TEST_CASE("an observer that knows more than its last set is not refuted by that 
     "data": {"simulate": {"steps": 12}},
     "pipelines": [{"name": "P", "backend": "interval", "observer": {"type": "luenberger", "gain": [[0], [0], [0], [0], [0], [0]]}}]})");
   for (const char* name : {"X0", "W"}) {
-    const std::vector<double> radius(6, name[0] == 'X' ? 1 : .001), least(6, name[0] == 'X' ? -1 : -.001);
+    const std::vector<double> radius(6, name[0] == 'X' ? 1 : .001),
+        least(6, name[0] == 'X' ? -1 : -.001);
     made["system"][name] = {{"type", "box"}, {"lower", least}, {"upper", radius}};
   }
   const Program limited(made);
@@ -82,7 +87,8 @@ TEST_CASE("an observer that knows more than its last set is not refuted by that 
   CHECK(recursive.verify().code == 0);
 }
 
-/// The exact set, a parallelogram, has a vertex at x_1 = 233338495.18; one line was solved for by 6.75e-13 of its terms.
+/// The exact set, a parallelogram, has a vertex at x_1 = 233338495.18; one line was solved for
+/// by 6.75e-13 of its terms.
 TEST_CASE("sensors that hardly differ do not decide where a state is") {
   Json made = Json::parse(R"({"cordon": 1, "title": "two sensors",
     "system": {"type": "lti", "A": [[1, 0], [0, 1]], "C": [[0.4, 0.27], [0.400000000001, 0.27]],
@@ -117,8 +123,9 @@ TEST_CASE("a descriptor observer keeps its digits where outputs have unlike unit
   CHECK(verified.code == 0);
 }
 
-/// Nothing is known of the start. Each has been refuted: by residues in another coordinate's units, by a plane of lines that is
-/// known in the units of another state, by data that are all 0, by sensors that are parallel but for rounding.
+/// Nothing is known of the start. Each has been refuted: by residues in another coordinate's units,
+/// by a plane of lines that is known in the units of another state, by data that are all 0, by
+/// sensors that are parallel but for rounding.
 TEST_CASE("estimates with lines hold in any units") {
   for (
       const char* system :
@@ -130,7 +137,8 @@ TEST_CASE("estimates with lines hold in any units") {
        R"({"A": [[1.06, -16.8, 9.3e-6], [-0.13, 1.22, 0], [-102169.5, -581650, 0]],
                "C": [[-125.94305402422812, -15870.718373702348, 0], [-1259430.5402422813, -158707183.73702344, 0]], "Dv": [[], []]})"}) {
     CAPTURE(system);
-    Json made = Json::parse(R"({"cordon": 1, "title": "units", "data": {"simulate": {"steps": 2, "noise": "uniform"}},
+    Json made = Json::parse(
+        R"({"cordon": 1, "title": "units", "data": {"simulate": {"steps": 2, "noise": "uniform"}},
       "pipelines": [{"name": "P", "backend": "line_zonotope", "observer": "prediction_correction"},
         {"name": "Q", "backend": {"type": "line_zonotope", "rounding": "outward"}, "observer": "prediction_correction"}]})");
     made["system"] = Json::parse(system);

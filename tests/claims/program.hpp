@@ -19,14 +19,21 @@ class Program {
   explicit Program(const Json& study) { scratch_.write("study.json", study.dump(1)); }
 
   Outcome operator()(const std::string& arguments) const {
-    return test::cordon_with("--plugins \"" CORDON_LYING_PLUGINS "\" " + arguments, "cd \"" + scratch_.path().string() + "\" &&");
+    return test::cordon_with("--plugins \"" CORDON_LYING_PLUGINS "\" " + arguments,
+                             "cd \"" + scratch_.path().string() + "\" &&");
   }
   Outcome run() const { return (*this)("run study.json --out results"); }
-  Outcome design(const std::string& options = "") const { return (*this)("design study.json " + options); }
+  Outcome design(const std::string& options = "") const {
+    return (*this)("design study.json " + options);
+  }
   Outcome verify() const { return (*this)("verify results"); }
   Json results() const { return Json::parse(bytes_of(scratch_ / "results/results.json")); }
-  std::string file(const std::string& name) const { return bytes_of(scratch_ / ("results/" + name)); }
-  void write_results(const Json& results) const { scratch_.write("results/results.json", results.dump()); }
+  std::string file(const std::string& name) const {
+    return bytes_of(scratch_ / ("results/" + name));
+  }
+  void write_results(const Json& results) const {
+    scratch_.write("results/results.json", results.dump());
+  }
 
  private:
   Scratch scratch_;

@@ -26,7 +26,8 @@ TEST_CASE("laws have unique names of their group, and a statement") {
     CHECK(law.statement.find('|') == std::string::npos);  // stands in a table
   }
   CHECK(names.size() == 62);
-  for (const char* group : {"soundness.", "tightness.", "algebra.", "questions.", "contract.", "lifetime."}) {
+  for (const char* group :
+       {"soundness.", "tightness.", "algebra.", "questions.", "contract.", "lifetime."}) {
     CHECK(names.lower_bound(group)->starts_with(group));
   }
 }
@@ -55,8 +56,10 @@ TEST_CASE("an unknown law is an error with a suggestion") {
 TEST_CASE("a case depends on law, seed and number only") {
   const Options one{"*", 7, 10}, many{"*", 7, 1000}, other{"*", 8, 10};
   for (Index k = 0; k < 20; ++k) {
-    CHECK(describe_case("soundness.sum", one, {}, k) == describe_case("soundness.sum", many, {}, k));
-    CHECK(describe_case("soundness.sum", one, {}, k) != describe_case("soundness.sum", other, {}, k));
+    CHECK(describe_case("soundness.sum", one, {}, k) ==
+          describe_case("soundness.sum", many, {}, k));
+    CHECK(describe_case("soundness.sum", one, {}, k) !=
+          describe_case("soundness.sum", other, {}, k));
     CHECK(describe_case("soundness.sum", one, {}, k) != describe_case("tightness.sum", one, {}, k));
   }
 }
@@ -70,7 +73,8 @@ TEST_CASE("generated sets hold the point that they come with, and empty ones non
     const TestSet X = make.set("X", 'n', n, {true, 5, 2});
     check(X.form, "generated");
     CHECK(exact::contains(X.form, X.point()) == Answer::yes);
-    for (const Vector& x : points_of(X.form, X.delta, X.xi, random, 3)) CHECK(exact::contains(X.form, x) == Answer::yes);
+    for (const Vector& x : points_of(X.form, X.delta, X.xi, random, 3))
+      CHECK(exact::contains(X.form, x) == Answer::yes);
     points += X.form.generators() == 0;
     lines += X.form.lines() > 0;
     constrained += X.form.constraints() > 0;
@@ -116,20 +120,23 @@ TEST_CASE("a case shrinks to what matters") {
   const TestCase small = shrink(test, fails, 5000);
   CHECK(fails(small));
   CHECK(describe(small.sets[0].form) == R"({"type": "point", "center": [0]})");
-  CHECK(describe(small.sets[1].form) == R"({"type": "zonotope", "center": [0], "generators": [[1]]})");
+  CHECK(describe(small.sets[1].form) ==
+        R"({"type": "zonotope", "center": [0], "generators": [[1]]})");
   CHECK(small.matrices[0].value.size() == 1);
   // known points stay members
   for (const TestSet& X : small.sets) CHECK(exact::contains(X.form, X.point()) == Answer::yes);
 }
 
 TEST_CASE("no bound across a line that is normal to the direction up to rounding only") {
-  const LineForm X{Matrix::Ones(3, 1), Matrix(3, 0), Vector::Zero(3), Matrix(0, 1), Matrix(0, 0), Vector(0)};
+  const LineForm X{Matrix::Ones(3, 1), Matrix(3, 0), Vector::Zero(3),
+                   Matrix(0, 1),       Matrix(0, 0), Vector(0)};
   const Vector d{{1e-17, -1, 1}};
   REQUIRE(X.M.col(0).dot(d) == 0);
   CHECK(std::isinf(exact::support(X, d).upper));
   CHECK(std::isinf(Reference(X).upper(d)));
   CHECK(Reference(make_space(3)).upper(Vector::Zero(3)) == 0);
-  const LineForm strip{Matrix{{1}, {1}}, Matrix{{1}, {0}}, Vector{{1, 2}}, Matrix(0, 1), Matrix(0, 1), Vector(0)};
+  const LineForm strip{Matrix{{1}, {1}}, Matrix{{1}, {0}}, Vector{{1, 2}},
+                       Matrix(0, 1),     Matrix(0, 1),     Vector(0)};
   CHECK(Reference(strip).upper(Vector{{1, -1}}) == 0);
 }
 

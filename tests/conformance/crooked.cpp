@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Backends that break one law each, for the test of the command: `lossy` loses a generator of every sum, `crashing` ends the
-// process on points, `hanging` never returns from a hull.
+// Backends that break one law each, for the test of the command: `lossy` loses a generator of every
+// sum, `crashing` ends the process on points, `hanging` never returns from a hull.
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -15,10 +15,13 @@ using namespace cordon;
 
 class Form final : public Set {
  public:
-  Form(const SetBackend& backend, LineForm form) : Set(backend, form.dim()), form_(std::move(form)) {}
+  Form(const SetBackend& backend, LineForm form)
+      : Set(backend, form.dim()), form_(std::move(form)) {}
 
  private:
-  Complexity do_complexity() const override { return {form_.generators(), form_.lines(), form_.constraints()}; }
+  Complexity do_complexity() const override {
+    return {form_.generators(), form_.lines(), form_.constraints()};
+  }
   LineForm do_line_form() const override { return form_; }
   LineForm form_;
 };
@@ -31,15 +34,18 @@ class Crooked final : public SetBackend {
 
  private:
   Made do_import(const LineForm& X) const override {
-    if (defect_ == Defect::crashing && X.generators() == 0 && X.constraints() == 0) std::raise(SIGSEGV);
+    if (defect_ == Defect::crashing && X.generators() == 0 && X.constraints() == 0)
+      std::raise(SIGSEGV);
     return {std::make_unique<Form>(*this, X), Tightness::exact};
   }
   Made do_predict(const Set& X, const Predict& p) const override {
     LineForm sum = cordon::affine_map(X.line_form(), p.A, p.f);
     for (const Term& term : p.terms) {
-      sum = minkowski_sum(sum, cordon::affine_map(term.set->line_form(), term.T, Vector::Zero(p.A.rows())));
+      sum = minkowski_sum(
+          sum, cordon::affine_map(term.set->line_form(), term.T, Vector::Zero(p.A.rows())));
     }
-    if (defect_ == Defect::lossy && !p.terms.empty() && sum.generators() > 0) sum.G.rightCols(1).setZero();
+    if (defect_ == Defect::lossy && !p.terms.empty() && sum.generators() > 0)
+      sum.G.rightCols(1).setZero();
     return {std::make_unique<Form>(*this, sum), Tightness::exact};
   }
   Made do_convex_hull(const Set& X, const Set& Y) const override {
@@ -63,7 +69,9 @@ void add(Registrar& registrar, const std::string& name) {
 }
 
 /// Backends that cannot be made.
-std::unique_ptr<SetBackend> not_made(const Params&) { throw Error(Errc::invalid, "the table of half axes is missing"); }
+std::unique_ptr<SetBackend> not_made(const Params&) {
+  throw Error(Errc::invalid, "the table of half axes is missing");
+}
 std::unique_ptr<SetBackend> not_survived(const Params&) { std::_Exit(7); }
 
 void register_components(Registrar& registrar) {
@@ -76,4 +84,5 @@ void register_components(Registrar& registrar) {
 
 }  // namespace
 
-CORDON_PLUGIN("crooked", "1.0.0", "GPL-3.0-or-later", "the Cordon authors", "backends with defects", register_components)
+CORDON_PLUGIN("crooked", "1.0.0", "GPL-3.0-or-later", "the Cordon authors", "backends with defects",
+              register_components)

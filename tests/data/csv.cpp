@@ -17,7 +17,8 @@ namespace {
 class File {
  public:
   explicit File(const std::string& bytes)
-      : path_(std::filesystem::temp_directory_path() / ("cordon-csv-" + std::to_string(::getpid()) + ".csv")) {
+      : path_(std::filesystem::temp_directory_path() /
+              ("cordon-csv-" + std::to_string(::getpid()) + ".csv")) {
     std::ofstream(path_, std::ios::binary) << bytes;
   }
   ~File() { std::filesystem::remove(path_); }
@@ -68,7 +69,8 @@ bool mentions(const Diagnostic& d, const std::string& text) {
 }  // namespace
 
 TEST_CASE("columns are found by name, in any order, beside columns of text") {
-  const auto records = all("time,y,note,u,x\n2024-01-01,1.5,\"a, \"\"b\"\"\nc\",-2e-3,7\nx, +3 ,,4,8\n", true);
+  const auto records =
+      all("time,y,note,u,x\n2024-01-01,1.5,\"a, \"\"b\"\"\nc\",-2e-3,7\nx, +3 ,,4,8\n", true);
   REQUIRE(records.size() == 2);
   CHECK(records[0].sample.k == 0);
   CHECK(records[0].sample.y[0] == 1.5);
@@ -82,8 +84,9 @@ TEST_CASE("columns are found by name, in any order, beside columns of text") {
 
 TEST_CASE("line ends, byte order mark, quotes and blank lines at the end") {
   for (const std::string text :
-       {"u,y\n1,2\n3,4\n", "u,y\r\n1,2\r\n3,4\r\n", "u,y\r1,2\r3,4", "u,y\n1,2\n3,4", "\xEF\xBB\xBFu,y\n1,2\n3,4\n\n\n",
-        "\"u\",\"y\"\n\"1\",\"2\"\n3,\"4\"", " u , y \n1,2\n3,4\r\n\r\n"}) {
+       {"u,y\n1,2\n3,4\n", "u,y\r\n1,2\r\n3,4\r\n", "u,y\r1,2\r3,4", "u,y\n1,2\n3,4",
+        "\xEF\xBB\xBFu,y\n1,2\n3,4\n\n\n", "\"u\",\"y\"\n\"1\",\"2\"\n3,\"4\"",
+        " u , y \n1,2\n3,4\r\n\r\n"}) {
     CAPTURE(text);
     const auto records = all(text);
     REQUIRE(records.size() == 2);
@@ -151,7 +154,8 @@ TEST_CASE("a missing column is named by its place in the study, with a suggestio
     open_data(study);
     FAIL("accepted");
   } catch (const InputError& e) {
-    REQUIRE(e.diagnostics().size() == 1);  // the column "postion" is not used, so its text is no defect
+    REQUIRE(e.diagnostics().size() ==
+            1);  // the column "postion" is not used, so its text is no defect
     CHECK(e.diagnostics()[0].pointer == "/data/csv/outputs/0");
     CHECK(e.diagnostics()[0].suggestion == "did you mean \"postion\"?");
   }
@@ -185,14 +189,16 @@ TEST_CASE("numbers of columns must fit the model") {
 
 TEST_CASE("a file without structure is refused without taking its size in memory") {
   CHECK(mentions(problems("u,y\n1,\"" + std::string(3 << 20, 'a')).back(), "longer than 1 MiB"));
-  CHECK(mentions(problems("u,y\n" + std::string(3 << 20, ',') + "\n1,x\n").front(), "longer than 1 MiB"));
+  CHECK(mentions(problems("u,y\n" + std::string(3 << 20, ',') + "\n1,x\n").front(),
+                 "longer than 1 MiB"));
 }
 
 TEST_CASE("a file that changes between check and reading is an error") {
   const File file("u,y\n1,2\n3,4\n");
   const auto data = open_data(study_of(file.path()));
   std::ofstream(file.path(), std::ios::binary) << "u,y\n1,2\n3,b\n";
-  // the reader may hold the old bytes in its buffer: both are sound, silence about a bad number is not
+  // the reader may hold the old bytes in its buffer: both are sound, silence about a bad number is
+  // not
   try {
     data->next();
     CHECK(data->next()->sample.y[0] == 4);
@@ -203,7 +209,8 @@ TEST_CASE("a file that changes between check and reading is an error") {
 
 TEST_CASE("hostile bytes never crash, and give rows or problems") {
   CHECK(rc::check("any bytes", [](const std::vector<std::uint8_t>& picks) {
-    static const char alphabet[] = {'u', 'y', ',', '\n', '\r', '"', '1', '.', 'e', '-', ' ', '\0', '\xFF', '\xEF', ';', '\t'};
+    static const char alphabet[] = {'u', 'y', ',', '\n', '\r',   '"',    '1', '.',
+                                    'e', '-', ' ', '\0', '\xFF', '\xEF', ';', '\t'};
     std::string text = "u,y\n";
     if (!picks.empty() && picks[0] % 3 == 0) text.clear();
     for (const std::uint8_t pick : picks) text += alphabet[pick % sizeof(alphabet)];

@@ -66,14 +66,15 @@ Study descriptor_study(LineForm x0_set) {
   return study;
 }
 
-std::vector<Record> run(const Study& study, Index mode, const Matrix& u, std::uint64_t seed_offset = 0) {
+std::vector<Record> run(const Study& study, Index mode, const Matrix& u,
+                        std::uint64_t seed_offset = 0) {
   return all(*open_experiment(study, bank_of(study), mode, u, seed_offset));
 }
 
 bool same(const std::vector<Record>& a, const std::vector<Record>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Record& p, const Record& q) {
-    return p.sample.k == q.sample.k && p.sample.u == q.sample.u && p.sample.y == q.sample.y && *p.truth == *q.truth &&
-           p.mode == q.mode;
+    return p.sample.k == q.sample.k && p.sample.u == q.sample.u && p.sample.y == q.sample.y &&
+           *p.truth == *q.truth && p.mode == q.mode;
   });
 }
 
@@ -87,7 +88,8 @@ SimulateSpec spec_from(LineForm x0_set, Noise noise = Noise::uniform) {
 /// The first states over the seeds 1 … count.
 std::vector<Vector> starts(const Study& study, int count) {
   std::vector<Vector> found;
-  for (int i = 0; i < count; ++i) found.push_back(*open_data(study, static_cast<std::uint64_t>(i))->next()->truth);
+  for (int i = 0; i < count; ++i)
+    found.push_back(*open_data(study, static_cast<std::uint64_t>(i))->next()->truth);
   return found;
 }
 
@@ -158,7 +160,8 @@ TEST_CASE("a drawn start takes nothing from the other sequences, and repeats") {
   const auto records = all(*open_data(spread, 4));
   const Matrix& A = given.model.linear.A;
   for (std::size_t k = 0; k < 20; ++k) {
-    const Vector one = *records[k + 1].truth - A * *records[k].truth, other = *drawn[k + 1].truth - A * *drawn[k].truth;
+    const Vector one = *records[k + 1].truth - A * *records[k].truth,
+                 other = *drawn[k + 1].truth - A * *drawn[k].truth;
     CHECK((one - other).norm() < 1e-12);
   }
 }
@@ -209,7 +212,8 @@ TEST_CASE("starts of a descriptor system meet its static rows and lie in the set
     const Vector radius = X0.G.diagonal();
     CHECK(((X0.c - least).array() > .9 * radius.array()).head(2).all());
     CHECK(((most - X0.c).array() > .9 * radius.array()).head(2).all());
-    const double share = noise == Noise::uniform ? .8 : .4;  // vertices in the set have |x3 - .25| ≤ .25
+    const double share =
+        noise == Noise::uniform ? .8 : .4;  // vertices in the set have |x3 - .25| ≤ .25
     CHECK(X0.c[2] - least[2] > share * radius[2]);
     CHECK(most[2] - X0.c[2] > share * radius[2]);
   }
@@ -240,9 +244,11 @@ TEST_CASE("sets that no draw meets are drawn together with w_0") {
   CHECK(least < 0);
   CHECK(most > 1);
   const Study nowhere = descriptor_study(box(Vector{{.4, 0., 9.}}, Vector{{.6, 1., 10.}}));
-  CHECK_THROWS_WITH_AS(open_data(nowhere),
-                       doctest::Contains("/data/simulate/x0: no state of the set was found that meets the static rows"),
-                       InputError);
+  CHECK_THROWS_WITH_AS(
+      open_data(nowhere),
+      doctest::Contains(
+          "/data/simulate/x0: no state of the set was found that meets the static rows"),
+      InputError);
 }
 
 TEST_CASE("pairs that are drawn together heed u_0") {
@@ -259,9 +265,10 @@ TEST_CASE("pairs that are drawn together heed u_0") {
 
 TEST_CASE("what no state can be drawn from is refused") {
   CHECK_THROWS_WITH_AS(open_data(data_study(make_space(2))),
-                       doctest::Contains("/data/simulate/x0: cannot be simulated: unbounded"), InputError);
-  CHECK_THROWS_WITH_AS(open_data(data_study(unit_box(3))), doctest::Contains("/data/simulate/x0: has size 3, must be 2"),
+                       doctest::Contains("/data/simulate/x0: cannot be simulated: unbounded"),
                        InputError);
+  CHECK_THROWS_WITH_AS(open_data(data_study(unit_box(3))),
+                       doctest::Contains("/data/simulate/x0: has size 3, must be 2"), InputError);
   Study both = data_study(unit_box(2));
   std::get<SimulateSpec>(both.data).x0 = Vector{{0., 0.}};
   CHECK_THROWS_WITH_AS(open_data(both), doctest::Contains("both a state and a set"), InputError);
@@ -318,8 +325,12 @@ TEST_CASE("the static rows of the last sample hold with the last input") {
 }
 
 TEST_CASE("experiments start where the study says, else in the X0 of the mode") {
-  const auto first = [](const Study& study, Index mode, std::uint64_t seed) { return *run(study, mode, pulses, seed)[0].truth; };
-  const auto inside = [](const LineForm& X, const Vector& x) { return contains(X, x) != Answer::no; };
+  const auto first = [](const Study& study, Index mode, std::uint64_t seed) {
+    return *run(study, mode, pulses, seed)[0].truth;
+  };
+  const auto inside = [](const LineForm& X, const Vector& x) {
+    return contains(X, x) != Answer::no;
+  };
   Study study = study_of();
   std::set<double> seen;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -335,8 +346,8 @@ TEST_CASE("experiments start where the study says, else in the X0 of the mode") 
   spec.x0 = Vector{{4., 5.}};
   for (const Index mode : {0, 1}) CHECK(first(study, mode, 3) == Vector{{4., 5.}});
   spec.x0.reset();
-  study.modes[0].model.X0 =
-      box(Vector{{2., -std::numeric_limits<double>::infinity()}}, Vector{{6., std::numeric_limits<double>::infinity()}});
+  study.modes[0].model.X0 = box(Vector{{2., -std::numeric_limits<double>::infinity()}},
+                                Vector{{6., std::numeric_limits<double>::infinity()}});
   CHECK(first(study, 1, 3) == Vector{{4., 0.}});
   study.data = CsvSpec{};  // seed 1, uniform
   CHECK(same(run(study, 0, pulses), run(study_of(), 0, pulses)));
@@ -366,7 +377,8 @@ TEST_CASE("experiments that cannot be simulated say which mode it is") {
   study.modes[0].model.W = make_space(2);
   InputError error = error_of(study, 1, pulses);
   CHECK(error.diagnostics()[0].pointer == "/system/modes/0");
-  CHECK(error.diagnostics()[0].message == "an experiment with mode \"weak\": cannot be simulated: unbounded");
+  CHECK(error.diagnostics()[0].message ==
+        "an experiment with mode \"weak\": cannot be simulated: unbounded");
   CHECK(run(study, 0, pulses).size() == 4);
 
   study = study_of();

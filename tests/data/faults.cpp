@@ -16,7 +16,9 @@ using namespace data_test;
 
 namespace {
 
-LineForm box(double radius, Index n) { return make_box({Vector::Constant(n, -radius), Vector::Constant(n, radius)}); }
+LineForm box(double radius, Index n) {
+  return make_box({Vector::Constant(n, -radius), Vector::Constant(n, radius)});
+}
 
 Model healthy() {
   Model model;
@@ -32,7 +34,8 @@ Model healthy() {
   return model;
 }
 
-FaultSpec fault(std::int64_t from, std::int64_t to, Index mode, Model model, Box actuator = {}, Box sensor = {}) {
+FaultSpec fault(std::int64_t from, std::int64_t to, Index mode, Model model, Box actuator = {},
+                Box sensor = {}) {
   FaultSpec spec;
   spec.from = from;
   spec.to = to;
@@ -44,7 +47,8 @@ FaultSpec fault(std::int64_t from, std::int64_t to, Index mode, Model model, Box
   return spec;
 }
 
-Study study_of(std::vector<FaultSpec> faults, Noise noise = Noise::uniform, Model model = healthy()) {
+Study study_of(std::vector<FaultSpec> faults, Noise noise = Noise::uniform,
+               Model model = healthy()) {
   SimulateSpec spec;
   spec.steps = 30;
   spec.noise = noise;
@@ -81,7 +85,9 @@ class Tank final : public Plant {
     if (k == overflows_at) return Vector{{1., std::numeric_limits<double>::infinity()}};
     return Vector{{.5 * x[0] + u[0], x[1] * x[1] / 16 + u[1]}};
   }
-  Vector output(Index, VectorIn x, VectorIn u) const override { return Vector{{x[0] + u[0], x[1]}}; }
+  Vector output(Index, VectorIn x, VectorIn u) const override {
+    return Vector{{x[0] + u[0], x[1]}};
+  }
   Index throws_at = -1, wrong_at = -1, overflows_at = -1;
 };
 
@@ -94,7 +100,8 @@ Study tank_study(std::vector<FaultSpec> faults, Noise noise, Tank tank = {}) {
 }  // namespace
 
 TEST_CASE("a fault makes y_k and x_{k+1} from its first step to its last") {
-  const auto plain = all(study_of({}, Noise::zero)), faulty = all(study_of({fault(4, 6, 1, healthy(), half)}, Noise::zero));
+  const auto plain = all(study_of({}, Noise::zero)),
+             faulty = all(study_of({fault(4, 6, 1, healthy(), half)}, Noise::zero));
   for (std::size_t k = 0; k <= 4; ++k) CHECK(*faulty[k].truth == *plain[k].truth);
   for (std::size_t k = 0; k < 4; ++k) CHECK(faulty[k].sample.y == plain[k].sample.y);
   for (std::size_t k = 0; k < 30; ++k) {
@@ -102,7 +109,8 @@ TEST_CASE("a fault makes y_k and x_{k+1} from its first step to its last") {
     const Vector& u = faulty[k].sample.u;
     CHECK(u == plain[k].sample.u);
     CHECK((pushed(faulty, k) - Vector{{(acts ? .5 : 1) * u[0], 2 * u[1]}}).norm() < 1e-14);
-    CHECK(faulty[k].sample.y[0] == doctest::Approx((*faulty[k].truth)[0] + (acts ? .25 : .5) * u[0]).epsilon(1e-14));
+    CHECK(faulty[k].sample.y[0] ==
+          doctest::Approx((*faulty[k].truth)[0] + (acts ? .25 : .5) * u[0]).epsilon(1e-14));
     CHECK(faulty[k].mode == Index(acts ? 1 : 0));
   }
 }
@@ -117,7 +125,8 @@ TEST_CASE("the true mode is told where there are several") {
 
 TEST_CASE("faults do not change what is drawn for the healthy plant") {
   const auto plain = all(study_of({}));
-  const auto faulty = all(study_of({fault(5, 9, 1, healthy(), half), fault(12, 12, -1, healthy(), weak)}));
+  const auto faulty =
+      all(study_of({fault(5, 9, 1, healthy(), half), fault(12, 12, -1, healthy(), weak)}));
   CHECK(faulty[12].mode == Index(-1));
   for (std::size_t k = 0; k < 30; ++k) {
     const bool acts = (k >= 5 && k <= 9) || k == 12;
@@ -135,7 +144,9 @@ TEST_CASE("a mode that comes back is drawn anew") {
   noisy.linear.A.setZero();
   noisy.W = box(1, 2);
   const auto records = all(study_of({fault(0, 4, 1, noisy), fault(10, 14, 1, noisy)}));
-  const auto w = [&](std::size_t k) { return Vector(*records[k + 1].truth - noisy.linear.B * records[k].sample.u); };
+  const auto w = [&](std::size_t k) {
+    return Vector(*records[k + 1].truth - noisy.linear.B * records[k].sample.u);
+  };
   for (std::size_t k = 0; k < 5; ++k) {
     CHECK(w(k).cwiseAbs().maxCoeff() <= 1 + 1e-12);
     CHECK((w(k) - w(k + 10)).norm() > 1e-3);
@@ -155,8 +166,9 @@ TEST_CASE("magnitudes within ranges are drawn at every step") {
       const double f = pushed(records, k)[0] / u[0], y = records[k].sample.y[1], sum = x[0] + x[1];
       CHECK(pushed(records, k)[1] == doctest::Approx(2 * u[1]));
       CHECK((f > .2 - 1e-9 && f < .6 + 1e-9));
-      CHECK(std::abs(y - .35 * sum) <= .05 * std::abs(sum) + 1e-9);            // y = g sum with g in [.3, .4]
-      CHECK(records[k].sample.y[0] == doctest::Approx(x[0] + .5 * f * u[0]));  // the same f in x and y
+      CHECK(std::abs(y - .35 * sum) <= .05 * std::abs(sum) + 1e-9);  // y = g sum with g in [.3, .4]
+      CHECK(records[k].sample.y[0] ==
+            doctest::Approx(x[0] + .5 * f * u[0]));  // the same f in x and y
       if (noise == Noise::vertex) CHECK(std::min(std::abs(f - .2), std::abs(f - .6)) < 1e-9);
       if (noise == Noise::zero) CHECK(f == doctest::Approx(.4));
       least = std::min(least, f), most = std::max(most, f);
@@ -176,7 +188,8 @@ TEST_CASE("a fault brings its own W, V and matrices") {
   for (std::size_t k = 0; k < 30; ++k) {
     const bool acts = k >= 10 && k <= 19;
     const Vector w = pushed(records, k) - healthy().linear.B * records[k].sample.u;
-    const Vector v = records[k].sample.y - healthy().linear.C * *records[k].truth - healthy().linear.D * records[k].sample.u;
+    const Vector v = records[k].sample.y - healthy().linear.C * *records[k].truth -
+                     healthy().linear.D * records[k].sample.u;
     CHECK(std::abs(w[1]) == doctest::Approx(.1));
     CHECK(((w[0] > 2.8) == acts));
     CHECK(v.cwiseAbs().minCoeff() == doctest::Approx(acts ? 5 : .01));
@@ -205,47 +218,56 @@ TEST_CASE("descriptor systems: models of one E follow each other") {
   const auto plain = all(study({}));
   for (std::size_t k = 0; k < 5; ++k) CHECK(*records[k].truth == *plain[k].truth);
   for (std::size_t k = 0; k < 30; ++k) {
-    const LinearModel& model = k >= 5 && k <= 9 ? changed.linear : published::descriptor_model().linear;
-    const Vector open = model.E * *records[k + 1].truth - model.A * *records[k].truth - model.B * records[k].sample.u;
+    const LinearModel& model =
+        k >= 5 && k <= 9 ? changed.linear : published::descriptor_model().linear;
+    const Vector open = model.E * *records[k + 1].truth - model.A * *records[k].truth -
+                        model.B * records[k].sample.u;
     // some w_k ∈ W explains the step, static row included
     CHECK((open.cwiseAbs().array() <= Vector{{.1, 1.5, .6}}.array() + 1e-9).all());
   }
   Model other = published::descriptor_model();
   other.linear.E *= 2;
   CHECK(message_of(study({fault(5, 9, 1, other)}))
-            .find("/data/simulate/faults/0: cannot be simulated: two models of different E") != std::string::npos);
+            .find("/data/simulate/faults/0: cannot be simulated: two models of different E") !=
+        std::string::npos);
   CHECK(message_of(study({fault(0, 9, 1, other)})).find("different E") != std::string::npos);
-  CHECK(message_of(study({fault(0, 9, 1, changed), fault(10, end, 1, other)})).find("faults/1") != std::string::npos);
+  CHECK(message_of(study({fault(0, 9, 1, changed), fault(10, end, 1, other)})).find("faults/1") !=
+        std::string::npos);
   CHECK(message_of(study({fault(0, 29, 1, other)})).find("different E") != std::string::npos);
-  for (const auto& faults : {std::vector{fault(0, end, 1, other)}, std::vector{fault(0, 30, 1, other)},
-                             std::vector{fault(0, 9, 1, other), fault(10, 30, 1, other)}, std::vector{fault(31, 40, 1, other)}}) {
+  for (const auto& faults :
+       {std::vector{fault(0, end, 1, other)}, std::vector{fault(0, 30, 1, other)},
+        std::vector{fault(0, 9, 1, other), fault(10, 30, 1, other)},
+        std::vector{fault(31, 40, 1, other)}}) {
     CHECK(message_of(study(faults)) == "");
     CHECK(all(study(faults)).size() == 31);
   }
   other.linear.A.row(2).setZero();  // index above 1: told at the fault
-  CHECK(
-      message_of(study({fault(0, end, 1, other)})).find("/data/simulate/faults/0: the descriptor system has an index above 1") !=
-      std::string::npos);
+  CHECK(message_of(study({fault(0, end, 1, other)}))
+            .find("/data/simulate/faults/0: the descriptor system has an index above 1") !=
+        std::string::npos);
 }
 
 TEST_CASE("faults that cannot be simulated") {
   Model open = healthy();
   open.V = make_space(2);
-  CHECK(message_of(study_of({fault(1, 2, 1, open)})).find("/data/simulate/faults/0: cannot be simulated: unbounded") !=
+  CHECK(message_of(study_of({fault(1, 2, 1, open)}))
+            .find("/data/simulate/faults/0: cannot be simulated: unbounded") != std::string::npos);
+  CHECK(message_of(study_of({fault(3, 2, 1, healthy())})).find("ends before it begins") !=
         std::string::npos);
-  CHECK(message_of(study_of({fault(3, 2, 1, healthy())})).find("ends before it begins") != std::string::npos);
-  CHECK(message_of(study_of({fault(3, 5, 1, healthy()), fault(5, 6, 1, healthy())})).find("faults/1: begins before") !=
-        std::string::npos);
+  CHECK(message_of(study_of({fault(3, 5, 1, healthy()), fault(5, 6, 1, healthy())}))
+            .find("faults/1: begins before") != std::string::npos);
   Model small = healthy();
   small.linear.A = Matrix{{1.}};
-  CHECK(message_of(study_of({fault(3, 5, 1, small)})).find("faults/0: has size 1, must be 2") != std::string::npos);
+  CHECK(message_of(study_of({fault(3, 5, 1, small)})).find("faults/0: has size 1, must be 2") !=
+        std::string::npos);
 }
 
 TEST_CASE("a plant takes the place of the model") {
   const Box deaf{Vector{{1., .3}}, Vector{{1., .3}}};
   Model loud = healthy();
   loud.V = box(2, 2);
-  const auto records = all(tank_study({fault(3, 5, 1, healthy(), half), fault(8, 9, -1, loud, {}, deaf)}, Noise::vertex));
+  const auto records = all(tank_study(
+      {fault(3, 5, 1, healthy(), half), fault(8, 9, -1, loud, {}, deaf)}, Noise::vertex));
   REQUIRE(records.size() == 31);
   CHECK(*records[0].truth == Vector{{0., 0.}});
   const Tank tank;
@@ -282,7 +304,8 @@ TEST_CASE("a plant that misbehaves") {
   CHECK(end_of(tank).find("next state at k = 3 has 3 entries, not 2") != std::string::npos);
   tank = {};
   tank.overflows_at = 3;
-  CHECK(end_of(tank).find("/data/simulate/plant: its next state is not finite at k = 3") != std::string::npos);
+  CHECK(end_of(tank).find("/data/simulate/plant: its next state is not finite at k = 3") !=
+        std::string::npos);
   Study study = tank_study({}, Noise::zero);
   study.model.linear.C = Matrix{{1., 0.}};
   study.model.linear.D = Matrix(1, 2);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The descriptor system of [Rego2025, section 6.1] and one run of it with w_k = (sin k, cos 2k, sin(3k+1)) (w_0 = (0,1,0)),
-// v_k = (cos k, sin(2k+.5)), x_0 = (.5,.5,.25), u_k = (1 + .5 sin(π k / 10), -2 cos(π k / 10)).
+// The descriptor system of [Rego2025, section 6.1] and one run of it with w_k = (sin k, cos 2k,
+// sin(3k+1)) (w_0 = (0,1,0)), v_k = (cos k, sin(2k+.5)), x_0 = (.5,.5,.25), u_k = (1 + .5 sin(π k /
+// 10), -2 cos(π k / 10)).
 #pragma once
 
 #include "cordon/study/study.hpp"
@@ -53,7 +54,8 @@ inline cordon::Model descriptor_model() {
   m.C << 1, 0, 1, 1, -1, 0;
   m.D = cordon::Matrix::Zero(2, 2);
   m.Dv = cordon::Vector{{.5, 1.5}}.asDiagonal();
-  model.X0 = cordon::make_zonotope(cordon::Vector{{.5, .5, .25}}, cordon::Matrix(cordon::Vector{{.1, 1.5, .6}}.asDiagonal()));
+  model.X0 = cordon::make_zonotope(cordon::Vector{{.5, .5, .25}},
+                                   cordon::Matrix(cordon::Vector{{.1, 1.5, .6}}.asDiagonal()));
   model.W = cordon::make_box({-cordon::Vector::Ones(3), cordon::Vector::Ones(3)});
   model.V = cordon::make_box({-cordon::Vector::Ones(2), cordon::Vector::Ones(2)});
   return model;

@@ -17,7 +17,9 @@ inline std::vector<cordon::Record> all(cordon::DataSource& data) {
   while (std::optional<cordon::Record> record = data.next()) records.push_back(std::move(*record));
   return records;
 }
-inline std::vector<cordon::Record> all(const cordon::Study& study) { return all(*cordon::open_data(study)); }
+inline std::vector<cordon::Record> all(const cordon::Study& study) {
+  return all(*cordon::open_data(study));
+}
 
 /// FNV-1a over the bit patterns of inputs, outputs, states and faults.
 inline std::uint64_t digest(const std::vector<cordon::Record>& records) {
@@ -27,7 +29,8 @@ inline std::uint64_t digest(const std::vector<cordon::Record>& records) {
     for (int i = 0; i < 8; ++i) hash = (hash ^ ((bits >> (8 * i)) & 255)) * 1099511628211u;
   };
   for (const cordon::Record& r : records) {
-    for (const cordon::Vector* part : {&r.sample.u, &r.sample.y, &*r.truth}) std::for_each(part->begin(), part->end(), take);
+    for (const cordon::Vector* part : {&r.sample.u, &r.sample.y, &*r.truth})
+      std::for_each(part->begin(), part->end(), take);
     if (r.fault) std::for_each(r.fault->begin(), r.fault->end(), take);
   }
   return hash;

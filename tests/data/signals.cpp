@@ -95,7 +95,8 @@ TEST_CASE("prbs may be asked for some times only") {
 TEST_CASE("problems of signals carry their pointers") {
   Signal s = signal(Signal::Type::table);
   REQUIRE(detail::problems_of(s, "/data/simulate/input/1").size() == 1);
-  CHECK(detail::problems_of(s, "/data/simulate/input/1")[0].pointer == "/data/simulate/input/1/values");
+  CHECK(detail::problems_of(s, "/data/simulate/input/1")[0].pointer ==
+        "/data/simulate/input/1/values");
   s = signal(Signal::Type::prbs);
   s.period = 0;
   s.offset = std::nan("");
@@ -104,7 +105,8 @@ TEST_CASE("problems of signals carry their pointers") {
 }
 
 TEST_CASE("random streams: numbers in range, pinned, independent by purpose") {
-  RandomStream w(1, Purpose::disturbance), again(1, Purpose::disturbance), v(1, Purpose::noise), other(2, Purpose::disturbance);
+  RandomStream w(1, Purpose::disturbance), again(1, Purpose::disturbance), v(1, Purpose::noise),
+      other(2, Purpose::disturbance);
   double mean = 0;
   int same_v = 0, same_other = 0;
   for (int i = 0; i < 10000; ++i) {

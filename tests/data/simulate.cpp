@@ -69,12 +69,16 @@ SimulateSpec two_state_spec(Noise noise) {
 TEST_CASE("the published run comes out when its noise is given") {
   LinearPlant plant(published::descriptor_model().linear, "study.json");
   plant.start(Vector{{.5, .5, .25}});
-  detail::SignalSource u1(published::descriptor_input()[0], 0), u2(published::descriptor_input()[1], 1);
+  detail::SignalSource u1(published::descriptor_input()[0], 0),
+      u2(published::descriptor_input()[1], 1);
   for (int k = 0; k < 13; ++k) {
-    const Vector w{{std::sin(k), std::cos(2 * k), k == 0 ? 0.0 : std::sin(3 * k + 1)}}, v{{std::cos(k), std::sin(2 * k + .5)}};
+    const Vector w{{std::sin(k), std::cos(2 * k), k == 0 ? 0.0 : std::sin(3 * k + 1)}},
+        v{{std::cos(k), std::sin(2 * k + .5)}};
     const auto [x, y] = plant.step(Vector{{u1.at(k), u2.at(k)}}, w, v);
-    for (Index i = 0; i < 3; ++i) CHECK(x[i] == doctest::Approx(published::states[k][i]).epsilon(1e-12));
-    for (Index i = 0; i < 2; ++i) CHECK(y[i] == doctest::Approx(published::outputs[k][i]).epsilon(1e-12));
+    for (Index i = 0; i < 3; ++i)
+      CHECK(x[i] == doctest::Approx(published::states[k][i]).epsilon(1e-12));
+    for (Index i = 0; i < 2; ++i)
+      CHECK(y[i] == doctest::Approx(published::outputs[k][i]).epsilon(1e-12));
   }
 }
 
@@ -89,10 +93,13 @@ TEST_CASE("a descriptor run keeps its start, its static rows and its bounds") {
     const double w3 = (x[0] - .5 * x[1] - x[2]) / .6;  // static row: 0 = -x1 + .5 x2 + x3 + .6 w3
     CHECK(std::abs(w3) <= 1 + 1e-9);
     if (k == 0) CHECK(std::abs(w3) < 1e-12);
-    const Vector v = (records[k].sample.y - study.model.linear.C * x).cwiseQuotient(Vector{{.5, 1.5}});
+    const Vector v =
+        (records[k].sample.y - study.model.linear.C * x).cwiseQuotient(Vector{{.5, 1.5}});
     CHECK(v.cwiseAbs().maxCoeff() <= 1 + 1e-9);
     if (k + 1 == records.size()) break;
-    const Vector rest = (*records[k + 1].truth - study.model.linear.A * x - study.model.linear.B * records[k].sample.u).head(2);
+    const Vector rest = (*records[k + 1].truth - study.model.linear.A * x -
+                         study.model.linear.B * records[k].sample.u)
+                            .head(2);
     CHECK(std::abs(rest[0]) <= .1 + 1e-9);
     CHECK(std::abs(rest[1]) <= 1.5 + 1e-9);
   }
@@ -110,7 +117,8 @@ TEST_CASE("simulations repeat bit by bit") {
 }
 
 TEST_CASE("the first values are pinned") {
-  std::uint64_t expected[] = {14594713322818265554u, 10002092720016404607u, 9586776123028993042u, 3299691419449143060u};
+  std::uint64_t expected[] = {14594713322818265554u, 10002092720016404607u, 9586776123028993042u,
+                              3299691419449143060u};
   int i = 0;
   for (const Noise noise : {Noise::uniform, Noise::vertex, Noise::zero, Noise::sine}) {
     CHECK(digest(all(study_of(two_states(), two_state_spec(noise)))) == expected[i++]);
@@ -135,7 +143,9 @@ TEST_CASE("kinds of noise without constraints") {
   CHECK(largest > 1.3);
   const std::vector<Vector> sines = draws(Noise::sine);
   CHECK(sines[0] == Vector{{1., 2.}});
-  CHECK(sines[7][0] == doctest::Approx(1 + std::sin(7 * std::sqrt(2)) + .5 * std::sin(7 * std::sqrt(5))).epsilon(1e-12));
+  CHECK(sines[7][0] ==
+        doctest::Approx(1 + std::sin(7 * std::sqrt(2)) + .5 * std::sin(7 * std::sqrt(5)))
+            .epsilon(1e-12));
 }
 
 TEST_CASE("draws from constrained sets stay inside and are not all alike") {
@@ -155,11 +165,13 @@ TEST_CASE("draws from constrained sets stay inside and are not all alike") {
       seen.lower = seen.lower.cwiseMin(p);
       seen.upper = seen.upper.cwiseMax(p);
       // inside up to rounding: no direction separates
-      for (const Vector& h : {Vector{{1., 0.}}, Vector{{-1., 0.}}, Vector{{1., 1.}}, Vector{{-1., -2.}}, Vector{{.3, -1.}}}) {
+      for (const Vector& h : {Vector{{1., 0.}}, Vector{{-1., 0.}}, Vector{{1., 1.}},
+                              Vector{{-1., -2.}}, Vector{{.3, -1.}}}) {
         CHECK(h.dot(p) <= support(X, h) + 1e-9);
       }
     }
-    const double spread = (seen.upper - seen.lower).cwiseQuotient(hull.upper - hull.lower).minCoeff();
+    const double spread =
+        (seen.upper - seen.lower).cwiseQuotient(hull.upper - hull.lower).minCoeff();
     if (noise == Noise::zero) {
       CHECK(spread == 0);
     } else {
@@ -173,10 +185,12 @@ TEST_CASE("any constrained set: the factors meet rows and bounds") {
     RandomStream random(seed, Purpose::prbs);
     const Index g = 2 + static_cast<Index>(random.unit() * 5),
                 m = 1 + static_cast<Index>(random.unit() * (static_cast<double>(g) - 1));
-    LineForm X = make_zonotope(Vector::Zero(g), Matrix::Identity(g, g));  // the set of factors itself
+    LineForm X =
+        make_zonotope(Vector::Zero(g), Matrix::Identity(g, g));  // the set of factors itself
     X.S = Matrix(m, 0);
     X.A = Matrix::NullaryExpr(m, g, [&] { return random.symmetric(); });
-    X.b = X.A * Vector::NullaryExpr(g, [&] { return random.sign() > 0 ? random.sign() : random.symmetric(); });
+    X.b = X.A * Vector::NullaryExpr(
+                    g, [&] { return random.sign() > 0 ? random.sign() : random.symmetric(); });
     const Noise noise = static_cast<Noise>(static_cast<int>(random.unit() * 4));
     Disturbance d(X, noise, RandomStream(seed, Purpose::disturbance), 0, "f", "/p");
     for (int k = 0; k < 20; ++k) {
@@ -190,15 +204,16 @@ TEST_CASE("any constrained set: the factors meet rows and bounds") {
 TEST_CASE("sets that cannot be simulated") {
   Model model = two_states();
   model.W = make_space(2);
-  CHECK(message_of(study_of(model, two_state_spec(Noise::uniform))).find("/system/W: cannot be simulated: unbounded") !=
-        std::string::npos);
+  CHECK(message_of(study_of(model, two_state_spec(Noise::uniform)))
+            .find("/system/W: cannot be simulated: unbounded") != std::string::npos);
   model = two_states();
   model.V = make_empty(1);
-  CHECK(message_of(study_of(model, two_state_spec(Noise::uniform))).find("/system/V: cannot be simulated: the set is empty") !=
-        std::string::npos);
+  CHECK(message_of(study_of(model, two_state_spec(Noise::uniform)))
+            .find("/system/V: cannot be simulated: the set is empty") != std::string::npos);
   // lines that the constraints bound are fine: {δ : δ + ξ = 0}
   model = two_states();
-  model.V = LineForm{Matrix{{1.}}, Matrix::Zero(1, 1), Vector::Zero(1), Matrix{{1.}}, Matrix{{1.}}, Vector::Zero(1)};
+  model.V = LineForm{Matrix{{1.}}, Matrix::Zero(1, 1), Vector::Zero(1),
+                     Matrix{{1.}}, Matrix{{1.}},       Vector::Zero(1)};
   for (const Record& r : all(study_of(model, two_state_spec(Noise::uniform))))
     CHECK(std::abs(r.sample.y[0] - (*r.truth)[0]) <= .5 + 1e-9);
 }
@@ -226,7 +241,8 @@ TEST_CASE("a descriptor system without x0 starts in X0 on its static rows") {
     CHECK((x.head(2) - Vector{{.5, .5}}).norm() < 1e-12);
     CHECK(contains(study.model.X0, x) != Answer::no);
   }
-  // the centre leads out of X0, another start does not: x3 = x1 - .5 x2 - .6 w3 must lie in [10.2, 10.4]
+  // the centre leads out of X0, another start does not: x3 = x1 - .5 x2 - .6 w3 must lie in
+  // [10.2, 10.4]
   study.model.X0 = make_box({Vector{{-20., -20., 10.2}}, Vector{{20., 20., 10.4}}});
   const Vector x = *open_data(study)->next()->truth;
   CHECK((x[2] > 10.2 - 1e-9 && x[2] < 10.4 + 1e-9));
@@ -248,7 +264,8 @@ TEST_CASE("an inconsistent x0 is refused with its residual") {
 }
 
 TEST_CASE("a correction that leaves W is replaced by another point of W") {
-  // static row 0 = x1 + w1 + w2 with w1 + w2 = 1.5 needed: the drawn (w1,w2), corrected, may leave the box
+  // static row 0 = x1 + w1 + w2 with w1 + w2 = 1.5 needed: the drawn (w1,w2), corrected, may leave
+  // the box
   Model model = two_states();
   model.linear.E = Matrix{{0., 0.}, {0., 1.}};
   model.linear.A = Matrix{{1., 0.}, {.1, .5}};
@@ -270,7 +287,8 @@ TEST_CASE("index above 1 is refused; a regular E is inverted") {
   Model model = two_states();
   model.linear.E = Matrix{{1., 0.}, {0., 0.}};
   model.linear.A = Matrix{{0., 1.}, {1., 0.}};
-  CHECK(message_of(study_of(model, two_state_spec(Noise::zero))).find("index above 1") != std::string::npos);
+  CHECK(message_of(study_of(model, two_state_spec(Noise::zero))).find("index above 1") !=
+        std::string::npos);
   model = two_states();
   const std::vector<Record> plain = all(study_of(model, two_state_spec(Noise::uniform)));
   const Matrix E{{2., 1.}, {1., 3.}};
@@ -279,14 +297,16 @@ TEST_CASE("index above 1 is refused; a regular E is inverted") {
   model.linear.B = E * model.linear.B;
   model.linear.Bw = E * model.linear.Bw;
   const std::vector<Record> scaled = all(study_of(model, two_state_spec(Noise::uniform)));
-  for (std::size_t k = 0; k < plain.size(); ++k) CHECK((*plain[k].truth - *scaled[k].truth).norm() < 1e-12);
+  for (std::size_t k = 0; k < plain.size(); ++k)
+    CHECK((*plain[k].truth - *scaled[k].truth).norm() < 1e-12);
 }
 
 TEST_CASE("rotating a descriptor system changes nothing but coordinates") {
   const Model model = published::descriptor_model();
   const double a = .7, b = 1.1;
-  const Matrix P = Matrix{{std::cos(a), -std::sin(a), 0.}, {std::sin(a), std::cos(a), 0.}, {0., 0., 1.}} *
-                   Matrix{{1., 0., 0.}, {0., std::cos(b), -std::sin(b)}, {0., std::sin(b), std::cos(b)}};
+  const Matrix P =
+      Matrix{{std::cos(a), -std::sin(a), 0.}, {std::sin(a), std::cos(a), 0.}, {0., 0., 1.}} *
+      Matrix{{1., 0., 0.}, {0., std::cos(b), -std::sin(b)}, {0., std::sin(b), std::cos(b)}};
   LinearModel rotated = model.linear;
   rotated.E = P * model.linear.E * P.transpose();
   rotated.A = P * model.linear.A * P.transpose();
@@ -297,7 +317,8 @@ TEST_CASE("rotating a descriptor system changes nothing but coordinates") {
   plain.start(Vector{{.5, .5, .25}});
   turned.start(P * Vector{{.5, .5, .25}});
   for (int k = 0; k < 10; ++k) {
-    const Vector w{{std::sin(k), std::cos(k), k == 0 ? 0. : std::sin(2 * k)}}, v{{.1, .2}}, u{{1., -1.}};
+    const Vector w{{std::sin(k), std::cos(k), k == 0 ? 0. : std::sin(2 * k)}}, v{{.1, .2}},
+        u{{1., -1.}};
     const auto p = plain.step(u, w, v), t = turned.step(u, w, v);
     CHECK((P * p.x - t.x).norm() < 1e-10);
     CHECK((p.y - t.y).norm() < 1e-10);
@@ -318,7 +339,8 @@ TEST_CASE("states of unlike sizes lose no digits to each other") {
   for (int k = 0; k < 3; ++k) {
     const Vector now = plant.step(none, none, none).x;
     const Vector left = model.E * now, right = model.A * before;
-    const Vector terms = model.E.cwiseAbs() * now.cwiseAbs() + model.A.cwiseAbs() * before.cwiseAbs();
+    const Vector terms =
+        model.E.cwiseAbs() * now.cwiseAbs() + model.A.cwiseAbs() * before.cwiseAbs();
     CAPTURE(Vector(left - right).transpose());
     CHECK(((left - right).cwiseAbs().array() <= 4e-16 * terms.array()).all());
     before = now;

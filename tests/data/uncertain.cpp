@@ -21,7 +21,9 @@ namespace {
 
 constexpr std::int64_t end = std::numeric_limits<std::int64_t>::max();
 
-LineForm box(double radius, Index n) { return make_box({Vector::Constant(n, -radius), Vector::Constant(n, radius)}); }
+LineForm box(double radius, Index n) {
+  return make_box({Vector::Constant(n, -radius), Vector::Constant(n, radius)});
+}
 
 /// Without disturbances and noise, so that the data show the matrices.
 Model uncertain() {
@@ -42,7 +44,8 @@ Model uncertain() {
   return model;
 }
 
-Study study_of(Model model, Noise noise = Noise::uniform, ParameterDraw parameters = ParameterDraw::constant) {
+Study study_of(Model model, Noise noise = Noise::uniform,
+               ParameterDraw parameters = ParameterDraw::constant) {
   SimulateSpec spec;
   spec.steps = 60;
   spec.noise = noise;
@@ -64,7 +67,8 @@ Study study_of(Model model, Noise noise = Noise::uniform, ParameterDraw paramete
 
 SimulateSpec& spec_of(Study& study) { return std::get<SimulateSpec>(study.data); }
 
-AdditiveFaultSpec additive(Index fault, std::int64_t from, std::int64_t to, double offset, double amplitude = 0) {
+AdditiveFaultSpec additive(Index fault, std::int64_t from, std::int64_t to, double offset,
+                           double amplitude = 0) {
   AdditiveFaultSpec spec;
   spec.fault = fault;
   spec.from = from;
@@ -85,14 +89,16 @@ FaultSpec fault(std::int64_t from, std::int64_t to, Index mode, Model model) {
   return spec;
 }
 
-/// The published descriptor system with two directions of faults; the second one acts on the static row.
+/// The published descriptor system with two directions of faults; the second one acts on the static
+/// row.
 Study faulty_descriptor() {
   Model model = published::descriptor_model();
   model.linear.F = Matrix{{1., 0.}, {0., .5}, {.25, 1.}};
   Study study = study_of(std::move(model));
   spec_of(study).x0 = Vector{{.5, .5, .25}};
   spec_of(study).input = published::descriptor_input();
-  spec_of(study).additive_faults = {additive(0, 10, 30, .5, 1), additive(1, 5, end, 0, .3), additive(1, 20, 25, .1)};
+  spec_of(study).additive_faults = {additive(0, 10, 30, .5, 1), additive(1, 5, end, 0, .3),
+                                    additive(1, 20, 25, .1)};
   return study;
 }
 
@@ -101,7 +107,8 @@ Vector fault_at(const SimulateSpec& spec, std::int64_t k) {
   Vector n = Vector::Zero(2);
   for (const AdditiveFaultSpec& f : spec.additive_faults) {
     const double angle = f.signal.omega * static_cast<double>(k);
-    if (k >= f.from && k <= f.to) n[f.fault] += f.signal.offset + f.signal.amplitude * std::sin(angle);
+    if (k >= f.from && k <= f.to)
+      n[f.fault] += f.signal.offset + f.signal.amplitude * std::sin(angle);
   }
   return n;
 }
@@ -172,7 +179,8 @@ TEST_CASE("without chance the matrices are the centres") {
       const auto records = all(study_of(uncertain(), noise, parameters));
       const LinearModel m = uncertain().linear;
       for (std::size_t k = 0; k + 1 < records.size(); ++k)
-        CHECK((*records[k + 1].truth - m.A * *records[k].truth - m.B * records[k].sample.u).norm() < 1e-13);
+        CHECK((*records[k + 1].truth - m.A * *records[k].truth - m.B * records[k].sample.u).norm() <
+              1e-13);
     }
   }
 }
@@ -202,12 +210,16 @@ TEST_CASE("parameters do not change what else is drawn") {
   }
 }
 
-TEST_CASE("a fault draws matrices of its own, and changes those of the nominal mode neither before nor after") {
+TEST_CASE(
+    "a fault draws matrices of its own, and changes those of the nominal mode neither before nor "
+    "after") {
   for (const ParameterDraw parameters : {ParameterDraw::constant, ParameterDraw::varying}) {
     const Study plain = study_of(uncertain(), Noise::uniform, parameters);
     Study study = plain;
-    spec_of(study).faults = {fault(0, 3, 1, uncertain()), fault(7, 11, 1, uncertain()), fault(20, 24, 1, uncertain())};
-    const auto first_row = [](const std::vector<Record>& records, std::size_t k) {  // A(0,0) that acted at k
+    spec_of(study).faults = {fault(0, 3, 1, uncertain()), fault(7, 11, 1, uncertain()),
+                             fault(20, 24, 1, uncertain())};
+    const auto first_row = [](const std::vector<Record>& records,
+                              std::size_t k) {  // A(0,0) that acted at k
       const Vector& x = *records[k].truth;
       return ((*records[k + 1].truth)[0] - .1 * x[1] - records[k].sample.u[0]) / x[0];
     };
@@ -221,14 +233,17 @@ TEST_CASE("a fault draws matrices of its own, and changes those of the nominal m
         CHECK(difference < 1e-11);
       }
     }
-    if (parameters == ParameterDraw::constant) CHECK(std::abs(first_row(with, 7) - first_row(with, 11)) < 1e-9);
+    if (parameters == ParameterDraw::constant)
+      CHECK(std::abs(first_row(with, 7) - first_row(with, 11)) < 1e-9);
     CHECK(std::abs(first_row(with, 7) - first_row(with, 20)) > 1e-6);
   }
 }
 
 TEST_CASE("the first uncertain values are pinned") {
-  CHECK(digest(all(study_of(uncertain(), Noise::uniform, ParameterDraw::constant))) == 14232558760594489440u);
-  CHECK(digest(all(study_of(uncertain(), Noise::vertex, ParameterDraw::varying))) == 391912007558744188u);
+  CHECK(digest(all(study_of(uncertain(), Noise::uniform, ParameterDraw::constant))) ==
+        14232558760594489440u);
+  CHECK(digest(all(study_of(uncertain(), Noise::vertex, ParameterDraw::varying))) ==
+        391912007558744188u);
   Model model = uncertain();
   model.linear.F = Matrix{{1., 0.}, {-.5, 2.}};
   Study study = study_of(model);
@@ -245,7 +260,8 @@ TEST_CASE("additive faults push the state along F, and are told") {
   model.W = box(.1, 2);
   Study study = study_of(model);
   const auto healthy = all(study);
-  spec_of(study).additive_faults = {additive(1, 3, 20, 0, .4), additive(0, 10, 12, .5), additive(1, 15, end, -.25)};
+  spec_of(study).additive_faults = {additive(1, 3, 20, 0, .4), additive(0, 10, 12, .5),
+                                    additive(1, 15, end, -.25)};
   const auto faulty = all(study);
   Vector e = Vector::Zero(2);  // the difference follows the undisturbed system
   for (std::size_t k = 0; k < faulty.size(); ++k) {
@@ -280,7 +296,8 @@ TEST_CASE("additive faults act beside the modes") {
   for (std::size_t k = 0; k < 20; ++k) {
     const LinearModel& m = k >= 5 && k <= 9 ? other.linear : model.linear;
     const Vector n{{k >= 7 && k <= 11 ? .5 : 0.}};
-    CHECK((*records[k + 1].truth - m.A * *records[k].truth - m.B * records[k].sample.u - m.F * n).norm() < 1e-13);
+    CHECK((*records[k + 1].truth - m.A * *records[k].truth - m.B * records[k].sample.u - m.F * n)
+              .norm() < 1e-13);
     CHECK(records[k].mode == Index(n[0] != 0 ? -1 : k >= 5 && k <= 9 ? 1 : 0));
   }
 }
@@ -292,7 +309,8 @@ TEST_CASE("descriptor systems: F n acts on the whole equation, static rows inclu
   double least = 9, most = -9;
   for (std::size_t k = 0; k + 1 < records.size(); ++k) {
     const Vector n = fault_at(std::get<SimulateSpec>(study.data), static_cast<std::int64_t>(k));
-    const Vector w = m.E * *records[k + 1].truth - m.A * *records[k].truth - m.B * records[k].sample.u - m.F * n;
+    const Vector w =
+        m.E * *records[k + 1].truth - m.A * *records[k].truth - m.B * records[k].sample.u - m.F * n;
     CHECK((w.cwiseAbs().array() <= Vector{{.1, 1.5, .6}}.array() + 1e-12).all());  // Bw is diagonal
     least = std::min(least, w[2]), most = std::max(most, w[2]);
   }
@@ -311,12 +329,15 @@ TEST_CASE("the start of a descriptor system is consistent with the fault of k = 
   Study study = faulty_descriptor();
   const LinearModel& m = study.model.linear;
   spec_of(study).additive_faults = {additive(1, 0, end, .5)};
-  const auto static_row = [&](const Record& record) { return (m.A * *record.truth + m.B * record.sample.u)[2] + m.F(2, 1) * .5; };
+  const auto static_row = [&](const Record& record) {
+    return (m.A * *record.truth + m.B * record.sample.u)[2] + m.F(2, 1) * .5;
+  };
   const Record given = *open_data(study)->next();
   CHECK((*given.truth - *spec_of(study).x0).norm() < 1e-12);
   CHECK(std::abs(static_row(given)) <= .6 + 1e-12);  // some w_0 ∈ W explains it
   spec_of(study).additive_faults = {additive(1, 0, end, 5)};
-  CHECK(message_of(study).find("/data/simulate/x0: is not consistent with the static rows") != std::string::npos);
+  CHECK(message_of(study).find("/data/simulate/x0: is not consistent with the static rows") !=
+        std::string::npos);
   spec_of(study).additive_faults = {additive(1, 0, end, .5)};
   spec_of(study).x0.reset();
   study.model.W = make_point(Vector::Zero(3));
@@ -382,23 +403,29 @@ TEST_CASE("any linear system with additive faults: the truth meets an independen
     };
     const Index n = size(4), p = size(3), q = size(3), y = size(3);
     Model model;
-    model.linear = {
-        .E = {}, .A = any(n, n), .B = any(n, p), .Bw = Matrix(n, 0), .C = any(y, n), .D = any(y, p), .Dv = Matrix(y, 0)};
+    model.linear = {.E = {},
+                    .A = any(n, n),
+                    .B = any(n, p),
+                    .Bw = Matrix(n, 0),
+                    .C = any(y, n),
+                    .D = any(y, p),
+                    .Dv = Matrix(y, 0)};
     model.linear.F = any(n, q);
     model.X0 = make_point(any(n, 1).col(0));
     model.W = model.V = make_point(Vector(0));
     Study study = study_of(model);
     spec_of(study).steps = 12;
     for (Index i = 0; i < q; ++i) {
-      AdditiveFaultSpec one =
-          additive(i, static_cast<std::int64_t>(random.unit() * 6), 9, random.symmetric(), random.symmetric());
+      AdditiveFaultSpec one = additive(i, static_cast<std::int64_t>(random.unit() * 6), 9,
+                                       random.symmetric(), random.symmetric());
       one.signal.type = static_cast<Signal::Type>(static_cast<int>(random.unit() * 3));
       spec_of(study).additive_faults.push_back(one);
     }
     Vector x = model.X0.c;
     for (const Record& record : all(study)) {
       RC_ASSERT((*record.truth - x).norm() < 1e-12 * (1 + x.norm()));
-      RC_ASSERT((record.sample.y - model.linear.C * x - model.linear.D * record.sample.u).norm() < 1e-12 * (1 + x.norm()));
+      RC_ASSERT((record.sample.y - model.linear.C * x - model.linear.D * record.sample.u).norm() <
+                1e-12 * (1 + x.norm()));
       x = model.linear.A * x + model.linear.B * record.sample.u + model.linear.F * *record.fault;
     }
   }));
@@ -436,9 +463,11 @@ TEST_CASE("what cannot be simulated is told, all at once") {
   spec_of(study).additive_faults = {additive(0, 5, 4, std::numeric_limits<double>::quiet_NaN())};
   const std::string message = message_of(study);
   for (const char* part :
-       {"6 errors", "/system/A: has a radius that is negative", "/system/B: has a radius of another size",
-        "/system/C: has a radius that is negative or not finite", "additive_faults/0/fault: is no column",
-        "additive_faults/0: ends before it begins", "additive_faults/0/signal/offset: is not a finite number"}) {
+       {"6 errors", "/system/A: has a radius that is negative",
+        "/system/B: has a radius of another size",
+        "/system/C: has a radius that is negative or not finite",
+        "additive_faults/0/fault: is no column", "additive_faults/0: ends before it begins",
+        "additive_faults/0/signal/offset: is not a finite number"}) {
     CAPTURE(message);
     CHECK(message.find(part) != std::string::npos);
   }
@@ -449,12 +478,14 @@ TEST_CASE("what cannot be simulated is told, all at once") {
   Model other = uncertain();
   other.linear.A_radius = Matrix::Ones(1, 2);
   spec_of(study).faults = {fault(1, 2, 1, other)};
-  CHECK(message_of(study).find("faults/0: has size 0, must be 1, the columns of /system/F") != std::string::npos);
+  CHECK(message_of(study).find("faults/0: has size 0, must be 1, the columns of /system/F") !=
+        std::string::npos);
   CHECK(message_of(study).find("faults/0: has a radius of another size") != std::string::npos);
   spec_of(study).faults.clear();
   study.model.linear.F *= 1e-300;
   spec_of(study).additive_faults = {additive(0, 0, end, 1e308), additive(0, 3, end, 1e308)};
-  CHECK(message_of(study).find("/data/simulate/additive_faults: overflow at k = 3") != std::string::npos);
+  CHECK(message_of(study).find("/data/simulate/additive_faults: overflow at k = 3") !=
+        std::string::npos);
   spec_of(study).additive_faults = {additive(-1, 0, end, 1)};
   CHECK(message_of(study).find("additive_faults/0/fault: is no column") != std::string::npos);
 }

@@ -25,8 +25,11 @@ inline const Registry& registry() {
 
 inline Params reactor_parameters() {
   Params p;
-  p.set("gain", Matrix{{.1582}, {11.6106}}).set("waiting_time", std::int64_t{20}).set("strip_gain", Matrix{{1}, {1}});
-  p.set("error_set", box_around(Vector::Zero(2), Vector{{.15, 8}})).set("invariant", std::string("rpi"));
+  p.set("gain", Matrix{{.1582}, {11.6106}})
+      .set("waiting_time", std::int64_t{20})
+      .set("strip_gain", Matrix{{1}, {1}});
+  p.set("error_set", box_around(Vector::Zero(2), Vector{{.15, 8}}))
+      .set("invariant", std::string("rpi"));
   p.set("input_copies", std::string("separate"));
   return p;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Diagnoser `consistency_bank` on the four descriptor models of [Rego2025, sec. 6.2] under the published separating input. Four
-// samples give sets of at most 28 generators and 8 constraints: with this budget nothing is reduced, the sets are exact, and so
-// every false model is excluded for whatever disturbances there are, as the output tubes are disjoint.
+// Diagnoser `consistency_bank` on the four descriptor models of [Rego2025, sec. 6.2] under the
+// published separating input. Four samples give sets of at most 28 generators and 8 constraints:
+// with this budget nothing is reduced, the sets are exact, and so every false model is excluded for
+// whatever disturbances there are, as the output tubes are disjoint.
 #include <doctest/doctest.h>
 
 #include "four_models.hpp"
@@ -11,23 +12,29 @@ using namespace diagnosis_test;
 
 namespace {
 
-std::shared_ptr<Diagnoser> make_bank(const Plugins& plugins, const std::string& backend, std::int64_t generators,
-                                     std::int64_t constraints) {
+std::shared_ptr<Diagnoser> make_bank(const Plugins& plugins, const std::string& backend,
+                                     std::int64_t generators, std::int64_t constraints) {
   Params observer;
-  observer.set("max_generators", generators).set("max_constraints", constraints).set("static_at_start", true);
+  observer.set("max_generators", generators)
+      .set("max_constraints", constraints)
+      .set("static_at_start", true);
   if (backend == "constrained_zonotope") observer.set("admissible_set", make_box(cube(3, 50)));
   Params params;
-  params.set("observer", std::make_shared<const ComponentSpec>(ComponentSpec{"descriptor", observer}));
+  params.set("observer",
+             std::make_shared<const ComponentSpec>(ComponentSpec{"descriptor", observer}));
   params.set("waiting_time", std::int64_t{4});
-  return plugins.registry.make_diagnoser("consistency_bank", four_models(), plugins.backend(backend), params);
+  return plugins.registry.make_diagnoser("consistency_bank", four_models(),
+                                         plugins.backend(backend), params);
 }
 
 struct Counts {
   int isolated = 0, several = 0;
 };
 
-/// Some seeds for each true model; the true model is never excluded, and whatever is excluded is so with a proof.
-Counts run_seeds(Diagnoser& diagnoser, const std::vector<Vector>& inputs, bool vertex, std::uint64_t seeds) {
+/// Some seeds for each true model; the true model is never excluded, and whatever is excluded is so
+/// with a proof.
+Counts run_seeds(Diagnoser& diagnoser, const std::vector<Vector>& inputs, bool vertex,
+                 std::uint64_t seeds) {
   const ModeBank& bank = diagnoser.bank();
   Counts counts;
   for (Index truth = 0; truth < bank.size(); ++truth) {
@@ -85,7 +92,8 @@ TEST_CASE("with that budget the sets of four samples are exact") {
   for (const Mode& mode : diagnoser->bank().modes) {
     diagnoser->start();
     Diagnosis last;
-    for (const Simulated& now : simulate(mode.model, separating_input(), 1, false)) last = diagnoser->step(now.sample);
+    for (const Simulated& now : simulate(mode.model, separating_input(), 1, false))
+      last = diagnoser->step(now.sample);
     REQUIRE(last.estimate);
     CHECK(last.estimate->tightness == Tightness::exact);
     largest.generators = std::max(largest.generators, (*last.estimate)->complexity().generators);
@@ -104,9 +112,11 @@ TEST_CASE("under the reference input several models remain in most runs") {
 
 TEST_CASE("a small budget loses exclusions, never the true model") {
   const Plugins plugins;
-  const Counts two = run_seeds(*make_bank(plugins, "line_zonotope", 10, 2), separating_input(), false, 25);
+  const Counts two =
+      run_seeds(*make_bank(plugins, "line_zonotope", 10, 2), separating_input(), false, 25);
   CHECK(two.several > 0);
-  const Counts none = run_seeds(*make_bank(plugins, "line_zonotope", 3, 0), separating_input(), false, 25);
+  const Counts none =
+      run_seeds(*make_bank(plugins, "line_zonotope", 3, 0), separating_input(), false, 25);
   CHECK(none.isolated == 0);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Diagnoser `consistency_bank`: when modes are excluded, begin anew and are left alone. Partly with a puppet for an observer,
-// whose estimates are what the sample says, partly with real observers on a plant that switches between modes with ranges.
+// Diagnoser `consistency_bank`: when modes are excluded, begin anew and are left alone. Partly with
+// a puppet for an observer, whose estimates are what the sample says, partly with real observers on
+// a plant that switches between modes with ranges.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -25,7 +26,8 @@ Trace trace;
 class Puppet final : public Observer {
  public:
   explicit Puppet(const ObserverContext& context)
-      : Observer(context.model, context.backend), mode_(static_cast<std::size_t>(context.model.linear.A(0, 0))) {}
+      : Observer(context.model, context.backend),
+        mode_(static_cast<std::size_t>(context.model.linear.A(0, 0))) {}
   Tightness claim() const override { return Tightness::exact; }
 
  private:
@@ -46,7 +48,9 @@ class Puppet final : public Observer {
 };
 
 void register_puppet(Registrar& registrar) {
-  registrar.observer({{"puppet", "does what the sample says", "", {}}, {}, [](const ObserverContext& context, const Params&) {
+  registrar.observer({{"puppet", "does what the sample says", "", {}},
+                      {},
+                      [](const ObserverContext& context, const Params&) {
                         return std::make_unique<Puppet>(context);
                       }});
 }
@@ -71,7 +75,8 @@ ModeBank puppets() {
 
 Params with_observer(const std::string& type, Params observer, std::int64_t waiting_time) {
   Params params;
-  params.set("observer", std::make_shared<const ComponentSpec>(ComponentSpec{type, std::move(observer)}));
+  params.set("observer",
+             std::make_shared<const ComponentSpec>(ComponentSpec{type, std::move(observer)}));
   params.set("waiting_time", waiting_time);
   return params;
 }
@@ -80,11 +85,14 @@ Params with_observer(const std::string& type, Params observer, std::int64_t wait
 class Feed {
  public:
   Feed(const Plugins& plugins, const std::string& backend, Params params)
-      : diagnoser_(plugins.registry.make_diagnoser("consistency_bank", puppets(), plugins.backend(backend), params)) {
+      : diagnoser_(plugins.registry.make_diagnoser("consistency_bank", puppets(),
+                                                   plugins.backend(backend), params)) {
     trace = {};
     diagnoser_->start();
   }
-  Diagnosis operator()(double a, double b, double c) { return diagnoser_->step({k_++, Vector(0), Vector{{a, b, c}}}); }
+  Diagnosis operator()(double a, double b, double c) {
+    return diagnoser_->step({k_++, Vector(0), Vector{{a, b, c}}});
+  }
   void restart() {
     k_ = 0;
     diagnoser_->start();
@@ -184,7 +192,7 @@ TEST_CASE("every mode excluded: unknown_fault, until one mode has lasted") {
   CHECK(d.since == 7);
   for (const ModeEvidence& evidence : d.modes) CHECK(evidence.consistent == Answer::no);
   CHECK(std::isinf(trace.started_from[0]->upper[0]));  // the whole space
-  d = feed(0, 0, 0);                                   // the last sample alone contradicts every mode
+  d = feed(0, 0, 0);  // the last sample alone contradicts every mode
   CHECK(d.decision == Decision::unknown_fault);
   CHECK(d.reset);
   CHECK(d.since == 8);
@@ -261,7 +269,8 @@ TEST_CASE("an observer's error is that of the first mode, however many threads t
 
 namespace {
 
-/// Two states, two actuators, two sensors: healthy, a weak first actuator, a dead second one, a weak first sensor.
+/// Two states, two actuators, two sensors: healthy, a weak first actuator, a dead second one, a
+/// weak first sensor.
 ModeBank switching_bank() {
   Model model;
   LinearModel& m = model.linear;
@@ -335,8 +344,8 @@ TEST_CASE("a plant that switches: the true mode is found each time and never exc
   const ModeBank bank = switching_bank();
   for (const std::string name : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
     CAPTURE(name);
-    const auto diagnoser =
-        plugins.registry.make_diagnoser("consistency_bank", bank, plugins.backend(name), switching_parameters(name));
+    const auto diagnoser = plugins.registry.make_diagnoser(
+        "consistency_bank", bank, plugins.backend(name), switching_parameters(name));
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       CAPTURE(seed);
       SwitchingPlant plant(seed, seed % 2 == 0);
@@ -344,10 +353,13 @@ TEST_CASE("a plant that switches: the true mode is found each time and never exc
       for (Index k = 0; k < segment * static_cast<Index>(timeline.size()); ++k) {
         CAPTURE(k);
         const Diagnosis d = diagnoser->step(plant.step(bank[mode_at(k)].model));
-        const bool throughout = !d.reset && d.since / segment == k / segment;  // the plant was in one mode from `since` to k
+        const bool throughout =
+            !d.reset &&
+            d.since / segment == k / segment;  // the plant was in one mode from `since` to k
         if (throughout) REQUIRE(d.modes[static_cast<std::size_t>(mode_at(k))].candidate);
         if (k < segment) REQUIRE(d.mode == 0);
-        if (d.mode == mode_at(k) && throughout) REQUIRE((*d.estimate)->contains(plant.state) != Answer::no);
+        if (d.mode == mode_at(k) && throughout)
+          REQUIRE((*d.estimate)->contains(plant.state) != Answer::no);
         if (k % segment >= 20) REQUIRE(d.mode == mode_at(k));
         REQUIRE(d.decision != Decision::unknown_fault);
       }
@@ -362,8 +374,8 @@ TEST_CASE("a fault outside the bank: detected, never taken for a mode of the ban
   outside.linear.B *= -1;
   for (const std::string name : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
     CAPTURE(name);
-    const auto diagnoser =
-        plugins.registry.make_diagnoser("consistency_bank", bank, plugins.backend(name), switching_parameters(name));
+    const auto diagnoser = plugins.registry.make_diagnoser(
+        "consistency_bank", bank, plugins.backend(name), switching_parameters(name));
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       CAPTURE(seed);
       SwitchingPlant plant(seed, seed % 2 == 0);
@@ -384,8 +396,12 @@ namespace {
 /// Everything that a diagnosis says, bit by bit.
 std::string bytes_of(const Diagnosis& d) {
   std::string all;
-  const auto put = [&all](const void* data, std::size_t size) { all.append(static_cast<const char*>(data), size); };
-  const auto put_vector = [&](const Vector& v) { put(v.data(), sizeof(double) * static_cast<std::size_t>(v.size())); };
+  const auto put = [&all](const void* data, std::size_t size) {
+    all.append(static_cast<const char*>(data), size);
+  };
+  const auto put_vector = [&](const Vector& v) {
+    put(v.data(), sizeof(double) * static_cast<std::size_t>(v.size()));
+  };
   put(&d.decision, sizeof d.decision);
   put(&d.mode, sizeof d.mode);
   put(&d.since, sizeof d.since);
@@ -414,12 +430,13 @@ TEST_CASE("decisions do not depend on the number of threads, bit by bit") {
     std::vector<std::string> reference;
     for (const std::int64_t threads : {1, 2, 0, 7}) {
       CAPTURE(threads);
-      const auto diagnoser =
-          plugins.registry.make_diagnoser("consistency_bank", bank, plugins.backend(name), switching_parameters(name, threads));
+      const auto diagnoser = plugins.registry.make_diagnoser(
+          "consistency_bank", bank, plugins.backend(name), switching_parameters(name, threads));
       SwitchingPlant plant(3, false);
       diagnoser->start();
       std::vector<std::string> all;
-      for (Index k = 0; k < 4 * segment; ++k) all.push_back(bytes_of(diagnoser->step(plant.step(bank[mode_at(k)].model))));
+      for (Index k = 0; k < 4 * segment; ++k)
+        all.push_back(bytes_of(diagnoser->step(plant.step(bank[mode_at(k)].model))));
       if (threads == 1) reference = all;
       CHECK(all == reference);
     }
@@ -446,7 +463,8 @@ TEST_CASE("a problem of several modes is told once, with the names of the modes"
   problems = problems_of(bank, with_observer("prediction_correction", {}, 5));
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].pointer == "/observer");
-  CHECK(problems[0].message.find("(modes \"weak_actuator\", \"weak_sensor\")") != std::string::npos);
+  CHECK(problems[0].message.find("(modes \"weak_actuator\", \"weak_sensor\")") !=
+        std::string::npos);
 
   Params unknown;
   unknown.set("gain", 1.0);
@@ -461,7 +479,9 @@ TEST_CASE("parameters that cannot be are refused") {
   const auto backend = plugins.backend("zonotope");
   const auto pointers = [&](const Params& params) {
     std::vector<std::string> all;
-    for (const auto& p : plugins.registry.check_diagnoser("consistency_bank", bank, backend, params)) all.push_back(p.pointer);
+    for (const auto& p :
+         plugins.registry.check_diagnoser("consistency_bank", bank, backend, params))
+      all.push_back(p.pointer);
     return all;
   };
   using Pointers = std::vector<std::string>;
@@ -481,12 +501,15 @@ TEST_CASE("parameters that cannot be are refused") {
   Params nominal = with_observer("prediction_correction", {}, 5);
   nominal.set("start", std::string("nominal"));
   CHECK(pointers(nominal) == Pointers{"/restart_set"});  // the other modes could never begin
-  CHECK(plugins.registry.check_diagnoser("consistency_bank", bank, plugins.backend("line_zonotope"), nominal).empty());
+  CHECK(plugins.registry
+            .check_diagnoser("consistency_bank", bank, plugins.backend("line_zonotope"), nominal)
+            .empty());
 }
 
 TEST_CASE("nothing is said in advance") {
   const Plugins plugins;
-  const auto diagnoser = plugins.registry.make_diagnoser("consistency_bank", switching_bank(), plugins.backend("zonotope"),
+  const auto diagnoser = plugins.registry.make_diagnoser("consistency_bank", switching_bank(),
+                                                         plugins.backend("zonotope"),
                                                          switching_parameters("zonotope"));
   CHECK(!diagnoser->guarantees());
 }

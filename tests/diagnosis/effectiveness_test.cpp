@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Observers with actuators and sensors whose effectiveness is known by ranges: the truth is never proven outside, whatever the
-// effectiveness is in each step.
+// Observers with actuators and sensors whose effectiveness is known by ranges: the truth is never
+// proven outside, whatever the effectiveness is in each step.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -16,7 +16,8 @@ namespace {
 
 const char* const backends[] = {"interval", "zonotope", "constrained_zonotope", "line_zonotope"};
 
-/// A random model with its truth. Descriptor systems have static rows below, solved for the last states.
+/// A random model with its truth. Descriptor systems have static rows below, solved for the last
+/// states.
 class RandomPlant {
  public:
   RandomPlant(std::uint64_t seed, bool descriptor) : random_(seed) {
@@ -47,7 +48,8 @@ class RandomPlant {
     w_ = factors(m.disturbances());
   }
 
-  /// The sample and the state of the next time. The effectiveness of a time is the same in all equations of that time.
+  /// The sample and the state of the next time. The effectiveness of a time is the same in all
+  /// equations of that time.
   Sample step(Vector& state) {
     const LinearModel& m = model.linear;
     const Vector u = 3 * random_.cube(m.inputs());
@@ -57,10 +59,12 @@ class RandomPlant {
       x_[s] = 0;
       x_[s] = -(m.A.row(s).dot(x_) + m.B.row(s).dot(fu) + m.Bw.row(s).dot(w_)) / m.A(s, s);
       // at k = 0 the initial set has to hold it
-      if (k_ == 0) model.X0 = minkowski_sum(model.X0, make_zonotope(Vector::Zero(m.states()), widening(s)));
+      if (k_ == 0)
+        model.X0 = minkowski_sum(model.X0, make_zonotope(Vector::Zero(m.states()), widening(s)));
     }
     state = x_;
-    const Vector y = effectiveness(m.sensor).cwiseProduct(m.C * x_ + m.D * fu) + m.Dv * factors(m.noises());
+    const Vector y =
+        effectiveness(m.sensor).cwiseProduct(m.C * x_ + m.D * fu) + m.Dv * factors(m.noises());
     x_ = m.A * x_ + m.B * fu + m.Bw * w_;
     w_ = factors(m.disturbances());
     return {k_++, u, y};
@@ -69,7 +73,9 @@ class RandomPlant {
   Model model;
 
  private:
-  Index upto(Index largest) { return static_cast<Index>(random_.unit() * static_cast<double>(largest + 1)); }
+  Index upto(Index largest) {
+    return static_cast<Index>(random_.unit() * static_cast<double>(largest + 1));
+  }
   Matrix matrix(Index rows, Index cols) {
     Matrix A(rows, cols);
     for (double& a : A.reshaped()) a = random_.unit() < .2 ? 0 : random_.between(-1, 1);
@@ -97,7 +103,9 @@ class RandomPlant {
     return box;
   }
   Vector effectiveness(const Box& box) {
-    if (box.dim() == 0) return Vector::Ones(&box == &model.linear.actuator ? model.linear.inputs() : model.linear.outputs());
+    if (box.dim() == 0)
+      return Vector::Ones(&box == &model.linear.actuator ? model.linear.inputs()
+                                                         : model.linear.outputs());
     return box.center() + box.radius().cwiseProduct(factors(box.dim()));
   }
 
@@ -233,7 +241,8 @@ TEST_CASE("a sensor that can fail altogether says nothing about an unbounded pre
     CHECK(std::isinf(hull.upper[0]));
     CHECK(hull.upper[1] == doctest::Approx(1));
     CHECK(estimate.set->contains(Vector{{1e9, 1}}) == Answer::yes);
-    // of a bounded prediction it says that it is not too far away: y = g x with |x| ≤ 4 gives |y| ≤ 4
+    // of a bounded prediction it says that it is not too far away: y = g x with |x| ≤ 4 gives |y| ≤
+    // 4
     model.X0 = make_box(cube(2, 4));
     const auto bounded = plugins.observer(type, model, plugins.backend("line_zonotope"));
     bounded->start();

@@ -27,9 +27,11 @@ struct Simulated {
   Vector state;
 };
 
-/// Samples of a model with E = diag(1, 1, 0) and A_33 = 1 whose third row is static. The initial state is drawn from X0 such that
-/// the static row holds; disturbances uniform or at vertices of their boxes.
-inline std::vector<Simulated> simulate(const Model& model, const std::vector<Vector>& inputs, std::uint64_t seed, bool vertex) {
+/// Samples of a model with E = diag(1, 1, 0) and A_33 = 1 whose third row is static. The initial
+/// state is drawn from X0 such that the static row holds; disturbances uniform or at vertices of
+/// their boxes.
+inline std::vector<Simulated> simulate(const Model& model, const std::vector<Vector>& inputs,
+                                       std::uint64_t seed, bool vertex) {
   const LinearModel& m = model.linear;
   sets::Random random(seed);
   const auto factors = [&](Index n, bool vertices) {
@@ -37,7 +39,9 @@ inline std::vector<Simulated> simulate(const Model& model, const std::vector<Vec
     if (vertices) xi = (xi.array() < 0).select(Vector::Constant(n, -1), Vector::Ones(n)).eval();
     return xi;
   };
-  const auto disturbance = [&](const LineForm& X) -> Vector { return X.c + X.G * factors(X.generators(), vertex); };
+  const auto disturbance = [&](const LineForm& X) -> Vector {
+    return X.c + X.G * factors(X.generators(), vertex);
+  };
   const auto solve_static = [&](Vector x, const Vector& u, const Vector& w) {
     x[2] = 0;
     x[2] = -(m.A.row(2).dot(x) + m.B.row(2).dot(u) + m.Bw.row(2).dot(w));

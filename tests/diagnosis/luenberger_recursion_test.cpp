@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sets around a Luenberger observer nest as the method claims: residuals in their adaptive bounds, those in static ones; and
-// the strips of a measurement keep every error that explains it.
+// The sets around a Luenberger observer nest as the method claims: residuals in their adaptive
+// bounds, those in static ones; and the strips of a measurement keep every error that explains it.
 #include "observers/luenberger_recursion.hpp"
 
 #include <doctest/doctest.h>
@@ -20,7 +20,8 @@ const Matrix& gain() {
   return L;
 }
 
-/// The error set of observer and plant in the same mode under all inputs of U: what `next_bound` becomes with u in its box.
+/// The error set of observer and plant in the same mode under all inputs of U: what `next_bound`
+/// becomes with u in its box.
 sets::Zonotope static_drive(const Model& model) {
   const LinearModel& m = model.linear;
   const Matrix spread = m.B * m.actuator_radius().asDiagonal() * model.U.G;
@@ -31,7 +32,8 @@ sets::Zonotope static_drive(const Model& model) {
 
 bool lies_in(const Box& inner, const Box& outer) {
   const double slack = 1e-12 * (1 + outer.longest_half_edge());
-  return (inner.lower.array() >= outer.lower.array() - slack).all() && (inner.upper.array() <= outer.upper.array() + slack).all();
+  return (inner.lower.array() >= outer.lower.array() - slack).all() &&
+         (inner.upper.array() <= outer.upper.array() + slack).all();
 }
 
 }  // namespace
@@ -47,7 +49,8 @@ TEST_CASE("R ⊆ Ř ⊆ R̆ from a nested start on, on every backend that keeps 
       Draw draw{std::mt19937_64(static_cast<std::uint64_t>(mode) + 1), mode == 1};
       Vector x = draw.from(model.X0);
       Enclosure X = sets->import(model.X0);
-      Enclosure adaptive = sets->import(make_zonotope(Vector::Zero(2), 2 * model.X0.G));  // {x} ⊕ (-X0) is in it
+      Enclosure adaptive =
+          sets->import(make_zonotope(Vector::Zero(2), 2 * model.X0.G));  // {x} ⊕ (-X0) is in it
       sets::Zonotope bound{Vector::Zero(2), 2 * model.X0.G};
       const Matrix Ao = model.linear.A - gain() * model.linear.C;
       for (Index k = 0; k < 40; ++k) {
@@ -56,7 +59,8 @@ TEST_CASE("R ⊆ Ř ⊆ R̆ from a nested start on, on every backend that keeps 
         const Sample now{k, u, y};
         const Box R = recursion.residual(X, now)->interval_hull();
         const Box allowed = recursion.residual_bound(adaptive, X, now)->interval_hull();
-        const Box all = sets::interval_hull(sets::affine_map(bound, model.linear.C, Vector::Zero(1)));
+        const Box all =
+            sets::interval_hull(sets::affine_map(bound, model.linear.C, Vector::Zero(1)));
         CHECK(R.contains(Vector::Zero(1)));
         CHECK(lies_in(R, allowed));
         CHECK(lies_in(allowed, all));
@@ -81,8 +85,10 @@ TEST_CASE("strips keep every error that explains the measurement") {
       model.linear.D = Matrix{{.1}, {-.4}};
       const auto sets = backend(name);
       const LuenbergerRecursion recursion(model, Matrix::Zero(2, 2), sets, {});
-      Draw draw{std::mt19937_64(static_cast<std::uint64_t>(*rc::gen::inRange(1, 1'000'000))), *rc::gen::arbitrary<bool>()};
-      const LineForm errors = make_zonotope(Vector{{draw(), draw()}}, Matrix{{draw(), draw(), .2}, {draw(), draw(), -.1}});
+      Draw draw{std::mt19937_64(static_cast<std::uint64_t>(*rc::gen::inRange(1, 1'000'000))),
+                *rc::gen::arbitrary<bool>()};
+      const LineForm errors = make_zonotope(Vector{{draw(), draw()}},
+                                            Matrix{{draw(), draw(), .2}, {draw(), draw(), -.1}});
       const Vector center{{draw(), draw()}}, e = draw.from(errors);
       Vector x = center + e;
       const Vector u = Vector::Constant(1, 3 * draw()), y = simulate(model, x, u, draw);
@@ -113,6 +119,7 @@ TEST_CASE("two inputs with ranges need a column each: the printed single one los
   const Enclosure next = recursion.next(sets->import(model.X0), now);
   const Vector reached{{2, 0}};  // first actuator healthy, second out
   CHECK(next->contains(reached) == Answer::yes);
-  const LineForm printed = make_zonotope(.5 * u, Matrix(.5 * u));  // mid(F) u and the one column rad(F) u
+  const LineForm printed =
+      make_zonotope(.5 * u, Matrix(.5 * u));  // mid(F) u and the one column rad(F) u
   CHECK(sets->import(printed)->contains(reached) == Answer::no);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Luenberger observer on sets: it encloses the truth on every backend, also where effectiveness is known by ranges only.
+// The Luenberger observer on sets: it encloses the truth on every backend, also where effectiveness
+// is known by ranges only.
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
@@ -10,7 +11,9 @@ using namespace banks;
 
 namespace {
 
-double number(double low, double high) { return low + (high - low) * (*rc::gen::inRange(0, 1'000'001)) * 1e-6; }
+double number(double low, double high) {
+  return low + (high - low) * (*rc::gen::inRange(0, 1'000'001)) * 1e-6;
+}
 
 Matrix random_matrix(Index rows, Index cols, double size) {
   Matrix A(rows, cols);
@@ -29,7 +32,8 @@ Box random_ranges(Index size) {
 
 /// A stable model with up to three inputs and outputs; ranges of effectiveness as asked for.
 Model random_model(bool actuators, bool sensors) {
-  const Index n = *rc::gen::inRange(1, 4), inputs = *rc::gen::inRange(1, 4), outputs = *rc::gen::inRange(1, 3);
+  const Index n = *rc::gen::inRange(1, 4), inputs = *rc::gen::inRange(1, 4),
+              outputs = *rc::gen::inRange(1, 3);
   Model model;
   LinearModel& m = model.linear;
   m.A = random_matrix(n, n, 1);
@@ -51,7 +55,8 @@ Model random_model(bool actuators, bool sensors) {
 
 void expect_truth_inside(const std::string& name, const Model& model) {
   const auto observer = registry().make_observer("luenberger", {model, backend(name)}, {});
-  Draw draw{std::mt19937_64(static_cast<std::uint64_t>(*rc::gen::inRange(1, 1'000'000))), *rc::gen::arbitrary<bool>()};
+  Draw draw{std::mt19937_64(static_cast<std::uint64_t>(*rc::gen::inRange(1, 1'000'000))),
+            *rc::gen::arbitrary<bool>()};
   Vector x = draw.from(model.X0);
   for (Index k = 0; k < 12; ++k) {
     const Vector u = random_matrix(model.linear.inputs(), 1, 3).col(0), now = x;
@@ -70,7 +75,8 @@ TEST_CASE("the truth is never outside, effectiveness by ranges or not, on every 
     CAPTURE(name);
     for (const bool actuators : {false, true}) {
       for (const bool sensors : {false, true}) {
-        CHECK(rc::check("the truth stays inside", [&] { expect_truth_inside(name, random_model(actuators, sensors)); }));
+        CHECK(rc::check("the truth stays inside",
+                        [&] { expect_truth_inside(name, random_model(actuators, sensors)); }));
       }
     }
   }
@@ -84,14 +90,16 @@ TEST_CASE("the recursion of the published reactor, one step by hand") {
   const auto observer = registry().make_observer("luenberger", {model, zonotopes}, p);
   observer->step({0, Vector::Constant(1, 10), Vector::Constant(1, .02)});
   const Estimate next = observer->step({1, Vector::Constant(1, 0), Vector::Constant(1, 0)});
-  // A - L C = [.7394 -.0002; -12.1 .7606], B mid(F) u = (0, .0048), L y = (.003164, .232212), ωc = .015, B rad(F) u = .0024
+  // A - L C = [.7394 -.0002; -12.1 .7606], B mid(F) u = (0, .0048), L y = (.003164, .232212), ωc =
+  // .015, B rad(F) u = .0024
   const LineForm X = next.set->line_form();
   CHECK(X.c[0] == doctest::Approx(.003164 + .015).epsilon(1e-12));
   CHECK(X.c[1] == doctest::Approx(.0048 + .232212 + .015).epsilon(1e-12));
   const Box hull = next.set->interval_hull();
   // |A_o G| 1: rows of G are (.05 0 0 .05) and (.05 0 .05 0)
   CHECK(hull.radius()[0] == doctest::Approx(.05 * (.7392 + .0002 + .7394) + .002).epsilon(1e-12));
-  CHECK(hull.radius()[1] == doctest::Approx(.05 * (11.3394 + .7606 + 12.1) + .0024 + .002).epsilon(1e-12));
+  CHECK(hull.radius()[1] ==
+        doctest::Approx(.05 * (11.3394 + .7606 + 12.1) + .0024 + .002).epsilon(1e-12));
 }
 
 TEST_CASE("a gain that does not stabilise is refused, with the eigenvalue") {
@@ -114,7 +122,9 @@ TEST_CASE("a designed gain stabilises an unstable plant, and is refused where no
   const auto observer = registry().make_observer("luenberger", {model, backend("zonotope")}, {});
   double radius = 0;
   for (Index k = 0; k < 200; ++k)
-    radius = observer->step({k, Vector::Zero(1), Vector::Zero(1)}).set->interval_hull().longest_half_edge();
+    radius = observer->step({k, Vector::Zero(1), Vector::Zero(1)})
+                 .set->interval_hull()
+                 .longest_half_edge();
   CHECK(radius < 1);
   model.linear.A = Matrix{{.5, 0}, {0, 1.2}};  // the unstable state is not seen
   const auto problems = registry().check_observer("luenberger", {model, backend("zonotope")}, {});
@@ -172,13 +182,16 @@ TEST_CASE("a range of a sensor needs a bounded start, an exact sensor does not")
   model.X0 = make_space(2);
   for (const char* type : {"luenberger", "zonotope_uncertain"}) {
     CAPTURE(type);
-    const auto problems = [&] { return registry().check_observer(type, {model, backend("line_zonotope")}, {}); };
+    const auto problems = [&] {
+      return registry().check_observer(type, {model, backend("line_zonotope")}, {});
+    };
     model.linear.sensor = Box{Vector{{.5}}, Vector{{1}}};
     REQUIRE(problems().size() == 1);
     CHECK(problems()[0].message.find("unbounded") != std::string::npos);
     model.linear.sensor = Box{Vector{{1}}, Vector{{1}}};
     CHECK(problems().empty());
     const auto observer = registry().make_observer(type, {model, backend("line_zonotope")}, {});
-    for (Index k = 0; k < 3; ++k) CHECK(observer->step({k, Vector::Zero(1), Vector::Zero(1)}).consistent != Answer::no);
+    for (Index k = 0; k < 3; ++k)
+      CHECK(observer->step({k, Vector::Zero(1), Vector::Zero(1)}).consistent != Answer::no);
   }
 }

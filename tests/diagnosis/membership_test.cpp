@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Membership in output tubes against rational arithmetic, on models whose numbers are multiples of 1/4 and 1/16: products are
-// exact, so that both see the same problem.
+// Membership in output tubes against rational arithmetic, on models whose numbers are multiples of
+// 1/4 and 1/16: products are exact, so that both see the same problem.
 #include "diagnosers/tube_membership/membership.hpp"
 
 #include <random>
@@ -22,7 +22,9 @@ class Quarters {
  public:
   explicit Quarters(std::uint64_t seed) : engine_(seed) {}
   Index below(Index end) { return static_cast<Index>(engine_() % static_cast<std::uint64_t>(end)); }
-  double operator()(Index most, double unit = .25) { return unit * static_cast<double>(below(2 * most + 1) - most); }
+  double operator()(Index most, double unit = .25) {
+    return unit * static_cast<double>(below(2 * most + 1) - most);
+  }
   Matrix matrix(Index rows, Index cols, Index most) {
     return Matrix::NullaryExpr(rows, cols, [&] { return (*this)(most); });
   }
@@ -34,13 +36,16 @@ class Quarters {
   std::mt19937_64 engine_;
 };
 
-LineForm box(Index n, double radius) { return make_box({Vector::Constant(n, -radius), Vector::Constant(n, radius)}); }
+LineForm box(Index n, double radius) {
+  return make_box({Vector::Constant(n, -radius), Vector::Constant(n, radius)});
+}
 
 /// The first n_d states are dynamic, each other one stands in a static row with the coefficient 1.
 Model random_model(Quarters& draw) {
   Model model;
   LinearModel& m = model.linear;
-  const Index n = 1 + draw.below(3), dynamic = draw.below(3) == 0 ? n : draw.below(n + 1), p = 1 + draw.below(2);
+  const Index n = 1 + draw.below(3), dynamic = draw.below(3) == 0 ? n : draw.below(n + 1),
+              p = 1 + draw.below(2);
   m.A = draw.matrix(n, n, 4);
   if (dynamic < n || draw.below(2) == 0) {
     m.E = Matrix::Identity(n, n);
@@ -102,7 +107,8 @@ TEST_CASE("membership agrees with rational arithmetic, and its proofs hold there
     Quarters draw(seed);
     const Model model = random_model(draw);
     const Index steps = draw.below(4);
-    const std::vector<Sample> samples = random_samples(model, draw, steps, draw.below(3) == 0 ? 0 : 8);
+    const std::vector<Sample> samples =
+        random_samples(model, draw, steps, draw.below(3) == 0 ? 0 : 8);
     const Stacked all = stacked(samples);
     const designers::OutputTube tube = designers::output_tube(model, *backend, {steps});
     Certificate why;
@@ -144,7 +150,8 @@ TEST_CASE("a mode without outputs that could differ is never excluded") {
   model.W = box(1, .1);
   const auto tube = designers::output_tube(model, *examples::backend("line_zonotope"), {2});
   Certificate why;
-  CHECK(diagnosers::membership(tube, Vector{{1, 2, 3}}, Vector{{1e6, -1e6, 5}}, &why) == Answer::yes);
+  CHECK(diagnosers::membership(tube, Vector{{1, 2, 3}}, Vector{{1e6, -1e6, 5}}, &why) ==
+        Answer::yes);
   CHECK(why.kind == Certificate::Kind::point);
   CHECK(proves_contains(tube.at(Vector{{1, 2, 3}}), Vector{{1e6, -1e6, 5}}, why));
 }
@@ -152,11 +159,13 @@ TEST_CASE("a mode without outputs that could differ is never excluded") {
 TEST_CASE("what may stem from rounding of large numbers excludes nothing") {
   const auto answer = [](double input, double offset, double gain, double first, double output) {
     Model model;
-    model.linear = {{}, Matrix{{1}}, Matrix{{gain}}, Matrix{{1}}, Matrix{{1}}, Matrix{{1}}, Matrix{{1}}};
+    model.linear = {{},          Matrix{{1}}, Matrix{{gain}}, Matrix{{1}},
+                    Matrix{{1}}, Matrix{{1}}, Matrix{{1}}};
     model.X0 = model.W = box(1, .1);
     model.V = make_zonotope(Vector{{offset}}, Matrix{{.1}});
     const auto tube = designers::output_tube(model, *examples::backend("zonotope"), {1});
-    return diagnosers::membership(tube, Vector{{input, 0}}, Vector{{input + offset + first, output}});
+    return diagnosers::membership(tube, Vector{{input, 0}},
+                                  Vector{{input + offset + first, output}});
   };
   CHECK(answer(0, 0, 1, 0, 0) == Answer::yes);
   CHECK(answer(0, 0, 1, .5, 0) == Answer::no);

@@ -14,7 +14,9 @@ struct Event {
   std::string what;
   Index mode;
   bool operator==(const Event&) const = default;
-  friend std::ostream& operator<<(std::ostream& out, const Event& e) { return out << e.what << ' ' << e.mode << " at " << e.k; }
+  friend std::ostream& operator<<(std::ostream& out, const Event& e) {
+    return out << e.what << ' ' << e.mode << " at " << e.k;
+  }
 };
 
 /// Changes of the decision.
@@ -23,18 +25,24 @@ void note(const Diagnosis& now, Decision& decision, Index& mode, std::vector<Eve
   if (now.decision == Decision::monitoring) {
     events.push_back({now.k, "isolated", now.mode});
   } else {
-    events.push_back({now.k, now.decision == Decision::isolating ? "detected" : std::string(to_string(now.decision)), mode});
+    events.push_back(
+        {now.k,
+         now.decision == Decision::isolating ? "detected" : std::string(to_string(now.decision)),
+         mode});
   }
   decision = now.decision;
   mode = now.mode;
 }
 
 Vector sine(Index k, double phase = 0) {
-  return Vector::Constant(1, 20 * std::sin(2 * std::numbers::pi * static_cast<double>(k) / 25 + phase));
+  return Vector::Constant(
+      1, 20 * std::sin(2 * std::numbers::pi * static_cast<double>(k) / 25 + phase));
 }
 
-/// A timeline of 150 steps with a fault from `from` to 49 steps later. The truth must never be excluded.
-std::vector<Event> reactor_events(Diagnoser& diagnoser, Index fault, double F, Index from, Draw draw, double phase = 0) {
+/// A timeline of 150 steps with a fault from `from` to 49 steps later. The truth must never be
+/// excluded.
+std::vector<Event> reactor_events(Diagnoser& diagnoser, Index fault, double F, Index from,
+                                  Draw draw, double phase = 0) {
   const ModeBank& bank = diagnoser.bank();
   const Vector magnitude = Vector::Constant(1, F);
   Vector x = Vector::Zero(2);
@@ -51,16 +59,18 @@ std::vector<Event> reactor_events(Diagnoser& diagnoser, Index fault, double F, I
     const Vector y = simulate(bank[truth].model, x, u, draw, faulty ? &magnitude : nullptr);
     const Diagnosis diagnosis = diagnoser.step({k, u, y});
     if (diagnosis.since >= truth_since) {
-      CHECK_MESSAGE(diagnosis.modes[static_cast<std::size_t>(truth)].consistent != Answer::no, "the true mode is excluded at ",
-                    k);
-      if (diagnosis.estimate && diagnosis.mode == truth) CHECK((*diagnosis.estimate)->contains(now) != Answer::no);
+      CHECK_MESSAGE(diagnosis.modes[static_cast<std::size_t>(truth)].consistent != Answer::no,
+                    "the true mode is excluded at ", k);
+      if (diagnosis.estimate && diagnosis.mode == truth)
+        CHECK((*diagnosis.estimate)->contains(now) != Answer::no);
     }
     note(diagnosis, decision, mode, events);
   }
   return events;
 }
 
-std::shared_ptr<Diagnoser> reactor_bank(const std::string& name, Params parameters = reactor_parameters()) {
+std::shared_ptr<Diagnoser> reactor_bank(const std::string& name,
+                                        Params parameters = reactor_parameters()) {
   return registry().make_diagnoser("observer_bank", reactor(), backend(name), parameters);
 }
 
@@ -78,8 +88,10 @@ TEST_CASE("reactor: detection and isolation one step apart, recovery too, on 60 
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
     for (const Index shift : {0, 1}) {
-      CHECK(reactor_events(*bank, 1, .15, 50 + shift, {std::mt19937_64(seed)}) == published(1, shift));
-      CHECK(reactor_events(*bank, 2, .55, 50 + shift, {std::mt19937_64(seed)}) == published(2, shift));
+      CHECK(reactor_events(*bank, 1, .15, 50 + shift, {std::mt19937_64(seed)}) ==
+            published(1, shift));
+      CHECK(reactor_events(*bank, 2, .55, 50 + shift, {std::mt19937_64(seed)}) ==
+            published(2, shift));
     }
   }
 }
@@ -105,7 +117,8 @@ TEST_CASE("reactor: no false alarm with the disturbance at a vertex throughout, 
       for (Index k = 0; k <= 150; ++k) {
         const bool faulty = k >= 50 && k < 100;
         const Vector magnitude = Vector::Constant(1, .15), u = sine(k, phase);
-        const Vector y = simulate(plant.modes[faulty ? 1 : 0].model, x, u, draw, faulty ? &magnitude : nullptr);
+        const Vector y =
+            simulate(plant.modes[faulty ? 1 : 0].model, x, u, draw, faulty ? &magnitude : nullptr);
         note(bank->step({k, u, y}), decision, mode, events);
       }
       REQUIRE(events.size() == 4);  // each change detected and isolated once, and nothing else
@@ -122,7 +135,8 @@ TEST_CASE("the suggestion of the published algorithm names the fault too") {
   Index suggested = -1;
   for (Index k = 0; k <= 80; ++k) {
     const Vector magnitude = Vector::Constant(1, .15), u = sine(k);
-    const Vector y = simulate(bank->bank()[k >= 50 ? 1 : 0].model, x, u, draw, k >= 50 ? &magnitude : nullptr);
+    const Vector y =
+        simulate(bank->bank()[k >= 50 ? 1 : 0].model, x, u, draw, k >= 50 ? &magnitude : nullptr);
     suggested = bank->step({k, u, y}).suggested;
     CHECK((suggested == -1 || suggested == 1));
   }
@@ -226,7 +240,8 @@ TEST_CASE("an exclusion carries its proof") {
   Draw draw{std::mt19937_64(1)};
   for (Index k = 0; k <= 51; ++k) {
     const Vector magnitude = Vector::Constant(1, .15), u = sine(k);
-    const Vector y = simulate(bank->bank()[k >= 50 ? 1 : 0].model, x, u, draw, k >= 50 ? &magnitude : nullptr);
+    const Vector y =
+        simulate(bank->bank()[k >= 50 ? 1 : 0].model, x, u, draw, k >= 50 ? &magnitude : nullptr);
     const Diagnosis diagnosis = bank->step({k, u, y});
     if (k < 51) continue;
     const ModeEvidence& healthy = diagnosis.modes[0];
@@ -236,7 +251,8 @@ TEST_CASE("an exclusion carries its proof") {
     CHECK(healthy.candidate);  // a candidate again, after the reset
     REQUIRE(healthy.why.kind == Certificate::Kind::direction);
     const double d = healthy.why.data[0];
-    CHECK(std::max(d * healthy.residual.lower[0], d * healthy.residual.upper[0]) == doctest::Approx(-healthy.why.margin));
+    CHECK(std::max(d * healthy.residual.lower[0], d * healthy.residual.upper[0]) ==
+          doctest::Approx(-healthy.why.margin));
     CHECK(healthy.why.margin > 0);
   }
 }
@@ -293,15 +309,18 @@ TEST_CASE("an input has to lie in the U of every mode") {
   for (const std::size_t narrow : {0, 2}) {
     ModeBank modes = reactor();
     modes.modes[narrow].model.U = box_around(Vector::Zero(1), Vector::Constant(1, 10));
-    const auto bank = registry().make_diagnoser("observer_bank", modes, backend("zonotope"), reactor_parameters());
-    for (const double u : {-15.0, 15.0}) CHECK_THROWS_AS(bank->step({0, Vector::Constant(1, u), Vector::Zero(1)}), Error);
+    const auto bank = registry().make_diagnoser("observer_bank", modes, backend("zonotope"),
+                                                reactor_parameters());
+    for (const double u : {-15.0, 15.0})
+      CHECK_THROWS_AS(bank->step({0, Vector::Constant(1, u), Vector::Zero(1)}), Error);
     CHECK(bank->step({0, Vector::Constant(1, 10), Vector::Zero(1)}).mode == 0);
   }
 }
 
 TEST_CASE("an input outside U ends the diagnosis: the error set rests on it") {
   const auto bank = reactor_bank("zonotope");
-  CHECK_THROWS_WITH_AS(bank->step({0, Vector::Constant(1, 21), Vector::Zero(1)}), doctest::Contains("widen /system/U"), Error);
+  CHECK_THROWS_WITH_AS(bank->step({0, Vector::Constant(1, 21), Vector::Zero(1)}),
+                       doctest::Contains("widen /system/U"), Error);
 }
 
 TEST_CASE("a step that ended with an error is not taken twice") {
@@ -309,7 +328,9 @@ TEST_CASE("a step that ended with an error is not taken twice") {
   const Vector u = Vector::Zero(1), y = Vector::Zero(1);
   bank->step({0, u, y});
   CHECK_THROWS_AS(bank->step({1, Vector::Constant(1, 21), y}), Error);  // nothing has happened yet
-  bank->step({1, u, Vector::Constant(1, 1e308)});                       // its consequences overflow half way through the next one
+  bank->step(
+      {1, u,
+       Vector::Constant(1, 1e308)});  // its consequences overflow half way through the next one
   CHECK_THROWS_AS(bank->step({2, u, y}), Error);
   CHECK_THROWS_WITH_AS(bank->step({2, u, y}), doctest::Contains("start anew"), Error);
   bank->start();
@@ -323,7 +344,8 @@ TEST_CASE("a measurement that no error explains empties the copies, and the proo
     return p;
   }());
   const Vector u = Vector::Zero(1);
-  bank->step({0, u, Vector::Constant(1, 100)});  // far outside: the healthy mode is excluded, and nothing in the error set fits
+  bank->step({0, u, Vector::Constant(1, 100)});  // far outside: the healthy mode is excluded, and
+                                                 // nothing in the error set fits
   const Diagnosis next = bank->step({1, u, Vector::Zero(1)});
   for (const ModeEvidence& evidence : next.modes) {
     CHECK(evidence.consistent == Answer::no);
@@ -333,7 +355,9 @@ TEST_CASE("a measurement that no error explains empties the copies, and the proo
   CHECK(next.decision == Decision::unknown_fault);
 }
 
-TEST_CASE("samples that are not numbers, not of the model or out of order are refused, and change nothing") {
+TEST_CASE(
+    "samples that are not numbers, not of the model or out of order are refused, and change "
+    "nothing") {
   const auto bank = reactor_bank("zonotope");
   const Vector u = Vector::Zero(1), y = Vector::Zero(1);
   bank->step({0, u, y});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plants of the published examples with their modes, and a simulation apart from the product's own.
+// The plants of the published examples with their modes, and a simulation apart from the product's
+// own.
 #pragma once
 
 #include <random>
@@ -10,10 +11,15 @@ namespace banks {
 
 using namespace cordon;
 
-inline LineForm box_around(Vector center, Vector radius) { return make_zonotope(center, Matrix(radius.asDiagonal())); }
-inline Box range(double low, double high) { return {Vector::Constant(1, low), Vector::Constant(1, high)}; }
+inline LineForm box_around(Vector center, Vector radius) {
+  return make_zonotope(center, Matrix(radius.asDiagonal()));
+}
+inline Box range(double low, double high) {
+  return {Vector::Constant(1, low), Vector::Constant(1, high)};
+}
 
-/// The reactor of [Xu2014, sec. 6]; `literal` takes centre and radius of ω as they are printed, the wrong way round.
+/// The reactor of [Xu2014, sec. 6]; `literal` takes centre and radius of ω as they are printed, the
+/// wrong way round.
 inline ModeBank reactor(bool literal = false) {
   Model model;
   LinearModel& m = model.linear;
@@ -89,7 +95,8 @@ struct Draw {
 };
 
 /// One step of a mode: y_k, and x moves on to k + 1. `actuator` fixes the effectiveness.
-inline Vector simulate(const Model& mode, Vector& x, const Vector& u, Draw& draw, const Vector* actuator = nullptr) {
+inline Vector simulate(const Model& mode, Vector& x, const Vector& u, Draw& draw,
+                       const Vector* actuator = nullptr) {
   const LinearModel& m = mode.linear;
   const Vector f = actuator ? *actuator : draw.from(m.actuator_center(), m.actuator_radius()),
                g = draw.from(m.sensor_center(), m.sensor_radius());

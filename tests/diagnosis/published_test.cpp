@@ -14,7 +14,8 @@ namespace {
 Study study_of(const std::string& name) {
   Registry fresh;
   fresh.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
-  return read_study(std::string(CORDON_SOURCE_DIR) + "/examples/studies/" + name + ".json", fresh, {});
+  return read_study(std::string(CORDON_SOURCE_DIR) + "/examples/studies/" + name + ".json", fresh,
+                    {});
 }
 
 DiagnosisOutcome run_first_pipeline(Study study) {
@@ -30,7 +31,8 @@ DiagnosisOutcome run_first_pipeline(Study study) {
 std::map<std::pair<Index, Index>, Box> table(const DiagnosisOutcome& outcome) {
   REQUIRE(outcome.guarantees.has_value());
   std::map<std::pair<Index, Index>, Box> residuals;
-  for (const PairGuarantee& pair : outcome.guarantees->pairs) residuals[{pair.mode, pair.observer}] = pair.residual;
+  for (const PairGuarantee& pair : outcome.guarantees->pairs)
+    residuals[{pair.mode, pair.observer}] = pair.residual;
   return residuals;
 }
 
@@ -41,7 +43,8 @@ double miss(const Box& residual, double lower, double upper) {
 
 }  // namespace
 
-TEST_CASE("reactor: faults and recoveries are detected and isolated one step apart, on all 60 seeds") {
+TEST_CASE(
+    "reactor: faults and recoveries are detected and isolated one step apart, on all 60 seeds") {
   const DiagnosisOutcome outcome = run_first_pipeline(study_of("cstr_actuator_faults"));
   CHECK(outcome.runs == 60);
   CHECK(outcome.false_alarms == 0);
@@ -71,17 +74,22 @@ TEST_CASE("reactor: the literal reading of the disturbance fails the FDI conditi
   const double centers[] = {.001, .002, .003}, radii[] = {0, .015, .03};
   study.model.W = banks::box_around(Vector::Constant(2, centers[0]), Vector::Constant(2, radii[0]));
   for (std::size_t i = 0; i < 2; ++i) {
-    study.modes[i].model.W = banks::box_around(Vector::Constant(2, centers[i + 1]), Vector::Constant(2, radii[i + 1]));
+    study.modes[i].model.W =
+        banks::box_around(Vector::Constant(2, centers[i + 1]), Vector::Constant(2, radii[i + 1]));
   }
   Params params = study.pipelines[0].diagnoser->params;
   params.set("error_set", make_zonotope(Vector::Zero(2), Matrix{{1, 0}, {0, 80}}));
   const auto backend = banks::backend("zonotope");
-  const auto guarantees = banks::registry().make_diagnoser("observer_bank", bank_of(study), backend, params)->guarantees();
+  const auto guarantees = banks::registry()
+                              .make_diagnoser("observer_bank", bank_of(study), backend, params)
+                              ->guarantees();
   REQUIRE(guarantees.has_value());
   CHECK(guarantees->all == Answer::no);
 }
 
-TEST_CASE("wind turbine, actuators: all twelve printed ends to four decimals, and the published decisions") {
+TEST_CASE(
+    "wind turbine, actuators: all twelve printed ends to four decimals, and the published "
+    "decisions") {
   const DiagnosisOutcome outcome = run_first_pipeline(study_of("wind_turbine_actuator_faults"));
   auto R = table(outcome);
   const auto rounds_to = [](const Box& residual, double lower, double upper) {
@@ -113,7 +121,8 @@ TEST_CASE("wind turbine, actuators: the limits") {
   CHECK(miss(R[{0, 0}], -.1194335422, .1194335422) <= 1e-6);
 }
 
-TEST_CASE("wind turbine, sensors: every pair satisfies the condition, and every fault is isolated") {
+TEST_CASE(
+    "wind turbine, sensors: every pair satisfies the condition, and every fault is isolated") {
   const DiagnosisOutcome outcome = run_first_pipeline(study_of("wind_turbine_sensor_faults"));
   REQUIRE(outcome.guarantees.has_value());
   CHECK(outcome.guarantees->all == Answer::yes);

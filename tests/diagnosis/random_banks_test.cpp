@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random banks on random plants: whatever the modes are and whenever they change, the mode that the plant has been in throughout
-// is not excluded, on any backend.
+// Random banks on random plants: whatever the modes are and whenever they change, the mode that the
+// plant has been in throughout is not excluded, on any backend.
 #include <algorithm>
 #include <cstdlib>
 #include <string>
@@ -22,7 +22,9 @@ Matrix draw_matrix(Draw& draw, Index rows, Index cols, double size) {
   return M;
 }
 
-Index below(Draw& draw, Index end) { return static_cast<Index>(draw.engine() % static_cast<std::uint64_t>(end)); }
+Index below(Draw& draw, Index end) {
+  return static_cast<Index>(draw.engine() % static_cast<std::uint64_t>(end));
+}
 
 /// Effectiveness: none, exact values, or ranges, entry by entry.
 Box effectiveness(Draw& draw, Index size, double width) {
@@ -38,7 +40,8 @@ Box effectiveness(Draw& draw, Index size, double width) {
 
 /// Any number of generators, none among them; or two more, whose factors add up to a number.
 LineForm any_set(Draw& draw, Index n, double center, double size) {
-  LineForm X = make_zonotope(draw_matrix(draw, n, 1, center), draw_matrix(draw, n, below(draw, n + 2), size));
+  LineForm X = make_zonotope(draw_matrix(draw, n, 1, center),
+                             draw_matrix(draw, n, below(draw, n + 2), size));
   if (below(draw, 4) != 0) return X;
   X.G.conservativeResize(Eigen::NoChange, X.generators() + 2);
   X.G.rightCols(2) = draw_matrix(draw, n, 2, size);
@@ -55,7 +58,8 @@ Vector point_of(Draw& draw, const LineForm& X) {
   const Index g = X.generators();
   const double sum = X.b[0], low = std::max(-1.0, sum - 1), high = std::min(1.0, sum + 1);
   const double first = low + (high - low) * (1 + draw()) / 2;
-  return draw.from(make_zonotope(X.c, X.G.leftCols(g - 2))) + first * X.G.col(g - 2) + (sum - first) * X.G.col(g - 1);
+  return draw.from(make_zonotope(X.c, X.G.leftCols(g - 2))) + first * X.G.col(g - 2) +
+         (sum - first) * X.G.col(g - 1);
 }
 
 /// The mode's model with disturbances of this step alone.
@@ -76,10 +80,13 @@ enum class Differ { actuators, sensors, models };
 
 RandomBank random_bank(std::uint64_t seed, Differ what) {
   Draw draw{std::mt19937_64(seed)};
-  const Index n = 1 + below(draw, 3), p = 1 + below(draw, 2), q = 1 + below(draw, 2), modes = 1 + below(draw, 4);
+  const Index n = 1 + below(draw, 3), p = 1 + below(draw, 2), q = 1 + below(draw, 2),
+              modes = 1 + below(draw, 4);
   RandomBank made;
-  const Matrix A = draw_matrix(draw, n, n, .5 / static_cast<double>(n)) + .2 * Matrix::Identity(n, n);
-  const Matrix B = draw_matrix(draw, n, p, 1), C = draw_matrix(draw, q, n, 1), D = draw_matrix(draw, q, p, .5);
+  const Matrix A =
+      draw_matrix(draw, n, n, .5 / static_cast<double>(n)) + .2 * Matrix::Identity(n, n);
+  const Matrix B = draw_matrix(draw, n, p, 1), C = draw_matrix(draw, q, n, 1),
+               D = draw_matrix(draw, q, p, .5);
   const LineForm U = box_around(draw_matrix(draw, p, 1, 2), Vector::Constant(p, .5));
   const LineForm X0 = make_zonotope(draw_matrix(draw, n, 1, 1), draw_matrix(draw, n, n, .3));
   for (Index i = 0; i < modes; ++i) {
@@ -107,10 +114,13 @@ RandomBank random_bank(std::uint64_t seed, Differ what) {
   made.bank.nominal = below(draw, modes);
   Params& params = made.parameters;
   params.set("waiting_time", static_cast<std::int64_t>(1 + below(draw, 20)));
-  if (what == Differ::models) params.set("state_set", box_around(Vector::Zero(n), Vector::Constant(n, 80)));
-  if (below(draw, 2) == 0) params.set("gain", draw_matrix(draw, n, q, .2 / static_cast<double>(n * q)));
+  if (what == Differ::models)
+    params.set("state_set", box_around(Vector::Zero(n), Vector::Constant(n, 80)));
+  if (below(draw, 2) == 0)
+    params.set("gain", draw_matrix(draw, n, q, .2 / static_cast<double>(n * q)));
   if (below(draw, 2) == 0) params.set("strip_gain", draw_matrix(draw, n, q, .5));
-  if (below(draw, 2) == 0) params.set("max_generators", static_cast<std::int64_t>(n + below(draw, 4)));
+  if (below(draw, 2) == 0)
+    params.set("max_generators", static_cast<std::int64_t>(n + below(draw, 4)));
   return made;
 }
 
@@ -118,8 +128,10 @@ struct Tally {
   int runs = 0, refused = 0, resets = 0, isolated = 0;
 };
 
-/// One run with changes of mode at random times; the truth is never excluded, and a set of the truth holds the state.
-void run(Diagnoser& diagnoser, const ModeBank& bank, const SetBackend& sets, std::uint64_t seed, Tally& tally) {
+/// One run with changes of mode at random times; the truth is never excluded, and a set of the
+/// truth holds the state.
+void run(Diagnoser& diagnoser, const ModeBank& bank, const SetBackend& sets, std::uint64_t seed,
+         Tally& tally) {
   Draw draw{std::mt19937_64(seed), seed % 2 == 0};
   Index truth = bank.nominal, truth_since = 0;
   const Index pause = 1 + below(draw, 40);
@@ -144,7 +156,8 @@ void run(Diagnoser& diagnoser, const ModeBank& bank, const SetBackend& sets, std
     if (diagnosis.mode == truth && speaks_of_truth && diagnosis.estimate) {
       tally.isolated += diagnosis.since > 0;
       const Vector slack = Vector::Constant(now.size(), 1e-9 * (1 + now.cwiseAbs().maxCoeff()));
-      REQUIRE((*diagnosis.estimate)->is_disjoint_from(*sets.box({now - slack, now + slack})) != Answer::yes);
+      REQUIRE((*diagnosis.estimate)->is_disjoint_from(*sets.box({now - slack, now + slack})) !=
+              Answer::yes);
     }
   }
   ++tally.runs;
@@ -160,7 +173,8 @@ Params consistency_parameters(std::uint64_t seed, const std::string& observer, M
   Draw draw{std::mt19937_64(seed)};
   const Index n = bank[0].model.linear.states();
   Params inner;
-  if (below(draw, 2) == 0) inner.set("max_generators", static_cast<std::int64_t>(n + 6 + below(draw, 20)));
+  if (below(draw, 2) == 0)
+    inner.set("max_generators", static_cast<std::int64_t>(n + 6 + below(draw, 20)));
   if (observer == "descriptor" && below(draw, 2) == 0) {
     for (Mode& mode : bank.modes) mode.model.linear.E = Matrix::Identity(n, n);
     const double scale = .5 + below(draw, 3);
@@ -192,9 +206,12 @@ void check_banks(Differ what, const std::string& observer = "") {
       CAPTURE(seed);
       RandomBank random = random_bank(seed, what);
       const ModeBank plant = random.bank;  // without E
-      if (!observer.empty()) random.parameters = consistency_parameters(seed, observer, random.bank);
+      if (!observer.empty())
+        random.parameters = consistency_parameters(seed, observer, random.bank);
       const auto sets = backend_of(name, seed % 3 == 0);
-      if (const auto problems = registry().check_diagnoser(type, random.bank, sets, random.parameters); !problems.empty()) {
+      if (const auto problems =
+              registry().check_diagnoser(type, random.bank, sets, random.parameters);
+          !problems.empty()) {
         ++tally.refused;
         continue;
       }
@@ -230,8 +247,12 @@ TEST_CASE("without reductions, residual sets end in those that were promised in 
       RandomBank random = random_bank(seed, what);
       random.parameters.set("max_generators", std::int64_t{100'000});
       const auto sets = backend("zonotope");
-      if (!registry().check_diagnoser("observer_bank", random.bank, sets, random.parameters).empty()) continue;
-      const auto diagnoser = registry().make_diagnoser("observer_bank", random.bank, sets, random.parameters);
+      if (!registry()
+               .check_diagnoser("observer_bank", random.bank, sets, random.parameters)
+               .empty())
+        continue;
+      const auto diagnoser =
+          registry().make_diagnoser("observer_bank", random.bank, sets, random.parameters);
       const auto promised = diagnoser->guarantees();
       REQUIRE(promised.has_value());
       Draw draw{std::mt19937_64(seed), seed % 2 == 0};
@@ -241,7 +262,8 @@ TEST_CASE("without reductions, residual sets end in those that were promised in 
       Diagnosis last;
       for (Index k = 0; k < 100; ++k) {  // what is left of the start is far below the slack
         const Vector u = draw.from(random.bank[0].model.U);
-        last = diagnoser->step({k, u, simulate(at_this_step(random.bank[truth], draw), x, u, draw)});
+        last =
+            diagnoser->step({k, u, simulate(at_this_step(random.bank[truth], draw), x, u, draw)});
       }
       for (const PairGuarantee& pair : promised->pairs) {
         if (pair.mode != truth) continue;
@@ -287,9 +309,11 @@ TEST_CASE("numbers that cancel leave rounding errors, which exclude nothing") {
       }
       params.set("gain", Matrix{{.3, 0}, {-.1, .1}});
     }
-    for (const std::string name : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
+    for (const std::string name :
+         {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
       CAPTURE(name);
-      const auto diagnoser = registry().make_diagnoser("observer_bank", bank, backend(name), params);
+      const auto diagnoser =
+          registry().make_diagnoser("observer_bank", bank, backend(name), params);
       Draw draw{std::mt19937_64(1)};
       Vector x = model.X0.c;
       for (Index k = 0; k < 100; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The true mode is never excluded: the studies on many seeds, with every backend, uniform noise and noise at vertices. The number
-// of seeds is CORDON_SEEDS (default 20).
+// The true mode is never excluded: the studies on many seeds, with every backend, uniform noise and
+// noise at vertices. The number of seeds is CORDON_SEEDS (default 20).
 #include <cstdlib>
 #include <string>
 
@@ -21,7 +21,8 @@ std::int64_t seeds() {
 Study study_of(const std::string& name) {
   Registry fresh;  // reading loads plugins; those of the run are loaded already
   fresh.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
-  return read_study(std::string(CORDON_SOURCE_DIR) + "/examples/studies/" + name + ".json", fresh, {});
+  return read_study(std::string(CORDON_SOURCE_DIR) + "/examples/studies/" + name + ".json", fresh,
+                    {});
 }
 
 /// The study's first diagnoser on all backends, each with its own way of intersecting strips.
@@ -68,8 +69,12 @@ void expect_no_exclusion_of_the_truth(const std::string& name) {
 }  // namespace
 
 TEST_CASE("reactor, actuator faults") { expect_no_exclusion_of_the_truth("cstr_actuator_faults"); }
-TEST_CASE("wind turbine, actuator faults") { expect_no_exclusion_of_the_truth("wind_turbine_actuator_faults"); }
-TEST_CASE("wind turbine, sensor faults") { expect_no_exclusion_of_the_truth("wind_turbine_sensor_faults"); }
+TEST_CASE("wind turbine, actuator faults") {
+  expect_no_exclusion_of_the_truth("wind_turbine_actuator_faults");
+}
+TEST_CASE("wind turbine, sensor faults") {
+  expect_no_exclusion_of_the_truth("wind_turbine_sensor_faults");
+}
 
 TEST_CASE("the non-linear reactor is not the bank's own model, and yet its mode is not excluded") {
   Study study = study_of("cstr_nonlinear");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Diagnoser `tube_membership`: the true mode is never excluded, the others are as soon as the samples contradict them.
+// Diagnoser `tube_membership`: the true mode is never excluded, the others are as soon as the
+// samples contradict them.
 #include <doctest/doctest.h>
 
 #include "cordon/core/error.hpp"
@@ -24,11 +25,14 @@ Params horizon(std::int64_t N) {
 }
 
 std::shared_ptr<Diagnoser> make(const ModeBank& bank, const std::string& backend, Params params) {
-  return plugins().registry.make_diagnoser("tube_membership", bank, plugins().backend(backend), std::move(params));
+  return plugins().registry.make_diagnoser("tube_membership", bank, plugins().backend(backend),
+                                           std::move(params));
 }
 
-std::vector<Diagnostic> check(const ModeBank& bank, const std::string& backend, const Params& params) {
-  return plugins().registry.check_diagnoser("tube_membership", bank, plugins().backend(backend), params);
+std::vector<Diagnostic> check(const ModeBank& bank, const std::string& backend,
+                              const Params& params) {
+  return plugins().registry.check_diagnoser("tube_membership", bank, plugins().backend(backend),
+                                            params);
 }
 
 Model reversed_actuators(Model model) {
@@ -58,8 +62,8 @@ std::vector<Sample> samples_of(const std::vector<Simulated>& simulated) {
 }
 
 /// x⁺ = a x + u + w, y = x + v of the three scalar models, from an x_0 that nobody bounds.
-std::vector<Sample> scalar_samples(const Model& model, double x, const std::vector<double>& inputs, std::uint64_t seed,
-                                   bool vertex) {
+std::vector<Sample> scalar_samples(const Model& model, double x, const std::vector<double>& inputs,
+                                   std::uint64_t seed, bool vertex) {
   sets::Random random(seed);
   const auto noise = [&] {
     const double xi = random.cube(1)[0];
@@ -87,11 +91,14 @@ TEST_CASE("under the separating input the true model is left, on any backend tha
       for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         CAPTURE(truth);
         CAPTURE(seed);
-        const Run found = run(*diagnoser, samples_of(simulate(bank[truth].model, separating_input(), seed, seed % 2 == 0)));
+        const Run found =
+            run(*diagnoser,
+                samples_of(simulate(bank[truth].model, separating_input(), seed, seed % 2 == 0)));
         for (const Diagnosis& step : found.steps) {
           const ModeEvidence& own = step.modes[static_cast<std::size_t>(truth)];
           REQUIRE(own.candidate);
-          // With an admissible set the tube is that of an assumption, and lying in it proves nothing.
+          // With an admissible set the tube is that of an assumption, and lying in it proves
+          // nothing.
           REQUIRE(own.consistent != Answer::no);
           if (!lines) REQUIRE(own.consistent == Answer::unknown);
           CHECK(step.since == 0);
@@ -111,7 +118,8 @@ TEST_CASE("an admissible set is assumed") {
   for (const std::string backend : {"line_zonotope", "constrained_zonotope"}) {
     const auto diagnoser = make(four_models(), backend, unit);
     for (const Mode& mode : diagnoser->bank().modes) {
-      const Run found = run(*diagnoser, samples_of(simulate(mode.model, separating_input(), 1, false)));
+      const Run found =
+          run(*diagnoser, samples_of(simulate(mode.model, separating_input(), 1, false)));
       CHECK(found.steps.back().decision == Decision::unknown_fault);
     }
   }
@@ -125,8 +133,8 @@ TEST_CASE("a model is excluded at the first sample that contradicts it, and stay
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       CAPTURE(truth);
       CAPTURE(seed);
-      const auto samples =
-          samples_of(simulate(bank[truth].model, seed % 4 == 0 ? reference_input() : separating_input(), seed, false));
+      const auto samples = samples_of(simulate(
+          bank[truth].model, seed % 4 == 0 ? reference_input() : separating_input(), seed, false));
       const Run found = run(*diagnoser, samples);
       early += found.decided < 3;
       for (std::size_t j = 0; j < 4; ++j) {
@@ -134,7 +142,8 @@ TEST_CASE("a model is excluded at the first sample that contradicts it, and stay
         for (std::size_t k = 0; k < samples.size(); ++k) {
           const ModeEvidence& evidence = found.steps[k].modes[j];
           const bool now =
-              contradicts(bank[static_cast<Index>(j)].model, {samples.begin(), samples.begin() + static_cast<long>(k) + 1});
+              contradicts(bank[static_cast<Index>(j)].model,
+                          {samples.begin(), samples.begin() + static_cast<long>(k) + 1});
           REQUIRE(evidence.candidate == !now);
           CHECK(evidence.consistent == (out ? Answer::unknown : now ? Answer::no : Answer::yes));
           CHECK(evidence.why.kind == (out   ? Certificate::Kind::none
@@ -151,7 +160,9 @@ TEST_CASE("a model is excluded at the first sample that contradicts it, and stay
   CHECK(kept > 80);
 }
 
-TEST_CASE("decisions: isolating, then monitoring, ambiguous at the horizon, and the end of the experiment") {
+TEST_CASE(
+    "decisions: isolating, then monitoring, ambiguous at the horizon, and the end of the "
+    "experiment") {
   const ModeBank bank = four_models();
   const auto reference = samples_of(simulate(bank[0].model, reference_input(), 1, false));
   const auto diagnoser = make(bank, "line_zonotope", horizon(3));
@@ -193,7 +204,8 @@ TEST_CASE("many samples of stable and unstable models") {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       CAPTURE(truth);
       CAPTURE(seed);
-      const Run found = run(*diagnoser, samples_of(simulate(diagnoser->bank()[truth].model, inputs, seed, false)));
+      const Run found = run(
+          *diagnoser, samples_of(simulate(diagnoser->bank()[truth].model, inputs, seed, false)));
       for (const Diagnosis& step : found.steps) {
         REQUIRE(step.modes[static_cast<std::size_t>(truth)].candidate);
         REQUIRE(step.modes[static_cast<std::size_t>(truth)].consistent == Answer::yes);
@@ -208,7 +220,8 @@ TEST_CASE("a model outside the bank ends as unknown_fault") {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     CAPTURE(seed);
     const Model outside = reversed_actuators(diagnoser->bank()[0].model);
-    const Run found = run(*diagnoser, samples_of(simulate(outside, separating_input(), seed, seed % 2 == 0)));
+    const Run found =
+        run(*diagnoser, samples_of(simulate(outside, separating_input(), seed, seed % 2 == 0)));
     REQUIRE(found.steps.back().decision == Decision::unknown_fault);
     REQUIRE(found.steps.back().mode == -1);
     for (const ModeEvidence& mode : found.steps.back().modes) REQUIRE(!mode.candidate);
@@ -224,12 +237,14 @@ TEST_CASE("nothing needs to be known of the initial state") {
       CAPTURE(truth);
       CAPTURE(seed);
       const double start = seed % 3 == 0 ? 0 : seed % 3 == 1 ? 1e4 : -3;
-      const auto samples = scalar_samples(bank[truth].model, start, {0, seed % 2 ? .99 : -.99, 0, 0}, seed, seed % 4 < 2);
+      const auto samples = scalar_samples(bank[truth].model, start,
+                                          {0, seed % 2 ? .99 : -.99, 0, 0}, seed, seed % 4 < 2);
       const Run found = run(*diagnoser, samples);
       CHECK(found.steps[0].decision == Decision::isolating);  // y_0 says x_0, no more
       REQUIRE(found.steps.back().modes[static_cast<std::size_t>(truth)].candidate);
       decided += found.steps.back().decision == Decision::monitoring;
-      REQUIRE(found.steps.back().mode == truth);  // the input ±.99 is the published optimum: it separates
+      REQUIRE(found.steps.back().mode ==
+              truth);  // the input ±.99 is the published optimum: it separates
     }
   }
   CHECK(decided == 180);
@@ -244,12 +259,14 @@ TEST_CASE("an unbounded start that the outputs see in part only") {
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
       CAPTURE(truth);
       CAPTURE(seed);
-      const auto samples = samples_of(simulate(four_models()[truth].model, separating_input(), seed, seed % 2 == 0));
+      const auto samples =
+          samples_of(simulate(four_models()[truth].model, separating_input(), seed, seed % 2 == 0));
       const Run found = run(*diagnoser, samples);
       CHECK(found.steps[0].decision == Decision::isolating);
       REQUIRE(found.steps.back().modes[static_cast<std::size_t>(truth)].candidate);
       for (std::size_t j = 0; j < 4; ++j) {
-        if (static_cast<Index>(j) == truth) continue;  // vertices touch the tube: exact arithmetic would exclude by rounding
+        if (static_cast<Index>(j) == truth)
+          continue;  // vertices touch the tube: exact arithmetic would exclude by rounding
         const bool out = contradicts(bank[static_cast<Index>(j)].model, samples);
         REQUIRE(found.steps.back().modes[j].candidate == !out);
         excluded += out;
@@ -262,7 +279,8 @@ TEST_CASE("an unbounded start that the outputs see in part only") {
 TEST_CASE("systems without E need neither lines nor intersections") {
   ModeBank bank = examples::three_scalar_models();
   for (Mode& mode : bank.modes) mode.model.X0 = make_box(cube(1, 5));
-  for (const std::string backend : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
+  for (const std::string backend :
+       {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
     CAPTURE(backend);
     const auto diagnoser = make(bank, backend, horizon(3));
     for (Index truth = 0; truth < 3; ++truth) {
@@ -300,7 +318,8 @@ class Loose final : public SetBackend {
  private:
   class Held final : public Set {
    public:
-    Held(const SetBackend& backend, LineForm form) : Set(backend, form.dim()), form_(std::move(form)) {}
+    Held(const SetBackend& backend, LineForm form)
+        : Set(backend, form.dim()), form_(std::move(form)) {}
 
    private:
     Complexity do_complexity() const override { return {}; }
@@ -308,14 +327,17 @@ class Loose final : public SetBackend {
     LineForm form_;
   };
 
-  Made do_import(const LineForm& X) const override { return {std::make_unique<Held>(*this, X), Tightness::exact}; }
+  Made do_import(const LineForm& X) const override {
+    return {std::make_unique<Held>(*this, X), Tightness::exact};
+  }
 };
 
 }  // namespace
 
 TEST_CASE("an exchange form that encloses tells no consistency") {
   const ModeBank bank = examples::three_scalar_models();
-  const auto diagnoser = plugins().registry.make_diagnoser("tube_membership", bank, std::make_shared<Loose>(), horizon(1));
+  const auto diagnoser = plugins().registry.make_diagnoser("tube_membership", bank,
+                                                           std::make_shared<Loose>(), horizon(1));
   const Run found = run(*diagnoser, {{0, Vector{{2}}, Vector{{0}}}, {1, Vector{{0}}, Vector{{2}}}});
   CHECK(found.steps[0].modes[0].candidate);
   CHECK(found.steps[0].modes[0].consistent == Answer::unknown);
@@ -334,7 +356,8 @@ TEST_CASE("a step that ends with an error leaves the experiment as it was") {
     CHECK_THROWS_AS(diagnoser->step({static_cast<Index>(k), Vector{{1e308}}, samples[k].y}), Error);
     const Diagnosis step = diagnoser->step(samples[k]);
     CHECK(step.decision == whole.steps[k].decision);
-    for (std::size_t j = 0; j < 3; ++j) CHECK(step.modes[j].candidate == whole.steps[k].modes[j].candidate);
+    for (std::size_t j = 0; j < 3; ++j)
+      CHECK(step.modes[j].candidate == whole.steps[k].modes[j].candidate);
   }
 }
 
@@ -405,7 +428,8 @@ TEST_CASE("exactly known effectiveness is part of the tube") {
   bank.modes[1].name = "actuator_lost";
   bank.modes[1].model.linear.actuator = {Vector{{0}}, Vector{{0}}};
   const auto diagnoser = make(bank, "line_zonotope", horizon(2));
-  const Run healthy = run(*diagnoser, {{0, Vector{{2}}, Vector{{7}}}, {1, Vector{{0}}, Vector{{9}}}});
+  const Run healthy =
+      run(*diagnoser, {{0, Vector{{2}}, Vector{{7}}}, {1, Vector{{0}}, Vector{{9}}}});
   CHECK(healthy.steps.back().mode == 0);
   const Run lost = run(*diagnoser, {{0, Vector{{2}}, Vector{{7}}}, {1, Vector{{0}}, Vector{{7}}}});
   CHECK(lost.steps.back().mode == 1);

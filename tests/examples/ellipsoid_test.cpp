@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The ellipsoids of examples/plugin_ellipsoid: known ellipsoids, and points of the operands that must lie in every result.
+// The ellipsoids of examples/plugin_ellipsoid: known ellipsoids, and points of the operands that
+// must lie in every result.
 #include "ellipsoid.hpp"
 
 #include <cmath>
@@ -16,7 +17,9 @@ using namespace ellipsoid;
 
 namespace {
 
-Ellipsoid ball(Index n, double radius = 1) { return {Vector::Zero(n), radius * Matrix::Identity(n, n), Vector::Zero(n)}; }
+Ellipsoid ball(Index n, double radius = 1) {
+  return {Vector::Zero(n), radius * Matrix::Identity(n, n), Vector::Zero(n)};
+}
 
 double number() { return *rc::gen::inRange(-1000, 1001) / 1000.0; }
 Matrix random_matrix(Index rows, Index cols) {
@@ -44,7 +47,8 @@ Sampled random_ellipsoid(Index n) {
 }
 double scale(const Ellipsoid& X) { return 1 + X.c.cwiseAbs().sum() + X.L.cwiseAbs().sum(); }
 
-/// x, known to be inside, is not left out in any direction by more than rounding errors of x itself.
+/// x, known to be inside, is not left out in any direction by more than rounding errors of x
+/// itself.
 void assert_inside(const Ellipsoid& X, const Vector& x, double size, const char* what) {
   RC_LOG() << what << "\n";
   RC_ASSERT(!X.empty);
@@ -68,7 +72,8 @@ TEST_CASE("balls add their radii, points move, dimensions may differ") {
   CHECK_FALSE(result.exact);
   CHECK(support(result.set, Vector{{1, 0}}) == doctest::Approx(4));
   CHECK(support(result.set, Vector{{0, -1}}) == doctest::Approx(3));
-  CHECK(support(affine_map(ball(2), Matrix{{3, 4}}, Vector{{1.0}}), Vector{{1.0}}) == doctest::Approx(6));
+  CHECK(support(affine_map(ball(2), Matrix{{3, 4}}, Vector{{1.0}}), Vector{{1.0}}) ==
+        doctest::Approx(6));
   CHECK(volume(ball(2)) == doctest::Approx(std::numbers::pi));
   CHECK(volume(ball(3, 2)) == doctest::Approx(32 * std::numbers::pi / 3));
   const Ellipsoid moved[] = {ball(2), terms[2]};
@@ -79,7 +84,9 @@ TEST_CASE("half a ball is cut to the ellipsoid of least volume") {
   for (Index n : {2, 3, 5}) {
     CAPTURE(n);
     const double k = static_cast<double>(n);
-    const Ellipsoid half = cut(ball(n), {Vector::Unit(n, 0), 0, std::numeric_limits<double>::infinity()}, Criterion::volume);
+    const Ellipsoid half =
+        cut(ball(n), {Vector::Unit(n, 0), 0, std::numeric_limits<double>::infinity()},
+            Criterion::volume);
     CHECK(half.c[0] == doctest::Approx(1 / (k + 1)));
     CHECK(support(half, Vector::Unit(n, 0)) == doctest::Approx(1));
     CHECK(support(half, -Vector::Unit(n, 0)) == doctest::Approx((k - 1) / (k + 1)));
@@ -113,12 +120,16 @@ TEST_CASE("equations give flat ellipsoids, contradictions the empty set, weak st
   CHECK(contains(ball(2), Vector{{.6, .81}}) == Answer::no);
 }
 
-TEST_CASE("segments and lines of one dimension are exact, boxes are enclosed, unbounded sets refused") {
-  CHECK(enclose(cordon::make_zonotope(Vector{{1, 2}}, Matrix{{1.0}, {-1.0}}), Criterion::trace).exact);
-  const Result interval = enclose(cordon::make_zonotope(Vector{{1.0}}, Matrix{{1, -2, .5}}), Criterion::trace);
+TEST_CASE(
+    "segments and lines of one dimension are exact, boxes are enclosed, unbounded sets refused") {
+  CHECK(enclose(cordon::make_zonotope(Vector{{1, 2}}, Matrix{{1.0}, {-1.0}}), Criterion::trace)
+            .exact);
+  const Result interval =
+      enclose(cordon::make_zonotope(Vector{{1.0}}, Matrix{{1, -2, .5}}), Criterion::trace);
   CHECK(interval.exact);
   CHECK(support(interval.set, Vector{{1.0}}) == doctest::Approx(4.5));
-  const Result box = enclose(cordon::make_zonotope(Vector{{0, 0}}, Matrix{{1, 0}, {0, 1}}), Criterion::trace);
+  const Result box =
+      enclose(cordon::make_zonotope(Vector{{0, 0}}, Matrix{{1, 0}, {0, 1}}), Criterion::trace);
   CHECK_FALSE(box.exact);
   CHECK(support(box.set, Vector{{1, 0}}) == doctest::Approx(std::sqrt(2)));
   CHECK_THROWS_AS(enclose(cordon::make_space(2), Criterion::trace), cordon::Error);
@@ -126,7 +137,8 @@ TEST_CASE("segments and lines of one dimension are exact, boxes are enclosed, un
 }
 
 TEST_CASE("the rounding box holds what double arithmetic loses") {
-  // orbits of a point and of the end of a half axis, in long double beside the ellipsoid's own arithmetic
+  // orbits of a point and of the end of a half axis, in long double beside the ellipsoid's own
+  // arithmetic
   const double cosine = .6, sine = .8;
   const Matrix T{{cosine, -sine}, {sine, cosine}};
   Ellipsoid X{Vector{{1.0 / 3, .1}}, Matrix{{.7}, {1.0 / 7}}, Vector::Zero(2)};
@@ -136,7 +148,8 @@ TEST_CASE("the rounding box holds what double arithmetic loses") {
     X = affine_map(X, T, Vector::Zero(2));
     std::tie(x, y) = std::pair{cosine * x - sine * y, sine * x + cosine * y};
     std::tie(u, v) = std::pair{cosine * u - sine * v, sine * u + cosine * v};
-    const long double lost[] = {std::abs(x + u - X.c[0] - X.L(0, 0)), std::abs(y + v - X.c[1] - X.L(1, 0))};
+    const long double lost[] = {std::abs(x + u - X.c[0] - X.L(0, 0)),
+                                std::abs(y + v - X.c[1] - X.L(1, 0))};
     for (Index i = 0; i < 2; ++i) {
       CHECK(lost[i] <= X.r[i]);
       was_needed = was_needed || lost[i] > 0;
@@ -159,7 +172,8 @@ TEST_CASE("every operation keeps the points it must keep") {
     const Ellipsoid terms[] = {mapped, V.set, mapped};
     assert_inside(sum(terms).set, 2 * (T * X.point + t) + V.point, 30 * size, "sum");
     for (const double share : {0.0, .3, 1.0}) {
-      assert_inside(convex_hull(X.set, Y.set), share * X.point + (1 - share) * Y.point, 10 * size, "hull");
+      assert_inside(convex_hull(X.set, Y.set), share * X.point + (1 - share) * Y.point, 10 * size,
+                    "hull");
     }
 
     Ellipsoid narrow = X.set;  // several cuts through one point, some of them equations
@@ -167,10 +181,13 @@ TEST_CASE("every operation keeps the points it must keep") {
       const Vector a = random_vector(n);
       const double value = a.dot(X.point), error = 1e-14 * size * a.cwiseAbs().sum();
       const bool equation = *rc::gen::inRange(0, 3) == 0;
-      narrow = cut(narrow, {a, value - (equation ? 0 : std::abs(number())), value + (equation ? 0 : std::abs(number())), error},
+      narrow = cut(narrow,
+                   {a, value - (equation ? 0 : std::abs(number())),
+                    value + (equation ? 0 : std::abs(number())), error},
                    criterion);
       assert_inside(narrow, X.point, 10 * size, "cut");
-      RC_ASSERT(criterion == Criterion::volume || narrow.L.norm() <= X.set.L.norm() * (1 + 1e-9) + 1e-9);
+      RC_ASSERT(criterion == Criterion::volume ||
+                narrow.L.norm() <= X.set.L.norm() * (1 + 1e-9) + 1e-9);
     }
 
     Ellipsoid other = V.set;  // R x ∈ Y with Y moved onto R x
@@ -181,7 +198,8 @@ TEST_CASE("every operation keeps the points it must keep") {
     const LineForm box = principal_box(X.set);
     for (int k = 0; k < 3; ++k) {
       const Vector d = random_vector(n);
-      RC_ASSERT(d.dot(box.c) + (box.G.transpose() * d).cwiseAbs().sum() >= support(X.set, d) - 1e-13 * size * 10);
+      RC_ASSERT(d.dot(box.c) + (box.G.transpose() * d).cwiseAbs().sum() >=
+                support(X.set, d) - 1e-13 * size * 10);
     }
     assert_inside(enclose(box, criterion).set, X.point, 10 * size, "import");
   }));
@@ -189,7 +207,8 @@ TEST_CASE("every operation keeps the points it must keep") {
 
 TEST_CASE("constrained sets are imported with their certified hull") {
   // {ξ : ‖ξ‖∞ ≤ 1, ξ₁ + ξ₂ = 1}
-  const LineForm X{Matrix(2, 0), Matrix::Identity(2, 2), Vector::Zero(2), Matrix(1, 0), Matrix{{1, 1}}, Vector{{1.0}}};
+  const LineForm X{Matrix(2, 0), Matrix::Identity(2, 2), Vector::Zero(2),
+                   Matrix(1, 0), Matrix{{1, 1}},         Vector{{1.0}}};
   const Result result = enclose(X, Criterion::trace);
   CHECK_FALSE(result.exact);
   CHECK(contains(result.set, Vector{{1, 0}}) != Answer::no);
@@ -215,7 +234,8 @@ TEST_CASE("as a plugin it meets the claims") {
   CHECK(X->is_disjoint_from(*backend->box({Vector{{5, 5}}, Vector{{6, 6}}})) == Answer::yes);
   CHECK(X->volume().exact);
   CHECK(X->volume().value == doctest::Approx(2 * std::numbers::pi));
-  // a default that goes through the outer exchange form claims nothing, although the image is an interval
+  // a default that goes through the outer exchange form claims nothing, although the image is an
+  // interval
   const cordon::Enclosure disc = backend->sum(backend->point(Vector{{0, 0}}), X);
   CHECK(backend->interval_map(disc, Matrix{{1, 0}}).tightness == cordon::Tightness::outer);
 }

@@ -74,11 +74,13 @@ TEST_CASE("bounds are the estimate and the published half widths") {
 TEST_CASE("no true fault is outside its bounds: 30 seeds") {
   for (const char* coupling : couplings) {
     for (const bool with_S : {true, false}) {
-      const auto diagnoser = filter(published(), with_S ? published_parameters(coupling) : parameters(coupling));
+      const auto diagnoser =
+          filter(published(), with_S ? published_parameters(coupling) : parameters(coupling));
       for (std::uint64_t seed = 1; seed <= 30; ++seed) {
         CAPTURE(seed);
         const Noise noise = seed % 2 == 0 ? Noise::vertex : Noise::uniform;
-        CHECK(run(*diagnoser, plant(published(), published_fault, seed, noise), published_fault, 200) == 400);
+        CHECK(run(*diagnoser, plant(published(), published_fault, seed, noise), published_fault,
+                  200) == 400);
       }
     }
   }
@@ -147,8 +149,11 @@ TEST_CASE("the proof names the fault that is farthest from 0, and since the earl
   run(*diagnoser, plant(model, both, 4, Noise::uniform), both, 20, [&](const Diagnosis& now) {
     CAPTURE(now.k);
     if (now.k == 0) CHECK(now.faults.empty());
-    if (now.k == 1) CHECK((now.faults.size() == 1 && now.faults[0].fault == 0 && now.faults[0].at == 0));
-    if (now.k >= 2) CHECK((now.faults.size() == 2 && now.faults[0].at == now.k - 1 && now.faults[1].at == now.k - 2));
+    if (now.k == 1)
+      CHECK((now.faults.size() == 1 && now.faults[0].fault == 0 && now.faults[0].at == 0));
+    if (now.k >= 2)
+      CHECK((now.faults.size() == 2 && now.faults[0].at == now.k - 1 &&
+             now.faults[1].at == now.k - 2));
     if (now.k == 11) {  // fault 1 alone is proven
       CHECK(now.modes[0].why.data == Vector{{-1, 0}});
       CHECK(now.since == 10);
@@ -162,13 +167,15 @@ TEST_CASE("the proof names the fault that is farthest from 0, and since the earl
   CHECK(diagnoser->guarantees()->faults[1].delay == 2);
 }
 
-TEST_CASE("of several modes the filter excludes the nominal one only, and does not say what takes its place") {
+TEST_CASE(
+    "of several modes the filter excludes the nominal one only, and does not say what takes its "
+    "place") {
   ModeBank bank = alone(published());
   bank.modes.push_back({"other", published()});
   bank.modes[0].model.linear.F.resize(4, 0);
   bank.nominal = 1;
-  const auto diagnoser =
-      banks::registry().make_diagnoser("fault_estimation_filter", bank, zonotopes(), published_parameters("shared"));
+  const auto diagnoser = banks::registry().make_diagnoser(
+      "fault_estimation_filter", bank, zonotopes(), published_parameters("shared"));
   const Signal step = [](Index k) { return Vector{{k >= 5 ? -3.0 : 0.0, 0.0}}; };
   run(*diagnoser, plant(published(), step, 3, Noise::uniform), step, 20, [&](const Diagnosis& now) {
     CAPTURE(now.k);
@@ -196,7 +203,8 @@ TEST_CASE("centres of W and V, and a direct input") {
       const auto moved = filter(model, published_parameters(coupling));
       double error = 0;
       run(*moved, sample, published_fault, 120, [&](const Diagnosis& now) {
-        for (const FaultBound& b : now.faults) error = std::max(error, std::abs(b.estimate - published_fault(b.at)[b.fault]));
+        for (const FaultBound& b : now.faults)
+          error = std::max(error, std::abs(b.estimate - published_fault(b.at)[b.fault]));
       });
       CHECK((error < 1e-11) == (noise == Noise::none));
     }
@@ -211,7 +219,8 @@ TEST_CASE("sets with constraints are taken by the boxes around them") {
   model.V.b = Vector::Constant(1, .5);
   boxed.V = make_zonotope(Vector{{.5, 0, 0}}, Matrix(Vector{{0, 1, 1}}.asDiagonal()));
   const auto a = filter(model, {})->guarantees(), b = filter(boxed, {})->guarantees();
-  for (std::size_t i = 0; i < 2; ++i) CHECK(a->faults[i].half_width == doctest::Approx(b->faults[i].half_width).epsilon(1e-9));
+  for (std::size_t i = 0; i < 2; ++i)
+    CHECK(a->faults[i].half_width == doctest::Approx(b->faults[i].half_width).epsilon(1e-9));
 }
 
 TEST_CASE("generators of W and V scale Bw and Dv") {
@@ -239,9 +248,11 @@ TEST_CASE("systems without E") {
       with_E.linear.E = Matrix::Identity(4, 4);
       return filter(with_E, parameters(coupling))->guarantees();
     }();
-    for (std::size_t i = 0; i < 2; ++i) CHECK(diagnoser->guarantees()->faults[i].half_width == same->faults[i].half_width);
+    for (std::size_t i = 0; i < 2; ++i)
+      CHECK(diagnoser->guarantees()->faults[i].half_width == same->faults[i].half_width);
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-      CHECK(run(*diagnoser, plant(model, published_fault, seed, Noise::vertex), published_fault, 120) == 240);
+      CHECK(run(*diagnoser, plant(model, published_fault, seed, Noise::vertex), published_fault,
+                120) == 240);
     }
   }
 }
@@ -277,7 +288,8 @@ TEST_CASE("what is within rounding of 0 excludes nothing") {
   model.W = make_point(Vector::Zero(1));
   model.V = make_point(Vector::Zero(3));
   const Signal none = [](Index) { return Vector::Zero(2); };
-  const FaultyRun source{model, [](Index k) { return Vector(1e6 * wave(k)); }, none, Draw{std::mt19937_64(1), Noise::none}};
+  const FaultyRun source{model, [](Index k) { return Vector(1e6 * wave(k)); }, none,
+                         Draw{std::mt19937_64(1), Noise::none}};
   model.X0 = make_point(source.state());
   const auto diagnoser = filter(model, published_parameters("shared"));
   bool moved = false;
@@ -300,11 +312,14 @@ TEST_CASE("nor what is left of large numbers that cancel") {
   model.X0 = make_point(Vector::Zero(1));
   model.W = model.V = make_point(Vector(0));
   const Signal none = [](Index) { return Vector::Zero(1); };
-  const Signal large = [](Index k) { return Vector(Vector{{3e8, 1e8}} * std::sin(.3 * static_cast<double>(k))); };
+  const Signal large = [](Index k) {
+    return Vector(Vector{{3e8, 1e8}} * std::sin(.3 * static_cast<double>(k)));
+  };
   bool moved = false;
-  run(*filter(model, {}), {model, large, none, Draw{std::mt19937_64(1), Noise::none}}, none, 100, [&](const Diagnosis& now) {
-    CHECK(now.decision == Decision::monitoring);
-    for (const FaultBound& b : now.faults) moved = moved || std::abs(b.estimate) > 1e-9;
-  });
+  run(*filter(model, {}), {model, large, none, Draw{std::mt19937_64(1), Noise::none}}, none, 100,
+      [&](const Diagnosis& now) {
+        CHECK(now.decision == Decision::monitoring);
+        for (const FaultBound& b : now.faults) moved = moved || std::abs(b.estimate) > 1e-9;
+      });
   CHECK(moved);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The design of the fault estimation filter: the published matrices, what makes it one, and systems that have none.
+// The design of the fault estimation filter: the published matrices, what makes it one, and systems
+// that have none.
 #include "diagnosers/fault_estimation_filter/filter_design.hpp"
 
 #include <doctest/doctest.h>
@@ -14,7 +15,8 @@ using namespace faults;
 namespace {
 
 bool near(const Matrix& A, const Matrix& B, double tolerance) {
-  return A.rows() == B.rows() && A.cols() == B.cols() && (A.size() == 0 || (A - B).cwiseAbs().maxCoeff() <= tolerance);
+  return A.rows() == B.rows() && A.cols() == B.cols() &&
+         (A.size() == 0 || (A - B).cwiseAbs().maxCoeff() <= tolerance);
 }
 
 FilterDesign design(const LinearModel& m, const Matrix& S) {
@@ -25,16 +27,21 @@ FilterDesign design(const LinearModel& m, const Matrix& S) {
   return *made;
 }
 
-FilterDesign design(const LinearModel& m) { return design(m, Matrix::Zero(m.states(), m.states() + m.outputs())); }
+FilterDesign design(const LinearModel& m) {
+  return design(m, Matrix::Zero(m.states(), m.states() + m.outputs()));
+}
 
 Diagnostic problem(const LinearModel& m) {
   std::vector<Diagnostic> problems;
-  CHECK_FALSE(design_filter(m, Matrix::Zero(m.states(), m.states() + m.outputs()), problems).has_value());
+  CHECK_FALSE(
+      design_filter(m, Matrix::Zero(m.states(), m.states() + m.outputs()), problems).has_value());
   REQUIRE(problems.size() == 1);
   return problems[0];
 }
 
-bool says(const Diagnostic& p, const std::string& text) { return p.message.find(text) != std::string::npos; }
+bool says(const Diagnostic& p, const std::string& text) {
+  return p.message.find(text) != std::string::npos;
+}
 
 /// x⁺ = A x + F n, y = C x.
 LinearModel lti(Matrix A, Matrix F, Matrix C) {
@@ -74,7 +81,8 @@ void check_equations(const LinearModel& m, const FilterDesign& d, Draw& draw) {
 
 TEST_CASE("the published matrices") {
   const FilterDesign d = design(published().linear, published_S());
-  CHECK(near(d.T, Vector{{1, .5, .5, 1}}.asDiagonal().toDenseMatrix(), 1e-14));  // printed without its third row
+  CHECK(near(d.T, Vector{{1, .5, .5, 1}}.asDiagonal().toDenseMatrix(),
+             1e-14));  // printed without its third row
   CHECK(near(d.N, Matrix{{0, 0, 0}, {.5, 0, 0}, {0, .5, 0}, {0, 0, 1}}, 1e-14));
   CHECK(d.delays == std::vector<Index>{1, 1});
   CHECK(near(d.Psi, Matrix{{.1, 0}, {.5, .5}, {-.05, .5}, {-1, 0}}, 1e-14));
@@ -83,7 +91,8 @@ TEST_CASE("the published matrices") {
              Matrix{{0.2388707926167209, -0.23887079261672098, -0.868621064060803},
                     {0.8925081433224746, 1.1074918566775243, 0.3908794788273616}},
              1e-13));
-  CHECK(near(d.Phi, Matrix{{.09725, -.045}, {.2465075, .273675}, {-.044925, .222575}, {-.95, .5}}, 1e-14));
+  CHECK(near(d.Phi, Matrix{{.09725, -.045}, {.2465075, .273675}, {-.044925, .222575}, {-.95, .5}},
+             1e-14));
   const Matrix Omega{{0.6590224063189366, -0.6590224063189366, 0.3624623234754153}};
   CHECK(near(d.Omega * (d.Omega(0, 0) < 0 ? -1 : 1), Omega, 1e-13));
 }
@@ -174,7 +183,8 @@ TEST_CASE("systems without a filter, in words") {
   }
   SUBCASE("faults that do not show") {
     CHECK(says(problem(lti(A, one, one.topRows(1))), "faults 2 and 3 do not show in the outputs"));
-    CHECK(says(problem(lti(A, one.leftCols(2), one.topRows(1))), "fault 2 does not show in the outputs"));
+    CHECK(says(problem(lti(A, one.leftCols(2), one.topRows(1))),
+               "fault 2 does not show in the outputs"));
     CHECK(problem(lti(A, one, one.topRows(1))).pointer == "/free_matrix");
     CHECK(says(problem(lti(A, Matrix::Zero(3, 1), one)), "fault 1 does not show"));
     const Matrix nearly{{.5, 0}, {0, .5 + 1e-12}};  // shows by 1e-12: no claim that it never does
@@ -183,7 +193,8 @@ TEST_CASE("systems without a filter, in words") {
   SUBCASE("more faults than outputs") {
     Matrix F(3, 3);
     F << one.col(0), 2 * one.col(0), -one.col(0);
-    CHECK(says(problem(lti(A, F, one.topRows(2))), "the system has 3 faults, which 2 outputs cannot tell apart"));
+    CHECK(says(problem(lti(A, F, one.topRows(2))),
+               "the system has 3 faults, which 2 outputs cannot tell apart"));
     CHECK(says(problem(lti(A, F, one.topRows(1))), "which 1 output cannot"));
   }
   SUBCASE("faults that act alike") {
@@ -191,7 +202,9 @@ TEST_CASE("systems without a filter, in words") {
     F << one.col(0), one.col(1), -1e6 * one.col(0);
     CHECK(says(problem(lti(A, F, one)), "faults 1 and 3 act alike on the outputs"));
   }
-  SUBCASE("as many faults as outputs are none of these") { CHECK(design(lti(A, one, one)).Omega.rows() == 0); }
+  SUBCASE("as many faults as outputs are none of these") {
+    CHECK(design(lti(A, one, one)).Omega.rows() == 0);
+  }
 }
 
 TEST_CASE("a fault in static rows needs a free matrix") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gains and error sets of the fault estimation filter: the published example, to independently computed digits, and their laws.
+// Gains and error sets of the fault estimation filter: the published example, to independently
+// computed digits, and their laws.
 #include "diagnosers/fault_estimation_filter/filter_recursion.hpp"
 
 #include <algorithm>
@@ -24,7 +25,8 @@ FilterDesign design(const LinearModel& m, const Matrix& S) {
   return *made;
 }
 
-FilterRecursion recursion(Index max_columns, NoiseCoupling coupling, const Matrix& S = published_S()) {
+FilterRecursion recursion(Index max_columns, NoiseCoupling coupling,
+                          const Matrix& S = published_S()) {
   const Model model = published();
   const LinearModel& m = model.linear;
   FilterRecursion made(design(m, S), m, {m.Bw, m.Dv}, max_columns, coupling);
@@ -37,7 +39,8 @@ struct Expected {
   double first, second;
 };
 
-void check_half_widths(Index max_columns, NoiseCoupling coupling, std::initializer_list<Expected> all, double tolerance = 1e-9) {
+void check_half_widths(Index max_columns, NoiseCoupling coupling,
+                       std::initializer_list<Expected> all, double tolerance = 1e-9) {
   FilterRecursion r = recursion(max_columns, coupling);
   Index k = 0;
   for (const Expected& e : all) {
@@ -170,8 +173,11 @@ TEST_CASE("no gain that leaves the faults apart makes a smaller error set") {
 
 TEST_CASE("half widths of a long run") {
   const Matrix H = published().X0.G;
-  const auto settled = [&](Index l, NoiseCoupling c) { return lasting_half_widths(recursion(l, c), H); };
-  const Vector reduced = settled(20, NoiseCoupling::independent), shared = settled(20, NoiseCoupling::shared);
+  const auto settled = [&](Index l, NoiseCoupling c) {
+    return lasting_half_widths(recursion(l, c), H);
+  };
+  const Vector reduced = settled(20, NoiseCoupling::independent),
+               shared = settled(20, NoiseCoupling::shared);
   CHECK(std::abs(reduced[0] - 0.14953100266361513) < 1e-9);
   CHECK(std::abs(reduced[1] - 0.12180169992001094) < 1e-9);
   CHECK(std::abs(shared[0] - .07590599) < 1e-8);
@@ -202,13 +208,15 @@ TEST_CASE("bounds that grow are infinite in advance, and end with an error") {
 
 TEST_CASE("without noise and from a point there is nothing to bound") {
   const LinearModel m = published().linear;
-  FilterRecursion r(design(m, published_S()), m, {Matrix(4, 0), Matrix(3, 0)}, 20, NoiseCoupling::shared);
+  FilterRecursion r(design(m, published_S()), m, {Matrix(4, 0), Matrix(3, 0)}, 20,
+                    NoiseCoupling::shared);
   r.start(Matrix(4, 0));
   for (int k = 0; k < 50; ++k) r.advance();
   CHECK(r.half_widths().cwiseAbs().maxCoeff() == 0);
   CHECK(r.gain().allFinite());
-  CHECK(std::isinf(lasting_half_widths(r, Matrix(4, 0)).maxCoeff()));  // the gain without noise lets errors grow: rounding would
-  r.start(Matrix::Identity(4, 4));                                     // the errors die out, and the gain stays moderate
+  CHECK(std::isinf(lasting_half_widths(r, Matrix(4, 0))
+                       .maxCoeff()));  // the gain without noise lets errors grow: rounding would
+  r.start(Matrix::Identity(4, 4));     // the errors die out, and the gain stays moderate
   for (int k = 0; k < 500; ++k) r.advance();
   CHECK(r.half_widths().maxCoeff() < 1e-6);
   CHECK(r.gain().cwiseAbs().maxCoeff() < 1e3);
@@ -276,18 +284,20 @@ TEST_CASE("errors that do not die out leave no promise, whether the run stirs th
     m.F = Matrix{{1, 0}, {0, 0}, {0, 1}};
     m.C = Matrix{{1, 2, 0}, {0, 0, 1}};
     const FilterDesign d = design(m, Matrix::Zero(3, 5));
-    const FilterRecursion r(d, m, {Matrix::Identity(3, 3), Matrix::Identity(2, 2)}, 0, NoiseCoupling::shared);
+    const FilterRecursion r(d, m, {Matrix::Identity(3, 3), Matrix::Identity(2, 2)}, 0,
+                            NoiseCoupling::shared);
     CHECK(std::isinf(lasting_half_widths(r, Matrix::Identity(3, 3))[0]));
   }
-  // A is stable, and the zero from the fault to y is 1.001: no noise and no start is along it, and an entry of 10 hides it for
-  // long
+  // A is stable, and the zero from the fault to y is 1.001: no noise and no start is along it, and
+  // an entry of 10 hides it for long
   LinearModel m;
   m.A = Matrix{{.5, 1, 10}, {-.3, 1.001, 0}, {0, 0, .5}};
   m.F = Matrix{{1}, {0}, {0}};
   m.C = Matrix{{1, 0, 0}};
   const FilterDesign d = design(m, Matrix::Zero(3, 4));
   for (const Index columns : {0, 20}) {
-    const FilterRecursion r(d, m, {Matrix{{.3}, {0}, {0}}, Matrix(1, 0)}, columns, NoiseCoupling::shared);
+    const FilterRecursion r(d, m, {Matrix{{.3}, {0}, {0}}, Matrix(1, 0)}, columns,
+                            NoiseCoupling::shared);
     CHECK(std::isinf(lasting_half_widths(r, Matrix{{.1}, {0}, {.1}})[0]));
   }
 }
@@ -304,7 +314,8 @@ TEST_CASE("a mode that is slower than any run is in the bound, or there is none"
     const FilterDesign d = design(m, Matrix::Zero(2, 3));
     for (const Index columns : {0, 20}) {
       CAPTURE(columns);
-      FilterRecursion r(d, m, {Matrix{{.5, 0}, {0, drift}}, Matrix{{.1}}}, columns, NoiseCoupling::shared);
+      FilterRecursion r(d, m, {Matrix{{.5, 0}, {0, drift}}, Matrix{{.1}}}, columns,
+                        NoiseCoupling::shared);
       const Matrix start{{.1}, {0}};
       const double told = lasting_half_widths(r, start)[0];
       CHECK(told >= limit * .98);
@@ -313,13 +324,15 @@ TEST_CASE("a mode that is slower than any run is in the bound, or there is none"
       r.start(start);
       for (int k = 0; k < (columns == 0 ? 3000 : 60'000); ++k) {
         r.advance();
-        if (k > 400 && r.half_widths()[0] > told * (1 + 1e-9)) FAIL("step ", k, ": ", r.half_widths()[0], " > ", told);
+        if (k > 400 && r.half_widths()[0] > told * (1 + 1e-9))
+          FAIL("step ", k, ": ", r.half_widths()[0], " > ", told);
       }
     }
   }
 }
 
-TEST_CASE("a bound told in advance holds from the start of the steady state on, for random systems") {
+TEST_CASE(
+    "a bound told in advance holds from the start of the steady state on, for random systems") {
   Index told = 0, all = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     CAPTURE(seed);

@@ -24,7 +24,8 @@ inline Params parameters(const std::string& coupling, std::int64_t max_columns =
 }
 
 inline std::shared_ptr<Diagnoser> filter(const Model& model, const Params& params) {
-  return banks::registry().make_diagnoser("fault_estimation_filter", alone(model), zonotopes(), params);
+  return banks::registry().make_diagnoser("fault_estimation_filter", alone(model), zonotopes(),
+                                          params);
 }
 
 /// Runs both to `steps`; bounds that do not hold the true fault fail. Returns the number of bounds.
@@ -38,7 +39,8 @@ inline Index run(Diagnoser& diagnoser, FaultyRun plant, const Signal& fault, Ind
       const double truth = fault(b.at)[b.fault];
       const bool holds = b.lower <= truth && truth <= b.upper;
       if (!holds) {
-        FAIL_CHECK("fault ", b.fault, " at ", b.at, " is ", truth, ", outside [", b.lower, ", ", b.upper, "] of k = ", k);
+        FAIL_CHECK("fault ", b.fault, " at ", b.at, " is ", truth, ", outside [", b.lower, ", ",
+                   b.upper, "] of k = ", k);
       }
       ++bounds;
     }

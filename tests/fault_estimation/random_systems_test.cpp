@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random systems with and without E, with delays of one to three steps: the true faults lie within their bounds.
+// Random systems with and without E, with delays of one to three steps: the true faults lie within
+// their bounds.
 #include <algorithm>
 #include <cmath>
 
@@ -39,7 +40,8 @@ struct System {
 System random_system(Draw& draw) {
   System made;
   LinearModel& m = made.model.linear;
-  const Index n = 2 + draw.below(4), p = 1 + draw.below(std::min<Index>(n, 3)), q = 1 + draw.below(p);
+  const Index n = 2 + draw.below(4), p = 1 + draw.below(std::min<Index>(n, 3)),
+              q = 1 + draw.below(p);
   m.A = draw.matrix(n, n);
   m.A *= .9 / m.A.cwiseAbs().rowwise().sum().maxCoeff();
   m.B = draw.matrix(n, 2);
@@ -60,7 +62,8 @@ System random_system(Draw& draw) {
   theta << E, m.C;
   const Matrix inverse = linalg::pseudo_inverse(theta);
   made.S = draw.below(2) * draw.matrix(n, n + p);
-  const Matrix T = (inverse + made.S * (Matrix::Identity(n + p, n + p) - theta * inverse)).leftCols(n);
+  const Matrix T =
+      (inverse + made.S * (Matrix::Identity(n + p, n + p) - theta * inverse)).leftCols(n);
   m.F = Matrix(n, q);
   for (Index i = 0; i < q; ++i) {
     Index delay = 1 + draw.below(3);
@@ -111,7 +114,8 @@ TEST_CASE("random systems") {
     const std::int64_t columns = draw.below(2) == 0 ? 0 : 12;
     Params params = parameters(draw.below(2) == 0 ? "shared" : "independent", columns);
     params.set("free_matrix", system.S);
-    const auto problems = banks::registry().check_diagnoser("fault_estimation_filter", alone(system.model), zonotopes(), params);
+    const auto problems = banks::registry().check_diagnoser(
+        "fault_estimation_filter", alone(system.model), zonotopes(), params);
     RC_PRE(problems.empty());
     const Signal fault = random_faults(draw, system.model.linear.faults());
     const Noise noise = draw.below(2) == 0 ? Noise::uniform : Noise::vertex;
@@ -137,7 +141,8 @@ TEST_CASE("random systems") {
     }
     ++fine;  // the same with a millionth of the noise: narrow bounds
     for (LineForm* set : {&system.model.W, &system.model.V}) set->G *= 1e-6;
-    const FaultyRun quiet(with_start(system.model, plant.state()), wave, fault, Draw{std::mt19937_64(seed + 2), noise});
+    const FaultyRun quiet(with_start(system.model, plant.state()), wave, fault,
+                          Draw{std::mt19937_64(seed + 2), noise});
     system.model.X0 = make_zonotope(quiet.state() - 1e-6 * start * inside, 1e-6 * start);
     run(*filter(system.model, params), quiet, fault, steps);
   }));

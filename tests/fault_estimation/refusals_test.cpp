@@ -14,29 +14,37 @@ std::vector<Diagnostic> problems(const ModeBank& bank, const Params& params,
                                  const std::shared_ptr<const SetBackend>& backend = zonotopes()) {
   auto found = banks::registry().check_diagnoser("fault_estimation_filter", bank, backend, params);
   if (!found.empty()) {
-    CHECK_THROWS_AS(banks::registry().make_diagnoser("fault_estimation_filter", bank, backend, params), InputError);
+    CHECK_THROWS_AS(
+        banks::registry().make_diagnoser("fault_estimation_filter", bank, backend, params),
+        InputError);
   }
   return found;
 }
 
-bool tells(const std::vector<Diagnostic>& all, const std::string& pointer, const std::string& text) {
+bool tells(const std::vector<Diagnostic>& all, const std::string& pointer,
+           const std::string& text) {
   return std::any_of(all.begin(), all.end(), [&](const Diagnostic& p) {
-    return p.pointer == pointer && p.message.find(text) != std::string::npos && !p.suggestion.empty();
+    return p.pointer == pointer && p.message.find(text) != std::string::npos &&
+           !p.suggestion.empty();
   });
 }
 
 }  // namespace
 
-TEST_CASE("the published example has no problems") { CHECK(problems(alone(published()), {}).empty()); }
+TEST_CASE("the published example has no problems") {
+  CHECK(problems(alone(published()), {}).empty());
+}
 
 TEST_CASE("sizes") {
-  const auto all = problems(alone(published()), parameters("shared", 3).set("free_matrix", Matrix(Matrix::Zero(7, 4))));
+  const auto all = problems(alone(published()),
+                            parameters("shared", 3).set("free_matrix", Matrix(Matrix::Zero(7, 4))));
   CHECK(all.size() == 2);
   CHECK(tells(all, "/max_columns", "is 3, fewer than the 4 states"));
   CHECK(tells(all, "/free_matrix", "is 7 × 4, must be 4 × 7"));
   CHECK(problems(alone(published()), parameters("shared", 4)).empty());
   CHECK(problems(alone(published()), parameters("shared", 0)).empty());
-  CHECK(tells(problems(alone(published()), Params().set("free_matrix", Matrix(Matrix::Zero(4, 6)))), "/free_matrix", "is 4 × 6"));
+  CHECK(tells(problems(alone(published()), Params().set("free_matrix", Matrix(Matrix::Zero(4, 6)))),
+              "/free_matrix", "is 4 × 6"));
   Matrix bad = Matrix::Zero(4, 7);
   bad(2, 3) = std::nan("");
   CHECK(problems(alone(published()), Params().set("free_matrix", bad)).size() == 1);
@@ -46,8 +54,8 @@ TEST_CASE("unbounded sets and ranges, all at once") {
   Model model = published();
   model.X0 = make_space(4);
   model.W = make_space(1);
-  model.V = make_box(
-      {Vector{{0, 0, -std::numeric_limits<double>::infinity()}}, Vector{{1, 1, std::numeric_limits<double>::infinity()}}});
+  model.V = make_box({Vector{{0, 0, -std::numeric_limits<double>::infinity()}},
+                      Vector{{1, 1, std::numeric_limits<double>::infinity()}}});
   model.linear.actuator = {Vector{{.5, 1}}, Vector{{1, 1}}};
   const auto all = problems(alone(model), {});
   CHECK(all.size() == 4);
@@ -69,7 +77,8 @@ TEST_CASE("the nominal mode counts, not the others") {
 TEST_CASE("outward rounding") {
   Params outward;
   outward.set("rounding", std::string("outward"));
-  const auto all = problems(alone(published()), {}, banks::registry().make_backend("zonotope", outward));
+  const auto all =
+      problems(alone(published()), {}, banks::registry().make_backend("zonotope", outward));
   CHECK(all.size() == 1);
   CHECK(tells(all, "/type", "promises outward rounding"));
 }
@@ -118,5 +127,6 @@ TEST_CASE("bounds that outgrow the numbers end the run, until it begins anew") {
   } catch (const Error& error) {
     CHECK(error.code() == Errc::not_finite);
   }
-  CHECK_THROWS_WITH_AS(diagnoser->step({k, Vector::Zero(1), Vector::Zero(1)}), doctest::Contains("start anew"), Error);
+  CHECK_THROWS_WITH_AS(diagnoser->step({k, Vector::Zero(1), Vector::Zero(1)}),
+                       doctest::Contains("start anew"), Error);
 }

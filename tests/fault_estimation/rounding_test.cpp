@@ -24,7 +24,9 @@ Model lti(const Matrix& A, const Matrix& C, const Matrix& F) {
   return model;
 }
 
-double promised(const Model& model) { return filter(model, parameters("shared"))->guarantees()->faults[0].half_width; }
+double promised(const Model& model) {
+  return filter(model, parameters("shared"))->guarantees()->faults[0].half_width;
+}
 
 }  // namespace
 
@@ -36,19 +38,24 @@ TEST_CASE("rounding errors of earlier steps grow with an unstable error map") {
   model.X0 = make_point(Vector{{.3, .7}});
   model.W = make_zonotope(Vector::Zero(1), .1 * Matrix::Identity(1, 1));
   const auto diagnoser = filter(model, parameters("shared"));
-  const auto input = [](Index k) { return Vector(Vector::Constant(1, std::sin(.3 * static_cast<double>(k)))); };
+  const auto input = [](Index k) {
+    return Vector(Vector::Constant(1, std::sin(.3 * static_cast<double>(k))));
+  };
   const Signal none = [](Index) { return Vector(Vector::Zero(1)); };
   const FaultyRun plant(model, input, none, Draw{std::mt19937_64(1), Noise::uniform});
-  CHECK(run(*diagnoser, plant, none, 400, [](const Diagnosis& now) { CHECK(now.modes[0].candidate); }) == 400);
+  CHECK(run(*diagnoser, plant, none, 400,
+            [](const Diagnosis& now) { CHECK(now.modes[0].candidate); }) == 400);
   CHECK(std::isinf(promised(model)));
 }
 
 TEST_CASE("a transient that has passed leaves its rounding errors behind") {
-  Model model = lti(Matrix{{-.5, 1}, {-.495, .99}}, Matrix{{1, 0}}, Matrix{{1}, {0}});  // a zero at .99
+  Model model =
+      lti(Matrix{{-.5, 1}, {-.495, .99}}, Matrix{{1, 0}}, Matrix{{1}, {0}});  // a zero at .99
   const auto diagnoser = filter(model, parameters("shared"));
   const Signal pulse = [](Index k) { return Vector(Vector::Constant(1, k == 20 ? 1e9 : 0)); };
   const FaultyRun plant(
-      model, [](Index) { return Vector(Vector::Zero(1)); }, pulse, Draw{std::mt19937_64(1), Noise::none});
+      model, [](Index) { return Vector(Vector::Zero(1)); }, pulse,
+      Draw{std::mt19937_64(1), Noise::none});
   run(*diagnoser, plant, pulse, 400);
 }
 
@@ -64,10 +71,12 @@ TEST_CASE("outputs that repeat each other give no gain made of rounding") {
       model.V = make_zonotope(Vector::Zero(1), .01 * Matrix::Identity(1, 1));
     }
     const FaultyRun plant(
-        model, [](Index) { return Vector(Vector::Zero(1)); }, step, Draw{std::mt19937_64(1), Noise::uniform});
+        model, [](Index) { return Vector(Vector::Zero(1)); }, step,
+        Draw{std::mt19937_64(1), Noise::uniform});
     double widest = 0;
     run(*filter(model, parameters("shared")), plant, step, 1000, [&](const Diagnosis& now) {
-      for (const FaultBound& bound : now.faults) widest = std::max(widest, (bound.upper - bound.lower) / 2);
+      for (const FaultBound& bound : now.faults)
+        widest = std::max(widest, (bound.upper - bound.lower) / 2);
     });
     CHECK(widest < .5);
     CHECK(promised(model) <= widest * (1 + 1e-6));
@@ -92,7 +101,9 @@ TEST_CASE("no promise where errors stay or grow slowly") {
 TEST_CASE("whether a fault shows does not depend on units") {
   // f acts on the measured state by 1e-13 of what it does to the other, and is seen a step later
   Model model = lti(Matrix{{.5, 0}, {1, .5}}, Matrix{{0, 1}}, Matrix{{1}, {1e-13}});
-  const auto seen = [](const Model& of) { return filter(of, parameters("shared"))->guarantees()->faults[0].delay; };
+  const auto seen = [](const Model& of) {
+    return filter(of, parameters("shared"))->guarantees()->faults[0].delay;
+  };
   CHECK(seen(model) == 1);
   model.linear.F = Matrix{{1}, {0}};
   CHECK(seen(model) == 2);
@@ -105,21 +116,26 @@ TEST_CASE("whether a fault shows does not depend on units") {
   small.linear.B *= 1e-9;
   small.linear.F *= 1e-9;
   small.linear.Bw *= 1e-9;
-  const auto problems =
-      banks::registry().check_diagnoser("fault_estimation_filter", alone(small), zonotopes(), parameters("shared"));
-  for (const Diagnostic& problem : problems) CHECK(problem.message.find("not show") == std::string::npos);
+  const auto problems = banks::registry().check_diagnoser("fault_estimation_filter", alone(small),
+                                                          zonotopes(), parameters("shared"));
+  for (const Diagnostic& problem : problems)
+    CHECK(problem.message.find("not show") == std::string::npos);
 }
 
 TEST_CASE("among several modes the filter does not come back to one of them") {
   Model model = published();
   ModeBank bank = alone(model);
   bank.modes.push_back({"other", model});
-  const auto diagnoser = banks::registry().make_diagnoser("fault_estimation_filter", bank, zonotopes(), parameters("shared"));
+  const auto diagnoser = banks::registry().make_diagnoser("fault_estimation_filter", bank,
+                                                          zonotopes(), parameters("shared"));
   const Signal pulse = [](Index k) { return Vector(Vector{{k >= 20 && k < 30 ? 1.0 : 0.0, 0.0}}); };
   const FaultyRun plant(
-      model, [](Index) { return Vector(Vector::Zero(2)); }, pulse, Draw{std::mt19937_64(1), Noise::uniform});
+      model, [](Index) { return Vector(Vector::Zero(2)); }, pulse,
+      Draw{std::mt19937_64(1), Noise::uniform});
   run(*diagnoser, plant, pulse, 60, [](const Diagnosis& now) {
-    const Decision expected = now.k <= 20 ? Decision::monitoring : now.k <= 30 ? Decision::isolating : Decision::ambiguous;
+    const Decision expected = now.k <= 20   ? Decision::monitoring
+                              : now.k <= 30 ? Decision::isolating
+                                            : Decision::ambiguous;
     CHECK(now.decision == expected);
     CHECK(now.mode == (now.k <= 20 ? 0 : -1));
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The published example on many seeds: no true fault is ever outside its bounds. The number of seeds is CORDON_SEEDS (default
-// 300).
+// The published example on many seeds: no true fault is ever outside its bounds. The number of
+// seeds is CORDON_SEEDS (default 300).
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -29,7 +29,8 @@ double largest_share(const Params& params, Noise noise) {
     const Index bounds = run(*diagnoser, plant, published_fault, 200, [&](const Diagnosis& now) {
       CHECK((now.decision == Decision::monitoring || now.k > 80));
       for (const FaultBound& b : now.faults) {
-        share = std::max(share, std::abs(b.estimate - published_fault(b.at)[b.fault]) / (b.upper - b.lower) * 2);
+        share = std::max(
+            share, std::abs(b.estimate - published_fault(b.at)[b.fault]) / (b.upper - b.lower) * 2);
       }
     });
     CHECK(bounds == 400);
@@ -39,7 +40,8 @@ double largest_share(const Params& params, Noise noise) {
 
 }  // namespace
 
-TEST_CASE("true faults are inside their bounds, whatever the noise, the coupling and the free matrix") {
+TEST_CASE(
+    "true faults are inside their bounds, whatever the noise, the coupling and the free matrix") {
   for (const Noise noise : {Noise::uniform, Noise::vertex}) {
     for (const bool with_S : {true, false}) {
       for (const char* coupling : {"independent", "shared"}) {
@@ -47,8 +49,10 @@ TEST_CASE("true faults are inside their bounds, whatever the noise, the coupling
           Params params = parameters(coupling, columns);
           if (with_S) params.set("free_matrix", published_S());
           const double share = largest_share(params, noise);
-          MESSAGE(std::string(coupling), ", ", columns, " columns, ", std::string(with_S ? "published S" : "S = 0"), ", ",
-                  std::string(noise == Noise::vertex ? "vertex" : "uniform"), " noise: largest share ", share);
+          MESSAGE(std::string(coupling), ", ", columns, " columns, ",
+                  std::string(with_S ? "published S" : "S = 0"), ", ",
+                  std::string(noise == Noise::vertex ? "vertex" : "uniform"),
+                  " noise: largest share ", share);
           CHECK(share <= 1);
         }
       }

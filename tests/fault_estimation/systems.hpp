@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The published system with additive faults, and a simulation of descriptor systems apart from the product's own.
+// The published system with additive faults, and a simulation of descriptor systems apart from the
+// product's own.
 #pragma once
 
 #include <functional>
@@ -68,7 +69,8 @@ struct Draw {
 
 using Signal = std::function<Vector(Index)>;
 
-/// One run of a causal system: with L E = 0 for the rows of L, E x⁺ = … and L (A x⁺ + B u⁺ + F n⁺ + Bw w⁺) = 0 determine x⁺.
+/// One run of a causal system: with L E = 0 for the rows of L, E x⁺ = … and L (A x⁺ + B u⁺ + F n⁺ +
+/// Bw w⁺) = 0 determine x⁺.
 class FaultyRun {
  public:
   FaultyRun(const Model& model, Signal input, Signal fault, Draw draw)

@@ -27,9 +27,11 @@ TEST_CASE("a hidden mode is named with its direction") {
 TEST_CASE("modes that decay need not show, unless observability is asked for") {
   const Matrix A{{.5, 0}, {0, .9}}, C{{1, 0}};
   CHECK_FALSE(undetectable_mode(A, C).has_value());
-  CHECK(unobservable_mode(A, C).value().reason == "the mode 0.9 of A, along (0, 1), does not show in the outputs");
+  CHECK(unobservable_mode(A, C).value().reason ==
+        "the mode 0.9 of A, along (0, 1), does not show in the outputs");
   CHECK(unobservable_mode(Matrix::Zero(2, 2), Matrix{{1, 1}}).has_value());
-  CHECK_FALSE(unobservable_mode(Matrix{{0, 0}, {1, 0}}, Matrix{{0, 1e-9}}).has_value());  // the outputs' unit does not matter
+  CHECK_FALSE(unobservable_mode(Matrix{{0, 0}, {1, 0}}, Matrix{{0, 1e-9}})
+                  .has_value());  // the outputs' unit does not matter
   CHECK_FALSE(undetectable_mode(Matrix(0, 0), Matrix(1, 0)).has_value());
 }
 
@@ -52,7 +54,9 @@ TEST_CASE("a mode that shows by a small entry is no hidden one") {
   CHECK(undetectable_mode(Matrix{{.5, 0}, {0, 2}}, Matrix{{1e8, 0}}).has_value());
 }
 
-TEST_CASE("what is said to have no gain has none in exact arithmetic; what rounding may hide is unknown") {
+TEST_CASE(
+    "what is said to have no gain has none in exact arithmetic; what rounding may hide is "
+    "unknown") {
   const auto answer = [](const Matrix& A, const Matrix& C, double rate = 1) {
     const auto found = undetectable_mode(A, C, rate);
     return found ? found->gain_exists : Answer::yes;
@@ -64,12 +68,15 @@ TEST_CASE("what is said to have no gain has none in exact arithmetic; what round
   CHECK(answer(Matrix{{-1}}, none) == Answer::no);
   CHECK(answer(Matrix{{1 + 3e-16}}, none) == Answer::no);
   CHECK(answer(Matrix{{2, 0}, {0, 2}}, both) == Answer::no);
-  CHECK(answer(Matrix{{2, 0}, {0, 2 + 1e-10}}, both) == Answer::unknown);  // L = (-22499998138.34, 22499998141.34) serves
+  CHECK(answer(Matrix{{2, 0}, {0, 2 + 1e-10}}, both) ==
+        Answer::unknown);  // L = (-22499998138.34, 22499998141.34) serves
   CHECK(answer(Matrix{{2, 0}, {0, 2 + 1e-9}}, both) == Answer::yes);
   CHECK(answer(Matrix{{.8}}, none, .6399999999) == Answer::no);
-  CHECK(answer(Matrix{{.5}}, none, .25) == Answer::yes);  // as slowly as asked for: for the designer to find out
+  CHECK(answer(Matrix{{.5}}, none, .25) ==
+        Answer::yes);  // as slowly as asked for: for the designer to find out
   CHECK(answer(Matrix{{.5}}, none, .2501) == Answer::yes);
-  CHECK(answer(Matrix{{.6, -.8}, {.8, .6}}, Matrix(0, 2)) == Answer::no);  // .6² + .8² > 1, for the doubles
+  CHECK(answer(Matrix{{.6, -.8}, {.8, .6}}, Matrix(0, 2)) ==
+        Answer::no);  // .6² + .8² > 1, for the doubles
   CHECK(answer(Matrix{{0, 1}, {-1, 0}}, Matrix(0, 2)) == Answer::no);
   CHECK(estimators::not_detectable({Answer::unknown, "m"}).starts_with("no gain was sought"));
   CHECK(unobservable_mode(Matrix{{.5, 0}, {0, .5}}, both)->gain_exists == Answer::no);
@@ -78,9 +85,11 @@ TEST_CASE("what is said to have no gain has none in exact arithmetic; what round
 
 TEST_CASE("the mode that is named is the one that is hidden, not one that nearly is") {
   // 2 along (1, 1, 0, 0) shows by 1e-10; what never shows is 1.5, along the fourth axis
-  const Matrix A{{1, 1, 0, 0}, {1, 1, 0, 0}, {0, 0, .5, 0}, {0, 0, 0, 1.5}}, C{{.01, -.0100000001, 1, 0}};
+  const Matrix A{{1, 1, 0, 0}, {1, 1, 0, 0}, {0, 0, .5, 0}, {0, 0, 0, 1.5}},
+      C{{.01, -.0100000001, 1, 0}};
   const std::string told = "the mode 1.5 of A, along (0, 0, 0, 1), does not show in the outputs";
   CHECK(undetectable_mode(A, C).value().reason == told);
   CHECK(unobservable_mode(A, C).value().reason == told);
-  CHECK(undetectable_mode(A.topLeftCorner(3, 3), C.leftCols(3)).value().gain_exists == Answer::unknown);
+  CHECK(undetectable_mode(A.topLeftCorner(3, 3), C.leftCols(3)).value().gain_exists ==
+        Answer::unknown);
 }

@@ -60,18 +60,21 @@ TEST_CASE("effectiveness of sensors known by ranges enters by its middle") {
   const Plugins plugins;
   Model made = model();
   made.linear.sensor = Box{Vector{{.2}}, Vector{{1}}};  // mid .6: A - L C̄ has 1 - .3
-  const GainCertificate c = plugins.registry.make_gain("given", matrix(Matrix{{.5}, {0}}))->design(made).gain.certificate;
+  const GainCertificate c =
+      plugins.registry.make_gain("given", matrix(Matrix{{.5}, {0}}))->design(made).gain.certificate;
   CHECK(c.spectral_radius == doctest::Approx(.8));
   made.linear.A(1, 1) = .1;
-  CHECK(plugins.registry.make_gain("given", matrix(Matrix{{.5}, {0}}))->design(made).gain.certificate.spectral_radius ==
-        doctest::Approx(.7));
+  CHECK(plugins.registry.make_gain("given", matrix(Matrix{{.5}, {0}}))
+            ->design(made)
+            .gain.certificate.spectral_radius == doctest::Approx(.7));
 }
 
 TEST_CASE("a gain of another shape and one that does not stabilise are refused") {
   const Plugins plugins;
   const Model made = model();
-  for (const auto& [L, words] : {std::pair<Matrix, const char*>{Matrix{{.5, 0}}, "is 1 × 2, must be 2 × 1"},
-                                 {Matrix{{-.1}, {0}}, "not Schur: it has the eigenvalue 1.1"}}) {
+  for (const auto& [L, words] :
+       {std::pair<Matrix, const char*>{Matrix{{.5, 0}}, "is 1 × 2, must be 2 × 1"},
+        {Matrix{{-.1}, {0}}, "not Schur: it has the eigenvalue 1.1"}}) {
     const auto problems = plugins.registry.check_gain("given", {made}, matrix(L));
     REQUIRE(problems.size() == 1);
     CHECK(problems[0].pointer == "/matrix");
@@ -98,7 +101,8 @@ TEST_CASE("where A - L C cancels, the norm is that of the numbers as they are wr
   const auto certificate = [&](double L) {
     return plugins.registry.make_gain("given", matrix(Matrix{{L}}))->design(made).gain.certificate;
   };
-  const double exact = 45352157.0321;  // √(.01² + (.1 L)²) / (1 - |A - L C|) in rational arithmetic; of doubles .9 less
+  const double exact = 45352157.0321;  // √(.01² + (.1 L)²) / (1 - |A - L C|) in rational
+                                       // arithmetic; of doubles .9 less
   CHECK(certificate(12865.356981619727).norm_lower <= exact);
   CHECK(certificate(12865.356981619727).norm_upper >= exact);
   CHECK(certificate(12865.356981619727).norm_upper <= exact * (1 + 1e-5));

@@ -61,7 +61,8 @@ TEST_CASE("norms that are known") {
   // x₂⁺ = b w, x₁⁺ = x₂ + w: |(z⁻¹ b + 1, b)| is largest at ω = 0
   check_norm(Matrix{{0, 1}, {0, 0}}, Matrix{{1}, {.5}}, std::sqrt(2.25 + .25));
   check_norm(Matrix{{.5, 0}, {0, .2}}, Matrix{{1, 0}, {0, 1}}, 2);
-  check_norm(Matrix{{1 - 1e-6}}, Matrix{{1e-6}}, 1e-6 / (1 - (1 - 1e-6)), 2e-8);  // rounding is allowed for
+  check_norm(Matrix{{1 - 1e-6}}, Matrix{{1e-6}}, 1e-6 / (1 - (1 - 1e-6)),
+             2e-8);  // rounding is allowed for
   check_norm(Matrix{{.9}}, Matrix{{2e200}}, 20e200);
   check_norm(Matrix{{.9}}, Matrix{{2e-200}}, 20e-200);
 }
@@ -135,7 +136,8 @@ TEST_CASE("the lower bound is attained: a grid about the peak comes as close") {
   for (double width = pi, center = pi / 2; width > 1e-7; width /= 20) {
     for (int i = -40; i <= 40; ++i) {
       const double omega = center + width * i / 80;
-      if (const double value = value_by_series(A, B, omega); value > largest) largest = value, at = omega;
+      if (const double value = value_by_series(A, B, omega); value > largest)
+        largest = value, at = omega;
     }
     center = at;
   }

@@ -24,16 +24,21 @@ GainDesign design(const char* type, const Model& model, const std::optional<Matr
   return plugins().registry.make_gain(type, params)->design(model);
 }
 
-/// The norms of a gain, by the component that takes gains as they are; theta follows from A's radius.
+/// The norms of a gain, by the component that takes gains as they are; theta follows from A's
+/// radius.
 GainCertificate certificate_of(const Model& model, const Matrix& L) {
-  return plugins().registry.make_gain("given", Params().set("matrix", L))->design(model).gain.certificate;
+  return plugins()
+      .registry.make_gain("given", Params().set("matrix", L))
+      ->design(model)
+      .gain.certificate;
 }
 
 Matrix closed_loop(const Model& model, const Matrix& L) {
   return model.linear.A - L * model.linear.sensor_center().asDiagonal() * model.linear.C;
 }
 
-/// What is told about γ* holds for the gain: it is below the norm's bounds, within what is promised.
+/// What is told about γ* holds for the gain: it is below the norm's bounds, within what is
+/// promised.
 void check_gain(const GainDesign& found) {
   INFO(found.reason);
   REQUIRE(found.feasible == Answer::yes);
@@ -58,15 +63,17 @@ struct Published {
 std::vector<Published> published() {
   using namespace interval_plants;
   const Matrix I3 = Matrix::Identity(3, 3), I2 = Matrix::Identity(2, 2);
-  return {{"(68), I", three_states(), I3, 6.4319320949, 6.4395880046, Matrix{{.3}, {.2}, {.8}}},
-          {"(68), .01 I", three_states(), .01 * I3, .6724654558, .6724654558, Matrix()},
-          {"(70), I", three_states(-.1), I3, 6.4163496194, 0, Matrix()},
-          {"(70), .01 I", three_states(-.1), .01 * I3, .5191263621, 0, Matrix()},
-          {"(72), I", two_tanks(), I2, 62.0283918735, 87.7265779883, Matrix{{0}, {.9903}}},
-          {"(72), .3 B", two_tanks(), tank_theta(), 1.6147652880, 5.9736234632, Matrix{{0}, {.9903}}}};
+  return {
+      {"(68), I", three_states(), I3, 6.4319320949, 6.4395880046, Matrix{{.3}, {.2}, {.8}}},
+      {"(68), .01 I", three_states(), .01 * I3, .6724654558, .6724654558, Matrix()},
+      {"(70), I", three_states(-.1), I3, 6.4163496194, 0, Matrix()},
+      {"(70), .01 I", three_states(-.1), .01 * I3, .5191263621, 0, Matrix()},
+      {"(72), I", two_tanks(), I2, 62.0283918735, 87.7265779883, Matrix{{0}, {.9903}}},
+      {"(72), .3 B", two_tanks(), tank_theta(), 1.6147652880, 5.9736234632, Matrix{{0}, {.9903}}}};
 }
 
-/// A plant with `n` states, disturbances on all of them and on the outputs; detectable with probability 1.
+/// A plant with `n` states, disturbances on all of them and on the outputs; detectable with
+/// probability 1.
 Model random_plant(Index n, Index p, std::mt19937_64& engine) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const auto draw = [&](Index rows, Index cols) {
@@ -104,23 +111,26 @@ TEST_CASE("h_infinity_monotone: the published optima, and a plant without a mono
     CHECK(found.gain.certificate.optimum == Approx(example.monotone).epsilon(1e-6));
     CHECK(found.gain.certificate.monotone != Answer::no);
     CHECK((closed_loop(example.model, found.gain.L).array() >= 0).all());
-    if (example.monotone_gain.size() > 0) CHECK((found.gain.L - example.monotone_gain).cwiseAbs().maxCoeff() < 1e-5);
+    if (example.monotone_gain.size() > 0)
+      CHECK((found.gain.L - example.monotone_gain).cwiseAbs().maxCoeff() < 1e-5);
   }
 }
 
 TEST_CASE("h_infinity: one state with a norm in closed form") {
-  // e⁺ = (a - L) e + w - L v, |w| ≤ q, |v| ≤ r: the norm is √(q² + L² r²) / (1 - |a - L|). For 0 ≤ L ≤ a the least is at the end
-  // or where the derivative is zero.
+  // e⁺ = (a - L) e + w - L v, |w| ≤ q, |v| ≤ r: the norm is √(q² + L² r²) / (1 - |a - L|). For 0 ≤
+  // L ≤ a the least is at the end or where the derivative is zero.
   Model model = interval_plants::with_unit_boxes(Matrix{{.9}}, Matrix(1, 0), Matrix{{1}}, .5, .25);
   double least = 1e9;
-  for (double L = 0; L < 1.8; L += 1e-5) least = std::min(least, std::hypot(.5, L * .25) / (1 - std::abs(.9 - L)));
+  for (double L = 0; L < 1.8; L += 1e-5)
+    least = std::min(least, std::hypot(.5, L * .25) / (1 - std::abs(.9 - L)));
   const GainDesign found = design("h_infinity", model);
   check_gain(found);
   CHECK(found.gain.certificate.optimum == Approx(least).epsilon(1e-6));
   SUBCASE("sets that are not unit boxes") {
     model.linear.Bw = Matrix{{1}};
     model.linear.Dv = Matrix{{5}};
-    model.W = make_zonotope(Vector{{7}}, Matrix{{.3, .4}});  // {7} ⊕ two generators: the norm takes √(.3² + .4²) = .5
+    model.W = make_zonotope(
+        Vector{{7}}, Matrix{{.3, .4}});  // {7} ⊕ two generators: the norm takes √(.3² + .4²) = .5
     model.V = make_zonotope(Vector{{-1}}, Matrix{{.05}});
     CHECK(design("h_infinity", model).gain.certificate.optimum == Approx(least).epsilon(1e-6));
   }
@@ -136,7 +146,8 @@ TEST_CASE("h_infinity: one state with a norm in closed form") {
   SUBCASE("other units") {
     model.linear.Bw *= 1e-6;
     model.linear.Dv *= 1e-6;
-    CHECK(design("h_infinity", model).gain.certificate.optimum == Approx(1e-6 * least).epsilon(1e-6));
+    CHECK(design("h_infinity", model).gain.certificate.optimum ==
+          Approx(1e-6 * least).epsilon(1e-6));
   }
 }
 
@@ -153,7 +164,8 @@ TEST_CASE("outputs without noise, and outputs that say the same") {
   CHECK(twice.gain.certificate.optimum == Approx(found.gain.certificate.optimum).epsilon(1e-5));
 }
 
-TEST_CASE("a mode that no gain reaches is named; without disturbances there is nothing to minimise") {
+TEST_CASE(
+    "a mode that no gain reaches is named; without disturbances there is nothing to minimise") {
   Model model = interval_plants::two_tanks();
   model.linear.A = Matrix{{1.2, 0}, {0, .5}};
   model.linear.C = Matrix{{0, 1}};
@@ -177,7 +189,8 @@ TEST_CASE("parameters and sets are checked beforehand") {
   for (const char* type : {"h_infinity", "h_infinity_monotone", "w_radius"}) {
     Model model = interval_plants::two_tanks();
     CHECK(plugins().registry.check_gain(type, {model}, {}).empty());
-    const auto theta = plugins().registry.check_gain(type, {model}, Params().set("theta", Matrix(Matrix::Identity(3, 3))));
+    const auto theta = plugins().registry.check_gain(
+        type, {model}, Params().set("theta", Matrix(Matrix::Identity(3, 3))));
     REQUIRE(theta.size() == 1);
     CHECK(theta[0].pointer == "/theta");
     model.W = make_space(2);
@@ -189,7 +202,8 @@ TEST_CASE("parameters and sets are checked beforehand") {
     const ComponentInfo* info = plugins().registry.gain_info(type);
     REQUIRE(info != nullptr);
     CHECK(info->citation == "Pourasghar2021");
-    CHECK(info->details.find(type == std::string("w_radius") ? "WA - YC" : "PA - MC") != std::string::npos);
+    CHECK(info->details.find(type == std::string("w_radius") ? "WA - YC" : "PA - MC") !=
+          std::string::npos);
   }
 }
 
@@ -225,7 +239,8 @@ TEST_CASE("random plants: the gain keeps γ*, and no other does better") {
     RC_ASSERT(c.norm_lower <= c.optimum * (1 + 1e-4));
     std::normal_distribution<double> normal;
     for (const double size : {1e-2, .3}) {
-      const Matrix other = found.gain.L + Matrix::NullaryExpr(n, p, [&] { return size * normal(engine); });
+      const Matrix other =
+          found.gain.L + Matrix::NullaryExpr(n, p, [&] { return size * normal(engine); });
       if (linalg::eigenvalues(closed_loop(model, other)).cwiseAbs().maxCoeff() >= 1) continue;
       RC_ASSERT(certificate_of(model, other).norm_upper >= c.optimum * (1 - 1e-5));
     }
@@ -241,8 +256,10 @@ TEST_CASE("random plants: a monotone gain is monotone, and not better than the b
     const Index n = *rc::gen::inRange<Index>(1, 5), p = *rc::gen::inRange<Index>(1, 3);
     Model model = random_plant(n, p, engine);
     std::uniform_real_distribution<double> uniform(0, 1);
-    // A - L₀ C with a stable non-negative matrix, so that there is a gain; zeros of it leave no interior.
-    const Matrix closed = Matrix::NullaryExpr(n, n, [&] { return std::max(0., uniform(engine) - .3) / static_cast<double>(n); });
+    // A - L₀ C with a stable non-negative matrix, so that there is a gain; zeros of it leave no
+    // interior.
+    const Matrix closed = Matrix::NullaryExpr(
+        n, n, [&] { return std::max(0., uniform(engine) - .3) / static_cast<double>(n); });
     const Matrix L0 = Matrix::NullaryExpr(n, p, [&] { return uniform(engine) - .5; });
     model.linear.A = closed + L0 * model.linear.C;
     const GainDesign found = design("h_infinity_monotone", model);
@@ -256,7 +273,8 @@ TEST_CASE("random plants: a monotone gain is monotone, and not better than the b
     const GainCertificate& c = found.gain.certificate;
     RC_ASSERT(c.norm_lower <= c.optimum * (1 + 1e-4));
     const GainDesign best = design("h_infinity", model);
-    if (best.feasible == Answer::yes) RC_ASSERT(c.optimum >= best.gain.certificate.optimum * (1 - 1e-5));
+    if (best.feasible == Answer::yes)
+      RC_ASSERT(c.optimum >= best.gain.certificate.optimum * (1 - 1e-5));
   }));
   INFO(solved, " of ", possible);
   CHECK(solved == possible);
@@ -264,13 +282,15 @@ TEST_CASE("random plants: a monotone gain is monotone, and not better than the b
 
 TEST_CASE("an optimum that the solver cannot resolve is not told") {
   // x⁺ = .5 x + w, y = x + v: the gain 0 has the norm |W| / (1 - .5)
-  for (const auto& [w, v] : {std::pair{1e-9, 1.0}, {1e-10, 1.0}, {1e-6, 100.0}, {0.0, 1.0}, {1e-3, 1.0}, {.1, .1}}) {
+  for (const auto& [w, v] :
+       {std::pair{1e-9, 1.0}, {1e-10, 1.0}, {1e-6, 100.0}, {0.0, 1.0}, {1e-3, 1.0}, {.1, .1}}) {
     CAPTURE(w);
     Model model = interval_plants::with_unit_boxes(Matrix{{.5}}, Matrix(1, 0), Matrix{{1}}, w, v);
     for (const char* type : {"h_infinity", "h_infinity_monotone"}) {
       const GainDesign found = design(type, model);
       CHECK(found.feasible == (w >= 1e-3 ? Answer::yes : Answer::unknown));
-      if (found.feasible == Answer::yes) CHECK(found.gain.certificate.optimum_bound <= 2 * w * (1 + 1e-4));
+      if (found.feasible == Answer::yes)
+        CHECK(found.gain.certificate.optimum_bound <= 2 * w * (1 + 1e-4));
     }
   }
 }

@@ -8,7 +8,8 @@ namespace interval_plants {
 
 using namespace cordon;
 
-inline Model with_unit_boxes(const Matrix& A, const Matrix& B, const Matrix& C, double w, double v) {
+inline Model with_unit_boxes(const Matrix& A, const Matrix& B, const Matrix& C, double w,
+                             double v) {
   Model model;
   LinearModel& m = model.linear;
   m.A = A;
@@ -25,12 +26,14 @@ inline Model with_unit_boxes(const Matrix& A, const Matrix& B, const Matrix& C, 
 
 /// (68) there; (70) with A(1,2) = -.1.
 inline Model three_states(double A12 = .1) {
-  return with_unit_boxes(Matrix{{.8, A12, .3}, {0, .8, .2}, {.01, 0, .8}}, Matrix::Zero(3, 0), Matrix{{0, 0, 1}}, .08, .2);
+  return with_unit_boxes(Matrix{{.8, A12, .3}, {0, .8, .2}, {.01, 0, .8}}, Matrix::Zero(3, 0),
+                         Matrix{{0, 0, 1}}, .08, .2);
 }
 
 /// (72) there: two tanks.
 inline Model two_tanks() {
-  return with_unit_boxes(Matrix{{.9886, 0}, {.0114, .9903}}, Matrix{{.2261}, {0}}, Matrix{{0, 1}}, .006, .5);
+  return with_unit_boxes(Matrix{{.9886, 0}, {.0114, .9903}}, Matrix{{.2261}, {0}}, Matrix{{0, 1}},
+                         .006, .5);
 }
 
 inline Matrix tank_theta() { return .3 * two_tanks().linear.B; }

@@ -13,7 +13,9 @@ using estimators::raised_to_monotone;
 
 namespace {
 
-double number(double low, double high) { return low + (high - low) * (*rc::gen::inRange(0, 100'001)) * 1e-5; }
+double number(double low, double high) {
+  return low + (high - low) * (*rc::gen::inRange(0, 100'001)) * 1e-5;
+}
 
 Matrix random_matrix(Index rows, Index cols, double low, double high) {
   Matrix A(rows, cols);
@@ -24,20 +26,25 @@ Matrix random_matrix(Index rows, Index cols, double low, double high) {
 }  // namespace
 
 TEST_CASE("three reasons why there is no monotone gain") {
-  CHECK(no_monotone_gain(Matrix{{.8, -.1, .3}, {0, .8, .2}, {.01, 0, .8}}, Matrix{{0, 0, 1}}).value().reason ==
-        "no monotone gain exists: column 2 of C is zero and A(1,2) < 0");
+  CHECK(no_monotone_gain(Matrix{{.8, -.1, .3}, {0, .8, .2}, {.01, 0, .8}}, Matrix{{0, 0, 1}})
+            .value()
+            .reason == "no monotone gain exists: column 2 of C is zero and A(1,2) < 0");
   CHECK(no_monotone_gain(Matrix{{.5, 0}, {-.3, .2}}, Matrix{{1, -1}}).value().reason ==
-        "no monotone gain exists: the outputs do not show the direction (1, 1), to four digits, and row 2 of A makes a negative "
+        "no monotone gain exists: the outputs do not show the direction (1, 1), to four digits, "
+        "and row 2 of A makes a negative "
         "number of it");
   CHECK(no_monotone_gain(Matrix{{1.2, 0}, {0, .5}}, Matrix{{0, 1}}).value().reason ==
-        "no monotone gain exists: every monotone A - L C leaves the states (1, 0), to four digits, as large as they are, and is "
+        "no monotone gain exists: every monotone A - L C leaves the states (1, 0), to four digits, "
+        "as large as they are, and is "
         "not stable");
   // detectable, yet whoever takes the first state's growth away makes an entry negative
   CHECK(no_monotone_gain(Matrix{{1.2, .1}, {.3, .5}}, Matrix{{1, 1}}).has_value());
 }
 
 TEST_CASE("a reason that holds but for rounding is no proof") {
-  const auto answer = [](const Matrix& A, const Matrix& C) { return no_monotone_gain(A, C).value().gain_exists; };
+  const auto answer = [](const Matrix& A, const Matrix& C) {
+    return no_monotone_gain(A, C).value().gain_exists;
+  };
   const Matrix row{{.5, 0}, {-.3, .2}}, grows{{1.2, 0}, {0, .5}};
   CHECK(answer(row, Matrix{{1, -1}}) == Answer::no);
   CHECK(answer(row, Matrix{{1, -1}, {1, -1 - 1e-12}}) == Answer::unknown);  // C is regular
@@ -50,7 +57,8 @@ TEST_CASE("a reason that holds but for rounding is no proof") {
 TEST_CASE("proofs in rational arithmetic reach as far as 10 states") {
   CHECK(rc::check("unstable plants, one output", [] {
     const Index n = 10;
-    const Matrix A = 2 * Matrix::Identity(n, n) + random_matrix(n, n, 0, .1), C = random_matrix(2, n, .5, 1);
+    const Matrix A = 2 * Matrix::Identity(n, n) + random_matrix(n, n, 0, .1),
+                 C = random_matrix(2, n, .5, 1);
     const auto why = no_monotone_gain(A, C);
     RC_ASSERT(why.has_value());
     RC_ASSERT(why->gain_exists == Answer::no);
@@ -58,7 +66,8 @@ TEST_CASE("proofs in rational arithmetic reach as far as 10 states") {
 }
 
 TEST_CASE("nothing is said where there is one") {
-  CHECK_FALSE(no_monotone_gain(Matrix{{.8, .1, .3}, {0, .8, .2}, {.01, 0, .8}}, Matrix{{0, 0, 1}}).has_value());
+  CHECK_FALSE(no_monotone_gain(Matrix{{.8, .1, .3}, {0, .8, .2}, {.01, 0, .8}}, Matrix{{0, 0, 1}})
+                  .has_value());
   CHECK_FALSE(no_monotone_gain(Matrix{{.5, -.1}, {.3, .2}}, Matrix{{0, 1}}).has_value());
   CHECK_FALSE(no_monotone_gain(Matrix{{.8, 0}, {0, .8}}, Matrix(0, 2)).has_value());
   CHECK_FALSE(no_monotone_gain(Matrix{{1.2, 0}, {.3, .5}}, Matrix{{1, 0}}).has_value());
@@ -90,8 +99,8 @@ TEST_CASE("in the plane the answer is that of the intervals of L") {
   int refused = 0, all = 0;
   CHECK(rc::check("one output, two states", [&] {
     const Matrix A = random_matrix(2, 2, -.5, 1.5), C = random_matrix(1, 2, -1, 1);
-    // each L_i in an interval; the spectral radius of a monotone matrix falls with its entries, c c' ≥ 0: ends decide, else a
-    // grid
+    // each L_i in an interval; the spectral radius of a monotone matrix falls with its entries, c
+    // c' ≥ 0: ends decide, else a grid
     double low[2], high[2];
     for (Index i = 0; i < 2; ++i) {
       low[i] = -1e3;
@@ -105,7 +114,8 @@ TEST_CASE("in the plane the answer is that of the intervals of L") {
     for (int a = 0; a <= 60; ++a) {
       for (int b = 0; b <= 60; ++b) {
         if (low[0] > high[0] || low[1] > high[1]) continue;
-        const Matrix L{{low[0] + (high[0] - low[0]) * a / 60}, {low[1] + (high[1] - low[1]) * b / 60}};
+        const Matrix L{{low[0] + (high[0] - low[0]) * a / 60},
+                       {low[1] + (high[1] - low[1]) * b / 60}};
         best = std::min(best, invariant::spectral_radius(A - L * C));
       }
     }
@@ -142,7 +152,8 @@ TEST_CASE("raising never makes the least entry smaller, also where one L alone s
     const Matrix L = linalg::product(A - M, linalg::pseudo_inverse(C));
     const Matrix raised = raised_to_monotone(A, C, L);
     for (Index i = 0; i < n; ++i) {
-      const Matrix before = A.row(i) - linalg::product(L.row(i), C), after = A.row(i) - linalg::product(raised.row(i), C);
+      const Matrix before = A.row(i) - linalg::product(L.row(i), C),
+                   after = A.row(i) - linalg::product(raised.row(i), C);
       RC_ASSERT(after.minCoeff() >= before.minCoeff());
     }
   }));

@@ -29,7 +29,8 @@ GainDesign design(const Model& model, const std::optional<Matrix>& theta) {
 /// h = (I - (A - L C))⁻¹ (r + |L Ev| 1) for unit boxes W and V.
 Vector half_widths(const Model& model, const Matrix& L, const Matrix& theta) {
   const LinearModel& m = model.linear;
-  const Vector r = m.Bw.cwiseAbs().rowwise().sum() + theta.cwiseAbs().rowwise().sum() + (L * m.Dv).cwiseAbs().rowwise().sum();
+  const Vector r = m.Bw.cwiseAbs().rowwise().sum() + theta.cwiseAbs().rowwise().sum() +
+                   (L * m.Dv).cwiseAbs().rowwise().sum();
   return linalg::solve(Matrix::Identity(m.states(), m.states()) - (m.A - L * m.C), r).value();
 }
 
@@ -47,21 +48,28 @@ void check_numbers(const Model& model, const Matrix& theta, const Matrix& L, con
 }  // namespace
 
 TEST_CASE("the gains of least steady widths of the published plants") {
-  check_numbers(three_states(), .01 * Matrix::Identity(3, 3), Matrix{{.3}, {.2}, {.8}}, Vector{{1.075, .65, .26075}});
-  check_numbers(three_states(), Matrix::Identity(3, 3), Matrix{{.3}, {.2}, {.8}}, Vector{{8.5, 5.6, 1.325}});
+  check_numbers(three_states(), .01 * Matrix::Identity(3, 3), Matrix{{.3}, {.2}, {.8}},
+                Vector{{1.075, .65, .26075}});
+  check_numbers(three_states(), Matrix::Identity(3, 3), Matrix{{.3}, {.2}, {.8}},
+                Vector{{8.5, 5.6, 1.325}});
   check_numbers(two_tanks(), tank_theta(), Matrix{{0}, {.9903}}, Vector{{6.476315789474, .57498}});
-  check_numbers(two_tanks(), Matrix::Identity(2, 2), Matrix{{0}, {.9903}}, Vector{{88.245614035088, 2.50715}});
+  check_numbers(two_tanks(), Matrix::Identity(2, 2), Matrix{{0}, {.9903}},
+                Vector{{88.245614035088, 2.50715}});
 }
 
 TEST_CASE("the norms of published gains") {
   const auto norm = [](const Model& model, const Matrix& theta, const Matrix& L) {
-    const GainDesign given = plugins().registry.make_gain("given", Params().set("matrix", L))->design(model);
+    const GainDesign given =
+        plugins().registry.make_gain("given", Params().set("matrix", L))->design(model);
     REQUIRE(given.feasible == Answer::yes);
     Model with = model;  // Eθ as further disturbances: "given" takes it from the radii of A only
     with.linear.Bw = Matrix(model.linear.states(), model.linear.Bw.cols() + theta.cols());
     with.linear.Bw << model.linear.Bw, theta;
     with.W = make_box(cube(with.linear.Bw.cols(), 1));
-    return plugins().registry.make_gain("given", Params().set("matrix", L))->design(with).gain.certificate;
+    return plugins()
+        .registry.make_gain("given", Params().set("matrix", L))
+        ->design(with)
+        .gain.certificate;
   };
   struct Case {
     Model model;
@@ -69,13 +77,18 @@ TEST_CASE("the norms of published gains") {
     double expected, radius;
   };
   const Matrix I2 = Matrix::Identity(2, 2), I3 = Matrix::Identity(3, 3);
-  for (const Case& c : {Case{three_states(), I3, Matrix{{.2781}, {.2855}, {.7982}}, 6.4320429082656965, .8002710107923026},
-                        Case{three_states(), I3, Matrix{{.3}, {.2}, {.8}}, 6.439588006455294, .8},
-                        Case{three_states(), .01 * I3, Matrix{{.3}, {.2}, {.8}}, .6897414397581098, .8},
-                        Case{three_states(-.1), I3, Matrix{{.2754}, {1.0571}, {.7724}}, 8.292974176314026, .8327795356378738},
-                        Case{three_states(-.1), I3, Matrix{{1.1376}, {1.9167}, {1.2604}}, 8.245913222458496, .8333335267659779},
-                        Case{two_tanks(), I2, Matrix{{.6647}, {.6542}}, 62.02840354726771, .9767724586444169},
-                        Case{two_tanks(), tank_theta(), Matrix{{.01}, {.9903}}, 5.914486526340579, .9884846719597846}}) {
+  for (const Case& c :
+       {Case{three_states(), I3, Matrix{{.2781}, {.2855}, {.7982}}, 6.4320429082656965,
+             .8002710107923026},
+        Case{three_states(), I3, Matrix{{.3}, {.2}, {.8}}, 6.439588006455294, .8},
+        Case{three_states(), .01 * I3, Matrix{{.3}, {.2}, {.8}}, .6897414397581098, .8},
+        Case{three_states(-.1), I3, Matrix{{.2754}, {1.0571}, {.7724}}, 8.292974176314026,
+             .8327795356378738},
+        Case{three_states(-.1), I3, Matrix{{1.1376}, {1.9167}, {1.2604}}, 8.245913222458496,
+             .8333335267659779},
+        Case{two_tanks(), I2, Matrix{{.6647}, {.6542}}, 62.02840354726771, .9767724586444169},
+        Case{two_tanks(), tank_theta(), Matrix{{.01}, {.9903}}, 5.914486526340579,
+             .9884846719597846}}) {
     const GainCertificate found = norm(c.model, c.theta, c.L);
     CHECK(found.norm_lower <= c.expected * (1 + 1e-9));
     CHECK(found.norm_upper >= c.expected * (1 - 1e-9));
@@ -102,7 +115,8 @@ TEST_CASE("the uncertainty of A is used where theta is not given") {
 
 TEST_CASE("a theta of another height is refused, an unbounded W too") {
   const Model model = three_states();
-  const auto problems = plugins().registry.check_gain("peak", {model}, Params().set("theta", Matrix{{1}}));
+  const auto problems =
+      plugins().registry.check_gain("peak", {model}, Params().set("theta", Matrix{{1}}));
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].pointer == "/theta");
   Model open = model;
@@ -114,7 +128,8 @@ TEST_CASE("no random monotone gain has smaller widths") {
   CHECK(rc::check("random systems with a monotone gain", [] {
     const auto random = [](Index rows, Index cols, double low, double high) {
       Matrix A(rows, cols);
-      for (Index i = 0; i < A.size(); ++i) A(i) = low + (high - low) * (*rc::gen::inRange(0, 10'001)) * 1e-4;
+      for (Index i = 0; i < A.size(); ++i)
+        A(i) = low + (high - low) * (*rc::gen::inRange(0, 10'001)) * 1e-4;
       return A;
     };
     const Index n = *rc::gen::inRange(1, 4), p = *rc::gen::inRange(1, 3);
@@ -127,7 +142,8 @@ TEST_CASE("no random monotone gain has smaller widths") {
     const Matrix none(n, 0);
     const GainDesign found = design(model, {});
     RC_ASSERT(found.feasible == Answer::yes);
-    RC_ASSERT((model.linear.A - found.gain.L * C).minCoeff() >= -1e-12);  // a single L may be left, which rounding misses
+    RC_ASSERT((model.linear.A - found.gain.L * C).minCoeff() >=
+              -1e-12);  // a single L may be left, which rounding misses
     const double best = half_widths(model, found.gain.L, none).sum();
     RC_ASSERT(best == doctest::Approx(found.gain.certificate.optimum).epsilon(1e-6));
     RC_ASSERT(found.gain.certificate.optimum_bound == doctest::Approx(best).epsilon(1e-6));
@@ -156,7 +172,8 @@ TEST_CASE("the gain of badly scaled states is monotone, or none is given") {
     closed *= .9 / std::max(.9, closed.rowwise().sum().maxCoeff());
     Vector scale(n);
     for (double& s : scale) s = std::pow(10, 10 * unit(engine) - 5);
-    const Matrix T = scale.asDiagonal(), back = scale.cwiseInverse().asDiagonal(), C = random(p, n), L = random(n, p);
+    const Matrix T = scale.asDiagonal(), back = scale.cwiseInverse().asDiagonal(), C = random(p, n),
+                 L = random(n, p);
     Model model;
     LinearModel& m = model.linear;
     m.A = T * (closed + L * C) * back;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gain of the smallest invariant ellipsoid: published plants, one state in closed form, and what the ellipsoid promises.
+// The gain of the smallest invariant ellipsoid: published plants, one state in closed form, and
+// what the ellipsoid promises.
 #include <cmath>
 #include <random>
 
@@ -32,8 +33,10 @@ TEST_CASE("w_radius: the published optima") {
     double rho, tau;
     Matrix L;
   } examples[] = {
-      {"(68)", three_states(), small, .85, .5499632320, Matrix{{.2812057555}, {.1789250419}, {.5169645810}}},
-      {"(70)", three_states(-.1), small, .85, .8266601831, Matrix{{.2212899086}, {.1506592113}, {.3489817849}}},
+      {"(68)", three_states(), small, .85, .5499632320,
+       Matrix{{.2812057555}, {.1789250419}, {.5169645810}}},
+      {"(70)", three_states(-.1), small, .85, .8266601831,
+       Matrix{{.2212899086}, {.1506592113}, {.3489817849}}},
       {"(72)", two_tanks(), tank_theta(), .98, .0506243500, Matrix{{.0755756679}, {.0469967616}}},
   };
   for (const auto& example : examples) {
@@ -53,8 +56,8 @@ TEST_CASE("w_radius: the published optima") {
 }
 
 TEST_CASE("w_radius: one state in closed form") {
-  // e⁺ = (a - L) e + q w - L r v. With W = τ: ρ τ ≥ τ² … : (a - L)² / ρ + τ (q² / Γ + L² r² / Υ) ≤ 1 with Γ + Υ = 1 - ρ is
-  // τ = (1 - (a - L)² / ρ) (1 - ρ) / (q + |L| r)².
+  // e⁺ = (a - L) e + q w - L r v. With W = τ: ρ τ ≥ τ² … : (a - L)² / ρ + τ (q² / Γ + L² r² / Υ) ≤
+  // 1 with Γ + Υ = 1 - ρ is τ = (1 - (a - L)² / ρ) (1 - ρ) / (q + |L| r)².
   const double a = .9, q = .5, r = .25, rho = .7;
   double best = 0;
   for (double L = 0; L < 1.8; L += 1e-5) {
@@ -80,7 +83,9 @@ TEST_CASE("w_radius: errors stay within the radius that τ promises") {
   const Matrix& L = found.gain.L;
   std::mt19937_64 engine(3);
   std::uniform_int_distribution<int> sign(0, 1);
-  const auto vertex = [&](Index n) { return Vector(Vector::NullaryExpr(n, [&] { return 2. * sign(engine) - 1; })); };
+  const auto vertex = [&](Index n) {
+    return Vector(Vector::NullaryExpr(n, [&] { return 2. * sign(engine) - 1; }));
+  };
   double largest = 0;
   for (int run = 0; run < 100; ++run) {
     Vector e = Vector::Zero(3);

@@ -24,11 +24,13 @@ DesignOutcome judged(const ModeBank& bank, const char* backend_name, const Param
   return registry().make_designer("given", bank, backend(backend_name), params)->design(control);
 }
 
-std::vector<Diagnostic> problems(const char* designer, const ModeBank& bank, const char* backend_name, const Params& params) {
+std::vector<Diagnostic> problems(const char* designer, const ModeBank& bank,
+                                 const char* backend_name, const Params& params) {
   return registry().check_designer(designer, bank, backend(backend_name), params);
 }
 
-bool mentions(const std::vector<Diagnostic>& problems, const std::string& pointer, const std::string& text) {
+bool mentions(const std::vector<Diagnostic>& problems, const std::string& pointer,
+              const std::string& text) {
   return std::any_of(problems.begin(), problems.end(), [&](const Diagnostic& problem) {
     return problem.pointer == pointer && problem.message.find(text) != std::string::npos;
   });
@@ -54,7 +56,8 @@ TEST_CASE("A given input is judged: cost, pairs, tubes") {
 
   params.set("cost", std::string("norm_inf"));
   CHECK(judged(bank, "line_zonotope", params).best->cost == doctest::Approx(6.0632).epsilon(1e-12));
-  params.set("cost", std::string("quadratic")).set("weights", Matrix((Matrix(3, 2) << 1, 1, 2, 1, 1, 3).finished()));
+  params.set("cost", std::string("quadratic"))
+      .set("weights", Matrix((Matrix(3, 2) << 1, 1, 2, 1, 1, 3).finished()));
   CHECK(judged(bank, "line_zonotope", params).best->cost ==
         doctest::Approx(2 * 3.9399 * 3.9399 + .5854 * .5854 + 3 * 6.0632 * 6.0632).epsilon(1e-12));
 
@@ -66,13 +69,17 @@ TEST_CASE("A given input is judged: cost, pairs, tubes") {
 
 TEST_CASE("An empty tube is a modelling error, and no separation") {
   const ModeBank bank = examples::four_descriptor_models();
-  for (const Vector& u : {examples::published_line_input(), examples::published_constrained_input()}) {
-    const Params params = Params().set("input", by_time(u, 2)).set("admissible_set", examples::cube(3, 1));
+  for (const Vector& u :
+       {examples::published_line_input(), examples::published_constrained_input()}) {
+    const Params params =
+        Params().set("input", by_time(u, 2)).set("admissible_set", examples::cube(3, 1));
     const DesignOutcome outcome = judged(bank, "constrained_zonotope", params);
-    for (const PairSeparation& pair : outcome.best->pairs) CHECK(pair.disjoint == Answer::yes);  // of nothing
+    for (const PairSeparation& pair : outcome.best->pairs)
+      CHECK(pair.disjoint == Answer::yes);  // of nothing
     CHECK(std::count(outcome.best->empty.begin(), outcome.best->empty.end(), Answer::yes) == 4);
     CHECK(outcome.best->separates() == Answer::unknown);
-    CHECK(outcome.reason.find("output tubes of \"model_1\", \"model_2\", \"model_3\", \"model_4\" are empty") !=
+    CHECK(outcome.reason.find(
+              "output tubes of \"model_1\", \"model_2\", \"model_3\", \"model_4\" are empty") !=
           std::string::npos);
     CHECK(outcome.admissible_set.has_value());
   }
@@ -108,7 +115,8 @@ TEST_CASE("The judgement of a given input can be stopped between tubes, pairs an
 
 TEST_CASE("A single empty tube is named") {
   ModeBank bank = examples::three_scalar_models();
-  LinearModel& m = bank.modes[1].model.linear;  // 0 = x - 100 w besides x⁺ = …: no state of X0 and W meets it
+  LinearModel& m =
+      bank.modes[1].model.linear;  // 0 = x - 100 w besides x⁺ = …: no state of X0 and W meets it
   m.E = Matrix::Zero(1, 1);
   m.A = Matrix::Zero(1, 1);
   const Params params = Params().set("input", by_time(numbers({1, 1, 1}), 1));
@@ -121,13 +129,16 @@ TEST_CASE("A given input outside /system/U is judged, and told") {
   ModeBank bank = examples::three_scalar_models();
   for (Mode& mode : bank.modes) mode.model.U = examples::cube(1, 2);
   const auto reason = [&](std::initializer_list<double> u) {
-    const DesignOutcome outcome = judged(bank, "line_zonotope", Params().set("input", by_time(numbers(u), 1)));
+    const DesignOutcome outcome =
+        judged(bank, "line_zonotope", Params().set("input", by_time(numbers(u), 1)));
     CHECK(outcome.suggestion.empty() == (outcome.reason.find("/system/U") == std::string::npos));
     return outcome.reason;
   };
   CHECK(reason({0, 2, 0, -2}).empty());
-  CHECK(reason({3, 2, 0, -2.5}) == "u_k lies outside /system/U, the set of all inputs, at k = 0, 3");
-  CHECK(reason({0, 0, 2.5}).find("at k = 2; the outputs of \"slow\"") != std::string::npos);  // u_2 has no effect on y_2
+  CHECK(reason({3, 2, 0, -2.5}) ==
+        "u_k lies outside /system/U, the set of all inputs, at k = 0, 3");
+  CHECK(reason({0, 0, 2.5}).find("at k = 2; the outputs of \"slow\"") !=
+        std::string::npos);  // u_2 has no effect on y_2
   for (Mode& mode : bank.modes) mode.model.U = make_space(1);
   CHECK(reason({3, 2, 0, -2.5}).empty());
 }
@@ -140,7 +151,8 @@ TEST_CASE("Costs that are too large to be compared are refused") {
                         .set("reference", Matrix(Matrix::Constant(1, 1, reference)))
                         .set("weights", Matrix(Matrix::Constant(1, 1, weight)))
                         .set("cost", std::string(cost));
-    designer == std::string("given") ? params.set("input", by_time(numbers({0, 1}), 1)) : params.set("horizon", std::int64_t{1});
+    designer == std::string("given") ? params.set("input", by_time(numbers({0, 1}), 1))
+                                     : params.set("horizon", std::int64_t{1});
     return problems(designer, bank, "line_zonotope", params);
   };
   for (const char* designer : {"given", "facets", "milp"}) {
@@ -184,26 +196,32 @@ TEST_CASE("What makes no sense is refused, all of it at once") {
     CHECK(mentions(found, "/admissible_set", "dimension 2"));
   }
   SUBCASE("input") {
-    CHECK(
-        mentions(problems("given", bank, "line_zonotope", Params().set("input", Matrix(Matrix::Ones(4, 3)))), "/input", "4 × 3"));
-    CHECK(
-        mentions(problems("given", bank, "line_zonotope", Params().set("input", Matrix(Matrix::Ones(1, 2)))), "/input", "1 × 2"));
     CHECK(mentions(
-        problems("given", examples::three_scalar_models(), "line_zonotope", Params().set("input", Matrix(Matrix::Ones(1, 1)))),
-        "/input", "must have 1 column,"));
+        problems("given", bank, "line_zonotope", Params().set("input", Matrix(Matrix::Ones(4, 3)))),
+        "/input", "4 × 3"));
+    CHECK(mentions(
+        problems("given", bank, "line_zonotope", Params().set("input", Matrix(Matrix::Ones(1, 2)))),
+        "/input", "1 × 2"));
+    CHECK(mentions(problems("given", examples::three_scalar_models(), "line_zonotope",
+                            Params().set("input", Matrix(Matrix::Ones(1, 1)))),
+                   "/input", "must have 1 column,"));
   }
   SUBCASE("values") {
     Params params = Params().set("input", input).set("weights", Matrix(-Matrix::Ones(1, 2)));
     CHECK(mentions(problems("given", bank, "line_zonotope", params), "/weights", "negative"));
     params = Params().set("input", input).set("admissible_set", make_empty(3));
     CHECK(mentions(problems("given", bank, "line_zonotope", params), "/admissible_set", "empty"));
-    CHECK(mentions(problems("given", bank, "line_zonotope", Params().set("input", input).set("epsilon", -.1)), "/epsilon", ""));
+    CHECK(mentions(
+        problems("given", bank, "line_zonotope", Params().set("input", input).set("epsilon", -.1)),
+        "/epsilon", ""));
   }
   SUBCASE("sizes") {
-    // 4 equations and outputs and 8 columns or fewer per time and mode: the columns are the more, then the rows.
+    // 4 equations and outputs and 8 columns or fewer per time and mode: the columns are the more,
+    // then the rows.
     const ModeBank small = examples::three_scalar_models();
     const auto judged_at = [&](const ModeBank& of, Index rows) {
-      return problems("given", of, "line_zonotope", Params().set("input", Matrix(Matrix::Ones(rows, 1))));
+      return problems("given", of, "line_zonotope",
+                      Params().set("input", Matrix(Matrix::Ones(rows, 1))));
     };
     CHECK(judged_at(small, 100).empty());
     CHECK(mentions(judged_at(small, 5000), "/input", "rows and"));
@@ -215,14 +233,17 @@ TEST_CASE("What makes no sense is refused, all of it at once") {
       mode.model.linear.Dv = m.Dv.replicate(300, 1).eval();
     }
     CHECK(judged_at(tall, 3).empty());
-    CHECK(mentions(judged_at(tall, 12), "/input", "rows and"));  // few columns, but the square of the rows
+    CHECK(mentions(judged_at(tall, 12), "/input",
+                   "rows and"));  // few columns, but the square of the rows
   }
   SUBCASE("backends") {
     const Params params = Params().set("input", input);
-    CHECK(mentions(problems("given", bank, "constrained_zonotope", params), "/admissible_set", "is missing"));
+    CHECK(mentions(problems("given", bank, "constrained_zonotope", params), "/admissible_set",
+                   "is missing"));
     CHECK(mentions(problems("given", bank, "zonotope", params), "", "static rows"));
     const Params scalar = Params().set("input", Matrix(Matrix::Ones(3, 1)));
-    CHECK(mentions(problems("given", examples::three_scalar_models(), "zonotope", scalar), "", "X0 of mode \"slow\""));
+    CHECK(mentions(problems("given", examples::three_scalar_models(), "zonotope", scalar), "",
+                   "X0 of mode \"slow\""));
   }
   SUBCASE("modes") {
     ModeBank other = bank;
@@ -233,12 +254,15 @@ TEST_CASE("What makes no sense is refused, all of it at once") {
                    "mode \"model_3\" has 2 outputs, \"model_1\" has 1"));
     other = bank;
     other.modes.resize(1);
-    CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "", "no modes to tell apart"));
+    CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "",
+                   "no modes to tell apart"));
     other = bank;
     other.modes[1].model.linear.A_radius = Matrix::Constant(3, 3, .1);
-    CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "", "interval matrices"));
+    CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "",
+                   "interval matrices"));
     other = bank;
     other.modes[1].model.linear.actuator = {Vector::Constant(2, .5), Vector::Ones(2)};
-    CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "", "range"));
+    CHECK(mentions(problems("given", other, "line_zonotope", Params().set("input", input)), "",
+                   "range"));
   }
 }

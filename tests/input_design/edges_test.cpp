@@ -41,7 +41,9 @@ Model static_scalar(double b) {
 DesignOutcome designed(const ModeBank& bank, const Params& params) {
   REQUIRE(registry().check_designer("facets", bank, backend("line_zonotope"), params).empty());
   DesignControl control;
-  return registry().make_designer("facets", bank, backend("line_zonotope"), params)->design(control);
+  return registry()
+      .make_designer("facets", bank, backend("line_zonotope"), params)
+      ->design(control);
 }
 
 Params at_horizon_1(const std::string& cost, double r_0, double r_1) {
@@ -66,7 +68,8 @@ TEST_CASE("Inputs lie in a polytope with constraints, whatever the cost") {
     REQUIRE(outcome.best);
     CHECK(outcome.best->u(1, 0) == doctest::Approx(-lowest).epsilon(1e-9));
     if (cost == std::string("norm_inf")) {
-      CHECK(outcome.best->cost == doctest::Approx(4 - lowest).epsilon(1e-9));  // which leaves u_0 some choice
+      CHECK(outcome.best->cost ==
+            doctest::Approx(4 - lowest).epsilon(1e-9));  // which leaves u_0 some choice
     } else {
       CHECK(outcome.best->u(0, 0) == doctest::Approx(2.5).epsilon(1e-9));
     }
@@ -83,12 +86,14 @@ TEST_CASE("An input keeps inside of what leaves every tube an output") {
       const DesignOutcome outcome = designed(bank, at_horizon_1(cost, reference, 0));
       REQUIRE(outcome.best);
       CHECK(outcome.best->separates() == Answer::yes);
-      const double u_0 = std::copysign(.125, reference), apart = .25 * (1 + 1e-4);  // u_1 tells the modes apart
+      const double u_0 = std::copysign(.125, reference),
+                   apart = .25 * (1 + 1e-4);  // u_1 tells the modes apart
       CHECK(outcome.best->u(0, 0) == doctest::Approx(u_0).epsilon(1e-8));
       CHECK(std::abs(outcome.best->u(0, 0)) < .125);
       const double far = std::abs(reference - u_0);
       CHECK(outcome.best->cost ==
-            doctest::Approx(cost == std::string("norm_1") ? far + apart : far * far + apart * apart).epsilon(1e-7));
+            doctest::Approx(cost == std::string("norm_1") ? far + apart : far * far + apart * apart)
+                .epsilon(1e-7));
       CHECK(outcome.gap() < 1e-8);
     }
   }
@@ -114,17 +119,19 @@ TEST_CASE("A tube that a longer horizon empties does not refuse a shorter one") 
   const DesignOutcome outcome = designed(bank, params);
   CHECK(outcome.status == DesignStatus::optimal);
   CHECK(outcome.horizon == 1);
-  const auto problems =
-      registry().check_designer("facets", bank, backend("line_zonotope"), Params(params).set("horizon", std::int64_t{6}));
+  const auto problems = registry().check_designer("facets", bank, backend("line_zonotope"),
+                                                  Params(params).set("horizon", std::int64_t{6}));
   REQUIRE(problems.size() == 2);
-  for (const auto& problem : problems) CHECK(problem.message.find("is empty for every input") != std::string::npos);
+  for (const auto& problem : problems)
+    CHECK(problem.message.find("is empty for every input") != std::string::npos);
 }
 
 TEST_CASE("What is not proven to separate is no answer") {
   ModeBank bank;
   bank.modes = {{"a", scalar(0, 1)}, {"b", scalar(0, 2)}};  // |u| ≥ .5 (1 + ε)
   for (const double epsilon : {1e-13, 1e-12}) {             // less than a proof can tell
-    const DesignOutcome outcome = designed(bank, at_horizon_1("norm_1", 0, 0).set("epsilon", epsilon));
+    const DesignOutcome outcome =
+        designed(bank, at_horizon_1("norm_1", 0, 0).set("epsilon", epsilon));
     CHECK(outcome.status == DesignStatus::unknown);
     CHECK_FALSE(outcome.best);
     CHECK(outcome.reason.find("rounding leaves open") != std::string::npos);

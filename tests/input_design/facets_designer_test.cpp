@@ -19,7 +19,9 @@ namespace {
 DesignOutcome designed(const ModeBank& bank, const Params& params) {
   REQUIRE(registry().check_designer("facets", bank, backend("line_zonotope"), params).empty());
   DesignControl control;
-  return registry().make_designer("facets", bank, backend("line_zonotope"), params)->design(control);
+  return registry()
+      .make_designer("facets", bank, backend("line_zonotope"), params)
+      ->design(control);
 }
 
 Params published_parameters() {
@@ -29,8 +31,10 @@ Params published_parameters() {
 
 }  // namespace
 
-TEST_CASE("The published example: horizons 1 and 2 are refused by proof, 3 is optimal and certified") {
-  const DesignOutcome outcome = designed(examples::four_descriptor_models(), published_parameters().set("epsilon", 1e-4));
+TEST_CASE(
+    "The published example: horizons 1 and 2 are refused by proof, 3 is optimal and certified") {
+  const DesignOutcome outcome =
+      designed(examples::four_descriptor_models(), published_parameters().set("epsilon", 1e-4));
   CHECK(outcome.status == DesignStatus::optimal);
   CHECK(outcome.horizon == 3);
   REQUIRE(outcome.tried.size() == 2);
@@ -49,7 +53,8 @@ TEST_CASE("The published example: horizons 1 and 2 are refused by proof, 3 is op
 
 TEST_CASE("With ε = 0 the tubes of the optimum touch, and it is said") {
   const DesignOutcome outcome =
-      designed(examples::four_descriptor_models(), published_parameters().set("epsilon", 0.0).set("horizon", std::int64_t{3}));
+      designed(examples::four_descriptor_models(),
+               published_parameters().set("epsilon", 0.0).set("horizon", std::int64_t{3}));
   CHECK(outcome.status == DesignStatus::optimal);
   CHECK(outcome.best->cost == doctest::Approx(9.19954).epsilon(1e-9));
   CHECK(outcome.best->separates() != Answer::yes);
@@ -114,17 +119,20 @@ TEST_CASE("The time limit and a stop from outside hold before and after the sear
 
 TEST_CASE("Parameters of the search reach it") {
   Params params = published_parameters().set("epsilon", 1e-4).set("horizon", std::int64_t{3});
-  const DesignOutcome few = designed(examples::four_descriptor_models(), Params(params).set("max_facets", std::int64_t{20}));
+  const DesignOutcome few = designed(examples::four_descriptor_models(),
+                                     Params(params).set("max_facets", std::int64_t{20}));
   CHECK(few.status == DesignStatus::feasible);
   REQUIRE(few.best);
   CHECK(few.best->separates() == Answer::yes);
   CHECK(few.lower_bound <= 9.2005344);
   CHECK_FALSE(few.stopped);
   CHECK(few.reason.find("more than 20 facets") != std::string::npos);
-  const DesignOutcome wide = designed(examples::four_descriptor_models(), Params(params).set("gap", .5));
+  const DesignOutcome wide =
+      designed(examples::four_descriptor_models(), Params(params).set("gap", .5));
   CHECK(wide.status == DesignStatus::optimal);
   CHECK(wide.lower_bound < 9.2005);
-  const DesignOutcome last = designed(examples::four_descriptor_models(), Params(params).set("outputs", std::string("last")));
+  const DesignOutcome last = designed(examples::four_descriptor_models(),
+                                      Params(params).set("outputs", std::string("last")));
   CHECK(last.last_output_only);
   CHECK((!last.best || last.best->cost > 9.2005));
 }

@@ -23,7 +23,8 @@ inline InputSequences boxed_inputs(Index n, double radius, Index fixed = 0) {
   return U;
 }
 
-inline SeparationProblem problem_of(std::vector<PairProgram> pairs, InputSequences U, Cost::Kind kind, double epsilon) {
+inline SeparationProblem problem_of(std::vector<PairProgram> pairs, InputSequences U,
+                                    Cost::Kind kind, double epsilon) {
   SeparationProblem problem;
   const Index n = U.c.size();
   problem.inputs = n;
@@ -39,7 +40,8 @@ inline PairProgram pair_of(Index i, Index j, const Matrix& G, const Vector& c, c
 }
 
 /// Section 6.2 with u_0 = (.5, -1), |u| ≤ 8 and that reference.
-inline SeparationProblem published_problem(Index horizon, double epsilon, Cost::Kind kind = Cost::Kind::norm_1) {
+inline SeparationProblem published_problem(Index horizon, double epsilon,
+                                           Cost::Kind kind = Cost::Kind::norm_1) {
   std::vector<designers::OutputTube> tubes;
   SeparationProblem problem;
   problem.horizon = horizon;
@@ -62,7 +64,8 @@ inline SeparationProblem scalar_problem(double epsilon) {
   for (const Mode& mode : three_scalar_models().modes) {
     tubes.push_back(designers::output_tube(mode.model, *backend("line_zonotope"), {3}));
   }
-  return problem_of(designers::pair_programs(tubes), boxed_inputs(4, 2), Cost::Kind::norm_1, epsilon);
+  return problem_of(designers::pair_programs(tubes), boxed_inputs(4, 2), Cost::Kind::norm_1,
+                    epsilon);
 }
 
 inline Matrix random_matrix(std::mt19937& random, Index rows, Index cols) {
@@ -70,18 +73,23 @@ inline Matrix random_matrix(std::mt19937& random, Index rows, Index cols) {
   return Matrix::NullaryExpr(rows, cols, [&] { return uniform(random); });
 }
 
-/// m rows, g generators, rank r in the inputs; u of size 1 about reaches the boundary of what does not separate.
-inline PairProgram random_pair(std::mt19937& random, Index i, Index j, Index m, Index g, Index r, Index inputs) {
+/// m rows, g generators, rank r in the inputs; u of size 1 about reaches the boundary of what does
+/// not separate.
+inline PairProgram random_pair(std::mt19937& random, Index i, Index j, Index m, Index g, Index r,
+                               Index inputs) {
   const Matrix N = random_matrix(random, m, r) * random_matrix(random, r, inputs);
-  return pair_of(i, j, random_matrix(random, m, g) / static_cast<double>(g), .1 * random_matrix(random, m, 1), N);
+  return pair_of(i, j, random_matrix(random, m, g) / static_cast<double>(g),
+                 .1 * random_matrix(random, m, 1), N);
 }
 
-inline designers::SearchResult searched(const SeparationProblem& problem, designers::FacetLimits limits = {}) {
+inline designers::SearchResult searched(const SeparationProblem& problem,
+                                        designers::FacetLimits limits = {}) {
   DesignControl control;
   return designers::search_facets(problem, limits, control);
 }
 
-inline designers::ForbiddenSet forbidden(const PairProgram& pair, const InputSequences& U, double epsilon) {
+inline designers::ForbiddenSet forbidden(const PairProgram& pair, const InputSequences& U,
+                                         double epsilon) {
   DesignControl control;
   return designers::forbidden_set(pair, U, epsilon, 10000, designers::Watch(control, 0, 60));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The search over facets against published optima, closed forms, and the enumeration of all choices of facets.
+// The search over facets against published optima, closed forms, and the enumeration of all choices
+// of facets.
 #include <cmath>
 #include <optional>
 
@@ -22,10 +23,12 @@ void check_answer(const SeparationProblem& problem, const SearchResult& found) {
   REQUIRE(found.u);
   CHECK(found.cost == problem.cost.at(*found.u));
   CHECK(found.lower_bound <= found.cost);
-  for (const PairProgram& pair : problem.pairs) CHECK(separation(pair, *found.u).kappa > problem.epsilon - 1e-8);
+  for (const PairProgram& pair : problem.pairs)
+    CHECK(separation(pair, *found.u).kappa > problem.epsilon - 1e-8);
 }
 
-void check_optimal(const SeparationProblem& problem, const SearchResult& found, double cost, double relative = 1e-7) {
+void check_optimal(const SeparationProblem& problem, const SearchResult& found, double cost,
+                   double relative = 1e-7) {
   CHECK(found.status == DesignStatus::optimal);
   check_answer(problem, found);
   CHECK(found.cost == doctest::Approx(cost).epsilon(relative));
@@ -34,7 +37,8 @@ void check_optimal(const SeparationProblem& problem, const SearchResult& found, 
   CHECK_FALSE(found.stopped);
 }
 
-/// min Σ ω (u - r)² over rows F u ≥ e, by Hildreth's method on the multipliers; infinity if that is more than `enough`.
+/// min Σ ω (u - r)² over rows F u ≥ e, by Hildreth's method on the multipliers; infinity if that is
+/// more than `enough`.
 double least_squares_cost(const Cost& cost, const Matrix& F, const Vector& e, double enough) {
   Vector lambda = Vector::Zero(e.size()), u = cost.reference;
   const Vector inverse = (2 * cost.weights).cwiseInverse();
@@ -46,7 +50,8 @@ double least_squares_cost(const Cost& cost, const Matrix& F, const Vector& e, do
         if (e[f] > 0) return infinity;
         continue;
       }
-      const double next = std::max(0.0, lambda[f] + (e[f] - F.row(f).dot(u)) / curvature), step = next - lambda[f];
+      const double next = std::max(0.0, lambda[f] + (e[f] - F.row(f).dot(u)) / curvature),
+                   step = next - lambda[f];
       lambda[f] = next;
       u += step * inverse.cwiseProduct(F.row(f).transpose());
       change = std::max(change, std::abs(step) * std::sqrt(curvature));
@@ -58,12 +63,15 @@ double least_squares_cost(const Cost& cost, const Matrix& F, const Vector& e, do
   return cost.at(u);
 }
 
-/// The least cost of u with rows F u ≥ e and |u_i| ≤ radius_i around `centre`, by a program in u itself; infinity if that is more
-/// than `enough` and the cost is quadratic.
-double least_cost(const Cost& cost, const Matrix& F, const Vector& e, const Vector& centre, const Vector& radius, double enough) {
+/// The least cost of u with rows F u ≥ e and |u_i| ≤ radius_i around `centre`, by a program in u
+/// itself; infinity if that is more than `enough` and the cost is quadratic.
+double least_cost(const Cost& cost, const Matrix& F, const Vector& e, const Vector& centre,
+                  const Vector& radius, double enough) {
   const Index n = centre.size(), m = e.size();
   if (cost.kind == Cost::Kind::quadratic) {
-    if (least_cost({Cost::Kind::norm_1, cost.weights, cost.reference}, F, e, centre, radius, enough) == infinity) return infinity;
+    if (least_cost({Cost::Kind::norm_1, cost.weights, cost.reference}, F, e, centre, radius,
+                   enough) == infinity)
+      return infinity;
     Matrix rows(m + 2 * n, n);
     rows << F, Matrix::Identity(n, n), -Matrix::Identity(n, n);
     Vector levels(m + 2 * n);
@@ -73,7 +81,8 @@ double least_cost(const Cost& cost, const Matrix& F, const Vector& e, const Vect
   const bool one = cost.kind == Cost::Kind::norm_1;
   const Index costs = one ? n : 1, slacks = m + 2 * n;
   Matrix A = Matrix::Zero(slacks, n + costs + slacks);
-  Vector b = Vector::Zero(slacks), lower = Vector::Zero(A.cols()), upper = Vector::Constant(A.cols(), infinity);
+  Vector b = Vector::Zero(slacks), lower = Vector::Zero(A.cols()),
+         upper = Vector::Constant(A.cols(), infinity);
   lower.head(n) = centre - radius;
   upper.head(n) = centre + radius;
   A.topLeftCorner(m, n) = F;
@@ -117,11 +126,13 @@ double enumerated(const SeparationProblem& problem) {
   std::vector<std::size_t> choice(sets.size(), 0);
   for (;;) {
     for (Index q = 0; q < m; ++q) {
-      const SeparatingFacet& facet = sets[static_cast<std::size_t>(q)].facets[choice[static_cast<std::size_t>(q)]];
+      const SeparatingFacet& facet =
+          sets[static_cast<std::size_t>(q)].facets[choice[static_cast<std::size_t>(q)]];
       F.row(q) = facet.a.transpose() * inverse;
       e[q] = facet.out + F.row(q).dot(U.c);
     }
-    best = std::min(best, least_cost(problem.cost, F, e, U.c, U.G.cwiseAbs().rowwise().sum(), best));
+    best =
+        std::min(best, least_cost(problem.cost, F, e, U.c, U.G.cwiseAbs().rowwise().sum(), best));
     std::size_t q = 0;
     while (q < choice.size() && ++choice[q] == sets[q].facets.size()) choice[q++] = 0;
     if (q == choice.size()) return best;
@@ -131,9 +142,11 @@ double enumerated(const SeparationProblem& problem) {
 SeparationProblem random_problem(std::mt19937& random, Cost::Kind kind, int trial) {
   const Index inputs = 4;
   std::vector<PairProgram> pairs;
-  for (Index q = 0; q < 3; ++q) pairs.push_back(random_pair(random, q, q + 1, 3, 5, 1 + (trial + q) % 3, inputs));
+  for (Index q = 0; q < 3; ++q)
+    pairs.push_back(random_pair(random, q, q + 1, 3, 5, 1 + (trial + q) % 3, inputs));
   if (trial % 5 == 4) pairs[1].N *= .1;  // hard to reach
-  SeparationProblem problem = problem_of(std::move(pairs), boxed_inputs(inputs, 1.5, trial % 2), kind, trial % 3 ? .2 : 0);
+  SeparationProblem problem =
+      problem_of(std::move(pairs), boxed_inputs(inputs, 1.5, trial % 2), kind, trial % 3 ? .2 : 0);
   if (trial % 2) problem.U.c[0] = random_matrix(random, 1, 1)(0, 0);
   problem.cost.reference = random_matrix(random, inputs, 1);
   problem.cost.weights += .9 * random_matrix(random, inputs, 1);
@@ -143,7 +156,8 @@ SeparationProblem random_problem(std::mt19937& random, Cost::Kind kind, int tria
 }  // namespace
 
 TEST_CASE("The published example: the optimum of the unreduced problem") {
-  for (const auto& [epsilon, cost] : {std::pair(0.0, 9.19954), {1e-4, 9.2005343602499}, {.01, 9.298976025}, {.1, 10.19390025}}) {
+  for (const auto& [epsilon, cost] :
+       {std::pair(0.0, 9.19954), {1e-4, 9.2005343602499}, {.01, 9.298976025}, {.1, 10.19390025}}) {
     const SeparationProblem problem = published_problem(3, epsilon);
     const SearchResult found = searched(problem);
     check_optimal(problem, found, cost, 1e-9);
@@ -159,12 +173,15 @@ TEST_CASE("The published example: the optimum of the unreduced problem") {
 TEST_CASE("Horizons of the published example: 2 is too short, 4 is cheaper than 3") {
   const SearchResult two = searched(published_problem(2, 1e-4));
   CHECK(two.status == DesignStatus::infeasible);
-  CHECK(two.reason == "modes 1 and 2: the inputs that may be chosen have no effect on what tells one from the other");
+  CHECK(two.reason ==
+        "modes 1 and 2: the inputs that may be chosen have no effect on what tells one from the "
+        "other");
   CHECK_FALSE(two.u);
   const SeparationProblem four = published_problem(4, 1e-4);
   const SearchResult found = searched(four);
   check_optimal(four, found, 8.7056961, 1e-7);
-  const SeparationProblem five = published_problem(5, 1e-4);  // hulls in five dimensions, all found to be closed
+  const SeparationProblem five =
+      published_problem(5, 1e-4);  // hulls in five dimensions, all found to be closed
   check_optimal(five, searched(five), 8.37528, 1e-6);
 }
 
@@ -208,7 +225,8 @@ TEST_CASE("Random problems agree with the enumeration of all choices") {
     check_answer(problem, found);
     CHECK(found.cost == doctest::Approx(expected).epsilon(1e-7).scale(.01));
     CHECK(found.lower_bound >= found.cost * (1 - 1e-9) - 1e-10);
-    CHECK((found.status == DesignStatus::optimal || found.cost < .1));  // a share of little is below rounding
+    CHECK((found.status == DesignStatus::optimal ||
+           found.cost < .1));  // a share of little is below rounding
   }
   CHECK(found_some > 80);
   CHECK(found_none > 3);
@@ -243,11 +261,13 @@ TEST_CASE("Nothing to separate: the reference, or the nearest admitted input") {
     problem.cost.weights[1] = 2;
     check_optimal(problem, searched(problem), kind == Cost::Kind::quadratic ? 18 : 6);
   }
-  SeparationProblem given = problem_of({}, boxed_inputs(2, 1, 2), Cost::Kind::norm_inf, 0);  // no input may vary
+  SeparationProblem given =
+      problem_of({}, boxed_inputs(2, 1, 2), Cost::Kind::norm_inf, 0);  // no input may vary
   given.U.c = numbers({3, -4});
   given.cost.weights = numbers({1, .5});
-  for (const auto& [kind, cost] :
-       {std::pair(Cost::Kind::norm_inf, 3.0), {Cost::Kind::norm_1, 5.0}, {Cost::Kind::quadratic, 17.0}}) {
+  for (const auto& [kind, cost] : {std::pair(Cost::Kind::norm_inf, 3.0),
+                                   {Cost::Kind::norm_1, 5.0},
+                                   {Cost::Kind::quadratic, 17.0}}) {
     given.cost.kind = kind;
     check_optimal(given, searched(given), cost, 1e-12);
   }
@@ -269,10 +289,13 @@ TEST_CASE("Inputs that cost nothing are used first") {
 }
 
 TEST_CASE("A polytope of inputs") {
-  // u_0 + u_1 ≤ 1, as u_0 + u_1 + 1.5 ζ = -.5 with |u| ≤ 1: then only the negative side, or both positive at a price.
-  InputSequences U{Vector::Zero(2), Matrix::Zero(2, 3), (Matrix(1, 3) << 1, 1, 1.5).finished(), numbers({-.5})};
+  // u_0 + u_1 ≤ 1, as u_0 + u_1 + 1.5 ζ = -.5 with |u| ≤ 1: then only the negative side, or both
+  // positive at a price.
+  InputSequences U{Vector::Zero(2), Matrix::Zero(2, 3), (Matrix(1, 3) << 1, 1, 1.5).finished(),
+                   numbers({-.5})};
   U.G.leftCols(2).setIdentity();
-  const PairProgram sum = pair_of(0, 1, Matrix::Ones(1, 1), numbers({0}), (Matrix(1, 2) << 1, 1).finished());
+  const PairProgram sum =
+      pair_of(0, 1, Matrix::Ones(1, 1), numbers({0}), (Matrix(1, 2) << 1, 1).finished());
   for (const auto kind : {Cost::Kind::norm_1, Cost::Kind::norm_inf, Cost::Kind::quadratic}) {
     SeparationProblem problem = problem_of({sum}, U, kind, .2);
     problem.cost.reference = numbers({.4, .4});
@@ -285,7 +308,8 @@ TEST_CASE("A polytope of inputs") {
 
 TEST_CASE("Tubes that must not be empty") {
   // The tube has a row ξ = u_0 + .5: |u_0 + .5| ≤ 1 is needed, and |u_0| > .75 separates.
-  const PairProgram pair = pair_of(0, 1, Matrix::Constant(1, 1, .75), numbers({0}), Matrix::Ones(1, 1));
+  const PairProgram pair =
+      pair_of(0, 1, Matrix::Constant(1, 1, .75), numbers({0}), Matrix::Ones(1, 1));
   TubeConditions needed{Matrix::Ones(1, 1), Matrix::Ones(1, 1), numbers({.5}), numbers({1})};
   for (const auto kind : {Cost::Kind::norm_1, Cost::Kind::norm_inf, Cost::Kind::quadratic}) {
     SeparationProblem problem = problem_of({pair}, boxed_inputs(1, 2), kind, 0);
@@ -305,22 +329,28 @@ TEST_CASE("Tubes that must not be empty") {
 }
 
 TEST_CASE("Pairs that contradict each other") {
-  // |u_0| > 1 and |u_0| must be separated by a row that is met for |u_0 - 1.5| ≤ 2.6, and |u_0| ≤ 1.5.
+  // |u_0| > 1 and |u_0| must be separated by a row that is met for |u_0 - 1.5| ≤ 2.6, and |u_0|
+  // ≤ 1.5.
   const Matrix one = Matrix::Ones(1, 1);
-  const PairProgram far = pair_of(0, 1, one, numbers({0}), one), left = pair_of(0, 2, 2.4 * one, numbers({1.5}), one),
+  const PairProgram far = pair_of(0, 1, one, numbers({0}), one),
+                    left = pair_of(0, 2, 2.4 * one, numbers({1.5}), one),
                     right = pair_of(1, 2, 2.4 * one, numbers({-1.5}), one);
-  const SearchResult each = searched(problem_of({far, left, right}, boxed_inputs(1, 1.5), Cost::Kind::norm_1, 0));
+  const SearchResult each =
+      searched(problem_of({far, left, right}, boxed_inputs(1, 1.5), Cost::Kind::norm_1, 0));
   CHECK(each.status == DesignStatus::infeasible);
   CHECK(each.reason == "every pair alone can be separated, but not all of them at once");
-  const SearchResult one_side = searched(problem_of({far, left}, boxed_inputs(1, 1.5), Cost::Kind::norm_1, 0));
+  const SearchResult one_side =
+      searched(problem_of({far, left}, boxed_inputs(1, 1.5), Cost::Kind::norm_1, 0));
   CHECK(one_side.status == DesignStatus::optimal);
   CHECK((*one_side.u)[0] == doctest::Approx(-1));
-  const SearchResult hopeless = searched(problem_of({far, left}, boxed_inputs(1, .95), Cost::Kind::norm_1, 0));
+  const SearchResult hopeless =
+      searched(problem_of({far, left}, boxed_inputs(1, .95), Cost::Kind::norm_1, 0));
   CHECK(hopeless.reason == "no input of the input set separates modes 1 and 2");
   InputSequences corner = boxed_inputs(2, 1);  // each reaches 1, the sum does not reach 1.9
   corner.A = (Matrix(1, 2) << 1, -1).finished();
   corner.b = numbers({.5});
-  const PairProgram sum = pair_of(0, 1, Matrix::Constant(1, 1, 1.9), numbers({0}), Matrix::Ones(1, 2));
+  const PairProgram sum =
+      pair_of(0, 1, Matrix::Constant(1, 1, 1.9), numbers({0}), Matrix::Ones(1, 2));
   const SearchResult together = searched(problem_of({sum}, corner, Cost::Kind::norm_1, 0));
   CHECK(together.status == DesignStatus::infeasible);
   CHECK(together.reason == "no input of the input set separates modes 1 and 2");
@@ -418,7 +448,8 @@ TEST_CASE("A search that is stopped says so, and proves what it can") {
 TEST_CASE("A pair with too many facets is left out of the search, and judged by its own κ") {
   // |u_1| ≥ 1 by two facets; a cube in three dimensions has six.
   const auto line = [](Index i, Index j) {
-    return pair_of(i, j, Matrix::Ones(1, 1), Vector::Zero(1), Matrix(Vector::Unit(3, 0).transpose()));
+    return pair_of(i, j, Matrix::Ones(1, 1), Vector::Zero(1),
+                   Matrix(Vector::Unit(3, 0).transpose()));
   };
   const auto cube = [](double radius) {
     return pair_of(0, 2, radius * Matrix::Identity(3, 3), Vector::Zero(3), Matrix::Identity(3, 3));
@@ -426,11 +457,13 @@ TEST_CASE("A pair with too many facets is left out of the search, and judged by 
   FacetLimits few;
   few.max_facets = 5;
   SUBCASE("what solves the rest separates it too: optimal") {
-    const SeparationProblem problem = problem_of({cube(.5), line(0, 1)}, boxed_inputs(3, 2), Cost::Kind::norm_1, .1);
+    const SeparationProblem problem =
+        problem_of({cube(.5), line(0, 1)}, boxed_inputs(3, 2), Cost::Kind::norm_1, .1);
     check_optimal(problem, searched(problem, few), 1.1);
   }
   SUBCASE("what solves the rest does not: a bound, and another input") {
-    const SeparationProblem problem = problem_of({cube(1.5), line(0, 1)}, boxed_inputs(3, 2), Cost::Kind::norm_1, .1);
+    const SeparationProblem problem =
+        problem_of({cube(1.5), line(0, 1)}, boxed_inputs(3, 2), Cost::Kind::norm_1, .1);
     const SearchResult found = searched(problem, few);
     CHECK(found.status == DesignStatus::feasible);
     check_answer(problem, found);
@@ -441,7 +474,8 @@ TEST_CASE("A pair with too many facets is left out of the search, and judged by 
     CHECK(searched(problem).status == DesignStatus::optimal);
   }
   SUBCASE("nothing separates it: no answer, but a bound") {
-    const SeparationProblem problem = problem_of({cube(3), line(0, 1)}, boxed_inputs(3, 2), Cost::Kind::norm_1, .1);
+    const SeparationProblem problem =
+        problem_of({cube(3), line(0, 1)}, boxed_inputs(3, 2), Cost::Kind::norm_1, .1);
     const SearchResult found = searched(problem, few);
     CHECK(found.status == DesignStatus::unknown);
     CHECK(found.lower_bound == doctest::Approx(1.1));
@@ -449,7 +483,8 @@ TEST_CASE("A pair with too many facets is left out of the search, and judged by 
     CHECK_FALSE(found.stopped);
   }
   SUBCASE("the rest has no solution") {
-    const SeparationProblem problem = problem_of({cube(.5), line(0, 1)}, boxed_inputs(3, 1), Cost::Kind::norm_1, .1);
+    const SeparationProblem problem =
+        problem_of({cube(.5), line(0, 1)}, boxed_inputs(3, 1), Cost::Kind::norm_1, .1);
     CHECK(searched(problem, few).status == DesignStatus::infeasible);
   }
 }
@@ -472,9 +507,9 @@ TEST_CASE("The first input separates, within the input set and not much beyond w
     CHECK(found.cost < 5 * 9.2);
   }
   // One input at one time suffices: found to the last halving.
-  const SeparationProblem single =
-      problem_of({pair_of(0, 1, Matrix::Ones(1, 1), Vector::Zero(1), Matrix(Vector::Unit(6, 4).transpose()))}, boxed_inputs(6, 4),
-                 Cost::Kind::norm_1, 0);
+  const SeparationProblem single = problem_of(
+      {pair_of(0, 1, Matrix::Ones(1, 1), Vector::Zero(1), Matrix(Vector::Unit(6, 4).transpose()))},
+      boxed_inputs(6, 4), Cost::Kind::norm_1, 0);
   NodeProgram program(single);
   const FirstInput found = first_input(single, program, [] { return false; });
   REQUIRE(found.u);

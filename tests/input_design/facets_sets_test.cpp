@@ -38,7 +38,8 @@ std::vector<Vector> sorted_rows(const Matrix& H, const Vector& h) {
 /// Most by which ζ is beyond a facet.
 double most_beyond(const ForbiddenSet& set, const Vector& zeta, bool inner = false) {
   double most = -INFINITY;
-  for (const SeparatingFacet& facet : set.facets) most = std::max(most, facet.a.dot(zeta) - (inner ? facet.in : facet.out));
+  for (const SeparatingFacet& facet : set.facets)
+    most = std::max(most, facet.a.dot(zeta) - (inner ? facet.in : facet.out));
   return most;
 }
 
@@ -54,7 +55,8 @@ TEST_CASE("A hull that grows by points has the facets that rational arithmetic f
     points.leftCols(r).setIdentity();
     points.col(r).setConstant(-1);
     GrowingHull hull(points.leftCols(r + 1), 0);
-    for (Index p = r + 1; p < points.cols(); ++p) REQUIRE(hull.add(points.col(p), [] { return false; }));
+    for (Index p = r + 1; p < points.cols(); ++p)
+      REQUIRE(hull.add(points.col(p), [] { return false; }));
     Matrix H(static_cast<Index>(hull.facets().size()), r);
     Vector h(H.rows());
     for (Index f = 0; f < h.size(); ++f) {
@@ -66,7 +68,8 @@ TEST_CASE("A hull that grows by points has the facets that rational arithmetic f
     const Polytope::Inequalities exact = Polytope::from_generators(points).inequalities();
     const std::vector<Vector> ours = sorted_rows(H, h), theirs = sorted_rows(exact.H, exact.h);
     REQUIRE(ours.size() == theirs.size());
-    for (std::size_t f = 0; f < ours.size(); ++f) CHECK((ours[f] - theirs[f]).cwiseAbs().maxCoeff() < 1e-9);
+    for (std::size_t f = 0; f < ours.size(); ++f)
+      CHECK((ours[f] - theirs[f]).cwiseAbs().maxCoeff() < 1e-9);
   }
 }
 
@@ -79,7 +82,8 @@ TEST_CASE("A simplex without volume has no facets; one that grows can be stopped
   CHECK(hull.facets().size() == 3);
   CHECK_FALSE(hull.add(numbers({5, 5}), [] { return true; }));
 
-  // A pyramid over a polygon of 40 points: the point below it is beyond all but one facet, each with a ridge on the rim.
+  // A pyramid over a polygon of 40 points: the point below it is beyond all but one facet, each
+  // with a ridge on the rim.
   const auto pyramid = [] {
     Matrix start(3, 4);
     start << 1, -1, -1, 0, 0, 1, -1, 0, 0, 0, 0, 1;
@@ -112,7 +116,8 @@ TEST_CASE("Beyond a facet: κ ≥ ε; beyond none: κ < ε") {
     const double epsilon = trial % 2 ? 0 : .3;
     const ForbiddenSet set = forbidden(pair, U, epsilon);
     if (set.kind == ForbiddenSet::Kind::separated) {
-      const PairSeparation found = separation(pair, U.c + U.G * random_matrix(random, inputs - 1, 1));
+      const PairSeparation found =
+          separation(pair, U.c + U.G * random_matrix(random, inputs - 1, 1));
       CHECK(found.kappa > epsilon);
       continue;
     }
@@ -144,13 +149,15 @@ TEST_CASE("The facets of the published pairs") {
   const auto count = [](Index horizon, double epsilon) {
     const SeparationProblem problem = published_problem(horizon, epsilon);
     std::vector<std::size_t> facets;
-    for (const PairProgram& pair : problem.pairs) facets.push_back(forbidden(pair, problem.U, epsilon).facets.size());
+    for (const PairProgram& pair : problem.pairs)
+      facets.push_back(forbidden(pair, problem.U, epsilon).facets.size());
     return facets;
   };
   CHECK(count(3, 1e-4) == std::vector<std::size_t>{2, 11, 12, 31, 31, 13});
   const SeparationProblem problem = published_problem(3, 1e-4);
   const ForbiddenSet first = forbidden(problem.pairs[0], problem.U, 1e-4);
-  // One combination of the inputs, .3888 u_1(1) - .1944 u_1(2), tells 1 and 2 apart beyond 1.03459 and -.43497.
+  // One combination of the inputs, .3888 u_1(1) - .1944 u_1(2), tells 1 and 2 apart beyond 1.03459
+  // and -.43497.
   REQUIRE(first.facets.size() == 2);
   for (const SeparatingFacet& facet : first.facets) {
     CHECK(std::abs(facet.a[0]) == doctest::Approx(1).epsilon(1e-12));
@@ -163,7 +170,8 @@ TEST_CASE("The facets of the published pairs") {
 TEST_CASE("Forbidden sets that are no polytope with an interior") {
   const InputSequences U = boxed_inputs(2, 1);
   SUBCASE("without rows nothing separates") {
-    CHECK(forbidden(pair_of(0, 1, Matrix(0, 3), Vector(0), Matrix(0, 2)), U, 0).kind == ForbiddenSet::Kind::never);
+    CHECK(forbidden(pair_of(0, 1, Matrix(0, 3), Vector(0), Matrix(0, 2)), U, 0).kind ==
+          ForbiddenSet::Kind::never);
   }
   SUBCASE("inputs without effect: it depends on the rows alone") {
     const Matrix G = Matrix::Ones(1, 2), N = Matrix::Zero(1, 2);
@@ -175,17 +183,22 @@ TEST_CASE("Forbidden sets that are no polytope with an interior") {
     InputSequences fixed = boxed_inputs(2, 1, 1);
     fixed.c[0] = 4;
     const Matrix G = Matrix::Ones(1, 2), N = numbers({1, 0}).transpose();
-    CHECK(forbidden(pair_of(0, 1, G, numbers({1}), N), fixed, 0).kind == ForbiddenSet::Kind::separated);
-    CHECK(forbidden(pair_of(0, 1, G, numbers({1}), N), fixed, .6).kind == ForbiddenSet::Kind::never);
+    CHECK(forbidden(pair_of(0, 1, G, numbers({1}), N), fixed, 0).kind ==
+          ForbiddenSet::Kind::separated);
+    CHECK(forbidden(pair_of(0, 1, G, numbers({1}), N), fixed, .6).kind ==
+          ForbiddenSet::Kind::never);
   }
   SUBCASE("a row that inputs do not enter and noise cannot meet") {
     const Matrix G = Matrix::Identity(2, 2), N = (Matrix(2, 2) << 1, 1, 0, 0).finished();
-    CHECK(forbidden(pair_of(0, 1, G, numbers({0, 1.5}), N), U, 0).kind == ForbiddenSet::Kind::separated);
-    CHECK(forbidden(pair_of(0, 1, G, numbers({0, 1.5}), N), U, .6).kind == ForbiddenSet::Kind::facets);
+    CHECK(forbidden(pair_of(0, 1, G, numbers({0, 1.5}), N), U, 0).kind ==
+          ForbiddenSet::Kind::separated);
+    CHECK(forbidden(pair_of(0, 1, G, numbers({0, 1.5}), N), U, .6).kind ==
+          ForbiddenSet::Kind::facets);
   }
   SUBCASE("no noise in one of two directions") {
     const Matrix G = (Matrix(2, 1) << 0, .5).finished();
-    const ForbiddenSet set = forbidden(pair_of(0, 1, G, numbers({.25, 0}), Matrix::Identity(2, 2)), U, 0);
+    const ForbiddenSet set =
+        forbidden(pair_of(0, 1, G, numbers({.25, 0}), Matrix::Identity(2, 2)), U, 0);
     REQUIRE(set.kind == ForbiddenSet::Kind::facets);
     CHECK(set.flat);
     CHECK(set.facets.size() == 4);
@@ -194,11 +207,13 @@ TEST_CASE("Forbidden sets that are no polytope with an interior") {
     for (const double side : {-1.0, 1.0}) {
       CHECK(most_beyond(set, numbers({.25 + side * 1e-5, 0})) > 0);
       CHECK(most_beyond(set, numbers({.25 + side * 1e-7, 0})) < 0);
-      CHECK(most_beyond(set, numbers({.25 + side * 1e-7, 0}), true) > 0);  // not denied that it separates
+      CHECK(most_beyond(set, numbers({.25 + side * 1e-7, 0}), true) >
+            0);  // not denied that it separates
     }
   }
   SUBCASE("no noise at all") {
-    const ForbiddenSet set = forbidden(pair_of(0, 1, Matrix(2, 0), numbers({.25, .5}), Matrix::Identity(2, 2)), U, .1);
+    const ForbiddenSet set =
+        forbidden(pair_of(0, 1, Matrix(2, 0), numbers({.25, .5}), Matrix::Identity(2, 2)), U, .1);
     REQUIRE(set.kind == ForbiddenSet::Kind::facets);
     CHECK(set.flat);
     CHECK(set.facets.size() == 4);
@@ -209,7 +224,8 @@ TEST_CASE("Forbidden sets that are no polytope with an interior") {
   SUBCASE("a triangle, whichever way it points") {
     for (const double first : {1.0, -1.0}) {
       for (const double second : {1.0, -1.0}) {
-        const Matrix G = (Matrix(3, 3) << first, 0, 0, 0, second, 0, 1, 1, 1).finished(), N = Matrix::Identity(3, 2);
+        const Matrix G = (Matrix(3, 3) << first, 0, 0, 0, second, 0, 1, 1, 1).finished(),
+                     N = Matrix::Identity(3, 2);
         const ForbiddenSet set = forbidden(pair_of(0, 1, G / 4, numbers({0, 0, .25}), N), U, 0);
         REQUIRE(set.kind == ForbiddenSet::Kind::facets);
         CHECK(set.facets.size() == 3);
@@ -237,8 +253,8 @@ TEST_CASE("Equations of the input set narrow what can be told apart") {
   // u_1 = u_2 leaves one combination of the two rows, and u_1 = -u_2 + .2 another.
   std::mt19937 random(11);
   for (const double sign : {1.0, -1.0}) {
-    InputSequences U{Vector::Zero(2), 2 * Matrix::Identity(2, 2), (Matrix(1, 2) << 1, -sign).finished(),
-                     numbers({sign < 0 ? .1 : 0.0})};
+    InputSequences U{Vector::Zero(2), 2 * Matrix::Identity(2, 2),
+                     (Matrix(1, 2) << 1, -sign).finished(), numbers({sign < 0 ? .1 : 0.0})};
     const PairProgram pair = random_pair(random, 0, 1, 2, 5, 2, 2);
     const ForbiddenSet set = forbidden(pair, U, .1);
     REQUIRE(set.kind == ForbiddenSet::Kind::facets);
@@ -250,12 +266,15 @@ TEST_CASE("Equations of the input set narrow what can be told apart") {
   }
 }
 
-TEST_CASE("Whatever the multipliers, the bound is below the minimum; with the right ones it is the minimum") {
+TEST_CASE(
+    "Whatever the multipliers, the bound is below the minimum; with the right ones it is the "
+    "minimum") {
   std::mt19937 random(13);
   for (int trial = 0; trial < 50; ++trial) {
     BoundedProgram program;
     const Index n = 5;
-    for (Index j = 0; j < n; ++j) program.add_column(-1 - j % 2, 1 + j, random_matrix(random, 1, 1)(0, 0));
+    for (Index j = 0; j < n; ++j)
+      program.add_column(-1 - j % 2, 1 + j, random_matrix(random, 1, 1)(0, 0));
     const Vector inside = .5 * random_matrix(random, n, 1);
     for (int i = 0; i < 2; ++i) {
       const Vector row = random_matrix(random, n, 1);
@@ -263,7 +282,8 @@ TEST_CASE("Whatever the multipliers, the bound is below the minimum; with the ri
     }
     const Vector above = random_matrix(random, n, 1);
     program.add_row_above(above, above.dot(inside) - .01, 0, 20);
-    const auto solution = LinearProgram(program.A, program.b, program.lower, program.upper).maximize(-program.cost);
+    const auto solution =
+        LinearProgram(program.A, program.b, program.lower, program.upper).maximize(-program.cost);
     REQUIRE(solution.status == LinearProgram::Status::optimal);
     const double minimum = program.cost.dot(solution.x);
     CHECK(proven_minimum(program, -solution.y) <= minimum + 1e-15);
@@ -272,12 +292,15 @@ TEST_CASE("Whatever the multipliers, the bound is below the minimum; with the ri
     CHECK(proven_minimum(program, Vector::Zero(3)) <= minimum);
     CHECK(proven_minimum(program, random_matrix(random, 3, 1)) <= minimum);
     program.error.setConstant(.1);
-    CHECK(proven_minimum(program, -solution.y) == doctest::Approx(minimum - .1 * solution.y.lpNorm<1>()).epsilon(1e-9));
+    CHECK(proven_minimum(program, -solution.y) ==
+          doctest::Approx(minimum - .1 * solution.y.lpNorm<1>()).epsilon(1e-9));
     CHECK(proven_minimum(program, Vector::Constant(3, NAN)) == -INFINITY);
   }
 }
 
-TEST_CASE("The bound of a child is below its minimum, and is it where the parent has no facets and the cost is one sum") {
+TEST_CASE(
+    "The bound of a child is below its minimum, and is it where the parent has no facets and the "
+    "cost is one sum") {
   std::mt19937 random(17);
   for (int trial = 0; trial < 120; ++trial) {
     const auto kind = trial % 2 ? Cost::Kind::norm_1 : Cost::Kind::quadratic;
@@ -297,7 +320,8 @@ TEST_CASE("The bound of a child is below its minimum, and is it where the parent
       return made;
     };
     const SeparatingFacet first = facet(), second = facet();
-    const NodeProgram::Answer root = program.solve({}), one = program.solve({&first}), both = program.solve({&first, &second});
+    const NodeProgram::Answer root = program.solve({}), one = program.solve({&first}),
+                              both = program.solve({&first, &second});
     if (both.impossible || one.impossible) continue;
     REQUIRE(both.zeta);
     const Vector u = problem.U.c + problem.U.G * *both.zeta;
@@ -306,7 +330,8 @@ TEST_CASE("The bound of a child is below its minimum, and is it where the parent
     CHECK(dual.bound(dual.parent({}, {}), first) <= one.bound + 1e-12);
     CHECK(dual.bound(dual.parent({}, {}), first) == doctest::Approx(one.bound).epsilon(1e-4));
     CHECK(dual.bound(dual.parent({&first}, one.multipliers), second) <= both.bound + 1e-12);
-    CHECK(dual.bound(dual.parent({&first}, one.multipliers), second) >= one.bound * (1 - 1e-6) - 1e-9);
+    CHECK(dual.bound(dual.parent({&first}, one.multipliers), second) >=
+          one.bound * (1 - 1e-6) - 1e-9);
     CHECK(root.bound <= one.bound + 1e-12);
   }
   SeparationProblem largest = problem_of({}, boxed_inputs(2, 1), Cost::Kind::norm_inf, 0);
@@ -324,7 +349,8 @@ TEST_CASE("An input that only `out` denies is not proven impossible") {
   CHECK_FALSE(open.impossible);
   CHECK_FALSE(open.zeta);
   CHECK(program.solve({&thin}).impossible);
-  const SeparatingFacet left{numbers({1, .5}), .8, .7}, right{numbers({-1, .5}), .8, .7};  // together u_1 ≥ 1.6 and 1.4
+  const SeparatingFacet left{numbers({1, .5}), .8, .7},
+      right{numbers({-1, .5}), .8, .7};  // together u_1 ≥ 1.6 and 1.4
   CHECK(program.solve({&left, &right}).impossible);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The published example by the component "milp", as reduced as it was published: 7 and 8 generators per pair.
+// The published example by the component "milp", as reduced as it was published: 7 and 8 generators
+// per pair.
 #include <cmath>
 #include <limits>
 
@@ -24,7 +25,8 @@ TEST_CASE("Descriptor models with 7 and 8 generators per pair") {
                               .set("time_limit", 600.0);
     REQUIRE(registry().check_designer("milp", bank, backend("line_zonotope"), params).empty());
     DesignControl control;
-    const DesignOutcome outcome = registry().make_designer("milp", bank, backend("line_zonotope"), params)->design(control);
+    const DesignOutcome outcome =
+        registry().make_designer("milp", bank, backend("line_zonotope"), params)->design(control);
     CHECK(outcome.status == DesignStatus::feasible);
     CHECK(outcome.horizon == 3);
     CHECK_FALSE(outcome.stopped);
@@ -47,7 +49,8 @@ TEST_CASE("The smallest horizon that works is found") {
   const ModeBank bank = examples::three_scalar_models();
   const Params params = Params().set("max_horizon", Index{4}).set("max_generators", Index{3});
   DesignControl control;
-  const DesignOutcome outcome = registry().make_designer("milp", bank, backend("line_zonotope"), params)->design(control);
+  const DesignOutcome outcome =
+      registry().make_designer("milp", bank, backend("line_zonotope"), params)->design(control);
   CHECK(outcome.status == DesignStatus::feasible);
   REQUIRE(outcome.best);
   CHECK(outcome.best->separates() == Answer::yes);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the mixed-integer program is made of: enclosures of pairs, bounds of κ, the program of one pair, the search for a start.
+// What the mixed-integer program is made of: enclosures of pairs, bounds of κ, the program of one
+// pair, the search for a start.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -19,9 +20,13 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Index draw(std::mt19937& random, Index least, Index most) { return std::uniform_int_distribution<Index>(least, most)(random); }
+Index draw(std::mt19937& random, Index least, Index most) {
+  return std::uniform_int_distribution<Index>(least, most)(random);
+}
 
-InputSequences box(Index n, double range) { return {Vector::Zero(n), range * Matrix::Identity(n, n), Matrix(0, n), Vector(0)}; }
+InputSequences box(Index n, double range) {
+  return {Vector::Zero(n), range * Matrix::Identity(n, n), Matrix(0, n), Vector(0)};
+}
 
 SeparationProblem problem_of(const PairProgram& pair, Cost::Kind kind, std::mt19937& random) {
   SeparationProblem problem;
@@ -29,7 +34,8 @@ SeparationProblem problem_of(const PairProgram& pair, Cost::Kind kind, std::mt19
   problem.inputs = n;
   problem.pairs = {pair};
   problem.U = box(n, 4);
-  problem.cost = {kind, random_vector(random, n, 1).cwiseAbs() + Vector::Constant(n, .2), random_vector(random, n, 1)};
+  problem.cost = {kind, random_vector(random, n, 1).cwiseAbs() + Vector::Constant(n, .2),
+                  random_vector(random, n, 1)};
   problem.epsilon = 1e-3;
   return problem;
 }
@@ -40,7 +46,8 @@ TEST_CASE("A reduced pair is nowhere farther apart than the pair") {
   std::mt19937 random(1);
   double closest = infinity;
   for (int trial = 0; trial < 60; ++trial) {
-    const Index m = draw(random, 1, 6), inputs = draw(random, 1, 5), rank = draw(random, 1, std::min(m, inputs));
+    const Index m = draw(random, 1, 6), inputs = draw(random, 1, 5),
+                rank = draw(random, 1, std::min(m, inputs));
     const PairProgram pair = random_pair(random, m, draw(random, m, 16), inputs, rank);
     InputSequences U = box(inputs, 5);
     if (trial % 3 == 0 && inputs > rank) {  // a row: what differs of u lies in a plane
@@ -67,7 +74,8 @@ TEST_CASE("A reduced pair is nowhere farther apart than the pair") {
 TEST_CASE("With room for everything nothing is lost") {
   std::mt19937 random(2);
   for (int trial = 0; trial < 20; ++trial) {
-    const Index m = draw(random, 1, 5), inputs = draw(random, 1, 4), rank = draw(random, 1, std::min(m, inputs));
+    const Index m = draw(random, 1, 5), inputs = draw(random, 1, 4),
+                rank = draw(random, 1, std::min(m, inputs));
     const Index g = draw(random, m + 2, 10);
     const PairProgram pair = random_pair(random, m, g, inputs, rank);
     const auto reduced = reduce_pair(pair, box(inputs, 5), g + 5, m);
@@ -92,7 +100,12 @@ TEST_CASE("Generators that are parallel are one") {
 }
 
 TEST_CASE("Where nothing disturbs, κ is finite but large") {
-  const PairProgram pair{0, 1, (Matrix(2, 2) << 1, 0, 0, 0).finished(), numbers({0, 0}), Matrix::Identity(2, 2), numbers({0, 0})};
+  const PairProgram pair{0,
+                         1,
+                         (Matrix(2, 2) << 1, 0, 0, 0).finished(),
+                         numbers({0, 0}),
+                         Matrix::Identity(2, 2),
+                         numbers({0, 0})};
   const auto reduced = reduce_pair(pair, box(2, 4), 4, 0);
   REQUIRE(reduced);
   CHECK(separation(pair, numbers({0, 1})).kappa == infinity);
@@ -112,7 +125,8 @@ TEST_CASE("Pairs that cannot be reduced are told from others") {
   CHECK_FALSE(reduce_pair(pair, box(5, 1), 2, 2));
   CHECK(reduce_pair(pair, box(5, 1), 3, 2));
   CHECK(inputs_enter(pair, box(5, 1)));
-  CHECK_FALSE(inputs_enter(pair, {Vector::Ones(5), Matrix::Zero(5, 5), Matrix(0, 5), Vector(0)}));  // U is a point
+  CHECK_FALSE(inputs_enter(
+      pair, {Vector::Ones(5), Matrix::Zero(5, 5), Matrix(0, 5), Vector(0)}));  // U is a point
   InputSequences fixed = box(5, 1);
   fixed.A = Matrix::Identity(5, 5);  // as is this
   fixed.b = Vector::Constant(5, .5);
@@ -138,27 +152,34 @@ TEST_CASE("No input that costs no more has a larger κ than the bound") {
   std::mt19937 random(5);
   for (int trial = 0; trial < 36; ++trial) {
     const Index m = draw(random, 1, 3), inputs = trial % 4 == 3 ? 12 : draw(random, 1, 4);
-    const PairProgram pair = random_pair(random, m, draw(random, m, 8), inputs, std::min(m, inputs));
-    const SeparationProblem problem = problem_of(
-        pair, std::array{Cost::Kind::norm_1, Cost::Kind::norm_inf, Cost::Kind::quadratic}[static_cast<std::size_t>(trial % 3)],
-        random);
+    const PairProgram pair =
+        random_pair(random, m, draw(random, m, 8), inputs, std::min(m, inputs));
+    const SeparationProblem problem =
+        problem_of(pair,
+                   std::array{Cost::Kind::norm_1, Cost::Kind::norm_inf,
+                              Cost::Kind::quadratic}[static_cast<std::size_t>(trial % 3)],
+                   random);
     LocalSearch local(problem, problem.pairs, [] { return 60.0; });
     InputProgram limited(problem);
     const double cost = trial % 2 == 0 ? 1 : 10;
     limited.limit_cost(cost);
-    const double free = local.largest_kappa(0, Vector::Constant(inputs, -4), Vector::Constant(inputs, 4), infinity),
+    const double free = local.largest_kappa(0, Vector::Constant(inputs, -4),
+                                            Vector::Constant(inputs, 4), infinity),
                  most = local.largest_kappa(0, limited.lower(), limited.upper(), cost);
     CHECK(most <= free + 1e-6);
     double largest = -1;
     for (int k = 0; k < 200; ++k) {
       // on the sphere of the cost, or as far as the box goes
-      Vector u = problem.cost.reference +
-                 random_vector(random, inputs, 1).unaryExpr([&](double x) { return k % 2 == 0 ? x : std::pow(x, 9); });
+      Vector u = problem.cost.reference + random_vector(random, inputs, 1).unaryExpr([&](double x) {
+        return k % 2 == 0 ? x : std::pow(x, 9);
+      });
       const double there = problem.cost.at(u);
       if (there == 0) continue;
-      const double factor = problem.cost.kind == Cost::Kind::quadratic ? std::sqrt(cost / there) : cost / there;
+      const double factor =
+          problem.cost.kind == Cost::Kind::quadratic ? std::sqrt(cost / there) : cost / there;
       u = (problem.cost.reference + factor * (u - problem.cost.reference)).cwiseMax(-4).cwiseMin(4);
-      if (problem.cost.at(u) > cost * (1 + 1e-9)) continue;  // the reference is inside of the box, so that this never happens
+      if (problem.cost.at(u) > cost * (1 + 1e-9))
+        continue;  // the reference is inside of the box, so that this never happens
       CHECK((u - limited.lower()).minCoeff() >= -1e-9);
       CHECK((limited.upper() - u).minCoeff() >= -1e-9);
       const double kappa = separation(pair, u).kappa;
@@ -220,13 +241,15 @@ TEST_CASE("The local search separates as asked, and gets cheaper") {
     }
     CHECK(found > 5);
   }
-  const SeparationProblem problem = problem_of(random_pair(random, 2, 5, 3, 2), Cost::Kind::norm_1, random);
+  const SeparationProblem problem =
+      problem_of(random_pair(random, 2, 5, 3, 2), Cost::Kind::norm_1, random);
   CHECK_FALSE(LocalSearch(problem, problem.pairs, [] { return 0.0; }).from(numbers({4, 4, 4})));
 }
 
 TEST_CASE("A quadratic cost is met by tangents from below") {
   std::mt19937 random(8);
-  const SeparationProblem problem = problem_of(random_pair(random, 1, 2, 2, 1), Cost::Kind::quadratic, random);
+  const SeparationProblem problem =
+      problem_of(random_pair(random, 1, 2, 2, 1), Cost::Kind::quadratic, random);
   for (int trial = 0; trial < 10; ++trial) {
     const Vector u = random_vector(random, 2, 4);
     SeparationProblem fixed = problem;

@@ -35,9 +35,11 @@ void check_found(const SeparationProblem& problem, const SearchResult& found, do
   REQUIRE(found.restriction);
   CHECK(found.restriction->lower_bound <= found.cost);
   CHECK(found.restriction->lower_bound >= found.cost - 2e-6 * (1 + found.cost));
-  CHECK(found.restriction->name.find("generators per pair, as GLPK bounds it") != std::string::npos);
+  CHECK(found.restriction->name.find("generators per pair, as GLPK bounds it") !=
+        std::string::npos);
   CHECK(found.reason.find("may separate the modes too") != std::string::npos);
-  for (const PairProgram& pair : problem.pairs) CHECK(separation(pair, *found.u).kappa >= problem.epsilon - 1e-6);
+  for (const PairProgram& pair : problem.pairs)
+    CHECK(separation(pair, *found.u).kappa >= problem.epsilon - 1e-6);
   const Vector ones = problem.U.G.cwiseAbs().rowwise().sum();
   CHECK(((*found.u - problem.U.c).cwiseAbs() - ones).maxCoeff() <= 1e-9);
 }
@@ -140,7 +142,8 @@ TEST_CASE("Input sets with constraints") {
 TEST_CASE("Tubes must not be empty") {
   SeparationProblem problem = scalar_problem();
   const auto row = [](double at) {  // ζ = u_1 - at for some |ζ| ≤ 1
-    TubeConditions rows{Matrix::Ones(1, 1), Matrix::Zero(1, 4), Vector::Constant(1, -at), Vector::Ones(1)};
+    TubeConditions rows{Matrix::Ones(1, 1), Matrix::Zero(1, 4), Vector::Constant(1, -at),
+                        Vector::Ones(1)};
     rows.Omega(0, 1) = 1;
     return rows;
   };
@@ -162,7 +165,8 @@ TEST_CASE("Descriptor models: no cheaper than the proven optimum, little dearer"
   CHECK(found.cost < 9.25);
   CHECK((*found.u)[0] == .5);
   CHECK((*found.u)[1] == -1);
-  for (const PairProgram& pair : problem.pairs) CHECK(separation(pair, *found.u).disjoint == Answer::yes);
+  for (const PairProgram& pair : problem.pairs)
+    CHECK(separation(pair, *found.u).disjoint == Answer::yes);
 }
 
 TEST_CASE("Descriptor models with a quadratic cost and with a maximum") {
@@ -191,7 +195,9 @@ TEST_CASE("Without a solution nothing is claimed but what is proven") {
   SUBCASE("pairs that exclude each other") {
     SeparationProblem problem = scalar_problem();
     const auto away_from = [](double centre, double radius) {  // |u_1 - centre| > radius
-      PairProgram pair{0, 1, Matrix::Constant(1, 1, radius), numbers({centre}), Matrix::Zero(1, 4), numbers({0})};
+      PairProgram pair{
+          0,           1, Matrix::Constant(1, 1, radius), numbers({centre}), Matrix::Zero(1, 4),
+          numbers({0})};
       pair.N(0, 1) = 1;
       return pair;
     };
@@ -205,8 +211,8 @@ TEST_CASE("Without a solution nothing is claimed but what is proven") {
     check_found(problem, search(problem, generators(3)), 1.5 * (1 + 1e-4));
   }
   SUBCASE("no row") {
-    const SeparationProblem problem =
-        examples::separation_problem(examples::three_scalar_models(), 0, 2, Vector::Zero(1), Vector(0));
+    const SeparationProblem problem = examples::separation_problem(
+        examples::three_scalar_models(), 0, 2, Vector::Zero(1), Vector(0));
     const SearchResult none = search(problem, generators(3));
     CHECK(none.status == DesignStatus::infeasible);
     CHECK(none.reason.find("modes 1 and 2") != std::string::npos);
@@ -252,7 +258,8 @@ TEST_CASE("A pair that is apart by however little is not proven to be") {
   problem.epsilon = 1e-13;
   const SearchResult found = search(problem, generators(3));
   if (found.u) {
-    for (const PairProgram& pair : problem.pairs) CHECK(separation(pair, *found.u).disjoint == Answer::yes);
+    for (const PairProgram& pair : problem.pairs)
+      CHECK(separation(pair, *found.u).disjoint == Answer::yes);
   } else {
     CHECK(found.status == DesignStatus::unknown);
     CHECK(found.reason.find("not proven") != std::string::npos);
@@ -282,7 +289,8 @@ TEST_CASE("A time limit leaves what was found") {
   const SeparationProblem problem = descriptor_problem();
   SearchResult ended = search(problem, {20, 4, 1e-6, 1});
   CHECK(ended.stopped);
-  CHECK(ended.status == (ended.u ? DesignStatus::feasible : DesignStatus::unknown));  // on a slow machine there may be none
+  CHECK(ended.status == (ended.u ? DesignStatus::feasible
+                                 : DesignStatus::unknown));  // on a slow machine there may be none
   CHECK(ended.reason.find("the time limit is over") != std::string::npos);
   if (ended.u) CHECK(ended.restriction->lower_bound < ended.cost);
   ended = search(problem, {8, 2, 1e-6, 1e-9});

@@ -19,6 +19,8 @@ inline const Registry& registry() {
   return *all;
 }
 
-inline std::shared_ptr<const SetBackend> backend(const std::string& name) { return registry().make_backend(name, {}); }
+inline std::shared_ptr<const SetBackend> backend(const std::string& name) {
+  return registry().make_backend(name, {});
+}
 
 }  // namespace cordon::examples

@@ -27,7 +27,9 @@ ModeBank bounded_scalar_models(double b, double size = 1) {
 
 DesignOutcome designed(const ModeBank& bank, const char* designer, Params params) {
   DesignControl control;
-  return registry().make_designer(designer, bank, backend("line_zonotope"), params.set("epsilon", .1))->design(control);
+  return registry()
+      .make_designer(designer, bank, backend("line_zonotope"), params.set("epsilon", .1))
+      ->design(control);
 }
 
 }  // namespace
@@ -35,7 +37,8 @@ DesignOutcome designed(const ModeBank& bank, const char* designer, Params params
 TEST_CASE("The optimum does not depend on the units of inputs and of the whole system") {
   for (const double b : {1e-9, 1e-3, 1.0, 1e6, 1e12}) {
     CAPTURE(b);
-    const DesignOutcome outcome = designed(bounded_scalar_models(b), "facets", Params().set("horizon", std::int64_t{2}));
+    const DesignOutcome outcome =
+        designed(bounded_scalar_models(b), "facets", Params().set("horizon", std::int64_t{2}));
     CHECK(outcome.status == DesignStatus::optimal);
     REQUIRE(outcome.best);
     CHECK(outcome.best->cost * b == doctest::Approx(.825).epsilon(1e-8));
@@ -43,7 +46,8 @@ TEST_CASE("The optimum does not depend on the units of inputs and of the whole s
   }
   for (const double size : {1e-12, 1e-6, 1e6}) {
     CAPTURE(size);
-    const DesignOutcome outcome = designed(bounded_scalar_models(1, size), "facets", Params().set("horizon", std::int64_t{2}));
+    const DesignOutcome outcome = designed(bounded_scalar_models(1, size), "facets",
+                                           Params().set("horizon", std::int64_t{2}));
     CHECK(outcome.status == DesignStatus::optimal);
     REQUIRE(outcome.best);
     CHECK(outcome.best->cost / size == doctest::Approx(.825).epsilon(1e-8));
@@ -91,10 +95,12 @@ TEST_CASE("What differs by less than rounding is neither told apart nor called t
   };
   for (const double noise : {0.0, 1e-16, 1e-13}) {  // exactly, y_1 differs by 5e-12
     CAPTURE(noise);
-    const DesignOutcome given = designed(models(noise), "given", Params().set("input", Matrix(Matrix::Constant(2, 1, 500))));
+    const DesignOutcome given = designed(
+        models(noise), "given", Params().set("input", Matrix(Matrix::Constant(2, 1, 500))));
     CHECK(given.best->pairs[0].disjoint == Answer::unknown);
     for (const char* designer : {"facets", "milp"}) {
-      const DesignOutcome outcome = designed(models(noise), designer, Params().set("horizon", std::int64_t{1}));
+      const DesignOutcome outcome =
+          designed(models(noise), designer, Params().set("horizon", std::int64_t{1}));
       CHECK(outcome.status != DesignStatus::infeasible);
     }
   }
@@ -104,7 +110,8 @@ TEST_CASE("κ keeps its digits where it is large") {
   const ModeBank bank = bounded_scalar_models(1);
   for (const double u : {1e3, 1e6, 1e9, 1e12}) {
     CAPTURE(u);
-    const DesignOutcome given = designed(bank, "given", Params().set("input", Matrix((Matrix(3, 1) << u, 0, 0).finished())));
+    const DesignOutcome given = designed(
+        bank, "given", Params().set("input", Matrix((Matrix(3, 1) << u, 0, 0).finished())));
     double smallest = INFINITY;
     for (const PairSeparation& pair : given.best->pairs) {
       CHECK(pair.kappa_lower > pair.kappa * (1 - 1e-6));

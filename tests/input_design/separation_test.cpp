@@ -20,14 +20,16 @@ namespace {
 
 std::vector<OutputTube> tubes_of(const ModeBank& bank, Index horizon) {
   std::vector<OutputTube> tubes;
-  for (const Mode& mode : bank.modes) tubes.push_back(output_tube(mode.model, *backend("line_zonotope"), {horizon}));
+  for (const Mode& mode : bank.modes)
+    tubes.push_back(output_tube(mode.model, *backend("line_zonotope"), {horizon}));
   return tubes;
 }
 
 }  // namespace
 
 TEST_CASE("κ of the published inputs") {
-  const std::vector<PairProgram> pairs = pair_programs(tubes_of(examples::four_descriptor_models(), 3));
+  const std::vector<PairProgram> pairs =
+      pair_programs(tubes_of(examples::four_descriptor_models(), 3));
   REQUIRE(pairs.size() == 6);
   const auto check = [&](const Vector& u, std::initializer_list<double> expected) {
     auto pair = pairs.begin();
@@ -42,17 +44,22 @@ TEST_CASE("κ of the published inputs") {
       CHECK(found.why.kind == (kappa > 0 ? Certificate::Kind::farkas : Certificate::Kind::point));
     }
   };
-  check(examples::published_line_input(), {.9184357542, .1484878049, .1309372064, .2307897451, 1.6599838402, 1.2369816787});
+  check(examples::published_line_input(),
+        {.9184357542, .1484878049, .1309372064, .2307897451, 1.6599838402, 1.2369816787});
   check(examples::published_constrained_input(),
         {.3940156025, -.8085889571, -.5956685499, .4966639294, .2753818400, -.4508039983});
-  check(examples::reference_input(), {-.6202396234, -.8085889571, -.9243257114, -.4833119384, -.6766805827, -.7421013700});
+  check(examples::reference_input(),
+        {-.6202396234, -.8085889571, -.9243257114, -.4833119384, -.6766805827, -.7421013700});
 }
 
-TEST_CASE("Scalar models from anywhere: κ = |u_1| / 0.9 - 1 at u = (0, u_1, 0, 0) for the closest pair") {
-  const std::vector<PairProgram> pairs = pair_programs(tubes_of(examples::three_scalar_models(), 3));
+TEST_CASE(
+    "Scalar models from anywhere: κ = |u_1| / 0.9 - 1 at u = (0, u_1, 0, 0) for the closest pair") {
+  const std::vector<PairProgram> pairs =
+      pair_programs(tubes_of(examples::three_scalar_models(), 3));
   for (const double u1 : {.99, -.99, .9000899999, 1.8, .5}) {
     double smallest = INFINITY;
-    for (const PairProgram& pair : pairs) smallest = std::min(smallest, separation(pair, numbers({0, u1, 0, 0})).kappa);
+    for (const PairProgram& pair : pairs)
+      smallest = std::min(smallest, separation(pair, numbers({0, u1, 0, 0})).kappa);
     CHECK(smallest == doctest::Approx(std::abs(u1) / .9 - 1).epsilon(1e-9));
   }
 }
@@ -66,7 +73,8 @@ TEST_CASE("κ agrees with the rational emptiness of the intersection, with boxes
   for (int trial = 0; trial < 12; ++trial) {
     const Vector u = Vector::NullaryExpr(6, [&] { return uniform(random); });
     const Index i = trial % 3, j = 3;
-    const PairSeparation found = separation(pair_program(i, tubes[static_cast<std::size_t>(i)], j, tubes[3]), u);
+    const PairSeparation found =
+        separation(pair_program(i, tubes[static_cast<std::size_t>(i)], j, tubes[3]), u);
     const LineForm Yi = tubes[static_cast<std::size_t>(i)].at(u), Yj = tubes[3].at(u);
     const auto answer = [&](double factor) {  // ‖ξ‖∞ ≤ factor
       LineForm both = intersection(Yi, Matrix::Identity(3, 3), Yj);
@@ -89,9 +97,11 @@ TEST_CASE("κ of random models agrees with the rational emptiness of the interse
   std::mt19937 random(5);
   for (int trial = 0; trial < 12; ++trial) {
     ModeBank bank;
-    for (const char* name : {"a", "b"}) bank.modes.push_back({name, examples::random_model(random)});
+    for (const char* name : {"a", "b"})
+      bank.modes.push_back({name, examples::random_model(random)});
     const std::vector<OutputTube> tubes = tubes_of(bank, 1);
-    const Vector u = Vector::NullaryExpr(4, [&] { return std::uniform_real_distribution<double>(-20, 20)(random); });
+    const Vector u = Vector::NullaryExpr(
+        4, [&] { return std::uniform_real_distribution<double>(-20, 20)(random); });
     const PairSeparation found = separation(pair_program(0, tubes[0], 1, tubes[1]), u);
     for (const double share : {1 - 1e-6, 1 + 1e-6}) {
       LineForm both = intersection(tubes[0].at(u), Matrix::Identity(4, 4), tubes[1].at(u));
@@ -103,7 +113,8 @@ TEST_CASE("κ of random models agrees with the rational emptiness of the interse
 }
 
 TEST_CASE("κ is convex in the inputs") {
-  const std::vector<PairProgram> pairs = pair_programs(tubes_of(examples::four_descriptor_models(), 3));
+  const std::vector<PairProgram> pairs =
+      pair_programs(tubes_of(examples::four_descriptor_models(), 3));
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(-8, 8);
   for (int trial = 0; trial < 50; ++trial) {
@@ -129,7 +140,8 @@ TEST_CASE("Equal models meet under every input") {
 
 TEST_CASE("Too short a horizon leaves no row to tell models apart") {
   const std::vector<OutputTube> tubes = tubes_of(examples::three_scalar_models(), 0);
-  const PairProgram pair = pair_program(0, tubes[0], 1, tubes[1]);  // y_0 = x_0 + v_0 with any x_0, in both
+  const PairProgram pair =
+      pair_program(0, tubes[0], 1, tubes[1]);  // y_0 = x_0 + v_0 with any x_0, in both
   CHECK(pair.rows() == 0);
   const PairSeparation found = separation(pair, numbers({2}));
   CHECK(found.disjoint == Answer::no);
@@ -138,12 +150,14 @@ TEST_CASE("Too short a horizon leaves no row to tell models apart") {
 
 TEST_CASE("Without disturbances every difference separates") {
   ModeBank bank = examples::three_scalar_models();
-  for (Mode& mode : bank.modes) mode.model.X0 = mode.model.W = mode.model.V = make_point(numbers({0}));
+  for (Mode& mode : bank.modes)
+    mode.model.X0 = mode.model.W = mode.model.V = make_point(numbers({0}));
   const std::vector<OutputTube> tubes = tubes_of(bank, 2);
   const PairProgram pair = pair_program(0, tubes[0], 1, tubes[1]);
   const PairSeparation apart = separation(pair, numbers({0.1, 0, 0}));
   CHECK(apart.disjoint == Answer::yes);
   CHECK(apart.kappa == INFINITY);
   CHECK(apart.kappa_lower == INFINITY);
-  CHECK(separation(pair, numbers({0, 0.1, 0})).disjoint != Answer::yes);  // felt at k = 2 alike by both
+  CHECK(separation(pair, numbers({0, 0.1, 0})).disjoint !=
+        Answer::yes);  // felt at k = 2 alike by both
 }

@@ -25,7 +25,9 @@ inline Vector numbers(std::initializer_list<double> entries) {
   return v;
 }
 
-inline LineForm cube(Index n, double radius) { return make_box({Vector::Constant(n, -radius), Vector::Constant(n, radius)}); }
+inline LineForm cube(Index n, double radius) {
+  return make_box({Vector::Constant(n, -radius), Vector::Constant(n, radius)});
+}
 
 /// Four descriptor models of [Rego2025, sec. 6.2].
 inline ModeBank four_descriptor_models() {
@@ -43,7 +45,8 @@ inline ModeBank four_descriptor_models() {
   model.V = cube(1, .1);
   model.U = cube(2, 8);
   ModeBank bank;
-  for (const char* name : {"model_1", "model_2", "model_3", "model_4"}) bank.modes.push_back({name, model});
+  for (const char* name : {"model_1", "model_2", "model_3", "model_4"})
+    bank.modes.push_back({name, model});
   bank.modes[1].model.linear.A(0, 2) = .5;
   bank.modes[2].model.linear.B(1, 1) = .9;
   bank.modes[2].model.linear.B(2, 0) = -.1;
@@ -55,7 +58,8 @@ inline ModeBank four_descriptor_models() {
 inline ModeBank three_scalar_models() {
   const auto one = [](double value) { return Matrix::Constant(1, 1, value); };
   ModeBank bank;
-  for (const auto& [name, a] : {std::pair("slow", 1.0), std::pair("fast", .2), std::pair("reversed", -.5)}) {
+  for (const auto& [name, a] :
+       {std::pair("slow", 1.0), std::pair("fast", .2), std::pair("reversed", -.5)}) {
     Model model;
     model.linear = {{}, one(a), one(1), one(1), one(1), one(0), one(1)};
     model.X0 = make_space(1);
@@ -73,7 +77,8 @@ inline Model random_model(std::mt19937& random) {
     return Matrix(Matrix::NullaryExpr(rows, cols, [&] { return uniform(random); }));
   };
   Model model;
-  model.linear = {{}, matrix(3, 3), matrix(3, 2), matrix(3, 2), matrix(2, 3), matrix(2, 2), matrix(2, 1)};
+  model.linear = {{},           matrix(3, 3), matrix(3, 2), matrix(3, 2),
+                  matrix(2, 3), matrix(2, 2), matrix(2, 1)};
   model.X0 = make_zonotope(matrix(3, 1).col(0), matrix(3, 4));
   model.W = make_zonotope(matrix(2, 1).col(0), matrix(2, 2));
   model.V = cube(1, .3);
@@ -83,7 +88,11 @@ inline Model random_model(std::mt19937& random) {
 
 inline Vector reference_input() { return numbers({.5, -1, .5, -1, .5, -1, .5, -1}); }
 /// The published inputs of section 6.2, by line zonotopes and by constrained zonotopes.
-inline Vector published_line_input() { return numbers({.5, -1, -3.4399, -1, 1.0854, -7.0632, .5, -1}); }
-inline Vector published_constrained_input() { return numbers({.5, -1, 2.9286, -1, 3.1628, -1, .5, -1}); }
+inline Vector published_line_input() {
+  return numbers({.5, -1, -3.4399, -1, 1.0854, -7.0632, .5, -1});
+}
+inline Vector published_constrained_input() {
+  return numbers({.5, -1, 2.9286, -1, 3.1628, -1, .5, -1});
+}
 
 }  // namespace cordon::examples

@@ -52,18 +52,23 @@ TEST_CASE("The tubes of four descriptor models have the published hulls") {
   const auto hull = [&](Index mode, const Vector& u) {
     return interval_hull(output_tube(bank[mode].model, *backend("line_zonotope"), {3}).at(u));
   };
-  const Expected by_lines[] = {{numbers({-1.46, -.79, -4.3464, 7.657145}), numbers({1.46, 2.54, -.7459, 11.46462})},
-                               {numbers({-1.46, -.965, -4.3929, 5.92552}), numbers({1.46, 2.965, .1631, 10.36322})},
-                               {numbers({-1.51, -.89, -4.5414, 6.765575}), numbers({1.37, 2.364, -1.0131, 10.50446})},
-                               {numbers({-1.495, -.7935, -4.719465, 8.01464975}), numbers({1.545, 2.706, -.93394, 12.0184985})}};
+  const Expected by_lines[] = {
+      {numbers({-1.46, -.79, -4.3464, 7.657145}), numbers({1.46, 2.54, -.7459, 11.46462})},
+      {numbers({-1.46, -.965, -4.3929, 5.92552}), numbers({1.46, 2.965, .1631, 10.36322})},
+      {numbers({-1.51, -.89, -4.5414, 6.765575}), numbers({1.37, 2.364, -1.0131, 10.50446})},
+      {numbers({-1.495, -.7935, -4.719465, 8.01464975}),
+       numbers({1.545, 2.706, -.93394, 12.0184985})}};
   const Expected by_reference[] = {
       {numbers({-1.46, -.79, -.4065, -.173425}), numbers({1.46, 2.54, 3.194, 3.63405})},
       {numbers({-1.46, -.965, -.453, .0649}), numbers({1.46, 2.965, 4.103, 4.5026})},
       {numbers({-1.51, -.89, -.6015, -.458675}), numbers({1.37, 2.364, 2.9268, 3.28021})},
-      {numbers({-1.495, -.7935, -.385575, -.13822125}), numbers({1.545, 2.706, 3.39995, 3.8656275})}};
+      {numbers({-1.495, -.7935, -.385575, -.13822125}),
+       numbers({1.545, 2.706, 3.39995, 3.8656275})}};
   for (Index mode = 0; mode < bank.size(); ++mode) {
-    check_hull(hull(mode, examples::published_line_input()), by_lines[mode].lower, by_lines[mode].upper);
-    check_hull(hull(mode, examples::reference_input()), by_reference[mode].lower, by_reference[mode].upper);
+    check_hull(hull(mode, examples::published_line_input()), by_lines[mode].lower,
+               by_lines[mode].upper);
+    check_hull(hull(mode, examples::reference_input()), by_reference[mode].lower,
+               by_reference[mode].upper);
   }
 }
 
@@ -87,9 +92,11 @@ TEST_CASE("A tube holds what its model can show, and little else") {
     for (double& entry : u) entry = std::uniform_real_distribution<double>(-1, 1)(random);
     for (const char* name : {"line_zonotope", "zonotope", "constrained_zonotope"}) {
       const LineForm tube = output_tube(model, *backend(name), {N}).at(u);
-      for (int run = 0; run < 5; ++run) CHECK(contains(tube, simulated(model, u, N, random)) == Answer::yes);
+      for (int run = 0; run < 5; ++run)
+        CHECK(contains(tube, simulated(model, u, N, random)) == Answer::yes);
     }
-    // The support in a direction is that of a zonotope, whose generators are the responses to each factor.
+    // The support in a direction is that of a zonotope, whose generators are the responses to each
+    // factor.
     const OutputTube tube = output_tube(model, *backend("zonotope"), {N});
     Vector d(tube.outputs());
     for (double& entry : d) entry = std::uniform_real_distribution<double>(-1, 1)(random);
@@ -116,8 +123,9 @@ TEST_CASE("E = I, and a regular E, are no special case") {
   std::mt19937 random(2);
   for (int trial = 0; trial < 10; ++trial) {
     Model plain = random_model(random), other = plain;
-    const Matrix E = Matrix::Identity(3, 3) * 2 +
-                     Matrix::NullaryExpr(3, 3, [&] { return std::uniform_real_distribution<double>(-.5, .5)(random); });
+    const Matrix E = Matrix::Identity(3, 3) * 2 + Matrix::NullaryExpr(3, 3, [&] {
+                       return std::uniform_real_distribution<double>(-.5, .5)(random);
+                     });
     other.linear.E = E;
     other.linear.A = E * plain.linear.A;
     other.linear.B = E * plain.linear.B;
@@ -128,7 +136,8 @@ TEST_CASE("E = I, and a regular E, are no special case") {
     CHECK(conditions_of(a).b.size() == 0);
     CHECK(conditions_of(b).b.size() == 0);  // the rows of k = N say nothing: x_{N+1} is free
     for (int direction = 0; direction < 5; ++direction) {
-      const Vector d = Vector::NullaryExpr(6, [&] { return std::uniform_real_distribution<double>(-1, 1)(random); });
+      const Vector d = Vector::NullaryExpr(
+          6, [&] { return std::uniform_real_distribution<double>(-1, 1)(random); });
       CHECK(support(a.at(u), d) == doctest::Approx(support(b.at(u), d)).epsilon(1e-8));
     }
   }
@@ -139,7 +148,8 @@ TEST_CASE("Constraints of the sets stand in the tube") {
   // X0 = {(ξ1 + ξ2) : ξ1 = ξ2} = [-2, 2] cut to ξ1 + 3 ξ2 = 2: the point 1
   model.X0 = {Matrix(1, 0), (Matrix(1, 2) << 1, 1).finished(),        Vector::Zero(1),
               Matrix(2, 0), (Matrix(2, 2) << 1, -1, 1, 3).finished(), numbers({0, 2})};
-  const Box hull = interval_hull(output_tube(model, *backend("constrained_zonotope"), {1}).at(Vector::Zero(2)));
+  const Box hull =
+      interval_hull(output_tube(model, *backend("constrained_zonotope"), {1}).at(Vector::Zero(2)));
   check_hull(hull, numbers({.9, .8}), numbers({1.1, 1.2}));
 }
 
@@ -157,7 +167,8 @@ TEST_CASE("An unbounded start leaves lines in the tube, bounded where outputs di
 TEST_CASE("With the published admissible set the tubes of both published inputs are empty") {
   const ModeBank bank = examples::four_descriptor_models();
   const TubeSpan span{3, false, examples::cube(3, 1)};
-  for (const Vector& u : {examples::published_line_input(), examples::published_constrained_input()}) {
+  for (const Vector& u :
+       {examples::published_line_input(), examples::published_constrained_input()}) {
     for (const Mode& mode : bank.modes) {
       const LineForm tube = output_tube(mode.model, *backend("constrained_zonotope"), span).at(u);
       CAPTURE(mode.name);
@@ -165,11 +176,14 @@ TEST_CASE("With the published admissible set the tubes of both published inputs 
       CHECK(exact::is_empty(tube) == Answer::yes);
     }
   }
-  // What E determines is not restricted, and a set that is wide in the rest changes nothing: hulls are those without it.
-  const LineForm wide = output_tube(bank[0].model, *backend("constrained_zonotope"),
-                                    {3, false, make_box({numbers({-.01, -.01, -1000}), numbers({.01, .01, 1000})})})
-                            .at(examples::published_line_input());
-  check_hull(interval_hull(wide), numbers({-1.46, -.79, -4.3464, 7.657145}), numbers({1.46, 2.54, -.7459, 11.46462}));
+  // What E determines is not restricted, and a set that is wide in the rest changes nothing: hulls
+  // are those without it.
+  const LineForm wide =
+      output_tube(bank[0].model, *backend("constrained_zonotope"),
+                  {3, false, make_box({numbers({-.01, -.01, -1000}), numbers({.01, .01, 1000})})})
+          .at(examples::published_line_input());
+  check_hull(interval_hull(wide), numbers({-1.46, -.79, -4.3464, 7.657145}),
+             numbers({1.46, 2.54, -.7459, 11.46462}));
 }
 
 TEST_CASE("Conditions tell for which inputs a tube is empty") {
@@ -188,7 +202,8 @@ TEST_CASE("Conditions tell for which inputs a tube is empty") {
   REQUIRE(rows.b.size() == 1);
   for (const double u0 : {0.0, 1.4, -3.4, 1.6, -3.6}) {
     const Vector u = numbers({u0, 5, -5});
-    const double reach = rows.A.row(0).lpNorm<1>(), needed = std::abs(rows.b[0] + rows.Omega.row(0).dot(u));
+    const double reach = rows.A.row(0).lpNorm<1>(),
+                 needed = std::abs(rows.b[0] + rows.Omega.row(0).dot(u));
     CHECK((needed <= reach) == (std::abs(u0 + 1) < 2.5));
   }
 }

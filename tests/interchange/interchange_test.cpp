@@ -25,7 +25,9 @@ namespace {
 
 const double inf = std::numeric_limits<double>::infinity();
 
-void put(const std::filesystem::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+void put(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 std::filesystem::path mat_of(const Scratch& scratch, const mat::Variables& variables) {
   put(scratch / "in.mat", mat::to_bytes(variables));
@@ -39,7 +41,8 @@ Study read(const std::filesystem::path& file) {
 }
 
 /// The problems of reading this struct as a system.
-std::vector<Diagnostic> problems_of(const mat::Variables& variables, const std::string& variable = "") {
+std::vector<Diagnostic> problems_of(const mat::Variables& variables,
+                                    const std::string& variable = "") {
   const Scratch scratch;
   try {
     mat_to_json(mat_of(scratch, variables), {scratch / "out.json"}, variable);
@@ -50,7 +53,8 @@ std::vector<Diagnostic> problems_of(const mat::Variables& variables, const std::
   return {};
 }
 
-void expect_problem(const mat::Variables& variables, const std::string& pointer, const std::string& message) {
+void expect_problem(const mat::Variables& variables, const std::string& pointer,
+                    const std::string& message) {
   const auto problems = problems_of(variables);
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].pointer == pointer);
@@ -88,8 +92,8 @@ mat::Variables with(mat::Variables all, const std::string& name, Value value) {
 
 TEST_CASE("a system survives the way to a MAT-file and back") {
   const Scratch scratch;
-  for (const char* text :
-       {study_test::valid_study, study_test::diagnosis_study, study_test::uncertain_study, study_test::design_study}) {
+  for (const char* text : {study_test::valid_study, study_test::diagnosis_study,
+                           study_test::uncertain_study, study_test::design_study}) {
     put(scratch / "study.json", text);
     const Study study = read(scratch / "study.json");
     study_to_mat(study, {scratch / "study.mat"}, false);
@@ -101,7 +105,8 @@ TEST_CASE("a system survives the way to a MAT-file and back") {
     json::Problems problems;
     std::vector<std::string> warnings;
     const json::Value root = json::parse(bytes_of(scratch / "back.json"), problems);
-    const json::SystemPart imported = json::read_system(*json::Cursor(root, "", problems).find("system"), warnings);
+    const json::SystemPart imported =
+        json::read_system(*json::Cursor(root, "", problems).find("system"), warnings);
     REQUIRE_FALSE(problems.any());
     ModeBank b;
     b.modes.push_back({imported.nominal, imported.model});
@@ -114,8 +119,9 @@ TEST_CASE("a system survives the way to a MAT-file and back") {
       const LinearModel &m = a[j].model.linear, &n = b[j].model.linear;
       CHECK(m.is_descriptor() == n.is_descriptor());
       for (const auto part :
-           {&LinearModel::E, &LinearModel::A, &LinearModel::B, &LinearModel::Bw, &LinearModel::C, &LinearModel::D,
-            &LinearModel::Dv, &LinearModel::A_radius, &LinearModel::B_radius, &LinearModel::C_radius, &LinearModel::F}) {
+           {&LinearModel::E, &LinearModel::A, &LinearModel::B, &LinearModel::Bw, &LinearModel::C,
+            &LinearModel::D, &LinearModel::Dv, &LinearModel::A_radius, &LinearModel::B_radius,
+            &LinearModel::C_radius, &LinearModel::F}) {
         REQUIRE((m.*part).rows() == (n.*part).rows());
         REQUIRE((m.*part).cols() == (n.*part).cols());
         CHECK(m.*part == n.*part);
@@ -143,7 +149,8 @@ TEST_CASE("boxes are recognised, and only boxes") {
     const auto n = *rc::gen::inRange<Index>(1, 5);
     Box box{Vector(n), Vector(n)};
     for (Index i = 0; i < n; ++i) {
-      const double x = *rc::gen::inRange(-1000, 1000) / 64.0, y = *rc::gen::inRange(-1000, 1000) / 256.0;
+      const double x = *rc::gen::inRange(-1000, 1000) / 64.0,
+                   y = *rc::gen::inRange(-1000, 1000) / 256.0;
       box.lower[i] = std::min(x, y), box.upper[i] = std::max(x, y);
       if (*rc::gen::inRange(0, 5) == 0) box.lower[i] = -inf, box.upper[i] = inf;
       if (*rc::gen::inRange(0, 5) == 0) box.lower[i] = box.upper[i] = x;
@@ -167,8 +174,9 @@ TEST_CASE("boxes are recognised, and only boxes") {
 }
 
 TEST_CASE("bounds that are no doubles are not written") {
-  CHECK_FALSE(mat::as_box(make_zonotope(Vector{{0.1}}, Matrix{{0.7}})));        // 0.1 + 0.7 is rounded
-  CHECK_FALSE(mat::as_box(make_zonotope(Vector{{1e308}}, Matrix{{1.7e308}})));  // there is no such double
+  CHECK_FALSE(mat::as_box(make_zonotope(Vector{{0.1}}, Matrix{{0.7}})));  // 0.1 + 0.7 is rounded
+  CHECK_FALSE(
+      mat::as_box(make_zonotope(Vector{{1e308}}, Matrix{{1.7e308}})));  // there is no such double
   CHECK_FALSE(mat::as_box(make_zonotope(Vector{{1}}, Matrix{{1e-300}})));
   const Value X = mat::to_mat(make_zonotope(Vector{{0.1}}, Matrix{{0.7}}));
   CHECK(X.field("type")->text == "zonotope");
@@ -182,7 +190,9 @@ TEST_CASE("sets come back bit by bit, and as they were written") {
   CHECK(rc::check("random zonotopes", [&] {
     const auto n = *rc::gen::inRange<Index>(1, 4), m = *rc::gen::inRange<Index>(1, 4);
     const bool diagonal = *rc::gen::arbitrary<bool>();
-    const auto any = [] { return std::ldexp(*rc::gen::inRange(-100000, 100000) / 977.0, *rc::gen::inRange(-60, 60)); };
+    const auto any = [] {
+      return std::ldexp(*rc::gen::inRange(-100000, 100000) / 977.0, *rc::gen::inRange(-60, 60));
+    };
     Vector c(n);
     Matrix G = Matrix::Zero(n, diagonal ? n : m);
     for (Index i = 0; i < n; ++i) c[i] = any();
@@ -191,7 +201,8 @@ TEST_CASE("sets come back bit by bit, and as they were written") {
         if (!diagonal || i == j) G(i, j) = diagonal ? std::abs(any()) + 1e-9 : any();
       }
     }
-    const auto back = mat_to_json(mat_of(scratch, {{"X", mat::to_mat(make_zonotope(c, G))}}), {scratch / "set.json", true});
+    const auto back = mat_to_json(mat_of(scratch, {{"X", mat::to_mat(make_zonotope(c, G))}}),
+                                  {scratch / "set.json", true});
     RC_ASSERT(back.sets_only);
     json::Problems problems;
     std::vector<std::string> warnings;
@@ -221,7 +232,8 @@ TEST_CASE("the fields of a set") {
   CHECK(mat::to_mat(make_space(2)).field("type")->text == "space");
   CHECK(mat::to_mat(make_point(Vector{{1}})).field("type")->text == "point");
   CHECK(mat::to_mat(make_strip(Vector{{1, 1}}, 0, 1)).field("type")->text == "line_zonotope");
-  CHECK(mat::to_mat(make_zonotope(Vector{{0, 0}}, Matrix{{1, 1}, {0, 1}})).field("type")->text == "zonotope");
+  CHECK(mat::to_mat(make_zonotope(Vector{{0, 0}}, Matrix{{1, 1}, {0, 1}})).field("type")->text ==
+        "zonotope");
 }
 
 TEST_CASE("sets of every type come back") {
@@ -245,13 +257,19 @@ TEST_CASE("sets of every type come back") {
 TEST_CASE("one set, and the types that are not exchange forms") {
   const Scratch scratch;
   mat::Struct strip, polytope, hull;
-  strip.set("rho", mat::matrix(Matrix{{1, 2}})).set("d", mat::number(0.5)).set("sigma", mat::number(1));
-  polytope.set("H", mat::matrix(Matrix{{1, 1}})).set("h", mat::number(1)).set("lower", mat::matrix(Matrix{{-1}, {-1}}));
+  strip.set("rho", mat::matrix(Matrix{{1, 2}}))
+      .set("d", mat::number(0.5))
+      .set("sigma", mat::number(1));
+  polytope.set("H", mat::matrix(Matrix{{1, 1}}))
+      .set("h", mat::number(1))
+      .set("lower", mat::matrix(Matrix{{-1}, {-1}}));
   polytope.set("upper", mat::matrix(Matrix{{1}, {1}}));
-  hull.set("type", mat::text("polytope")).set("vertices", mat::matrix(Matrix{{0, 0}, {1, 0}, {0, 1}}));
+  hull.set("type", mat::text("polytope"))
+      .set("vertices", mat::matrix(Matrix{{0, 0}, {1, 0}, {0, 1}}));
   const std::pair<Value, std::string> cases[] = {
       {std::move(strip).value(), R"({"type": "strip", "rho": [1, 2], "d": 0.5, "sigma": 1})"},
-      {std::move(polytope).value(), R"({"type": "polytope", "lower": [-1, -1], "upper": [1, 1], "H": [[1, 1]], "h": [1]})"},
+      {std::move(polytope).value(),
+       R"({"type": "polytope", "lower": [-1, -1], "upper": [1, 1], "H": [[1, 1]], "h": [1]})"},
       {std::move(hull).value(), R"({"type": "polytope", "vertices": [[0, 0], [1, 0], [0, 1]]})"}};
   for (const auto& [value, text] : cases) {
     put(scratch / "want.json", text);
@@ -264,12 +282,14 @@ TEST_CASE("one set, and the types that are not exchange forms") {
 TEST_CASE("matrices beside a struct with a system are left out, and named") {
   const Scratch scratch;
   mat::Struct system;
-  for (const mat::Variable& v : plain()) system.set(v.name, v.name == "A" ? mat::matrix(Matrix{{3, 0}, {0, 3}}) : v.value);
+  for (const mat::Variable& v : plain())
+    system.set(v.name, v.name == "A" ? mat::matrix(Matrix{{3, 0}, {0, 3}}) : v.value);
   const auto all = with(plain(), "system", std::move(system).value());
   const ImportedStudy imported = mat_to_json(mat_of(scratch, all), {scratch / "out.json"});
   CHECK(read(scratch / "out.json").model.linear.A(0, 0) == 3);
   REQUIRE(imported.ignored.size() == 1);
-  CHECK(imported.ignored[0] == "the variables A, B, C, D, W, V (the system is taken from a struct beside them)");
+  CHECK(imported.ignored[0] ==
+        "the variables A, B, C, D, W, V (the system is taken from a struct beside them)");
   CHECK(mat_to_json(mat_of(scratch, all), {scratch / "chosen.json"}, "system").ignored.empty());
 }
 
@@ -277,8 +297,8 @@ TEST_CASE("two variables of one name are an error") {
   const Scratch scratch;
   const std::string again = mat::to_bytes({{"A", mat::matrix(Matrix{{5, 0}, {0, 5}})}});
   put(scratch / "in.mat", mat::to_bytes(plain()) + again.substr(128));  // without the header
-  CHECK_THROWS_WITH_AS(mat_to_json(scratch / "in.mat", {scratch / "out.json"}), doctest::Contains("stands there twice"),
-                       InputError);
+  CHECK_THROWS_WITH_AS(mat_to_json(scratch / "in.mat", {scratch / "out.json"}),
+                       doctest::Contains("stands there twice"), InputError);
   CHECK_FALSE(std::filesystem::exists(scratch / "out.json"));
 }
 
@@ -286,7 +306,8 @@ TEST_CASE("titles have no control characters") {
   const Scratch scratch;
   mat::Struct about;
   about.set("title", mat::text(std::string("a\0b\n\x7F\"ü", 8)));
-  mat_to_json(mat_of(scratch, with(plain(), "cordon", std::move(about).value())), {scratch / "out.json"});
+  mat_to_json(mat_of(scratch, with(plain(), "cordon", std::move(about).value())),
+              {scratch / "out.json"});
   CHECK(read(scratch / "out.json").title == "a b  \"ü");
 }
 
@@ -322,11 +343,12 @@ TEST_CASE("a matrix without columns says that there are none, [] says nothing") 
   mat::Variables all = plain();
   all.resize(4);
   all.push_back({"V", box(Matrix{{-0.1}}, Matrix{{0.1}})});
-  const ImportedStudy none = mat_to_json(mat_of(scratch, with(all, "Bw", mat::matrix(Matrix(2, 0)))), {scratch / "out.json"});
+  const ImportedStudy none = mat_to_json(
+      mat_of(scratch, with(all, "Bw", mat::matrix(Matrix(2, 0)))), {scratch / "out.json"});
   CHECK(none.missing.empty());
   CHECK(read(scratch / "out.json").model.linear.disturbances() == 0);
-  const ImportedStudy absent =
-      mat_to_json(mat_of(scratch, with(all, "Bw", mat::matrix(Matrix(0, 0)))), {scratch / "out.json", true});
+  const ImportedStudy absent = mat_to_json(
+      mat_of(scratch, with(all, "Bw", mat::matrix(Matrix(0, 0)))), {scratch / "out.json", true});
   CHECK(absent.missing == std::vector<std::string>{"W"});
 }
 
@@ -354,7 +376,8 @@ TEST_CASE("which variable is taken") {
   }
   one.set("C1", mat::number(1));
   const Value first = std::move(one).value(), second = std::move(two).value();
-  const ImportedStudy imported = mat_to_json(mat_of(scratch, {{"plant", first}, {"x", mat::number(1)}}), {scratch / "out.json"});
+  const ImportedStudy imported = mat_to_json(
+      mat_of(scratch, {{"plant", first}, {"x", mat::number(1)}}), {scratch / "out.json"});
   CHECK(imported.ignored == std::vector<std::string>{"C1"});
   const auto several = problems_of({{"plant", first}, {"other", second}});
   REQUIRE(several.size() == 1);
@@ -363,21 +386,30 @@ TEST_CASE("which variable is taken") {
   CHECK(problems_of({{"plant", first}, {"system", second}}).empty());
   CHECK(problems_of({{"plant", first}, {"other", second}}, "other").empty());
   CHECK(problems_of({{"plant", first}}, "plantt")[0].suggestion.find("plant") != std::string::npos);
-  CHECK(problems_of({{"x", mat::number(1)}})[0].message.find("no system and no sets") != std::string::npos);
-  CHECK(problems_of({{"x", mat::number(1)}}, "x")[0].message.find("neither a system nor sets") != std::string::npos);
+  CHECK(problems_of({{"x", mat::number(1)}})[0].message.find("no system and no sets") !=
+        std::string::npos);
+  CHECK(problems_of({{"x", mat::number(1)}}, "x")[0].message.find("neither a system nor sets") !=
+        std::string::npos);
 }
 
 TEST_CASE("what is wrong in a system is told by its field") {
   const double nan = std::nan("");
-  expect_problem(with(plain(), "A", mat::matrix(Matrix{{1, nan}, {0, 1}})), "/A", "holds NaN in row 1, column 2");
-  expect_problem(with(plain(), "A", mat::matrix(Matrix{{1, inf}, {0, 1}})), "/A", "holds Inf in row 1, column 2");
+  expect_problem(with(plain(), "A", mat::matrix(Matrix{{1, nan}, {0, 1}})), "/A",
+                 "holds NaN in row 1, column 2");
+  expect_problem(with(plain(), "A", mat::matrix(Matrix{{1, inf}, {0, 1}})), "/A",
+                 "holds Inf in row 1, column 2");
   expect_problem(with(plain(), "A", mat::text("x")), "/A", "is a text");
   expect_problem(with(plain(), "C", mat::matrix(Matrix{{1, 0, 0}})), "/C", "must have 2 columns");
-  expect_problem(with(plain(), "W", mat::number(1)), "/W", "must be a struct with the fields of a set");
-  expect_problem(with(plain(), "W", box(Matrix{{nan}, {1}}, Matrix{{2}, {2}})), "/W/lower", "holds NaN");
-  expect_problem(with(plain(), "W", box(Matrix{{3}, {1}}, Matrix{{2}, {2}})), "/W/lower/0", "above the upper bound");
-  expect_problem(with(plain(), "W", box(Matrix{{1, 1}, {1, 1}}, Matrix{{2}, {2}})), "/W/lower", "must be a vector");
-  expect_problem(with(plain(), "V", box(Matrix{{1}, {1}}, Matrix{{2}, {2}})), "/V", "has dimension 2");
+  expect_problem(with(plain(), "W", mat::number(1)), "/W",
+                 "must be a struct with the fields of a set");
+  expect_problem(with(plain(), "W", box(Matrix{{nan}, {1}}, Matrix{{2}, {2}})), "/W/lower",
+                 "holds NaN");
+  expect_problem(with(plain(), "W", box(Matrix{{3}, {1}}, Matrix{{2}, {2}})), "/W/lower/0",
+                 "above the upper bound");
+  expect_problem(with(plain(), "W", box(Matrix{{1, 1}, {1, 1}}, Matrix{{2}, {2}})), "/W/lower",
+                 "must be a vector");
+  expect_problem(with(plain(), "V", box(Matrix{{1}, {1}}, Matrix{{2}, {2}})), "/V",
+                 "has dimension 2");
   expect_problem(with(plain(), "Ts", mat::number(0)), "/Ts", "continuous time");
   expect_problem(with(plain(), "type", mat::text("ltti")), "/type", "unknown choice");
   expect_problem(with(plain(), "modes", mat::number(1)), "/modes", "must be a struct array");
@@ -392,14 +424,19 @@ TEST_CASE("what is wrong in a system is told by its field") {
   CHECK(problems[0].message.find("does not belong to a set of type") != std::string::npos);
   mat::Struct unknown;
   unknown.set("type", mat::text("zonotop")).set("c", mat::matrix(Matrix{{0}, {0}}));
-  CHECK(problems_of(with(plain(), "W", std::move(unknown).value()))[0].suggestion.find("zonotope") != std::string::npos);
+  CHECK(problems_of(with(plain(), "W", std::move(unknown).value()))[0].suggestion.find(
+            "zonotope") != std::string::npos);
 }
 
 TEST_CASE("effectiveness of modes: numbers, or rows [low high]") {
   const Scratch scratch;
   mat::Struct weak, deaf;
-  weak.set("name", mat::text("weak")).set("actuator", mat::matrix(Matrix{{0.25, 0.5}})).set("sensor", mat::matrix(Matrix(0, 0)));
-  deaf.set("name", mat::text("deaf")).set("actuator", mat::matrix(Matrix(0, 0))).set("sensor", mat::number(0));
+  weak.set("name", mat::text("weak"))
+      .set("actuator", mat::matrix(Matrix{{0.25, 0.5}}))
+      .set("sensor", mat::matrix(Matrix(0, 0)));
+  deaf.set("name", mat::text("deaf"))
+      .set("actuator", mat::matrix(Matrix(0, 0)))
+      .set("sensor", mat::number(0));
   const auto modes = mat::Struct::array({weak, deaf});
   mat_to_json(mat_of(scratch, with(plain(), "modes", modes)), {scratch / "out.json"});
   const Study study = read(scratch / "out.json");
@@ -409,23 +446,31 @@ TEST_CASE("effectiveness of modes: numbers, or rows [low high]") {
   CHECK(study.modes[1].model.linear.C.isZero(0));
   mat::Struct wrong;
   wrong.set("name", mat::text("x")).set("actuator", mat::matrix(Matrix{{1, 1, 1}}));
-  expect_problem(with(plain(), "modes", mat::Struct::array({wrong})), "/modes/0/actuator", "is 1 × 3");
+  expect_problem(with(plain(), "modes", mat::Struct::array({wrong})), "/modes/0/actuator",
+                 "is 1 × 3");
 }
 
 TEST_CASE("data become a CSV file, whichever way they stand") {
   const Scratch scratch;
   const Matrix u{{1, 2, 3}}, y{{0.1, 0.25, -1e-300}}, x{{1, 2, 3}, {4, 5, 6}};
   mat::Struct rows, columns;
-  rows.set("u", mat::matrix(u)).set("y", mat::matrix(y)).set("x", mat::matrix(x)).set("mode", mat::matrix(Matrix{{0, 0, -1}}));
-  columns.set("u", mat::matrix(u.transpose())).set("y", mat::matrix(y.transpose())).set("x", mat::matrix(x.transpose()));
+  rows.set("u", mat::matrix(u))
+      .set("y", mat::matrix(y))
+      .set("x", mat::matrix(x))
+      .set("mode", mat::matrix(Matrix{{0, 0, -1}}));
+  columns.set("u", mat::matrix(u.transpose()))
+      .set("y", mat::matrix(y.transpose()))
+      .set("x", mat::matrix(x.transpose()));
   columns.set("mode", mat::matrix(Matrix{{0}, {0}, {-1}}));
   std::string first;
   for (mat::Struct* data : {&rows, &columns}) {
     const ImportedStudy imported =
-        mat_to_json(mat_of(scratch, with(plain(), "data", std::move(*data).value())), {scratch / "out.json", true});
+        mat_to_json(mat_of(scratch, with(plain(), "data", std::move(*data).value())),
+                    {scratch / "out.json", true});
     REQUIRE(imported.files.size() == 2);
     const std::string text = bytes_of(scratch / "out.csv");
-    CHECK(text == "k,u_1,y_1,x_1,x_2,mode\n0,1,0.1,1,4,healthy\n1,2,0.25,2,5,healthy\n2,3,-1e-300,3,6,\n");
+    CHECK(text ==
+          "k,u_1,y_1,x_1,x_2,mode\n0,1,0.1,1,4,healthy\n1,2,0.25,2,5,healthy\n2,3,-1e-300,3,6,\n");
     const Study study = read(scratch / "out.json");
     const auto source = open_data(study);
     CHECK(source->size() == 3);
@@ -436,8 +481,8 @@ TEST_CASE("data become a CSV file, whichever way they stand") {
 TEST_CASE("data that are wrong") {
   const auto data = [](const char* name, Matrix numbers) {
     mat::Struct all;
-    for (const auto& [key, value] :
-         std::vector<std::pair<std::string, Matrix>>{{"u", Matrix{{1, 2}}}, {"y", Matrix{{1, 2}}}, {"mode", Matrix{{0, 0}}}}) {
+    for (const auto& [key, value] : std::vector<std::pair<std::string, Matrix>>{
+             {"u", Matrix{{1, 2}}}, {"y", Matrix{{1, 2}}}, {"mode", Matrix{{0, 0}}}}) {
       all.set(key, mat::matrix(key == name ? numbers : value));
     }
     return with(plain(), "data", std::move(all).value());
@@ -456,11 +501,14 @@ TEST_CASE("nothing is replaced unless asked for") {
   const Scratch scratch;
   put(scratch / "out.json", "mine");
   const auto mat = mat_of(scratch, plain());
-  CHECK_THROWS_WITH_AS(mat_to_json(mat, {scratch / "out.json"}), doctest::Contains("exists already"), Error);
+  CHECK_THROWS_WITH_AS(mat_to_json(mat, {scratch / "out.json"}),
+                       doctest::Contains("exists already"), Error);
   CHECK(bytes_of(scratch / "out.json") == "mine");
   CHECK(tree(scratch.path()).size() == 2);
   mat_to_json(mat, {scratch / "out.json", true});
   CHECK(bytes_of(scratch / "out.json") != "mine");
-  CHECK_THROWS_WITH_AS(mat_to_json(mat, {scratch / "absent" / "out.json"}), doctest::Contains("no directory"), Error);
-  CHECK_THROWS_WITH_AS(mat_to_json(mat, {scratch.path(), true}), doctest::Contains("is a directory"), Error);
+  CHECK_THROWS_WITH_AS(mat_to_json(mat, {scratch / "absent" / "out.json"}),
+                       doctest::Contains("no directory"), Error);
+  CHECK_THROWS_WITH_AS(mat_to_json(mat, {scratch.path(), true}),
+                       doctest::Contains("is a directory"), Error);
 }

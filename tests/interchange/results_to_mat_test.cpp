@@ -89,7 +89,8 @@ TEST_CASE("steps become rows") {
 
 TEST_CASE("points of a sweep become columns") {
   ResultTable table;
-  table.axes = {{"max generators", "/x", {"10", "20"}, false}, {"noise", "/y", {"\"uniform\"", "\"vertex\""}, true}};
+  table.axes = {{"max generators", "/x", {"10", "20"}, false},
+                {"noise", "/y", {"\"uniform\"", "\"vertex\""}, true}};
   table.pipelines = {"first", "second one"};
   table.columns = {{"radius", false}, {"median step", true}};
   table.rows = {{0, {0, 1}, {0.5, 7}, ""}, {1, {1, 0}, {std::nan(""), 8}, "stopped"}};

@@ -12,7 +12,9 @@ using nlohmann::json;
 
 namespace {
 
-void put(const std::filesystem::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+void put(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 json rewritten(const std::string& text, MatrixForm form) {
   const Scratch scratch;
@@ -35,7 +37,8 @@ std::string diagonal(int n) {
 
 TEST_CASE("a large diagonal becomes sparse, and comes back") {
   const std::string set =
-      R"({"type": "zonotope", "center": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], "generators": )" + diagonal(12) + "}";
+      R"({"type": "zonotope", "center": [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], "generators": )" +
+      diagonal(12) + "}";
   const json sparse = rewritten(set, MatrixForm::sparse);
   CHECK(sparse["generators"]["rows"] == 12);
   CHECK(sparse["generators"]["cols"] == 12);
@@ -48,12 +51,14 @@ TEST_CASE("rows come before columns") {
   const std::string zeros(60, '0');
   std::string row;
   for (const char c : zeros) row += std::string(row.empty() ? "" : ", ") + c;
-  const json sparse = rewritten(R"({"cordon": 1, "A": [[)" + row + ", 7], [" + row + ", 0]]}", MatrixForm::sparse);
+  const json sparse =
+      rewritten(R"({"cordon": 1, "A": [[)" + row + ", 7], [" + row + ", 0]]}", MatrixForm::sparse);
   CHECK(sparse["A"] == json::parse(R"({"rows": 2, "cols": 61, "entries": [[1, 61, 7]]})"));
 }
 
 TEST_CASE("what would be longer stays dense") {
-  const std::string set = R"({"type": "zonotope", "center": [0, 0], "generators": [[1, 0], [0, 1]]})";
+  const std::string set =
+      R"({"type": "zonotope", "center": [0, 0], "generators": [[1, 0], [0, 1]]})";
   CHECK(rewritten(set, MatrixForm::sparse) == json::parse(set));
 }
 
@@ -77,14 +82,17 @@ TEST_CASE("nothing but matrices is touched") {
 
 TEST_CASE("a matrix that a sweep looks into keeps its form") {
   const std::string zeros =
-      "[[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]]";
-  const std::string head =
-      R"({"cordon": 1, "pipelines": [{"gain": )" + zeros + R"(}], "other": )" + zeros + R"(, "sweep": [{"path": ")";
+      "[[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, "
+      "0, 0, 0, 0, 0]]";
+  const std::string head = R"({"cordon": 1, "pipelines": [{"gain": )" + zeros + R"(}], "other": )" +
+                           zeros + R"(, "sweep": [{"path": ")";
   const json swept = rewritten(head + "/pipelines/*/gain/0/3\"}]}", MatrixForm::sparse);
   CHECK(swept["pipelines"][0]["gain"].is_array());
   CHECK(swept["other"].is_object());
-  CHECK(rewritten(head + "/pipelines/0/gains/0/3\"}]}", MatrixForm::sparse)["pipelines"][0]["gain"].is_object());
-  CHECK(rewritten(head + "/other\"}]}", MatrixForm::sparse)["other"].is_object());  // the whole matrix is exchanged
+  CHECK(rewritten(head + "/pipelines/0/gains/0/3\"}]}", MatrixForm::sparse)["pipelines"][0]["gain"]
+            .is_object());
+  CHECK(rewritten(head + "/other\"}]}", MatrixForm::sparse)["other"]
+            .is_object());  // the whole matrix is exchanged
   const json kept = rewritten(
       R"({"cordon": 1, "A": {"rows": 3, "cols": 3, "entries": [[1, 2, 3], [2, 2, 2]]}, "sweep": [{"path": "/A/entries/0/2"}]})",
       MatrixForm::dense);
@@ -93,8 +101,8 @@ TEST_CASE("a matrix that a sweep looks into keeps its form") {
 
 TEST_CASE("a study is the same study in both forms") {
   const Scratch scratch;
-  for (const char* text :
-       {study_test::valid_study, study_test::diagnosis_study, study_test::uncertain_study, study_test::design_study}) {
+  for (const char* text : {study_test::valid_study, study_test::diagnosis_study,
+                           study_test::uncertain_study, study_test::design_study}) {
     put(scratch / "in.json", text);
     CHECK(json_file(scratch / "in.json") == JsonFile::study);
     rewrite_matrices(scratch / "in.json", {scratch / "sparse.json", true}, MatrixForm::sparse);
@@ -107,13 +115,16 @@ TEST_CASE("a study is the same study in both forms") {
 
 TEST_CASE("files of other kinds are refused") {
   const Scratch scratch;
-  for (const auto& [text, kind] : std::vector<std::pair<std::string, JsonFile>>{{"{\"cordon_results\": 1}", JsonFile::results},
-                                                                                {"[1, 2]", JsonFile::other},
-                                                                                {"{\"type\": \"ball\"}", JsonFile::other},
-                                                                                {"[]", JsonFile::other}}) {
+  for (const auto& [text, kind] :
+       std::vector<std::pair<std::string, JsonFile>>{{"{\"cordon_results\": 1}", JsonFile::results},
+                                                     {"[1, 2]", JsonFile::other},
+                                                     {"{\"type\": \"ball\"}", JsonFile::other},
+                                                     {"[]", JsonFile::other}}) {
     put(scratch / "in.json", text);
     CHECK(json_file(scratch / "in.json") == kind);
-    CHECK_THROWS_AS(rewrite_matrices(scratch / "in.json", {scratch / "out.json"}, MatrixForm::dense), InputError);
+    CHECK_THROWS_AS(
+        rewrite_matrices(scratch / "in.json", {scratch / "out.json"}, MatrixForm::dense),
+        InputError);
     CHECK_FALSE(std::filesystem::exists(scratch / "out.json"));
   }
   put(scratch / "in.json", "{");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plants of [Pourasghar2021, section 6] with the inputs, bounds and initial sets of the comparison of observers.
+// The plants of [Pourasghar2021, section 6] with the inputs, bounds and initial sets of the
+// comparison of observers.
 #pragma once
 
 #include "diagnosis/banks.hpp"
@@ -8,7 +9,8 @@ namespace comparison {
 
 using namespace cordon;
 
-/// "68", "70" (with A(1,2) < 0) with matrices A known to ± .01, "68 exact", and "72", two tanks with the disturbance .3 B θ.
+/// "68", "70" (with A(1,2) < 0) with matrices A known to ± .01, "68 exact", and "72", two tanks
+/// with the disturbance .3 B θ.
 inline Model plant(const std::string& name) {
   const bool tanks = name == "72";
   Model model;
@@ -37,13 +39,15 @@ inline Model plant(const std::string& name) {
 }
 
 inline Vector input(const std::string& plant, Index k) {
-  return Vector::Constant(1, plant == "72" ? 1.0 : std::sin(3 * std::numbers::pi * static_cast<double>(k) / 200));
+  return Vector::Constant(
+      1, plant == "72" ? 1.0 : std::sin(3 * std::numbers::pi * static_cast<double>(k) / 200));
 }
 
 /// A plant with constant parameters: the entries of A, or the θ of the two tanks.
 class Truth {
  public:
-  Truth(const std::string& name, banks::Draw draw) : name_(name), model_(plant(name)), draw_(std::move(draw)) {
+  Truth(const std::string& name, banks::Draw draw)
+      : name_(name), model_(plant(name)), draw_(std::move(draw)) {
     LinearModel& m = model_.linear;
     for (Index i = 0; i < m.A_radius.size(); ++i) m.A(i) += m.A_radius(i) * draw_();
     theta_ = draw_();
@@ -69,7 +73,8 @@ class Truth {
 };
 
 inline Params with_gain(const Matrix& L, const std::string& name = "gain") {
-  return Params().set(name, std::make_shared<const ComponentSpec>(ComponentSpec{"given", Params().set("matrix", L)}));
+  return Params().set(name, std::make_shared<const ComponentSpec>(
+                                ComponentSpec{"given", Params().set("matrix", L)}));
 }
 
 }  // namespace comparison

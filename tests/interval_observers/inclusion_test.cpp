@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The truth is never outside: every published case on many seeds, with noise uniform and at vertices and one matrix per run. The
-// number of seeds is CORDON_SEEDS (default 50).
+// The truth is never outside: every published case on many seeds, with noise uniform and at
+// vertices and one matrix per run. The number of seeds is CORDON_SEEDS (default 50).
 #include <cstdlib>
 
 #include <doctest/doctest.h>
@@ -40,7 +40,8 @@ Count run(Observer& observer, const std::string& plant, std::uint64_t seed, bool
   return count;
 }
 
-void expect_inclusion(const std::string& observer_name, const PublishedWidths& published, const Params& params) {
+void expect_inclusion(const std::string& observer_name, const PublishedWidths& published,
+                      const Params& params) {
   const Model model = plant(published.plant);
   const char* sets = observer_name == "zonotope_uncertain" ? "zonotope" : "interval";
   const auto observer = registry().make_observer(observer_name, {model, backend(sets)}, params);
@@ -65,7 +66,8 @@ void expect_inclusion(const std::string& observer_name, const PublishedWidths& p
 
 TEST_CASE("set-based observer") {
   for (const PublishedWidths& published : set_based())
-    expect_inclusion("zonotope_uncertain", published, with_gain(published.L).set("max_generators", std::int64_t{20}));
+    expect_inclusion("zonotope_uncertain", published,
+                     with_gain(published.L).set("max_generators", std::int64_t{20}));
 }
 
 TEST_CASE("upper and lower trajectories") {
@@ -76,7 +78,8 @@ TEST_CASE("upper and lower trajectories") {
 TEST_CASE("upper and lower trajectories, each with a gain of its own") {
   for (const PublishedWidths& published : trajectories()) {
     Params params = with_gain(published.L, "upper_gain");
-    const Matrix other = published.plant == "72" ? Matrix{{.01}, {.9903}} : Matrix{{.2892}, {.295}, {.8001}};
+    const Matrix other =
+        published.plant == "72" ? Matrix{{.01}, {.9903}} : Matrix{{.2892}, {.295}, {.8001}};
     params.set("lower_gain", with_gain(other).values().at("gain"));
     expect_inclusion("interval_trajectory", published, params);
   }
@@ -85,6 +88,7 @@ TEST_CASE("upper and lower trajectories, each with a gain of its own") {
 TEST_CASE("integrated observer") {
   for (const PublishedWidths& published : trajectories()) {
     const LinearModel m = plant(published.plant).linear;
-    if ((m.A - published.L * m.C).minCoeff() >= -1e-12) expect_inclusion("integrated", published, with_gain(published.L));
+    if ((m.A - published.L * m.C).minCoeff() >= -1e-12)
+      expect_inclusion("integrated", published, with_gain(published.L));
   }
 }

@@ -14,16 +14,22 @@ using cordon::estimators::InnerEnvelope;
 
 namespace {
 
-Params samples(std::int64_t count, std::int64_t seed = 1) { return Params().set("inner_samples", count).set("inner_seed", seed); }
-Params with_samples(Params params, std::int64_t count) { return params.set("inner_samples", count); }
+Params samples(std::int64_t count, std::int64_t seed = 1) {
+  return Params().set("inner_samples", count).set("inner_seed", seed);
+}
+Params with_samples(Params params, std::int64_t count) {
+  return params.set("inner_samples", count);
+}
 
 bool lies_in(const Box& inner, const Box& outer, double slack) {
   slack *= 1 + outer.longest_half_edge() + outer.lower.cwiseAbs().maxCoeff();
-  return (inner.lower.array() >= outer.lower.array() - slack).all() && (inner.upper.array() <= outer.upper.array() + slack).all();
+  return (inner.lower.array() >= outer.lower.array() - slack).all() &&
+         (inner.upper.array() <= outer.upper.array() + slack).all();
 }
 
 double distance(const Box& a, const Box& b) {
-  return std::max((a.lower - b.lower).cwiseAbs().maxCoeff(), (a.upper - b.upper).cwiseAbs().maxCoeff());
+  return std::max((a.lower - b.lower).cwiseAbs().maxCoeff(),
+                  (a.upper - b.upper).cwiseAbs().maxCoeff());
 }
 
 /// Reach of the observer's recursion for one A, its generators listed one by one.
@@ -33,7 +39,8 @@ Box reach(const Model& model, const Matrix& A, const Matrix& L, const std::vecto
   Matrix G = model.X0.G;
   for (const Sample& now : data) {
     const Matrix closed = A - L * m.C, noise = m.Bw * model.W.G, measured = L * m.Dv * model.V.G;
-    c = (closed * c + (m.B - L * m.D) * now.u + L * now.y + m.Bw * model.W.c - L * m.Dv * model.V.c).eval();
+    c = (closed * c + (m.B - L * m.D) * now.u + L * now.y + m.Bw * model.W.c - L * m.Dv * model.V.c)
+            .eval();
     Matrix next(G.rows(), G.cols() + noise.cols() + measured.cols());
     next << closed * G, noise, measured;
     G = next;
@@ -46,7 +53,8 @@ Box reach(const Model& model, const Matrix& A, const Matrix& L, const std::vecto
 void expect_inside(const std::string& observer_name, const std::string& sets) {
   const Model model = random_model(true);
   const Matrix L = random_gain(model.linear);
-  const auto observer = registry().make_observer(observer_name, {model, backend(sets)}, with_samples(with_gain(L), 20));
+  const auto observer = registry().make_observer(observer_name, {model, backend(sets)},
+                                                 with_samples(with_gain(L), 20));
   InnerEnvelope inner(model, L, samples(20));
   Truth truth(model, random_draw(), *rc::gen::arbitrary<bool>());
   inner.start(model.X0);
@@ -78,11 +86,14 @@ TEST_CASE("inside the hull of every observer") {
 TEST_CASE("exact matrices and a monotone gain: the inner estimate is the estimate") {
   for (const comparison::PublishedWidths& published : comparison::trajectories()) {
     const Model model = comparison::plant(published.plant);
-    if (model.linear.is_uncertain() || (model.linear.A - published.L * model.linear.C).minCoeff() < -1e-12) continue;
+    if (model.linear.is_uncertain() ||
+        (model.linear.A - published.L * model.linear.C).minCoeff() < -1e-12)
+      continue;
     CAPTURE(published.plant);
     for (const char* name : {"interval_trajectory", "integrated", "zonotope_uncertain"}) {
-      const auto observer = registry().make_observer(name, {model, backend(name[0] == 'z' ? "zonotope" : "interval")},
-                                                     with_samples(with_gain(published.L), 1));
+      const auto observer =
+          registry().make_observer(name, {model, backend(name[0] == 'z' ? "zonotope" : "interval")},
+                                   with_samples(with_gain(published.L), 1));
       comparison::Truth truth(published.plant, {std::mt19937_64(3), false});
       for (Index k = 0; k <= 200; ++k) {
         const Vector u = comparison::input(published.plant, k);
@@ -91,13 +102,15 @@ TEST_CASE("exact matrices and a monotone gain: the inner estimate is the estimat
         REQUIRE(inner.has_value());
         CHECK(hull.contains(inner->lower));
         CHECK(hull.contains(inner->upper));
-        CHECK(distance(*inner, hull) <= 1e-12 * (1 + hull.upper.cwiseAbs().maxCoeff() + hull.lower.cwiseAbs().maxCoeff()));
+        CHECK(distance(*inner, hull) <=
+              1e-12 * (1 + hull.upper.cwiseAbs().maxCoeff() + hull.lower.cwiseAbs().maxCoeff()));
       }
     }
   }
 }
 
-TEST_CASE("a positive system: both ends of the interval matrix give what a grid of matrices gives") {
+TEST_CASE(
+    "a positive system: both ends of the interval matrix give what a grid of matrices gives") {
   Model model;
   LinearModel& m = model.linear;
   m.A = Matrix{{.5, .2}, {.1, .6}};
@@ -118,7 +131,8 @@ TEST_CASE("a positive system: both ends of the interval matrix give what a grid 
     Box grid{Vector::Constant(2, 1e9), Vector::Constant(2, -1e9)};
     for (int entry = 0; entry < 5 * 5 * 5 * 5; ++entry) {
       Matrix A = m.A;
-      for (int i = 0, rest = entry; i < 4; ++i, rest /= 5) A(i) += m.A_radius(i) * (.5 * (rest % 5) - 1);
+      for (int i = 0, rest = entry; i < 4; ++i, rest /= 5)
+        A(i) += m.A_radius(i) * (.5 * (rest % 5) - 1);
       const Box one = reach(model, A, L, data);
       grid = {grid.lower.cwiseMin(one.lower), grid.upper.cwiseMax(one.upper)};
     }
@@ -139,7 +153,8 @@ TEST_CASE("radii of B and C are drawn too, and the seed decides") {
   };
   const Vector exact = widths(100, 1);
   CHECK(widths(1, 1) == exact);
-  model.linear.B_radius = Matrix{{0}, {0}, {.1}};  // x3⁺ = … ± .1 · 2 in each of the steps, of which A - L C keeps nothing
+  model.linear.B_radius = Matrix{
+      {0}, {0}, {.1}};  // x3⁺ = … ± .1 · 2 in each of the steps, of which A - L C keeps nothing
   CHECK(widths(1, 1)[2] == doctest::Approx(exact[2] + .2));
   model.linear.B_radius = {};
   model.linear.C_radius = Matrix{{0, 0, .1}};
@@ -148,11 +163,13 @@ TEST_CASE("radii of B and C are drawn too, and the seed decides") {
 }
 
 TEST_CASE("random matrices add to the reach where ends do not attain it; the seed decides which") {
-  const Model model = comparison::plant("70");  // A(1,2) < 0: ends of the interval attain neither bound
+  const Model model =
+      comparison::plant("70");  // A(1,2) < 0: ends of the interval attain neither bound
   const auto radius = [&](std::int64_t count, std::int64_t seed) {
     InnerEnvelope inner(model, Matrix{{.2754}, {1.0571}, {.7724}}, samples(count, seed));
     inner.start(model.X0);
-    for (Index k = 0; k < 20; ++k) inner.step({k, Vector::Constant(1, k % 7 < 4 ? 2 : -3), Vector::Constant(1, k % 5 - 2.0)});
+    for (Index k = 0; k < 20; ++k)
+      inner.step({k, Vector::Constant(1, k % 7 < 4 ? 2 : -3), Vector::Constant(1, k % 5 - 2.0)});
     return Vector(inner.hull()->radius());
   };
   CHECK((radius(50, 1) - radius(1, 1)).maxCoeff() > 1e-3);
@@ -161,10 +178,13 @@ TEST_CASE("random matrices add to the reach where ends do not attain it; the see
   CHECK((radius(200, 1) - radius(50, 1)).minCoeff() >= 0);
 }
 
-TEST_CASE("it is offered where it is asked for and where the sets have generators, until a set is replaced") {
+TEST_CASE(
+    "it is offered where it is asked for and where the sets have generators, until a set is "
+    "replaced") {
   Model model = comparison::plant("68");
   const Params params = with_gain(Matrix{{.3}, {.2}, {.8}});
-  const Sample first{0, Vector::Zero(1), Vector::Zero(1)}, second{1, Vector::Zero(1), Vector::Zero(1)};
+  const Sample first{0, Vector::Zero(1), Vector::Zero(1)},
+      second{1, Vector::Zero(1), Vector::Zero(1)};
   for (const char* name : {"interval_trajectory", "integrated", "zonotope_uncertain"}) {
     CAPTURE(name);
     const auto sets = backend("constrained_zonotope");
@@ -188,18 +208,22 @@ TEST_CASE("it is offered where it is asked for and where the sets have generator
     REQUIRE(observer->inner_estimate().has_value());
     CHECK(observer->inner_estimate()->lower[0] == doctest::Approx(2));
     const Matrix half{{1, 0, 0}};
-    observer->start(sets->correct(sets->box({Vector::Constant(3, 2), Vector::Constant(3, 3)}),
-                                  {half,
-                                   Vector::Constant(1, 2),
-                                   {Matrix::Identity(1, 1), sets->box({Vector::Constant(1, -.5), Vector::Constant(1, .5)})}}));
+    observer->start(
+        sets->correct(sets->box({Vector::Constant(3, 2), Vector::Constant(3, 3)}),
+                      {half,
+                       Vector::Constant(1, 2),
+                       {Matrix::Identity(1, 1),
+                        sets->box({Vector::Constant(1, -.5), Vector::Constant(1, .5)})}}));
     observer->step(first);
     CHECK_FALSE(observer->inner_estimate().has_value());
 
-    const auto outward = registry().make_backend("interval", Params().set("rounding", std::string("outward")));
+    const auto outward =
+        registry().make_backend("interval", Params().set("rounding", std::string("outward")));
     const auto rounded = registry().make_observer(name, {model, outward}, with_samples(params, 3));
     rounded->step(first);
     CHECK(rounded->inner_estimate().has_value());
-    rounded->start(outward->box({Vector::Constant(3, 2), Vector::Constant(3, 3)}));  // whose exchange form encloses it
+    rounded->start(outward->box(
+        {Vector::Constant(3, 2), Vector::Constant(3, 3)}));  // whose exchange form encloses it
     rounded->step(first);
     CHECK_FALSE(rounded->inner_estimate().has_value());
 

@@ -12,11 +12,13 @@ using comparison::with_gain;
 namespace {
 
 std::shared_ptr<const SetBackend> backend_of(const std::string& name) {
-  return name == "outward interval" ? registry().make_backend("interval", Params().set("rounding", std::string("outward")))
-                                    : backend(name);
+  return name == "outward interval"
+             ? registry().make_backend("interval", Params().set("rounding", std::string("outward")))
+             : backend(name);
 }
 
-void expect_truth_inside(const std::string& observer_name, const std::string& sets, bool two_gains) {
+void expect_truth_inside(const std::string& observer_name, const std::string& sets,
+                         bool two_gains) {
   const Model model = random_model(true);
   Params params = with_gain(random_gain(model.linear), two_gains ? "upper_gain" : "gain");
   if (two_gains) params.set("lower_gain", with_gain(random_gain(model.linear)).values().at("gain"));
@@ -58,8 +60,10 @@ TEST_CASE("the truth is never outside, on every backend, with one gain or two") 
   for (const std::string& name : sets) {
     CAPTURE(name);
     CHECK(rc::check("sets", [&] { expect_truth_inside("zonotope_uncertain", name, false); }));
-    CHECK(rc::check("trajectories", [&] { expect_truth_inside("interval_trajectory", name, false); }));
-    CHECK(rc::check("trajectories with two gains", [&] { expect_truth_inside("interval_trajectory", name, true); }));
+    CHECK(rc::check("trajectories",
+                    [&] { expect_truth_inside("interval_trajectory", name, false); }));
+    CHECK(rc::check("trajectories with two gains",
+                    [&] { expect_truth_inside("interval_trajectory", name, true); }));
   }
 }
 
@@ -85,13 +89,15 @@ TEST_CASE("monotone gain, generators of one sign: three observers, the same hull
   }));
 }
 
-/// A generator with entries of both signs, mapped by a monotone matrix: its box is mapped to a larger one.
+/// A generator with entries of both signs, mapped by a monotone matrix: its box is mapped to a
+/// larger one.
 TEST_CASE("a generator with two signs: the interval observer is strictly wider") {
   Model model = comparison::plant("68");
   model.X0 = make_zonotope(Vector::Zero(3), Matrix{{1}, {-1}, {0}});
   const Params params = with_gain(Matrix{{.3}, {.2}, {.8}});
   const auto bounds = registry().make_observer("integrated", {model, backend("interval")}, params),
-             sets = registry().make_observer("zonotope_uncertain", {model, backend("zonotope")}, params);
+             sets = registry().make_observer("zonotope_uncertain", {model, backend("zonotope")},
+                                             params);
   for (Index k = 0; k < 20; ++k) {
     const Sample now{k, Vector::Zero(1), Vector::Zero(1)};
     const Box a = bounds->step(now).set->interval_hull(), b = sets->step(now).set->interval_hull();
@@ -111,7 +117,8 @@ TEST_CASE("centre and radius are the split recursion of both bounds") {
     const Matrix upper = random_gain(m), lower = random_gain(m);
     Params params = with_gain(upper, "upper_gain");
     params.set("lower_gain", with_gain(lower).values().at("gain"));
-    const auto observer = registry().make_observer("interval_trajectory", {model, backend("interval")}, params);
+    const auto observer =
+        registry().make_observer("interval_trajectory", {model, backend("interval")}, params);
     Truth truth(model, random_draw(), true);
     const Vector radius = model.X0.G.cwiseAbs().rowwise().sum();
     Vector lo = model.X0.c - radius, hi = model.X0.c + radius;
@@ -127,7 +134,8 @@ TEST_CASE("centre and radius are the split recursion of both bounds") {
         if (m.A_radius.size() != 0) open += m.A_radius * size;
         if (m.B_radius.size() != 0) open += m.B_radius * u.cwiseAbs();
         if (m.C_radius.size() != 0) open += L.cwiseAbs() * (m.C_radius * size);
-        return Vector(closed.cwiseMax(0) * near + closed.cwiseMin(0) * far + (m.B - L * m.D) * u + L * y + sign * open);
+        return Vector(closed.cwiseMax(0) * near + closed.cwiseMin(0) * far + (m.B - L * m.D) * u +
+                      L * y + sign * open);
       };
       const Vector hi_next = bound(upper, hi, lo, 1), lo_next = bound(lower, lo, hi, -1);
       if ((hi_next - lo_next).minCoeff() < 1e-6) return;  // crossing is another test
@@ -152,21 +160,22 @@ TEST_CASE("ranges of sensors and actuators, one step by hand") {
   m.sensor = range(.25, .75);  // .5 ± .25
   model.X0 = box_around(Vector{{1, 2}}, Vector{{.5, 1}});
   model.W = model.V = make_point(Vector(0));
-  const auto observer =
-      registry().make_observer("interval_trajectory", {model, backend("interval")}, with_gain(Matrix{{.5}, {-.5}}));
+  const auto observer = registry().make_observer(
+      "interval_trajectory", {model, backend("interval")}, with_gain(Matrix{{.5}, {-.5}}));
   observer->step({0, Vector::Constant(1, 2), Vector::Constant(1, 3)});
   const Box next = observer->step({1, Vector::Zero(1), Vector::Zero(1)}).set->interval_hull();
   // C̄ = [.5 .5], D̄ = .25: Ao = [.25 -.25; .5 .75], B - L D̄ = (.875, 2.125)
   const Vector c{{.25 - .5 + .875 * 1.5 + 1.5, .5 + 1.5 + 2.125 * 1.5 - 1.5}};
   // δ = .25 (|3 + .75| + 1.5 + .5 · .5) + .75 · .1 · 1.5
   const double delta = .25 * (3.75 + 1.5 + .25) + .1125;
-  const Vector r{{.125 + .25 + .875 * .5 + .5 * delta, .25 + .75 + 2.125 * .5 + .5 * 2 + .5 * delta}};
+  const Vector r{
+      {.125 + .25 + .875 * .5 + .5 * delta, .25 + .75 + 2.125 * .5 + .5 * 2 + .5 * delta}};
   CHECK(largest(next.center() - c) < 1e-13);
   CHECK(largest(next.radius() - r) < 1e-13);
 }
 
-/// Without noise and uncertainty the box has the width of its rounding errors: the exact trajectory, computed with longer
-/// numbers, is inside without any slack.
+/// Without noise and uncertainty the box has the width of its rounding errors: the exact
+/// trajectory, computed with longer numbers, is inside without any slack.
 TEST_CASE("rounding errors are inside the bounds") {
   CHECK(rc::check("the exact trajectory is inside", [] {
     Model model = random_model(false);
@@ -178,11 +187,13 @@ TEST_CASE("rounding errors are inside the bounds") {
     model.W = model.V = make_point(Vector::Zero(2));
     model.X0 = make_point(model.X0.c);
     const auto observer =
-        registry().make_observer("interval_trajectory", {model, backend("interval")}, with_gain(Matrix::Zero(n, m.outputs())));
+        registry().make_observer("interval_trajectory", {model, backend("interval")},
+                                 with_gain(Matrix::Zero(n, m.outputs())));
     Long x = model.X0.c.cast<long double>();
     for (Index k = 0; k < 60; ++k) {
       const Vector u = random_matrix(m.inputs(), 1, 1e-3).col(0);
-      const Box hull = observer->step({k, u, random_matrix(m.outputs(), 1, 1).col(0)}).set->interval_hull();
+      const Box hull =
+          observer->step({k, u, random_matrix(m.outputs(), 1, 1).col(0)}).set->interval_hull();
       for (Index i = 0; i < n; ++i) RC_ASSERT(hull.lower[i] <= x[i] && x[i] <= hull.upper[i]);
       RC_ASSERT(hull.longest_half_edge() <= 1e-11 * (1 + largest(hull.lower)));
       x = (m.A.cast<long double>() * x + m.B.cast<long double>() * u.cast<long double>()).eval();
@@ -205,11 +216,13 @@ TEST_CASE("rounding errors of the radii are inside the bounds") {
     Vector c(n), r(n);
     recursion.next(Vector::Zero(n), Vector::Zero(n), {0, u, Vector::Zero(m.outputs())}, c, r);
     const Long most = m.B_radius.cast<long double>() * u.cwiseAbs().cast<long double>();
-    for (Index i = 0; i < n; ++i) RC_ASSERT(r[i] >= most[i] && r[i] <= (1 + 1e-13L) * most[i] + 1e-300L);
+    for (Index i = 0; i < n; ++i)
+      RC_ASSERT(r[i] >= most[i] && r[i] <= (1 + 1e-13L) * most[i] + 1e-300L);
   }));
   CHECK(rc::check("a box by centre and radius", [] {
     const double a = number(-3, 3), b = a + number(0, 1e-3);
-    const auto [c, r] = cordon::estimators::around({Vector::Constant(1, std::min(a, b)), Vector::Constant(1, std::max(a, b))});
+    const auto [c, r] = cordon::estimators::around(
+        {Vector::Constant(1, std::min(a, b)), Vector::Constant(1, std::max(a, b))});
     const long double center = c[0], radius = r[0];
     RC_ASSERT(center - radius <= a && b <= center + radius);
   }));
@@ -224,12 +237,15 @@ TEST_CASE("a set that replaces the estimate is where the observer goes on from")
     const auto replaced = registry().make_observer(name, {model, sets}, params),
                begun = registry().make_observer(name, {model, sets}, params);
     const Enclosure X = sets->box({Vector{{2, 3, 4}}, Vector{{3, 5, 4.5}}});
-    const auto sample = [](Index k) { return Sample{k, Vector::Constant(1, .5), Vector::Constant(1, 4.2)}; };
+    const auto sample = [](Index k) {
+      return Sample{k, Vector::Constant(1, .5), Vector::Constant(1, 4.2)};
+    };
     replaced->step(sample(0));
     replaced->replace(X);
     begun->start(X);
     CHECK(begun->step(sample(0)).set->interval_hull().upper[1] == doctest::Approx(5));
-    const Box a = replaced->step(sample(1)).set->interval_hull(), b = begun->step(sample(1)).set->interval_hull();
+    const Box a = replaced->step(sample(1)).set->interval_hull(),
+              b = begun->step(sample(1)).set->interval_hull();
     CHECK(a.lower == b.lower);
     CHECK(a.upper == b.upper);
     begun->start();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Widths hi - lo of the plants of comparison_plants.hpp, computed apart from this project: zero noise, exact matrices, x0 = 0,
-// zonotopes kept to 20 generators.
+// Widths hi - lo of the plants of comparison_plants.hpp, computed apart from this project: zero
+// noise, exact matrices, x0 = 0, zonotopes kept to 20 generators.
 #pragma once
 
 #include <map>

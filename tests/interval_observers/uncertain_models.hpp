@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random models with interval matrices, gains for them, and a simulation apart from the product's own.
+// Random models with interval matrices, gains for them, and a simulation apart from the product's
+// own.
 #pragma once
 
 #include <rapidcheck.h>
@@ -11,7 +12,9 @@ namespace uncertain {
 using namespace cordon;
 using namespace banks;
 
-inline double number(double low, double high) { return low + (high - low) * (*rc::gen::inRange(0, 1'000'001)) * 1e-6; }
+inline double number(double low, double high) {
+  return low + (high - low) * (*rc::gen::inRange(0, 1'000'001)) * 1e-6;
+}
 
 inline Matrix random_matrix(Index rows, Index cols, double size) {
   Matrix A(rows, cols);
@@ -32,12 +35,14 @@ inline LineForm random_zonotope(Index n, Index generators, double center, double
   return make_zonotope(random_matrix(n, 1, center).col(0), random_matrix(n, generators, size));
 }
 
-/// Up to three states, inputs and outputs; each of the three matrices is uncertain or not, W and V are not symmetric about 0 and
-/// no boxes. Every row of |A| adds up to .6 at most.
+/// Up to three states, inputs and outputs; each of the three matrices is uncertain or not, W and V
+/// are not symmetric about 0 and no boxes. Every row of |A| adds up to .6 at most.
 inline Model random_model(bool ranges) {
-  const Index n = *rc::gen::inRange(1, 4), inputs = *rc::gen::inRange(1, 4), outputs = *rc::gen::inRange(1, 3);
+  const Index n = *rc::gen::inRange(1, 4), inputs = *rc::gen::inRange(1, 4),
+              outputs = *rc::gen::inRange(1, 3);
   const auto radius = [](Index rows, Index cols) {
-    return *rc::gen::arbitrary<bool>() ? Matrix(random_matrix(rows, cols, .1).cwiseAbs()) : Matrix{};
+    return *rc::gen::arbitrary<bool>() ? Matrix(random_matrix(rows, cols, .1).cwiseAbs())
+                                       : Matrix{};
   };
   Model model;
   LinearModel& m = model.linear;
@@ -68,10 +73,12 @@ inline Matrix random_gain(const LinearModel& m) {
   return most > 0 ? Matrix(.35 / std::max(.35, most) * L) : L;
 }
 
-/// A plant with matrices somewhere in their intervals, drawn once and for all or anew for every step.
+/// A plant with matrices somewhere in their intervals, drawn once and for all or anew for every
+/// step.
 class Truth {
  public:
-  Truth(const Model& model, Draw draw, bool constant) : model_(model), draw_(std::move(draw)), constant_(constant) {
+  Truth(const Model& model, Draw draw, bool constant)
+      : model_(model), draw_(std::move(draw)), constant_(constant) {
     x = draw_.from(model.X0);
     draw_matrices();
   }
@@ -101,7 +108,8 @@ class Truth {
 };
 
 inline Draw random_draw() {
-  return {std::mt19937_64(static_cast<std::uint64_t>(*rc::gen::inRange(1, 1'000'000))), *rc::gen::arbitrary<bool>()};
+  return {std::mt19937_64(static_cast<std::uint64_t>(*rc::gen::inRange(1, 1'000'000))),
+          *rc::gen::arbitrary<bool>()};
 }
 
 /// Is x in the set, up to rounding errors?
@@ -111,7 +119,8 @@ inline bool may_contain(const Enclosure& X, const Vector& x) {
 }
 
 inline const std::vector<const char*>& backends() {
-  static const std::vector<const char*> names{"interval", "zonotope", "constrained_zonotope", "line_zonotope"};
+  static const std::vector<const char*> names{"interval", "zonotope", "constrained_zonotope",
+                                              "line_zonotope"};
   return names;
 }
 

@@ -12,7 +12,8 @@ namespace {
 
 bool lies_in(const Box& inner, const Box& outer) {
   const double slack = 1e-9 * (1 + outer.longest_half_edge());
-  return (inner.lower.array() >= outer.lower.array() - slack).all() && (inner.upper.array() <= outer.upper.array() + slack).all();
+  return (inner.lower.array() >= outer.lower.array() - slack).all() &&
+         (inner.upper.array() <= outer.upper.array() + slack).all();
 }
 
 void expect_enclosures(const std::string& name) {
@@ -28,7 +29,8 @@ void expect_enclosures(const std::string& name) {
     if (k == 3) {
       const Matrix L = random_gain(m);
       recursion.use_gain(L);
-      const Sample any{k, random_matrix(m.inputs(), 1, 3).col(0), random_matrix(m.outputs(), 1, 3).col(0)};
+      const Sample any{k, random_matrix(m.inputs(), 1, 3).col(0),
+                       random_matrix(m.outputs(), 1, 3).col(0)};
       const LuenbergerRecursion fresh(model, L, sets, {});
       RC_ASSERT(recursion.next(truth.x, any) == fresh.next(truth.x, any));
       RC_ASSERT(recursion.next_size(truth.x, any) == fresh.next_size(truth.x, any));
@@ -40,7 +42,8 @@ void expect_enclosures(const std::string& name) {
     RC_ASSERT(lies_in(R->interval_hull(), recursion.residual_bound(E, X, now)->interval_hull()));
 
     const Vector guess = X->interval_hull().center();
-    const Enclosure outputs = recursion.explained_outputs(sets->affine_map(X, one, -guess), guess, now);
+    const Enclosure outputs =
+        recursion.explained_outputs(sets->affine_map(X, one, -guess), guess, now);
     RC_ASSERT(may_contain(outputs, m.sensor_center().asDiagonal() * (m.C * (x - guess))));
 
     E = recursion.next_bound(E, X, now);
@@ -51,8 +54,10 @@ void expect_enclosures(const std::string& name) {
   }
 }
 
-/// One step with given matrices: x⁺ - [what an exact model gives] is a box whose half widths are known.
-Vector added_width(const Model& model, const Model& exact, const LineForm& X, const Sample& now, bool residual) {
+/// One step with given matrices: x⁺ - [what an exact model gives] is a box whose half widths are
+/// known.
+Vector added_width(const Model& model, const Model& exact, const LineForm& X, const Sample& now,
+                   bool residual) {
   const auto sets = backend("zonotope");
   const Matrix L{{.5, -.25}, {.125, 1}};
   const LuenbergerRecursion with(model, L, sets, {}), without(exact, L, sets, {});
@@ -64,7 +69,8 @@ Vector added_width(const Model& model, const Model& exact, const LineForm& X, co
 
 }  // namespace
 
-TEST_CASE("interval matrices, ranges, gains that change: the truth is never outside, on every backend") {
+TEST_CASE(
+    "interval matrices, ranges, gains that change: the truth is never outside, on every backend") {
   for (const char* name : backends()) {
     CAPTURE(name);
     CHECK(rc::check("the truth stays inside", [&] { expect_enclosures(name); }));
@@ -85,7 +91,8 @@ TEST_CASE("the boxes of interval matrices, by hand") {
   const Sample now{0, Vector::Constant(1, -4), Vector::Zero(2)};
   const auto expect = [&](const Model& model, const Vector& next, const Vector& residual) {
     CHECK((added_width(model, exact, exact.X0, now, false) - next).cwiseAbs().maxCoeff() < 1e-13);
-    CHECK((added_width(model, exact, exact.X0, now, true) - residual).cwiseAbs().maxCoeff() < 1e-13);
+    CHECK((added_width(model, exact, exact.X0, now, true) - residual).cwiseAbs().maxCoeff() <
+          1e-13);
   };
   Model model = exact;
   model.linear.A_radius = Matrix{{.1, .2}, {0, .4}};
@@ -96,7 +103,8 @@ TEST_CASE("the boxes of interval matrices, by hand") {
   model.linear.B_radius = {};
   model.linear.C_radius = Matrix{{.1, .2}, {0, .4}};  // Δ = (.6, .6)
   expect(model, Vector{{.75 * .6, 1.125 * .6}}, Vector{{.6, .6}});
-  // an exact sensor of half the effect, and a range [.5, 1] of the other: rad(g) |C x| = .25 · 1.5, max g = 1
+  // an exact sensor of half the effect, and a range [.5, 1] of the other: rad(g) |C x| = .25 · 1.5,
+  // max g = 1
   model.linear.sensor = {Vector{{1, .5}}, Vector{{1, 1}}};
   exact.linear.sensor = Box{Vector{{1, .75}}, Vector{{1, .75}}};
   expect(model, Vector{{.5 * .6 + .25 * .975, .125 * .6 + .975}}, Vector{{.6, .975}});
@@ -108,7 +116,8 @@ TEST_CASE("the boxes of interval matrices, by hand") {
   expect(model, Vector{{.3, .9}}, Vector::Zero(2));
 }
 
-TEST_CASE("an unbounded set of states is refused where a matrix with a radius meets it, and only there") {
+TEST_CASE(
+    "an unbounded set of states is refused where a matrix with a radius meets it, and only there") {
   const auto sets = backend("line_zonotope");
   Model model;
   LinearModel& m = model.linear;
@@ -120,10 +129,13 @@ TEST_CASE("an unbounded set of states is refused where a matrix with a radius me
   m.Bw = Matrix(2, 0);
   m.Dv = Matrix(1, 0);
   model.W = model.V = make_point(Vector(0));
-  model.X0 =
-      make_box({Vector{{-1, -std::numeric_limits<double>::infinity()}}, Vector{{1, std::numeric_limits<double>::infinity()}}});
+  model.X0 = make_box({Vector{{-1, -std::numeric_limits<double>::infinity()}},
+                       Vector{{1, std::numeric_limits<double>::infinity()}}});
   const Sample now{0, Vector(0), Vector::Zero(1)};
-  const auto next = [&] { return LuenbergerRecursion(model, Matrix{{.2}, {0}}, sets, {}).next(sets->import(model.X0), now); };
+  const auto next = [&] {
+    return LuenbergerRecursion(model, Matrix{{.2}, {0}}, sets, {})
+        .next(sets->import(model.X0), now);
+  };
   CHECK(next()->interval_hull().upper[0] == doctest::Approx(.3 + .1));
   m.A_radius(1, 1) = .1;
   CHECK_THROWS_AS(next(), Error);

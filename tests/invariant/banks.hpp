@@ -20,8 +20,15 @@ inline std::string mode_name(Index i) {
 inline Model model_of(const Matrix& A, const Matrix& B, const Matrix& C) {
   Model model;
   const Index n = A.rows();
-  model.linear = {{}, A, B, Matrix::Identity(n, n), C, Matrix::Zero(C.rows(), B.cols()), Matrix::Identity(C.rows(), C.rows()),
-                  {}, {}};
+  model.linear = {{},
+                  A,
+                  B,
+                  Matrix::Identity(n, n),
+                  C,
+                  Matrix::Zero(C.rows(), B.cols()),
+                  Matrix::Identity(C.rows(), C.rows()),
+                  {},
+                  {}};
   model.X0 = make_point(Vector::Zero(n));
   model.W = make_point(Vector::Zero(n));
   model.V = make_point(Vector::Zero(C.rows()));
@@ -29,11 +36,14 @@ inline Model model_of(const Matrix& A, const Matrix& B, const Matrix& C) {
   return model;
 }
 
-inline std::vector<Matrix> reactor_gains() { return std::vector<Matrix>(3, Matrix{{.1582}, {11.6106}}); }
+inline std::vector<Matrix> reactor_gains() {
+  return std::vector<Matrix>(3, Matrix{{.1582}, {11.6106}});
+}
 
 inline std::vector<Matrix> blade_gains() { return std::vector<Matrix>(3, banks::blade_gain()); }
 
-inline const PairGuarantee& pair(const Guarantees& all, Index mode, Index observer, Index modes = 3) {
+inline const PairGuarantee& pair(const Guarantees& all, Index mode, Index observer,
+                                 Index modes = 3) {
   return all.pairs[static_cast<std::size_t>(observer * modes + mode)];
 }
 
@@ -41,10 +51,12 @@ inline const PairGuarantee& pair(const Guarantees& all, Index mode, Index observ
 class Simulation {
  public:
   /// Points of the observers start anywhere in X0, or at its centre.
-  Simulation(const ModeBank& bank, const std::vector<Matrix>& gains, Draw draw, bool centered = false)
+  Simulation(const ModeBank& bank, const std::vector<Matrix>& gains, Draw draw,
+             bool centered = false)
       : bank_(bank), gains_(gains), draw_(draw) {
     x_ = draw_.from(bank[0].model.X0);
-    for (const Mode& mode : bank.modes) points_.push_back(centered ? mode.model.X0.c : draw_.from(mode.model.X0));
+    for (const Mode& mode : bank.modes)
+      points_.push_back(centered ? mode.model.X0.c : draw_.from(mode.model.X0));
   }
 
   Vector error(Index j) const { return x_ - point(j); }
@@ -52,7 +64,8 @@ class Simulation {
   /// One step in mode i; returns y - ŷ for a point of each observer's output set.
   std::vector<Vector> step(Index i) {
     const LinearModel& m = bank_[i].model.linear;
-    const Vector u = draw_.from(bank_[i].model.U), fu = draw_.from(m.actuator_center(), m.actuator_radius()).cwiseProduct(u);
+    const Vector u = draw_.from(bank_[i].model.U),
+                 fu = draw_.from(m.actuator_center(), m.actuator_radius()).cwiseProduct(u);
     const Vector g = draw_.from(m.sensor_center(), m.sensor_radius());
     const Vector y = g.cwiseProduct(m.C * x_ + m.D * fu) + m.Dv * draw_.from(bank_[i].model.V);
     x_ = m.A * x_ + m.B * fu + m.Bw * draw_.from(bank_[i].model.W);
@@ -67,7 +80,8 @@ class Simulation {
         return Vector(gain.cwiseProduct(o.C * point(j) + o.D * own) + o.Dv * draw_.from(model.V));
       };
       residuals.push_back(y - predicted());
-      points_[static_cast<std::size_t>(j)] = o.A * point(j) + o.B * own + o.Bw * draw_.from(model.W) + L * (y - predicted());
+      points_[static_cast<std::size_t>(j)] =
+          o.A * point(j) + o.B * own + o.Bw * draw_.from(model.W) + L * (y - predicted());
     }
     return residuals;
   }

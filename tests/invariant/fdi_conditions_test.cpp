@@ -33,8 +33,9 @@ enum class Differ { inputs, sensors, models, ranges };
 Random random_bank(Index modes, Index n, Index p, Index q, Differ what, unsigned seed) {
   Draw draw{std::mt19937_64(seed)};
   const double size = .7 / static_cast<double>(n);
-  const Matrix A = draw_matrix(draw, n, n, size) + .3 * Matrix::Identity(n, n), B = draw_matrix(draw, n, p, 1),
-               C = draw_matrix(draw, q, n, 1), L = draw_matrix(draw, n, q, .2 / static_cast<double>(n * q));
+  const Matrix A = draw_matrix(draw, n, n, size) + .3 * Matrix::Identity(n, n),
+               B = draw_matrix(draw, n, p, 1), C = draw_matrix(draw, q, n, 1),
+               L = draw_matrix(draw, n, q, .2 / static_cast<double>(n * q));
   Random random;
   for (Index i = 0; i < modes; ++i) {
     Model model = model_of(A, B, C);
@@ -50,8 +51,10 @@ Random random_bank(Index modes, Index n, Index p, Index q, Differ what, unsigned
     }
     model.linear.actuator = {lower, upper};
     if (what == Differ::sensors) model.linear.C *= 1 - .1 * static_cast<double>(i);
-    if (what == Differ::models) model.linear.A += draw_matrix(draw, n, n, .1 / static_cast<double>(n));
-    if (what == Differ::ranges) model.linear.sensor = {Vector::Constant(q, .8), Vector::Constant(q, .9)};
+    if (what == Differ::models)
+      model.linear.A += draw_matrix(draw, n, n, .1 / static_cast<double>(n));
+    if (what == Differ::ranges)
+      model.linear.sensor = {Vector::Constant(q, .8), Vector::Constant(q, .9)};
     random.bank.modes.push_back({mode_name(i), model});
     random.gains.push_back(L + draw_matrix(draw, n, q, .02));
   }
@@ -61,24 +64,27 @@ Random random_bank(Index modes, Index n, Index p, Index q, Differ what, unsigned
 /// How far x lies beyond the box, relative to its width.
 double beyond(const Box& box, const Vector& x) {
   const Vector width = box.radius();
-  return std::max(((x - box.upper).array() / width.array()).maxCoeff(), ((box.lower - x).array() / width.array()).maxCoeff());
+  return std::max(((x - box.upper).array() / width.array()).maxCoeff(),
+                  ((box.lower - x).array() / width.array()).maxCoeff());
 }
 
-/// Residuals in the steady state of each mode stay in R̊_ij; where `tight`, that is not larger by an order of magnitude. (Vertices
-/// drawn at random rarely line up.)
+/// Residuals in the steady state of each mode stay in R̊_ij; where `tight`, that is not larger by an
+/// order of magnitude. (Vertices drawn at random rarely line up.)
 void check_by_sampling(const Random& random, const OfflineOptions& options, bool tight) {
   const Guarantees all = fdi_guarantees(random.bank, random.gains, options);
   const Index modes = random.bank.size();
   for (Index i = 0; i < modes; ++i) {
     for (const bool vertex : {false, true}) {
-      Simulation simulation(random.bank, random.gains, Draw{std::mt19937_64(static_cast<unsigned>(7 + i)), vertex});
+      Simulation simulation(random.bank, random.gains,
+                            Draw{std::mt19937_64(static_cast<unsigned>(7 + i)), vertex});
       std::vector<double> reached(static_cast<std::size_t>(modes), -2);
       for (int k = 0; k < 2000; ++k) {
         const std::vector<Vector> residuals = simulation.step(i);
         if (k < 100) continue;
         for (Index j = 0; j < modes; ++j) {
           double& far = reached[static_cast<std::size_t>(j)];
-          far = std::max(far, beyond(pair(all, i, j, modes).residual, residuals[static_cast<std::size_t>(j)]));
+          far = std::max(
+              far, beyond(pair(all, i, j, modes).residual, residuals[static_cast<std::size_t>(j)]));
         }
       }
       for (Index j = 0; j < modes; ++j) {
@@ -106,8 +112,10 @@ void check_errors_by_sampling(const Random& random, const OfflineOptions& option
     Index mode = 0;
     double reached = -2;
     for (int k = 0; k < 300; ++k) {
-      if (draw.engine() % 10 == 0) mode = static_cast<Index>(draw.engine() % static_cast<unsigned>(modes));
-      for (Index j = 0; j < modes; ++j) reached = std::max(reached, beyond(box, simulation.error(j)));
+      if (draw.engine() % 10 == 0)
+        mode = static_cast<Index>(draw.engine() % static_cast<unsigned>(modes));
+      for (Index j = 0; j < modes; ++j)
+        reached = std::max(reached, beyond(box, simulation.error(j)));
       simulation.step(mode);
     }
     CHECK(reached <= 1e-9);
@@ -126,7 +134,8 @@ TEST_CASE("simulated residuals and errors stay in their sets") {
       REQUIRE(missing.size() == 1);
       CHECK(missing[0].pointer == "/state_set");
       options.state_set = box_around(Vector::Zero(2), Vector::Constant(2, 10));
-      for (Mode& mode : random.bank.modes) REQUIRE(mode.model.linear.A.cwiseAbs().rowwise().sum().maxCoeff() < 1);
+      for (Mode& mode : random.bank.modes)
+        REQUIRE(mode.model.linear.A.cwiseAbs().rowwise().sum().maxCoeff() < 1);
     }
     check_by_sampling(random, options, true);
     options.separate_inputs = true;
@@ -137,7 +146,8 @@ TEST_CASE("simulated residuals and errors stay in their sets") {
     options.iterations = {20};
     options.max_columns = 30;
     check_by_sampling(random, options, false);
-    for (Index j = 1; j < 3; ++j) random.bank.modes[static_cast<std::size_t>(j)].model.X0 = make_point(Vector::Constant(2, .1));
+    for (Index j = 1; j < 3; ++j)
+      random.bank.modes[static_cast<std::size_t>(j)].model.X0 = make_point(Vector::Constant(2, .1));
     check_errors_by_sampling(random, options);
   }
 }
@@ -168,7 +178,8 @@ TEST_CASE("inputs shared by plant and observer give smaller sets than independen
   options.separate_inputs = true;
   const Guarantees separate = fdi_guarantees(reactor(), reactor_gains(), options);
   for (std::size_t k = 0; k < 9; ++k) {
-    const double inner = joint.pairs[k].residual.radius()[0], outer = separate.pairs[k].residual.radius()[0];
+    const double inner = joint.pairs[k].residual.radius()[0],
+                 outer = separate.pairs[k].residual.radius()[0];
     CHECK(inner < outer);
     CHECK(joint.pairs[k].holds == Answer::yes);
   }
@@ -232,7 +243,8 @@ TEST_CASE("one iteration from 0 is no promise: the box holds residuals for long"
   options.invariant = Invariant::iterate;
   options.iterations = {1};
   const std::vector<Matrix> gains{Matrix{{.1}}, Matrix{{.1}}};
-  const Guarantees one = fdi_guarantees(bank, gains, options), limit = fdi_guarantees(bank, gains, {});
+  const Guarantees one = fdi_guarantees(bank, gains, options),
+                   limit = fdi_guarantees(bank, gains, {});
   for (Index i = 0; i < 2; ++i) {
     for (Index j = 0; j < 2; ++j) {
       CHECK(pair(one, i, j, 2).iterated.upper[0] < .9 * pair(limit, i, j, 2).residual.upper[0]);
@@ -255,10 +267,12 @@ TEST_CASE("error sets of other shapes") {
   CHECK(zonotope.factor >= computed.factor);
   CHECK(zonotope.factor < 1.3);
   options.error_set = make_zonotope(box.center(), 2 * more);
-  CHECK(check_error_set(random.bank, random.gains, options).factor == doctest::Approx(zonotope.factor / 2));
+  CHECK(check_error_set(random.bank, random.gains, options).factor ==
+        doctest::Approx(zonotope.factor / 2));
   options.error_set = make_zonotope(box.center(), Matrix(more.leftCols(2)));
   CHECK(std::isinf(check_error_set(random.bank, random.gains, options).factor));
-  CHECK(check_offline(random.bank, random.gains, options).at(0).message.find("flat") != std::string::npos);
+  CHECK(check_offline(random.bank, random.gains, options).at(0).message.find("flat") !=
+        std::string::npos);
   // many generators in many dimensions: facets are not enumerated, the bound stays one
   Random large = random_bank(2, 8, 1, 1, Differ::inputs, 9);
   const ErrorSetCheck around = check_error_set(large.bank, large.gains, {});
@@ -272,7 +286,8 @@ TEST_CASE("error sets of other shapes") {
 }
 
 TEST_CASE("problems of models and options") {
-  const auto problem = [](const ModeBank& bank, const std::vector<Matrix>& gains, const OfflineOptions& options) {
+  const auto problem = [](const ModeBank& bank, const std::vector<Matrix>& gains,
+                          const OfflineOptions& options) {
     const std::vector<Diagnostic> found = check_offline(bank, gains, options);
     REQUIRE(found.size() >= 1);
     return found[0];
@@ -298,7 +313,8 @@ TEST_CASE("problems of models and options") {
   says(problem(reactor(), reactor_gains(), options), "/accuracy", "between 0 and 1");
   options = {};
   options.error_set = make_point(Vector{{1}});
-  says(problem(reactor(), reactor_gains(), options), "/error_set", "1 dimensions, the models have 2 states");
+  says(problem(reactor(), reactor_gains(), options), "/error_set",
+       "1 dimensions, the models have 2 states");
   options.error_set = make_strip(Vector{{1, 0}}, 0, 1);
   says(problem(reactor(), reactor_gains(), options), "/error_set", "zonotope");
   options = {};
@@ -314,7 +330,8 @@ TEST_CASE("problems of models and options") {
   says(problem(bank, reactor_gains(), options), "", "W of mode \"fault_1\" is unbounded");
   std::vector<Matrix> gains = reactor_gains();
   gains[2] = Matrix{{-1}, {0}};
-  says(problem(reactor(), gains, options), "", "A - L C of mode \"fault_2\" is not Schur: it has the eigenvalue 1.8");
+  says(problem(reactor(), gains, options), "",
+       "A - L C of mode \"fault_2\" is not Schur: it has the eigenvalue 1.8");
   CHECK_THROWS_AS(fdi_guarantees(reactor(), gains, options), Error);
   gains.pop_back();
   says(problem(reactor(), gains, options), "", "one gain per mode");
@@ -328,7 +345,8 @@ TEST_CASE("problems of models and options") {
   options.state_set = box_around(Vector::Zero(2), Vector::Constant(2, 1));
   CHECK_THROWS_AS(fdi_guarantees(bank, gains, options), Error);
   says(problem(bank, gains, options), "",
-       "A of mode \"fault_1\", whose state acts on the error of the observer of mode \"healthy\", is not Schur");
+       "A of mode \"fault_1\", whose state acts on the error of the observer of mode \"healthy\", "
+       "is not Schur");
 }
 
 TEST_CASE("ranges of sensors that are too wide for a bounded error are refused") {
@@ -351,7 +369,8 @@ TEST_CASE("every actuator with a range varies on its own") {
   model.linear.actuator = {Vector{{.5, .5}}, Vector{{1, 1}}};
   model.U = make_point(Vector{{4, 4}});
   const Guarantees all = fdi_guarantees({{{"mode", model}}, 0}, {Matrix::Zero(2, 1)}, {});
-  const Box& R = pair(all, 0, 0, 1).residual;  // both of plant and observer: f_1 - f_2 in ±.5, four times, twice
+  const Box& R = pair(all, 0, 0, 1)
+                     .residual;  // both of plant and observer: f_1 - f_2 in ±.5, four times, twice
   CHECK(R.upper[0] == doctest::Approx(4));
   CHECK(R.lower[0] == doctest::Approx(-4));
 }
@@ -364,7 +383,8 @@ TEST_CASE("observers that start elsewhere than the plant start with an error") {
     model.X0 = make_point(Vector::Constant(1, start));
     bank.modes.push_back({mode_name(bank.size()), model});
   }
-  const Box box = interval_hull(check_error_set(bank, {Matrix::Zero(1, 1), Matrix::Zero(1, 1)}, {}).set);
+  const Box box =
+      interval_hull(check_error_set(bank, {Matrix::Zero(1, 1), Matrix::Zero(1, 1)}, {}).set);
   CHECK(box.lower[0] == doctest::Approx(-5));
   CHECK(box.upper[0] == doctest::Approx(5));
 }
@@ -381,7 +401,8 @@ TEST_CASE("two outputs: noise counts in a separation, and a coarse sum proves no
     }
     OfflineOptions options;
     options.accuracy = accuracy;
-    return pair(fdi_guarantees(bank, {Matrix::Zero(2, 2), Matrix::Zero(2, 2)}, options), 1, 0, 2).holds;
+    return pair(fdi_guarantees(bank, {Matrix::Zero(2, 2), Matrix::Zero(2, 2)}, options), 1, 0, 2)
+        .holds;
   };
   // along (1, 1): the centre at 2 · offset / (1 - decay), half widths .08 / (1 - decay) + 4 · noise
   CHECK(holds(0, .2, .07, 1e-9) == Answer::yes);

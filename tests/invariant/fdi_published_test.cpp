@@ -31,16 +31,21 @@ void check_table(const Guarantees& all, const std::vector<Published>& table, dou
   }
 }
 
-const std::vector<Published> reactor_rpi30{
-    {0, 0, -0.00831117797623306, 0.00831117797623306},   {0, 1, -0.07202686571867548, -0.04763767335606547},
-    {0, 2, -0.1359186639677938, -0.10341041418168809},   {1, 0, 0.04763767335606547, 0.07202686571867548},
-    {1, 1, -0.016078014386376953, 0.016078014386376953}, {1, 2, -0.07996981263549528, -0.03969472643924567},
-    {2, 0, 0.10341041418168809, 0.1359186639677938},     {2, 1, 0.03969472643924567, 0.07996981263549528},
-    {2, 2, -0.02419707180987266, 0.02419707180987266}};
-const std::vector<Published> reactor_mrpi{
-    {0, 0, -0.008311149146439637, 0.008311149146439637}, {0, 1, -0.0720268464792011, -0.047637692595539856},
-    {0, 2, -0.1359186387858518, -0.1034104393636301},    {1, 2, -0.0799697970438723, -0.03969474203086864},
-    {2, 1, 0.03969474203086864, 0.0799697970438723},     {2, 2, -0.024197050275782048, 0.024197050275782048}};
+const std::vector<Published> reactor_rpi30{{0, 0, -0.00831117797623306, 0.00831117797623306},
+                                           {0, 1, -0.07202686571867548, -0.04763767335606547},
+                                           {0, 2, -0.1359186639677938, -0.10341041418168809},
+                                           {1, 0, 0.04763767335606547, 0.07202686571867548},
+                                           {1, 1, -0.016078014386376953, 0.016078014386376953},
+                                           {1, 2, -0.07996981263549528, -0.03969472643924567},
+                                           {2, 0, 0.10341041418168809, 0.1359186639677938},
+                                           {2, 1, 0.03969472643924567, 0.07996981263549528},
+                                           {2, 2, -0.02419707180987266, 0.02419707180987266}};
+const std::vector<Published> reactor_mrpi{{0, 0, -0.008311149146439637, 0.008311149146439637},
+                                          {0, 1, -0.0720268464792011, -0.047637692595539856},
+                                          {0, 2, -0.1359186387858518, -0.1034104393636301},
+                                          {1, 2, -0.0799697970438723, -0.03969474203086864},
+                                          {2, 1, 0.03969474203086864, 0.0799697970438723},
+                                          {2, 2, -0.024197050275782048, 0.024197050275782048}};
 const std::vector<Published> reactor_literal{{0, 0, -0.0003201726797986379, 0.0003201726797986379},
                                              {1, 0, -0.05615161777251857, 0.06412925371083464},
                                              {1, 1, -0.11996069880355459, 0.11996069880355459},
@@ -49,20 +54,25 @@ const std::vector<Published> reactor_literal{{0, 0, -0.0003201726797986379, 0.00
 const std::vector<Published> reactor_zero30{{0, 0, -0.008304898577797865, 0.008304898577797865},
                                             {1, 0, 0.04760842569324328, 0.07198083893973926},
                                             {2, 1, 0.03967036526834675, 0.0799188993646358}};
-// those of i = j are ours: they depend on whether zero columns are dropped before the reduction, and were not published
-const std::vector<Published> blade_iterated{
-    {0, 0, -0.2092085858205697, 0.18879454381801827},   {0, 1, 0.2888820436357938, 0.8014755010113823},
-    {0, 2, 0.0729582233940762, 0.525482283092939},      {1, 0, -0.8325188701385826, -0.2936985590833288},
-    {1, 2, -0.4731866053643608, -0.035186224008985356}, {2, 0, -0.5569645722947858, -0.07778468482963216},
-    {2, 1, 0.018730432795799834, 0.4567308141511753}};
+// those of i = j are ours: they depend on whether zero columns are dropped before the reduction,
+// and were not published
+const std::vector<Published> blade_iterated{{0, 0, -0.2092085858205697, 0.18879454381801827},
+                                            {0, 1, 0.2888820436357938, 0.8014755010113823},
+                                            {0, 2, 0.0729582233940762, 0.525482283092939},
+                                            {1, 0, -0.8325188701385826, -0.2936985590833288},
+                                            {1, 2, -0.4731866053643608, -0.035186224008985356},
+                                            {2, 0, -0.5569645722947858, -0.07778468482963216},
+                                            {2, 1, 0.018730432795799834, 0.4567308141511753}};
 const std::vector<Published> blade_unreduced{{0, 0, -0.1837102906682785, 0.16725449945509285},
                                              {1, 0, -0.7924576253914773, -0.33081150168206974},
                                              {2, 1, 0.03765237650379383, 0.4378088704431813}};
-const std::vector<Published> blade_mrpi{
-    {0, 0, -0.11943354221799996, 0.11943354221799996}, {0, 1, 0.380466462782, 0.7304224372180002},
-    {0, 2, 0.15828868278200015, 0.45887181721799997},  {1, 0, -0.7304224372180002, -0.380466462782},
-    {1, 2, -0.390984162218, -0.10274423778200018},     {2, 0, -0.45887181721799997, -0.15828868278200015},
-    {2, 1, 0.10274423778200018, 0.390984162218}};
+const std::vector<Published> blade_mrpi{{0, 0, -0.11943354221799996, 0.11943354221799996},
+                                        {0, 1, 0.380466462782, 0.7304224372180002},
+                                        {0, 2, 0.15828868278200015, 0.45887181721799997},
+                                        {1, 0, -0.7304224372180002, -0.380466462782},
+                                        {1, 2, -0.390984162218, -0.10274423778200018},
+                                        {2, 0, -0.45887181721799997, -0.15828868278200015},
+                                        {2, 1, 0.10274423778200018, 0.390984162218}};
 
 OfflineOptions reactor_options(Invariant invariant) {
   OfflineOptions options;
@@ -84,17 +94,21 @@ OfflineOptions blade_options(Index columns) {
 }  // namespace
 
 TEST_CASE("the reactor: published residual sets and the FDI condition") {
-  const Guarantees all = fdi_guarantees(reactor(), reactor_gains(), reactor_options(Invariant::rpi));
+  const Guarantees all =
+      fdi_guarantees(reactor(), reactor_gains(), reactor_options(Invariant::rpi));
   check_table(all, reactor_rpi30, 1e-9);
   CHECK(all.all == Answer::yes);
   for (const PairGuarantee& one : all.pairs) CHECK(one.holds == Answer::yes);
-  const Guarantees limit = fdi_guarantees(reactor(), reactor_gains(), reactor_options(Invariant::mrpi));
+  const Guarantees limit =
+      fdi_guarantees(reactor(), reactor_gains(), reactor_options(Invariant::mrpi));
   check_table(limit, reactor_mrpi, 1e-9);
   CHECK(limit.all == Answer::yes);
-  const Guarantees zero = fdi_guarantees(reactor(), reactor_gains(), reactor_options(Invariant::iterate));
+  const Guarantees zero =
+      fdi_guarantees(reactor(), reactor_gains(), reactor_options(Invariant::iterate));
   check_table(zero, reactor_zero30, 1e-9);
   CHECK(zero.all == Answer::yes);
-  for (const PairGuarantee& one : zero.pairs) {  // 30 steps from 0 are not the limit: what is promised holds it
+  for (const PairGuarantee& one :
+       zero.pairs) {  // 30 steps from 0 are not the limit: what is promised holds it
     const Box& last = pair(limit, one.mode, one.observer).residual;
     CHECK(one.residual.lower[0] == std::min(one.iterated.lower[0], last.lower[0]));
     CHECK(one.residual.upper[0] == std::max(one.iterated.upper[0], last.upper[0]));
@@ -104,12 +118,14 @@ TEST_CASE("the reactor: published residual sets and the FDI condition") {
 }
 
 TEST_CASE("the reactor: centre and radius of the disturbance as printed fail the condition") {
-  const Guarantees all = fdi_guarantees(reactor(true), reactor_gains(), reactor_options(Invariant::mrpi));
+  const Guarantees all =
+      fdi_guarantees(reactor(true), reactor_gains(), reactor_options(Invariant::mrpi));
   check_table(all, reactor_literal, 1e-9);
   CHECK(all.all == Answer::no);
   CHECK(pair(all, 1, 0).holds == Answer::no);
   CHECK(pair(all, 1, 1).holds == Answer::yes);
-  CHECK(fdi_guarantees(reactor(true), reactor_gains(), reactor_options(Invariant::rpi)).all == Answer::no);
+  CHECK(fdi_guarantees(reactor(true), reactor_gains(), reactor_options(Invariant::rpi)).all ==
+        Answer::no);
 }
 
 TEST_CASE("the blade: published residual sets, with and without reduction, and their limits") {

@@ -31,7 +31,9 @@ std::string message(const std::function<void()>& call, Errc expected) {
   return {};
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 Matrix uniform(std::mt19937_64& engine, Index rows, Index cols, double size) {
   std::uniform_real_distribution<double> draw(-size, size);
@@ -49,7 +51,8 @@ struct System {
 
 /// Schur matrices of spectral radius `radius`; random real matrices have complex pairs as a rule.
 System random_system(std::mt19937_64& engine, double radius) {
-  const Index n = std::uniform_int_distribution<Index>(1, 5)(engine), g = std::uniform_int_distribution<Index>(1, 6)(engine);
+  const Index n = std::uniform_int_distribution<Index>(1, 5)(engine),
+              g = std::uniform_int_distribution<Index>(1, 6)(engine);
   Matrix A = uniform(engine, n, n, 1);
   A *= radius / std::max(spectral_radius(A), 1e-3);
   return {A, {uniform(engine, n, 1, 1), uniform(engine, n, g, 1)}};
@@ -82,8 +85,9 @@ double partial_support(const System& system, Vector d, int terms) {
 
 }  // namespace
 
-/// T S T⁻¹ for the shift S of n states whose last entry is `last`, Sⁿ = last I, and an integer T of determinant 1: eigenvalues of
-/// modulus |last|^(1/n), and none that doubles find, where T is far from orthogonal and entries come near to `largest`.
+/// T S T⁻¹ for the shift S of n states whose last entry is `last`, Sⁿ = last I, and an integer T of
+/// determinant 1: eigenvalues of modulus |last|^(1/n), and none that doubles find, where T is far
+/// from orthogonal and entries come near to `largest`.
 Matrix far_from_normal(Index n, double last, double largest, std::mt19937_64& engine) {
   Matrix A = Matrix::Zero(n, n);
   for (Index i = 0; i + 1 < n; ++i) A(i, i + 1) = 1;
@@ -108,8 +112,11 @@ TEST_CASE("the Schur check names the eigenvalue") {
         require_schur(Matrix{{1.08, .2}, {-.2, 1.08}}, "A - L C of mode \"leak\"");
       },
       Errc::invalid);
-  CHECK(has(text, "A - L C of mode \"leak\" is not Schur: it has the eigenvalue 1.08 + 0.2i (modulus 1.09836)"));
-  CHECK(has(message([] { require_schur(Matrix{{-1.5}}, "A"); }, Errc::invalid), "the eigenvalue -1.5 (modulus 1.5)"));
+  CHECK(has(text,
+            "A - L C of mode \"leak\" is not Schur: it has the eigenvalue 1.08 + 0.2i (modulus "
+            "1.09836)"));
+  CHECK(has(message([] { require_schur(Matrix{{-1.5}}, "A"); }, Errc::invalid),
+            "the eigenvalue -1.5 (modulus 1.5)"));
   CHECK_THROWS_AS(require_schur(Matrix::Identity(2, 2), "A"), Error);
   message([] { require_schur(Matrix(2, 3), "A"); }, Errc::dimension);
   message([] { require_schur(Matrix{{std::nan("")}}, "A"); }, Errc::not_finite);
@@ -117,15 +124,19 @@ TEST_CASE("the Schur check names the eigenvalue") {
 
 TEST_CASE("the published invariant set of the reactor") {
   const Matrix A{{.7394, -.0002}, {-12.1, .7606}};
-  const Matrix G{{0, 0, 0, 0, 0, 0, .002, 0, .001, 0}, {.0096, .0048, 0, .048, 0, 0, 0, .002, 0, .001}};
+  const Matrix G{{0, 0, 0, 0, 0, 0, .002, 0, .001, 0},
+                 {.0096, .0048, 0, .048, 0, 0, 0, .002, 0, .001}};
   const Zonotope set = rpi_set(A, {Vector{{.015, .015}}, G});
-  CHECK((set.c - Vector{{0.059832269537370475, -2.9614472071937463}}).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK((set.c - Vector{{0.059832269537370475, -2.9614472071937463}}).cwiseAbs().maxCoeff() <
+        1e-12);
   REQUIRE(set.generators() == 2);
-  Matrix H{{-0.006479444190666094, 0.006580612807847029}, {-1.2869005386815593, -2.0045388784178497}};
+  Matrix H{{-0.006479444190666094, 0.006580612807847029},
+           {-1.2869005386815593, -2.0045388784178497}};
   for (Index k = 0; k < 2; ++k) {  // columns in any order and with any sign
     double best = 1;
     for (Index l = 0; l < 2; ++l) {
-      best = std::min({best, (set.G.col(l) - H.col(k)).cwiseAbs().maxCoeff(), (set.G.col(l) + H.col(k)).cwiseAbs().maxCoeff()});
+      best = std::min({best, (set.G.col(l) - H.col(k)).cwiseAbs().maxCoeff(),
+                       (set.G.col(l) + H.col(k)).cwiseAbs().maxCoeff()});
     }
     CHECK(best < 1e-11);
   }
@@ -134,7 +145,8 @@ TEST_CASE("the published invariant set of the reactor") {
 TEST_CASE("closed-form sets are invariant, iterations shrink them towards the minimal set") {
   CHECK(rc::check([](unsigned seed) {
     std::mt19937_64 engine(seed);
-    const System system = random_system(engine, std::uniform_real_distribution<double>(.2, .97)(engine));
+    const System system =
+        random_system(engine, std::uniform_real_distribution<double>(.2, .97)(engine));
     const Zonotope set = rpi_set(system.A, system.D);
     RC_ASSERT(excess(image(system, set), set, engine) <= 1e-10);
     const Zonotope smaller = iterate(system.A, system.D, set, 5);
@@ -156,7 +168,8 @@ TEST_CASE("closed-form sets are invariant, iterations shrink them towards the mi
 TEST_CASE("complex pairs: the polygon is at most a quarter wider than the disc") {
   for (const double radius : {.3, .9, .99, .999}) {
     const double angle = .7;
-    const Matrix A = radius * Matrix{{std::cos(angle), std::sin(angle)}, {-std::sin(angle), std::cos(angle)}};
+    const Matrix A =
+        radius * Matrix{{std::cos(angle), std::sin(angle)}, {-std::sin(angle), std::cos(angle)}};
     const Zonotope D{Vector::Zero(2), Matrix{{1}, {0}}};
     const Zonotope set = rpi_set(A, D);
     const double disc = 1 / (1 - radius);
@@ -173,7 +186,8 @@ TEST_CASE("complex pairs: the polygon is at most a quarter wider than the disc")
 TEST_CASE("supports of minimal sets enclose the series") {
   CHECK(rc::check([](unsigned seed) {
     std::mt19937_64 engine(seed);
-    const System system = random_system(engine, std::uniform_real_distribution<double>(.1, .97)(engine));
+    const System system =
+        random_system(engine, std::uniform_real_distribution<double>(.1, .97)(engine));
     const double accuracy = std::pow(10.0, -std::uniform_int_distribution<int>(2, 11)(engine));
     const Vector d = uniform(engine, system.A.rows(), 1, 1);
     const SupportPair h = minimal_support(system.A, system.D, d, accuracy);
@@ -182,17 +196,20 @@ TEST_CASE("supports of minimal sets enclose the series") {
     RC_ASSERT(h.plus.lower <= plus + 1e-13 * size && plus - 1e-13 * size <= h.plus.upper);
     RC_ASSERT(h.minus.lower <= minus + 1e-13 * size && minus - 1e-13 * size <= h.minus.upper);
     const double radius = .5 * (plus + minus), center = .5 * std::abs(plus - minus);
-    RC_ASSERT(h.plus.upper - h.plus.lower <= 2.1 * accuracy * (radius + center) + 1e-9 * size * accuracy + 1e-11 * size);
+    RC_ASSERT(h.plus.upper - h.plus.lower <=
+              2.1 * accuracy * (radius + center) + 1e-9 * size * accuracy + 1e-11 * size);
   }));
 }
 
 TEST_CASE("known minimal sets, also of defective matrices") {
   // x⁺ = x/2 + d, |d| ≤ 1: [-2,2]
-  const SupportPair line = minimal_support(Matrix{{.5}}, {Vector{{0}}, Matrix{{1}}}, Vector{{1}}, 1e-12);
+  const SupportPair line =
+      minimal_support(Matrix{{.5}}, {Vector{{0}}, Matrix{{1}}}, Vector{{1}}, 1e-12);
   CHECK(line.plus.lower <= 2);
   CHECK(line.plus.upper >= 2);
   CHECK(line.plus.upper - line.plus.lower < 1e-10);
-  // [1/2 1; 0 1/2]ᵏ = [2⁻ᵏ k 2¹⁻ᵏ; 0 2⁻ᵏ]: Σ |2⁻ᵏ| + Σ k 2¹⁻ᵏ = 2 + 4 for D = [-1,1]²; c = (1, 1) gives (I - A)⁻¹c = (6, 2)
+  // [1/2 1; 0 1/2]ᵏ = [2⁻ᵏ k 2¹⁻ᵏ; 0 2⁻ᵏ]: Σ |2⁻ᵏ| + Σ k 2¹⁻ᵏ = 2 + 4 for D = [-1,1]²; c = (1, 1)
+  // gives (I - A)⁻¹c = (6, 2)
   const Matrix jordan{{.5, 1}, {0, .5}};
   const Zonotope D{Vector{{1, 1}}, Matrix::Identity(2, 2)};
   const SupportPair h = minimal_support(jordan, D, Vector{{1, 0}}, 1e-10);
@@ -221,18 +238,22 @@ TEST_CASE("units of the states do not matter") {
   }
   const Zonotope X = rpi_set(system.A, system.D), Y = rpi_set(scaled.A, scaled.D);
   for (Index k = 0; k < own.size(); ++k) {
-    CHECK(sets::interval_hull(Y).upper[k] == doctest::Approx(sets::interval_hull(X).upper[k] * own[k]).epsilon(.3));
+    CHECK(sets::interval_hull(Y).upper[k] ==
+          doctest::Approx(sets::interval_hull(X).upper[k] * own[k]).epsilon(.3));
   }
 }
 
 TEST_CASE("reachable states under switching disturbances") {
   CHECK(rc::check([](unsigned seed) {
     std::mt19937_64 engine(seed);
-    const System first = random_system(engine, std::uniform_real_distribution<double>(.3, .95)(engine));
+    const System first =
+        random_system(engine, std::uniform_real_distribution<double>(.3, .95)(engine));
     const Index n = first.A.rows();
-    const std::vector<Zonotope> D{
-        first.D, {uniform(engine, n, 1, 2), uniform(engine, n, 2, .5)}, {Vector::Zero(n), Matrix(n, 0)}};
-    const std::vector<Zonotope> starts{{uniform(engine, n, 1, 3), uniform(engine, n, 2, 1)}, {Vector::Zero(n), Matrix(n, 0)}};
+    const std::vector<Zonotope> D{first.D,
+                                  {uniform(engine, n, 1, 2), uniform(engine, n, 2, .5)},
+                                  {Vector::Zero(n), Matrix(n, 0)}};
+    const std::vector<Zonotope> starts{{uniform(engine, n, 1, 3), uniform(engine, n, 2, 1)},
+                                       {Vector::Zero(n), Matrix(n, 0)}};
     const Vector d = uniform(engine, n, 1, 1);
     const Decay decay(first.A, Vector::Ones(n));
     const SwitchedSupports h = switched_supports(decay, D, starts, d, 1e-8);
@@ -261,7 +282,8 @@ TEST_CASE("reachable states under switching disturbances") {
     RC_ASSERT(h.plus <= plus + 1e-6 * size);
     RC_ASSERT(h.minus <= minus + 1e-6 * size);
     for (std::size_t i = 0; i < D.size(); ++i) {
-      RC_ASSERT(h.minimal[i].plus.upper >= partial_support({first.A, D[i]}, d, 3000) - 1e-13 * size);
+      RC_ASSERT(h.minimal[i].plus.upper >=
+                partial_support({first.A, D[i]}, d, 3000) - 1e-13 * size);
     }
   }));
 }
@@ -269,15 +291,17 @@ TEST_CASE("reachable states under switching disturbances") {
 TEST_CASE("partial sums enclose, and are enclosed by, the image of the minimal set") {
   CHECK(rc::check([](unsigned seed) {
     std::mt19937_64 engine(seed);
-    const System system = random_system(engine, std::uniform_real_distribution<double>(.1, .95)(engine));
+    const System system =
+        random_system(engine, std::uniform_real_distribution<double>(.1, .95)(engine));
     const Index n = system.A.rows(), q = 2;
     const Matrix T = uniform(engine, q, n, 1);
     const Decay decay(system.A, Vector::Ones(n));
-    const PartialSum sum = partial_sum(decay, system.D, T, 1e-6, std::uniform_int_distribution<Index>(0, 60)(engine));
+    const PartialSum sum =
+        partial_sum(decay, system.D, T, 1e-6, std::uniform_int_distribution<Index>(0, 60)(engine));
     for (int k = 0; k < 10; ++k) {
       const Vector d = uniform(engine, q, 1, 1);
-      const double h = partial_support(system, T.transpose() * d, 4000), part = sets::support(sum.part, d),
-                   rest = sum.rest.dot(d.cwiseAbs());
+      const double h = partial_support(system, T.transpose() * d, 4000),
+                   part = sets::support(sum.part, d), rest = sum.rest.dot(d.cwiseAbs());
       RC_ASSERT(h <= part + rest + 1e-13 * std::abs(h));
       RC_ASSERT(part - rest <= h + 1e-13 * std::abs(h));
     }
@@ -292,23 +316,38 @@ TEST_CASE("degenerate systems and wrong arguments") {
   const SupportPair h = minimal_support(A, point, Vector{{1, 0}}, 1e-9);
   CHECK(h.plus.upper == doctest::Approx(2));
   CHECK(h.minus.upper == doctest::Approx(-2));
-  const SupportPair none = minimal_support(A, {Vector::Zero(2), Matrix(2, 0)}, Vector{{1, 0}}, 1e-9);
+  const SupportPair none =
+      minimal_support(A, {Vector::Zero(2), Matrix(2, 0)}, Vector{{1, 0}}, 1e-9);
   CHECK(none.plus.upper < 1e-300);
-  CHECK(minimal_support(Matrix(0, 0), {Vector(0), Matrix(0, 0)}, Vector(0), 1e-9).plus.upper < 1e-300);
+  CHECK(minimal_support(Matrix(0, 0), {Vector(0), Matrix(0, 0)}, Vector(0), 1e-9).plus.upper <
+        1e-300);
   CHECK(rpi_set(Matrix(0, 0), {Vector(0), Matrix(0, 0)}).dim() == 0);
   // a flat set: no width in the second coordinate
-  CHECK(minimal_support(A, {Vector::Zero(2), Matrix{{1}, {0}}}, Vector{{0, 1}}, 1e-9).plus.upper < 1e-9);
+  CHECK(minimal_support(A, {Vector::Zero(2), Matrix{{1}, {0}}}, Vector{{0, 1}}, 1e-9).plus.upper <
+        1e-9);
   CHECK(iterate(A, point, point, 0).c == point.c);
   message([&] { rpi_set(2 * Matrix::Identity(2, 2), point); }, Errc::invalid);
-  message([&] { minimal_support(2 * Matrix::Identity(2, 2), point, Vector{{1, 0}}, 1e-9); }, Errc::invalid);
+  message(
+      [&] {
+        minimal_support(2 * Matrix::Identity(2, 2), point, Vector{{1, 0}}, 1e-9);
+      },
+      Errc::invalid);
   message([&] { minimal_support(A, point, Vector{{1}}, 1e-9); }, Errc::dimension);
   message([&] { minimal_support(A, point, Vector{{1, 0}}, 0); }, Errc::invalid);
-  message([&] { minimal_support(A, {Vector{{0}}, Matrix(1, 0)}, Vector{{1, 0}}, 1e-9); }, Errc::dimension);
+  message(
+      [&] {
+        minimal_support(A, {Vector{{0}}, Matrix(1, 0)}, Vector{{1, 0}}, 1e-9);
+      },
+      Errc::dimension);
   message([&] { iterate(A, point, point, -1); }, Errc::invalid);
   message([&] { iterate(A, point, point, 1, 1); }, Errc::invalid);
   message([&] { rpi_set(Matrix(2, 3), point); }, Errc::dimension);
   const Matrix slow{{1 - 1e-9}};
-  message([&] { minimal_support(slow, {Vector{{0}}, Matrix{{1}}}, Vector{{1}}, 1e-9); }, Errc::unsupported);
+  message(
+      [&] {
+        minimal_support(slow, {Vector{{0}}, Matrix{{1}}}, Vector{{1}}, 1e-9);
+      },
+      Errc::unsupported);
 }
 
 TEST_CASE("zonotopes around given sets") {
@@ -318,7 +357,8 @@ TEST_CASE("zonotopes around given sets") {
   const Zonotope around = enclosing_zonotope(cut);
   CHECK(sets::interval_hull(around).lower[0] == doctest::Approx(1));
   CHECK(sets::interval_hull(around).upper[0] == doctest::Approx(4));
-  CHECK(has(message([] { enclosing_zonotope(make_space(2), "W"); }, Errc::unsupported), "W is unbounded"));
+  CHECK(has(message([] { enclosing_zonotope(make_space(2), "W"); }, Errc::unsupported),
+            "W is unbounded"));
   CHECK(has(message([] { enclosing_zonotope(make_empty(2), "W"); }, Errc::invalid), "W is empty"));
 }
 
@@ -345,7 +385,9 @@ TEST_CASE("what is Schur and what is not, far from normal") {
   CHECK(has(message([&] { require_schur(shift, "A"); }, Errc::invalid), "A is not Schur"));
 }
 
-TEST_CASE("bounds of the radius are tight where the matrix is not far from normal, and hold for all matrices within the errors") {
+TEST_CASE(
+    "bounds of the radius are tight where the matrix is not far from normal, and hold for all "
+    "matrices within the errors") {
   std::mt19937_64 engine(5);
   for (int sample = 0; sample < 200; ++sample) {
     const double radius = std::uniform_real_distribution<double>(.01, 3)(engine);
@@ -360,7 +402,8 @@ TEST_CASE("bounds of the radius are tight where the matrix is not far from norma
     const Matrix error = uniform(engine, made.A.rows(), made.A.rows(), .01).cwiseAbs();
     const RadiusBounds wide = radius_bounds(made.A, error);
     for (int k = 0; k < 5; ++k) {
-      const Matrix near = made.A + error.cwiseProduct(uniform(engine, error.rows(), error.rows(), 1));
+      const Matrix near =
+          made.A + error.cwiseProduct(uniform(engine, error.rows(), error.rows(), 1));
       const double found = spectral_radius(near);
       CHECK(wide.lower <= found * (1 + 1e-9));
       CHECK(found <= wide.upper * (1 + 1e-9));
@@ -383,8 +426,15 @@ TEST_CASE("no eigenvalue is named that there is not") {
     companion(11, k) = k % 2 == 0 ? -binomial[k] : binomial[k];
   }
   const std::string text = message([&] { require_schur(companion, "A"); }, Errc::invalid);
-  CHECK(has(text, "A is not Schur: an eigenvalue is proven not to lie inside the unit circle (doubles find 1.0"));
-  CHECK(has(message([] { require_schur(Matrix{{1.25, 3}, {0, .5}}, "A"); }, Errc::invalid), "it has the eigenvalue 1.25"));
+  CHECK(has(text,
+            "A is not Schur: an eigenvalue is proven not to lie inside the unit circle (doubles "
+            "find 1.0"));
+  CHECK(has(message(
+                [] {
+                  require_schur(Matrix{{1.25, 3}, {0, .5}}, "A");
+                },
+                Errc::invalid),
+            "it has the eigenvalue 1.25"));
 }
 
 TEST_CASE("signs and stability of A - L C are those of the numbers as they are written") {
@@ -398,14 +448,16 @@ TEST_CASE("signs and stability of A - L C are those of the numbers as they are w
   const double e = std::ldexp(1., -30);
   CHECK(closed_loop(Matrix{{1}}, Matrix{{e}}, Matrix{{-e}}).schur == Answer::no);
   CHECK(closed_loop(Matrix{{1}}, Matrix{{e}}, Matrix{{e}}).schur == Answer::yes);
-  CHECK(closed_loop(Matrix{{1}}, Matrix{{e}}, Matrix{{e}}).radius.upper == 1);  // no double is between
+  CHECK(closed_loop(Matrix{{1}}, Matrix{{e}}, Matrix{{e}}).radius.upper ==
+        1);  // no double is between
   CHECK(is_schur(Matrix{{1}}) == Answer::no);
   CHECK(is_schur(Matrix{{0, 1}, {-1, 0}}) == Answer::no);
   CHECK(is_schur(Matrix::Identity(41, 41)) == Answer::unknown);
   CHECK(is_schur(2 * Matrix::Identity(41, 41)) == Answer::no);
   CHECK(is_schur(.5 * Matrix::Identity(41, 41)) == Answer::yes);
   message([] { require_schur(Matrix::Identity(41, 41), "A"); }, Errc::unsupported);
-  CHECK(closed_loop(Matrix{{1.7e308}}, Matrix{{1.7e154}}, Matrix{{1e154}}).schur == Answer::no);  // 0 ± 1e294
+  CHECK(closed_loop(Matrix{{1.7e308}}, Matrix{{1.7e154}}, Matrix{{1e154}}).schur ==
+        Answer::no);  // 0 ± 1e294
   CHECK(closed_loop(Matrix{{0}}, Matrix{{1e300}}, Matrix{{1e10}}).schur == Answer::no);
   CHECK(is_schur(Matrix{{0, 1.7e308}, {0, 0}}) == Answer::yes);
 }

@@ -46,7 +46,8 @@ TEST_CASE("both radii of zonotopes that can be seen") {
   CHECK(f_w_radius(square, W) == doctest::Approx(std::sqrt(4. * 9 + 16)));
   CHECK(w_radius(square, I).value == doctest::Approx(25));
   CHECK(w_radius(square, W).value == doctest::Approx(4. * 9 + 16));
-  CHECK(w_radius(Matrix{{1, 1, -2}}, Matrix{{2}}).value == doctest::Approx(32));  // signs are chosen, not taken
+  CHECK(w_radius(Matrix{{1, 1, -2}}, Matrix{{2}}).value ==
+        doctest::Approx(32));  // signs are chosen, not taken
   CHECK(w_radius(Matrix{{1, 1}, {1, -1}}, I).value == doctest::Approx(4));
   CHECK(w_radius(Matrix{{1, 1}, {1, -1}}, Matrix{{2, 1}, {1, 2}}).value == doctest::Approx(8));
   CHECK(w_radius(Matrix(2, 0), I).value == 0);
@@ -87,7 +88,8 @@ struct Seen {
 TEST_CASE("the metrics say what they measured") {
   Registry registry;
   registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
-  const auto see = [&](const char* metric, const char* backend, const LineForm& X, const Params& params) -> Seen {
+  const auto see = [&](const char* metric, const char* backend, const LineForm& X,
+                       const Params& params) -> Seen {
     const auto made = registry.make_metric(metric, params);
     Estimate estimate;
     estimate.set = registry.make_backend(backend, {})->import(X);
@@ -118,7 +120,8 @@ TEST_CASE("the metrics say what they measured") {
   seen = see("w_radius", "constrained_zonotope", cut, {});
   CHECK(number(seen.step[0]) == doctest::Approx(25));
   CHECK(word(seen.step[1]) == "hull");
-  CHECK(word(see("w_radius", "zonotope", make_zonotope(Vector{{0, 0}}, Matrix::Random(2, 20)), {}).step[1]) == "reduced set");
+  CHECK(word(see("w_radius", "zonotope", make_zonotope(Vector{{0, 0}}, Matrix::Random(2, 20)), {})
+                 .step[1]) == "reduced set");
   seen = see("w_radius", "line_zonotope", make_space(2), {});
   CHECK(word(seen.step[1]) == "none");
   CHECK(std::isnan(number(seen.step[0])));
@@ -135,8 +138,10 @@ TEST_CASE("the metrics say what they measured") {
   CHECK(told(Matrix{{2, 1}, {1, 2}}) == "");
   CHECK(told(Matrix{{1}}) == "/weight is 1 × 1, the state has 2 entries");
   CHECK(told(Matrix{{1, 2}, {2, 1}}) == "/weight is not symmetric and positive definite");
-  CHECK_THROWS_AS(registry.make_metric("w_radius", Params().set("weight", Matrix{{1, 2}, {2, 1}})), Error);
-  CHECK_THROWS_AS(registry.make_metric("w_radius", Params().set("weight", Matrix{{1, .5}, {0, 1}})), Error);
+  CHECK_THROWS_AS(registry.make_metric("w_radius", Params().set("weight", Matrix{{1, 2}, {2, 1}})),
+                  Error);
+  CHECK_THROWS_AS(registry.make_metric("w_radius", Params().set("weight", Matrix{{1, .5}, {0, 1}})),
+                  Error);
   CHECK_THROWS_AS(see("w_radius", "zonotope", square, Params().set("weight", Matrix{{1}})), Error);
 }
 

@@ -24,7 +24,8 @@ class SumBoxesTerms final : public Reference {
   Made do_predict(const Set& X, const Predict& p) const override {
     LineForm sum = cordon::affine_map(form(X), p.A, p.f);
     for (const Term& term : p.terms) {
-      sum = minkowski_sum(sum, hull_of(cordon::affine_map(form(*term.set), term.T, Vector::Zero(p.A.rows()))));
+      sum = minkowski_sum(
+          sum, hull_of(cordon::affine_map(form(*term.set), term.T, Vector::Zero(p.A.rows()))));
     }
     return {make(sum), Tightness::exact};
   }
@@ -35,20 +36,24 @@ class LongSumsAreBoxed final : public Reference {
   using Reference::Reference;
   Made do_predict(const Set& X, const Predict& p) const override {
     const LineForm sum = predicted(X, p);
-    return {make(!p.terms.empty() && form(X).generators() > 4 ? hull_of(sum) : sum), Tightness::exact};
+    return {make(!p.terms.empty() && form(X).generators() > 4 ? hull_of(sum) : sum),
+            Tightness::exact};
   }
 };
 
 class MapBoxes final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override { return {make(hull_of(predicted(X, p))), Tightness::exact}; }
+  Made do_predict(const Set& X, const Predict& p) const override {
+    return {make(hull_of(predicted(X, p))), Tightness::exact};
+  }
 };
 
 class ProductBoxes final : public Reference {
   using Reference::Reference;
   Made do_predict(const Set& X, const Predict& p) const override {
     const LineForm sum = predicted(X, p);
-    return {make(p.A.rows() > p.A.cols() && !p.terms.empty() ? hull_of(sum) : sum), Tightness::exact};
+    return {make(p.A.rows() > p.A.cols() && !p.terms.empty() ? hull_of(sum) : sum),
+            Tightness::exact};
   }
 };
 
@@ -115,23 +120,29 @@ class ZeroIsNotNeutral final : public Reference {
 
 std::vector<Mutant> mutants_of_claims() {
   return {
-      {"import_boxes", "tightness.import", "an imported set is its interval hull", create<ImportBoxes>},
-      {"sum_boxes_terms", "tightness.sum algebra.sum_commutes", "the second operand of a sum is replaced by its hull",
-       create<SumBoxesTerms>},
-      {"long_sums_are_boxed", "algebra.sum_associates", "a sum is its hull where the first operand has many generators",
-       create<LongSumsAreBoxed>},
-      {"map_boxes", "tightness.affine_map tightness.predict algebra.map_composes algebra.map_distributes",
+      {"import_boxes", "tightness.import", "an imported set is its interval hull",
+       create<ImportBoxes>},
+      {"sum_boxes_terms", "tightness.sum algebra.sum_commutes",
+       "the second operand of a sum is replaced by its hull", create<SumBoxesTerms>},
+      {"long_sums_are_boxed", "algebra.sum_associates",
+       "a sum is its hull where the first operand has many generators", create<LongSumsAreBoxed>},
+      {"map_boxes",
+       "tightness.affine_map tightness.predict algebra.map_composes algebra.map_distributes",
        "the image of a map is its hull", create<MapBoxes>},
       {"product_boxes", "tightness.product", "a product is its hull", create<ProductBoxes>},
-      {"intersection_of_hulls", "tightness.intersection", "the second operand is replaced by its hull",
-       create<IntersectionOfHulls>},
-      {"correct_by_hull", "tightness.correct", "T V is replaced by its hull", create<CorrectByHull>},
-      {"interval_map_exact", "tightness.interval_map", "the map by an interval matrix claims to be exact",
-       create<IntervalMapExact>},
-      {"convex_hull_is_box", "tightness.convex_hull", "the convex hull is the interval hull", create<ConvexHullIsBox>},
+      {"intersection_of_hulls", "tightness.intersection",
+       "the second operand is replaced by its hull", create<IntersectionOfHulls>},
+      {"correct_by_hull", "tightness.correct", "T V is replaced by its hull",
+       create<CorrectByHull>},
+      {"interval_map_exact", "tightness.interval_map",
+       "the map by an interval matrix claims to be exact", create<IntervalMapExact>},
+      {"convex_hull_is_box", "tightness.convex_hull", "the convex hull is the interval hull",
+       create<ConvexHullIsBox>},
       {"reduce_exact", "tightness.reduce", "a reduced set claims to be exact", create<ReduceExact>},
-      {"self_intersection_is_box", "algebra.self_intersection", "X ∩ X is the hull of X", create<SelfIntersectionIsBox>},
-      {"zero_is_not_neutral", "algebra.zero_neutral", "X ⊕ {0} is the hull of X", create<ZeroIsNotNeutral>},
+      {"self_intersection_is_box", "algebra.self_intersection", "X ∩ X is the hull of X",
+       create<SelfIntersectionIsBox>},
+      {"zero_is_not_neutral", "algebra.zero_neutral", "X ⊕ {0} is the hull of X",
+       create<ZeroIsNotNeutral>},
   };
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Backends that break what is promised about every call: no exceptions of other kinds, no shared state, an end.
+// Backends that break what is promised about every call: no exceptions of other kinds, no shared
+// state, an end.
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -28,7 +29,8 @@ class ReduceInPlace final : public Reference {
   }
 };
 
-/// The centre goes through a buffer that all threads share. Atomic, so that the race is one of values and of nothing else.
+/// The centre goes through a buffer that all threads share. Atomic, so that the race is one of
+/// values and of nothing else.
 class SharedScratch final : public Reference {
   using Reference::Reference;
   Made do_predict(const Set& X, const Predict& p) const override {
@@ -57,7 +59,8 @@ class DependsOnHistory final : public Reference {
 class ThrowsOutOfRange final : public Reference {
   using Reference::Reference;
   Made do_convex_hull(const Set& X, const Set& Y) const override {
-    if (form(X).generators() == 0 || form(Y).generators() == 0) throw std::out_of_range("no generator 0");
+    if (form(X).generators() == 0 || form(Y).generators() == 0)
+      throw std::out_of_range("no generator 0");
     return Reference::do_convex_hull(X, Y);
   }
 };
@@ -74,16 +77,24 @@ class ThrowsNumber final : public Reference {
 class Borrowed final : public LineSet {
  public:
   Borrowed(const SetBackend& backend, LineForm form, std::weak_ptr<const int> lender = {})
-      : LineSet(backend, std::move(form)), lender_(std::move(lender)), borrowed_(!lender_.expired()) {}
+      : LineSet(backend, std::move(form)),
+        lender_(std::move(lender)),
+        borrowed_(!lender_.expired()) {}
   std::weak_ptr<const int> alive() const { return alive_; }
 
  private:
   LineForm known() const { return borrowed_ && lender_.expired() ? make_empty(dim()) : form(); }
   LineForm do_line_form() const override { return known(); }
   Answer do_is_empty(Certificate* why) const override { return cordon::is_empty(known(), why); }
-  Answer do_contains(VectorIn x, Certificate* why) const override { return cordon::contains(known(), x, why); }
-  double do_support(VectorIn d, Certificate* why) const override { return cordon::support(known(), d, why); }
-  Box do_interval_hull(std::vector<Certificate>* why) const override { return cordon::interval_hull(known(), why); }
+  Answer do_contains(VectorIn x, Certificate* why) const override {
+    return cordon::contains(known(), x, why);
+  }
+  double do_support(VectorIn d, Certificate* why) const override {
+    return cordon::support(known(), d, why);
+  }
+  Box do_interval_hull(std::vector<Certificate>* why) const override {
+    return cordon::interval_hull(known(), why);
+  }
 
   std::shared_ptr<const int> alive_ = std::make_shared<int>(0);
   std::weak_ptr<const int> lender_;
@@ -92,9 +103,13 @@ class Borrowed final : public LineSet {
 
 class LendsForms final : public Reference {
   using Reference::Reference;
-  std::unique_ptr<const Set> make(LineForm form) const override { return std::make_unique<Borrowed>(*this, std::move(form)); }
+  std::unique_ptr<const Set> make(LineForm form) const override {
+    return std::make_unique<Borrowed>(*this, std::move(form));
+  }
   Made do_predict(const Set& X, const Predict& p) const override {
-    return {std::make_unique<Borrowed>(*this, predicted(X, p), static_cast<const Borrowed&>(X).alive()), Tightness::exact};
+    return {
+        std::make_unique<Borrowed>(*this, predicted(X, p), static_cast<const Borrowed&>(X).alive()),
+        Tightness::exact};
   }
 };
 
@@ -148,7 +163,8 @@ class WrongDimension final : public Reference {
   Made do_predict(const Set& X, const Predict& p) const override {
     const LineForm sum = predicted(X, p);
     const Index kept = std::min(sum.dim(), X.dim());
-    return {make(cordon::affine_map(sum, Matrix::Identity(kept, sum.dim()), Vector::Zero(kept))), Tightness::exact};
+    return {make(cordon::affine_map(sum, Matrix::Identity(kept, sum.dim()), Vector::Zero(kept))),
+            Tightness::exact};
   }
 };
 
@@ -156,20 +172,25 @@ class WrongDimension final : public Reference {
 
 std::vector<Mutant> mutants_of_contract() {
   return {
-      {"reduce_in_place", "contract.operands_unchanged", "the operand is reduced in place", create<ReduceInPlace>},
+      {"reduce_in_place", "contract.operands_unchanged", "the operand is reduced in place",
+       create<ReduceInPlace>},
       {"shared_scratch", "contract.threads", "threads share a buffer", create<SharedScratch>},
-      {"depends_on_history", "contract.determinism", "every other result is larger", create<DependsOnHistory>},
-      {"throws_out_of_range", "contract.only_cordon_errors", "throws an exception of the standard library",
-       create<ThrowsOutOfRange>},
+      {"depends_on_history", "contract.determinism", "every other result is larger",
+       create<DependsOnHistory>},
+      {"throws_out_of_range", "contract.only_cordon_errors",
+       "throws an exception of the standard library", create<ThrowsOutOfRange>},
       {"throws_number", "contract.only_cordon_errors", "throws a number", create<ThrowsNumber>},
-      {"wrong_dimension", "soundness.affine_map", "a map never adds coordinates", create<WrongDimension>},
-      {"parameter_without_code", "contract.parameters_documented", "a value that a parameter allows is refused", create_half,
-       "breaks", schema_of_half()},
-      {"lends_forms", "lifetime.set_outlives_handle", "a result needs its operand", create<LendsForms>},
+      {"wrong_dimension", "soundness.affine_map", "a map never adds coordinates",
+       create<WrongDimension>},
+      {"parameter_without_code", "contract.parameters_documented",
+       "a value that a parameter allows is refused", create_half, "breaks", schema_of_half()},
+      {"lends_forms", "lifetime.set_outlives_handle", "a result needs its operand",
+       create<LendsForms>},
       {"keeps_itself", "lifetime.unload", "the backend is never let go", create<KeepsItself>},
-      {"crashes_in_one_dimension", "soundness.affine_map", "a segmentation fault for n = 1", create<CrashesInOneDimension>,
-       "crashes"},
-      {"exits_quietly", "algebra.empty_absorbs", "the program is ended with success", create<ExitsQuietly>, "crashes"},
+      {"crashes_in_one_dimension", "soundness.affine_map", "a segmentation fault for n = 1",
+       create<CrashesInOneDimension>, "crashes"},
+      {"exits_quietly", "algebra.empty_absorbs", "the program is ended with success",
+       create<ExitsQuietly>, "crashes"},
       {"hangs", "soundness.convex_hull", "the convex hull does not end", create<Hangs>, "hangs"},
   };
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The conformance kit is tested by backends that are known to be broken: each has to be caught by the laws that its summary
-// names, with a witness and a command that repeats the failure. Backends without a defect have to pass every law.
+// The conformance kit is tested by backends that are known to be broken: each has to be caught by
+// the laws that its summary names, with a witness and a command that repeats the failure. Backends
+// without a defect have to pass every law.
 #include <algorithm>
 #include <atomic>
 #include <set>
@@ -31,7 +32,8 @@ Outcome cordon_json(const std::string& arguments) {
 
 /// The entry of one law in the report about one backend; null if there is none.
 json entry_of(const Outcome& outcome, const std::string& law) {
-  if (!outcome.report.is_object() || outcome.report.value("backends", json::array()).size() != 1) return nullptr;
+  if (!outcome.report.is_object() || outcome.report.value("backends", json::array()).size() != 1)
+    return nullptr;
   for (const json& entry : outcome.report["backends"][0]["laws"]) {
     if (entry["law"] == law) return entry;
   }
@@ -57,7 +59,8 @@ std::vector<Trial> all_trials() {
     std::string verdict, law;
     words >> verdict;
     if (verdict == "keeps") continue;
-    while (words >> law) trials.push_back({component.at("name"), verdict, law, summary.substr(colon + 2), {}, {}});
+    while (words >> law)
+      trials.push_back({component.at("name"), verdict, law, summary.substr(colon + 2), {}, {}});
   }
   return trials;
 }
@@ -65,11 +68,13 @@ std::vector<Trial> all_trials() {
 /// Finds the failure, and repeats it by the command that the report names.
 void run(Trial& trial) {
   const std::string seconds = trial.verdict == "hangs" ? " --timeout 1" : "";
-  trial.found = cordon_json("conform \"" CORDON_MUTANTS_DIRECTORY "/mutants.so\" --backend " + trial.backend + " --law " +
-                            trial.law + seconds);
+  trial.found = cordon_json("conform \"" CORDON_MUTANTS_DIRECTORY "/mutants.so\" --backend " +
+                            trial.backend + " --law " + trial.law + seconds);
   const json entry = entry_of(trial.found, trial.law);
-  const std::string replay = entry.is_object() ? entry.value("replay", "") : "", program = "cordon ";
-  if (replay.starts_with(program)) trial.replayed = cordon_json(replay.substr(program.size()) + seconds);
+  const std::string replay = entry.is_object() ? entry.value("replay", "") : "",
+                    program = "cordon ";
+  if (replay.starts_with(program))
+    trial.replayed = cordon_json(replay.substr(program.size()) + seconds);
 }
 
 void run_all(std::vector<Trial>& trials) {
@@ -83,7 +88,8 @@ void run_all(std::vector<Trial>& trials) {
 }
 
 /// Laws that no plugin can break, because the framework's public functions keep them for all.
-const std::set<std::string> kept_by_the_framework{"tightness.claims_meet", "algebra.empty_hull", "contract.dimension_errors",
+const std::set<std::string> kept_by_the_framework{"tightness.claims_meet", "algebra.empty_hull",
+                                                  "contract.dimension_errors",
                                                   "contract.not_finite_errors"};
 
 }  // namespace
@@ -91,15 +97,18 @@ const std::set<std::string> kept_by_the_framework{"tightness.claims_meet", "alge
 TEST_CASE("backends without a defect pass every law") {
   for (const std::string backend : {"reference", "padded", "silent", "coarse"}) {
     CAPTURE(backend);
-    const Outcome outcome = cordon_json("conform \"" CORDON_MUTANTS_DIRECTORY "/mutants.so\" --backend " + backend);
+    const Outcome outcome =
+        cordon_json("conform \"" CORDON_MUTANTS_DIRECTORY "/mutants.so\" --backend " + backend);
     CHECK(outcome.code == 0);
     REQUIRE(outcome.report.is_object());
     for (const json& entry : outcome.report.at("backends").at(0).at("laws")) {
       CAPTURE(entry.dump(1));
-      // all but the two that say little have something to check by every law except the one about backends that round outward
+      // all but the two that say little have something to check by every law except the one about
+      // backends that round outward
       const bool skipped = entry.at("status") == "skipped";
       CHECK((skipped || entry.at("status") == "passed"));
-      CHECK((!skipped || backend == "coarse" || backend == "silent" || entry.at("law") == "soundness.rational"));
+      CHECK((!skipped || backend == "coarse" || backend == "silent" ||
+             entry.at("law") == "soundness.rational"));
     }
   }
 }
@@ -119,7 +128,9 @@ TEST_CASE("every mutant is caught by its laws, with a witness and a replay") {
     }
     CAPTURE(entry.dump(1));
     const bool violation = trial.verdict == "breaks";
-    const std::string status = violation ? "failed" : trial.verdict == "crashes" ? "crashed" : "timed_out";
+    const std::string status = violation                    ? "failed"
+                               : trial.verdict == "crashes" ? "crashed"
+                                                            : "timed_out";
     CHECK(entry.at("status") == status);
     CHECK(trial.found.code == (violation ? 4 : 3));
     CHECK_FALSE(entry.value("witness", "").empty());
@@ -131,13 +142,15 @@ TEST_CASE("every mutant is caught by its laws, with a witness and a replay") {
 }
 
 TEST_CASE("laws go on after a crash") {
-  const Outcome outcome = cordon_json("conform \"" CORDON_MUTANTS_DIRECTORY
-                                      "/mutants.so\" --backend crashes_in_one_dimension --law 'soundness.*' --cases 9");
+  const Outcome outcome =
+      cordon_json("conform \"" CORDON_MUTANTS_DIRECTORY
+                  "/mutants.so\" --backend crashes_in_one_dimension --law 'soundness.*' --cases 9");
   CHECK(outcome.code != 0);
   REQUIRE(outcome.report.is_object());
   const json& laws = outcome.report.at("backends").at(0).at("laws");
   const auto count = [&](const char* status) {
-    return std::count_if(laws.begin(), laws.end(), [&](const json& entry) { return entry.at("status") == status; });
+    return std::count_if(laws.begin(), laws.end(),
+                         [&](const json& entry) { return entry.at("status") == status; });
   };
   CHECK(count("crashed") >= 2);
   CHECK(count("passed") >= 5);

@@ -23,7 +23,9 @@ LineForm without_last_generator(LineForm X) {
 
 class ImportDropsGenerator final : public Reference {
   using Reference::Reference;
-  Made do_import(const LineForm& X) const override { return {make(without_last_generator(X)), Tightness::exact}; }
+  Made do_import(const LineForm& X) const override {
+    return {make(without_last_generator(X)), Tightness::exact};
+  }
 };
 
 class SumDropsGenerator final : public Reference {
@@ -68,8 +70,8 @@ class ProductSwapsBlocks final : public Reference {
   Made do_predict(const Set& X, const Predict& p) const override {
     const LineForm sum = predicted(X, p);
     const Index n = p.A.cols(), m = p.A.rows() - n;
-    const bool product = p.terms.size() == 1 && p.terms.front().T.cols() == m && m > 0 && p.A == ones(n + m, n) &&
-                         p.terms.front().T.topRows(n).isZero(0);
+    const bool product = p.terms.size() == 1 && p.terms.front().T.cols() == m && m > 0 &&
+                         p.A == ones(n + m, n) && p.terms.front().T.topRows(n).isZero(0);
     if (!product) return {make(sum), Tightness::exact};
     Matrix swap = Matrix::Zero(n + m, n + m);
     swap.topRightCorner(m, m).setIdentity();
@@ -81,7 +83,8 @@ class ProductSwapsBlocks final : public Reference {
 class IntersectionForgetsMap final : public Reference {
   using Reference::Reference;
   Made do_intersection(const Set& X, MatrixIn R, const Set& Y) const override {
-    return {make(cordon::intersection(form(X), ones(R.rows(), R.cols()), form(Y))), Tightness::exact};
+    return {make(cordon::intersection(form(X), ones(R.rows(), R.cols()), form(Y))),
+            Tightness::exact};
   }
 };
 
@@ -104,7 +107,8 @@ class CorrectIgnoresPointNoise final : public Reference {
   using Reference::Reference;
   Made do_correct(const Set& X, const Correct& c) const override {
     const bool point = form(*c.noise.set).generators() == 0;
-    const Matrix T = point ? Matrix(Matrix::Zero(c.noise.T.rows(), c.noise.T.cols())) : Matrix(c.noise.T);
+    const Matrix T =
+        point ? Matrix(Matrix::Zero(c.noise.T.rows(), c.noise.T.cols())) : Matrix(c.noise.T);
     return {make(corrected(X, c.C, c.z, T, *c.noise.set)), Tightness::exact};
   }
 };
@@ -115,9 +119,11 @@ class DividesByNoise final : public Reference {
   Made do_correct(const Set& X, const Correct& c) const override {
     LineForm known = form(X);
     for (Index i = 0; i < c.C.rows(); ++i) {
-      const Box seen = cordon::interval_hull(cordon::affine_map(known, c.C.row(i), Vector::Zero(1)));
+      const Box seen =
+          cordon::interval_hull(cordon::affine_map(known, c.C.row(i), Vector::Zero(1)));
       if (seen.upper[0] - seen.lower[0] <= 1e-9 * known.G.cwiseAbs().sum()) known.G.setZero();
-      const LineForm noise = cordon::affine_map(form(*c.noise.set), -c.noise.T.row(i), c.z.segment(i, 1));
+      const LineForm noise =
+          cordon::affine_map(form(*c.noise.set), -c.noise.T.row(i), c.z.segment(i, 1));
       known = cordon::intersection(known, c.C.row(i), noise);
     }
     return {make(known), Tightness::exact};
@@ -133,7 +139,9 @@ class IntervalMapIgnoresRadius final : public Reference {
 
 class HullOfFirst final : public Reference {
   using Reference::Reference;
-  Made do_convex_hull(const Set& X, const Set&) const override { return {make(form(X)), Tightness::outer}; }
+  Made do_convex_hull(const Set& X, const Set&) const override {
+    return {make(form(X)), Tightness::outer};
+  }
 };
 
 class ReduceShrinks final : public Reference {
@@ -159,7 +167,9 @@ class ReduceDropsGenerators final : public Reference {
 class ReduceExceedsBudget final : public Reference {
   using Reference::Reference;
   Made do_reduce(const Set& X, Budget budget) const override {
-    if (form(X).generators() - 1 <= budget.generators && form(X).constraints() <= budget.constraints) return {};
+    if (form(X).generators() - 1 <= budget.generators &&
+        form(X).constraints() <= budget.constraints)
+      return {};
     return {make(boxed(form(X), budget)), Tightness::outer};
   }
 };
@@ -170,7 +180,8 @@ class EmptyNeutralInSum final : public Reference {
     LineForm sum = cordon::affine_map(form(X), p.A, p.f);
     for (const Term& term : p.terms) {
       if (term.set->is_empty() == Answer::yes) continue;
-      sum = minkowski_sum(sum, cordon::affine_map(form(*term.set), term.T, Vector::Zero(p.A.rows())));
+      sum =
+          minkowski_sum(sum, cordon::affine_map(form(*term.set), term.T, Vector::Zero(p.A.rows())));
     }
     return {make(sum), Tightness::exact};
   }
@@ -191,31 +202,43 @@ class NominalButOutward final : public Reference {
 
 std::vector<Mutant> mutants_of_operations() {
   return {
-      {"import_drops_generator", "soundness.import", "the last generator is lost", create<ImportDropsGenerator>},
-      {"sum_drops_generator", "soundness.sum algebra.monotone", "the last generator of a sum is lost", create<SumDropsGenerator>},
-      {"map_of_one_sign", "soundness.affine_map", "negative entries of a map count as zero", create<MapOfOneSign>},
-      {"predict_forgets_translation", "soundness.predict", "f of A X + f is forgotten", create<PredictForgetsTranslation>},
-      {"predict_forgets_map", "soundness.predict", "T of T S is the identity", create<PredictForgetsMap>},
+      {"import_drops_generator", "soundness.import", "the last generator is lost",
+       create<ImportDropsGenerator>},
+      {"sum_drops_generator", "soundness.sum algebra.monotone",
+       "the last generator of a sum is lost", create<SumDropsGenerator>},
+      {"map_of_one_sign", "soundness.affine_map", "negative entries of a map count as zero",
+       create<MapOfOneSign>},
+      {"predict_forgets_translation", "soundness.predict", "f of A X + f is forgotten",
+       create<PredictForgetsTranslation>},
+      {"predict_forgets_map", "soundness.predict", "T of T S is the identity",
+       create<PredictForgetsMap>},
       {"product_swaps_blocks", "soundness.product", "X × Y is Y × X", create<ProductSwapsBlocks>},
-      {"intersection_forgets_map", "soundness.intersection", "R of R x ∈ Y is the identity", create<IntersectionForgetsMap>},
-      {"correct_forgets_noise_map", "soundness.correct", "z - C x ∈ V instead of T V", create<CorrectForgetsNoiseMap>},
-      {"correct_mirrors_noise", "soundness.correct", "C x - z ∈ T V: right for symmetric noise only",
-       create<CorrectMirrorsNoise>},
-      {"correct_ignores_point_noise", "soundness.point_noise", "z - C x ∈ T V without T V if V is a point",
-       create<CorrectIgnoresPointNoise>},
+      {"intersection_forgets_map", "soundness.intersection", "R of R x ∈ Y is the identity",
+       create<IntersectionForgetsMap>},
+      {"correct_forgets_noise_map", "soundness.correct", "z - C x ∈ V instead of T V",
+       create<CorrectForgetsNoiseMap>},
+      {"correct_mirrors_noise", "soundness.correct",
+       "C x - z ∈ T V: right for symmetric noise only", create<CorrectMirrorsNoise>},
+      {"correct_ignores_point_noise", "soundness.point_noise",
+       "z - C x ∈ T V without T V if V is a point", create<CorrectIgnoresPointNoise>},
       {"divides_by_noise",
-       "soundness.repeated_strips soundness.proportional_strips soundness.dependent_strips soundness.flat_strips "
+       "soundness.repeated_strips soundness.proportional_strips soundness.dependent_strips "
+       "soundness.flat_strips "
        "soundness.noise_free_steps",
        "a row that says what is known moves the set", create<DividesByNoise>},
       {"interval_map_ignores_radius", "soundness.interval_map", "only the centre of [A] is used",
        create<IntervalMapIgnoresRadius>},
-      {"hull_of_first", "soundness.convex_hull", "the hull is the first operand", create<HullOfFirst>},
-      {"reduce_shrinks", "soundness.reduce", "a reduced set is smaller by a millionth", create<ReduceShrinks>},
-      {"reduce_drops_generators", "algebra.reduce_encloses", "generators above the budget are dropped",
-       create<ReduceDropsGenerators>},
-      {"reduce_exceeds_budget", "algebra.reduce_budget", "one generator above the budget is kept", create<ReduceExceedsBudget>},
+      {"hull_of_first", "soundness.convex_hull", "the hull is the first operand",
+       create<HullOfFirst>},
+      {"reduce_shrinks", "soundness.reduce", "a reduced set is smaller by a millionth",
+       create<ReduceShrinks>},
+      {"reduce_drops_generators", "algebra.reduce_encloses",
+       "generators above the budget are dropped", create<ReduceDropsGenerators>},
+      {"reduce_exceeds_budget", "algebra.reduce_budget", "one generator above the budget is kept",
+       create<ReduceExceedsBudget>},
       {"empty_neutral_in_sum", "algebra.empty_absorbs", "X ⊕ ∅ is X", create<EmptyNeutralInSum>},
-      {"nominal_but_outward", "soundness.rational", "claims outward rounding, computes nominally", create<NominalButOutward>},
+      {"nominal_but_outward", "soundness.rational", "claims outward rounding, computes nominally",
+       create<NominalButOutward>},
   };
 }
 

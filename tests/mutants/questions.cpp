@@ -105,7 +105,8 @@ class ContainsForgetsRows final : public LineSet {
   using LineSet::LineSet;
   Answer do_contains(VectorIn x, Certificate* why) const override {
     const LineForm& X = form();
-    return cordon::contains({X.M, X.G, X.c, Matrix(0, X.lines()), Matrix(0, X.generators()), Vector(0)}, x, why);
+    return cordon::contains(
+        {X.M, X.G, X.c, Matrix(0, X.lines()), Matrix(0, X.generators()), Vector(0)}, x, why);
   }
 };
 
@@ -143,7 +144,9 @@ class EmptyWithoutProof final : public LineSet {
 
 class AnswersSwapped final : public LineSet {
   using LineSet::LineSet;
-  Answer do_contains(VectorIn x, Certificate* why) const override { return negate(LineSet::do_contains(x, why)); }
+  Answer do_contains(VectorIn x, Certificate* why) const override {
+    return negate(LineSet::do_contains(x, why));
+  }
 };
 
 class VolumeOfHull final : public LineSet {
@@ -180,27 +183,42 @@ class EmptyHullIsPoint final : public LineSet {
 
 std::vector<Mutant> mutants_of_questions() {
   return {
-      {"support_inward", "soundness.support", "support values are too small by a millionth", create<With<SupportInward>>},
+      {"support_inward", "soundness.support", "support values are too small by a millionth",
+       create<With<SupportInward>>},
       {"hull_misses_generator", "soundness.interval_hull", "the hull forgets the last generator",
        create<With<HullMissesGenerator>>},
-      {"line_form_flips_rows", "soundness.line_form", "constraints are given out as A ξ = -b", create<With<LineFormFlipsRows>>},
-      {"line_form_loses_rows", "algebra.import_of_line_form", "constraints are not given out", create<With<LineFormLosesRows>>},
-      {"line_form_shrunk", "questions.is_disjoint", "generators are given out halved", create<With<LineFormShrunk>>},
-      {"line_form_grown", "questions.is_subset", "generators are given out doubled", create<With<LineFormGrown>>},
-      {"empty_too_early", "questions.is_empty", "the tolerance has the wrong sign", create<With<EmptyTooEarly>>},
-      {"empty_on_failure", "questions.is_empty", "a solver's failure is taken for emptiness", create<With<EmptyOnFailure>>},
+      {"line_form_flips_rows", "soundness.line_form", "constraints are given out as A ξ = -b",
+       create<With<LineFormFlipsRows>>},
+      {"line_form_loses_rows", "algebra.import_of_line_form", "constraints are not given out",
+       create<With<LineFormLosesRows>>},
+      {"line_form_shrunk", "questions.is_disjoint", "generators are given out halved",
+       create<With<LineFormShrunk>>},
+      {"line_form_grown", "questions.is_subset", "generators are given out doubled",
+       create<With<LineFormGrown>>},
+      {"empty_too_early", "questions.is_empty", "the tolerance has the wrong sign",
+       create<With<EmptyTooEarly>>},
+      {"empty_on_failure", "questions.is_empty", "a solver's failure is taken for emptiness",
+       create<With<EmptyOnFailure>>},
       {"contains_neighbours", "questions.contains", "points up to a millionth outside are inside",
        create<With<ContainsNeighbours>>},
-      {"contains_forgets_rows", "questions.contains", "constraints do not count", create<With<ContainsForgetsRows>>},
-      {"contains_interior", "questions.contains", "points of the boundary are outside", create<With<ContainsInterior>>},
-      {"bounded_always", "questions.is_bounded", "a set with lines is bounded", create<With<BoundedAlways>>},
-      {"support_disagrees", "questions.agree", "a set with constraints has the support of the empty set",
-       create<With<HullDisagrees>>},
-      {"empty_without_proof", "questions.certificates", "a certificate has the wrong sign", create<With<EmptyWithoutProof>>},
-      {"answers_swapped", "questions.unknown_rate", "yes and no are exchanged", create<With<AnswersSwapped>>},
-      {"volume_of_hull", "soundness.volume", "the volume of the hull is called exact", create<With<VolumeOfHull>>},
-      {"nan_hull", "contract.no_nan", "the hull of a flat set is not a number", create<With<NanHull>>},
-      {"empty_hull_is_point", "questions.agree", "the hull of the empty set is the origin", create<With<EmptyHullIsPoint>>},
+      {"contains_forgets_rows", "questions.contains", "constraints do not count",
+       create<With<ContainsForgetsRows>>},
+      {"contains_interior", "questions.contains", "points of the boundary are outside",
+       create<With<ContainsInterior>>},
+      {"bounded_always", "questions.is_bounded", "a set with lines is bounded",
+       create<With<BoundedAlways>>},
+      {"support_disagrees", "questions.agree",
+       "a set with constraints has the support of the empty set", create<With<HullDisagrees>>},
+      {"empty_without_proof", "questions.certificates", "a certificate has the wrong sign",
+       create<With<EmptyWithoutProof>>},
+      {"answers_swapped", "questions.unknown_rate", "yes and no are exchanged",
+       create<With<AnswersSwapped>>},
+      {"volume_of_hull", "soundness.volume", "the volume of the hull is called exact",
+       create<With<VolumeOfHull>>},
+      {"nan_hull", "contract.no_nan", "the hull of a flat set is not a number",
+       create<With<NanHull>>},
+      {"empty_hull_is_point", "questions.agree", "the hull of the empty set is the origin",
+       create<With<EmptyHullIsPoint>>},
   };
 }
 

@@ -12,10 +12,16 @@
 namespace mutants {
 
 Answer LineSet::do_is_empty(Certificate* why) const { return cordon::is_empty(form_, why); }
-Answer LineSet::do_contains(VectorIn x, Certificate* why) const { return cordon::contains(form_, x, why); }
+Answer LineSet::do_contains(VectorIn x, Certificate* why) const {
+  return cordon::contains(form_, x, why);
+}
 Answer LineSet::do_is_bounded() const { return cordon::is_bounded(form_); }
-double LineSet::do_support(VectorIn d, Certificate* why) const { return cordon::support(form_, d, why); }
-Box LineSet::do_interval_hull(std::vector<Certificate>* why) const { return cordon::interval_hull(form_, why); }
+double LineSet::do_support(VectorIn d, Certificate* why) const {
+  return cordon::support(form_, d, why);
+}
+Box LineSet::do_interval_hull(std::vector<Certificate>* why) const {
+  return cordon::interval_hull(form_, why);
+}
 
 LineForm Reference::predicted(const Set& X, const Predict& p) {
   LineForm sum = cordon::affine_map(form(X), p.A, p.f);
@@ -45,8 +51,10 @@ LineForm Reference::boxed(const LineForm& X, Budget budget) {
   }
   LineForm box = make_box(hull);
   if (box.generators() > budget.generators) {
-    throw Error(Errc::invalid, "a box in dimension " + std::to_string(X.dim()) + " needs " + std::to_string(box.generators()) +
-                                   " generators, the budget has " + std::to_string(budget.generators));
+    throw Error(Errc::invalid, "a box in dimension " + std::to_string(X.dim()) + " needs " +
+                                   std::to_string(box.generators()) +
+                                   " generators, the budget has " +
+                                   std::to_string(budget.generators));
   }
   return box;
 }
@@ -66,7 +74,8 @@ SetBackend::Made Reference::do_interval_map(const Set& X, const IntervalMatrix& 
   for (Index i = 0; i < m; ++i) {
     double width = 0;
     for (Index j = 0; j < n; ++j) {
-      if (A.radius(i, j) > 0) width += A.radius(i, j) * std::max(std::abs(hull.lower[j]), std::abs(hull.upper[j]));
+      if (A.radius(i, j) > 0)
+        width += A.radius(i, j) * std::max(std::abs(hull.lower[j]), std::abs(hull.upper[j]));
     }
     if (width == 0) continue;
     spread.upper[i] = rounding::up(width * (1 + rounding::gamma(2 * n + 2)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small backend without a known defect: the exchange form as it is, reduced to its interval hull. Mutants derive from it and
-// break one thing each; without them it has to pass every law of the conformance kit.
+// A small backend without a known defect: the exchange form as it is, reduced to its interval hull.
+// Mutants derive from it and break one thing each; without them it has to pass every law of the
+// conformance kit.
 #pragma once
 
 #include <memory>
@@ -16,11 +17,14 @@ using namespace cordon;
 /// A set that is its exchange form.
 class LineSet : public Set {
  public:
-  LineSet(const SetBackend& backend, LineForm form) : Set(backend, form.dim()), form_(std::move(form)) {}
+  LineSet(const SetBackend& backend, LineForm form)
+      : Set(backend, form.dim()), form_(std::move(form)) {}
   const LineForm& form() const { return form_; }
 
  protected:
-  Complexity do_complexity() const override { return {form_.generators(), form_.lines(), form_.constraints()}; }
+  Complexity do_complexity() const override {
+    return {form_.generators(), form_.lines(), form_.constraints()};
+  }
   LineForm do_line_form() const override { return form_; }
   Answer do_is_empty(Certificate* why) const override;
   Answer do_contains(VectorIn x, Certificate* why) const override;
@@ -32,8 +36,8 @@ class LineSet : public Set {
   LineForm form_;
 };
 
-/// The operations, exact by the block matrices of core/line_form.hpp but for maps by interval matrices, hulls of sets with lines
-/// and reduction.
+/// The operations, exact by the block matrices of core/line_form.hpp but for maps by interval
+/// matrices, hulls of sets with lines and reduction.
 class Reference : public SetBackend {
  public:
   explicit Reference(BackendInfo info) : SetBackend(std::move(info)) {}
@@ -41,16 +45,21 @@ class Reference : public SetBackend {
  protected:
   static const LineForm& form(const Set& X) { return static_cast<const LineSet&>(X).form(); }
   /// The one place where sets are made, so that a mutant of the questions replaces their type here.
-  virtual std::unique_ptr<const Set> make(LineForm form) const { return std::make_unique<LineSet>(*this, std::move(form)); }
+  virtual std::unique_ptr<const Set> make(LineForm form) const {
+    return std::make_unique<LineSet>(*this, std::move(form));
+  }
 
   static LineForm predicted(const Set& X, const Predict& p);
   static LineForm corrected(const Set& X, MatrixIn C, VectorIn z, MatrixIn T, const Set& noise);
-  /// The hull as a set within the budget; Errc::invalid if it has more edges than the budget generators.
+  /// The hull as a set within the budget; Errc::invalid if it has more edges than the budget
+  /// generators.
   static LineForm boxed(const LineForm& X, Budget budget);
   static bool fits(const LineForm& X, Budget budget);
 
   Made do_import(const LineForm& X) const override { return {make(X), Tightness::exact}; }
-  Made do_predict(const Set& X, const Predict& p) const override { return {make(predicted(X, p)), Tightness::exact}; }
+  Made do_predict(const Set& X, const Predict& p) const override {
+    return {make(predicted(X, p)), Tightness::exact};
+  }
   Made do_correct(const Set& X, const Correct& c) const override;
   Made do_interval_map(const Set& X, const IntervalMatrix& A) const override;
   Made do_intersection(const Set& X, MatrixIn R, const Set& Y) const override;
@@ -65,16 +74,20 @@ class With : public Reference {
   using Reference::Reference;
 
  private:
-  std::unique_ptr<const Set> make(LineForm form) const override { return std::make_unique<SetType>(*this, std::move(form)); }
+  std::unique_ptr<const Set> make(LineForm form) const override {
+    return std::make_unique<SetType>(*this, std::move(form));
+  }
 };
 
-/// A backend of the plugin: what is broken in it, and the laws (separated by spaces) each of which has to notice.
+/// A backend of the plugin: what is broken in it, and the laws (separated by spaces) each of which
+/// has to notice.
 struct Mutant {
   const char* name;
   const char* laws;
   const char* defect;
   std::unique_ptr<SetBackend> (*create)(BackendInfo info, const Params& params);
-  const char* verdict = "breaks";  ///< the laws; or "crashes", "hangs" while they are checked; or "keeps" all
+  const char* verdict =
+      "breaks";  ///< the laws; or "crashes", "hangs" while they are checked; or "keeps" all
   ParamSchema schema = {};
 };
 

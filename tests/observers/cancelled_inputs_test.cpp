@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// B u, D u and the center of W may cancel to numbers that are far smaller than their rounding errors. The truth stays inside: in
-// data whose states follow from extended arithmetic, and in those of a sensor that sees the input alone.
+// B u, D u and the center of W may cancel to numbers that are far smaller than their rounding
+// errors. The truth stays inside: in data whose states follow from extended arithmetic, and in
+// those of a sensor that sees the input alone.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -12,7 +13,8 @@ using namespace banks;
 
 namespace {
 
-constexpr const char* backends[] = {"interval", "zonotope", "constrained_zonotope", "line_zonotope"};
+constexpr const char* backends[] = {"interval", "zonotope", "constrained_zonotope",
+                                    "line_zonotope"};
 
 LineForm ball(double center, double radius) {
   return make_box({Vector::Constant(1, center - radius), Vector::Constant(1, center + radius)});
@@ -35,16 +37,19 @@ Model scalar(double a, const Matrix& B, double c, const Matrix& D) {
 
 long double product(const Matrix& row, const Vector& u) {
   long double sum = 0;
-  for (Index j = 0; j < u.size(); ++j) sum += static_cast<long double>(row(0, j)) * static_cast<long double>(u[j]);
+  for (Index j = 0; j < u.size(); ++j)
+    sum += static_cast<long double>(row(0, j)) * static_cast<long double>(u[j]);
   return sum;
 }
 
-/// Steps of the plant in extended arithmetic, without any disturbance but w; outputs and states as the doubles next to them.
+/// Steps of the plant in extended arithmetic, without any disturbance but w; outputs and states as
+/// the doubles next to them.
 void check_kept(const Model& model, double w, const std::function<Vector(Index)>& input) {
   const LinearModel& m = model.linear;
   for (const char* backend : backends) {
     CAPTURE(backend);
-    const auto observer = registry().make_observer("prediction_correction", {model, registry().make_backend(backend, {})}, {});
+    const auto observer = registry().make_observer(
+        "prediction_correction", {model, registry().make_backend(backend, {})}, {});
     long double x = 0;
     for (Index k = 0; k < 20; ++k) {
       CAPTURE(k);
@@ -61,7 +66,9 @@ void check_kept(const Model& model, double w, const std::function<Vector(Index)>
   }
 }
 
-Vector sine(Index k, double amplitude) { return Vector{{amplitude * std::sin(.3 * static_cast<double>(k))}}; }
+Vector sine(Index k, double amplitude) {
+  return Vector{{amplitude * std::sin(.3 * static_cast<double>(k))}};
+}
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Outputs without noise leave sets without width in some directions, where the numbers hold rounding errors alone. Data of plants
-// that integers simulate exactly are consistent; rounding must not make them a proof of the contrary, whatever the budget.
+// Outputs without noise leave sets without width in some directions, where the numbers hold
+// rounding errors alone. Data of plants that integers simulate exactly are consistent; rounding
+// must not make them a proof of the contrary, whatever the budget.
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -33,7 +34,8 @@ struct Run {
   std::vector<Sample> samples;
 };
 
-/// Random plants with up to four states, A and C in 1/4, x_0 in 1/64. Of a descriptor system, the last states are static.
+/// Random plants with up to four states, A and C in 1/4, x_0 in 1/64. Of a descriptor system, the
+/// last states are static.
 class Plants {
  public:
   explicit Plants(unsigned seed) : engine_(seed) {}
@@ -45,15 +47,20 @@ class Plants {
 
   /// Nothing if the numbers do not fit.
   std::optional<Run> draw(const Shape& shape) {
-    const Index n = integer(2, 4), p = integer(1, n), g = n + integer(0, 2), nw = shape.noise ? integer(0, 1) : 0;
-    const Index dynamic = shape.descriptor ? integer(1, n - 1) : n, rows = std::min<Index>(integer(0, 2), g - 1);
+    const Index n = integer(2, 4), p = integer(1, n), g = n + integer(0, 2),
+                nw = shape.noise ? integer(0, 1) : 0;
+    const Index dynamic = shape.descriptor ? integer(1, n - 1) : n,
+                rows = std::min<Index>(integer(0, 2), g - 1);
     Integers A = integers(n, n, 3), E = Integers::Zero(n, n);
     for (Index i = 0; i < n; ++i) E(i, i) = i < dynamic ? 1 : 0;
-    A.bottomRightCorner(n - dynamic, n - dynamic) = 4 * Integers::Identity(n - dynamic, n - dynamic);
+    A.bottomRightCorner(n - dynamic, n - dynamic) =
+        4 * Integers::Identity(n - dynamic, n - dynamic);
     A.topRightCorner(dynamic, n - dynamic).setZero();
-    A.bottomLeftCorner(n - dynamic, dynamic) *= 4;  // so that static states are as fine as the others
+    A.bottomLeftCorner(n - dynamic, dynamic) *=
+        4;  // so that static states are as fine as the others
     const Integers C = integers(p, n, 6), Bw = integers(n, nw, 4);
-    const Integers c = 16 * integers(n, 1, 8), G = integers(n, g, 8), A0 = integers(rows, g, 8), xi = integers(g, 1, 7);
+    const Integers c = 16 * integers(n, 1, 8), G = integers(n, g, 8), A0 = integers(rows, g, 8),
+                   xi = integers(g, 1, 7);
     Integers x = c + G * xi;  // G and ξ in 1/8
     settle(x, A, dynamic);
 
@@ -72,7 +79,8 @@ class Plants {
     X0.A = *dyadic(A0, 3);
     X0.b = dyadic(A0 * xi, 6)->col(0);
     run.model.X0 = shape.unknown_start ? make_space(n) : X0;
-    run.model.W = nw > 0 ? make_zonotope(Vector::Zero(nw), Matrix::Identity(nw, nw) / 8) : make_point(Vector(0));
+    run.model.W = nw > 0 ? make_zonotope(Vector::Zero(nw), Matrix::Identity(nw, nw) / 8)
+                         : make_point(Vector(0));
     run.model.V = make_point(Vector(0));
     run.model.U = make_space(0);
 
@@ -87,7 +95,8 @@ class Plants {
       if (nw > 0) x.topRows(dynamic) += (Bw * w).topRows(dynamic);
       settle(x, A, dynamic);
     }
-    if (shape.descriptor) run.model.X0 = make_box({Vector::Constant(n, -4096), Vector::Constant(n, 4096)});
+    if (shape.descriptor)
+      run.model.X0 = make_box({Vector::Constant(n, -4096), Vector::Constant(n, 4096)});
     return run;
   }
 
@@ -116,10 +125,10 @@ struct Tally {
   int runs = 0, empty = 0, outside = 0;
 };
 
-void follow(const Run& run, const std::string& observer, const std::shared_ptr<const SetBackend>& backend, int constraints,
-            Tally& tally) {
-  const auto made =
-      registry().make_observer(observer, {run.model, backend}, Params().set("max_constraints", std::int64_t{constraints}));
+void follow(const Run& run, const std::string& observer,
+            const std::shared_ptr<const SetBackend>& backend, int constraints, Tally& tally) {
+  const auto made = registry().make_observer(
+      observer, {run.model, backend}, Params().set("max_constraints", std::int64_t{constraints}));
   ++tally.runs;
   for (std::size_t k = 0; k < run.samples.size(); ++k) {
     const Estimate estimate = made->step(run.samples[k]);
@@ -139,15 +148,17 @@ std::shared_ptr<const SetBackend> backend(const std::string& name, const std::st
 }
 
 /// The observer keeps to the truth of `count` plants.
-void expect_truth_inside(const std::string& observer, const std::string& name, const std::string& rounding,
-                         const Plants::Shape& shape, int count, std::vector<int> budgets = {0, 1, 2, 3, 5, 50}) {
+void expect_truth_inside(const std::string& observer, const std::string& name,
+                         const std::string& rounding, const Plants::Shape& shape, int count,
+                         std::vector<int> budgets = {0, 1, 2, 3, 5, 50}) {
   const auto sets = backend(name, rounding);
   for (const int constraints : budgets) {
     CAPTURE(name);
     CAPTURE(constraints);
     Tally tally;
     for (int seed = 0; seed < count; ++seed) {
-      if (const auto run = Plants(static_cast<unsigned>(seed)).draw(shape)) follow(*run, observer, sets, constraints, tally);
+      if (const auto run = Plants(static_cast<unsigned>(seed)).draw(shape))
+        follow(*run, observer, sets, constraints, tally);
     }
     CHECK(tally.runs > count / 2);
     CHECK(tally.empty == 0);
@@ -172,19 +183,22 @@ TEST_CASE("exact data of a plant with two outputs are consistent") {
   model.X0.A = Matrix{{-.75, -.125, .375}};
   model.X0.b = Vector{{.515625}};
   model.U = make_space(0);
-  const Matrix outputs{{-4.1015625, 1.6328125},      {1.599609375, -2.267578125}, {-2.05078125, .81640625},
-                       {.7998046875, -1.1337890625}, {-1.025390625, .408203125},  {.39990234375, -.56689453125}};
+  const Matrix outputs{{-4.1015625, 1.6328125},    {1.599609375, -2.267578125},
+                       {-2.05078125, .81640625},   {.7998046875, -1.1337890625},
+                       {-1.025390625, .408203125}, {.39990234375, -.56689453125}};
   for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
     for (const char* rounding : {"nominal", "outward"}) {
       for (const int constraints : {0, 1, 2, 3, 5, 50}) {
         CAPTURE(name);
         CAPTURE(rounding);
         CAPTURE(constraints);
-        const auto observer = registry().make_observer("prediction_correction", {model, backend(name, rounding)},
-                                                       Params().set("max_constraints", std::int64_t{constraints}));
+        const auto observer =
+            registry().make_observer("prediction_correction", {model, backend(name, rounding)},
+                                     Params().set("max_constraints", std::int64_t{constraints}));
         for (Index k = 0; k < outputs.rows(); ++k) {
           CAPTURE(k);
-          CHECK(observer->step({k, Vector(0), outputs.row(k).transpose()}).consistent != Answer::no);
+          CHECK(observer->step({k, Vector(0), outputs.row(k).transpose()}).consistent !=
+                Answer::no);
         }
       }
     }
@@ -193,36 +207,46 @@ TEST_CASE("exact data of a plant with two outputs are consistent") {
 
 TEST_CASE("exact data are consistent with prediction and correction") {
   expect_truth_inside("prediction_correction", "constrained_zonotope", "nominal", {}, 60);
-  expect_truth_inside("prediction_correction", "constrained_zonotope", "nominal", {.noise = true}, 30, {1, 2, 5});
-  expect_truth_inside("prediction_correction", "line_zonotope", "nominal", {.noise = true}, 30, {0, 2, 5});
+  expect_truth_inside("prediction_correction", "constrained_zonotope", "nominal", {.noise = true},
+                      30, {1, 2, 5});
+  expect_truth_inside("prediction_correction", "line_zonotope", "nominal", {.noise = true}, 30,
+                      {0, 2, 5});
 }
 
 TEST_CASE("exact data are consistent where the observer lets errors grow") {
-  const auto expect_consistent = [](const std::string& observer, const std::string& name, unsigned seed, bool descriptor) {
+  const auto expect_consistent = [](const std::string& observer, const std::string& name,
+                                    unsigned seed, bool descriptor) {
     CAPTURE(observer);
     CAPTURE(seed);
     Tally tally;
     const auto run = Plants(seed).draw({.descriptor = descriptor, .noise = true, .length = 14});
     REQUIRE(run);
-    for (const int constraints : {0, 1, 2, 3, 5}) follow(*run, observer, backend(name, "nominal"), constraints, tally);
+    for (const int constraints : {0, 1, 2, 3, 5})
+      follow(*run, observer, backend(name, "nominal"), constraints, tally);
     CHECK(tally.empty + tally.outside == 0);
   };
   for (const unsigned seed : {45u, 51u, 59u, 175u, 761u, 1112u}) {
     expect_consistent("prediction_correction", "constrained_zonotope", seed, false);
   }
-  for (const unsigned seed : {92u, 432u}) expect_consistent("descriptor", "line_zonotope", seed, true);
+  for (const unsigned seed : {92u, 432u})
+    expect_consistent("descriptor", "line_zonotope", seed, true);
 }
 
 TEST_CASE("exact data are consistent when nothing is known of the start") {
-  expect_truth_inside("prediction_correction", "line_zonotope", "nominal", {.noise = true, .unknown_start = true}, 30);
+  expect_truth_inside("prediction_correction", "line_zonotope", "nominal",
+                      {.noise = true, .unknown_start = true}, 30);
 }
 
 TEST_CASE("exact data are consistent with the observer of descriptor systems") {
-  expect_truth_inside("descriptor", "line_zonotope", "nominal", {.descriptor = true, .noise = true}, 30);
+  expect_truth_inside("descriptor", "line_zonotope", "nominal", {.descriptor = true, .noise = true},
+                      30);
 }
 
 TEST_CASE("exact data are consistent with outward rounding") {
-  expect_truth_inside("prediction_correction", "constrained_zonotope", "outward", {.noise = true}, 20, {1, 5});
-  expect_truth_inside("prediction_correction", "line_zonotope", "outward", {.noise = true}, 20, {1, 5});
-  expect_truth_inside("descriptor", "line_zonotope", "outward", {.descriptor = true, .noise = true}, 20, {1, 5});
+  expect_truth_inside("prediction_correction", "constrained_zonotope", "outward", {.noise = true},
+                      20, {1, 5});
+  expect_truth_inside("prediction_correction", "line_zonotope", "outward", {.noise = true}, 20,
+                      {1, 5});
+  expect_truth_inside("descriptor", "line_zonotope", "outward", {.descriptor = true, .noise = true},
+                      20, {1, 5});
 }

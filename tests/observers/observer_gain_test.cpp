@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gains as parameters of observers and of the bank: designers, matrices, and what is said of those that do not serve.
+// Gains as parameters of observers and of the bank: designers, matrices, and what is said of those
+// that do not serve.
 #include <doctest/doctest.h>
 
 #include "diagnosis/banks.hpp"
@@ -23,7 +24,9 @@ GainDesign matrix(const Matrix& L) { return {Answer::yes, {.name = "x", .type = 
 
 void register_odd(Registrar& registrar) {
   const auto add = [&](const char* name, const GainDesign& answer) {
-    registrar.gain({{name, "a test", "", {}}, {}, [=](const Params&) { return std::make_unique<Fixed>(answer); }});
+    registrar.gain({{name, "a test", "", {}}, {}, [=](const Params&) {
+                      return std::make_unique<Fixed>(answer);
+                    }});
   };
   add("fixed", matrix(Matrix{{0}, {.9}}));
   add("of_wrong_shape", matrix(Matrix{{1}}));
@@ -44,24 +47,30 @@ const Registry& registry() {
 }
 
 Params designer(const std::string& type, Params params = {}) {
-  return Params().set("gain", std::make_shared<const ComponentSpec>(ComponentSpec{type, std::move(params)}));
+  return Params().set(
+      "gain", std::make_shared<const ComponentSpec>(ComponentSpec{type, std::move(params)}));
 }
 
-std::vector<Diagnostic> problems(const Params& params, const Model& model = interval_plants::two_tanks()) {
-  return registry().check_observer("luenberger", {model, registry().make_backend("zonotope", {})}, params);
+std::vector<Diagnostic> problems(const Params& params,
+                                 const Model& model = interval_plants::two_tanks()) {
+  return registry().check_observer("luenberger", {model, registry().make_backend("zonotope", {})},
+                                   params);
 }
 
-std::shared_ptr<Observer> observer(const Params& params, const Model& model = interval_plants::two_tanks()) {
-  return registry().make_observer("luenberger", {model, registry().make_backend("zonotope", {})}, params);
+std::shared_ptr<Observer> observer(const Params& params,
+                                   const Model& model = interval_plants::two_tanks()) {
+  return registry().make_observer("luenberger", {model, registry().make_backend("zonotope", {})},
+                                  params);
 }
 
 }  // namespace
 
 TEST_CASE("an observer tells its gain, by whom and under which name") {
-  for (const auto& [params, type] : {std::pair{Params(), "kalman"},
-                                     {Params().set("gain", Matrix{{0}, {.9}}), "given"},
-                                     {designer("peak"), "peak"},
-                                     {designer("poles", Params().set("poles", Vector{{.5, .6}})), "poles"}}) {
+  for (const auto& [params, type] :
+       {std::pair{Params(), "kalman"},
+        {Params().set("gain", Matrix{{0}, {.9}}), "given"},
+        {designer("peak"), "peak"},
+        {designer("poles", Params().set("poles", Vector{{.5, .6}})), "poles"}}) {
     CHECK(problems(params).empty());
     const std::vector<Gain> gains = observer(params)->gains();
     REQUIRE(gains.size() == 1);
@@ -78,7 +87,8 @@ TEST_CASE("an observer tells its gain, by whom and under which name") {
 
 TEST_CASE("a designed gain is the one that is used") {
   Params peak = designer("peak", Params().set("theta", interval_plants::tank_theta()));
-  const auto designed = observer(peak), given = observer(Params().set("gain", observer(peak)->gains()[0].L));
+  const auto designed = observer(peak),
+             given = observer(Params().set("gain", observer(peak)->gains()[0].L));
   for (Index k = 0; k < 5; ++k) {
     const Sample sample{k, Vector{{1}}, Vector{{.1 * static_cast<double>(k)}}};
     CHECK(designed->step(sample).set->line_form().c == given->step(sample).set->line_form().c);
@@ -86,7 +96,8 @@ TEST_CASE("a designed gain is the one that is used") {
 }
 
 TEST_CASE("problems of a gain are told at their place") {
-  const auto only = [](const Params& params, const std::string& pointer, const std::string& words, const Model& model) {
+  const auto only = [](const Params& params, const std::string& pointer, const std::string& words,
+                       const Model& model) {
     const auto found = problems(params, model);
     REQUIRE(found.size() == 1);
     CHECK(found[0].pointer == pointer);
@@ -95,13 +106,19 @@ TEST_CASE("problems of a gain are told at their place") {
     return found[0].suggestion;
   };
   const Model tanks = interval_plants::two_tanks();
-  only(designer("poles", Params().set("poles", Vector{{.5}})), "/gain/poles", "holds 1 numbers", tanks);
-  only(designer("poles", Params().set("poles", Vector{{.5, .5}})), "/gain", "asked for 2 times", tanks);
-  only(designer("given", Params().set("matrix", Matrix{{1, 0}})), "/gain", "is 1 × 2, must be 2 × 1", tanks);
-  only(designer("given", Params().set("matrix", Matrix{{0}, {.9}}).set("other", true)), "/gain/other", "unknown", tanks);
+  only(designer("poles", Params().set("poles", Vector{{.5}})), "/gain/poles", "holds 1 numbers",
+       tanks);
+  only(designer("poles", Params().set("poles", Vector{{.5, .5}})), "/gain", "asked for 2 times",
+       tanks);
+  only(designer("given", Params().set("matrix", Matrix{{1, 0}})), "/gain",
+       "is 1 × 2, must be 2 × 1", tanks);
+  only(designer("given", Params().set("matrix", Matrix{{0}, {.9}}).set("other", true)),
+       "/gain/other", "unknown", tanks);
   only(Params().set("gain", Matrix{{1, 0}}), "/gain", "is 1 × 2, must be 2 × 1", tanks);
-  only(designer("peak"), "/gain", "column 2 of C is zero and A(1,2) < 0", interval_plants::three_states(-.1));
-  only(designer("of_wrong_shape"), "/gain", "\"of_wrong_shape\" designed is 1 × 1, must be 2 × 1", tanks);
+  only(designer("peak"), "/gain", "column 2 of C is zero and A(1,2) < 0",
+       interval_plants::three_states(-.1));
+  only(designer("of_wrong_shape"), "/gain", "\"of_wrong_shape\" designed is 1 × 1, must be 2 × 1",
+       tanks);
   only(designer("of_no_number"), "/gain", "no numbers", tanks);
   only(designer("unstable"), "/gain", "eigenvalue", tanks);
   CHECK(only(designer("unsure"), "/gain", "no idea", tanks).empty());
@@ -124,12 +141,15 @@ TEST_CASE("a bank designs its gains for each mode, by default those of the stead
     for (Params* params : {&listed, &without, &designed}) params->set(name, value);
   }
   std::vector<Matrix> gains;
-  for (const Mode& mode : modes.modes) gains.push_back(registry().make_gain("kalman", {})->design(mode.model).gain.L);
+  for (const Mode& mode : modes.modes)
+    gains.push_back(registry().make_gain("kalman", {})->design(mode.model).gain.L);
   listed.set("gains", gains);
-  designed.set("gain", std::make_shared<const ComponentSpec>(ComponentSpec{"kalman", Params().set("steady", true)}));
+  designed.set("gain", std::make_shared<const ComponentSpec>(
+                           ComponentSpec{"kalman", Params().set("steady", true)}));
   std::vector<std::shared_ptr<Diagnoser>> all;
   for (const Params& params : {listed, without, designed}) {
-    all.push_back(registry().make_diagnoser("observer_bank", modes, banks::backend("zonotope"), params));
+    all.push_back(
+        registry().make_diagnoser("observer_bank", modes, banks::backend("zonotope"), params));
   }
   for (Index k = 0; k < 3; ++k) {
     const Sample sample{k, Vector{{10}}, Vector{{.01}}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// With outward rounding the coordinates of a descriptor observer, which no doubles hold, are enclosed: sets hold every state of a
-// sequence that satisfies the model to the last digit, at vertices of all sets, as decided in rational arithmetic.
+// With outward rounding the coordinates of a descriptor observer, which no doubles hold, are
+// enclosed: sets hold every state of a sequence that satisfies the model to the last digit, at
+// vertices of all sets, as decided in rational arithmetic.
 #include <cmath>
 #include <random>
 
@@ -28,9 +29,12 @@ Vector vertex(std::mt19937& random, const Vector& radius) {
   for (double& entry : v) entry *= random() % 2 == 0 ? 1 : -1;
   return v;
 }
-LineForm box(const Vector& center, const Vector& radius) { return make_box({center - radius, center + radius}); }
+LineForm box(const Vector& center, const Vector& radius) {
+  return make_box({center - radius, center + radius});
+}
 
-/// E of rank 1 or 2 whose rows are multiples of few; x_{k+1} is drawn, and u makes the equations hold.
+/// E of rank 1 or 2 whose rows are multiples of few; x_{k+1} is drawn, and u makes the equations
+/// hold.
 struct Sequence {
   Model model;
   std::vector<Vector> x;
@@ -48,7 +52,8 @@ Sequence drawn(std::mt19937& random, Index n, Index rank, bool noisy) {
   m.D = Matrix(m.C.rows(), n);
   m.D.setZero();
   m.Dv = Matrix::Identity(m.C.rows(), m.C.rows());
-  const Vector w = noisy ? Vector{{.25, .125}} : Vector{{0, 0}}, v = Vector::Constant(m.C.rows(), noisy ? .125 : 0);
+  const Vector w = noisy ? Vector{{.25, .125}} : Vector{{0, 0}},
+               v = Vector::Constant(m.C.rows(), noisy ? .125 : 0);
   made.model.W = box(Vector::Zero(2), w);
   made.model.V = box(Vector::Zero(v.size()), v);
   made.model.U = make_space(n);
@@ -69,13 +74,17 @@ struct Count {
   int lost = 0, checked = 0;
 };
 
-Count followed(const Sequence& sequence, const std::string& representation, bool bounded, Index constraints) {
+Count followed(const Sequence& sequence, const std::string& representation, bool bounded,
+               Index constraints) {
   const Index n = sequence.model.linear.states();
-  const auto outward = registry().make_backend(representation, Params().set("rounding", std::string("outward")));
+  const auto outward =
+      registry().make_backend(representation, Params().set("rounding", std::string("outward")));
   Params params;
-  params.set("max_constraints", static_cast<std::int64_t>(constraints)).set("max_generators", std::int64_t{20});
+  params.set("max_constraints", static_cast<std::int64_t>(constraints))
+      .set("max_generators", std::int64_t{20});
   if (bounded) params.set("admissible_set", box(Vector::Zero(n), Vector::Constant(n, 8)));
-  if (!registry().check_observer("descriptor", {sequence.model, outward}, params).empty()) return {};
+  if (!registry().check_observer("descriptor", {sequence.model, outward}, params).empty())
+    return {};
   const auto observer = registry().make_observer("descriptor", {sequence.model, outward}, params);
   Count count;
   for (std::size_t k = 0; k < sequence.samples.size(); ++k) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// With outward rounding the product B u, which no double holds, is enclosed: by the dynamic rows and by the static ones.
+// With outward rounding the product B u, which no double holds, is enclosed: by the dynamic rows
+// and by the static ones.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -37,7 +38,8 @@ Model driven(bool descriptor) {
   return model;
 }
 
-void expect_product_inside(const std::string& observer_name, const std::string& representation, bool descriptor) {
+void expect_product_inside(const std::string& observer_name, const std::string& representation,
+                           bool descriptor) {
   CAPTURE(observer_name);
   CAPTURE(representation);
   int rounded = 0;
@@ -45,12 +47,15 @@ void expect_product_inside(const std::string& observer_name, const std::string& 
     const double u = std::sin(k);
     CAPTURE(u);
     rounded += std::fma(gain, u, -(gain * u)) != 0 ? 1 : 0;
-    const auto outward = registry().make_backend(representation, Params().set("rounding", std::string("outward")));
-    const auto observer = registry().make_observer(observer_name, {driven(descriptor), outward}, {});
+    const auto outward =
+        registry().make_backend(representation, Params().set("rounding", std::string("outward")));
+    const auto observer =
+        registry().make_observer(observer_name, {driven(descriptor), outward}, {});
     observer->step({0, Vector{{u}}, Vector(0)});
     const LineForm X = observer->step({1, Vector{{u}}, Vector(0)}).set->line_form();
     const Rational product = rational::exact(gain) * rational::exact(u);
-    CHECK(exact::contains(X, rational::RationalVector(static_cast<std::size_t>(X.dim()), product), Vector::Zero(X.dim())));
+    CHECK(exact::contains(X, rational::RationalVector(static_cast<std::size_t>(X.dim()), product),
+                          Vector::Zero(X.dim())));
   }
   CHECK(rounded > 10);
 }

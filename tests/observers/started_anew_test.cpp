@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Observers keep memory, and one of them its gain, from step to step: nothing of it may show after a new start, and the gain is
-// kept only while it is as good as a new one.
+// Observers keep memory, and one of them its gain, from step to step: nothing of it may show after
+// a new start, and the gain is kept only while it is as good as a new one.
 #include <doctest/doctest.h>
 
 #include "cordon/registry/registry.hpp"
@@ -22,9 +22,10 @@ std::vector<Matrix> run(Observer& observer, const std::vector<Sample>& samples) 
 }
 
 bool same(const std::vector<Matrix>& left, const std::vector<Matrix>& right) {
-  return std::equal(left.begin(), left.end(), right.begin(), right.end(), [](const Matrix& A, const Matrix& B) {
-    return A.rows() == B.rows() && A.cols() == B.cols() && (A.array() == B.array()).all();
-  });
+  return std::equal(
+      left.begin(), left.end(), right.begin(), right.end(), [](const Matrix& A, const Matrix& B) {
+        return A.rows() == B.rows() && A.cols() == B.cols() && (A.array() == B.array()).all();
+      });
 }
 
 }  // namespace
@@ -32,17 +33,20 @@ bool same(const std::vector<Matrix>& left, const std::vector<Matrix>& right) {
 TEST_CASE("an observer that is started anew, after other data too, gives the sets of a new one") {
   Registry registry;
   registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
-  const Study study = read_study(CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
+  const Study study = read_study(
+      CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
   std::vector<Sample> samples;
-  for (const auto source = open_data(study); samples.size() < 100;) samples.push_back(source->next()->sample);
+  for (const auto source = open_data(study); samples.size() < 100;)
+    samples.push_back(source->next()->sample);
   std::vector<Sample> other(samples.begin(), samples.begin() + 90);
   for (Sample& sample : other) sample.y *= 1.001;
   for (const PipelineSpec& pipeline : study.pipelines) {
     CAPTURE(pipeline.name);
     const auto make = [&] {
-      return registry.make_observer(pipeline.observer.type,
-                                    {study.model, registry.make_backend(pipeline.backend.type, pipeline.backend.params)},
-                                    pipeline.observer.params);
+      return registry.make_observer(
+          pipeline.observer.type,
+          {study.model, registry.make_backend(pipeline.backend.type, pipeline.backend.params)},
+          pipeline.observer.params);
     };
     const auto observer = make(), fresh = make();
     run(*observer, other);
@@ -68,8 +72,9 @@ TEST_CASE("a gain is not kept while the smallest state still changes, whatever t
   registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
   for (const char* backend : {"interval", "zonotope"}) {
     CAPTURE(backend);
-    const auto observer = registry.make_observer("descriptor", {model, registry.make_backend(backend, {})},
-                                                 Params().set("max_generators", Index{20}));
+    const auto observer =
+        registry.make_observer("descriptor", {model, registry.make_backend(backend, {})},
+                               Params().set("max_generators", Index{20}));
     observer->start();
     double widest = 0;
     for (Index k = 0; k < 200; ++k) {

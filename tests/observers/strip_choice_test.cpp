@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How strips are cut, seen over many steps: a motor with states of very different sizes, random plants, small and large budgets.
+// How strips are cut, seen over many steps: a motor with states of very different sizes, random
+// plants, small and large budgets.
 #include <array>
 #include <cmath>
 
@@ -17,7 +18,8 @@ namespace {
 Model motor() {
   Model model;
   LinearModel& m = model.linear;
-  m.A = Matrix{{0.6042788092736908, -0.019626482229707934}, {0.1962648222970793, 0.9948458056448786}};
+  m.A =
+      Matrix{{0.6042788092736908, -0.019626482229707934}, {0.1962648222970793, 0.9948458056448786}};
   m.B = Matrix{{0.19653078447475852}, {0.026596217767921742}};
   m.Bw = Matrix{{0.026596217767921742}, {-2.494572578329228}};
   m.C = Matrix{{0, 1}};
@@ -31,10 +33,10 @@ Model motor() {
 }
 
 /// The mean over the steps of the half widths, each as a share of that of X0, which is a box.
-double mean_radius(const Model& model, const std::string& backend, const Params& params, const Params& budget, int steps,
-                   unsigned seed) {
-  const auto observer =
-      registry().make_observer("prediction_correction", {model, registry().make_backend(backend, params)}, budget);
+double mean_radius(const Model& model, const std::string& backend, const Params& params,
+                   const Params& budget, int steps, unsigned seed) {
+  const auto observer = registry().make_observer(
+      "prediction_correction", {model, registry().make_backend(backend, params)}, budget);
   const LinearModel& m = model.linear;
   const auto radius = [](const LineForm& box) { return Vector(box.G.cwiseAbs().rowwise().sum()); };
   const Vector start = radius(model.X0), w = radius(model.W), v = radius(model.V);
@@ -43,7 +45,8 @@ double mean_radius(const Model& model, const std::string& backend, const Params&
   double sum = 0;
   for (Index k = 0; k < steps; ++k) {
     const Vector u = Vector::Constant(m.inputs(), k / 50 % 2 == 0 ? 12.0 : -12.0);
-    const Estimate estimate = observer->step({k, u, m.C * x + v.cwiseProduct(random.cube(m.outputs()))});
+    const Estimate estimate =
+        observer->step({k, u, m.C * x + v.cwiseProduct(random.cube(m.outputs()))});
     CHECK(estimate.set->contains(x) != Answer::no);
     const Box hull = estimate.set->interval_hull();
     sum += ((hull.upper - hull.lower) / 2).cwiseQuotient(start).mean();
@@ -91,7 +94,8 @@ Model random_plant(unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("zonotopes of a motor are about as wide as intervals, and no wider with more generators") {
+TEST_CASE(
+    "zonotopes of a motor are about as wide as intervals, and no wider with more generators") {
   const double intervals = of_motor("interval", {}, 20);
   for (const auto& [strip, most] : {std::pair("hull", 1.0), std::pair("box", 1.4)}) {
     CAPTURE(strip);
@@ -108,7 +112,8 @@ TEST_CASE("zonotopes of a motor are about as wide as intervals, and no wider wit
   CHECK(of_motor("zonotope", Params().set("strip", std::string("segment")), 20) > 1.5 * intervals);
 }
 
-TEST_CASE("a larger budget is not worse by more than one percent in the mean over plants and seeds") {
+TEST_CASE(
+    "a larger budget is not worse by more than one percent in the mean over plants and seeds") {
   for (const std::string backend : {"zonotope", "constrained_zonotope", "line_zonotope"}) {
     CAPTURE(backend);
     std::array<double, 3> sums{};

@@ -11,8 +11,8 @@ using namespace uncertain;
 
 namespace {
 
-/// E with rows of zeros below, and static rows that determine the state together with those above for all matrices of the
-/// interval. All states are measured by C.
+/// E with rows of zeros below, and static rows that determine the state together with those above
+/// for all matrices of the interval. All states are measured by C.
 struct Descriptor {
   Model model;
   Index dynamic = 1;
@@ -50,7 +50,8 @@ Matrix drawn(const Matrix& center, const Matrix& radius, Draw& draw) {
   return A;
 }
 
-/// The truth moves by matrices that change in every step; x_0 meets the static rows and lies in X0 as widened here.
+/// The truth moves by matrices that change in every step; x_0 meets the static rows and lies in X0
+/// as widened here.
 void expect_truth_inside(const std::string& name, bool uncertain_outputs, bool admissible) {
   Descriptor plant = random_descriptor(uncertain_outputs);
   Model& model = plant.model;
@@ -63,7 +64,8 @@ void expect_truth_inside(const std::string& name, bool uncertain_outputs, bool a
   const auto observer = registry().make_observer("descriptor", {model, backend(name)}, params);
   Vector dynamic = random_matrix(r, 1, 1).col(0);  // the upper rows of E x
   for (Index k = 0; k < 8; ++k) {
-    const Matrix A = drawn(m.A, m.A_radius, draw), B = drawn(m.B, m.B_radius, draw), C = drawn(m.C, m.C_radius, draw);
+    const Matrix A = drawn(m.A, m.A_radius, draw), B = drawn(m.B, m.B_radius, draw),
+                 C = drawn(m.C, m.C_radius, draw);
     const Vector u = random_matrix(2, 1, 1).col(0), w = draw.from(model.W);
     const Vector pushed = B * u + m.Bw * w;
     Matrix rows(n, n);
@@ -103,8 +105,11 @@ Model by_hand() {
 }  // namespace
 
 TEST_CASE("descriptor systems of interval matrices: the truth stays inside") {
-  CHECK(rc::check("lines", [] { expect_truth_inside("line_zonotope", *rc::gen::arbitrary<bool>(), false); }));
-  CHECK(rc::check("constraints", [] { expect_truth_inside("constrained_zonotope", *rc::gen::arbitrary<bool>(), true); }));
+  CHECK(rc::check(
+      "lines", [] { expect_truth_inside("line_zonotope", *rc::gen::arbitrary<bool>(), false); }));
+  CHECK(rc::check("constraints", [] {
+    expect_truth_inside("constrained_zonotope", *rc::gen::arbitrary<bool>(), true);
+  }));
   CHECK(rc::check("zonotopes", [] { expect_truth_inside("zonotope", false, false); }));
   CHECK(rc::check("intervals", [] { expect_truth_inside("interval", false, false); }));
 }
@@ -113,7 +118,8 @@ TEST_CASE("a static row of an interval matrix by hand") {
   Model model = by_hand();
   LinearModel& m = model.linear;
   const auto hull_at_1 = [&] {
-    const auto observer = registry().make_observer("descriptor", {model, backend("line_zonotope")}, {});
+    const auto observer =
+        registry().make_observer("descriptor", {model, backend("line_zonotope")}, {});
     observer->step({0, Vector(0), Vector{{0}}});
     return observer->step({1, Vector(0), Vector{{0}}}).set->interval_hull();
   };

@@ -37,15 +37,19 @@ TEST_CASE("the operating point is that of the published model, and an equilibriu
 TEST_CASE("a step is Euler's, with Torricelli's law") {
   const Plugins plugins;
   const auto tanks = plugins.coupled_tanks();
-  const auto drain = [](double level, double at, double rate) { return 2 * rate * std::sqrt(at) * std::sqrt(level); };
+  const auto drain = [](double level, double at, double rate) {
+    return 2 * rate * std::sqrt(at) * std::sqrt(level);
+  };
   for (const double u : {-1.5, -.3, .7, 3.5}) {
     for (const double dx : {-9.0, -1.0, 4.0}) {
       const double h2 = upper + dx, h1 = lower - dx / 2;
       const Vector next = tanks->next(0, Vector{{dx, -dx / 2}}, volts(u));
       CAPTURE(u);
       CAPTURE(dx);
-      CHECK(next[0] == doctest::Approx(dx + .2261 * (1.5 + u) - drain(h2, upper, .0114)).epsilon(1e-12));
-      CHECK(next[1] == doctest::Approx(-dx / 2 + drain(h2, upper, .0114) - drain(h1, lower, .0097)).epsilon(1e-12));
+      CHECK(next[0] ==
+            doctest::Approx(dx + .2261 * (1.5 + u) - drain(h2, upper, .0114)).epsilon(1e-12));
+      CHECK(next[1] == doctest::Approx(-dx / 2 + drain(h2, upper, .0114) - drain(h1, lower, .0097))
+                           .epsilon(1e-12));
     }
   }
 }
@@ -65,20 +69,24 @@ TEST_CASE("its linearisation is the published model") {
 TEST_CASE("smaller Euler steps come nearer to the continuous balances") {
   const Plugins plugins;
   const auto at = [&](std::int64_t substeps) {
-    return plugins.coupled_tanks(Params().set("substeps", substeps))->next(0, Vector{{5, -5}}, volts(.5));
+    return plugins.coupled_tanks(Params().set("substeps", substeps))
+        ->next(0, Vector{{5, -5}}, volts(.5));
   };
   const Vector limit = at(200'000);
-  const double one = (at(1) - limit).norm(), ten = (at(10) - limit).norm(), hundred = (at(100) - limit).norm();
+  const double one = (at(1) - limit).norm(), ten = (at(10) - limit).norm(),
+               hundred = (at(100) - limit).norm();
   CHECK(one / ten == doctest::Approx(10).epsilon(.05));
   CHECK(ten / hundred == doctest::Approx(10).epsilon(.05));
 }
 
 TEST_CASE("a pump that feeds both tanks") {
   const Plugins plugins;
-  const auto tanks = plugins.coupled_tanks(Params().set("lower_inflow", .02).set("section_ratio", .8));
+  const auto tanks =
+      plugins.coupled_tanks(Params().set("lower_inflow", .02).set("section_ratio", .8));
   CHECK(tanks->next(0, rest, volts(0)).cwiseAbs().maxCoeff() < 1e-13);
   CHECK(tanks->next(0, rest, volts(.5))[1] == doctest::Approx(.01).epsilon(1e-12));
-  const double drain = .0114 * 2 * (std::sqrt(upper * (upper + 2)) - upper);  // more than at the operating point
+  const double drain =
+      .0114 * 2 * (std::sqrt(upper * (upper + 2)) - upper);  // more than at the operating point
   CHECK(tanks->next(0, Vector{{2, 0}}, volts(0))[1] == doctest::Approx(.8 * drain).epsilon(1e-12));
 }
 
@@ -91,7 +99,8 @@ TEST_CASE("tanks run empty and over, and the pump has a range") {
   CHECK(x[1] >= -lower);
   x = Vector{{25 - upper, 25 - lower}};
   CHECK(tanks->next(0, x, volts(3.5))[0] == doctest::Approx(25 - upper).epsilon(1e-13));
-  CHECK(tanks->next(0, Vector{{100, 0}}, volts(3.5))[0] == doctest::Approx(25 - upper).epsilon(1e-13));
+  CHECK(tanks->next(0, Vector{{100, 0}}, volts(3.5))[0] ==
+        doctest::Approx(25 - upper).epsilon(1e-13));
   CHECK(tanks->next(0, rest, volts(3.5)).allFinite());
   CHECK_FALSE(tanks->next(0, rest, volts(3.6)).allFinite());
   CHECK_FALSE(tanks->next(0, rest, volts(-1.6)).allFinite());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sets W of the study of the non-linear tank: do they hold what its linear model misses of the plant?
+// The sets W of the study of the non-linear tank: do they hold what its linear model misses of the
+// plant?
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -16,20 +17,30 @@ using namespace cordon;
 namespace {
 
 constexpr int seeds = 400, steps = 100;
-/// The samples behind W reach 2/3 of it; a study that has lost this margin is to be noticed before it is wrong.
+/// The samples behind W reach 2/3 of it; a study that has lost this margin is to be noticed before
+/// it is wrong.
 constexpr double room = 0.8;
 
 /// Inputs over all of U: sines, pseudo-random binary signals, uniform noise.
 class InputSignal {
  public:
   InputSignal(const Box& U, int kind, std::mt19937_64& random)
-      : U_(U), kind_(kind), random_(random), omega_(uniform(0.01, 2)), phase_(uniform(0, 6.3)), hold_(1 + random() % 29) {}
+      : U_(U),
+        kind_(kind),
+        random_(random),
+        omega_(uniform(0.01, 2)),
+        phase_(uniform(0, 6.3)),
+        hold_(1 + random() % 29) {}
   Vector at(int k) {
     if (kind_ == 1 && k % static_cast<int>(hold_) == 0) level_ = random_() % 2 ? 1 : -1;
-    const double s = kind_ == 0 ? std::sin(omega_ * k + phase_) : kind_ == 1 ? level_ : uniform(-1, 1);
+    const double s = kind_ == 0   ? std::sin(omega_ * k + phase_)
+                     : kind_ == 1 ? level_
+                                  : uniform(-1, 1);
     return U_.center() + s * U_.radius();
   }
-  double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
+  double uniform(double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random_);
+  }
 
  private:
   Box U_;
@@ -43,7 +54,8 @@ class InputSignal {
 /// Which mode, and where in its ranges: constant, at the ends, or anew in each step.
 class FaultSequence {
  public:
-  FaultSequence(const ModeBank& bank, int kind, std::mt19937_64& random) : bank_(bank), kind_(kind), random_(random) {
+  FaultSequence(const ModeBank& bank, int kind, std::mt19937_64& random)
+      : bank_(bank), kind_(kind), random_(random) {
     constant_ = std::uniform_real_distribution<double>(-1, 1)(random_);
   }
   Index mode(int k) {
@@ -76,13 +88,15 @@ std::vector<double> shares(const ModeBank& bank, const Plant& plant) {
   std::vector<double> largest(static_cast<std::size_t>(bank.size()), 0.0);
   std::vector<Matrix> inverses;
   for (const Mode& mode : bank.modes) inverses.push_back(linalg::pseudo_inverse(mode.model.W.G));
-  const Box U{nominal.U.c - nominal.U.G.cwiseAbs().rowwise().sum(), nominal.U.c + nominal.U.G.cwiseAbs().rowwise().sum()};
+  const Box U{nominal.U.c - nominal.U.G.cwiseAbs().rowwise().sum(),
+              nominal.U.c + nominal.U.G.cwiseAbs().rowwise().sum()};
   for (int seed = 0; seed < seeds; ++seed) {
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     InputSignal input(U, seed % 3, random);
     FaultSequence fault(bank, seed / 3 % 3, random);
     Vector x = nominal.X0.c;
-    for (Index g = 0; g < nominal.X0.generators(); ++g) x += input.uniform(-1, 1) * nominal.X0.G.col(g);
+    for (Index g = 0; g < nominal.X0.generators(); ++g)
+      x += input.uniform(-1, 1) * nominal.X0.G.col(g);
     for (int k = 0; k < steps; ++k) {
       const auto m = static_cast<std::size_t>(fault.mode(k));
       const Vector v = fault.effectiveness().cwiseProduct(input.at(k));
@@ -99,8 +113,9 @@ std::vector<double> shares(const ModeBank& bank, const Plant& plant) {
 
 TEST_CASE("W of the non-linear tank holds the errors of linearisation with room, in every mode") {
   Registry registry;
-  const Study study = read_study(CORDON_SOURCE_DIR "/examples/studies/cstr_nonlinear.json", registry,
-                                 {{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+  const Study study =
+      read_study(CORDON_SOURCE_DIR "/examples/studies/cstr_nonlinear.json", registry,
+                 {{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
   const auto& simulate = std::get<SimulateSpec>(study.data);
   REQUIRE(simulate.made_plant);
   const ModeBank bank = bank_of(study);

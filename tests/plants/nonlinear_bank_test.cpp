@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bank of the study of the non-linear tank on many seeds: a plant that is not the model of the bank.
+// The bank of the study of the non-linear tank on many seeds: a plant that is not the model of the
+// bank.
 #include <memory>
 #include <optional>
 #include <variant>
@@ -14,12 +15,14 @@ using namespace cordon;
 namespace {
 
 struct Outcome {
-  int true_mode_excluded = 0;   ///< steps
-  int wrong_mode = 0;           ///< steps at which another mode is reported than since the last reset was true throughout
+  int true_mode_excluded = 0;  ///< steps
+  int wrong_mode =
+      0;  ///< steps at which another mode is reported than since the last reset was true throughout
   int changes = 0, missed = 0;  ///< of the mode; missed: not isolated before the next change
 };
 
-/// A diagnosis speaks of the time since its last reset. It is judged where one mode was true all that time.
+/// A diagnosis speaks of the time since its last reset. It is judged where one mode was true all
+/// that time.
 void judge(Diagnoser& diagnoser, DataSource& data, Outcome& outcome) {
   diagnoser.start();
   Index truth = 0, since = 0;  // the true mode, and since when
@@ -35,7 +38,8 @@ void judge(Diagnoser& diagnoser, DataSource& data, Outcome& outcome) {
       since = record->sample.k;
     }
     found = found || (now.decision == Decision::monitoring && now.mode == truth);
-    // The fault enters with u_k, so that x_k and y_k are still those of the mode before: a reset at k holds for it, too.
+    // The fault enters with u_k, so that x_k and y_k are still those of the mode before: a reset at
+    // k holds for it, too.
     if (now.since < since) continue;
     outcome.true_mode_excluded += now.modes[static_cast<std::size_t>(truth)].candidate ? 0 : 1;
     outcome.wrong_mode += now.decision == Decision::monitoring && now.mode != truth ? 1 : 0;
@@ -43,12 +47,15 @@ void judge(Diagnoser& diagnoser, DataSource& data, Outcome& outcome) {
   outcome.missed += found ? 0 : 1;
 }
 
-Outcome over_seeds(const Study& study, const PipelineSpec& pipeline, const Registry& registry, std::uint64_t seeds) {
+Outcome over_seeds(const Study& study, const PipelineSpec& pipeline, const Registry& registry,
+                   std::uint64_t seeds) {
   const auto backend = registry.make_backend(pipeline.backend.type, pipeline.backend.params);
   REQUIRE(pipeline.diagnoser);
-  const auto diagnoser = registry.make_diagnoser(pipeline.diagnoser->type, bank_of(study), backend, pipeline.diagnoser->params);
+  const auto diagnoser = registry.make_diagnoser(pipeline.diagnoser->type, bank_of(study), backend,
+                                                 pipeline.diagnoser->params);
   Outcome outcome;
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) judge(*diagnoser, *open_data(study, seed), outcome);
+  for (std::uint64_t seed = 0; seed < seeds; ++seed)
+    judge(*diagnoser, *open_data(study, seed), outcome);
   return outcome;
 }
 

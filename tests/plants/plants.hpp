@@ -11,9 +11,15 @@ namespace cordon::test {
 
 /// A registry with the plugins of this build.
 struct Plugins {
-  Plugins() { registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}}); }
-  std::shared_ptr<Plant> stirred_tank(const Params& params = {}) const { return registry.make_plant("stirred_tank", params); }
-  std::shared_ptr<Plant> coupled_tanks(const Params& params = {}) const { return registry.make_plant("coupled_tanks", params); }
+  Plugins() {
+    registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+  }
+  std::shared_ptr<Plant> stirred_tank(const Params& params = {}) const {
+    return registry.make_plant("stirred_tank", params);
+  }
+  std::shared_ptr<Plant> coupled_tanks(const Params& params = {}) const {
+    return registry.make_plant("coupled_tanks", params);
+  }
   Registry registry;
 };
 

@@ -16,7 +16,9 @@ const Vector rest{{0, 0}};
 
 Vector input(double u) { return Vector{{u}}; }
 
-double largest_difference(const Vector& a, const Vector& b) { return (a - b).cwiseAbs().maxCoeff(); }
+double largest_difference(const Vector& a, const Vector& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
 
 TEST_CASE("a step matches the solution of the balances") {
   const Plugins plugins;
@@ -24,7 +26,8 @@ TEST_CASE("a step matches the solution of the balances") {
   CHECK(tank->states() == 2);
   CHECK(tank->inputs() == 1);
   CHECK(tank->outputs() == 1);
-  // Extrapolated midpoint rule in arithmetic of 40 digits; an adaptive Runge-Kutta method of eighth order agrees.
+  // Extrapolated midpoint rule in arithmetic of 40 digits; an adaptive Runge-Kutta method of eighth
+  // order agrees.
   struct Step {
     double c, t, u, c_after, t_after;
   };
@@ -46,9 +49,11 @@ TEST_CASE("the operating point is an equilibrium, not the rounded point") {
   const Plugins plugins;
   CHECK(largest_difference(plugins.stirred_tank()->next(0, rest, input(0)), rest) < 1e-10);
   // It is found from elsewhere too, and does not depend on where the search begins.
-  const auto other = plugins.stirred_tank(Params().set("concentration", 0.09).set("temperature", 440.0));
+  const auto other =
+      plugins.stirred_tank(Params().set("concentration", 0.09).set("temperature", 440.0));
   const Vector x{{0.01, -3}};
-  CHECK(largest_difference(other->next(0, x, input(-20)), plugins.stirred_tank()->next(0, x, input(-20))) < 1e-9);
+  CHECK(largest_difference(other->next(0, x, input(-20)),
+                           plugins.stirred_tank()->next(0, x, input(-20))) < 1e-9);
 }
 
 TEST_CASE("the linearisation is that of the tank, not the published one") {
@@ -57,8 +62,10 @@ TEST_CASE("the linearisation is that of the tank, not the published one") {
   const auto slope = [&](const Vector& dx, double du, double by) {
     return Vector((tank->next(0, dx, input(du)) - tank->next(0, -dx, input(-du))) / (2 * by));
   };
-  const Vector a1 = slope(Vector{{1e-6, 0}}, 0, 1e-6), a2 = slope(Vector{{0, 1e-3}}, 0, 1e-3), b = slope(rest, 1e-3, 1e-3);
-  CHECK(std::abs(a1[0] - -0.0059) < 2e-4);  // the known values belong to the rounded operating point
+  const Vector a1 = slope(Vector{{1e-6, 0}}, 0, 1e-6), a2 = slope(Vector{{0, 1e-3}}, 0, 1e-3),
+               b = slope(rest, 1e-3, 1e-3);
+  CHECK(std::abs(a1[0] - -0.0059) <
+        2e-4);  // the known values belong to the rounded operating point
   CHECK(std::abs(a1[1] - 173.0) < 0.05);
   CHECK(std::abs(a2[0] - -0.0036) < 5e-5);
   CHECK(std::abs(a2[1] - 1.510) < 5e-4);
@@ -68,18 +75,22 @@ TEST_CASE("the linearisation is that of the tank, not the published one") {
 
 TEST_CASE("halving the Runge-Kutta steps changes nothing that matters") {
   const Plugins plugins;
-  const auto tank = plugins.stirred_tank(), finer = plugins.stirred_tank(Params().set("substeps", std::int64_t{500}));
+  const auto tank = plugins.stirred_tank(),
+             finer = plugins.stirred_tank(Params().set("substeps", std::int64_t{500}));
   double change = 0;
   for (const double u : {-20.0, 0.0, 20.0}) {
-    for (const Vector& x : {Vector{{0.0, 0.0}}, Vector{{0.02, 5.0}}, Vector{{-0.02, -5.0}}, Vector{{0.05, -10.0}}}) {
-      change = std::max(change, largest_difference(tank->next(0, x, input(u)), finer->next(0, x, input(u))));
+    for (const Vector& x :
+         {Vector{{0.0, 0.0}}, Vector{{0.02, 5.0}}, Vector{{-0.02, -5.0}}, Vector{{0.05, -10.0}}}) {
+      change = std::max(
+          change, largest_difference(tank->next(0, x, input(u)), finer->next(0, x, input(u))));
     }
   }
   CHECK(change < 1e-9);
   CHECK(change > 0);
 }
 
-TEST_CASE("a tank without cooling is the limit; flows below zero and overflow give no finite state") {
+TEST_CASE(
+    "a tank without cooling is the limit; flows below zero and overflow give no finite state") {
   const Plugins plugins;
   const auto tank = plugins.stirred_tank();
   const Vector none = tank->next(0, rest, input(-100));
@@ -88,15 +99,17 @@ TEST_CASE("a tank without cooling is the limit; flows below zero and overflow gi
   CHECK_FALSE(tank->next(0, rest, input(-101)).allFinite());
   CHECK_FALSE(tank->next(0, Vector{{1e300, 1e300}}, input(0)).allFinite());
   CHECK_FALSE(tank->next(0, Vector{{0, -500}}, input(0)).allFinite());
-  CHECK_FALSE(tank->next(0, Vector{{std::numeric_limits<double>::quiet_NaN(), 0}}, input(0)).allFinite());
+  CHECK_FALSE(
+      tank->next(0, Vector{{std::numeric_limits<double>::quiet_NaN(), 0}}, input(0)).allFinite());
 }
 
 TEST_CASE("hostile parameters are refused") {
   const Plugins plugins;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const char* name :
-       {"volume", "feed_flow", "feed_concentration", "feed_temperature", "coolant_flow", "coolant_temperature", "density",
-        "coolant_density", "specific_heat", "coolant_specific_heat", "rate_factor", "activation_temperature", "reaction_heat",
+       {"volume", "feed_flow", "feed_concentration", "feed_temperature", "coolant_flow",
+        "coolant_temperature", "density", "coolant_density", "specific_heat",
+        "coolant_specific_heat", "rate_factor", "activation_temperature", "reaction_heat",
         "heat_transfer", "concentration", "temperature", "sampling"}) {
     CAPTURE(name);
     CHECK_THROWS_AS(plugins.stirred_tank(Params().set(name, 0.0)), InputError);
@@ -124,7 +137,8 @@ TEST_CASE("a tank without an equilibrium that can be found and kept is refused")
   CHECK(refusal(Params().set("reaction_heat", 1e100)).find("equilibrium") != std::string::npos);
   CHECK(refusal(Params().set("temperature", 1e-200)).find("equilibrium") != std::string::npos);
   CHECK(refusal(Params().set("rate_factor", 1e100)).find("substeps") != std::string::npos);
-  CHECK(refusal(Params().set("sampling", 20.0).set("substeps", std::int64_t{2})).find("substeps") != std::string::npos);
+  CHECK(refusal(Params().set("sampling", 20.0).set("substeps", std::int64_t{2})).find("substeps") !=
+        std::string::npos);
 }
 
 }  // namespace

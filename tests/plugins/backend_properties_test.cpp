@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every backend encloses: points of the operands, mapped by hand, lie in the result of every operation. And a claim of `exact`
-// means the support function of the exact block form. Sets are random, degenerate, flat, badly scaled, empty or unbounded.
+// Every backend encloses: points of the operands, mapped by hand, lie in the result of every
+// operation. And a claim of `exact` means the support function of the exact block form. Sets are
+// random, degenerate, flat, badly scaled, empty or unbounded.
 #include <cmath>
 #include <limits>
 
@@ -25,7 +26,9 @@ struct Sampled {
   double scale = 1;
 };
 
-double number(int range = 1000) { return static_cast<double>(*rc::gen::inRange(-range, range + 1)) / range; }
+double number(int range = 1000) {
+  return static_cast<double>(*rc::gen::inRange(-range, range + 1)) / range;
+}
 
 Matrix random_matrix(Index rows, Index cols) {
   Matrix A(rows, cols);
@@ -44,10 +47,12 @@ Matrix null_projector(const Matrix& rows) {
 Sampled random_set(Index n, bool lines_allowed, bool constraints_allowed) {
   const int kind = *rc::gen::inRange(0, 6);  // 0 point, 1 flat, 2 badly scaled, else ordinary
   const Index g = kind == 0 ? 0 : *rc::gen::inRange<Index>(1, 8);
-  const Index m = constraints_allowed && g > 1 ? *rc::gen::inRange<Index>(0, std::min<Index>(3, g)) : 0;
+  const Index m =
+      constraints_allowed && g > 1 ? *rc::gen::inRange<Index>(0, std::min<Index>(3, g)) : 0;
   const Index l = lines_allowed && kind > 2 ? *rc::gen::inRange<Index>(0, 3) : 0;
   Sampled s;
-  s.form = {random_matrix(n, l), random_matrix(n, g), random_vector(n), random_matrix(m, l), random_matrix(m, g), Vector(m)};
+  s.form = {random_matrix(n, l), random_matrix(n, g), random_vector(n),
+            random_matrix(m, l), random_matrix(m, g), Vector(m)};
   if (kind == 1) s.form.G.row(0).setZero();
   if (kind == 2) {
     for (Index j = 0; j < g; ++j) s.form.G.col(j) *= std::pow(10.0, *rc::gen::inRange(-8, 9));
@@ -72,7 +77,8 @@ Sampled random_set(Index n, bool lines_allowed, bool constraints_allowed) {
     full += t * step;
     s.points.push_back(s.form.c + s.form.M * full.head(l) + s.form.G * full.tail(g));
   }
-  s.scale = 1 + s.form.c.cwiseAbs().maxCoeff() + (g ? s.form.G.cwiseAbs().sum() : 0) + (l ? s.form.M.cwiseAbs().sum() : 0);
+  s.scale = 1 + s.form.c.cwiseAbs().maxCoeff() + (g ? s.form.G.cwiseAbs().sum() : 0) +
+            (l ? s.form.M.cwiseAbs().sum() : 0);
   return s;
 }
 
@@ -134,7 +140,8 @@ TEST_CASE("operations enclose and keep their claims") {
     const auto backend = c.backend(plugins);
     CHECK(rc::check(c.name, [&] {
       const Index n = *rc::gen::inRange<Index>(1, 4), p = *rc::gen::inRange<Index>(1, 4);
-      const Sampled X = random_set(n, c.lines, c.constraints), Y = random_set(p, c.lines, c.constraints);
+      const Sampled X = random_set(n, c.lines, c.constraints),
+                    Y = random_set(p, c.lines, c.constraints);
       const double scale = X.scale + Y.scale;
       const Enclosure EX = backend->import(X.form), EY = backend->import(Y.form);
       for (const Vector& x : X.points) assert_contains(EX, x, scale, "import");
@@ -146,9 +153,12 @@ TEST_CASE("operations enclose and keep their claims") {
       const Term term{T, EY};
       const Enclosure predicted = backend->predict(EX, {A, f, {&term, 1}});
       for (const Vector& x : X.points) {
-        for (const Vector& y : Y.points) assert_contains(predicted, A * x + f + T * y, 10 * scale, "predict");
+        for (const Vector& y : Y.points)
+          assert_contains(predicted, A * x + f + T * y, 10 * scale, "predict");
       }
-      assert_claim(predicted, minkowski_sum(affine_map(X.form, A, f), affine_map(Y.form, T, Vector::Zero(p))), 100 * scale);
+      assert_claim(predicted,
+                   minkowski_sum(affine_map(X.form, A, f), affine_map(Y.form, T, Vector::Zero(p))),
+                   100 * scale);
 
       // {x ∈ X : z - C x ∈ T Y} with z chosen so that a known x stays
       const Vector& kept = X.points.front();
@@ -156,28 +166,35 @@ TEST_CASE("operations enclose and keep their claims") {
       const Enclosure corrected = backend->correct(EX, {A, z, {T, EY}});
       assert_contains(corrected, kept, 10 * scale, "correct");
 
-      assert_contains(backend->product(EX, EY), (Vector(n + p) << kept, Y.points.front()).finished(), scale, "product");
-      const Enclosure both =
-          backend->intersection(EX, Matrix::Identity(n, n),
-                                backend->import(make_box({kept - Vector::Constant(n, .5), kept + Vector::Constant(n, .5)})));
+      assert_contains(backend->product(EX, EY),
+                      (Vector(n + p) << kept, Y.points.front()).finished(), scale, "product");
+      const Enclosure both = backend->intersection(
+          EX, Matrix::Identity(n, n),
+          backend->import(
+              make_box({kept - Vector::Constant(n, .5), kept + Vector::Constant(n, .5)})));
       assert_contains(both, kept, scale, "intersection");
 
       const Matrix radius = random_matrix(p, n).cwiseAbs();
       const IntervalMatrix interval(A, radius);
-      assert_contains(backend->interval_map(EX, interval), (A + radius * number()) * kept, 10 * scale, "interval map");
+      assert_contains(backend->interval_map(EX, interval), (A + radius * number()) * kept,
+                      10 * scale, "interval map");
 
       const Sampled Z = random_set(n, c.lines, c.constraints);
       const Enclosure EZ = backend->import(Z.form);
       const double mix = (number() + 1) / 2;
-      assert_contains(backend->convex_hull(EX, EZ), mix * kept + (1 - mix) * Z.points.front(), scale + Z.scale, "convex hull");
+      assert_contains(backend->convex_hull(EX, EZ), mix * kept + (1 - mix) * Z.points.front(),
+                      scale + Z.scale, "convex hull");
 
       const Budget budget{n + 2, *rc::gen::inRange<Index>(0, 3)};
       const Enclosure reduced = backend->reduce(predicted, {p + 2, budget.constraints});
-      for (const Vector& x : X.points) assert_contains(reduced, A * x + f + T * Y.points.front(), 10 * scale, "reduce");
+      for (const Vector& x : X.points)
+        assert_contains(reduced, A * x + f + T * Y.points.front(), 10 * scale, "reduce");
       const Complexity size = reduced->complexity();
       RC_ASSERT(size.generators <= p + 2);
       RC_ASSERT(size.constraints <= budget.constraints);
-      assert_claim(reduced, minkowski_sum(affine_map(X.form, A, f), affine_map(Y.form, T, Vector::Zero(p))), 100 * scale);
+      assert_claim(reduced,
+                   minkowski_sum(affine_map(X.form, A, f), affine_map(Y.form, T, Vector::Zero(p))),
+                   100 * scale);
     }));
   }
 }
@@ -205,8 +222,9 @@ TEST_CASE("the empty set absorbs, and is neutral in the hull") {
     for (const Enclosure& hull : {backend->convex_hull(X, none), backend->convex_hull(none, X)}) {
       CHECK(hull->support(Vector{{1, 1}}) == doctest::Approx(2));
     }
-    CHECK(backend->correct(X, {Matrix{{1, 0}}, Vector{{5}}, {Matrix{{1.0}}, backend->box(cube(1, 1))}})->is_empty() ==
-          Answer::yes);
+    CHECK(backend
+              ->correct(X, {Matrix{{1, 0}}, Vector{{5}}, {Matrix{{1.0}}, backend->box(cube(1, 1))}})
+              ->is_empty() == Answer::yes);
   }
 }
 
@@ -225,7 +243,8 @@ TEST_CASE("unbounded sets: lines and boxes hold them, the others refuse") {
     CHECK(space->contains(Vector{{0, 0}}) == Answer::yes);
     CHECK(space->is_bounded() == Answer::no);
     CHECK(space->support(Vector{{0, 1}}) == inf);
-    const Enclosure strip = backend->correct(space, {Matrix{{0, 1}}, Vector{{3}}, {Matrix{{1.0}}, backend->box(cube(1, 1))}});
+    const Enclosure strip = backend->correct(
+        space, {Matrix{{0, 1}}, Vector{{3}}, {Matrix{{1.0}}, backend->box(cube(1, 1))}});
     const Box hull = strip->interval_hull();
     CHECK(hull.upper[0] == inf);
     CHECK(hull.lower[1] == doctest::Approx(2));
@@ -248,13 +267,14 @@ TEST_CASE("dimension 0, points and unlike operands") {
     CHECK(point->contains(Vector{{1, 2}}) == Answer::yes);
     // coordinates that are flat but for outward rounding: their product underflows
     CHECK(backend->product(point, point)->volume().value == doctest::Approx(0));
-    CHECK(backend->product(nothing, backend->point(Vector{{0, 0}}))->volume().value == doctest::Approx(0));
+    CHECK(backend->product(nothing, backend->point(Vector{{0, 0}}))->volume().value ==
+          doctest::Approx(0));
     if (backend->info().unbounded) {
-      const Volume thin =
-          backend
-              ->product(backend->affine_map(backend->point(Vector{{0, 0}}), Matrix::Identity(2, 2), Vector{{0, 0}}),
-                        backend->space(1))
-              ->volume();
+      const Volume thin = backend
+                              ->product(backend->affine_map(backend->point(Vector{{0, 0}}),
+                                                            Matrix::Identity(2, 2), Vector{{0, 0}}),
+                                        backend->space(1))
+                              ->volume();
       CHECK(thin.value >= 0);
     }
     // an operand of another backend is imported
@@ -277,10 +297,13 @@ class Shrinking final : public SetBackend {
  private:
   class Held final : public Set {
    public:
-    Held(const SetBackend& backend, LineForm form) : Set(backend, form.dim()), form_(std::move(form)) {}
+    Held(const SetBackend& backend, LineForm form)
+        : Set(backend, form.dim()), form_(std::move(form)) {}
 
    private:
-    Complexity do_complexity() const override { return {form_.generators(), form_.lines(), form_.constraints()}; }
+    Complexity do_complexity() const override {
+      return {form_.generators(), form_.lines(), form_.constraints()};
+    }
     LineForm do_line_form() const override { return form_; }
     LineForm form_;
   };
@@ -292,7 +315,8 @@ class Shrinking final : public SetBackend {
   }
   Made do_import(const LineForm& X) const override {
     const Index n = std::min(kept_, X.dim());
-    return {std::make_unique<Held>(*this, cordon::affine_map(X, Matrix::Identity(n, X.dim()), Vector::Zero(n))),
+    return {std::make_unique<Held>(
+                *this, cordon::affine_map(X, Matrix::Identity(n, X.dim()), Vector::Zero(n))),
             Tightness::exact};
   }
   Index kept_;
@@ -330,20 +354,27 @@ TEST_CASE("sets that touch where z - T c - C x cancels are not called empty") {
   for (const auto& backend : backends) {
     CAPTURE(backend->info().name);
     CAPTURE(backend->info().rounding == Rounding::outward);
-    const auto correct = [&](const Enclosure& X, const Matrix& C, const Vector& z, const Matrix& T, const Enclosure& V) {
+    const auto correct = [&](const Enclosure& X, const Matrix& C, const Vector& z, const Matrix& T,
+                             const Enclosure& V) {
       return backend->correct(X, {C, z, {T, V}})->is_empty();
     };
     const Enclosure origin = backend->point(Vector{{0}});
-    CHECK(correct(origin, Matrix{{0}}, Vector{{.3}}, Matrix{{3}}, backend->point(Vector{{.1}})) != Answer::yes);
-    CHECK(correct(origin, Matrix{{0}}, Vector{{.30000000000000004}}, Matrix{{3}}, backend->point(Vector{{.1}})) != Answer::yes);
+    CHECK(correct(origin, Matrix{{0}}, Vector{{.3}}, Matrix{{3}}, backend->point(Vector{{.1}})) !=
+          Answer::yes);
+    CHECK(correct(origin, Matrix{{0}}, Vector{{.30000000000000004}}, Matrix{{3}},
+                  backend->point(Vector{{.1}})) != Answer::yes);
     const Enclosure one = backend->box({Vector{{1 - ulp}}, Vector{{1 + 2 * ulp}}});
     const Enclosure zero = backend->box({Vector{{-ulp}}, Vector{{ulp}}});
     const Matrix C{{0}, {0}}, T{{1}, {-3}};
     CHECK(correct(zero, C, Vector{{1, -3}}, T, one) != Answer::yes);
-    CHECK(correct(origin, C, Vector{{1, -3 * (1 + ulp)}}, T, backend->point(Vector{{1}})) != Answer::yes);
-    CHECK(correct(origin, C, Vector{{1e-9, -3e-9}}, T, backend->point(Vector{{1e-9}})) != Answer::yes);
+    CHECK(correct(origin, C, Vector{{1, -3 * (1 + ulp)}}, T, backend->point(Vector{{1}})) !=
+          Answer::yes);
+    CHECK(correct(origin, C, Vector{{1e-9, -3e-9}}, T, backend->point(Vector{{1e-9}})) !=
+          Answer::yes);
     // what does not cancel stays a statement, however small
-    CHECK(correct(origin, Matrix{{0}}, Vector{{1e-9}}, Matrix{{3}}, backend->point(Vector{{1e-12}})) == Answer::yes);
-    CHECK(correct(origin, Matrix{{0}}, Vector{{.3001}}, Matrix{{3}}, backend->point(Vector{{.1}})) == Answer::yes);
+    CHECK(correct(origin, Matrix{{0}}, Vector{{1e-9}}, Matrix{{3}},
+                  backend->point(Vector{{1e-12}})) == Answer::yes);
+    CHECK(correct(origin, Matrix{{0}}, Vector{{.3001}}, Matrix{{3}},
+                  backend->point(Vector{{.1}})) == Answer::yes);
   }
 }

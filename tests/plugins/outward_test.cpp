@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Outward rounding: for the numbers that operands and results hold, every operation of every backend encloses its exact result.
-// The oracle is rational arithmetic: support functions of the exact result and of the set returned, in several directions. The
-// nominal mode is put to the same test, which it must fail.
+// Outward rounding: for the numbers that operands and results hold, every operation of every
+// backend encloses its exact result. The oracle is rational arithmetic: support functions of the
+// exact result and of the set returned, in several directions. The nominal mode is put to the same
+// test, which it must fail.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -17,18 +18,23 @@ using Support = test::RationalSet::Support;
 
 namespace {
 
-/// Random operands. Numbers are of one kind within a case: integers, ordinary ones with all digits, badly scaled ones.
+/// Random operands. Numbers are of one kind within a case: integers, ordinary ones with all digits,
+/// badly scaled ones.
 class Source {
  public:
-  explicit Source(std::uint64_t seed) : random_(seed), kind_(static_cast<int>(random_.unit() * 4)) {}
+  explicit Source(std::uint64_t seed)
+      : random_(seed), kind_(static_cast<int>(random_.unit() * 4)) {}
 
-  Index upto(Index largest) { return static_cast<Index>(random_.unit() * static_cast<double>(largest + 1)); }
+  Index upto(Index largest) {
+    return static_cast<Index>(random_.unit() * static_cast<double>(largest + 1));
+  }
   double number() {
     if (random_.unit() < 0.2) return 0;
     const double x = random_.between(-1, 1);
     if (kind_ == 0) return std::round(4 * x);
     if (kind_ == 1) return x;
-    return x * std::pow(10.0, std::round(random_.between(kind_ == 2 ? -2 : -8, kind_ == 2 ? 2 : 8)));
+    return x *
+           std::pow(10.0, std::round(random_.between(kind_ == 2 ? -2 : -8, kind_ == 2 ? 2 : 8)));
   }
   Matrix matrix(Index rows, Index cols) {
     Matrix A(rows, cols);
@@ -66,18 +72,22 @@ struct Bench {
   std::string name;
   bool lines, constraints;
 };
-const std::vector<Bench> benches{
-    {"interval", false, false}, {"zonotope", false, false}, {"constrained_zonotope", false, true}, {"line_zonotope", true, true}};
+const std::vector<Bench> benches{{"interval", false, false},
+                                 {"zonotope", false, false},
+                                 {"constrained_zonotope", false, true},
+                                 {"line_zonotope", true, true}};
 
 RationalSet exact(const Set& X) {
-  return X.backend().info().name == "interval" ? RationalSet::of(X.interval_hull()) : RationalSet::of(X.line_form());
+  return X.backend().info().name == "interval" ? RationalSet::of(X.interval_hull())
+                                               : RationalSet::of(X.line_form());
 }
 
 /// Counts, over all cases, of results that do not enclose and of claims that do not hold.
 struct Tally {
   int checks = 0, escapes = 0, false_claims = 0, false_bounds = 0, exact_claims = 0;
 
-  /// sup over the exact result, h_X, against the set returned; `claimed` is the operation's claim for exact operands.
+  /// sup over the exact result, h_X, against the set returned; `claimed` is the operation's claim
+  /// for exact operands.
   void compare(const Support& h, const Enclosure& result, const Vector& d, bool claimed) {
     if (h.kind == Support::empty) {
       if (claimed) false_claims += exact(*result).support(d).kind != Support::empty;
@@ -86,24 +96,30 @@ struct Tally {
     ++checks;
     const Support returned = exact(*result).support(d);
     const bool encloses = returned.kind == Support::infinite ||
-                          (returned.kind == Support::finite && h.kind == Support::finite && h.value <= returned.value);
+                          (returned.kind == Support::finite && h.kind == Support::finite &&
+                           h.value <= returned.value);
     escapes += !encloses;
     const double bound = result->support(d);
-    false_bounds += !(std::isinf(bound) && bound > 0) &&
-                    (h.kind == Support::infinite || std::isinf(bound) || (encloses && mpq_class(bound) < h.value));
+    false_bounds +=
+        !(std::isinf(bound) && bound > 0) && (h.kind == Support::infinite || std::isinf(bound) ||
+                                              (encloses && mpq_class(bound) < h.value));
     if (claimed) {
       ++exact_claims;
-      false_claims += encloses && (returned.kind != h.kind || (h.kind == Support::finite && returned.value != h.value));
+      false_claims += encloses && (returned.kind != h.kind ||
+                                   (h.kind == Support::finite && returned.value != h.value));
     }
   }
 
-  void compare(Source& source, const RationalSet& truth, const Enclosure& result, int directions = 3) {
+  void compare(Source& source, const RationalSet& truth, const Enclosure& result,
+               int directions = 3) {
     const Box hull = result->interval_hull();
     for (int k = 0; k < directions; ++k) {
-      const Vector d = source.direction(result->dim(), hull.is_empty() ? Box::space(result->dim()) : hull);
+      const Vector d =
+          source.direction(result->dim(), hull.is_empty() ? Box::space(result->dim()) : hull);
       compare(truth.support(d), result, d, result.tightness == Tightness::exact);
     }
-    if (result->is_empty() == Answer::yes) escapes += truth.support(Vector::Zero(result->dim())).kind != Support::empty;
+    if (result->is_empty() == Answer::yes)
+      escapes += truth.support(Vector::Zero(result->dim())).kind != Support::empty;
   }
 };
 
@@ -118,11 +134,13 @@ Tally run(const SetBackend& backend, const Bench& bench, int first, int seeds) {
     Source source(static_cast<std::uint64_t>(seed));
     const Index n = 1 + source.upto(2), p = 1 + source.upto(1);
     const Index lines = bench.lines ? 2 : 0, constraints = 2;
-    const LineForm forms[]{source.set(n, lines, constraints), source.set(p, lines, bench.constraints ? 1 : 0),
+    const LineForm forms[]{source.set(n, lines, constraints),
+                           source.set(p, lines, bench.constraints ? 1 : 0),
                            source.set(n, lines, bench.constraints ? 1 : 0)};
     const Enclosure imported = backend.import(forms[0]);
     tally.compare(source, RationalSet::of(forms[0]), imported);
-    const Enclosure X = fresh(imported), Y = fresh(backend.import(forms[1])), Z = fresh(backend.import(forms[2]));
+    const Enclosure X = fresh(imported), Y = fresh(backend.import(forms[1])),
+                    Z = fresh(backend.import(forms[2]));
     const RationalSet x = exact(*X), y = exact(*Y), z = exact(*Z);
 
     const Matrix A = source.matrix(p, n), T = source.matrix(p, p);
@@ -132,13 +150,17 @@ Tally run(const SetBackend& backend, const Bench& bench, int first, int seeds) {
     const Enclosure predicted = backend.predict(X, {A, f, {&term, 1}});
     tally.compare(source, RationalSet::affine_sum(x, A, f, y, T), predicted);
 
-    const Vector kept = X->interval_hull().is_empty() ? Vector(Vector::Zero(n)) : X->interval_hull().center();
-    const Vector data = A * kept + T * (Y->interval_hull().is_empty() ? Vector(Vector::Zero(p)) : Y->interval_hull().center());
+    const Vector kept =
+        X->interval_hull().is_empty() ? Vector(Vector::Zero(n)) : X->interval_hull().center();
+    const Vector data =
+        A * kept +
+        T * (Y->interval_hull().is_empty() ? Vector(Vector::Zero(p)) : Y->interval_hull().center());
     const Enclosure corrected = backend.correct(X, {A, data, {T, Y}});
     const RationalSet cut = RationalSet::strip_intersection(x, A, data, T, y);
     tally.compare(source, cut, corrected);
-    tally.compare(source, RationalSet::strip_intersection(x, A, Vector::Zero(p), -Matrix::Identity(p, p), y),
-                  backend.intersection(X, A, Y));
+    tally.compare(
+        source, RationalSet::strip_intersection(x, A, Vector::Zero(p), -Matrix::Identity(p, p), y),
+        backend.intersection(X, A, Y));
 
     // one more operation on a result that has been rounded, and its reductions
     const Enclosure again = fresh(corrected);
@@ -149,13 +171,16 @@ Tally run(const SetBackend& backend, const Bench& bench, int first, int seeds) {
 
     const Matrix radius = source.matrix(p, n).cwiseAbs();
     Matrix member = A;
-    for (Index k = 0; k < member.size(); ++k) {  // the ends of the interval that are doubles, else the middle
+    for (Index k = 0; k < member.size();
+         ++k) {  // the ends of the interval that are doubles, else the middle
       const double a = A.data()[k] + radius.data()[k];
-      if (mpq_class(a) - mpq_class(A.data()[k]) <= mpq_class(radius.data()[k])) member.data()[k] = a;
+      if (mpq_class(a) - mpq_class(A.data()[k]) <= mpq_class(radius.data()[k]))
+        member.data()[k] = a;
     }
     Enclosure image = backend.interval_map(X, {A, radius});
     image.tightness = Tightness::outer;  // compared with one of its members
-    tally.compare(source, RationalSet::affine_sum(x, member, Vector::Zero(p), y, Matrix::Zero(p, p)), image);
+    tally.compare(
+        source, RationalSet::affine_sum(x, member, Vector::Zero(p), y, Matrix::Zero(p, p)), image);
 
     const Enclosure hull = backend.convex_hull(X, Z);
     for (int k = 0; k < 2 && n > 0; ++k) {
@@ -204,14 +229,18 @@ TEST_CASE("every method of reduction and intersection keeps to it") {
     for (const char* reduction : {"girard", "combastel", "pca"}) {
       CAPTURE(bench.name);
       CAPTURE(reduction);
-      check_encloses(run(*plugins.backend(bench.name, outward("reduction", std::string(reduction))), bench, first += 10, 3));
+      check_encloses(run(*plugins.backend(bench.name, outward("reduction", std::string(reduction))),
+                         bench, first += 10, 3));
     }
   }
   for (const char* strip : {"bravo", "volume"}) {
     CAPTURE(strip);
-    check_encloses(run(*plugins.backend("zonotope", outward("strip", std::string(strip))), benches[1], first += 10, 3));
+    check_encloses(run(*plugins.backend("zonotope", outward("strip", std::string(strip))),
+                       benches[1], first += 10, 3));
   }
-  check_encloses(run(*plugins.backend("constrained_zonotope", outward("rescale", true)), benches[2], first += 10, 3));
+  check_encloses(run(*plugins.backend("constrained_zonotope", outward("rescale", true)), benches[2],
+                     first += 10, 3));
   check_encloses(
-      run(*plugins.backend("line_zonotope", outward("precondition", std::string("gauss_jordan"))), benches[3], first += 10, 3));
+      run(*plugins.backend("line_zonotope", outward("precondition", std::string("gauss_jordan"))),
+          benches[3], first += 10, 3));
 }

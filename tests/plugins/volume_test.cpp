@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes of sets with constraints against those of exact polytopes, with details that are hardly larger than rounding.
+// Volumes of sets with constraints against those of exact polytopes, with details that are hardly
+// larger than rounding.
 #include <random>
 
 #include <doctest/doctest.h>
@@ -16,7 +17,8 @@ namespace {
 LineForm random_set(const Vector& sizes, Index constraints, std::mt19937& random) {
   std::uniform_real_distribution<double> number(-1, 1);
   const Index g = sizes.size();
-  LineForm X{Matrix(3, 0), Matrix(3, g), Vector(3), Matrix(constraints, 0), Matrix(constraints, g), Vector(constraints)};
+  LineForm X{Matrix(3, 0),           Matrix(3, g),           Vector(3),
+             Matrix(constraints, 0), Matrix(constraints, g), Vector(constraints)};
   Vector xi(g);
   for (auto* part : {&X.G, &X.A}) {
     for (double& entry : part->reshaped()) entry = number(random);

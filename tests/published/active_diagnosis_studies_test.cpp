@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The studies of active diagnosis, as they are shipped: costs, separation proven over the rationals, and what experiments show.
+// The studies of active diagnosis, as they are shipped: costs, separation proven over the
+// rationals, and what experiments show.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -18,7 +19,8 @@ struct Loaded {
   std::vector<PipelineDesign> designs;
 
   explicit Loaded(const std::string& name) {
-    study = read_study(CORDON_SOURCE_DIR "/examples/studies/active_diagnosis_" + name + ".json", registry,
+    study = read_study(CORDON_SOURCE_DIR "/examples/studies/active_diagnosis_" + name + ".json",
+                       registry,
                        {{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
     DesignOptions options;
     designs = design_study(study, registry, options);
@@ -43,7 +45,8 @@ struct Loaded {
   std::vector<ExperimentRow> experiments(const std::string& name, std::int64_t seeds) const {
     Study fewer = study;
     std::get<SimulateSpec>(fewer.data).seeds = seeds;
-    std::erase_if(fewer.pipelines, [&](const PipelineSpec& pipeline) { return pipeline.name != name; });
+    std::erase_if(fewer.pipelines,
+                  [&](const PipelineSpec& pipeline) { return pipeline.name != name; });
     const RunOutcome outcome = run_study(fewer, registry, {});
     REQUIRE(outcome.pipelines.size() == 1);
     CHECK(outcome.pipelines[0].error.empty());
@@ -58,7 +61,8 @@ void expect_diagonal(const std::vector<ExperimentRow>& rows, std::size_t modes, 
     CAPTURE(row.mode);
     CHECK(row.runs == runs);
     CHECK(row.isolated == runs);
-    for (std::size_t j = 0; j < modes; ++j) CHECK(row.possible[j] == (static_cast<Index>(j) == row.mode ? runs : 0));
+    for (std::size_t j = 0; j < modes; ++j)
+      CHECK(row.possible[j] == (static_cast<Index>(j) == row.mode ? runs : 0));
   }
 }
 
@@ -131,13 +135,16 @@ TEST_CASE("a heating: one step is proven too short, two are enough") {
   expect_diagonal(study.experiments("Least energy", 100), 4, 100);
 }
 
-TEST_CASE("the published admissible set leaves no output: no separation, whatever the tubes' distance") {
+TEST_CASE(
+    "the published admissible set leaves no output: no separation, whatever the tubes' distance") {
   const Loaded study("admissible_set");
-  for (const char* name : {"Published set, published input", "Published set, input by line zonotopes"}) {
+  for (const char* name :
+       {"Published set, published input", "Published set, input by line zonotopes"}) {
     const PipelineDesign& design = study[name];
     for (const Answer empty : design.outcome->best->empty) CHECK(empty == Answer::yes);
     for (const Answer empty : design.exact->empty) CHECK(empty == Answer::yes);
-    for (const PairSeparation& pair : design.outcome->best->pairs) CHECK(pair.disjoint == Answer::yes);
+    for (const PairSeparation& pair : design.outcome->best->pairs)
+      CHECK(pair.disjoint == Answer::yes);
     CHECK(design.outcome->best->separates() == Answer::unknown);
   }
   CHECK(study["Wide set, input by line zonotopes"].outcome->best->separates() == Answer::yes);

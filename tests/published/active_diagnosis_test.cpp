@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table 2 of [Rego2025, sec. 6.2]: 500 runs of every model, and how many of them lie in the output tubes of which models. The
-// diagonal and the zeros are facts about the tubes; the other entries depend on how the authors drew the disturbances.
+// Table 2 of [Rego2025, sec. 6.2]: 500 runs of every model, and how many of them lie in the output
+// tubes of which models. The diagonal and the zeros are facts about the tubes; the other entries
+// depend on how the authors drew the disturbances.
 #include <doctest/doctest.h>
 
 #include "diagnosers/tube_membership/membership.hpp"
@@ -30,15 +31,18 @@ Table table(const std::vector<Vector>& inputs, std::uint64_t first_seed, bool ve
   const auto backend = plugins.backend("line_zonotope");
   const ModeBank bank = four_models();
   std::vector<designers::OutputTube> tubes;
-  for (const Mode& mode : bank.modes) tubes.push_back(designers::output_tube(mode.model, *backend, {3}));
+  for (const Mode& mode : bank.modes)
+    tubes.push_back(designers::output_tube(mode.model, *backend, {3}));
   const Vector u = stacked(inputs);
   Table counts{};
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::uint64_t seed = first_seed; seed < first_seed + runs; ++seed) {
       std::vector<Vector> outputs;
-      for (const Simulated& now : simulate(bank.modes[i].model, inputs, seed, vertex)) outputs.push_back(now.sample.y);
+      for (const Simulated& now : simulate(bank.modes[i].model, inputs, seed, vertex))
+        outputs.push_back(now.sample.y);
       const Vector y = stacked(outputs);
-      for (std::size_t j = 0; j < 4; ++j) counts[i][j] += diagnosers::membership(tubes[j], u, y) != Answer::no;
+      for (std::size_t j = 0; j < 4; ++j)
+        counts[i][j] += diagnosers::membership(tubes[j], u, y) != Answer::no;
     }
   }
   return counts;
@@ -57,8 +61,10 @@ TEST_CASE("Table 2, input by line zonotopes: 500 on the diagonal, 0 elsewhere") 
 }
 
 TEST_CASE(
-    "Table 2, input by constrained zonotopes: the published zeros, and many runs of models 1, 3 and 4 in each other's tubes") {
-  const std::vector<Vector> published{Vector{{.5, -1}}, Vector{{2.9286, -1}}, Vector{{3.1628, -1}}, Vector{{.5, -1}}};
+    "Table 2, input by constrained zonotopes: the published zeros, and many runs of models 1, 3 "
+    "and 4 in each other's tubes") {
+  const std::vector<Vector> published{Vector{{.5, -1}}, Vector{{2.9286, -1}}, Vector{{3.1628, -1}},
+                                      Vector{{.5, -1}}};
   const Table found = table(published, 1, false);
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) {

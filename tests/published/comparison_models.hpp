@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two plants of the literature [Alamo2005, sec. 7.1; a vehicle's lateral motion] with their data, on which observers were
-// compared with the CORA toolbox.
+// Two plants of the literature [Alamo2005, sec. 7.1; a vehicle's lateral motion] with their data,
+// on which observers were compared with the CORA toolbox.
 #pragma once
 
 #include "published/csv.hpp"
@@ -10,7 +10,8 @@ namespace comparison {
 
 using namespace cordon;
 
-inline Model plant(const Matrix& A, const Matrix& B, const Matrix& C, double start, const Matrix& W, double v) {
+inline Model plant(const Matrix& A, const Matrix& B, const Matrix& C, double start, const Matrix& W,
+                   double v) {
   Model model;
   LinearModel& m = model.linear;
   m.A = A;
@@ -26,12 +27,15 @@ inline Model plant(const Matrix& A, const Matrix& B, const Matrix& C, double sta
 }
 
 inline Model two_states() {
-  return plant(Matrix{{0, -.5}, {1, 1}}, Matrix::Identity(2, 2), Matrix{{-2, 1}}, 3, Matrix{{-.12}, {.02}}, .2);
+  return plant(Matrix{{0, -.5}, {1, 1}}, Matrix::Identity(2, 2), Matrix{{-2, 1}}, 3,
+               Matrix{{-.12}, {.02}}, .2);
 }
 
 inline Model vehicle() {
-  return plant(Matrix{{0.9922748449450575, -0.0080030620640856}, {0.2889726943723335, 0.9299044703341978}},
-               Matrix{{0.0222329772960317}, {0.2473223577905438}}, Matrix{{0, 15}}, 1, Matrix{{.005, 0}, {0, .055}}, .1);
+  return plant(
+      Matrix{{0.9922748449450575, -0.0080030620640856}, {0.2889726943723335, 0.9299044703341978}},
+      Matrix{{0.0222329772960317}, {0.2473223577905438}}, Matrix{{0, 15}}, 1,
+      Matrix{{.005, 0}, {0, .055}}, .1);
 }
 
 inline std::vector<Sample> samples(const std::string& name, Index inputs) {

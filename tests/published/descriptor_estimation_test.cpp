@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// State estimation of the descriptor system of [Rego2025, sec. 6.1] on one fixed noise sequence, against the exact hulls of the
-// full horizon, which were computed independently and without any reduction.
+// State estimation of the descriptor system of [Rego2025, sec. 6.1] on one fixed noise sequence,
+// against the exact hulls of the full horizon, which were computed independently and without any
+// reduction.
 #include <cmath>
 #include <map>
 
@@ -21,18 +22,22 @@ struct Row {
 const std::vector<Row>& recorded() {
   static const std::vector<Row> rows = [] {
     std::vector<Row> all;
-    for (const auto& v : read_table(CORDON_SOURCE_DIR "/tests/published/data/descriptor_case.csv")) {
-      all.push_back({{static_cast<Index>(v[0]), Vector{{v[1], v[2]}}, Vector{{v[3], v[4]}}}, Vector{{v[5], v[6], v[7]}}});
+    for (const auto& v :
+         read_table(CORDON_SOURCE_DIR "/tests/published/data/descriptor_case.csv")) {
+      all.push_back({{static_cast<Index>(v[0]), Vector{{v[1], v[2]}}, Vector{{v[3], v[4]}}},
+                     Vector{{v[5], v[6], v[7]}}});
     }
     return all;
   }();
   return rows;
 }
 
-/// The exact hulls by k, for the line zonotope's start R³ (0) or the constrained zonotope's start (38) (1).
+/// The exact hulls by k, for the line zonotope's start R³ (0) or the constrained zonotope's start
+/// (38) (1).
 std::map<Index, Box> exact_hulls(int constrained_start) {
   std::map<Index, Box> hulls;
-  for (const auto& v : read_table(CORDON_SOURCE_DIR "/tests/published/data/descriptor_case_hulls.csv")) {
+  for (const auto& v :
+       read_table(CORDON_SOURCE_DIR "/tests/published/data/descriptor_case_hulls.csv")) {
     if (static_cast<int>(v[0]) == constrained_start)
       hulls[static_cast<Index>(v[1])] = {Vector{{v[2], v[3], v[4]}}, Vector{{v[5], v[6], v[7]}}};
   }
@@ -61,7 +66,8 @@ double width_ratio(const Box& hull, const Box& exact) {
 
 TEST_CASE("line zonotopes with 30 generators and 5 constraints equal the exact hulls") {
   const Plugins plugins;
-  const auto observer = plugins.observer("descriptor", descriptor_example(), plugins.backend("line_zonotope"), budget(30, 5));
+  const auto observer = plugins.observer("descriptor", descriptor_example(),
+                                         plugins.backend("line_zonotope"), budget(30, 5));
   observer->start();
   const auto exact = exact_hulls(0);
   double worst = 0, radius = 0;
@@ -87,11 +93,14 @@ TEST_CASE("line zonotopes with 30 generators and 5 constraints equal the exact h
   CHECK(radius <= 1.85 + 1e-6);
 }
 
-TEST_CASE("constrained zonotopes equal the exact hulls until the state leaves the admissible set, and then are proven empty") {
+TEST_CASE(
+    "constrained zonotopes equal the exact hulls until the state leaves the admissible set, and "
+    "then are proven empty") {
   const Plugins plugins;
   Params params = budget(30, 5);
   params.set("admissible_set", make_box(cube(3, 50))).set("initial_set", bounded_start());
-  const auto observer = plugins.observer("descriptor", descriptor_example(), plugins.backend("constrained_zonotope"), params);
+  const auto observer = plugins.observer("descriptor", descriptor_example(),
+                                         plugins.backend("constrained_zonotope"), params);
   observer->start();
   const auto exact = exact_hulls(1);
   double worst = 0;
@@ -112,13 +121,14 @@ TEST_CASE("constrained zonotopes equal the exact hulls until the state leaves th
   CHECK(empty_from == 25);
 }
 
-// The second data set: w_k = (sin k, cos 2k, sin(3k+1)) with w_0 = (0, 1, 0), v_k = (cos k, sin(2k + 1/2)), u_k = (1 +
-// sin(kπ/10)/2, -2 cos(kπ/10)).
+// The second data set: w_k = (sin k, cos 2k, sin(3k+1)) with w_0 = (0, 1, 0), v_k = (cos k, sin(2k
+// + 1/2)), u_k = (1 + sin(kπ/10)/2, -2 cos(kπ/10)).
 namespace {
 
 std::map<Index, Box> deterministic_hulls(int which) {
   std::map<Index, Box> hulls;
-  for (const auto& v : read_table(CORDON_SOURCE_DIR "/tests/published/data/deterministic_hulls.csv")) {
+  for (const auto& v :
+       read_table(CORDON_SOURCE_DIR "/tests/published/data/deterministic_hulls.csv")) {
     if (static_cast<int>(v[0]) == which)
       hulls[static_cast<Index>(v[1])] = {Vector{{v[2], v[3], v[4]}}, Vector{{v[5], v[6], v[7]}}};
   }
@@ -133,9 +143,11 @@ struct Deterministic {
 
 std::vector<Deterministic> deterministic() {
   std::vector<Deterministic> rows;
-  for (const auto& v : read_table(CORDON_SOURCE_DIR "/tests/published/data/deterministic_case.csv")) {
+  for (const auto& v :
+       read_table(CORDON_SOURCE_DIR "/tests/published/data/deterministic_case.csv")) {
     const double angle = v[0] * std::acos(-1.0) / 10;
-    rows.push_back({{static_cast<Index>(v[0]), Vector{{1 + std::sin(angle) / 2, -2 * std::cos(angle)}}, Vector{{v[4], v[5]}}},
+    rows.push_back({{static_cast<Index>(v[0]),
+                     Vector{{1 + std::sin(angle) / 2, -2 * std::cos(angle)}}, Vector{{v[4], v[5]}}},
                     Vector{{v[1], v[2], v[3]}},
                     v[6],
                     v[7]});
@@ -143,7 +155,8 @@ std::vector<Deterministic> deterministic() {
   return rows;
 }
 
-/// Runs an observer over the deterministic data and compares its hulls with the exact ones of the case, to 1e-6 of their widths.
+/// Runs an observer over the deterministic data and compares its hulls with the exact ones of the
+/// case, to 1e-6 of their widths.
 void check_case(const Model& model, const std::string& backend, const Params& params, int which,
                 const std::vector<Index>& rows_of_y, const std::vector<Index>& lines = {}) {
   const Plugins plugins;
@@ -160,7 +173,8 @@ void check_case(const Model& model, const std::string& backend, const Params& pa
     CAPTURE(which);
     CAPTURE(k);
     CHECK(estimate.set->contains(row.truth) != Answer::no);
-    if (static_cast<std::size_t>(k) < lines.size()) CHECK(estimate.set->complexity().lines == lines[static_cast<std::size_t>(k)]);
+    if (static_cast<std::size_t>(k) < lines.size())
+      CHECK(estimate.set->complexity().lines == lines[static_cast<std::size_t>(k)]);
     if (!exact.count(k)) continue;
     const Box hull = estimate.set->interval_hull();
     for (Index i = 0; i < 3; ++i) {
@@ -192,7 +206,9 @@ Model with_outputs(const std::vector<Index>& rows) {
 
 }  // namespace
 
-TEST_CASE("full observation: reduced line zonotopes equal the exact ones, with and without the static row at the start") {
+TEST_CASE(
+    "full observation: reduced line zonotopes equal the exact ones, with and without the static "
+    "row at the start") {
   check_case(descriptor_example(), "line_zonotope", budget(30, 5), 0, {0, 1}, {1, 0, 0});
   Params params = budget(30, 5);
   params.set("static_at_start", true);
@@ -202,11 +218,14 @@ TEST_CASE("full observation: reduced line zonotopes equal the exact ones, with a
 TEST_CASE("unreduced constrained zonotopes from the bounded start") {
   // the reference includes the static row of k = 0, as the paper's initial set does
   Params params = budget(1000, 1000);
-  params.set("admissible_set", make_box(cube(3, 50))).set("initial_set", bounded_start()).set("static_at_start", true);
+  params.set("admissible_set", make_box(cube(3, 50)))
+      .set("initial_set", bounded_start())
+      .set("static_at_start", true);
   check_case(descriptor_example(), "constrained_zonotope", params, 2, {0, 1});
 }
 
-TEST_CASE("partial observability: unobserved directions stay unbounded, the others have finite bounds") {
+TEST_CASE(
+    "partial observability: unobserved directions stay unbounded, the others have finite bounds") {
   Params params = budget(1000, 1000);
   check_case(with_outputs({0}), "line_zonotope", params, 10, {0}, {2, 0, 0, 0, 0, 0});
   check_case(with_outputs({1}), "line_zonotope", params, 20, {1}, {2, 1, 0, 0, 0, 0});
@@ -219,7 +238,8 @@ TEST_CASE("zonotopes with T E + N C = I and the gain of least F-radius") {
   const Plugins plugins;
   Params params = budget(30, 0);
   params.set("initial_set", bounded_start());
-  const auto observer = plugins.observer("descriptor", descriptor_example(), plugins.backend("zonotope"), params);
+  const auto observer =
+      plugins.observer("descriptor", descriptor_example(), plugins.backend("zonotope"), params);
   observer->start();
   double mean = 0, reference_mean = 0;
   for (const Deterministic& row : deterministic()) {
@@ -227,13 +247,15 @@ TEST_CASE("zonotopes with T E + N C = I and the gain of least F-radius") {
     CAPTURE(row.sample.k);
     CHECK(estimate.set->contains(row.truth) == Answer::yes);
     const double radius = estimate.set->interval_hull().longest_half_edge();
-    if (row.sample.k <= 5) CHECK(std::abs(radius / row.zonotope_radius - 1) <= 1e-9);  // before the reduction bites
+    if (row.sample.k <= 5)
+      CHECK(std::abs(radius / row.zonotope_radius - 1) <= 1e-9);  // before the reduction bites
     if (row.sample.k >= 2) {
       mean += radius / 11;
       reference_mean += row.zonotope_radius / 11;
     }
   }
-  CHECK(mean == doctest::Approx(reference_mean).epsilon(.03));  // the reference breaks ties of the reduction in another way
+  CHECK(mean == doctest::Approx(reference_mean)
+                    .epsilon(.03));  // the reference breaks ties of the reduction in another way
 }
 
 TEST_CASE("sizes grow by Remark 3") {
@@ -241,7 +263,8 @@ TEST_CASE("sizes grow by Remark 3") {
   const auto backend = plugins.backend("line_zonotope");
   const Model model = descriptor_example();
   const Enclosure W = backend->import(model.W), free = backend->space(1);
-  Enclosure Z = backend->import(minkowski_sum(make_strip(Vector{{1, 2, 3}}, 1, 1), make_point(Vector::Zero(3))));
+  Enclosure Z = backend->import(
+      minkowski_sum(make_strip(Vector{{1, 2, 3}}, 1, 1), make_point(Vector::Zero(3))));
   for (int k = 0; k < 3; ++k) {
     const Complexity before = Z->complexity();
     Matrix A = model.linear.A, Bw = model.linear.Bw, lower = Matrix::Zero(3, 1);
@@ -274,7 +297,8 @@ TEST_CASE("the units of the equations do not decide which of them are static") {
   const Plugins plugins;
   Params params = budget(30, 5);
   params.set("admissible_set", make_box(cube(2, 2)));
-  const auto observer = plugins.observer("descriptor", model, plugins.backend("constrained_zonotope"), params);
+  const auto observer =
+      plugins.observer("descriptor", model, plugins.backend("constrained_zonotope"), params);
   observer->start();
   for (Index k = 0; k < 4; ++k) {
     const Estimate estimate = observer->step({k, Vector(0), Vector{{.9}}});
@@ -288,7 +312,8 @@ TEST_CASE("an E that is singular up to a hair is refused with its singular value
   model.linear.E = Matrix{{1, 1, 0}, {1, 1 + 1e-9, 0}, {0, 0, 0}};
   Params params = budget(30, 5);
   REQUIRE(plugins.registry.observer_info("descriptor")->schema.complete(params).empty());
-  const auto problems = plugins.registry.check_observer("descriptor", {model, plugins.backend("line_zonotope")}, params);
+  const auto problems = plugins.registry.check_observer(
+      "descriptor", {model, plugins.backend("line_zonotope")}, params);
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].message.find("nearly singular") != std::string::npos);
 }
@@ -297,7 +322,8 @@ TEST_CASE("a larger budget is not worse, however many constraints it allows") {
   const Plugins plugins;
   const auto mean_radius = [&](std::int64_t generators, std::int64_t constraints) {
     const auto observer =
-        plugins.observer("descriptor", descriptor_example(), plugins.backend("line_zonotope"), budget(generators, constraints));
+        plugins.observer("descriptor", descriptor_example(), plugins.backend("line_zonotope"),
+                         budget(generators, constraints));
     observer->start();
     double sum = 0;
     for (const Row& row : recorded()) {
@@ -307,7 +333,8 @@ TEST_CASE("a larger budget is not worse, however many constraints it allows") {
     return sum / static_cast<double>(recorded().size() - 1);
   };
   const double small = mean_radius(30, 5);
-  for (const auto& [generators, constraints] : {std::pair{30, 12}, {60, 20}, {60, 28}, {60, 30}, {200, 100}}) {
+  for (const auto& [generators, constraints] :
+       {std::pair{30, 12}, {60, 20}, {60, 28}, {60, 30}, {200, 100}}) {
     CAPTURE(generators);
     CAPTURE(constraints);
     CHECK(mean_radius(generators, constraints) <= 1.01 * small);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The studies of interval observers and of the fault-estimation filter give the numbers that docs/interval_observers.md and
-// docs/diagnosis.md show; those of given gains were computed apart from this project. The set W of the two tanks holds what
-// their linear model misses of the plant.
+// The studies of interval observers and of the fault-estimation filter give the numbers that
+// docs/interval_observers.md and docs/diagnosis.md show; those of given gains were computed apart
+// from this project. The set W of the two tanks holds what their linear model misses of the plant.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -26,8 +26,9 @@ struct Ran {
     outcome = run_study(study, registry, {});
   }
   const PipelineOutcome& operator[](const std::string& name) const {
-    const auto found = std::find_if(outcome.pipelines.begin(), outcome.pipelines.end(),
-                                    [&](const PipelineOutcome& pipeline) { return pipeline.name == name; });
+    const auto found =
+        std::find_if(outcome.pipelines.begin(), outcome.pipelines.end(),
+                     [&](const PipelineOutcome& pipeline) { return pipeline.name == name; });
     REQUIRE(found != outcome.pipelines.end());
     return *found;
   }
@@ -68,13 +69,15 @@ TEST_CASE("the monotone system: widths after 200 steps") {
 
 TEST_CASE("the non-monotone system: widths after 200 steps") {
   const Ran ran("interval_observers_non_monotone.json");
-  expect_widths(ran, {{"zonotope, (.3 .2 .8)", Vector{{3.894205, 2.429327, .714939}}},
-                      {"interval, (.3 .2 .8)", Vector{{3.981217, 2.434002, .716744}}},
-                      {"zonotope, published integrated gain", Vector{{4.057178, 2.714451, .721290}}},
-                      {"interval, published integrated gain", Vector{{4.380864, 3.057094, .731363}}},
-                      {"zonotope, published trajectory gain", Vector{{5.487982, 5.443569, .790134}}},
-                      {"interval, published trajectory gain", Vector{{7.854504, 8.736167, .873526}}}});
-  for (const PipelineOutcome& pipeline : ran.outcome.pipelines) CHECK_FALSE(pipeline.gains[0].certificate.monotone);
+  expect_widths(ran,
+                {{"zonotope, (.3 .2 .8)", Vector{{3.894205, 2.429327, .714939}}},
+                 {"interval, (.3 .2 .8)", Vector{{3.981217, 2.434002, .716744}}},
+                 {"zonotope, published integrated gain", Vector{{4.057178, 2.714451, .721290}}},
+                 {"interval, published integrated gain", Vector{{4.380864, 3.057094, .731363}}},
+                 {"zonotope, published trajectory gain", Vector{{5.487982, 5.443569, .790134}}},
+                 {"interval, published trajectory gain", Vector{{7.854504, 8.736167, .873526}}}});
+  for (const PipelineOutcome& pipeline : ran.outcome.pipelines)
+    CHECK_FALSE(pipeline.gains[0].certificate.monotone);
 }
 
 TEST_CASE("the two tanks: widths after 200 steps, whatever the plant does") {
@@ -92,11 +95,13 @@ TEST_CASE("the two tanks: widths after 200 steps, whatever the plant does") {
 }
 
 TEST_CASE("W of the two tanks bounds the error of linearisation for every input in U") {
-  // With inputs in U the levels keep between the two equilibria: the plant's step is increasing in both levels and in the input.
-  // √ lies below its tangent, so that the error of each outlet is largest at one of the ends.
+  // With inputs in U the levels keep between the two equilibria: the plant's step is increasing in
+  // both levels and in the input. √ lies below its tangent, so that the error of each outlet is
+  // largest at one of the ends.
   Registry registry;
-  const Study study = read_study(CORDON_SOURCE_DIR "/examples/studies/two_tanks.json", registry,
-                                 {{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+  const Study study =
+      read_study(CORDON_SOURCE_DIR "/examples/studies/two_tanks.json", registry,
+                 {{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
   const auto& simulate = std::get<SimulateSpec>(study.data);
   REQUIRE(simulate.made_plant);
   const Plant& plant = *simulate.made_plant;
@@ -112,7 +117,8 @@ TEST_CASE("W of the two tanks bounds the error of linearisation for every input 
   for (const double first : {1 - reach / 1.5, 1 + reach / 1.5}) {
     for (const double second : {1 - reach / 1.5, 1 + reach / 1.5}) {
       const Vector x{{upper * (first * first - 1), lower * (second * second - 1)}};
-      for (const double u : {-reach, reach}) largest = std::max(largest, error(x, u).cwiseAbs().maxCoeff());
+      for (const double u : {-reach, reach})
+        largest = std::max(largest, error(x, u).cwiseAbs().maxCoeff());
       // the corners are equilibria of the ends of U, and no level leaves them
       const Vector out = plant.next(0, x, Vector::Constant(1, first < 1 ? -reach : reach));
       if (first == second) CHECK((out - x).cwiseAbs().maxCoeff() < 1e-12);
@@ -123,7 +129,8 @@ TEST_CASE("W of the two tanks bounds the error of linearisation for every input 
   for (int i = 0; i <= 40; ++i) {
     for (int j = 0; j <= 40; ++j) {
       const auto level = [&](double at, int step) {
-        const double low = at * std::pow(1 - reach / 1.5, 2), high = at * std::pow(1 + reach / 1.5, 2);
+        const double low = at * std::pow(1 - reach / 1.5, 2),
+                     high = at * std::pow(1 + reach / 1.5, 2);
         return low + (high - low) * step / 40 - at;
       };
       const Vector x{{level(upper, i), level(lower, j)}};
@@ -137,9 +144,10 @@ TEST_CASE("W of the two tanks bounds the error of linearisation for every input 
 
 TEST_CASE("the fault-estimation filter: half widths, delays, and no true fault outside") {
   const Ran ran("fault_estimation_descriptor.json");
-  const std::map<std::string, Vector> expected{{"published: independent, 20 columns", Vector{{.14953100, .12180170}}},
-                                               {"independent, no reduction", Vector{{.11545380, .10248361}}},
-                                               {"shared, 20 columns", Vector{{.07590599, .06691382}}}};
+  const std::map<std::string, Vector> expected{
+      {"published: independent, 20 columns", Vector{{.14953100, .12180170}}},
+      {"independent, no reduction", Vector{{.11545380, .10248361}}},
+      {"shared, 20 columns", Vector{{.07590599, .06691382}}}};
   for (const PipelineOutcome& pipeline : ran.outcome.pipelines) {
     CAPTURE(pipeline.name);
     REQUIRE(pipeline.diagnosis);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Set operations with results published in the test suites of CORA and ZonoOpt (named case by case in the data file), checked
-// there or independently by linear programs. Those of plain zonotopes are in tests/sets.
+// Set operations with results published in the test suites of CORA and ZonoOpt (named case by case
+// in the data file), checked there or independently by linear programs. Those of plain zonotopes
+// are in tests/sets.
 #include <fstream>
 
 #include <doctest/doctest.h>
@@ -21,7 +22,8 @@ constexpr double tolerance = 1e-6;
 Matrix matrix(const json& rows) {
   Matrix A(static_cast<Index>(rows.size()), rows.empty() ? 0 : static_cast<Index>(rows[0].size()));
   for (Index i = 0; i < A.rows(); ++i) {
-    for (Index j = 0; j < A.cols(); ++j) A(i, j) = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+    for (Index j = 0; j < A.cols(); ++j)
+      A(i, j) = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
   }
   return A;
 }
@@ -54,7 +56,8 @@ Matrix polygon_of(const LineForm& X) {
 void check_vertices(const Matrix& got, const Matrix& expected) {
   REQUIRE(got.cols() == expected.cols());
   for (Index j = 0; j < expected.cols(); ++j) {
-    CHECK((got.colwise() - expected.col(j)).colwise().lpNorm<Eigen::Infinity>().minCoeff() <= tolerance);
+    CHECK((got.colwise() - expected.col(j)).colwise().lpNorm<Eigen::Infinity>().minCoeff() <=
+          tolerance);
   }
 }
 
@@ -64,7 +67,8 @@ LineForm cut(LineForm X, const Matrix& H, const Vector& f, const Matrix& Aeq, co
     const double lowest = -support(X, -H.row(i).transpose());
     X = intersection(X, H.row(i), make_box({Vector{{std::min(lowest, f[i])}}, Vector{{f[i]}}}));
   }
-  for (Index i = 0; i < Aeq.rows(); ++i) X = intersection(X, Aeq.row(i), make_point(beq.segment(i, 1)));
+  for (Index i = 0; i < Aeq.rows(); ++i)
+    X = intersection(X, Aeq.row(i), make_point(beq.segment(i, 1)));
   return X;
 }
 
@@ -100,7 +104,8 @@ TEST_CASE("published cases of set operations") {
     } else if (op == "is_empty") {
       CHECK(is_empty(X) == (expected["empty"].get<bool>() ? Answer::yes : Answer::no));
     } else if (op == "intersection") {
-      check_vertices(polygon_of(intersection(X, Matrix::Identity(2, 2), set(c["sets"][1]))), matrix(expected["vertices_cols"]));
+      check_vertices(polygon_of(intersection(X, Matrix::Identity(2, 2), set(c["sets"][1]))),
+                     matrix(expected["vertices_cols"]));
     } else if (op == "contains_point") {
       check_points(X, expected);
     } else if (op == "contains_set") {
@@ -114,13 +119,14 @@ TEST_CASE("published cases of set operations") {
 }
 
 TEST_CASE("intersection with a polyhedron") {
-  // X has the vertices (1,3), (1,-1), (3,2), (3,-2); the line x₁ - 2 x₂ = 1 meets it for 1 ≤ x₁ ≤ 3, and -2 x₁ + x₂ ≤ -4.25
-  // leaves x₁ ≥ 2.5 of that.
+  // X has the vertices (1,3), (1,-1), (3,2), (3,-2); the line x₁ - 2 x₂ = 1 meets it for 1 ≤ x₁ ≤
+  // 3, and -2 x₁ + x₂ ≤ -4.25 leaves x₁ ≥ 2.5 of that.
   LineForm X = make_zonotope(Vector::Zero(2), Matrix{{3, 0, 1}, {0, 2, 1}});
   X.A = Matrix{{1, 0, 1}};
   X.b = Vector{{1}};
   X.S.resize(1, 0);
-  const LineForm segment = cut(X, Matrix{{-2, 1}, {-.5, 0}}, Vector{{-4.25, 2.5}}, Matrix{{1, -2}}, Vector{{1}});
+  const LineForm segment =
+      cut(X, Matrix{{-2, 1}, {-.5, 0}}, Vector{{-4.25, 2.5}}, Matrix{{1, -2}}, Vector{{1}});
   check_vertices(polygon_of(segment), Matrix{{2.5, 3}, {.75, 1}});
   CHECK(contains(segment, Vector{{2, .5}}) == Answer::no);
 }

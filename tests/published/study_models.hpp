@@ -35,15 +35,19 @@ inline cordon::LineForm bounded_start() {
 /// A registry with the plugins of this build, and nothing else.
 class Plugins {
  public:
-  Plugins() { registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}}); }
+  Plugins() {
+    registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+  }
 
-  std::shared_ptr<const cordon::SetBackend> backend(const std::string& name, cordon::Params params = {}) const {
+  std::shared_ptr<const cordon::SetBackend> backend(const std::string& name,
+                                                    cordon::Params params = {}) const {
     return registry.make_backend(name, complete(registry.backend_info(name), std::move(params)));
   }
   std::shared_ptr<cordon::Observer> observer(const std::string& name, const cordon::Model& model,
                                              std::shared_ptr<const cordon::SetBackend> backend,
                                              cordon::Params params = {}) const {
-    return registry.make_observer(name, {model, std::move(backend)}, complete(registry.observer_info(name), std::move(params)));
+    return registry.make_observer(name, {model, std::move(backend)},
+                                  complete(registry.observer_info(name), std::move(params)));
   }
 
   cordon::Registry registry;

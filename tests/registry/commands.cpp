@@ -11,7 +11,8 @@ using nlohmann::json;
 
 namespace {
 
-const std::string with_good = "--plugins \"" CORDON_GOOD_PLUGINS "\" ", with_bad = "--plugins \"" CORDON_BAD_PLUGINS "\" ";
+const std::string with_good = "--plugins \"" CORDON_GOOD_PLUGINS "\" ",
+                  with_bad = "--plugins \"" CORDON_BAD_PLUGINS "\" ";
 
 const json* entry(const json& entries, const char* key, const std::string& value) {
   for (const json& candidate : entries) {
@@ -50,23 +51,29 @@ TEST_CASE("info explains the parameters") {
   const Outcome text = cordon_with("info " + with_good + "test_box");
   CHECK(text.code == 0);
   CHECK(contains(text.out, "backend test_box (plugin test_box)"));
-  CHECK(contains(text.out, "growth     real  0        [0, 1]  relative growth of every imported box"));
+  CHECK(contains(text.out,
+                 "growth     real  0        [0, 1]  relative growth of every imported box"));
   CHECK(contains(cordon_with("info open_loop " + with_good).out, "It takes no parameters."));
   const Outcome machine = cordon_with("info test_box --json " + with_good);
   const json params = json::parse(machine.out).at("components").at(0).at("params");
-  CHECK(params ==
-        json::parse(R"([{"name": "growth", "type": "real", "required": false, "default": 0.0, "lowest": 0.0, "highest": 1.0,
+  CHECK(
+      params ==
+      json::parse(
+          R"([{"name": "growth", "type": "real", "required": false, "default": 0.0, "lowest": 0.0, "highest": 1.0,
                                     "doc": "relative growth of every imported box, dimensionless"}])"));
 }
 
-TEST_CASE("info about an unknown component is invalid input with a suggestion; about a refused one, a plugin's failure") {
+TEST_CASE(
+    "info about an unknown component is invalid input with a suggestion; about a refused one, a "
+    "plugin's failure") {
   const Outcome unknown = cordon_with("info tst_box " + with_good);
   CHECK(unknown.code == 2);
   CHECK(unknown.err == "error: no component \"tst_box\"; did you mean \"test_box\"?\n");
   CHECK(unknown.out.empty());
   const TemporaryDirectory directory;
   const fs::path file = directory.write("zonotope_of_mine.so", "text");
-  const Outcome refused = cordon_with("info zonotope_of_mine --plugins " + directory.path().string());
+  const Outcome refused =
+      cordon_with("info zonotope_of_mine --plugins " + directory.path().string());
   CHECK(refused.code == 3);
   CHECK(contains(refused.err, file.string() + " was refused: it is not a shared library"));
 }
@@ -75,22 +82,28 @@ TEST_CASE("doctor tells what became of every library, and returns 3 if any was r
   const Outcome text = cordon_with(with_good + with_bad + "doctor");
   CHECK(text.code == 3);
   CHECK(contains(text.err, "plugin files were refused"));
-  for (const char* part : {"loaded    " CORDON_GOOD_PLUGINS "/test_box.so", "shadowed  " CORDON_BAD_PLUGINS "/repeats_plugin.so",
-                           "by " CORDON_GOOD_PLUGINS "/test_box.so", "refused   " CORDON_BAD_PLUGINS "/wrong_version.so",
-                           "why: it was built for plugin ABI 3, this is 2", "fix: rebuild the plugin", "gxx_abi="}) {
+  for (const char* part :
+       {"loaded    " CORDON_GOOD_PLUGINS "/test_box.so",
+        "shadowed  " CORDON_BAD_PLUGINS "/repeats_plugin.so",
+        "by " CORDON_GOOD_PLUGINS "/test_box.so",
+        "refused   " CORDON_BAD_PLUGINS "/wrong_version.so",
+        "why: it was built for plugin ABI 3, this is 2", "fix: rebuild the plugin", "gxx_abi="}) {
     CHECK_MESSAGE(contains(text.out, part), part);
   }
   const Outcome machine = cordon_with(with_good + with_bad + "doctor --json");
   CHECK(machine.code == 3);
   const json report = json::parse(machine.out);
-  CHECK(report.at("search_path").at(0) == json{{"directory", CORDON_GOOD_PLUGINS}, {"exists", true}});
-  for (const char* tool : {"cordon", "compiler", "eigen", "boost", "nlohmann_json"}) CHECK(report.at("versions").contains(tool));
+  CHECK(report.at("search_path").at(0) ==
+        json{{"directory", CORDON_GOOD_PLUGINS}, {"exists", true}});
+  for (const char* tool : {"cordon", "compiler", "eigen", "boost", "nlohmann_json"})
+    CHECK(report.at("versions").contains(tool));
   const json* refused = entry(report.at("plugins"), "file", CORDON_BAD_PLUGINS "/unresolved.so");
   REQUIRE(refused);
   CHECK(refused->at("state") == "refused");
   CHECK(contains(refused->at("reason"), "cordon_test_function_that_is_nowhere"));
   CHECK_FALSE(refused->at("fix").get<std::string>().empty());
-  const json* shadowed = entry(report.at("plugins"), "file", CORDON_BAD_PLUGINS "/repeats_plugin.so");
+  const json* shadowed =
+      entry(report.at("plugins"), "file", CORDON_BAD_PLUGINS "/repeats_plugin.so");
   REQUIRE(shadowed);
   CHECK(shadowed->at("shadowed_by") == CORDON_GOOD_PLUGINS "/test_box.so");
 }
@@ -105,11 +118,14 @@ TEST_CASE("doctor returns 0 when nothing was refused, and the environment variab
 TEST_CASE("a working plugin is tried in every process, with any cache or none") {
   const TemporaryDirectory cache, plugins;
   plugins.add(fs::path(CORDON_TRACING_PLUGINS) / "tracing.so");
-  const std::string trace = (cache / "trace").string(), list = "list --plugins " + plugins.path().string();
-  for (const std::string& place : {cache.path().string(), cache.path().string(), std::string("/proc/nowhere"),
-                                   std::string("/dev/null"), std::string("relative HOME=")}) {
+  const std::string trace = (cache / "trace").string(),
+                    list = "list --plugins " + plugins.path().string();
+  for (const std::string& place :
+       {cache.path().string(), cache.path().string(), std::string("/proc/nowhere"),
+        std::string("/dev/null"), std::string("relative HOME=")}) {
     fs::remove(trace);
-    const Outcome outcome = cordon_with(list, "CORDON_TEST_TRACE=" + trace + " XDG_CACHE_HOME=" + place);
+    const Outcome outcome =
+        cordon_with(list, "CORDON_TEST_TRACE=" + trace + " XDG_CACHE_HOME=" + place);
     CHECK(outcome.code == 0);
     CHECK(contains(outcome.out, "tracing"));
     CHECK(outcome.err.empty());
@@ -136,12 +152,14 @@ TEST_CASE("a refusal by trial is kept in the cache") {
   };
   CHECK(told("when it is opened: exit code 0"));
   rewrite([](std::string& text) {
-    if (const auto at = text.find("exit code 0"); at != std::string::npos) text.replace(at, 11, "as remembered");
+    if (const auto at = text.find("exit code 0"); at != std::string::npos)
+      text.replace(at, 11, "as remembered");
   });
   CHECK(told("when it is opened: as remembered"));
   rewrite([](std::string& text) { text = "no entry at all\n"; });
   CHECK(told("when it is opened: exit code 0"));
-  std::ofstream(plugins / "ends_the_process.so", std::ios::binary | std::ios::app) << "behind its end";
+  std::ofstream(plugins / "ends_the_process.so", std::ios::binary | std::ios::app)
+      << "behind its end";
   CHECK(told("when it is opened: exit code 0"));
 }
 
@@ -152,7 +170,8 @@ TEST_CASE("a component whose name is taken is named, and makes doctor's exit cod
   const std::string both = with_good + "--plugins " + directory.path().string() + " ";
   const Outcome list = cordon_with(both + "list");
   CHECK(list.code == 0);
-  CHECK(contains(list.err, "warning: " + (directory / "repeats_component.so").string() + ": " + text));
+  CHECK(contains(list.err,
+                 "warning: " + (directory / "repeats_component.so").string() + ": " + text));
   CHECK(contains(list.out, "new_in_repeats_component"));
   const Outcome doctor = cordon_with(both + "doctor");
   CHECK(doctor.code == 3);
@@ -200,7 +219,9 @@ TEST_CASE("colours only on a terminal") {
   if (std::system("command -v script > /dev/null") != 0) return;  // no pseudo-terminal to be had
   const TemporaryDirectory directory;
   const auto output = [&](const std::string& environment) {
-    REQUIRE(std::system((environment + " " + script + " > " + (directory / "out").string() + " < /dev/null").c_str()) == 0);
+    REQUIRE(std::system(
+                (environment + " " + script + " > " + (directory / "out").string() + " < /dev/null")
+                    .c_str()) == 0);
     return read(directory / "out");
   };
   CHECK(contains(output("NO_COLOR= TERM=xterm"), "\x1b[1mVersions"));

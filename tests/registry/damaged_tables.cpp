@@ -17,7 +17,8 @@ namespace {
 /// A copy of a good plugin, with what `change` does to the sections of one type.
 class Changed {
  public:
-  explicit Changed(ElfW(Word) type, const std::function<void(char* bytes, std::size_t size)>& change) {
+  explicit Changed(ElfW(Word) type,
+                   const std::function<void(char* bytes, std::size_t size)>& change) {
     std::string bytes = read(good("test_box"));
     ElfW(Ehdr) header;
     std::memcpy(&header, bytes.data(), sizeof header);
@@ -60,7 +61,8 @@ std::function<void(char*, std::size_t)> set(std::size_t at, T value) {
 }  // namespace
 
 TEST_CASE("a library that was not changed is loaded") {
-  CHECK(Changed(SHT_GNU_versym, [](char*, std::size_t) {}).report().state == PluginReport::State::loaded);
+  CHECK(Changed(SHT_GNU_versym, [](char*, std::size_t) {}).report().state ==
+        PluginReport::State::loaded);
 }
 
 TEST_CASE("symbols have versions that there are") {
@@ -73,13 +75,15 @@ TEST_CASE("symbols have versions that there are") {
 TEST_CASE("lists of versions end within the file") {
   refuses(Changed(SHT_GNU_verneed, set<ElfW(Word)>(offsetof(ElfW(Verneed), vn_next), 0x01000000)));
   refuses(Changed(SHT_GNU_verneed, set<ElfW(Word)>(offsetof(ElfW(Verneed), vn_file), 0x01000000)));
-  refuses(Changed(SHT_GNU_verneed, set<ElfW(Word)>(sizeof(ElfW(Verneed)) + offsetof(ElfW(Vernaux), vna_name), 0x01000000)));
+  refuses(Changed(
+      SHT_GNU_verneed,
+      set<ElfW(Word)>(sizeof(ElfW(Verneed)) + offsetof(ElfW(Vernaux), vna_name), 0x01000000)));
   refuses(Changed(SHT_GNU_verneed, set<ElfW(Half)>(0, 7)));
 }
 
 TEST_CASE("tables of hashed names lead to symbols of the file") {
-  refuses(Changed(SHT_GNU_HASH, set<std::uint32_t>(0, 0x01000000)));   // buckets
-  refuses(Changed(SHT_GNU_HASH, set<std::uint32_t>(8, 3)));            // words of the filter, no power of two
+  refuses(Changed(SHT_GNU_HASH, set<std::uint32_t>(0, 0x01000000)));  // buckets
+  refuses(Changed(SHT_GNU_HASH, set<std::uint32_t>(8, 3)));  // words of the filter, no power of two
   refuses(Changed(SHT_GNU_HASH, set<std::uint32_t>(24, 0x01000000)));  // a bucket's first symbol
 }
 

@@ -34,7 +34,8 @@ TEST_CASE("the library goes with the registry when nothing was made") {
 
 TEST_CASE("a set outlives the pointer to its backend, and even the registry") {
   Loaded loaded;
-  std::optional<Enclosure> X = loaded.registry->make_backend("test_box", {})->import(make_box({-one, one}));
+  std::optional<Enclosure> X =
+      loaded.registry->make_backend("test_box", {})->import(make_box({-one, one}));
   loaded.registry.reset();
   REQUIRE(is_mapped(loaded.file));
   CHECK((*X)->line_form().G.cwiseAbs().sum() == doctest::Approx(1));
@@ -66,11 +67,11 @@ TEST_CASE("unload refuses while something lives, naming the number, and really u
   Registry& registry = *loaded.registry;
   std::optional<Enclosure> X = registry.make_backend("test_box", {})->import(make_point(one));
   auto metric = registry.make_metric("step_count", {});
-  CHECK_THROWS_WITH_AS(
-      registry.unload("test_box"),
-      "plugin \"test_box\" cannot be unloaded while 2 of its backends, observers or metrics live; let go of them and of "
-      "their sets first",
-      Error);
+  CHECK_THROWS_WITH_AS(registry.unload("test_box"),
+                       "plugin \"test_box\" cannot be unloaded while 2 of its backends, observers "
+                       "or metrics live; let go of them and of "
+                       "their sets first",
+                       Error);
   metric.reset();
   CHECK_THROWS_AS(registry.unload("test_box"), Error);
   CHECK(registry.backend_info("test_box"));
@@ -93,7 +94,8 @@ TEST_CASE("an observer keeps its backend, both keep the library") {
   Model model;
   model.linear = {{}, I, I, I, I, I, I};
   model.X0 = model.W = model.V = make_point(one);
-  auto observer = loaded.registry->make_observer("open_loop", {model, loaded.registry->make_backend("test_box", {})}, {});
+  auto observer = loaded.registry->make_observer(
+      "open_loop", {model, loaded.registry->make_backend("test_box", {})}, {});
   CHECK_THROWS_AS(loaded.registry->unload("test_box"), Error);
   loaded.registry.reset();
   observer->start();
@@ -110,7 +112,8 @@ TEST_CASE("rolling back leaves no component and no mapping") {
   CHECK(report.components == std::vector<std::string>{"metric before_the_throw"});
   CHECK(registry.metrics().empty());
   CHECK_FALSE(is_mapped(file));
-  CHECK(report.reason == "it threw while registering: no licence server");  // a text of ours, not of the library's
+  CHECK(report.reason ==
+        "it threw while registering: no licence server");  // a text of ours, not of the library's
 }
 
 TEST_CASE("sets are used and let go of in another thread") {
@@ -134,7 +137,8 @@ TEST_CASE("components are made from several threads at once") {
   std::vector<Enclosure> sets(4);
   for (Enclosure& set : sets) {
     threads.emplace_back([&registry = *loaded.registry, &set] {
-      for (int i = 0; i < 50; ++i) set = registry.make_backend("test_box", {})->import(make_point(Vector::Ones(2)));
+      for (int i = 0; i < 50; ++i)
+        set = registry.make_backend("test_box", {})->import(make_point(Vector::Ones(2)));
     });
   }
   for (std::thread& thread : threads) thread.join();

@@ -31,10 +31,12 @@ std::string message_of(Errc code, Call&& call) {
 }
 
 void register_host_metric(Registrar& registrar) {
-  registrar.metric({{"host_metric", "of the host", "", {}}, [](const Params&) -> std::unique_ptr<Metric> { return nullptr; }});
+  registrar.metric({{"host_metric", "of the host", "", {}},
+                    [](const Params&) -> std::unique_ptr<Metric> { return nullptr; }});
 }
 void register_then_throw(Registrar& registrar) {
-  registrar.metric({{"never_seen", "of the host", "", {}}, [](const Params&) -> std::unique_ptr<Metric> { return nullptr; }});
+  registrar.metric({{"never_seen", "of the host", "", {}},
+                    [](const Params&) -> std::unique_ptr<Metric> { return nullptr; }});
   throw std::runtime_error("stop");
 }
 
@@ -58,7 +60,8 @@ TEST_CASE("a good plugin tells what it is, and its components are known") {
   CHECK(report.author == "The Cordon authors");
   CHECK(report.summary == "boxes for tests");
   CHECK(report.abi_tag == CORDON_ABI_TAG);
-  CHECK(report.components == std::vector<std::string>{"backend test_box", "observer open_loop", "metric step_count"});
+  CHECK(report.components ==
+        std::vector<std::string>{"backend test_box", "observer open_loop", "metric step_count"});
   CHECK(registry.backends() == std::vector<std::string>{"test_box"});
   CHECK(registry.observers() == std::vector<std::string>{"open_loop"});
   CHECK(registry.metrics() == std::vector<std::string>{"step_count"});
@@ -78,10 +81,12 @@ TEST_CASE("what is made works: an observer over a backend of a plugin") {
   CHECK(registry.check_observer("open_loop", context, {}).empty());
   const auto observer = registry.make_observer("open_loop", context, {});
   observer->start();
-  // start and X⁺ = 0.5 [-1,1] + 2 + [-0.1,0.1] through the private functions, without a question to a solver
+  // start and X⁺ = 0.5 [-1,1] + 2 + [-0.1,0.1] through the private functions, without a question to
+  // a solver
   const Enclosure X = context.backend->import(model.X0);
   const Term noise{model.linear.Bw, X};
-  const Enclosure next = context.backend->predict(X, {model.linear.A, Vector::Constant(1, 2), {&noise, 1}});
+  const Enclosure next =
+      context.backend->predict(X, {model.linear.A, Vector::Constant(1, 2), {&noise, 1}});
   const LineForm form = next->line_form();
   CHECK(form.c[0] == doctest::Approx(2));
   CHECK(form.G.cwiseAbs().sum() == doctest::Approx(1.5));
@@ -95,8 +100,9 @@ TEST_CASE("parameters are checked again when something is made") {
   const Enclosure X = backend->import(make_box({Vector::Constant(1, -1), Vector::Constant(1, 1)}));
   CHECK(X->line_form().G.cwiseAbs().sum() == doctest::Approx(2));
   CHECK(X.tightness == Tightness::outer);
-  const std::string message =
-      message_of(Errc::invalid, [&] { registry.make_backend("test_box", Params().set("growth", 2.0).set("grwth", 1.0)); });
+  const std::string message = message_of(Errc::invalid, [&] {
+    registry.make_backend("test_box", Params().set("growth", 2.0).set("grwth", 1.0));
+  });
   CHECK(message.find("backend \"test_box\": 2 errors") != std::string::npos);
   CHECK(message.find("/growth: is 2, must lie in [0, 1]") != std::string::npos);
   CHECK(message.find("did you mean \"growth\"?") != std::string::npos);
@@ -109,7 +115,8 @@ TEST_CASE("check_observer reports parameters and combinations") {
   const ObserverContext context{model, registry.make_backend("test_box", {})};
   CHECK(registry.check_observer("open_loop", context, Params().set("x", 1)).at(0).pointer == "/x");
   model.linear.E = Matrix::Zero(1, 1);
-  CHECK(registry.check_observer("open_loop", context, {}).at(0).message == "needs a standard model");
+  CHECK(registry.check_observer("open_loop", context, {}).at(0).message ==
+        "needs a standard model");
 }
 
 TEST_CASE("unknown components are invalid input with a suggestion") {
@@ -119,8 +126,9 @@ TEST_CASE("unknown components are invalid input with a suggestion") {
   registry.load_file(good("test_box"));
   CHECK(message_of(Errc::invalid, [&] { registry.make_backend("tset_box", {}); }) ==
         "no backend \"tset_box\"; did you mean \"test_box\"?");
-  CHECK(message_of(Errc::invalid, [&] { registry.plugin_of("backends", "test_box"); }).find("did you mean \"backend\"?") !=
-        std::string::npos);
+  CHECK(message_of(Errc::invalid, [&] {
+          registry.plugin_of("backends", "test_box");
+        }).find("did you mean \"backend\"?") != std::string::npos);
 }
 
 TEST_CASE("loading a file twice changes nothing, not even through a link") {
@@ -155,7 +163,9 @@ TEST_CASE("the host registers components of its own: all or none") {
   CHECK_FALSE(has(registry.metrics(), "never_seen"));
   CHECK(message_of(Errc::invalid, [&] { registry.add(register_host_metric); }) ==
         "metric \"host_metric\" is there already, from this program itself");
-  CHECK(message_of(Errc::plugin, [&] { registry.make_metric("host_metric", {}); }).find("returned nothing") != std::string::npos);
+  CHECK(message_of(Errc::plugin, [&] {
+          registry.make_metric("host_metric", {});
+        }).find("returned nothing") != std::string::npos);
 }
 
 TEST_CASE("exceptions of a plugin arrive as errors that name it, and outlive it") {
@@ -166,11 +176,14 @@ TEST_CASE("exceptions of a plugin arrive as errors that name it, and outlive it"
   };  // the registry, and with it the library, is gone before the message is read
   CHECK(message_of(Errc::plugin, [&] { made("throws_own"); }) ==
         "metric \"throws_own\" of plugin \"test_faults\" threw an exception of the plugin's own");
-  CHECK(message_of(Errc::plugin, [&] { made("throws_int"); }) ==
-        "metric \"throws_int\" of plugin \"test_faults\" threw something that is no std::exception");
+  CHECK(
+      message_of(Errc::plugin, [&] { made("throws_int"); }) ==
+      "metric \"throws_int\" of plugin \"test_faults\" threw something that is no std::exception");
   CHECK(message_of(Errc::unsupported, [&] { made("throws_error"); }) == "cannot enclose");
-  CHECK(message_of(Errc::invalid, [&] { made("throws_input_error"); }) == "study.json: 1 error\n  /a: is wrong; mend it");
+  CHECK(message_of(Errc::invalid, [&] { made("throws_input_error"); }) ==
+        "study.json: 1 error\n  /a: is wrong; mend it");
   CHECK(message_of(Errc::plugin, [&] { made("returns_nothing"); }) ==
-        "metric \"returns_nothing\" of plugin \"test_faults\" was not made: its function returned nothing");
+        "metric \"returns_nothing\" of plugin \"test_faults\" was not made: its function returned "
+        "nothing");
   CHECK_FALSE(is_mapped(good("test_faults")));
 }

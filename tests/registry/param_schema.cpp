@@ -58,8 +58,14 @@ TEST_CASE("defaults are filled in; parameters without one stay absent") {
 
 TEST_CASE("values that fit are kept") {
   Params params;
-  params.set("max_generators", 1000).set("epsilon", 1.0).set("quiet", true).set("reduction", "pca").set("label", "a");
-  params.set("x0", Vector(Vector::Ones(2))).set("gain", Matrix(Matrix::Ones(2, 3))).set("X0", make_space(2));
+  params.set("max_generators", 1000)
+      .set("epsilon", 1.0)
+      .set("quiet", true)
+      .set("reduction", "pca")
+      .set("label", "a");
+  params.set("x0", Vector(Vector::Ones(2)))
+      .set("gain", Matrix(Matrix::Ones(2, 3)))
+      .set("X0", make_space(2));
   CHECK(everything().complete(params).empty());
   CHECK(params.integer("max_generators") == 1000);
   CHECK(params.real("epsilon") == 1.0);
@@ -111,11 +117,16 @@ TEST_CASE("an integer becomes real where a real is asked for, never the other wa
 
 TEST_CASE("NaN and infinite numbers are refused everywhere, also without limits") {
   ParamSchema schema;
-  schema.real("x", "any number", {}, -inf, inf).vector("v", "vector").matrix("m", "matrix").set("s", "set");
+  schema.real("x", "any number", {}, -inf, inf)
+      .vector("v", "vector")
+      .matrix("m", "matrix")
+      .set("s", "set");
   for (const double number : {not_a_number, inf, -inf}) {
     CHECK(only_problem(schema, Params().set("x", number)).pointer == "/x");
-    CHECK(only_problem(schema, Params().set("v", Vector(Vector::Constant(2, number)))).pointer == "/v");
-    CHECK(only_problem(schema, Params().set("m", Matrix(Matrix::Constant(2, 2, number)))).pointer == "/m");
+    CHECK(only_problem(schema, Params().set("v", Vector(Vector::Constant(2, number)))).pointer ==
+          "/v");
+    CHECK(only_problem(schema, Params().set("m", Matrix(Matrix::Constant(2, 2, number)))).pointer ==
+          "/m");
     LineForm set = make_space(2);
     set.c[1] = number;
     CHECK(only_problem(schema, Params().set("s", set)).pointer == "/s");
@@ -140,7 +151,9 @@ TEST_CASE("a required parameter must be there") {
   CHECK(problem.suggestion == "give a matrix: observer gain");
 }
 
-TEST_CASE("a schema without parameters says so") { CHECK(only_problem({}, Params().set("x", 1)).suggestion == "there are none"); }
+TEST_CASE("a schema without parameters says so") {
+  CHECK(only_problem({}, Params().set("x", 1)).suggestion == "there are none");
+}
 
 TEST_CASE("a schema that contradicts itself is refused where it is written") {
   const auto refused = [](auto&& write) {
@@ -174,7 +187,8 @@ TEST_CASE("property: complete parameters are complete, and completing again chan
     Params params;
     params.set("max_generators", generators).set("epsilon", epsilon).set("quiet", quiet);
     const auto problems = everything().complete(params);
-    const std::size_t expected = (generators < 1 || generators > 1000) + !(epsilon >= 0 && epsilon <= 1);
+    const std::size_t expected =
+        (generators < 1 || generators > 1000) + !(epsilon >= 0 && epsilon <= 1);
     RC_ASSERT(problems.size() == expected);
     Params again = params;
     RC_ASSERT(everything().complete(again).size() == expected);

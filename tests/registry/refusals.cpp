@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Deliberately bad plugins: each is refused with file, reason and fix, leaves nothing, and the good ones work on.
+// Deliberately bad plugins: each is refused with file, reason and fix, leaves nothing, and the good
+// ones work on.
 #include <sys/stat.h>
 
 #include <doctest/doctest.h>
@@ -12,7 +13,8 @@ using namespace test;
 
 namespace {
 
-const PluginReport& refused(Registry& registry, const fs::path& file, const std::string& reason, const std::string& fix) {
+const PluginReport& refused(Registry& registry, const fs::path& file, const std::string& reason,
+                            const std::string& fix) {
   const PluginReport& report = registry.load_file(file);
   INFO(file.string(), ": ", report.reason, " / ", report.fix);
   CHECK(report.state == PluginReport::State::refused);
@@ -37,40 +39,51 @@ struct BadPlugin {
 
 const BadPlugin bad_plugins[] = {
     {"bad_name", "metric \"CamelCase\" is not in snake_case", "mend what the plugin registers"},
-    {"contradictory", "parameter \"size\" has a default that is 11, must lie in [0, 10]", "A. Uthor"},
+    {"contradictory", "parameter \"size\" has a default that is 11, must lie in [0, 10]",
+     "A. Uthor"},
     {"control_characters", "the text \"summary\" of its descriptor is damaged", "rebuild"},
-    {"crashes", "it ends the process when it is opened: ", "it is tried again when the file changes"},
+    {"crashes",
+     "it ends the process when it is opened: ", "it is tried again when the file changes"},
     {"empty_string", "its descriptor lacks author", "fill in every field"},
     {"ends_the_process", "it ends the process when it is opened: exit code 0", "mend or remove it"},
-    {"fast_math", "fast_math: 1 in the plugin, 0 here", "rebuild the plugin with this installation's headers and flags"},
+    {"fast_math", "fast_math: 1 in the plugin, 0 here",
+     "rebuild the plugin with this installation's headers and flags"},
     {"flushes_subnormals",
-     "changes the floating-point arithmetic of the whole process when it is opened: subnormal numbers become zero",
+     "changes the floating-point arithmetic of the whole process when it is opened: subnormal "
+     "numbers become zero",
      "link it without -ffast-math"},
     {"grows", "it ends the process when it is opened: exit code 1; it said: ", "mend or remove it"},
-    {"no_creator", "metric \"without_creator\" has no function that makes it", "mend what the plugin registers"},
+    {"no_creator", "metric \"without_creator\" has no function that makes it",
+     "mend what the plugin registers"},
     {"no_descriptor", "exports no symbol cordon_plugin_descriptor", "cordon_add_plugin"},
     {"no_summary", "metric \"without_summary\" has no summary", "mend what the plugin registers"},
     {"registers_nothing", "its descriptor lacks register_components", "fill in every field"},
     {"repeats_itself", "metric \"twice\" is registered twice", "mend what the plugin registers"},
-    {"rounds_down", "changes the floating-point arithmetic of the whole process when it is opened: its rounding or its traps",
+    {"rounds_down",
+     "changes the floating-point arithmetic of the whole process when it is opened: its rounding "
+     "or its traps",
      "leave the floating-point environment alone"},
     {"throws_at_once",
-     "signal 6 (Aborted); it said: terminate called after throwing an instance of 'std::runtime_error' what(): no "
+     "signal 6 (Aborted); it said: terminate called after throwing an instance of "
+     "'std::runtime_error' what(): no "
      "room for static objects",
      "mend or remove it"},
     {"throws_int", "threw something that is no std::exception while registering", "A. Uthor"},
     {"throws_late", "threw while registering: no licence server", "A. Uthor"},
-    {"undocumented", "parameter \"quiet\" of metric \"with_undocumented_parameter\" is not documented",
+    {"undocumented",
+     "parameter \"quiet\" of metric \"with_undocumented_parameter\" is not documented",
      "mend what the plugin registers"},
     {"unresolved", "cordon_test_function_that_is_nowhere", "with every library it needs"},
     {"wrong_size", "its descriptor has 1096 bytes, must have 1104",
      "rebuild the plugin with this installation's headers and flags"},
-    {"wrong_tag", "simd: avx2 in the plugin, absent here", "rebuild the plugin with this installation's headers and flags"},
+    {"wrong_tag", "simd: avx2 in the plugin, absent here",
+     "rebuild the plugin with this installation's headers and flags"},
     {"wrong_version", "it was built for plugin ABI 3, this is 2",
      "rebuild the plugin with this installation's headers and flags"},
 #if defined(CORDON_SANITIZED_PLUGINS)
     {"linked_with_sanitizer", "exit code 1; it said: ==", "mend or remove it"},
-    {"with_sanitizer", "asan: 1 in the plugin, 0 here", "rebuild the plugin with this installation's headers and flags"},
+    {"with_sanitizer", "asan: 1 in the plugin, 0 here",
+     "rebuild the plugin with this installation's headers and flags"},
 #endif
 };
 
@@ -89,7 +102,8 @@ TEST_CASE("bad plugins are refused with reason and fix, leave nothing, and are c
 TEST_CASE("a whole directory of bad plugins does not keep the good one from loading") {
   Registry registry;
   registry.load({{CORDON_BAD_PLUGINS, CORDON_GOOD_PLUGINS}});
-  // here step_count and the name test_box were taken by the first ones; they are then the legitimate ones
+  // here step_count and the name test_box were taken by the first ones; they are then the
+  // legitimate ones
   std::size_t refusals = 0;
   for (const PluginReport& report : registry.reports()) {
     if (report.state != PluginReport::State::refused) continue;
@@ -111,7 +125,8 @@ TEST_CASE("a component whose name is taken is left out, and the rest of its plug
   const PluginReport& report = registry.load_file(bad("repeats_component"));
   CHECK_MESSAGE(report.state == PluginReport::State::loaded, report.reason);
   CHECK(report.components == std::vector<std::string>{"metric new_in_repeats_component"});
-  CHECK(report.left_out == std::vector<std::string>{"metric \"step_count\" is there already, from plugin \"test_box\""});
+  CHECK(report.left_out == std::vector<std::string>{
+                               "metric \"step_count\" is there already, from plugin \"test_box\""});
   CHECK(registry.plugin_of("metric", "step_count") == "test_box");
   CHECK(registry.plugin_of("metric", "new_in_repeats_component") == "repeats_component");
   CHECK(registry.make_metric("new_in_repeats_component", {}));
@@ -121,11 +136,13 @@ TEST_CASE("a component whose name is taken is left out, and the rest of its plug
 
 TEST_CASE("two plugins of one name in one directory contradict each other") {
   const TemporaryDirectory directory;
-  const fs::path first = directory.add(good("test_box"), "a.so"), second = directory.add(bad("repeats_plugin"), "b.so");
+  const fs::path first = directory.add(good("test_box"), "a.so"),
+                 second = directory.add(bad("repeats_plugin"), "b.so");
   Registry registry;
   registry.load({{directory.path()}});
   CHECK(report_of(registry, first)->state == PluginReport::State::loaded);
-  refused(registry, second, first.string() + " in the same directory has the same plugin name \"test_box\"",
+  refused(registry, second,
+          first.string() + " in the same directory has the same plugin name \"test_box\"",
           "remove one of the two");
   check_unharmed(registry);
 }
@@ -138,7 +155,8 @@ TEST_CASE("what is no library at all is refused before the loader sees it") {
   fs::create_symlink(directory / "nowhere", directory / "dangling.so");
   fs::create_symlink(directory / "circle.so", directory / "circle.so");
   REQUIRE(mkfifo((directory / "pipe.so").c_str(), 0600) == 0);
-  refused(registry, directory.write("text.so", "# hello\n"), "not a shared library (no ELF file)", "move it out");
+  refused(registry, directory.write("text.so", "# hello\n"), "not a shared library (no ELF file)",
+          "move it out");
   refused(registry, directory.write("empty.so", ""), "it is empty", "again");
   refused(registry,
           directory.write("short.so",
@@ -151,7 +169,8 @@ TEST_CASE("what is no library at all is refused before the loader sees it") {
                           "ELF"),
           "truncated", "again");
   refused(registry, directory / "directory.so", "is a directory", "remove");
-  refused(registry, directory / "dangling.so", "symbolic link to \"" + (directory / "nowhere").string(), "link");
+  refused(registry, directory / "dangling.so",
+          "symbolic link to \"" + (directory / "nowhere").string(), "link");
   refused(registry, directory / "circle.so", "", "");
   refused(registry, directory / "pipe.so", "not a regular file", "remove");
   refused(registry, directory / "missing.so", "there is no such file", "check the path");
@@ -179,15 +198,20 @@ TEST_CASE("a truncated library is refused at every length") {
   const std::string bytes = read(good("test_box"));
   Registry registry;
   std::vector<std::size_t> lengths;
-  for (std::size_t n = 0; n < 1100; n += 10) lengths.push_back(n);                                   // in the headers
-  for (std::size_t n = 1100; n < bytes.size(); n += 4089 + bytes.size() / 64) lengths.push_back(n);  // in the segments
-  for (std::size_t n = 1; n < 2000; n += 11) lengths.push_back(bytes.size() - n);                    // in the tables at the end
+  for (std::size_t n = 0; n < 1100; n += 10) lengths.push_back(n);  // in the headers
+  for (std::size_t n = 1100; n < bytes.size(); n += 4089 + bytes.size() / 64)
+    lengths.push_back(n);  // in the segments
+  for (std::size_t n = 1; n < 2000; n += 11)
+    lengths.push_back(bytes.size() - n);  // in the tables at the end
   for (const std::size_t length : lengths) {
-    const PluginReport& report = registry.load_file(directory.write("test_box.so", bytes.substr(0, length)));
-    REQUIRE_MESSAGE(report.state == PluginReport::State::refused, "cut to ", length, " of ", bytes.size(), " bytes");
+    const PluginReport& report =
+        registry.load_file(directory.write("test_box.so", bytes.substr(0, length)));
+    REQUIRE_MESSAGE(report.state == PluginReport::State::refused, "cut to ", length, " of ",
+                    bytes.size(), " bytes");
     REQUIRE_FALSE(report.fix.empty());
   }
-  CHECK(registry.load_file(directory.write("test_box.so", bytes)).state == PluginReport::State::loaded);
+  CHECK(registry.load_file(directory.write("test_box.so", bytes)).state ==
+        PluginReport::State::loaded);
 }
 
 TEST_CASE("the refused plugin that held a component is found") {
@@ -207,7 +231,8 @@ TEST_CASE("the refused plugin that held a component is found") {
   CHECK(file_of("wrong_tag") == bad("wrong_tag"));
   CHECK(file_of("zonotop") == fs::path());
   CHECK(file_of("") == fs::path());
-  registry.load_file(directory.write("estimators.so", std::string("cordon_plugin_descriptor\0tube_observer\0", 38)));
+  registry.load_file(directory.write("estimators.so",
+                                     std::string("cordon_plugin_descriptor\0tube_observer\0", 38)));
   CHECK(file_of("tube_observer") == directory / "estimators.so");  // by a word of the file
   CHECK(file_of("tube") == fs::path());
   CHECK(file_of("descriptor") == fs::path());
@@ -216,8 +241,8 @@ TEST_CASE("the refused plugin that held a component is found") {
     FAIL("made a backend of a refused plugin");
   } catch (const Error& error) {
     CHECK(error.code() == Errc::plugin);
-    for (const std::string& part :
-         {(directory / "zonotope.so").string(), std::string("no ELF file"), std::string("move it out")}) {
+    for (const std::string& part : {(directory / "zonotope.so").string(),
+                                    std::string("no ELF file"), std::string("move it out")}) {
       CHECK(std::string(error.what()).find(part) != std::string::npos);
     }
   }

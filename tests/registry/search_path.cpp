@@ -15,7 +15,8 @@ class Environment {
   ~Environment() { unsetenv("CORDON_PLUGIN_PATH"); }
 };
 
-const fs::path beside_program = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "lib/cordon/plugins-v1";
+const fs::path beside_program =
+    fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "lib/cordon/plugins-v1";
 
 }  // namespace
 
@@ -58,7 +59,8 @@ TEST_CASE("a directory is searched once, however it is written") {
   CHECK(default_search_path().directories.size() == 3);
 }
 
-TEST_CASE("relative directories are made absolute, so that a change of directory does not move them") {
+TEST_CASE(
+    "relative directories are made absolute, so that a change of directory does not move them") {
   const Environment environment("plugins/of_mine");
   CHECK(default_search_path().directories[0] == fs::current_path() / "plugins/of_mine");
 }
@@ -80,7 +82,8 @@ TEST_CASE("the environment variable finds plugins; directories that do not exist
 
 TEST_CASE("the first plugin of a name wins, the later ones are shadowed by it") {
   const TemporaryDirectory first, second;
-  const fs::path winner = first.add(good("test_box"), "z.so"), loser = second.add(good("test_box"), "a.so");
+  const fs::path winner = first.add(good("test_box"), "z.so"),
+                 loser = second.add(good("test_box"), "a.so");
   Registry registry;
   registry.load({{first.path(), second.path()}});
   REQUIRE(registry.reports().size() == 2);
@@ -93,7 +96,8 @@ TEST_CASE("the first plugin of a name wins, the later ones are shadowed by it") 
 
 TEST_CASE("a refused plugin shadows nothing") {
   const TemporaryDirectory first, second;
-  const fs::path broken = first.write("test_box.so", "broken"), whole = second.add(good("test_box"));
+  const fs::path broken = first.write("test_box.so", "broken"),
+                 whole = second.add(good("test_box"));
   Registry registry;
   registry.load({{first.path(), second.path()}});
   CHECK(report_of(registry, broken)->state == PluginReport::State::refused);

@@ -52,23 +52,32 @@ inline std::string read(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 /// Is the library part of this process now?
-inline bool is_mapped(const fs::path& file) { return read("/proc/self/maps").find(file.string()) != std::string::npos; }
+inline bool is_mapped(const fs::path& file) {
+  return read("/proc/self/maps").find(file.string()) != std::string::npos;
+}
 
 inline bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-inline const cordon::PluginReport* report_of(const cordon::Registry& registry, const fs::path& file) {
+inline const cordon::PluginReport* report_of(const cordon::Registry& registry,
+                                             const fs::path& file) {
   for (const auto& report : registry.reports()) {
     if (report.file == file) return &report;
   }
   return nullptr;
 }
 
-inline fs::path good(const std::string& name) { return fs::path(CORDON_GOOD_PLUGINS) / (name + ".so"); }
-inline fs::path bad(const std::string& name) { return fs::path(CORDON_BAD_PLUGINS) / (name + ".so"); }
+inline fs::path good(const std::string& name) {
+  return fs::path(CORDON_GOOD_PLUGINS) / (name + ".so");
+}
+inline fs::path bad(const std::string& name) {
+  return fs::path(CORDON_BAD_PLUGINS) / (name + ".so");
+}
 
 }  // namespace test

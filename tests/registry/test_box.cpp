@@ -22,19 +22,23 @@ class TestBox final : public Set {
 class TestBackend final : public SetBackend {
  public:
   explicit TestBackend(double growth)
-      : SetBackend({.name = "test_box", .summary = "axis-aligned boxes", .citation = ""}), growth_(growth) {}
+      : SetBackend({.name = "test_box", .summary = "axis-aligned boxes", .citation = ""}),
+        growth_(growth) {}
 
  private:
   /// The hull {c ± |G| 1}; constraints other than 0 = 1 are ignored, which encloses.
   Made do_import(const LineForm& X) const override {
     if (X.lines() > 0) throw Error(Errc::unsupported, "test_box holds bounded sets only");
     for (Index i = 0; i < X.constraints(); ++i) {
-      if (X.A.row(i).isZero(0) && X.b[i] != 0) return {std::make_unique<TestBox>(*this, Box::empty(X.dim())), Tightness::exact};
+      if (X.A.row(i).isZero(0) && X.b[i] != 0)
+        return {std::make_unique<TestBox>(*this, Box::empty(X.dim())), Tightness::exact};
     }
     const Vector radius = X.G.cwiseAbs().rowwise().sum() * (1 + growth_);
     bool is_box = X.constraints() == 0 && growth_ == 0;
-    for (Index j = 0; j < X.generators(); ++j) is_box = is_box && (X.G.col(j).array() != 0).count() <= 1;
-    return {std::make_unique<TestBox>(*this, Box{X.c - radius, X.c + radius}), is_box ? Tightness::exact : Tightness::outer};
+    for (Index j = 0; j < X.generators(); ++j)
+      is_box = is_box && (X.G.col(j).array() != 0).count() <= 1;
+    return {std::make_unique<TestBox>(*this, Box{X.c - radius, X.c + radius}),
+            is_box ? Tightness::exact : Tightness::outer};
   }
 
   double growth_;
@@ -72,8 +76,9 @@ class StepCount final : public Metric {
 void register_components(Registrar& registrar) {
   ParamSchema box;
   box.real("growth", "relative growth of every imported box, dimensionless", 0.0, 0.0, 1.0);
-  registrar.backend({{"test_box", "axis-aligned boxes for tests", "", box},
-                     [](const Params& params) { return std::make_unique<TestBackend>(params.real("growth")); }});
+  registrar.backend(
+      {{"test_box", "axis-aligned boxes for tests", "", box},
+       [](const Params& params) { return std::make_unique<TestBackend>(params.real("growth")); }});
   registrar.observer({{"open_loop", "prediction without measurements", "", {}},
                       [](const ObserverContext& context, const Params&) {
                         std::vector<Diagnostic> problems;
@@ -81,10 +86,14 @@ void register_components(Registrar& registrar) {
                           problems.push_back({"", "needs a standard model", "leave out E"});
                         return problems;
                       },
-                      [](const ObserverContext& context, const Params&) { return std::make_unique<OpenLoop>(context); }});
-  registrar.metric({{"step_count", "number of steps", "", {}}, [](const Params&) { return std::make_unique<StepCount>(); }});
+                      [](const ObserverContext& context, const Params&) {
+                        return std::make_unique<OpenLoop>(context);
+                      }});
+  registrar.metric({{"step_count", "number of steps", "", {}},
+                    [](const Params&) { return std::make_unique<StepCount>(); }});
 }
 
 }  // namespace
 
-CORDON_PLUGIN("test_box", "1.2.3", "GPL-3.0-or-later", "The Cordon authors", "boxes for tests", register_components)
+CORDON_PLUGIN("test_box", "1.2.3", "GPL-3.0-or-later", "The Cordon authors", "boxes for tests",
+              register_components)

@@ -17,10 +17,14 @@ class OwnException final : public std::exception {
 using Make = std::unique_ptr<Metric> (*)(const Params&);
 
 void register_components(Registrar& registrar) {
-  const auto metric = [&](const char* name, Make make) { registrar.metric({{name, "never works", "", {}}, make}); };
+  const auto metric = [&](const char* name, Make make) {
+    registrar.metric({{name, "never works", "", {}}, make});
+  };
   metric("throws_own", [](const Params&) -> std::unique_ptr<Metric> { throw OwnException(); });
   metric("throws_int", [](const Params&) -> std::unique_ptr<Metric> { throw 7; });
-  metric("throws_error", [](const Params&) -> std::unique_ptr<Metric> { throw Error(Errc::unsupported, "cannot enclose"); });
+  metric("throws_error", [](const Params&) -> std::unique_ptr<Metric> {
+    throw Error(Errc::unsupported, "cannot enclose");
+  });
   metric("throws_input_error", [](const Params&) -> std::unique_ptr<Metric> {
     throw InputError("study.json", {{"/a", "is wrong", "mend it"}});
   });
@@ -29,4 +33,5 @@ void register_components(Registrar& registrar) {
 
 }  // namespace
 
-CORDON_PLUGIN("test_faults", "0.1.0", "GPL-3.0-or-later", "The Cordon authors", "failures for tests", register_components)
+CORDON_PLUGIN("test_faults", "0.1.0", "GPL-3.0-or-later", "The Cordon authors",
+              "failures for tests", register_components)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A good plugin that tells when it is opened, and changes the rounding of whoever opens it, if it is asked to.
+// A good plugin that tells when it is opened, and changes the rounding of whoever opens it, if it
+// is asked to.
 #include <cfenv>
 
 #include "bad_plugins/nothing.hpp"
@@ -14,4 +15,5 @@ void register_components(cordon::Registrar& registrar) {
 
 }  // namespace
 
-CORDON_PLUGIN("tracing", "1.0.0", "GPL-3.0-or-later", "The Cordon authors", "tells when it is opened", register_components)
+CORDON_PLUGIN("tracing", "1.0.0", "GPL-3.0-or-later", "The Cordon authors",
+              "tells when it is opened", register_components)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// No code runs before the file was accepted, and then in a child process first; what is seen there is remembered.
+// No code runs before the file was accepted, and then in a child process first; what is seen there
+// is remembered.
 #include <atomic>
 #include <cfenv>
 #include <cstdlib>
@@ -18,7 +19,9 @@ namespace {
 
 class Variable {
  public:
-  Variable(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
+  Variable(const char* name, const std::string& value) : name_(name) {
+    setenv(name, value.c_str(), 1);
+  }
   ~Variable() { unsetenv(name_); }
 
  private:
@@ -48,7 +51,8 @@ PluginReport::State state_of(const fs::path& file) {
 
 TEST_CASE("nothing runs of a library whose descriptor is not there or does not fit") {
   const Traces traces;
-  for (const char* name : {"no_descriptor", "wrong_tag", "wrong_size", "wrong_version", "fast_math"})
+  for (const char* name :
+       {"no_descriptor", "wrong_tag", "wrong_size", "wrong_version", "fast_math"})
     CHECK(state_of(bad(name)) == PluginReport::State::refused);
   CHECK(traces.count() == 0);
 }
@@ -65,7 +69,8 @@ TEST_CASE("nothing runs of a plugin that is shadowed") {
   CHECK(traces.count() == 0);
 }
 
-TEST_CASE("a new file is tried in a child process once in a process, and again when it has changed") {
+TEST_CASE(
+    "a new file is tried in a child process once in a process, and again when it has changed") {
   const TemporaryDirectory directory, cache;
   const Variable place("XDG_CACHE_HOME", cache.path().string());
   const fs::path file = directory.add(fs::path(CORDON_TRACING_PLUGINS) / "tracing.so");
@@ -89,7 +94,8 @@ TEST_CASE("a library that never ends is a refusal, which is remembered") {
   Registry registry;
   const PluginReport report = registry.load_file(file);
   CHECK(report.state == PluginReport::State::refused);
-  CHECK_MESSAGE(report.reason.starts_with("it does not come back from being opened"), report.reason);  // by either limit
+  CHECK_MESSAGE(report.reason.starts_with("it does not come back from being opened"),
+                report.reason);  // by either limit
   CHECK(registry.load_file(file).reason == report.reason);
   CHECK(registry.load_file(good("test_box")).state == PluginReport::State::loaded);
 }

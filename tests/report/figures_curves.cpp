@@ -27,7 +27,8 @@ const Plot& plot(const Report& report, const std::string& id) {
 }
 
 bool has(const Report& report, const std::string& id) {
-  return std::any_of(report.figures.begin(), report.figures.end(), [&](const Figure& figure) { return figure.id == id; });
+  return std::any_of(report.figures.begin(), report.figures.end(),
+                     [&](const Figure& figure) { return figure.id == id; });
 }
 
 }  // namespace
@@ -40,7 +41,8 @@ TEST_CASE("bounds: bands of pipelines, inner bands, truth, gaps and marks") {
   CHECK(report.study == R"({"title": "Two", "system": {"modes": []}})");
   const Plot& first = plot(report, "bounds_1");
   REQUIRE(first.series.size() == 4);
-  const Series &a = first.series[0], &inner = first.series[1], &b = first.series[2], &truth = first.series[3];
+  const Series &a = first.series[0], &inner = first.series[1], &b = first.series[2],
+               &truth = first.series[3];
   CHECK(a.kind == Series::Kind::band);
   CHECK(a.name == "a");
   CHECK(a.pipeline == 0);
@@ -110,7 +112,8 @@ TEST_CASE("bounds less the truth, for every pipeline from its first step on") {
 TEST_CASE("an estimate that stays empty is marked once, and again after it was not") {
   const ResultsFiles files;
   std::string rows = "pipeline,k,consistent,tightness,lower_1,upper_1\n";
-  for (const char* row : {"a,0,no", "a,1,no", "a,2,yes", "a,3,no", "b,0,no"}) rows.append(row).append(",outer,0,1\n");
+  for (const char* row : {"a,0,no", "a,1,no", "a,2,yes", "a,3,no", "b,0,no"})
+    rows.append(row).append(",outer,0,1\n");
   files.write("steps.csv", rows);
   files.write("data.csv", "k,y_1\n0,0\n");
   std::vector<std::pair<double, int>> marks;
@@ -137,7 +140,8 @@ TEST_CASE("failures are told first") {
 TEST_CASE("metrics: columns with numbers, logarithmic over powers of ten, and the times of steps") {
   const ResultsFiles files;
   const Report report = read_report(files.path());
-  const Plot &radius = plot(report, "metric_1"), &volume = plot(report, "metric_2"), &time = plot(report, "step_time");
+  const Plot &radius = plot(report, "metric_1"), &volume = plot(report, "metric_2"),
+             &time = plot(report, "step_time");
   CHECK_FALSE(has(report, "metric_3"));
   CHECK(radius.y_label == "radius");
   CHECK_FALSE(radius.log_y);
@@ -157,7 +161,10 @@ TEST_CASE("long runs: the page holds few points and every extreme, all of them o
   const ResultsFiles files;
   std::string rows = "pipeline,k,consistent,tightness,lower_1,upper_1,radius\n";
   for (int k = 0; k < 20'000; ++k) {
-    rows.append("a,").append(std::to_string(k)).append(",yes,exact,").append(k == 777 ? "-9" : "-1");
+    rows.append("a,")
+        .append(std::to_string(k))
+        .append(",yes,exact,")
+        .append(k == 777 ? "-9" : "-1");
     rows.append(",1,").append(k == 778 ? "8" : "1").append("\n");
   }
   files.write("steps.csv", rows);
@@ -167,8 +174,9 @@ TEST_CASE("long runs: the page holds few points and every extreme, all of them o
   CHECK(*std::min_element(band.y.begin(), band.y.end()) == -9);
   const Series radius = plot(page, "metric_1").series[0];
   CHECK(*std::max_element(radius.y.begin(), radius.y.end()) == 8);
-  CHECK(std::any_of(page.notes.begin(), page.notes.end(),
-                    [](const std::string& note) { return note.find("thinned") != std::string::npos; }));
+  CHECK(std::any_of(page.notes.begin(), page.notes.end(), [](const std::string& note) {
+    return note.find("thinned") != std::string::npos;
+  }));
   CHECK(plot(all, "bounds_1").series[0].x.size() == 20'000);
   CHECK(all.notes.empty());
 }
@@ -191,7 +199,8 @@ TEST_CASE("many states: the first of them on a page, all on demand") {
 }
 
 TEST_CASE("files that are not as they were written are refused with file, place and reason") {
-  const auto refused = [](const std::string& name, const std::string& from, const std::string& to, const std::string& reason) {
+  const auto refused = [](const std::string& name, const std::string& from, const std::string& to,
+                          const std::string& reason) {
     const ResultsFiles files;
     files.replace(name, from, to);
     CAPTURE(to);
@@ -219,7 +228,8 @@ TEST_CASE("files that are not as they were written are refused with file, place 
 TEST_CASE("any bytes in any file: a report or an InputError") {
   CHECK(rc::check([] {
     const ResultsFiles files;
-    const auto name = *rc::gen::element<std::string>("results.json", "run.json", "steps.csv", "data.csv");
+    const auto name =
+        *rc::gen::element<std::string>("results.json", "run.json", "steps.csv", "data.csv");
     std::string text = files.read(name);
     const auto count = *rc::gen::inRange(1, 6);
     for (int i = 0; i < count; ++i) {
@@ -232,7 +242,8 @@ TEST_CASE("any bytes in any file: a report or an InputError") {
           text.erase(at, *rc::gen::inRange<std::size_t>(1, 20));
           break;
         default:
-          text.insert(at, *rc::gen::element<std::string>("inf", "1e308", "-", "null", "[[", "\"", "9007199254740993", ","));
+          text.insert(at, *rc::gen::element<std::string>("inf", "1e308", "-", "null", "[[", "\"",
+                                                         "9007199254740993", ","));
       }
       if (text.empty()) text.push_back('x');
     }

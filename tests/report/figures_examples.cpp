@@ -33,7 +33,8 @@ bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)
 /// Directories that the tests of the examples have left.
 std::vector<fs::path> runs() {
   std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(fs::path(CORDON_BINARY_DIR) / "tests" / "examples")) {
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(CORDON_BINARY_DIR) / "tests" / "examples")) {
     if (fs::exists(entry.path() / "results.json")) found.push_back(entry.path());
   }
   std::sort(found.begin(), found.end());
@@ -47,8 +48,9 @@ Json results_of(const fs::path& run) {
 
 /// The series of a pipeline with its own name.
 Series series_of(const Plot& plot, int pipeline, const std::string& name) {
-  const auto found = std::find_if(plot.series.begin(), plot.series.end(),
-                                  [&](const Series& series) { return series.pipeline == pipeline && series.name == name; });
+  const auto found = std::find_if(
+      plot.series.begin(), plot.series.end(),
+      [&](const Series& series) { return series.pipeline == pipeline && series.name == name; });
   REQUIRE(found != plot.series.end());
   return *found;
 }
@@ -60,14 +62,16 @@ void check_bounds(const Report& report, const Json& pipeline, int p) {
   if (steps.empty()) return;
   const std::size_t states = steps[0]["hull"]["lower"].size();
   for (std::size_t i = 0; i < states; ++i) {
-    const Series band = series_of(content<Plot>(report, "bounds_" + std::to_string(i + 1)), p, name);
+    const Series band =
+        series_of(content<Plot>(report, "bounds_" + std::to_string(i + 1)), p, name);
     REQUIRE(band.x.size() == steps.size());
     bool good = true;
     for (std::size_t s = 0; s < steps.size(); ++s) {
       const bool empty = steps[s]["consistent"] == "no";
       good = good && band.x[s] == steps[s]["k"].get<double>();
       good = good && same(band.y[s], empty ? std::nan("") : number(steps[s]["hull"]["lower"][i]));
-      good = good && same(band.upper[s], empty ? std::nan("") : number(steps[s]["hull"]["upper"][i]));
+      good =
+          good && same(band.upper[s], empty ? std::nan("") : number(steps[s]["hull"]["upper"][i]));
     }
     CHECK(good);
   }
@@ -83,19 +87,21 @@ void check_metrics(const Report& report, const Json& pipeline, int p, std::set<s
     if (!any) continue;
     const Series& line = series_of(plot, p, pipeline["name"]);
     REQUIRE(line.y.size() == pipeline["steps"].size());
-    for (std::size_t s = 0; s < line.y.size(); ++s) CHECK(same(line.y[s], number(pipeline["steps"][s][plot.y_label])));
+    for (std::size_t s = 0; s < line.y.size(); ++s)
+      CHECK(same(line.y[s], number(pipeline["steps"][s][plot.y_label])));
   }
 }
 
-/// Polygons of sets reach the hull's sides, beyond which they go only where they have lost vertices, and contain the truth where
-/// it was proven inside.
+/// Polygons of sets reach the hull's sides, beyond which they go only where they have lost
+/// vertices, and contain the truth where it was proven inside.
 void check_sets(const Report& report, const Json& pipeline, int p, bool with_all_vertices) {
   std::map<std::int64_t, const Json*> steps;
   for (const Json& step : pipeline["steps"]) steps[step["k"]] = &step;
   for (const Figure& figure : report.figures) {
     const auto* projection = std::get_if<Projection>(&figure.content);
     if (!projection) continue;
-    const std::size_t i = std::stoul(projection->x_label.substr(2)) - 1, j = std::stoul(projection->y_label.substr(2)) - 1;
+    const std::size_t i = std::stoul(projection->x_label.substr(2)) - 1,
+                      j = std::stoul(projection->y_label.substr(2)) - 1;
     for (const SetFrame& frame : projection->frames) {
       for (const Polygon& set : frame.sets) {
         if (set.pipeline != p) continue;
@@ -104,10 +110,13 @@ void check_sets(const Report& report, const Json& pipeline, int p, bool with_all
         CHECK(set.x.empty() == (step["consistent"] == "no"));
         if (set.x.empty() || !set.open.empty()) continue;
         const auto check_side = [&](const std::vector<double>& at, std::size_t state) {
-          const double lower = number(step["hull"]["lower"][state]), upper = number(step["hull"]["upper"][state]);
+          const double lower = number(step["hull"]["lower"][state]),
+                       upper = number(step["hull"]["upper"][state]);
           const double precision =
-              2e-6 * std::max({frame.right - frame.left, frame.top - frame.bottom, std::abs(lower), std::abs(upper)});
-          const double low = *std::min_element(at.begin(), at.end()), high = *std::max_element(at.begin(), at.end());
+              2e-6 * std::max({frame.right - frame.left, frame.top - frame.bottom, std::abs(lower),
+                               std::abs(upper)});
+          const double low = *std::min_element(at.begin(), at.end()),
+                       high = *std::max_element(at.begin(), at.end());
           CHECK(low <= lower + precision);
           CHECK(high >= upper - precision);
           const double beyond = with_all_vertices ? precision : 0.01 * (upper - lower);
@@ -116,12 +125,16 @@ void check_sets(const Report& report, const Json& pipeline, int p, bool with_all
         };
         check_side(set.x, i);
         check_side(set.y, j);
-        if (!frame.truth || !step.contains("contains_truth") || step["contains_truth"] != "yes" || set.x.size() < 3) continue;
+        if (!frame.truth || !step.contains("contains_truth") || step["contains_truth"] != "yes" ||
+            set.x.size() < 3)
+          continue;
         for (std::size_t v = 0; v < set.x.size(); ++v) {
           const std::size_t next = (v + 1) % set.x.size();
           const double dx = set.x[next] - set.x[v], dy = set.y[next] - set.y[v];
-          const double outside = dy * (frame.truth->first - set.x[v]) - dx * (frame.truth->second - set.y[v]);
-          CHECK(outside <= 1e-5 * std::hypot(dx, dy) * (frame.right - frame.left + frame.top - frame.bottom));
+          const double outside =
+              dy * (frame.truth->first - set.x[v]) - dx * (frame.truth->second - set.y[v]);
+          CHECK(outside <=
+                1e-5 * std::hypot(dx, dy) * (frame.right - frame.left + frame.top - frame.bottom));
         }
       }
     }
@@ -155,7 +168,8 @@ void check_diagnosis(const Report& report, const Json& pipeline, int p) {
         CHECK(told.at({m, k}) == expected);
       }
       if (!step.contains("true_mode")) continue;
-      CHECK(truth.at(k) == (step["true_mode"].is_null() ? "outside the bank" : step["true_mode"].get<std::string>()));
+      CHECK(truth.at(k) == (step["true_mode"].is_null() ? "outside the bank"
+                                                        : step["true_mode"].get<std::string>()));
     }
   }
   for (const Json& step : steps) {
@@ -163,10 +177,11 @@ void check_diagnosis(const Report& report, const Json& pipeline, int p) {
       if (!step["modes"][m].contains("residual")) continue;
       const Json& residual = step["modes"][m]["residual"];
       for (std::size_t i = 0; i < residual["lower"].size(); ++i) {
-        const Plot plot = content<Plot>(report, "residual_" + std::to_string(m + 1) + "_" + std::to_string(i + 1));
+        const Plot plot = content<Plot>(
+            report, "residual_" + std::to_string(m + 1) + "_" + std::to_string(i + 1));
         const Series& band = series_of(plot, p, pipeline["name"]);
-        const auto at =
-            static_cast<std::size_t>(std::find(band.x.begin(), band.x.end(), step["k"].get<double>()) - band.x.begin());
+        const auto at = static_cast<std::size_t>(
+            std::find(band.x.begin(), band.x.end(), step["k"].get<double>()) - band.x.begin());
         REQUIRE(at < band.x.size());
         CHECK(same(band.y[at], number(residual["lower"][i])));
         CHECK(same(band.upper[at], number(residual["upper"][i])));
@@ -176,23 +191,25 @@ void check_diagnosis(const Report& report, const Json& pipeline, int p) {
     for (const Json& fault : step.value("faults", Json::array())) {
       const Plot plot = content<Plot>(report, "fault_" + std::to_string(fault["fault"].get<int>()));
       const Series& band = series_of(plot, p, pipeline["name"]);
-      const auto at =
-          static_cast<std::size_t>(std::find(band.x.begin(), band.x.end(), fault["at"].get<double>()) - band.x.begin());
+      const auto at = static_cast<std::size_t>(
+          std::find(band.x.begin(), band.x.end(), fault["at"].get<double>()) - band.x.begin());
       REQUIRE(at < band.x.size());
       CHECK(same(band.y[at], number(fault["lower"])));
       CHECK(same(band.upper[at], number(fault["upper"])));
       if (!fault.contains("truth")) continue;
       const Series truth = series_of(plot, of_data, "true fault");
-      CHECK(truth.y.at(static_cast<std::size_t>(std::find(truth.x.begin(), truth.x.end(), band.x[at]) - truth.x.begin())) ==
+      CHECK(truth.y.at(static_cast<std::size_t>(
+                std::find(truth.x.begin(), truth.x.end(), band.x[at]) - truth.x.begin())) ==
             number(fault["truth"]));
     }
   }
   if (!pipeline["summary"]["scores"].is_null()) {
     const Table scores = content<Table>(report, "scores");
-    const auto row =
-        std::find_if(scores.rows.begin(), scores.rows.end(), [&](const auto& r) { return r[0].text == pipeline["name"]; });
+    const auto row = std::find_if(scores.rows.begin(), scores.rows.end(),
+                                  [&](const auto& r) { return r[0].text == pipeline["name"]; });
     REQUIRE(row != scores.rows.end());
-    CHECK((*row)[2].text == std::to_string(pipeline["summary"]["scores"]["false_alarms"].get<int>()));
+    CHECK((*row)[2].text ==
+          std::to_string(pipeline["summary"]["scores"]["false_alarms"].get<int>()));
   }
 }
 
@@ -200,14 +217,16 @@ void check_design(const Report& report, const Json& pipeline, int p) {
   const Json& design = pipeline["design"];
   if (design.is_null() || design["u"].is_null()) return;
   for (std::size_t i = 0; i < design["u"][0].size(); ++i) {
-    const Series input = series_of(content<Plot>(report, "input_" + std::to_string(i + 1)), p, pipeline["name"]);
+    const Series input =
+        series_of(content<Plot>(report, "input_" + std::to_string(i + 1)), p, pipeline["name"]);
     REQUIRE(input.y.size() == design["u"].size());
     for (std::size_t k = 0; k < input.y.size(); ++k) CHECK(input.y[k] == number(design["u"][k][i]));
   }
   std::size_t decided = 0;
   for (const Json& pair : design["pairs"]) decided += pair["disjoint"] != "unknown";
   if (decided == design["pairs"].size() &&
-      std::none_of(design["tubes"].begin(), design["tubes"].end(), [](const Json& tube) { return tube["empty"] == "yes"; })) {
+      std::none_of(design["tubes"].begin(), design["tubes"].end(),
+                   [](const Json& tube) { return tube["empty"] == "yes"; })) {
     const Intervals intervals = content<Intervals>(report, "pairs_" + std::to_string(p + 1));
     REQUIRE(intervals.rows.size() == design["pairs"].size());
     for (std::size_t q = 0; q < intervals.rows.size(); ++q) {
@@ -225,7 +244,8 @@ void check_design(const Report& report, const Json& pipeline, int p) {
     const std::size_t outputs = tube["lower"].size() / times;
     if (number(tube["lower"][0]) > number(tube["upper"][0])) continue;
     for (std::size_t i = 0; i < outputs; ++i) {
-      const Plot plot = content<Plot>(report, "tube_" + std::to_string(p + 1) + "_" + std::to_string(i + 1));
+      const Plot plot =
+          content<Plot>(report, "tube_" + std::to_string(p + 1) + "_" + std::to_string(i + 1));
       const Series& band = series_of(plot, p, pipeline["modes"][m]);
       CHECK(band.shade == static_cast<int>(m));
       REQUIRE(band.y.size() == times);
@@ -244,7 +264,8 @@ void check_design(const Report& report, const Json& pipeline, int p) {
     CHECK(table.rows[m][0].text == row["mode"]);
     for (std::size_t j = 0; j < row["possible"].size(); ++j) {
       CHECK(table.rows[m][2 + j].text == std::to_string(row["possible"][j].get<int>()));
-      CHECK(table.rows[m][2 + j].share == row["possible"][j].get<double>() / row["runs"].get<double>());
+      CHECK(table.rows[m][2 + j].share ==
+            row["possible"][j].get<double>() / row["runs"].get<double>());
     }
   }
 }
@@ -263,13 +284,15 @@ TEST_CASE("the figures of every example study show its results") {
     std::set<std::string> ids;
     for (const Figure& figure : report.figures) {
       CHECK(ids.insert(figure.id).second);
-      CHECK(figure.id.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos);
+      CHECK(figure.id.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
+            std::string::npos);
       CHECK_FALSE(figure.section.empty());
       CHECK_FALSE(figure.title.empty());
       if (const auto* plot = std::get_if<Plot>(&figure.content)) {
         for (const Series& series : plot->series) {
           CAPTURE(series.name);
-          CHECK(std::adjacent_find(series.x.begin(), series.x.end(), std::greater_equal<>()) == series.x.end());
+          CHECK(std::adjacent_find(series.x.begin(), series.x.end(), std::greater_equal<>()) ==
+                series.x.end());
         }
       }
     }

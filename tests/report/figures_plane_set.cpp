@@ -25,7 +25,8 @@ double extent(const Points& points) {
   return size;
 }
 
-/// How far a point lies outside of a convex polygon (counter-clockwise), by its edges; of a point or a segment, by the distance.
+/// How far a point lies outside of a convex polygon (counter-clockwise), by its edges; of a point
+/// or a segment, by the distance.
 double beyond(const Points& polygon, double x, double y) {
   if (polygon.size() == 1) return std::hypot(x - polygon[0].x, y - polygon[0].y);
   double worst = 0;
@@ -85,8 +86,11 @@ Points in_order(Points corners) {
     middle.x += p.x / static_cast<double>(corners.size());
     middle.y += p.y / static_cast<double>(corners.size());
   }
-  const auto angle = [&](const PlanePoint& p) { return std::atan2(p.y - middle.y, p.x - middle.x); };
-  std::sort(corners.begin(), corners.end(), [&](const PlanePoint& p, const PlanePoint& q) { return angle(p) < angle(q); });
+  const auto angle = [&](const PlanePoint& p) {
+    return std::atan2(p.y - middle.y, p.x - middle.x);
+  };
+  std::sort(corners.begin(), corners.end(),
+            [&](const PlanePoint& p, const PlanePoint& q) { return angle(p) < angle(q); });
   return corners;
 }
 
@@ -97,16 +101,20 @@ void check_bounded(const PlaneSet& set, const Polytope& P, bool tight) {
   for (const PlanePoint& p : corners) RC_ASSERT(beyond(set.vertices, p.x, p.y) <= precision);
   if (set.vertices.size() > 2) RC_ASSERT(area(set.vertices) > 0);
   if (!tight) return;
-  RC_ASSERT(set.vertices.size() <= corners.size() || extent(set.vertices) <= 1e-9);  // a point may have the width of rounding
-  for (const PlanePoint& v : set.vertices) {                                         // and is one of the exact ones
-    RC_ASSERT(std::any_of(corners.begin(), corners.end(),
-                          [&](const PlanePoint& p) { return std::hypot(p.x - v.x, p.y - v.y) <= precision; }));
+  RC_ASSERT(set.vertices.size() <= corners.size() ||
+            extent(set.vertices) <= 1e-9);    // a point may have the width of rounding
+  for (const PlanePoint& v : set.vertices) {  // and is one of the exact ones
+    RC_ASSERT(std::any_of(corners.begin(), corners.end(), [&](const PlanePoint& p) {
+      return std::hypot(p.x - v.x, p.y - v.y) <= precision;
+    }));
   }
 }
 
 PlaneSet polygon(Points points) { return {PlaneSet::Kind::bounded, std::move(points), {}, 0, 0}; }
 
-SetFrame window(double left, double right, double bottom, double top) { return {0, left, right, bottom, top, {}, {}}; }
+SetFrame window(double left, double right, double bottom, double top) {
+  return {0, left, right, bottom, top, {}, {}};
+}
 
 }  // namespace
 
@@ -141,8 +149,10 @@ TEST_CASE("units and offsets of the two coordinates are their own") {
     const Polytope P = exact(X, 0, 1);
     RC_PRE(!P.is_empty());
     const Points corners = in_order(vertices(P));
-    const PlanePoint unit{std::pow(10, *rc::gen::inRange(-90, 91) / 10.0), std::pow(10, *rc::gen::inRange(-90, 91) / 10.0)};
-    const PlanePoint offset{std::pow(10, *rc::gen::inRange(0, 9)) - 1, 1 - std::pow(10, *rc::gen::inRange(0, 9))};
+    const PlanePoint unit{std::pow(10, *rc::gen::inRange(-90, 91) / 10.0),
+                          std::pow(10, *rc::gen::inRange(-90, 91) / 10.0)};
+    const PlanePoint offset{std::pow(10, *rc::gen::inRange(0, 9)) - 1,
+                            1 - std::pow(10, *rc::gen::inRange(0, 9))};
     X.G.row(0) *= unit.x;
     X.G.row(1) *= unit.y;
     X.c[0] = offset.x * unit.x;
@@ -150,10 +160,13 @@ TEST_CASE("units and offsets of the two coordinates are their own") {
     PlaneSet set = project(X, 0, 1);
     RC_ASSERT(set.kind == PlaneSet::Kind::bounded);
     for (PlanePoint& p : set.vertices) p = {(p.x - X.c[0]) / unit.x, (p.y - X.c[1]) / unit.y};
-    const double rounding = 1e-15 * (std::abs(offset.x) + std::abs(offset.y) + 10), precision = 1e-8 + 8 * rounding;
+    const double rounding = 1e-15 * (std::abs(offset.x) + std::abs(offset.y) + 10),
+                 precision = 1e-8 + 8 * rounding;
     for (const PlanePoint& p : corners) RC_ASSERT(beyond(set.vertices, p.x, p.y) <= precision);
     const auto same_extent = [&](auto coordinate) {
-      const auto less = [&](const PlanePoint& p, const PlanePoint& q) { return p.*coordinate < q.*coordinate; };
+      const auto less = [&](const PlanePoint& p, const PlanePoint& q) {
+        return p.*coordinate < q.*coordinate;
+      };
       const auto drawn = std::minmax_element(set.vertices.begin(), set.vertices.end(), less);
       const auto whole = std::minmax_element(corners.begin(), corners.end(), less);
       RC_ASSERT(std::abs(*drawn.first.*coordinate - *whole.first.*coordinate) <= 1e-7 + rounding);
@@ -161,7 +174,8 @@ TEST_CASE("units and offsets of the two coordinates are their own") {
     };
     same_extent(&PlanePoint::x);
     same_extent(&PlanePoint::y);
-    for (const PlanePoint& p : set.vertices) RC_ASSERT(beyond(set.vertices, p.x, p.y) <= precision);  // convex
+    for (const PlanePoint& p : set.vertices)
+      RC_ASSERT(beyond(set.vertices, p.x, p.y) <= precision);  // convex
     if (corners.size() > 2 && area(corners) > 1e-3) {
       RC_ASSERT(std::abs(area(set.vertices) / area(corners) - 1) <= 1e-4 + 1e3 * rounding);
     }
@@ -171,7 +185,11 @@ TEST_CASE("units and offsets of the two coordinates are their own") {
 TEST_CASE("one coordinate without width, and none") {
   const Matrix A = (Matrix(1, 3) << 1, 1, 0).finished();
   for (const double unit : {1e-9, 1.0, 1e9}) {
-    LineForm X{Matrix(2, 0),   (Matrix(2, 3) << 0, 0, 0, unit, 0, unit).finished(), Eigen::Vector2d(1e6, 3), Matrix(1, 0), A,
+    LineForm X{Matrix(2, 0),
+               (Matrix(2, 3) << 0, 0, 0, unit, 0, unit).finished(),
+               Eigen::Vector2d(1e6, 3),
+               Matrix(1, 0),
+               A,
                Vector::Zero(1)};
     const PlaneSet upright = project(X, 0, 1), level = project(X, 1, 0);
     REQUIRE(upright.vertices.size() == 2);
@@ -185,7 +203,8 @@ TEST_CASE("one coordinate without width, and none") {
     REQUIRE(point.vertices.size() == 1);
     CHECK(point.vertices[0].y == 3);
   }
-  const LineForm huge = make_zonotope(Eigen::Vector2d(0, 0), (Matrix(2, 2) << 1e308, 1e308, 1, 0).finished());
+  const LineForm huge =
+      make_zonotope(Eigen::Vector2d(0, 0), (Matrix(2, 2) << 1e308, 1e308, 1, 0).finished());
   CHECK_THROWS_AS(project(huge, 0, 1), Error);
 }
 
@@ -196,7 +215,8 @@ TEST_CASE("with few vertices or directions the polygon still holds the set") {
     X.A = random_matrix(X.constraints(), 7);
     const Polytope P = exact(X, 0, 1);
     RC_PRE(!P.is_empty());
-    const PlaneLimits limits{*rc::gen::inRange<std::size_t>(4, 8), *rc::gen::inRange<std::size_t>(0, 6)};
+    const PlaneLimits limits{*rc::gen::inRange<std::size_t>(4, 8),
+                             *rc::gen::inRange<std::size_t>(0, 6)};
     const PlaneSet set = project(X, 0, 1, limits);
     RC_ASSERT(set.vertices.size() <= limits.vertices);
     check_bounded(set, P, false);
@@ -223,8 +243,10 @@ TEST_CASE("sets with lines are strips or the plane") {
     const Vector normal = Eigen::Vector2d(set.normal.x, set.normal.y);
     RC_ASSERT(std::abs(normal.norm() - 1) <= 1e-12);
     RC_ASSERT(std::abs(line.dot(normal)) <= 1e-9);
-    const Vector across = Eigen::Vector2d(-line[1], line[0]) * (normal.dot(Eigen::Vector2d(-line[1], line[0])) > 0 ? 1 : -1);
-    // a direction that is rounded is not exactly across, so that its support value is infinite: the vertices tell the bounds
+    const Vector across = Eigen::Vector2d(-line[1], line[0]) *
+                          (normal.dot(Eigen::Vector2d(-line[1], line[0])) > 0 ? 1 : -1);
+    // a direction that is rounded is not exactly across, so that its support value is infinite: the
+    // vertices tell the bounds
     double upper = -1e300, lower = 1e300;
     for (const PlanePoint& p : vertices(P)) {
       upper = std::max(upper, across[0] * p.x + across[1] * p.y);
@@ -237,7 +259,8 @@ TEST_CASE("sets with lines are strips or the plane") {
 }
 
 TEST_CASE("a zonotope: vertices in order, parallel generators as one") {
-  const LineForm X = make_zonotope(Eigen::Vector2d(10, 20), (Matrix(2, 5) << 1, -2, 0, 0, 1, 0, 0, 1, 0, -1).finished());
+  const LineForm X = make_zonotope(Eigen::Vector2d(10, 20),
+                                   (Matrix(2, 5) << 1, -2, 0, 0, 1, 0, 0, 1, 0, -1).finished());
   const PlaneSet set = project(X, 0, 1);
   REQUIRE(set.vertices.size() == 6);
   const Points expected{{8, 18}, {14, 18}, {14, 20}, {12, 22}, {6, 22}, {6, 20}};
@@ -251,7 +274,9 @@ TEST_CASE("a zonotope: vertices in order, parallel generators as one") {
 
 TEST_CASE("fewer vertices: the polygon grows, and by little") {
   Points circle;
-  for (int k = 0; k < 200; ++k) circle.push_back({std::cos(k * 0.01 * 3.14159265358979), std::sin(k * 0.01 * 3.14159265358979)});
+  for (int k = 0; k < 200; ++k)
+    circle.push_back(
+        {std::cos(k * 0.01 * 3.14159265358979), std::sin(k * 0.01 * 3.14159265358979)});
   const Points fewer = with_fewer_vertices(circle, 24);
   CHECK(fewer.size() == 24);
   for (const PlanePoint& p : circle) CHECK(beyond(fewer, p.x, p.y) <= 1e-12);
@@ -274,7 +299,8 @@ TEST_CASE("the window cuts, and says where") {
   REQUIRE(cut(polygon(square), window(1, 2, 1, 2), out));
   CHECK(out.open == std::vector<bool>(4, true));
   CHECK_FALSE(cut(polygon(square), window(5, 6, 0, 4), out));
-  REQUIRE(cut(polygon(square), window(4, 5, -1, 5), out));  // an edge on the window is an edge of the set
+  REQUIRE(cut(polygon(square), window(4, 5, -1, 5),
+              out));  // an edge on the window is an edge of the set
   CHECK(std::none_of(out.x.begin(), out.x.end(), [](double x) { return x != 4; }));
   REQUIRE(cut(polygon({{0, 0}, {4, 4}}), window(-1, 2, -1, 5), out));
   CHECK(*std::max_element(out.x.begin(), out.x.end()) == 2);

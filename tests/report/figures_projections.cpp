@@ -16,14 +16,16 @@ using namespace cordon::report;
 namespace {
 
 std::string line(const std::string& pipeline, int k, const std::string& blocks) {
-  return R"({"pipeline": ")" + pipeline + R"(", "k": )" + std::to_string(k) + R"(, "tightness": "outer", "exchange": "exact", )" +
-         blocks + R"(, "consistent": "yes", "proof": {"kind": "structure"}})" + "\n";
+  return R"({"pipeline": ")" + pipeline + R"(", "k": )" + std::to_string(k) +
+         R"(, "tightness": "outer", "exchange": "exact", )" + blocks +
+         R"(, "consistent": "yes", "proof": {"kind": "structure"}})" + "\n";
 }
 
 /// A box around (x, 0) with these half widths.
 std::string box(double x, double a, double b) {
-  return R"("dim": 2, "lines": 0, "generators": 2, "constraints": 0, "M": [[], []], "G": [[)" + std::to_string(a) + ", 0], [0, " +
-         std::to_string(b) + R"(]], "c": [)" + std::to_string(x) + R"(, 0], "S": [], "A": [], "b": [])";
+  return R"("dim": 2, "lines": 0, "generators": 2, "constraints": 0, "M": [[], []], "G": [[)" +
+         std::to_string(a) + ", 0], [0, " + std::to_string(b) + R"(]], "c": [)" +
+         std::to_string(x) + R"(, 0], "S": [], "A": [], "b": [])";
 }
 
 const std::string space =
@@ -42,7 +44,8 @@ const Projection* sets(const Report& report, const std::string& id = "sets_1_2")
 
 std::string steps(const std::string& pipeline, int count) {
   std::string rows;
-  for (int k = 0; k < count; ++k) rows.append(pipeline).append(",").append(std::to_string(k)).append(",yes,exact,0,0,1,1\n");
+  for (int k = 0; k < count; ++k)
+    rows.append(pipeline).append(",").append(std::to_string(k)).append(",yes,exact,0,0,1,1\n");
   return rows;
 }
 
@@ -52,14 +55,16 @@ const std::string header = "pipeline,k,consistent,tightness,lower_1,lower_2,uppe
 
 TEST_CASE("sets of all kinds in one figure") {
   const ResultsFiles files;
-  files.write("sets.jsonl", line("a", 0, space) + line("a", 1, box(1, 1, 1)) + line("a", 2, empty) + line("b", 0, strip));
+  files.write("sets.jsonl", line("a", 0, space) + line("a", 1, box(1, 1, 1)) + line("a", 2, empty) +
+                                line("b", 0, strip));
   const Report report = read_report(files.path());
   const Projection* figure = sets(report);
   REQUIRE(figure);
   CHECK(figure->x_label == "x_1");
   CHECK(figure->y_label == "x_2");
   REQUIRE(figure->frames.size() == 3);
-  const SetFrame &first = figure->frames[0], &second = figure->frames[1], &third = figure->frames[2];
+  const SetFrame &first = figure->frames[0], &second = figure->frames[1],
+                 &third = figure->frames[2];
   CHECK(first.k == 0);
   CHECK(first.truth == std::optional<std::pair<double, double>>({0.25, 0.5}));
   REQUIRE(first.sets.size() == 2);
@@ -110,11 +115,13 @@ TEST_CASE("each coordinate of the window has its own unit") {
   CHECK(hugs.right == doctest::Approx(23200));
   CHECK(hugs.top == doctest::Approx(0.0000232));
   CHECK(hugs.sets.at(1).open.empty());
-  const SetFrame cuts = frame(box(0, 10000, 0.00001), box(0, 20000, 1));  // too high, but not too wide
+  const SetFrame cuts =
+      frame(box(0, 10000, 0.00001), box(0, 20000, 1));  // too high, but not too wide
   CHECK(cuts.right == doctest::Approx(23200));
   CHECK(cuts.top == doctest::Approx(0.0000116));
   CHECK(cuts.bottom == doctest::Approx(-0.0000116));
-  const SetFrame flat = frame(box(10000, 0, 2), box(10000, 0.0000000000001, 1));  // the width of rounding is none
+  const SetFrame flat =
+      frame(box(10000, 0, 2), box(10000, 0.0000000000001, 1));  // the width of rounding is none
   CHECK(flat.left < 0);
   CHECK(flat.top == doctest::Approx(2.32));
   const SetFrame points = frame(box(0, 0, 0), box(0, 0, 0));
@@ -152,7 +159,8 @@ TEST_CASE("times: evenly, the first and the last, and those of events") {
 TEST_CASE("which pairs of states: all up to four, then three") {
   const auto figures = [](int states) {
     const ResultsFiles files;
-    std::string names = "pipeline,k,consistent,tightness", row = "a,0,yes,exact", rows = "[]", zeros = "0";
+    std::string names = "pipeline,k,consistent,tightness", row = "a,0,yes,exact", rows = "[]",
+                zeros = "0";
     for (const char* name : {",lower_", ",upper_"}) {
       for (int i = 1; i <= states; ++i) {
         names.append(name).append(std::to_string(i));
@@ -167,8 +175,10 @@ TEST_CASE("which pairs of states: all up to four, then three") {
     files.write("data.csv", "k,y_1\n0,1\n");
     files.write("sets.jsonl",
                 line("a", 0,
-                     R"("dim": )" + std::to_string(states) + R"(, "lines": 0, "generators": 0, "constraints": 0, "M": [)" + rows +
-                         R"(], "G": [)" + rows + R"(], "c": [)" + zeros + R"(], "S": [], "A": [], "b": [])"));
+                     R"("dim": )" + std::to_string(states) +
+                         R"(, "lines": 0, "generators": 0, "constraints": 0, "M": [)" + rows +
+                         R"(], "G": [)" + rows + R"(], "c": [)" + zeros +
+                         R"(], "S": [], "A": [], "b": [])"));
     std::string ids;
     for (const Figure& figure : read_report(files.path()).figures) {
       if (figure.id.rfind("sets_", 0) == 0) ids += figure.id.substr(5) + " ";
@@ -198,31 +208,36 @@ TEST_CASE("lines of other times are passed over, lines of another run are refuse
   files.write("sets.jsonl", good + R"({"pipeline": "a", "k": 1, broken)" + "\n");
   CHECK_THROWS_WITH_AS(read_report(files.path()), doctest::Contains("(line 2)"), InputError);
   files.write("sets.jsonl", line("c", 0, box(0, 1, 1)));
-  CHECK_THROWS_WITH_AS(read_report(files.path()), doctest::Contains("names the pipeline \"c\""), InputError);
+  CHECK_THROWS_WITH_AS(read_report(files.path()), doctest::Contains("names the pipeline \"c\""),
+                       InputError);
   files.write(
       "sets.jsonl",
       line(
           "a", 0,
           R"("dim": 1, "lines": 0, "generators": 0, "constraints": 0, "M": [[]], "G": [[]], "c": [0], "S": [], "A": [], "b": [])"));
-  CHECK_THROWS_WITH_AS(read_report(files.path()), doctest::Contains("steps.csv has 2 states"), InputError);
+  CHECK_THROWS_WITH_AS(read_report(files.path()), doctest::Contains("steps.csv has 2 states"),
+                       InputError);
 }
 
 TEST_CASE("any bytes among the sets: a report or an InputError") {
   CHECK(rc::check([] {
     const ResultsFiles files;
-    std::string text = line("a", 0, strip) + line("a", 1, box(1, 1, 1)) + line("a", 2, empty) + line("b", 0, space);
+    std::string text = line("a", 0, strip) + line("a", 1, box(1, 1, 1)) + line("a", 2, empty) +
+                       line("b", 0, space);
     const auto count = *rc::gen::inRange(1, 4);
     for (int i = 0; i < count; ++i) {
       const auto at = *rc::gen::inRange<std::size_t>(0, text.size());
       text.replace(at, *rc::gen::inRange<std::size_t>(0, 4),
-                   *rc::gen::element<std::string>("1", "-", "1e308", "0", "[", "]", ",", "1e-300", "\"", "9", "{}"));
+                   *rc::gen::element<std::string>("1", "-", "1e308", "0", "[", "]", ",", "1e-300",
+                                                  "\"", "9", "{}"));
     }
     files.write("sets.jsonl", text);
     try {
       const Report report = read_report(files.path());
       if (const Projection* figure = sets(report)) {
         for (const SetFrame& frame : figure->frames) {
-          for (const double edge : {frame.left, frame.right, frame.bottom, frame.top}) RC_ASSERT(std::isfinite(edge));
+          for (const double edge : {frame.left, frame.right, frame.bottom, frame.top})
+            RC_ASSERT(std::isfinite(edge));
         }
       }
     } catch (const InputError&) {

@@ -35,7 +35,8 @@ LineForm random_set(Index n, Index lines) {
 TEST_CASE("sets that do not meet are apart in the direction, others have none") {
   CHECK(rc::check([] {
     const Index n = *rc::gen::inRange<Index>(1, 4);
-    const LineForm X = eliminate_lines(random_set(n, *rc::gen::inRange(0, 2))), Y = eliminate_lines(random_set(n, 0));
+    const LineForm X = eliminate_lines(random_set(n, *rc::gen::inRange(0, 2))),
+                   Y = eliminate_lines(random_set(n, 0));
     RC_PRE(!Polytope::from(X).is_empty() && !Polytope::from(Y).is_empty());
     const auto d = separating_direction(X, Y);
     const bool apart = Polytope::from(X).intersection(Polytope::from(Y)).is_empty();
@@ -54,7 +55,8 @@ TEST_CASE("sets that do not meet are apart in the direction, others have none") 
 }
 
 TEST_CASE("a range along a line is infinite") {
-  const LineForm X{Matrix::Identity(2, 1), Matrix::Identity(2, 2), Eigen::Vector2d(1, 2), Matrix(0, 1), Matrix(0, 2), Vector(0)};
+  const LineForm X{Matrix::Identity(2, 1), Matrix::Identity(2, 2), Eigen::Vector2d(1, 2),
+                   Matrix(0, 1),           Matrix(0, 2),           Vector(0)};
   CHECK(range_along(X, Eigen::Vector2d(1, 0)) == std::pair<double, double>(-INFINITY, INFINITY));
   const auto [lower, upper] = range_along(X, Eigen::Vector2d(0, 1));
   CHECK(lower == doctest::Approx(1));

@@ -24,7 +24,9 @@ class SweepFiles {
       for (int seed = 0; seed < 2; ++seed) {
         for (int pipeline = 0; pipeline < 2; ++pipeline, ++index) {
           const double radius = pipeline == 0 ? 4 - 2 * order + seed : 2 + order + seed;
-          points.append(index == 0 ? "\n" : ",\n").append(R"({"point": )").append(std::to_string(index));
+          points.append(index == 0 ? "\n" : ",\n")
+              .append(R"({"point": )")
+              .append(std::to_string(index));
           points.append(R"(, "pipeline": )")
               .append(std::to_string(pipeline))
               .append(R"(, "at": [)")
@@ -33,23 +35,31 @@ class SweepFiles {
               .append(std::to_string(seed))
               .append(R"(], "numbers": {"radius_mean": )")
               .append(std::to_string(radius));
-          points.append(pipeline == 0 ? R"(, "contains_truth_share": 1)" : R"(, "contains_truth_share": 0.5)");
+          points.append(pipeline == 0 ? R"(, "contains_truth_share": 1)"
+                                      : R"(, "contains_truth_share": 0.5)");
           points.append(R"(, "steps": 3}, "error": null})");
-          times.append(index == 0 ? "\n" : ",\n").append(R"({"point": )").append(std::to_string(index));
+          times.append(index == 0 ? "\n" : ",\n")
+              .append(R"({"point": )")
+              .append(std::to_string(index));
           times.append(R"(, "numbers": {"wall_s": 1}})");
         }
       }
     }
-    files.write("results.json", R"({"cordon_results": 1, "cordon": {"version": "1.2", "abi_tag": "x"}, "tools": {}, "plugins": [],
+    files.write(
+        "results.json",
+        R"({"cordon_results": 1, "cordon": {"version": "1.2", "abi_tag": "x"}, "tools": {}, "plugins": [],
   "title": "Sweep", "study_hash": "h", "study": {"sweep": [
     {"name": "order", "path": "/pipelines/*/observer/order", "repeat": false, "values": [)" +
-                                    orders + R"(]},
+            orders + R"(]},
     {"name": "seed", "path": "/data/simulate/seed", "repeat": true, "values": [1, 2]}]},
   "pipelines": [{"name": "a", "backend": "box", "observer": "o"}, {"name": "b", "backend": "box", "observer": "o"}],
-  "points": [)" + points + "]}\n");
-    files.write("run.json", R"({"cordon_run": 1, "study": "s", "started": "now", "host": {"name": "h", "system": "s", "cpu": "c"},
+  "points": [)" +
+            points + "]}\n");
+    files.write(
+        "run.json",
+        R"({"cordon_run": 1, "study": "s", "started": "now", "host": {"name": "h", "system": "s", "cpu": "c"},
   "plugins": [], "warnings": [], "points": [)" +
-                                times + R"(], "wall_s": 1, "finished": "then"})");
+            times + R"(], "wall_s": 1, "finished": "then"})");
   }
   ResultsFiles files;
 };
@@ -59,7 +69,9 @@ class SweepFiles {
 TEST_CASE("columns of the comparison have names of their own in a file") {
   const SweepFiles sweep;
   sweep.files.replace("run.json", R"("wall_s": 1}})", R"("wall_s": 2}})");
-  const auto header = [&](Detail detail) { return content<Table>(read_report(sweep.files.path(), detail), "comparison").header; };
+  const auto header = [&](Detail detail) {
+    return content<Table>(read_report(sweep.files.path(), detail), "comparison").header;
+  };
   const auto has = [](const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
@@ -87,24 +99,32 @@ TEST_CASE("who is best where, with the lead over the second") {
   CHECK(table.rows[1][1].text == "a (28.6\u00a0%)");
   const auto inside = std::find(table.header.begin(), table.header.end(), "truth inside");
   REQUIRE(inside != table.header.end());
-  CHECK(table.rows[0][static_cast<std::size_t>(inside - table.header.begin())].text == "a (100\u00a0%)");
+  CHECK(table.rows[0][static_cast<std::size_t>(inside - table.header.begin())].text ==
+        "a (100\u00a0%)");
   CHECK(report.figures.front().id == "winners");
   CHECK(find_figure(report, "comparison"));
 }
 
 TEST_CASE("pipelines that are equally good share the lead; there is none if all are") {
   const SweepFiles sweep;
-  sweep.files.replace("results.json", R"({"name": "b", "backend": "box", "observer": "o"}])",
-                      R"({"name": "b", "backend": "box", "observer": "o"}, {"name": "c", "backend": "box", "observer": "o"}])");
+  sweep.files.replace(
+      "results.json", R"({"name": "b", "backend": "box", "observer": "o"}])",
+      R"({"name": "b", "backend": "box", "observer": "o"}, {"name": "c", "backend": "box", "observer": "o"}])");
   // points of three pipelines: order 10 as (1, 1, 2), order 30 all alike
   std::string points, times;
   for (int index = 0; index < 12; ++index) {
     const int order = index / 6, seed = index / 3 % 2, pipeline = index % 3;
     points.append(index == 0 ? "" : ",").append(R"({"point": )").append(std::to_string(index));
-    points.append(R"(, "pipeline": )").append(std::to_string(pipeline)).append(R"(, "at": [)").append(std::to_string(order));
+    points.append(R"(, "pipeline": )")
+        .append(std::to_string(pipeline))
+        .append(R"(, "at": [)")
+        .append(std::to_string(order));
     points.append(", ").append(std::to_string(seed)).append(R"(], "numbers": {"radius_mean": )");
     points.append(order == 0 && pipeline == 2 ? "2" : "1").append(R"(}, "error": null})");
-    times.append(index == 0 ? "" : ",").append(R"({"point": )").append(std::to_string(index)).append(R"(, "numbers": {}})");
+    times.append(index == 0 ? "" : ",")
+        .append(R"({"point": )")
+        .append(std::to_string(index))
+        .append(R"(, "numbers": {}})");
   }
   const auto with_points = [&](const std::string& name, const std::string& rows) {
     std::string text = sweep.files.read(name);
@@ -122,7 +142,8 @@ TEST_CASE("pipelines that are equally good share the lead; there is none if all 
   CHECK(table.rows[1][1].share == 0);
 }
 
-TEST_CASE("curves over a factor: means and quantiles over the repetitions, one curve per pipeline") {
+TEST_CASE(
+    "curves over a factor: means and quantiles over the repetitions, one curve per pipeline") {
   const SweepFiles sweep;
   const Plot plot = content<Plot>(read_report(sweep.files.path()), "sweep_order_radius_mean");
   CHECK(plot.x_label == "order");
@@ -150,9 +171,10 @@ TEST_CASE("values that are words, or not in order, are names on the axis") {
 
 TEST_CASE("a pipeline that failed somewhere is not compared there, and is named") {
   const SweepFiles sweep;
-  sweep.files.replace("results.json",
-                      R"("numbers": {"radius_mean": 5.000000, "contains_truth_share": 1, "steps": 3}, "error": null)",
-                      R"("numbers": {}, "error": "too <large>")");
+  sweep.files.replace(
+      "results.json",
+      R"("numbers": {"radius_mean": 5.000000, "contains_truth_share": 1, "steps": 3}, "error": null)",
+      R"("numbers": {}, "error": "too <large>")");
   const Report report = read_report(sweep.files.path());
   const Table table = content<Table>(report, "winners");
   CHECK(table.rows[0][1].text == "–");
@@ -164,7 +186,9 @@ TEST_CASE("a pipeline that failed somewhere is not compared there, and is named"
   CHECK(report.notes[0] == "1 of 8 points failed; the first of \"a\": too <large>");
 }
 
-TEST_CASE("those that tie for the best are named together, with the lead over the next; rounding is no lead") {
+TEST_CASE(
+    "those that tie for the best are named together, with the lead over the next; rounding is no "
+    "lead") {
   const SweepFiles sweep;
   std::string results = sweep.files.read("results.json"), times = sweep.files.read("run.json");
   const auto replace = [](std::string& text, const std::string& from, const std::string& to) {
@@ -175,19 +199,24 @@ TEST_CASE("those that tie for the best are named together, with the lead over th
   // at order 10 "a" and "b" differ by rounding and "c" is twice as large; at order 30 all are alike
   for (int i = 0; i < 12; ++i) {
     const int order = i / 6, seed = i / 3 % 2, pipeline = i % 3;
-    const double radius = 2 + seed + (pipeline == 1 ? 1e-11 : 0) + (pipeline == 2 && order == 0 ? 2.5 : 0);
+    const double radius =
+        2 + seed + (pipeline == 1 ? 1e-11 : 0) + (pipeline == 2 && order == 0 ? 2.5 : 0);
     const double share = pipeline == 0 ? 1 : 0;
     std::ostringstream line;
     line.precision(17);
-    line << (i == 0 ? "" : ",") << R"({"point": )" << i << R"(, "pipeline": )" << pipeline << R"(, "at": [)" << order << ", "
-         << seed << R"(], "numbers": {"radius_mean": )" << radius << R"(, "contains_truth_share": )" << share
-         << R"(}, "error": null})";
+    line << (i == 0 ? "" : ",") << R"({"point": )" << i << R"(, "pipeline": )" << pipeline
+         << R"(, "at": [)" << order << ", " << seed << R"(], "numbers": {"radius_mean": )" << radius
+         << R"(, "contains_truth_share": )" << share << R"(}, "error": null})";
     points += line.str();
-    measured.append(i == 0 ? "" : ",").append(R"({"point": )").append(std::to_string(i)).append(R"(, "numbers": {}})");
+    measured.append(i == 0 ? "" : ",")
+        .append(R"({"point": )")
+        .append(std::to_string(i))
+        .append(R"(, "numbers": {}})");
   }
   results.erase(results.find("\"points\": ["));
   results.append("\"points\": [").append(points).append("]}");
-  replace(results, R"({"name": "b",)", R"({"name": "c", "backend": "box", "observer": "o"}, {"name": "b",)");
+  replace(results, R"({"name": "b",)",
+          R"({"name": "c", "backend": "box", "observer": "o"}, {"name": "b",)");
   times.erase(times.find("\"points\": ["));
   times.append("\"points\": [").append(measured).append(R"(], "wall_s": 1, "finished": "then"})");
   replace(results, R"("name": "c")", R"("name": "B")");

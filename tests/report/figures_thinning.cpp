@@ -13,7 +13,8 @@ using namespace cordon::report;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity(), gap = std::numeric_limits<double>::quiet_NaN();
+constexpr double inf = std::numeric_limits<double>::infinity(),
+                 gap = std::numeric_limits<double>::quiet_NaN();
 
 /// The band at x, straight between points; nothing outside or in a gap.
 bool covers(const Series& band, double x, double lower, double upper) {
@@ -22,7 +23,8 @@ bool covers(const Series& band, double x, double lower, double upper) {
     if (i + 1 == band.x.size() || !(band.x[i] < x && x < band.x[i + 1])) continue;
     const double t = (x - band.x[i]) / (band.x[i + 1] - band.x[i]);
     const auto between = [&](double a, double b) { return a == b ? a : (1 - t) * a + t * b; };
-    return between(band.y[i], band.y[i + 1]) <= lower && upper <= between(band.upper[i], band.upper[i + 1]);
+    return between(band.y[i], band.y[i + 1]) <= lower &&
+           upper <= between(band.upper[i], band.upper[i + 1]);
   }
   return false;
 }
@@ -129,7 +131,8 @@ TEST_CASE("thinned bands enclose every band that went in, and straight lines bet
       if (i + 1 == count) continue;
       const double middle = (x[i] + x[i + 1]) / 2;
       // half of the values is exact, and so is a share of bands between equal ends; others round
-      RC_ASSERT(covers(band, middle, (lower[i] + lower[i + 1]) / 2 + 1e-9, (upper[i] + upper[i + 1]) / 2 - 1e-9));
+      RC_ASSERT(covers(band, middle, (lower[i] + lower[i + 1]) / 2 + 1e-9,
+                       (upper[i] + upper[i + 1]) / 2 - 1e-9));
     }
     const Series line = curve.line("a", 0);
     RC_ASSERT(line.x.size() <= limit);

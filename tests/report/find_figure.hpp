@@ -7,7 +7,8 @@
 
 #include "study/report/figure.hpp"
 
-inline const cordon::report::Figure* find_figure(const cordon::report::Report& report, const std::string& id) {
+inline const cordon::report::Figure* find_figure(const cordon::report::Report& report,
+                                                 const std::string& id) {
   for (const cordon::report::Figure& figure : report.figures) {
     if (figure.id == id) return &figure;
   }

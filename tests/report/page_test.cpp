@@ -16,7 +16,8 @@ namespace {
 
 std::size_t count(const std::string& text, const std::string& part) {
   std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++found;
   return found;
 }
 
@@ -28,7 +29,9 @@ std::string between(const std::string& text, const std::string& begin, const std
   return text.substr(from + begin.size(), to - from - begin.size());
 }
 
-Json data_of(const Report& report) { return Json::parse(between(page_of(report), "id=\"report-data\">", "</script>")); }
+Json data_of(const Report& report) {
+  return Json::parse(between(page_of(report), "id=\"report-data\">", "</script>"));
+}
 
 }  // namespace
 
@@ -36,7 +39,8 @@ TEST_CASE("numbers have six digits, more where they differ little") {
   CHECK(packed_numbers({1.23456789, -1e-9, 1e300}) == "[1.23457,-1e-09,1e+300]");
   CHECK(packed_numbers({1000.00012, 1000.00034}) == "[1000.00012,1000.00034]");
   CHECK(packed_numbers({1000.0001234567, 1000.0003}) == "[1000.000123457,1000.0003]");
-  CHECK(packed_numbers({sample::infinite, -sample::infinite, sample::missing}) == "[\"inf\",\"-inf\",null]");
+  CHECK(packed_numbers({sample::infinite, -sample::infinite, sample::missing}) ==
+        "[\"inf\",\"-inf\",null]");
   CHECK(packed_numbers({1234567, 0, -0.0}) == "[1234567,0,0]");
   CHECK(packed_numbers({}) == "[]");
   CHECK(packed_numbers({0.1}) == "[0.1]");
@@ -60,7 +64,8 @@ TEST_CASE("the page holds the report") {
   CHECK(data["study"] == report.study);
   CHECK(data["palette"]["light"].size() == data["palette"]["dark"].size());
   REQUIRE(data["figures"].size() == report.figures.size());
-  const std::vector<std::string> kinds = {"table", "plot", "plot", "plot", "projection", "plot", "timeline", "intervals"};
+  const std::vector<std::string> kinds = {"table",      "plot", "plot",     "plot",
+                                          "projection", "plot", "timeline", "intervals"};
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     CHECK(data["figures"][i]["kind"] == kinds[i]);
     CHECK(data["figures"][i]["id"] == report.figures[i].id);
@@ -75,12 +80,13 @@ TEST_CASE("bands are rounded outwards") {
   const std::vector<double> values{1.23456789, -1.23456749, 9.9999999e-9, -9999999900.5, 0, 0.5};
   CHECK(packed_numbers(values, Rounding::down) == "[1.23456,-1.23457,9.99999e-09,-1e+10,0,0.5]");
   CHECK(packed_numbers(values, Rounding::up) == "[1.23457,-1.23456,1e-08,-9.99999e+09,0,0.5]");
-  CHECK(packed_numbers({1e-310, sample::infinite, -sample::infinite, sample::missing}, Rounding::up) ==
-        "[1e-310,\"inf\",\"-inf\",null]");
+  CHECK(packed_numbers({1e-310, sample::infinite, -sample::infinite, sample::missing},
+                       Rounding::up) == "[1e-310,\"inf\",\"-inf\",null]");
   Report report;
   report.pipelines = {"a"};
   Plot plot{"k", "x_1", false, {}};
-  plot.series.push_back({Series::Kind::band, "band", 0, {0, 1}, {1.00000049, 1.5}, {1.00000051, 2.00000049}});
+  plot.series.push_back(
+      {Series::Kind::band, "band", 0, {0, 1}, {1.00000049, 1.5}, {1.00000051, 2.00000049}});
   report.figures.push_back({"f", "s", "t", "c", plot});
   const Json band = data_of(report)["figures"][0]["plot"]["series"][0];
   CHECK(band["y"][0].get<double>() <= 1.00000049);
@@ -92,7 +98,8 @@ TEST_CASE("coordinates far from the origin keep what the frame shows") {
   report.pipelines = {"a"};
   const double far = 1e10;
   report.figures.push_back(
-      {"f", "s", "t", "c", Projection{"x_1", "x_2", {{0, far, far + 1, 0, 1, {{0, {far + 0.12345}, {0.5}, {}}}, {}}}}});
+      {"f", "s", "t", "c",
+       Projection{"x_1", "x_2", {{0, far, far + 1, 0, 1, {{0, {far + 0.12345}, {0.5}, {}}}, {}}}}});
   const Json set = data_of(report)["figures"][0]["projection"]["frames"][0]["sets"][0];
   CHECK(std::abs(set["x"][0].get<double>() - far - 0.12345) <= 2e-6);
 }
@@ -131,17 +138,25 @@ TEST_CASE("sets in the page") {
   CHECK(first["truth"] == Json({-1, 0}));
   CHECK(first["sets"][0]["open"].empty());
   CHECK(first["sets"][1]["open"] == Json({0, 0, 0, 0, 0, 1}));
-  CHECK(first["sets"][0]["x"][0].get<double>() == doctest::Approx(-1 + 1.2 * 0.8660254).epsilon(1e-4));
+  CHECK(first["sets"][0]["x"][0].get<double>() ==
+        doctest::Approx(-1 + 1.2 * 0.8660254).epsilon(1e-4));
   CHECK(projection["frames"][6]["sets"][1]["x"].empty());
 }
 
 TEST_CASE("coordinates keep what a small frame far from the origin shows") {
   Report report = sample::every_kind();
-  report.figures = {
-      {"sets", "s", "t", "",
-       Projection{"x", "y", {{0, 1e6, 1e6 + 1e-3, 0, 1e-9, {{0, {1e6 + 0.00025, 1e6 + 0.00075}, {1e-10, 9e-10}}}}}}}};
+  report.figures = {{"sets", "s", "t", "",
+                     Projection{"x",
+                                "y",
+                                {{0,
+                                  1e6,
+                                  1e6 + 1e-3,
+                                  0,
+                                  1e-9,
+                                  {{0, {1e6 + 0.00025, 1e6 + 0.00075}, {1e-10, 9e-10}}}}}}}};
   const Json set = data_of(report)["figures"][0]["projection"]["frames"][0]["sets"][0];
-  CHECK(set["x"][1].get<double>() - set["x"][0].get<double>() == doctest::Approx(0.0005).epsilon(1e-4));
+  CHECK(set["x"][1].get<double>() - set["x"][0].get<double>() ==
+        doctest::Approx(0.0005).epsilon(1e-4));
   CHECK(set["y"][0].get<double>() == doctest::Approx(1e-10));
 }
 
@@ -150,11 +165,13 @@ TEST_CASE("tables, timelines and intervals in the page") {
   const Json figures = data_of(report)["figures"];
   const Json& table = figures[0]["table"];
   CHECK(table["header"] == Json({"pipeline", "mean radius", "truth inside"}));
-  CHECK(table["rows"][0][1] == Json::parse(R"({"text":"1.5","best":true,"share":1,"number":true})"));
+  CHECK(table["rows"][0][1] ==
+        Json::parse(R"({"text":"1.5","best":true,"share":1,"number":true})"));
   CHECK(table["rows"][0][0] == Json::parse(R"({"text":"first"})"));
   CHECK(figures[6]["numbers"]["rows"][0] == Json({"healthy", "0", "20", "monitored"}));
   CHECK(figures[6]["numbers"]["rows"].back() == Json({"", "23", "", "isolated"}));
-  CHECK(figures[7]["numbers"]["rows"][1] == Json({"model 1, model 3", "model 1", "-inf", "2", "model 3", "1", "5", "overlap"}));
+  CHECK(figures[7]["numbers"]["rows"][1] ==
+        Json({"model 1, model 3", "model 1", "-inf", "2", "model 3", "1", "5", "overlap"}));
   const std::string page = page_of(report);
   CHECK(count(page, "<template id=\"drawing_modes\"><svg") == 1);
   CHECK(count(page, "<template id=\"drawing_tubes\"><svg") == 1);
@@ -162,7 +179,8 @@ TEST_CASE("tables, timelines and intervals in the page") {
 }
 
 TEST_CASE("hostile names are text wherever they stand") {
-  const std::string harmless = page_of(sample::with_names("x")), page = page_of(sample::with_names(sample::hostile));
+  const std::string harmless = page_of(sample::with_names("x")),
+                    page = page_of(sample::with_names(sample::hostile));
   for (const std::string mark : {"<script", "</script", "<style", "<b>", "<!--", "<svg", "<title"})
     CHECK(count(page, mark) == count(harmless, mark));
   CHECK(count(page, "alert(1)</script>") == 0);
@@ -179,7 +197,8 @@ TEST_CASE("bytes that are no text do not break the page") {
 
 TEST_CASE("the page asks for nothing from elsewhere and runs only its own scripts") {
   const std::string page = page_of(sample::every_kind());
-  const std::string policy = between(page, "http-equiv=\"Content-Security-Policy\" content=\"", "\"");
+  const std::string policy =
+      between(page, "http-equiv=\"Content-Security-Policy\" content=\"", "\"");
   CHECK(policy.starts_with("default-src 'none'"));
   CHECK(policy.find("unsafe") == std::string::npos);
   CHECK(count(policy, "'sha256-") == 6);
@@ -192,6 +211,10 @@ TEST_CASE("the page asks for nothing from elsewhere and runs only its own script
   CHECK(page.find("Permission is hereby granted") != std::string::npos);
 }
 
-TEST_CASE("a page of ten pipelines over a thousand steps is below 5 MB") { CHECK(page_of(sample::large()).size() < 5'000'000); }
+TEST_CASE("a page of ten pipelines over a thousand steps is below 5 MB") {
+  CHECK(page_of(sample::large()).size() < 5'000'000);
+}
 
-TEST_CASE("a report without anything in it is a page") { CHECK(data_of(Report{})["figures"].empty()); }
+TEST_CASE("a report without anything in it is a page") {
+  CHECK(data_of(Report{})["figures"].empty());
+}

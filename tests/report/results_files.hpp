@@ -11,7 +11,9 @@
 class ResultsFiles {
  public:
   ResultsFiles() {
-    write("results.json", R"({"cordon_results": 1, "cordon": {"version": "1.2", "abi_tag": "x"}, "tools": {"compiler": "c"},
+    write(
+        "results.json",
+        R"({"cordon_results": 1, "cordon": {"version": "1.2", "abi_tag": "x"}, "tools": {"compiler": "c"},
   "plugins": [{"name": "p", "version": "3"}], "title": "Two <b>states</b>", "study_hash": "h",
   "study": {"title": "Two", "system": {"modes": []}},
   "pipelines": [{"name": "a", "backend": "box", "observer": "o", "steps": [{"k": 0}]},
@@ -32,7 +34,9 @@ b,0,yes,outer,-5,-5,5,5,5,hull,100,,,,
   }
 
   const std::filesystem::path& path() const { return scratch_.path(); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(scratch_ / name, std::ios::binary) << text; }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(scratch_ / name, std::ios::binary) << text;
+  }
   std::string read(const std::string& name) const { return bytes_of(scratch_ / name); }
   void replace(const std::string& name, const std::string& from, const std::string& to) const {
     std::string text = read(name);

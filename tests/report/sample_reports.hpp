@@ -68,7 +68,8 @@ inline Projection projection() {
   for (int k = 0; k < 12; ++k) {
     SetFrame frame{k, -5, 5, -4, 4, {}, std::pair{0.2 * k - 1, 0.1 * k}};
     frame.sets.push_back(hexagon(0, 0.2 * k - 1, 0.1 * k, 1.2));
-    frame.sets.push_back(k < 6 ? hexagon(1, 0.2 * k - 1, 0.1 * k, 2.2, k == 0) : Polygon{1, {}, {}});
+    frame.sets.push_back(k < 6 ? hexagon(1, 0.2 * k - 1, 0.1 * k, 2.2, k == 0)
+                               : Polygon{1, {}, {}});
     projection.frames.push_back(frame);
   }
   return projection;
@@ -101,9 +102,12 @@ inline Table table() {
 }
 
 inline Report every_kind() {
-  Report report{
-      "Every kind of figure", {"first", "second"}, {"A note that comes first."}, {}, {{"cordon", "0.1.0"}, {"host", "a machine"}},
-      "{\n  \"cordon\": 1\n}"};
+  Report report{"Every kind of figure",
+                {"first", "second"},
+                {"A note that comes first."},
+                {},
+                {{"cordon", "0.1.0"}, {"host", "a machine"}},
+                "{\n  \"cordon\": 1\n}"};
   Plot curves = plot(2, 101, false);
   curves.thresholds = {{"bound", 1.85}};
   curves.marks = {{20, "fault begins"}, {26, "empty", 1}};
@@ -129,7 +133,8 @@ inline Report every_kind() {
 
 /// Text that would do harm if it were taken for more than text.
 inline const std::string hostile =
-    "</script><script>alert(1)</script> \"quoted\" 'single' <b>&amp; {{data}} ünï — 推定 \xF0\x9F\x9B\xB0";
+    "</script><script>alert(1)</script> \"quoted\" 'single' <b>&amp; {{data}} ünï — 推定 "
+    "\xF0\x9F\x9B\xB0";
 
 inline Report with_names(const std::string& name) {
   Report report = every_kind();
@@ -152,7 +157,8 @@ inline Report with_names(const std::string& name) {
       for (std::string& row : timeline->rows) row = name;
       for (Mark& mark : timeline->marks) mark.text = name;
     } else if (auto* intervals = std::get_if<Intervals>(&figure.content)) {
-      for (Intervals::Row& row : intervals->rows) row.name = row.first = row.second = row.verdict = name;
+      for (Intervals::Row& row : intervals->rows)
+        row.name = row.first = row.second = row.verdict = name;
     } else if (auto* table = std::get_if<Table>(&figure.content)) {
       for (std::string& text : table->header) text = name;
       for (auto& row : table->rows) row[0].text = name;
@@ -171,7 +177,8 @@ inline Report far_from_origin() {
     series.x.push_back(k);
     series.y.push_back(centre - 2e-4);
     series.upper.push_back(centre + 2e-4);
-    sets.frames.push_back({k, 1e6 - 2e-3, 1e6 + 2e-3, -1e6 - 2e-3, -1e6 + 2e-3, {hexagon(0, centre, -1e6, 2e-4)}});
+    sets.frames.push_back(
+        {k, 1e6 - 2e-3, 1e6 + 2e-3, -1e6 - 2e-3, -1e6 + 2e-3, {hexagon(0, centre, -1e6, 2e-4)}});
   }
   Plot plot{"k", "x1", false, {series}};
   report.figures.push_back({"far_state", "States", "Bounds of x1", "", plot});
@@ -179,18 +186,21 @@ inline Report far_from_origin() {
   return report;
 }
 
-/// Ten pipelines over a thousand steps: bounds of six states, radius, volume and ten sets at a hundred times.
+/// Ten pipelines over a thousand steps: bounds of six states, radius, volume and ten sets at a
+/// hundred times.
 inline Report large() {
   Report report{"Ten pipelines, a thousand steps", {}, {}, {}, {{"cordon", "0.1.0"}}, "{}"};
   for (int p = 0; p < 10; ++p) report.pipelines.push_back("pipeline " + std::to_string(p + 1));
   for (int i = 1; i <= 6; ++i)
-    report.figures.push_back({"state_" + std::to_string(i), "States", "Bounds of x" + std::to_string(i), "", bands(10, 1001)});
+    report.figures.push_back({"state_" + std::to_string(i), "States",
+                              "Bounds of x" + std::to_string(i), "", bands(10, 1001)});
   report.figures.push_back({"radius", "Sizes", "Radius", "", plot(10, 1001, false)});
   report.figures.push_back({"volume", "Sizes", "Volume", "", plot(10, 1001, true)});
   Projection sets{"x1", "x2", {}};
   for (int k = 0; k < 100; ++k) {
     SetFrame frame{10 * k, -20, 20, -20, 20, {}};
-    for (int p = 0; p < 10; ++p) frame.sets.push_back(hexagon(p, std::sin(0.1 * k), std::cos(0.1 * k), 1 + p));
+    for (int p = 0; p < 10; ++p)
+      frame.sets.push_back(hexagon(p, std::sin(0.1 * k), std::cos(0.1 * k), 1 + p));
     sets.frames.push_back(frame);
   }
   report.figures.push_back({"sets", "Sets", "Sets", "", sets});

@@ -32,6 +32,7 @@ int main(int count, char** arguments) {
   const auto far = sample::far_from_origin();
   write(out / "far.html", page_of(far));
   for (const auto& report : {every, far}) {
-    for (const auto& figure : report.figures) write(out / (figure.id + ".svg"), svg_of(figure, report));
+    for (const auto& figure : report.figures)
+      write(out / (figure.id + ".svg"), svg_of(figure, report));
   }
 }

@@ -37,7 +37,9 @@ std::vector<const Tree*> elements(const Tree& tree, const std::string& name) {
   return found;
 }
 
-std::string attribute(const Tree& element, const std::string& name) { return element.get("<xmlattr>." + name, ""); }
+std::string attribute(const Tree& element, const std::string& name) {
+  return element.get("<xmlattr>." + name, "");
+}
 
 std::vector<std::string> texts(const Tree& tree) {
   std::vector<std::string> out;
@@ -119,7 +121,8 @@ TEST_CASE("a line is drawn where its values are") {
   REQUIRE(points.size() == 3);
   CHECK(points[1].first - points[0].first == doctest::Approx(280));
   CHECK(points[2].first == doctest::Approx(626));
-  CHECK(points[0].second - points[1].second == doctest::Approx(2 * (points[2].second - points[1].second)));
+  CHECK(points[0].second - points[1].second ==
+        doctest::Approx(2 * (points[2].second - points[1].second)));
   CHECK(points[1].second < points[0].second);
   CHECK(has_text(tree, "a"));
   CHECK(has_text(tree, "k"));
@@ -130,7 +133,11 @@ TEST_CASE("a gap interrupts a line, infinity leaves the frame, a single value is
   Plot plot{"k",
             "y",
             false,
-            {{Series::Kind::line, "a", 0, {0, 1, 2, 3, 4, 5}, {1, 2, sample::missing, sample::infinite, 2, sample::missing}}}};
+            {{Series::Kind::line,
+              "a",
+              0,
+              {0, 1, 2, 3, 4, 5},
+              {1, 2, sample::missing, sample::infinite, 2, sample::missing}}}};
   const auto curves_tree = drawn(plot);
   const auto curves = drawn_curves(curves_tree);
   REQUIRE(curves.size() == 2);
@@ -139,7 +146,10 @@ TEST_CASE("a gap interrupts a line, infinity leaves the frame, a single value is
   REQUIRE(second.size() == 2);
   CHECK(second[0].second < 0);
   CHECK(second[1].second > 0);
-  Plot single{"k", "y", false, {{Series::Kind::line, "a", 0, {0, 1, 2}, {sample::missing, 2, sample::missing}}}};
+  Plot single{"k",
+              "y",
+              false,
+              {{Series::Kind::line, "a", 0, {0, 1, 2}, {sample::missing, 2, sample::missing}}}};
   const Tree tree = drawn(single);
   CHECK(drawn_curves(tree).empty());
   CHECK(elements(tree, "circle").size() == 1);
@@ -155,7 +165,10 @@ TEST_CASE("a value of steps holds until the next") {
 }
 
 TEST_CASE("a band is an area between two lines") {
-  Plot plot{"k", "y", false, {{Series::Kind::band, "a", 0, {0, 1, 2, 3}, {0, 0, sample::missing, 1}, {1, 1, 1, 2}}}};
+  Plot plot{"k",
+            "y",
+            false,
+            {{Series::Kind::band, "a", 0, {0, 1, 2, 3}, {0, 0, sample::missing, 1}, {1, 1, 1, 2}}}};
   const Tree tree = drawn(plot);
   const auto areas = elements(tree, "polygon");
   REQUIRE(areas.size() == 2);
@@ -168,13 +181,17 @@ TEST_CASE("a band is an area between two lines") {
 }
 
 TEST_CASE("a band has a gap where its upper bound is missing") {
-  Plot plot{"k", "y", false, {{Series::Kind::band, "a", 0, {0, 1, 2, 3}, {0, 0, 0, 1}, {1, 1, sample::missing, 2}}}};
+  Plot plot{"k",
+            "y",
+            false,
+            {{Series::Kind::band, "a", 0, {0, 1, 2, 3}, {0, 0, 0, 1}, {1, 1, sample::missing, 2}}}};
   CHECK(elements(drawn(plot), "polygon").size() == 2);
 }
 
 TEST_CASE("shades of a pipeline are told apart") {
   Plot plot{"k", "y", false, {}};
-  for (int shade = 0; shade < 3; ++shade) plot.series.push_back({Series::Kind::line, "a", 0, {0, 1}, {0, 1}, {}, shade});
+  for (int shade = 0; shade < 3; ++shade)
+    plot.series.push_back({Series::Kind::line, "a", 0, {0, 1}, {0, 1}, {}, shade});
   const Tree tree = drawn(plot);
   const auto curves = drawn_curves(tree);
   REQUIRE(curves.size() == 3);
@@ -240,7 +257,8 @@ TEST_CASE("thresholds have their names, and marks theirs where they do not cover
   const Tree tree = drawn(plot);
   CHECK(has_text(tree, "bound"));
   CHECK_FALSE(has_text(tree, "at infinity"));
-  for (int i = 0; i < 5; ++i) CHECK(has_text(tree, "something happens " + std::to_string(i)) == (i < 3));
+  for (int i = 0; i < 5; ++i)
+    CHECK(has_text(tree, "something happens " + std::to_string(i)) == (i < 3));
   CHECK_FALSE(has_text(tree, "outside"));
 }
 
@@ -256,46 +274,53 @@ TEST_CASE("pipelines beyond the number of colours are dashed") {
 
 TEST_CASE("a projection shows six times, open edges dotted, empty sets in words") {
   const Tree tree = drawn(sample::projection());
-  for (const std::string k : {"k = 0", "k = 2", "k = 4", "k = 6", "k = 8", "k = 11"}) CHECK(has_text(tree, k));
+  for (const std::string k : {"k = 0", "k = 2", "k = 4", "k = 6", "k = 8", "k = 11"})
+    CHECK(has_text(tree, k));
   CHECK(has_text(tree, "Dotted edges: the set continues beyond the frame."));
   CHECK(has_text(tree, "second (proven empty at k = 6, 8, 11)"));
   CHECK(has_text(tree, "first"));
   CHECK(elements(tree, "polygon").size() == 9);
   std::size_t dotted = 0;
-  for (const Tree* line : elements(tree, "line")) dotted += attribute(*line, "stroke-dasharray") == "1.5 4";
+  for (const Tree* line : elements(tree, "line"))
+    dotted += attribute(*line, "stroke-dasharray") == "1.5 4";
   CHECK(dotted == 1);
 }
 
 TEST_CASE("sets that are points or segments are drawn") {
-  Projection projection{"x", "y", {{0, 0, 1, 0, 1, {{0, {0.5}, {0.5}}, {1, {0.1, 0.9}, {0.1, 0.9}}}}}};
+  Projection projection{
+      "x", "y", {{0, 0, 1, 0, 1, {{0, {0.5}, {0.5}}, {1, {0.1, 0.9}, {0.1, 0.9}}}}}};
   const Tree tree = drawn(projection);
   CHECK(elements(tree, "circle").size() == 1);
   CHECK(elements(tree, "polygon").empty());
   std::size_t edges = 0;
-  for (const Tree* line : elements(tree, "line")) edges += attribute(*line, "stroke-linecap") == "round";
+  for (const Tree* line : elements(tree, "line"))
+    edges += attribute(*line, "stroke-linecap") == "round";
   CHECK(edges == 1);
 }
 
 TEST_CASE("a timeline has a bar per span, from half a step before to half a step after") {
-  Timeline timeline{
-      {"only"},
-      {{0, 0, 3, Timeline::State::candidate}, {0, 4, 4, Timeline::State::excluded}, {0, 0, 4, Timeline::State::truth}},
-      {}};
+  Timeline timeline{{"only"},
+                    {{0, 0, 3, Timeline::State::candidate},
+                     {0, 4, 4, Timeline::State::excluded},
+                     {0, 0, 4, Timeline::State::truth}},
+                    {}};
   const Tree tree = drawn(timeline);
   std::vector<const Tree*> bars;
   for (const Tree* bar : elements(tree, "rect")) {
     if (std::stod(attribute(*bar, "height")) == 15) bars.push_back(bar);
   }
   REQUIRE(bars.size() == 2);
-  CHECK(std::stod(attribute(*bars[0], "width")) == doctest::Approx(4 * std::stod(attribute(*bars[1], "width"))).epsilon(0.01));
-  for (const std::string text : {"only", "possible", "excluded", "true mode", "k"}) CHECK(has_text(tree, text));
+  CHECK(std::stod(attribute(*bars[0], "width")) ==
+        doctest::Approx(4 * std::stod(attribute(*bars[1], "width"))).epsilon(0.01));
+  for (const std::string text : {"only", "possible", "excluded", "true mode", "k"})
+    CHECK(has_text(tree, text));
   CHECK_FALSE(has_text(tree, "monitored"));
 }
 
 TEST_CASE("intervals show their ends, a gap where there is one, and the verdict") {
   const Tree tree = drawn(sample::intervals());
-  for (const std::string text :
-       {"model 1  [−1.25, 0.5]", "model 2  [0.75, 3]", "model 1  [−∞, 2]", "proven disjoint", "overlap"}) {
+  for (const std::string text : {"model 1  [−1.25, 0.5]", "model 2  [0.75, 3]", "model 1  [−∞, 2]",
+                                 "proven disjoint", "overlap"}) {
     CHECK(has_text(tree, text));
   }
   std::size_t gaps = 0;
@@ -308,7 +333,8 @@ TEST_CASE("a table has all its cells, the best ones bold and shaded") {
   CHECK(elements(tree, "text").size() == 12);
   std::size_t bold = 0, shaded = 0;
   for (const Tree* text : elements(tree, "text")) bold += attribute(*text, "font-weight") == "bold";
-  for (const Tree* rectangle : elements(tree, "rect")) shaded += attribute(*rectangle, "fill") == "#0072b2";
+  for (const Tree* rectangle : elements(tree, "rect"))
+    shaded += attribute(*rectangle, "fill") == "#0072b2";
   CHECK(bold == 1);
   CHECK(shaded == 2);
 }

@@ -84,7 +84,8 @@ TEST_CASE("an axis maps its ends to its places, and infinity beyond them") {
 }
 
 TEST_CASE("an axis covers the finite values, and no more than a margin beyond") {
-  const Axis axis = axis_over({-1, 3, infinite, std::numeric_limits<double>::quiet_NaN()}, false, 0, 1);
+  const Axis axis =
+      axis_over({-1, 3, infinite, std::numeric_limits<double>::quiet_NaN()}, false, 0, 1);
   CHECK(axis.lower == doctest::Approx(-1.2));
   CHECK(axis.upper == doctest::Approx(3.2));
   CHECK(axis_over({1, 10}, false, 0, 1).lower == 0);
@@ -113,7 +114,8 @@ TEST_CASE("an axis far from the origin tells its values apart") {
   CHECK((Axis{20000, 20000.01}).text(20000.0025) == "20000.0025");
   const bool holds = rc::check("ticks, and values between them", [] {
     const double lower = *rc::gen::inRange(-1000000, 1000000);
-    const Axis axis{lower, lower + std::pow(10.0, *rc::gen::inRange(-4, 4)) * *rc::gen::inRange(1, 10)};
+    const Axis axis{lower,
+                    lower + std::pow(10.0, *rc::gen::inRange(-4, 4)) * *rc::gen::inRange(1, 10)};
     std::string before;
     for (const double tick : axis.ticks(6)) {
       const std::string text = axis.text(tick);

@@ -16,18 +16,22 @@ TEST_CASE("what is no regular file is refused at once, with its name and kind") 
   REQUIRE(::mkfifo((scratch / "pipe").c_str(), 0600) == 0);
   std::filesystem::create_symlink("/dev/zero", scratch / "zero");
   CHECK_THROWS_WITH_AS(InputFile(scratch / "pipe"), doctest::Contains("pipe: 1 error"), InputError);
-  CHECK_THROWS_WITH_AS(InputFile(scratch / "pipe"), doctest::Contains("is a pipe, not a regular file"), InputError);
-  CHECK_THROWS_WITH_AS(InputFile(scratch / "zero"), doctest::Contains("is a device, not a regular file"), InputError);
-  CHECK_THROWS_WITH_AS(InputFile(scratch.path()), doctest::Contains("is a directory, not a regular file"), InputError);
-  CHECK_THROWS_WITH_AS(InputFile(scratch / "absent", "look elsewhere"), doctest::Contains("no such file; look elsewhere"),
-                       InputError);
+  CHECK_THROWS_WITH_AS(InputFile(scratch / "pipe"),
+                       doctest::Contains("is a pipe, not a regular file"), InputError);
+  CHECK_THROWS_WITH_AS(InputFile(scratch / "zero"),
+                       doctest::Contains("is a device, not a regular file"), InputError);
+  CHECK_THROWS_WITH_AS(InputFile(scratch.path()),
+                       doctest::Contains("is a directory, not a regular file"), InputError);
+  CHECK_THROWS_WITH_AS(InputFile(scratch / "absent", "look elsewhere"),
+                       doctest::Contains("no such file; look elsewhere"), InputError);
 }
 
 TEST_CASE("an error of reading is none of the end") {
   char byte = 0;
   std::string text;
   // The first page of this file cannot be read: an error that every system has.
-  CHECK_THROWS_WITH_AS(InputFile("/proc/self/mem").read(&byte, 1), doctest::Contains("cannot be read to its end"), InputError);
+  CHECK_THROWS_WITH_AS(InputFile("/proc/self/mem").read(&byte, 1),
+                       doctest::Contains("cannot be read to its end"), InputError);
   CHECK_THROWS_AS(InputFile("/proc/self/mem").line(text, 10), InputError);
   CHECK_THROWS_AS(InputFile("/proc/self/mem").rest(10, ""), InputError);
 }
@@ -50,7 +54,9 @@ TEST_CASE("lines, with and without their ends") {
   InputFile again(scratch / "lines");
   REQUIRE(again.line(text, 10));
   REQUIRE(again.line(text, 10));
-  CHECK_THROWS_WITH_AS(again.line(text, 199'999), doctest::Contains("(line 3): a line is longer than 199999 bytes"), InputError);
+  CHECK_THROWS_WITH_AS(again.line(text, 199'999),
+                       doctest::Contains("(line 3): a line is longer than 199999 bytes"),
+                       InputError);
 }
 
 TEST_CASE("a file is read up to its limit") {
@@ -59,7 +65,8 @@ TEST_CASE("a file is read up to its limit") {
   InputFile file(scratch.write("bytes", bytes));
   CHECK(file.rest(300'000, "") == bytes);
   CHECK(file.rest(300'000, "").empty());
-  CHECK_THROWS_WITH_AS(InputFile(scratch / "bytes").rest(299'999, "be short"), doctest::Contains("be short"), InputError);
+  CHECK_THROWS_WITH_AS(InputFile(scratch / "bytes").rest(299'999, "be short"),
+                       doctest::Contains("be short"), InputError);
   std::filesystem::resize_file(scratch / "bytes", std::uintmax_t{1} << 40);
   CHECK_THROWS_AS(InputFile(scratch / "bytes").rest(1 << 20, ""), InputError);
 }

@@ -22,7 +22,8 @@ TEST_CASE("one at a time holds a directory, and the other is told who") {
     const DirectoryLock lock(out);
     const std::string who = "process " + std::to_string(::getpid()) + " on ";
     CHECK_THROWS_WITH_AS(DirectoryLock{out}, doctest::Contains(who.c_str()), InputError);
-    CHECK_THROWS_WITH_AS(DirectoryLock{out}, doctest::Contains("is writing results into this directory"), InputError);
+    CHECK_THROWS_WITH_AS(DirectoryLock{out},
+                         doctest::Contains("is writing results into this directory"), InputError);
     const DirectoryLock other(scratch / "other");
   }
   CHECK_FALSE(fs::exists(scratch / "new"));  // what was made for it has gone with it

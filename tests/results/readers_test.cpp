@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every command that reads results refuses files that are not those of the run, and files that have no end.
+// Every command that reads results refuses files that are not those of the run, and files that have
+// no end.
 #include <functional>
 #include <sys/stat.h>
 
@@ -22,7 +23,8 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string study(int seed, bool sweep) {
-  const std::string axes = R"(, "sweep": [{"name": "w", "path": "/system/W/upper/0", "values": [0.5, 1]}])";
+  const std::string axes =
+      R"(, "sweep": [{"name": "w", "path": "/system/W/upper/0", "values": [0.5, 1]}])";
   return R"({"cordon": 1, "title": "two states",
   "system": {"type": "lti", "A": [[0, -0.5], [1, 1]], "Bw": [[-0.12], [0.02]], "C": [[-2, 1]], "Dv": [[0.2]],
     "X0": {"type": "box", "lower": [-3, -3], "upper": [3, 3]},
@@ -56,7 +58,9 @@ class Results {
   fs::path operator/(const std::string& name) const { return scratch_ / name; }
 
  private:
-  Study read(const std::string& text) { return read_study(scratch_.write("study.json", text), registry_, {}); }
+  Study read(const std::string& text) {
+    return read_study(scratch_.write("study.json", text), registry_, {});
+  }
 
   Scratch scratch_;
   Registry registry_;
@@ -72,7 +76,10 @@ struct Reader {
 
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> all{
-      {"verify", "run 1", {"results.json", "data.csv", "sets.jsonl"}, [](const fs::path& d, const Results&) { verify_run(d); }},
+      {"verify",
+       "run 1",
+       {"results.json", "data.csv", "sets.jsonl"},
+       [](const fs::path& d, const Results&) { verify_run(d); }},
       {"report",
        "run 1",
        {"results.json", "run.json", "steps.csv", "data.csv", "sets.jsonl"},
@@ -89,7 +96,10 @@ const std::vector<Reader>& readers() {
        [](const fs::path& d, const Results& results) {
          results_to_mat(d, {results / "out.mat", true}, true);
        }},
-      {"merge", "part 1", {"results.json", "run.json"}, [](const fs::path& d, const Results& results) {
+      {"merge",
+       "part 1",
+       {"results.json", "run.json"},
+       [](const fs::path& d, const Results& results) {
          merge_sweeps({d, results / "part 2"}, results / "whole");
        }}};
   return all;
@@ -105,7 +115,9 @@ std::string refusal(const Reader& reader, const fs::path& directory, const Resul
   return "";
 }
 
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
@@ -126,7 +138,9 @@ TEST_CASE("files that are not those of the run") {
         CAPTURE(text);
         CHECK(holds(text, (copy / file).string() + ": 1 error"));
       };
-      refused([&](const fs::path& at) { fs::copy(results / other / file, at, fs::copy_options::overwrite_existing); });
+      refused([&](const fs::path& at) {
+        fs::copy(results / other / file, at, fs::copy_options::overwrite_existing);
+      });
       refused([](const fs::path& at) { fs::resize_file(at, fs::file_size(at) - 1); });
       refused([](const fs::path& at) { fs::resize_file(at, 0); });
       refused([](const fs::path& at) { fs::remove(at); });
@@ -178,7 +192,8 @@ TEST_CASE("figures are not written where a link leads") {
     ReportOptions options;
     options.svg = svg;
     options.csv = csv;
-    CHECK_THROWS_WITH_AS(write_report(run, options), doctest::Contains("is a symbolic link"), InputError);
+    CHECK_THROWS_WITH_AS(write_report(run, options), doctest::Contains("is a symbolic link"),
+                         InputError);
     CHECK(tree(mine).size() == 1);
   }
 }
@@ -189,7 +204,9 @@ TEST_CASE("a line that never ends, and one that is cut off") {
   fs::remove(run / "manifest.json");
   fs::remove(run / "report.html");
   const std::string sets = bytes_of(run / "sets.jsonl"), data = bytes_of(run / "data.csv");
-  const auto put = [](const fs::path& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; };
+  const auto put = [](const fs::path& file, const std::string& bytes) {
+    std::ofstream(file, std::ios::binary) << bytes;
+  };
   for (const Reader& reader : readers()) {
     if (reader.of != "run 1" || std::string(reader.name) == "compare") continue;
     CAPTURE(reader.name);

@@ -38,7 +38,8 @@ Contents contents(const Names& names, const std::string& generation) {
   return all;
 }
 
-void write(const fs::path& out, const Names& names, const std::string& generation, Rename rename = detail::rename_file) {
+void write(const fs::path& out, const Names& names, const std::string& generation,
+           Rename rename = detail::rename_file) {
   const DirectoryLock lock(out);
   AtomicDirectory directory(lock, std::move(rename));
   for (const std::string& name : names) directory.create(name).write(content(name, generation));
@@ -88,7 +89,8 @@ Contents found(const fs::path& out) {
 
 }  // namespace
 
-TEST_CASE("killed before any rename, a directory holds the old or the new results and nothing is lost") {
+TEST_CASE(
+    "killed before any rename, a directory holds the old or the new results and nothing is lost") {
   const Contents old_ones = contents(old_names, "old"), new_ones = contents(new_names, "new");
   int kills = 0, of_old = 0, of_new = 0;
   for (bool goes_on = true; goes_on; ++kills) {
@@ -107,7 +109,8 @@ TEST_CASE("killed before any rename, a directory holds the old or the new result
     (now == old_ones ? of_old : of_new) += 1;
     const Contents read = [&] {
       const RecordedFiles files(scratch / "read");  // a reader does the same
-      return bytes_of(files.file("results.json")) == content("results.json", "new") ? new_ones : old_ones;
+      return bytes_of(files.file("results.json")) == content("results.json", "new") ? new_ones
+                                                                                    : old_ones;
     }();
     CHECK(read == now);
   }
@@ -140,8 +143,11 @@ TEST_CASE("a reader that is overtaken by new results says so") {
     const RecordedFiles files(scratch.path());
     CHECK(bytes_of(files.file("data.csv")) == content("data.csv", "old"));
     write(scratch.path(), new_names, "new");
-    CHECK_THROWS_WITH_AS(files.file("sets.jsonl"), doctest::Contains("is not the file that manifest.json lists"), InputError);
-    CHECK_THROWS_WITH_AS(files.check_unchanged(), doctest::Contains("was given other results while it was read"), InputError);
+    CHECK_THROWS_WITH_AS(files.file("sets.jsonl"),
+                         doctest::Contains("is not the file that manifest.json lists"), InputError);
+    CHECK_THROWS_WITH_AS(files.check_unchanged(),
+                         doctest::Contains("was given other results while it was read"),
+                         InputError);
   }
   fs::remove(scratch / "manifest.json");
   const RecordedFiles files(scratch.path());
@@ -159,13 +165,16 @@ TEST_CASE("a mix of two runs is refused, whichever file is the other one's") {
     const fs::path mixed = scratch / ("mixed " + name);
     fs::copy(scratch / "one", mixed, fs::copy_options::recursive);
     fs::copy(scratch / "two" / name, mixed / name, fs::copy_options::overwrite_existing);
-    CHECK_THROWS_WITH_AS(RecordedFiles(mixed).file(name), doctest::Contains(name.c_str()), InputError);
+    CHECK_THROWS_WITH_AS(RecordedFiles(mixed).file(name), doctest::Contains(name.c_str()),
+                         InputError);
     fs::resize_file(mixed / name, 3);
     CHECK_THROWS_AS(RecordedFiles(mixed).file(name), InputError);
     fs::remove(mixed / name);
-    CHECK_THROWS_WITH_AS(RecordedFiles(mixed).file(name), doctest::Contains("there is no such file"), InputError);
+    CHECK_THROWS_WITH_AS(RecordedFiles(mixed).file(name),
+                         doctest::Contains("there is no such file"), InputError);
   }
-  CHECK_THROWS_WITH_AS(RecordedFiles(scratch / "one").file("diagnosis.csv"), doctest::Contains("does not list it"), InputError);
+  CHECK_THROWS_WITH_AS(RecordedFiles(scratch / "one").file("diagnosis.csv"),
+                       doctest::Contains("does not list it"), InputError);
 }
 
 TEST_CASE("a manifest of any bytes is read or refused, and a hostile one leads nowhere") {
@@ -179,9 +188,12 @@ TEST_CASE("a manifest of any bytes is read or refused, and a hostile one leads n
     std::ofstream(manifest, std::ios::binary) << text;
     CHECK_THROWS_AS(RecordedFiles(scratch / "out"), InputError);
   };
-  for (std::size_t length = 0; length < whole.size() - 2; ++length) refused(whole.substr(0, length));
-  for (const char* name : {"", ".", "..", "../secret", "/etc/passwd", ".partial-1", "a/b", "manifest.json", "a\\nb", "é"}) {
-    refused(R"({"cordon_manifest": 1, "files": [{"name": ")" + std::string(name) + R"(", "bytes": 1, "fnv1a64": "0"}]})");
+  for (std::size_t length = 0; length < whole.size() - 2; ++length)
+    refused(whole.substr(0, length));
+  for (const char* name : {"", ".", "..", "../secret", "/etc/passwd", ".partial-1", "a/b",
+                           "manifest.json", "a\\nb", "é"}) {
+    refused(R"({"cordon_manifest": 1, "files": [{"name": ")" + std::string(name) +
+            R"(", "bytes": 1, "fnv1a64": "0"}]})");
   }
   refused(R"({"cordon_manifest": 2, "files": []})");
   refused(R"({"cordon_manifest": 1, "files": [{"name": "a", "bytes": -1, "fnv1a64": "0"}]})");
@@ -191,6 +203,7 @@ TEST_CASE("a manifest of any bytes is read or refused, and a hostile one leads n
   fs::create_symlink("/dev/zero", manifest);
   CHECK_THROWS_AS(RecordedFiles(scratch / "out"), InputError);
   fs::create_directory_symlink(scratch.path(), scratch / "out/.committed");
-  CHECK_THROWS_WITH_AS(RecordedFiles(scratch / "out"), doctest::Contains("is no directory"), InputError);
+  CHECK_THROWS_WITH_AS(RecordedFiles(scratch / "out"), doctest::Contains("is no directory"),
+                       InputError);
   CHECK(bytes_of(scratch / "secret") == "secret");
 }

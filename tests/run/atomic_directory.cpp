@@ -26,7 +26,8 @@ TEST_CASE("files appear at commit, all of them") {
   CHECK(tree(out).count("a") == 0);
   const auto files = directory.commit();
   CHECK(files == std::vector<fs::path>{out / "a", out / "b"});
-  CHECK(tree(out) == std::map<std::string, std::string>{{"a", "first"}, {"b", std::string(200000, 'x')}});
+  CHECK(tree(out) ==
+        std::map<std::string, std::string>{{"a", "first"}, {"b", std::string(200000, 'x')}});
 }
 
 TEST_CASE("without commit old files stay and nothing else is left") {
@@ -51,10 +52,13 @@ TEST_CASE("without commit old files stay and nothing else is left") {
   CHECK(tree(scratch.path()) == std::map<std::string, std::string>{{"a", "new"}});
 }
 
-TEST_CASE("a target that is a file, lies below a file, or holds a directory of a result's name is refused") {
+TEST_CASE(
+    "a target that is a file, lies below a file, or holds a directory of a result's name is "
+    "refused") {
   const Scratch scratch;
   std::ofstream(scratch / "file") << "mine";
-  CHECK_THROWS_WITH_AS(AtomicDirectory(scratch / "file"), doctest::Contains("it is a file; name a directory"), Error);
+  CHECK_THROWS_WITH_AS(AtomicDirectory(scratch / "file"),
+                       doctest::Contains("it is a file; name a directory"), Error);
   CHECK_THROWS_AS(AtomicDirectory(scratch / "file" / "below"), Error);
   CHECK(bytes_of(scratch / "file") == "mine");
   fs::create_directory(scratch / "a");
@@ -65,18 +69,21 @@ TEST_CASE("a target that is a file, lies below a file, or holds a directory of a
 
 TEST_CASE("a directory without permission is refused before anything is computed") {
   if (::geteuid() == 0) {
-    CHECK_THROWS_WITH_AS(AtomicDirectory("/proc/cordon"), doctest::Contains("/proc/cordon"), Error);  // root may write elsewhere
+    CHECK_THROWS_WITH_AS(AtomicDirectory("/proc/cordon"), doctest::Contains("/proc/cordon"),
+                         Error);  // root may write elsewhere
     return;
   }
   const Scratch scratch;
   fs::permissions(scratch.path(), fs::perms::owner_read | fs::perms::owner_exec);
-  CHECK_THROWS_WITH_AS(AtomicDirectory{scratch.path()}, doctest::Contains("Permission denied"), Error);
+  CHECK_THROWS_WITH_AS(AtomicDirectory{scratch.path()}, doctest::Contains("Permission denied"),
+                       Error);
   fs::permissions(scratch.path(), fs::perms::owner_all);
 }
 
 TEST_CASE("leftovers of dead processes are removed, those of living ones stay") {
   const Scratch scratch;
-  fs::create_directory(scratch / ".partial-1-0");  // the number of a living process, but nobody holds it
+  fs::create_directory(scratch /
+                       ".partial-1-0");  // the number of a living process, but nobody holds it
   std::ofstream(scratch / ".partial-1-0/results.json") << "half";
   std::ofstream(scratch / ".partial-note") << "a file";
   AtomicDirectory living(scratch.path());
@@ -86,7 +93,8 @@ TEST_CASE("leftovers of dead processes are removed, those of living ones stay") 
   { const AtomicDirectory second(scratch.path()); }
   CHECK(tree(scratch.path()).size() == before);
   living.commit();
-  CHECK(tree(scratch.path()) == std::map<std::string, std::string>{{".partial-note", "a file"}, {"a", "x"}});
+  CHECK(tree(scratch.path()) ==
+        std::map<std::string, std::string>{{".partial-note", "a file"}, {"a", "x"}});
 }
 
 TEST_CASE("a process that is killed leaves old results, and its leftovers go at the next start") {

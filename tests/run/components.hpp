@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Components for tests of runs, registered in the process: a box backend that rests on the exchange form, a recursive observer,
-// observers that misbehave, and metrics.
+// Components for tests of runs, registered in the process: a box backend that rests on the exchange
+// form, a recursive observer, observers that misbehave, and metrics.
 #pragma once
 
 #include <limits>
@@ -41,7 +41,9 @@ class BoxBackend final : public SetBackend {
 class Recursive : public Observer {
  public:
   explicit Recursive(const ObserverContext& context)
-      : Observer(context.model, context.backend), W_(backend().import(model().W)), V_(backend().import(model().V)) {}
+      : Observer(context.model, context.backend),
+        W_(backend().import(model().W)),
+        V_(backend().import(model().V)) {}
 
  protected:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {
@@ -50,7 +52,9 @@ class Recursive : public Observer {
   Enclosure do_step(const Sample& before, const Sample& now) override {
     const LinearModel& m = model().linear;
     const Term term{m.Bw, W_};
-    const Enclosure next = timed(Phase::predict, [&] { return backend().predict(X_, {m.A, m.B * before.u, {&term, 1}}); });
+    const Enclosure next = timed(Phase::predict, [&] {
+      return backend().predict(X_, {m.A, m.B * before.u, {&term, 1}});
+    });
     return X_ = corrected(next, now);
   }
   void do_replace(const Enclosure& X) override { X_ = X; }
@@ -58,25 +62,29 @@ class Recursive : public Observer {
  private:
   Enclosure corrected(const Enclosure& X, const Sample& now) {
     const LinearModel& m = model().linear;
-    return timed(Phase::correct, [&] { return backend().correct(X, {m.C, now.y - m.D * now.u, {m.Dv, V_}}); });
+    return timed(Phase::correct, [&] {
+      return backend().correct(X, {m.C, now.y - m.D * now.u, {m.Dv, V_}});
+    });
   }
 
   Enclosure W_, V_, X_;
 };
 
-/// Offers two gains, and from k = 2 on an inner estimate: the hull of its estimate scaled by `scale`, from k = 7 on by `later`;
-/// of one state too few if `cut`.
+/// Offers two gains, and from k = 2 on an inner estimate: the hull of its estimate scaled by
+/// `scale`, from k = 7 on by `later`; of one state too few if `cut`.
 class Offering final : public Recursive {
  public:
   Offering(const ObserverContext& context, const Params& p)
       : Recursive(context), scale_(p.real("scale")), later_(p.real("later")), cut_(p.flag("cut")) {}
 
   std::vector<Gain> gains() const override {
-    Gain designed{"upper_gain", "designed", Matrix{{.5}, {-.25}}, {}}, given{"gain", "given", Matrix{{.5}, {0}}, {}};
+    Gain designed{"upper_gain", "designed", Matrix{{.5}, {-.25}}, {}},
+        given{"gain", "given", Matrix{{.5}, {0}}, {}};
     designed.certificate = {.75, Answer::yes, 2.5, 2.5, "γ", 2.5, 2.4375, .001};
     given.certificate.spectral_radius = 1.25;
     given.certificate.monotone = Answer::no;
-    given.certificate.norm_lower = given.certificate.norm_upper = std::numeric_limits<double>::infinity();
+    given.certificate.norm_lower = given.certificate.norm_upper =
+        std::numeric_limits<double>::infinity();
     return {designed, given};
   }
   std::optional<Box> inner_estimate() const override {
@@ -103,7 +111,9 @@ class Offering final : public Recursive {
 };
 
 /// The additive faults of the tests' data.
-inline Vector additive_faults(Index k) { return Vector{{k % 20 >= 9 && k % 20 < 14 ? 1. : 0., -.5}}; }
+inline Vector additive_faults(Index k) {
+  return Vector{{k % 20 >= 9 && k % 20 < 14 ? 1. : 0., -.5}};
+}
 
 /// Data that tell neither additive faults nor modes.
 class WithoutFaults final : public DataSource {
@@ -126,12 +136,15 @@ class WithoutFaults final : public DataSource {
 class WithFaults final : public DataSource {
  public:
   /// Faults in the nominal mode are what a diagnoser would never meet: excluding it is then false.
-  explicit WithFaults(std::unique_ptr<DataSource> data, bool nominal = false) : data_(std::move(data)), nominal_(nominal) {}
+  explicit WithFaults(std::unique_ptr<DataSource> data, bool nominal = false)
+      : data_(std::move(data)), nominal_(nominal) {}
   std::optional<Record> next() override {
     std::optional<Record> record = data_->next();
     if (!record) return record;
     record->fault = additive_faults(record->sample.k);
-    record->mode = nominal_ || (*record->fault)[0] == 0 ? 0 : -1;  // as if fault 2 were part of the nominal mode
+    record->mode = nominal_ || (*record->fault)[0] == 0
+                       ? 0
+                       : -1;  // as if fault 2 were part of the nominal mode
     return record;
   }
   std::optional<std::int64_t> size() const override { return data_->size(); }
@@ -141,8 +154,9 @@ class WithFaults final : public DataSource {
   bool nominal_;
 };
 
-/// Monitors the nominal mode as long as its bounds hold 0: fault 1 at k - 1 and fault 2 at k - 3, ± .25, with an estimate that is
-/// off by .125. From k = 12 of run number `crooked` on the bounds of fault 2 are off by `off`. `broken` bounds are none.
+/// Monitors the nominal mode as long as its bounds hold 0: fault 1 at k - 1 and fault 2 at k - 3, ±
+/// .25, with an estimate that is off by .125. From k = 12 of run number `crooked` on the bounds of
+/// fault 2 are off by `off`. `broken` bounds are none.
 class Bounding final : public Diagnoser {
  public:
   Bounding(const DiagnoserContext& context, const Params& p)
@@ -161,7 +175,8 @@ class Bounding final : public Diagnoser {
     says.modes.resize(static_cast<std::size_t>(bank().size()));
     for (ModeEvidence& evidence : says.modes) evidence.candidate = true;
     if (now.k >= 1) says.faults.push_back(bound(0, now.k - 1, 0));
-    if (now.k >= 3) says.faults.push_back(bound(1, now.k - 3, runs_ == crooked_ && now.k >= 12 ? off_ : 0));
+    if (now.k >= 3)
+      says.faults.push_back(bound(1, now.k - 3, runs_ == crooked_ && now.k >= 12 ? off_ : 0));
     if (now.k == 4) spoil(says);
     // fault 2 is there at all times: only fault 1 decides
     if (now.k >= 1 && says.faults[0].lower > 0) {
@@ -201,12 +216,16 @@ class Bounding final : public Diagnoser {
 /// Breaks down at k = 5, in one of several ways.
 class Breaking final : public Observer {
  public:
-  Breaking(const ObserverContext& context, std::string how) : Observer(context.model, context.backend), how_(std::move(how)) {}
+  Breaking(const ObserverContext& context, std::string how)
+      : Observer(context.model, context.backend), how_(std::move(how)) {}
 
  private:
-  Enclosure do_start(const std::optional<Enclosure>&, const Sample&) override { return backend().space(model().linear.states()); }
+  Enclosure do_start(const std::optional<Enclosure>&, const Sample&) override {
+    return backend().space(model().linear.states());
+  }
   Enclosure do_step(const Sample&, const Sample& now) override {
-    if (now.k == 5 && how_ == "error") throw Error(Errc::unsupported, "out of \"order\",\nat k = 5");
+    if (now.k == 5 && how_ == "error")
+      throw Error(Errc::unsupported, "out of \"order\",\nat k = 5");
     if (now.k == 5 && how_ == "exception") throw std::runtime_error("something else");
     if (now.k == 5 && how_ == "int") throw 5;
     return backend().space(model().linear.states());
@@ -222,12 +241,16 @@ class Claiming final : public Observer {
   Claiming(const ObserverContext& context, double radius, double admissible)
       : Observer(context.model, context.backend), radius_(radius) {
     const Index n = model().linear.states();
-    if (admissible > 0) admissible_ = backend().box({Vector::Constant(n, -admissible), Vector::Constant(n, admissible)});
+    if (admissible > 0)
+      admissible_ =
+          backend().box({Vector::Constant(n, -admissible), Vector::Constant(n, admissible)});
   }
   const Set* admissible_set() const override { return admissible_.set.get(); }
 
  private:
-  Enclosure do_start(const std::optional<Enclosure>&, const Sample&) override { return backend().space(model().linear.states()); }
+  Enclosure do_start(const std::optional<Enclosure>&, const Sample&) override {
+    return backend().space(model().linear.states());
+  }
   Enclosure do_step(const Sample&, const Sample& now) override {
     const Index n = model().linear.states();
     if (now.k < 3) return backend().space(n);
@@ -258,7 +281,9 @@ class Radius final : public Metric {
 
 class Time final : public Metric {
  public:
-  std::vector<MetricValue> step(const StepView& view) override { return {{"step_time", view.times.step()}}; }
+  std::vector<MetricValue> step(const StepView& view) override {
+    return {{"step_time", view.times.step()}};
+  }
   std::vector<MetricValue> summary() const override { return {{"steps_timed", Index{1}}}; }
   bool reproducible() const override { return false; }
 };
@@ -266,12 +291,15 @@ class Time final : public Metric {
 /// Changes the names of its values after the first step.
 class Fickle final : public Metric {
  public:
-  std::vector<MetricValue> step(const StepView& view) override { return {{view.estimate.k == 0 ? "a" : "b", 1.0}}; }
+  std::vector<MetricValue> step(const StepView& view) override {
+    return {{view.estimate.k == 0 ? "a" : "b", 1.0}};
+  }
   std::vector<MetricValue> summary() const override { return {}; }
 };
 
-/// Says what its script tells it, whatever the data are: `excludes` is contradicted, and the nominal mode left, at `at`, one step
-/// later each time it is started again, and `mode` is isolated at the step after. Breaks down at k = 5 of run number `breaks`.
+/// Says what its script tells it, whatever the data are: `excludes` is contradicted, and the
+/// nominal mode left, at `at`, one step later each time it is started again, and `mode` is isolated
+/// at the step after. Breaks down at k = 5 of run number `breaks`.
 class Scripted final : public Diagnoser {
  public:
   Scripted(const DiagnoserContext& context, const Params& script)
@@ -293,7 +321,8 @@ class Scripted final : public Diagnoser {
     says.modes.resize(static_cast<std::size_t>(bank().size()));
     for (ModeEvidence& evidence : says.modes) {
       evidence.candidate = now.k == at;
-      evidence.residual = {Vector::Constant(now.y.size(), -.25), Vector::Constant(now.y.size(), .5)};
+      evidence.residual = {Vector::Constant(now.y.size(), -.25),
+                           Vector::Constant(now.y.size(), .5)};
     }
     if (now.k >= at) {
       says.reset = now.k == at;
@@ -302,7 +331,8 @@ class Scripted final : public Diagnoser {
       says.mode = now.k == at ? -1 : mode_;
       says.suggested = now.k == at ? mode_ : -1;
     }
-    if (says.mode >= 0 && says.mode < bank().size()) says.modes[static_cast<std::size_t>(says.mode)].candidate = true;
+    if (says.mode >= 0 && says.mode < bank().size())
+      says.modes[static_cast<std::size_t>(says.mode)].candidate = true;
     if (now.k == at) {
       ModeEvidence& first = says.modes[static_cast<std::size_t>(excludes_)];
       first.consistent = Answer::no;
@@ -313,8 +343,12 @@ class Scripted final : public Diagnoser {
   }
   std::optional<Guarantees> do_guarantees() const override {
     if (!promises_) return std::nullopt;
-    const Box inside{-Vector::Ones(1), Vector::Ones(1)}, outside{Vector::Ones(1), 2 * Vector::Ones(1)};
-    Guarantees found{"by hand", {{0, 0, inside, Answer::yes}, {1, 0, outside, Answer::unknown}}, Answer::unknown, {}};
+    const Box inside{-Vector::Ones(1), Vector::Ones(1)},
+        outside{Vector::Ones(1), 2 * Vector::Ones(1)};
+    Guarantees found{"by hand",
+                     {{0, 0, inside, Answer::yes}, {1, 0, outside, Answer::unknown}},
+                     Answer::unknown,
+                     {}};
     found.error_set = ErrorSetCheck{make_box(inside), false, .5, .25, 1, 0};
     return found;
   }
@@ -324,28 +358,38 @@ class Scripted final : public Diagnoser {
 };
 
 inline void register_all(Registrar& registrar) {
-  registrar.backend({{"box", "boxes", "", {}}, [](const Params&) { return std::make_unique<BoxBackend>(); }});
-  const auto no_problem = [](const ObserverContext&, const Params&) { return std::vector<Diagnostic>{}; };
-  registrar.observer({{"recursive", "predicts and corrects", "", {}}, no_problem, [](const ObserverContext& c, const Params&) {
-                        return std::make_unique<Recursive>(c);
-                      }});
+  registrar.backend(
+      {{"box", "boxes", "", {}}, [](const Params&) { return std::make_unique<BoxBackend>(); }});
+  const auto no_problem = [](const ObserverContext&, const Params&) {
+    return std::vector<Diagnostic>{};
+  };
+  registrar.observer(
+      {{"recursive", "predicts and corrects", "", {}},
+       no_problem,
+       [](const ObserverContext& c, const Params&) { return std::make_unique<Recursive>(c); }});
   ParamSchema how;
   how.choice("how", "way to break down", {"error", "exception", "int"}, "error");
-  registrar.observer({{"breaking", "breaks down", "", how}, no_problem, [](const ObserverContext& c, const Params& p) {
+  registrar.observer({{"breaking", "breaks down", "", how},
+                      no_problem,
+                      [](const ObserverContext& c, const Params& p) {
                         return std::make_unique<Breaking>(c, p.text("how"));
                       }});
   ParamSchema offer;
   offer.real("scale", "of the inner estimate", .5, 0, 10);
   offer.real("later", "the same from k = 7 on", .5, 0, 10);
   offer.flag("cut", "leaves out a state", false);
-  registrar.observer({{"offering", "offers gains and an inner estimate", "", offer},
-                      no_problem,
-                      [](const ObserverContext& c, const Params& p) { return std::make_unique<Offering>(c, p); }});
+  registrar.observer(
+      {{"offering", "offers gains and an inner estimate", "", offer},
+       no_problem,
+       [](const ObserverContext& c, const Params& p) { return std::make_unique<Offering>(c, p); }});
   ParamSchema claim;
   claim.real("radius", "of the claimed box", 1e-3, -1, 1e9);
   claim.real("admissible", "radius of the admissible set; 0: none", 0, 0, 1e9);
-  registrar.observer({{"claiming", "claims a box", "", claim}, no_problem, [](const ObserverContext& c, const Params& p) {
-                        return std::make_unique<Claiming>(c, p.real("radius"), p.real("admissible"));
+  registrar.observer({{"claiming", "claims a box", "", claim},
+                      no_problem,
+                      [](const ObserverContext& c, const Params& p) {
+                        return std::make_unique<Claiming>(c, p.real("radius"),
+                                                          p.real("admissible"));
                       }});
   ParamSchema script;
   script.integer("at", "first k of the exclusion; -1: never", 10, -1, 1000000);
@@ -356,27 +400,37 @@ inline void register_all(Registrar& registrar) {
   script.set("admissible_set", "an assumption");
   script.set("other_set", "none");
   script.component("observer", "with assumptions of its own", "observer");
-  const auto no_diagnoser_problem = [](const DiagnoserContext&, const Params&) { return std::vector<Diagnostic>{}; };
+  const auto no_diagnoser_problem = [](const DiagnoserContext&, const Params&) {
+    return std::vector<Diagnostic>{};
+  };
   registrar.diagnoser({{"scripted", "says what it is told", "", script},
                        no_diagnoser_problem,
-                       [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Scripted>(c, p); }});
+                       [](const DiagnoserContext& c, const Params& p) {
+                         return std::make_unique<Scripted>(c, p);
+                       }});
   ParamSchema bounds;
   bounds.integer("crooked", "number of the run with false bounds; 0: none", 0, 0, 1000);
   bounds.real("off", "by how much they are off", .5, -10, 10);
   bounds.choice("broken", "what is wrong with a bound",
-                {"nothing", "order", "estimate", "nan", "future", "before", "twice", "index"}, "nothing");
-  registrar.diagnoser({{"bounding", "bounds additive faults", "", bounds},
-                       no_diagnoser_problem,
-                       [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Bounding>(c, p); },
-                       true,
-                       false});
+                {"nothing", "order", "estimate", "nan", "future", "before", "twice", "index"},
+                "nothing");
+  registrar.diagnoser(
+      {{"bounding", "bounds additive faults", "", bounds},
+       no_diagnoser_problem,
+       [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Bounding>(c, p); },
+       true,
+       false});
   register_designing(registrar);
-  registrar.metric({{"radius", "half the longest edge", "", {}}, [](const Params&) { return std::make_unique<Radius>(); }});
-  registrar.metric({{"time", "of a step", "", {}}, [](const Params&) { return std::make_unique<Time>(); }});
-  registrar.metric({{"fickle", "changes its names", "", {}}, [](const Params&) { return std::make_unique<Fickle>(); }});
+  registrar.metric({{"radius", "half the longest edge", "", {}},
+                    [](const Params&) { return std::make_unique<Radius>(); }});
+  registrar.metric(
+      {{"time", "of a step", "", {}}, [](const Params&) { return std::make_unique<Time>(); }});
+  registrar.metric({{"fickle", "changes its names", "", {}},
+                    [](const Params&) { return std::make_unique<Fickle>(); }});
 }
 
-inline PipelineSpec pipeline(std::string name, std::string observer = "recursive", Params params = {}) {
+inline PipelineSpec pipeline(std::string name, std::string observer = "recursive",
+                             Params params = {}) {
   return {std::move(name), {"box", {}}, {std::move(observer), std::move(params)}};
 }
 
@@ -411,7 +465,8 @@ inline Study study(std::vector<PipelineSpec> pipelines, std::int64_t steps = 20)
 
 /// The same with two additive faults and the diagnoser that knows of them.
 inline Study study_with_faults(Params params, std::int64_t steps = 20) {
-  Study s = study({{"filter", {"box", {}}, {}, ComponentSpec{"bounding", std::move(params)}}}, steps);
+  Study s =
+      study({{"filter", {"box", {}}, {}, ComponentSpec{"bounding", std::move(params)}}}, steps);
   s.model.linear.F = Matrix::Identity(2, 2);
   return s;
 }

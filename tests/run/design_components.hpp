@@ -14,8 +14,9 @@ namespace fakes {
 
 using namespace cordon;
 
-/// Says of an input that is 1 throughout whatever its parameters tell: how it is found, whether a tube is empty, and whether it
-/// breaks down; `bounded` assumes a state that is far away. `waits` until it is stopped.
+/// Says of an input that is 1 throughout whatever its parameters tell: how it is found, whether a
+/// tube is empty, and whether it breaks down; `bounded` assumes a state that is far away. `waits`
+/// until it is stopped.
 class Designing final : public InputDesigner {
  public:
   Designing(const DesignerContext& context, const Params& params)
@@ -41,7 +42,8 @@ class Designing final : public InputDesigner {
                                           : DesignStatus::feasible;
     if (outcome.status == DesignStatus::feasible) outcome.best = design(says);
     if (outcome.best) outcome.lower_bound = 4;
-    if (says == "bounded") outcome.admissible_set = make_point(Vector::Constant(bank()[0].model.linear.states(), 100));
+    if (says == "bounded")
+      outcome.admissible_set = make_point(Vector::Constant(bank()[0].model.linear.states(), 100));
     return outcome;
   }
 
@@ -51,7 +53,8 @@ class Designing final : public InputDesigner {
     made.cost = 5;
     for (Index i = 0; i < bank().size(); ++i) {
       for (Index j = i + 1; j < bank().size(); ++j) {
-        made.pairs.push_back({i, j, .5, .25, Answer::yes, {Certificate::Kind::farkas, Vector::Ones(1), .125}});
+        made.pairs.push_back(
+            {i, j, .5, .25, Answer::yes, {Certificate::Kind::farkas, Vector::Ones(1), .125}});
       }
       made.empty.push_back(says == "empty" && i == 1 ? Answer::yes : Answer::no);
       made.outputs.push_back({-Vector::Ones(3), Vector::Ones(3)});
@@ -68,10 +71,10 @@ inline std::vector<Vector>& first_outputs() {
   return seen;
 }
 
-/// Knows that experiments come in the order of three modes with two seeds each: `truth` isolates the mode at k = 1, in every
-/// second run at k = 2; `lies` is wrong in the first run, and always mode 0 later; `open` excludes the last mode only, `none`
-/// excludes all, `throws` breaks down in the third run; `wavers` isolates the mode at k = 1 only, in every second run at
-/// all k but 1.
+/// Knows that experiments come in the order of three modes with two seeds each: `truth` isolates
+/// the mode at k = 1, in every second run at k = 2; `lies` is wrong in the first run, and always
+/// mode 0 later; `open` excludes the last mode only, `none` excludes all, `throws` breaks down in
+/// the third run; `wavers` isolates the mode at k = 1 only, in every second run at all k but 1.
 class Telling final : public Diagnoser {
  public:
   Telling(const DiagnoserContext& context, const Params& params)
@@ -87,7 +90,8 @@ class Telling final : public Diagnoser {
     says.decision = Decision::isolating;
     says.modes.resize(static_cast<std::size_t>(bank().size()));
     if (tells_ == "wavers" ? (now.k == 1) == (runs_ % 2 == 0) : now.k == 0) return says;
-    const Index mode = tells_ == "lies" ? (runs_ == 1 ? 1 : 0) : (runs_ - 1) / 2 % 3;  // two seeds, three modes
+    const Index mode =
+        tells_ == "lies" ? (runs_ == 1 ? 1 : 0) : (runs_ - 1) / 2 % 3;  // two seeds, three modes
     if (tells_ == "open") {
       says.decision = Decision::ambiguous;
       exclude(says, 2);
@@ -95,7 +99,8 @@ class Telling final : public Diagnoser {
       says.decision = Decision::unknown_fault;
       for (Index j = 0; j < bank().size(); ++j) exclude(says, j);
     } else {
-      if (tells_ != "wavers" && now.k == 1 && runs_ % 2 == 0) return says;  // every second run is isolated later
+      if (tells_ != "wavers" && now.k == 1 && runs_ % 2 == 0)
+        return says;  // every second run is isolated later
       says.decision = Decision::monitoring;
       says.mode = mode;
       for (Index j = 0; j < bank().size(); ++j) {
@@ -116,17 +121,23 @@ class Telling final : public Diagnoser {
 
 inline void register_designing(Registrar& registrar) {
   ParamSchema outcome;
-  outcome.choice("says", "what becomes of the search", {"found", "empty", "bounded", "infeasible", "unknown", "throws", "waits"},
+  outcome.choice("says", "what becomes of the search",
+                 {"found", "empty", "bounded", "infeasible", "unknown", "throws", "waits"},
                  "found");
-  registrar.designer({{"designing", "designs what it is told", "", outcome},
-                      [](const DesignerContext&, const Params&) { return std::vector<Diagnostic>{}; },
-                      [](const DesignerContext& c, const Params& p) { return std::make_unique<Designing>(c, p); }});
+  registrar.designer(
+      {{"designing", "designs what it is told", "", outcome},
+       [](const DesignerContext&, const Params&) { return std::vector<Diagnostic>{}; },
+       [](const DesignerContext& c, const Params& p) {
+         return std::make_unique<Designing>(c, p);
+       }});
   ParamSchema tells;
-  tells.choice("tells", "how it ends", {"truth", "open", "none", "lies", "throws", "wavers"}, "truth");
+  tells.choice("tells", "how it ends", {"truth", "open", "none", "lies", "throws", "wavers"},
+               "truth");
   tells.set("admissible_set", "an assumption");
-  registrar.diagnoser({{"telling", "knows the order of experiments", "", tells},
-                       [](const DiagnoserContext&, const Params&) { return std::vector<Diagnostic>{}; },
-                       [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Telling>(c, p); }});
+  registrar.diagnoser(
+      {{"telling", "knows the order of experiments", "", tells},
+       [](const DiagnoserContext&, const Params&) { return std::vector<Diagnostic>{}; },
+       [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Telling>(c, p); }});
 }
 
 inline PipelineSpec design(std::string name, std::string says = "found", std::string tells = {}) {

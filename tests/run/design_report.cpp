@@ -47,7 +47,9 @@ PipelineDesign design() {
 }
 
 ExactSeparation exact(Answer disjoint, Answer empty = Answer::no) {
-  return {{{0, 1, disjoint, .0625, disjoint == Answer::unknown ? "too large" : ""}}, {empty, Answer::no}, .5};
+  return {{{0, 1, disjoint, .0625, disjoint == Answer::unknown ? "too large" : ""}},
+          {empty, Answer::no},
+          .5};
 }
 
 PipelineDesign without(DesignStatus status) {
@@ -59,8 +61,12 @@ PipelineDesign without(DesignStatus status) {
   return d;
 }
 
-std::string text(const PipelineDesign& d) { return apps::designs_text(study(), {d}, apps::Paint(stdout)); }
-bool has(const std::string& where, const std::string& what) { return where.find(what) != std::string::npos; }
+std::string text(const PipelineDesign& d) {
+  return apps::designs_text(study(), {d}, apps::Paint(stdout));
+}
+bool has(const std::string& where, const std::string& what) {
+  return where.find(what) != std::string::npos;
+}
 
 }  // namespace
 
@@ -87,8 +93,9 @@ TEST_CASE("a design on paper") {
   d.outcome->best->pairs[0].disjoint = Answer::unknown;
   shown = text(d);
   CHECK(has(shown, "Feasible: cost 18.5, no lower bound is known\n"));
-  CHECK(
-      has(shown, "Searched in place of the problem: the reduced problem; that one costs at least 18.25, the problem itself may"));
+  CHECK(has(shown,
+            "Searched in place of the problem: the reduced problem; that one costs at least 18.25, "
+            "the problem itself may"));
   CHECK_FALSE(has(shown, "gap"));
   CHECK(has(shown, "the last output"));
   CHECK(has(shown, "ended by the limit"));
@@ -142,15 +149,15 @@ TEST_CASE("the exact proof beside the design") {
 }
 
 TEST_CASE("exit codes, and a sentence for each that is not 0") {
-  const auto expect = [&](const std::vector<PipelineDesign>& designs, apps::Exit exit, const std::string& sentence,
-                          bool all_proven = false) {
+  const auto expect = [&](const std::vector<PipelineDesign>& designs, apps::Exit exit,
+                          const std::string& sentence, bool all_proven = false) {
     CHECK(apps::exit_of(designs, all_proven) == exit);
     const std::vector<std::string> said = apps::complaints(study(), designs, all_proven);
     CHECK(said.empty() == sentence.empty());
     if (!said.empty()) CHECK_MESSAGE(has(said.back(), sentence), said.back());
   };
-  PipelineDesign proven = design(), open = design(), wrong = design(), empty = design(), exactly_empty = design(),
-                 broken = design(), crooked = design();
+  PipelineDesign proven = design(), open = design(), wrong = design(), empty = design(),
+                 exactly_empty = design(), broken = design(), crooked = design();
   proven.exact = exact(Answer::yes);
   open.exact = exact(Answer::unknown);
   wrong.exact = exact(Answer::no);
@@ -163,7 +170,8 @@ TEST_CASE("exit codes, and a sentence for each that is not 0") {
   crooked.outcome.reset();
   crooked.error = "its input is too short";
   crooked.error_code = Errc::violated;
-  const PipelineDesign infeasible = without(DesignStatus::infeasible), unknown = without(DesignStatus::unknown);
+  const PipelineDesign infeasible = without(DesignStatus::infeasible),
+                       unknown = without(DesignStatus::unknown);
   expect({design(), infeasible, proven}, apps::Exit::done, "");
   expect({unknown}, apps::Exit::unanswered, "no input was found");
   expect({open}, apps::Exit::done, "");
@@ -172,9 +180,11 @@ TEST_CASE("exit codes, and a sentence for each that is not 0") {
   expect({exactly_empty}, apps::Exit::invalid, "no output of healthy fits");
   expect({unknown, broken}, apps::Exit::plugin, "out of ideas");
   expect({broken, empty}, apps::Exit::plugin, "contradicts itself");
-  expect({empty, broken, wrong}, apps::Exit::violated, "violates its guarantee: the output tubes of a and b are called disjoint");
+  expect({empty, broken, wrong}, apps::Exit::violated,
+         "violates its guarantee: the output tubes of a and b are called disjoint");
   expect({empty, crooked}, apps::Exit::violated, "its input is too short");
-  CHECK(has(text(wrong), "Proven false: the output tubes of a and b are called disjoint, and meet\n"));
+  CHECK(has(text(wrong),
+            "Proven false: the output tubes of a and b are called disjoint, and meet\n"));
 }
 
 TEST_CASE("designs for programs") {
@@ -210,7 +220,8 @@ TEST_CASE("a design in a run, with its experiments") {
   outcome.pipelines = {p};
   CHECK(has(apps::report_text(study(), outcome, "out"), "No experiments: name a \"diagnoser\""));
   p.diagnoser = "tube_membership";
-  p.experiments = {{0, 500, {500, 12}, 488, 0, 0, 12, {488, 1, 2, 1.5}}, {1, 500, {0, 500}, 499, 1, 0, 0, {}}};
+  p.experiments = {{0, 500, {500, 12}, 488, 0, 0, 12, {488, 1, 2, 1.5}},
+                   {1, 500, {0, 500}, 499, 1, 0, 0, {}}};
   outcome.pipelines = {p};
   const std::string shown = apps::report_text(study(), outcome, "out");
   CHECK(has(shown, "AFD  line_zonotope, facets, tube_membership\n"));
@@ -234,12 +245,14 @@ TEST_CASE("a design in a run, with its experiments") {
   outcome.pipelines[0].assumptions_until = 2;
   outcome.pipelines[0].failed_assumption = FailedAssumption{What::admissible_set, 2, 2, -1, 0};
   CHECK(apps::exit_of(outcome) == apps::Exit::done);
-  CHECK(has(apps::report_text(study(), outcome, "out"), "Assumption failed: x_2 lies outside an admissible set"));
+  CHECK(has(apps::report_text(study(), outcome, "out"),
+            "Assumption failed: x_2 lies outside an admissible set"));
   const json told = json::parse(apps::report_json(study(), outcome))["pipelines"][0];
   CHECK(told["assumptions_until"] == 2);
   CHECK(told["failed_assumption"]["what"] == "admissible_set");
   outcome.pipelines[0].failed_assumption = FailedAssumption{What::initial_set, 0, 0, 1, 0};
-  CHECK(has(apps::report_text(study(), outcome, "out"), "Assumption failed: x_0 lies outside X0 of mode \"leak\""));
+  CHECK(has(apps::report_text(study(), outcome, "out"),
+            "Assumption failed: x_0 lies outside X0 of mode \"leak\""));
   outcome.pipelines[0] = p;
   outcome.pipelines[0].refuted = {"u_k is outside"};
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);
@@ -258,7 +271,8 @@ TEST_CASE("a design in a run, with its experiments") {
   CHECK_FALSE(has(apps::complaints(study(), outcome).at(0), "limit"));
   outcome.pipelines[0].design->stopped = true;
   CHECK(has(apps::complaints(study(), outcome).at(0), "no input was found within the limit"));
-  CHECK(has(apps::report_text(study(), outcome, "out"), "No experiments: there is no input to try\n"));
+  CHECK(has(apps::report_text(study(), outcome, "out"),
+            "No experiments: there is no input to try\n"));
 }
 
 TEST_CASE("experiments that stay open because the diagnoser stops before the input does") {

@@ -56,7 +56,8 @@ TEST_CASE("every mode is tried with every seed, and the confusion table counts t
     const ExperimentRow& row = found.experiments[static_cast<std::size_t>(i)];
     CHECK(row.mode == i);
     CHECK(row.runs == 2);
-    for (Index j = 0; j < 3; ++j) CHECK(row.possible[static_cast<std::size_t>(j)] == (i == j ? 2 : 0));
+    for (Index j = 0; j < 3; ++j)
+      CHECK(row.possible[static_cast<std::size_t>(j)] == (i == j ? 2 : 0));
     CHECK(row.isolated == 2);
     CHECK(row.wrong + row.unknown_fault + row.undecided == 0);
     CHECK(row.isolation.count == 2);
@@ -105,12 +106,13 @@ TEST_CASE("a true mode that is excluded violates the guarantee") {
   }
 }
 
-TEST_CASE("an exclusion after the diagnoser's own assumption has failed is no violation, and is told") {
+TEST_CASE(
+    "an exclusion after the diagnoser's own assumption has failed is no violation, and is told") {
   Study study = study_of({fakes::design("AFD", "found", "none")});
   auto& simulate = std::get<SimulateSpec>(study.data);
   const auto with_set = [&](double radius) {
-    study.pipelines[0].diagnoser->params.set("admissible_set",
-                                             make_box({-Vector::Constant(2, radius), Vector::Constant(2, radius)}));
+    study.pipelines[0].diagnoser->params.set(
+        "admissible_set", make_box({-Vector::Constant(2, radius), Vector::Constant(2, radius)}));
     return run(study).pipelines[0];
   };
   simulate.x0 = Vector::Ones(2);
@@ -119,7 +121,8 @@ TEST_CASE("an exclusion after the diagnoser's own assumption has failed is no vi
   CHECK(with_set(100).assumptions_until == -1);
   CHECK(with_set(.5).violated_at == -1);
   CHECK(with_set(.5).assumptions_until == 1);  // of x_0 it is X0 that is assumed
-  // x_0 = 0, x_1 ≈ (0, 1), x_2 ≈ (.1, 1.8) up to .19: the assumption fails after the exclusion, and excuses nothing
+  // x_0 = 0, x_1 ≈ (0, 1), x_2 ≈ (.1, 1.8) up to .19: the assumption fails after the exclusion, and
+  // excuses nothing
   simulate.x0 = Vector::Zero(2);
   CHECK(with_set(1.3).assumptions_until == 2);
   CHECK(with_set(1.3).violated_at == 1);
@@ -140,8 +143,8 @@ TEST_CASE("isolated at k: from then on until the end") {
 
 TEST_CASE("without an input there are no experiments, and the other pipelines go on") {
   for (const std::string says : {"infeasible", "unknown", "throws"}) {
-    const RunOutcome outcome =
-        run(study_of({fakes::design("first", says, "truth"), fakes::pipeline("observer"), fakes::design("alone")}));
+    const RunOutcome outcome = run(study_of({fakes::design("first", says, "truth"),
+                                             fakes::pipeline("observer"), fakes::design("alone")}));
     REQUIRE(outcome.pipelines.size() == 3);
     CHECK(outcome.pipelines[0].experiments.empty());
     CHECK(outcome.pipelines[0].error == (says == "throws" ? "out of ideas" : ""));
@@ -172,15 +175,18 @@ TEST_CASE("a diagnoser that breaks down, and a mode that cannot be simulated") {
 TEST_CASE("what the files hold") {
   const Scratch scratch;
   const Study study =
-      study_of({fakes::pipeline("observer"), fakes::design("a, b", "found", "truth"), fakes::design("none", "unknown")});
+      study_of({fakes::pipeline("observer"), fakes::design("a, b", "found", "truth"),
+                fakes::design("none", "unknown")});
   const RunOutcome outcome = run(study, scratch / "one");
   run(study, scratch / "two");
   CHECK(outcome.files.size() == 11);
-  for (const char* name : {"results.json", "inputs.csv", "summary.csv", "data.csv", "steps.csv", "sets.jsonl"}) {
+  for (const char* name :
+       {"results.json", "inputs.csv", "summary.csv", "data.csv", "steps.csv", "sets.jsonl"}) {
     CHECK(bytes_of(scratch / "one" / name) == bytes_of(scratch / "two" / name));
   }
   CHECK_FALSE(std::filesystem::exists(scratch / "one/diagnosis.csv"));
-  CHECK(bytes_of(scratch / "one/inputs.csv") == "pipeline,k,u_1\n\"a, b\",0,1\n\"a, b\",1,1\n\"a, b\",2,1\n");
+  CHECK(bytes_of(scratch / "one/inputs.csv") ==
+        "pipeline,k,u_1\n\"a, b\",0,1\n\"a, b\",1,1\n\"a, b\",2,1\n");
   const json results = json::parse(bytes_of(scratch / "one/results.json"));
   const json& found = results["pipelines"][1];
   CHECK(found["designer"] == "designing");
@@ -223,7 +229,8 @@ TEST_CASE("what the files hold") {
   CHECK(none["stopped"] == true);
   CHECK(none["reason"] == "the time is over");
   const std::string summary = bytes_of(scratch / "one/summary.csv");
-  CHECK(summary.find("designer,experiment_diagnoser,design_status,horizon,cost,lower_bound,separates,experiments,"
+  CHECK(summary.find("designer,experiment_diagnoser,design_status,horizon,cost,lower_bound,"
+                     "separates,experiments,"
                      "experiments_isolated,experiments_wrong") != std::string::npos);
   CHECK(summary.find("designing,telling,feasible,2,5,4,no,6,6,0") != std::string::npos);
   CHECK(summary.find("designing,,unknown,2,,-inf,,,,") != std::string::npos);
@@ -243,14 +250,16 @@ TEST_CASE("a stop ends the search and leaves nothing behind") {
   RunOptions options;
   options.stop = &stop;
   options.progress = [&](std::size_t, std::int64_t, std::int64_t) { stop = true; };
-  const RunOutcome outcome = run(study_of({fakes::design("AFD", "waits")}), scratch / "out", options);
+  const RunOutcome outcome =
+      run(study_of({fakes::design("AFD", "waits")}), scratch / "out", options);
   CHECK(outcome.interrupted);
   CHECK_FALSE(std::filesystem::exists(scratch / "out/results.json"));
 }
 
 TEST_CASE("designs without a run") {
-  const Study study = study_of(
-      {fakes::pipeline("observer"), fakes::design("one"), fakes::design("two", "throws"), fakes::design("three", "infeasible")});
+  const Study study =
+      study_of({fakes::pipeline("observer"), fakes::design("one"), fakes::design("two", "throws"),
+                fakes::design("three", "infeasible")});
   DesignOptions options;
   std::vector<std::size_t> told;
   options.progress = [&](std::size_t pipeline, Index horizon, double best, double bound) {
@@ -270,7 +279,8 @@ TEST_CASE("designs without a run") {
   REQUIRE(designs[0].exact);
   CHECK(designs[0].exact->separates() == Answer::no);  // three equal modes
   REQUIRE(designs[0].refuted.size() == 3);
-  CHECK(designs[0].refuted[0] == "the output tubes of healthy and leak are called disjoint, and meet");
+  CHECK(designs[0].refuted[0] ==
+        "the output tubes of healthy and leak are called disjoint, and meet");
   CHECK(designs[1].error == "out of ideas");
   CHECK(designs[1].error_code == Errc::unsupported);
   CHECK_FALSE(designs[1].outcome);
@@ -282,9 +292,11 @@ TEST_CASE("designs without a run") {
   CHECK(designs[0].index == 3);
   CHECK_FALSE(designs[0].exact);  // there is no input
   options.pipeline = "observer";
-  CHECK_THROWS_WITH_AS(design_study(study, registry(), options), doctest::Contains("has no designer"), InputError);
+  CHECK_THROWS_WITH_AS(design_study(study, registry(), options),
+                       doctest::Contains("has no designer"), InputError);
   options.pipeline = "thre";
-  CHECK_THROWS_WITH_AS(design_study(study, registry(), options), doctest::Contains("did you mean \"three\""), InputError);
+  CHECK_THROWS_WITH_AS(design_study(study, registry(), options),
+                       doctest::Contains("did you mean \"three\""), InputError);
   options = {};
   const std::atomic<bool> stop = true;
   options.stop = &stop;

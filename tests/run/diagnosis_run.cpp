@@ -20,7 +20,8 @@ using Truth = std::vector<std::pair<Index, Index>>;
 /// The study's own data, with the given true modes in place of their own.
 class WithModes final : public DataSource {
  public:
-  WithModes(std::unique_ptr<DataSource> data, Truth truth) : data_(std::move(data)), truth_(std::move(truth)) {}
+  WithModes(std::unique_ptr<DataSource> data, Truth truth)
+      : data_(std::move(data)), truth_(std::move(truth)) {}
   std::optional<Record> next() override {
     std::optional<Record> record = data_->next();
     if (record) record->mode.reset();
@@ -43,12 +44,16 @@ Study study_of(std::vector<PipelineSpec> pipelines, std::int64_t seeds = 1) {
   return study;
 }
 
-RunOutcome run(const Study& study, const Truth& truth, const std::filesystem::path& out = {}, RunOptions options = {}) {
+RunOutcome run(const Study& study, const Truth& truth, const std::filesystem::path& out = {},
+               RunOptions options = {}) {
   Registry registry;
   registry.add(fakes::register_all);
   options.out = out;
-  return detail::run_on([&](std::uint64_t offset) { return std::make_unique<WithModes>(open_data(study, offset), truth); }, study,
-                        registry, options);
+  return detail::run_on(
+      [&](std::uint64_t offset) {
+        return std::make_unique<WithModes>(open_data(study, offset), truth);
+      },
+      study, registry, options);
 }
 
 Params with(std::initializer_list<std::pair<const char*, Params::Value>> values) {
@@ -75,7 +80,8 @@ TEST_CASE("every seed is scored, the first is told in full") {
     CHECK(total == 5 * 21);
     progress.push_back(done);
   };
-  const PipelineOutcome outcome = run(study_of({fakes::diagnosis("bank")}, 5), fault_at_9, {}, options).pipelines[0];
+  const PipelineOutcome outcome =
+      run(study_of({fakes::diagnosis("bank")}, 5), fault_at_9, {}, options).pipelines[0];
   CHECK(outcome.error.empty());
   CHECK(outcome.diagnoser == "scripted");
   CHECK(outcome.observer.empty());
@@ -100,14 +106,18 @@ TEST_CASE("every seed is scored, the first is told in full") {
   CHECK(progress.back() == 5 * 21);
 }
 
-TEST_CASE("an exclusion rests on the admissible sets of the diagnoser and of what is nested in it") {
-  const auto set_of = [](double radius) { return make_box({-Vector::Constant(2, radius), Vector::Constant(2, radius)}); };
+TEST_CASE(
+    "an exclusion rests on the admissible sets of the diagnoser and of what is nested in it") {
+  const auto set_of = [](double radius) {
+    return make_box({-Vector::Constant(2, radius), Vector::Constant(2, radius)});
+  };
   const auto outcome_of = [&](double own, double nested) {
     ComponentSpec observer{"claiming", with({{"admissible_set", set_of(nested)}})};
-    const Params params = with({{"at", std::int64_t{7}},
-                                {"admissible_set", set_of(own)},
-                                {"other_set", set_of(.5)},
-                                {"observer", std::make_shared<const ComponentSpec>(std::move(observer))}});
+    const Params params =
+        with({{"at", std::int64_t{7}},
+              {"admissible_set", set_of(own)},
+              {"other_set", set_of(.5)},
+              {"observer", std::make_shared<const ComponentSpec>(std::move(observer))}});
     return run(study_of({fakes::diagnosis("bank", params)}, 3), {{0, 0}, {9, 1}}).pipelines[0];
   };
   PipelineOutcome outcome = outcome_of(1e3, 1e3);
@@ -124,14 +134,16 @@ TEST_CASE("an exclusion rests on the admissible sets of the diagnoser and of wha
   CHECK(outcome.violated_at == 7);
 
   // an exclusion at the k at which the assumption fails; of x_0 it is X0 that is assumed
-  Study study = study_of({fakes::diagnosis("bank", with({{"at", std::int64_t{1}}, {"admissible_set", set_of(.5)}}))});
+  Study study = study_of(
+      {fakes::diagnosis("bank", with({{"at", std::int64_t{1}}, {"admissible_set", set_of(.5)}}))});
   std::get<SimulateSpec>(study.data).x0 = Vector::Ones(2);
   outcome = run(study, {{0, 0}}).pipelines[0];
   CHECK(outcome.assumptions_until == 1);
   CHECK(outcome.diagnosis->true_mode_excluded->k == 1);
   CHECK(outcome.violated_at == -1);
 
-  // each run for itself: the first one leaves the set at k = 11, the second one later than its exclusion at k = 12
+  // each run for itself: the first one leaves the set at k = 11, the second one later than its
+  // exclusion at k = 12
   study = study_of({fakes::diagnosis("bank", with({{"admissible_set", set_of(4.56)}}))}, 2);
   std::get<SimulateSpec>(study.data).seed = 2;
   outcome = run(study, {{0, 1}, {10, 2}, {11, 0}}).pipelines[0];
@@ -190,7 +202,10 @@ TEST_CASE("an exclusion since the start rests on the mode's own X0") {
 
 TEST_CASE("a run that breaks down ends its pipeline, and says in which seed") {
   const RunOutcome outcome =
-      run(study_of({fakes::diagnosis("bank", with({{"breaks", std::int64_t{2}}})), fakes::pipeline("observer")}, 3), fault_at_9);
+      run(study_of({fakes::diagnosis("bank", with({{"breaks", std::int64_t{2}}})),
+                    fakes::pipeline("observer")},
+                   3),
+          fault_at_9);
   const PipelineOutcome& broken = outcome.pipelines[0];
   CHECK(broken.error == "out of order (seed 2 of 3)");
   CHECK(broken.error_code == Errc::unsupported);
@@ -207,7 +222,8 @@ TEST_CASE("the files of a diagnosis") {
   const RunOutcome outcome = run(study, {{0, 0}, {9, 1}, {15, -1}}, scratch / "one");
   CHECK(outcome.files.size() == 11);
   run(study, {{0, 0}, {9, 1}, {15, -1}}, scratch / "two");
-  for (const char* name : {"results.json", "sets.jsonl", "data.csv", "steps.csv", "summary.csv", "diagnosis.csv"}) {
+  for (const char* name :
+       {"results.json", "sets.jsonl", "data.csv", "steps.csv", "summary.csv", "diagnosis.csv"}) {
     CHECK_MESSAGE(bytes_of(scratch / "one" / name) == bytes_of(scratch / "two" / name), name);
   }
   const json results = json::parse(bytes_of(scratch / "one" / "results.json"));
@@ -248,22 +264,26 @@ TEST_CASE("the files of a diagnosis") {
   const std::vector<std::string> rows = lines(bytes_of(scratch / "one" / "diagnosis.csv"));
   REQUIRE(rows.size() == 22);
   CHECK(rows[0] ==
-        "pipeline,k,decision,mode,truth,since,suggested,candidate_0,consistent_0,lower_0_1,upper_0_1,candidate_1,consistent_1,"
+        "pipeline,k,decision,mode,truth,since,suggested,candidate_0,consistent_0,lower_0_1,upper_0_"
+        "1,candidate_1,consistent_1,"
         "lower_1_1,upper_1_1,candidate_2,consistent_2,lower_2_1,upper_2_1");
-  CHECK(rows[11] == "\"a, b\",10,isolating,,1,0,1,1,no,0.125,0.5,1,unknown,-0.25,0.5,1,unknown,-0.25,0.5");
+  CHECK(rows[11] ==
+        "\"a, b\",10,isolating,,1,0,1,1,no,0.125,0.5,1,unknown,-0.25,0.5,1,unknown,-0.25,0.5");
   CHECK(lines(bytes_of(scratch / "one" / "data.csv"))[0] == "k,u_1,y_1,x_1,x_2,mode");
   CHECK(lines(bytes_of(scratch / "one" / "data.csv"))[16].ends_with(",-1"));
   const std::vector<std::string> summaries = lines(bytes_of(scratch / "one" / "summary.csv"));
-  CHECK(summaries[0].find(",error,diagnoser,runs,segments,isolated,missed,outside_the_bank,unknown_fault,false_alarms,") !=
-        std::string::npos);
+  CHECK(summaries[0].find(",error,diagnoser,runs,segments,isolated,missed,outside_the_bank,unknown_"
+                          "fault,false_alarms,") != std::string::npos);
   CHECK(summaries[2].starts_with("\"a, b\",box,,nominal,21,,,,,15,,,,,,scripted,2,4,2,0,2,0,0,0,"));
-  CHECK(std::count(summaries[1].begin(), summaries[1].end(), ',') == std::count(summaries[0].begin(), summaries[0].end(), ','));
+  CHECK(std::count(summaries[1].begin(), summaries[1].end(), ',') ==
+        std::count(summaries[0].begin(), summaries[0].end(), ','));
   const json times = json::parse(bytes_of(scratch / "one" / "run.json"));
   CHECK(times["pipelines"][1]["summary"].contains("median_step_us"));
   CHECK(times["pipelines"][1]["steps"].size() == 21);
 }
 
-TEST_CASE("without a diagnoser there is no diagnosis.csv; without the true mode there are no scores") {
+TEST_CASE(
+    "without a diagnoser there is no diagnosis.csv; without the true mode there are no scores") {
   const Scratch scratch;
   run(study_of({fakes::pipeline("observer")}), {}, scratch / "observer");
   CHECK_FALSE(std::filesystem::exists(scratch / "observer" / "diagnosis.csv"));
@@ -273,7 +293,8 @@ TEST_CASE("without a diagnoser there is no diagnosis.csv; without the true mode 
   CHECK(results["pipelines"][0]["guarantees"].is_null());
   CHECK(results["pipelines"][0]["summary"]["scores"].is_null());
   CHECK_FALSE(results["pipelines"][0]["steps"][0].contains("true_mode"));
-  CHECK(lines(bytes_of(scratch / "bank" / "diagnosis.csv"))[1].starts_with("bank,0,monitoring,0,,0,,1,unknown,"));
+  CHECK(lines(bytes_of(scratch / "bank" / "diagnosis.csv"))[1].starts_with(
+      "bank,0,monitoring,0,,0,,1,unknown,"));
 }
 
 TEST_CASE("an interrupted diagnosis leaves nothing behind, in whichever seed") {
@@ -283,7 +304,8 @@ TEST_CASE("an interrupted diagnosis leaves nothing behind, in whichever seed") {
   options.stop = &stop;
   class Stopping final : public DataSource {
    public:
-    Stopping(std::unique_ptr<DataSource> data, std::atomic<bool>& stop) : data_(std::move(data)), stop_(stop) {}
+    Stopping(std::unique_ptr<DataSource> data, std::atomic<bool>& stop)
+        : data_(std::move(data)), stop_(stop) {}
     std::optional<Record> next() override {
       stop_ = true;
       return data_->next();
@@ -306,7 +328,9 @@ TEST_CASE("an interrupted diagnosis leaves nothing behind, in whichever seed") {
   CHECK(tree(scratch.path()).empty());
 }
 
-TEST_CASE("an observer of the nominal model is not blamed for what happens after a fault, nor for a plant of its own") {
+TEST_CASE(
+    "an observer of the nominal model is not blamed for what happens after a fault, nor for a "
+    "plant of its own") {
   Study study = study_of({fakes::pipeline("wrong", "claiming")});
   CHECK(run(study, {{0, 0}}).pipelines[0].violated_at >= 3);
   PipelineOutcome outcome = run(study, {{0, 0}, {3, 1}}).pipelines[0];
@@ -322,7 +346,8 @@ TEST_CASE("an observer of the nominal model is not blamed for what happens after
 
 TEST_CASE("a diagnosis that does not fit the bank stops its pipeline") {
   const PipelineOutcome outcome =
-      run(study_of({fakes::diagnosis("bank", with({{"mode", std::int64_t{7}}}))}), fault_at_9).pipelines[0];
+      run(study_of({fakes::diagnosis("bank", with({{"mode", std::int64_t{7}}}))}), fault_at_9)
+          .pipelines[0];
   CHECK(outcome.error_code == Errc::plugin);
   CHECK(outcome.error.find("k = 11") != std::string::npos);
 }

@@ -13,8 +13,9 @@ namespace {
 
 using Kind = DiagnosisEvent::Kind;
 
-/// What a diagnoser of three modes says from k on. `since` equal to that k: a reset at k, with evidence of the time before.
-/// `out`: modes that are no candidates; `no`: contradicted by that one step.
+/// What a diagnoser of three modes says from k on. `since` equal to that k: a reset at k, with
+/// evidence of the time before. `out`: modes that are no candidates; `no`: contradicted by that one
+/// step.
 struct Says {
   Index k;
   Decision decision;
@@ -58,10 +59,12 @@ Result play(Index steps, const std::vector<True>& truths, const std::vector<Says
     now.modes.resize(3);
     for (const Index j : says[at].out) now.modes[static_cast<std::size_t>(j)].candidate = false;
     if (says[at].k == k) {
-      for (const Index j : says[at].no) now.modes[static_cast<std::size_t>(j)].consistent = Answer::no;
+      for (const Index j : says[at].no)
+        now.modes[static_cast<std::size_t>(j)].consistent = Answer::no;
     }
     const std::optional<Index> truth = truths.empty() ? std::nullopt : truths[at_truth].mode;
-    timeline.step(truth, now, [&](DiagnosisEvent event) { result.events.push_back(std::move(event)); });
+    timeline.step(truth, now,
+                  [&](DiagnosisEvent event) { result.events.push_back(std::move(event)); });
     score.step(truth, now);
   }
   score.finish();
@@ -132,7 +135,8 @@ TEST_CASE("a fault that is never detected is missed") {
   REQUIRE(r.segments.size() == 2);
   CHECK(r.segments[1].missed());
   CHECK(r.segments[1].detected_at == -1);
-  CHECK(r.segments[1].wrong_at == -1);  // the old mode that is still monitored is a delay, not a wrong mode
+  CHECK(r.segments[1].wrong_at ==
+        -1);  // the old mode that is still monitored is a delay, not a wrong mode
   CHECK(r.statistics[0].missed == 1);
   CHECK(r.statistics[0].detection.count == 0);
 }
@@ -170,8 +174,10 @@ TEST_CASE("a wrong mode after the detection") {
 }
 
 TEST_CASE("a false alarm excludes the true mode") {
-  const Result r =
-      play(60, {{0, 0}}, {healthy(), {30, Decision::isolating, -1, 30, {}, {0}}, {33, Decision::monitoring, 2, 30, {0, 1}, {1}}});
+  const Result r = play(60, {{0, 0}},
+                        {healthy(),
+                         {30, Decision::isolating, -1, 30, {}, {0}},
+                         {33, Decision::monitoring, 2, 30, {0, 1}, {1}}});
   CHECK(r.false_alarms == 1);
   REQUIRE(r.excluded);
   CHECK(r.excluded->k == 30);
@@ -182,48 +188,60 @@ TEST_CASE("a false alarm excludes the true mode") {
 }
 
 TEST_CASE("a mode that was given up in a transient of its own is no false alarm") {
-  // isolated too early for the fault: mode 1 is monitored since 51, true from 52 on; that it is given up is right
+  // isolated too early for the fault: mode 1 is monitored since 51, true from 52 on; that it is
+  // given up is right
   const Result r = play(80, {{0, 0}, {52, 1}},
                         {healthy(),
                          {51, Decision::isolating, -1, 51, {}, {}},
                          {53, Decision::monitoring, 1, 51, {0, 2}, {}},
                          {60, Decision::isolating, -1, 60, {}, {1}}});
   CHECK(r.false_alarms == 1);  // the one at 51: mode 0 was true from 0 to 51
-  CHECK_FALSE(r.excluded);     // at 51 without evidence; at 60 the statement is about the time since 51
+  CHECK_FALSE(
+      r.excluded);  // at 51 without evidence; at 60 the statement is about the time since 51
 }
 
 TEST_CASE("an exclusion speaks of the time since the reset that it rests on") {
   SUBCASE("the mode became true after that reset") {
-    CHECK_FALSE(play(40, {{0, 1}, {20, 0}}, {{0, Decision::isolating, -1, 0, {}, {}}, {30, Decision::isolating, -1, 0, {0}, {0}}})
-                    .excluded);
+    CHECK_FALSE(
+        play(40, {{0, 1}, {20, 0}},
+             {{0, Decision::isolating, -1, 0, {}, {}}, {30, Decision::isolating, -1, 0, {0}, {0}}})
+            .excluded);
   }
   SUBCASE("the mode ends with the sample that shows it") {
-    CHECK_FALSE(play(40, {{0, 0}, {20, 1}}, {healthy(), {20, Decision::isolating, -1, 20, {}, {0}}}).excluded);
+    CHECK_FALSE(play(40, {{0, 0}, {20, 1}}, {healthy(), {20, Decision::isolating, -1, 20, {}, {0}}})
+                    .excluded);
   }
   SUBCASE("one step earlier it is wrong") {
-    CHECK(play(40, {{0, 0}, {20, 1}}, {healthy(), {19, Decision::isolating, -1, 19, {}, {0}}}).excluded);
+    CHECK(play(40, {{0, 0}, {20, 1}}, {healthy(), {19, Decision::isolating, -1, 19, {}, {0}}})
+              .excluded);
   }
   SUBCASE("at a reset the old time counts for the evidence: the mode was interrupted") {
-    CHECK_FALSE(play(40, {{0, 0}, {10, 1}, {11, 0}}, {healthy(), {11, Decision::isolating, -1, 11, {}, {0}}}).excluded);
+    CHECK_FALSE(play(40, {{0, 0}, {10, 1}, {11, 0}},
+                     {healthy(), {11, Decision::isolating, -1, 11, {}, {0}}})
+                    .excluded);
   }
   SUBCASE("a candidate that is gone without evidence of the step") {
-    CHECK(play(40, {{0, 1}}, {{0, Decision::isolating, -1, 0, {}, {}}, {7, Decision::isolating, -1, 0, {1}, {}}}).excluded);
+    CHECK(play(40, {{0, 1}},
+               {{0, Decision::isolating, -1, 0, {}, {}}, {7, Decision::isolating, -1, 0, {1}, {}}})
+              .excluded);
   }
   SUBCASE("modes that are no candidates from the start are so by assumption") {
     CHECK_FALSE(play(40, {{0, 1}}, {healthy()}).excluded);
   }
   SUBCASE("an exclusion stays one: it is judged when it is made") {
-    CHECK_FALSE(play(60, {{0, 0}, {10, 1}, {30, 0}},
-                     {{0, Decision::isolating, -1, 0, {}, {}}, {15, Decision::isolating, -1, 0, {0}, {0}}})
-                    .excluded);
+    CHECK_FALSE(
+        play(60, {{0, 0}, {10, 1}, {30, 0}},
+             {{0, Decision::isolating, -1, 0, {}, {}}, {15, Decision::isolating, -1, 0, {0}, {0}}})
+            .excluded);
   }
 }
 
 TEST_CASE("faults outside the bank") {
   SUBCASE("known as such") {
-    const Result r =
-        play(60, {{0, 0}, {20, -1}},
-             {healthy(), {22, Decision::isolating, -1, 22, {}, {0}}, {25, Decision::unknown_fault, -1, 25, {}, {0, 1, 2}}});
+    const Result r = play(60, {{0, 0}, {20, -1}},
+                          {healthy(),
+                           {22, Decision::isolating, -1, 22, {}, {0}},
+                           {25, Decision::unknown_fault, -1, 25, {}, {0, 1, 2}}});
     CHECK(r.segments[1].detected_at == 22);
     CHECK(r.segments[1].unknown_fault_at == 25);
     CHECK(r.segments[1].isolated_at == -1);
@@ -235,12 +253,14 @@ TEST_CASE("faults outside the bank") {
     CHECK_FALSE(r.excluded);
     const auto last = what_happened(r).back();
     CHECK(last.second == Kind::unknown_fault);
-    CHECK(std::count_if(r.events.begin(), r.events.end(), [](const auto& e) { return e.what == Kind::excluded; }) == 3);
+    CHECK(std::count_if(r.events.begin(), r.events.end(),
+                        [](const auto& e) { return e.what == Kind::excluded; }) == 3);
   }
   SUBCASE("taken for a mode of the bank") {
-    const Result r =
-        play(60, {{0, 0}, {20, -1}},
-             {healthy(), {22, Decision::isolating, -1, 22, {}, {0}}, {25, Decision::monitoring, 2, 22, {0, 1}, {1}}});
+    const Result r = play(60, {{0, 0}, {20, -1}},
+                          {healthy(),
+                           {22, Decision::isolating, -1, 22, {}, {0}},
+                           {25, Decision::monitoring, 2, 22, {0, 1}, {1}}});
     CHECK(r.segments[1].wrong_at == 25);
     CHECK(r.statistics[0].unknown_fault == 0);
     CHECK(r.statistics[0].wrong == 1);
@@ -249,7 +269,9 @@ TEST_CASE("faults outside the bank") {
 }
 
 TEST_CASE("a diagnoser that begins with every mode is scored from the start") {
-  const Result r = play(20, {{0, 2}}, {{0, Decision::isolating, -1, 0, {}, {}}, {3, Decision::monitoring, 2, 0, {0, 1}, {0, 1}}});
+  const Result r = play(
+      20, {{0, 2}},
+      {{0, Decision::isolating, -1, 0, {}, {}}, {3, Decision::monitoring, 2, 0, {0, 1}, {0, 1}}});
   REQUIRE(r.segments.size() == 1);
   CHECK(r.segments[0].scored);
   CHECK(r.segments[0].detected_at == -1);
@@ -278,7 +300,8 @@ TEST_CASE("without the true mode there are events and no scores") {
   CHECK(r.segments.empty());
   CHECK(r.false_alarms == 0);
   CHECK_FALSE(r.excluded);
-  CHECK(what_happened(r) == std::vector<std::pair<Index, Kind>>{{0, Kind::starts}, {30, Kind::detected}});
+  CHECK(what_happened(r) ==
+        std::vector<std::pair<Index, Kind>>{{0, Kind::starts}, {30, Kind::detected}});
 }
 
 TEST_CASE("delays over many segments: smallest, median, largest") {
@@ -313,7 +336,8 @@ TEST_CASE("delays over all modes: isolation is of modes in the bank") {
     segment.from = 10;
     segment.scored = scored;
     if (detection >= 0) segment.detected_at = 10 + detection;
-    if (isolation >= 0) (mode < 0 ? segment.unknown_fault_at : segment.isolated_at) = 10 + isolation;
+    if (isolation >= 0)
+      (mode < 0 ? segment.unknown_fault_at : segment.isolated_at) = 10 + isolation;
     tally.add(segment);
   };
   CHECK(tally.detection().count == 0);

@@ -20,7 +20,8 @@ Study study_of(Params params = {}, std::int64_t seeds = 1) {
   return study;
 }
 
-PipelineOutcome run(const Study& study, const std::filesystem::path& out = {}, bool with_faults = true) {
+PipelineOutcome run(const Study& study, const std::filesystem::path& out = {},
+                    bool with_faults = true) {
   Registry registry;
   registry.add(fakes::register_all);
   RunOptions options;
@@ -71,7 +72,9 @@ TEST_CASE("bounds of additive faults are counted over all seeds") {
   CHECK(found.guarantees->faults.size() == 2);
 }
 
-TEST_CASE("a true fault outside its bounds violates the guarantee of simulated data of the linear model") {
+TEST_CASE(
+    "a true fault outside its bounds violates the guarantee of simulated data of the linear "
+    "model") {
   PipelineOutcome outcome = run(study_of(crooked(1), 2));
   CHECK(outcome.violated_at == 12);
   REQUIRE(outcome.diagnosis->fault_outside);
@@ -88,7 +91,9 @@ TEST_CASE("a true fault outside its bounds violates the guarantee of simulated d
     CHECK(outcome.diagnosis->fault_outside->seed_offset == 1);
     CHECK(outcome.diagnosis->faults[1].last_half_width == .25);
   }
-  SUBCASE("not where the truth stays inside") { CHECK(run(study_of(crooked(1, .25))).violated_at == -1); }
+  SUBCASE("not where the truth stays inside") {
+    CHECK(run(study_of(crooked(1, .25))).violated_at == -1);
+  }
   SUBCASE("not of a plant of its own, where it is reported all the same") {
     Study study = study_of(crooked(1));
     std::get<SimulateSpec>(study.data).plant = ComponentSpec{"reactor", {}};
@@ -121,11 +126,14 @@ TEST_CASE("the first violation of a run counts, whichever it is") {
   Registry registry;
   registry.add(fakes::register_all);
   const Study study = study_of(crooked(1));
-  const auto open = [&](std::uint64_t offset) { return std::make_unique<fakes::WithFaults>(open_data(study, offset), true); };
+  const auto open = [&](std::uint64_t offset) {
+    return std::make_unique<fakes::WithFaults>(open_data(study, offset), true);
+  };
   const PipelineOutcome outcome = detail::run_on(open, study, registry, {}).pipelines.at(0);
   REQUIRE(outcome.diagnosis->true_mode_excluded);
   CHECK(outcome.diagnosis->true_mode_excluded->k == 10);
-  CHECK(outcome.diagnosis->true_mode_excluded->since == 7);  // that of fault 2, the earliest bound without 0
+  CHECK(outcome.diagnosis->true_mode_excluded->since ==
+        7);  // that of fault 2, the earliest bound without 0
   CHECK(outcome.diagnosis->fault_outside->k == 12);
   CHECK(outcome.violated_at == 10);
 }
@@ -145,17 +153,27 @@ TEST_CASE("the files of bounds") {
   const Study study = study_of(crooked(1), 2);
   run(study, scratch / "one");
   run(study, scratch / "two");
-  for (const char* name : {"results.json", "sets.jsonl", "data.csv", "steps.csv", "summary.csv", "diagnosis.csv"}) {
+  for (const char* name :
+       {"results.json", "sets.jsonl", "data.csv", "steps.csv", "summary.csv", "diagnosis.csv"}) {
     CHECK_MESSAGE(bytes_of(scratch / "one" / name) == bytes_of(scratch / "two" / name), name);
   }
   const json p = json::parse(bytes_of(scratch / "one/results.json"))["pipelines"][0];
-  CHECK(p["guarantees"]["faults"] ==
-        json{{{"fault", 1}, {"delay", 1}, {"half_width", .25}}, {{"fault", 2}, {"delay", 3}, {"half_width", "inf"}}});
+  CHECK(p["guarantees"]["faults"] == json{{{"fault", 1}, {"delay", 1}, {"half_width", .25}},
+                                          {{"fault", 2}, {"delay", 3}, {"half_width", "inf"}}});
   CHECK_FALSE(p["steps"][0].contains("faults"));
   CHECK(p["steps"][1]["faults"].size() == 1);
-  CHECK(p["steps"][10]["faults"] ==
-        json{{{"fault", 1}, {"at", 9}, {"lower", .75}, {"upper", 1.25}, {"estimate", 1.125}, {"truth", 1.}},
-             {{"fault", 2}, {"at", 7}, {"lower", -.75}, {"upper", -.25}, {"estimate", -.375}, {"truth", -.5}}});
+  CHECK(p["steps"][10]["faults"] == json{{{"fault", 1},
+                                          {"at", 9},
+                                          {"lower", .75},
+                                          {"upper", 1.25},
+                                          {"estimate", 1.125},
+                                          {"truth", 1.}},
+                                         {{"fault", 2},
+                                          {"at", 7},
+                                          {"lower", -.75},
+                                          {"upper", -.25},
+                                          {"estimate", -.375},
+                                          {"truth", -.5}}});
   const json& summary = p["summary"];
   CHECK(summary["faults"][0] == json{{"fault", 1},
                                      {"delay", 1},
@@ -173,13 +191,15 @@ TEST_CASE("the files of bounds") {
 
   const auto rows = lines(bytes_of(scratch / "one/diagnosis.csv"));
   CHECK(
-      rows[0].ends_with(",fault_at_1,fault_lower_1,fault_estimate_1,fault_upper_1,fault_truth_1,fault_at_2,fault_lower_2,"
+      rows[0].ends_with(",fault_at_1,fault_lower_1,fault_estimate_1,fault_upper_1,fault_truth_1,"
+                        "fault_at_2,fault_lower_2,"
                         "fault_estimate_2,fault_upper_2,fault_truth_2"));
   CHECK(rows[1].ends_with(",,,,,,,,,,"));
   CHECK(rows[2].ends_with(",0,-0.25,0.125,0.25,0,,,,,"));
   CHECK(rows[11].ends_with(",9,0.75,1.125,1.25,1,7,-0.75,-0.375,-0.25,-0.5"));
   for (const std::string& row : rows)
-    CHECK(std::count(row.begin(), row.end(), ',') == std::count(rows[0].begin(), rows[0].end(), ','));
+    CHECK(std::count(row.begin(), row.end(), ',') ==
+          std::count(rows[0].begin(), rows[0].end(), ','));
   const auto samples = lines(bytes_of(scratch / "one/data.csv"));
   CHECK(samples[0] == "k,u_1,y_1,x_1,x_2,n_1,n_2,mode");
   CHECK(samples[10].ends_with(",1,-0.5,-1"));
@@ -201,7 +221,8 @@ TEST_CASE("a bound that is never given has no figures") {
   std::get<SimulateSpec>(study.data).steps = 1;  // fault 2 is bounded from k = 3 on
   const Scratch scratch;
   CHECK(run(study, scratch.path()).diagnosis->faults.size() == 2);
-  const json faults = json::parse(bytes_of(scratch / "results.json"))["pipelines"][0]["summary"]["faults"];
+  const json faults =
+      json::parse(bytes_of(scratch / "results.json"))["pipelines"][0]["summary"]["faults"];
   CHECK(faults[0]["bounds"] == 1);
   CHECK(faults[1]["bounds"] == 0);
   CHECK(faults[1]["delay"].is_null());

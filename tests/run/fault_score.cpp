@@ -49,7 +49,8 @@ TEST_CASE("a bound is compared with the truth of its own time") {
   CHECK(found[1].rms_error == 1);
 }
 
-TEST_CASE("a bound of an earlier time is not judged where the diagnoser promises nothing any more") {
+TEST_CASE(
+    "a bound of an earlier time is not judged where the diagnoser promises nothing any more") {
   FaultScore score(1);
   score.begin_run(0);
   score.step(Vector::Zero(1), bounded(0, {}));
@@ -98,12 +99,14 @@ TEST_CASE("a truth outside its bounds: the first one, by more than rounding") {
   CHECK_FALSE(large.outside());
 }
 
-TEST_CASE("without a known truth nothing is checked, and a run forgets the truths of the one before") {
+TEST_CASE(
+    "without a known truth nothing is checked, and a run forgets the truths of the one before") {
   FaultScore score(1);
   score.begin_run(0);
   auto judged = score.step(std::nullopt, bounded(0, {{0, 0, 5, 6, 5}}));
   CHECK_FALSE(judged[0].truth);
-  CHECK_FALSE(score.step(Vector::Zero(2), bounded(1, {{0, 1, 5, 6, 5}}))[0].truth);  // of another model
+  CHECK_FALSE(
+      score.step(Vector::Zero(2), bounded(1, {{0, 1, 5, 6, 5}}))[0].truth);  // of another model
   score.step(Vector::Zero(1), bounded(2, {}));
   score.begin_run(1);
   CHECK_FALSE(score.step(std::nullopt, bounded(3, {{0, 2, 5, 6, 5}}))[0].truth);
@@ -116,8 +119,10 @@ TEST_CASE("without a known truth nothing is checked, and a run forgets the truth
 TEST_CASE("a thousand true values are remembered") {
   FaultScore score(1);
   score.begin_run(0);
-  for (Index k = 0; k < 1999; ++k) score.step(Vector::Constant(1, static_cast<double>(k)), bounded(k, {}));
-  const auto judged = score.step(Vector::Constant(1, 1999.), bounded(1999, {{0, 1000, -1e9, 1e9, 0}}));
+  for (Index k = 0; k < 1999; ++k)
+    score.step(Vector::Constant(1, static_cast<double>(k)), bounded(k, {}));
+  const auto judged =
+      score.step(Vector::Constant(1, 1999.), bounded(1999, {{0, 1000, -1e9, 1e9, 0}}));
   CHECK(judged[0].truth == 1000.);
   CHECK_FALSE(score.step(std::nullopt, bounded(2000, {{0, 999, -1e9, 1e9, 0}}))[0].truth);
 }
@@ -132,7 +137,9 @@ TEST_CASE("unbounded bounds have an infinite width and no share") {
   CHECK_FALSE(score.outside());
 }
 
-TEST_CASE("an exclusion by a bound speaks of the bound's time: an additive fault that is over is no false alarm") {
+TEST_CASE(
+    "an exclusion by a bound speaks of the bound's time: an additive fault that is over is no "
+    "false alarm") {
   detail::DiagnosisScore score([](const DiagnosisSegment&) {});
   Diagnosis now = bounded(0, {});
   now.mode = 0;

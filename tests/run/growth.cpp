@@ -48,7 +48,8 @@ TEST_CASE("widths that shrink, settle, or were wide for a while do not grow") {
 TEST_CASE("empty, unbounded and flat hulls are nothing to compare with") {
   GrowthWatch watch;
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  for (Index k = 0; k < 20; ++k) watch.step(k, around(1, k == 12 ? 1e-16 : k == 13 ? 0 : k == 14 ? infinity : 1));
+  for (Index k = 0; k < 20; ++k)
+    watch.step(k, around(1, k == 12 ? 1e-16 : k == 13 ? 0 : k == 14 ? infinity : 1));
   watch.step(20, Box::empty(1));
   CHECK_FALSE(watch.growth());
 }

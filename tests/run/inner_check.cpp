@@ -68,7 +68,8 @@ TEST_CASE("the share of the width is a mean over steps and states") {
   CHECK(std::isnan(check.share()));
   check.step(4, box({0, 0}, {1, 1}), box({0, 0}, {2, 4}));
   CHECK(check.share() == doctest::Approx(.375));
-  check.step(5, box({0, 3}, {1, 3}), box({-infinity, 3}, {infinity, 3}));  // a width of infinity, and none at all
+  check.step(5, box({0, 3}, {1, 3}),
+             box({-infinity, 3}, {infinity, 3}));  // a width of infinity, and none at all
   CHECK(check.share() == doctest::Approx(.25));
   CHECK(check.steps() == 2);
   CHECK(check.outside() == -1);
@@ -91,7 +92,8 @@ TEST_CASE("what is no box of the states is refused") {
 TEST_CASE("gains, the last hull and inner estimates of a run") {
   const Scratch scratch;
   const RunOutcome outcome =
-      run(fakes::study({fakes::pipeline("plain"), fakes::pipeline("offers", "offering")}), scratch / "one");
+      run(fakes::study({fakes::pipeline("plain"), fakes::pipeline("offers", "offering")}),
+          scratch / "one");
   const PipelineOutcome &plain = outcome.pipelines[0], &offers = outcome.pipelines[1];
   CHECK(plain.gains.empty());
   CHECK(plain.inner_steps == 0);
@@ -147,7 +149,8 @@ TEST_CASE("gains, the last hull and inner estimates of a run") {
 
 TEST_CASE("steps.csv has the inner estimate behind the metrics, empty where there is none") {
   const Scratch scratch;
-  run(fakes::study({fakes::pipeline("plain"), fakes::pipeline("offers", "offering")}), scratch.path());
+  run(fakes::study({fakes::pipeline("plain"), fakes::pipeline("offers", "offering")}),
+      scratch.path());
   const std::string text = bytes_of(scratch / "steps.csv");
   const json results = json::parse(bytes_of(scratch / "results.json"));
   const std::vector<std::string> names = fields(text, 0);
@@ -168,18 +171,22 @@ TEST_CASE("steps.csv has the inner estimate behind the metrics, empty where ther
 
 TEST_CASE("an inner estimate that leaves the hull is told with its time") {
   const Scratch scratch;
-  const RunOutcome outcome = run(fakes::study({fakes::pipeline("crooked", "offering", scaled(.5, 1.001))}), scratch.path());
+  const RunOutcome outcome = run(
+      fakes::study({fakes::pipeline("crooked", "offering", scaled(.5, 1.001))}), scratch.path());
   CHECK(outcome.pipelines[0].inner_outside == 7);
   CHECK(outcome.pipelines[0].violated_at == -1);
   CHECK(outcome.pipelines[0].error.empty());
   CHECK(outcome.pipelines[0].steps == 21);
   const json summary = json::parse(bytes_of(scratch / "results.json"))["pipelines"][0]["summary"];
   CHECK(summary["inner_outside"] == 7);
-  CHECK(run(fakes::study({fakes::pipeline("touching", "offering", scaled(1, 1))})).pipelines[0].inner_outside == -1);
+  CHECK(run(fakes::study({fakes::pipeline("touching", "offering", scaled(1, 1))}))
+            .pipelines[0]
+            .inner_outside == -1);
 }
 
 TEST_CASE("an inner estimate of another size stops its pipeline") {
-  const PipelineOutcome outcome = run(fakes::study({fakes::pipeline("cut", "offering", scaled(.5, .5, true))})).pipelines[0];
+  const PipelineOutcome outcome =
+      run(fakes::study({fakes::pipeline("cut", "offering", scaled(.5, .5, true))})).pipelines[0];
   CHECK(outcome.error_code == Errc::plugin);
   CHECK(outcome.steps == 2);
   CHECK(outcome.inner_steps == 0);
@@ -191,7 +198,8 @@ TEST_CASE("the last hull where there is none, is empty or unbounded") {
   Params empty, broken;
   empty.set("radius", -1.);
   broken.set("how", std::string("error"));
-  const RunOutcome outcome = run(fakes::study({fakes::pipeline("unheard", "unheard_of"), fakes::pipeline("e", "claiming", empty),
+  const RunOutcome outcome = run(fakes::study({fakes::pipeline("unheard", "unheard_of"),
+                                               fakes::pipeline("e", "claiming", empty),
                                                fakes::pipeline("b", "breaking", broken)}),
                                  scratch.path());
   CHECK(outcome.pipelines[0].last_hull.dim() == 0);
@@ -207,7 +215,8 @@ TEST_CASE("the last hull where there is none, is empty or unbounded") {
 
 TEST_CASE("a repeated run with gains and inner estimates gives the same bytes") {
   const Scratch one, two;
-  const Study study = fakes::study({fakes::pipeline("offers", "offering"), fakes::pipeline("crooked", "offering", scaled(1, 2))});
+  const Study study = fakes::study({fakes::pipeline("offers", "offering"),
+                                    fakes::pipeline("crooked", "offering", scaled(1, 2))});
   run(study, one.path());
   run(study, two.path());
   const auto first = tree_without_times(one.path()), second = tree_without_times(two.path());

@@ -26,9 +26,16 @@ TEST_CASE("layout, numbers and nesting") {
   Text out;
   JsonWriter json(out);
   json.begin_object(JsonWriter::Layout::lines).member("a", 1).member("b", 0.1).member("yes", true);
-  json.key("list").begin_array(JsonWriter::Layout::lines).value(-0.0).value(1e-300).null().end_array();
+  json.key("list")
+      .begin_array(JsonWriter::Layout::lines)
+      .value(-0.0)
+      .value(1e-300)
+      .null()
+      .end_array();
   json.key("empty").begin_array(JsonWriter::Layout::lines).end_array();
-  json.key("matrix").matrix(Matrix{{1., 2.}, {3., HUGE_VAL}}).member("vector", Vector(Vector{{-HUGE_VAL, std::nan("")}}));
+  json.key("matrix")
+      .matrix(Matrix{{1., 2.}, {3., HUGE_VAL}})
+      .member("vector", Vector(Vector{{-HUGE_VAL, std::nan("")}}));
   json.key("raw").raw("{\"x\": 1}").end_object();
   CHECK(out.text == R"({
   "a": 1,
@@ -61,7 +68,9 @@ TEST_CASE("strings: escapes, control characters, UTF-8, and bytes that are none"
 }
 
 TEST_CASE("any bytes give a string that parses, any number reads back") {
-  CHECK(rc::check("bytes", [](const std::string& bytes) { RC_ASSERT(nlohmann::json::parse(json_string(bytes)).is_string()); }));
+  CHECK(rc::check("bytes", [](const std::string& bytes) {
+    RC_ASSERT(nlohmann::json::parse(json_string(bytes)).is_string());
+  }));
   CHECK(rc::check("numbers", [](double x) {
     RC_PRE(std::isfinite(x));
     Text out;

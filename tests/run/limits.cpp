@@ -35,19 +35,24 @@ RunOptions until(int milliseconds) {
   return options;
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
 TEST_CASE("one pipeline alone gives what it gives beside others") {
-  const Study study = fakes::study({fakes::pipeline("a"), fakes::diagnosis("b"), fakes::pipeline("c")});
+  const Study study =
+      fakes::study({fakes::pipeline("a"), fakes::diagnosis("b"), fakes::pipeline("c")});
   const Scratch scratch;
   RunOptions options;
   const RunOutcome all = run(study, options);
   std::vector<std::size_t> told;
   options.pipeline = "c";
   options.out = scratch.path();
-  options.progress = [&](std::size_t pipeline, std::int64_t, std::int64_t) { told.push_back(pipeline); };
+  options.progress = [&](std::size_t pipeline, std::int64_t, std::int64_t) {
+    told.push_back(pipeline);
+  };
   const RunOutcome one = run(study, options);
   REQUIRE(all.pipelines.size() == 3);
   REQUIRE(one.pipelines.size() == 1);
@@ -58,22 +63,24 @@ TEST_CASE("one pipeline alone gives what it gives beside others") {
   const auto results = nlohmann::json::parse(bytes_of(scratch / "results.json"));
   CHECK(results["pipelines"].size() == 1);
   CHECK(results["pipelines"][0]["name"] == "c");
-  CHECK_FALSE(std::filesystem::exists(scratch / "diagnosis.csv"));  // there is no diagnoser in this run
+  CHECK_FALSE(
+      std::filesystem::exists(scratch / "diagnosis.csv"));  // there is no diagnoser in this run
 }
 
 TEST_CASE("a pipeline that does not exist is told, with the nearest name") {
   RunOptions options;
   options.pipeline = "alpa";
-  CHECK_THROWS_WITH_AS(run(fakes::study({fakes::pipeline("alpha"), fakes::pipeline("beta")}), options),
-                       doctest::Contains("did you mean \"alpha\"?"), InputError);
+  CHECK_THROWS_WITH_AS(
+      run(fakes::study({fakes::pipeline("alpha"), fakes::pipeline("beta")}), options),
+      doctest::Contains("did you mean \"alpha\"?"), InputError);
 }
 
 TEST_CASE("a pipeline is given up when the time is over, before its next step") {
   const auto limited = [](PipelineSpec spec, int milliseconds, std::int64_t steps) {
     return run(study_of(std::move(spec), steps), until(milliseconds)).pipelines.at(0);
   };
-  for (const PipelineOutcome& outcome :
-       {limited(fakes::pipeline("observer"), -1, 20), limited(fakes::diagnosis("diagnoser"), -1, 20)}) {
+  for (const PipelineOutcome& outcome : {limited(fakes::pipeline("observer"), -1, 20),
+                                         limited(fakes::diagnosis("diagnoser"), -1, 20)}) {
     CHECK(outcome.error_code == Errc::time_limit);
     CHECK(contains(outcome.error, "time limit of 0 s reached after 0 steps"));
     CHECK(outcome.steps == 0);
@@ -86,9 +93,11 @@ TEST_CASE("a pipeline is given up when the time is over, before its next step") 
   CHECK(later.steps > 0);
   bool tells_milliseconds = false;  // unless the time is over before the run begins
   for (int i = 0; i < 20 && !tells_milliseconds; ++i)
-    tells_milliseconds = contains(limited(fakes::pipeline("observer"), 4, 10'000'000).error, "time limit of 0.00");
+    tells_milliseconds =
+        contains(limited(fakes::pipeline("observer"), 4, 10'000'000).error, "time limit of 0.00");
   CHECK(tells_milliseconds);
-  CHECK(later.error.size() <= ending.size() + std::string("time limit of 0.0299").size());  // three digits
+  CHECK(later.error.size() <=
+        ending.size() + std::string("time limit of 0.0299").size());  // three digits
   CHECK(later.steps < 10'000'000);
   const PipelineOutcome ended = limited(fakes::pipeline("observer"), 3'600'000, 20);
   CHECK(ended.error.empty());
@@ -101,11 +110,13 @@ TEST_CASE("diagnosers count the steps of all seeds, and name the seed") {
   const PipelineOutcome outcome = run(study, until(50)).pipelines.at(0);
   CHECK(outcome.error_code == Errc::time_limit);
   REQUIRE(outcome.diagnosis);
-  CHECK(contains(outcome.error, "reached after " + std::to_string(outcome.diagnosis->steps) + " steps (seed "));
+  CHECK(contains(outcome.error,
+                 "reached after " + std::to_string(outcome.diagnosis->steps) + " steps (seed "));
 }
 
 TEST_CASE("a design ends with its time, and keeps what it has found") {
-  const PipelineOutcome outcome = run(study_of(fakes::design("waits", "waits")), until(20)).pipelines.at(0);
+  const PipelineOutcome outcome =
+      run(study_of(fakes::design("waits", "waits")), until(20)).pipelines.at(0);
   CHECK(outcome.error_code == Errc::time_limit);
   CHECK(contains(outcome.error, "time limit of 0.0"));
   CHECK(outcome.design);
@@ -114,14 +125,16 @@ TEST_CASE("a design ends with its time, and keeps what it has found") {
 }
 
 TEST_CASE("experiments with a design end with the time") {
-  const PipelineOutcome outcome = run(study_of(fakes::design("found", "found", "truth")), until(-1)).pipelines.at(0);
+  const PipelineOutcome outcome =
+      run(study_of(fakes::design("found", "found", "truth")), until(-1)).pipelines.at(0);
   CHECK(outcome.error_code == Errc::time_limit);
   CHECK(contains(outcome.error, "(experiment with mode"));
 }
 
 TEST_CASE("stopped from outside is not out of time") {
   const std::atomic<bool> stop = true;
-  for (const PipelineSpec& spec : {fakes::pipeline("observer"), fakes::diagnosis("diagnoser"), fakes::design("waits", "waits")}) {
+  for (const PipelineSpec& spec : {fakes::pipeline("observer"), fakes::diagnosis("diagnoser"),
+                                   fakes::design("waits", "waits")}) {
     RunOptions options = until(-1);
     options.stop = &stop;
     const RunOutcome outcome = run(study_of(spec), options);

@@ -24,7 +24,8 @@ TEST_CASE("within half a percent for many, over all magnitudes") {
     Median m;
     cordon::detail::RandomStream random(1, cordon::detail::Purpose::prbs);
     for (int i = 0; i < 200000; ++i) m.add(scale * std::exp(random.symmetric()));
-    CHECK(std::abs(m.value() / scale - 1) < 0.012);  // half a bin, and the sample's own deviation of 0.4 %
+    CHECK(std::abs(m.value() / scale - 1) <
+          0.012);  // half a bin, and the sample's own deviation of 0.4 %
   }
   Median zeros;
   for (int i = 0; i < 20000; ++i) zeros.add(0);

@@ -18,13 +18,13 @@ struct Outcome {
   bool complains(const std::string& what) const { return err.find(what) != std::string::npos; }
 };
 
-/// Runs `ENVIRONMENT cordon ARGUMENTS`; the arguments may redirect. Nothing is inherited from CORDON_PLUGIN_PATH, but what the
-/// environment sets again.
+/// Runs `ENVIRONMENT cordon ARGUMENTS`; the arguments may redirect. Nothing is inherited from
+/// CORDON_PLUGIN_PATH, but what the environment sets again.
 inline Outcome cordon_with(const std::string& arguments, const std::string& environment = "") {
   const Scratch directory;
   const std::string out = (directory / "out").string(), err = (directory / "err").string();
-  const std::string command =
-      "( CORDON_PLUGIN_PATH= " + environment + " \"" CORDON_PROGRAM "\" " + arguments + " ) >\"" + out + "\" 2>\"" + err + "\"";
+  const std::string command = "( CORDON_PLUGIN_PATH= " + environment + " \"" CORDON_PROGRAM "\" " +
+                              arguments + " ) >\"" + out + "\" 2>\"" + err + "\"";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(out), bytes_of(err)};
 }

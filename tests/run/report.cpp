@@ -17,7 +17,11 @@ using Kind = DiagnosisEvent::Kind;
 Box interval(double lower, double upper) { return {Vector{{lower}}, Vector{{upper}}}; }
 
 ModeEvidence contradicted(Box residual, Box reset) {
-  return {false, Answer::no, {Certificate::Kind::direction, Vector::Ones(1), .0125}, std::move(residual), std::move(reset)};
+  return {false,
+          Answer::no,
+          {Certificate::Kind::direction, Vector::Ones(1), .0125},
+          std::move(residual),
+          std::move(reset)};
 }
 
 PipelineOutcome diagnosis() {
@@ -59,34 +63,40 @@ Study study() {
   return s;
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
 TEST_CASE("the timeline: one line per event, with its evidence") {
   const std::string text = apps::diagnosis_text(study(), diagnosis(), apps::Paint(stdout));
-  CHECK(
-      text ==
-      "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step, at most 98.8\n"
-      "\n"
-      "k    EVENT          MODE                    EVIDENCE\n"
-      "0    starts         healthy\n"
-      "50   fault begins   fault 1\n"
-      "51   detected       healthy                 residual [0.0125, 0.5], 0 is 0.0125 outside, proof direction, margin 0.0125\n"
-      "52   excluded       fault 2                 residual since the reset [-0.75, -0.25], 0 is 0.25 outside, proof direction, "
-      "margin 0.0125\n"
-      "52   isolated       fault 1\n"
-      "100  fault ends     healthy\n"
-      "120  fault begins   leak, outside the bank\n"
-      "123  unknown_fault\n"
-      "\n"
-      "Over 60 runs (delays in steps: smallest / median / largest)\n"
-      "TRUE MODE         TIMES  DETECTED  ISOLATED  MISSED  WRONG MODE  UNKNOWN FAULT  DETECTION DELAY  ISOLATION DELAY\n"
-      "fault 1           60     59        58        2       1           0              1 / 1.5 / 3      2 / 2 / 9\n"
-      "outside the bank  60     60        -         -       0           57             1 / 1 / 1        3 / 3 / 4\n"
-      "\n"
-      "False alarms: 3 in 2 of 60 runs\n"
-      "True mode excluded: never\n");
+  CHECK(text ==
+        "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step, at most 98.8\n"
+        "\n"
+        "k    EVENT          MODE                    EVIDENCE\n"
+        "0    starts         healthy\n"
+        "50   fault begins   fault 1\n"
+        "51   detected       healthy                 residual [0.0125, 0.5], 0 is 0.0125 outside, "
+        "proof direction, margin 0.0125\n"
+        "52   excluded       fault 2                 residual since the reset [-0.75, -0.25], 0 is "
+        "0.25 outside, proof direction, "
+        "margin 0.0125\n"
+        "52   isolated       fault 1\n"
+        "100  fault ends     healthy\n"
+        "120  fault begins   leak, outside the bank\n"
+        "123  unknown_fault\n"
+        "\n"
+        "Over 60 runs (delays in steps: smallest / median / largest)\n"
+        "TRUE MODE         TIMES  DETECTED  ISOLATED  MISSED  WRONG MODE  UNKNOWN FAULT  DETECTION "
+        "DELAY  ISOLATION DELAY\n"
+        "fault 1           60     59        58        2       1           0              1 / 1.5 / "
+        "3      2 / 2 / 9\n"
+        "outside the bank  60     60        -         -       0           57             1 / 1 / 1 "
+        "       3 / 3 / 4\n"
+        "\n"
+        "False alarms: 3 in 2 of 60 runs\n"
+        "True mode excluded: never\n");
 }
 
 TEST_CASE("a run of diagnosers only has no table of observers, a mixed one has both") {
@@ -106,7 +116,9 @@ TEST_CASE("steps at which it is not known whether the truth is inside are no los
   RunOutcome outcome;
   outcome.pipelines.resize(1);
   const auto counted = [&](Index yes, Index no, Index unknown) {
-    outcome.pipelines[0].summary = {{"contains_truth_yes", yes}, {"contains_truth_no", no}, {"contains_truth_unknown", unknown}};
+    outcome.pipelines[0].summary = {{"contains_truth_yes", yes},
+                                    {"contains_truth_no", no},
+                                    {"contains_truth_unknown", unknown}};
     return apps::report_text(study(), outcome, "out");
   };
   CHECK(has(counted(21, 0, 0), "21/21 "));
@@ -137,9 +149,9 @@ TEST_CASE("an assumption that failed is told") {
   CHECK_FALSE(has(apps::diagnosis_text(study(), p, apps::Paint(stdout)), "Assumption"));
   p.assumptions_until = 3;
   p.failed_assumption = FailedAssumption{FailedAssumption::What::restart_set, 2, 3, -1, 0};
-  CHECK(has(
-      apps::diagnosis_text(study(), p, apps::Paint(stdout)),
-      "Assumption failed: x_2 lies outside the restart set, from which all modes begin anew at k = 2. What is said from k = 3"));
+  CHECK(has(apps::diagnosis_text(study(), p, apps::Paint(stdout)),
+            "Assumption failed: x_2 lies outside the restart set, from which all modes begin anew "
+            "at k = 2. What is said from k = 3"));
   RunOutcome outcome;
   outcome.pipelines = {p};
   CHECK(json::parse(apps::report_json({}, outcome))["pipelines"][0]["assumptions_until"] == 3);
@@ -189,7 +201,8 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
   g.error_set = ErrorSetCheck{make_box(interval(-1, 1)), false, .86, .5, 1, 0};
   text = apps::guarantees_text(g, modes, paint);
   CHECK(has(text,
-            "all errors lie in 0.86 times the set; in steady state 0.5, attained in mode \"fault 1\" by the observer of "
+            "all errors lie in 0.86 times the set; in steady state 0.5, attained in mode \"fault "
+            "1\" by the observer of "
             "\"healthy\": large enough\n"));
   CHECK(has(text, "Guaranteed in steady state: "));
   g.all = Answer::unknown;
@@ -209,7 +222,9 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
   CHECK(data["error_set"]["set"]["generators"] == 1);
 }
 
-TEST_CASE("gains, widths at the end and inner estimates have a table each, and only where there are any") {
+TEST_CASE(
+    "gains, widths at the end and inner estimates have a table each, and only where there are "
+    "any") {
   RunOutcome outcome;
   outcome.pipelines.resize(2);
   PipelineOutcome &plain = outcome.pipelines[0], &offers = outcome.pipelines[1];
@@ -218,7 +233,8 @@ TEST_CASE("gains, widths at the end and inner estimates have a table each, and o
   std::string text = apps::report_text(study(), outcome, "out");
   for (const char* title : {"Gains", "Widths", "Inner"}) CHECK_FALSE(has(text, title));
 
-  plain.last_hull = {Vector{{-1., -std::numeric_limits<double>::infinity()}}, Vector{{1 + 6e-7, 3.}}};
+  plain.last_hull = {Vector{{-1., -std::numeric_limits<double>::infinity()}},
+                     Vector{{1 + 6e-7, 3.}}};
   offers.last_hull = {Vector{{.25, 0.}}, Vector{{.25, 1.5e-5}}};
   Gain designed{"upper_gain", "h_infinity", Matrix{{.5, 1. / 3}, {-.25, 0}}, {}},
       given{"gain", "given", Matrix::Ones(6, 6) / 3, {}};
@@ -233,9 +249,12 @@ TEST_CASE("gains, widths at the end and inner estimates have a table each, and o
   text = apps::report_text(study(), outcome, "out");
   CHECK(has(text,
             "Gains\n"
-            "PIPELINE  PARAMETER   GAIN        L                      SPECTRAL RADIUS ≤  MONOTONE  ‖G‖∞    OPTIMUM\n"
-            "offers    upper_gain  h_infinity  [0.5 0.3333; -0.25 0]  0.75               yes       2.5     γ = 2.5\n"
-            "offers    gain        given       6×6                    0.5                no        [1, ∞]  -\n"
+            "PIPELINE  PARAMETER   GAIN        L                      SPECTRAL RADIUS ≤  MONOTONE  "
+            "‖G‖∞    OPTIMUM\n"
+            "offers    upper_gain  h_infinity  [0.5 0.3333; -0.25 0]  0.75               yes       "
+            "2.5     γ = 2.5\n"
+            "offers    gain        given       6×6                    0.5                no        "
+            "[1, ∞]  -\n"
             "\n"
             "Widths at the last step\n"
             "PIPELINE  x1        x2\n"
@@ -283,7 +302,8 @@ TEST_CASE("an inner estimate outside the hull is a violated guarantee") {
   crooked.inner_outside = 0;
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);
   REQUIRE(apps::complaints({}, outcome).size() == 2);
-  CHECK(has(apps::complaints({}, outcome)[1], "\"crooked\" violates its guarantee: at k = 0 its inner estimate"));
+  CHECK(has(apps::complaints({}, outcome)[1],
+            "\"crooked\" violates its guarantee: at k = 0 its inner estimate"));
   CHECK(has(apps::report_text(study(), outcome, "out"), "VIOLATED at k = 0"));
   CHECK(has(apps::report_text(study(), outcome, "out"), "NOT at k = 0"));
   crooked = {};
@@ -296,7 +316,10 @@ TEST_CASE("additive faults: names in the timeline, a table, and what is outside 
   PipelineOutcome p = diagnosis();
   p.diagnosis->modes = {"healthy"};
   p.diagnosis->statistics = {p.diagnosis->statistics[0]};
-  p.diagnosis->events = {{0, Kind::truth, 0, {}}, {0, Kind::starts, 0, {}}, {7, Kind::truth, -1, {}}, {30, Kind::truth, -1, {}}};
+  p.diagnosis->events = {{0, Kind::truth, 0, {}},
+                         {0, Kind::starts, 0, {}},
+                         {7, Kind::truth, -1, {}},
+                         {30, Kind::truth, -1, {}}};
   Study s = fakes::study({});
   auto& simulate = std::get<SimulateSpec>(s.data);
   simulate.additive_faults = {{1, 5, 29, {}}, {0, 6, 8, {}}, {1, 7, 9, {}}, {0, 30, 40, {}}};
@@ -309,18 +332,20 @@ TEST_CASE("additive faults: names in the timeline, a table, and what is outside 
   CHECK(has(text, "7   fault begins   additive faults 1, 2\n"));
   CHECK(has(text, "30  fault changes  additive fault 1\n"));
   CHECK(has(text, "\nadditive fault  60 "));
-  CHECK(has(text,
-            "\nAdditive faults over 60 runs (share: error of the estimate / half width)\n"
-            "FAULT  DELAY  BOUNDS  WITHOUT 0  OUTSIDE  HALF WIDTH: LAST  MEAN  RMS ERROR  LARGEST SHARE\n"
-            "1      2      100     40         3 of 90  0.125             0.25  0.0625     1.5\n"
-            "2      -      0       0          -        -                 -     -          -\n"));
+  CHECK(has(
+      text,
+      "\nAdditive faults over 60 runs (share: error of the estimate / half width)\n"
+      "FAULT  DELAY  BOUNDS  WITHOUT 0  OUTSIDE  HALF WIDTH: LAST  MEAN  RMS ERROR  LARGEST SHARE\n"
+      "1      2      100     40         3 of 90  0.125             0.25  0.0625     1.5\n"
+      "2      -      0       0          -        -                 -     -          -\n"));
   CHECK_FALSE(has(text, "True fault"));
   p.diagnosis->fault_outside = FaultOutside{12, 9, 1, 4};
   p.violated_at = 12;
+  CHECK(has(apps::diagnosis_text(s, p, paint),
+            "True fault outside its bounds: fault 2 of k = 9, bounded at k = 12 (run 5 of 60)"));
   CHECK(
-      has(apps::diagnosis_text(s, p, paint), "True fault outside its bounds: fault 2 of k = 9, bounded at k = 12 (run 5 of 60)"));
-  CHECK(
-      has(apps::diagnosis_violation(p), "at k = 12 the true additive fault 2 of k = 9 lies outside its bounds (seed offset 4)"));
+      has(apps::diagnosis_violation(p),
+          "at k = 12 the true additive fault 2 of k = 9 lies outside its bounds (seed offset 4)"));
   p.diagnosis->true_mode_excluded = TrueModeExcluded{11, 10, 0, 0};
   p.violated_at = 11;
   CHECK(has(apps::diagnosis_violation(p), "it excludes the mode \"healthy\""));

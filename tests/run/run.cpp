@@ -17,7 +17,8 @@ using nlohmann::json;
 
 namespace {
 
-RunOutcome run(const Study& study, const std::filesystem::path& out = {}, const std::atomic<bool>* stop = nullptr) {
+RunOutcome run(const Study& study, const std::filesystem::path& out = {},
+               const std::atomic<bool>* stop = nullptr) {
   Registry registry;
   registry.add(fakes::register_all);
   RunOptions options;
@@ -44,12 +45,14 @@ Params with(std::initializer_list<std::pair<const char*, Params::Value>> values)
 TEST_CASE("results.json: the study, each step, the summary") {
   const Scratch scratch;
   const RunOutcome outcome =
-      run(fakes::study({fakes::pipeline("first \"box\", é\x01"), fakes::pipeline("second")}), scratch.path());
+      run(fakes::study({fakes::pipeline("first \"box\", é\x01"), fakes::pipeline("second")}),
+          scratch.path());
   CHECK_FALSE(outcome.interrupted);
   CHECK(outcome.files.size() == 9);
   CHECK(tree(scratch.path()).size() == 10);  // and the manifest
   INFO(outcome.report_error);
-  CHECK(outcome.report_error.find("control character") != std::string::npos);  // in a name, which no study file can have
+  CHECK(outcome.report_error.find("control character") !=
+        std::string::npos);  // in a name, which no study file can have
   const json results = json::parse(bytes_of(scratch / "results.json"));
   CHECK(results["cordon_results"] == 1);
   CHECK(results["study"]["title"] == "two states");
@@ -98,7 +101,8 @@ TEST_CASE("unbounded hulls are written as words") {
   CHECK(results["pipelines"][0]["steps"][0]["hull"]["lower"] == json::array({"-inf", "-inf"}));
   CHECK(results["pipelines"][0]["steps"][0]["hull"]["upper"] == json::array({"inf", "inf"}));
   CHECK(results["pipelines"][0]["steps"][0]["radius"] == "inf");
-  CHECK(lines(bytes_of(scratch / "steps.csv"))[1] == "unbounded,0,yes,outer,-inf,-inf,inf,inf,inf,7,yes,,,,,");
+  CHECK(lines(bytes_of(scratch / "steps.csv"))[1] ==
+        "unbounded,0,yes,outer,-inf,-inf,inf,inf,inf,7,yes,,,,,");
 }
 
 TEST_CASE("sets.jsonl holds the exchange form of each estimate") {
@@ -150,7 +154,8 @@ TEST_CASE("the tables hold the same numbers") {
   const auto steps = lines(bytes_of(scratch / "steps.csv"));
   REQUIRE(steps.size() == 43);
   CHECK(steps[0] ==
-        "pipeline,k,consistent,tightness,lower_1,lower_2,upper_1,upper_2,radius,radius_k,assumed,missing,"
+        "pipeline,k,consistent,tightness,lower_1,lower_2,upper_1,upper_2,radius,radius_k,assumed,"
+        "missing,"
         "inner_lower_1,inner_lower_2,inner_upper_1,inner_upper_2");
   CHECK(steps[1].starts_with("\"a,b\",0,yes,outer,"));
   const json results = json::parse(bytes_of(scratch / "results.json"));
@@ -162,7 +167,8 @@ TEST_CASE("the tables hold the same numbers") {
   const auto summary = lines(bytes_of(scratch / "summary.csv"));
   REQUIRE(summary.size() == 3);
   CHECK(summary[0] ==
-        "pipeline,backend,observer,rounding,steps,consistent,inconsistent,undecided,inconsistent_from,assumptions_until,outside_"
+        "pipeline,backend,observer,rounding,steps,consistent,inconsistent,undecided,inconsistent_"
+        "from,assumptions_until,outside_"
         "from,"
         "violated_at,answers_proven,answers_unknown,error,radius_max");
   CHECK(summary[2].starts_with("q,box,recursive,nominal,21,21,0,0,,,,,126,0,,"));
@@ -190,8 +196,8 @@ TEST_CASE("run.json holds what differs from run to run") {
 
 TEST_CASE("a repeated run gives the same bytes in all files without times") {
   const Scratch one, two;
-  const Study study =
-      fakes::study({fakes::pipeline("p"), fakes::pipeline("broken", "breaking"), fakes::pipeline("liar", "claiming")});
+  const Study study = fakes::study({fakes::pipeline("p"), fakes::pipeline("broken", "breaking"),
+                                    fakes::pipeline("liar", "claiming")});
   run(study, one.path());
   run(study, two.path());
   const auto first = tree_without_times(one.path()), second = tree_without_times(two.path());
@@ -204,7 +210,8 @@ TEST_CASE("an error in one pipeline leaves the others, whatever is thrown") {
   Study study =
       fakes::study({fakes::pipeline("a", "breaking"), fakes::pipeline("b"),
                     fakes::pipeline("c", "breaking", with({{"how", std::string("exception")}})),
-                    fakes::pipeline("d", "breaking", with({{"how", std::string("int")}})), fakes::pipeline("e", "unheard_of")});
+                    fakes::pipeline("d", "breaking", with({{"how", std::string("int")}})),
+                    fakes::pipeline("e", "unheard_of")});
   const RunOutcome outcome = run(study, scratch.path());
   REQUIRE(outcome.pipelines.size() == 5);
   CHECK(outcome.pipelines[0].error == "out of \"order\",\nat k = 5");
@@ -222,13 +229,16 @@ TEST_CASE("an error in one pipeline leaves the others, whatever is thrown") {
   CHECK(results["pipelines"][0]["summary"]["error"] == "out of \"order\",\nat k = 5");
   CHECK(results["pipelines"][1]["steps"].size() == 21);
   CHECK(results["pipelines"][4]["steps"].empty());
-  CHECK(bytes_of(scratch / "summary.csv").find("\"out of \"\"order\"\",\nat k = 5\"") != std::string::npos);
+  CHECK(bytes_of(scratch / "summary.csv").find("\"out of \"\"order\"\",\nat k = 5\"") !=
+        std::string::npos);
 }
 
 TEST_CASE("an estimate proven empty: inconsistent from there, with its proof; the others go on") {
   const Scratch scratch;
   const RunOutcome outcome =
-      run(fakes::study({fakes::pipeline("e", "claiming", with({{"radius", -1.}})), fakes::pipeline("p")}), scratch.path());
+      run(fakes::study(
+              {fakes::pipeline("e", "claiming", with({{"radius", -1.}})), fakes::pipeline("p")}),
+          scratch.path());
   CHECK(outcome.pipelines[0].inconsistent_from == 3);
   CHECK(outcome.pipelines[0].inconsistent == 18);
   CHECK(outcome.pipelines[0].consistent == 3);
@@ -248,7 +258,8 @@ TEST_CASE("an estimate proven empty: inconsistent from there, with its proof; th
 
 TEST_CASE("a false claim is a violation; without its assumptions it is none") {
   const auto outcome_of = [](double radius, double admissible) {
-    return run(fakes::study({fakes::pipeline("l", "claiming", with({{"radius", radius}, {"admissible", admissible}}))}))
+    return run(fakes::study({fakes::pipeline(
+                   "l", "claiming", with({{"radius", radius}, {"admissible", admissible}}))}))
         .pipelines[0];
   };
   const PipelineOutcome liar = outcome_of(1e-3, 0);
@@ -304,8 +315,11 @@ TEST_CASE("interruption leaves old results untouched") {
   RunOptions options;
   options.out = scratch.path();
   options.stop = &stop;
-  options.progress = [&](std::size_t pipeline, std::int64_t, std::int64_t) { stop = pipeline == 1; };  // after all of the first
-  const RunOutcome outcome = run_study(fakes::study({fakes::pipeline("a"), fakes::pipeline("b")}, 30), registry, options);
+  options.progress = [&](std::size_t pipeline, std::int64_t, std::int64_t) {
+    stop = pipeline == 1;
+  };  // after all of the first
+  const RunOutcome outcome =
+      run_study(fakes::study({fakes::pipeline("a"), fakes::pipeline("b")}, 30), registry, options);
   CHECK(outcome.interrupted);
   CHECK(outcome.files.empty());
   CHECK((tree(scratch.path()) == before));
@@ -340,7 +354,8 @@ TEST_CASE("bad data and a bad target are refused with nothing written") {
   CHECK_THROWS_AS(run(study, scratch / "out"), InputError);
   CHECK(tree(scratch.path()).empty());
   std::ofstream(scratch / "file") << "mine";
-  CHECK_THROWS_WITH_AS(run(fakes::study({fakes::pipeline("p")}), scratch / "file"), doctest::Contains("it is a file"), Error);
+  CHECK_THROWS_WITH_AS(run(fakes::study({fakes::pipeline("p")}), scratch / "file"),
+                       doctest::Contains("it is a file"), Error);
   CHECK(tree(scratch.path()).size() == 1);
 }
 

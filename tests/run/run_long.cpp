@@ -50,6 +50,7 @@ TEST_CASE("memory stays flat over 100,000 steps") {
 
 TEST_CASE("memory of a diagnosis with bounds of additive faults stays flat over 100,000 steps") {
   const Study study = fakes::study_with_faults({}, 100000);
-  CHECK(growth_of(study, [&](std::uint64_t offset) { return std::make_unique<fakes::WithFaults>(open_data(study, offset)); }) <
-        20);
+  CHECK(growth_of(study, [&](std::uint64_t offset) {
+          return std::make_unique<fakes::WithFaults>(open_data(study, offset));
+        }) < 20);
 }

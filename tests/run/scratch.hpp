@@ -52,9 +52,11 @@ inline std::map<std::string, std::string> tree(const std::filesystem::path& dire
 }
 
 /// The same without the files that hold times: they differ from run to run.
-inline std::map<std::string, std::string> tree_without_times(const std::filesystem::path& directory) {
+inline std::map<std::string, std::string> tree_without_times(
+    const std::filesystem::path& directory) {
   std::map<std::string, std::string> files = tree(directory);
-  for (const char* name : {"run.json", "summary.tex", "summary.md", "benchmarks.csv", "report.html", "manifest.json"})
+  for (const char* name :
+       {"run.json", "summary.tex", "summary.md", "benchmarks.csv", "report.html", "manifest.json"})
     files.erase(name);
   return files;
 }

@@ -48,12 +48,15 @@ LineForm random_set(Index n, Index g, Index m, Vector& point) {
 
 TEST_CASE("no way of eliminating constraints loses a point, empties a set or claims too much") {
   CHECK(rc::check("all options", [] {
-    const Index n = *rc::gen::inRange<Index>(1, 4), g = *rc::gen::inRange<Index>(2, 9), m = *rc::gen::inRange<Index>(1, 5);
+    const Index n = *rc::gen::inRange<Index>(1, 4), g = *rc::gen::inRange<Index>(2, 9),
+                m = *rc::gen::inRange<Index>(1, 5);
     Vector point;
     const LineForm X = random_set(n, g, m, point);
     const ConstraintElimination options{*rc::gen::arbitrary<bool>(), *rc::gen::arbitrary<bool>()};
-    const sets::Reduced reduced = sets::eliminate_constraints(X, *rc::gen::inRange<Index>(0, m), options);
-    const double scale = 1 + point.cwiseAbs().maxCoeff() + X.c.cwiseAbs().maxCoeff() + X.G.cwiseAbs().sum();
+    const sets::Reduced reduced =
+        sets::eliminate_constraints(X, *rc::gen::inRange<Index>(0, m), options);
+    const double scale =
+        1 + point.cwiseAbs().maxCoeff() + X.c.cwiseAbs().maxCoeff() + X.G.cwiseAbs().sum();
     RC_ASSERT(is_empty(reduced.set) != Answer::yes);
     RC_ASSERT(contains(reduced.set, point) != Answer::no);
     const Vector d = random_matrix(n, 1);
@@ -70,7 +73,8 @@ TEST_CASE("dependent rows of integers are no contradiction") {
   for (const bool rescale : {false, true}) {
     for (const bool gauss_jordan : {false, true}) {
       for (Index rows = 0; rows < 3; ++rows)
-        CHECK(is_empty(sets::eliminate_constraints(X, rows, {rescale, gauss_jordan}).set) != Answer::yes);
+        CHECK(is_empty(sets::eliminate_constraints(X, rows, {rescale, gauss_jordan}).set) !=
+              Answer::yes);
     }
   }
 }
@@ -83,12 +87,17 @@ TEST_CASE("an empty set stays empty, an infeasible row is kept") {
   X.S.resize(1, 0);
   CHECK(is_empty(sets::reduce(X, 5, 5).set) == Answer::yes);
   // the false row is no dimension that the generators would have to span
-  const LineForm stretched{Matrix(1, 0), Matrix{{1, 1, 1}}, Vector{{0}}, Matrix(1, 0), Matrix::Zero(1, 3), Vector{{1}}};
+  const LineForm stretched{Matrix(1, 0), Matrix{{1, 1, 1}},  Vector{{0}},
+                           Matrix(1, 0), Matrix::Zero(1, 3), Vector{{1}}};
   CHECK(is_empty(sets::reduce(stretched, 1, 0).set) == Answer::yes);
   CHECK(is_empty(sets::outward::reduce(stretched, 1, 0).set) == Answer::yes);
   // rows that contradict each other show it when there is no room for either
-  const LineForm contradiction{
-      Matrix(1, 0), Matrix{{1, 1, 1, 1}}, Vector{{0}}, Matrix(2, 0), Matrix{{1, 1, 0, 0}, {1, 1, 0, 0}}, Vector{{.1, .9}}};
+  const LineForm contradiction{Matrix(1, 0),
+                               Matrix{{1, 1, 1, 1}},
+                               Vector{{0}},
+                               Matrix(2, 0),
+                               Matrix{{1, 1, 0, 0}, {1, 1, 0, 0}},
+                               Vector{{.1, .9}}};
   CHECK(is_empty(sets::reduce(contradiction, 1, 5).set) == Answer::yes);
   CHECK(is_empty(sets::outward::reduce(contradiction, 1, 5).set) == Answer::yes);
 }
@@ -110,8 +119,10 @@ TEST_CASE("a factor is forgotten without loss only if one row bounds it by itsel
 }
 
 TEST_CASE("a set is not called exact where only rounding leaves it a line") {
-  LineForm X{Matrix::Identity(2, 2), Matrix::Zero(2, 1), Vector::Zero(2), Matrix(2, 2), Matrix(2, 1), Vector::Zero(2)};
-  X.S << 1.5500000000000002e-06, 0.18, 1550, 179999999.99999997;  // proportional but for the last digits
+  LineForm X{Matrix::Identity(2, 2), Matrix::Zero(2, 1), Vector::Zero(2),
+             Matrix(2, 2),           Matrix(2, 1),       Vector::Zero(2)};
+  X.S << 1.5500000000000002e-06, 0.18, 1550,
+      179999999.99999997;  // proportional but for the last digits
   X.A << 0, 1000;
   const sets::Reduced bounded = sets::reduce(X, 10, 10, {});
   CHECK(bounded.set.lines() == 1);

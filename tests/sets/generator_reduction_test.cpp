@@ -15,9 +15,9 @@ using namespace cordon::test;
 
 namespace {
 
-constexpr GeneratorReduction methods[] = {GeneratorReduction::girard,     GeneratorReduction::combastel,
-                                          GeneratorReduction::pca,        GeneratorReduction::qr,
-                                          GeneratorReduction::yang_scott, GeneratorReduction::adaptive};
+constexpr GeneratorReduction methods[] = {
+    GeneratorReduction::girard, GeneratorReduction::combastel,  GeneratorReduction::pca,
+    GeneratorReduction::qr,     GeneratorReduction::yang_scott, GeneratorReduction::adaptive};
 
 /// Are both the same columns up to order and sign?
 bool same_columns(const Matrix& A, const Matrix& B, double tolerance) {
@@ -27,7 +27,8 @@ bool same_columns(const Matrix& A, const Matrix& B, double tolerance) {
     bool found = false;
     for (Index j = 0; j < B.cols() && !found; ++j) {
       if (taken[static_cast<std::size_t>(j)]) continue;
-      if ((A.col(i) - B.col(j)).norm() > tolerance && (A.col(i) + B.col(j)).norm() > tolerance) continue;
+      if ((A.col(i) - B.col(j)).norm() > tolerance && (A.col(i) + B.col(j)).norm() > tolerance)
+        continue;
       taken[static_cast<std::size_t>(j)] = found = true;
     }
     if (!found) return false;
@@ -55,13 +56,16 @@ TEST_CASE("published reductions") {
                      1e-6));
   CHECK(same_columns(reduce_generators(published, 4, GeneratorReduction::girard),
                      Matrix(Vector{{5.187, 6.362, 4.905, 5.451}}.asDiagonal()), 1e-6));
-  CHECK(
-      same_columns(reduce_generators(published, 12, GeneratorReduction::pca),
-                   Matrix{{.243, .319, -.276, -.517, -.521, .659, -.369, -.03, -.67169339, -1.90302355, -1.29804065, -.00227348},
-                          {-.436, .675, -.209, -.474, .252, .037, .817, -.693, 2.57392622, -.9327904, .0213089, -.01921718},
-                          {.259, .474, -.76, -.003, -.153, -.637, -.214, -.157, .61627837, 1.59586041, -1.32151626, .60563656},
-                          {.589, -.198, .371, .652, .757, -.317, .26, -.644, -.21399533, -.65043975, .52482913, 1.52014618}},
-                   1e-6));
+  CHECK(same_columns(reduce_generators(published, 12, GeneratorReduction::pca),
+                     Matrix{{.243, .319, -.276, -.517, -.521, .659, -.369, -.03, -.67169339,
+                             -1.90302355, -1.29804065, -.00227348},
+                            {-.436, .675, -.209, -.474, .252, .037, .817, -.693, 2.57392622,
+                             -.9327904, .0213089, -.01921718},
+                            {.259, .474, -.76, -.003, -.153, -.637, -.214, -.157, .61627837,
+                             1.59586041, -1.32151626, .60563656},
+                            {.589, -.198, .371, .652, .757, -.317, .26, -.644, -.21399533,
+                             -.65043975, .52482913, 1.52014618}},
+                     1e-6));
 }
 
 TEST_CASE("six generators in the plane become four") {
@@ -86,7 +90,8 @@ TEST_CASE("what fits is left alone, but for zero columns") {
   }
 }
 
-TEST_CASE("a box is reduced without loss; parallel generators are merged for nothing by the basis") {
+TEST_CASE(
+    "a box is reduced without loss; parallel generators are merged for nothing by the basis") {
   Matrix G(3, 9);
   G << Matrix::Identity(3, 3), 2 * Matrix::Identity(3, 3), -.5 * Matrix::Identity(3, 3);
   for (const GeneratorReduction method : methods) {
@@ -124,7 +129,8 @@ TEST_CASE("flat sets stay flat") {
   Matrix factors(2, 12);
   for (double& x : factors.reshaped()) x = random.between(-1, 1);
   CHECK(reduce_generators(base * factors, 6, GeneratorReduction::yang_scott).cols() == 6);
-  for (const GeneratorReduction method : {GeneratorReduction::yang_scott, GeneratorReduction::qr, GeneratorReduction::adaptive}) {
+  for (const GeneratorReduction method :
+       {GeneratorReduction::yang_scott, GeneratorReduction::qr, GeneratorReduction::adaptive}) {
     const Matrix H = reduce_generators(base * factors, 6, method);
     CHECK(H.cols() <= 6);
     CHECK(linalg::rank(H, 1e-9) == 2);
@@ -173,8 +179,10 @@ TEST_CASE("axes are not taken from rows of rounding noise") {
 
 namespace {
 
-/// Largest width of the coordinates after `steps` of X⁺ = F X ⊕ N, reduced, in units of the unreduced limit Σ |Fʲ N| 1.
-double growth(const Matrix& F, const Matrix& N, const Matrix& G0, Index budget, GeneratorReduction method, int steps) {
+/// Largest width of the coordinates after `steps` of X⁺ = F X ⊕ N, reduced, in units of the
+/// unreduced limit Σ |Fʲ N| 1.
+double growth(const Matrix& F, const Matrix& N, const Matrix& G0, Index budget,
+              GeneratorReduction method, int steps) {
   Vector limit = Vector::Zero(F.rows());
   Matrix D = N;
   for (int k = 0; k < 3000; ++k, D = Matrix(F * D)) limit += D.cwiseAbs().rowwise().sum();
@@ -197,7 +205,8 @@ TEST_CASE("sets of a stable recursion do not grow under the default reduction") 
   Matrix N(3, 6);
   N << .02 * Matrix::Identity(3, 3), -.3 * L;
   const Matrix G0 = 2 * Matrix::Identity(3, 3);
-  CHECK(growth(F, N, G0, 30, GeneratorReduction::yang_scott, 600) > 1e3);  // which is why it is not the default
+  CHECK(growth(F, N, G0, 30, GeneratorReduction::yang_scott, 600) >
+        1e3);  // which is why it is not the default
   for (const Index budget : {6, 10, 30, 100}) {
     CAPTURE(budget);
     CHECK(growth(F, N, G0, budget, GeneratorReduction::adaptive, 600) < (budget < 30 ? 3 : 1.5));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines under a map, and under rows, that leave nothing of a direction but rounding: the exact image still holds the direction.
+// Lines under a map, and under rows, that leave nothing of a direction but rounding: the exact
+// image still holds the direction.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -15,7 +16,8 @@ using namespace cordon;
 namespace {
 
 LineForm everything(Index n) {
-  return {Matrix::Identity(n, n), Matrix(n, 0), Vector::Zero(n), Matrix(0, n), Matrix(0, 0), Vector(0)};
+  return {Matrix::Identity(n, n), Matrix(n, 0), Vector::Zero(n),
+          Matrix(0, n),           Matrix(0, 0), Vector(0)};
 }
 
 sets::Reduced image(const Matrix& A, const LineForm& X) {
@@ -52,7 +54,8 @@ TEST_CASE("and a line where they are dependent") {
 TEST_CASE("images of lines keep their dimension") {
   CHECK(rc::check([] {
     const Index n = *rc::gen::inRange<Index>(2, 6), rank = *rc::gen::inRange<Index>(1, n + 1);
-    Matrix A = of_rank(n, rank) / *rc::gen::element(1.0, 7.0, 10.0, 1e5);  // some quotients are rounded
+    Matrix A =
+        of_rank(n, rank) / *rc::gen::element(1.0, 7.0, 10.0, 1e5);  // some quotients are rounded
     if (*rc::gen::inRange(0, 2) == 0) {
       const double gap = std::pow(10.0, *rc::gen::inRange(-17, -3));
       A(*rc::gen::inRange<Index>(0, n), *rc::gen::inRange<Index>(0, n)) += gap;
@@ -64,7 +67,8 @@ TEST_CASE("images of lines keep their dimension") {
 }
 
 TEST_CASE("rows that bind lines leave as many as in exact arithmetic") {
-  // δ₁ + δ₂ + δ₃ = ξ leaves a plane, of which x = Aδ keeps a second direction by the last digit only
+  // δ₁ + δ₂ + δ₃ = ξ leaves a plane, of which x = Aδ keeps a second direction by the last digit
+  // only
   LineForm X{Matrix{{.1, .3, .2}, {.3, .9, .6}},
              Matrix::Zero(2, 1),
              Vector::Zero(2),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kernels keep their memory from call to call: what they computed before must not show in what they compute next.
+// Kernels keep their memory from call to call: what they computed before must not show in what they
+// compute next.
 #include <exception>
 #include <thread>
 #include <vector>
@@ -18,26 +19,32 @@ using namespace cordon::test;
 namespace {
 
 LineForm arbitrary_form() {
-  const Index n = arbitrary_dim(), m = *rc::gen::inRange<Index>(0, 6), l = *rc::gen::inRange<Index>(0, 3);
+  const Index n = arbitrary_dim(), m = *rc::gen::inRange<Index>(0, 6),
+              l = *rc::gen::inRange<Index>(0, 3);
   const Index g = *rc::gen::inRange<Index>(0, 16);
   return {arbitrary_matrix(n, l), arbitrary_matrix(n, g), arbitrary_vector(n),
           arbitrary_matrix(m, l), arbitrary_matrix(m, g), arbitrary_vector(m)};
 }
 
-LineForm without_lines(const LineForm& X) { return {Matrix(X.dim(), 0), X.G, X.c, Matrix(X.constraints(), 0), X.A, X.b}; }
+LineForm without_lines(const LineForm& X) {
+  return {Matrix(X.dim(), 0), X.G, X.c, Matrix(X.constraints(), 0), X.A, X.b};
+}
 
 /// All that the kernels with memory of their own make of X.
 std::vector<Matrix> results(const LineForm& X) {
   const Index n = X.dim();
   std::vector<Matrix> made;
-  const auto keep = [&](const LineForm& Y) { made.insert(made.end(), {Y.M, Y.G, Y.c, Y.S, Y.A, Y.b}); };
+  const auto keep = [&](const LineForm& Y) {
+    made.insert(made.end(), {Y.M, Y.G, Y.c, Y.S, Y.A, Y.b});
+  };
   const LinesSolved solved = solve_for_lines(X);
   keep(solved.set);
   made.insert(made.end(), {solved.row_magnitude, solved.state_magnitude});
   keep(eliminate_lines_traced(X, Vector(0)).set);
   const LineForm Z = without_lines(X);
   for (const bool gauss_jordan : {false, true}) {
-    keep(sets::eliminate_constraints(Z, 1, {.rescale = gauss_jordan, .gauss_jordan = gauss_jordan}).set);
+    keep(sets::eliminate_constraints(Z, 1, {.rescale = gauss_jordan, .gauss_jordan = gauss_jordan})
+             .set);
   }
   keep(sets::reduce(X, n + 2, 2, {}).set);
   made.push_back(sets::reduce_generators(X.G, n + 1, sets::GeneratorReduction::yang_scott));

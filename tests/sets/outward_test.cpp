@@ -46,8 +46,9 @@ TEST_CASE("bounded lines leave the set as it is, to the last bit") {
   int bounded = 0;
   for (int k = 0; k < 40; ++k) {
     const Index n = 2, l = 1 + k % 3, g = 2, m = l + k % 2;
-    LineForm X{random_matrix(random, n, l), random_matrix(random, n, g), random_matrix(random, n, 1),
-               random_matrix(random, m, l), random_matrix(random, m, g), Vector(m)};
+    LineForm X{random_matrix(random, n, l), random_matrix(random, n, g),
+               random_matrix(random, n, 1), random_matrix(random, m, l),
+               random_matrix(random, m, g), Vector(m)};
     if (k % 4 == 0) X.S.row(0).tail(l - 1).setZero();  // a row with one line
     if (k % 5 == 0) X.S *= 1e-9;
     X.b = X.S * random_matrix(random, l, 1) + X.A * (0.5 * random_matrix(random, g, 1));
@@ -58,14 +59,16 @@ TEST_CASE("bounded lines leave the set as it is, to the last bit") {
     const cordon::sets::Reduced reduced = cordon::sets::outward::enclose_without_lines(X);
     for (int direction = 0; direction < 3; ++direction) {
       const Vector d = random_matrix(random, n, 1);
-      const Support before = RationalSet::of(X).support(d), after = RationalSet::of(Y.set).support(d);
+      const Support before = RationalSet::of(X).support(d),
+                    after = RationalSet::of(Y.set).support(d);
       CHECK(before.kind == after.kind);
       if (before.kind != Support::finite) continue;
       CHECK(before.value == after.value);
       const Support outer = RationalSet::of(reduced.set).support(d);
       CHECK(outer.kind == Support::finite);
       CHECK(outer.value >= before.value);
-      CHECK(outer.value.get_d() <= before.value.get_d() + 1e-9 * (1 + std::abs(before.value.get_d())));
+      CHECK(outer.value.get_d() <=
+            before.value.get_d() + 1e-9 * (1 + std::abs(before.value.get_d())));
       CHECK(mpq_class(cordon::outward::support(X, d)) >= before.value);
     }
   }
@@ -80,7 +83,12 @@ TEST_CASE("lines that no rows determine stay, and their directions are unbounded
   CHECK(cordon::outward::support(X, Vector{{0, 1}}) == infinity);
   CHECK(cordon::outward::support(X, Vector{{1, 0}}) == 1);
   // dᵀM cancels in double arithmetic, not in truth: (0.1, -1) · (3, 0.3) is 1.7e-17
-  const LineForm line{Matrix{{3.0}, {0.1 * 3}}, Matrix(2, 0), Vector::Zero(2), Matrix(0, 1), Matrix(0, 0), Vector(0)};
+  const LineForm line{Matrix{{3.0}, {0.1 * 3}},
+                      Matrix(2, 0),
+                      Vector::Zero(2),
+                      Matrix(0, 1),
+                      Matrix(0, 0),
+                      Vector(0)};
   CHECK(cordon::outward::support(line, Vector{{0.1, -1}}) == infinity);
 }
 
@@ -88,11 +96,13 @@ TEST_CASE("reduced generators enclose exactly: ordinary, flat and badly scaled")
   using sets::GeneratorReduction;
   sets::Random random(3);
   for (const GeneratorReduction method :
-       {GeneratorReduction::yang_scott, GeneratorReduction::pca, GeneratorReduction::girard, GeneratorReduction::combastel}) {
+       {GeneratorReduction::yang_scott, GeneratorReduction::pca, GeneratorReduction::girard,
+        GeneratorReduction::combastel}) {
     for (int k = 0; k < 60; ++k) {
       const Index n = 1 + k % 5, g = n + 1 + k % 9;
       Matrix G = random_matrix(random, n, g);
-      if (k % 4 == 1 && n > 1) G = random_matrix(random, n, n - 1) * random_matrix(random, n - 1, g);
+      if (k % 4 == 1 && n > 1)
+        G = random_matrix(random, n, n - 1) * random_matrix(random, n - 1, g);
       if (k % 4 == 2) {
         for (Index i = 0; i < n; ++i) G.row(i) *= std::pow(10.0, random.between(-8, 8));
       }

@@ -26,20 +26,25 @@ Matrix padded(const Matrix& A) {
 
 bool near(const Matrix& A, const Matrix& B, double tolerance) {
   if (A.rows() != B.rows() || A.cols() != B.cols()) return false;
-  return A.size() == 0 || (A - B).cwiseAbs().maxCoeff() <= tolerance * (1 + B.cwiseAbs().maxCoeff());
+  return A.size() == 0 ||
+         (A - B).cwiseAbs().maxCoeff() <= tolerance * (1 + B.cwiseAbs().maxCoeff());
 }
 
 bool near(const LineForm& X, const LineForm& Y) {
   constexpr double tolerance = 1e-13;
-  return near(X.M, Y.M, tolerance) && near(X.G, Y.G, tolerance) && near(X.c, Y.c, tolerance) && near(X.S, Y.S, tolerance) &&
-         near(X.A, Y.A, tolerance) && near(X.b, Y.b, tolerance);
+  return near(X.M, Y.M, tolerance) && near(X.G, Y.G, tolerance) && near(X.c, Y.c, tolerance) &&
+         near(X.S, Y.S, tolerance) && near(X.A, Y.A, tolerance) && near(X.b, Y.b, tolerance);
 }
 
 /// Wide in all coordinates and rows: a factor for each of them alone.
 LineForm wide_set(Index n, Index constraints, Index lines) {
   const Index g = n + constraints + *rc::gen::inRange<Index>(0, 6);
-  LineForm X{arbitrary_matrix(n, lines),           arbitrary_matrix(n, g),           arbitrary_vector(n),
-             arbitrary_matrix(constraints, lines), arbitrary_matrix(constraints, g), arbitrary_vector(constraints)};
+  LineForm X{arbitrary_matrix(n, lines),
+             arbitrary_matrix(n, g),
+             arbitrary_vector(n),
+             arbitrary_matrix(constraints, lines),
+             arbitrary_matrix(constraints, g),
+             arbitrary_vector(constraints)};
   X.G.leftCols(n) = 3 * Matrix::Identity(n, n);
   X.A.leftCols(n).setZero();
   X.G.middleCols(n, constraints).setZero();
@@ -47,13 +52,15 @@ LineForm wide_set(Index n, Index constraints, Index lines) {
   return X;
 }
 
-/// r² (‖D G P e_j‖² / P_jj + w) / P_jj with H = (I - Σ e_k e_kᵀ + GᵀG)⁻¹ over the factors k that were forgotten;
-/// +inf where P_jj is little more than rounding.
-Vector plain_scores(const Matrix& G, const Matrix& A, const std::vector<Index>& forgotten, double reach) {
+/// r² (‖D G P e_j‖² / P_jj + w) / P_jj with H = (I - Σ e_k e_kᵀ + GᵀG)⁻¹ over the factors k that
+/// were forgotten; +inf where P_jj is little more than rounding.
+Vector plain_scores(const Matrix& G, const Matrix& A, const std::vector<Index>& forgotten,
+                    double reach) {
   const Index g = G.cols();
   Matrix precision = Matrix::Identity(g, g) + G.transpose() * G;
   for (const Index k : forgotten) precision(k, k) -= 1;
-  Matrix K = Matrix::Zero(g + A.rows(), g + A.rows());  // P is the upper left block of the inverse of [H⁻¹ Aᵀ; A 0]
+  Matrix K = Matrix::Zero(
+      g + A.rows(), g + A.rows());  // P is the upper left block of the inverse of [H⁻¹ Aᵀ; A 0]
   K.topLeftCorner(g, g) = precision;
   K.topRightCorner(g, A.rows()) = A.transpose();
   K.bottomLeftCorner(A.rows(), g) = A;
@@ -63,7 +70,8 @@ Vector plain_scores(const Matrix& G, const Matrix& A, const std::vector<Index>& 
   Vector scores(g);
   for (Index j = 0; j < g; ++j) {
     const double moved = (G * P.col(j)).cwiseQuotient(widths).squaredNorm();
-    scores[j] = P(j, j) > 1e-6 ? reach * reach * (moved / P(j, j) + 1e-6) / P(j, j) : std::numeric_limits<double>::infinity();
+    scores[j] = P(j, j) > 1e-6 ? reach * reach * (moved / P(j, j) + 1e-6) / P(j, j)
+                               : std::numeric_limits<double>::infinity();
   }
   return scores;
 }
@@ -73,12 +81,14 @@ Matrix plain_yang_scott(const Matrix& G, Index most) {
   const Index n = G.rows();
   Matrix W = G;
   std::vector<Index> basis;
-  std::vector<bool> row_used(static_cast<std::size_t>(n), false), column_used(static_cast<std::size_t>(G.cols()), false);
+  std::vector<bool> row_used(static_cast<std::size_t>(n), false),
+      column_used(static_cast<std::size_t>(G.cols()), false);
   for (Index step = 0; step < n; ++step) {
     Index row = -1, column = -1;
     for (Index j = 0; j < W.cols(); ++j) {
       for (Index i = 0; i < n; ++i) {
-        if (row_used[static_cast<std::size_t>(i)] || column_used[static_cast<std::size_t>(j)]) continue;
+        if (row_used[static_cast<std::size_t>(i)] || column_used[static_cast<std::size_t>(j)])
+          continue;
         if (row < 0 || std::abs(W(i, j)) > std::abs(W(row, column))) {
           row = i;
           column = j;
@@ -107,7 +117,8 @@ Matrix plain_yang_scott(const Matrix& G, Index most) {
         cheapest = k;
       }
     }
-    const Vector r = linalg::product(linalg::pseudo_inverse(T, 1e-15), G.col(rest[cheapest])).cwiseAbs();
+    const Vector r =
+        linalg::product(linalg::pseudo_inverse(T, 1e-15), G.col(rest[cheapest])).cwiseAbs();
     T = T * (1 + r.array()).matrix().asDiagonal();
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(cheapest));
   }
@@ -123,8 +134,10 @@ TEST_CASE("loops over padded numbers") {
     const Index n = *rc::gen::inRange<Index>(0, 19);
     const Matrix numbers = arbitrary_matrix(n, 2), full = padded(numbers);
     const double a = arbitrary_number();
-    RC_ASSERT(std::abs(vectors::dot(n, full.col(0).data(), full.col(1).data()) - numbers.col(0).dot(numbers.col(1))) < 1e-10);
-    RC_ASSERT(vectors::largest_size(n, full.col(0).data()) == (n ? numbers.col(0).cwiseAbs().maxCoeff() : 0));
+    RC_ASSERT(std::abs(vectors::dot(n, full.col(0).data(), full.col(1).data()) -
+                       numbers.col(0).dot(numbers.col(1))) < 1e-10);
+    RC_ASSERT(vectors::largest_size(n, full.col(0).data()) ==
+              (n ? numbers.col(0).cwiseAbs().maxCoeff() : 0));
     const Matrix sizes = full.cwiseAbs();
     RC_ASSERT(vectors::largest_product(n, sizes.col(0).data(), sizes.col(1).data()) ==
               (n ? sizes.col(0).cwiseProduct(sizes.col(1)).maxCoeff() : 0));
@@ -182,11 +195,14 @@ TEST_CASE("scores of eliminations, and after some") {
       for (Index j = 0; j < g; ++j) {
         const bool gone = std::find(forgotten.begin(), forgotten.end(), j) != forgotten.end();
         RC_ASSERT(scores.score(j, 0) == 0);
-        if (!gone && std::isfinite(plain[j])) RC_ASSERT(std::abs(scores.score(j, 1.5) - plain[j]) <= 1e-6 * plain[j]);
+        if (!gone && std::isfinite(plain[j]))
+          RC_ASSERT(std::abs(scores.score(j, 1.5) - plain[j]) <= 1e-6 * plain[j]);
       }
       const Index next = *rc::gen::inRange<Index>(0, g);
       // 1 - P_jj of what is forgotten is left for the others
-      if (std::find(forgotten.begin(), forgotten.end(), next) != forgotten.end() || !std::isfinite(plain[next])) continue;
+      if (std::find(forgotten.begin(), forgotten.end(), next) != forgotten.end() ||
+          !std::isfinite(plain[next]))
+        continue;
       scores.forget(next);
       forgotten.push_back(next);
     }
@@ -206,7 +222,8 @@ TEST_CASE("the basis of the reduction and what it absorbs") {
     RC_ASSERT(reduced.cols() == plain.cols());
     for (Index j = 0; j < plain.cols(); ++j) {
       double nearest = std::numeric_limits<double>::infinity();
-      for (Index k = 0; k < reduced.cols(); ++k) nearest = std::min(nearest, (reduced.col(k) - plain.col(j)).norm());
+      for (Index k = 0; k < reduced.cols(); ++k)
+        nearest = std::min(nearest, (reduced.col(k) - plain.col(j)).norm());
       RC_ASSERT(nearest <= 1e-9 * plain.col(j).norm());
     }
   }));
@@ -241,16 +258,19 @@ TEST_CASE("predictions and corrections assembled in place") {
 TEST_CASE("a measurement is an intersection") {
   CHECK(rc::check([] {
     const Index n = arbitrary_dim(5), p = arbitrary_dim(3);
-    const LineForm X = wide_set(n, *rc::gen::inRange<Index>(0, 4), *rc::gen::inRange<Index>(0, 3)), V = wide_set(p, 0, 0);
+    const LineForm X = wide_set(n, *rc::gen::inRange<Index>(0, 4), *rc::gen::inRange<Index>(0, 3)),
+                   V = wide_set(p, 0, 0);
     const Matrix C = arbitrary_matrix(p, n), T = 2 * Matrix::Identity(p, p);
     const Vector z = arbitrary_vector(p);
-    RC_ASSERT(near(sets::strip_intersection(X, C, z, T, V), intersection(X, C, affine_map(V, -T, z))));
+    RC_ASSERT(
+        near(sets::strip_intersection(X, C, z, T, V), intersection(X, C, affine_map(V, -T, z))));
   }));
 }
 
 TEST_CASE("lines are solved for alike with and without a trace") {
   CHECK(rc::check([] {
-    const LineForm X = wide_set(arbitrary_dim(4), *rc::gen::inRange<Index>(0, 5), *rc::gen::inRange<Index>(0, 4));
+    const LineForm X =
+        wide_set(arbitrary_dim(4), *rc::gen::inRange<Index>(0, 5), *rc::gen::inRange<Index>(0, 4));
     const LinesSolved solved = solve_for_lines(X);
     const LinesEliminated traced = eliminate_lines_traced(X, Vector(0));
     RC_ASSERT(near(solved.set.G, traced.set.G, 0));
@@ -263,7 +283,8 @@ TEST_CASE("lines are solved for alike with and without a trace") {
 
 TEST_CASE("products in place, in blocks of larger matrices") {
   CHECK(rc::check([] {
-    const Index m = *rc::gen::inRange<Index>(0, 9), n = *rc::gen::inRange<Index>(0, 15), k = *rc::gen::inRange<Index>(0, 5);
+    const Index m = *rc::gen::inRange<Index>(0, 9), n = *rc::gen::inRange<Index>(0, 15),
+                k = *rc::gen::inRange<Index>(0, 5);
     const Matrix A = arbitrary_matrix(m, n), B = arbitrary_matrix(n, k);
     Matrix whole = Matrix::Constant(m + 2, k + 2, 7), plain = whole;
     for (Index i = 0; i < m; ++i) {
@@ -295,7 +316,8 @@ TEST_CASE("what cancels in a product is zero, and what overflows is refused") {
 TEST_CASE("definite systems, few equations by loops of their own") {
   CHECK(rc::check([] {
     const Index m = *rc::gen::inRange<Index>(1, 8);
-    const Matrix G = arbitrary_matrix(m, m + 3), B = arbitrary_matrix(m, *rc::gen::inRange<Index>(0, 4));
+    const Matrix G = arbitrary_matrix(m, m + 3),
+                 B = arbitrary_matrix(m, *rc::gen::inRange<Index>(0, 4));
     const Matrix A = linalg::gram(G) + Matrix::Identity(m, m);
     const auto X = linalg::solve_spd(A, B);
     RC_ASSERT(X.has_value());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arbitrary sets for properties: ordinary, flat, with parallel or zero generators, points, badly scaled (1e-8 … 1e8).
+// Arbitrary sets for properties: ordinary, flat, with parallel or zero generators, points, badly
+// scaled (1e-8 … 1e8).
 #pragma once
 
 #include <cmath>
@@ -37,7 +38,8 @@ inline sets::Zonotope arbitrary_zonotope(Index n, const Vector& scales) {
       if (n > 1) G = arbitrary_matrix(n, n - 1) * arbitrary_matrix(n - 1, G.cols());
       break;
     case 1:  // nearly flat
-      if (n > 1) G = Matrix(arbitrary_matrix(n, n - 1) * arbitrary_matrix(n - 1, G.cols())) + 1e-9 * G;
+      if (n > 1)
+        G = Matrix(arbitrary_matrix(n, n - 1) * arbitrary_matrix(n - 1, G.cols())) + 1e-9 * G;
       break;
     case 2:  // parallel generators
       for (Index j = 1; j < G.cols(); j += 2) G.col(j) = G.col(j - 1) * arbitrary_number();
@@ -57,7 +59,9 @@ inline Vector arbitrary_coordinates(Index n) {
 }
 
 inline Index arbitrary_dim(Index largest = 5) { return *rc::gen::inRange<Index>(1, largest + 1); }
-inline sets::Random arbitrary_random() { return sets::Random(*rc::gen::arbitrary<std::uint64_t>()); }
+inline sets::Random arbitrary_random() {
+  return sets::Random(*rc::gen::arbitrary<std::uint64_t>());
+}
 
 /// A point of Z: a vertex of the factor box, a point of one of its faces or an inner one.
 inline Vector point_of(const sets::Zonotope& Z, sets::Random& random) {
@@ -72,9 +76,12 @@ inline Vector point_of(const sets::Zonotope& Z, sets::Random& random) {
 inline Vector point_of(const Box& X, sets::Random& random) {
   Vector x(X.dim());
   for (Index i = 0; i < X.dim(); ++i) {
-    const double lower = std::isfinite(X.lower[i]) ? X.lower[i] : -1e6, upper = std::isfinite(X.upper[i]) ? X.upper[i] : 1e6;
+    const double lower = std::isfinite(X.lower[i]) ? X.lower[i] : -1e6,
+                 upper = std::isfinite(X.upper[i]) ? X.upper[i] : 1e6;
     const double choice = random.unit();
-    x[i] = choice < 0.25 ? lower : choice < 0.5 ? upper : std::clamp(random.between(lower, upper), lower, upper);
+    x[i] = choice < 0.25  ? lower
+           : choice < 0.5 ? upper
+                          : std::clamp(random.between(lower, upper), lower, upper);
   }
   return x;
 }
@@ -95,13 +102,16 @@ inline Vector sizes_of(const sets::Zonotope& Z) {
   return s;
 }
 
-/// dᵀx ≤ h_Z(d) up to `tolerance`, relative to Σ |d_i| sizes_i, in `count` random directions. `sizes` are those of the
-/// numbers that took part: a cut of a long set is off by the rounding errors of the long one.
-inline bool encloses(const sets::Zonotope& Z, const Vector& x, const Vector& sizes, sets::Random& random, double tolerance = 1e-9,
-                     int count = 12) {
+/// dᵀx ≤ h_Z(d) up to `tolerance`, relative to Σ |d_i| sizes_i, in `count` random directions.
+/// `sizes` are those of the numbers that took part: a cut of a long set is off by the rounding
+/// errors of the long one.
+inline bool encloses(const sets::Zonotope& Z, const Vector& x, const Vector& sizes,
+                     sets::Random& random, double tolerance = 1e-9, int count = 12) {
   for (int k = 0; k < count; ++k) {
     const Vector d = direction_for(sizes, random);
-    if (!(d.dot(x) <= d.dot(Z.c) + (Z.G.transpose() * d).lpNorm<1>() + tolerance * d.cwiseAbs().dot(sizes))) return false;
+    if (!(d.dot(x) <=
+          d.dot(Z.c) + (Z.G.transpose() * d).lpNorm<1>() + tolerance * d.cwiseAbs().dot(sizes)))
+      return false;
   }
   return true;
 }
@@ -111,12 +121,13 @@ inline bool encloses(const sets::Zonotope& Z, const Vector& x, sets::Random& ran
 }
 
 /// h_X(d) ≤ h_Y(d) up to `tolerance` likewise.
-inline bool is_inside(const sets::Zonotope& X, const sets::Zonotope& Y, sets::Random& random, double tolerance = 1e-9,
-                      int count = 12) {
+inline bool is_inside(const sets::Zonotope& X, const sets::Zonotope& Y, sets::Random& random,
+                      double tolerance = 1e-9, int count = 12) {
   const Vector sizes = sizes_of(X).cwiseMax(sizes_of(Y));
   for (int k = 0; k < count; ++k) {
     const Vector d = direction_for(sizes, random);
-    const double x = d.dot(X.c) + (X.G.transpose() * d).lpNorm<1>(), y = d.dot(Y.c) + (Y.G.transpose() * d).lpNorm<1>();
+    const double x = d.dot(X.c) + (X.G.transpose() * d).lpNorm<1>(),
+                 y = d.dot(Y.c) + (Y.G.transpose() * d).lpNorm<1>();
     if (!(x <= y + tolerance * d.cwiseAbs().dot(sizes))) return false;
   }
   return true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b} in rational arithmetic, with exact support functions: what results with outward
-// rounding are compared with. Independent of the library: nothing of it is called, linear programs are solved by cddlib.
+// Sets {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b} in rational arithmetic, with exact support functions:
+// what results with outward rounding are compared with. Independent of the library: nothing of it
+// is called, linear programs are solved by cddlib.
 #pragma once
 
 #include <cmath>
@@ -27,11 +28,13 @@ struct Affine {
   explicit Affine(std::size_t variables = 0) : coefficients(variables) {}
   void add(const mpq_class& factor, const Affine& other) {
     constant += factor * other.constant;
-    for (std::size_t j = 0; j < other.coefficients.size(); ++j) coefficients[j] += factor * other.coefficients[j];
+    for (std::size_t j = 0; j < other.coefficients.size(); ++j)
+      coefficients[j] += factor * other.coefficients[j];
   }
 };
 
-/// Points x_i over variables of which some lie in [-1,1] and the others are free, subject to rows = 0.
+/// Points x_i over variables of which some lie in [-1,1] and the others are free, subject to rows =
+/// 0.
 struct RationalSet {
   std::vector<bool> is_free;
   std::vector<Affine> x, rows;
@@ -40,14 +43,18 @@ struct RationalSet {
 
   static RationalSet of(const LineForm& X) {
     RationalSet set;
-    const auto l = static_cast<std::size_t>(X.lines()), g = static_cast<std::size_t>(X.generators());
+    const auto l = static_cast<std::size_t>(X.lines()),
+               g = static_cast<std::size_t>(X.generators());
     set.is_free.assign(l + g, false);
     for (std::size_t j = 0; j < l; ++j) set.is_free[j] = true;
-    const auto affine = [&](const Matrix& lines, const Matrix& generators, Index i, double constant) {
+    const auto affine = [&](const Matrix& lines, const Matrix& generators, Index i,
+                            double constant) {
       Affine a(l + g);
       a.constant = constant;
-      for (Index j = 0; j < lines.cols(); ++j) a.coefficients[static_cast<std::size_t>(j)] = lines(i, j);
-      for (Index j = 0; j < generators.cols(); ++j) a.coefficients[l + static_cast<std::size_t>(j)] = generators(i, j);
+      for (Index j = 0; j < lines.cols(); ++j)
+        a.coefficients[static_cast<std::size_t>(j)] = lines(i, j);
+      for (Index j = 0; j < generators.cols(); ++j)
+        a.coefficients[l + static_cast<std::size_t>(j)] = generators(i, j);
       return a;
     };
     for (Index i = 0; i < X.dim(); ++i) set.x.push_back(affine(X.M, X.G, i, X.c[i]));
@@ -78,7 +85,8 @@ struct RationalSet {
     return set;
   }
 
-  /// The variables of both, the rows of both; x is that of this set. `shifted` receives the other's x.
+  /// The variables of both, the rows of both; x is that of this set. `shifted` receives the other's
+  /// x.
   RationalSet beside(const RationalSet& other, std::vector<Affine>& shifted) const {
     RationalSet both = *this;
     both.is_free.insert(both.is_free.end(), other.is_free.begin(), other.is_free.end());
@@ -88,7 +96,8 @@ struct RationalSet {
     const auto shift = [&](const Affine& a) {
       Affine moved(both.variables());
       moved.constant = a.constant;
-      for (std::size_t j = 0; j < a.coefficients.size(); ++j) moved.coefficients[variables() + j] = a.coefficients[j];
+      for (std::size_t j = 0; j < a.coefficients.size(); ++j)
+        moved.coefficients[variables() + j] = a.coefficients[j];
       return moved;
     };
     for (const Affine& a : other.rows) both.rows.push_back(shift(a));
@@ -97,18 +106,21 @@ struct RationalSet {
     return both;
   }
 
-  static std::vector<Affine> map(const Matrix& T, const std::vector<Affine>& x, std::size_t variables) {
+  static std::vector<Affine> map(const Matrix& T, const std::vector<Affine>& x,
+                                 std::size_t variables) {
     std::vector<Affine> y(static_cast<std::size_t>(T.rows()), Affine(variables));
     for (Index i = 0; i < T.rows(); ++i) {
       for (Index j = 0; j < T.cols(); ++j) {
-        if (T(i, j) != 0) y[static_cast<std::size_t>(i)].add(mpq_class(T(i, j)), x[static_cast<std::size_t>(j)]);
+        if (T(i, j) != 0)
+          y[static_cast<std::size_t>(i)].add(mpq_class(T(i, j)), x[static_cast<std::size_t>(j)]);
       }
     }
     return y;
   }
 
   /// A X ⊕ {f} ⊕ T Y.
-  static RationalSet affine_sum(const RationalSet& X, const Matrix& A, const Vector& f, const RationalSet& Y, const Matrix& T) {
+  static RationalSet affine_sum(const RationalSet& X, const Matrix& A, const Vector& f,
+                                const RationalSet& Y, const Matrix& T) {
     std::vector<Affine> y;
     RationalSet sum = X.beside(Y, y);
     std::vector<Affine> image = map(A, sum.x, sum.variables());
@@ -122,8 +134,8 @@ struct RationalSet {
   }
 
   /// {x ∈ X : z - C x ∈ T V}.
-  static RationalSet strip_intersection(const RationalSet& X, const Matrix& C, const Vector& z, const Matrix& T,
-                                        const RationalSet& V) {
+  static RationalSet strip_intersection(const RationalSet& X, const Matrix& C, const Vector& z,
+                                        const Matrix& T, const RationalSet& V) {
     std::vector<Affine> v;
     RationalSet cut = X.beside(V, v);
     std::vector<Affine> rows = map(C, cut.x, cut.variables());
@@ -143,7 +155,8 @@ struct RationalSet {
   };
   Support support(const Vector& d) const {
     Affine objective(variables());
-    for (std::size_t i = 0; i < x.size(); ++i) objective.add(mpq_class(d[static_cast<Index>(i)]), x[i]);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      objective.add(mpq_class(d[static_cast<Index>(i)]), x[i]);
     if (rows.empty()) {
       Support h{Support::finite, objective.constant};
       for (std::size_t j = 0; j < variables(); ++j) {
@@ -161,13 +174,15 @@ struct RationalSet {
     [[maybe_unused]] static const bool ready = (dd_set_global_constants(), true);
     std::size_t count = rows.size();
     for (const bool free : is_free) count += free ? 0 : 2;
-    dd_MatrixPtr P = dd_CreateMatrix(static_cast<dd_rowrange>(count), static_cast<dd_colrange>(variables() + 1));
+    dd_MatrixPtr P =
+        dd_CreateMatrix(static_cast<dd_rowrange>(count), static_cast<dd_colrange>(variables() + 1));
     P->representation = dd_Inequality;
     P->numbtype = dd_Rational;
     std::size_t row = 0;
     for (const Affine& equation : rows) {
       mpq_set(P->matrix[row][0], equation.constant.get_mpq_t());
-      for (std::size_t j = 0; j < variables(); ++j) mpq_set(P->matrix[row][j + 1], equation.coefficients[j].get_mpq_t());
+      for (std::size_t j = 0; j < variables(); ++j)
+        mpq_set(P->matrix[row][j + 1], equation.coefficients[j].get_mpq_t());
       set_addelem(P->linset, static_cast<long>(++row));
     }
     for (std::size_t j = 0; j < variables(); ++j) {
@@ -179,10 +194,12 @@ struct RationalSet {
     }
     P->objective = dd_LPmax;
     mpq_set(P->rowvec[0], objective.constant.get_mpq_t());
-    for (std::size_t j = 0; j < variables(); ++j) mpq_set(P->rowvec[j + 1], objective.coefficients[j].get_mpq_t());
+    for (std::size_t j = 0; j < variables(); ++j)
+      mpq_set(P->rowvec[j + 1], objective.coefficients[j].get_mpq_t());
     dd_ErrorType error = dd_NoError;
     dd_LPPtr lp = dd_Matrix2LP(P, &error);
-    dd_LPSolve0(lp, dd_DualSimplex, &error);  // without the floating-point solve that dd_LPSolve tries first: it corrupts memory
+    dd_LPSolve0(lp, dd_DualSimplex, &error);  // without the floating-point solve that dd_LPSolve
+                                              // tries first: it corrupts memory
     Support h;
     const dd_LPStatusType status = lp->LPS;
     h.value = mpq_class(lp->optvalue);
@@ -198,8 +215,9 @@ struct RationalSet {
       case dd_Unbounded:
       case dd_DualInconsistent:
       case dd_StrucDualInconsistent:  // unbounded, if there is a point at all
-        return by_linear_program(Affine(variables())).kind == Support::empty ? Support{Support::empty, 0}
-                                                                             : Support{Support::infinite, 0};
+        return by_linear_program(Affine(variables())).kind == Support::empty
+                   ? Support{Support::empty, 0}
+                   : Support{Support::infinite, 0};
       default:
         throw std::runtime_error("cddlib left a linear program undecided");
     }

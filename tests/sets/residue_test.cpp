@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rounding in flat sets: what is known no better than the terms allow is no statement, what is known is kept.
+// Rounding in flat sets: what is known no better than the terms allow is no statement, what is
+// known is kept.
 #include <doctest/doctest.h>
 
 #include "cordon/sets/line_zonotope.hpp"
@@ -14,7 +15,9 @@ LineForm measured(const LineForm& X, const Matrix& C, const Vector& z) {
   return sets::strip_intersection(X, C, z, Matrix(z.size(), 0), make_point(Vector(0)));
 }
 
-LineForm interval(double center, double radius) { return make_zonotope(Vector{{center}}, Matrix{{radius}}); }
+LineForm interval(double center, double radius) {
+  return make_zonotope(Vector{{center}}, Matrix{{radius}});
+}
 
 LineForm sum(const LineForm& X, const Matrix& A) {
   const LineForm nothing = make_point(Vector(0));
@@ -60,7 +63,8 @@ TEST_CASE("rows of rounding errors are left out, others are kept") {
 TEST_CASE("nearly dependent rows know no more than rounding leaves") {
   // x₁ and x₁ + 1e-6 x₂: errors of 1e-14 in the rows are 1e-8 in x₂
   const LineForm X = make_zonotope(Vector{{1, 0}}, Matrix::Identity(2, 2));
-  const Box hull = interval_hull(measured(X, Matrix{{1, 0}, {1, 1e-6}}, Vector{{1.5, 1.5 + .5e-6}}));
+  const Box hull =
+      interval_hull(measured(X, Matrix{{1, 0}, {1, 1e-6}}, Vector{{1.5, 1.5 + .5e-6}}));
   CHECK(hull.lower[1] < .5 - 1e-9);
   CHECK(hull.upper[1] > .5 + 1e-9);
   CHECK(hull.upper[1] - hull.lower[1] < 1e-6);
@@ -72,12 +76,14 @@ TEST_CASE("a sum that cancels is as wide as its errors") {
   CHECK(hull.lower[0] < 0);
   CHECK(hull.upper[0] > 0);
   CHECK(hull.upper[0] < 1e-13);
-  const LineForm diagonal = make_zonotope(Vector{{0, 0}}, Matrix{{.1}, {.1}});  // without a centre to tell the size
+  const LineForm diagonal =
+      make_zonotope(Vector{{0, 0}}, Matrix{{.1}, {.1}});  // without a centre to tell the size
   CHECK(sum(diagonal, Matrix{{1, -1}}).generators() == 2);
   const LineForm opposite = make_point(Vector{{-.3}});
   const Matrix one{{1}};
   const sets::Summand summand{one, opposite};
-  CHECK(sets::affine_sum(make_point(Vector{{0}}), one, Vector{{.1 + .2}}, {&summand, 1}).set.generators() == 1);
+  CHECK(sets::affine_sum(make_point(Vector{{0}}), one, Vector{{.1 + .2}}, {&summand, 1})
+            .set.generators() == 1);
   CHECK(sum(interval(1, 1), Matrix{{2}}).generators() == 1);
   CHECK(sum(interval(1, 1e-3), Matrix{{2}}).generators() == 1);
   CHECK(sum(interval(1, 1e-6), Matrix{{2}}).generators() == 2);

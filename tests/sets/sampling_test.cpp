@@ -14,7 +14,8 @@ using namespace cordon::test;
 TEST_CASE("the same numbers on every machine") {
   Random random(5489);
   for (int k = 1; k < 10000; ++k) random.unit();
-  CHECK(random.unit() == static_cast<double>(9981545732273789042ULL >> 11) / 9007199254740992.0);  // C++ [rand.predef]
+  CHECK(random.unit() == static_cast<double>(9981545732273789042ULL >> 11) /
+                             9007199254740992.0);  // C++ [rand.predef]
   const Vector x = random.cube(1000);
   CHECK(x.minCoeff() >= -1);
   CHECK(x.maxCoeff() < 1);
@@ -73,15 +74,19 @@ TEST_CASE("nothing is sampled from the empty set; a single feasible factor is re
   X.A *= 1e-8;  // badly scaled rows
   X.b *= .5e-8;
   CHECK(sample(X, 5, 1));
-  X = intersection(make_point(Vector{{1, 2}}), Matrix::Identity(2, 2), make_point(Vector{{1, 2}}));  // rows without factors
+  X = intersection(make_point(Vector{{1, 2}}), Matrix::Identity(2, 2),
+                   make_point(Vector{{1, 2}}));  // rows without factors
   CHECK(sample(X, 1, 1)->col(0) == Vector{{1, 2}});
-  CHECK_FALSE(sample(intersection(make_point(Vector{{1, 2}}), Matrix::Identity(2, 2), make_point(Vector{{1, 3}})), 1, 1));
+  CHECK_FALSE(sample(
+      intersection(make_point(Vector{{1, 2}}), Matrix::Identity(2, 2), make_point(Vector{{1, 3}})),
+      1, 1));
 }
 
 TEST_CASE("sampled points are not proven to lie outside") {
   CHECK(rc::check([] {
     const Index n = arbitrary_dim(3);
-    const Zonotope X = arbitrary_zonotope(n, Vector::Ones(n)), Y = arbitrary_zonotope(n, Vector::Ones(n));
+    const Zonotope X = arbitrary_zonotope(n, Vector::Ones(n)),
+                   Y = arbitrary_zonotope(n, Vector::Ones(n));
     const Matrix R = arbitrary_matrix(n, n);
     Random random = arbitrary_random();
     const Zonotope around{R * point_of(X, random), Y.G};
@@ -90,7 +95,8 @@ TEST_CASE("sampled points are not proven to lie outside") {
     RC_PRE(points.has_value());
     for (Index k = 0; k < points->cols(); ++k) {
       RC_ASSERT(encloses(X, points->col(k), random));
-      RC_ASSERT(encloses(around, R * points->col(k), sizes_of(around) + R.cwiseAbs() * sizes_of(X), random));
+      RC_ASSERT(encloses(around, R * points->col(k), sizes_of(around) + R.cwiseAbs() * sizes_of(X),
+                         random));
     }
   }));
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strips that repeat what a set says already: equal, proportional and dependent rows, outputs without noise, sets without
-// interior. What is left of a direction then is rounding, from which nothing may be concluded. The points are made of integers
-// and powers of two, so that they lie in the exact intersection.
+// Strips that repeat what a set says already: equal, proportional and dependent rows, outputs
+// without noise, sets without interior. What is left of a direction then is rounding, from which
+// nothing may be concluded. The points are made of integers and powers of two, so that they lie in
+// the exact intersection.
 #include <doctest/doctest.h>
 
 #include "cordon/sets/generator_reduction.hpp"
@@ -15,14 +16,15 @@ using namespace cordon::test;
 
 namespace {
 
-constexpr StripMethod methods[] = {StripMethod::box, StripMethod::hull, StripMethod::segment, StripMethod::bravo,
-                                   StripMethod::volume};
+constexpr StripMethod methods[] = {StripMethod::box, StripMethod::hull, StripMethod::segment,
+                                   StripMethod::bravo, StripMethod::volume};
 
 Zonotope point(const Vector& x) { return {x, Matrix(x.size(), 0)}; }
 Zonotope no_noise() { return point(Vector(0)); }
 
 /// The measurement z = C x, without noise.
-std::optional<Zonotope> measured(const Zonotope& Z, const Matrix& C, const Vector& x, StripMethod method) {
+std::optional<Zonotope> measured(const Zonotope& Z, const Matrix& C, const Vector& x,
+                                 StripMethod method) {
   return correct(Z, C, C * x, Matrix(C.rows(), 0), no_noise(), method);
 }
 
@@ -157,13 +159,15 @@ TEST_CASE("a map turns what is flat by rounding into a coordinate") {
 }
 
 TEST_CASE("a singular map of a set with interior") {
-  const Matrix A{{.3, .6, 0}, {.1, .2, 0}, {.2, .4, .9}}, B{{.1, -.3, 0}, {1, 0, 0}, {0, 0, 1}}, first{{1, 0, 0}};
+  const Matrix A{{.3, .6, 0}, {.1, .2, 0}, {.2, .4, .9}}, B{{.1, -.3, 0}, {1, 0, 0}, {0, 0, 1}},
+      first{{1, 0, 0}};
   const Zonotope Z{Vector{{0, 0, 0}}, Matrix{{1, .5, .3}, {.7, 1, -.3}, {.1, .6, 1}}};
   const Vector x = Z.G * Vector{{1, -1, 1}}, next = B * (A * x);
   for (const StripMethod method : methods) {
     CAPTURE(static_cast<int>(method));
     const MappedZonotope nothing[] = {{Matrix(3, 0), no_noise()}};
-    const Zonotope flat = affine_sum(Z, A, Vector::Zero(3), nothing), turned = affine_sum(flat, B, Vector::Zero(3), nothing);
+    const Zonotope flat = affine_sum(Z, A, Vector::Zero(3), nothing),
+                   turned = affine_sum(flat, B, Vector::Zero(3), nothing);
     CHECK(holds(measured(turned, first, next, method), next, Vector::Ones(3)));
   }
 }
@@ -172,7 +176,8 @@ TEST_CASE("points of a set in a strip lie in the result") {
   CHECK(rc::check([] {
     const Case test = arbitrary_case();
     const Matrix C = arbitrary_rows(1, test.units);
-    const double sigma = *rc::gen::element(0.0, 0.0, .5, 2.0), d = C.row(0).dot(test.x) + sigma * *rc::gen::element(-1, 0, 1);
+    const double sigma = *rc::gen::element(0.0, 0.0, .5, 2.0),
+                 d = C.row(0).dot(test.x) + sigma * *rc::gen::element(-1, 0, 1);
     for (const StripMethod method : methods) {
       const auto X = intersect_strip(test.Z, C.row(0).transpose(), d, sigma, method);
       RC_ASSERT(holds(X, test.x, sizes_of(test.Z)));

@@ -13,9 +13,11 @@ using namespace cordon::test;
 
 namespace {
 
-Zonotope zonotope(std::initializer_list<double> c, std::initializer_list<std::initializer_list<double>> rows) {
+Zonotope zonotope(std::initializer_list<double> c,
+                  std::initializer_list<std::initializer_list<double>> rows) {
   Zonotope Z{Vector(static_cast<Index>(c.size())),
-             Matrix(static_cast<Index>(rows.size()), rows.size() ? static_cast<Index>(rows.begin()->size()) : 0)};
+             Matrix(static_cast<Index>(rows.size()),
+                    rows.size() ? static_cast<Index>(rows.begin()->size()) : 0)};
   Index i = 0;
   for (double value : c) Z.c[i++] = value;
   i = 0;
@@ -27,8 +29,8 @@ Zonotope zonotope(std::initializer_list<double> c, std::initializer_list<std::in
   return Z;
 }
 
-constexpr StripMethod methods[] = {StripMethod::box, StripMethod::hull, StripMethod::segment, StripMethod::bravo,
-                                   StripMethod::volume};
+constexpr StripMethod methods[] = {StripMethod::box, StripMethod::hull, StripMethod::segment,
+                                   StripMethod::bravo, StripMethod::volume};
 
 }  // namespace
 
@@ -51,12 +53,15 @@ TEST_CASE("Bravo's example: the third generator gives the smallest enclosure") {
 TEST_CASE("strip recursion of a system with two states") {
   const Matrix A{{0, -.5}, {1, 1}}, C{{-2, 1}}, T = Matrix::Identity(1, 1);
   const Zonotope W = zonotope({0, 0}, {{-.12}, {.02}}), V = zonotope({0}, {{.2}});
-  const double y[] = {0.0234670727523143,  -4.328236471896203,  -4.1973096745991345, -1.9546081148402012, 0.0983604258227819,
-                      1.1666132024783362,  1.107317638717911,   0.4263920687095986,  -0.009268218571361,  -0.3069527304071071,
-                      -0.1292621672249405, -0.0195793311301101, -0.0751745657276915, 0.0774426557519688,  0.2618198630568284,
-                      -0.0222441951122745, 0.0464232298590576,  -0.1385809053684645, 0.0876767710448164,  -0.109466733731803};
+  const double y[] = {
+      0.0234670727523143,  -4.328236471896203,  -4.1973096745991345, -1.9546081148402012,
+      0.0983604258227819,  1.1666132024783362,  1.107317638717911,   0.4263920687095986,
+      -0.009268218571361,  -0.3069527304071071, -0.1292621672249405, -0.0195793311301101,
+      -0.0751745657276915, 0.0774426557519688,  0.2618198630568284,  -0.0222441951122745,
+      0.0464232298590576,  -0.1385809053684645, 0.0876767710448164,  -0.109466733731803};
   const auto last_hull = [&](StripMethod method) {
-    Zonotope X = *correct(zonotope({0, 0}, {{3, 0}, {0, 3}}), C, Vector::Constant(1, y[0]), T, V, method);
+    Zonotope X =
+        *correct(zonotope({0, 0}, {{3, 0}, {0, 3}}), C, Vector::Constant(1, y[0]), T, V, method);
     for (int k = 1; k < 20; ++k) {
       X = minkowski_sum(affine_map(X, A, Vector::Zero(2)), W);
       X = *correct(X, C, Vector::Constant(1, y[k]), T, V, method);
@@ -83,7 +88,8 @@ TEST_CASE("strips in one dimension are intersected exactly") {
     CHECK(interval_hull(point).lower[0] == doctest::Approx(4));
     CHECK(interval_hull(point).upper[0] == doctest::Approx(4));
   }
-  for (const StripMethod method : methods) CHECK(!intersect_strip(zonotope({0}, {{3}}), Vector::Ones(1), 5, 1, method));
+  for (const StripMethod method : methods)
+    CHECK(!intersect_strip(zonotope({0}, {{3}}), Vector::Ones(1), 5, 1, method));
 }
 
 TEST_CASE("degenerate strips and sets") {
@@ -100,7 +106,8 @@ TEST_CASE("degenerate strips and sets") {
     CHECK(!intersect_strip(point, first, 1.5, .25, method));
     const Zonotope plane = *intersect_strip(Z, first, 1.25, 0, method);
     CHECK(plane.c[0] == doctest::Approx(1.25));
-    CHECK(plane.G.row(0).cwiseAbs().maxCoeff() < 1e-14);  // σ grows by the rounding error of d - ρᵀc
+    CHECK(plane.G.row(0).cwiseAbs().maxCoeff() <
+          1e-14);  // σ grows by the rounding error of d - ρᵀc
     // the same plane again, off by the rounding errors of the first cut: not empty, nothing changes
     const Zonotope again = *intersect_strip(plane, first, 1.25 + 1e-15, 0, method);
     CHECK((interval_hull(again).upper - interval_hull(plane).upper).norm() < 1e-12);
@@ -142,7 +149,9 @@ TEST_CASE("the segment gain has the smallest F-radius of the family") {
   CHECK(best < f_radius(Z));
 }
 
-TEST_CASE("the box gain is that of the smallest F-radius for a box, however many generators it is made of") {
+TEST_CASE(
+    "the box gain is that of the smallest F-radius for a box, however many generators it is made "
+    "of") {
   const Vector rho{{1, -.5}};
   const Zonotope box = zonotope({0, 0}, {{2, 0}, {0, 1}});
   const Zonotope pieces = zonotope({0, 0}, {{.5, .5, .5, .5, 0, 0}, {0, 0, 0, 0, .5, .5}});
@@ -159,14 +168,17 @@ TEST_CASE("the hull gain gives the smallest interval hull of the family") {
     const Index n = arbitrary_dim(4);
     const Zonotope Z = arbitrary_zonotope(n, Vector::Ones(n));
     const Vector rho = arbitrary_vector(n);
-    const double sigma = .01 + std::abs(arbitrary_number()), offset = rho.dot(Z.c) + arbitrary_number();
+    const double sigma = .01 + std::abs(arbitrary_number()),
+                 offset = rho.dot(Z.c) + arbitrary_number();
     const auto best = intersect_strip(Z, rho, offset, sigma, StripMethod::hull);
     if (!best) return;
     const auto radii = [](const Zonotope& X) { return Vector(X.G.cwiseAbs().rowwise().sum()); };
     const Vector most = radii(*best), room = 1e-9 * sizes_of(Z);
     RC_ASSERT((most.array() <= (radii(Z) + room).array()).all());
     for (const StripMethod other : methods) {
-      RC_ASSERT((most.array() <= (radii(*intersect_strip(Z, rho, offset, sigma, other)) + room).array()).all());
+      RC_ASSERT(
+          (most.array() <= (radii(*intersect_strip(Z, rho, offset, sigma, other)) + room).array())
+              .all());
     }
   }));
 }
@@ -184,23 +196,28 @@ TEST_CASE("the unit of a state changes nothing") {
     const Matrix to = units.asDiagonal(), back = units.cwiseInverse().asDiagonal();
     for (const StripMethod method : methods) {
       const auto X = correct(Z, C, z, Matrix::Identity(p, p), V, method),
-                 Y = correct(affine_map(Z, to, Vector::Zero(n)), C * back, z, Matrix::Identity(p, p), V, method);
+                 Y = correct(affine_map(Z, to, Vector::Zero(n)), C * back, z,
+                             Matrix::Identity(p, p), V, method);
       RC_ASSERT(X && Y);
       // of several λ that are equally good rounding may choose another one
       if (method == StripMethod::bravo || method == StripMethod::volume) continue;
-      const Box expected = interval_hull(*X), found = interval_hull(affine_map(*Y, back, Vector::Zero(n)));
-      RC_ASSERT(((expected.upper - found.upper).cwiseAbs().array() <= 1e-9 * sizes_of(Z).array()).all());
-      RC_ASSERT(((expected.lower - found.lower).cwiseAbs().array() <= 1e-9 * sizes_of(Z).array()).all());
+      const Box expected = interval_hull(*X),
+                found = interval_hull(affine_map(*Y, back, Vector::Zero(n)));
+      RC_ASSERT(
+          ((expected.upper - found.upper).cwiseAbs().array() <= 1e-9 * sizes_of(Z).array()).all());
+      RC_ASSERT(
+          ((expected.lower - found.lower).cwiseAbs().array() <= 1e-9 * sizes_of(Z).array()).all());
     }
   }));
   // with one best generator the smallest volume is determined as well
-  const Zonotope Z = zonotope({.3, -.2, .1}, {{1, .5, .1, 2, .7}, {.2, 1, -.3, 1, .4}, {.2, .1, 1, -1, .3}});
+  const Zonotope Z =
+      zonotope({.3, -.2, .1}, {{1, .5, .1, 2, .7}, {.2, 1, -.3, 1, .4}, {.2, .1, 1, -1, .3}});
   const Vector rho{{1, -.5, 2}}, units{{1, 1e3, 1}};
   for (const StripMethod method : methods) {
     CAPTURE(static_cast<int>(method));
     const Zonotope X = *intersect_strip(Z, rho, .3, .4, method),
-                   Y = *intersect_strip({units.cwiseProduct(Z.c), units.asDiagonal() * Z.G}, rho.cwiseQuotient(units), .3, .4,
-                                        method);
+                   Y = *intersect_strip({units.cwiseProduct(Z.c), units.asDiagonal() * Z.G},
+                                        rho.cwiseQuotient(units), .3, .4, method);
     REQUIRE(X.generators() == Y.generators());
     CHECK((units.cwiseInverse().asDiagonal() * Y.G - X.G).cwiseAbs().maxCoeff() < 1e-9);
     CHECK((Y.c.cwiseQuotient(units) - X.c).cwiseAbs().maxCoeff() < 1e-9);
@@ -217,7 +234,8 @@ TEST_CASE("in three dimensions the linear program beats the generators' directio
   CHECK(interval_hull(best).upper[0] == doctest::Approx(.1));
 }
 
-TEST_CASE("beyond the limit of subsets, the smallest volume is no worse than among parallel strips") {
+TEST_CASE(
+    "beyond the limit of subsets, the smallest volume is no worse than among parallel strips") {
   // 20,349 and 26,334 subsets of five generators
   for (const Index g : {21, 22}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -227,7 +245,8 @@ TEST_CASE("beyond the limit of subsets, the smallest volume is no worse than amo
       Zonotope Z{Vector::Zero(6), Matrix(6, g)};
       for (Index j = 0; j < g; ++j) Z.G.col(j) = random.cube(6);
       const Vector rho = random.cube(6);
-      const double whole = *volume(Z), bravo = *volume(*intersect_strip(Z, rho, .3, .2, StripMethod::bravo));
+      const double whole = *volume(Z),
+                   bravo = *volume(*intersect_strip(Z, rho, .3, .2, StripMethod::bravo));
       const Zonotope best = *intersect_strip(Z, rho, .3, .2, StripMethod::volume);
       CHECK(*volume(best) <= bravo * (1 + 1e-9));
       CHECK(*volume(best) < whole);
@@ -243,7 +262,8 @@ TEST_CASE("volume of the enclosures: volume ≤ bravo ≤ Z") {
     const Vector rho = arbitrary_vector(n);
     const double sigma = std::abs(arbitrary_number()), offset = arbitrary_number();
     const auto bravo = intersect_strip(Z, rho, rho.dot(Z.c) + offset, sigma, StripMethod::bravo);
-    const auto smallest = intersect_strip(Z, rho, rho.dot(Z.c) + offset, sigma, StripMethod::volume);
+    const auto smallest =
+        intersect_strip(Z, rho, rho.dot(Z.c) + offset, sigma, StripMethod::volume);
     RC_ASSERT(bravo.has_value() == smallest.has_value());
     if (!bravo) return;
     const double scale = 1e-9 * sizes_of(Z).prod();  // flat sets: rounding errors only
@@ -262,7 +282,8 @@ TEST_CASE("points of a zonotope in a strip lie in the enclosure") {
     const Vector x = point_of(Z, random);
     const double sigma = *rc::gen::inRange(0, 3) == 0 ? 0.0 : std::abs(arbitrary_number());
     for (const StripMethod method : methods) {
-      const auto X = intersect_strip(Z, rho, rho.dot(x) + sigma * random.between(-1, 1), sigma, method);
+      const auto X =
+          intersect_strip(Z, rho, rho.dot(x) + sigma * random.between(-1, 1), sigma, method);
       RC_ASSERT(X.has_value());
       RC_ASSERT(X->generators() <= Z.generators() + 1);
       RC_ASSERT(encloses(*X, x, sizes_of(Z), random));
@@ -275,7 +296,8 @@ TEST_CASE("states that explain an output survive its correction") {
     const Index n = arbitrary_dim(), p = arbitrary_dim(3), q = *rc::gen::inRange<Index>(0, 4);
     const Vector scales = arbitrary_coordinates(n);
     const Zonotope Z = arbitrary_zonotope(n, scales), V = arbitrary_zonotope(q, Vector::Ones(q));
-    const Matrix C = arbitrary_matrix(p, n) * scales.cwiseInverse().asDiagonal(), T = arbitrary_matrix(p, q);
+    const Matrix C = arbitrary_matrix(p, n) * scales.cwiseInverse().asDiagonal(),
+                 T = arbitrary_matrix(p, q);
     Random random = arbitrary_random();
     const Vector x = point_of(Z, random), z = C * x + T * point_of(V, random);
     for (const StripMethod method : methods) {

@@ -31,7 +31,8 @@ bool same_cycle(const Matrix& A, const Matrix& B, double tolerance) {
   if (A.cols() != B.cols()) return false;
   for (Index shift = 0; shift < A.cols() || shift == 0; ++shift) {
     bool equal = true;
-    for (Index i = 0; i < A.cols(); ++i) equal = equal && (A.col(i) - B.col((i + shift) % A.cols())).norm() <= tolerance;
+    for (Index i = 0; i < A.cols(); ++i)
+      equal = equal && (A.col(i) - B.col((i + shift) % A.cols())).norm() <= tolerance;
     if (equal) return true;
   }
   return false;
@@ -47,14 +48,16 @@ TEST_CASE("vertices of a published zonotope") {
   CHECK(same_cycle(direct, queried, 1e-9));
   for (Index i = 0; i < 4; ++i) {
     double nearest = infinity;
-    for (Index j = 0; j < direct.cols(); ++j) nearest = std::min(nearest, (direct.col(j) - expected.col(i)).norm());
+    for (Index j = 0; j < direct.cols(); ++j)
+      nearest = std::min(nearest, (direct.col(j) - expected.col(i)).norm());
     CHECK(nearest < 1e-12);
   }
 }
 
 TEST_CASE("the enclosed zonotope of Bravo's example has six vertices") {
   const Zonotope Z{Vector::Zero(2), Matrix{{.2812, .1968, .4235}, {.0186, -.2063, -.2267}}};
-  const Matrix expected{{.9015, .5079, -.3391, -.9015, -.5079, .3391}, {-.4144, -.0018, .4516, .4144, .0018, -.4516}};
+  const Matrix expected{{.9015, .5079, -.3391, -.9015, -.5079, .3391},
+                        {-.4144, -.0018, .4516, .4144, .0018, -.4516}};
   CHECK(same_cycle(polygon(Z), expected, 1e-9));
   CHECK(same_cycle(polygon(support_oracle(Z)), expected, 1e-9));
   CHECK(area(polygon(Z)) == doctest::Approx(.70420268));
@@ -65,7 +68,8 @@ TEST_CASE("degenerate polygons") {
   CHECK(polygon(Zonotope{c, Matrix(2, 0)}).cols() == 1);
   CHECK(polygon(support_oracle({c, Matrix(2, 0)})) == c);
   CHECK(area(polygon(Zonotope{c, Matrix(2, 0)})) == 0);
-  for (const Matrix& g : {Matrix{{1}, {0}}, Matrix{{0}, {-2}}, Matrix{{1}, {-2}}, Matrix{{1e-6}, {1e7}}}) {
+  for (const Matrix& g :
+       {Matrix{{1}, {0}}, Matrix{{0}, {-2}}, Matrix{{1}, {-2}}, Matrix{{1e-6}, {1e7}}}) {
     const Matrix direct = polygon(Zonotope{c, g}), queried = polygon(support_oracle({c, g}));
     CHECK(direct.cols() == 2);
     CHECK(same_cycle(direct, queried, 1e-6));
@@ -97,7 +101,8 @@ TEST_CASE("polygon by queries equals the polygon of the sorted generators") {
                      scales.asDiagonal() * arbitrary_matrix(2, *rc::gen::inRange<Index>(0, 9))};
     const Matrix direct = polygon(Z), queried = polygon(support_oracle(Z));
     RC_ASSERT(direct.cols() == queried.cols());
-    const Matrix scaled = scales.cwiseInverse().asDiagonal() * direct, other = scales.cwiseInverse().asDiagonal() * queried;
+    const Matrix scaled = scales.cwiseInverse().asDiagonal() * direct,
+                 other = scales.cwiseInverse().asDiagonal() * queried;
     RC_ASSERT(same_cycle(scaled, other, 1e-7));
     RC_ASSERT(std::abs(area(direct) - *volume(Z)) <= 1e-9 * sizes_of(Z).prod());
   }));
@@ -159,7 +164,9 @@ TEST_CASE("volume by queries equals the determinant formula") {
 
 TEST_CASE("support points that are known up to rounding do not lead around a polygon twice") {
   std::mt19937 random(5);
-  const auto draw = [&](double size) { return size * (static_cast<double>(random()) / 2147483648.0 - 1); };
+  const auto draw = [&](double size) {
+    return size * (static_cast<double>(random()) / 2147483648.0 - 1);
+  };
   for (int trial = 0; trial < 300; ++trial) {
     CAPTURE(trial);
     Matrix corners(2, 3 + trial % 6);

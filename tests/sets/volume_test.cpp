@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volumes through support functions: solids with details of any size, thin ones, and support functions that are not exact.
+// Volumes through support functions: solids with details of any size, thin ones, and support
+// functions that are not exact.
 #include <algorithm>
 #include <limits>
 #include <random>
@@ -58,7 +59,8 @@ TEST_CASE("zonotopes with details of any size") {
         Z.G.row(2) *= thin;
         check_bounds(volume(support_oracle(Z)), *volume(Z));
         const Vector scales{{1e8, 1e-8, 1}};  // and sheared
-        Zonotope other{Vector{{1e8, 1e-8, -3}}, scales.asDiagonal() * Matrix{{1, 2, 0}, {0, 1, 0}, {3, 0, 1}} * Z.G};
+        Zonotope other{Vector{{1e8, 1e-8, -3}},
+                       scales.asDiagonal() * Matrix{{1, 2, 0}, {0, 1, 0}, {3, 0, 1}} * Z.G};
         check_bounds(volume(support_oracle(other)), *volume(other));
       }
     }
@@ -82,9 +84,11 @@ TEST_CASE("cubes cut or extended by almost nothing") {
   for (double t = 1e-16; t < .5; t *= 10) {
     CAPTURE(t);
     Matrix corner(3, 10), edge(3, 10), roof(3, 9), cloud(3, 32);
-    corner << cube.rightCols(7), Matrix{{t, 0, 0}, {0, t, 0}, {0, 0, t}};  // without the simplex at the origin
+    corner << cube.rightCols(7),
+        Matrix{{t, 0, 0}, {0, t, 0}, {0, 0, t}};  // without the simplex at the origin
     check_bounds(volume(hull_of(corner)), 1 - t * t * t / 6);
-    edge << cube.rightCols(6), Matrix{{0, 0, 1, 1}, {t, 0, t, 0}, {0, t, 0, t}};  // without the edge y = z = 0
+    edge << cube.rightCols(6),
+        Matrix{{0, 0, 1, 1}, {t, 0, t, 0}, {0, t, 0, t}};  // without the edge y = z = 0
     check_bounds(volume(hull_of(edge)), 1 - t * t / 2);
     roof << cube, Vector{{.5, .25, 1 + t}};
     check_bounds(volume(hull_of(roof)), 1 + t / 3);
@@ -100,16 +104,17 @@ TEST_CASE("points in one plane and on one line") {
   Matrix grid(3, 125);  // of which only the corners are vertices
   for (Index k = 0; k < 125; ++k) grid.col(k) = Vector{{k % 5 - 2., k / 5 % 5 - 2., k / 25 - 2.}};
   check_bounds(volume(hull_of(grid)), 64, 1e-9);
-  const auto somewhere = [&](const Vector& d) {  // any of the points that attain the maximum, no vertex where possible
-    const Vector values = grid.transpose() * d;
-    const double h = values.maxCoeff();
-    SupportPoint best{h, {}};
-    for (Index k = 0; k < grid.cols(); ++k) {
-      if (values[k] < h - 1e-13) continue;
-      if (best.x.size() == 0 || grid.col(k).norm() < best.x.norm()) best.x = grid.col(k);
-    }
-    return best;
-  };
+  const auto somewhere =
+      [&](const Vector& d) {  // any of the points that attain the maximum, no vertex where possible
+        const Vector values = grid.transpose() * d;
+        const double h = values.maxCoeff();
+        SupportPoint best{h, {}};
+        for (Index k = 0; k < grid.cols(); ++k) {
+          if (values[k] < h - 1e-13) continue;
+          if (best.x.size() == 0 || grid.col(k).norm() < best.x.norm()) best.x = grid.col(k);
+        }
+        return best;
+      };
   check_bounds(volume(somewhere), 64, 1e-9);
 }
 
@@ -119,11 +124,13 @@ TEST_CASE("hulls of random points, thin ones among them, against exact arithmeti
     Matrix points = arbitrary_matrix(3, count);
     if (*rc::gen::arbitrary<bool>()) {  // pairs of points that are almost one
       const double near = std::pow(10.0, -*rc::gen::inRange(1, 15));
-      for (Index j = 1; j < count; j += 2) points.col(j) = points.col(j - 1) + near * arbitrary_vector(3);
+      for (Index j = 1; j < count; j += 2)
+        points.col(j) = points.col(j - 1) + near * arbitrary_vector(3);
     }
     const double thin = std::pow(10.0, -*rc::gen::inRange(0, 11));
     points.row(2) *= thin;
-    if (*rc::gen::arbitrary<bool>()) points = Matrix(Matrix{{1, 0, 2}, {0, 1, 3}, {1, 1, 1}} * points);
+    if (*rc::gen::arbitrary<bool>())
+      points = Matrix(Matrix{{1, 0, 2}, {0, 1, 3}, {1, 1, 1}} * points);
     const rounding::Range truth = Polytope::from_generators(points).volume();
     const VolumeBounds found = volume(hull_of(points));
     const Vector sizes = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
@@ -132,7 +139,8 @@ TEST_CASE("hulls of random points, thin ones among them, against exact arithmeti
     RC_ASSERT(found.lower <= truth.upper * (1 + 1e-12) + noise);
     RC_ASSERT(found.upper >= truth.lower * (1 - 1e-12) - noise);
     RC_ASSERT(!found.converged || found.upper <= found.lower * (1 + 1e-7));
-    RC_ASSERT(found.converged || truth.upper < 1e-3 * sizes.prod());  // only thin sets may stay open
+    RC_ASSERT(found.converged ||
+              truth.upper < 1e-3 * sizes.prod());  // only thin sets may stay open
   }));
 }
 

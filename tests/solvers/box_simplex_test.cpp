@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The dual simplex method for boxed programs and what certifies its proposals, against rational arithmetic.
+// The dual simplex method for boxed programs and what certifies its proposals, against rational
+// arithmetic.
 #include "solvers/box_simplex.hpp"
 
 #include <cmath>
@@ -27,7 +28,8 @@ struct Program {
   Vector b, g;
 };
 
-/// Dense, sparse, of small integers, badly scaled, with dependent rows, zero rows or repeated columns; some infeasible.
+/// Dense, sparse, of small integers, badly scaled, with dependent rows, zero rows or repeated
+/// columns; some infeasible.
 class Programs {
  public:
   explicit Programs(std::uint64_t seed) : engine_(seed) {}
@@ -39,7 +41,8 @@ class Programs {
     if (m > 1 && one_in(4)) p.A.row(m - 1) = p.A.row(0) * static_cast<double>(below(5) - 2);
     if (m > 2 && one_in(4)) p.A.row(m - 1) = p.A.row(0) - p.A.row(1);
     if (g > 1 && one_in(4)) p.A.col(g - 1) = p.A.col(0);
-    const Matrix xi = entries(g, 1, one_in(2) ? 1 : 0);  // integers put ξ onto its bounds: degenerate programs
+    const Matrix xi =
+        entries(g, 1, one_in(2) ? 1 : 0);  // integers put ξ onto its bounds: degenerate programs
     p.b = p.A * xi.cwiseMax(-1).cwiseMin(1);
     if (one_in(4)) p.b *= 1 + 3 * uniform();
     if (one_in(8)) p.b = entries(m, 1, kind);
@@ -50,7 +53,8 @@ class Programs {
  private:
   Index below(Index n) { return static_cast<Index>(engine_() % static_cast<std::uint64_t>(n)); }
   bool one_in(Index n) { return below(n) == 0; }
-  /// Of six bits, so that sums and products of the data are exact: no program is infeasible by a rounding error.
+  /// Of six bits, so that sums and products of the data are exact: no program is infeasible by a
+  /// rounding error.
   double uniform() { return static_cast<double>(below(129) - 64) / 64; }
 
   Matrix entries(Index rows, Index cols, Index kind) {
@@ -77,7 +81,8 @@ class Programs {
 };
 
 ExactProgram::Result exact_maximum(const Program& p) {
-  return ExactProgram{Matrix(p.b.size(), 0), p.A, rational::exact(p.b), {}, rational::exact(p.g)}.maximum();
+  return ExactProgram{Matrix(p.b.size(), 0), p.A, rational::exact(p.b), {}, rational::exact(p.g)}
+      .maximum();
 }
 
 /// What rounding in the coefficients may hide: the sum of all terms.
@@ -116,7 +121,8 @@ TEST_CASE("proposals for random programs are certified, and are the exact optimu
       continue;
     }
     ++feasible;
-    const double upper = status == BoxSolver::Status::optimal ? certificates.upper_bound(p.g, y) : p.g.lpNorm<1>();
+    const double upper =
+        status == BoxSolver::Status::optimal ? certificates.upper_bound(p.g, y) : p.g.lpNorm<1>();
     CHECK(rational::exact(upper) >= exact.value);
     CHECK(certificates.farkas_margin(y) <= 0);
     loose += upper - exact.value.get_d() > 1e-12 * size_of(p, y) + 1e-300;
@@ -146,7 +152,8 @@ TEST_CASE("whole questions about random programs agree with rational arithmetic"
     CHECK(empty != Answer::yes);
     REQUIRE(std::isfinite(bound.upper));
     CHECK(rational::exact(bound.upper) >= exact.value);
-    const double low = bound.xi ? program.attained(p.g, *bound.xi) : -std::numeric_limits<double>::infinity();
+    const double low =
+        bound.xi ? program.attained(p.g, *bound.xi) : -std::numeric_limits<double>::infinity();
     if (std::isfinite(low)) CHECK(rational::exact(low) <= exact.value);
   }
   MESSAGE("unknown: ", unknown, " of ", programs_asked() / 4);
@@ -158,7 +165,8 @@ TEST_CASE("the same question has the same answer whatever was asked before") {
   const Vector b = A * (.7 * random_matrix(engine, 40, 1));
   BoxedProgram one(A, b);
   for (Index i = 0; i < G.cols(); ++i) {
-    const BoxedProgram::Bound asked_later = one.maximum(G.col(i)), alone = BoxedProgram(A, b).maximum(G.col(i));
+    const BoxedProgram::Bound asked_later = one.maximum(G.col(i)),
+                              alone = BoxedProgram(A, b).maximum(G.col(i));
     CHECK(asked_later.upper == alone.upper);
     CHECK(asked_later.y == alone.y);
     CHECK(*asked_later.xi == *alone.xi);
@@ -169,7 +177,8 @@ TEST_CASE("large programs: another solver finds no better bound") {
   std::mt19937_64 engine(4);
   for (const auto& [m, g] : {std::pair<Index, Index>{20, 100}, {50, 200}, {70, 200}, {30, 31}}) {
     const Matrix A = random_matrix(engine, m, g);
-    const Vector b = A * (.7 * random_matrix(engine, g, 1)), error = Vector::Zero(m), one = Vector::Ones(g);
+    const Vector b = A * (.7 * random_matrix(engine, g, 1)), error = Vector::Zero(m),
+                 one = Vector::Ones(g);
     const RowCertificates certificates(A, b, error);
     LinearProgram other(A, b, -one, one);
     BoxSolver solver(A, b);
@@ -190,7 +199,8 @@ TEST_CASE("large programs: another solver finds no better bound") {
 TEST_CASE("a search that is told what is enough stops there with a proof") {
   std::mt19937_64 engine(5);
   const Matrix A = random_matrix(engine, 20, 100);
-  const Vector b = A * (.7 * random_matrix(engine, 100, 1)), g = random_matrix(engine, 100, 1), error = Vector::Zero(20);
+  const Vector b = A * (.7 * random_matrix(engine, 100, 1)), g = random_matrix(engine, 100, 1),
+               error = Vector::Zero(20);
   BoxSolver solver(A, b);
   REQUIRE(solver.maximize(g) == BoxSolver::Status::optimal);
   const RowCertificates certificates(A, b, error);
@@ -220,7 +230,8 @@ TEST_CASE("a guess of the basis saves iterations, a bad one costs none of the an
 }
 
 TEST_CASE("an objective of one variable does not lead around in circles") {
-  // Nearly all reduced costs vanish: every basis shows the same bound, until one is found whose values keep to theirs.
+  // Nearly all reduced costs vanish: every basis shows the same bound, until one is found whose
+  // values keep to theirs.
   std::mt19937_64 engine(11);
   std::uniform_real_distribution<double> number(-1, 1);
   for (int round = 0; round < 10; ++round) {
@@ -241,7 +252,8 @@ TEST_CASE("an objective of one variable does not lead around in circles") {
       const Vector objective = Vector::Unit(g, 25 * j);
       CHECK(simplex.maximize(objective, guess.scores(objective)) == BoxSimplex::Status::optimal);
       iterations += simplex.iterations();
-      const double upper = RowCertificates(A, b, Vector::Zero(m)).upper_bound(objective, simplex.multipliers());
+      const double upper =
+          RowCertificates(A, b, Vector::Zero(m)).upper_bound(objective, simplex.multipliers());
       Vector point;
       simplex.take_point(point);
       CHECK(point.cwiseAbs().maxCoeff() <= 1 + 1e-8);
@@ -256,12 +268,16 @@ TEST_CASE("multipliers of any kind prove no more than is true") {
   std::mt19937_64 engine(8);
   for (int k = 0; k < 300; ++k) {
     const Program p = programs.next();
-    const Vector y = random_matrix(engine, p.b.size(), 1), error = random_matrix(engine, p.b.size(), 1).cwiseAbs() * 1e-3;
+    const Vector y = random_matrix(engine, p.b.size(), 1),
+                 error = random_matrix(engine, p.b.size(), 1).cwiseAbs() * 1e-3;
     const RowCertificates certificates(p.A, p.b, error);
-    rational::Rational gain = rational::dot(rational::exact(p.b), rational::exact(y)), plain = 0, shifted = 0, doubt = 0;
-    for (Index i = 0; i < y.size(); ++i) doubt += rational::exact(error[i]) * abs(rational::exact(y[i]));
+    rational::Rational gain = rational::dot(rational::exact(p.b), rational::exact(y)), plain = 0,
+                       shifted = 0, doubt = 0;
+    for (Index i = 0; i < y.size(); ++i)
+      doubt += rational::exact(error[i]) * abs(rational::exact(y[i]));
     for (Index j = 0; j < p.g.size(); ++j) {
-      const rational::Rational column = rational::dot(rational::exact(p.A.col(j)), rational::exact(y));
+      const rational::Rational column =
+          rational::dot(rational::exact(p.A.col(j)), rational::exact(y));
       plain += abs(column);
       shifted += abs(rational::exact(p.g[j]) - column);
     }
@@ -284,11 +300,13 @@ TEST_CASE("a solution of the rows lies as near as the factor says") {
     const RowGram::Point point = gram.least_squares();
     CHECK((A.transpose() * point.y - point.xi).lpNorm<Eigen::Infinity>() < 1e-9);
     CHECK(gram.distance(point.xi) < 1e-5);
-    // moved off the rows, the nearest solution is the orthogonal one: no claim may be smaller than its distance
+    // moved off the rows, the nearest solution is the orthogonal one: no claim may be smaller than
+    // its distance
     const Vector moved = point.xi + 1e-3 * random_matrix(engine, g, 1);
     const Vector back = A.transpose() * *linalg::solve_spd(A * A.transpose(), b - A * moved);
     CHECK(gram.distance(moved) >= back.lpNorm<Eigen::Infinity>());
-    CHECK(RowGram(A, b, Vector::Constant(m, 1e-3)).distance(point.xi) > 1e-3 / A.rowwise().norm().maxCoeff());
+    CHECK(RowGram(A, b, Vector::Constant(m, 1e-3)).distance(point.xi) >
+          1e-3 / A.rowwise().norm().maxCoeff());
   }
   CHECK_FALSE(RowGram(Matrix{{1, 2}, {2, 4}}, Vector{{1, 2}}, Vector::Zero(2)).is_regular());
   CHECK_FALSE(RowGram(Matrix{{0, 0}}, Vector{{1}}, Vector::Zero(1)).is_regular());
@@ -300,7 +318,8 @@ TEST_CASE("a solution of the rows lies as near as the factor says") {
 }
 
 TEST_CASE("hostile programs end in a proof or in none, never in a wrong one") {
-  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN(),
+               inf = std::numeric_limits<double>::infinity();
   SUBCASE("without variables") {
     BoxedProgram idle(Matrix(2, 0), Vector::Zero(2)), wrong(Matrix(2, 0), Vector{{0, 1e-3}});
     CHECK(idle.is_empty() == Answer::no);
@@ -332,11 +351,13 @@ TEST_CASE("hostile programs end in a proof or in none, never in a wrong one") {
     BoxSimplex simplex(A, b);
     REQUIRE(simplex.maximize(g, Vector::Zero(4)) == BoxSimplex::Status::optimal);
     const double best = simplex.objective();
-    for (const Vector& scores : {Vector{{nan, nan, nan, nan}}, Vector{{nan, 1, inf, -inf}}, Vector{{3, nan, 2, nan}}}) {
+    for (const Vector& scores :
+         {Vector{{nan, nan, nan, nan}}, Vector{{nan, 1, inf, -inf}}, Vector{{3, nan, 2, nan}}}) {
       REQUIRE(simplex.maximize(g, scores) == BoxSimplex::Status::optimal);
       CHECK(simplex.objective() == doctest::Approx(best));
     }
-    CHECK(simplex.maximize(Vector{{nan, 1, 1, 1}}, Vector::Zero(4)) == BoxSimplex::Status::unsolved);
+    CHECK(simplex.maximize(Vector{{nan, 1, 1, 1}}, Vector::Zero(4)) ==
+          BoxSimplex::Status::unsolved);
     const RowCertificates certificates(A, b, none);
     for (const Vector& y : {Vector{{nan, 0}}, Vector{{inf, 0}}, Vector{{1e308, 1e308}}}) {
       CHECK_FALSE(certificates.farkas_margin(y) > 0);
@@ -349,7 +370,8 @@ TEST_CASE("hostile programs end in a proof or in none, never in a wrong one") {
   }
 }
 
-TEST_CASE("a question of feasibility in exact arithmetic takes a few pivots per row, not hundreds") {
+TEST_CASE(
+    "a question of feasibility in exact arithmetic takes a few pivots per row, not hundreds") {
   // Corners of the box a little too far out: nothing but ties among the costs, which are all 0.
   int infeasible = 0;
   for (const unsigned seed : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}) {
@@ -358,9 +380,11 @@ TEST_CASE("a question of feasibility in exact arithmetic takes a few pivots per 
     const Index rows = 20, columns = 56;
     Matrix A(rows, columns);
     for (Index i = 0; i < rows; ++i) {
-      for (Index j = 0; j < columns; ++j) A(i, j) = std::ldexp(uniform(), -static_cast<int>(engine() % 40));
+      for (Index j = 0; j < columns; ++j)
+        A(i, j) = std::ldexp(uniform(), -static_cast<int>(engine() % 40));
     }
-    const Vector corner = 1.02 * Vector::NullaryExpr(columns, [&] { return uniform() < 0 ? -1. : 1.; });
+    const Vector corner =
+        1.02 * Vector::NullaryExpr(columns, [&] { return uniform() < 0 ? -1. : 1.; });
     Program p{A, A * corner, Vector::Zero(columns)};
     const ExactProgram::Result exact = exact_maximum(p);
     infeasible += exact.status == ExactProgram::Status::infeasible;
@@ -368,7 +392,8 @@ TEST_CASE("a question of feasibility in exact arithmetic takes a few pivots per 
     // The share of the right-hand side that can be met says the same.
     Matrix with_share(rows, columns + 1);
     with_share << p.A, -p.b;
-    const ExactProgram::Result share = exact_maximum({with_share, Vector::Zero(rows), Vector::Unit(columns + 1, columns)});
+    const ExactProgram::Result share =
+        exact_maximum({with_share, Vector::Zero(rows), Vector::Unit(columns + 1, columns)});
     CHECK(share.status == ExactProgram::Status::optimal);
     CHECK((share.value == 1) == (exact.status == ExactProgram::Status::optimal));
     CHECK(share.pivots <= 5 * rows);

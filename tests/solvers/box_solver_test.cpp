@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Proposals for boxed programs, of which many variables enter no row: those of sets that were reduced.
+// Proposals for boxed programs, of which many variables enter no row: those of sets that were
+// reduced.
 #include "solvers/box_solver.hpp"
 
 #include <doctest/doctest.h>
@@ -63,7 +64,8 @@ TEST_CASE("variables that enter no row are put at their bounds, and count in the
     Vector point, of_alone;
     among.take_point(point);
     alone.take_point(of_alone);
-    for (Index k = 0; k < cols; ++k) expected[spread.places[static_cast<std::size_t>(k)]] = of_alone[k];
+    for (Index k = 0; k < cols; ++k)
+      expected[spread.places[static_cast<std::size_t>(k)]] = of_alone[k];
     RC_ASSERT(point == expected);
     RC_ASSERT(std::abs(g.dot(point) - among.value()) <= 1e-7 * (1 + g.lpNorm<1>()));
 

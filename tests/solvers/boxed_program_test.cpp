@@ -36,9 +36,12 @@ Program feasible_program(Index g, Index m) {
 }  // namespace
 
 TEST_CASE("the next doubles are those of the C library") {
-  constexpr double inf = std::numeric_limits<double>::infinity(), largest = std::numeric_limits<double>::max(),
-                   least = std::numeric_limits<double>::denorm_min(), normal = std::numeric_limits<double>::min();
-  for (const double size : {0.0, least, normal, normal - least, 1.0, 1.0 - 0x1p-53, 3.7, 1e300, largest}) {
+  constexpr double inf = std::numeric_limits<double>::infinity(),
+                   largest = std::numeric_limits<double>::max(),
+                   least = std::numeric_limits<double>::denorm_min(),
+                   normal = std::numeric_limits<double>::min();
+  for (const double size :
+       {0.0, least, normal, normal - least, 1.0, 1.0 - 0x1p-53, 3.7, 1e300, largest}) {
     for (const double x : {size, -size}) {
       CHECK(rounding::up(x) == std::nextafter(x, inf));
       CHECK(rounding::down(x) == std::nextafter(x, -inf));
@@ -53,7 +56,8 @@ TEST_CASE("the next doubles are those of the C library") {
 }
 
 TEST_CASE("a plain linear program") {
-  LinearProgram lp(Matrix{{1.0, 1.0, 1.0}}, Vector{{1.0}}, Vector{{0.0, 0.0, 0.0}}, Vector{{1.0, 2.0, 0.25}});
+  LinearProgram lp(Matrix{{1.0, 1.0, 1.0}}, Vector{{1.0}}, Vector{{0.0, 0.0, 0.0}},
+                   Vector{{1.0, 2.0, 0.25}});
   auto solution = lp.maximize(Vector{{1.0, 2.0, 3.0}});
   REQUIRE(solution.status == LinearProgram::Status::optimal);
   CHECK(solution.objective == doctest::Approx(0.75 * 2 + 0.25 * 3));
@@ -61,11 +65,14 @@ TEST_CASE("a plain linear program") {
   CHECK(solution.objective == doctest::Approx(-1.0));
   LinearProgram bad(Matrix{{1.0}}, Vector{{3.0}}, Vector{{0.0}}, Vector{{1.0}});
   CHECK(bad.maximize(Vector{{1.0}}).status == LinearProgram::Status::infeasible);
-  LinearProgram open(Matrix(0, 1), Vector(0), Vector{{0.0}}, Vector{{std::numeric_limits<double>::infinity()}});
+  LinearProgram open(Matrix(0, 1), Vector(0), Vector{{0.0}},
+                     Vector{{std::numeric_limits<double>::infinity()}});
   CHECK(open.maximize(Vector{{1.0}}).status == LinearProgram::Status::unbounded);
 }
 
-TEST_CASE("a program that is asked on another thread has the same answer, unlike one of the other solver") {
+TEST_CASE(
+    "a program that is asked on another thread has the same answer, unlike one of the other "
+    "solver") {
   BoxedProgram program(Matrix{{1.0, 2.0}}, Vector{{1.0}});
   const double here = program.maximum(Vector{{1.0, -1.0}}).upper;
   BoxedProgram::Bound there;
@@ -80,7 +87,8 @@ TEST_CASE("a program that is asked on another thread has the same answer, unlike
 }
 
 TEST_CASE("numbers that would abort the solver are refused before") {
-  CHECK_THROWS_AS(LinearProgram(Matrix{{std::nan("")}}, Vector{{0.0}}, Vector{{0.0}}, Vector{{1.0}}), Error);
+  CHECK_THROWS_AS(
+      LinearProgram(Matrix{{std::nan("")}}, Vector{{0.0}}, Vector{{0.0}}, Vector{{1.0}}), Error);
   CHECK_THROWS_AS(LinearProgram(Matrix{{1.0}}, Vector{{0.0}}, Vector{{2.0}}, Vector{{1.0}}), Error);
   LinearProgram lp(Matrix{{1.0}}, Vector{{0.0}}, Vector{{-1.0}}, Vector{{1.0}});
   CHECK_THROWS_AS(lp.maximize(Vector{{std::nan("")}}), Error);
@@ -102,20 +110,24 @@ TEST_CASE("bounds hold for any multipliers, and are attained") {
     // any y gives a bound
     Vector y(m);
     for (Index i = 0; i < m; ++i) y[i] = number();
-    const double any = rounding::up(rounding::dot(b, y).upper + rounding::residual_norm_1(objective, A, y));
+    const double any =
+        rounding::up(rounding::dot(b, y).upper + rounding::residual_norm_1(objective, A, y));
     RC_ASSERT(any >= objective.dot(xi) - 1e-9 * (1 + objective.lpNorm<1>()));
   }));
 }
 
 TEST_CASE("bounds are as tight for tiny and huge objectives") {
   CHECK(rc::check("a power of two before the objective stands before the bound", [] {
-    const auto [A, b, xi, objective] = feasible_program(*rc::gen::inRange<Index>(2, 12), *rc::gen::inRange<Index>(1, 4));
+    const auto [A, b, xi, objective] =
+        feasible_program(*rc::gen::inRange<Index>(2, 12), *rc::gen::inRange<Index>(1, 4));
     const auto plain = BoxedProgram(A, b).maximum(objective);
     RC_PRE(plain.solved);
-    for (const int power : {-60, -30, 40}) {  // on a program of its own: the last basis of another one would help
+    for (const int power :
+         {-60, -30, 40}) {  // on a program of its own: the last basis of another one would help
       const auto scaled = BoxedProgram(A, b).maximum(Vector(std::ldexp(1.0, power) * objective));
       RC_ASSERT(scaled.solved);
-      RC_ASSERT(std::abs(std::ldexp(scaled.upper, -power) - plain.upper) <= 1e-9 * (1 + objective.lpNorm<1>()));
+      RC_ASSERT(std::abs(std::ldexp(scaled.upper, -power) - plain.upper) <=
+                1e-9 * (1 + objective.lpNorm<1>()));
     }
   }));
 }
@@ -124,7 +136,8 @@ TEST_CASE("emptiness is decided on both sides of the boundary") {
   CHECK(rc::check("rows moved beyond their reach", [] {
     const Index g = *rc::gen::inRange<Index>(1, 10), m = *rc::gen::inRange<Index>(1, 4);
     Matrix A(m, g);
-    for (Index k = 0; k < A.size(); ++k) A.data()[k] = static_cast<double>(*rc::gen::inRange(-9, 10));
+    for (Index k = 0; k < A.size(); ++k)
+      A.data()[k] = static_cast<double>(*rc::gen::inRange(-9, 10));
     Vector y(m);
     for (Index i = 0; i < m; ++i) y[i] = static_cast<double>(*rc::gen::inRange(-9, 10));
     RC_PRE(y.squaredNorm() > 0);
@@ -144,6 +157,7 @@ TEST_CASE("a repaired point is proven, a point that cannot be repaired is not") 
   REQUIRE(radius);
   CHECK(radius->maxCoeff() < 1e-8);
   CHECK(radius->maxCoeff() > 0);
-  CHECK_FALSE(repair_radius(Matrix{{1.0, 1.0}, {1.0, 1.0}}, Vector{{.5, .5}}, Vector{{.25, .25}}));  // dependent rows
+  CHECK_FALSE(repair_radius(Matrix{{1.0, 1.0}, {1.0, 1.0}}, Vector{{.5, .5}},
+                            Vector{{.25, .25}}));  // dependent rows
   CHECK_FALSE(repair_radius(Matrix{{0.0, 0.0}}, Vector{{1.0}}, Vector{{0.0, 0.0}}));
 }

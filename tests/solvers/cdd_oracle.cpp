@@ -34,15 +34,18 @@ Description convert(const Description& in, dd_RepresentationType from) {
   matrix->numbtype = dd_Rational;
   for (Index i = 0; i < rows; ++i) {
     const rational::RationalVector& row = in.rows[static_cast<std::size_t>(i)];
-    for (Index j = 0; j <= in.dim; ++j) mpq_set(matrix->matrix[i][j], row[static_cast<std::size_t>(j)].get_mpq_t());
+    for (Index j = 0; j <= in.dim; ++j)
+      mpq_set(matrix->matrix[i][j], row[static_cast<std::size_t>(j)].get_mpq_t());
     if (in.linear[static_cast<std::size_t>(i)]) set_addelem(matrix->linset, i + 1);
   }
   dd_ErrorType error = dd_NoError;
   const OwnPolyhedron polyhedron(dd_DDMatrix2Poly(matrix.get(), &error), dd_FreePolyhedra);
   if (!polyhedron || error != dd_NoError) {
-    throw Error(Errc::solver, "cddlib: the conversion failed with error " + std::to_string(static_cast<int>(error)));
+    throw Error(Errc::solver, "cddlib: the conversion failed with error " +
+                                  std::to_string(static_cast<int>(error)));
   }
-  const OwnMatrix result(from == dd_Inequality ? dd_CopyGenerators(polyhedron.get()) : dd_CopyInequalities(polyhedron.get()),
+  const OwnMatrix result(from == dd_Inequality ? dd_CopyGenerators(polyhedron.get())
+                                               : dd_CopyInequalities(polyhedron.get()),
                          dd_FreeMatrix);
   if (!result) throw Error(Errc::solver, "cddlib: the conversion gave no result");
   Description out{in.dim, {}, {}};
@@ -68,7 +71,8 @@ Description generators_of(const Description& inequalities) {
   Description real{n, {}, {}};
   for (std::size_t i = 0; i < inequalities.rows.size(); ++i) {
     const rational::RationalVector& row = inequalities.rows[i];
-    const bool constant = std::all_of(row.begin() + 1, row.end(), [](const auto& x) { return sgn(x) == 0; });
+    const bool constant =
+        std::all_of(row.begin() + 1, row.end(), [](const auto& x) { return sgn(x) == 0; });
     if (!constant) {
       real.add(row, inequalities.linear[i]);
     } else if (inequalities.linear[i] ? sgn(row[0]) != 0 : sgn(row[0]) < 0) {
@@ -85,8 +89,10 @@ Description generators_of(const Description& inequalities) {
   }
   Description out = convert(real, dd_Inequality);
   // cddlib leaves out the apex of a cone at the origin
-  const bool has_point = std::any_of(out.rows.begin(), out.rows.end(), [](const auto& row) { return sgn(row[0]) != 0; });
-  const bool homogeneous = std::all_of(real.rows.begin(), real.rows.end(), [](const auto& row) { return sgn(row[0]) == 0; });
+  const bool has_point = std::any_of(out.rows.begin(), out.rows.end(),
+                                     [](const auto& row) { return sgn(row[0]) != 0; });
+  const bool homogeneous = std::all_of(real.rows.begin(), real.rows.end(),
+                                       [](const auto& row) { return sgn(row[0]) == 0; });
   if (!has_point && homogeneous) out.add(unit_row(n, 1), false);
   return out;
 }
@@ -99,7 +105,8 @@ Description inequalities_of(const Description& generators) {
   Description out{n, {}, {}};
   for (std::size_t i = 0; i < all.rows.size(); ++i) {
     // the hyperplane at infinity, 1 ≥ 0, is no inequality
-    const bool constant = std::all_of(all.rows[i].begin() + 1, all.rows[i].end(), [](const auto& x) { return sgn(x) == 0; });
+    const bool constant = std::all_of(all.rows[i].begin() + 1, all.rows[i].end(),
+                                      [](const auto& x) { return sgn(x) == 0; });
     if (!constant) out.add(all.rows[i], all.linear[i]);
   }
   return out;

@@ -6,8 +6,8 @@
 
 namespace cordon::cdd {
 
-/// Like the framework's functions of these names. Not thread-safe; no limits: small polyhedra only. Throws Errc::solver if cddlib
-/// fails.
+/// Like the framework's functions of these names. Not thread-safe; no limits: small polyhedra only.
+/// Throws Errc::solver if cddlib fails.
 Description generators_of(const Description& inequalities);
 Description inequalities_of(const Description& generators);
 

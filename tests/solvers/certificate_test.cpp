@@ -33,14 +33,17 @@ Matrix small_matrix(Index rows, Index cols) {
 }
 
 LineForm small_set(Index n) {
-  const Index l = *rc::gen::inRange<Index>(0, 3), g = *rc::gen::inRange<Index>(0, 6), m = *rc::gen::inRange<Index>(0, 4);
-  return {small_matrix(n, l), small_matrix(n, g), small_matrix(n, 1), small_matrix(m, l), small_matrix(m, g), small_matrix(m, 1)};
+  const Index l = *rc::gen::inRange<Index>(0, 3), g = *rc::gen::inRange<Index>(0, 6),
+              m = *rc::gen::inRange<Index>(0, 4);
+  return {small_matrix(n, l), small_matrix(n, g), small_matrix(n, 1),
+          small_matrix(m, l), small_matrix(m, g), small_matrix(m, 1)};
 }
 
 }  // namespace
 
 TEST_CASE("a proof of emptiness holds, and a spoiled one does not") {
-  const LineForm X = with_rows(make_zonotope(Vector{{0.0}}, Matrix{{1.0, 1.0}}), Matrix(1, 0), Matrix{{1.0, 1.0}}, Vector{{2.5}});
+  const LineForm X = with_rows(make_zonotope(Vector{{0.0}}, Matrix{{1.0, 1.0}}), Matrix(1, 0),
+                               Matrix{{1.0, 1.0}}, Vector{{2.5}});
   Certificate why;
   REQUIRE(is_empty(X, &why) == Answer::yes);
   CHECK(proves_empty(X, why));
@@ -56,8 +59,9 @@ TEST_CASE("a proof of emptiness holds, and a spoiled one does not") {
 
 TEST_CASE("a point near the boundary is moved by all factors where one alone has too little room") {
   const double room = 3e-14;
-  const LineForm X = with_rows(make_zonotope(Vector{{0.0}}, Matrix{{1.0, 1.0}}), Matrix(1, 0), Matrix{{1.0, 1.0}},
-                               Vector{{2 - 1.5 * room}});  // beyond (1 - room, 1 - room) by half of it
+  const LineForm X =
+      with_rows(make_zonotope(Vector{{0.0}}, Matrix{{1.0, 1.0}}), Matrix(1, 0), Matrix{{1.0, 1.0}},
+                Vector{{2 - 1.5 * room}});  // beyond (1 - room, 1 - room) by half of it
   CHECK(proves_not_empty(X, {Kind::point, Vector{{1 - room, 1 - room}}, room}));
   CHECK(proves_not_empty(X, {Kind::point, Vector{{1 - 5 * room, 1 - room}}, room}));
   LineForm beyond = X;
@@ -66,7 +70,8 @@ TEST_CASE("a point near the boundary is moved by all factors where one alone has
 }
 
 TEST_CASE("a proof with lines is one about the rows as given") {
-  // δ + ξ = 1, 3δ + 3ξ = 4: contradictory after the line is gone, and 3 · 1/3 is no number of the machine
+  // δ + ξ = 1, 3δ + 3ξ = 4: contradictory after the line is gone, and 3 · 1/3 is no number of the
+  // machine
   LineForm X = make_space(1);
   X.G = Matrix{{0.0}};
   X = with_rows(X, Matrix{{1.0}, {3.0}}, Matrix{{1.0}, {3.0}}, Vector{{1.0, 4.0}});
@@ -86,7 +91,8 @@ TEST_CASE("a proof with lines is one about the rows as given") {
 TEST_CASE("dependent rows and sets that touch are decided exactly") {
   const LineForm unit = make_box({Vector{{-1.0, -1.0}}, Vector{{1.0, 1.0}}});
   // the same row three times, once scaled
-  LineForm X = with_rows(unit, Matrix(3, 0), Matrix{{1.0, 1.0}, {1.0, 1.0}, {-.5, -.5}}, Vector{{1.0, 1.0, -.5}});
+  LineForm X = with_rows(unit, Matrix(3, 0), Matrix{{1.0, 1.0}, {1.0, 1.0}, {-.5, -.5}},
+                         Vector{{1.0, 1.0, -.5}});
   Certificate why;
   CHECK(is_empty(X, &why) == Answer::no);
   CHECK(proves_not_empty(X, why));
@@ -102,15 +108,18 @@ TEST_CASE("dependent rows and sets that touch are decided exactly") {
   const LineForm beside = make_box({Vector{{1.0, -1.0}}, Vector{{3.0, 1.0}}});
   CHECK(is_disjoint(unit, beside, &why) == Answer::no);
   CHECK(proves_meet(unit, beside, why));
-  CHECK(is_disjoint(unit, make_box({Vector{{1.5, -1.0}}, Vector{{3.0, 1.0}}}), &why) == Answer::yes);
+  CHECK(is_disjoint(unit, make_box({Vector{{1.5, -1.0}}, Vector{{3.0, 1.0}}}), &why) ==
+        Answer::yes);
   CHECK(proves_disjoint(unit, make_box({Vector{{1.5, -1.0}}, Vector{{3.0, 1.0}}}), why));
-  // by the last place beyond each other: within rounding errors of nominal operations, so nothing is said
-  CHECK(is_disjoint(unit, make_zonotope(Vector{{2 + 0x1p-51, 0.0}}, Matrix{{1.0}, {0.0}})) == Answer::unknown);
+  // by the last place beyond each other: within rounding errors of nominal operations, so nothing
+  // is said
+  CHECK(is_disjoint(unit, make_zonotope(Vector{{2 + 0x1p-51, 0.0}}, Matrix{{1.0}, {0.0}})) ==
+        Answer::unknown);
 }
 
 TEST_CASE("a certified bound of the support holds exactly, and nothing below the support does") {
-  const LineForm X =
-      with_rows(make_box({Vector{{-1.0, -1.0}}, Vector{{1.0, 1.0}}}), Matrix(1, 0), Matrix{{1.0, 3.0}}, Vector{{.7}});
+  const LineForm X = with_rows(make_box({Vector{{-1.0, -1.0}}, Vector{{1.0, 1.0}}}), Matrix(1, 0),
+                               Matrix{{1.0, 3.0}}, Vector{{.7}});
   const Vector d{{1.0, .1}};
   Certificate why;
   const double h = support(X, d, &why);
@@ -121,15 +130,19 @@ TEST_CASE("a certified bound of the support holds exactly, and nothing below the
   const Box hull = interval_hull(X, &proofs);
   REQUIRE(proofs.size() == 4);
   for (Index i = 0; i < 2; ++i) {
-    CHECK(proves_support(X, Vector::Unit(2, i), hull.upper[i], proofs[static_cast<std::size_t>(2 * i)]));
-    CHECK(proves_support(X, -Vector::Unit(2, i), -hull.lower[i], proofs[static_cast<std::size_t>(2 * i + 1)]));
-    CHECK_FALSE(proves_support(X, Vector::Unit(2, i), hull.upper[i] - 1e-6, proofs[static_cast<std::size_t>(2 * i)]));
+    CHECK(proves_support(X, Vector::Unit(2, i), hull.upper[i],
+                         proofs[static_cast<std::size_t>(2 * i)]));
+    CHECK(proves_support(X, -Vector::Unit(2, i), -hull.lower[i],
+                         proofs[static_cast<std::size_t>(2 * i + 1)]));
+    CHECK_FALSE(proves_support(X, Vector::Unit(2, i), hull.upper[i] - 1e-6,
+                               proofs[static_cast<std::size_t>(2 * i)]));
   }
 }
 
 TEST_CASE("a bound through lines is proven for large sets too") {
   const Index n = 3, l = 3, g = 150, m = 50;
-  LineForm X{Matrix(n, l), Matrix(n, g), Vector::Zero(n), Matrix(m, l), Matrix(m, g), Vector::Zero(m)};
+  LineForm X{Matrix(n, l), Matrix(n, g), Vector::Zero(n),
+             Matrix(m, l), Matrix(m, g), Vector::Zero(m)};
   double value = 0;
   for (Matrix* block : {&X.M, &X.G, &X.S, &X.A}) {
     for (double& entry : block->reshaped()) {
@@ -141,7 +154,8 @@ TEST_CASE("a bound through lines is proven for large sets too") {
   Certificate why;
   const double h = support(X, d, &why);
   REQUIRE(h < inf);
-  CHECK(proven_support(X, d, why.data).value_or(inf) == h);  // what the multipliers prove, not what was computed
+  CHECK(proven_support(X, d, why.data).value_or(inf) ==
+        h);  // what the multipliers prove, not what was computed
 }
 
 TEST_CASE("lineality is a matter of ranks") {

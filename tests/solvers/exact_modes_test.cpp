@@ -37,7 +37,8 @@ std::pair<Matrix, Matrix> coordinates(Index n) {
 
 TEST_CASE("the hidden part of a system that was built around it") {
   CHECK(rc::check("blocks in other coordinates", [] {
-    const Index seen = *rc::gen::inRange<Index>(0, 3), d = *rc::gen::inRange<Index>(1, 4), n = seen + d;
+    const Index seen = *rc::gen::inRange<Index>(0, 3), d = *rc::gen::inRange<Index>(1, 4),
+                n = seen + d;
     // hidden: a triangular block, its eigenvalues on the diagonal in eighths
     Matrix A = Matrix::Zero(n, n), C = Matrix::Zero(seen + 1, n);
     double largest = 0;
@@ -54,7 +55,8 @@ TEST_CASE("the hidden part of a system that was built around it") {
     const exact::HiddenModes modes = hidden_modes(T * A * back, C * back);
     RC_ASSERT(modes.count == d);
     RC_ASSERT(modes.decay == (largest < 1));
-    RC_ASSERT(((T * A * back) * modes.basis - modes.basis * modes.map).cwiseAbs().maxCoeff() < 1e-9);
+    RC_ASSERT(((T * A * back) * modes.basis - modes.basis * modes.map).cwiseAbs().maxCoeff() <
+              1e-9);
     RC_ASSERT((C * back * modes.basis).cwiseAbs().maxCoeff() < 1e-9);
     const double rate = *rc::gen::elementOf(std::vector<double>{.25, .5, 1.5625, 2});
     RC_ASSERT(hidden_modes(T * A * back, C * back, rate).decay == (largest * largest < rate));
@@ -64,11 +66,15 @@ TEST_CASE("the hidden part of a system that was built around it") {
 TEST_CASE("the last digit decides, and units do not") {
   const double below = std::nextafter(1.0, 0.0), above = std::nextafter(1.0, 2.0);
   const Matrix none(0, 2);
-  const auto decays = [&](double value) { return hidden_modes(Matrix{{value, 1e200}, {0, -.5}}, none).decay; };
+  const auto decays = [&](double value) {
+    return hidden_modes(Matrix{{value, 1e200}, {0, -.5}}, none).decay;
+  };
   CHECK(decays(below));
   CHECK_FALSE(decays(1));
   CHECK_FALSE(decays(above));
-  CHECK(hidden_modes(Matrix{{2, 0}, {0, std::nextafter(2.0, 3.0)}}, Matrix{{1e-300, 1e-300}}).count == 0);
+  CHECK(
+      hidden_modes(Matrix{{2, 0}, {0, std::nextafter(2.0, 3.0)}}, Matrix{{1e-300, 1e-300}}).count ==
+      0);
   CHECK(hidden_modes(Matrix{{2, 0}, {0, 2}}, Matrix{{1e-300, 1e300}}).count == 1);
   CHECK(hidden_modes(Matrix(0, 0), Matrix(1, 0)).count == 0);
   const Matrix turn{{.6, -.8}, {.8, .6}};  // .6² + .8² = 1 + 4e-17, for the doubles
@@ -89,7 +95,8 @@ TEST_CASE("what does not fit is refused") {
   CHECK_THROWS_AS(hidden_modes(I, Matrix(1, 3)), Error);
   CHECK_THROWS_AS(hidden_modes(I, I, 0), Error);
   CHECK_THROWS_AS(hidden_modes(I, I, std::numeric_limits<double>::quiet_NaN()), Error);
-  CHECK_THROWS_AS(hidden_modes(Matrix(I * std::numeric_limits<double>::infinity()), Matrix(0, 2)), Error);
+  CHECK_THROWS_AS(hidden_modes(Matrix(I * std::numeric_limits<double>::infinity()), Matrix(0, 2)),
+                  Error);
   CHECK_THROWS_AS(hidden_modes(Matrix::Identity(41, 41), Matrix(0, 41)), Error);
 }
 

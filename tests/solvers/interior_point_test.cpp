@@ -16,7 +16,8 @@ using namespace cordon;
 
 namespace {
 
-/// The states of a stable system of `n` states after `samples` outputs of half as many sensors, nothing reduced.
+/// The states of a stable system of `n` states after `samples` outputs of half as many sensors,
+/// nothing reduced.
 struct Window {
   Matrix A, G;
   Vector b;
@@ -54,7 +55,8 @@ double bound(const Window& window, const Vector& g, const Vector& y) {
 
 }  // namespace
 
-TEST_CASE("bounds exceed the optimum of the simplex method by 1e-8 of it at most, and never fall below") {
+TEST_CASE(
+    "bounds exceed the optimum of the simplex method by 1e-8 of it at most, and never fall below") {
   int solved = 0;
   Index iterations = 0;
   for (unsigned seed = 0; seed < 40; ++seed) {

@@ -24,8 +24,9 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-MixedIntegerProgram program(const Matrix& A, const Vector& row_lower, const Vector& row_upper, const Vector& cost,
-                            const Vector& lower, const Vector& upper, std::vector<bool> integer) {
+MixedIntegerProgram program(const Matrix& A, const Vector& row_lower, const Vector& row_upper,
+                            const Vector& cost, const Vector& lower, const Vector& upper,
+                            std::vector<bool> integer) {
   MixedIntegerProgram p{cost, {}, row_lower, row_upper, lower, upper, std::move(integer)};
   for (Index i = 0; i < A.rows(); ++i) {
     for (Index j = 0; j < A.cols(); ++j) p.entries.push_back({i, j, A(i, j)});
@@ -35,7 +36,8 @@ MixedIntegerProgram program(const Matrix& A, const Vector& row_lower, const Vect
 
 Vector all(Index n, double value) { return Vector::Constant(n, value); }
 
-/// Worth and weight of things, of which the most worth is chosen that weighs at most `capacity`: minimise -worth.
+/// Worth and weight of things, of which the most worth is chosen that weighs at most `capacity`:
+/// minimise -worth.
 struct Knapsack {
   Matrix weight;  ///< a row per limit
   Vector worth, capacity;
@@ -66,14 +68,17 @@ Knapsack knapsack(Index things, std::uint64_t seed) {
   return k;
 }
 
-/// Takes long: things are to be split so that both halves weigh the same on four scales, as nearly as may be.
+/// Takes long: things are to be split so that both halves weigh the same on four scales, as nearly
+/// as may be.
 MixedIntegerProgram long_program() {
   const Index n = 30, m = 4;
   std::mt19937_64 engine(7);
   std::uniform_int_distribution<int> number(0, 99);
   Matrix A(m, n + 2 * m);
-  A << Matrix::NullaryExpr(m, n, [&] { return number(engine); }), Matrix::Identity(m, m), -Matrix::Identity(m, m);
-  const Vector half = A.leftCols(n).rowwise().sum().array().unaryExpr([](double sum) { return std::floor(sum / 2); });
+  A << Matrix::NullaryExpr(m, n, [&] { return number(engine); }), Matrix::Identity(m, m),
+      -Matrix::Identity(m, m);
+  const Vector half = A.leftCols(n).rowwise().sum().array().unaryExpr(
+      [](double sum) { return std::floor(sum / 2); });
   Vector cost = Vector::Zero(n + 2 * m), upper = Vector::Ones(n + 2 * m);
   cost.tail(2 * m).setOnes();
   upper.tail(2 * m).setConstant(infinity);
@@ -85,10 +90,12 @@ MixedIntegerProgram long_program() {
 }  // namespace
 
 TEST_CASE("whole numbers and others together") {
-  // minimise -x - 2y, x + y ≤ 3.5, y ≤ 2.6 + .1 x, x whole: x = 1: y = 2.5 → -6; x = 0: y = 2.6 → -5.2; x = 2: y = 1.5 → -5.
+  // minimise -x - 2y, x + y ≤ 3.5, y ≤ 2.6 + .1 x, x whole: x = 1: y = 2.5 → -6; x = 0: y = 2.6 →
+  // -5.2; x = 2: y = 1.5 → -5.
   const MixedIntegerProgram p =
-      program((Matrix(2, 2) << 1, 1, -.1, 1).finished(), all(2, -infinity), (Vector(2) << 3.5, 2.6).finished(),
-              (Vector(2) << -1, -2).finished(), all(2, 0), all(2, 10), {true, false});
+      program((Matrix(2, 2) << 1, 1, -.1, 1).finished(), all(2, -infinity),
+              (Vector(2) << 3.5, 2.6).finished(), (Vector(2) << -1, -2).finished(), all(2, 0),
+              all(2, 10), {true, false});
   const MipSolution solution = solve(p);
   REQUIRE(solution.status == MipStatus::optimal);
   CHECK(solution.objective == Approx(-6));
@@ -101,9 +108,10 @@ TEST_CASE("rows with two bounds, equations, and free columns") {
   // minimise z subject to z ≥ 2 - x, z ≥ x - 2, 3 ≤ 2x ≤ 7 with x = 2 w, w whole: w = 1, z = 0.
   const double inf = infinity;
   const MixedIntegerProgram p =
-      program((Matrix(4, 3) << 1, 0, 1, -1, 0, 1, 2, 0, 0, 1, -2, 0).finished(), (Vector(4) << 2, -2, 3, 0).finished(),
-              (Vector(4) << inf, inf, 7, 0).finished(), (Vector(3) << 0, 0, 1).finished(),
-              (Vector(3) << -inf, -5, -inf).finished(), (Vector(3) << inf, 5, inf).finished(), {false, true, false});
+      program((Matrix(4, 3) << 1, 0, 1, -1, 0, 1, 2, 0, 0, 1, -2, 0).finished(),
+              (Vector(4) << 2, -2, 3, 0).finished(), (Vector(4) << inf, inf, 7, 0).finished(),
+              (Vector(3) << 0, 0, 1).finished(), (Vector(3) << -inf, -5, -inf).finished(),
+              (Vector(3) << inf, 5, inf).finished(), {false, true, false});
   const MipSolution solution = solve(p);
   REQUIRE(solution.status == MipStatus::optimal);
   CHECK(solution.x[0] == Approx(2));
@@ -113,7 +121,8 @@ TEST_CASE("rows with two bounds, equations, and free columns") {
 
 TEST_CASE("programs without a solution are infeasible, with a relaxation or without") {
   // 2x = 1 has a relaxed solution, no whole one.
-  MixedIntegerProgram p = program(all(1, 2), all(1, 1), all(1, 1), all(1, 1), all(1, 0), all(1, 1), {true});
+  MixedIntegerProgram p =
+      program(all(1, 2), all(1, 1), all(1, 1), all(1, 1), all(1, 0), all(1, 1), {true});
   CHECK(solve(p).status == MipStatus::infeasible);
   CHECK(solve(p).bound == infinity);
   p.row_lower = p.row_upper = all(1, 5);
@@ -123,7 +132,8 @@ TEST_CASE("programs without a solution are infeasible, with a relaxation or with
 }
 
 TEST_CASE("an unbounded program gives no claim") {
-  const MixedIntegerProgram p = program(all(1, 1), all(1, 0), all(1, infinity), all(1, -1), all(1, 0), all(1, infinity), {false});
+  const MixedIntegerProgram p = program(all(1, 1), all(1, 0), all(1, infinity), all(1, -1),
+                                        all(1, 0), all(1, infinity), {false});
   const MipSolution solution = solve(p);
   CHECK(solution.status == MipStatus::failed);
   CHECK(solution.x.size() == 0);
@@ -131,11 +141,13 @@ TEST_CASE("an unbounded program gives no claim") {
 
 TEST_CASE("random knapsacks agree with enumeration") {
   CHECK(rc::check("knapsacks", [] {
-    const Knapsack k = knapsack(*rc::gen::inRange<Index>(1, 13), *rc::gen::arbitrary<std::uint64_t>());
+    const Knapsack k =
+        knapsack(*rc::gen::inRange<Index>(1, 13), *rc::gen::arbitrary<std::uint64_t>());
     const MipSolution solution = solve(k.as_program());
     RC_ASSERT(solution.status == MipStatus::optimal);
     RC_ASSERT(std::abs(solution.objective + k.by_enumeration()) < 1e-6);
-    RC_ASSERT(std::abs(solution.bound - solution.objective) <= 1e-6 * (1 + std::abs(solution.objective)));
+    RC_ASSERT(std::abs(solution.bound - solution.objective) <=
+              1e-6 * (1 + std::abs(solution.objective)));
     RC_ASSERT((k.weight * solution.x - k.capacity).maxCoeff() <= 1e-6);
     RC_ASSERT((solution.x.array() == solution.x.array().round()).all());
     MipOptions options;
@@ -204,7 +216,8 @@ TEST_CASE("a start is used where it is a solution") {
   CHECK(given.status == MipStatus::feasible);
   CHECK(given.objective == Approx(best.objective));
   CHECK(given.bound == -infinity);
-  for (const double wrong : {2.0, -1.0, 1.0 / 3, not_a_number}) {  // outside its bounds, not whole, no number
+  for (const double wrong :
+       {2.0, -1.0, 1.0 / 3, not_a_number}) {  // outside its bounds, not whole, no number
     options.start = best.x;
     (*options.start)[0] = wrong;
     CHECK(solve(k.as_program(), options).status == MipStatus::limit);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random small sets and questions against rational arithmetic: never a wrong answer, and few unknown ones. CORDON_ORACLE_SETS
-// sets how many (2000 by default; the nightly test takes 100,000).
+// Random small sets and questions against rational arithmetic: never a wrong answer, and few
+// unknown ones. CORDON_ORACLE_SETS sets how many (2000 by default; the nightly test takes 100,000).
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -24,7 +24,9 @@ class Draw {
  public:
   explicit Draw(std::uint64_t seed) : engine_(seed) {}
 
-  Index upto(Index most) { return static_cast<Index>(engine_() % static_cast<std::uint64_t>(most + 1)); }
+  Index upto(Index most) {
+    return static_cast<Index>(engine_() % static_cast<std::uint64_t>(most + 1));
+  }
   double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 
   /// One set draws all its numbers in one manner.
@@ -54,8 +56,9 @@ class Draw {
     const Index l = upto(3) == 0 ? 1 + upto(1) : 0, g = upto(8), m = upto(3);
     LineForm X{matrix(n, l, manner), matrix(n, g, manner), vector(n, manner),
                matrix(m, l, manner), matrix(m, g, manner), vector(m, manner)};
-    if (upto(1) == 0) X.b = X.A * Vector(.9 * matrix(g, 1, Manner::continuous));  // mostly not empty
-    if (m > 1 && upto(3) == 0) {                                                  // a dependent row
+    if (upto(1) == 0)
+      X.b = X.A * Vector(.9 * matrix(g, 1, Manner::continuous));  // mostly not empty
+    if (m > 1 && upto(3) == 0) {                                  // a dependent row
       const double factor = static_cast<double>(upto(8)) / 4 - 1;
       X.S.row(m - 1) = factor * X.S.row(0);
       X.A.row(m - 1) = factor * X.A.row(0);
@@ -76,8 +79,8 @@ LineForm rows_only(LineForm X) {
   return X;
 }
 
-/// Would the answer change if all factors or all rows moved by 1e-9 of their size? `terms`: what the last rows' right-hand sides
-/// are differences of, x - c or c_Y - c_X, whose size counts.
+/// Would the answer change if all factors or all rows moved by 1e-9 of their size? `terms`: what
+/// the last rows' right-hand sides are differences of, x - c or c_Y - c_X, whose size counts.
 bool is_near_boundary(const LineForm& X, bool empty, const Vector& terms = Vector(0)) {
   LineForm moved = X;
   if (!empty) {
@@ -90,7 +93,8 @@ bool is_near_boundary(const LineForm& X, bool empty, const Vector& terms = Vecto
   moved.A.leftCols(g) = X.A;
   Vector right = X.b.cwiseAbs();
   right.tail(terms.size()) = right.tail(terms.size()).cwiseMax(terms);
-  for (Index i = 0; i < m; ++i) moved.A(i, g + i) = near * (X.A.row(i).lpNorm<1>() + X.S.row(i).lpNorm<1>() + right[i]);
+  for (Index i = 0; i < m; ++i)
+    moved.A(i, g + i) = near * (X.A.row(i).lpNorm<1>() + X.S.row(i).lpNorm<1>() + right[i]);
   moved.G = Matrix::Zero(X.dim(), g + m);
   return exact::is_empty(rows_only(moved)) == Answer::no;
 }
@@ -103,21 +107,26 @@ struct Tally {
   std::int64_t asked = 0, unknown_inside = 0, unknown_near = 0, wrong = 0;
   std::string first;  ///< where the first wrong or needless unknown answer was
 
-  void count(Answer given, Answer truth, bool near_boundary, std::uint64_t set, const char* question) {
+  void count(Answer given, Answer truth, bool near_boundary, std::uint64_t set,
+             const char* question) {
     ++asked;
-    const bool is_wrong = given != Answer::unknown && given != truth, needless = given == Answer::unknown && !near_boundary;
+    const bool is_wrong = given != Answer::unknown && given != truth,
+               needless = given == Answer::unknown && !near_boundary;
     wrong += is_wrong ? 1 : 0;
     unknown_inside += needless ? 1 : 0;
     unknown_near += given == Answer::unknown && near_boundary ? 1 : 0;
-    if ((is_wrong || needless) && first.empty()) first = std::string(question) + ", set " + std::to_string(set);
+    if ((is_wrong || needless) && first.empty())
+      first = std::string(question) + ", set " + std::to_string(set);
   }
 };
 
 void report(const char* question, const Tally& t) {
-  std::printf("%-12s %8lld asked, %lld wrong, %lld unknown (%lld of them within 1e-9 of the boundary)%s%s\n", question,
-              static_cast<long long>(t.asked), static_cast<long long>(t.wrong),
-              static_cast<long long>(t.unknown_inside + t.unknown_near), static_cast<long long>(t.unknown_near),
-              t.first.empty() ? "" : "; first: ", t.first.c_str());
+  std::printf(
+      "%-12s %8lld asked, %lld wrong, %lld unknown (%lld of them within 1e-9 of the "
+      "boundary)%s%s\n",
+      question, static_cast<long long>(t.asked), static_cast<long long>(t.wrong),
+      static_cast<long long>(t.unknown_inside + t.unknown_near),
+      static_cast<long long>(t.unknown_near), t.first.empty() ? "" : "; first: ", t.first.c_str());
 }
 
 std::uint64_t sets_to_try() {
@@ -142,22 +151,27 @@ TEST_CASE("answers agree with rational arithmetic") {
     Vector x = draw.vector(n, manner);
     if (draw.upto(1) == 0 && X.constraints() == 0) {  // on the boundary as often as inside
       x = X.c + X.M * draw.vector(X.lines(), manner) +
-          X.G * (draw.upto(1) == 0 ? Vector(draw.vector(X.generators(), Draw::Manner::continuous).array().sign())
-                                   : draw.vector(X.generators(), Draw::Manner::continuous));
+          X.G * (draw.upto(1) == 0
+                     ? Vector(draw.vector(X.generators(), Draw::Manner::continuous).array().sign())
+                     : draw.vector(X.generators(), Draw::Manner::continuous));
     }
     const Answer inside = exact::contains(X, x);
-    member.count(contains(X, x), inside, is_near_boundary(point_rows(X, x), inside == Answer::no, x.cwiseAbs() + X.c.cwiseAbs()),
-                 i, "contains");
+    member.count(
+        contains(X, x), inside,
+        is_near_boundary(point_rows(X, x), inside == Answer::no, x.cwiseAbs() + X.c.cwiseAbs()), i,
+        "contains");
 
     const LineForm both = intersection(X, Matrix::Identity(n, n), Y);
     const Answer apart = exact::is_empty(both);
-    disjoint.count(is_disjoint(X, Y), apart, is_near_boundary(both, apart == Answer::yes, X.c.cwiseAbs() + Y.c.cwiseAbs()), i,
+    disjoint.count(is_disjoint(X, Y), apart,
+                   is_near_boundary(both, apart == Answer::yes, X.c.cwiseAbs() + Y.c.cwiseAbs()), i,
                    "is_disjoint");
 
     if (truth == Answer::no) {
       Answer bound = Answer::yes;
       for (Index k = 0; k < n; ++k) {
-        if (exact::support(X, Vector::Unit(n, k)).upper == std::numeric_limits<double>::infinity()) bound = Answer::no;
+        if (exact::support(X, Vector::Unit(n, k)).upper == std::numeric_limits<double>::infinity())
+          bound = Answer::no;
       }
       bounded.count(is_bounded(X), bound, is_near_boundary(X, false), i, "is_bounded");
     }
@@ -167,14 +181,17 @@ TEST_CASE("answers agree with rational arithmetic") {
     ++supports;
     below += ours < h.lower ? 1 : 0;
     const double size = d.cwiseAbs().dot(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
-    if (std::isfinite(h.upper) && !(ours <= h.upper + 1e-9 * size + 1e-300) && !is_near_boundary(X, false)) ++loose;
+    if (std::isfinite(h.upper) && !(ours <= h.upper + 1e-9 * size + 1e-300) &&
+        !is_near_boundary(X, false))
+      ++loose;
   }
   report("is_empty", empty);
   report("contains", member);
   report("is_disjoint", disjoint);
   report("is_bounded", bounded);
-  std::printf("%-12s %8lld asked, %lld below the exact value, %lld above it by more than 1e-9\n", "support",
-              static_cast<long long>(supports), static_cast<long long>(below), static_cast<long long>(loose));
+  std::printf("%-12s %8lld asked, %lld below the exact value, %lld above it by more than 1e-9\n",
+              "support", static_cast<long long>(supports), static_cast<long long>(below),
+              static_cast<long long>(loose));
   for (const Tally* t : {&empty, &member, &disjoint, &bounded}) {
     CHECK(t->wrong == 0);
     CHECK(static_cast<double>(t->unknown_inside) <= 1e-3 * static_cast<double>(t->asked));

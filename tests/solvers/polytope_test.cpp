@@ -40,7 +40,9 @@ Polytope simplex(Index n) {
   return Polytope::from_generators(V);
 }
 
-bool is(rounding::Range range, double value) { return range.lower == value && range.upper == value; }
+bool is(rounding::Range range, double value) {
+  return range.lower == value && range.upper == value;
+}
 
 double number() { return *rc::gen::inRange(-20, 21) / 8.0; }
 
@@ -55,14 +57,17 @@ Polytope arbitrary(Index n) {
   const auto few = [](Index most) { return *rc::gen::inRange<Index>(0, most + 1); };
   if (*rc::gen::arbitrary<bool>()) {
     const Index rows = few(7), equations = *rc::gen::inRange(0, 4) == 0 ? few(2) : 0;
-    return Polytope::from_inequalities(matrix(rows, n), matrix(rows, 1), matrix(equations, n), matrix(equations, 1));
+    return Polytope::from_inequalities(matrix(rows, n), matrix(rows, 1), matrix(equations, n),
+                                       matrix(equations, 1));
   }
-  const Index rays = *rc::gen::inRange(0, 3) == 0 ? few(2) : 0, lines = *rc::gen::inRange(0, 4) == 0 ? few(2) : 0;
+  const Index rays = *rc::gen::inRange(0, 3) == 0 ? few(2) : 0,
+              lines = *rc::gen::inRange(0, 4) == 0 ? few(2) : 0;
   return Polytope::from_generators(matrix(n, few(6)), matrix(n, rays), matrix(n, lines));
 }
 
 LineForm arbitrary_form(Index n) {
-  const Index l = *rc::gen::inRange<Index>(0, 3), g = *rc::gen::inRange<Index>(0, 6), m = *rc::gen::inRange<Index>(0, 3);
+  const Index l = *rc::gen::inRange<Index>(0, 3), g = *rc::gen::inRange<Index>(0, 6),
+              m = *rc::gen::inRange<Index>(0, 3);
   return {matrix(n, l), matrix(n, g), matrix(n, 1), matrix(m, l), matrix(m, g), matrix(m, 1)};
 }
 
@@ -103,8 +108,9 @@ TEST_CASE("cubes, simplices and cross polytopes") {
 }
 
 TEST_CASE("points decide to the last bit") {
-  const Polytope P = Polytope::from_inequalities(Matrix{{3.0}, {-1.0}}, Vector{{1.0, 0.0}});  // [0, 1/3]
-  CHECK(P.contains(Vector{{1.0 / 3}}));                                                       // the double lies below 1/3
+  const Polytope P =
+      Polytope::from_inequalities(Matrix{{3.0}, {-1.0}}, Vector{{1.0, 0.0}});  // [0, 1/3]
+  CHECK(P.contains(Vector{{1.0 / 3}}));  // the double lies below 1/3
   CHECK(!P.contains(Vector{{rounding::up(1.0 / 3)}}));
   CHECK(P.support(Vector{{1.0}}).lower == 1.0 / 3);
   CHECK(P.support(Vector{{1.0}}).upper == rounding::up(1.0 / 3));
@@ -113,8 +119,9 @@ TEST_CASE("points decide to the last bit") {
 }
 
 TEST_CASE("redundancy goes, equations are found") {
-  const Polytope P = Polytope::from_inequalities(Matrix{{1, 0}, {2, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {0, 0}},
-                                                 Vector{{1.0, 2.0, 1.0, 3.0, -3.0, 9.0, 0.0}});
+  const Polytope P =
+      Polytope::from_inequalities(Matrix{{1, 0}, {2, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {0, 0}},
+                                  Vector{{1.0, 2.0, 1.0, 3.0, -3.0, 9.0, 0.0}});
   const Polytope::Inequalities rows = P.inequalities();
   CHECK(rows.H.rows() == 2);
   CHECK(rows.Q.rows() == 1);
@@ -134,10 +141,12 @@ TEST_CASE("lines, rays and half-spaces") {
   CHECK(half.generators().lines.cols() == 1);
   CHECK(code_of([&] { half.volume(); }) == Errc::unsupported);
   CHECK(code_of([&] { half.to_line_form(); }) == Errc::unsupported);
-  CHECK(half.minkowski_sum(Polytope::from_inequalities(-Matrix{{1.0, 1.0}}, Vector{{0.0}})) == Polytope::space(2));
+  CHECK(half.minkowski_sum(Polytope::from_inequalities(-Matrix{{1.0, 1.0}}, Vector{{0.0}})) ==
+        Polytope::space(2));
   const Polytope strip = Polytope::from(make_strip(Vector{{1.0, -2.0}}, 0.5, 0.25));
   CHECK(strip == Polytope::from_inequalities(Matrix{{1, -2}, {-1, 2}}, Vector{{0.75, -0.25}}));
-  CHECK(Polytope::from_generators(Matrix{{0.0}}, Matrix{{1.0, -1.0}}, Matrix(1, 0)) == Polytope::space(1));
+  CHECK(Polytope::from_generators(Matrix{{0.0}}, Matrix{{1.0, -1.0}}, Matrix(1, 0)) ==
+        Polytope::space(1));
   CHECK(Polytope::space(2).interval_hull().upper[1] == inf);
 }
 
@@ -171,12 +180,14 @@ TEST_CASE("the empty set and the space of dimension 0") {
   CHECK(is(Polytope::space(0).volume(), 1));
   CHECK(Polytope::space(0).contains(Vector(0)));
   CHECK(is(cube(2).affine_map(Matrix(0, 2), Vector(0)).volume(), 1));
-  CHECK(Polytope::space(0).affine_map(Matrix(2, 0), Vector{{1.0, 2.0}}).contains(Vector{{1.0, 2.0}}));
+  CHECK(
+      Polytope::space(0).affine_map(Matrix(2, 0), Vector{{1.0, 2.0}}).contains(Vector{{1.0, 2.0}}));
 }
 
 TEST_CASE("published intersections") {
   // S1 ∩ S2 in R³: |x2| ≤ .1, x1 + x3 ∈ [.9, 1.1]
-  const LineForm S1 = make_strip(Vector{{0.0, 1.0, 0.0}}, 0, 0.1), S2 = make_strip(Vector{{1.0, 0.0, 1.0}}, 1, 0.1);
+  const LineForm S1 = make_strip(Vector{{0.0, 1.0, 0.0}}, 0, 0.1),
+                 S2 = make_strip(Vector{{1.0, 0.0, 1.0}}, 1, 0.1);
   const Polytope P = Polytope::from(intersection(S1, Matrix::Identity(3, 3), S2));
   CHECK(P == Polytope::from(S1).intersection(Polytope::from(S2)));
   const Polytope::Generators G = P.generators();
@@ -188,38 +199,53 @@ TEST_CASE("published intersections") {
   CHECK(P.support(Vector{{1.0, 0.0, 1.0}}).upper == doctest::Approx(1.1).epsilon(1e-15));
 
   // a zonotope and a strip [Rego2025, section 3.2.1]
-  const LineForm Z = make_zonotope(Vector::Zero(2), Matrix{{0.2812, 0.1968, 0.4235}, {0.0186, -0.2063, -0.2267}});
-  const Polytope cut = Polytope::from(Z).intersection(Polytope::from(make_strip(Vector{{1.0, -1.0}}, 1, 0.1)));
+  const LineForm Z =
+      make_zonotope(Vector::Zero(2), Matrix{{0.2812, 0.1968, 0.4235}, {0.0186, -0.2063, -0.2267}});
+  const Polytope cut =
+      Polytope::from(Z).intersection(Polytope::from(make_strip(Vector{{1.0, -1.0}}, 1, 0.1)));
   CHECK(cut.generators().vertices.cols() == 4);
   CHECK(cut.volume().lower == doctest::Approx(0.03680954218666721).epsilon(1e-14));
   CHECK(Polytope::from(Z).volume().upper == doctest::Approx(0.70420268).epsilon(1e-8));
   const Box hull = cut.interval_hull();
-  CHECK((hull.lower - Vector{{0.45614173648134015, -0.4438582635186596}}).cwiseAbs().maxCoeff() < 1e-15);
-  CHECK((hull.upper - Vector{{0.7960940957578764, -0.20154916894070946}}).cwiseAbs().maxCoeff() < 1e-15);
-  CHECK(is(Polytope::from(make_zonotope(Vector{{-4.0, 1.0}}, Matrix{{-3, -2, -1}, {2, 3, 4}})).volume(), 80));
+  CHECK((hull.lower - Vector{{0.45614173648134015, -0.4438582635186596}}).cwiseAbs().maxCoeff() <
+        1e-15);
+  CHECK((hull.upper - Vector{{0.7960940957578764, -0.20154916894070946}}).cwiseAbs().maxCoeff() <
+        1e-15);
+  CHECK(is(
+      Polytope::from(make_zonotope(Vector{{-4.0, 1.0}}, Matrix{{-3, -2, -1}, {2, 3, 4}})).volume(),
+      80));
 
   // two constrained zonotopes with known vertices
   LineForm A = make_zonotope(Vector::Zero(2), Matrix{{3, 0, 1}, {0, 2, 1}});
   A.A = Matrix{{1, 0, 1}}, A.S.resize(1, 0), A.b = Vector{{1.0}};
   LineForm B = make_zonotope(Vector::Zero(2), Matrix{{1.5, -1.5, 0.5}, {1, 0.5, -1}});
   B.A = Matrix{{1, 1, 1}}, B.S.resize(1, 0), B.b = Vector{{1.0}};
-  const Matrix vertices = Polytope::from(intersection(A, Matrix::Identity(2, 2), B)).generators().vertices;
+  const Matrix vertices =
+      Polytope::from(intersection(A, Matrix::Identity(2, 2), B)).generators().vertices;
   REQUIRE(vertices.cols() == 4);
-  for (const Vector& v : {Vector{{1.0, 1.375}}, Vector{{3.0, -0.125}}, Vector{{1.0, -11.0 / 12}}, Vector{{3.0, -7.0 / 12}}}) {
+  for (const Vector& v : {Vector{{1.0, 1.375}}, Vector{{3.0, -0.125}}, Vector{{1.0, -11.0 / 12}},
+                          Vector{{3.0, -7.0 / 12}}}) {
     CHECK((vertices.colwise() - v).colwise().norm().minCoeff() < 1e-15);
   }
 }
 
 TEST_CASE("what does not fit is refused, and quickly") {
-  CHECK(code_of([] { Polytope::from_inequalities(Matrix::Ones(2, 2), Vector::Ones(1)); }) == Errc::dimension);
-  CHECK(code_of([] { Polytope::from_inequalities(Matrix{{std::nan("")}}, Vector{{1.0}}); }) == Errc::not_finite);
-  CHECK(code_of([] { Polytope::from_inequalities(Matrix{{1.0}}, Vector{{inf}}); }) == Errc::not_finite);
+  CHECK(code_of([] { Polytope::from_inequalities(Matrix::Ones(2, 2), Vector::Ones(1)); }) ==
+        Errc::dimension);
+  CHECK(code_of([] { Polytope::from_inequalities(Matrix{{std::nan("")}}, Vector{{1.0}}); }) ==
+        Errc::not_finite);
+  CHECK(code_of([] { Polytope::from_inequalities(Matrix{{1.0}}, Vector{{inf}}); }) ==
+        Errc::not_finite);
   CHECK(code_of([] { Polytope::from_generators(Matrix{{-inf}}); }) == Errc::not_finite);
-  CHECK(code_of([] { Polytope::from_generators(Matrix{{1.0}}, Matrix{{std::nan("")}}, Matrix(1, 0)); }) == Errc::not_finite);
+  CHECK(code_of([] {
+          Polytope::from_generators(Matrix{{1.0}}, Matrix{{std::nan("")}}, Matrix(1, 0));
+        }) == Errc::not_finite);
   CHECK(code_of([] { cube(2).contains(Vector{{std::nan(""), 0.0}}); }) == Errc::not_finite);
   CHECK(code_of([] { cube(2).support(Vector{{inf, 0.0}}); }) == Errc::not_finite);
   CHECK(code_of([] { cube(2).affine_map(Matrix{{1.0, inf}}, Vector{{0.0}}); }) == Errc::not_finite);
-  CHECK(code_of([] { cube(2).preimage(Matrix{{1.0}, {1.0}}, Vector{{0.0, std::nan("")}}); }) == Errc::not_finite);
+  CHECK(code_of([] {
+          cube(2).preimage(Matrix{{1.0}, {1.0}}, Vector{{0.0, std::nan("")}});
+        }) == Errc::not_finite);
   CHECK(code_of([] { cube(2).contains(Vector::Zero(3)); }) == Errc::dimension);
   CHECK(code_of([] { cube(2).contains(cube(3)); }) == Errc::dimension);
   CHECK(code_of([] { cube(2).intersection(cube(3)); }) == Errc::dimension);
@@ -227,12 +253,14 @@ TEST_CASE("what does not fit is refused, and quickly") {
   CHECK(code_of([] { cube(2).convex_hull(cube(3)); }) == Errc::dimension);
   CHECK(!(cube(2) == cube(3)));
   CHECK(code_of([] { cube(20).is_empty(); }) == Errc::unsupported);
-  CHECK(code_of([] { Polytope::from(make_zonotope(Vector::Zero(6), Matrix::Random(6, 40))); }) == Errc::unsupported);
+  CHECK(code_of([] { Polytope::from(make_zonotope(Vector::Zero(6), Matrix::Random(6, 40))); }) ==
+        Errc::unsupported);
   CHECK(code_of([] { cube(7).volume(); }) == Errc::unsupported);
   const Polytope many = cube(8).affine_map(Matrix::Random(2, 8), Vector::Zero(2));
   CHECK(many.generators().vertices.cols() == 16);
   CHECK(code_of([] { cube(8).minkowski_sum(cube(8)); }) == Errc::unsupported);
-  CHECK(code_of([] { cube(1).affine_map(Matrix{{1e308}}, Vector{{1e308}}).generators(); }) == Errc::not_finite);
+  CHECK(code_of([] { cube(1).affine_map(Matrix{{1e308}}, Vector{{1e308}}).generators(); }) ==
+        Errc::not_finite);
 }
 
 TEST_CASE("every set operation keeps its law") {
@@ -265,7 +293,8 @@ TEST_CASE("every set operation keeps its law") {
     Matrix first = Matrix::Zero(n, 2 * n);
     first.leftCols(n).setIdentity();
     RC_ASSERT(product.affine_map(first, Vector::Zero(n)) == (Y.is_empty() ? Y : X));
-    RC_ASSERT(X.is_empty() || Y.is_empty() || hull.support(d).upper == std::max(X.support(d).upper, Y.support(d).upper));
+    RC_ASSERT(X.is_empty() || Y.is_empty() ||
+              hull.support(d).upper == std::max(X.support(d).upper, Y.support(d).upper));
   }));
 }
 
@@ -308,7 +337,8 @@ TEST_CASE("exchange form and back") {
   std::atomic<int> exact = 0;
   CHECK(rc::check("random polyhedra", [&] {
     const Index n = arbitrary_dim();
-    const Polytope X = *rc::gen::arbitrary<bool>() ? arbitrary(n) : Polytope::from(arbitrary_form(n));
+    const Polytope X =
+        *rc::gen::arbitrary<bool>() ? arbitrary(n) : Polytope::from(arbitrary_form(n));
     if (X.generators().rays.cols() > 0) {
       RC_ASSERT(code_of([&] { X.to_line_form(); }) == Errc::unsupported);
       return;
@@ -328,12 +358,15 @@ TEST_CASE("exchange form and back") {
 
 TEST_CASE("rounding a line sets its coordinates free") {
   const double odd = 1 + std::exp2(-50);
-  const Polytope line = Polytope::from_generators(Matrix{{0.0}, {0.0}, {1.0}}, Matrix(3, 0), Matrix{{1.0}, {odd * odd}, {0.0}});
+  const Polytope line = Polytope::from_generators(Matrix{{0.0}, {0.0}, {1.0}}, Matrix(3, 0),
+                                                  Matrix{{1.0}, {odd * odd}, {0.0}});
   CHECK(line.to_line_form().tightness == Tightness::exact);  // odd² was rounded before
-  const Polytope turned = line.affine_map(Matrix{{1, 0, 0}, {0, odd, 0}, {0, 0, 1}}, Vector::Zero(3));
+  const Polytope turned =
+      line.affine_map(Matrix{{1, 0, 0}, {0, odd, 0}, {0, 0, 1}}, Vector::Zero(3));
   const Polytope::Export out = turned.to_line_form();
   CHECK(out.tightness == Tightness::outer);
-  CHECK(Polytope::from(out.form) == Polytope::from_inequalities(Matrix(0, 3), Vector(0), Matrix{{0, 0, 1}}, Vector{{1.0}}));
+  CHECK(Polytope::from(out.form) ==
+        Polytope::from_inequalities(Matrix(0, 3), Vector(0), Matrix{{0, 0, 1}}, Vector{{1.0}}));
 }
 
 TEST_CASE("lifted zonotopes and eliminated factors give the same set") {

@@ -46,7 +46,8 @@ Matrix evaluate(const MatrixInequality& F, const Vector& x) {
   return value;
 }
 
-/// The proof by the numbers of the program: Y ⪰ 0, and no x within the bound can make Σ ⟨F(x), Y⟩ reach 0.
+/// The proof by the numbers of the program: Y ⪰ 0, and no x within the bound can make Σ ⟨F(x), Y⟩
+/// reach 0.
 void check_proof(const SemidefiniteProgram& program, const SdpSolution& s, double largest_x) {
   REQUIRE(s.status == SdpStatus::infeasible);
   REQUIRE(s.proof.size() == program.inequalities.size());
@@ -55,7 +56,8 @@ void check_proof(const SemidefiniteProgram& program, const SdpSolution& s, doubl
   for (std::size_t j = 0; j < s.proof.size(); ++j) {
     CHECK(linalg::symmetric_eigen(s.proof[j]).values[0] >= 0);
     sum += program.inequalities[j].constant.cwiseProduct(s.proof[j]).sum();
-    for (const auto& [i, term] : program.inequalities[j].terms) slopes[i] += term.cwiseProduct(s.proof[j]).sum();
+    for (const auto& [i, term] : program.inequalities[j].terms)
+      slopes[i] += term.cwiseProduct(s.proof[j]).sum();
   }
   CHECK(sum + largest_x * slopes.cwiseAbs().sum() < 0);
 }
@@ -108,12 +110,14 @@ Errc code_of(const SemidefiniteProgram& program, const SdpOptions& options = {})
   return Errc::internal;
 }
 
-/// ⟨constant, Y⟩ = -1 and ⟨F_i, Y⟩ = 0, summed over 1 to 3 inequalities of size 2 to 6, for 1 to 12 variables and a random Y ⪰ 0,
-/// of less than full rank if `on_a_face`; rows and variables in units between 10^-spread and 10^spread.
+/// ⟨constant, Y⟩ = -1 and ⟨F_i, Y⟩ = 0, summed over 1 to 3 inequalities of size 2 to 6, for 1 to 12
+/// variables and a random Y ⪰ 0, of less than full rank if `on_a_face`; rows and variables in units
+/// between 10^-spread and 10^spread.
 SemidefiniteProgram infeasible_program(std::uint64_t seed, double spread, bool on_a_face) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto m = static_cast<Index>(1 + engine() % 12), blocks = static_cast<Index>(1 + engine() % 3);
+  const auto m = static_cast<Index>(1 + engine() % 12),
+             blocks = static_cast<Index>(1 + engine() % 3);
   const auto symmetric = [](const Matrix& F) { return Matrix((F + F.transpose()) / 2); };
   SemidefiniteProgram program;
   program.cost = Vector::Ones(m);
@@ -123,17 +127,20 @@ SemidefiniteProgram infeasible_program(std::uint64_t seed, double spread, bool o
   for (Index j = 0; j < blocks; ++j) {
     const auto n = static_cast<Index>(2 + engine() % 5);
     Matrix S = Matrix::NullaryExpr(n, n, [&] { return uniform(engine); });
-    if (on_a_face) S.rightCols(n - static_cast<Index>(1 + engine() % static_cast<std::uint64_t>(n))).setZero();
+    if (on_a_face)
+      S.rightCols(n - static_cast<Index>(1 + engine() % static_cast<std::uint64_t>(n))).setZero();
     Y.push_back(symmetric(S * S.transpose() + (on_a_face ? 0. : .1) * Matrix::Identity(n, n)));
     norm += Y.back().squaredNorm();
-    units.push_back(Vector::NullaryExpr(n, [&] { return std::pow(10., spread * uniform(engine)); }));
+    units.push_back(
+        Vector::NullaryExpr(n, [&] { return std::pow(10., spread * uniform(engine)); }));
     program.inequalities.push_back({Matrix::Zero(n, n), {}});
   }
   for (Index i = -1; i < m; ++i) {
     std::vector<Matrix> F;
     double sum = 0;
     for (const Matrix& part : Y) {
-      const Matrix R = Matrix::NullaryExpr(part.rows(), part.rows(), [&] { return uniform(engine); });
+      const Matrix R =
+          Matrix::NullaryExpr(part.rows(), part.rows(), [&] { return uniform(engine); });
       F.push_back(symmetric(R));
       sum += F.back().cwiseProduct(part).sum();
     }
@@ -172,7 +179,8 @@ TEST_CASE("small programs have the answers they are known to have") {
     // minimise x + y, [x 1; 1 y] ⪰ 0 and x ≥ 2: y = 1/2.
     const SemidefiniteProgram program{
         Vector::Ones(2),
-        {{Matrix{{0, 1}, {1, 0}}, {{0, Matrix{{1, 0}, {0, 0}}}, {1, Matrix{{0, 0}, {0, 1}}}}}, {scalar(-2), {{0, scalar(1)}}}}};
+        {{Matrix{{0, 1}, {1, 0}}, {{0, Matrix{{1, 0}, {0, 0}}}, {1, Matrix{{0, 0}, {0, 1}}}}},
+         {scalar(-2), {{0, scalar(1)}}}}};
     const SdpSolution s = solve(program);
     check_solved(program, s);
     CHECK(s.x[0] == Approx(2).epsilon(1e-6));
@@ -202,7 +210,9 @@ TEST_CASE("small programs have the answers they are known to have") {
   }
 }
 
-TEST_CASE("a variable that nothing depends on is 0; one that lowers the cost without end is no solution") {
+TEST_CASE(
+    "a variable that nothing depends on is 0; one that lowers the cost without end is no "
+    "solution") {
   SemidefiniteProgram program = largest_eigenvalue(Matrix{{2, 1}, {1, 2}});
   program.cost = Vector{{0, 1, 0}};
   program.inequalities[0].terms[0].first = 1;
@@ -236,7 +246,8 @@ TEST_CASE("variables that act alike are no obstacle") {
 TEST_CASE("infeasible programs are proven infeasible") {
   check_proof(contradiction(), solve(contradiction()), 1e8);
   // [x 1; 1 -x] ⪰ 0 is impossible.
-  const SemidefiniteProgram program{Vector::Ones(1), {{Matrix{{0, 1}, {1, 0}}, {{0, Matrix{{1, 0}, {0, -1}}}}}}};
+  const SemidefiniteProgram program{Vector::Ones(1),
+                                    {{Matrix{{0, 1}, {1, 0}}, {{0, Matrix{{1, 0}, {0, -1}}}}}}};
   check_proof(program, solve(program), 1e8);
 }
 
@@ -258,7 +269,9 @@ TEST_CASE("proofs on a face: Y is semidefinite for the numbers themselves") {
   }
 }
 
-TEST_CASE("terms that depend on each other: a point far away, that seems feasible for its size, hides no proof") {
+TEST_CASE(
+    "terms that depend on each other: a point far away, that seems feasible for its size, hides no "
+    "proof") {
   // Up to 8 variables for the two directions beside Y.
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     std::mt19937_64 engine(seed);
@@ -267,8 +280,10 @@ TEST_CASE("terms that depend on each other: a point far away, that seems feasibl
       const Matrix F = random_symmetric(2, engine);
       return Matrix(F + (product - F.cwiseProduct(Y).sum()) / Y.squaredNorm() * Y);
     };
-    SemidefiniteProgram program{Vector::Ones(static_cast<Index>(3 + seed % 6)), {{with_product(-1), {}}}};
-    for (Index i = 0; i < program.cost.size(); ++i) program.inequalities[0].terms.emplace_back(i, with_product(0));
+    SemidefiniteProgram program{Vector::Ones(static_cast<Index>(3 + seed % 6)),
+                                {{with_product(-1), {}}}};
+    for (Index i = 0; i < program.cost.size(); ++i)
+      program.inequalities[0].terms.emplace_back(i, with_product(0));
     const SdpSolution s = solve(program);
     INFO(seed, s.why);
     CHECK(s.status == SdpStatus::infeasible);
@@ -297,14 +312,17 @@ TEST_CASE("more variables than SDPA takes for few, each in a matrix of its own")
   SemidefiniteProgram program{Vector::Ones(m), {}};
   for (Index i = 0; i < m; ++i) {
     const auto value = static_cast<double>(i);
-    program.inequalities.push_back({Matrix{{1, -value}, {-value, 1}}, {{i, Matrix{{0, 1}, {1, 0}}}}});
+    program.inequalities.push_back(
+        {Matrix{{1, -value}, {-value, 1}}, {{i, Matrix{{0, 1}, {1, 0}}}}});
   }
   const SdpSolution s = solve(program);
   check_solved(program, s);
   CHECK(s.value == Approx(150. * 149 / 2 - 150).epsilon(1e-7));
 }
 
-TEST_CASE("what holds beyond the bound of x only is neither solved nor infeasible without a proof for the bound") {
+TEST_CASE(
+    "what holds beyond the bound of x only is neither solved nor infeasible without a proof for "
+    "the bound") {
   // x ≥ 1000, and nothing else
   const SemidefiniteProgram far{Vector::Ones(1), {{scalar(-1000), {{0, scalar(1)}}}}};
   CHECK(solve(far).status == SdpStatus::solved);
@@ -322,8 +340,9 @@ TEST_CASE("an unbounded program is unknown") {
   CHECK_FALSE(s.why.empty());
   CHECK(s.x.size() == 0);
   // The least value is not attained: x → ∞ in [x 1; 1 y] ⪰ 0, minimise y.
-  const SemidefiniteProgram open{Vector{{0, 1}},
-                                 {{Matrix{{0, 1}, {1, 0}}, {{0, Matrix{{1, 0}, {0, 0}}}, {1, Matrix{{0, 0}, {0, 1}}}}}}};
+  const SemidefiniteProgram open{
+      Vector{{0, 1}},
+      {{Matrix{{0, 1}, {1, 0}}, {{0, Matrix{{1, 0}, {0, 0}}}, {1, Matrix{{0, 0}, {0, 1}}}}}}};
   const SdpSolution limit = solve(open);
   if (limit.status == SdpStatus::solved) CHECK(std::abs(limit.value) < 1e-3);
   CHECK(limit.status != SdpStatus::infeasible);
@@ -342,15 +361,18 @@ TEST_CASE("broken programs are errors") {
   CHECK(with([](P& p) { p.inequalities.clear(); }) == Errc::dimension);
   CHECK(with([](P& p) { p.inequalities[0].constant.resize(0, 0); }) == Errc::dimension);
   CHECK(with([](P& p) { p.inequalities[0].constant = Matrix::Zero(2, 3); }) == Errc::dimension);
-  CHECK(with([](P& p) { p.inequalities[0].terms[0].second = Matrix::Zero(3, 3); }) == Errc::dimension);
+  CHECK(with([](P& p) { p.inequalities[0].terms[0].second = Matrix::Zero(3, 3); }) ==
+        Errc::dimension);
   CHECK(with([](P& p) { p.inequalities[0].terms[0].first = 1; }) == Errc::dimension);
   CHECK(with([](P& p) { p.inequalities[0].terms[0].first = -1; }) == Errc::dimension);
-  CHECK(with([](P& p) { p.inequalities[0].terms.push_back(p.inequalities[0].terms[0]); }) == Errc::invalid);
+  CHECK(with([](P& p) { p.inequalities[0].terms.push_back(p.inequalities[0].terms[0]); }) ==
+        Errc::invalid);
   CHECK(with([](P& p) { p.inequalities[0].constant(0, 1) = 1.0000001; }) == Errc::invalid);
   CHECK(with([](P& p) { p.inequalities[0].terms[0].second(1, 0) = 1; }) == Errc::invalid);
   CHECK(with([&](P& p) { p.cost[0] = nan; }) == Errc::not_finite);
   CHECK(with([&](P& p) { p.inequalities[0].constant(1, 1) = nan; }) == Errc::not_finite);
-  CHECK(with([&](P& p) { p.inequalities[0].terms[0].second(0, 0) = HUGE_VAL; }) == Errc::not_finite);
+  CHECK(with([&](P& p) { p.inequalities[0].terms[0].second(0, 0) = HUGE_VAL; }) ==
+        Errc::not_finite);
   CHECK(code_of(fine, {0, 1e8, 200}) == Errc::invalid);
   CHECK(code_of(fine, {1e-9, nan, 200}) == Errc::invalid);
   CHECK(code_of(fine, {1e-9, 1e8, 0}) == Errc::invalid);
@@ -389,7 +411,8 @@ TEST_CASE("the solver prints nothing, whatever it is given") {
     alike.cost = Vector{{1, -1}};
     alike.inequalities[0].terms.emplace_back(1, Matrix::Identity(2, 2));
     solve(alike);
-    solve({Vector::Ones(1), {{1e300 * Matrix::Identity(2, 2), {{0, -1e-300 * Matrix::Identity(2, 2)}}}}});
+    solve({Vector::Ones(1),
+           {{1e300 * Matrix::Identity(2, 2), {{0, -1e-300 * Matrix::Identity(2, 2)}}}}});
   });
   CHECK(text == "");
 }
@@ -428,13 +451,15 @@ TEST_CASE("random programs with analytic answers") {
   }));
 }
 
-TEST_CASE("random programs that are feasible by construction are solved, and their optimum is known") {
+TEST_CASE(
+    "random programs that are feasible by construction are solved, and their optimum is known") {
   CHECK(rc::check("F(x̂) and Y complement each other", [](std::uint64_t seed) {
     std::mt19937_64 engine(seed);
     std::uniform_real_distribution<double> uniform(-1, 1);
     const Index m = *rc::gen::inRange<Index>(1, 6);
     const Index blocks = *rc::gen::inRange<Index>(1, 4);
-    // Optimality: F(x̂) = V diag(a, 0) Vᵀ and Y = V diag(0, b) Vᵀ, cost_i = Σ ⟨F_i, Y⟩; x̂ is then optimal.
+    // Optimality: F(x̂) = V diag(a, 0) Vᵀ and Y = V diag(0, b) Vᵀ, cost_i = Σ ⟨F_i, Y⟩; x̂ is then
+    // optimal.
     SemidefiniteProgram program;
     program.cost = Vector::Zero(m);
     const Vector x = Vector::NullaryExpr(m, [&] { return uniform(engine); });
@@ -456,7 +481,8 @@ TEST_CASE("random programs that are feasible by construction are solved, and the
       F.constant = Matrix((F.constant + F.constant.transpose()) / 2);
       program.inequalities.push_back(F);
     }
-    // A ball keeps both sides strictly feasible: the slack of its matrix is positive at x̂, so that the optimum stays.
+    // A ball keeps both sides strictly feasible: the slack of its matrix is positive at x̂, so that
+    // the optimum stays.
     Matrix ball = 10 * Matrix::Identity(m + 1, m + 1);
     MatrixInequality bound{ball, {}};
     for (Index i = 0; i < m; ++i) {

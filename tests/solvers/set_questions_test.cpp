@@ -56,23 +56,27 @@ TEST_CASE("an empty set is proven empty, and the proof can be checked") {
 
 TEST_CASE("known traps do not make a set empty") {
   // coefficients of 1e-80 and zero rows
-  LineForm X = constrained(Matrix{{1.0, 1e-80}}, Matrix{{1.0, 1e-80}, {0.0, 1e-80}}, Vector{{.5, 0.0}});
+  LineForm X =
+      constrained(Matrix{{1.0, 1e-80}}, Matrix{{1.0, 1e-80}, {0.0, 1e-80}}, Vector{{.5, 0.0}});
   CHECK(is_empty(X) == Answer::no);
   CHECK(contains(X, Vector{{.5}}) == Answer::yes);
   X = constrained(Matrix{{1.0, 0.0}}, Matrix{{1.0, .5}, {0.0, 0.0}}, Vector{{.5, 0.0}});
   CHECK(is_empty(X) == Answer::no);
-  // dependent rows: exactly, up to rounding (as stored they have one solution), and contradicting each other in the last place
+  // dependent rows: exactly, up to rounding (as stored they have one solution), and contradicting
+  // each other in the last place
   X = constrained(Matrix{{1.0, 1.0}}, Matrix{{.25, .5}, {.75, 1.5}}, Vector{{.0625, .1875}});
   CHECK(is_empty(X) == Answer::no);
   X = constrained(Matrix{{1.0, 1.0}}, Matrix{{.1, .2}, {.3, .6}}, Vector{{.05, .15}});
   CHECK(is_empty(X) == Answer::no);
-  X = constrained(Matrix{{1.0, 1.0}}, Matrix{{.1, .2}, {.1, .2}}, Vector{{.05, std::nextafter(.05, 1.0)}});
+  X = constrained(Matrix{{1.0, 1.0}}, Matrix{{.1, .2}, {.1, .2}},
+                  Vector{{.05, std::nextafter(.05, 1.0)}});
   CHECK(is_empty(X) == Answer::unknown);
   // a set that touches at one point
   X = constrained(Matrix{{1.0, 1.0}}, Matrix{{1.0, 1.0}}, Vector{{2.0}});
   CHECK(is_empty(X) == Answer::no);
   CHECK(contains(X, Vector{{2.0}}) == Answer::yes);
-  CHECK(is_empty(constrained(Matrix{{1.0, 1.0}}, Matrix{{1.0, 1.0}}, Vector{{2.0 + 1e-6}})) == Answer::yes);
+  CHECK(is_empty(constrained(Matrix{{1.0, 1.0}}, Matrix{{1.0, 1.0}}, Vector{{2.0 + 1e-6}})) ==
+        Answer::yes);
   // X ⊕ ∅, and blocks of 0 rows or columns
   const LineForm box = make_box({Vector{{-1.0, -1.0}}, Vector{{1.0, 1.0}}});
   CHECK(is_empty(minkowski_sum(box, make_empty(2))) == Answer::yes);
@@ -83,14 +87,19 @@ TEST_CASE("known traps do not make a set empty") {
   // a flat zonotope cut by a strip, through it and beside it
   const LineForm flat = make_zonotope(Vector{{0.0, 1.0}}, Matrix{{1.0, 2.0}, {0.0, 0.0}});
   CHECK(is_empty(intersection(flat, Matrix{{0.0, 1.0}}, make_point(Vector{{1.0}}))) == Answer::no);
-  CHECK(is_empty(intersection(flat, Matrix{{0.0, 1.0}}, make_box({Vector{{1.0}}, Vector{{2.0}}}))) == Answer::no);
-  CHECK(is_empty(intersection(flat, Matrix{{1.0, 0.0}}, make_box({Vector{{3.0}}, Vector{{4.0}}}))) == Answer::no);
-  CHECK(is_empty(intersection(flat, Matrix{{0.0, 1.0}}, make_box({Vector{{1.5}}, Vector{{2.0}}}))) == Answer::yes);
+  CHECK(is_empty(intersection(flat, Matrix{{0.0, 1.0}},
+                              make_box({Vector{{1.0}}, Vector{{2.0}}}))) == Answer::no);
+  CHECK(is_empty(intersection(flat, Matrix{{1.0, 0.0}},
+                              make_box({Vector{{3.0}}, Vector{{4.0}}}))) == Answer::no);
+  CHECK(is_empty(intersection(flat, Matrix{{0.0, 1.0}},
+                              make_box({Vector{{1.5}}, Vector{{2.0}}}))) == Answer::yes);
   // coefficients over sixteen decades
-  X = constrained(Matrix{{1.0, 1.0, 1.0}}, Matrix{{1e8, 1.0, 1e-8}, {1.0, 1e-8, 1e8}}, Vector{{1e7, 1e6}});
+  X = constrained(Matrix{{1.0, 1.0, 1.0}}, Matrix{{1e8, 1.0, 1e-8}, {1.0, 1e-8, 1e8}},
+                  Vector{{1e7, 1e6}});
   CHECK(is_empty(X) == Answer::no);
   // C = [0 1] on the plane
-  const LineForm strip = intersection(make_space(2), Matrix{{0.0, 1.0}}, make_box({Vector{{1.0}}, Vector{{2.0}}}));
+  const LineForm strip =
+      intersection(make_space(2), Matrix{{0.0, 1.0}}, make_box({Vector{{1.0}}, Vector{{2.0}}}));
   CHECK(eliminate_lines(strip).lines() == 1);
   CHECK(interval_hull(strip).lower[1] == doctest::Approx(1.0));
   CHECK(interval_hull(strip).upper[0] == inf);
@@ -100,9 +109,11 @@ TEST_CASE("known traps do not make a set empty") {
   CHECK(interval_hull(steep).upper[0] == doctest::Approx(6e12));
 }
 
-TEST_CASE("what is left of a right-hand side is kept where a line is eliminated, however large it was") {
+TEST_CASE(
+    "what is left of a right-hand side is kept where a line is eliminated, however large it was") {
   // δ = 1e15, δ + 100 ξ = 1e15 + 30, x = δ + 2 - 1e15
-  const LineForm X{Matrix{{1}}, Matrix{{0}}, Vector{{2 - 1e15}}, Matrix{{1}, {1}}, Matrix{{0}, {100}}, Vector{{1e15, 1e15 + 30}}};
+  const LineForm X{Matrix{{1}},      Matrix{{0}},        Vector{{2 - 1e15}},
+                   Matrix{{1}, {1}}, Matrix{{0}, {100}}, Vector{{1e15, 1e15 + 30}}};
   const LineForm Y = eliminate_lines(X);
   REQUIRE(Y.constraints() == 1);
   CHECK(Y.lines() == 0);
@@ -112,7 +123,8 @@ TEST_CASE("what is left of a right-hand side is kept where a line is eliminated,
 }
 
 TEST_CASE("lines keep their directions, whatever their scale") {
-  const LineForm plane = affine_map(make_space(2), Matrix{{1e6, 0.0}, {0.0, 1e-6}}, Vector::Zero(2));
+  const LineForm plane =
+      affine_map(make_space(2), Matrix{{1e6, 0.0}, {0.0, 1e-6}}, Vector::Zero(2));
   CHECK(interval_hull(plane).upper[1] == inf);
   CHECK(contains(plane, Vector{{0.0, 5.0}}) == Answer::yes);
   CHECK(is_subset(plane, make_box({Vector{{-inf, -1.0}}, Vector{{inf, 1.0}}})) != Answer::yes);
@@ -180,7 +192,8 @@ TEST_CASE("containment of sets") {
   const LineForm box = make_box({Vector{{-1.0, -1.0}}, Vector{{1.0, 1.0}}});
   CHECK(is_subset(box, box) == Answer::yes);
   // a constrained set on the right: the triangle x + y ≤ 1 of the unit box
-  LineForm triangle = intersection(box, Matrix{{1.0, 1.0}}, make_box({Vector{{-2.0}}, Vector{{1.0}}}));
+  LineForm triangle =
+      intersection(box, Matrix{{1.0, 1.0}}, make_box({Vector{{-2.0}}, Vector{{1.0}}}));
   CHECK(is_subset(make_box({Vector{{-.5, -.5}}, Vector{{.4, .4}}}), triangle) == Answer::yes);
   CHECK(is_subset(box, triangle) != Answer::yes);
   const LineForm strip = make_strip(Vector{{1.0, 1.0}}, 0, 2.5);
@@ -198,14 +211,16 @@ TEST_CASE("bad questions are refused") {
 
 TEST_CASE("sets hold the point they were built around") {
   CHECK(rc::check("hull, support, emptiness and containment agree with a known point", [] {
-    const Index n = *rc::gen::inRange<Index>(1, 5), g = *rc::gen::inRange<Index>(0, 9), m = *rc::gen::inRange<Index>(0, 4);
+    const Index n = *rc::gen::inRange<Index>(1, 5), g = *rc::gen::inRange<Index>(0, 9),
+                m = *rc::gen::inRange<Index>(0, 4);
     const Index lines = *rc::gen::inRange<Index>(0, 3);
     Vector x;
     const LineForm X = random_set(n, g, m, lines, x, *rc::gen::element(0.0, 1.0, 4.0));
     RC_ASSERT(is_empty(X) != Answer::yes);
     RC_ASSERT(contains(X, x) != Answer::no);
     const Box hull = interval_hull(X);
-    const double scale = 1 + X.c.cwiseAbs().maxCoeff() + x.cwiseAbs().maxCoeff() + (g ? X.G.cwiseAbs().maxCoeff() : 0);
+    const double scale = 1 + X.c.cwiseAbs().maxCoeff() + x.cwiseAbs().maxCoeff() +
+                         (g ? X.G.cwiseAbs().maxCoeff() : 0);
     for (Index i = 0; i < n; ++i) {
       RC_ASSERT(hull.lower[i] <= x[i] + 1e-9 * scale);
       RC_ASSERT(hull.upper[i] >= x[i] - 1e-9 * scale);
@@ -253,8 +268,11 @@ TEST_CASE("the convex hull contains both sets and their mixtures") {
   }));
 }
 
-TEST_CASE("a direction that is normal to a line up to rounding only has no finite bound without a proof") {
-  const LineForm X{Matrix{{3}, {2.125}}, Matrix{{1}, {0}}, Vector{{1, 1}}, Matrix(0, 1), Matrix(0, 1), Vector(0)};
+TEST_CASE(
+    "a direction that is normal to a line up to rounding only has no finite bound without a "
+    "proof") {
+  const LineForm X{Matrix{{3}, {2.125}}, Matrix{{1}, {0}}, Vector{{1, 1}},
+                   Matrix(0, 1),         Matrix(0, 1),     Vector(0)};
   const Vector d{{0.7083333333333334, -1}};
   Certificate why;
   CHECK(support(X, d, &why) == inf);
@@ -263,14 +281,22 @@ TEST_CASE("a direction that is normal to a line up to rounding only has no finit
 }
 
 TEST_CASE("through lines, points and inclusions are proven for the numbers as stored") {
-  // two rows that disagree by one unit in the last place: no point, hence none that attains anything
-  const LineForm none{Matrix{{1}}, Matrix(1, 0), Vector::Zero(1), Matrix{{1}, {1}}, Matrix(2, 0), Vector{{1, 1 + 0x1p-52}}};
+  // two rows that disagree by one unit in the last place: no point, hence none that attains
+  // anything
+  const LineForm none{Matrix{{1}},      Matrix(1, 0), Vector::Zero(1),
+                      Matrix{{1}, {1}}, Matrix(2, 0), Vector{{1, 1 + 0x1p-52}}};
   CHECK(attained(none, Vector{{1}}) == -inf);
-  const LineForm line{Matrix{{1}, {1}}, Matrix(2, 0), Vector::Zero(2), Matrix(0, 1), Matrix(0, 0), Vector(0)};
+  const LineForm line{Matrix{{1}, {1}}, Matrix(2, 0), Vector::Zero(2),
+                      Matrix(0, 1),     Matrix(0, 0), Vector(0)};
   CHECK(attained(line, Vector{{1, -1}}) == 0);
   CHECK(attained(line, Vector{{1, 0}}) == inf);
   // almost parallel lines
-  const LineForm strip{Matrix{{1}, {1 + 0x1p-52}}, Matrix{{1}, {0}}, Vector::Zero(2), Matrix(0, 1), Matrix(0, 1), Vector(0)};
+  const LineForm strip{Matrix{{1}, {1 + 0x1p-52}},
+                       Matrix{{1}, {0}},
+                       Vector::Zero(2),
+                       Matrix(0, 1),
+                       Matrix(0, 1),
+                       Vector(0)};
   CHECK(is_subset(line, strip) != Answer::yes);
   CHECK(is_subset(make_box({Vector{{-.1, -.1}}, Vector{{.1, .1}}}), strip) == Answer::yes);
   // nothing lies in a set that is empty as stored, however little is missing
@@ -288,7 +314,9 @@ TEST_CASE("a hull is empty only on a proof for the numbers as stored") {
   // rows of very different size: their nominal elimination leaves a false row
   CHECK(rc::check("dependent rows with lines", [] {
     const auto tenth = [] { return 0.1 * *rc::gen::inRange(-2, 3); };
-    const auto small = [&] { return *rc::gen::inRange(0, 3) == 0 ? 1e-15 * *rc::gen::inRange(-9, 10) : tenth(); };
+    const auto small = [&] {
+      return *rc::gen::inRange(0, 3) == 0 ? 1e-15 * *rc::gen::inRange(-9, 10) : tenth();
+    };
     LineForm X{Matrix(1, 3), Matrix(1, 0), Vector::Zero(1), Matrix(3, 3), Matrix(3, 0), Vector(3)};
     for (double& x : X.M.reshaped()) x = small();
     for (double& x : X.S.reshaped()) x = small();

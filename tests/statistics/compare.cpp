@@ -36,7 +36,8 @@ struct Sweep {
                  {"study", {{"sweep", json::array()}}},
                  {"pipelines", {{{"name", "first"}}, {{"name", second}}}},
                  {"points", json::array()}};
-    json run{{"cordon_run", 1}, {"host", {{"name", host}, {"cpu", "c"}}}, {"points", json::array()}};
+    json run{
+        {"cordon_run", 1}, {"host", {{"name", host}, {"cpu", "c"}}}, {"points", json::array()}};
     json& axes = results["study"]["sweep"];
     axes.push_back({{"name", axis}, {"path", "/x"}, {"repeat", false}, {"values", {10, "twenty"}}});
     for (int i = 2; i < budgets; ++i) axes[0]["values"].push_back(10 + i);
@@ -46,7 +47,8 @@ struct Sweep {
     for (int budget = 0; budget < budgets; ++budget) {
       for (int seed = 0; seed < seeds; ++seed) {
         for (int pipeline = 0; pipeline < 2; ++pipeline, ++index) {
-          json numbers{{"steps", 5}, {"radius_mean", (pipeline == 0 && budget == 1 ? radius : 1) + seed}};
+          json numbers{{"steps", 5},
+                       {"radius_mean", (pipeline == 0 && budget == 1 ? radius : 1) + seed}};
           if (designs) numbers["horizon"] = 3;
           results["points"].push_back({{"point", index},
                                        {"pipeline", pipeline},
@@ -70,7 +72,8 @@ Comparison compared(const Sweep& a, const Sweep& b) {
   a.write(scratch / "a");
   b.write(scratch / "b");
   Comparison found = compare_results({scratch / "a", scratch / "b"});
-  for (ComparedRun& run : found.runs) run.directory = run.directory.substr(run.directory.size() - 1);
+  for (ComparedRun& run : found.runs)
+    run.directory = run.directory.substr(run.directory.size() - 1);
   for (std::string& warning : found.warnings) {
     for (std::size_t at; (at = warning.find(scratch.path().string())) != std::string::npos;) {
       warning.erase(at, scratch.path().string().size() + 1);
@@ -87,7 +90,8 @@ const ComparedMeasure& measure(const Comparison& comparison, const std::string& 
   return comparison.measures.front();
 }
 
-const ComparedMeasure& measure(Comparison&&, const std::string&) = delete;  // what it gives back lives in the comparison
+const ComparedMeasure& measure(Comparison&&, const std::string&) =
+    delete;  // what it gives back lives in the comparison
 
 bool warns(const Comparison& comparison, const std::string& words) {
   for (const std::string& warning : comparison.warnings) {
@@ -103,7 +107,8 @@ TEST_CASE("the same sweep twice") {
   CHECK(found.axes == std::vector<std::string>{"budget"});
   CHECK(found.warnings.empty());
   REQUIRE(found.measures.size() == 4);
-  for (const char* name : {"steps", "radius_mean", "step_us", "hull_us"}) CHECK(measure(found, name).is_equal());
+  for (const char* name : {"steps", "radius_mean", "step_us", "hull_us"})
+    CHECK(measure(found, name).is_equal());
   const ComparedMeasure& radius = measure(found, "radius_mean");
   REQUIRE(radius.rows.size() == 4);
   CHECK(radius.rows[0].pipeline == "first");
@@ -123,14 +128,17 @@ TEST_CASE("the same sweep twice") {
   CHECK(time.test->other == 10);
   CHECK(time.test->p == 1);
   CHECK_FALSE(time.test->significant());
-  CHECK(apps::verdict_of({"step_us", true}, measure(found, "step_us").rows[0].runs[0], time).find("not significant, × 1 [") == 0);
+  CHECK(apps::verdict_of({"step_us", true}, measure(found, "step_us").rows[0].runs[0], time)
+            .find("not significant, × 1 [") == 0);
   const std::string text = apps::compare_text(found);
   CHECK(text.find("Equal in all runs, point by point: steps, radius_mean\n") != std::string::npos);
   CHECK(text.find("1 more times") != std::string::npos);
   CHECK(text.find("hull_us\n") == std::string::npos);
 }
 
-TEST_CASE("a slowdown of every row is found as soon as the repetitions can tell, and the interval agrees") {
+TEST_CASE(
+    "a slowdown of every row is found as soon as the repetitions can tell, and the interval "
+    "agrees") {
   for (const int seeds : {5, 6, 7, 50}) {
     CAPTURE(seeds);
     Sweep sweep, slow;
@@ -167,7 +175,8 @@ TEST_CASE("times that overlap are not significant, and their interval holds 1") 
   CHECK_FALSE(test.significant());
   CHECK_FALSE(test.too_few());
   CHECK(test.least == doctest::Approx(4 * 2 / 184756.));
-  CHECK(apps::verdict_of({"step_us", true}, row.runs[0], row.runs[1]).find("not significant, × 1.03 [0.9") == 0);
+  CHECK(apps::verdict_of({"step_us", true}, row.runs[0], row.runs[1])
+            .find("not significant, × 1.03 [0.9") == 0);
 }
 
 TEST_CASE("the time of a whole pipeline is shown where it designs") {
@@ -191,7 +200,8 @@ TEST_CASE("other numbers, and other times") {
   CHECK(changed.ratio == doctest::Approx(7.5 / 5.5));
   CHECK(changed.different == 10);
   CHECK(radius.rows[0].runs[1].different == 0);
-  CHECK(apps::verdict_of(radius.column, radius.rows[2].runs[0], changed) == "different at 10 of 10 points");
+  CHECK(apps::verdict_of(radius.column, radius.rows[2].runs[0], changed) ==
+        "different at 10 of 10 points");
   CHECK(apps::verdict_of(radius.column, radius.rows[0].runs[0], radius.rows[0].runs[1]) == "equal");
   REQUIRE(time.rows[0].runs[1].test);
   const TimeTest& test = *time.rows[0].runs[1].test;
@@ -199,9 +209,11 @@ TEST_CASE("other numbers, and other times") {
   CHECK(test.ratio == doctest::Approx(1.957).epsilon(.01));
   CHECK(test.lower < test.ratio);
   CHECK(test.upper > test.ratio);
-  CHECK(test.p == doctest::Approx(4 * 2 / 184756.));  // four tests of this measure, and the smallest p of them
+  CHECK(test.p == doctest::Approx(
+                      4 * 2 / 184756.));  // four tests of this measure, and the smallest p of them
   CHECK_FALSE(time.rows[1].runs[1].test->significant());
-  CHECK(apps::verdict_of(time.column, time.rows[0].runs[0], time.rows[0].runs[1]).find("slower, × 1.96 [") == 0);
+  CHECK(apps::verdict_of(time.column, time.rows[0].runs[0], time.rows[0].runs[1])
+            .find("slower, × 1.96 [") == 0);
   std::swap(other.time, other.radius);  // and the other way round
   const Comparison faster = compared({}, other);
   const ComparedRow& quick = measure(faster, "step_us").rows[0];
@@ -228,7 +240,8 @@ TEST_CASE("other studies, machines, programs, pipelines, and fewer seeds") {
   CHECK(radius.rows.size() == 6);
   CHECK_FALSE(radius.is_equal());
   CHECK(std::isnan(radius.rows[1].runs[1].ratio));
-  CHECK(apps::verdict_of(radius.column, radius.rows[1].runs[0], radius.rows[1].runs[1]) == "no common points");
+  CHECK(apps::verdict_of(radius.column, radius.rows[1].runs[0], radius.rows[1].runs[1]) ==
+        "no common points");
   other = {};
   other.seeds = 7;
   const Comparison fewer = compared({}, other);
@@ -236,12 +249,13 @@ TEST_CASE("other studies, machines, programs, pipelines, and fewer seeds") {
   CHECK(row.runs[1].common == 7);
   CHECK(row.runs[1].different == 0);
   CHECK_FALSE(measure(fewer, "radius_mean").is_equal());
-  CHECK(apps::verdict_of({"radius_mean", false}, row.runs[0], row.runs[1]) == "equal at 7 common points");
+  CHECK(apps::verdict_of({"radius_mean", false}, row.runs[0], row.runs[1]) ==
+        "equal at 7 common points");
   other.seeds = 1;
   const Comparison one = compared(other, other);
   CHECK_FALSE(measure(one, "step_us").rows[0].runs[1].test);
-  CHECK(apps::verdict_of({"step_us", true}, measure(one, "step_us").rows[0].runs[0], measure(one, "step_us").rows[0].runs[1]) ==
-        "one measurement each");
+  CHECK(apps::verdict_of({"step_us", true}, measure(one, "step_us").rows[0].runs[0],
+                         measure(one, "step_us").rows[0].runs[1]) == "one measurement each");
   other = {};
   other.axis = "order";
   CHECK_THROWS_AS(compared({}, other), InputError);
@@ -270,20 +284,23 @@ TEST_CASE("failed points are counted, and differences are over the points that f
   const ComparedRow& row = time.rows[0];
   CHECK(row.runs[1].test.value().first == 5);
   CHECK(row.runs[1].difference == 0);
-  CHECK(apps::verdict_of(time.column, row.runs[0], row.runs[1]).find(", over 5 common points") != std::string::npos);
+  CHECK(apps::verdict_of(time.column, row.runs[0], row.runs[1]).find(", over 5 common points") !=
+        std::string::npos);
   const std::string text = apps::compare_text(found);
   CHECK(text.find("8 ± 1.6 (failed: 5/10)") != std::string::npos);
   CHECK(text.find("Equal in all runs") == std::string::npos);
   const Comparison same = compared(broken, broken);
   CHECK(measure(same, "radius_mean").is_equal());
   CHECK(apps::verdict_of(radius.column, measure(same, "radius_mean").rows[0].runs[0],
-                         measure(same, "radius_mean").rows[0].runs[1]) == "equal at 5 common points");
+                         measure(same, "radius_mean").rows[0].runs[1]) ==
+        "equal at 5 common points");
   Sweep others = broken;
   others.fails = [](int seed) { return seed >= 5; };
   const Comparison apart = compared(broken, others);
   const ComparedMeasure& none = measure(apart, "radius_mean");
   CHECK_FALSE(none.is_equal());
-  CHECK(apps::verdict_of(none.column, none.rows[0].runs[0], none.rows[0].runs[1]) == "failed at every common point");
+  CHECK(apps::verdict_of(none.column, none.rows[0].runs[0], none.rows[0].runs[1]) ==
+        "failed at every common point");
   CHECK(std::isnan(none.rows[0].runs[1].difference));
 }
 
@@ -297,8 +314,8 @@ TEST_CASE("nothing but failures, or no points at all") {
   empty.seeds = 0;
   found = compared(empty, {});
   CHECK(warns(found, "a has no points"));
-  CHECK(apps::verdict_of({"steps", false}, measure(found, "steps").rows[0].runs[0], measure(found, "steps").rows[0].runs[1]) ==
-        "no common points");
+  CHECK(apps::verdict_of({"steps", false}, measure(found, "steps").rows[0].runs[0],
+                         measure(found, "steps").rows[0].runs[1]) == "no common points");
 }
 
 TEST_CASE("the outputs for people and programs") {
@@ -307,16 +324,22 @@ TEST_CASE("the outputs for people and programs") {
   other.second = "a|<b>";
   const Comparison found = compared(other, other);
   const std::string text = apps::compare_text(compared({}, other));
-  CHECK(text.find("   DIRECTORY  VERSION  STUDY      HOST\nA  a          1.0      fnv1a64:1  h\n") == 0);
-  CHECK(text.find("radius_mean\nPIPELINE  budget  A            B            B - A  B / A  VERDICT\n") != std::string::npos);
-  CHECK(text.find("first     twenty  5.500 ± 3.0  7.500 ± 3.0  2      1.36   different at 10 of 10 points\n") !=
+  CHECK(text.find(
+            "   DIRECTORY  VERSION  STUDY      HOST\nA  a          1.0      fnv1a64:1  h\n") == 0);
+  CHECK(text.find(
+            "radius_mean\nPIPELINE  budget  A            B            B - A  B / A  VERDICT\n") !=
         std::string::npos);
+  CHECK(text.find("first     twenty  5.500 ± 3.0  7.500 ± 3.0  2      1.36   different at 10 of 10 "
+                  "points\n") != std::string::npos);
   const std::string md = apps::compare_markdown(found);
   CHECK(md.find("| a\\|&lt;b> |") != std::string::npos);
   CHECK(md.find("### step\\_us") != std::string::npos);
   const std::string csv = apps::compare_csv(found);
   CHECK(csv.find("measure,measured,pipeline,budget,run,directory,points,failed,count,") == 0);
-  CHECK(csv.find("\nradius_mean,0,first,10,B,b,10,0,10,0,5.5,3.0276503540974917,5.5,0,1,10,10,0,,,,\n") != std::string::npos);
+  CHECK(
+      csv.find(
+          "\nradius_mean,0,first,10,B,b,10,0,10,0,5.5,3.0276503540974917,5.5,0,1,10,10,0,,,,\n") !=
+      std::string::npos);
   CHECK(csv.find("\nstep_us,1,a|<b>,twenty,B,b,10,0,10,0,104.5,") != std::string::npos);
   const json report = json::parse(apps::compare_json(found));
   CHECK(report["runs"].size() == 2);

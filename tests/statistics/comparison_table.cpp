@@ -13,9 +13,12 @@ using namespace cordon;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
+constexpr double inf = std::numeric_limits<double>::infinity(),
+                 none = std::numeric_limits<double>::quiet_NaN();
 
-ComparisonTable compared(const ResultTable& table) { return comparison_table(table, summarise(table)); }
+ComparisonTable compared(const ResultTable& table) {
+  return comparison_table(table, summarise(table));
+}
 
 std::vector<std::string> titles(const ComparisonTable& table) {
   std::vector<std::string> found;
@@ -33,7 +36,8 @@ std::vector<std::string> texts(const ComparisonTable& table, std::size_t row) {
 }
 
 /// A run: one row per pipeline, no axes.
-ResultTable run_table(std::vector<ResultColumn> columns, const std::vector<std::vector<double>>& values) {
+ResultTable run_table(std::vector<ResultColumn> columns,
+                      const std::vector<std::vector<double>>& values) {
   ResultTable table;
   table.title = "Run";
   table.columns = std::move(columns);
@@ -71,20 +75,20 @@ TEST_CASE("numbers as people write them") {
 }
 
 TEST_CASE("a run: the important columns that have numbers, in order, the best marked") {
-  const ComparisonTable table =
-      compared(run_table({{"steps", false},
-                          {"contains_truth_share", false},
-                          {"radius_max", false},
-                          {"radius_mean", false},
-                          {"generators_max", false},
-                          {"volume_mean", false},
-                          {"cost", false},
-                          {"wall_s", true},
-                          {"step_us", true},
-                          {"undecided", false}},
-                         {{100, 1, 9, 2, 30, none, none, 1, 55.5, 0}, {100, .5, 3, 1, 3, none, none, 1, 4, 0}}));
-  CHECK(titles(table) ==
-        Texts{"pipeline", "mean radius", "× best", "truth inside", "used generators", "µs/step", "× best", "time [s]"});
+  const ComparisonTable table = compared(run_table(
+      {{"steps", false},
+       {"contains_truth_share", false},
+       {"radius_max", false},
+       {"radius_mean", false},
+       {"generators_max", false},
+       {"volume_mean", false},
+       {"cost", false},
+       {"wall_s", true},
+       {"step_us", true},
+       {"undecided", false}},
+      {{100, 1, 9, 2, 30, none, none, 1, 55.5, 0}, {100, .5, 3, 1, 3, none, none, 1, 4, 0}}));
+  CHECK(titles(table) == Texts{"pipeline", "mean radius", "× best", "truth inside",
+                               "used generators", "µs/step", "× best", "time [s]"});
   CHECK(table.columns[1].name == "radius_mean");
   CHECK_FALSE(table.columns[0].number);
   CHECK(table.columns[1].number);
@@ -97,18 +101,26 @@ TEST_CASE("a run: the important columns that have numbers, in order, the best ma
 }
 
 TEST_CASE("the time of a pipeline is of interest where it designs, the steps are where it runs") {
-  ResultTable table = run_table({{"radius_mean", false}, {"step_us", true}, {"wall_s", true}}, {{1, 2, 3}});
+  ResultTable table =
+      run_table({{"radius_mean", false}, {"step_us", true}, {"wall_s", true}}, {{1, 2, 3}});
   CHECK(titles(compared(table)) == Texts{"pipeline", "mean radius", "µs/step"});
-  table = run_table({{"horizon", false}, {"cost", false}, {"separates", false}, {"kappa_min", false}, {"wall_s", true}},
+  table = run_table({{"horizon", false},
+                     {"cost", false},
+                     {"separates", false},
+                     {"kappa_min", false},
+                     {"wall_s", true}},
                     {{3, 9.2, 1, .001, 2}, {3, 10.5, 0, none, 1}});
-  CHECK(titles(compared(table)) == Texts{"pipeline", "horizon", "cost", "× best", "separates", "least κ", "time [s]"});
+  CHECK(titles(compared(table)) ==
+        Texts{"pipeline", "horizon", "cost", "× best", "separates", "least κ", "time [s]"});
   CHECK(texts(compared(table), 0) == Texts{"a", "3", "9.200 *", "1", "100 % *", "0.001000", "2"});
 }
 
 TEST_CASE("what is proven of designs has columns") {
-  ResultTable table = run_table({{"horizon", false}, {"cost", false}, {"optimal", false}, {"infeasible", false}},
-                                {{3, 9, 1, 0}, {3, none, 0, 1}});
-  CHECK(titles(compared(table)) == Texts{"pipeline", "horizon", "cost", "× best", "optimal", "infeasible"});
+  ResultTable table =
+      run_table({{"horizon", false}, {"cost", false}, {"optimal", false}, {"infeasible", false}},
+                {{3, 9, 1, 0}, {3, none, 0, 1}});
+  CHECK(titles(compared(table)) ==
+        Texts{"pipeline", "horizon", "cost", "× best", "optimal", "infeasible"});
   CHECK(texts(compared(table), 1) == Texts{"b", "3", "–", "–", "0 %", "100 %"});
   table.rows.pop_back();
   CHECK(titles(compared(table)).back() == "optimal");
@@ -116,13 +128,16 @@ TEST_CASE("what is proven of designs has columns") {
 
 TEST_CASE("bounds of faults have a column each") {
   const ComparisonTable table = compared(run_table(
-      {{"fault_1_half_width", false}, {"fault_12_half_width", false}, {"fault_1_rms_error", false}}, {{.5, 2, 1}, {.25, 4, 1}}));
+      {{"fault_1_half_width", false}, {"fault_12_half_width", false}, {"fault_1_rms_error", false}},
+      {{.5, 2, 1}, {.25, 4, 1}}));
   CHECK(titles(table) == Texts{"pipeline", "half width 1", "× best", "half width 12", "× best"});
   CHECK(texts(table, 1) == Texts{"b", "0.2500 *", "1", "4", "2"});
 }
 
 TEST_CASE("columns that say nothing but 0 are left out where 0 is what one expects") {
-  ResultTable table = run_table({{"undecided", false}, {"inconsistent", false}, {"missed_rate", false}}, {{0, 0, 0}, {0, 0, 0}});
+  ResultTable table =
+      run_table({{"undecided", false}, {"inconsistent", false}, {"missed_rate", false}},
+                {{0, 0, 0}, {0, 0, 0}});
   CHECK(titles(compared(table)) == Texts{"pipeline", "missed"});
   table.rows[1].values[0] = 2;
   CHECK(titles(compared(table)) == Texts{"pipeline", "undecided steps", "missed"});
@@ -131,7 +146,8 @@ TEST_CASE("columns that say nothing but 0 are left out where 0 is what one expec
 TEST_CASE("repetitions: deviations, infinite and missing numbers, failed points") {
   ResultTable table = tables::sweep();
   table.columns = {{"radius_mean", false}, {"detection_delay_median", false}};
-  const auto add = [&](std::size_t pipeline, std::size_t seed, double radius, double delay, std::string error = "") {
+  const auto add = [&](std::size_t pipeline, std::size_t seed, double radius, double delay,
+                       std::string error = "") {
     table.rows.push_back({pipeline, {0, seed}, {radius, delay}, std::move(error)});
   };
   add(0, 0, 1, none);
@@ -141,7 +157,8 @@ TEST_CASE("repetitions: deviations, infinite and missing numbers, failed points"
   add(1, 1, 2, 2);
   add(1, 2, .5, 1, "broken");
   const ComparisonTable found = compared(table);
-  CHECK(titles(found) == Texts{"budget", "pipeline", "mean radius", "× best", "detection delay", "failed"});
+  CHECK(titles(found) ==
+        Texts{"budget", "pipeline", "mean radius", "× best", "detection delay", "failed"});
   CHECK(texts(found, 0) == Texts{"10", "first", "2 ± 1", "1", "3.500 ± 0.71 [2]", "0/3"});
   CHECK(texts(found, 1) == Texts{"10", "second", "2 (∞: 1)", "–", "2", "1/3"});
   REQUIRE(found.notes.size() == 2);
@@ -154,7 +171,10 @@ TEST_CASE("repetitions: deviations, infinite and missing numbers, failed points"
 
 TEST_CASE("what ended early is marked, and not the best") {
   const ComparisonTable table =
-      compared(run_table({{"radius_mean", false}, {"inconsistent_from", false}, {"inconsistent", false}, {"step_us", true}},
+      compared(run_table({{"radius_mean", false},
+                          {"inconsistent_from", false},
+                          {"inconsistent", false},
+                          {"step_us", true}},
                          {{2, none, 0, 10}, {1, 26, 75, 5}, {3, none, 0, 20}}));
   CHECK(texts(table, 0) == Texts{"a", "2 *", "1", "0", "10", "2"});
   CHECK(texts(table, 1) == Texts{"b", "1 †", "–", "75 †", "5 *", "1"});
@@ -171,23 +191,25 @@ TEST_CASE("equal means: none is the best; of two that are best both are") {
 }
 
 TEST_CASE("means that differ by rounding are alike") {
-  const ResultTable costs = run_table({{"cost", false}, {"gap", false}}, {{9.20053, 0}, {9.20053 + 1e-11, 1.5e-11}});
+  const ResultTable costs =
+      run_table({{"cost", false}, {"gap", false}}, {{9.20053, 0}, {9.20053 + 1e-11, 1.5e-11}});
   CHECK(texts(compared(costs), 0) == Texts{"a", "9.201", "1", "0 %"});
-  const ComparisonTable table = compared(run_table({{"cost", false}, {"gap", false}}, {{9, 0}, {9 + 1e-11, 1e-6}, {9.1, .5}}));
+  const ComparisonTable table = compared(
+      run_table({{"cost", false}, {"gap", false}}, {{9, 0}, {9 + 1e-11, 1e-6}, {9.1, .5}}));
   CHECK(texts(table, 0)[1] == "9 *");
   CHECK(texts(table, 1)[1].ends_with(" *"));
   CHECK_FALSE(texts(table, 2)[1].ends_with(" *"));
   CHECK(texts(table, 0)[3] == "0 % *");
   CHECK_FALSE(texts(table, 1)[3].ends_with(" *"));
-  const ComparisonTable small =
-      compared(run_table({{"radius_mean", false}}, {{1e-12}, {2e-12}}));  // no share: small is not alike
+  const ComparisonTable small = compared(
+      run_table({{"radius_mean", false}}, {{1e-12}, {2e-12}}));  // no share: small is not alike
   CHECK(texts(small, 0)[1].ends_with(" *"));
   CHECK_FALSE(texts(small, 1)[1].ends_with(" *"));
 }
 
 TEST_CASE("an inner estimate outside of its bounds is a violation, and not compared") {
-  const ComparisonTable table =
-      compared(run_table({{"radius_mean", false}, {"inner_outside", false}}, {{2, none}, {1, 4}, {3, none}}));
+  const ComparisonTable table = compared(run_table(
+      {{"radius_mean", false}, {"inner_outside", false}}, {{2, none}, {1, 4}, {3, none}}));
   CHECK(texts(table, 0)[1] == "2 *");
   CHECK(texts(table, 1)[1] == "1 †");
 }
@@ -196,7 +218,8 @@ TEST_CASE("values of axes: texts without quotes, long ones cut, no control chara
   ResultTable table = tables::sweep();
   table.axes = {{"backend",
                  "/x",
-                 {R"("line \"zonotope\"")", R"("tab\tand é\u0001")", R"([[1, 2, 3, 4, 5], [6, 7, 8, 9, 10, 11]])"},
+                 {R"("line \"zonotope\"")", R"("tab\tand é\u0001")",
+                  R"([[1, 2, 3, 4, 5], [6, 7, 8, 9, 10, 11]])"},
                  false}};
   table.columns = {{"cost", false}};
   for (std::size_t i = 0; i < 3; ++i) table.rows.push_back({0, {i}, {1}, ""});

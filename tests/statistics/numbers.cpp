@@ -33,8 +33,8 @@ bool is_none(const std::map<std::string, double>& numbers, const std::string& na
   return numbers.contains(name) && std::isnan(numbers.at(name));
 }
 
-ModeStatistics mode(Index index, std::int64_t segments, std::int64_t detected, std::int64_t isolated, std::int64_t missed,
-                    std::int64_t unknown) {
+ModeStatistics mode(Index index, std::int64_t segments, std::int64_t detected,
+                    std::int64_t isolated, std::int64_t missed, std::int64_t unknown) {
   ModeStatistics counts;
   counts.mode = index;
   counts.segments = segments;
@@ -47,7 +47,8 @@ ModeStatistics mode(Index index, std::int64_t segments, std::int64_t detected, s
 
 }  // namespace
 
-TEST_CASE("an observer: counts, times that happened, metrics that are numbers, and times of steps") {
+TEST_CASE(
+    "an observer: counts, times that happened, metrics that are numbers, and times of steps") {
   PipelineOutcome outcome;
   outcome.observer = "o";
   outcome.steps = 10;
@@ -104,7 +105,9 @@ TEST_CASE("an observer: counts, times that happened, metrics that are numbers, a
   outcome.inner_steps = 3;
   outcome.inner_share = .25;
   outcome.inner_outside = 2;
-  outcome.summary = {{"contains_truth_yes", Index{0}}, {"contains_truth_no", Index{0}}, {"contains_truth_unknown", Index{0}}};
+  outcome.summary = {{"contains_truth_yes", Index{0}},
+                     {"contains_truth_no", Index{0}},
+                     {"contains_truth_unknown", Index{0}}};
   outcome.reproducible = 3;
   const auto again = found(outcome).repeat;
   CHECK(again.at("inner_share") == .25);
@@ -186,8 +189,9 @@ TEST_CASE("a diagnoser: rates, and delays over all modes") {
   diagnosis.statistics = {};
   diagnosis.detection = diagnosis.isolation = {};
   const auto nothing = found(outcome).repeat;
-  for (const char* name : {"false_alarm_rate", "wrong_mode_rate", "missed_rate", "detection_delay_min", "detection_delay_median",
-                           "detection_delay_max", "isolation_delay_median"}) {
+  for (const char* name :
+       {"false_alarm_rate", "wrong_mode_rate", "missed_rate", "detection_delay_min",
+        "detection_delay_median", "detection_delay_max", "isolation_delay_median"}) {
     CHECK_MESSAGE(is_none(nothing, name), name);
   }
 }
@@ -233,16 +237,19 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   CHECK(repeat.at("nodes") == 11);
   CHECK(repeat.at("optimal") == 0);
   CHECK(repeat.at("infeasible") == 0);
-  for (const char* name : {"cost", "lower_bound", "gap", "separates", "kappa_min"}) CHECK_MESSAGE(is_none(repeat, name), name);
+  for (const char* name : {"cost", "lower_bound", "gap", "separates", "kappa_min"})
+    CHECK_MESSAGE(is_none(repeat, name), name);
   CHECK(!repeat.contains("experiments"));
 
   design.best.emplace();
   design.best->cost = 10;
   design.lower_bound = 8;
-  design.best->pairs = {{0, 1, .5, .375, Answer::yes}, {0, 2, .5, .125, Answer::yes}, {1, 2, .5, .25, Answer::yes}};
+  design.best->pairs = {
+      {0, 1, .5, .375, Answer::yes}, {0, 2, .5, .125, Answer::yes}, {1, 2, .5, .25, Answer::yes}};
   design.best->empty = {Answer::no, Answer::no, Answer::no};
   outcome.exact.emplace();  // what is proven counts, not what the designer says
-  outcome.exact->pairs = {{0, 1, Answer::yes, .375}, {0, 2, Answer::yes, .125}, {1, 2, Answer::yes, .25}};
+  outcome.exact->pairs = {
+      {0, 1, Answer::yes, .375}, {0, 2, Answer::yes, .125}, {1, 2, Answer::yes, .25}};
   outcome.exact->empty = {Answer::no, Answer::no, Answer::no};
   outcome.experiments = {{0, 5, {}, 4, 1, 0, 0, {}}, {1, 6, {}, 3, 0, 1, 2, {}}};
   repeat = found(outcome).repeat;

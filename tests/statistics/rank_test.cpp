@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rank test against tables and against counting all arrangements; ratios and adjustments by hand.
+// The rank test against tables and against counting all arrangements; ratios and adjustments by
+// hand.
 #include "study/statistics/rank_test.hpp"
 
 #include <algorithm>
@@ -49,11 +50,13 @@ TEST_CASE("series that do not overlap") {
   CHECK(mann_whitney_p(Values{1, 2, 3}, Values{4, 5, 6}) == doctest::Approx(2. / 20));
   CHECK(mann_whitney_p(row(0, 4), row(10, 4)) == doctest::Approx(2. / 70));
   CHECK(mann_whitney_p(row(10, 5), row(0, 5)) == doctest::Approx(2. / 252));
-  CHECK(mann_whitney_p(row(0, 20), row(100, 20)) == doctest::Approx(2 / 137846528820.).epsilon(1e-9));
+  CHECK(mann_whitney_p(row(0, 20), row(100, 20)) ==
+        doctest::Approx(2 / 137846528820.).epsilon(1e-9));
   CHECK(mann_whitney_p(Values{1}, Values{2}) == 1);
 }
 
-TEST_CASE("the table of critical values: 5 % two-sided is met by U = 2 of 5 and 5, and missed by U = 3") {
+TEST_CASE(
+    "the table of critical values: 5 % two-sided is met by U = 2 of 5 and 5, and missed by U = 3") {
   CHECK(mann_whitney_p(Values{1, 2, 3, 4, 7}, Values{5, 6, 8, 9, 10}) < .05);  // U = 2
   CHECK(mann_whitney_p(Values{1, 2, 3, 4, 8}, Values{5, 6, 7, 9, 10}) > .05);  // U = 3
 }
@@ -70,7 +73,8 @@ TEST_CASE("without ties: as counted over all arrangements") {
     const auto m = *rc::gen::inRange<std::size_t>(1, 7), n = *rc::gen::inRange<std::size_t>(1, 7);
     Values all(m + n);
     std::iota(all.begin(), all.end(), 1.);
-    for (std::size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[*rc::gen::inRange<std::size_t>(0, i)]);
+    for (std::size_t i = all.size(); i > 1; --i)
+      std::swap(all[i - 1], all[*rc::gen::inRange<std::size_t>(0, i)]);
     const Values a(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(m)),
         b(all.begin() + static_cast<std::ptrdiff_t>(m), all.end());
     const double p = mann_whitney_p(a, b);
@@ -100,8 +104,8 @@ TEST_CASE("large series: the approximation is near the exact test, and finds sma
 TEST_CASE("ranks only: p does not change with the scale of the measurements") {
   CHECK(rc::check([] {
     const auto draw = [] {
-      return *rc::gen::nonEmpty(
-          rc::gen::container<Values>(rc::gen::map(rc::gen::inRange(1, 60), [](int i) { return double(i); })));
+      return *rc::gen::nonEmpty(rc::gen::container<Values>(
+          rc::gen::map(rc::gen::inRange(1, 60), [](int i) { return double(i); })));
     };
     Values a = draw(), b = draw();
     const double p = mann_whitney_p(a, b);

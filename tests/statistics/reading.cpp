@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables read from the files of runs and sweeps: nothing is lost, and wrong files are refused with their place.
+// Tables read from the files of runs and sweeps: nothing is lost, and wrong files are refused with
+// their place.
 #include <cmath>
 #include <limits>
 
@@ -32,24 +33,34 @@ struct SweepFiles {
 
 SweepFiles sweep_files() {
   SweepFiles files;
-  files.results = {{"cordon_results", 1},
-                   {"cordon", {{"version", "1.2"}, {"abi_tag", "tag"}}},
-                   {"tools", {{"compiler", "c 1"}}},
-                   {"title", "Sweep"},
-                   {"study_hash", "fnv1a64:1"},
-                   {"study",
-                    {{"system", {{"A", {{1, 2}, {3, 4}}}}},
-                     {"sweep",
-                      {{{"name", "backend"},
-                        {"path", "/pipelines/*/backend"},
-                        {"repeat", false},
-                        {"values", {"zonotope", {{"type", "interval"}, {"n", 0.5}}}}},
-                       {{"name", "seed"}, {"path", "/data/simulate/seed"}, {"repeat", true}, {"values", {1, 2}}}}}}},
-                   {"pipelines", {{{"name", "a"}, {"backend", "x"}}, {{"name", "b"}, {"backend", "x"}}}},
-                   {"points", Json::array()}};
-  files.run = {{"cordon_run", 1}, {"host", {{"name", "h"}, {"system", "s"}, {"cpu", "c"}}}, {"points", Json::array()}};
+  files.results = {
+      {"cordon_results", 1},
+      {"cordon", {{"version", "1.2"}, {"abi_tag", "tag"}}},
+      {"tools", {{"compiler", "c 1"}}},
+      {"title", "Sweep"},
+      {"study_hash", "fnv1a64:1"},
+      {"study",
+       {{"system", {{"A", {{1, 2}, {3, 4}}}}},
+        {"sweep",
+         {{{"name", "backend"},
+           {"path", "/pipelines/*/backend"},
+           {"repeat", false},
+           {"values", {"zonotope", {{"type", "interval"}, {"n", 0.5}}}}},
+          {{"name", "seed"},
+           {"path", "/data/simulate/seed"},
+           {"repeat", true},
+           {"values", {1, 2}}}}}}},
+      {"pipelines", {{{"name", "a"}, {"backend", "x"}}, {{"name", "b"}, {"backend", "x"}}}},
+      {"points", Json::array()}};
+  files.run = {{"cordon_run", 1},
+               {"host", {{"name", "h"}, {"system", "s"}, {"cpu", "c"}}},
+               {"points", Json::array()}};
   for (int i = 0; i < 8; ++i) {
-    Json point{{"point", i}, {"pipeline", i % 2}, {"at", {i / 4, i / 2 % 2}}, {"numbers", {{"steps", 10}}}, {"error", nullptr}};
+    Json point{{"point", i},
+               {"pipeline", i % 2},
+               {"at", {i / 4, i / 2 % 2}},
+               {"numbers", {{"steps", 10}}},
+               {"error", nullptr}};
     if (i == 3) point["numbers"] = {{"radius_mean", "inf"}, {"lower_bound", "-inf"}};
     if (i == 5) point["error"] = "broken";
     files.results["points"].push_back(point);
@@ -86,13 +97,15 @@ TEST_CASE("a run is read as it was written") {
   const Scratch scratch;
   Registry registry;
   registry.add(fakes::register_all);
-  Study study = fakes::study({fakes::pipeline("first \"box\""), fakes::pipeline("broken", "breaking"),
-                              fakes::diagnosis("diagnoser"), fakes::design("designer", "found", "truth")});
+  Study study =
+      fakes::study({fakes::pipeline("first \"box\""), fakes::pipeline("broken", "breaking"),
+                    fakes::diagnosis("diagnoser"), fakes::design("designer", "found", "truth")});
   study.modes = {{"leak", study.model}, {"stuck", study.model}};
   RunOptions options;
   options.out = scratch.path();
   const RunOutcome outcome = run_study(study, registry, options);
-  const ResultTable expected = detail::table_of(study, outcome), found = read_result_table(scratch.path());
+  const ResultTable expected = detail::table_of(study, outcome),
+                    found = read_result_table(scratch.path());
   CHECK(found.title == "two states");
   CHECK(found.study_hash == expected.study_hash);
   CHECK(found.version == expected.version);
@@ -107,7 +120,8 @@ TEST_CASE("a run is read as it was written") {
     for (std::size_t j = 0; j < expected.columns.size(); ++j) {
       const auto at = std::find(found.columns.begin(), found.columns.end(), expected.columns[j]);
       REQUIRE_MESSAGE(at != found.columns.end(), expected.columns[j].name);
-      CHECK(same(found.rows[i].values[static_cast<std::size_t>(at - found.columns.begin())], expected.rows[i].values[j]));
+      CHECK(same(found.rows[i].values[static_cast<std::size_t>(at - found.columns.begin())],
+                 expected.rows[i].values[j]));
     }
   }
   const detail::RecordedTable recorded = detail::read_recorded_table(scratch.path());
@@ -136,7 +150,8 @@ TEST_CASE("a sweep is read as it was written, however it is laid out") {
     CHECK(table.axes[0].name == "backend");
     CHECK(table.axes[0].path == "/pipelines/*/backend");
     CHECK_FALSE(table.axes[0].repeat);
-    CHECK(table.axes[0].values == std::vector<std::string>{"\"zonotope\"", R"({"type":"interval","n":0.5})"});
+    CHECK(table.axes[0].values ==
+          std::vector<std::string>{"\"zonotope\"", R"({"type":"interval","n":0.5})"});
     CHECK(table.axes[1].repeat);
     CHECK(table.axes[1].values == std::vector<std::string>{"1", "2"});
     CHECK(table.pipelines == std::vector<std::string>{"a", "b"});
@@ -197,7 +212,8 @@ TEST_CASE("points before pipelines and axes are read as well") {
 TEST_CASE("files that are not as they were written are refused, with the place") {
   const auto says = [](const std::function<void(SweepFiles&)>& change, const std::string& words) {
     const std::string message = refusal(change);
-    CHECK_MESSAGE(message.find(words) != std::string::npos, "\"" << message << "\" does not say " << words);
+    CHECK_MESSAGE(message.find(words) != std::string::npos,
+                  "\"" << message << "\" does not say " << words);
   };
   CHECK(refusal([](SweepFiles&) {}).empty());
   says([](SweepFiles& f) { f.results["cordon_results"] = 2; }, "/cordon_results");
@@ -205,7 +221,8 @@ TEST_CASE("files that are not as they were written are refused, with the place")
   says([](SweepFiles& f) { f.results["title"] = "line\nend"; }, "/title");
   says([](SweepFiles& f) { f.results["pipelines"] = Json::array(); }, "/pipelines");
   says([](SweepFiles& f) { f.results["pipelines"][1] = 3; }, "/pipelines/1");
-  says([](SweepFiles& f) { f.results["study"]["sweep"][0]["values"] = "x"; }, "/study/sweep/0/values");
+  says([](SweepFiles& f) { f.results["study"]["sweep"][0]["values"] = "x"; },
+       "/study/sweep/0/values");
   says([](SweepFiles& f) { f.results["points"] = 1; }, "/points");
   says([](SweepFiles& f) { f.results["points"][2]["pipeline"] = 2; }, "/points/2");
   says([](SweepFiles& f) { f.results["points"][2]["pipeline"] = -1; }, "/points/2/pipeline");
@@ -213,8 +230,10 @@ TEST_CASE("files that are not as they were written are refused, with the place")
   says([](SweepFiles& f) { f.results["points"][2]["at"] = {2, 0}; }, "/points/2");
   says([](SweepFiles& f) { f.results["points"][2]["at"] = 7; }, "/points/2/at");
   says([](SweepFiles& f) { f.results["points"][2]["point"] = 1; }, "/points/2/point");
-  says([](SweepFiles& f) { f.results["points"][2]["numbers"]["x"] = nullptr; }, "/points/2/numbers/x");
-  says([](SweepFiles& f) { f.results["points"][2]["numbers"]["x"] = "infinite"; }, "/points/2/numbers/x");
+  says([](SweepFiles& f) { f.results["points"][2]["numbers"]["x"] = nullptr; },
+       "/points/2/numbers/x");
+  says([](SweepFiles& f) { f.results["points"][2]["numbers"]["x"] = "infinite"; },
+       "/points/2/numbers/x");
   says([](SweepFiles& f) { f.results["points"][2]["numbers"]["x\ny"] = 1; }, "/points/2/numbers");
   says([](SweepFiles& f) { f.results["points"][2]["numbers"][""] = 1; }, "/points/2/numbers");
   says([](SweepFiles& f) { f.results["points"][2].erase("error"); }, "/points/2");
@@ -222,8 +241,13 @@ TEST_CASE("files that are not as they were written are refused, with the place")
   says([](SweepFiles& f) { f.run["cordon_run"] = 2; }, "/cordon_run");
   says([](SweepFiles& f) { f.run["host"] = 1; }, "/host");
   says([](SweepFiles& f) { f.run["points"].erase(f.run["points"].begin() + 2); }, "/points/2");
-  says([](SweepFiles& f) { f.run["points"].erase(f.run["points"].end() - 1); }, "does not have the points");
-  says([](SweepFiles& f) { f.run["points"].push_back({{"point", 8}, {"numbers", Json::object()}}); }, "/points/8");
+  says([](SweepFiles& f) { f.run["points"].erase(f.run["points"].end() - 1); },
+       "does not have the points");
+  says(
+      [](SweepFiles& f) {
+        f.run["points"].push_back({{"point", 8}, {"numbers", Json::object()}});
+      },
+      "/points/8");
   const Scratch empty;
   CHECK_THROWS_AS(read_result_table(empty.path()), InputError);
   CHECK_THROWS_AS(read_result_table(empty / "nowhere"), InputError);
@@ -244,7 +268,8 @@ TEST_CASE("runs that do not fit together, or were made before there were numbers
     pipeline["summary"] = {{"error", nullptr}};
     run["pipelines"].push_back(
         {{"name", pipeline["name"]},
-         {"steps", {{{"k", 0}, {"time_us", {{"predict", 1}, {"correct", 2}, {"reduce", 4}, {"hull", 8}}}}}},
+         {"steps",
+          {{{"k", 0}, {"time_us", {{"predict", 1}, {"correct", 2}, {"reduce", 4}, {"hull", 8}}}}}},
          {"summary", {{"numbers", {{"wall_s", 1}}}}}});
   }
   const auto reading = [&](const Json& first, const Json& second) -> std::string {
@@ -299,12 +324,15 @@ TEST_CASE("what is wanted of a large file") {
     cordon::json::Problems problems;
     std::string seen;
     const cordon::json::Wanted wanted{
-        {"/a", "/l/*/x"}, {"/s/*/t/*"}, [&](const cordon::json::Cursor& at, const std::vector<std::size_t>& place) {
-          seen += at.pointer() + "@" + std::to_string(at.value().line) + ":" + std::to_string(place.at(0)) + "," +
-                  std::to_string(place.at(1)) + " ";
+        {"/a", "/l/*/x"},
+        {"/s/*/t/*"},
+        [&](const cordon::json::Cursor& at, const std::vector<std::size_t>& place) {
+          seen += at.pointer() + "@" + std::to_string(at.value().line) + ":" +
+                  std::to_string(place.at(0)) + "," + std::to_string(place.at(1)) + " ";
         }};
     const auto tree = cordon::json::read_large(scratch / "x.json", wanted, problems);
-    for (const Diagnostic& problem : problems.sorted()) seen += "!" + problem.pointer + "@" + std::to_string(problem.line);
+    for (const Diagnostic& problem : problems.sorted())
+      seen += "!" + problem.pointer + "@" + std::to_string(problem.line);
     if (const auto* a = tree.find("a")) seen += "a@" + std::to_string(a->line) + " ";
     if (const auto* l = tree.find("l")) {
       for (const auto& item : l->items()) seen += std::to_string(item.items().size());
@@ -315,7 +343,8 @@ TEST_CASE("what is wanted of a large file") {
   CHECK(read("{\n\"b\": [[{\"a\": 1}]],\n\"a\":\n{\"x\": [1]}}") == "a@4 ");
   CHECK(read("{\"b\": 7\n,\n\"a\": 5\n}") == "a@3 ");
   CHECK(read("{\"l\": [{\"x\": 1, \"y\": 2}, {\"y\": 2}, 3, {\"x\": {\"y\": 1}}]}") == "1001");
-  CHECK(read("{\"s\": [{\"t\": [1,\n2]}, {\"u\": [1]}, {\"t\": [[3]]}]}") == "/s/0/t/0@1:0,0 /s/0/t/1@2:0,1 /s/2/t/0@2:2,0 ");
+  CHECK(read("{\"s\": [{\"t\": [1,\n2]}, {\"u\": [1]}, {\"t\": [[3]]}]}") ==
+        "/s/0/t/0@1:0,0 /s/0/t/1@2:0,1 /s/2/t/0@2:2,0 ");
   CHECK(read("{\"a\": 1,\n\"a\": 2}") == "!/a@2a@1 ");
   CHECK(read("{\"b\": 1, \"b\": 2, \"a\": 2}") == "a@1 ");
   CHECK(read("{\"a\":\n 1e999}").find("!/a@2") == 0);

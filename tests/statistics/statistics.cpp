@@ -15,7 +15,8 @@ using namespace cordon;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
+constexpr double inf = std::numeric_limits<double>::infinity(),
+                 none = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> drawn_values() {
   auto values = *rc::gen::nonEmpty(rc::gen::container<std::vector<double>>(
@@ -118,7 +119,9 @@ TEST_CASE("statistics follow shifts and scaling, and keep their order") {
     auto moved = values;
     for (double& x : moved) x = scale * x + shift;
     const Statistics t = statistics_of(moved);
-    const auto near = [&](double a, double b) { return std::abs(a - b) <= 1e-9 * (1 + std::abs(a)); };
+    const auto near = [&](double a, double b) {
+      return std::abs(a - b) <= 1e-9 * (1 + std::abs(a));
+    };
     RC_ASSERT(near(t.mean, scale * s.mean + shift));
     RC_ASSERT(near(t.deviation, scale * s.deviation));
     RC_ASSERT(near(t.q05, scale * s.q05 + shift));
@@ -140,7 +143,8 @@ TEST_CASE("quantiles lie between the order statistics around them") {
     std::sort(values.begin(), values.end());
     const auto bounded = [&](double q, double share) {
       const double place = share * static_cast<double>(values.size() - 1);
-      return values[static_cast<std::size_t>(std::floor(place))] <= q && q <= values[static_cast<std::size_t>(std::ceil(place))];
+      return values[static_cast<std::size_t>(std::floor(place))] <= q &&
+             q <= values[static_cast<std::size_t>(std::ceil(place))];
     };
     RC_ASSERT(bounded(s.q05, .05));
     RC_ASSERT(bounded(s.q25, .25));
@@ -154,7 +158,8 @@ TEST_CASE("a summary: over the repetitions, by combination and then by pipeline"
   // two pipelines, budgets 10 and 20, seeds 1 to 3
   ResultTable table = tables::sweep();
   table.columns = {{"radius_mean", false}, {"contains_truth_share", false}, {"step_us", true}};
-  const auto add = [&](std::size_t pipeline, std::size_t budget, std::size_t seed, double radius, double inside, double time) {
+  const auto add = [&](std::size_t pipeline, std::size_t budget, std::size_t seed, double radius,
+                       double inside, double time) {
     table.rows.push_back({pipeline, {budget, seed}, {radius, inside, time}, ""});
   };
   for (std::size_t seed = 0; seed < 3; ++seed) {  // not in the order of the result
@@ -167,7 +172,8 @@ TEST_CASE("a summary: over the repetitions, by combination and then by pipeline"
   table.rows[11].error = "broken";  // pipeline 0, budget 10, third seed
   const Summary summary = summarise(table);
   REQUIRE(summary.rows.size() == 4);
-  const SummaryRow &a = summary.rows[0], &b = summary.rows[1], &c = summary.rows[2], &d = summary.rows[3];
+  const SummaryRow &a = summary.rows[0], &b = summary.rows[1], &c = summary.rows[2],
+                   &d = summary.rows[3];
   CHECK((a.pipeline == 0 && b.pipeline == 1 && c.pipeline == 0 && d.pipeline == 1));
   CHECK(a.at == std::vector<std::size_t>{0, 0});
   CHECK(b.at == std::vector<std::size_t>{0, 0});
@@ -199,15 +205,19 @@ TEST_CASE("a summary: over the repetitions, by combination and then by pipeline"
 TEST_CASE("what ended early, or has no positive mean, is not compared") {
   ResultTable table;
   table.pipelines = {"a", "b", "c"};
-  table.columns = {{"radius_mean", false}, {"step_us", true}, {"inconsistent_from", false}, {"cost", false}};
-  table.rows = {{0, {}, {2, 10, none, 0}, ""}, {1, {}, {1, 5, 40, 1}, ""}, {2, {}, {3, 20, none, 2}, ""}};
+  table.columns = {
+      {"radius_mean", false}, {"step_us", true}, {"inconsistent_from", false}, {"cost", false}};
+  table.rows = {
+      {0, {}, {2, 10, none, 0}, ""}, {1, {}, {1, 5, 40, 1}, ""}, {2, {}, {3, 20, none, 2}, ""}};
   const Summary summary = summarise(table);
   CHECK(summary.rows[0].relative[0] == 1);
-  CHECK(std::isnan(summary.rows[1].relative[0]));  // the smallest radius, up to the step at which it is empty
+  CHECK(std::isnan(
+      summary.rows[1].relative[0]));  // the smallest radius, up to the step at which it is empty
   CHECK(summary.rows[2].relative[0] == 1.5);
   CHECK(summary.rows[0].relative[1] == 2);
-  CHECK(summary.rows[1].relative[1] == 1);                                        // times are compared all the same
-  for (const SummaryRow& row : summary.rows) CHECK(std::isnan(row.relative[3]));  // one of them costs nothing
+  CHECK(summary.rows[1].relative[1] == 1);  // times are compared all the same
+  for (const SummaryRow& row : summary.rows)
+    CHECK(std::isnan(row.relative[3]));  // one of them costs nothing
   for (const char* name : {"assumptions_until", "violated_at"}) {
     table.columns[2].name = name;
     CHECK(std::isnan(summarise(table).rows[1].relative[0]));
@@ -220,7 +230,8 @@ TEST_CASE("a table without rows has no summary") {
   CHECK(summarise({}).rows.empty());
   ResultTable table = tables::sweep();
   table.columns = {{"radius_mean", false}};
-  table.rows = {{0, {0, 0}, {}, "broken"}, {1, {0, 0}, {2}, ""}};  // a row that has no values at all
+  table.rows = {{0, {0, 0}, {}, "broken"},
+                {1, {0, 0}, {2}, ""}};  // a row that has no values at all
   const Summary summary = summarise(table);
   REQUIRE(summary.rows.size() == 2);
   CHECK(summary.rows[0].failed == 1);
@@ -258,13 +269,15 @@ TEST_CASE("which way is better") {
                            "wall_s"}) {
     CHECK_MESSAGE(preference_of(less) == Preference::less, less);
   }
-  for (const char* more : {"contains_truth_yes", "contains_truth_share", "exact_share", "inner_share", "detected", "isolated",
-                           "faults_proven", "separates", "kappa_min", "experiments_isolated"}) {
+  for (const char* more :
+       {"contains_truth_yes", "contains_truth_share", "exact_share", "inner_share", "detected",
+        "isolated", "faults_proven", "separates", "kappa_min", "experiments_isolated"}) {
     CHECK_MESSAGE(preference_of(more) == Preference::more, more);
   }
   for (const char* neither :
-       {"steps", "consistent", "inconsistent", "inconsistent_from", "volume_of_hull_steps", "generators_max", "constraints_max",
-        "runs", "segments", "unknown_fault", "horizon", "lower_bound", "nodes", "x", ""}) {
+       {"steps", "consistent", "inconsistent", "inconsistent_from", "volume_of_hull_steps",
+        "generators_max", "constraints_max", "runs", "segments", "unknown_fault", "horizon",
+        "lower_bound", "nodes", "x", ""}) {
     CHECK_MESSAGE(preference_of(neither) == Preference::none, neither);
   }
 }

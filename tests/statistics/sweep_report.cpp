@@ -39,21 +39,21 @@ SweepOutcome outcome() {
 
 TEST_CASE("the text of a sweep") {
   const std::string text = apps::sweep_report_text(outcome(), "a place");
-  CHECK(
-      text ==
-      "Budgets\n\n"
-      "BUDGET  PIPELINE  MEAN RADIUS  × BEST  µs/STEP  × BEST  FAILED\n"
-      "10      first     2 ± 1.4 *    1       10       2       0/2\n"
-      "10      second    4            2       5 *      1       0/2\n"
-      "\n"
-      "20      first     2 ± 1.4      1       10       1       0/2\n"
-      "20      second    4            –       5        –       1/2\n"
-      "\n"
-      "*: the best beside it. Mean ± standard deviation over up to 2 repetitions.\n\n"
-      "1 of 8 points failed and count nowhere else:\n"
-      "  second, budget = 20, seed = 2: out of order\n\n"
-      "8 points are in a place: report.html to look at, summary.tex and summary.md to print, points.csv and summary.csv to go on "
-      "with\n");
+  CHECK(text ==
+        "Budgets\n\n"
+        "BUDGET  PIPELINE  MEAN RADIUS  × BEST  µs/STEP  × BEST  FAILED\n"
+        "10      first     2 ± 1.4 *    1       10       2       0/2\n"
+        "10      second    4            2       5 *      1       0/2\n"
+        "\n"
+        "20      first     2 ± 1.4      1       10       1       0/2\n"
+        "20      second    4            –       5        –       1/2\n"
+        "\n"
+        "*: the best beside it. Mean ± standard deviation over up to 2 repetitions.\n\n"
+        "1 of 8 points failed and count nowhere else:\n"
+        "  second, budget = 20, seed = 2: out of order\n\n"
+        "8 points are in a place: report.html to look at, summary.tex and summary.md to print, "
+        "points.csv and summary.csv to go on "
+        "with\n");
 }
 
 TEST_CASE("a long table is cut, and so are many failures") {
@@ -72,7 +72,8 @@ TEST_CASE("one pipeline per group: no empty lines between them") {
   SweepOutcome single = outcome();
   single.table.pipelines = {"first"};
   std::erase_if(single.table.rows, [](const ResultRow& row) { return row.pipeline == 1; });
-  const std::string text = apps::comparison_text(comparison_table(single.table, summarise(single.table)), 100);
+  const std::string text =
+      apps::comparison_text(comparison_table(single.table, summarise(single.table)), 100);
   CHECK(text ==
         "BUDGET  PIPELINE  MEAN RADIUS  µs/STEP\n"
         "10      first     2 ± 1.4      10\n"

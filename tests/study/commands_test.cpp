@@ -14,27 +14,33 @@ using test::Outcome;
 
 namespace {
 
-Outcome run(const std::string& arguments, const std::string& streams) { return test::cordon_with(arguments + " " + streams); }
+Outcome run(const std::string& arguments, const std::string& streams) {
+  return test::cordon_with(arguments + " " + streams);
+}
 
 const std::string examples = std::string(CORDON_SOURCE_DIR) + "/examples/studies/";
 const std::string main_study = examples + "descriptor_four_representations.json";
 
 /// The resolved text of a study is a study with the same resolved text.
 void expect_resolved_again(const Scratch& scratch, const std::string& study) {
-  const auto first = nlohmann::ordered_json::parse(run("validate --json " + study, "2>/dev/null").out);
+  const auto first =
+      nlohmann::ordered_json::parse(run("validate --json " + study, "2>/dev/null").out);
   const std::string resolved = first["studies"][0]["study"].dump();
   const std::string file = scratch.write("resolved.json", resolved).string();
-  const auto second = nlohmann::ordered_json::parse(run("validate --json " + file, "2>/dev/null").out);
+  const auto second =
+      nlohmann::ordered_json::parse(run("validate --json " + file, "2>/dev/null").out);
   CHECK(second["studies"][0]["study"].dump() == resolved);
 }
 
 }  // namespace
 
 TEST_CASE("the examples are valid with the plugins of this build") {
-  const Outcome outcome =
-      run("validate " + main_study + " " + examples + "linear_two_states.json " + examples + "recorded_walk.json", "2>&1");
+  const Outcome outcome = run("validate " + main_study + " " + examples +
+                                  "linear_two_states.json " + examples + "recorded_walk.json",
+                              "2>&1");
   CHECK(outcome.code == 0);
-  CHECK(outcome.out.find("descriptor, 3 states, 2 inputs, 2 outputs, 3 disturbances, 2 noises") != std::string::npos);
+  CHECK(outcome.out.find("descriptor, 3 states, 2 inputs, 2 outputs, 3 disturbances, 2 noises") !=
+        std::string::npos);
   CHECK(outcome.out.find("LZ: line_zonotope, descriptor") != std::string::npos);
 }
 
@@ -44,8 +50,10 @@ TEST_CASE("errors go to stderr, exit code 2, the other studies are looked at all
   const Outcome err = run("validate " + bad + " " + main_study, "2>&1 >/dev/null");
   CHECK(err.code == 2);
   CHECK(err.out.find("bad.json: 3 errors") != std::string::npos);
-  CHECK(run("validate " + bad + " " + main_study, "2>/dev/null").out.find("ok") != std::string::npos);
-  const auto json = nlohmann::json::parse(run("validate --json " + bad + " " + main_study, "2>/dev/null").out);
+  CHECK(run("validate " + bad + " " + main_study, "2>/dev/null").out.find("ok") !=
+        std::string::npos);
+  const auto json =
+      nlohmann::json::parse(run("validate --json " + bad + " " + main_study, "2>/dev/null").out);
   CHECK(json["studies"][0]["valid"] == false);
   CHECK(json["studies"][0]["errors"][0]["pointer"] == "/system");
   CHECK(json["studies"][1]["valid"] == true);
@@ -66,12 +74,13 @@ TEST_CASE("the manual of study files shows valid studies, and every component of
       CAPTURE(outcome.out);
       CHECK(outcome.code == 0);
       if (block.find("interval_lti") != std::string::npos) {
-        CHECK(outcome.out.find("uncertain lti, 2 states, 1 input, 1 output, 2 disturbances, 1 noise, 2 additive faults") !=
-              std::string::npos);
+        CHECK(outcome.out.find("uncertain lti, 2 states, 1 input, 1 output, 2 disturbances, 1 "
+                               "noise, 2 additive faults") != std::string::npos);
         CHECK(outcome.out.find("additive  fault 1 from k = 20 to 40\n") != std::string::npos);
       }
       if (block.find("\"sweep\"") != std::string::npos) {
-        CHECK(outcome.out.find("sweep     generators: 3 values; noise: 2 values; seed: 20 values, repeated\n") !=
+        CHECK(outcome.out.find(
+                  "sweep     generators: 3 values; noise: 2 values; seed: 20 values, repeated\n") !=
               std::string::npos);
         CHECK(outcome.out.find("points    240\n") != std::string::npos);
         expect_resolved_again(scratch, scratch.path() / "s.json");
@@ -96,7 +105,8 @@ TEST_CASE("bad rows of recorded data are found by validate") {
   const Scratch scratch;
   std::ifstream study(examples + "recorded_walk.json");
   scratch.write("walk.json", std::string(std::istreambuf_iterator<char>(study), {}));
-  scratch.write("recorded_walk.csv", "k,px_m,py_m,vx_mps,vy_mps,zx_m,zy_m\n0,0,0,0,0,0,0\n1,0,0,0,0,oops,0\n");
+  scratch.write("recorded_walk.csv",
+                "k,px_m,py_m,vx_mps,vy_mps,zx_m,zy_m\n0,0,0,0,0,0,0\n1,0,0,0,0,oops,0\n");
   const Outcome outcome = run("validate " + (scratch.path() / "walk.json").string(), "2>&1");
   CHECK(outcome.code == 2);
   CHECK(outcome.out.find("oops") != std::string::npos);
@@ -105,7 +115,9 @@ TEST_CASE("bad rows of recorded data are found by validate") {
 TEST_CASE("validate opens the recorded data of every value of a sweep") {
   const Scratch scratch;
   auto study = nlohmann::ordered_json::parse(std::ifstream(examples + "recorded_walk.json"));
-  study["sweep"] = {{{"name", "walk"}, {"path", "/data/csv/file"}, {"values", {"good.csv", "bad.csv", "worse.csv"}}}};
+  study["sweep"] = {{{"name", "walk"},
+                     {"path", "/data/csv/file"},
+                     {"values", {"good.csv", "bad.csv", "worse.csv"}}}};
   const std::string file = scratch.write("walk.json", study.dump());
   const std::string good = "k,px_m,py_m,vx_mps,vy_mps,zx_m,zy_m\n0,0,0,0,0,0,0\n";
   scratch.write("good.csv", good);
@@ -116,7 +128,8 @@ TEST_CASE("validate opens the recorded data of every value of a sweep") {
   CHECK(bad.out.find("bad.csv") != std::string::npos);
   CHECK(bad.out.find("oops") != std::string::npos);
   CHECK(bad.out.find("alas") != std::string::npos);  // every error at once
-  const auto told = nlohmann::json::parse(run("validate --json " + file, "2>/dev/null").out)["studies"];
+  const auto told =
+      nlohmann::json::parse(run("validate --json " + file, "2>/dev/null").out)["studies"];
   REQUIRE(told.size() == 1);
   CHECK(told[0]["valid"] == false);
   CHECK(told[0]["errors"].size() == 2);
@@ -131,17 +144,24 @@ TEST_CASE("a refused plugin that the study needs is exit code 3") {
   std::ifstream file(main_study);
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const std::string study =
-      scratch.write("s.json", exchanged(text, "{\"type\": \"interval\"}", "{\"type\": \"ellipsoid\"}")).string();
-  const Outcome outcome = run("--plugins " + scratch.path().string() + " validate " + study, "2>&1");
+      scratch
+          .write("s.json", exchanged(text, "{\"type\": \"interval\"}", "{\"type\": \"ellipsoid\"}"))
+          .string();
+  const Outcome outcome =
+      run("--plugins " + scratch.path().string() + " validate " + study, "2>&1");
   CHECK(outcome.code == 3);
   CHECK(outcome.out.find("ellipsoid.so was refused") != std::string::npos);
 }
 
-TEST_CASE("modes, faults, plants and diagnosers are described, and resolved texts are valid again") {
-  const Outcome outcome = run("validate " + examples + "cstr_actuator_faults.json " + examples + "cstr_nonlinear.json", "2>&1");
+TEST_CASE(
+    "modes, faults, plants and diagnosers are described, and resolved texts are valid again") {
+  const Outcome outcome =
+      run("validate " + examples + "cstr_actuator_faults.json " + examples + "cstr_nonlinear.json",
+          "2>&1");
   CHECK(outcome.code == 0);
-  for (const char* part : {"modes     healthy, fault 1, fault 2", "faults    fault 1 from k = 50 to 99",
-                           "zonotope, observer_bank", "simulated by stirred_tank"}) {
+  for (const char* part :
+       {"modes     healthy, fault 1, fault 2", "faults    fault 1 from k = 50 to 99",
+        "zonotope, observer_bank", "simulated by stirred_tank"}) {
     CAPTURE(part);
     CHECK(outcome.out.find(part) != std::string::npos);
   }
@@ -154,11 +174,13 @@ TEST_CASE("list and info know every kind of component") {
   const auto list = nlohmann::json::parse(run("list --json", "2>/dev/null").out);
   std::set<std::string> kinds;
   for (const auto& component : list["components"]) kinds.insert(component["kind"]);
-  CHECK(kinds == std::set<std::string>{"backend", "observer", "diagnoser", "metric", "plant", "gain", "designer"});
+  CHECK(kinds == std::set<std::string>{"backend", "observer", "diagnoser", "metric", "plant",
+                                       "gain", "designer"});
   const auto info = nlohmann::json::parse(run("info --json consistency_bank", "2>/dev/null").out);
   CHECK(info["components"][0]["kind"] == "diagnoser");
   CHECK(info["components"][0]["params"][0]["kind"] == "observer");
-  CHECK(run("info consistency_bank", "2>/dev/null").out.find("component  (required)  observer") != std::string::npos);
+  CHECK(run("info consistency_bank", "2>/dev/null").out.find("component  (required)  observer") !=
+        std::string::npos);
 }
 
 TEST_CASE("schema prints JSON with the components of this build") {

@@ -19,7 +19,9 @@ class FakeSet final : public Set {
   FakeSet(const SetBackend& backend, LineForm X) : Set(backend, X.dim()), X_(std::move(X)) {}
 
  private:
-  Complexity do_complexity() const override { return {X_.generators(), X_.lines(), X_.constraints()}; }
+  Complexity do_complexity() const override {
+    return {X_.generators(), X_.lines(), X_.constraints()};
+  }
   LineForm do_line_form() const override { return X_; }
   LineForm X_;
 };
@@ -29,7 +31,9 @@ class FakeBackend final : public SetBackend {
   explicit FakeBackend(BackendInfo info) : SetBackend(std::move(info)) {}
 
  private:
-  Made do_import(const LineForm& X) const override { return {std::make_unique<FakeSet>(*this, X), Tightness::exact}; }
+  Made do_import(const LineForm& X) const override {
+    return {std::make_unique<FakeSet>(*this, X), Tightness::exact};
+  }
 };
 
 class FakeObserver final : public Observer {
@@ -37,14 +41,19 @@ class FakeObserver final : public Observer {
   FakeObserver(const ObserverContext& context) : Observer(context.model, context.backend) {}
 
  private:
-  Enclosure do_start(const std::optional<Enclosure>&, const Sample&) override { return backend().space(model().linear.states()); }
-  Enclosure do_step(const Sample&, const Sample&) override { return backend().space(model().linear.states()); }
+  Enclosure do_start(const std::optional<Enclosure>&, const Sample&) override {
+    return backend().space(model().linear.states());
+  }
+  Enclosure do_step(const Sample&, const Sample&) override {
+    return backend().space(model().linear.states());
+  }
   void do_replace(const Enclosure&) override {}
 };
 
 class FakeDiagnoser final : public Diagnoser {
  public:
-  explicit FakeDiagnoser(const DiagnoserContext& context) : Diagnoser(context.bank, context.backend) {}
+  explicit FakeDiagnoser(const DiagnoserContext& context)
+      : Diagnoser(context.bank, context.backend) {}
 
  private:
   void do_start() override {}
@@ -53,7 +62,8 @@ class FakeDiagnoser final : public Diagnoser {
 
 class FakeDesigner final : public InputDesigner {
  public:
-  explicit FakeDesigner(const DesignerContext& context) : InputDesigner(context.bank, context.backend) {}
+  explicit FakeDesigner(const DesignerContext& context)
+      : InputDesigner(context.bank, context.backend) {}
 
  private:
   DesignOutcome do_design(DesignControl&) const override { return {}; }
@@ -66,7 +76,9 @@ class FakePlant final : public Plant {
   Index states() const override { return 2; }
   Index inputs() const override { return 2; }
   Index outputs() const override { return 1; }
-  Vector next(Index, VectorIn x, VectorIn u) const override { return Vector{{x[0] / 2 + u[0] + u[1], tempo_ * x[0] * x[0]}}; }
+  Vector next(Index, VectorIn x, VectorIn u) const override {
+    return Vector{{x[0] / 2 + u[0] + u[1], tempo_ * x[0] * x[0]}};
+  }
   Vector output(Index, VectorIn x, VectorIn) const override { return Vector{{x[1]}}; }
 
  private:
@@ -84,10 +96,14 @@ class FakeMetric final : public Metric {
   std::vector<MetricValue> summary() const override { return {}; }
 };
 
-void add_backend(Registrar& registrar, const std::string& name, bool unbounded, bool intersections) {
+void add_backend(Registrar& registrar, const std::string& name, bool unbounded,
+                 bool intersections) {
   ParamSchema schema;
-  if (name != "interval") schema.choice("reduction", "how generators are reduced", {"girard", "pca", "yang_scott"}, "yang_scott");
-  if (name == "zonotope") schema.choice("strip", "how a strip is intersected", {"segments", "volume"}, "segments");
+  if (name != "interval")
+    schema.choice("reduction", "how generators are reduced", {"girard", "pca", "yang_scott"},
+                  "yang_scott");
+  if (name == "zonotope")
+    schema.choice("strip", "how a strip is intersected", {"segments", "volume"}, "segments");
   registrar.backend({{name, "a fake", "", schema}, [=](const Params&) {
                        BackendInfo info;
                        info.name = name;
@@ -124,7 +140,9 @@ ParamSchema observer_schema() {
 void add_observer(Registrar& registrar, const std::string& name, const ParamSchema& schema) {
   registrar.observer({{name, "a fake", "", schema},
                       check_sets,
-                      [](const ObserverContext& context, const Params&) { return std::make_unique<FakeObserver>(context); },
+                      [](const ObserverContext& context, const Params&) {
+                        return std::make_unique<FakeObserver>(context);
+                      },
                       name != "descriptor",
                       name != "descriptor"});
 }
@@ -141,7 +159,9 @@ void add_luenberger(Registrar& registrar) {
   };
   registrar.observer({{"luenberger", "a fake", "", schema},
                       check,
-                      [](const ObserverContext& context, const Params&) { return std::make_unique<FakeObserver>(context); },
+                      [](const ObserverContext& context, const Params&) {
+                        return std::make_unique<FakeObserver>(context);
+                      },
                       true,
                       true});
 }
@@ -153,7 +173,8 @@ void add_gains(Registrar& registrar) {
   const auto check = [](const GainContext& context, const Params& params) {
     const Matrix& L = params.matrix("matrix");
     std::vector<Diagnostic> problems;
-    if (L.rows() != context.model.linear.states()) problems.push_back({"/matrix", "has a wrong number of rows", "one per state"});
+    if (L.rows() != context.model.linear.states())
+      problems.push_back({"/matrix", "has a wrong number of rows", "one per state"});
     if (L.size() > 0 && L(0, 0) < 0) problems.push_back({"/matrix/0/0", "is negative", ""});
     return problems;
   };
@@ -166,7 +187,8 @@ void add_gains(Registrar& registrar) {
 /// The observer inside is asked about every mode.
 std::vector<Diagnostic> check_bank(const DiagnoserContext& context, const Params& params) {
   for (const Mode& mode : context.bank.modes) {
-    auto problems = context.make.check_observer(params.component("observer"), {mode.model, context.backend});
+    auto problems =
+        context.make.check_observer(params.component("observer"), {mode.model, context.backend});
     for (Diagnostic& d : problems) d.pointer = "/observer" + d.pointer;
     if (!problems.empty()) return problems;
   }
@@ -175,7 +197,9 @@ std::vector<Diagnostic> check_bank(const DiagnoserContext& context, const Params
 
 void add_diagnoser(Registrar& registrar, const std::string& name, const ParamSchema& schema,
                    decltype(DiagnoserEntry::check) check) {
-  registrar.diagnoser({{name, "a fake", "", schema}, std::move(check), [](const DiagnoserContext& context, const Params&) {
+  registrar.diagnoser({{name, "a fake", "", schema},
+                       std::move(check),
+                       [](const DiagnoserContext& context, const Params&) {
                          return std::make_unique<FakeDiagnoser>(context);
                        }});
 }
@@ -186,15 +210,21 @@ std::vector<Diagnostic> check_input(const DesignerContext& context, const Params
   std::vector<Diagnostic> problems;
   if (params.has("input_set") && params.set_form("input_set").dim() != inputs)
     problems.push_back({"/input_set", "has the wrong dimension", "use the number of inputs"});
-  if (params.has("u") && params.matrix("u").cols() != inputs) problems.push_back({"/u", "has the wrong width", "a row per time"});
-  if (!context.backend->info().unbounded) problems.push_back({"", "needs lines, which the backend has not", "use line_zonotope"});
+  if (params.has("u") && params.matrix("u").cols() != inputs)
+    problems.push_back({"/u", "has the wrong width", "a row per time"});
+  if (!context.backend->info().unbounded)
+    problems.push_back({"", "needs lines, which the backend has not", "use line_zonotope"});
   return problems;
 }
 
 void add_designers(Registrar& registrar) {
-  const auto create = [](const DesignerContext& context, const Params&) { return std::make_unique<FakeDesigner>(context); };
+  const auto create = [](const DesignerContext& context, const Params&) {
+    return std::make_unique<FakeDesigner>(context);
+  };
   ParamSchema search;
-  search.integer("horizon", "N", 3, 0, 1000).real("epsilon", "separation", 1e-4, 0, 1).set("input_set", "of each time");
+  search.integer("horizon", "N", 3, 0, 1000)
+      .real("epsilon", "separation", 1e-4, 0, 1)
+      .set("input_set", "of each time");
   search.matrix("weights", "a row per time").choice("outputs", "which", {"all", "last"}, "all");
   registrar.designer({{"search", "a fake", "", search}, check_input, create});
   ParamSchema given;
@@ -207,10 +237,13 @@ void add_metric(Registrar& registrar, const std::string& name, const ParamSchema
     std::vector<Diagnostic> problems;
     const Index states = context.model.linear.states();
     if (params.has("level") && params.real("level") == 0.75)
-      problems.push_back({"/level", "is not known of " + std::to_string(states) + " states", "give another one"});
+      problems.push_back(
+          {"/level", "is not known of " + std::to_string(states) + " states", "give another one"});
     return problems;
   };
-  registrar.metric({{name, "a fake", "", schema}, [](const Params&) { return std::make_unique<FakeMetric>(); }, check});
+  registrar.metric({{name, "a fake", "", schema},
+                    [](const Params&) { return std::make_unique<FakeMetric>(); },
+                    check});
 }
 
 }  // namespace
@@ -226,31 +259,42 @@ void register_fakes(Registrar& registrar) {
       .flag("static_at_start", "use the static rows at k = 0", true);
   add_observer(registrar, "descriptor", descriptor);
   ParamSchema kinds;
-  kinds.integer("order", "a number", {}, 1, 9).real("weight", "a weight", 0.1, 0, 1).flag("fast", "or not", false);
-  kinds.choice("norm", "which one", {"one", "two"}, "one").vector("poles", "poles").matrix("gain", "a gain").required();
+  kinds.integer("order", "a number", {}, 1, 9)
+      .real("weight", "a weight", 0.1, 0, 1)
+      .flag("fast", "or not", false);
+  kinds.choice("norm", "which one", {"one", "two"}, "one")
+      .vector("poles", "poles")
+      .matrix("gain", "a gain")
+      .required();
   kinds.set("safe_set", "a set").text("note", "any text", "none");
   add_observer(registrar, "all_kinds", kinds);
   add_luenberger(registrar);
   add_gains(registrar);
-  for (const char* name : {"radius", "volume", "contains_truth", "complexity", "step_time", "tightness"})
+  for (const char* name :
+       {"radius", "volume", "contains_truth", "complexity", "step_time", "tightness"})
     add_metric(registrar, name);
   ParamSchema bank;
   bank.component("observer", "of every mode", "observer").required();
-  bank.matrices("gains", "one per mode").integer("waiting_time", "in steps", {}, 1, 1000000).required();
+  bank.matrices("gains", "one per mode")
+      .integer("waiting_time", "in steps", {}, 1, 1000000)
+      .required();
   add_diagnoser(registrar, "observer_bank", bank, check_bank);
   ParamSchema committee;
   committee.component("member", "the one that is asked", "diagnoser");
   add_diagnoser(registrar, "committee", committee, nullptr);
   registrar.diagnoser({{"fault_filter", "a fake", "", {}},
                        nullptr,
-                       [](const DiagnoserContext& context, const Params&) { return std::make_unique<FakeDiagnoser>(context); },
+                       [](const DiagnoserContext& context, const Params&) {
+                         return std::make_unique<FakeDiagnoser>(context);
+                       },
                        true,
                        false});
   add_designers(registrar);
   ParamSchema reactor;
   reactor.real("tempo", "of the reaction", 0.25, 0, 1);
-  registrar.plant({{"reactor", "a fake", "", reactor},
-                   [](const Params& params) { return std::make_unique<FakePlant>(params.real("tempo")); }});
+  registrar.plant({{"reactor", "a fake", "", reactor}, [](const Params& params) {
+                     return std::make_unique<FakePlant>(params.real("tempo"));
+                   }});
   ParamSchema quantile;
   quantile.real("level", "between 0 and 1", {}, 0, 1).required();
   add_metric(registrar, "quantile", quantile);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Components with the names and parameters of the shipped plugins that do nothing: reading a study needs no algorithm. And
-// helpers to read studies from texts.
+// Components with the names and parameters of the shipped plugins that do nothing: reading a study
+// needs no algorithm. And helpers to read studies from texts.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,14 @@
 
 namespace study_test {
 
-/// Backends interval, zonotope, constrained_zonotope, line_zonotope; observers prediction_correction, descriptor and `all_kinds`
-/// (one parameter of every kind); the metrics of the shipped plugin and `quantile` with a required parameter; the diagnosers
-/// `observer_bank` (with an observer inside), `committee` (with a diagnoser inside) and `fault_filter` (for additive faults); the
-/// observer `luenberger` with a gain that may be written as a matrix, the gains `given` and `optimal`; the plant `reactor` with
-/// two states, two inputs and one output; the designers `search` and `given`. All observers but `descriptor`, and `fault_filter`,
-/// take uncertain models.
+/// Backends interval, zonotope, constrained_zonotope, line_zonotope; observers
+/// prediction_correction, descriptor and `all_kinds` (one parameter of every kind); the metrics of
+/// the shipped plugin and `quantile` with a required parameter; the diagnosers `observer_bank`
+/// (with an observer inside), `committee` (with a diagnoser inside) and `fault_filter` (for
+/// additive faults); the observer `luenberger` with a gain that may be written as a matrix, the
+/// gains `given` and `optimal`; the plant `reactor` with two states, two inputs and one output; the
+/// designers `search` and `given`. All observers but `descriptor`, and `fault_filter`, take
+/// uncertain models.
 void register_fakes(cordon::Registrar& registrar);
 
 /// A valid study, one member per line, in which the tests exchange pieces.
@@ -34,7 +36,8 @@ extern const char* const design_study;
 /// The same with a sweep over generators (of two of three pipelines), a bound of W, and seeds.
 extern const char* const sweep_study;
 
-/// `text` with its only occurrence of `from` exchanged. Throws std::logic_error if there is none or more than one.
+/// `text` with its only occurrence of `from` exchanged. Throws std::logic_error if there is none or
+/// more than one.
 std::string exchanged(std::string text, const std::string& from, const std::string& to);
 
 /// Reads a text as a study with the fake components.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever the bytes of a study are: it is read, or refused with a cordon::Error that has its problems.
+// Whatever the bytes of a study are: it is read, or refused with a cordon::Error that has its
+// problems.
 #include <random>
 
 #include <doctest/doctest.h>
@@ -25,7 +26,8 @@ void read_last_point(const Study& study, const Registry& registry) {
   }
 }
 
-/// Reads a damaged study; true if it was still valid. Any other exception than the two kinds fails the test.
+/// Reads a damaged study; true if it was still valid. Any other exception than the two kinds fails
+/// the test.
 bool survives(const Scratch& scratch, const std::string& text) {
   Registry registry;
   registry.add(register_fakes);
@@ -62,15 +64,18 @@ const std::vector<std::string> tokens = {"{",         "}",
 
 TEST_CASE("truncated at every byte") {
   const Scratch scratch;
-  for (const std::string text : {valid_study, diagnosis_study, uncertain_study, study_test::design_study, sweep_study}) {
-    for (std::size_t size = 0; size + 2 < text.size(); ++size) CHECK_FALSE(survives(scratch, text.substr(0, size)));
+  for (const std::string text :
+       {valid_study, diagnosis_study, uncertain_study, study_test::design_study, sweep_study}) {
+    for (std::size_t size = 0; size + 2 < text.size(); ++size)
+      CHECK_FALSE(survives(scratch, text.substr(0, size)));
   }
 }
 
 TEST_CASE("random bytes and tokens exchanged") {
   const Scratch scratch;
   CHECK(rc::check("damaged studies", [&] {
-    std::string text = *rc::gen::element(valid_study, diagnosis_study, uncertain_study, study_test::design_study, sweep_study);
+    std::string text = *rc::gen::element(valid_study, diagnosis_study, uncertain_study,
+                                         study_test::design_study, sweep_study);
     for (int edits = *rc::gen::inRange(1, 6); edits > 0; --edits) {
       const auto at = *rc::gen::inRange<std::size_t>(0, text.size());
       switch (*rc::gen::inRange(0, 4)) {
@@ -84,7 +89,8 @@ TEST_CASE("random bytes and tokens exchanged") {
           text.insert(at, *rc::gen::elementOf(tokens));
           break;
         default:
-          text.insert(at, text.substr(*rc::gen::inRange<std::size_t>(0, text.size()), *rc::gen::inRange<std::size_t>(1, 60)));
+          text.insert(at, text.substr(*rc::gen::inRange<std::size_t>(0, text.size()),
+                                      *rc::gen::inRange<std::size_t>(1, 60)));
       }
       if (text.empty()) text = "{";
     }
@@ -96,9 +102,11 @@ TEST_CASE("every value exchanged for every token") {
   const Scratch scratch;
   int valid = 0, refused = 0;
   std::mt19937_64 random(99);
-  for (const std::string text : {valid_study, diagnosis_study, uncertain_study, study_test::design_study, sweep_study}) {
+  for (const std::string text :
+       {valid_study, diagnosis_study, uncertain_study, study_test::design_study, sweep_study}) {
     for (std::size_t at = 0; at < text.size(); ++at) {
-      const bool starts = text[at] == '[' || text[at] == '{' || text[at] == '"' || (text[at] >= '0' && text[at] <= '9');
+      const bool starts = text[at] == '[' || text[at] == '{' || text[at] == '"' ||
+                          (text[at] >= '0' && text[at] <= '9');
       if (!starts) continue;
       std::size_t end = at + 1;
       if (text[at] == '"') end = text.find('"', at + 1) + 1;
@@ -125,7 +133,10 @@ TEST_CASE("sizes beyond the limits are refused before memory is asked for") {
   rows += many + "]";
   CHECK_FALSE(survives(scratch, exchanged(valid_study, "[[0.5, 1], [0, 2]]", rows)));
   CHECK_FALSE(survives(scratch, exchanged(valid_study, "[[0.5, 1], [0, 2]]", "[" + many + "]")));
-  CHECK_FALSE(survives(scratch, exchanged(valid_study, "\"lower\": [-1, -1, -1]", "\"lower\": " + many)));
-  CHECK_FALSE(survives(scratch, exchanged(valid_study, "\"a study\"", "\"" + std::string(1 << 20, 'x') + "\"")));
-  CHECK_FALSE(survives(scratch, exchanged(valid_study, "\"title\"", "\"" + std::string(1 << 20, '/') + "\"")));
+  CHECK_FALSE(
+      survives(scratch, exchanged(valid_study, "\"lower\": [-1, -1, -1]", "\"lower\": " + many)));
+  CHECK_FALSE(survives(
+      scratch, exchanged(valid_study, "\"a study\"", "\"" + std::string(1 << 20, 'x') + "\"")));
+  CHECK_FALSE(survives(
+      scratch, exchanged(valid_study, "\"title\"", "\"" + std::string(1 << 20, '/') + "\"")));
 }

@@ -28,7 +28,8 @@ nlohmann::json converted(const Value& value) {
     }
     case Value::Kind::object: {
       nlohmann::json object = nlohmann::json::object();
-      for (std::size_t i = 0; i < value.items().size(); ++i) object[value.keys()[i]] = converted(value.items()[i]);
+      for (std::size_t i = 0; i < value.items().size(); ++i)
+        object[value.keys()[i]] = converted(value.items()[i]);
       return object;
     }
     default:
@@ -43,7 +44,8 @@ std::string sole_problem(const std::string& text) {
   return problems.sorted()[0].message;
 }
 
-const std::string sample = R"({"a": [1, -2.5e-3, 0, -0, 1E+2, 5e-324], "text": "q\"\\\/\b\f\n\r\t\u00e9\ud83d\ude00 é€😀",
+const std::string sample =
+    R"({"a": [1, -2.5e-3, 0, -0, 1E+2, 5e-324], "text": "q\"\\\/\b\f\n\r\t\u00e9\ud83d\ude00 é€😀",
   "empty": [[], {}, ""], "t": true, "f": false, "n": null, "nested": {"a/b": {"~": [[[[]]]]}}})";
 
 }  // namespace
@@ -74,7 +76,8 @@ TEST_CASE("after random damage, what is accepted and what it means agree with an
     for (const auto& d : problems.sorted()) reasons.push_back(d.message);
     bool ours_only = false;  // stricter or kinder than the other parser on purpose
     for (const auto& r : reasons)
-      ours_only = ours_only || r.find("repeated") != std::string::npos || r.find("range of double") != std::string::npos;
+      ours_only = ours_only || r.find("repeated") != std::string::npos ||
+                  r.find("range of double") != std::string::npos;
     if (ours_only) continue;
     CAPTURE(text);
     const nlohmann::json other = nlohmann::json::parse(text, nullptr, false);
@@ -90,7 +93,8 @@ TEST_CASE("after random damage, what is accepted and what it means agree with an
 TEST_CASE("every value knows its line, for every line break") {
   for (const std::string end : {"\n", "\r\n"}) {
     Problems problems;
-    const Value root = parse("{" + end + "\"a\": 1," + end + end + "\"b\": [" + end + "2, \"x\"" + end + "]}", problems);
+    const Value root = parse(
+        "{" + end + "\"a\": 1," + end + end + "\"b\": [" + end + "2, \"x\"" + end + "]}", problems);
     REQUIRE_FALSE(problems.any());
     CHECK(root.line == 1);
     CHECK(root.find("a")->line == 2);
@@ -112,7 +116,8 @@ TEST_CASE("nesting is limited to 64 levels") {
   Problems problems;
   parse(std::string(64, '[') + std::string(64, ']'), problems);
   CHECK_FALSE(problems.any());
-  CHECK(sole_problem(std::string(65, '[') + std::string(65, ']')).find("deeper than 64") != std::string::npos);
+  CHECK(sole_problem(std::string(65, '[') + std::string(65, ']')).find("deeper than 64") !=
+        std::string::npos);
   CHECK(sole_problem(std::string(1'000'000, '[')).find("deeper than 64") != std::string::npos);
   std::string objects;
   for (int i = 0; i < 100'000; ++i) objects += "{\"a\":";
@@ -120,8 +125,8 @@ TEST_CASE("nesting is limited to 64 levels") {
 }
 
 TEST_CASE("text that is not UTF-8 is refused with its place") {
-  for (const char* bad :
-       {"\xff", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80", "\x80", "\xe2\x82"}) {
+  for (const char* bad : {"\xff", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80",
+                          "\xf8\x88\x80\x80\x80", "\x80", "\xe2\x82"}) {
     Problems problems;
     CHECK(parse(std::string("{\n\"é") + bad + "\": 1}", problems).kind == Value::Kind::broken);
     REQUIRE(problems.count() == 1);
@@ -138,7 +143,8 @@ TEST_CASE("numbers beyond double are refused, the smallest and the largest are k
   CHECK(list.items()[1].number == std::numeric_limits<double>::min());
   CHECK(std::signbit(list.items()[2].number));
   CHECK(sole_problem("[1e309]").find("range of double") != std::string::npos);
-  CHECK(sole_problem("[-1" + std::string(400, '0') + "]").find("range of double") != std::string::npos);
+  CHECK(sole_problem("[-1" + std::string(400, '0') + "]").find("range of double") !=
+        std::string::npos);
 }
 
 TEST_CASE("the list of problems is bounded and says what it leaves out") {

@@ -13,7 +13,8 @@ namespace {
 
 int line_of(const std::string& text, const std::string& piece) {
   const std::size_t at = text.find(piece);
-  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+  return 1 + static_cast<int>(
+                 std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
 }  // namespace
@@ -24,7 +25,8 @@ void expect_reported(const std::string& study, const Mistake& mistake) {
   const auto problems = problems_of(text);
   REQUIRE(!problems.empty());
   if (problems.size() > 1)
-    CHECK(problems[0].pointer + " and " + problems[1].pointer + ": " + problems[1].message == mistake.pointer);
+    CHECK(problems[0].pointer + " and " + problems[1].pointer + ": " + problems[1].message ==
+          mistake.pointer);
   CHECK(problems[0].pointer == mistake.pointer);
   CAPTURE(problems[0].message);
   CAPTURE(problems[0].suggestion);

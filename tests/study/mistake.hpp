@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One mistake in a study that is otherwise valid: exactly one problem is reported, at its place, with its reason and mend.
+// One mistake in a study that is otherwise valid: exactly one problem is reported, at its place,
+// with its reason and mend.
 #pragma once
 
 #include <string>

@@ -82,7 +82,8 @@ TEST_CASE("a small system takes its defaults: identities, zeros, the whole space
 }
 
 TEST_CASE("a system may be free of disturbances and noise") {
-  const Study study = read_text(R"({"cordon": 1, "system": {"type": "lti", "A": [[1]], "Bw": [[]], "C": [[1]], "Dv": [[]]},
+  const Study study = read_text(
+      R"({"cordon": 1, "system": {"type": "lti", "A": [[1]], "Bw": [[]], "C": [[1]], "Dv": [[]]},
     "data": {"simulate": {"steps": 3}}, "pipelines": [{"backend": "zonotope", "observer": "prediction_correction"}]})");
   CHECK(study.model.linear.disturbances() == 0);
   CHECK(study.model.linear.noises() == 0);
@@ -92,11 +93,12 @@ TEST_CASE("a system may be free of disturbances and noise") {
 }
 
 TEST_CASE("all signals and their defaults") {
-  std::string text = exchanged(valid_study, "\"B\": [[1], [0]]", "\"B\": [[1,0,0,0,0,0], [0,0,0,0,0,1]]");
+  std::string text =
+      exchanged(valid_study, "\"B\": [[1], [0]]", "\"B\": [[1,0,0,0,0,0], [0,0,0,0,0,1]]");
   text = exchanged(text, "\"D\": [[0.25]]", "\"$comment\": 0");
-  text =
-      exchanged(text, "{\"type\": \"sine\", \"amplitude\": 1, \"omega\": 0.5}",
-                R"({"type": "constant", "offset": 2}, {"type": "cosine", "amplitude": -1, "omega": 3, "phase": 0.1, "offset": 4},
+  text = exchanged(
+      text, "{\"type\": \"sine\", \"amplitude\": 1, \"omega\": 0.5}",
+      R"({"type": "constant", "offset": 2}, {"type": "cosine", "amplitude": -1, "omega": 3, "phase": 0.1, "offset": 4},
        {"type": "step", "amplitude": 5, "from": 6}, {"type": "square", "amplitude": 1, "period": 8},
        {"type": "prbs", "amplitude": 2}, {"type": "table", "values": [1, 0.1, -3]})");
   const Study study = read_text(text);
@@ -118,7 +120,8 @@ TEST_CASE("the resolved text reads back as an equal study") {
   expect_round_trip(study, scratch.path());
   const auto json = nlohmann::json::parse(study.resolved);
   CHECK(json["pipelines"][0]["observer"]["max_constraints"] == 20);
-  CHECK(json["pipelines"][1]["observer"]["initial_set"] == nlohmann::json({{"type", "space"}, {"dim", 2}}));
+  CHECK(json["pipelines"][1]["observer"]["initial_set"] ==
+        nlohmann::json({{"type", "space"}, {"dim", 2}}));
   CHECK(json["system"]["W"]["type"] == "zonotope");
   // every kind of parameter and awkward numbers
   const std::string awkward = exchanged(
@@ -134,19 +137,25 @@ TEST_CASE("the resolved text of a diagnosis reads back as an equal study") {
   CHECK(study.modes.size() == 4);
   expect_round_trip(study, scratch.path());
   const auto json = nlohmann::json::parse(study.resolved);
-  CHECK(json["system"]["modes"][0] == nlohmann::json({{"name", "weak"}, {"actuator", {0.3, {0.1, 0.7}}}}));
-  CHECK(json["data"]["simulate"]["faults"][1] == nlohmann::json({{"mode", "deaf"}, {"from", 6}, {"to", 9}}));
+  CHECK(json["system"]["modes"][0] ==
+        nlohmann::json({{"name", "weak"}, {"actuator", {0.3, {0.1, 0.7}}}}));
+  CHECK(json["data"]["simulate"]["faults"][1] ==
+        nlohmann::json({{"mode", "deaf"}, {"from", 6}, {"to", 9}}));
   CHECK(json["pipelines"][0]["diagnoser"]["observer"]["max_constraints"] == 20);
-  expect_round_trip(read_text(exchanged(diagnosis_study, "\"steps\": 20", "\"steps\": 20, \"plant\": \"reactor\"")),
+  expect_round_trip(read_text(exchanged(diagnosis_study, "\"steps\": 20",
+                                        "\"steps\": 20, \"plant\": \"reactor\"")),
                     scratch.path());
   // awkward numbers, lists of matrices, components in components, the default name of a fault
-  std::string awkward = exchanged(diagnosis_study, "[0.3, [0.1, 0.7]]", "[0.30000000000000004, [5e-324, 0.7]]");
-  awkward = exchanged(awkward, "\"actuator\": [0.3, [0.2, 0.5]]", "\"actuator\": [0.30000000000000004, 5e-324]");
-  awkward = exchanged(awkward, "\"waiting_time\": 12", "\"waiting_time\": 12, \"gains\": [[[0.1], [-0.0]], [], [[1e-308, 3]]]");
+  std::string awkward =
+      exchanged(diagnosis_study, "[0.3, [0.1, 0.7]]", "[0.30000000000000004, [5e-324, 0.7]]");
+  awkward = exchanged(awkward, "\"actuator\": [0.3, [0.2, 0.5]]",
+                      "\"actuator\": [0.30000000000000004, 5e-324]");
+  awkward = exchanged(awkward, "\"waiting_time\": 12",
+                      "\"waiting_time\": 12, \"gains\": [[[0.1], [-0.0]], [], [[1e-308, 3]]]");
   awkward = exchanged(awkward, "\"name\": \"both\", ", "\"to\": 13, ");
-  awkward =
-      exchanged(awkward, "\"observer\": \"prediction_correction\"",
-                "\"diagnoser\": {\"type\": \"committee\", \"member\": {\"type\": \"committee\", \"member\": \"committee\"}}");
+  awkward = exchanged(awkward, "\"observer\": \"prediction_correction\"",
+                      "\"diagnoser\": {\"type\": \"committee\", \"member\": {\"type\": "
+                      "\"committee\", \"member\": \"committee\"}}");
   expect_round_trip(read_text(awkward), scratch.path());
 }
 
@@ -162,10 +171,12 @@ TEST_CASE("the resolved text does not depend on order, spacing or spelling of th
   CHECK(read_text(one).resolved == read_text(other).resolved);
 }
 
-TEST_CASE("all problems of a file come together, in the order of their lines, without consequences") {
+TEST_CASE(
+    "all problems of a file come together, in the order of their lines, without consequences") {
   std::string text = exchanged(valid_study, "\"cordon\": 1", "\"cordon\": 3");
-  text = exchanged(text, "\"A\": [[0.5, 1], [0, 2]]",
-                   "\"A\": [[0.5, 1], [0, 2], [3]]");  // the number of states is unknown from here on
+  text =
+      exchanged(text, "\"A\": [[0.5, 1], [0, 2]]",
+                "\"A\": [[0.5, 1], [0, 2], [3]]");  // the number of states is unknown from here on
   text = exchanged(text, "\"B\": [[1], [0]]", "\"B\": [[1], [0], [4], [5]]");
   text = exchanged(text, "\"steps\": 20", "\"step\": 20");
   text = exchanged(text, "\"max_generators\": 30", "\"max_generatrs\": 30, \"max_generatrs\": 31");
@@ -174,17 +185,21 @@ TEST_CASE("all problems of a file come together, in the order of their lines, wi
   const auto problems = problems_of(text);
   std::vector<std::string> pointers;
   for (const Diagnostic& d : problems) pointers.push_back(d.pointer);
-  CHECK(pointers == std::vector<std::string>{"/cordon", "/system/A/2", "/data/simulate/steps", "/data/simulate/step",
-                                             "/pipelines/0/observer/max_generatrs", "/pipelines/0/observer/max_generatrs",
+  CHECK(pointers == std::vector<std::string>{"/cordon", "/system/A/2", "/data/simulate/steps",
+                                             "/data/simulate/step",
+                                             "/pipelines/0/observer/max_generatrs",
+                                             "/pipelines/0/observer/max_generatrs",
                                              "/pipelines/1/backend", "/metrics/0"});
   for (std::size_t i = 1; i < problems.size(); ++i) CHECK(problems[i - 1].line <= problems[i].line);
 }
 
 TEST_CASE("the printed text names file, place, line, reason and mend") {
   const Scratch scratch;
-  const auto file = scratch.write("s.json", exchanged(valid_study, "\"max_generators\"", "\"max_generatrs\""));
+  const auto file =
+      scratch.write("s.json", exchanged(valid_study, "\"max_generators\"", "\"max_generatrs\""));
   CHECK(message_of(file) == file.string() +
-                                ": 1 error\n  /pipelines/0/observer/max_generatrs (line 30): unknown parameter of observer "
+                                ": 1 error\n  /pipelines/0/observer/max_generatrs (line 30): "
+                                "unknown parameter of observer "
                                 "\"descriptor\"; did you mean "
                                 "\"max_generators\"?");
 }
@@ -193,27 +208,34 @@ TEST_CASE("files that cannot be read") {
   const Scratch scratch;
   CHECK(message_of(scratch.path() / "none.json").find("no such file") != std::string::npos);
   CHECK(message_of(scratch.path()).find("is a directory") != std::string::npos);
-  CHECK(message_of(scratch.write("empty.json", "")).find("column 1: a value is missing: the file ends here") !=
+  CHECK(message_of(scratch.write("empty.json", ""))
+            .find("column 1: a value is missing: the file ends here") != std::string::npos);
+  CHECK(message_of(scratch.write("list.json", "[]")).find("is a list, must be an object") !=
         std::string::npos);
-  CHECK(message_of(scratch.write("list.json", "[]")).find("is a list, must be an object") != std::string::npos);
   CHECK(message_of("/dev/zero").find("regular file") != std::string::npos);
 }
 
 TEST_CASE("byte order mark and line breaks of other systems") {
   std::string text = valid_study;
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.replace(at, 1, "\r\n");
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2)
+    text.replace(at, 1, "\r\n");
   CHECK(read_text("\xEF\xBB\xBF" + text).resolved == read_text(valid_study).resolved);
 }
 
 TEST_CASE("recorded data: the file is looked for beside the study") {
   const Scratch scratch;
   const std::string from =
-      "\"simulate\": {\n\"steps\": 20,\n\"seed\": 7,\n\"noise\": \"vertex\",\n\"x0\": [0.5, 0.25],\n\"input\": [{\"type\": "
+      "\"simulate\": {\n\"steps\": 20,\n\"seed\": 7,\n\"noise\": \"vertex\",\n\"x0\": [0.5, "
+      "0.25],\n\"input\": [{\"type\": "
       "\"sine\", \"amplitude\": 1, \"omega\": 0.5}]\n}";
-  const auto with = [&](const std::string& csv) { return exchanged(valid_study, from, "\"csv\": " + csv); };
+  const auto with = [&](const std::string& csv) {
+    return exchanged(valid_study, from, "\"csv\": " + csv);
+  };
   scratch.write("d.csv", "a,b\n");
-  const Study study = read_file(
-      scratch.write("s.json", with(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "truth": ["x", "y"], "mode": "m"})")));
+  const Study study = read_file(scratch.write(
+      "s.json",
+      with(
+          R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "truth": ["x", "y"], "mode": "m"})")));
   const auto& csv = std::get<CsvSpec>(study.data);
   CHECK(csv.file == scratch.path() / "d.csv");
   CHECK(csv.truth == std::vector<std::string>{"x", "y"});
@@ -221,37 +243,42 @@ TEST_CASE("recorded data: the file is looked for beside the study") {
   expect_round_trip(study, scratch.path());
   CHECK(nlohmann::json::parse(study.resolved)["data"]["csv"]["file"] == "d.csv");
 
-  const auto expect = [&](const std::string& csv_text, const std::string& pointer, const std::string& message) {
+  const auto expect = [&](const std::string& csv_text, const std::string& pointer,
+                          const std::string& message) {
     CAPTURE(csv_text);
     const std::string what = message_of(scratch.write("s.json", with(csv_text)));
     CHECK(what.find(": 1 error\n  " + pointer + " (line ") != std::string::npos);
     CHECK(what.find(message) != std::string::npos);
   };
-  expect(R"({"file": "e.csv", "inputs": ["a"], "outputs": ["b"]})", "/data/csv/file", "no such file");
+  expect(R"({"file": "e.csv", "inputs": ["a"], "outputs": ["b"]})", "/data/csv/file",
+         "no such file");
   expect(R"({"file": ".", "inputs": ["a"], "outputs": ["b"]})", "/data/csv/file", "is a directory");
   expect(R"({"inputs": ["a"], "outputs": ["b"]})", "/data/csv/file", "is missing");
   expect(R"({"file": "d.csv", "outputs": ["b"]})", "/data/csv/inputs", "is missing");
   expect(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b", "c"]})", "/data/csv/outputs",
          "names 2 columns, must name 1 like the rows of /system/C");
-  expect(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "truth": ["x", "x"]})", "/data/csv/truth/1",
-         "repeats the column");
-  expect(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "mode": ["m"]})", "/data/csv/mode", "is a list, must be a text");
-  expect(R"({"file": "d.csv", "inputs": ["a"], "outputs": "b"})", "/data/csv/outputs", "is a text, must be a list");
+  expect(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "truth": ["x", "x"]})",
+         "/data/csv/truth/1", "repeats the column");
+  expect(R"({"file": "d.csv", "inputs": ["a"], "outputs": ["b"], "mode": ["m"]})", "/data/csv/mode",
+         "is a list, must be a text");
+  expect(R"({"file": "d.csv", "inputs": ["a"], "outputs": "b"})", "/data/csv/outputs",
+         "is a text, must be a list");
 }
 
 TEST_CASE("a component of a refused plugin is a problem of the installation") {
   const Scratch scratch;
   std::filesystem::create_directory(scratch.path() / "plug");
   std::ofstream(scratch.path() / "plug" / "ellipsoid.so") << "not a library";
-  const std::string with_plugins = exchanged(valid_study, "\"title\": \"a study\"", "\"plugins\": [\"plug\"]");
+  const std::string with_plugins =
+      exchanged(valid_study, "\"title\": \"a study\"", "\"plugins\": [\"plug\"]");
 
   const Study unaffected = read_file(scratch.write("s.json", with_plugins));
   REQUIRE(unaffected.warnings.size() == 1);
   CHECK(unaffected.warnings[0].find("ellipsoid.so was refused") != std::string::npos);
   expect_round_trip(unaffected, scratch.path());
 
-  const std::string needs_it =
-      exchanged(with_plugins, "\"type\": \"zonotope\", \"strip\": \"volume\"", "\"type\": \"ellipsoid\"");
+  const std::string needs_it = exchanged(
+      with_plugins, "\"type\": \"zonotope\", \"strip\": \"volume\"", "\"type\": \"ellipsoid\"");
   try {
     read_file(scratch.write("s.json", needs_it));
     FAIL("no error");
@@ -262,7 +289,8 @@ TEST_CASE("a component of a refused plugin is a problem of the installation") {
     CHECK(what.find("ellipsoid.so was refused") != std::string::npos);
   }
   // together with a mistake of the file it is one of the problems
-  const std::string what = message_of(scratch.write("s.json", exchanged(needs_it, "\"radius\"", "\"radus\"")));
+  const std::string what =
+      message_of(scratch.write("s.json", exchanged(needs_it, "\"radius\"", "\"radus\"")));
   CHECK(what.find("2 errors") != std::string::npos);
   CHECK(what.find("ellipsoid.so was refused") != std::string::npos);
 }
@@ -283,11 +311,13 @@ TEST_CASE("without any plugin the installation is at fault, told once per kind")
 }
 
 TEST_CASE("the examples are valid, and their resolved texts read back") {
-  const std::filesystem::path folder = std::filesystem::path(CORDON_SOURCE_DIR) / "examples/studies";
+  const std::filesystem::path folder =
+      std::filesystem::path(CORDON_SOURCE_DIR) / "examples/studies";
   const Scratch scratch;
   std::filesystem::copy(folder, scratch.path(), std::filesystem::copy_options::recursive);
   int studies = 0;
-  for (const char* name : {"descriptor_four_representations.json", "linear_two_states.json", "recorded_walk.json"}) {
+  for (const char* name :
+       {"descriptor_four_representations.json", "linear_two_states.json", "recorded_walk.json"}) {
     CAPTURE(name);
     const Study study = read_file(scratch.path() / name);
     CHECK(study.pipelines.size() == 4);
@@ -299,7 +329,8 @@ TEST_CASE("the examples are valid, and their resolved texts read back") {
 }
 
 TEST_CASE("the recorded walk keeps its bounds") {
-  std::ifstream csv(std::filesystem::path(CORDON_SOURCE_DIR) / "examples/studies/recorded_walk.csv");
+  std::ifstream csv(std::filesystem::path(CORDON_SOURCE_DIR) /
+                    "examples/studies/recorded_walk.csv");
   std::string line;
   std::getline(csv, line);
   CHECK(line == "k,px_m,py_m,vx_mps,vy_mps,zx_m,zy_m");
@@ -316,7 +347,8 @@ TEST_CASE("the recorded walk keeps its bounds") {
     CHECK(std::abs(rows[k][6] - rows[k][2]) <= 0.1);
     if (k == 0) continue;
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      const double p = rows[k - 1][1 + axis], v = rows[k - 1][3 + axis], a = (rows[k][3 + axis] - v) / 0.4;
+      const double p = rows[k - 1][1 + axis], v = rows[k - 1][3 + axis],
+                   a = (rows[k][3 + axis] - v) / 0.4;
       CHECK(std::abs(a) <= 0.6);
       CHECK(std::abs(p + 0.4 * v + 0.08 * a - rows[k][1 + axis]) < 1e-12);
     }
@@ -344,14 +376,19 @@ TEST_CASE("the JSON Schema knows sections, components and limits") {
   CHECK(descriptor["properties"]["initial_set"]["$ref"] == "#/$defs/set");
   CHECK(descriptor["additionalProperties"] == false);
   CHECK(descriptor["required"] == nlohmann::json({"type"}));
-  CHECK(find(defs["observer"]["oneOf"], "all_kinds")["required"] == nlohmann::json({"type", "gain"}));
-  CHECK(find(defs["backend"]["oneOf"], "zonotope")["properties"]["strip"]["enum"] == nlohmann::json({"segments", "volume"}));
+  CHECK(find(defs["observer"]["oneOf"], "all_kinds")["required"] ==
+        nlohmann::json({"type", "gain"}));
+  CHECK(find(defs["backend"]["oneOf"], "zonotope")["properties"]["strip"]["enum"] ==
+        nlohmann::json({"segments", "volume"}));
   CHECK(defs["metric"]["oneOf"].back()["enum"] ==
-        nlohmann::json({"complexity", "contains_truth", "radius", "step_time", "tightness", "volume"}));
-  CHECK(find(defs["system"]["oneOf"], "descriptor")["required"] == nlohmann::json({"type", "E", "A", "C"}));
+        nlohmann::json(
+            {"complexity", "contains_truth", "radius", "step_time", "tightness", "volume"}));
+  CHECK(find(defs["system"]["oneOf"], "descriptor")["required"] ==
+        nlohmann::json({"type", "E", "A", "C"}));
   CHECK(defs["set"]["oneOf"].size() == 9);  // eight types, the polytope in two forms
   CHECK(defs["signal"]["oneOf"].size() == 7);
-  CHECK(find(defs["system"]["oneOf"], "lti")["properties"]["modes"]["items"]["$ref"] == "#/$defs/mode");
+  CHECK(find(defs["system"]["oneOf"], "lti")["properties"]["modes"]["items"]["$ref"] ==
+        "#/$defs/mode");
   CHECK_FALSE(find(defs["mode_system"]["oneOf"], "lti")["properties"].contains("modes"));
   CHECK(defs["mode"]["required"] == nlohmann::json({"name"}));
   CHECK(defs["fault"]["oneOf"].size() == 2);

@@ -41,10 +41,12 @@ std::string with_axis(const std::string& path, const std::string& values) {
 }
 
 /// A study without its sweep, and with values written by hand.
-std::string by_hand(const std::string& text, const std::vector<std::pair<std::string, std::string>>& written) {
+std::string by_hand(const std::string& text,
+                    const std::vector<std::pair<std::string, std::string>>& written) {
   Json study = Json::parse(text);
   study.erase("sweep");
-  for (const auto& [pointer, value] : written) study[Json::json_pointer(pointer)] = Json::parse(value);
+  for (const auto& [pointer, value] : written)
+    study[Json::json_pointer(pointer)] = Json::parse(value);
   return study.dump();
 }
 
@@ -66,7 +68,8 @@ void expect_points_round_trip(const Read& read) {
   for (std::size_t axis = 0; axis < at.size();) {
     CAPTURE(at);
     expect_same(read.at(at), again.at(at));
-    for (axis = 0; axis < at.size() && ++at[axis] == read.study.sweep[axis].values.size(); ++axis) at[axis] = 0;
+    for (axis = 0; axis < at.size() && ++at[axis] == read.study.sweep[axis].values.size(); ++axis)
+      at[axis] = 0;
   }
 }
 
@@ -102,8 +105,10 @@ TEST_CASE("a study without a sweep has one combination") {
 
 TEST_CASE("repeat, by default and as it is written") {
   const auto repeats = [](const std::string& text) { return Read(text).study.sweep[2].repeat; };
-  CHECK(repeats(with_axis("/data/simulate/input/0", "[{\"type\": \"prbs\", \"amplitude\": 1}]")) == false);
-  CHECK(repeats(exchanged(sweep_study, "\"range\": [1, 9, 4]", "\"range\": [1, 9], \"repeat\": false")) == false);
+  CHECK(repeats(with_axis("/data/simulate/input/0", "[{\"type\": \"prbs\", \"amplitude\": 1}]")) ==
+        false);
+  CHECK(repeats(exchanged(sweep_study, "\"range\": [1, 9, 4]",
+                          "\"range\": [1, 9], \"repeat\": false")) == false);
   CHECK(repeats(with_axis("/data/simulate/steps", "[5], \"repeat\": true")) == true);
   CHECK(repeats(with_axis("/data/simulate/seeds", "[5]")) == false);
 }
@@ -113,25 +118,30 @@ TEST_CASE("values keep their text in canonical form") {
     return Read(with_axis(path, list)).study.sweep[2].values;
   };
   CHECK(values("/data/simulate/steps", "[1e1, 20.0, 3]") == Values{"10", "20", "3"});
-  CHECK(values("/data/simulate/x0/1", "[0.1, 1e-7, -0.0, 0]") == Values{"0.1", "1e-07", "-0.0", "0"});
-  CHECK(values("/pipelines/0/backend", "[\"zonotope\", { \"type\" : \"zonotope\",\"$comment\":1 , \"strip\":\"volume\"}]") ==
-        Values{"\"zonotope\"", "{\"type\":\"zonotope\",\"strip\":\"volume\"}"});
+  CHECK(values("/data/simulate/x0/1", "[0.1, 1e-7, -0.0, 0]") ==
+        Values{"0.1", "1e-07", "-0.0", "0"});
+  CHECK(
+      values("/pipelines/0/backend",
+             "[\"zonotope\", { \"type\" : \"zonotope\",\"$comment\":1 , \"strip\":\"volume\"}]") ==
+      Values{"\"zonotope\"", "{\"type\":\"zonotope\",\"strip\":\"volume\"}"});
   const Read range(exchanged(sweep_study, "\"range\": [1, 9, 4]", "\"range\": [3, 9, 4]"));
   CHECK(range.study.sweep[2].values == Values{"3", "7"});
 }
 
 TEST_CASE("a point is the study with its values written by hand") {
   const Read read(sweep_study);
-  const std::vector<std::string> generators{"10", "20", "40"}, bounds{"1", "2.5"}, seeds{"1", "5", "9"};
+  const std::vector<std::string> generators{"10", "20", "40"}, bounds{"1", "2.5"},
+      seeds{"1", "5", "9"};
   CHECK(rc::check("points", [&] {
     const auto i = *rc::gen::inRange<std::size_t>(0, 3), j = *rc::gen::inRange<std::size_t>(0, 2),
                k = *rc::gen::inRange<std::size_t>(0, 3);
-    const std::string text =
-        by_hand(sweep_study,
-                {{"/pipelines/0/observer/max_generators", generators[i]},
-                 {"/pipelines/1/observer", "{\"type\": \"prediction_correction\", \"max_generators\": " + generators[i] + "}"},
-                 {"/system/W/upper/0", bounds[j]},
-                 {"/data/simulate/seed", seeds[k]}});
+    const std::string text = by_hand(
+        sweep_study,
+        {{"/pipelines/0/observer/max_generators", generators[i]},
+         {"/pipelines/1/observer",
+          "{\"type\": \"prediction_correction\", \"max_generators\": " + generators[i] + "}"},
+         {"/system/W/upper/0", bounds[j]},
+         {"/data/simulate/seed", seeds[k]}});
     const Study point = read.at({i, j, k}), written = read_text(text);
     RC_ASSERT(point.resolved == written.resolved);
     RC_ASSERT(same(point, written));
@@ -150,14 +160,17 @@ TEST_CASE("any number anywhere: a point is the study with its values written by 
                                         "/metrics/1/level"};
   CHECK(rc::check("numbers", [&] {
     const std::string place = *rc::gen::elementOf(places);
-    const auto number = *rc::gen::map(rc::gen::inRange(0, 1 << 20), [](int i) { return i / double(1 << 20); });
-    const std::string value = place.starts_with("/system/V") ? Json(-number).dump() : Json(number).dump();
+    const auto number =
+        *rc::gen::map(rc::gen::inRange(0, 1 << 20), [](int i) { return i / double(1 << 20); });
+    const std::string value =
+        place.starts_with("/system/V") ? Json(-number).dump() : Json(number).dump();
     const Read read(with_axis(place, "[0, " + (number == 0 ? "1" : value) + "]"));
     if (number == 0) return;
-    const std::string text =
-        by_hand(sweep_study, {{"/pipelines/0/observer/max_generators", "10"},
-                              {"/pipelines/1/observer", "{\"type\": \"prediction_correction\", \"max_generators\": 10}"},
-                              {place, value}});
+    const std::string text = by_hand(
+        sweep_study,
+        {{"/pipelines/0/observer/max_generators", "10"},
+         {"/pipelines/1/observer", "{\"type\": \"prediction_correction\", \"max_generators\": 10}"},
+         {place, value}});
     RC_ASSERT(read.at({0, 0, 1}).resolved == read_text(text).resolved);
     RC_ASSERT(read_text(read.study.resolved).resolved == read.study.resolved);
   }));
@@ -169,18 +182,26 @@ TEST_CASE("what paths lead into") {
     expect_points_round_trip(read);
     return read.at({0, 0, value});
   };
-  SUBCASE("a key that is absent") { CHECK(std::get<SimulateSpec>(third("/data/simulate/seeds", "[4, 7]", 1).data).seeds == 7); }
+  SUBCASE("a key that is absent") {
+    CHECK(std::get<SimulateSpec>(third("/data/simulate/seeds", "[4, 7]", 1).data).seeds == 7);
+  }
   SUBCASE("a whole section") {
-    const Study study = third("/data/simulate", "[{\"steps\": 9, \"input\": [{\"type\": \"constant\", \"offset\": 1}]}]", 0);
+    const Study study =
+        third("/data/simulate",
+              "[{\"steps\": 9, \"input\": [{\"type\": \"constant\", \"offset\": 1}]}]", 0);
     CHECK(std::get<SimulateSpec>(study.data).steps == 9);
   }
   SUBCASE("a set of another kind") {
-    const std::string value = "[{\"type\": \"box\", \"lower\": [0, 0], \"upper\": [1, 1]}, {\"type\": \"space\", \"dim\": 2}]";
+    const std::string value =
+        "[{\"type\": \"box\", \"lower\": [0, 0], \"upper\": [1, 1]}, {\"type\": \"space\", "
+        "\"dim\": 2}]";
     CHECK(third("/system/X0", value, 1).model.X0.lines() == 2);
   }
   SUBCASE("inside a set among the parameters of a component that is its name alone") {
     const std::string value = "[{\"type\": \"box\", \"lower\": [-1, -1], \"upper\": [1, 1]}]";
-    CHECK(third("/pipelines/1/observer/initial_set", value, 0).pipelines[1].observer.params.has("initial_set"));
+    CHECK(third("/pipelines/1/observer/initial_set", value, 0)
+              .pipelines[1]
+              .observer.params.has("initial_set"));
   }
   SUBCASE("a component that may be a matrix") {
     CHECK(third("/pipelines/2/observer/gain/1/0", "[0.5, 0.125]", 1)
@@ -191,14 +212,18 @@ TEST_CASE("what paths lead into") {
               .pipelines[2]
               .observer.params.component("gain")
               .params.matrix("matrix")(0, 0) == 0.25);
-    CHECK(third("/pipelines/*/observer/gain", "[\"optimal\", {\"type\": \"optimal\", \"weight\": 1}]", 1)
+    CHECK(third("/pipelines/*/observer/gain",
+                "[\"optimal\", {\"type\": \"optimal\", \"weight\": 1}]", 1)
               .pipelines[2]
               .observer.params.component("gain")
               .params.real("weight") == 1);
   }
   SUBCASE("the type of a component, whose other parameters are those of the first") {
-    CHECK(third("/pipelines/1/backend/type", "[\"interval\", \"zonotope\"]", 1).pipelines[1].backend.type == "zonotope");
-    CHECK(third("/pipelines/1/backend/type", "[\"zonotope\", \"interval\"]", 1).pipelines[1].name == "zonotope");
+    CHECK(third("/pipelines/1/backend/type", "[\"interval\", \"zonotope\"]", 1)
+              .pipelines[1]
+              .backend.type == "zonotope");
+    CHECK(third("/pipelines/1/backend/type", "[\"zonotope\", \"interval\"]", 1).pipelines[1].name ==
+          "zonotope");
   }
   SUBCASE("metrics") {
     CHECK(third("/metrics/*/level", "[0.25, 0.5]", 1).metrics[1].params.real("level") == 0.5);
@@ -211,16 +236,20 @@ TEST_CASE("what paths lead into") {
     CHECK(study.pipelines[2].backend.params.text("reduction") == "pca");
   }
   SUBCASE("a signal, a matrix, a flag") {
-    CHECK(std::get<SimulateSpec>(third("/data/simulate/input/*/amplitude", "[1, 3]", 1).data).input[0].amplitude == 3);
-    CHECK(third("/system/A", "[[[0, 1], [0, 0]], [[0.5, 0], [0, 1]]]", 1).model.linear.A(1, 1) == 1);
+    CHECK(std::get<SimulateSpec>(third("/data/simulate/input/*/amplitude", "[1, 3]", 1).data)
+              .input[0]
+              .amplitude == 3);
+    CHECK(third("/system/A", "[[[0, 1], [0, 0]], [[0.5, 0], [0, 1]]]", 1).model.linear.A(1, 1) ==
+          1);
     CHECK(third("/title", "[\"a\", \"b\"]", 1).title == "b");
   }
 }
 
 TEST_CASE("the type of a component is exchanged before its parameters are looked for") {
   std::string text = with_axis("/pipelines/1/backend/type", "[\"interval\", \"zonotope\"]");
-  text = exchanged(text, "\"path\": \"/system/W/upper/0\", \"values\": [1, 2.5]",
-                   "\"path\": \"/pipelines/*/backend/reduction\", \"values\": [\"girard\", \"pca\"]");
+  text =
+      exchanged(text, "\"path\": \"/system/W/upper/0\", \"values\": [1, 2.5]",
+                "\"path\": \"/pipelines/*/backend/reduction\", \"values\": [\"girard\", \"pca\"]");
   const Read read(text);
   CHECK_FALSE(read.at({0, 1, 0}).pipelines[1].backend.params.has("reduction"));
   CHECK(read.at({0, 1, 1}).pipelines[1].backend.params.text("reduction") == "pca");
@@ -230,16 +259,21 @@ TEST_CASE("the type of a component is exchanged before its parameters are looked
 TEST_CASE("paths into modes, faults and components inside components") {
   const auto study_with = [](const char* base, const std::string& path, const std::string& values) {
     const std::string text = base;
-    return text.substr(0, text.rfind('}')) + ", \"sweep\": [{\"name\": \"a\", \"path\": \"" + path + "\", \"values\": " + values +
-           "}]}";
+    return text.substr(0, text.rfind('}')) + ", \"sweep\": [{\"name\": \"a\", \"path\": \"" + path +
+           "\", \"values\": " + values + "}]}";
   };
   const Read modes(study_with(diagnosis_study, "/system/modes/1/sensor/0", "[0.5, 0.25]"));
   CHECK(modes.at({1}).modes[1].model.linear.C(0, 0) == 0.25);
   expect_points_round_trip(modes);
-  const Read inner(study_with(diagnosis_study, "/pipelines/*/diagnoser/observer/max_generators", "[3, 4]"));
-  CHECK(inner.at({1}).pipelines[0].diagnoser->params.component("observer").params.integer("max_generators") == 4);
+  const Read inner(
+      study_with(diagnosis_study, "/pipelines/*/diagnoser/observer/max_generators", "[3, 4]"));
+  CHECK(inner.at({1})
+            .pipelines[0]
+            .diagnoser->params.component("observer")
+            .params.integer("max_generators") == 4);
   expect_points_round_trip(inner);
-  const Read fault(study_with(diagnosis_study, "/data/simulate/faults/0/actuator/1/1", "[0.5, 0.2]"));
+  const Read fault(
+      study_with(diagnosis_study, "/data/simulate/faults/0/actuator/1/1", "[0.5, 0.2]"));
   CHECK(std::get<SimulateSpec>(fault.at({1}).data).faults[0].actuator.upper[1] == 0.2);
   expect_points_round_trip(fault);
 }
@@ -268,11 +302,12 @@ TEST_CASE("a combination that is wrong though each value is right") {
 
 TEST_CASE("the point of one pipeline does not depend on whether others work") {
   std::string text = with_axis("/pipelines/2/backend", "[\"line_zonotope\", \"interval\"]");
-  text = exchanged(
-      text, "\"path\": \"/system/W/upper/0\", \"values\": [1, 2.5]",
-      "\"path\": \"/pipelines/2/observer\", \"values\": [\"luenberger\", {\"type\": \"prediction_correction\", \"initial_set\": "
-      "{\"type\": \"space\", \"dim\": 2}}]");
-  text = exchanged(text, "/pipelines/*/observer/max_generators", "/pipelines/1/observer/max_generators");
+  text = exchanged(text, "\"path\": \"/system/W/upper/0\", \"values\": [1, 2.5]",
+                   "\"path\": \"/pipelines/2/observer\", \"values\": [\"luenberger\", {\"type\": "
+                   "\"prediction_correction\", \"initial_set\": "
+                   "{\"type\": \"space\", \"dim\": 2}}]");
+  text = exchanged(text, "/pipelines/*/observer/max_generators",
+                   "/pipelines/1/observer/max_generators");
   const Read read(exchanged(text, "\"x0\": [0.5, 0.25],\n", ""));
   const auto point = [&](std::size_t pipeline, const Combination& at) {
     return study_of_point(read.study, SweepPoint{0, at, pipeline}, read.registry);
@@ -314,26 +349,36 @@ TEST_CASE("the point of one pipeline does not depend on whether others work") {
 
 TEST_CASE("pipelines are asked again where a value of theirs, or of the system, is another one") {
   const auto wrong = [](const Read& read) {
-    for (const Combination& right : {Combination{0, 0, 0}, Combination{0, 0, 1}, Combination{0, 1, 0}})
+    for (const Combination& right :
+         {Combination{0, 0, 0}, Combination{0, 0, 1}, Combination{0, 1, 0}})
       CHECK_NOTHROW(read.at(right));
     for (int i = 0; i < 2; ++i) CHECK_THROWS_AS(read.at({0, 1, 1}), InputError);
-    CHECK_THROWS_AS(study_of_point(read.study, SweepPoint{0, {0, 1, 1}, 1}, read.registry), InputError);
+    CHECK_THROWS_AS(study_of_point(read.study, SweepPoint{0, {0, 1, 1}, 1}, read.registry),
+                    InputError);
     CHECK_NOTHROW(study_of_point(read.study, SweepPoint{0, {0, 1, 1}, 0}, read.registry));
   };
   const std::string generators = "/pipelines/*/observer/max_generators",
                     bound = "\"path\": \"/system/W/upper/0\", \"values\": [1, 2.5]";
   SUBCASE("a value of all pipelines") {
-    const std::string box = R"({"type": "box", "lower": [-1, -1], "upper": [1, 1]})", space = R"({"type": "space", "dim": 2})";
-    std::string text = with_axis("/pipelines/*/observer/initial_set", "[" + box + ", " + space + "]");
-    text = exchanged(text, R"("backend": "interval")", R"("name": "second", "backend": "interval")");
-    text = exchanged(text, bound, R"("path": "/pipelines/1/backend", "values": ["line_zonotope", "interval"])");
-    wrong(Read(exchanged(text, R"({"type": "zonotope", "strip": "volume"})", R"("line_zonotope")")));
+    const std::string box = R"({"type": "box", "lower": [-1, -1], "upper": [1, 1]})",
+                      space = R"({"type": "space", "dim": 2})";
+    std::string text =
+        with_axis("/pipelines/*/observer/initial_set", "[" + box + ", " + space + "]");
+    text =
+        exchanged(text, R"("backend": "interval")", R"("name": "second", "backend": "interval")");
+    text = exchanged(text, bound,
+                     R"("path": "/pipelines/1/backend", "values": ["line_zonotope", "interval"])");
+    wrong(
+        Read(exchanged(text, R"({"type": "zonotope", "strip": "volume"})", R"("line_zonotope")")));
   }
   SUBCASE("a value of the system") {
     const std::string exact = "[[0.5, 1], [0, 0.5]]",
-                      uncertain = R"({"center": [[0.5, 1], [0, 0.5]], "radius": [[0, 0.1], [0, 0]]})";
+                      uncertain =
+                          R"({"center": [[0.5, 1], [0, 0.5]], "radius": [[0, 0.1], [0, 0]]})";
     std::string text = with_axis("/system/A", "[" + exact + ", " + uncertain + "]");
-    text = exchanged(text, bound, R"("path": "/pipelines/1/observer", "values": ["prediction_correction", "descriptor"])");
+    text = exchanged(
+        text, bound,
+        R"("path": "/pipelines/1/observer", "values": ["prediction_correction", "descriptor"])");
     text = exchanged(text, generators, "/pipelines/0/observer/max_generators");
     wrong(Read(exchanged(text, R"("type": "lti")", R"("type": "interval_lti")")));
   }
@@ -341,7 +386,8 @@ TEST_CASE("pipelines are asked again where a value of theirs, or of the system, 
     const std::string sets =
         R"([{"type": "box", "lower": [-1, -1], "upper": [1, 1]}, {"type": "box", "lower": [0, 0], "upper": [0.5, 0.5]}])";
     std::string text = with_axis("/data/simulate/x0", "[[0, 0], [0.9, 0.9]]");
-    wrong(Read(exchanged(text, bound, R"("path": "/pipelines/1/observer/initial_set", "values": )" + sets)));
+    wrong(Read(exchanged(text, bound,
+                         R"("path": "/pipelines/1/observer/initial_set", "values": )" + sets)));
   }
 }
 
@@ -363,14 +409,16 @@ TEST_CASE("the parts of a system that fill in each other") {
 TEST_CASE("points are read by several threads") {
   const Read read(sweep_study);
   std::vector<std::string> expected;
-  for (std::size_t i = 0; i < 18; ++i) expected.push_back(read.at({i / 6, i / 3 % 2, i % 3}).resolved);
+  for (std::size_t i = 0; i < 18; ++i)
+    expected.push_back(read.at({i / 6, i / 3 % 2, i % 3}).resolved);
   std::vector<std::string> found(18);
   const Read fresh(sweep_study);
   std::vector<std::thread> threads;
   for (std::size_t t = 0; t < 3; ++t) {
     threads.emplace_back([&, t] {
       const Study copy = fresh.study;
-      for (std::size_t i = t; i < 18; i += 3) found[i] = study_at(copy, {i / 6, i / 3 % 2, i % 3}, fresh.registry).resolved;
+      for (std::size_t i = t; i < 18; i += 3)
+        found[i] = study_at(copy, {i / 6, i / 3 % 2, i % 3}, fresh.registry).resolved;
     });
   }
   for (std::thread& thread : threads) thread.join();
@@ -380,11 +428,13 @@ TEST_CASE("points are read by several threads") {
 TEST_CASE("the sweep is part of the resolved study") {
   const Read read(sweep_study);
   const Json resolved = Json::parse(read.study.resolved);
-  CHECK(resolved["sweep"][0] == Json::parse(R"({"name": "generators", "path": "/pipelines/*/observer/max_generators",
+  CHECK(resolved["sweep"][0] ==
+        Json::parse(R"({"name": "generators", "path": "/pipelines/*/observer/max_generators",
                                                 "repeat": false, "values": [10, 20, 40]})"));
   CHECK(resolved["sweep"][2]["values"] == Json::parse("[1, 5, 9]"));
   CHECK(resolved["sweep"][2]["repeat"] == true);
-  CHECK(resolved["pipelines"][0]["observer"]["max_constraints"] == 20);  // defaults beside what is varied
+  CHECK(resolved["pipelines"][0]["observer"]["max_constraints"] ==
+        20);  // defaults beside what is varied
   CHECK(resolved["pipelines"][2]["observer"]["gain"]["type"] == "given");
   CHECK(resolved["system"]["W"]["type"] == "box");  // as written: the path leads into it
   CHECK(resolved["data"]["simulate"]["noise"] == "uniform");

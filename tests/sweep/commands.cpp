@@ -12,7 +12,8 @@ namespace {
 struct Fixture {
   Fixture() { std::ofstream(study) << program::study(3, 20); }
 
-  program::Outcome run(std::vector<std::string> more, const std::string& file = "it's a study.json") const {
+  program::Outcome run(std::vector<std::string> more,
+                       const std::string& file = "it's a study.json") const {
     more.insert(more.begin(), {"run", scratch / file});
     return program::run(scratch, more);
   }
@@ -21,7 +22,9 @@ struct Fixture {
   std::filesystem::path study = scratch / "it's a study.json";
 };
 
-bool holds(const program::Outcome& outcome, const std::string& text) { return outcome.text.find(text) != std::string::npos; }
+bool holds(const program::Outcome& outcome, const std::string& text) {
+  return outcome.text.find(text) != std::string::npos;
+}
 
 /// The command that the program suggests in its last line.
 std::string last_line(const std::string& text) {
@@ -31,7 +34,9 @@ std::string last_line(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Fixture, "a sweep is run by default, and its files are the same for any number of jobs and parts") {
+TEST_CASE_FIXTURE(
+    Fixture,
+    "a sweep is run by default, and its files are the same for any number of jobs and parts") {
   const auto one = run({"--out", scratch / "one", "--jobs", "1", "--no-report"});
   CHECK_MESSAGE(one.exit == 0, one.text);
   CHECK(holds(one, "Zonotope"));
@@ -42,7 +47,8 @@ TEST_CASE_FIXTURE(Fixture, "a sweep is run by default, and its files are the sam
   CHECK(program::reproducible(scratch / "two") == expected);
   std::vector<std::string> merge{"merge"};
   for (const std::string part : {"1", "2", "3"}) {
-    CHECK(run({"--out", scratch / ("part " + part), "--shard", part + "/3", "--no-report"}).exit == 0);
+    CHECK(run({"--out", scratch / ("part " + part), "--shard", part + "/3", "--no-report"}).exit ==
+          0);
     merge.push_back(scratch / ("part " + part));
   }
   merge.insert(merge.end(), {"--out", scratch / "merged"});
@@ -55,11 +61,13 @@ TEST_CASE_FIXTURE(Fixture, "a sweep is run by default, and its files are the sam
   CHECK(holds(missing, "of 3 parts these are missing: 2"));
 }
 
-TEST_CASE_FIXTURE(Fixture, "one point is run like a study of its own, and gives the numbers of the sweep") {
+TEST_CASE_FIXTURE(Fixture,
+                  "one point is run like a study of its own, and gives the numbers of the sweep") {
   CHECK(run({"--out", scratch / "all", "--no-report"}).exit == 0);
   const auto outcome = run({"--out", scratch / "one", "--point", "3", "--no-report"});
   CHECK_MESSAGE(outcome.exit == 0, outcome.text);
-  const json all = json::parse(bytes_of(scratch / "all/results.json")), one = json::parse(bytes_of(scratch / "one/results.json"));
+  const json all = json::parse(bytes_of(scratch / "all/results.json")),
+             one = json::parse(bytes_of(scratch / "one/results.json"));
   REQUIRE(one["pipelines"].size() == 1);
   CHECK(one["pipelines"][0]["name"] == "Interval");
   CHECK(one["study"]["data"]["simulate"]["seed"] == 2);
@@ -74,7 +82,8 @@ TEST_CASE_FIXTURE(Fixture, "one point is run like a study of its own, and gives 
 }
 
 TEST_CASE_FIXTURE(Fixture, "options that say nothing are errors") {
-  const std::string plain = std::string(CORDON_SOURCE_DIR) + "/examples/studies/linear_two_states.json";
+  const std::string plain =
+      std::string(CORDON_SOURCE_DIR) + "/examples/studies/linear_two_states.json";
   const auto refused = [&](std::vector<std::string> arguments, const std::string& text) {
     arguments.insert(arguments.begin(), "run");
     arguments.insert(arguments.end(), {"--out", scratch / "none"});
@@ -94,8 +103,10 @@ TEST_CASE_FIXTURE(Fixture, "options that say nothing are errors") {
     arguments.insert(arguments.end(), option.begin(), option.end());
     refused(arguments, option[0] + ": this study has no \"sweep\"");
   }
-  refused({study, "--point", "0", "--resume", "--jobs", "2"}, "--jobs, --resume: --point runs one point");
-  for (const std::string shard : {"0/2", "3/2", "1", "1/", "/2", "1/2x", "a/b", "-1/2", "1/99999999999999999999"}) {
+  refused({study, "--point", "0", "--resume", "--jobs", "2"},
+          "--jobs, --resume: --point runs one point");
+  for (const std::string shard :
+       {"0/2", "3/2", "1", "1/", "/2", "1/2x", "a/b", "-1/2", "1/99999999999999999999"}) {
     refused({study, "--shard", shard}, "write I/N");
   }
   refused({study, "--resume", "--restart"}, "exclude each other");
@@ -110,20 +121,27 @@ TEST_CASE_FIXTURE(Fixture, "points that fail are told; if all do, by the exit co
   CHECK(holds(outcome, " s reached after 0 steps"));
   CHECK(holds(outcome, "every point failed"));
   CHECK(json::parse(bytes_of(scratch / "out/results.json"))["points"][0]["error"].is_string());
-  CHECK(run({"--out", scratch / "out", "--point-limit", "1e-9", "--no-report", "--resume"}).exit == 5);
+  CHECK(run({"--out", scratch / "out", "--point-limit", "1e-9", "--no-report", "--resume"}).exit ==
+        5);
   CHECK(run({"--out", scratch / "out", "--point-limit", "9", "--no-report", "--resume"}).exit == 2);
   for (const std::string part : {"1", "2"}) {
-    CHECK(run({"--out", scratch / part, "--shard", part + "/2", "--point-limit", "1e-9", "--no-report"}).exit == 5);
+    CHECK(run({"--out", scratch / part, "--shard", part + "/2", "--point-limit", "1e-9",
+               "--no-report"})
+              .exit == 5);
   }
-  CHECK(program::run(scratch, {"merge", scratch / "1", scratch / "2", "--out", scratch / "merged"}).exit == 5);
+  CHECK(program::run(scratch, {"merge", scratch / "1", scratch / "2", "--out", scratch / "merged"})
+            .exit == 5);
 }
 
 TEST_CASE_FIXTURE(Fixture, "interrupted, it tells the command that goes on") {
   std::ofstream(scratch / "long 'study'.json") << program::study(1000, 2000);
-  program::Process process({"run", scratch / "long 'study'.json", "--out", scratch / "my out", "--jobs", "1", "--no-report"},
+  program::Process process({"run", scratch / "long 'study'.json", "--out", scratch / "my out",
+                            "--jobs", "1", "--no-report"},
                            scratch / "output");
   const auto journal = scratch / "my out/.sweep/journal";
-  for (int i = 0; i < 1000 && (!std::filesystem::exists(journal) || std::filesystem::file_size(journal) < 2000); ++i) {
+  for (int i = 0; i < 1000 &&
+                  (!std::filesystem::exists(journal) || std::filesystem::file_size(journal) < 2000);
+       ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   process.kill_it(SIGINT);
@@ -134,14 +152,19 @@ TEST_CASE_FIXTURE(Fixture, "interrupted, it tells the command that goes on") {
   const std::string command = last_line(text);
   CHECK(command.find("--resume --jobs 1") != std::string::npos);
   // what a shell makes of it
-  const std::string words = "cordon() { printf '%s\\n' \"$@\" > '" + (scratch / "words").string() + "'; }; " + command;
+  const std::string words =
+      "cordon() { printf '%s\\n' \"$@\" > '" + (scratch / "words").string() + "'; }; " + command;
   REQUIRE(std::system(words.c_str()) == 0);
-  CHECK(bytes_of(scratch / "words") == "run\n" + (scratch / "long 'study'.json").string() + "\n--out\n" +
-                                           (scratch / "my out").string() + "\n--resume\n--jobs\n1\n");
+  CHECK(bytes_of(scratch / "words") == "run\n" + (scratch / "long 'study'.json").string() +
+                                           "\n--out\n" + (scratch / "my out").string() +
+                                           "\n--resume\n--jobs\n1\n");
   const auto again = run({"--out", scratch / "my out"}, "long 'study'.json");
   CHECK(again.exit == 2);
-  CHECK(holds(again, "holds an unfinished sweep; \"--resume\" goes on with it, \"--restart\" throws it away"));
-  CHECK(holds(run({"--out", scratch / "my out", "--resume"}), "the unfinished sweep of another study"));
+  CHECK(holds(
+      again,
+      "holds an unfinished sweep; \"--resume\" goes on with it, \"--restart\" throws it away"));
+  CHECK(holds(run({"--out", scratch / "my out", "--resume"}),
+              "the unfinished sweep of another study"));
   CHECK(run({"--out", scratch / "my out", "--restart", "--no-report"}).exit == 0);
   CHECK_FALSE(std::filesystem::exists(scratch / "my out/.sweep"));
 }
@@ -160,7 +183,8 @@ TEST_CASE_FIXTURE(Fixture, "resumed after its end, it says so and runs nothing")
 }
 
 TEST_CASE_FIXTURE(Fixture, "results leave no file of those before them") {
-  const std::string plain = std::string(CORDON_SOURCE_DIR) + "/examples/studies/linear_two_states.json";
+  const std::string plain =
+      std::string(CORDON_SOURCE_DIR) + "/examples/studies/linear_two_states.json";
   const auto names = [&](const char* folder) {
     std::set<std::string> found;
     for (const auto& [name, bytes] : tree(scratch / folder)) found.insert(name);

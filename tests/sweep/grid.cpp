@@ -12,7 +12,8 @@ namespace {
 Study study(const std::vector<std::size_t>& sizes, std::size_t pipelines) {
   Study s;
   s.pipelines.resize(pipelines);
-  for (const std::size_t size : sizes) s.sweep.push_back({"axis", "/a", std::vector<std::string>(size, "1"), false});
+  for (const std::size_t size : sizes)
+    s.sweep.push_back({"axis", "/a", std::vector<std::string>(size, "1"), false});
   return s;
 }
 
@@ -52,7 +53,8 @@ TEST_CASE("a sweep beyond counting is refused") {
 TEST_CASE("every point belongs to exactly one part, and parts are about equal") {
   CHECK(rc::check([] {
     const auto axes = *rc::gen::inRange<std::size_t>(0, 5);
-    const auto sizes = *rc::gen::container<std::vector<std::size_t>>(axes, rc::gen::inRange<std::size_t>(1, 5));
+    const auto sizes =
+        *rc::gen::container<std::vector<std::size_t>>(axes, rc::gen::inRange<std::size_t>(1, 5));
     const auto pipelines = *rc::gen::inRange<std::size_t>(1, 6);
     const auto of = *rc::gen::inRange<std::int64_t>(1, 8);
     const SweepGrid grid(study(sizes, pipelines));

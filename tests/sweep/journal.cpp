@@ -29,11 +29,16 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-JournalHead head() { return {"fnv1a64:0123", "1.0", "tag", {"a 1", "b 2"}, {2, 3}, infinity, "then"}; }
+JournalHead head() {
+  return {"fnv1a64:0123", "1.0", "tag", {"a 1", "b 2"}, {2, 3}, infinity, "then"};
+}
 
 PointResult point(std::int64_t index) {
   const auto i = static_cast<double>(index);
-  PointResult result{index, {{{"steps", false}, i}, {{"wall_s", true}, i / 3}, {{"radius", false}, -infinity}}, ""};
+  PointResult result{
+      index,
+      {{{"steps", false}, i}, {{"wall_s", true}, i / 3}, {{"radius", false}, -infinity}},
+      ""};
   if (index == 2) {
     result.error = "out of\n\"order\"";
     result.code = Errc::solver;
@@ -60,7 +65,8 @@ std::string write(const std::filesystem::path& out, std::int64_t count) {
 
 std::vector<PointResult> read(const std::filesystem::path& out, const JournalHead& with = head()) {
   std::vector<PointResult> points;
-  const Journal journal(out, with, Start::resume, [&](PointResult p) { points.push_back(std::move(p)); });
+  const Journal journal(out, with, Start::resume,
+                        [&](PointResult p) { points.push_back(std::move(p)); });
   return points;
 }
 
@@ -92,11 +98,13 @@ TEST_CASE("what is no file is not read") {
   CHECK(refusal(scratch.path(), head()).find("is no regular file") != std::string::npos);
   REQUIRE(::mkfifo((scratch / ".sweep/journal.new").c_str(), 0600) == 0);
   {
-    const Journal journal(scratch.path(), head(), Journal::Start::restart, [](const PointResult&) {});
+    const Journal journal(scratch.path(), head(), Journal::Start::restart,
+                          [](const PointResult&) {});
   }
   CHECK(std::filesystem::is_regular_file(scratch / ".sweep/journal"));
   REQUIRE(::mkfifo((scratch / "results.json").c_str(), 0600) == 0);
-  CHECK_THROWS_WITH_AS(detail::read_sweep(scratch.path()), doctest::Contains("is a pipe, not a regular file"), InputError);
+  CHECK_THROWS_WITH_AS(detail::read_sweep(scratch.path()),
+                       doctest::Contains("is a pipe, not a regular file"), InputError);
 }
 
 TEST_CASE("a line gives back what was written") {
@@ -104,7 +112,8 @@ TEST_CASE("a line gives back what was written") {
     PointResult p;
     p.index = *rc::gen::inRange<std::int64_t>(0, std::int64_t{1} << 40);
     std::set<std::string> names;
-    for (const auto& [name, value] : *rc::gen::arbitrary<std::vector<std::pair<std::string, double>>>()) {
+    for (const auto& [name, value] :
+         *rc::gen::arbitrary<std::vector<std::pair<std::string, double>>>()) {
       std::string ascii = name;
       std::erase_if(ascii, [](char c) { return static_cast<unsigned char>(c) > 126; });
       if (names.insert(ascii).second) p.numbers.push_back({{ascii, names.size() % 3 == 0}, value});
@@ -118,8 +127,8 @@ TEST_CASE("a line gives back what was written") {
     const auto back = detail::point_of(line_of(p));
     RC_ASSERT(back);
     RC_ASSERT(same(*back, p));
-    const auto zero =
-        std::find_if(back->numbers.begin(), back->numbers.end(), [](const auto& n) { return n.column.name == "zero"; });
+    const auto zero = std::find_if(back->numbers.begin(), back->numbers.end(),
+                                   [](const auto& n) { return n.column.name == "zero"; });
     RC_ASSERT(std::signbit(zero->value));
   }));
 }
@@ -131,13 +140,14 @@ TEST_CASE("NaN is left out") {
 }
 
 TEST_CASE("texts that are no points") {
-  for (const char* text :
-       {"", "{}", "[]", "{\"point\": 1}", "{\"point\": 1, \"numbers\": {}}", "{\"point\": -1, \"numbers\": {}, \"measured\": {}}",
-        "{\"point\": 1.5, \"numbers\": {}, \"measured\": {}}", "{\"point\": 1, \"numbers\": [], \"measured\": {}}",
-        "{\"point\": 1, \"numbers\": {\"a\": true}, \"measured\": {}}",
-        "{\"point\": 1, \"numbers\": {\"a\": \"nan\"}, \"measured\": {}}",
-        "{\"point\": 1, \"numbers\": {}, \"measured\": {}, \"more\": 1}",
-        "{\"point\": 1, \"numbers\": {}, \"measured\": {}, \"error\": 1}"}) {
+  for (const char* text : {"", "{}", "[]", "{\"point\": 1}", "{\"point\": 1, \"numbers\": {}}",
+                           "{\"point\": -1, \"numbers\": {}, \"measured\": {}}",
+                           "{\"point\": 1.5, \"numbers\": {}, \"measured\": {}}",
+                           "{\"point\": 1, \"numbers\": [], \"measured\": {}}",
+                           "{\"point\": 1, \"numbers\": {\"a\": true}, \"measured\": {}}",
+                           "{\"point\": 1, \"numbers\": {\"a\": \"nan\"}, \"measured\": {}}",
+                           "{\"point\": 1, \"numbers\": {}, \"measured\": {}, \"more\": 1}",
+                           "{\"point\": 1, \"numbers\": {}, \"measured\": {}, \"error\": 1}"}) {
     CAPTURE(text);
     CHECK_FALSE(detail::point_of(text));
   }
@@ -150,7 +160,8 @@ TEST_CASE("what was written is read, and the first process stays known") {
   later.started = "now";
   std::vector<PointResult> points;
   {
-    Journal journal(scratch.path(), later, Start::resume, [&](PointResult p) { points.push_back(std::move(p)); });
+    Journal journal(scratch.path(), later, Start::resume,
+                    [&](PointResult p) { points.push_back(std::move(p)); });
     CHECK(journal.head().started == "then");
     journal.add(line_of(point(7)));
   }
@@ -176,7 +187,8 @@ TEST_CASE("a journal that is cut off anywhere loses its last point at most") {
     }
     const auto points = read(scratch.path());
     REQUIRE(points.size() == static_cast<std::size_t>(ends) - 1);
-    for (std::size_t i = 0; i < points.size(); ++i) CHECK(same(points[i], point(static_cast<std::int64_t>(i))));
+    for (std::size_t i = 0; i < points.size(); ++i)
+      CHECK(same(points[i], point(static_cast<std::int64_t>(i))));
     CHECK(whole.starts_with(bytes_of(scratch / ".sweep/journal")));
   }
 }
@@ -195,7 +207,9 @@ TEST_CASE("a byte that is damaged costs the points of its line at most, and neve
       continue;
     }
     const auto points = read(scratch.path());
-    CHECK(points.size() == (whole[i] == '\n' && i + 1 < whole.size() ? 2 : 3));  // the end of a line belongs to two of them
+    CHECK(points.size() == (whole[i] == '\n' && i + 1 < whole.size()
+                                ? 2
+                                : 3));  // the end of a line belongs to two of them
     for (const PointResult& p : points) CHECK(same(p, point(p.index)));
   }
 }
@@ -231,21 +245,27 @@ TEST_CASE("what belongs to another sweep is refused, with the reason and the men
     CHECK(text.find(mend) != std::string::npos);
   };
   check([](JournalHead& h) { h.study_hash = "x"; }, "of another study", "--restart");
-  check([](JournalHead& h) { h.version = "2.0"; }, "another build of this program (version 1.0)", "--restart");
+  check([](JournalHead& h) { h.version = "2.0"; }, "another build of this program (version 1.0)",
+        "--restart");
   check([](JournalHead& h) { h.abi_tag = "x"; }, "another build", "--restart");
   check([](JournalHead& h) { h.plugins.pop_back(); }, "other plugins", "--restart");
-  check([](JournalHead& h) { h.shard = {1, 3}; }, "part 2 of 3, and part 1 of 3 was asked for", "--out");
+  check(
+      [](JournalHead& h) {
+        h.shard = {1, 3};
+      },
+      "part 2 of 3, and part 1 of 3 was asked for", "--out");
   check([](JournalHead& h) { h.shard = {2, 4}; }, "part 2 of 4 was asked for", "--out");
   check([](JournalHead& h) { h.shard = {}; }, "all points was asked for", "--out");
-  check([](JournalHead& h) { h.limit_s = 2; }, "no limit per point, now there is a limit of 2 s", "same limit");
+  check([](JournalHead& h) { h.limit_s = 2; }, "no limit per point, now there is a limit of 2 s",
+        "same limit");
   CHECK(refusal(scratch.path(), head()).empty());
 }
 
 TEST_CASE("an unfinished sweep is not begun again by accident") {
   const Scratch scratch;
   write(scratch.path(), 2);
-  CHECK_THROWS_WITH_AS(Journal(scratch.path(), head(), Start::fresh, {}), doctest::Contains("\"--resume\" goes on with it"),
-                       InputError);
+  CHECK_THROWS_WITH_AS(Journal(scratch.path(), head(), Start::fresh, {}),
+                       doctest::Contains("\"--resume\" goes on with it"), InputError);
   CHECK(read(scratch.path()).size() == 2);
   JournalHead other = head();
   other.study_hash = "x";
@@ -257,8 +277,8 @@ TEST_CASE("two processes do not write one journal") {
   const Scratch scratch;
   for (const Start start : {Start::fresh, Start::resume, Start::restart}) {
     const Journal journal(scratch.path(), head(), Start::restart, {});
-    CHECK_THROWS_WITH_AS(Journal(scratch.path(), head(), start, {}), doctest::Contains("is writing results into this directory"),
-                         InputError);
+    CHECK_THROWS_WITH_AS(Journal(scratch.path(), head(), start, {}),
+                         doctest::Contains("is writing results into this directory"), InputError);
     const pid_t child = ::fork();
     REQUIRE(child >= 0);
     if (child == 0) {
@@ -308,8 +328,8 @@ TEST_CASE("removed, it leaves nothing; where it cannot be, it says so") {
   CHECK(tree(scratch / "new/out").empty());
   CHECK_FALSE(Journal::is_in(scratch / "new/out"));
   std::ofstream(scratch / "file") << "mine";
-  CHECK_THROWS_WITH_AS(Journal(scratch / "file", head(), Start::fresh, {}), doctest::Contains("it is a file; name a directory"),
-                       Error);
+  CHECK_THROWS_WITH_AS(Journal(scratch / "file", head(), Start::fresh, {}),
+                       doctest::Contains("it is a file; name a directory"), Error);
 }
 
 TEST_CASE("no symbolic link is followed") {
@@ -328,8 +348,10 @@ TEST_CASE("no symbolic link is followed") {
   }
   std::filesystem::remove(out / ".sweep");
   std::filesystem::create_directory(out / ".sweep");
-  for (const char* name : {"journal", "journal.new"}) std::filesystem::create_symlink(scratch / name, out / ".sweep" / name);
-  CHECK_THROWS_WITH_AS(Journal(out, head(), Start::resume, {}), doctest::Contains("is no regular file"), InputError);
+  for (const char* name : {"journal", "journal.new"})
+    std::filesystem::create_symlink(scratch / name, out / ".sweep" / name);
+  CHECK_THROWS_WITH_AS(Journal(out, head(), Start::resume, {}),
+                       doctest::Contains("is no regular file"), InputError);
   CHECK_THROWS_AS(Journal(out, head(), Start::fresh, {}), InputError);
   { const Journal journal(out, head(), Start::restart, {}); }  // the links are replaced
   unharmed();

@@ -12,8 +12,9 @@ TEST_CASE("killed at twenty random moments") {
   const Scratch scratch;
   std::ofstream(scratch / "study.json") << program::study(150);
   const auto arguments = [&](const std::string& out, const std::string& jobs) {
-    return std::vector<std::string>{"run", scratch / "study.json", "--out",   scratch / out, "--jobs",
-                                    jobs,  "--no-report",          "--resume"};
+    return std::vector<std::string>{
+        "run", scratch / "study.json", "--out",   scratch / out, "--jobs",
+        jobs,  "--no-report",          "--resume"};
   };
   const Clock::time_point begin = Clock::now();
   const auto whole = program::run(scratch, arguments("whole", "2"));
@@ -22,7 +23,9 @@ TEST_CASE("killed at twenty random moments") {
   const auto expected = program::reproducible(scratch / "whole");
   REQUIRE(expected.count("results.json") == 1);
   std::mt19937 random(1);
-  int killed = 0, went_on = 0;  // a process that ends before it is killed does not count, nor one that had not begun
+  int killed = 0,
+      went_on =
+          0;  // a process that ends before it is killed does not count, nor one that had not begun
   for (int trial = 0; (killed < 20 || went_on < 10) && trial < 200; ++trial) {
     CAPTURE(trial);
     const std::string out = "out " + std::to_string(trial);
@@ -33,7 +36,8 @@ TEST_CASE("killed at twenty random moments") {
       process.kill_it(SIGKILL);
       killed += process.wait() == -SIGKILL;
       const auto left = program::reproducible(scratch / out);
-      if (left.count("results.json") == 1) CHECK(left.at("results.json") == expected.at("results.json"));  // never a half one
+      if (left.count("results.json") == 1)
+        CHECK(left.at("results.json") == expected.at("results.json"));  // never a half one
       went_on += std::filesystem::exists(scratch / out / ".sweep/journal");
     }
     const auto last = program::run(scratch, arguments(out, "2"));

@@ -13,7 +13,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Study small(int seeds = 2) { return sweeps::study({fakes::pipeline("a"), fakes::pipeline("b", "breaking")}, seeds); }
+Study small(int seeds = 2) {
+  return sweeps::study({fakes::pipeline("a"), fakes::pipeline("b", "breaking")}, seeds);
+}
 
 fs::path part(const Scratch& scratch, const std::string& name, const Study& study, Shard shard) {
   SweepOptions options = into(scratch / name);
@@ -48,9 +50,12 @@ std::string exchanged(std::string text, const std::string& from, const std::stri
 TEST_CASE("parts that do not belong together are refused, and nothing is written") {
   const Scratch scratch;
   const Study study = small();
-  const fs::path one = part(scratch, "one", study, {1, 3}), two = part(scratch, "two", study, {2, 3}),
-                 three = part(scratch, "three", study, {3, 3}), other = part(scratch, "other", small(3), {3, 3}),
-                 of_two = part(scratch, "of two", study, {2, 2}), whole = part(scratch, "whole", study, {});
+  const fs::path one = part(scratch, "one", study, {1, 3}),
+                 two = part(scratch, "two", study, {2, 3}),
+                 three = part(scratch, "three", study, {3, 3}),
+                 other = part(scratch, "other", small(3), {3, 3}),
+                 of_two = part(scratch, "of two", study, {2, 2}),
+                 whole = part(scratch, "whole", study, {});
   const auto refused = [&](const std::vector<fs::path>& parts, const std::string& reason) {
     const std::string text = refusal(parts, scratch / "out");
     CAPTURE(text);
@@ -75,7 +80,8 @@ TEST_CASE("parts that do not belong together are refused, and nothing is written
   put(three / "results.json", exchanged(results, "\"plugins\": [", "\"plugins\": [1"));
   refused({one, two, three}, "other plugins or libraries");
   put(three / "results.json", results);
-  put(three / "results.json", exchanged(results, "\"point_limit_s\": null", "\"point_limit_s\": 2"));
+  put(three / "results.json",
+      exchanged(results, "\"point_limit_s\": null", "\"point_limit_s\": 2"));
   refused({one, two, three}, "another time limit per point");
   put(three / "results.json", results);
   const SweepOutcome merged = merge_sweeps({three, one, two}, scratch / "out");
@@ -94,33 +100,39 @@ TEST_CASE("a sweep in one part is whole, and merged as such") {
 TEST_CASE("an unfinished part is not merged, and no unfinished sweep is written over") {
   const Scratch scratch;
   const Study study = small();
-  const fs::path one = part(scratch, "one", study, {1, 2}), two = part(scratch, "two", study, {2, 2});
+  const fs::path one = part(scratch, "one", study, {1, 2}),
+                 two = part(scratch, "two", study, {2, 2});
   const std::atomic<bool> stop = true;
   SweepOptions options = into(scratch / "three");
   options.stop = &stop;
   REQUIRE(sweeps::run(study, options).interrupted);
-  CHECK(refusal({one, two, options.out}, scratch / "out").find("unfinished part") != std::string::npos);
+  CHECK(refusal({one, two, options.out}, scratch / "out").find("unfinished part") !=
+        std::string::npos);
   CHECK(refusal({one, two}, options.out).find("holds an unfinished sweep") != std::string::npos);
 }
 
 TEST_CASE("points have to be those of the part") {
   const Scratch scratch;
   const Study study = small();
-  const fs::path one = part(scratch, "one", study, {1, 2}), two = part(scratch, "two", study, {2, 2});
+  const fs::path one = part(scratch, "one", study, {1, 2}),
+                 two = part(scratch, "two", study, {2, 2});
   const std::string results = bytes_of(two / "results.json"), run = bytes_of(two / "run.json");
   const auto refused = [&](const std::string& reason) {
     const std::string text = refusal({one, two}, scratch / "out");
     CAPTURE(text);
     CHECK(text.find(reason) != std::string::npos);
   };
-  const auto changed = [&](const std::string& from, const std::string& to, const std::string& reason) {
+  const auto changed = [&](const std::string& from, const std::string& to,
+                           const std::string& reason) {
     CAPTURE(from);
     put(two / "results.json", exchanged(results, from, to));
     refused(reason);
   };
   changed("\"point\": 1, ", "\"point\": 99, ", "this line is no point");
-  changed("\"point\": 1, ", "\"point\": 2, ", "this line is no point");  // where it is said to be does not fit
-  changed("\"point\": 1, \"pipeline\": 1", "\"point\": 0, \"pipeline\": 0", "point 0 does not belong here");
+  changed("\"point\": 1, ", "\"point\": 2, ",
+          "this line is no point");  // where it is said to be does not fit
+  changed("\"point\": 1, \"pipeline\": 1", "\"point\": 0, \"pipeline\": 0",
+          "point 0 does not belong here");
   changed("\"at\": [0, 0]", "\"at\": [0]", "this line is no point");
   changed("\"at\": [0, 0]", "\"at\": [0, 1]", "this line is no point");
   changed("\"of\": 2", "\"of\": 1", "a shard that is none");
@@ -153,7 +165,8 @@ TEST_CASE("points have to be those of the part") {
 TEST_CASE("files with any bytes are read or refused") {
   const Scratch scratch;
   const Study study = small(1);
-  const fs::path one = part(scratch, "one", study, {1, 2}), two = part(scratch, "two", study, {2, 2});
+  const fs::path one = part(scratch, "one", study, {1, 2}),
+                 two = part(scratch, "two", study, {2, 2});
   for (const char* name : {"results.json", "run.json"}) {
     const std::string whole = bytes_of(two / name);
     CHECK(rc::check([&] {
@@ -161,7 +174,8 @@ TEST_CASE("files with any bytes are read or refused") {
       const auto changes = *rc::gen::inRange(1, 4);
       for (int i = 0; i < changes; ++i) {
         const auto at = *rc::gen::inRange<std::size_t>(0, damaged.size());
-        damaged.replace(at, *rc::gen::inRange<std::size_t>(0, 30), *rc::gen::container<std::string>(rc::gen::arbitrary<char>()));
+        damaged.replace(at, *rc::gen::inRange<std::size_t>(0, 30),
+                        *rc::gen::container<std::string>(rc::gen::arbitrary<char>()));
       }
       put(two / name, damaged);
       try {

@@ -44,7 +44,8 @@ inline std::string study(int seeds, int steps = 100) {
 /// A process that runs `cordon` with its output in a file.
 class Process {
  public:
-  Process(const std::vector<std::string>& arguments, const std::filesystem::path& output) : output_(output) {
+  Process(const std::vector<std::string>& arguments, const std::filesystem::path& output)
+      : output_(output) {
     child_ = ::fork();
     if (child_ != 0) return;
     std::FILE* const file = std::fopen(output.c_str(), "w");
@@ -52,7 +53,8 @@ class Process {
     ::dup2(::fileno(file), STDERR_FILENO);
     ::unsetenv("CORDON_PLUGIN_PATH");
     std::vector<char*> words{const_cast<char*>(CORDON_PROGRAM)};
-    for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+    for (const std::string& argument : arguments)
+      words.push_back(const_cast<char*>(argument.c_str()));
     words.push_back(nullptr);
     ::execv(CORDON_PROGRAM, words.data());
     ::_exit(127);
@@ -96,8 +98,9 @@ inline Outcome run(const Scratch& scratch, const std::vector<std::string>& argum
 
 /// The files of a sweep that do not hold times.
 inline std::map<std::string, std::string> reproducible(const std::filesystem::path& out) {
-  static const std::set<std::string> with_times{"run.json",       "times.csv",   "summary.tex",  "summary.md",
-                                                "benchmarks.csv", "report.html", "manifest.json"};
+  static const std::set<std::string> with_times{"run.json",     "times.csv",      "summary.tex",
+                                                "summary.md",   "benchmarks.csv", "report.html",
+                                                "manifest.json"};
   std::map<std::string, std::string> files = tree(out);
   std::erase_if(files, [](const auto& file) { return with_times.count(file.first) > 0; });
   return files;

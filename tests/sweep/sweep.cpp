@@ -13,9 +13,13 @@ using namespace cordon;
 
 namespace {
 
-std::vector<PipelineSpec> two_pipelines() { return {fakes::pipeline("first, \"box\""), fakes::pipeline("second", "offering")}; }
+std::vector<PipelineSpec> two_pipelines() {
+  return {fakes::pipeline("first, \"box\""), fakes::pipeline("second", "offering")};
+}
 
-json results_of(const std::filesystem::path& out) { return json::parse(bytes_of(out / "results.json")); }
+json results_of(const std::filesystem::path& out) {
+  return json::parse(bytes_of(out / "results.json"));
+}
 
 std::size_t column(const ResultTable& table, const std::string& name) {
   for (std::size_t j = 0; j < table.columns.size(); ++j) {
@@ -50,11 +54,13 @@ TEST_CASE("every point is in the table, with the numbers that a run of its own g
     options.pipeline = outcome.table.pipelines[row.pipeline];
     const RunOutcome one = run_study(sweeps::at(study)(row.at), registry, options);
     const auto& summary = one.pipelines[0].summary;
-    const auto metric = std::find_if(summary.begin(), summary.end(), [](const MetricValue& m) { return m.name == "place_last"; });
+    const auto metric = std::find_if(summary.begin(), summary.end(),
+                                     [](const MetricValue& m) { return m.name == "place_last"; });
     REQUIRE(metric != summary.end());
     CHECK(std::get<double>(metric->value) == row.values[place]);
   }
-  CHECK(outcome.table.rows[0].values[place] != outcome.table.rows[2].values[place]);  // another seed
+  CHECK(outcome.table.rows[0].values[place] !=
+        outcome.table.rows[2].values[place]);  // another seed
   CHECK(outcome.table.rows[0].values[place] != outcome.table.rows[6].values[place]);  // other noise
 }
 
@@ -67,7 +73,8 @@ TEST_CASE("results.json, run.json and points.csv") {
   CHECK(results["cordon_results"] == 1);
   CHECK(results["title"] == study.title);
   CHECK(results["study"]["sweep"][1]["repeat"] == true);
-  CHECK(results["pipelines"][1] == json{{"name", "second"}, {"backend", "box"}, {"observer", "offering"}});
+  CHECK(results["pipelines"][1] ==
+        json{{"name", "second"}, {"backend", "box"}, {"observer", "offering"}});
   CHECK_FALSE(results.contains("shard"));
   REQUIRE(results["points"].size() == 12);
   const json& last = results["points"][11];
@@ -99,9 +106,10 @@ TEST_CASE("results.json, run.json and points.csv") {
 
 TEST_CASE("jobs and parts leave the same files") {
   const Scratch scratch;
-  const Study study = sweeps::study({fakes::pipeline("a"), fakes::pipeline("b", "offering"), fakes::pipeline("c", "breaking"),
-                                     fakes::diagnosis("d"), fakes::design("e")},
-                                    5);
+  const Study study =
+      sweeps::study({fakes::pipeline("a"), fakes::pipeline("b", "offering"),
+                     fakes::pipeline("c", "breaking"), fakes::diagnosis("d"), fakes::design("e")},
+                    5);
   sweeps::run(study, into(scratch / "one", 1));
   sweeps::run(study, into(scratch / "three", 3));
   sweeps::run(study, into(scratch / "many", 100));
@@ -132,9 +140,12 @@ TEST_CASE("a point that fails stops no other") {
   const Study study = sweeps::study({fakes::pipeline("good"), fakes::pipeline("bad", "breaking")});
   const auto made_at = [&](const std::vector<std::size_t>& place) -> Study {
     if (place == std::vector<std::size_t>{0, 1})
-      throw InputError(study.file.string(), {{"/system/A", "is wrong", "mend it"}, {"", "is bad", ""}});
-    if (place == std::vector<std::size_t>{1, 0}) throw InputError("data.csv", {{"", "is missing", "", 3}});
-    if (place == std::vector<std::size_t>{1, 1}) throw std::runtime_error("out of luck\nand \x80 memory");
+      throw InputError(study.file.string(),
+                       {{"/system/A", "is wrong", "mend it"}, {"", "is bad", ""}});
+    if (place == std::vector<std::size_t>{1, 0})
+      throw InputError("data.csv", {{"", "is missing", "", 3}});
+    if (place == std::vector<std::size_t>{1, 1})
+      throw std::runtime_error("out of luck\nand \x80 memory");
     if (place == std::vector<std::size_t>{1, 2}) throw 7;
     return sweeps::at(study)(place);
   };
@@ -162,8 +173,10 @@ TEST_CASE("errors name files as the study does, wherever it is") {
   study.file = scratch / "folder/study.json";
   const std::string folder = scratch / "folder";
   const auto made_at = [&](const std::vector<std::size_t>& place) -> Study {
-    if (place[0] == 0 && place[1] == 0) throw InputError(folder + "/data.csv", {{"/data/csv/file", "is missing", ""}});
-    if (place[0] == 0) throw Error(Errc::io, "cannot open " + folder + "/../b.csv: \"" + folder + "/c\"");
+    if (place[0] == 0 && place[1] == 0)
+      throw InputError(folder + "/data.csv", {{"/data/csv/file", "is missing", ""}});
+    if (place[0] == 0)
+      throw Error(Errc::io, "cannot open " + folder + "/../b.csv: \"" + folder + "/c\"");
     throw Error(Errc::io, "cannot open /elsewhere" + folder + "/b.csv");
   };
   const auto rows = sweeps::run(study, into(scratch / "out"), made_at).table.rows;
@@ -189,7 +202,8 @@ TEST_CASE("violated guarantees are counted") {
   const Scratch scratch;
   Params crooked;
   crooked.set("scale", 2.);
-  const Study study = sweeps::study({fakes::pipeline("claims", "claiming"), fakes::pipeline("leaves", "offering", crooked)});
+  const Study study = sweeps::study(
+      {fakes::pipeline("claims", "claiming"), fakes::pipeline("leaves", "offering", crooked)});
   CHECK(sweeps::run(study, into(scratch / "all")).violated == 12);
   for (const std::int64_t part : {1, 2}) {
     SweepOptions options = into(scratch / std::to_string(part));
@@ -237,7 +251,8 @@ TEST_CASE("stopped, the sweep keeps what is finished, and goes on from there") {
     // the last of the 40 combinations needs no eighth one before it
     const auto halting = [&](const std::vector<std::size_t>& place) {
       Study made_study = counting(place);
-      if (stop) std::get<SimulateSpec>(made_study.data).steps = 1'000'000'000;  // only a stop ends it
+      if (stop)
+        std::get<SimulateSpec>(made_study.data).steps = 1'000'000'000;  // only a stop ends it
       return made_study;
     };
     const SweepOutcome outcome = sweeps::run(study, options, halting);
@@ -259,13 +274,16 @@ TEST_CASE("stopped, the sweep keeps what is finished, and goes on from there") {
   CHECK_FALSE(std::filesystem::exists(scratch / "out/.sweep"));
 }
 
-TEST_CASE("resumed after its end, a sweep runs nothing, but only if the results are of this sweep") {
+TEST_CASE(
+    "resumed after its end, a sweep runs nothing, but only if the results are of this sweep") {
   const Scratch scratch;
   const Study study = sweeps::study(two_pipelines());
   SweepOptions options = into(scratch.path());
   const SweepOutcome before = sweeps::run(study, options);
   options.resume = true;
-  const auto never = [](const std::vector<std::size_t>&) -> Study { throw std::logic_error("was run"); };
+  const auto never = [](const std::vector<std::size_t>&) -> Study {
+    throw std::logic_error("was run");
+  };
   const auto files = tree(scratch.path());
   const SweepOutcome again = sweeps::run(study, options, never);
   CHECK(tree(scratch.path()) == files);
@@ -281,14 +299,16 @@ TEST_CASE("resumed after its end, a sweep runs nothing, but only if the results 
   CHECK(sweeps::run(study, options).progress.failed == 0);
   options.shard = {1, 2};
   const auto whole = tree(scratch.path());
-  CHECK_THROWS_WITH_AS(sweeps::run(study, options), doctest::Contains("all points, and part 1 of 2 was asked for"), InputError);
+  CHECK_THROWS_WITH_AS(sweeps::run(study, options),
+                       doctest::Contains("all points, and part 1 of 2 was asked for"), InputError);
   CHECK(tree(scratch.path()) == whole);
   options.resume = false;
   CHECK(sweeps::run(study, options).progress.total == 6);
   options.resume = true;
   CHECK(sweeps::run(study, options).progress.resumed == 6);
   options.shard = {2, 2};
-  CHECK_THROWS_WITH_AS(sweeps::run(study, options), doctest::Contains("part 1 of 2, and part 2 of 2"), InputError);
+  CHECK_THROWS_WITH_AS(sweeps::run(study, options),
+                       doctest::Contains("part 1 of 2, and part 2 of 2"), InputError);
 }
 
 TEST_CASE("finished results tell the error of every point, and the limit of time") {
@@ -305,7 +325,8 @@ TEST_CASE("finished results tell the error of every point, and the limit of time
   CHECK(again.first_error == Errc::unsupported);
   options.point_limit_s = std::numeric_limits<double>::infinity();
   const auto before = tree(scratch.path());
-  CHECK_THROWS_WITH_AS(sweeps::run(study, options), doctest::Contains("a limit of 100 s per point, now there is no limit"),
+  CHECK_THROWS_WITH_AS(sweeps::run(study, options),
+                       doctest::Contains("a limit of 100 s per point, now there is no limit"),
                        InputError);
   CHECK(tree(scratch.path()) == before);
   options.resume = false;

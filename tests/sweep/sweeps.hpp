@@ -29,7 +29,8 @@ class Place final : public Metric {
 
 inline void register_all(Registrar& registrar) {
   fakes::register_all(registrar);
-  registrar.metric({{"place", "of the last estimate", "", {}}, [](const Params&) { return std::make_unique<Place>(); }});
+  registrar.metric({{"place", "of the last estimate", "", {}},
+                    [](const Params&) { return std::make_unique<Place>(); }});
 }
 
 /// A study with the axes `noise` and `seed`, the seeds 1 to `seeds`.
@@ -42,13 +43,16 @@ inline Study study(std::vector<PipelineSpec> pipelines, int seeds = 3, std::int6
   for (int i = 1; i <= seeds; ++i) values.push_back(std::to_string(i));
   s.sweep = {{"noise", "/data/simulate/noise", {"\"uniform\"", "\"vertex\""}, false},
              {"seed", "/data/simulate/seed", values, true}};
-  nlohmann::ordered_json resolved{{"cordon", 1}, {"title", s.title}, {"sweep", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json resolved{
+      {"cordon", 1}, {"title", s.title}, {"sweep", nlohmann::ordered_json::array()}};
   for (const SweepAxis& axis : s.sweep) {
     nlohmann::ordered_json one{{"name", axis.name}, {"path", axis.path}, {"repeat", axis.repeat}};
-    for (const std::string& value : axis.values) one["values"].push_back(nlohmann::ordered_json::parse(value));
+    for (const std::string& value : axis.values)
+      one["values"].push_back(nlohmann::ordered_json::parse(value));
     resolved["sweep"].push_back(one);
   }
-  for (const PipelineSpec& spec : s.pipelines) resolved["pipelines"].push_back({{"name", spec.name}});
+  for (const PipelineSpec& spec : s.pipelines)
+    resolved["pipelines"].push_back({{"name", spec.name}});
   s.resolved = resolved.dump(2);
   return s;
 }
@@ -68,9 +72,12 @@ inline StudyAt at(const Study& study) {
 inline SweepOutcome run(const Study& study, const SweepOptions& options, const StudyAt& made_at) {
   Registry registry;
   registry.add(register_all);
-  return detail::run_sweep_on([&](const SweepPoint& point) { return made_at(point.at); }, study, registry, options);
+  return detail::run_sweep_on([&](const SweepPoint& point) { return made_at(point.at); }, study,
+                              registry, options);
 }
-inline SweepOutcome run(const Study& study, const SweepOptions& options) { return run(study, options, at(study)); }
+inline SweepOutcome run(const Study& study, const SweepOptions& options) {
+  return run(study, options, at(study));
+}
 
 inline SweepOptions into(const std::filesystem::path& out, int jobs = 1) {
   SweepOptions options;
@@ -82,7 +89,8 @@ inline SweepOptions into(const std::filesystem::path& out, int jobs = 1) {
 /// The files that are the same bytes whatever happened on the way.
 inline std::map<std::string, std::string> reproducible(const std::filesystem::path& out) {
   std::map<std::string, std::string> files;
-  for (const char* name : {"results.json", "points.csv", "summary.csv"}) files[name] = bytes_of(out / name);
+  for (const char* name : {"results.json", "points.csv", "summary.csv"})
+    files[name] = bytes_of(out / name);
   return files;
 }
 

@@ -58,7 +58,8 @@ class RandomSteps {
     X.b = .3 * X.A.rowwise().sum();
     return X;
   }
-  /// Of the state x, without disturbance and noise. The input satisfies the static row, the last one, of a descriptor system.
+  /// Of the state x, without disturbance and noise. The input satisfies the static row, the last
+  /// one, of a descriptor system.
   Sample sample(Index k, const Model& model, const Vector& x) {
     const LinearModel& m = model.linear;
     Vector u = vector(1);
@@ -109,9 +110,11 @@ TEST_CASE("an enclosure of successors holds them, and reaches hardly farther") {
       const Model model = random.model(descriptor);
       const LineForm X = random.set(3);
       std::optional<LineForm> admissible;
-      if (seed % 3 == 0) admissible = make_box({Vector::Constant(3, -3e4), Vector::Constant(3, 2e4)});
+      if (seed % 3 == 0)
+        admissible = make_box({Vector::Constant(3, -3e4), Vector::Constant(3, 2e4)});
       const Vector x = X.c + .3 * X.G.rowwise().sum();
-      const Sample first = random.sample(0, model, x), second = random.sample(1, model, next(model, x, first.u));
+      const Sample first = random.sample(0, model, x),
+                   second = random.sample(1, model, next(model, x, first.u));
       for (const Sample* before : {static_cast<const Sample*>(nullptr), &first}) {
         const Transition transition{before, before ? second : first};
         const auto enclosure = enclosed_successors(model, X, admissible, transition);
@@ -121,7 +124,8 @@ TEST_CASE("an enclosure of successors holds them, and reaches hardly farther") {
       }
     }
     CHECK(found.finite > 100);
-    CHECK(found.close > .85 * found.finite);  // others hang on rows that nearly contradict each other
+    CHECK(found.close >
+          .85 * found.finite);  // others hang on rows that nearly contradict each other
   }
 }
 

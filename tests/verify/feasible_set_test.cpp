@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a check of a model with interval matrices rests on: matrices drawn from them, and states that stay.
+// What a check of a model with interval matrices rests on: matrices drawn from them, and states
+// that stay.
 #include "study/verification/feasible_set.hpp"
 
 #include <doctest/doctest.h>
@@ -66,7 +67,9 @@ TEST_CASE("matrices are drawn from their intervals, close to the vertices, or ar
   CHECK(drawn(m, 3, 0).A == m.A);
 }
 
-TEST_CASE("states that follow from a drawn matrix: within those of the interval, and not those of the centre") {
+TEST_CASE(
+    "states that follow from a drawn matrix: within those of the interval, and not those of the "
+    "centre") {
   const Box exact = second(scalar(0, 100), 1);
   CHECK(exact.lower[0] == doctest::Approx(.25));
   CHECK(exact.upper[0] == doctest::Approx(1.25));
@@ -77,7 +80,8 @@ TEST_CASE("states that follow from a drawn matrix: within those of the interval,
 }
 
 TEST_CASE("a draw that leaves no state gives way to one that does") {
-  for (const double y : {-.1, .5, 1.1}) {  // the lower vertex only, the centre only, the upper vertex only
+  for (const double y :
+       {-.1, .5, 1.1}) {  // the lower vertex only, the centre only, the upper vertex only
     const Box F = second(scalar(.45, .01), y);
     CHECK_FALSE(F.is_empty());
     CHECK(F.lower[0] >= y - .01 - 1e-12);
@@ -103,7 +107,8 @@ TEST_CASE("a set that gets flatter with every step stays what it is") {
     F = sets.step(sample(k, 0));
     power = m.A * power;
     const Vector reach = power.cwiseAbs().rowwise().sum();
-    for (Index i = 0; i < 2; ++i) CHECK(F.support(Vector::Unit(2, i)).upper == doctest::Approx(reach[i]).epsilon(1e-13));
+    for (Index i = 0; i < 2; ++i)
+      CHECK(F.support(Vector::Unit(2, i)).upper == doctest::Approx(reach[i]).epsilon(1e-13));
     CHECK(F.generators().vertices.cols() == 4);
   }
 }
@@ -139,7 +144,8 @@ TEST_CASE("an E that is singular up to rounding restricts as one that is singula
   model.V = make_box({Vector{{-5.}}, Vector{{5.}}});
   FeasibleSets sets(model, model.X0, std::nullopt);
   Polytope F = sets.step(sample(0, 0));
-  // 3 x1 = x2 is the static row of both times; without noise x1 keeps its value: .1 x1 + .3 x2 = x1 before
+  // 3 x1 = x2 is the static row of both times; without noise x1 keeps its value: .1 x1 + .3 x2 = x1
+  // before
   CHECK(F.support(Vector{{1., 0.}}).upper == doctest::Approx(1. / 3));
   CHECK(F.support(Vector{{3., -1.}}).upper == doctest::Approx(0).epsilon(1e-12));
   F = sets.step(sample(1, 0));

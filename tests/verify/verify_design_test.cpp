@@ -47,19 +47,24 @@ DesignOutcome given(Matrix u) {
   return outcome;
 }
 
-Answer word(char letter) { return letter == 'y' ? Answer::yes : letter == 'n' ? Answer::no : Answer::unknown; }
+Answer word(char letter) {
+  return letter == 'y' ? Answer::yes : letter == 'n' ? Answer::no : Answer::unknown;
+}
 
 /// "ynnyyn": are the pairs 12, 13, 14, 23, 24, 34 disjoint?
 void check_pairs(const ExactSeparation& found, const std::string& expected) {
   REQUIRE(found.pairs.size() == expected.size());
-  for (std::size_t q = 0; q < expected.size(); ++q) CHECK(found.pairs[q].disjoint == word(expected[q]));
+  for (std::size_t q = 0; q < expected.size(); ++q)
+    CHECK(found.pairs[q].disjoint == word(expected[q]));
 }
 void check_tubes(const ExactSeparation& found, Answer empty) {
   for (const Answer answer : found.empty) CHECK(answer == empty);
 }
 
 /// Inputs by time, stacked, as rows.
-Matrix rows_of(const Vector& u, Index inputs) { return u.reshaped(inputs, u.size() / inputs).transpose(); }
+Matrix rows_of(const Vector& u, Index inputs) {
+  return u.reshaped(inputs, u.size() / inputs).transpose();
+}
 
 const Matrix by_lines = rows_of(examples::published_line_input(), 2);
 const Matrix by_constrained = rows_of(examples::published_constrained_input(), 2);
@@ -74,7 +79,8 @@ TEST_CASE("the published inputs: every pair, with its distance") {
   check_tubes(lines, Answer::no);
   CHECK(lines.separates() == Answer::yes);
   const double kappa[]{.9184, .1485, .1309, .2308, 1.6600, 1.2370};
-  for (std::size_t q = 0; q < 6; ++q) CHECK(lines.pairs[q].kappa_lower == doctest::Approx(kappa[q]).epsilon(1e-4));
+  for (std::size_t q = 0; q < 6; ++q)
+    CHECK(lines.pairs[q].kappa_lower == doctest::Approx(kappa[q]).epsilon(1e-4));
   CHECK(lines.pairs[4].i == 1);
   CHECK(lines.pairs[4].j == 3);
   CHECK(lines.wall_s > 0);
@@ -138,7 +144,8 @@ TEST_CASE("whatever the numbers: touching tubes meet, and bounds of κ are round
     const double d = uniform(random), u = d * (1 + uniform(random) / 2);
     for (Mode& mode : bank.modes) mode.model.linear.Dv(0, 0) = d;
     CHECK(verify_design(bank, given(Matrix{{d}})).pairs[0].disjoint == Answer::no);
-    const ExactPair pair = verify_design(bank, given(Matrix{{u}})).pairs[0];  // κ = u / d - 1, and u - d is a double
+    const ExactPair pair =
+        verify_design(bank, given(Matrix{{u}})).pairs[0];  // κ = u / d - 1, and u - d is a double
     CHECK(pair.disjoint == Answer::yes);
     CHECK(std::fma(pair.kappa_lower, d, -(u - d)) <= 0);
     CHECK(std::fma(std::nextafter(pair.kappa_lower, 2), d, -(u - d)) >= 0);
@@ -209,7 +216,8 @@ TEST_CASE("the static row of the last input counts") {
   }
   SUBCASE("x_0 keeps to X0 and its constraints") {
     for (Mode& mode : bank.modes)
-      mode.model.X0 = intersection(make_space(2), Matrix{{0., 1}}, make_box({Vector{{-1.}}, Vector{{1.}}}));
+      mode.model.X0 =
+          intersection(make_space(2), Matrix{{0., 1}}, make_box({Vector{{-1.}}, Vector{{1.}}}));
     check_tubes(verify_design(bank, given(Matrix{{2.}, {0.}})), Answer::yes);
     check_tubes(verify_design(bank, given(Matrix{{1.}, {0.}})), Answer::no);
   }
@@ -417,7 +425,8 @@ LineForm tube(const Model& model, const Matrix& u, double scale) {
     t.head(n) = m.B * u.row(k).transpose();
     t.tail(p) = m.D * u.row(k).transpose();
     const LineForm noise =
-        cartesian_product(cartesian_product(affine_map(scaled(model.W), m.Bw, Vector::Zero(n)), make_point(Vector::Zero(before))),
+        cartesian_product(cartesian_product(affine_map(scaled(model.W), m.Bw, Vector::Zero(n)),
+                                            make_point(Vector::Zero(before))),
                           affine_map(scaled(model.V), m.Dv, Vector::Zero(p)));
     runs = minkowski_sum(affine_map(runs, T, t), noise);
   }
@@ -439,7 +448,9 @@ TEST_CASE("random modes: the same answers and distances as by the tubes themselv
     const ExactPair& pair = found.pairs[0];
     RC_ASSERT(pair.disjoint != Answer::unknown);
     RC_ASSERT(found.empty == std::vector<Answer>(2, Answer::no));
-    const auto disjoint = [&](double scale) { return is_disjoint(tube(bank[0].model, u, scale), tube(bank[1].model, u, scale)); };
+    const auto disjoint = [&](double scale) {
+      return is_disjoint(tube(bank[0].model, u, scale), tube(bank[1].model, u, scale));
+    };
     if (pair.disjoint == Answer::no) {
       ++together;
       RC_ASSERT(disjoint(1) != Answer::yes);
@@ -454,7 +465,8 @@ TEST_CASE("random modes: the same answers and distances as by the tubes themselv
     const std::vector<const Model*> both{&bank[0].model, &bank[1].model};
     const std::optional<LineForm> none;
     const LineForm rows = verification::common_runs(both, {u, false, none});
-    if (rows.lines() + rows.generators() <= exact::max_columns && rows.constraints() <= exact::max_rows) {
+    if (rows.lines() + rows.generators() <= exact::max_columns &&
+        rows.constraints() <= exact::max_rows) {
       RC_ASSERT(exact::is_empty(rows) == pair.disjoint);
     }
   }));
@@ -467,14 +479,18 @@ TEST_CASE("the same answers as those of a designer") {
     Params params;
     params.set("input", u);
     DesignControl control;
-    return examples::registry().make_designer("given", bank, examples::backend("line_zonotope"), params)->design(control);
+    return examples::registry()
+        .make_designer("given", bank, examples::backend("line_zonotope"), params)
+        ->design(control);
   };
-  std::vector<std::pair<ModeBank, Matrix>> cases{{examples::four_descriptor_models(), by_lines},
-                                                 {examples::four_descriptor_models(), by_constrained}};
+  std::vector<std::pair<ModeBank, Matrix>> cases{
+      {examples::four_descriptor_models(), by_lines},
+      {examples::four_descriptor_models(), by_constrained}};
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-2, 2);
   for (int i = 0; i < 40; ++i) {
-    const ModeBank bank{{{"a", examples::random_model(random)}, {"b", examples::random_model(random)}}, 0};
+    const ModeBank bank{
+        {{"a", examples::random_model(random)}, {"b", examples::random_model(random)}}, 0};
     cases.emplace_back(bank, Matrix::NullaryExpr(3, 2, [&] { return uniform(random); }));
   }
   int apart = 0, together = 0;
@@ -486,7 +502,8 @@ TEST_CASE("the same answers as those of a designer") {
       CHECK(outcome.best->pairs[q].disjoint == exact.pairs[q].disjoint);
       (exact.pairs[q].disjoint == Answer::yes ? apart : together) += 1;
       if (exact.pairs[q].disjoint != Answer::yes) continue;
-      CHECK(exact.pairs[q].kappa_lower == doctest::Approx(outcome.best->pairs[q].kappa).epsilon(1e-6));
+      CHECK(exact.pairs[q].kappa_lower ==
+            doctest::Approx(outcome.best->pairs[q].kappa).epsilon(1e-6));
     }
     CHECK(exact.empty == outcome.best->empty);
   }

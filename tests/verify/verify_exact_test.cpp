@@ -22,7 +22,8 @@ Outcome program(const std::string& arguments) { return test::cordon_with(argumen
 /// A study of one pipeline, run in a directory of its own.
 class Run {
  public:
-  Run(const char* system, const char* data, const char* pipeline, const std::string& recorded = "") {
+  Run(const char* system, const char* data, const char* pipeline,
+      const std::string& recorded = "") {
     std::ofstream(home_ / "data.csv") << recorded;
     Json study{{"cordon", 1}, {"title", "edge"}};
     study["system"] = Json::parse(system);
@@ -30,7 +31,8 @@ class Run {
     if (!study["data"].contains("csv")) study["data"] = {{"simulate", study["data"]}};
     study["pipelines"] = Json::array({Json::parse(pipeline)});
     std::ofstream(home_ / "study.json") << study.dump(1);
-    ran_ = program("run --no-report --out " + (home_ / "out").string() + " " + (home_ / "study.json").string());
+    ran_ = program("run --no-report --out " + (home_ / "out").string() + " " +
+                   (home_ / "study.json").string());
     CAPTURE(ran_.out);
     REQUIRE(ran_.code == 0);
   }
@@ -67,7 +69,9 @@ class Run {
   Outcome ran_;
 };
 
-bool names(const Outcome& outcome, const std::string& text) { return outcome.out.find(text) != std::string::npos; }
+bool names(const Outcome& outcome, const std::string& text) {
+  return outcome.out.find(text) != std::string::npos;
+}
 
 constexpr const char* scalar = R"({"type": "lti", "A": [[-1.15]], "C": [[1]], "Bw": [[]],
   "X0": {"type": "box", "lower": [-1], "upper": [1]}, "V": {"type": "box", "lower": [-0.1], "upper": [0.1]}})";
@@ -75,9 +79,11 @@ constexpr const char* scalar = R"({"type": "lti", "A": [[-1.15]], "C": [[1]], "B
 }  // namespace
 
 TEST_CASE("a hull of a set that is nearly flat is not refuted") {
-  const Run run(R"({"type": "lti", "A": [[0.5, 0.3], [0.3, 0.2]], "C": [[0, 0]], "Bw": [[], []], "Dv": [[]],
+  const Run run(
+      R"({"type": "lti", "A": [[0.5, 0.3], [0.3, 0.2]], "C": [[0, 0]], "Bw": [[], []], "Dv": [[]],
                     "X0": {"type": "box", "lower": [-1, -1], "upper": [1, 1]}})",
-                R"({"steps": 9})", R"({"name": "Z", "backend": "zonotope", "observer": "prediction_correction"})");
+      R"({"steps": 9})",
+      R"({"name": "Z", "backend": "zonotope", "observer": "prediction_correction"})");
   const Outcome outcome = run.verify();
   CAPTURE(outcome.out);
   CHECK(outcome.code == 0);
@@ -86,8 +92,8 @@ TEST_CASE("a hull of a set that is nearly flat is not refuted") {
 TEST_CASE("nominal claims of exact hold up to the rounding of the terms, and not beyond") {
   for (const char* backend : {"interval", "line_zonotope", "constrained_zonotope"}) {
     CAPTURE(backend);
-    const std::string pipeline =
-        std::string(R"({"name": "P", "backend": ")") + backend + R"(", "observer": "prediction_correction"})";
+    const std::string pipeline = std::string(R"({"name": "P", "backend": ")") + backend +
+                                 R"(", "observer": "prediction_correction"})";
     const Run run(scalar, R"({"steps": 5, "noise": "vertex"})", pipeline.c_str());
     Outcome outcome = run.verify();
     CAPTURE(outcome.out);
@@ -110,10 +116,12 @@ TEST_CASE("nominal claims of exact hold up to the rounding of the terms, and not
 }
 
 TEST_CASE("a set that is wrong is refuted, however loose the one before it was") {
-  const Run run(R"({"type": "lti", "A": [[0.5]], "Bw": [[1]], "C": [[1]], "X0": {"type": "box", "lower": [-1], "upper": [1]},
+  const Run run(
+      R"({"type": "lti", "A": [[0.5]], "Bw": [[1]], "C": [[1]], "X0": {"type": "box", "lower": [-1], "upper": [1]},
                     "W": {"type": "box", "lower": [-0.125], "upper": [0.125]},
                     "V": {"type": "box", "lower": [-1000], "upper": [1000]}})",
-                R"({"steps": 2})", R"({"name": "P", "backend": "interval", "observer": "prediction_correction"})");
+      R"({"steps": 2})",
+      R"({"name": "P", "backend": "interval", "observer": "prediction_correction"})");
   const auto become = [](double center, double radius) {
     return [=](Json& set) {
       set["c"][0] = center;
@@ -165,27 +173,32 @@ TEST_CASE("with outward rounding a claim of exact is taken literally") {
 TEST_CASE("with outward rounding products with the input are enclosed") {
   for (const char* backend : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
     CAPTURE(backend);
-    const std::string pipeline = std::string(R"({"name": "P", "backend": {"type": ")") + backend +
-                                 R"(", "rounding": "outward"}, "observer": "prediction_correction"})";
-    const Run run(R"({"type": "lti", "A": [[0.5]], "B": [[0.1]], "C": [[1]], "D": [[0.7]], "Bw": [[]],
+    const std::string pipeline =
+        std::string(R"({"name": "P", "backend": {"type": ")") + backend +
+        R"(", "rounding": "outward"}, "observer": "prediction_correction"})";
+    const Run run(
+        R"({"type": "lti", "A": [[0.5]], "B": [[0.1]], "C": [[1]], "D": [[0.7]], "Bw": [[]],
                       "X0": {"type": "box", "lower": [-1], "upper": [1]}, "V": {"type": "box", "lower": [-0.5], "upper": [0.5]}})",
-                  R"({"steps": 3, "input": [{"type": "constant", "offset": 0.3}]})", pipeline.c_str());
+        R"({"steps": 3, "input": [{"type": "constant", "offset": 0.3}]})", pipeline.c_str());
     const Outcome outcome = run.verify();
     CAPTURE(outcome.out);
     CHECK(outcome.code == 0);  // a claim of exact for the rounded 0.1 · 0.3 would be false
   }
 }
 
-TEST_CASE("with outward rounding coordinates of a descriptor system are enclosed, and sets are held to the last digit") {
+TEST_CASE(
+    "with outward rounding coordinates of a descriptor system are enclosed, and sets are held to "
+    "the last digit") {
   // the output leaves one vertex, which the rounded number T misses by 3e-17
-  const Run run(R"({"type": "descriptor", "E": [[1.25, 0.5], [-1.25, -0.5]], "A": [[0.234375, 0.09375], [0.265625, 0.90625]],
+  const Run run(
+      R"({"type": "descriptor", "E": [[1.25, 0.5], [-1.25, -0.5]], "A": [[0.234375, 0.09375], [0.265625, 0.90625]],
                     "B": [[0.3125], [2.25]], "Bw": [[-0.5, -0.1875], [-0.375, -0.8125]], "C": [[1.25, 0.5]],
                     "X0": {"type": "box", "lower": [1.53515625, -4.587890625], "upper": [1.78515625, -3.837890625]},
                     "W": {"type": "box", "lower": [-0.5, -0.265625], "upper": [0.5, 0.265625]},
                     "V": {"type": "box", "lower": [-0.203125], "upper": [0.203125]}})",
-                R"({"csv": {"file": "data.csv", "inputs": ["u0"], "outputs": ["y0"]}})",
-                R"({"name": "L", "backend": {"type": "line_zonotope", "rounding": "outward"}, "observer": "descriptor"})",
-                "u0,y0\n0.875,0.515625\n");
+      R"({"csv": {"file": "data.csv", "inputs": ["u0"], "outputs": ["y0"]}})",
+      R"({"name": "L", "backend": {"type": "line_zonotope", "rounding": "outward"}, "observer": "descriptor"})",
+      "u0,y0\n0.875,0.515625\n");
   Outcome outcome = run.verify();
   CAPTURE(outcome.out);
   CHECK(outcome.code == 0);
@@ -195,15 +208,17 @@ TEST_CASE("with outward rounding coordinates of a descriptor system are enclosed
 }
 
 TEST_CASE("an E that is singular in decimals only is told of, and read by all alike") {
-  const Run run(R"({"type": "descriptor", "E": [[0.1, 0.3], [0.3, 0.9]], "A": [[0.5, 0.1], [0.2, 0.8]], "C": [[1, 0]],
+  const Run run(
+      R"({"type": "descriptor", "E": [[0.1, 0.3], [0.3, 0.9]], "A": [[0.5, 0.1], [0.2, 0.8]], "C": [[1, 0]],
                     "X0": {"type": "box", "lower": [-1, -1], "upper": [1, 1]},
                     "W": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
                     "V": {"type": "box", "lower": [-0.1], "upper": [0.1]}})",
-                R"({"steps": 5, "x0": [0, 0]})", R"({"name": "L", "backend": "line_zonotope", "observer": "descriptor"})");
+      R"({"steps": 5, "x0": [0, 0]})",
+      R"({"name": "L", "backend": "line_zonotope", "observer": "descriptor"})");
   CAPTURE(run.said());
   CHECK(run.said().find("/system/E (line ") != std::string::npos);
-  CHECK(run.said().find("has rank 1 as it is written in decimals, 2 as doubles, and 1 up to rounding errors; rank 1 is used") !=
-        std::string::npos);
+  CHECK(run.said().find("has rank 1 as it is written in decimals, 2 as doubles, and 1 up to "
+                        "rounding errors; rank 1 is used") != std::string::npos);
   const Outcome outcome = run.verify();
   CAPTURE(outcome.out);
   CHECK(outcome.code == 0);
@@ -213,12 +228,15 @@ TEST_CASE("sets with more factors than rational arithmetic takes are decided alo
   constexpr int states = 5, disturbances = 40;
   Json system{{"type", "lti"}};
   for (int i = 0; i < states; ++i) {
-    for (int j = 0; j < states; ++j) system["A"][i][j] = (i == j ? .45 : .1) * std::cos(3 * i + 2 * j);
+    for (int j = 0; j < states; ++j)
+      system["A"][i][j] = (i == j ? .45 : .1) * std::cos(3 * i + 2 * j);
     for (int j = 0; j < disturbances; ++j) system["Bw"][i][j] = std::sin(7 * i + j);
     for (int r = 0; r < 2; ++r) system["C"][r][i] = std::cos(i + 5 * r);
   }
   const auto box = [](int size, double radius) {
-    return Json{{"type", "box"}, {"lower", std::vector<double>(size, -radius)}, {"upper", std::vector<double>(size, radius)}};
+    return Json{{"type", "box"},
+                {"lower", std::vector<double>(size, -radius)},
+                {"upper", std::vector<double>(size, radius)}};
   };
   system["Dv"] = {{1, 0}, {0, 1}};
   system["W"] = box(disturbances, .01);
@@ -226,9 +244,11 @@ TEST_CASE("sets with more factors than rational arithmetic takes are decided alo
   system["X0"] = box(states, 1);
   const std::string text = system.dump();
   for (const char* rounding : {"nominal", "outward"}) {
-    const Json pipeline{{"name", rounding},
-                        {"backend", {{"type", "constrained_zonotope"}, {"rounding", rounding}}},
-                        {"observer", {{"type", "prediction_correction"}, {"max_generators", 1000}, {"max_constraints", 1000}}}};
+    const Json pipeline{
+        {"name", rounding},
+        {"backend", {{"type", "constrained_zonotope"}, {"rounding", rounding}}},
+        {"observer",
+         {{"type", "prediction_correction"}, {"max_generators", 1000}, {"max_constraints", 1000}}}};
     const Run run(text.c_str(), R"({"steps": 5, "seed": 1})", pipeline.dump().c_str());
     const Outcome verified = run.verify();
     CAPTURE(verified.out);

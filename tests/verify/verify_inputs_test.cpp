@@ -34,8 +34,8 @@ Json scalar_study() {
 /// A static row, 0 = x_2 - u: states beyond the admissible set leave no output.
 Json descriptor_study() {
   Json study = scalar_study();
-  study["system"] =
-      Json::parse(R"({"type": "descriptor", "E": [[1, 0], [0, 0]], "A": [[0.5, 0], [0, 1]], "B": [[0], [-1]], "C": [[0, 1]],
+  study["system"] = Json::parse(
+      R"({"type": "descriptor", "E": [[1, 0], [0, 0]], "A": [[0.5, 0], [0, 1]], "B": [[0], [-1]], "C": [[0, 1]],
     "Dv": [[1]], "W": {"type": "box", "lower": [0, 0], "upper": [0, 0]}, "X0": {"type": "space", "dim": 2}, "V": {"type": "box", "lower": [-1], "upper": [1]},
     "U": {"type": "box", "lower": [-4], "upper": [4]},
     "modes": [{"name": "opposite", "system": {"type": "descriptor", "E": [[1, 0], [0, 0]], "A": [[0.5, 0], [0, 1]], "B": [[0], [1]],
@@ -75,7 +75,9 @@ class Run {
   }
 
  private:
-  void write(const char* name, const Json& value) const { std::ofstream(scratch_ / name) << value.dump(1); }
+  void write(const char* name, const Json& value) const {
+    std::ofstream(scratch_ / name) << value.dump(1);
+  }
 
   Scratch scratch_;
   Json results_;
@@ -104,7 +106,8 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
     CHECK(pipeline.steps == 0);
   }
 
-  const VerifyOutcome called_apart = run.with([](Json& p) { p[1]["design"]["pairs"][0]["disjoint"] = "yes"; });
+  const VerifyOutcome called_apart =
+      run.with([](Json& p) { p[1]["design"]["pairs"][0]["disjoint"] = "yes"; });
   REQUIRE(called_apart.violation);
   CHECK(called_apart.violation->pipeline == "together");
   CHECK(called_apart.violation->pointer == "/pipelines/1/design/pairs/0");
@@ -113,7 +116,8 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
 
   CHECK(run.with([](Json& p) { p[0]["design"]["pairs"][0]["disjoint"] = "no"; }).violation);
   CHECK(run.with([](Json& p) { p[0]["design"]["u"] = p[1]["design"]["u"]; }).violation);
-  const VerifyOutcome called_empty = run.with([](Json& p) { p[0]["design"]["tubes"][1]["empty"] = "yes"; });
+  const VerifyOutcome called_empty =
+      run.with([](Json& p) { p[0]["design"]["tubes"][1]["empty"] = "yes"; });
   REQUIRE(called_empty.violation);
   CHECK(called_empty.violation->pointer == "/pipelines/0/design/tubes/1");
 
@@ -122,18 +126,22 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
       const VerifyOutcome outcome = run.with(change);
       return outcome.violation ? outcome.violation->pointer : "";
     };
-    CHECK(refuted([](Json& p) { p[1]["exact"]["separates"] = "yes"; }) == "/pipelines/1/exact/separates");
-    CHECK(refuted([](Json& p) { p[1]["design"]["separates"] = "yes"; }) == "/pipelines/1/design/separates");
+    CHECK(refuted([](Json& p) { p[1]["exact"]["separates"] = "yes"; }) ==
+          "/pipelines/1/exact/separates");
+    CHECK(refuted([](Json& p) { p[1]["design"]["separates"] = "yes"; }) ==
+          "/pipelines/1/design/separates");
     CHECK(refuted([](Json& p) {
             p[1]["exact"]["pairs"][0]["disjoint"] = "yes";
             p[1]["exact"]["pairs"][0]["kappa_lower"] = 1;
           }) == "/pipelines/1/exact/pairs/0");
-    CHECK(refuted([](Json& p) { p[0]["exact"]["pairs"][0]["disjoint"] = "no"; }) == "/pipelines/0/exact/pairs/0");
+    CHECK(refuted([](Json& p) { p[0]["exact"]["pairs"][0]["disjoint"] = "no"; }) ==
+          "/pipelines/0/exact/pairs/0");
     CHECK(refuted([](Json& p) {
             Json& kappa = p[0]["exact"]["pairs"][0]["kappa_lower"];
             kappa = kappa.get<double>() * (1 + 1e-12);
           }) == "/pipelines/0/exact/pairs/0");
-    CHECK(refuted([](Json& p) { p[0]["exact"]["tubes"][1]["empty"] = "yes"; }) == "/pipelines/0/exact/tubes/1");
+    CHECK(refuted([](Json& p) { p[0]["exact"]["tubes"][1]["empty"] = "yes"; }) ==
+          "/pipelines/0/exact/tubes/1");
     CHECK(refuted([](Json& p) { p[0]["exact"] = nullptr; }) == "");
   }
   SUBCASE("a bound of κ that is too large stays open") {
@@ -145,8 +153,12 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
     CHECK(larger.pipelines[0].undecided == 1);
     CHECK(larger.pipelines[0].proofs == 2);
     CHECK(larger.pipelines[0].first_undecided.find("in place of") != std::string::npos);
-    CHECK(run.with([](Json& p) { p[0]["design"]["pairs"][0]["kappa_lower"] = "inf"; }).pipelines[0].undecided == 1);
-    CHECK(run.with([](Json& p) { p[0]["design"]["pairs"][0]["kappa_lower"] = 0; }).pipelines[0].proofs == 3);
+    CHECK(run.with([](Json& p) { p[0]["design"]["pairs"][0]["kappa_lower"] = "inf"; })
+              .pipelines[0]
+              .undecided == 1);
+    CHECK(run.with([](Json& p) { p[0]["design"]["pairs"][0]["kappa_lower"] = 0; })
+              .pipelines[0]
+              .proofs == 3);
   }
   SUBCASE("what claims nothing is passed over") {
     const auto nothing = run.with([](Json& p) {
@@ -160,10 +172,15 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
     CHECK(run.with([](Json& p) { p[1]["design"] = nullptr; }).pipelines[1].proofs == 0);
   }
   SUBCASE("files that are not as they were written") {
-    CHECK(refused(run, [](Json& p) { p[0]["design"]["u"] = Json::array(); }).find("/pipelines/0/design/u") != std::string::npos);
+    CHECK(refused(run, [](Json& p) {
+            p[0]["design"]["u"] = Json::array();
+          }).find("/pipelines/0/design/u") != std::string::npos);
     CHECK(refused(run, [](Json& p) { p[0]["design"]["u"][1] = {1, 2}; }) != "");
-    CHECK(refused(run, [](Json& p) { p[0]["design"]["pairs"] = Json::array(); }).find("every pair") != std::string::npos);
-    CHECK(refused(run, [](Json& p) { p[0]["design"]["tubes"].erase(0); }).find("every mode") != std::string::npos);
+    CHECK(refused(run, [](Json& p) {
+            p[0]["design"]["pairs"] = Json::array();
+          }).find("every pair") != std::string::npos);
+    CHECK(refused(run, [](Json& p) { p[0]["design"]["tubes"].erase(0); }).find("every mode") !=
+          std::string::npos);
     CHECK(refused(run, [](Json& p) { p[0]["design"].erase("outputs"); }) != "");
     CHECK(refused(run, [](Json& p) { p[0]["design"]["outputs"] = "some"; }) != "");
     CHECK(refused(run, [](Json& p) { p[0].erase("design"); }) != "");
@@ -179,5 +196,6 @@ TEST_CASE("the admissible set and the outputs that count are taken from the reco
   // without the set there are outputs; with all outputs the first ones tell the modes apart
   CHECK(run.with([](Json& p) { p[1]["design"]["admissible_set"] = nullptr; }).violation->pointer ==
         "/pipelines/1/design/tubes/0");
-  CHECK(run.with([](Json& p) { p[0]["design"]["outputs"] = "all"; }).violation->pointer == "/pipelines/0/design/pairs/0");
+  CHECK(run.with([](Json& p) { p[0]["design"]["outputs"] = "all"; }).violation->pointer ==
+        "/pipelines/0/design/pairs/0");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `cordon verify` on one short run: falsified results end with code 4 and name the place, damaged files with code 2 and a
-// message.
+// `cordon verify` on one short run: falsified results end with code 4 and name the place, damaged
+// files with code 2 and a message.
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -21,7 +21,9 @@ constexpr int unharmed = 0, refused = 2, violated = 4;
 
 Outcome cordon(const std::string& arguments) { return test::cordon_with(arguments + " 2>&1"); }
 
-void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 Json pipeline(const std::string& backend, const std::string& rounding) {
   return {{"name", backend + " " + rounding},
@@ -50,7 +52,8 @@ class Run {
       study["pipelines"].push_back(pipeline(backend, "nominal"));
     }
     write(home_ / "study.json", study.dump());
-    const Outcome outcome = cordon("run --quiet --out " + original().string() + " " + (home_ / "study.json").string());
+    const Outcome outcome =
+        cordon("run --quiet --out " + original().string() + " " + (home_ / "study.json").string());
     CAPTURE(outcome.out);
     REQUIRE(outcome.code == 0);
   }
@@ -102,7 +105,9 @@ const Run& run() {
   return one;
 }
 
-bool names(const Outcome& outcome, const std::string& text) { return outcome.out.find(text) != std::string::npos; }
+bool names(const Outcome& outcome, const std::string& text) {
+  return outcome.out.find(text) != std::string::npos;
+}
 
 constexpr std::size_t pipelines = 4, steps = 4;
 
@@ -147,7 +152,8 @@ TEST_CASE("diagnoses are passed over and named; what surrounds them is checked")
   CHECK_FALSE(names(outcome, "Every claim"));
   Json damaged = diagnosis;
   damaged["rounding"] = "sideways";
-  CHECK(run().with_results([&](Json& results) { results["pipelines"].push_back(damaged); }).code == refused);
+  CHECK(run().with_results([&](Json& results) { results["pipelines"].push_back(damaged); }).code ==
+        refused);
 }
 
 TEST_CASE("a bound moved inward by 1e-6 is found, for every backend and coordinate") {
@@ -177,7 +183,8 @@ TEST_CASE("falsified sets, answers, claims and proofs are found where they stand
   };
   for (const std::size_t p : {std::size_t{0}, std::size_t{1}}) {
     const std::size_t last = p * steps + steps - 1;
-    const std::string line = "sets.jsonl:" + std::to_string(last + 1), hull = "/pipelines/" + std::to_string(p) + "/steps/3/hull";
+    const std::string line = "sets.jsonl:" + std::to_string(last + 1),
+                      hull = "/pipelines/" + std::to_string(p) + "/steps/3/hull";
     found(run().with_set(last,
                          [](Json& set) {
                            for (Json& row : set["G"]) {
@@ -185,14 +192,19 @@ TEST_CASE("falsified sets, answers, claims and proofs are found where they stand
                            }
                          }),
           hull);  // its stored proofs are about other generators
-    found(run().with_set(last,
-                         [](Json& set) {
-                           set["proof"] = {{"kind", "farkas"}, {"margin", 1.0}, {"data", Json::array()}};
-                         }),
+    found(run().with_set(
+              last,
+              [](Json& set) {
+                set["proof"] = {{"kind", "farkas"}, {"margin", 1.0}, {"data", Json::array()}};
+              }),
           line);
-    found(run().with_results([&](Json& results) { results["pipelines"][p]["steps"][steps - 1]["consistent"] = "no"; }), line);
+    found(run().with_results([&](Json& results) {
+      results["pipelines"][p]["steps"][steps - 1]["consistent"] = "no";
+    }),
+          line);
   }
-  // the first set of the intervals is the exact one; smaller by a millionth, it lies in its hull still
+  // the first set of the intervals is the exact one; smaller by a millionth, it lies in its hull
+  // still
   found(run().with_set(3 * steps,
                        [](Json& set) {
                          for (Json& row : set["G"]) {
@@ -202,7 +214,9 @@ TEST_CASE("falsified sets, answers, claims and proofs are found where they stand
         "sets.jsonl:13");
   // zonotopes enclose the strip's intersection only
   const std::size_t zonotope = 2;
-  found(run().with_results([&](Json& results) { results["pipelines"][zonotope]["steps"][steps - 1]["tightness"] = "exact"; }),
+  found(run().with_results([&](Json& results) {
+    results["pipelines"][zonotope]["steps"][steps - 1]["tightness"] = "exact";
+  }),
         "sets.jsonl:12");
   // a measurement that the model does not allow for the sets that were recorded
   found(run().verify([](const fs::path& copy) {
@@ -246,7 +260,8 @@ TEST_CASE("damaged files are refused with their place") {
   refuses(run().verify([](const fs::path& copy) {
     const std::string text = bytes_of(copy / "sets.jsonl");
     const std::size_t first = text.find('\n') + 1, second = text.find('\n', first) + 1;
-    write(copy / "sets.jsonl", text.substr(first, second - first) + text.substr(0, first) + text.substr(second));
+    write(copy / "sets.jsonl",
+          text.substr(first, second - first) + text.substr(0, first) + text.substr(second));
   }),
           "line 1");
   refuses(run().verify([](const fs::path& copy) {  // a step that is in no file any more
@@ -270,11 +285,13 @@ TEST_CASE("damaged files are refused with their place") {
 TEST_CASE("numbers at the ends of the range end in a verdict, not in a crash") {
   for (const char* huge : {"1e308", "-1e308", "1e-320", "1e150"}) {
     CAPTURE(huge);
-    for (const Outcome& outcome : {run().with_text("sets.jsonl", "\"c\": [0", "\"c\": [" + std::string(huge)),
-                                   run().with_text("sets.jsonl", "\"A\": [[1", "\"A\": [[" + std::string(huge)),
-                                   run().with_text("sets.jsonl", "\"data\": [1", "\"data\": [" + std::string(huge))}) {
+    for (const Outcome& outcome :
+         {run().with_text("sets.jsonl", "\"c\": [0", "\"c\": [" + std::string(huge)),
+          run().with_text("sets.jsonl", "\"A\": [[1", "\"A\": [[" + std::string(huge)),
+          run().with_text("sets.jsonl", "\"data\": [1", "\"data\": [" + std::string(huge))}) {
       CAPTURE(outcome.out);
-      CHECK((outcome.code == unharmed || outcome.code == refused || outcome.code == violated || outcome.code == 5));
+      CHECK((outcome.code == unharmed || outcome.code == refused || outcome.code == violated ||
+             outcome.code == 5));
     }
   }
 }

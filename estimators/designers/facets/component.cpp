@@ -14,7 +14,8 @@ class Facets final : public designers::TubeDesigner {
  private:
   designers::SearchResult search(const designers::SeparationProblem& problem, double seconds,
                                  DesignControl& control) const override {
-    return designers::search_facets(problem, {params().real("gap"), seconds, params().integer("max_facets")}, control);
+    return designers::search_facets(
+        problem, {params().real("gap"), seconds, params().integer("max_facets")}, control);
   }
 };
 
@@ -24,18 +25,27 @@ void register_facets_designer(Registrar& registrar) {
   ParamSchema schema;
   designers::add_search_parameters(schema);
   designers::add_statement_parameters(schema);
-  schema.real("gap", "relative distance of cost and proven lower bound at which the search ends", 1e-9, 1e-12, 1)
+  schema
+      .real("gap", "relative distance of cost and proven lower bound at which the search ends",
+            1e-9, 1e-12, 1)
       .integer("max_facets",
-               "largest number of facets of the inputs that do not separate a pair; one with more does not bound the cost", 10000,
-               2, 1000000);
-  registrar.designer(
-      {{"facets", "cheapest separating input, by exact search over facets", "Rego2025", std::move(schema),
-        "For each pair of modes the inputs that do not separate it form a polytope, seen through the few combinations of\n"
-        "inputs that tell the two apart. An input separates the pair if it lies beyond a facet. The search solves linear\n"
-        "programs over the input set with facets chosen so far, best first, and branches on the facets of a pair that is\n"
-        "still violated. Lower bounds are proven by multipliers; \"optimal\" and \"infeasible\" are never a solver's word."},
-       designers::check_search,
-       [](const DesignerContext& context, const Params& params) { return std::make_unique<Facets>(context, params); }});
+               "largest number of facets of the inputs that do not separate a pair; one with more "
+               "does not bound the cost",
+               10000, 2, 1000000);
+  registrar.designer({{"facets", "cheapest separating input, by exact search over facets",
+                       "Rego2025", std::move(schema),
+                       "For each pair of modes the inputs that do not separate it form a polytope, "
+                       "seen through the few combinations of\n"
+                       "inputs that tell the two apart. An input separates the pair if it lies "
+                       "beyond a facet. The search solves linear\n"
+                       "programs over the input set with facets chosen so far, best first, and "
+                       "branches on the facets of a pair that is\n"
+                       "still violated. Lower bounds are proven by multipliers; \"optimal\" and "
+                       "\"infeasible\" are never a solver's word."},
+                      designers::check_search,
+                      [](const DesignerContext& context, const Params& params) {
+                        return std::make_unique<Facets>(context, params);
+                      }});
 }
 
 }  // namespace cordon::estimators

@@ -18,7 +18,9 @@ FacetDual::FacetDual(const SeparationProblem& problem) {
   const Cost& cost = problem.cost;
   quadratic_ = cost.kind == Cost::Kind::quadratic;
   const Matrix enters = (U.G.array() != 0).cast<double>();
-  const double most = enters.size() ? std::max(enters.rowwise().sum().maxCoeff(), enters.colwise().sum().maxCoeff()) : 0;
+  const double most =
+      enters.size() ? std::max(enters.rowwise().sum().maxCoeff(), enters.colwise().sum().maxCoeff())
+                    : 0;
   usable_ = cost.kind != Cost::Kind::norm_inf && most <= 1;
   if (!usable_) return;
   weight_ = centre_ = Vector::Zero(U.G.cols());
@@ -54,7 +56,8 @@ FacetDual::Parent FacetDual::parent(const std::vector<const SeparatingFacet*>& c
 /// Of the bound in λ, which is concave.
 double FacetDual::slope(const Parent& parent, const SeparatingFacet& facet, double lambda) const {
   double slope = facet.in;
-  for (Index j = 0; j < weight_.size(); ++j) slope -= facet.a[j] * minimiser(j, parent.s[j] + lambda * facet.a[j]);
+  for (Index j = 0; j < weight_.size(); ++j)
+    slope -= facet.a[j] * minimiser(j, parent.s[j] + lambda * facet.a[j]);
   return slope;
 }
 
@@ -71,10 +74,12 @@ double FacetDual::bound(const Parent& parent, const SeparatingFacet& facet) cons
   double bound = constant_ + parent.level + low * facet.in;
   double terms = constant_ + std::abs(parent.level) + std::abs(low * facet.in);
   for (Index j = 0; j < weight_.size(); ++j) {
-    const double s = parent.s[j] + low * facet.a[j], at = minimiser(j, s), apart = std::abs(at - centre_[j]);
+    const double s = parent.s[j] + low * facet.a[j], at = minimiser(j, s),
+                 apart = std::abs(at - centre_[j]);
     bound += weight_[j] * (quadratic_ ? apart * apart : apart) - s * at;
     const double reach = 1 + std::abs(centre_[j]);
-    terms += weight_[j] * (quadratic_ ? reach * reach : reach) + std::abs(parent.s[j]) + std::abs(low * facet.a[j]);
+    terms += weight_[j] * (quadratic_ ? reach * reach : reach) + std::abs(parent.s[j]) +
+             std::abs(low * facet.a[j]);
   }
   return bound - rounding_share * terms * static_cast<double>(weight_.size() + 4);
 }

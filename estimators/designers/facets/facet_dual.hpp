@@ -8,13 +8,16 @@
 
 namespace cordon::designers {
 
-/// Where each input follows a factor ζ_j of its own and the cost is a sum, cost(u) = Σ_j f_j(ζ_j), every λ ≥ 0 proves
+/// Where each input follows a factor ζ_j of its own and the cost is a sum, cost(u) = Σ_j f_j(ζ_j),
+/// every λ ≥ 0 proves
 ///   cost ≥ Σ_f λ_f in_f + Σ_j min{f_j(ζ) - s_j ζ : |ζ| ≤ 1},   s = Σ_f λ_f a_f
-/// for inputs beyond the facets f. A child keeps the multipliers of its parent and adds the best one for its own facet.
+/// for inputs beyond the facets f. A child keeps the multipliers of its parent and adds the best
+/// one for its own facet.
 class FacetDual {
  public:
   explicit FacetDual(const SeparationProblem& problem);
-  /// Is the cost of that kind? Equations of the input set and of the tubes are forgotten, which keeps the bounds valid.
+  /// Is the cost of that kind? Equations of the input set and of the tubes are forgotten, which
+  /// keeps the bounds valid.
   bool usable() const { return usable_; }
 
   /// What the bounds need to know of a parent.
@@ -22,7 +25,8 @@ class FacetDual {
     Vector s;
     double level = 0;  ///< Σ_f λ_f in_f
   };
-  Parent parent(const std::vector<const SeparatingFacet*>& chosen, const std::vector<double>& multipliers) const;
+  Parent parent(const std::vector<const SeparatingFacet*>& chosen,
+                const std::vector<double>& multipliers) const;
   double bound(const Parent& parent, const SeparatingFacet& facet) const;
 
  private:

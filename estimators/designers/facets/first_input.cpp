@@ -22,21 +22,24 @@ std::vector<Vector> directions(const SeparationProblem& problem) {
     all.push_back(d);
     all.push_back(-d);
   };
-  const Vector alternating = Vector::NullaryExpr(times, [](Index k) { return k % 2 == 0 ? 1 : -1; });
+  const Vector alternating =
+      Vector::NullaryExpr(times, [](Index k) { return k % 2 == 0 ? 1 : -1; });
   for (const Vector& in_time : {Vector(Vector::Ones(times)), alternating}) {
     both(linalg::product(Vector::Ones(inputs), in_time.transpose()).reshaped());
     for (Index i = 0; i < inputs && inputs > 1; ++i)
       both(linalg::product(Vector::Unit(inputs, i), in_time.transpose()).reshaped());
   }
   std::mt19937_64 engine(1);
-  for (int k = 0; k < chances; ++k) all.push_back(Vector::NullaryExpr(n, [&] { return (engine() >> 32) % 2 == 0 ? -1 : 1; }));
+  for (int k = 0; k < chances; ++k)
+    all.push_back(Vector::NullaryExpr(n, [&] { return (engine() >> 32) % 2 == 0 ? -1 : 1; }));
   for (Index i = 0; i < std::min(n, most_singles); ++i) both(Vector::Unit(n, i));
   return all;
 }
 
 class Trial {
  public:
-  Trial(const SeparationProblem& problem, const std::function<bool()>& over) : problem_(problem), over_(over) {
+  Trial(const SeparationProblem& problem, const std::function<bool()>& over)
+      : problem_(problem), over_(over) {
     for (const PairProgram& pair : problem.pairs) pairs_.push_back(&pair);
   }
 
@@ -51,7 +54,8 @@ class Trial {
   }
 
   bool is_cheaper(const Vector& zeta) const {
-    return !found_.u || problem_.cost.at(problem_.U.c + linalg::product(problem_.U.G, zeta)) < found_.cost;
+    return !found_.u ||
+           problem_.cost.at(problem_.U.c + linalg::product(problem_.U.G, zeta)) < found_.cost;
   }
 
   FirstInput& found() { return found_; }
@@ -77,7 +81,8 @@ class Trial {
 
 }  // namespace
 
-FirstInput first_input(const SeparationProblem& problem, NodeProgram& program, const std::function<bool()>& over) {
+FirstInput first_input(const SeparationProblem& problem, NodeProgram& program,
+                       const std::function<bool()>& over) {
   Trial trial(problem, over);
   if (over()) return {};
   const NodeProgram::Answer cheapest = program.solve({});
@@ -87,7 +92,9 @@ FirstInput first_input(const SeparationProblem& problem, NodeProgram& program, c
       if (over()) break;
       const std::optional<Vector> end = program.farthest(direction);
       if (!end) break;
-      const auto along = [&](double share) { return Vector(*cheapest.zeta + share * (*end - *cheapest.zeta)); };
+      const auto along = [&](double share) {
+        return Vector(*cheapest.zeta + share * (*end - *cheapest.zeta));
+      };
       double near = 0, far = 1;
       for (int k = 0; k < halvings && !trial.is_cheaper(along(far)); ++k) far /= 2;
       if (!trial.offer(along(far))) continue;

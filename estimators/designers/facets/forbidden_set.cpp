@@ -16,22 +16,26 @@ using linalg::transposed_product;
 
 namespace {
 
-constexpr double rank_tolerance = row_noise;  ///< of the terms: what inputs move less cannot be told from rounding
-constexpr double flat_tolerance = 1e-9;       ///< of the terms
-constexpr double flat_distance = 1e-6;        ///< of the terms, see forbidden_set
-constexpr double outer_rounding = 1e-14;      ///< of the terms: γ_n of the sums below, with room for thousands of them
+constexpr double rank_tolerance =
+    row_noise;  ///< of the terms: what inputs move less cannot be told from rounding
+constexpr double flat_tolerance = 1e-9;  ///< of the terms
+constexpr double flat_distance = 1e-6;   ///< of the terms, see forbidden_set
+constexpr double outer_rounding =
+    1e-14;  ///< of the terms: γ_n of the sums below, with room for thousands of them
 constexpr double inner_rounding = 1e-12;      ///< of the terms, see forbidden_set
 constexpr double point_accuracy = 1e-13;      ///< of the terms
 constexpr double residual_tolerance = 1e-11;  ///< of the terms
 
-/// The rows of a pair by powers of two at the size of their terms, so that 1 is the size of everything, in the factors ζ of U.
+/// The rows of a pair by powers of two at the size of their terms, so that 1 is the size of
+/// everything, in the factors ζ of U.
 struct ScaledPair {
   Matrix G, N;  ///< G ξ + c = N ζ
   Vector c;
   Vector terms;   ///< per row, for ‖ξ‖∞ ≤ 1 + ε and ‖ζ‖∞ ≤ 1
   double factor;  ///< 1 + ε
 
-  ScaledPair(const PairProgram& pair, const InputSequences& U, double epsilon) : factor(1 + epsilon) {
+  ScaledPair(const PairProgram& pair, const InputSequences& U, double epsilon)
+      : factor(1 + epsilon) {
     G = pair.G;
     N = product(pair.N, U.G);
     const Vector shift = product(pair.N, U.c);
@@ -71,20 +75,25 @@ class Support {
     ++programs;
     return program_.is_empty();
   }
-  /// Proven: has Q a point however the rows' right-hand sides are moved by up to `effect`, and by rounding?
+  /// Proven: has Q a point however the rows' right-hand sides are moved by up to `effect`, and by
+  /// rounding?
   bool is_met_within(const Vector& effect) {
     ++programs;
     const Vector error = effect + row_noise * pair_.terms;
-    return BoxedProgram(rows_, right_, {pair_.terms, product(L_.cwiseAbs().transpose(), error)}).is_empty() == cordon::Answer::no;
+    return BoxedProgram(rows_, right_, {pair_.terms, product(L_.cwiseAbs().transpose(), error)})
+               .is_empty() == cordon::Answer::no;
   }
-  double terms_along(const Vector& d) const { return pair_.terms.dot(Vector(product(R_, d)).cwiseAbs()); }
+  double terms_along(const Vector& d) const {
+    return pair_.terms.dot(Vector(product(R_, d)).cwiseAbs());
+  }
 
   Answer along(const Vector& d) {
     ++programs;
     const BoxedProgram::Bound bound = program_.maximum(transposed_product(seen_, d));
     Answer answer;
     answer.y = product(R_, d) - product(L_, bound.y);
-    answer.level = pair_.factor * transposed_product(pair_.G, answer.y).cwiseAbs().sum() + answer.y.dot(c_);
+    answer.level =
+        pair_.factor * transposed_product(pair_.G, answer.y).cwiseAbs().sum() + answer.y.dot(c_);
     if (bound.solved && bound.xi) answer.x = point(*bound.xi);
     return answer;
   }
@@ -115,7 +124,8 @@ SeparatingFacet facet_of(const ScaledPair& pair, const Vector& y, double distanc
   SeparatingFacet facet;
   const double terms = y.cwiseAbs().dot(pair.terms);
   facet.a = transposed_product(pair.N, y);
-  facet.out = pair.factor * transposed_product(pair.G, y).cwiseAbs().sum() + y.dot(pair.c) + outer_rounding * terms;
+  facet.out = pair.factor * transposed_product(pair.G, y).cwiseAbs().sum() + y.dot(pair.c) +
+              outer_rounding * terms;
   facet.in = facet.out - below - inner_rounding * terms;
   facet.out += distance * terms;
   const double scale = facet.a.size() ? facet.a.cwiseAbs().maxCoeff() : 0;
@@ -172,8 +182,10 @@ class Builder {
         return std::nullopt;
       }
       Matrix known = span.flat;
-      for (Index p = 1; p < span.points.cols(); ++p) append(known, span.points.col(p) - span.points.col(0));
-      const Matrix rest = known.cols() ? linalg::null_space(known.transpose()) : Matrix::Identity(r_, r_);
+      for (Index p = 1; p < span.points.cols(); ++p)
+        append(known, span.points.col(p) - span.points.col(0));
+      const Matrix rest =
+          known.cols() ? linalg::null_space(known.transpose()) : Matrix::Identity(r_, r_);
       if (rest.cols() == 0) return std::nullopt;
       const Vector d = rest.col(0);
       const Support::Answer above = support_.along(d), below = support_.along(-d);
@@ -192,30 +204,36 @@ class Builder {
         continue;
       }
       const double middle = d.dot(span.points.col(0));
-      append(span.points, d.dot(*above.x) - middle > middle - d.dot(*below.x) ? *above.x : *below.x);
+      append(span.points,
+             d.dot(*above.x) - middle > middle - d.dot(*below.x) ? *above.x : *below.x);
     }
     return span;
   }
 
   /// Facets of the hull in the directions that are not flat.
   bool grow(const Span& span) {
-    const Matrix basis = span.flat.cols() ? linalg::null_space(span.flat.transpose()) : Matrix::Identity(r_, r_);
+    const Matrix basis =
+        span.flat.cols() ? linalg::null_space(span.flat.transpose()) : Matrix::Identity(r_, r_);
     const Matrix down = basis.transpose();
     double terms = 0;
-    for (Index i = 0; i < r_; ++i) terms = std::max(terms, support_.terms_along(Vector::Unit(r_, i)));
+    for (Index i = 0; i < r_; ++i)
+      terms = std::max(terms, support_.terms_along(Vector::Unit(r_, i)));
     GrowingHull hull(product(down, span.points), point_accuracy * terms);
     if (hull.facets().empty()) return false;
     for (;;) {
       auto& facets = hull.facets();
       if (static_cast<Index>(facets.size()) > max_facets_) {
-        reason_ = "the set of inputs that do not separate them has more than " + std::to_string(max_facets_) + " facets";
+        reason_ = "the set of inputs that do not separate them has more than " +
+                  std::to_string(max_facets_) + " facets";
         return false;
       }
-      const auto open = std::find_if(facets.begin(), facets.end(), [](const GrowingHull::Facet& f) { return !f.settled; });
+      const auto open = std::find_if(facets.begin(), facets.end(),
+                                     [](const GrowingHull::Facet& f) { return !f.settled; });
       if (open == facets.end()) break;
       if (watch_.over()) return stopped();
       const Support::Answer found = support_.along(product(basis, open->h.normalized()));
-      if (!found.x || found.level < hull.level(*open) - residual_tolerance * terms) return false;  // a point outside Q
+      if (!found.x || found.level < hull.level(*open) - residual_tolerance * terms)
+        return false;  // a point outside Q
       const Vector x = product(down, *found.x);
       if (hull.beyond(*open, x) > hull.tolerance(*open)) {
         if (!hull.add(x, [this] { return watch_.over(); })) return stopped();
@@ -230,7 +248,8 @@ class Builder {
       return false;
     }
     for (const GrowingHull::Facet& facet : hull.facets()) {
-      set_.facets.push_back(facet_of(pair_, facet.proof, 0, std::max(0.0, facet.proven - hull.level(facet))));
+      set_.facets.push_back(
+          facet_of(pair_, facet.proof, 0, std::max(0.0, facet.proven - hull.level(facet))));
     }
     return true;
   }
@@ -252,11 +271,14 @@ ForbiddenSet of_kind(ForbiddenSet::Kind kind, std::string reason = {}) {
 
 }  // namespace
 
-ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, double epsilon, Index max_facets,
-                           const Watch& watch) {
+ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, double epsilon,
+                           Index max_facets, const Watch& watch) {
   if (pair.rows() == 0) {
-    return pair.vanished == 0 ? of_kind(ForbiddenSet::Kind::never, "no output tells one from the other, whatever the inputs are")
-                              : of_kind(ForbiddenSet::Kind::unknown, "they differ by less than rounding allows to tell");
+    return pair.vanished == 0
+               ? of_kind(ForbiddenSet::Kind::never,
+                         "no output tells one from the other, whatever the inputs are")
+               : of_kind(ForbiddenSet::Kind::unknown,
+                         "they differ by less than rounding allows to tell");
   }
   const ScaledPair scaled(pair, U, epsilon);
   // ζ = p + Zη: η is free but for the box.
@@ -265,7 +287,8 @@ ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, dou
   const Vector p = equations ? product(linalg::pseudo_inverse(U.A), U.b) : Vector::Zero(U.G.cols());
   const linalg::Svd parts = linalg::svd(product(scaled.N, Z));
   const Index r = (parts.sigma.array() > rank_tolerance).count(), m = pair.rows();
-  Support support(scaled, parts.U.leftCols(r), parts.U.rightCols(m - r), scaled.c - product(scaled.N, p));
+  Support support(scaled, parts.U.leftCols(r), parts.U.rightCols(m - r),
+                  scaled.c - product(scaled.N, p));
 
   const Answer empty = support.empty();
   ForbiddenSet set;
@@ -273,12 +296,16 @@ ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, dou
     set = of_kind(ForbiddenSet::Kind::separated);
   } else if (r > 0) {
     set = Builder(scaled, support, r, max_facets, watch).build();
-  } else if (pair.vanished == 0 && support.is_met_within(product(scaled.N, Z).cwiseAbs().rowwise().sum())) {
-    set = of_kind(ForbiddenSet::Kind::never, "the inputs that may be chosen have no effect on what tells one from the other");
+  } else if (pair.vanished == 0 &&
+             support.is_met_within(product(scaled.N, Z).cwiseAbs().rowwise().sum())) {
+    set = of_kind(ForbiddenSet::Kind::never,
+                  "the inputs that may be chosen have no effect on what tells one from the other");
   } else if (empty == Answer::no) {
-    set = of_kind(ForbiddenSet::Kind::unknown, "the inputs that may be chosen have hardly more effect than rounding");
+    set = of_kind(ForbiddenSet::Kind::unknown,
+                  "the inputs that may be chosen have hardly more effect than rounding");
   } else {
-    set = of_kind(ForbiddenSet::Kind::unknown, "whether they are told apart without inputs is a matter of rounding");
+    set = of_kind(ForbiddenSet::Kind::unknown,
+                  "whether they are told apart without inputs is a matter of rounding");
   }
   set.programs = support.programs;
   return set;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The inputs that do not separate a pair of modes, as a polytope seen through the few combinations of inputs that matter.
+// The inputs that do not separate a pair of modes, as a polytope seen through the few combinations
+// of inputs that matter.
 #pragma once
 
 #include "designers/facets/watch.hpp"
@@ -7,7 +8,8 @@
 
 namespace cordon::designers {
 
-/// A half-space of the factors ζ, ‖ζ‖∞ ≤ 1, of the input sequences U = {c + Gζ}. Largest |a_i| is 1.
+/// A half-space of the factors ζ, ‖ζ‖∞ ≤ 1, of the input sequences U = {c + Gζ}. Largest |a_i|
+/// is 1.
 struct SeparatingFacet {
   Vector a;
   double out = 0;  ///< a·ζ ≥ out: κ ≥ ε by one Farkas vector of the pair, rounding included
@@ -23,24 +25,29 @@ struct ForbiddenSet {
   };
   Kind kind = Kind::unknown;
   std::vector<SeparatingFacet> facets;
-  bool flat = false;          ///< the set has no width in a direction: from there `out` keeps a distance, see forbidden_set
+  bool flat = false;  ///< the set has no width in a direction: from there `out` keeps a distance,
+                      ///< see forbidden_set
   std::string reason = {};    ///< for `never` and `unknown`, to follow "modes i and j: "
   std::int64_t programs = 0;  ///< linear programs solved
 };
 
-/// With R and L the range and left null space of N restricted to the inputs that U lets vary, Q = {RᵀGξ + Rᵀc : LᵀGξ = -Lᵀc,
-/// ‖ξ‖∞ ≤ 1 + ε} is grown from points that attain its support in the directions of the facets of what is known so far, until no
-/// support lies beyond its facet.
+/// With R and L the range and left null space of N restricted to the inputs that U lets vary, Q =
+/// {RᵀGξ + Rᵀc : LᵀGξ = -Lᵀc, ‖ξ‖∞ ≤ 1 + ε} is grown from points that attain its support in the
+/// directions of the facets of what is known so far, until no support lies beyond its facet.
 ///
-/// What is proven. The multipliers of a support give y = R h + L z on the rows of the pair, and κ ≥ ε wherever
-///   yᵀ(N u - c) ≥ (1+ε) ‖Gᵀy‖₁:   `out`, with rounding errors bounded; neither the hull nor R and L need to be exact for it.
-/// `in` rests on the hull: the points that the facets pass through are basic solutions, each checked to satisfy its rows to
-/// 1e-11. It lies by 1e-12 of the terms of the facet below the hull, more than what rounding (1e-16 of the terms per operation)
-/// can add. So a relaxation by `in` misses no separating input, and the difference out - in is part of the reported gap.
+/// What is proven. The multipliers of a support give y = R h + L z on the rows of the pair, and κ ≥
+/// ε wherever
+///   yᵀ(N u - c) ≥ (1+ε) ‖Gᵀy‖₁:   `out`, with rounding errors bounded; neither the hull nor R and
+///   L need to be exact for it.
+/// `in` rests on the hull: the points that the facets pass through are basic solutions, each
+/// checked to satisfy its rows to 1e-11. It lies by 1e-12 of the terms of the facet below the hull,
+/// more than what rounding (1e-16 of the terms per operation) can add. So a relaxation by `in`
+/// misses no separating input, and the difference out - in is part of the reported gap.
 ///
-/// Where Q is flat (no width up to 1e-9 of the terms), every input off it separates, however near: there is no cheapest one.
-/// `out` then asks for a distance of 1e-6 of the terms, so that a proof can succeed; `in` does not.
-ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, double epsilon, Index max_facets,
-                           const Watch& watch);
+/// Where Q is flat (no width up to 1e-9 of the terms), every input off it separates, however near:
+/// there is no cheapest one. `out` then asks for a distance of 1e-6 of the terms, so that a proof
+/// can succeed; `in` does not.
+ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, double epsilon,
+                           Index max_facets, const Watch& watch);
 
 }  // namespace cordon::designers

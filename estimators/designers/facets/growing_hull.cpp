@@ -11,10 +11,11 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr double flat = 1e-9;  ///< of the largest distance among points: nearer ones span no more dimensions
+constexpr double flat =
+    1e-9;  ///< of the largest distance among points: nearer ones span no more dimensions
 
-/// The columns that span the simplex of which each next corner is farthest from those before; fewer than dim + 1 where the points
-/// are flat.
+/// The columns that span the simplex of which each next corner is farthest from those before; fewer
+/// than dim + 1 where the points are flat.
 std::vector<Index> corners(const Matrix& points) {
   std::vector<Index> chosen{0};
   Matrix rest = points.colwise() - points.col(0);
@@ -32,12 +33,14 @@ std::vector<Index> corners(const Matrix& points) {
 /// Do the lines of a polygon, by angle, share a point with the next one each?
 bool is_closed_polygon(const std::vector<GrowingHull::Facet>& facets) {
   std::vector<std::pair<double, const GrowingHull::Facet*>> by_angle;
-  for (const auto& facet : facets) by_angle.emplace_back(std::atan2(facet.h[1], facet.h[0]), &facet);
+  for (const auto& facet : facets)
+    by_angle.emplace_back(std::atan2(facet.h[1], facet.h[0]), &facet);
   std::sort(by_angle.begin(), by_angle.end());
   for (std::size_t i = 0; i < by_angle.size(); ++i) {
     const auto& one = by_angle[i].second->on;
     const auto& next = by_angle[(i + 1) % by_angle.size()].second->on;
-    if (std::none_of(one.begin(), one.end(), [&](Index p) { return std::binary_search(next.begin(), next.end(), p); }))
+    if (std::none_of(one.begin(), one.end(),
+                     [&](Index p) { return std::binary_search(next.begin(), next.end(), p); }))
       return false;
   }
   return by_angle.size() >= 3;
@@ -71,7 +74,8 @@ bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
   const Index number = points_++, ridge = centre_.size() - 1;
   offsets_.push_back(x - centre_);
   std::vector<double> excess;
-  std::vector<bool> seen(static_cast<std::size_t>(points_));  // the points of the facets that x is beyond
+  std::vector<bool> seen(
+      static_cast<std::size_t>(points_));  // the points of the facets that x is beyond
   for (const Facet& facet : facets_) {
     excess.push_back(beyond(facet, x));
     if (excess.back() <= tolerance(facet)) continue;
@@ -81,7 +85,9 @@ bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const auto& on = facets_[f].on;
     if (excess[f] > tolerance(facets_[f])) visible.push_back(f);
-    if (std::count_if(on.begin(), on.end(), [&](Index point) { return seen[static_cast<std::size_t>(point)]; }) >= ridge) {
+    if (std::count_if(on.begin(), on.end(), [&](Index point) {
+          return seen[static_cast<std::size_t>(point)];
+        }) >= ridge) {
       near.push_back(f);
     }
   }
@@ -92,12 +98,14 @@ bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
     for (const std::size_t g : near) {
       if (excess[g] >= -tolerance(facets_[g])) continue;
       common.clear();
-      std::set_intersection(facets_[f].on.begin(), facets_[f].on.end(), facets_[g].on.begin(), facets_[g].on.end(),
-                            std::back_inserter(common));
+      std::set_intersection(facets_[f].on.begin(), facets_[f].on.end(), facets_[g].on.begin(),
+                            facets_[g].on.end(), std::back_inserter(common));
       if (static_cast<Index>(common.size()) < ridge) continue;
       if (over()) return false;
       const bool adjacent = std::none_of(near.begin(), near.end(), [&](std::size_t k) {
-        return k != f && k != g && std::includes(facets_[k].on.begin(), facets_[k].on.end(), common.begin(), common.end());
+        return k != f && k != g &&
+               std::includes(facets_[k].on.begin(), facets_[k].on.end(), common.begin(),
+                             common.end());
       });
       if (!adjacent) continue;
       Facet facet;
@@ -119,7 +127,8 @@ bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
     }
   }
   facets_.resize(kept);
-  facets_.insert(facets_.end(), std::make_move_iterator(made.begin()), std::make_move_iterator(made.end()));
+  facets_.insert(facets_.end(), std::make_move_iterator(made.begin()),
+                 std::make_move_iterator(made.end()));
   return true;
 }
 
@@ -127,17 +136,20 @@ bool GrowingHull::is_closed() const {
   const Index r = centre_.size();
   if (r == 1) return facets_.size() == 2;
   if (r == 2) return is_closed_polygon(facets_);
-  return std::all_of(facets_.begin(), facets_.end(), [&](const Facet& facet) { return has_neighbours(facet); });
+  return std::all_of(facets_.begin(), facets_.end(),
+                     [&](const Facet& facet) { return has_neighbours(facet); });
 }
 
 bool GrowingHull::has_neighbours(const Facet& facet) const {
   const Matrix basis = linalg::null_space(facet.h.transpose());
   Matrix points(basis.cols(), static_cast<Index>(facet.on.size()));
   for (Index i = 0; i < points.cols(); ++i) {
-    points.col(i) = linalg::transposed_product(basis, offsets_[static_cast<std::size_t>(facet.on[static_cast<std::size_t>(i)])]);
+    points.col(i) = linalg::transposed_product(
+        basis, offsets_[static_cast<std::size_t>(facet.on[static_cast<std::size_t>(i)])]);
   }
   if (basis.cols() != centre_.size() - 1 || points.cols() == 0) return false;
-  std::vector<Index> order = corners(points);  // the points of the facet as its own hull numbers them
+  std::vector<Index> order =
+      corners(points);  // the points of the facet as its own hull numbers them
   const auto simplex = static_cast<Index>(order.size());
   if (simplex <= points.rows()) return false;
   GrowingHull hull(points(Eigen::all, order), accuracy_);
@@ -149,10 +161,12 @@ bool GrowingHull::has_neighbours(const Facet& facet) const {
   if (hull.facets().empty() || !hull.is_closed()) return false;
   return std::all_of(hull.facets().begin(), hull.facets().end(), [&](const Facet& part) {
     std::vector<Index> ridge;
-    for (const Index i : part.on) ridge.push_back(facet.on[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])]);
+    for (const Index i : part.on)
+      ridge.push_back(facet.on[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])]);
     std::sort(ridge.begin(), ridge.end());
     return std::any_of(facets_.begin(), facets_.end(), [&](const Facet& other) {
-      return &other != &facet && std::includes(other.on.begin(), other.on.end(), ridge.begin(), ridge.end());
+      return &other != &facet &&
+             std::includes(other.on.begin(), other.on.end(), ridge.begin(), ridge.end());
     });
   });
 }

@@ -9,9 +9,10 @@
 
 namespace cordon::designers {
 
-/// conv(points) in Rʳ, r ≥ 1, by its facets h·(x - o) ≤ 1 around the centre o of the first simplex: the vertices of the polar
-/// polytope, cut by one half-space per point (double description [Fukuda1996]). New facets are convex combinations of old ones,
-/// so that errors do not grow. Points count as lying on a facet up to `tolerance`.
+/// conv(points) in Rʳ, r ≥ 1, by its facets h·(x - o) ≤ 1 around the centre o of the first simplex:
+/// the vertices of the polar polytope, cut by one half-space per point (double description
+/// [Fukuda1996]). New facets are convex combinations of old ones, so that errors do not grow.
+/// Points count as lying on a facet up to `tolerance`.
 class GrowingHull {
  public:
   struct Facet {
@@ -21,7 +22,8 @@ class GrowingHull {
     Vector proof = {};
     double proven = 0;
   };
-  /// r + 1 points (columns) in general position, known up to `accuracy` in each direction; otherwise there are no facets.
+  /// r + 1 points (columns) in general position, known up to `accuracy` in each direction;
+  /// otherwise there are no facets.
   GrowingHull(const Matrix& simplex, double accuracy);
 
   /// How far x is beyond a facet (positive), in units of the facet's distance from o.
@@ -32,8 +34,9 @@ class GrowingHull {
   /// False if `over` ended it half way: the hull is of no use then.
   bool add(VectorIn x, const std::function<bool()>& over);
 
-  /// Is no facet missing? Rounding can hide one where the set is thin. True: every ridge of every facet lies on a second one, the
-  /// ridges being the facets of a closed hull of their own; as facets are connected by ridges, there are no others.
+  /// Is no facet missing? Rounding can hide one where the set is thin. True: every ridge of every
+  /// facet lies on a second one, the ridges being the facets of a closed hull of their own; as
+  /// facets are connected by ridges, there are no others.
   bool is_closed() const;
 
   std::vector<Facet>& facets() { return facets_; }

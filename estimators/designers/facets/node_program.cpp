@@ -19,7 +19,8 @@ constexpr double row_rounding = 1e-14;  ///< of the terms of a row, from computi
 
 constexpr double tube_room = 2e-10;  ///< kept of the factors of tubes
 
-/// A bound of one of the variables or slacks, with room for rounding: a larger one is a bound as well.
+/// A bound of one of the variables or slacks, with room for rounding: a larger one is a bound as
+/// well.
 double roomy(double bound) { return bound * (1 + 1e-9) + 1e-300; }
 
 /// min of d x for d in the range and l ≤ x ≤ u, rounded down.
@@ -63,7 +64,8 @@ double proven_minimum(const BoundedProgram& program, VectorIn y) {
   const Index n = program.lower.size();
   Vector parts(n + 2);
   for (Index j = 0; j < n; ++j) {
-    const rounding::Range reduced = rounding::subtract({program.cost[j], program.cost[j]}, rounding::dot(program.A.col(j), y));
+    const rounding::Range reduced =
+        rounding::subtract({program.cost[j], program.cost[j]}, rounding::dot(program.A.col(j), y));
     parts[j] = least_product(reduced, program.lower[j], program.upper[j]);
   }
   parts[n] = rounding::dot(program.b, y).lower;
@@ -111,7 +113,8 @@ void NodeProgram::add_cost() {
   price_ = price;
   double least = 0;  // of what does not change
   for (Index i = 0; i < n; ++i) {
-    if (spread[i] == 0) least = cost.kind == Cost::Kind::norm_inf ? std::max(least, price[i]) : least + price[i];
+    if (spread[i] == 0)
+      least = cost.kind == Cost::Kind::norm_inf ? std::max(least, price[i]) : least + price[i];
   }
   least *= 1 - 1e-14;
   Index largest = -1;
@@ -158,7 +161,8 @@ void NodeProgram::touch(BoundedProgram& program, Index i, double at) const {
   Vector row = Vector::Zero(program.lower.size());
   row.head(U.G.cols()) = -2 * at / reach_[i] * U.G.row(i).transpose();
   row[column_[static_cast<std::size_t>(i)]] = 1;
-  program.add_row_above(row, 2 * at * (U.c[i] - problem_.cost.reference[i]) / reach_[i] - at * at, row_rounding, 5);
+  program.add_row_above(row, 2 * at * (U.c[i] - problem_.cost.reference[i]) / reach_[i] - at * at,
+                        row_rounding, 5);
 }
 
 /// With the factors of tubes, the columns of `hard_` behind ζ, a little inside their bounds.
@@ -166,10 +170,12 @@ LinearProgram NodeProgram::inside(const BoundedProgram& program) const {
   Vector room = Vector::Ones(program.lower.size());
   const Index zetas = problem_.U.G.cols();
   room.segment(zetas, hard_.lower.size() - zetas).setConstant(1 - tube_room);
-  return LinearProgram(program.A, program.b, program.lower.cwiseProduct(room), program.upper.cwiseProduct(room));
+  return LinearProgram(program.A, program.b, program.lower.cwiseProduct(room),
+                       program.upper.cwiseProduct(room));
 }
 
-NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>& chosen, const std::vector<Vector>& touched) {
+NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>& chosen,
+                                       const std::vector<Vector>& touched) {
   Answer answer;
   for (const SeparatingFacet* facet : chosen) {
     if (rounding::norm_1(facet->a).upper < facet->in) answer.impossible = true;
@@ -179,7 +185,8 @@ NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>
   BoundedProgram program = full_;
   for (const Vector& u : touched) {
     for (Index i = 0; i < u.size(); ++i) {
-      if (column_[static_cast<std::size_t>(i)] >= 0) touch(program, i, (u[i] - problem_.cost.reference[i]) / reach_[i]);
+      if (column_[static_cast<std::size_t>(i)] >= 0)
+        touch(program, i, (u[i] - problem_.cost.reference[i]) / reach_[i]);
     }
   }
   for (const SeparatingFacet* facet : chosen) {
@@ -192,7 +199,8 @@ NodeProgram::Answer NodeProgram::solve(const std::vector<const SeparatingFacet*>
     return answer;
   }
   const auto rows = static_cast<Index>(chosen.size());
-  for (Index f = 0; f < rows; ++f) program.b[program.b.size() - rows + f] = chosen[static_cast<std::size_t>(f)]->in;
+  for (Index f = 0; f < rows; ++f)
+    program.b[program.b.size() - rows + f] = chosen[static_cast<std::size_t>(f)]->in;
   answer.bound = in_cost(proven_minimum(program, -solution.y));
   answer.zeta = solution.x.head(problem_.U.G.cols()).cwiseMax(-1.0).cwiseMin(1.0);
   const auto multipliers = (-unit_ * solution.y.tail(rows)).cwiseMax(0.0);
@@ -218,7 +226,8 @@ double NodeProgram::in_cost(double value) const {
 }
 
 /// The minimum of the true cost near x. With tangents there its multipliers prove a lower bound.
-void NodeProgram::polish(const BoundedProgram& program, const std::vector<const SeparatingFacet*>& chosen, const Vector& x,
+void NodeProgram::polish(const BoundedProgram& program,
+                         const std::vector<const SeparatingFacet*>& chosen, const Vector& x,
                          Answer& answer) {
   const InputSequences& U = problem_.U;
   const Index n = hard_.lower.size(), zetas = U.G.cols();
@@ -228,7 +237,8 @@ void NodeProgram::polish(const BoundedProgram& program, const std::vector<const 
     if (column_[static_cast<std::size_t>(i)] >= 0) inputs.push_back(i);
   }
   const auto q = static_cast<Index>(inputs.size());
-  QuadraticProgram exact{Matrix::Zero(q, n), Vector(q), Vector(q), hard_.A, hard_.b, Matrix::Zero(k, n), Vector(k)};
+  QuadraticProgram exact{Matrix::Zero(q, n), Vector(q), Vector(q), hard_.A, hard_.b,
+                         Matrix::Zero(k, n), Vector(k)};
   exact.A.rightCols(n - zetas) *= 1 - tube_room;
   for (Index row = 0; row < q; ++row) {
     const Index i = inputs[static_cast<std::size_t>(row)];
@@ -245,14 +255,16 @@ void NodeProgram::polish(const BoundedProgram& program, const std::vector<const 
 
   BoundedProgram touched = program;
   const Vector at = exact.o + product(exact.D, found->z);
-  for (Index row = 0; row < q; ++row) touch(touched, inputs[static_cast<std::size_t>(row)], at[row]);
+  for (Index row = 0; row < q; ++row)
+    touch(touched, inputs[static_cast<std::size_t>(row)], at[row]);
   Vector y = Vector::Zero(touched.b.size());
   y.head(hard_.b.size()) = found->of_A;
   y.segment(program.b.size() - k, k) = found->of_F;
   y.tail(q) = exact.price;
   answer.bound = std::max(answer.bound, in_cost(proven_minimum(touched, y)));
   answer.zeta = found->z.head(zetas).cwiseMax(-1.0).cwiseMin(1.0);
-  for (Index f = 0; f < k; ++f) answer.multipliers[static_cast<std::size_t>(f)] = unit_ * std::max(0.0, found->of_F[f]);
+  for (Index f = 0; f < k; ++f)
+    answer.multipliers[static_cast<std::size_t>(f)] = unit_ * std::max(0.0, found->of_F[f]);
 }
 
 /// The least sum of what the rows miss is positive.
@@ -269,7 +281,8 @@ bool NodeProgram::proven_impossible(const std::vector<const SeparatingFacet*>& c
   ++programs_;
   const LinearProgram::Solution solution =
       LinearProgram(program.A, program.b, program.lower, program.upper).maximize(-program.cost);
-  return solution.status == LinearProgram::Status::optimal && proven_minimum(program, -solution.y) > 0;
+  return solution.status == LinearProgram::Status::optimal &&
+         proven_minimum(program, -solution.y) > 0;
 }
 
 }  // namespace cordon::designers

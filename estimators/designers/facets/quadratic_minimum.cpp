@@ -31,10 +31,12 @@ std::vector<Index> where(const std::vector<bool>& flags, bool value) {
 }
 
 /// The stationary point for these active bounds and rows.
-std::optional<QuadraticMinimum> stationary(const QuadraticProgram& p, const Active& active, Vector z) {
+std::optional<QuadraticMinimum> stationary(const QuadraticProgram& p, const Active& active,
+                                           Vector z) {
   const std::vector<Index> columns = where(active.fixed, false), rows = where(active.row, true);
   for (const Index j : columns) z[j] = 0;
-  const auto v = static_cast<Index>(columns.size()), m = p.b.size() + static_cast<Index>(rows.size());
+  const auto v = static_cast<Index>(columns.size()),
+             m = p.b.size() + static_cast<Index>(rows.size());
   Matrix C(m, z.size());
   C << p.A, p.F(rows, Eigen::all);
   Vector right(v + m);
@@ -52,7 +54,8 @@ std::optional<QuadraticMinimum> stationary(const QuadraticProgram& p, const Acti
   if (!solution.allFinite()) return std::nullopt;
   for (Index k = 0; k < v; ++k) z[columns[static_cast<std::size_t>(k)]] = solution[k];
   QuadraticMinimum minimum{z, solution.segment(v, p.b.size()), Vector::Zero(p.e.size())};
-  for (std::size_t k = 0; k < rows.size(); ++k) minimum.of_F[rows[k]] = solution[v + p.b.size() + static_cast<Index>(k)];
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    minimum.of_F[rows[k]] = solution[v + p.b.size() + static_cast<Index>(k)];
   return minimum;
 }
 
@@ -90,15 +93,18 @@ bool is_feasible(const QuadraticProgram& p, const Vector& z) {
     const double terms = std::abs(p.b[i]) + p.A.row(i).lpNorm<1>();
     if (!(std::abs(rows[i] - p.b[i]) <= tolerance * terms)) return false;
   }
-  return std::all_of(z.begin(), z.end(), [](double entry) { return std::abs(entry) <= 1 + tolerance; });
+  return std::all_of(z.begin(), z.end(),
+                     [](double entry) { return std::abs(entry) <= 1 + tolerance; });
 }
 
 }  // namespace
 
 std::optional<QuadraticMinimum> quadratic_minimum(const QuadraticProgram& p, Vector z) {
-  Active active{std::vector<bool>(static_cast<std::size_t>(z.size())), std::vector<bool>(static_cast<std::size_t>(p.e.size()))};
+  Active active{std::vector<bool>(static_cast<std::size_t>(z.size())),
+                std::vector<bool>(static_cast<std::size_t>(p.e.size()))};
   const Vector above = product(p.F, z) - p.e;
-  for (Index f = 0; f < p.e.size(); ++f) active.row[static_cast<std::size_t>(f)] = above[f] < at_bound;
+  for (Index f = 0; f < p.e.size(); ++f)
+    active.row[static_cast<std::size_t>(f)] = above[f] < at_bound;
   for (Index j = 0; j < z.size(); ++j) {
     if (std::abs(z[j]) < 1 - at_bound) continue;
     z[j] = z[j] > 0 ? 1 : -1;

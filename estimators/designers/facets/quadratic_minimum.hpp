@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small strictly separable quadratic program, proposed by linear systems for guesses of what is active.
+// A small strictly separable quadratic program, proposed by linear systems for guesses of what is
+// active.
 #pragma once
 
 #include <optional>
@@ -23,7 +24,8 @@ struct QuadraticMinimum {
   Vector z, of_A, of_F;
 };
 
-/// From a point near the minimum; nothing if a few changes of the active bounds and rows do not lead to it. Nothing is proven.
+/// From a point near the minimum; nothing if a few changes of the active bounds and rows do not
+/// lead to it. Nothing is proven.
 std::optional<QuadraticMinimum> quadratic_minimum(const QuadraticProgram& program, Vector z);
 
 }  // namespace cordon::designers

@@ -19,12 +19,14 @@ namespace cordon::designers {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double met_tolerance =
-    1e-9;                             ///< by which a solver's point may miss a chosen facet; the factors of inputs are of size 1
-constexpr int most_refinements = 60;  ///< of a node; each divides the error of the tangents by 4
+constexpr double met_tolerance = 1e-9;  ///< by which a solver's point may miss a chosen facet; the
+                                        ///< factors of inputs are of size 1
+constexpr int most_refinements = 60;    ///< of a node; each divides the error of the tangents by 4
 constexpr double share_of_first_input = .05;  ///< of the time limit
-constexpr double coarse_gap = .02;            ///< relative error of the tangents up to which a node is branched on
-constexpr const char* more_facets = "a larger max_facets, a shorter horizon, or the designer \"milp\"";
+constexpr double coarse_gap =
+    .02;  ///< relative error of the tangents up to which a node is branched on
+constexpr const char* more_facets =
+    "a larger max_facets, a shorter horizon, or the designer \"milp\"";
 constexpr const char* more_room = "a larger input set, a longer horizon, or a smaller epsilon";
 
 /// A pair that some inputs separate and others do not.
@@ -42,11 +44,13 @@ struct Children {
 struct Node {
   std::vector<Index> facet;  ///< per open pair: the chosen facet, -1 none
   double bound = 0;
-  bool solved = false;  ///< its program was; else the bound is its parent's, or follows from its parent's multipliers
+  bool solved = false;  ///< its program was; else the bound is its parent's, or follows from its
+                        ///< parent's multipliers
   Vector zeta = {};
   FacetDual::Parent multipliers = {};
-  std::vector<Vector> touched = {};               ///< input sequences with tangents of a quadratic cost
-  std::shared_ptr<const Children> siblings = {};  ///< if set: the node stands for itself, at `place`, and for all behind it
+  std::vector<Vector> touched = {};  ///< input sequences with tangents of a quadratic cost
+  std::shared_ptr<const Children> siblings =
+      {};  ///< if set: the node stands for itself, at `place`, and for all behind it
   std::size_t place = 0;
 };
 
@@ -86,7 +90,9 @@ class Search {
   void close(double bound) { closed_ = std::min(closed_, bound); }
   std::optional<Children> violated(const Node& node) const;
   double lower_bound() const;
-  bool good_enough(double bound) const { return result_.u && bound >= result_.cost - limits_.gap * result_.cost; }
+  bool good_enough(double bound) const {
+    return result_.u && bound >= result_.cost - limits_.gap * result_.cost;
+  }
   double best_cost() const;
   bool separates_left_out(const Vector& u) const;
   void conclude();
@@ -106,14 +112,15 @@ class Search {
   std::string why_left_out_;                  ///< the first of them
 
   std::multimap<double, Node> open_;  ///< by their bounds
-  std::optional<Node> next_;          ///< goes before those until an input is known: some input early
-  double closed_ = infinity;          ///< least bound of what was put aside without being proven impossible
+  std::optional<Node> next_;  ///< goes before those until an input is known: some input early
+  double closed_ = infinity;  ///< least bound of what was put aside without being proven impossible
 };
 
 /// False if the answer is known without a search.
 bool Search::find_facets() {
   for (const PairProgram& pair : problem_.pairs) {
-    ForbiddenSet set = forbidden_set(pair, problem_.U, problem_.epsilon, limits_.max_facets, watch_);
+    ForbiddenSet set =
+        forbidden_set(pair, problem_.U, problem_.epsilon, limits_.max_facets, watch_);
     result_.programs += set.programs;
     result_.facets += static_cast<std::int64_t>(set.facets.size());
     if (set.kind == ForbiddenSet::Kind::unknown && watch_.ended()) {
@@ -129,8 +136,9 @@ bool Search::find_facets() {
 }
 
 bool Search::keep_pair(const PairProgram& pair, ForbiddenSet set) {
-  std::erase_if(set.facets,
-                [](const SeparatingFacet& facet) { return facet.a.lpNorm<1>() < facet.in - 1e-9 * std::abs(facet.in); });
+  std::erase_if(set.facets, [](const SeparatingFacet& facet) {
+    return facet.a.lpNorm<1>() < facet.in - 1e-9 * std::abs(facet.in);
+  });
   switch (set.kind) {
     case ForbiddenSet::Kind::never:
       result_.status = DesignStatus::infeasible;
@@ -138,7 +146,8 @@ bool Search::keep_pair(const PairProgram& pair, ForbiddenSet set) {
       result_.suggestion = "a longer horizon, more outputs, or inputs that may be chosen";
       return false;
     case ForbiddenSet::Kind::unknown:
-      if (left_out_.empty()) why_left_out_ = fmt::format("{}: {}", modes_of(problem_, pair), set.reason);
+      if (left_out_.empty())
+        why_left_out_ = fmt::format("{}: {}", modes_of(problem_, pair), set.reason);
       left_out_.push_back(&pair);
       break;
     case ForbiddenSet::Kind::facets:
@@ -156,7 +165,9 @@ bool Search::keep_pair(const PairProgram& pair, ForbiddenSet set) {
   return true;
 }
 
-double Search::best_cost() const { return std::min(first_.u ? first_.cost : infinity, result_.u ? result_.cost : infinity); }
+double Search::best_cost() const {
+  return std::min(first_.u ? first_.cost : infinity, result_.u ? result_.cost : infinity);
+}
 
 bool Search::separates_left_out(const Vector& u) const {
   return std::all_of(left_out_.begin(), left_out_.end(), [&](const PairProgram* pair) {
@@ -170,7 +181,8 @@ void Search::branch_and_bound() {
   root.facet.assign(pairs_.size(), -1);
   keep(std::move(root));
   while (std::optional<Node> node = take()) {
-    if (node->bound >= closed_ && !left_out_.empty()) {  // the least cost of what is known, which the rest cannot raise
+    if (node->bound >= closed_ &&
+        !left_out_.empty()) {  // the least cost of what is known, which the rest cannot raise
       keep(std::move(*node));
       break;
     }
@@ -193,9 +205,11 @@ double Search::lower_bound() const {
 }
 
 std::optional<Node> Search::take() {
-  if (next_ && (result_.u || (!left_out_.empty() && closed_ < infinity))) keep(std::move(*std::exchange(next_, std::nullopt)));
+  if (next_ && (result_.u || (!left_out_.empty() && closed_ < infinity)))
+    keep(std::move(*std::exchange(next_, std::nullopt)));
   if (!next_ && open_.empty()) return std::nullopt;
-  Node node = next_ ? std::move(*std::exchange(next_, std::nullopt)) : std::move(open_.extract(open_.begin()).mapped());
+  Node node = next_ ? std::move(*std::exchange(next_, std::nullopt))
+                    : std::move(open_.extract(open_.begin()).mapped());
   if (const auto siblings = std::exchange(node.siblings, nullptr);
       siblings && node.place + 1 < siblings->bound_and_facet.size()) {
     keep(child(node, siblings, node.place + 1));
@@ -203,7 +217,8 @@ std::optional<Node> Search::take() {
   return node;
 }
 
-Node Search::child(const Node& like, std::shared_ptr<const Children> children, std::size_t place) const {
+Node Search::child(const Node& like, std::shared_ptr<const Children> children,
+                   std::size_t place) const {
   const auto& [bound, facet] = children->bound_and_facet[place];
   Node child{like.facet, bound};
   child.facet[children->pair] = facet;
@@ -216,7 +231,8 @@ Node Search::child(const Node& like, std::shared_ptr<const Children> children, s
 void Search::visit(Node node) {
   if (!node.solved) {
     if (!evaluate(node)) return;
-    if (result_.u && !open_.empty() && node.bound > open_.begin()->first) return keep(std::move(node));
+    if (result_.u && !open_.empty() && node.bound > open_.begin()->first)
+      return keep(std::move(node));
   }
   ++result_.nodes;
   const Vector u = problem_.U.c + linalg::product(problem_.U.G, node.zeta);
@@ -228,7 +244,8 @@ void Search::visit(Node node) {
     result_.cost = cost;
   }
   const bool loose = cost - node.bound > limits_.gap * cost;
-  if (loose && problem_.cost.kind == Cost::Kind::quadratic && static_cast<int>(node.touched.size()) < most_refinements) {
+  if (loose && problem_.cost.kind == Cost::Kind::quadratic &&
+      static_cast<int>(node.touched.size()) < most_refinements) {
     node.touched.push_back(u);
     node.solved = false;
     return keep(std::move(node));
@@ -236,23 +253,28 @@ void Search::visit(Node node) {
   close(node.bound);
 }
 
-/// Of the pairs that the input of the node does not separate, the one whose cheapest child costs most by what the parent's
-/// multipliers say; of equal ones that with the fewest facets.
+/// Of the pairs that the input of the node does not separate, the one whose cheapest child costs
+/// most by what the parent's multipliers say; of equal ones that with the fewest facets.
 std::optional<Children> Search::violated(const Node& node) const {
   std::optional<Children> best;
   double most = 0;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
     const auto& facets = pairs_[q].set.facets;
     if (node.facet[q] >= 0) continue;
-    if (std::any_of(facets.begin(), facets.end(), [&](const auto& facet) { return is_beyond(facet, node.zeta, 0); })) continue;
+    if (std::any_of(facets.begin(), facets.end(),
+                    [&](const auto& facet) { return is_beyond(facet, node.zeta, 0); }))
+      continue;
     Children here{q, {}};
     double least = infinity;
     for (std::size_t f = 0; f < facets.size(); ++f) {
-      const double bound = dual_.usable() ? std::max(node.bound, dual_.bound(node.multipliers, facets[f])) : node.bound;
+      const double bound = dual_.usable()
+                               ? std::max(node.bound, dual_.bound(node.multipliers, facets[f]))
+                               : node.bound;
       here.bound_and_facet.emplace_back(bound, static_cast<Index>(f));
       least = std::min(least, bound);
     }
-    if (best && (least < most || (least == most && facets.size() >= best->bound_and_facet.size()))) continue;
+    if (best && (least < most || (least == most && facets.size() >= best->bound_and_facet.size())))
+      continue;
     best = std::move(here);
     most = least;
   }
@@ -268,13 +290,16 @@ void Search::branch(const Node& node, Children children) {
 bool Search::evaluate(Node& node) {
   std::vector<const SeparatingFacet*> chosen;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
-    if (node.facet[q] >= 0) chosen.push_back(&pairs_[q].set.facets[static_cast<std::size_t>(node.facet[q])]);
+    if (node.facet[q] >= 0)
+      chosen.push_back(&pairs_[q].set.facets[static_cast<std::size_t>(node.facet[q])]);
   }
   NodeProgram::Answer answer = program_.solve(chosen, node.touched);
   if (answer.impossible) return false;
   node.bound = std::max(node.bound, answer.bound);
   node.solved = true;
-  const auto met = [&](const SeparatingFacet* facet) { return is_beyond(*facet, *answer.zeta, met_tolerance); };
+  const auto met = [&](const SeparatingFacet* facet) {
+    return is_beyond(*facet, *answer.zeta, met_tolerance);
+  };
   if (!answer.zeta || !std::all_of(chosen.begin(), chosen.end(), met)) {
     close(node.bound);
     return false;
@@ -298,7 +323,8 @@ void Search::conclude() {
     return;
   }
   result_.status = DesignStatus::feasible;
-  const bool flat = std::any_of(pairs_.begin(), pairs_.end(), [](const OpenPair& open) { return open.set.flat; });
+  const bool flat =
+      std::any_of(pairs_.begin(), pairs_.end(), [](const OpenPair& open) { return open.set.flat; });
   if (result_.stopped) {
     result_.reason = "the search was stopped before the cheapest input was proven";
     result_.suggestion = "a larger time_limit or gap";
@@ -307,7 +333,8 @@ void Search::conclude() {
     result_.suggestion = more_facets;
   } else if (flat) {
     result_.reason =
-        "the inputs that do not separate a pair form a set without width, from which a small distance is kept: there is no "
+        "the inputs that do not separate a pair form a set without width, from which a small "
+        "distance is kept: there is no "
         "cheapest input, but cheaper ones the nearer they come";
     result_.suggestion = "a larger gap";
   } else {
@@ -337,25 +364,29 @@ void Search::conclude_without_input() {
   }
   result_.status = DesignStatus::infeasible;
   result_.suggestion = more_room;
-  result_.reason = result_.nodes == 0  ? "every input of the input set leaves the output tube of a mode empty"
-                   : left_out_.empty() ? "every pair alone can be separated, but not all of them at once"
-                                       : "not all of the pairs can be separated at once";
+  result_.reason =
+      result_.nodes == 0  ? "every input of the input set leaves the output tube of a mode empty"
+      : left_out_.empty() ? "every pair alone can be separated, but not all of them at once"
+                          : "not all of the pairs can be separated at once";
   std::string hopeless;
   for (const OpenPair& open : pairs_) {
-    if (result_.nodes > 0 && is_hopeless(open)) hopeless += (hopeless.empty() ? "" : "; ") + modes_of(problem_, *open.pair);
+    if (result_.nodes > 0 && is_hopeless(open))
+      hopeless += (hopeless.empty() ? "" : "; ") + modes_of(problem_, *open.pair);
   }
   if (!hopeless.empty()) result_.reason = "no input of the input set separates " + hopeless;
 }
 
 /// Is no input beyond any of the facets?
 bool Search::is_hopeless(const OpenPair& open) {
-  return std::all_of(open.set.facets.begin(), open.set.facets.end(),
-                     [&](const SeparatingFacet& facet) { return program_.solve({&facet}).impossible; });
+  return std::all_of(
+      open.set.facets.begin(), open.set.facets.end(),
+      [&](const SeparatingFacet& facet) { return program_.solve({&facet}).impossible; });
 }
 
 }  // namespace
 
-SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control) {
+SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits,
+                           DesignControl& control) {
   return Search(problem, limits, control).run();
 }
 

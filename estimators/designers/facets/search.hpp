@@ -12,14 +12,18 @@ struct FacetLimits {
   Index max_facets = 10000;  ///< per pair; a pair with more is left out of what bounds the cost
 };
 
-/// With R and L the range and left null space of N, the inputs that do not separate a pair are those with RᵀN u in
+/// With R and L the range and left null space of N, the inputs that do not separate a pair are
+/// those with RᵀN u in
 ///   Q = {RᵀGξ + Rᵀc : LᵀGξ = -Lᵀc, ‖ξ‖∞ ≤ 1 + ε}  in r = rank N dimensions,
-/// so that separating means h·(RᵀN u) ≥ k for a facet (h, k) of Q. Best first: a node is the linear program over U with the
-/// facets chosen so far; of the pairs that its input does not separate, the one whose children cost most is branched on, a child
-/// per facet; the first node that violates nothing is optimal. What children cost at least follows from the multipliers of their
-/// parent, without a program, as far as possible; ties go to the pair with the fewest facets. All bounds are proven by
-/// multipliers. A pair whose facets are not known is left out: the rest bounds the cost, and an input that solves the rest is
-/// judged by the pair's own κ. What `first_input` found is the answer where the search did not come to its end.
-SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control);
+/// so that separating means h·(RᵀN u) ≥ k for a facet (h, k) of Q. Best first: a node is the linear
+/// program over U with the facets chosen so far; of the pairs that its input does not separate, the
+/// one whose children cost most is branched on, a child per facet; the first node that violates
+/// nothing is optimal. What children cost at least follows from the multipliers of their parent,
+/// without a program, as far as possible; ties go to the pair with the fewest facets. All bounds
+/// are proven by multipliers. A pair whose facets are not known is left out: the rest bounds the
+/// cost, and an input that solves the rest is judged by the pair's own κ. What `first_input` found
+/// is the answer where the search did not come to its end.
+SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits,
+                           DesignControl& control);
 
 }  // namespace cordon::designers

@@ -21,7 +21,9 @@ class Watch {
   /// Was that so when it was asked?
   bool ended() const { return ended_; }
   /// Seconds until the end, 0 after it.
-  double left() const { return std::max(0.0, std::chrono::duration<double>(end_ - Clock::now()).count()); }
+  double left() const {
+    return std::max(0.0, std::chrono::duration<double>(end_ - Clock::now()).count());
+  }
   /// Passed on four times per second at most.
   void progress(double best, double bound) {
     const auto now = Clock::now();
@@ -34,7 +36,8 @@ class Watch {
   using Clock = std::chrono::steady_clock;
   /// A year at most, which no clock overflows by.
   static Clock::duration as_duration(double seconds) {
-    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, 3e7)));
+    return std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(std::min(seconds, 3e7)));
   }
 
   DesignControl& control_;

@@ -9,7 +9,8 @@
 
 namespace cordon::designers {
 
-/// g(z) = min{‖ξ‖∞ : Gξ = z} = max{λᵀz : ‖Gᵀλ‖₁ ≤ 1}, a norm, for generators that span their space: κ(u) = g(N u - c) - 1.
+/// g(z) = min{‖ξ‖∞ : Gξ = z} = max{λᵀz : ‖Gᵀλ‖₁ ≤ 1}, a norm, for generators that span their space:
+/// κ(u) = g(N u - c) - 1.
 class Gauge {
  public:
   explicit Gauge(const Matrix& G);

@@ -71,7 +71,8 @@ double LocalSearch::gauge(std::size_t q, const Vector& z) {
   return apart ? apart->value : infinity;
 }
 
-double LocalSearch::largest_kappa(std::size_t q, const Vector& lower, const Vector& upper, double cost) {
+double LocalSearch::largest_kappa(std::size_t q, const Vector& lower, const Vector& upper,
+                                  double cost) {
   const PairProgram& pair = pairs_[q];
   const Cost& J = problem_.cost;
   const Vector middle = (lower + upper) / 2, radius = (upper - lower) / 2;
@@ -94,7 +95,8 @@ double LocalSearch::largest_kappa(std::size_t q, const Vector& lower, const Vect
     most = gauge(q, linalg::product(pair.N, middle) - pair.c);
     for (const Index i : entering) most += gauge(q, pair.N.col(i) * radius[i]);
   }
-  // Σ ω_i |u_i - r_i| ≤ J lies in the hull of r ± J/ω_i e_i, a quadratic cost in that of r ± √(k J/ω_i) e_i for k inputs.
+  // Σ ω_i |u_i - r_i| ≤ J lies in the hull of r ± J/ω_i e_i, a quadratic cost in that of r ± √(k
+  // J/ω_i) e_i for k inputs.
   const bool bounded = std::isfinite(cost) && J.kind != Cost::Kind::norm_inf && !entering.empty();
   double by_cost = bounded ? 0 : infinity;
   Vector centre = middle;
@@ -102,7 +104,8 @@ double LocalSearch::largest_kappa(std::size_t q, const Vector& lower, const Vect
   for (const Index i : entering) {
     if (!bounded) break;
     const double share = cost / J.weights[i];
-    const double far = J.kind == Cost::Kind::norm_1 ? share : std::sqrt(static_cast<double>(free) * share);
+    const double far =
+        J.kind == Cost::Kind::norm_1 ? share : std::sqrt(static_cast<double>(free) * share);
     if (!std::isfinite(far)) {
       by_cost = infinity;
       break;

@@ -15,8 +15,10 @@ namespace cordon::designers {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double input_rank = 1e-9;  ///< singular values of N below this share of the largest count as zero
-constexpr double flat = 1e-3;        ///< directions narrower than this share of what they are compared with are padded
+constexpr double input_rank =
+    1e-9;  ///< singular values of N below this share of the largest count as zero
+constexpr double flat =
+    1e-3;  ///< directions narrower than this share of what they are compared with are padded
 
 /// Points of U are point + directions·ζ with ‖ζ‖∞ ≤ √g.
 struct AffineHull {
@@ -30,7 +32,8 @@ AffineHull affine_hull(const InputSequences& U) {
           linalg::product(U.G, linalg::null_space(U.A))};
 }
 
-/// Without entries that are rounding noise in their row and columns that are left empty; the rest is made larger by far more.
+/// Without entries that are rounding noise in their row and columns that are left empty; the rest
+/// is made larger by far more.
 Matrix without_noise(Matrix G) {
   constexpr double noise = 1e-13, more = 1e-11;
   const Vector size = G.cwiseAbs().rowwise().sum();
@@ -79,14 +82,16 @@ Matrix padding(const Matrix& G, const Vector& size) {
 }
 
 /// h(d) = max{dᵀ(c + Gξ) : Aξ = b, ‖ξ‖∞ ≤ 1} for each row d; NaN where the solver has no answer.
-Vector supports(const Matrix& directions, const Vector& c, const Matrix& G, const Matrix& A, const Vector& b) {
+Vector supports(const Matrix& directions, const Vector& c, const Matrix& G, const Matrix& A,
+                const Vector& b) {
   LinearProgram program(A, b, Vector::Constant(G.cols(), -1), Vector::Ones(G.cols()));
   Vector h(directions.rows());
   const Matrix objectives = linalg::product(directions, G);
   for (Index k = 0; k < directions.rows(); ++k) {
     const auto solution = program.maximize(objectives.row(k).transpose());
-    h[k] = solution.status == LinearProgram::Status::optimal ? directions.row(k).dot(c) + solution.objective
-                                                             : std::numeric_limits<double>::quiet_NaN();
+    h[k] = solution.status == LinearProgram::Status::optimal
+               ? directions.row(k).dot(c) + solution.objective
+               : std::numeric_limits<double>::quiet_NaN();
   }
   return h;
 }
@@ -134,16 +139,19 @@ Separated separate(const PairProgram& pair, const InputSequences& U) {
   const linalg::Svd parts = linalg::svd(linalg::product(N, hull.directions));
   const double largest = parts.sigma.size() > 0 ? parts.sigma[0] : 0;
   const Index r = largest > 0 ? (parts.sigma.array() > input_rank * largest).count() : 0;
-  const Matrix R = parts.U.leftCols(r).transpose(), L = parts.U.rightCols(pair.rows() - r).transpose();
+  const Matrix R = parts.U.leftCols(r).transpose(),
+               L = parts.U.rightCols(pair.rows() - r).transpose();
   const Vector at_point = linalg::product(N, hull.point) - c;
-  Separated result{{Matrix(r, 0), linalg::product(R, G), R * c, Matrix(L.rows(), 0), linalg::product(L, G), L * at_point},
+  Separated result{{Matrix(r, 0), linalg::product(R, G), R * c, Matrix(L.rows(), 0),
+                    linalg::product(L, G), L * at_point},
                    linalg::product(R, N),
                    (R * at_point).cwiseAbs()};
   result.reach += linalg::product(result.N, hull.directions).cwiseAbs().rowwise().sum();
   return result;
 }
 
-/// The rows [G; A]ξ + [c; -b] of `Y` with generators that span them, each in units of its generators.
+/// The rows [G; A]ξ + [c; -b] of `Y` with generators that span them, each in units of its
+/// generators.
 struct Rows {
   Matrix G;
   Vector c, unit;
@@ -166,14 +174,17 @@ Rows spanned(const LineForm& Y, const Vector& reach) {
 
 }  // namespace
 
-bool inputs_enter(const PairProgram& pair, const InputSequences& U) { return separate(pair, U).set.dim() > 0; }
+bool inputs_enter(const PairProgram& pair, const InputSequences& U) {
+  return separate(pair, U).set.dim() > 0;
+}
 
-std::optional<PairProgram> reduce_pair(const PairProgram& pair, const InputSequences& U, Index max_generators,
-                                       Index max_constraints) {
+std::optional<PairProgram> reduce_pair(const PairProgram& pair, const InputSequences& U,
+                                       Index max_generators, Index max_constraints) {
   const auto [X, N, reach] = separate(pair, U);
   const Index r = X.dim();
   if (r == 0 || r > max_generators) return std::nullopt;
-  const Matrix directions = sampled_directions(X.G.cwiseAbs().rowwise().sum().cwiseMax(flat * reach).cwiseMax(1e-12));
+  const Matrix directions =
+      sampled_directions(X.G.cwiseAbs().rowwise().sum().cwiseMax(flat * reach).cwiseMax(1e-12));
   const Vector exact = supports(directions, X.c, X.G, X.A, X.b);
   std::optional<PairProgram> best;
   double least = infinity;
@@ -183,8 +194,9 @@ std::optional<PairProgram> reduce_pair(const PairProgram& pair, const InputSeque
     const LineForm Y = sets::eliminate_constraints(X, constraints).set;
     const Rows rows = spanned(Y, reach);
     const Index m = rows.c.size();
-    for (const auto method : {sets::GeneratorReduction::girard, sets::GeneratorReduction::combastel,
-                              sets::GeneratorReduction::pca, sets::GeneratorReduction::yang_scott}) {
+    for (const auto method :
+         {sets::GeneratorReduction::girard, sets::GeneratorReduction::combastel,
+          sets::GeneratorReduction::pca, sets::GeneratorReduction::yang_scott}) {
       const Matrix H = without_noise(sets::reduce_generators(rows.G, max_generators, method));
       const Matrix G = rows.unit.head(r).cwiseInverse().asDiagonal() * H.topRows(r);
       const Vector wide = supports(directions, Y.c, G, H.bottomRows(m - r), -rows.c.tail(m - r));

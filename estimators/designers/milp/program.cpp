@@ -15,7 +15,8 @@ void append(Vector& v, Index count, double value) {
   v.tail(count).setConstant(value);
 }
 
-/// The entries of `row`, from column `first` on, without those that are rounding noise beside the largest: the solver scales.
+/// The entries of `row`, from column `first` on, without those that are rounding noise beside the
+/// largest: the solver scales.
 Terms terms_of(const Vector& row, Index first) {
   constexpr double noise = 1e-12;
   Terms terms;
@@ -33,7 +34,8 @@ Terms& operator+=(Terms& terms, const Terms& more) {
 
 }  // namespace
 
-InputProgram::InputProgram(const SeparationProblem& problem) : inputs_(problem.U.c.size()), cost_(problem.cost) {
+InputProgram::InputProgram(const SeparationProblem& problem)
+    : inputs_(problem.U.c.size()), cost_(problem.cost) {
   add_inputs(problem.U);
   add_cost();
   for (const TubeConditions& rows : problem.conditions) add_conditions(rows);
@@ -55,7 +57,9 @@ void InputProgram::add_row(const Terms& terms, double lower, double upper) {
   for (const auto& [col, value] : terms) program_.entries.push_back({row, col, value});
 }
 
-void InputProgram::add_row(const Vector& a, double lower, double upper) { add_row(terms_of(a, 0), lower, upper); }
+void InputProgram::add_row(const Vector& a, double lower, double upper) {
+  add_row(terms_of(a, 0), lower, upper);
+}
 
 void InputProgram::add_inputs(const InputSequences& U) {
   add_columns(inputs_, -infinity, infinity);
@@ -104,7 +108,8 @@ void InputProgram::limit_cost(double cost) {
   const double most = cost * (1 + 1e-9) + 1e-12;
   for (Index i = 0; i < inputs_; ++i) {
     if (cost_.weights[i] == 0 || program_.lower[i] == program_.upper[i]) continue;
-    const double share = most / cost_.weights[i], radius = cost_.kind == Cost::Kind::quadratic ? std::sqrt(share) : share;
+    const double share = most / cost_.weights[i],
+                 radius = cost_.kind == Cost::Kind::quadratic ? std::sqrt(share) : share;
     const double lower = std::max(program_.lower[i], cost_.reference[i] - radius),
                  upper = std::min(program_.upper[i], cost_.reference[i] + radius);
     if (lower > upper) continue;
@@ -115,7 +120,8 @@ void InputProgram::limit_cost(double cost) {
 
 void InputProgram::add_tangents_between() {
   constexpr int parts = 8;
-  for (int k = 0; k <= parts; ++k) add_tangents(lower() + (upper() - lower()) * (static_cast<double>(k) / parts));
+  for (int k = 0; k <= parts; ++k)
+    add_tangents(lower() + (upper() - lower()) * (static_cast<double>(k) / parts));
 }
 
 void InputProgram::demand_cost(double cost) {
@@ -130,16 +136,19 @@ void InputProgram::add_tangents(const Vector& u) {
     const double weight = cost_.weights[i], apart = u[i] - cost_.reference[i];
     if (weight == 0 || apart == 0) continue;
     // t ≥ ω (d² + 2 d (u - u₀)), d = u₀ - r
-    add_row(Terms{{first_cost_ + i, 1.0}, {i, -2 * weight * apart}}, weight * apart * (apart - 2 * u[i]), infinity);
+    add_row(Terms{{first_cost_ + i, 1.0}, {i, -2 * weight * apart}},
+            weight * apart * (apart - 2 * u[i]), infinity);
   }
 }
 
-PairColumns add_pair(InputProgram& inputs, const PairProgram& pair, double epsilon, double kappa_most) {
+PairColumns add_pair(InputProgram& inputs, const PairProgram& pair, double epsilon,
+                     double kappa_most) {
   const Index m = pair.rows(), g = pair.G.cols();
-  const Index kappa = inputs.add_columns(1, epsilon, kappa_most), xi = inputs.add_columns(g, -1 - kappa_most, 1 + kappa_most),
-              lambda = inputs.add_columns(m, -infinity, infinity), mu_1 = inputs.add_columns(g, 0, 1),
-              mu_2 = inputs.add_columns(g, 0, 1), p_1 = inputs.add_columns(g, 0, 1, true),
-              p_2 = inputs.add_columns(g, 0, 1, true);
+  const Index kappa = inputs.add_columns(1, epsilon, kappa_most),
+              xi = inputs.add_columns(g, -1 - kappa_most, 1 + kappa_most),
+              lambda = inputs.add_columns(m, -infinity, infinity),
+              mu_1 = inputs.add_columns(g, 0, 1), mu_2 = inputs.add_columns(g, 0, 1),
+              p_1 = inputs.add_columns(g, 0, 1, true), p_2 = inputs.add_columns(g, 0, 1, true);
   for (Index i = 0; i < m; ++i) {
     Terms row = terms_of(pair.N.row(i), 0);
     row += terms_of(-pair.G.row(i), xi);

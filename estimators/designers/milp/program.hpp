@@ -15,8 +15,10 @@ namespace cordon::designers {
 using Terms = std::vector<std::pair<Index, double>>;
 
 /// The inputs, their cost and the tubes that must not be empty:
-///   u = c + G ξ_u, A ξ_u = b,  A ζ = b + Ω u for each tube,  ‖ξ_u‖∞, ‖ζ‖∞ ≤ 1,  t ≥ the parts of the cost.
-/// The columns of u come first. A quadratic cost is met by tangents, which are added where they are needed.
+///   u = c + G ξ_u, A ξ_u = b,  A ζ = b + Ω u for each tube,  ‖ξ_u‖∞, ‖ζ‖∞ ≤ 1,  t ≥ the parts of
+///   the cost.
+/// The columns of u come first. A quadratic cost is met by tangents, which are added where they are
+/// needed.
 class InputProgram {
  public:
   explicit InputProgram(const SeparationProblem& problem);
@@ -55,8 +57,10 @@ struct PairColumns {
   Index first = 0, generators = 0;  ///< p₁, then p₂
 };
 
-/// κ(u) ∈ [ε, κ_m] for one pair: with G ξ = N u - c, ‖ξ‖∞ ≤ 1 + κ, and multipliers λ, Gᵀλ = μ₁ - μ₂, 1ᵀ(μ₁ + μ₂) = 1, which prove
-/// that κ is least, since factors with μ₁ > 0 are at the upper bound 1 + κ, those with μ₂ > 0 at the lower.
-PairColumns add_pair(InputProgram& inputs, const PairProgram& pair, double epsilon, double kappa_most);
+/// κ(u) ∈ [ε, κ_m] for one pair: with G ξ = N u - c, ‖ξ‖∞ ≤ 1 + κ, and multipliers λ, Gᵀλ = μ₁ -
+/// μ₂, 1ᵀ(μ₁ + μ₂) = 1, which prove that κ is least, since factors with μ₁ > 0 are at the upper
+/// bound 1 + κ, those with μ₂ > 0 at the lower.
+PairColumns add_pair(InputProgram& inputs, const PairProgram& pair, double epsilon,
+                     double kappa_most);
 
 }  // namespace cordon::designers

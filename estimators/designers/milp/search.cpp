@@ -22,17 +22,23 @@ constexpr double share_of_starts = .1, share_of_single_pairs = .2,
                  share_of_first_start = .5;  ///< of the time limit, ends of these parts
 constexpr double tolerance = 1e-6;           ///< of κ, for the solvers
 constexpr double zero = 1e-9;                ///< multipliers below are 0
-constexpr double closed_tangents = 1e-9;     ///< a quadratic cost is met where tangents miss it by this share
+constexpr double closed_tangents =
+    1e-9;  ///< a quadratic cost is met where tangents miss it by this share
 
 class Search {
  public:
   Search(const SeparationProblem& problem, const MilpLimits& limits, DesignControl& control)
-      : problem_(problem), limits_(limits), control_(control), begin_(std::chrono::steady_clock::now()) {}
+      : problem_(problem),
+        limits_(limits),
+        control_(control),
+        begin_(std::chrono::steady_clock::now()) {}
 
   SearchResult run() {
     if (!reduce()) return std::move(result_);
     result_.restriction = RestrictedProblem{
-        fmt::format("the program with at most {} generators per pair, as GLPK bounds it", limits_.max_generators), -infinity};
+        fmt::format("the program with at most {} generators per pair, as GLPK bounds it",
+                    limits_.max_generators),
+        -infinity};
     LocalSearch local(problem_, pairs_, [this] { return left_to_start(); });
     look_for_starts(local);
     InputProgram inputs(problem_);
@@ -50,7 +56,8 @@ class Search {
   /// Seconds until this share of the time limit is over; 0 if the search was ended from outside.
   double left(double share) const {
     if (control_.stop()) return 0;
-    return share * limits_.time_limit - std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    return share * limits_.time_limit -
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
 
   /// The first input is worth more of the time than better ones.
@@ -58,7 +65,9 @@ class Search {
 
   /// What is known of the reduced program's optimum, which is no bound of the problem itself.
   double bound() const { return result_.restriction->lower_bound; }
-  void raise_bound(double bound) { result_.restriction->lower_bound = std::max(this->bound(), bound); }
+  void raise_bound(double bound) {
+    result_.restriction->lower_bound = std::max(this->bound(), bound);
+  }
 
   bool reduce();
   bool settled(const PairProgram& pair);
@@ -88,11 +97,13 @@ bool Search::settled(const PairProgram& pair) {
   if (U.b.size() > 0) u += linalg::product(U.G, linalg::product(linalg::pseudo_inverse(U.A), U.b));
   const PairSeparation apart = separation(pair, u);
   if (apart.disjoint == Answer::yes && apart.kappa >= problem_.epsilon) return true;
-  const bool untouched = (pair.N.array() == 0).all() && (pair.N_magnitude.array() == 0).all();  // by inputs, not just by rounding
+  const bool untouched = (pair.N.array() == 0).all() &&
+                         (pair.N_magnitude.array() == 0).all();  // by inputs, not just by rounding
   const bool exactly = untouched && apart.disjoint == Answer::no;
   result_.status = exactly ? DesignStatus::infeasible : DesignStatus::unknown;
-  result_.reason = fmt::format("no input changes how far the outputs of {} are apart, and that is not enough (κ = {:.4g})",
-                               modes_of(problem_, pair), apart.kappa);
+  result_.reason = fmt::format(
+      "no input changes how far the outputs of {} are apart, and that is not enough (κ = {:.4g})",
+      modes_of(problem_, pair), apart.kappa);
   result_.suggestion = "a longer horizon";
   return false;
 }
@@ -101,12 +112,14 @@ bool Search::reduce() {
   for (const PairProgram& pair : problem_.pairs) {
     if (pair.rows() > 0) continue;
     if (pair.vanished > 0) {
-      result_.reason = fmt::format("{} differ by less than rounding allows to tell", modes_of(problem_, pair));
+      result_.reason =
+          fmt::format("{} differ by less than rounding allows to tell", modes_of(problem_, pair));
       return false;
     }
     result_.status = DesignStatus::infeasible;
-    result_.reason = fmt::format("the outputs of {} can be the same under every input: no equation is left that could fail",
-                                 modes_of(problem_, pair));
+    result_.reason = fmt::format(
+        "the outputs of {} can be the same under every input: no equation is left that could fail",
+        modes_of(problem_, pair));
     result_.suggestion = "a longer horizon";
     return false;
   }
@@ -119,10 +132,13 @@ bool Search::reduce() {
       if (!settled(pair)) return false;
       continue;
     }
-    std::optional<PairProgram> reduced = reduce_pair(pair, problem_.U, limits_.max_generators, limits_.max_constraints);
+    std::optional<PairProgram> reduced =
+        reduce_pair(pair, problem_.U, limits_.max_generators, limits_.max_constraints);
     if (!reduced) {
-      result_.reason = fmt::format("{} generators cannot enclose the difference of {}, which the inputs enter in more dimensions",
-                                   limits_.max_generators, modes_of(problem_, pair));
+      result_.reason = fmt::format(
+          "{} generators cannot enclose the difference of {}, which the inputs enter in more "
+          "dimensions",
+          limits_.max_generators, modes_of(problem_, pair));
       result_.suggestion = "a larger \"max_generators\"";
       return false;
     }
@@ -163,7 +179,8 @@ void Search::look_for_starts(LocalSearch& local) {
 std::vector<double> Search::largest_kappas(LocalSearch& local, const InputProgram& inputs) const {
   std::vector<double> most;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
-    const double kappa = local.largest_kappa(q, inputs.lower(), inputs.upper(), result_.u ? result_.cost : infinity);
+    const double kappa =
+        local.largest_kappa(q, inputs.lower(), inputs.upper(), result_.u ? result_.cost : infinity);
     most.push_back(std::max(kappa, problem_.epsilon));
   }
   return most;
@@ -184,7 +201,8 @@ MipOptions Search::options(double share, const std::vector<PairColumns>& columns
   return options;
 }
 
-/// What each pair alone costs bounds the whole, and says which pair to branch on first. False: one has no solution.
+/// What each pair alone costs bounds the whole, and says which pair to branch on first. False: one
+/// has no solution.
 bool Search::bound_single_pairs(InputProgram& inputs, const std::vector<double>& most) {
   std::vector<double> alone(pairs_.size(), -infinity);
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
@@ -200,7 +218,8 @@ bool Search::bound_single_pairs(InputProgram& inputs, const std::vector<double>&
     alone[q] = std::isfinite(solution.bound) ? solution.bound : 0;
     raise_bound(alone[q]);
   }
-  std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return alone[a] > alone[b]; });
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](std::size_t a, std::size_t b) { return alone[a] > alone[b]; });
   if (bound() > 0) inputs.demand_cost(bound() * (1 - tolerance));
   control_.progress(problem_.horizon, result_.u ? result_.cost : infinity, -infinity);
   return true;
@@ -208,7 +227,8 @@ bool Search::bound_single_pairs(InputProgram& inputs, const std::vector<double>&
 
 void Search::branch(InputProgram whole, const std::vector<double>& most) {
   std::vector<PairColumns> columns(pairs_.size());
-  for (std::size_t q = 0; q < pairs_.size(); ++q) columns[q] = add_pair(whole, pairs_[q], problem_.epsilon, most[q]);
+  for (std::size_t q = 0; q < pairs_.size(); ++q)
+    columns[q] = add_pair(whole, pairs_[q], problem_.epsilon, most[q]);
   std::vector<PairColumns> ordered;
   for (const std::size_t q : order_) ordered.push_back(columns[q]);
   while (left(1) > 0) {
@@ -227,18 +247,22 @@ void Search::branch(InputProgram whole, const std::vector<double>& most) {
     const Vector u = solution.x.head(whole.inputs());
     offer(u);
     if (solution.status != MipStatus::optimal) return;
-    closed_ = problem_.cost.at(u) - solution.objective <= std::max(limits_.gap, closed_tangents) * problem_.cost.at(u);
+    closed_ = problem_.cost.at(u) - solution.objective <=
+              std::max(limits_.gap, closed_tangents) * problem_.cost.at(u);
     if (closed_) return;
     whole.add_tangents(u);
   }
 }
 
-/// All columns for the input that is known: its sides are those that the multipliers of every pair tell, the rest is linear.
-std::optional<Vector> Search::start(const InputProgram& whole, const std::vector<PairColumns>& columns) {
+/// All columns for the input that is known: its sides are those that the multipliers of every pair
+/// tell, the rest is linear.
+std::optional<Vector> Search::start(const InputProgram& whole,
+                                    const std::vector<PairColumns>& columns) {
   MixedIntegerProgram fixed = whole.program();
   fixed.lower.head(whole.inputs()) = fixed.upper.head(whole.inputs()) = *result_.u;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
-    const auto apart = Gauge(pairs_[q].G).at(linalg::product(pairs_[q].N, *result_.u) - pairs_[q].c);
+    const auto apart =
+        Gauge(pairs_[q].G).at(linalg::product(pairs_[q].N, *result_.u) - pairs_[q].c);
     if (!apart) return std::nullopt;
     const Vector mu = linalg::product(pairs_[q].G.transpose(), apart->lambda);
     for (Index j = 0; j < mu.size(); ++j) {
@@ -255,33 +279,40 @@ std::optional<Vector> Search::start(const InputProgram& whole, const std::vector
 
 void Search::conclude() {
   result_.stopped = !closed_ && !impossible_ && left(1) <= 0;
-  const std::string ended = control_.stop() ? "the search was ended from outside" : "the time limit is over";
+  const std::string ended =
+      control_.stop() ? "the search was ended from outside" : "the time limit is over";
   if (result_.u) {
     result_.status = DesignStatus::feasible;
     if (bound() > result_.cost) result_.restriction->lower_bound = result_.cost;
-    result_.reason = closed_ ? "this is the optimum of the program after its reduction, as GLPK says; an input that costs less "
+    result_.reason = closed_ ? "this is the optimum of the program after its reduction, as GLPK "
+                               "says; an input that costs less "
                                "may separate the modes too"
                      : result_.stopped ? ended
                                        : "GLPK ended without an optimum";
-    result_.suggestion =
-        closed_ ? "\"facets\" for a proven optimum" : "fewer generators are faster; \"facets\" needs none to be reduced";
+    result_.suggestion = closed_
+                             ? "\"facets\" for a proven optimum"
+                             : "fewer generators are faster; \"facets\" needs none to be reduced";
     return;
   }
   result_.status = DesignStatus::unknown;
   result_.suggestion = "more generators, or \"facets\", which needs none to be reduced";
   if (impossible_) {
-    result_.reason = "the program has no solution after its reduction, as GLPK says; the problem itself may have one";
+    result_.reason =
+        "the program has no solution after its reduction, as GLPK says; the problem itself may "
+        "have one";
     result_.restriction->lower_bound = -infinity;
   } else if (unproven_) {
     result_.reason = "an input was found, but that it separates the modes is not proven";
   } else {
-    result_.reason = result_.stopped ? "no input was found: " + ended : "GLPK ended without an answer";
+    result_.reason =
+        result_.stopped ? "no input was found: " + ended : "GLPK ended without an answer";
   }
 }
 
 }  // namespace
 
-SearchResult search_milp(const SeparationProblem& problem, const MilpLimits& limits, DesignControl& control) {
+SearchResult search_milp(const SeparationProblem& problem, const MilpLimits& limits,
+                         DesignControl& control) {
   return Search(problem, limits, control).run();
 }
 

@@ -10,7 +10,8 @@ namespace cordon::designers {
 
 namespace {
 
-/// An affine expression of the unknowns: offset + lines·δ + factors·ξ, with columns from `line` and `factor` on.
+/// An affine expression of the unknowns: offset + lines·δ + factors·ξ, with columns from `line` and
+/// `factor` on.
 struct Part {
   Matrix M, G;
   Vector c;
@@ -19,8 +20,8 @@ struct Part {
 
 /// T·part
 Part mapped(MatrixIn T, const Part& part) {
-  return {linalg::denoised_product(T, part.M), linalg::denoised_product(T, part.G), linalg::denoised_product(T, part.c),
-          part.line, part.factor};
+  return {linalg::denoised_product(T, part.M), linalg::denoised_product(T, part.G),
+          linalg::denoised_product(T, part.c), part.line, part.factor};
 }
 
 /// The tube while it is built: unknowns are counted first, so that every block has its place.
@@ -34,26 +35,31 @@ class TubeBuilder {
         W_(backend.import(model.W)->line_form()),
         V_(backend.import(model.V)->line_form()) {
     if (m_.is_descriptor()) E_.emplace(m_.E);
-    if (span.admissible_set && m_.is_descriptor()) XA_ = backend.import(*span.admissible_set)->line_form();
+    if (span.admissible_set && m_.is_descriptor())
+      XA_ = backend.import(*span.admissible_set)->line_form();
   }
 
   OutputTube build() {
     const Index N = span_.horizon, inputs = m_.inputs() * (N + 1);
     const Index first_output = span_.last_output_only ? N : 0, noises = N + 1 - first_output;
-    const Index equations = m_.is_descriptor() ? N + 1 : N;  // without E the equation of k = N only tells the free x_{N+1}
+    const Index equations = m_.is_descriptor()
+                                ? N + 1
+                                : N;  // without E the equation of k = N only tells the free x_{N+1}
     const Index admissible = XA_ ? N : 0;
     const LineForm none{};
     const LineForm& XA = XA_ ? *XA_ : none;
     const Index inner = E_ && !E_->as_written ? E_->rank : 0;  // z of core z = right x⁺
     const Index lines = X0_.lines() + equations * (W_.lines() + n_ + inner) + noises * V_.lines() +
                         admissible * (XA.lines() + determined().rows());
-    const Index factors =
-        X0_.generators() + equations * W_.generators() + noises * V_.generators() + admissible * XA.generators();
-    const Index rows = X0_.constraints() + equations * (W_.constraints() + n_ + inner) + noises * V_.constraints() +
-                       admissible * (XA.constraints() + n_);
+    const Index factors = X0_.generators() + equations * W_.generators() +
+                          noises * V_.generators() + admissible * XA.generators();
+    const Index rows = X0_.constraints() + equations * (W_.constraints() + n_ + inner) +
+                       noises * V_.constraints() + admissible * (XA.constraints() + n_);
     const Index outputs = m_.outputs() * noises;
-    tube_ = {Matrix::Zero(outputs, lines), Matrix::Zero(outputs, factors), Matrix::Zero(outputs, inputs), Vector::Zero(outputs),
-             Matrix::Zero(rows, lines),    Matrix::Zero(rows, factors),    Matrix::Zero(rows, inputs),    Vector::Zero(rows)};
+    tube_ = {Matrix::Zero(outputs, lines),  Matrix::Zero(outputs, factors),
+             Matrix::Zero(outputs, inputs), Vector::Zero(outputs),
+             Matrix::Zero(rows, lines),     Matrix::Zero(rows, factors),
+             Matrix::Zero(rows, inputs),    Vector::Zero(rows)};
 
     std::vector<Part> x{take(X0_)};
     for (Index k = 0; k < equations; ++k) {
@@ -62,7 +68,8 @@ class TubeBuilder {
       next_state(k, x[static_cast<std::size_t>(k)], w, x.back());
     }
     for (Index k = 1; k <= admissible; ++k) admit(x[static_cast<std::size_t>(k)], XA);
-    for (Index k = first_output; k <= N; ++k) output(k, (k - first_output) * m_.outputs(), x[static_cast<std::size_t>(k)]);
+    for (Index k = first_output; k <= N; ++k)
+      output(k, (k - first_output) * m_.outputs(), x[static_cast<std::size_t>(k)]);
     return std::move(tube_);
   }
 
@@ -145,7 +152,9 @@ class TubeBuilder {
 
 }  // namespace
 
-LineForm OutputTube::at(VectorIn u) const { return {M, G, c + linalg::product(H, u), S, A, b + linalg::product(Omega, u)}; }
+LineForm OutputTube::at(VectorIn u) const {
+  return {M, G, c + linalg::product(H, u), S, A, b + linalg::product(Omega, u)};
+}
 
 OutputTube output_tube(const Model& model, const SetBackend& backend, const TubeSpan& span) {
   if (span.horizon < 0) throw Error(Errc::invalid, "the horizon of a tube is negative");
@@ -153,7 +162,8 @@ OutputTube output_tube(const Model& model, const SetBackend& backend, const Tube
 }
 
 Vector TubeConditions::terms(VectorIn reach) const {
-  const Vector seen = b.cwiseAbs() + A.cwiseAbs().rowwise().sum() + linalg::product(Omega.cwiseAbs(), reach);
+  const Vector seen =
+      b.cwiseAbs() + A.cwiseAbs().rowwise().sum() + linalg::product(Omega.cwiseAbs(), reach);
   if (Omega_magnitude.size() == 0) return seen.cwiseMax(magnitude);
   return seen.cwiseMax(linalg::product(Omega_magnitude, reach) + magnitude);
 }
@@ -163,7 +173,8 @@ TubeConditions conditions_of(const OutputTube& tube) {
   columns << tube.A, -tube.Omega;
   const Index all = columns.cols();
   const LinesEliminated rest = eliminate_lines_traced(
-      {Matrix(0, tube.S.cols()), Matrix(0, all), Vector(0), tube.S, std::move(columns), tube.b}, Vector(0));
+      {Matrix(0, tube.S.cols()), Matrix(0, all), Vector(0), tube.S, std::move(columns), tube.b},
+      Vector(0));
   const Matrix shares = rest.rows.cwiseAbs();
   return {rest.set.A.leftCols(tube.A.cols()),
           -rest.set.A.rightCols(tube.inputs()),

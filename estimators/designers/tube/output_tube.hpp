@@ -15,15 +15,19 @@ namespace cordon::designers {
 struct TubeSpan {
   Index horizon = 1;              ///< N ≥ 0: inputs u_0 … u_N
   bool last_output_only = false;  ///< the outputs y_N [Scott2014]; else y_0 … y_N [Rego2025]
-  /// X_A: x_k ∈ X_A is assumed for k ≥ 1, of which the part that E does not determine is used; nothing: not assumed.
+  /// X_A: x_k ∈ X_A is assumed for k ≥ 1, of which the part that E does not determine is used;
+  /// nothing: not assumed.
   std::optional<LineForm> admissible_set = {};
 };
 
-/// Y(u) = {c + H u + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b + Ω u}, the output reachable tube of one mode, u = (u_0, …, u_N):
-///   x_0 ∈ X0, w_k ∈ W, v_k ∈ V,   E x_{k+1} = A x_k + B u_k + Bw w_k for k = 0 … N,   y_k = C x_k + D u_k + Dv v_k
-/// with the states x_1 … x_{N+1} among the free δ, so that x_{N+1} leaves of the last equation what does not hold E x_{N+1}: the
-/// static rows of k = N [Rego2025, sec. 5]. Exact; every coefficient is a number of the model or a product of two.
-/// Shapes: c, H, M, G have n_y (N+1) rows by time (n_y if only the last output counts), H and Ω have n_u (N+1) columns.
+/// Y(u) = {c + H u + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b + Ω u}, the output reachable tube of one mode,
+/// u = (u_0, …, u_N):
+///   x_0 ∈ X0, w_k ∈ W, v_k ∈ V,   E x_{k+1} = A x_k + B u_k + Bw w_k for k = 0 … N,   y_k = C x_k
+///   + D u_k + Dv v_k
+/// with the states x_1 … x_{N+1} among the free δ, so that x_{N+1} leaves of the last equation what
+/// does not hold E x_{N+1}: the static rows of k = N [Rego2025, sec. 5]. Exact; every coefficient
+/// is a number of the model or a product of two. Shapes: c, H, M, G have n_y (N+1) rows by time
+/// (n_y if only the last output counts), H and Ω have n_u (N+1) columns.
 struct OutputTube {
   Matrix M, G, H;
   Vector c;
@@ -36,19 +40,21 @@ struct OutputTube {
   LineForm at(VectorIn u) const;
 };
 
-/// The tube with X0, W, V (and X_A) as `backend` expresses them: enclosures of those of the model. Throws Errc::unsupported where
-/// it cannot.
+/// The tube with X0, W, V (and X_A) as `backend` expresses them: enclosures of those of the model.
+/// Throws Errc::unsupported where it cannot.
 OutputTube output_tube(const Model& model, const SetBackend& backend, const TubeSpan& span);
 
 /// What rounding in the elimination of lines may have changed in a row, as a share of its terms.
 inline constexpr double row_noise = 2e-13;
 
-/// The same set with the lines eliminated that constraints determine, as far as that is exact: no S is left, and Ω u stands in
-/// those rows only that no line appears in. Every u leaves the tube non-empty if no row is left, and none vanished.
+/// The same set with the lines eliminated that constraints determine, as far as that is exact: no S
+/// is left, and Ω u stands in those rows only that no line appears in. Every u leaves the tube
+/// non-empty if no row is left, and none vanished.
 struct TubeConditions {
-  Matrix A, Omega;  ///< A ξ = b + Ω u, m rows: the tube under u is empty if and only if there is no such ‖ξ‖∞ ≤ 1
+  Matrix A, Omega;  ///< A ξ = b + Ω u, m rows: the tube under u is empty if and only if there is no
+                    ///< such ‖ξ‖∞ ≤ 1
   Vector b;
-  Vector magnitude;             ///< size of the terms that A ξ - b was computed from, ‖ξ‖∞ ≤ 1
+  Vector magnitude;  ///< size of the terms that A ξ - b was computed from, ‖ξ‖∞ ≤ 1
   Matrix Omega_magnitude = {};  ///< likewise of Ω
   Index vanished = 0;           ///< rows that became 0 = 0 up to rounding, and are left out
 

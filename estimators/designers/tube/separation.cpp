@@ -30,16 +30,19 @@ std::optional<std::pair<double, Vector>> solve_for_tau(const Matrix& G, const Ve
   rows << G, -s * d;
   const Vector scale = linalg::row_scales(rows);
   rows = scale.asDiagonal() * rows;
-  Vector lower = Vector::Constant(g + 1, -1.0), upper = Vector::Ones(g + 1), objective = Vector::Zero(g + 1);
+  Vector lower = Vector::Constant(g + 1, -1.0), upper = Vector::Ones(g + 1),
+         objective = Vector::Zero(g + 1);
   lower[g] = 0;
   upper[g] = most_tau;
   objective[g] = 1;
-  LinearProgram::Solution solution = LinearProgram(rows, Vector::Zero(m), lower, upper).maximize(objective);
+  LinearProgram::Solution solution =
+      LinearProgram(rows, Vector::Zero(m), lower, upper).maximize(objective);
   if (solution.status != LinearProgram::Status::optimal) return std::nullopt;
   return std::pair(std::max(0.0, solution.x[g]), Vector(scale.asDiagonal() * solution.y));
 }
 
-/// κ = 1/(τ s) - 1 with s such that τ is of ordinary size: a solver's τ is right up to some 1e-9 only.
+/// κ = 1/(τ s) - 1 with s such that τ is of ordinary size: a solver's τ is right up to some 1e-9
+/// only.
 std::optional<Proposal> propose(const Matrix& G, const Vector& d) {
   double s = 1;
   for (int trial = 0; trial < 5; ++trial, s *= 1e-6) {
@@ -52,8 +55,8 @@ std::optional<Proposal> propose(const Matrix& G, const Vector& d) {
   return Proposal{infinity, solution ? solution->second : Vector::Zero(d.size())};
 }
 
-/// κ ≥ this by y: (yᵀd - ‖Gᵀy‖₁) / ‖Gᵀy‖₁, the numerator proven for every right-hand side within `error` of d; -1, which always
-/// holds, if y proves nothing.
+/// κ ≥ this by y: (yᵀd - ‖Gᵀy‖₁) / ‖Gᵀy‖₁, the numerator proven for every right-hand side within
+/// `error` of d; -1, which always holds, if y proves nothing.
 double proven_kappa(const Matrix& G, const Vector& d, const Vector& error, const Vector& y) {
   if (!y.allFinite()) return -1;
   const double norm = linalg::transposed_product(G, y).cwiseAbs().sum();
@@ -66,7 +69,8 @@ double proven_kappa(const Matrix& G, const Vector& d, const Vector& error, const
 }  // namespace
 
 PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTube& Yj) {
-  const Index outputs = Yi.outputs(), inputs = Yi.inputs(), rows_i = Yi.b.size(), rows_j = Yj.b.size();
+  const Index outputs = Yi.outputs(), inputs = Yi.inputs(), rows_i = Yi.b.size(),
+              rows_j = Yj.b.size();
   const Index lines_i = Yi.S.cols(), lines_j = Yj.S.cols(), g_i = Yi.A.cols(), g_j = Yj.A.cols();
   Matrix S(outputs + rows_i + rows_j, lines_i + lines_j), A(S.rows(), g_i + g_j + inputs);
   S << Yi.M, -Yj.M, linalg::block_diagonal(Yi.S, Yj.S);
@@ -81,7 +85,8 @@ PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTub
   Matrix input_terms = A.rightCols(inputs).cwiseAbs();
   input_terms.topRows(outputs) = Yi.H.cwiseAbs() + Yj.H.cwiseAbs();
   const LinesEliminated rest = eliminate_lines_traced(
-      {Matrix(0, lines), Matrix(0, columns), Vector(0), std::move(S), std::move(A), std::move(b)}, magnitude);
+      {Matrix(0, lines), Matrix(0, columns), Vector(0), std::move(S), std::move(A), std::move(b)},
+      magnitude);
   const Matrix shares = rest.rows.cwiseAbs();
   return {i,
           j,
@@ -94,7 +99,8 @@ PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTub
 }
 
 Vector PairProgram::terms(VectorIn reach) const {
-  const Vector seen = c.cwiseAbs() + G.cwiseAbs().rowwise().sum() + linalg::product(N.cwiseAbs(), reach);
+  const Vector seen =
+      c.cwiseAbs() + G.cwiseAbs().rowwise().sum() + linalg::product(N.cwiseAbs(), reach);
   if (N_magnitude.size() == 0) return seen.cwiseMax(magnitude);
   return seen.cwiseMax(linalg::product(N_magnitude, reach) + magnitude);
 }
@@ -104,7 +110,8 @@ std::vector<PairProgram> pair_programs(const std::vector<OutputTube>& tubes) {
   const auto modes = static_cast<Index>(tubes.size());
   for (Index i = 0; i < modes; ++i) {
     for (Index j = i + 1; j < modes; ++j) {
-      pairs.push_back(pair_program(i, tubes[static_cast<std::size_t>(i)], j, tubes[static_cast<std::size_t>(j)]));
+      pairs.push_back(pair_program(i, tubes[static_cast<std::size_t>(i)], j,
+                                   tubes[static_cast<std::size_t>(j)]));
     }
   }
   return pairs;
@@ -130,10 +137,12 @@ PairSeparation separation(const PairProgram& pair, VectorIn u) {
   if (proposal) {
     result.kappa = proposal->kappa;
     const Vector& y = proposal->y;
-    result.kappa_lower = std::max(proven_kappa(pair.G, d, error, y), proven_kappa(pair.G, d, error, -y));
+    result.kappa_lower =
+        std::max(proven_kappa(pair.G, d, error, y), proven_kappa(pair.G, d, error, -y));
   }
   if (result.why.kind == Certificate::Kind::farkas) {
-    result.kappa_lower = std::max(result.kappa_lower, proven_kappa(pair.G, d, error, result.why.data));
+    result.kappa_lower =
+        std::max(result.kappa_lower, proven_kappa(pair.G, d, error, result.why.data));
   }
   // the solver's κ is right to its tolerance; it does not contradict what is proven
   if (result.kappa < result.kappa_lower) result.kappa = result.kappa_lower;

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Diagnoser "fault_estimation_filter": bounds of additive faults n in E x⁺ = A x + B u + Bw w + F n, y = C x + D u + Dv v,
-// from the first sample of the nominal mode on. [Wang2017] With ỹ = y - D u - Dv v̄ and the centres w̄, v̄ of W and V:
+// Diagnoser "fault_estimation_filter": bounds of additive faults n in E x⁺ = A x + B u + Bw w + F
+// n, y = C x + D u + Dv v, from the first sample of the nominal mode on. [Wang2017] With ỹ = y - D
+// u - Dv v̄ and the centres w̄, v̄ of W and V:
 //   x̂_{k+1} = TA x̂_k + T (B u_k + Bw w̄) + G_k (ỹ_k - C x̂_k) + N ỹ_{k+1},   r_k = M (ỹ_k - C x̂_k)
 //   n_i(k - ρ_i) ∈ r_{k,i} ± h_{k,i}
-// G_k and h_k are those of filter_recursion.hpp and do not depend on the data. The bounds are widened by the project's share of
-// rounding, 1e-10 of the numbers that r is made of, and by what the rounding of earlier steps can have grown to. They hold for
-// any faults, past ones included; bounds that exclude 0 prove that the plant has not been in the nominal mode, where n = 0, at
-// the time k - ρ_i. `ModeEvidence::why` is then the direction, a unit vector with its sign in the space of faults, that separates
-// 0 from the box of these bounds, and the margin its distance. A step that excludes is a reset: the next one is judged anew, on
-// its own bounds. In a bank of several modes the filter cannot tell which of them the plant is in after that: the decision is
+// G_k and h_k are those of filter_recursion.hpp and do not depend on the data. The bounds are
+// widened by the project's share of rounding, 1e-10 of the numbers that r is made of, and by what
+// the rounding of earlier steps can have grown to. They hold for any faults, past ones included;
+// bounds that exclude 0 prove that the plant has not been in the nominal mode, where n = 0, at the
+// time k - ρ_i. `ModeEvidence::why` is then the direction, a unit vector with its sign in the space
+// of faults, that separates 0 from the box of these bounds, and the margin its distance. A step
+// that excludes is a reset: the next one is judged anew, on its own bounds. In a bank of several
+// modes the filter cannot tell which of them the plant is in after that: the decision is
 // "ambiguous" as long as the bounds hold 0.
 #include <limits>
 #include <string>
@@ -26,8 +29,9 @@ using linalg::product;
 
 namespace {
 
-constexpr double rounding_share = 1e-10;    // of the numbers of the last step
-constexpr double rounding_of_step = 1e-14;  // of those of any step; what it leaves in x̂ goes on by TA - G C
+constexpr double rounding_share = 1e-10;  // of the numbers of the last step
+constexpr double rounding_of_step =
+    1e-14;  // of those of any step; what it leaves in x̂ goes on by TA - G C
 constexpr Index rounding_columns_per_state = 4;
 
 /// A model with zonotopes around its sets.
@@ -37,14 +41,17 @@ struct FilterModel {
 };
 
 FilterModel filter_model(const Model& model) {
-  return {model.linear, invariant::enclosing_zonotope(model.X0, "X0"), invariant::enclosing_zonotope(model.W, "W"),
-          invariant::enclosing_zonotope(model.V, "V")};
+  return {model.linear, invariant::enclosing_zonotope(model.X0, "X0"),
+          invariant::enclosing_zonotope(model.W, "W"), invariant::enclosing_zonotope(model.V, "V")};
 }
 
-FilterNoise noise_of(const FilterModel& m) { return {product(m.linear.Bw, m.W.G), product(m.linear.Dv, m.V.G)}; }
+FilterNoise noise_of(const FilterModel& m) {
+  return {product(m.linear.Bw, m.W.G), product(m.linear.Dv, m.V.G)};
+}
 
 Matrix free_matrix(const LinearModel& m, const Params& params) {
-  return params.has("free_matrix") ? params.matrix("free_matrix") : Matrix::Zero(m.states(), m.states() + m.outputs());
+  return params.has("free_matrix") ? params.matrix("free_matrix")
+                                   : Matrix::Zero(m.states(), m.states() + m.outputs());
 }
 
 FilterDesign design_of(const LinearModel& m, const Params& params) {
@@ -61,7 +68,8 @@ class FaultEstimationFilter final : public Diagnoser {
         model_(filter_model(bank()[bank().nominal].model)),
         design_(design_of(model_.linear, params)),
         recursion_(design_, model_.linear, noise_of(model_), params.integer("max_columns"),
-                   params.text("noise_coupling") == "shared" ? NoiseCoupling::shared : NoiseCoupling::independent) {
+                   params.text("noise_coupling") == "shared" ? NoiseCoupling::shared
+                                                             : NoiseCoupling::independent) {
     const LinearModel& m = model_.linear;
     TA_ = product(design_.T, m.A);
     TB_ = product(design_.T, m.B);
@@ -85,7 +93,9 @@ class FaultEstimationFilter final : public Diagnoser {
   void do_start() override { unfinished_ = excluded_ = false; }
 
   Diagnosis do_step(const Sample* before, const Sample& now) override {
-    if (unfinished_) throw Error(Errc::invalid, "the last step ended with an error, and left the filter half way; start anew");
+    if (unfinished_)
+      throw Error(Errc::invalid,
+                  "the last step ended with an error, and left the filter half way; start anew");
     unfinished_ = true;
     Output y = output(now);
     if (before) {
@@ -105,7 +115,8 @@ class FaultEstimationFilter final : public Diagnoser {
 
   Output output(const Sample& now) const {
     const Vector input = product(model_.linear.D, now.u);
-    return {now.y - input - v_, now.y.cwiseAbs() + product(D_size_, now.u.cwiseAbs()) + v_.cwiseAbs()};
+    return {now.y - input - v_,
+            now.y.cwiseAbs() + product(D_size_, now.u.cwiseAbs()) + v_.cwiseAbs()};
   }
 
   /// From x̂ of the sample before to that of ỹ = y.
@@ -114,26 +125,30 @@ class FaultEstimationFilter final : public Diagnoser {
     const Matrix& G = recursion_.gain();
     const Vector residual = y_.value - product(model_.linear.C, x_);
     const Vector residual_size = y_.size + product(C_size_, x_.cwiseAbs());
-    size_ = product(TA_size_, x_.cwiseAbs()) + product(TB_size_, before.u.cwiseAbs()) + Tw_.cwiseAbs() +
-            product(G.cwiseAbs(), residual_size) + product(N_size_, y.size);
+    size_ = product(TA_size_, x_.cwiseAbs()) + product(TB_size_, before.u.cwiseAbs()) +
+            Tw_.cwiseAbs() + product(G.cwiseAbs(), residual_size) + product(N_size_, y.size);
     keep_rounding();
-    x_ = product(TA_, x_) + product(TB_, before.u) + Tw_ + product(G, residual) + product(design_.N, y.value);
+    x_ = product(TA_, x_) + product(TB_, before.u) + Tw_ + product(G, residual) +
+         product(design_.N, y.value);
   }
 
   /// The rounding errors of all steps so far, as generators.
   void keep_rounding() {
     const Index n = x_.size(), old = rounding_.cols();
     Matrix next(n, old + n);
-    next << product(recursion_.error_map(), rounding_), (rounding_of_step * size_).asDiagonal().toDenseMatrix();
-    rounding_ = sets::reduce_generators(next, rounding_columns_per_state * n, sets::GeneratorReduction::combastel);
+    next << product(recursion_.error_map(), rounding_),
+        (rounding_of_step * size_).asDiagonal().toDenseMatrix();
+    rounding_ = sets::reduce_generators(next, rounding_columns_per_state * n,
+                                        sets::GeneratorReduction::combastel);
   }
 
   std::vector<FaultBound> bounds(Index k) const {
     const Vector r = product(design_.M, y_.value - product(model_.linear.C, x_));
-    const Vector slack =
-        rounding_share * product(M_size_, y_.size + product(C_size_, size_)) + product(MC_, rounding_).cwiseAbs().rowwise().sum();
+    const Vector slack = rounding_share * product(M_size_, y_.size + product(C_size_, size_)) +
+                         product(MC_, rounding_).cwiseAbs().rowwise().sum();
     const Vector half = recursion_.half_widths() + slack;
-    if (!(r + half).allFinite()) throw Error(Errc::not_finite, "the estimate of a fault has outgrown the numbers");
+    if (!(r + half).allFinite())
+      throw Error(Errc::not_finite, "the estimate of a fault has outgrown the numbers");
     std::vector<FaultBound> all;
     for (Index i = 0; i < r.size(); ++i) {
       const Index at = k - design_.delays[static_cast<std::size_t>(i)];
@@ -178,11 +193,12 @@ class FaultEstimationFilter final : public Diagnoser {
 
   std::optional<Guarantees> do_guarantees() const override {
     Guarantees result;
-    result.method =
-        recursion_.is_reduced()
-            ? "the filter's own recursion of gains and error sets, which does not depend on the data, until it repeats bit by bit"
-            : "the filter's own recursion of gains and error sets, which does not depend on the data, and from its last gain on "
-              "the sum of the powers of its error map";
+    result.method = recursion_.is_reduced()
+                        ? "the filter's own recursion of gains and error sets, which does not "
+                          "depend on the data, until it repeats bit by bit"
+                        : "the filter's own recursion of gains and error sets, which does not "
+                          "depend on the data, and from its last gain on "
+                          "the sum of the powers of its error map";
     const Vector widths = lasting_half_widths(recursion_, model_.X0.G);
     for (Index i = 0; i < widths.size(); ++i) {
       result.faults.push_back({i, design_.delays[static_cast<std::size_t>(i)], widths[i]});
@@ -196,9 +212,9 @@ class FaultEstimationFilter final : public Diagnoser {
   Matrix TA_, TB_;
   Vector Tw_, v_;                                                 ///< T Bw w̄, Dv v̄
   Matrix TA_size_, TB_size_, C_size_, D_size_, N_size_, M_size_;  ///< entries by magnitude
-  Matrix MC_, rounding_;                                          ///< M C; generators of what rounding has left in x̂
-  Vector x_, size_;                                               ///< x̂, and the size of the numbers that it is made of
-  Output y_;                                                      ///< of the last sample
+  Matrix MC_, rounding_;  ///< M C; generators of what rounding has left in x̂
+  Vector x_, size_;       ///< x̂, and the size of the numbers that it is made of
+  Output y_;              ///< of the last sample
   Index first_ = 0, since_ = 0;
   bool excluded_ = false;    ///< the nominal mode has been, once
   bool unfinished_ = false;  ///< a step ended with an error half way
@@ -213,17 +229,21 @@ void check_bounded(const LineForm& X, const std::string& name, std::vector<Diagn
   }
 }
 
-void check_parameters(const LinearModel& m, const Params& params, std::vector<Diagnostic>& problems) {
+void check_parameters(const LinearModel& m, const Params& params,
+                      std::vector<Diagnostic>& problems) {
   const Index n = m.states(), columns = params.integer("max_columns");
   if (columns != 0 && columns < n) {
-    problems.push_back({"/max_columns", "is " + std::to_string(columns) + ", fewer than the " + std::to_string(n) + " states",
-                        "give at least " + std::to_string(n) + ", or 0 for no limit"});
+    problems.push_back(
+        {"/max_columns",
+         "is " + std::to_string(columns) + ", fewer than the " + std::to_string(n) + " states",
+         "give at least " + std::to_string(n) + ", or 0 for no limit"});
   }
   const Matrix S = free_matrix(m, params);
   if (S.rows() != n || S.cols() != n + m.outputs()) {
     problems.push_back({"/free_matrix",
-                        "is " + std::to_string(S.rows()) + " × " + std::to_string(S.cols()) + ", must be " + std::to_string(n) +
-                            " × " + std::to_string(n + m.outputs()),
+                        "is " + std::to_string(S.rows()) + " × " + std::to_string(S.cols()) +
+                            ", must be " + std::to_string(n) + " × " +
+                            std::to_string(n + m.outputs()),
                         "a row per state, a column per state and per output"});
   }
 }
@@ -238,7 +258,8 @@ std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& par
                         "use a backend with nominal rounding"});
   }
   if (model.linear.has_ranges()) {
-    problems.push_back({"/type", "does not take a nominal mode whose effectiveness is known by ranges",
+    problems.push_back({"/type",
+                        "does not take a nominal mode whose effectiveness is known by ranges",
                         "describe changes of actuators by columns of F"});
   }
   check_bounded(model.X0, "X0", problems);
@@ -251,53 +272,69 @@ std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& par
 
 ParamSchema parameters() {
   ParamSchema schema;
-  schema.integer("max_columns", "most columns of the error sets after each step, at least one per state; 0: no limit", 20, 0,
-                 100'000);
+  schema.integer(
+      "max_columns",
+      "most columns of the error sets after each step, at least one per state; 0: no limit", 20, 0,
+      100'000);
   schema.choice("noise_coupling",
-                "the noise of a sample in its two places: one value (shared), or two independent ones as published",
+                "the noise of a sample in its two places: one value (shared), or two independent "
+                "ones as published",
                 {"shared", "independent"}, "shared");
   schema.matrix("free_matrix",
-                "S in [T N] = [E;C]⁺ + S (I - [E;C][E;C]⁺), a row per state, a column per state and output; absent: 0");
+                "S in [T N] = [E;C]⁺ + S (I - [E;C][E;C]⁺), a row per state, a column per state "
+                "and output; absent: 0");
   return schema;
 }
 
 constexpr const char* details =
     "With Θ = [E; C], rank Θ = n, and ỹ = y - D u less the centre of Dv V:\n"
     "  [T N] = Θ⁺ + S (I - Θ Θ⁺), so that T E + N C = I\n"
-    "  ρ_i = min {σ : C (TA)^(σ-1) T f_i ≠ 0}, Ψ = [(TA)^(ρ_i - 1) T f_i]_i, Υ = C Ψ, rank Υ = n_f\n"
+    "  ρ_i = min {σ : C (TA)^(σ-1) T f_i ≠ 0}, Ψ = [(TA)^(ρ_i - 1) T f_i]_i, Υ = C Ψ, rank Υ = "
+    "n_f\n"
     "  M = Υ⁺, Φ = TA Ψ, Ω Υ = 0 with rank Ω = n_y - n_f; G_k = Φ M + Ḡ_k Ω\n"
     "  x̂⁺ = TA x̂ + T (B u + Bw w̄) + G_k (ỹ - C x̂) + N ỹ⁺, r = M (ỹ - C x̂)\n"
     "  Ḡ_k minimises ‖R⁺‖_F, R⁺ = [(TA - G_k C) R̄, T Dw, -G_k Dv, -N Dv], R̄ = R reduced,\n"
     "  where Dw, Dv are the generators of Bw W and Dv V.\n"
-    "Fault i at the time k - ρ_i lies in r_i ± h_i, for any faults before and after. h is the vector\n"
-    "of row sums of |[M C R̄, M Dv]| with \"noise_coupling\": \"independent\", as published. With \"shared\"\n"
-    "the noise v(k), which is in the error and in the output, is one value: e = a - N Dv v, and h are\n"
-    "the row sums of |[M C Ā, M (I - C N) Dv]|, a of its own recursion with the same gains. On the\n"
-    "published example that halves the bounds. Neither depends on the data. With \"max_columns\": 0 the\n"
+    "Fault i at the time k - ρ_i lies in r_i ± h_i, for any faults before and after. h is the "
+    "vector\n"
+    "of row sums of |[M C R̄, M Dv]| with \"noise_coupling\": \"independent\", as published. With "
+    "\"shared\"\n"
+    "the noise v(k), which is in the error and in the output, is one value: e = a - N Dv v, and h "
+    "are\n"
+    "the row sums of |[M C Ā, M (I - C N) Dv]|, a of its own recursion with the same gains. On "
+    "the\n"
+    "published example that halves the bounds. Neither depends on the data. With \"max_columns\": "
+    "0 the\n"
     "gain of step 400 stays, which gives the bounds a limit that is told in advance.\n"
     "\n"
-    "Bounds that exclude 0 exclude the nominal mode, and speak of the time k - ρ_i. In a bank of several\n"
-    "modes the decision is then \"isolating\", since another mode may be the reason, and \"ambiguous\" later; of one,\n"
+    "Bounds that exclude 0 exclude the nominal mode, and speak of the time k - ρ_i. In a bank of "
+    "several\n"
+    "modes the decision is then \"isolating\", since another mode may be the reason, and "
+    "\"ambiguous\" later; of one,\n"
     "\"unknown_fault\", and \"monitoring\" again where no bound excludes 0.\n"
     "The filter's sets are its own: of the pipeline's backend it uses nothing.\n"
     "\n"
-    "As printed, the paper omits a row of its T (row 3 is (0 0 .5 0)) and the square root of ‖·‖_F, and\n"
-    "shifts the fault in (29) by a step: n(k-1) enters as C T F n(k-1). The condition is rank CΨ = n_f.";
+    "As printed, the paper omits a row of its T (row 3 is (0 0 .5 0)) and the square root of "
+    "‖·‖_F, and\n"
+    "shifts the fault in (29) by a step: n(k-1) enters as C T F n(k-1). The condition is rank CΨ = "
+    "n_f.";
 
 }  // namespace
 
 void register_fault_estimation_filter(Registrar& registrar) {
-  registrar.diagnoser({{"fault_estimation_filter", "bounds of additive faults in systems with and without E, a few steps later",
-                        "Wang2017", parameters(), details},
-                       check,
-                       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
-                         if (auto problems = check(context, params); !problems.empty()) {
-                           throw InputError("diagnoser \"fault_estimation_filter\"", std::move(problems));
-                         }
-                         return std::make_unique<FaultEstimationFilter>(context, params);
-                       },
-                       false,
-                       false});
+  registrar.diagnoser(
+      {{"fault_estimation_filter",
+        "bounds of additive faults in systems with and without E, a few steps later", "Wang2017",
+        parameters(), details},
+       check,
+       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
+         if (auto problems = check(context, params); !problems.empty()) {
+           throw InputError("diagnoser \"fault_estimation_filter\"", std::move(problems));
+         }
+         return std::make_unique<FaultEstimationFilter>(context, params);
+       },
+       false,
+       false});
 }
 
 }  // namespace cordon::estimators

@@ -58,12 +58,14 @@ struct Response {
 };
 
 /// After n steps of silence there is never a response.
-std::optional<Response> first_response(const Matrix& T, const Matrix& TA, const Matrix& C, VectorIn f) {
+std::optional<Response> first_response(const Matrix& T, const Matrix& TA, const Matrix& C,
+                                       VectorIn f) {
   Vector state = product(T, f);
   Vector size = product(T.cwiseAbs(), f.cwiseAbs());
   for (Index delay = 1; delay <= state.size(); ++delay) {
     const Vector response = product(C, state);
-    if ((response.cwiseAbs().array() > response_tolerance * product(C.cwiseAbs(), size).array()).any())
+    if ((response.cwiseAbs().array() > response_tolerance * product(C.cwiseAbs(), size).array())
+            .any())
       return Response{delay, state};
     state = product(TA, state);
     size = product(TA.cwiseAbs(), size);
@@ -72,27 +74,34 @@ std::optional<Response> first_response(const Matrix& T, const Matrix& TA, const 
 }
 
 /// T and N of the design.
-bool find_T_and_N(const Matrix& E, const Matrix& C, const Matrix& S, FilterDesign& design, std::vector<Diagnostic>& problems) {
+bool find_T_and_N(const Matrix& E, const Matrix& C, const Matrix& S, FilterDesign& design,
+                  std::vector<Diagnostic>& problems) {
   const Index n = E.cols(), m = C.rows();
   const Matrix theta = stacked(E, C);
   if (const Matrix unseen = linalg::null_space(theta); unseen.cols() > 0) {
     problems.push_back({"/type",
-                        "rank [E; C] is " + std::to_string(n - unseen.cols()) + ", the state has " + std::to_string(n) +
-                            ", as far as doubles tell: neither E nor C sees the direction " + text_of(unseen.col(0)),
+                        "rank [E; C] is " + std::to_string(n - unseen.cols()) + ", the state has " +
+                            std::to_string(n) +
+                            ", as far as doubles tell: neither E nor C sees the direction " +
+                            text_of(unseen.col(0)),
                         "measure it, or describe its dynamics in E"});
     return false;
   }
   const Matrix inverse = linalg::pseudo_inverse(theta);
-  const Matrix both = inverse + product(S, Matrix::Identity(n + m, n + m) - product(theta, inverse));
+  const Matrix both =
+      inverse + product(S, Matrix::Identity(n + m, n + m) - product(theta, inverse));
   design.T = both.leftCols(n);
   design.N = both.rightCols(m);
   if (is_identity(product(design.T, E) + product(design.N, C))) return true;
-  problems.push_back({"/type", "[E; C] is so near to a smaller rank that T E + N C = I cannot be solved in doubles",
-                      "scale states and outputs to like sizes"});
+  problems.push_back(
+      {"/type",
+       "[E; C] is so near to a smaller rank that T E + N C = I cannot be solved in doubles",
+       "scale states and outputs to like sizes"});
   return false;
 }
 
-bool find_responses(const LinearModel& model, FilterDesign& design, std::vector<Diagnostic>& problems) {
+bool find_responses(const LinearModel& model, FilterDesign& design,
+                    std::vector<Diagnostic>& problems) {
   const Matrix TA = product(design.T, model.A);
   const Index q = model.faults();
   design.Psi = Matrix(model.states(), q);
@@ -109,10 +118,12 @@ bool find_responses(const LinearModel& model, FilterDesign& design, std::vector<
   design.Upsilon = product(model.C, design.Psi);
   design.Phi = product(TA, design.Psi);
   if (silent.empty()) return true;
-  problems.push_back({"/free_matrix",
-                      names_of(silent) + (silent.size() == 1 ? " does" : " do") +
-                          " not show in the outputs: C (TA)^j T f = 0 for all j, as far as doubles tell",
-                      "measure what it acts on; if it acts in rows where E is 0 only, give a free_matrix S with T f ≠ 0"});
+  problems.push_back(
+      {"/free_matrix",
+       names_of(silent) + (silent.size() == 1 ? " does" : " do") +
+           " not show in the outputs: C (TA)^j T f = 0 for all j, as far as doubles tell",
+       "measure what it acts on; if it acts in rows where E is 0 only, give a free_matrix S with T "
+       "f ≠ 0"});
   return false;
 }
 
@@ -121,7 +132,8 @@ std::vector<Index> alike(const Matrix& normalised) {
   const Matrix unseen = linalg::null_space(normalised);
   std::vector<Index> faults;
   for (Index i = 0; i < unseen.rows(); ++i) {
-    if (unseen.cols() > 0 && unseen.row(i).cwiseAbs().maxCoeff() > visible_entry) faults.push_back(i);
+    if (unseen.cols() > 0 && unseen.row(i).cwiseAbs().maxCoeff() > visible_entry)
+      faults.push_back(i);
   }
   return faults;
 }
@@ -130,8 +142,9 @@ bool find_M_and_Omega(FilterDesign& design, std::vector<Diagnostic>& problems) {
   const Index m = design.Upsilon.rows(), q = design.Upsilon.cols();
   if (q > m) {
     problems.push_back({"/type",
-                        "the system has " + std::to_string(q) + " faults, which " + std::to_string(m) +
-                            (m == 1 ? " output" : " outputs") + " cannot tell apart",
+                        "the system has " + std::to_string(q) + " faults, which " +
+                            std::to_string(m) + (m == 1 ? " output" : " outputs") +
+                            " cannot tell apart",
                         "give F no more columns than there are outputs"});
     return false;
   }
@@ -139,9 +152,9 @@ bool find_M_and_Omega(FilterDesign& design, std::vector<Diagnostic>& problems) {
   const Matrix normalised = design.Upsilon * scale.asDiagonal();
   if (const auto faults = alike(normalised); !faults.empty()) {
     problems.push_back({"/type",
-                        names_of(faults) +
-                            " act alike on the outputs: their first responses C (TA)^(ρ-1) T f are linearly dependent, "
-                            "as far as doubles tell",
+                        names_of(faults) + " act alike on the outputs: their first responses C "
+                                           "(TA)^(ρ-1) T f are linearly dependent, "
+                                           "as far as doubles tell",
                         "take one of them out of F, or measure more"});
     return false;
   }
@@ -152,10 +165,13 @@ bool find_M_and_Omega(FilterDesign& design, std::vector<Diagnostic>& problems) {
 
 }  // namespace
 
-std::optional<FilterDesign> design_filter(const LinearModel& model, const Matrix& S, std::vector<Diagnostic>& problems) {
+std::optional<FilterDesign> design_filter(const LinearModel& model, const Matrix& S,
+                                          std::vector<Diagnostic>& problems) {
   const Index n = model.states();
   FilterDesign design;
-  if (!find_T_and_N(model.is_descriptor() ? model.E : Matrix(Matrix::Identity(n, n)), model.C, S, design, problems)) return {};
+  if (!find_T_and_N(model.is_descriptor() ? model.E : Matrix(Matrix::Identity(n, n)), model.C, S,
+                    design, problems))
+    return {};
   if (!find_responses(model, design, problems)) return {};
   if (!find_M_and_Omega(design, problems)) return {};
   return design;

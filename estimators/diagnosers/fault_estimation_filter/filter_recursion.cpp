@@ -20,11 +20,13 @@ using linalg::product;
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// S̃ is kept so far from singular, relative to the terms of its diagonal: Ḡ is free, and must not be rounding noise.
+/// S̃ is kept so far from singular, relative to the terms of its diagonal: Ḡ is free, and must not
+/// be rounding noise.
 constexpr double regularisation = 1e-13;
 /// Squares below this have no digits left.
 constexpr double smallest_square = 1e-280;
-/// Ω annihilates what its outputs have in common up to this: the rest is rounding, and no gain may rest on it.
+/// Ω annihilates what its outputs have in common up to this: the rest is rounding, and no gain may
+/// rest on it.
 constexpr double annihilated = 1e-13;
 
 Matrix joined(const Matrix& left, const Matrix& right) {
@@ -36,14 +38,20 @@ Matrix joined(const Matrix& left, const Matrix& right) {
 /// A B without the entries that have cancelled.
 Matrix without_noise(const Matrix& A, const Matrix& B) {
   const Matrix C = product(A, B);
-  return (C.array().abs() <= annihilated * product(A.cwiseAbs(), B.cwiseAbs()).array()).select(0.0, C);
+  return (C.array().abs() <= annihilated * product(A.cwiseAbs(), B.cwiseAbs()).array())
+      .select(0.0, C);
 }
 
 }  // namespace
 
-FilterRecursion::FilterRecursion(const FilterDesign& design, const LinearModel& model, FilterNoise noise, Index max_columns,
-                                 NoiseCoupling coupling)
-    : max_columns_(max_columns), coupling_(coupling), C_(model.C), N_(design.N), Dv_(std::move(noise.Dv)), Omega_(design.Omega) {
+FilterRecursion::FilterRecursion(const FilterDesign& design, const LinearModel& model,
+                                 FilterNoise noise, Index max_columns, NoiseCoupling coupling)
+    : max_columns_(max_columns),
+      coupling_(coupling),
+      C_(model.C),
+      N_(design.N),
+      Dv_(std::move(noise.Dv)),
+      Omega_(design.Omega) {
   base_gain_ = product(design.Phi, design.M);
   base_ = product(design.T, model.A) - product(base_gain_, C_);
   Omega_C_ = without_noise(Omega_, C_);
@@ -78,9 +86,13 @@ void FilterRecursion::find_gain() {
   Matrix S = product(seen_, seen_.transpose()) + rest_noise_;
   const Vector states = R_.rowwise().squaredNorm();
   const Vector terms = product(Omega_C_.cwiseAbs2(), states) + rest_noise_.diagonal();
-  for (Index i = 0; i < S.rows(); ++i) S(i, i) += terms[i] > smallest_square ? regularisation * terms[i] : 1.0;
-  const auto solved = linalg::solve_spd(S, product(seen_, image_.transpose()) - gain_noise_.transpose());
-  if (!solved) throw Error(Errc::not_finite, "the error bounds of the fault estimation filter have outgrown the numbers");
+  for (Index i = 0; i < S.rows(); ++i)
+    S(i, i) += terms[i] > smallest_square ? regularisation * terms[i] : 1.0;
+  const auto solved =
+      linalg::solve_spd(S, product(seen_, image_.transpose()) - gain_noise_.transpose());
+  if (!solved)
+    throw Error(Errc::not_finite,
+                "the error bounds of the fault estimation filter have outgrown the numbers");
   reduced_gain_ = solved->transpose();
   G_ = base_gain_ + product(reduced_gain_, Omega_);
 }
@@ -109,21 +121,29 @@ Matrix FilterRecursion::shared_noise() const {
   return joined(TDw_, -own);
 }
 
-Matrix FilterRecursion::noise() const { return coupling_ == NoiseCoupling::shared ? shared_noise() : independent_noise(); }
-
-bool FilterRecursion::is_same(const FilterRecursion& other) const {
-  const auto same = [](const Matrix& X, const Matrix& Y) { return X.rows() == Y.rows() && X.cols() == Y.cols() && X == Y; };
-  return (steps_ == 0) == (other.steps_ == 0) && same(R_, other.R_) && (coupling_ != NoiseCoupling::shared || same(A_, other.A_));
+Matrix FilterRecursion::noise() const {
+  return coupling_ == NoiseCoupling::shared ? shared_noise() : independent_noise();
 }
 
-Vector FilterRecursion::seen(const Matrix& errors) const { return product(MC_, errors).cwiseAbs().rowwise().sum(); }
+bool FilterRecursion::is_same(const FilterRecursion& other) const {
+  const auto same = [](const Matrix& X, const Matrix& Y) {
+    return X.rows() == Y.rows() && X.cols() == Y.cols() && X == Y;
+  };
+  return (steps_ == 0) == (other.steps_ == 0) && same(R_, other.R_) &&
+         (coupling_ != NoiseCoupling::shared || same(A_, other.A_));
+}
+
+Vector FilterRecursion::seen(const Matrix& errors) const {
+  return product(MC_, errors).cwiseAbs().rowwise().sum();
+}
 
 Matrix FilterRecursion::error_map() const { return base_ - product(reduced_gain_, Omega_C_); }
 
 void FilterRecursion::find_half_widths() {
   half_width_ = own_noise_ + seen(seen_errors());
   if (!half_width_.allFinite()) {
-    throw Error(Errc::not_finite, "the error bounds of the fault estimation filter have outgrown the numbers");
+    throw Error(Errc::not_finite,
+                "the error bounds of the fault estimation filter have outgrown the numbers");
   }
 }
 
@@ -134,14 +154,17 @@ std::optional<invariant::Decay> decay_of(const Matrix& map, const Vector& size) 
   try {
     return invariant::Decay(map, size, "TA - G C");
   } catch (const Error& error) {
-    if (error.code() != Errc::invalid && error.code() != Errc::unsupported && error.code() != Errc::not_finite) throw;
+    if (error.code() != Errc::invalid && error.code() != Errc::unsupported &&
+        error.code() != Errc::not_finite)
+      throw;
     return std::nullopt;
   }
 }
 
-/// The largest half widths of the circle that the recursion ends in; nothing if none has closed, or if errors that its columns do
-/// not have, rounding among them, are not shown to die out from round to round. After Brent: the state is kept at powers of two,
-/// and every later one is compared with it.
+/// The largest half widths of the circle that the recursion ends in; nothing if none has closed, or
+/// if errors that its columns do not have, rounding among them, are not shown to die out from round
+/// to round. After Brent: the state is kept at powers of two, and every later one is compared with
+/// it.
 std::optional<Vector> largest_of_circle(FilterRecursion recursion) {
   constexpr Index most_steps = 50'000;
   const Index n = recursion.errors().rows();
@@ -156,11 +179,13 @@ std::optional<Vector> largest_of_circle(FilterRecursion recursion) {
         recursion.advance();
         largest = largest.cwiseMax(recursion.half_widths());
         const Matrix map = recursion.error_map();
-        error = (product(map.cwiseAbs(), error) + rounding::product_error(map, round)) * (1 + 2 * rounding::gamma(n + 8));
+        error = (product(map.cwiseAbs(), error) + rounding::product_error(map, round)) *
+                (1 + 2 * rounding::gamma(n + 8));
         round = product(map, round);
       }
       if (!round.allFinite() || !error.allFinite()) return std::nullopt;
-      return invariant::radius_bounds(round, error).upper < 1 ? std::optional(largest) : std::nullopt;
+      return invariant::radius_bounds(round, error).upper < 1 ? std::optional(largest)
+                                                              : std::nullopt;
     }
     if (length < until) continue;
     kept = recursion;

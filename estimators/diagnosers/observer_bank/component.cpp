@@ -21,33 +21,41 @@ ParamSchema parameters() {
   add_widening_limit(schema);
   schema
       .integer("waiting_time",
-               "T: a mode lasts at least so many steps; decides between ambiguous and isolated, switch and unknown fault", {}, 1,
-               most_steps)
+               "T: a mode lasts at least so many steps; decides between ambiguous and isolated, "
+               "switch and unknown fault",
+               {}, 1, most_steps)
       .required();
-  add_gain_parameter(
-      schema, "gain",
-      "L of all modes, a matrix with a row per state and a column per output, or a designer, asked for each mode and "
-      "for the steady state; absent, and without gains: \"kalman\"");
+  add_gain_parameter(schema, "gain",
+                     "L of all modes, a matrix with a row per state and a column per output, or a "
+                     "designer, asked for each mode and "
+                     "for the steady state; absent, and without gains: \"kalman\"");
   schema.matrices("gains", "L of each mode in place of gain, the nominal mode first");
-  schema.set(
-      "error_set",
-      "X̃, a set that holds the error x - x̂ of every observer whatever the modes have been; checked in advance; absent: computed");
-  schema.matrix(
-      "strip_gain",
-      "λ, a row per state and a column per output: X̃ is cut by (I - λ C) X̃ ⊕ λ (...); absent: the backend's intersection");
+  schema.set("error_set",
+             "X̃, a set that holds the error x - x̂ of every observer whatever the modes have been; "
+             "checked in advance; absent: computed");
+  schema.matrix("strip_gain",
+                "λ, a row per state and a column per output: X̃ is cut by (I - λ C) X̃ ⊕ λ (...); "
+                "absent: the backend's intersection");
   schema.choice("invariant",
-                "sets behind the FDI conditions: limits (mrpi), steps from an invariant set (rpi), or from start_set (iterate)",
+                "sets behind the FDI conditions: limits (mrpi), steps from an invariant set (rpi), "
+                "or from start_set (iterate)",
                 {"mrpi", "rpi", "iterate"}, "mrpi");
-  schema.vector("iterations", "steps for rpi and iterate: one number, or one per observer; 30 if absent");
-  schema.integer("max_columns", "most generators of these sets after each step; 0: no limit", 0, 0, most_steps);
+  schema.vector("iterations",
+                "steps for rpi and iterate: one number, or one per observer; 30 if absent");
+  schema.integer("max_columns", "most generators of these sets after each step; 0: no limit", 0, 0,
+                 most_steps);
   schema.real("accuracy", "relative accuracy of the limits", 1e-9, 1e-14, 1);
   schema.choice("input_copies",
-                "the input in the error: one value for plant and observer (joint), or two independent ones (separate)",
+                "the input in the error: one value for plant and observer (joint), or two "
+                "independent ones (separate)",
                 {"joint", "separate"}, "joint");
   schema.set("start_set", "first error set for iterate; absent: the origin");
   schema.set("state_set",
-             "a set that holds the state at all times, needed where modes have different A; absent: computed if A is stable");
-  schema.integer("threads", "threads for the observers; 0: one per core; decisions do not depend on it", 1, 0, 1024);
+             "a set that holds the state at all times, needed where modes have different A; "
+             "absent: computed if A is stable");
+  schema.integer("threads",
+                 "threads for the observers; 0: one per core; decisions do not depend on it", 1, 0,
+                 1024);
   return schema;
 }
 
@@ -62,7 +70,8 @@ std::vector<Matrix> gains_of(const DiagnoserContext& context, const Params& para
   if (params.has("gains")) return params.matrices("gains");
   std::vector<Matrix> gains;
   for (const Mode& mode : context.bank.modes) {
-    gains.push_back(observer_gain(context_of(context, mode), params, "gain", default_gain()).gain.L);
+    gains.push_back(
+        observer_gain(context_of(context, mode), params, "gain", default_gain()).gain.L);
   }
   return gains;
 }
@@ -82,7 +91,8 @@ OfflineOptions offline_options(const ModeBank& bank, const Params& params) {
   options.iterations = {30};
   if (params.has("iterations")) {
     options.iterations.clear();
-    for (const double steps : params.vector("iterations")) options.iterations.push_back(static_cast<Index>(steps));
+    for (const double steps : params.vector("iterations"))
+      options.iterations.push_back(static_cast<Index>(steps));
   }
   options.max_columns = params.integer("max_columns");
   options.accuracy = params.real("accuracy");
@@ -110,31 +120,35 @@ ObserverBankOptions options_of(const DiagnoserContext& context, const Params& pa
 
 std::string shape_problem(const Matrix& A, Index rows, Index cols) {
   if (A.rows() == rows && A.cols() == cols) return "";
-  return "is " + std::to_string(A.rows()) + " × " + std::to_string(A.cols()) + ", must be " + std::to_string(rows) + " × " +
-         std::to_string(cols);
+  return "is " + std::to_string(A.rows()) + " × " + std::to_string(A.cols()) + ", must be " +
+         std::to_string(rows) + " × " + std::to_string(cols);
 }
 
 /// One per mode, in the order of the modes.
-void check_list(const ModeBank& bank, const std::vector<Matrix>& gains, std::vector<Diagnostic>& problems) {
+void check_list(const ModeBank& bank, const std::vector<Matrix>& gains,
+                std::vector<Diagnostic>& problems) {
   if (static_cast<Index>(gains.size()) != bank.size()) {
-    problems.push_back(
-        {"/gains", "holds " + std::to_string(gains.size()) + " matrices, the bank has " + std::to_string(bank.size()) + " modes",
-         "give one per mode, the nominal mode first"});
+    problems.push_back({"/gains",
+                        "holds " + std::to_string(gains.size()) + " matrices, the bank has " +
+                            std::to_string(bank.size()) + " modes",
+                        "give one per mode, the nominal mode first"});
     return;
   }
   for (std::size_t j = 0; j < gains.size(); ++j) {
     const Mode& mode = bank.modes[j];
     const std::string problem = gain_problem(mode.model, gains[j]);
     if (problem.empty()) continue;
-    problems.push_back(
-        {"/gains/" + std::to_string(j), problem + of_mode(mode), "a row per state, a column per output, with A - L C stable"});
+    problems.push_back({"/gains/" + std::to_string(j), problem + of_mode(mode),
+                        "a row per state, a column per output, with A - L C stable"});
   }
 }
 
-void check_gains(const DiagnoserContext& context, const Params& params, std::vector<Diagnostic>& problems) {
+void check_gains(const DiagnoserContext& context, const Params& params,
+                 std::vector<Diagnostic>& problems) {
   const ModeBank& bank = context.bank;
   const bool listed = params.has("gains");
-  if (listed && params.has("gain")) problems.push_back({"/gains", "stands beside \"gain\"", "remove one of the two"});
+  if (listed && params.has("gain"))
+    problems.push_back({"/gains", "stands beside \"gain\"", "remove one of the two"});
   if (listed) return check_list(bank, params.matrices("gains"), problems);
   for (Index j = 0; j < bank.size(); ++j) {
     const auto same_loop = [&](const Mode& earlier) {  // whose problem with the gain has been told
@@ -151,22 +165,26 @@ void check_gains(const DiagnoserContext& context, const Params& params, std::vec
 void check_shapes(const ModeBank& bank, const Params& params, std::vector<Diagnostic>& problems) {
   const LinearModel& m = bank[bank.nominal].model.linear;
   if (params.has("strip_gain")) {
-    if (const std::string wrong = shape_problem(params.matrix("strip_gain"), m.states(), m.outputs()); !wrong.empty()) {
+    if (const std::string wrong =
+            shape_problem(params.matrix("strip_gain"), m.states(), m.outputs());
+        !wrong.empty()) {
       problems.push_back({"/strip_gain", wrong, "a row per state, a column per output"});
     }
   }
   if (params.has("iterations")) {
     for (const double steps : params.vector("iterations")) {
-      if (steps >= 1 && steps <= static_cast<double>(most_steps) && steps == std::floor(steps)) continue;
+      if (steps >= 1 && steps <= static_cast<double>(most_steps) && steps == std::floor(steps))
+        continue;
       problems.push_back({"/iterations", "must hold whole numbers from 1 to 100000", ""});
       break;
     }
   }
   for (const char* name : {"error_set", "start_set", "state_set"}) {
     if (params.has(name) && params.set_form(name).dim() != m.states()) {
-      problems.push_back(
-          {std::string("/") + name,
-           "has dimension " + std::to_string(params.set_form(name).dim()) + ", the state has " + std::to_string(m.states()), ""});
+      problems.push_back({std::string("/") + name,
+                          "has dimension " + std::to_string(params.set_form(name).dim()) +
+                              ", the state has " + std::to_string(m.states()),
+                          ""});
     }
   }
 }
@@ -176,8 +194,9 @@ std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& par
   std::vector<Diagnostic> problems;
   for (const Mode& mode : bank.modes) {
     if (!mode.model.linear.is_descriptor()) continue;
-    problems.push_back({"/type", "\"observer_bank\" takes modes of type \"lti\"; \"" + mode.name + "\" has an E",
-                        "use the diagnoser \"consistency_bank\" with the observer \"descriptor\""});
+    problems.push_back(
+        {"/type", "\"observer_bank\" takes modes of type \"lti\"; \"" + mode.name + "\" has an E",
+         "use the diagnoser \"consistency_bank\" with the observer \"descriptor\""});
     return problems;
   }
   problems = check_common({bank[bank.nominal].model, context.backend}, params);
@@ -190,15 +209,18 @@ std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& par
 }  // namespace
 
 void register_observer_bank(Registrar& registrar) {
-  registrar.diagnoser({{"observer_bank", "a bank of Luenberger observers on sets, with conditions checked in advance",
-                        "Xu2014; Xu2013", parameters()},
-                       check,
-                       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
-                         if (auto problems = check(context, params); !problems.empty()) {
-                           throw InputError("diagnoser \"observer_bank\"", std::move(problems));
-                         }
-                         return std::make_unique<ObserverBank>(context.bank, context.backend, options_of(context, params));
-                       }});
+  registrar.diagnoser(
+      {{"observer_bank",
+        "a bank of Luenberger observers on sets, with conditions checked in advance",
+        "Xu2014; Xu2013", parameters()},
+       check,
+       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
+         if (auto problems = check(context, params); !problems.empty()) {
+           throw InputError("diagnoser \"observer_bank\"", std::move(problems));
+         }
+         return std::make_unique<ObserverBank>(context.bank, context.backend,
+                                               options_of(context, params));
+       }});
 }
 
 }  // namespace cordon::estimators

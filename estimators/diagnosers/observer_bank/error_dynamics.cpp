@@ -36,15 +36,16 @@ Matrix stacked(const Matrix& top, const Matrix& bottom) {
   return T;
 }
 
-/// Adds P f_i u - O f_j u for u in its box. One factor per input for u, and what the ranges of f leave open: one column per
-/// input, since every entry of f varies on its own.
-void add_inputs(Columns& to, const Matrix& P, const ModeDynamics& plant, const Matrix& O, const ModeDynamics& observer,
-                bool separate) {
+/// Adds P f_i u - O f_j u for u in its box. One factor per input for u, and what the ranges of f
+/// leave open: one column per input, since every entry of f varies on its own.
+void add_inputs(Columns& to, const Matrix& P, const ModeDynamics& plant, const Matrix& O,
+                const ModeDynamics& observer, bool separate) {
   const Matrix plant_mid = P * plant.f.asDiagonal(), observer_mid = O * observer.f.asDiagonal();
   const Vector& center = plant.u;
   const Vector& radius = plant.u_rad;
   to.shift(product(plant_mid - observer_mid, center));
-  const Matrix plant_open = P * plant.f_rad.asDiagonal(), observer_open = O * observer.f_rad.asDiagonal();
+  const Matrix plant_open = P * plant.f_rad.asDiagonal(),
+               observer_open = O * observer.f_rad.asDiagonal();
   if (separate) {
     to.add(plant_mid * radius.asDiagonal());
     to.add(plant_open * radius.asDiagonal());
@@ -71,12 +72,16 @@ void add_slack(Columns& to, const Matrix& T, const Vector& half_widths) {
 }
 
 /// Everything that drives (x, e) but x itself.
-Zonotope joint_drive(const ModeDynamics& plant, const ModeDynamics& observer, bool separate, const SensorSlack& slack) {
+Zonotope joint_drive(const ModeDynamics& plant, const ModeDynamics& observer, bool separate,
+                     const SensorSlack& slack) {
   const Index n = plant.A.rows();
   const auto both = [](const Matrix& top, const Matrix& bottom) { return stacked(top, bottom); };
-  const auto error_only = [n](const Matrix& bottom) { return stacked(Matrix::Zero(n, bottom.cols()), bottom); };
+  const auto error_only = [n](const Matrix& bottom) {
+    return stacked(Matrix::Zero(n, bottom.cols()), bottom);
+  };
   Columns columns(2 * n);
-  add_inputs(columns, both(plant.B, plant.B - product(observer.L, plant.D)), plant, error_only(observer.Bo), observer, separate);
+  add_inputs(columns, both(plant.B, plant.B - product(observer.L, plant.D)), plant,
+             error_only(observer.Bo), observer, separate);
   add_noise(columns, error_only(-product(observer.L, plant.Dv)), plant.V);
   add_noise(columns, error_only(product(observer.L, observer.Dv)), observer.V);
   add_noise(columns, both(plant.Bw, plant.Bw), plant.W);
@@ -91,7 +96,8 @@ Zonotope rows_of(const Zonotope& Z, Index first, Index count) {
 }
 
 /// What enters the residual directly.
-Zonotope direct_part(const ModeDynamics& plant, const ModeDynamics& observer, bool separate, const SensorSlack& slack) {
+Zonotope direct_part(const ModeDynamics& plant, const ModeDynamics& observer, bool separate,
+                     const SensorSlack& slack) {
   const Index q = plant.C.rows();
   Columns columns(q);
   add_inputs(columns, plant.D, plant, observer.D, observer, separate);
@@ -105,7 +111,8 @@ Zonotope direct_part(const ModeDynamics& plant, const ModeDynamics& observer, bo
 ModeDynamics dynamics_of(const Mode& mode, const Matrix& gain) {
   const LinearModel& m = mode.model.linear;
   const std::string of = " of mode \"" + mode.name + "\"";
-  if (m.is_descriptor()) throw Error(Errc::unsupported, "offline conditions take systems without E, unlike that" + of);
+  if (m.is_descriptor())
+    throw Error(Errc::unsupported, "offline conditions take systems without E, unlike that" + of);
   if (gain.rows() != m.states() || gain.cols() != m.outputs())
     throw Error(Errc::dimension, "the gain" + of + " has a wrong shape");
   ModeDynamics d;
@@ -130,7 +137,8 @@ ModeDynamics dynamics_of(const Mode& mode, const Matrix& gain) {
   const Box inputs = U.dim() == m.inputs() ? interval_hull(U) : Box::space(m.inputs());
   if (inputs.is_empty()) throw Error(Errc::invalid, "U" + of + " is empty");
   if (!inputs.is_bounded())
-    throw Error(Errc::unsupported, "the inputs" + of + " are unbounded: statements in advance need bounds of u");
+    throw Error(Errc::unsupported,
+                "the inputs" + of + " are unbounded: statements in advance need bounds of u");
   d.u = inputs.center();
   d.u_rad = inputs.radius();
   d.feedthrough = product(m.D.cwiseAbs(), (d.f + d.f_rad).cwiseProduct(d.u.cwiseAbs() + d.u_rad));
@@ -140,13 +148,18 @@ ModeDynamics dynamics_of(const Mode& mode, const Matrix& gain) {
 }  // namespace
 
 std::vector<ModeDynamics> dynamics_of(const ModeBank& bank, const std::vector<Matrix>& gains) {
-  if (static_cast<Index>(gains.size()) != bank.size()) throw Error(Errc::dimension, "a bank needs one gain per mode");
+  if (static_cast<Index>(gains.size()) != bank.size())
+    throw Error(Errc::dimension, "a bank needs one gain per mode");
   std::vector<ModeDynamics> all;
-  for (Index j = 0; j < bank.size(); ++j) all.push_back(dynamics_of(bank[j], gains[static_cast<std::size_t>(j)]));
+  for (Index j = 0; j < bank.size(); ++j)
+    all.push_back(dynamics_of(bank[j], gains[static_cast<std::size_t>(j)]));
   for (const ModeDynamics& one : all) {
-    if (one.A.rows() != all[0].A.rows() || one.B.cols() != all[0].B.cols() || one.C.rows() != all[0].C.rows()) {
+    if (one.A.rows() != all[0].A.rows() || one.B.cols() != all[0].B.cols() ||
+        one.C.rows() != all[0].C.rows()) {
       throw Error(Errc::dimension,
-                  "mode \"" + one.name + "\" has other numbers of states, inputs or outputs than mode \"" + all[0].name + "\"");
+                  "mode \"" + one.name +
+                      "\" has other numbers of states, inputs or outputs than mode \"" +
+                      all[0].name + "\"");
     }
   }
   return all;
@@ -160,7 +173,8 @@ Matrix state_to_error(const ModeDynamics& plant, const ModeDynamics& observer) {
   return plant.A - observer.A - product(observer.L, plant.C - observer.C);
 }
 
-Zonotope error_drive(const ModeDynamics& plant, const ModeDynamics& observer, bool separate, const SensorSlack& slack) {
+Zonotope error_drive(const ModeDynamics& plant, const ModeDynamics& observer, bool separate,
+                     const SensorSlack& slack) {
   const Index n = plant.A.rows();
   return rows_of(joint_drive(plant, observer, separate, slack), n, n);
 }
@@ -170,7 +184,8 @@ Zonotope plant_drive(const ModeDynamics& plant) {
   return rows_of(joint_drive(plant, plant, false, {}), 0, n);
 }
 
-PairDynamics pair_dynamics(const ModeDynamics& plant, const ModeDynamics& observer, bool separate, const SensorSlack& slack) {
+PairDynamics pair_dynamics(const ModeDynamics& plant, const ModeDynamics& observer, bool separate,
+                           const SensorSlack& slack) {
   PairDynamics pair{observer.Ao, {}, observer.C, direct_part(plant, observer, separate, slack)};
   if (!is_coupled(plant, observer)) {
     pair.drive = error_drive(plant, observer, separate, slack);

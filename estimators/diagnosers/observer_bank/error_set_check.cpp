@@ -25,7 +25,8 @@ constexpr double facet_margin = 1e-12;  // of factors: normals of facets are rou
 bool has_ranges(const ModeDynamics& mode) { return !mode.g_rad.isZero(0); }
 
 /// max |T x| over the minimal set under one disturbance.
-Vector largest(const invariant::Decay& decay, const Zonotope& drive, const Matrix& T, double accuracy) {
+Vector largest(const invariant::Decay& decay, const Zonotope& drive, const Matrix& T,
+               double accuracy) {
   Vector size(T.rows());
   for (Index a = 0; a < T.rows(); ++a) {
     const auto h = invariant::minimal_supports(decay, {drive}, T.row(a).transpose(), accuracy)[0];
@@ -40,7 +41,9 @@ Matrix on_error(const Matrix& T, Index states) {
   return all;
 }
 
-Zonotope sum(const Zonotope& X, const Zonotope& Y) { return sets::drop_zero_generators(sets::minkowski_sum(X, Y)); }
+Zonotope sum(const Zonotope& X, const Zonotope& Y) {
+  return sets::drop_zero_generators(sets::minkowski_sum(X, Y));
+}
 
 /// n columns of G that span a large parallelotope, by Gram-Schmidt; fewer if G has a smaller rank.
 Matrix largest_columns(Matrix G) {
@@ -61,7 +64,8 @@ Matrix largest_columns(Matrix G) {
   return chosen;
 }
 
-/// Normals of the facets of {Gξ}, one of each pair; none if the set is flat. `shape` becomes the parallelotope that replaces it.
+/// Normals of the facets of {Gξ}, one of each pair; none if the set is flat. `shape` becomes the
+/// parallelotope that replaces it.
 Matrix facet_normals(Matrix& shape) {
   const Index n = shape.rows();
   if (n == 0) return Matrix(0, 0);
@@ -73,11 +77,13 @@ Matrix facet_normals(Matrix& shape) {
   };
   if (shape.cols() == n) return parallelotope();
   try {
-    const Polytope::Inequalities facets = Polytope::from(make_zonotope(Vector::Zero(n), shape)).inequalities();
+    const Polytope::Inequalities facets =
+        Polytope::from(make_zonotope(Vector::Zero(n), shape)).inequalities();
     if (facets.Q.rows() > 0) return Matrix(0, n);
     std::vector<Index> rows;
     for (Index k = 0; k < facets.H.rows(); ++k) {
-      const bool opposite = std::any_of(rows.begin(), rows.end(), [&](Index r) { return facets.H.row(r) == -facets.H.row(k); });
+      const bool opposite = std::any_of(
+          rows.begin(), rows.end(), [&](Index r) { return facets.H.row(r) == -facets.H.row(k); });
       if (!opposite) rows.push_back(k);
     }
     return facets.H(rows, Eigen::all);
@@ -92,41 +98,56 @@ Matrix facet_normals(Matrix& shape) {
 
 Vector drive_size(const std::vector<Zonotope>& drives, Index n) {
   Vector size = Vector::Zero(n);
-  for (const Zonotope& D : drives) size = size.cwiseMax(D.c.cwiseAbs() + D.G.cwiseAbs().rowwise().sum());
+  for (const Zonotope& D : drives)
+    size = size.cwiseMax(D.c.cwiseAbs() + D.G.cwiseAbs().rowwise().sum());
   return size;
 }
 
-SensorSlack steady_slack(const ModeDynamics& plant, const ModeDynamics& observer, const OfflineOptions& options) {
+SensorSlack steady_slack(const ModeDynamics& plant, const ModeDynamics& observer,
+                         const OfflineOptions& options) {
   SensorSlack slack;
   if (!has_ranges(plant) && !has_ranges(observer)) return slack;
   const Zonotope drive = plant_drive(plant);
-  const invariant::Decay decay(plant.A, drive_size({drive}, drive.dim()),
-                               "A of mode \"" + plant.name + "\" (ranges of sensors need a stable plant)");
-  const auto state = [&](const ModeDynamics& of) { return largest(decay, drive, of.C_raw, options.accuracy); };
-  if (has_ranges(plant)) slack.plant = plant.g_rad.cwiseProduct(plant.feedthrough + state(plant)) * (1 + facet_margin);
+  const invariant::Decay decay(
+      plant.A, drive_size({drive}, drive.dim()),
+      "A of mode \"" + plant.name + "\" (ranges of sensors need a stable plant)");
+  const auto state = [&](const ModeDynamics& of) {
+    return largest(decay, drive, of.C_raw, options.accuracy);
+  };
+  if (has_ranges(plant))
+    slack.plant = plant.g_rad.cwiseProduct(plant.feedthrough + state(plant)) * (1 + facet_margin);
   if (has_ranges(observer)) {
     const PairDynamics pair = pair_dynamics(plant, observer, options.separate_inputs, slack);
-    const invariant::Decay errors(pair.A, drive_size({pair.drive}, pair.drive.dim()), "the joint system");
-    const Vector error = largest(errors, pair.drive, on_error(observer.C_raw, pair.A.rows()), options.accuracy);
-    const invariant::Decay own(observer.Ao, observer.L.cwiseAbs().rowwise().sum(), "A - L C of mode \"" + observer.name + "\"");
+    const invariant::Decay errors(pair.A, drive_size({pair.drive}, pair.drive.dim()),
+                                  "the joint system");
+    const Vector error =
+        largest(errors, pair.drive, on_error(observer.C_raw, pair.A.rows()), options.accuracy);
+    const invariant::Decay own(observer.Ao, observer.L.cwiseAbs().rowwise().sum(),
+                               "A - L C of mode \"" + observer.name + "\"");
     slack.observer = observer_slack(observer, own, state(observer), error, options.accuracy);
   }
   return slack;
 }
 
-PairDynamics steady_pair(const ModeDynamics& plant, const ModeDynamics& observer, const OfflineOptions& options) {
+PairDynamics steady_pair(const ModeDynamics& plant, const ModeDynamics& observer,
+                         const OfflineOptions& options) {
   if (is_coupled(plant, observer)) {
-    invariant::require_schur(plant.A, "A of mode \"" + plant.name +
-                                          "\", whose state acts on the error of the observer of mode \"" + observer.name + "\",");
+    invariant::require_schur(plant.A,
+                             "A of mode \"" + plant.name +
+                                 "\", whose state acts on the error of the observer of mode \"" +
+                                 observer.name + "\",");
   }
-  return pair_dynamics(plant, observer, options.separate_inputs, steady_slack(plant, observer, options));
+  return pair_dynamics(plant, observer, options.separate_inputs,
+                       steady_slack(plant, observer, options));
 }
 
-ErrorBounds::ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& modes, const OfflineOptions& options)
+ErrorBounds::ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& modes,
+                         const OfflineOptions& options)
     : modes_(modes), options_(options) {
   const Index n = modes.front().A.rows();
   bool needs_state = false;
-  for (const ModeDynamics& mode : modes) needs_state = needs_state || has_ranges(mode) || is_coupled(mode, modes.front());
+  for (const ModeDynamics& mode : modes)
+    needs_state = needs_state || has_ranges(mode) || is_coupled(mode, modes.front());
   std::optional<StateBounds> state;
   if (needs_state) state.emplace(bank, modes, options);
   const std::vector<Zonotope> plant = plant_starts(bank, options);
@@ -135,7 +156,8 @@ ErrorBounds::ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& 
     for (const ModeDynamics& mode : modes) {
       SensorSlack slack;
       if (has_ranges(mode))
-        slack.plant = mode.g_rad.cwiseProduct(mode.feedthrough + state->magnitude(mode.C_raw)) * (1 + facet_margin);
+        slack.plant = mode.g_rad.cwiseProduct(mode.feedthrough + state->magnitude(mode.C_raw)) *
+                      (1 + facet_margin);
       Zonotope drive = error_drive(mode, observer, options.separate_inputs, slack);
       if (is_coupled(mode, observer)) {
         if (mode.A == observer.A) {
@@ -148,19 +170,24 @@ ErrorBounds::ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& 
       drives.push_back(std::move(drive));
     }
     const auto own = static_cast<std::size_t>(&observer - modes.data());
-    const Vector center = options.initial_set
-                              ? plant[0].c
-                              : invariant::enclosing_zonotope(bank.modes[own].model.X0, "X0 of mode \"" + observer.name + "\"").c;
+    const Vector center =
+        options.initial_set ? plant[0].c
+                            : invariant::enclosing_zonotope(bank.modes[own].model.X0,
+                                                            "X0 of mode \"" + observer.name + "\"")
+                                  .c;
     for (const Zonotope& start : plant) starts.push_back({start.c - center, start.G});
-    decays_.emplace_back(observer.Ao, drive_size(drives, n), "A - L C of mode \"" + observer.name + "\"");
+    decays_.emplace_back(observer.Ao, drive_size(drives, n),
+                         "A - L C of mode \"" + observer.name + "\"");
     if (has_ranges(observer)) {
       Vector error(observer.C.rows());
       for (Index a = 0; a < error.size(); ++a) {
         const Vector d = observer.C_raw.row(a).transpose();
-        const auto h = invariant::switched_supports(decays_.back(), drives, starts, d, options.accuracy);
+        const auto h =
+            invariant::switched_supports(decays_.back(), drives, starts, d, options.accuracy);
         error[a] = std::max(h.plus, h.minus);
       }
-      const Vector slack = observer_slack(observer, decays_.back(), state->magnitude(observer.C_raw), error, options.accuracy);
+      const Vector slack = observer_slack(
+          observer, decays_.back(), state->magnitude(observer.C_raw), error, options.accuracy);
       const Zonotope open{Vector::Zero(n), observer.L * slack.asDiagonal()};
       for (Zonotope& drive : drives) drive = sum(drive, open);
     }
@@ -170,28 +197,35 @@ ErrorBounds::ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& 
 }
 
 ErrorBounds::Supports ErrorBounds::along(const Matrix& directions) const {
-  const Index modes = static_cast<Index>(modes_.size()), m = directions.rows(), n = directions.cols();
+  const Index modes = static_cast<Index>(modes_.size()), m = directions.rows(),
+              n = directions.cols();
   const auto all = static_cast<std::size_t>(m);
-  Supports result{
-      Vector::Constant(m, -infinity), Vector::Constant(m, -infinity), {all, Matrix(modes, modes)}, {all, Matrix(modes, modes)}};
+  Supports result{Vector::Constant(m, -infinity),
+                  Vector::Constant(m, -infinity),
+                  {all, Matrix(modes, modes)},
+                  {all, Matrix(modes, modes)}};
   for (Index j = 0; j < modes; ++j) {
     const auto o = static_cast<std::size_t>(j);
     for (Index k = 0; k < m; ++k) {
-      const auto h =
-          invariant::switched_supports(decays_[o], drives_[o], starts_[o], directions.row(k).transpose(), options_.accuracy);
+      const auto h = invariant::switched_supports(decays_[o], drives_[o], starts_[o],
+                                                  directions.row(k).transpose(), options_.accuracy);
       result.plus[k] = std::max(result.plus[k], h.plus);
       result.minus[k] = std::max(result.minus[k], h.minus);
       for (Index i = 0; i < modes; ++i) {
-        result.steady_plus[static_cast<std::size_t>(k)](i, j) = h.minimal[static_cast<std::size_t>(i)].plus.upper;
-        result.steady_minus[static_cast<std::size_t>(k)](i, j) = h.minimal[static_cast<std::size_t>(i)].minus.upper;
+        result.steady_plus[static_cast<std::size_t>(k)](i, j) =
+            h.minimal[static_cast<std::size_t>(i)].plus.upper;
+        result.steady_minus[static_cast<std::size_t>(k)](i, j) =
+            h.minimal[static_cast<std::size_t>(i)].minus.upper;
       }
     }
-    for (Index i = 0; i < modes; ++i) {  // the invariant set of (x, e) is smaller than one with a bound of x
+    for (Index i = 0; i < modes;
+         ++i) {  // the invariant set of (x, e) is smaller than one with a bound of x
       const ModeDynamics &mode = modes_[static_cast<std::size_t>(i)], &observer = modes_[o];
       if (!is_coupled(mode, observer) && !has_ranges(mode) && !has_ranges(observer)) continue;
       const PairDynamics pair = steady_pair(mode, observer, options_);
       const invariant::Decay decay(pair.A, drive_size({pair.drive}, pair.drive.dim()),
-                                   "the plant of mode \"" + mode.name + "\" with the observer of mode \"" + observer.name + "\"");
+                                   "the plant of mode \"" + mode.name +
+                                       "\" with the observer of mode \"" + observer.name + "\"");
       for (Index k = 0; k < m; ++k) {
         Vector d = Vector::Zero(pair.A.rows());
         d.tail(n) = directions.row(k).transpose();
@@ -206,8 +240,10 @@ ErrorBounds::Supports ErrorBounds::along(const Matrix& directions) const {
 
 namespace {
 
-/// Factors from supports along normals, for a set with this centre and these half widths along them.
-void compare(const ErrorBounds::Supports& h, const Vector& centers, const Vector& widths, ErrorSetCheck& check) {
+/// Factors from supports along normals, for a set with this centre and these half widths along
+/// them.
+void compare(const ErrorBounds::Supports& h, const Vector& centers, const Vector& widths,
+             ErrorSetCheck& check) {
   check.factor = check.steady_factor = 0;
   for (Index k = 0; k < widths.size(); ++k) {
     const auto factor = [&](double plus, double minus) {
@@ -215,7 +251,8 @@ void compare(const ErrorBounds::Supports& h, const Vector& centers, const Vector
       return reach <= 0 ? 0.0 : reach / widths[k];
     };
     check.factor = std::max(check.factor, factor(h.plus[k], h.minus[k]));
-    const Matrix &plus = h.steady_plus[static_cast<std::size_t>(k)], &minus = h.steady_minus[static_cast<std::size_t>(k)];
+    const Matrix &plus = h.steady_plus[static_cast<std::size_t>(k)],
+                 &minus = h.steady_minus[static_cast<std::size_t>(k)];
     for (Index j = 0; j < plus.cols(); ++j) {
       for (Index i = 0; i < plus.rows(); ++i) {
         const double steady = factor(plus(i, j), minus(i, j));

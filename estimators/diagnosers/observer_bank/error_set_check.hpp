@@ -8,25 +8,29 @@
 
 namespace cordon::estimators {
 
-/// Half widths of the boxes of sensor ranges in the steady state of a pair; empty entries for sensors that are known exactly.
-SensorSlack steady_slack(const ModeDynamics& plant, const ModeDynamics& observer, const OfflineOptions& options);
+/// Half widths of the boxes of sensor ranges in the steady state of a pair; empty entries for
+/// sensors that are known exactly.
+SensorSlack steady_slack(const ModeDynamics& plant, const ModeDynamics& observer,
+                         const OfflineOptions& options);
 
 /// The pair's system in its steady state.
-PairDynamics steady_pair(const ModeDynamics& plant, const ModeDynamics& observer, const OfflineOptions& options);
+PairDynamics steady_pair(const ModeDynamics& plant, const ModeDynamics& observer,
+                         const OfflineOptions& options);
 
 /// Sizes of all disturbances, for a decay bound.
 Vector drive_size(const std::vector<sets::Zonotope>& drives, Index n);
 
-/// Bounds of the errors of all observers, whatever modes the plant goes through, and of the invariant sets of each pair.
-/// Observers start at the centre of their initial set.
+/// Bounds of the errors of all observers, whatever modes the plant goes through, and of the
+/// invariant sets of each pair. Observers start at the centre of their initial set.
 class ErrorBounds {
  public:
-  /// Throws Errc::invalid if modes differ in how the state acts on errors and nothing bounds the state, Errc::unsupported for
-  /// unbounded initial sets.
-  ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& modes, const OfflineOptions& options);
+  /// Throws Errc::invalid if modes differ in how the state acts on errors and nothing bounds the
+  /// state, Errc::unsupported for unbounded initial sets.
+  ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& modes,
+              const OfflineOptions& options);
 
-  /// Along the rows of a matrix (plus) and against them (minus): of all errors, and of each S_ij (a matrix per row, entry (i,
-  /// j)).
+  /// Along the rows of a matrix (plus) and against them (minus): of all errors, and of each S_ij (a
+  /// matrix per row, entry (i, j)).
   struct Supports {
     Vector plus, minus;
     std::vector<Matrix> steady_plus, steady_minus;
@@ -36,13 +40,15 @@ class ErrorBounds {
  private:
   const std::vector<ModeDynamics>& modes_;
   OfflineOptions options_;
-  std::vector<invariant::Decay> decays_;                      // of Ao
-  std::vector<std::vector<sets::Zonotope>> drives_, starts_;  // per observer: of the error in each mode, and at the start
+  std::vector<invariant::Decay> decays_;  // of Ao
+  std::vector<std::vector<sets::Zonotope>> drives_,
+      starts_;  // per observer: of the error in each mode, and at the start
 };
 
-/// How far the errors exceed `set` about its centre, by bounds along its facets: upper bounds, infinite where the set is flat.
-/// The facets of a zonotope with many generators in many dimensions are replaced by those of a parallelotope inside. Throws
-/// Errc::invalid for a set that is no zonotope.
+/// How far the errors exceed `set` about its centre, by bounds along its facets: upper bounds,
+/// infinite where the set is flat. The facets of a zonotope with many generators in many dimensions
+/// are replaced by those of a parallelotope inside. Throws Errc::invalid for a set that is no
+/// zonotope.
 ErrorSetCheck compare_error_set(const ErrorBounds& bounds, const LineForm& set);
 
 /// A box around all errors in n dimensions, the smallest but for a share of 1e-9.

@@ -12,18 +12,22 @@ namespace {
 
 constexpr double rounding_share = 1e-10;
 
-/// What is nearer to 0 than this may be rounding: a share of the numbers that a residual was made of, and of its own bounds.
+/// What is nearer to 0 than this may be rounding: a share of the numbers that a residual was made
+/// of, and of its own bounds.
 Vector rounding_slack(const Box& hull, const Vector& size) {
   return rounding_share * (size + hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs()));
 }
 
-/// How far 0 lies outside the hull of R: the coordinate and its direction, if any is beyond rounding.
+/// How far 0 lies outside the hull of R: the coordinate and its direction, if any is beyond
+/// rounding.
 std::optional<Certificate> separated_axis(const Box& hull, const Vector& size) {
   const Vector slack = rounding_slack(hull, size);
   std::optional<Certificate> best;
   for (Index i = 0; i < hull.dim(); ++i) {
     for (const double sign : {1.0, -1.0}) {
-      const double distance = sign > 0 ? hull.lower[i] : -hull.upper[i];  // 0 below the lower bound, above the upper one
+      const double distance = sign > 0
+                                  ? hull.lower[i]
+                                  : -hull.upper[i];  // 0 below the lower bound, above the upper one
       if (!(distance > slack[i]) || (best && best->margin >= distance)) continue;
       Vector d = Vector::Zero(hull.dim());
       d[i] = -sign;
@@ -33,9 +37,11 @@ std::optional<Certificate> separated_axis(const Box& hull, const Vector& size) {
   return best;
 }
 
-/// Is 0 ∈ R? In one dimension the hull is the set, and needs no program. What the sets answer bounds no rounding errors of the
-/// numbers behind R, so that `no` has to hold for a neighbourhood of 0.
-void ask(const SetBackend& backend, const Enclosure& R, const Box& hull, const Vector& size, ModeEvidence& evidence) {
+/// Is 0 ∈ R? In one dimension the hull is the set, and needs no program. What the sets answer
+/// bounds no rounding errors of the numbers behind R, so that `no` has to hold for a neighbourhood
+/// of 0.
+void ask(const SetBackend& backend, const Enclosure& R, const Box& hull, const Vector& size,
+         ModeEvidence& evidence) {
   if (hull.is_empty()) {  // no error in X̃ explains the sample of the reset
     evidence.consistent = negate(R->is_empty(&evidence.why));
   } else if (auto proof = separated_axis(hull, size)) {
@@ -45,7 +51,9 @@ void ask(const SetBackend& backend, const Enclosure& R, const Box& hull, const V
     evidence.consistent = R->contains(Vector::Zero(hull.dim()), &evidence.why);
     if (evidence.consistent != Answer::no) return;
     const Vector slack = rounding_slack(hull, size);
-    if (backend.sum(R, backend.box({-slack, slack}))->contains(Vector::Zero(hull.dim())) == Answer::no) return;
+    if (backend.sum(R, backend.box({-slack, slack}))->contains(Vector::Zero(hull.dim())) ==
+        Answer::no)
+      return;
     evidence.consistent = Answer::unknown;
     evidence.why = {};
   }
@@ -53,15 +61,16 @@ void ask(const SetBackend& backend, const Enclosure& R, const Box& hull, const V
 
 }  // namespace
 
-ObserverBank::ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> backend, ObserverBankOptions options)
+ObserverBank::ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> backend,
+                           ObserverBankOptions options)
     : Diagnoser(std::move(bank), std::move(backend)),
       options_(std::move(options)),
       elimination_(Diagnoser::bank().size(), options_.waiting_time, Diagnoser::bank().nominal),
       workers_(options_.threads) {
   const ModeBank& all = Diagnoser::bank();
   for (Index j = 0; j < all.size(); ++j) {
-    members_.emplace_back(all[j].model, options_.gains[static_cast<std::size_t>(j)], shared_backend(), options_.budget,
-                          options_.widening_limit);
+    members_.emplace_back(all[j].model, options_.gains[static_cast<std::size_t>(j)],
+                          shared_backend(), options_.budget, options_.widening_limit);
   }
   inputs_ = input_bounds(all);
   error_set_ = this->backend().import(check_error_set(all, options_.gains, options_.offline).set);
@@ -80,9 +89,9 @@ void ObserverBank::do_start() {
 /// What was promised in advance rests on U.
 void ObserverBank::expect_input(const Sample& now) const {
   if (inputs_.contains(now.u)) return;
-  throw Error(Errc::invalid,
-              "u at k = " + std::to_string(now.k) +
-                  " lies outside the interval hull of the input set U, on which the bank's error set rests; widen /system/U");
+  throw Error(Errc::invalid, "u at k = " + std::to_string(now.k) +
+                                 " lies outside the interval hull of the input set U, on which the "
+                                 "bank's error set rests; widen /system/U");
 }
 
 void ObserverBank::advance(Index j, const Sample& before) {
@@ -118,11 +127,13 @@ void ObserverBank::judge(Index j, const Sample& now) {
   if (m.bound) {
     const Enclosure allowed = m.recursion.residual_bound(*m.bound, m.X, now);
     const Box own = m.evidence.residual, all = allowed->interval_hull();
-    const double size = now.y.cwiseAbs().maxCoeff() + std::max(own.lower.cwiseAbs().maxCoeff(), own.upper.cwiseAbs().maxCoeff());
+    const double size = now.y.cwiseAbs().maxCoeff() +
+                        std::max(own.lower.cwiseAbs().maxCoeff(), own.upper.cwiseAbs().maxCoeff());
     const double slack = rounding_share * size;
-    m.bound_violated =
-        (own.lower.array() < all.lower.array() - slack).any() || (own.upper.array() > all.upper.array() + slack).any();
-    if (!m.bound_violated && own.dim() > 1) m.bound_violated = m.residual->is_subset_of(*allowed) == Answer::no;
+    m.bound_violated = (own.lower.array() < all.lower.array() - slack).any() ||
+                       (own.upper.array() > all.upper.array() + slack).any();
+    if (!m.bound_violated && own.dim() > 1)
+      m.bound_violated = m.residual->is_subset_of(*allowed) == Answer::no;
   }
 }
 
@@ -130,7 +141,8 @@ void ObserverBank::reset(Index j, const Sample& now) {
   Member& m = member(j);
   const Matrix* gain = options_.strip_gain ? &*options_.strip_gain : nullptr;
   const Index n = m.center.size();
-  const Enclosure errors = m.recursion.errors_within(error_set_, m.recursion.explained_outputs(error_set_, m.center, now), gain);
+  const Enclosure errors = m.recursion.errors_within(
+      error_set_, m.recursion.explained_outputs(error_set_, m.center, now), gain);
   m.copy = m.recursion.reduced(backend().affine_map(errors, Matrix::Identity(n, n), m.center));
   m.copy_limit.start(m.recursion, *m.copy);
   const Enclosure strips = backend().box(m.residual->interval_hull());
@@ -138,7 +150,9 @@ void ObserverBank::reset(Index j, const Sample& now) {
 }
 
 Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
-  if (unfinished_) throw Error(Errc::invalid, "the last step ended with an error, and left sets of different times; start anew");
+  if (unfinished_)
+    throw Error(Errc::invalid,
+                "the last step ended with an error, and left sets of different times; start anew");
   expect_input(now);
   unfinished_ = true;
   const Index modes = bank().size();
@@ -220,6 +234,8 @@ Diagnosis ObserverBank::report(const Sample& now) const {
   return diagnosis;
 }
 
-std::optional<Guarantees> ObserverBank::do_guarantees() const { return fdi_guarantees(bank(), options_.gains, options_.offline); }
+std::optional<Guarantees> ObserverBank::do_guarantees() const {
+  return fdi_guarantees(bank(), options_.gains, options_.offline);
+}
 
 }  // namespace cordon::estimators

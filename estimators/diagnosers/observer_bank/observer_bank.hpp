@@ -27,34 +27,39 @@ struct ObserverBankOptions {
   Index threads = 1;
 };
 
-/// Every observer j runs from the start; its residual set R_j contains 0 as long as the plant is in mode j and always was. What
-/// is excluded is excluded by resets alone:
-///   reset at k   X̂'_j := {x̂_j} ⊕ {e ∈ X̃ : y_k - C_j (x̂_j + e) is explained by the noise}   for every mode j,
-///   afterwards   the same recursion; 0 ∉ R'_j proves that the plant has not been in mode j throughout from k on.
-/// `ModeEvidence::why` is a direction that separates 0 from the residual set, or the proof that the copy is empty: no error in X̃
-/// explains the sample of the reset.
-/// It rests on x - x̂_j ∈ X̃ (the point observers' errors, whatever the modes have been), which is checked in advance. Before the
-/// first reset R_j of the nominal mode takes that place. `ModeElimination` turns exclusions into decisions. `suggested` follows
-/// the published algorithm: at the reset Ř_j := C X̌_j ⊕ V ⊕ (-V) starts from X̌_j, the part of X̃ in the strips of R_j; a mode goes
-/// when R_j ⊄ Ř_j is certified, and after the waiting time when 0 ∉ R_j. It names the one that is left. Not a proof: R_j carries
+/// Every observer j runs from the start; its residual set R_j contains 0 as long as the plant is in
+/// mode j and always was. What is excluded is excluded by resets alone:
+///   reset at k   X̂'_j := {x̂_j} ⊕ {e ∈ X̃ : y_k - C_j (x̂_j + e) is explained by the noise}   for
+///   every mode j, afterwards   the same recursion; 0 ∉ R'_j proves that the plant has not been in
+///   mode j throughout from k on.
+/// `ModeEvidence::why` is a direction that separates 0 from the residual set, or the proof that the
+/// copy is empty: no error in X̃ explains the sample of the reset. It rests on x - x̂_j ∈ X̃ (the
+/// point observers' errors, whatever the modes have been), which is checked in advance. Before the
+/// first reset R_j of the nominal mode takes that place. `ModeElimination` turns exclusions into
+/// decisions. `suggested` follows the published algorithm: at the reset Ř_j := C X̌_j ⊕ V ⊕ (-V)
+/// starts from X̌_j, the part of X̃ in the strips of R_j; a mode goes when R_j ⊄ Ř_j is certified,
+/// and after the waiting time when 0 ∉ R_j. It names the one that is left. Not a proof: R_j carries
 /// errors of the earlier mode, and loses containment by its reductions.
 class ObserverBank final : public Diagnoser {
  public:
-  ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> backend, ObserverBankOptions options);
+  ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> backend,
+               ObserverBankOptions options);
 
  private:
   /// The observer of one mode.
   struct Member {
-    Member(const Model& model, const Matrix& L, const std::shared_ptr<const SetBackend>& backend, Budget budget, double widening)
+    Member(const Model& model, const Matrix& L, const std::shared_ptr<const SetBackend>& backend,
+           Budget budget, double widening)
         : recursion(model, L, backend, budget), X_limit(widening), copy_limit(widening) {}
     LuenbergerRecursion recursion;
     WideningLimit X_limit, copy_limit;
-    Enclosure X, residual;           ///< X̂, R
-    Vector center;                   ///< x̂
-    Vector size, residual_size;      ///< of the numbers that x̂ and its residual are made of
-    std::optional<Enclosure> copy;   ///< X̂', while the mode is a candidate
-    std::optional<Enclosure> bound;  ///< X̌, while the mode is among those that the published algorithm keeps
-    bool bound_violated = false;     ///< R ⊄ Ř
+    Enclosure X, residual;          ///< X̂, R
+    Vector center;                  ///< x̂
+    Vector size, residual_size;     ///< of the numbers that x̂ and its residual are made of
+    std::optional<Enclosure> copy;  ///< X̂', while the mode is a candidate
+    std::optional<Enclosure>
+        bound;  ///< X̌, while the mode is among those that the published algorithm keeps
+    bool bound_violated = false;  ///< R ⊄ Ř
     ModeEvidence evidence;
   };
 

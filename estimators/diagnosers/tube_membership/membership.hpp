@@ -9,9 +9,10 @@ namespace cordon::diagnosers {
 
 /// y ∈ Y(u)? The question is whether
 ///   [S; M] δ + [A; G] ξ = [b + Ω u; y - c - H u],   ‖ξ‖∞ ≤ 1
-/// has a solution. The lines, which hold the states, are eliminated, and a linear program in ξ is left: `no` by a Farkas vector
-/// of it, `yes` by a solution of it. `why` is that proof for the rows above, as `contains` gives it: multipliers of rows, or (δ,
-/// ξ).
-Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y, Certificate* why = nullptr);
+/// has a solution. The lines, which hold the states, are eliminated, and a linear program in ξ is
+/// left: `no` by a Farkas vector of it, `yes` by a solution of it. `why` is that proof for the rows
+/// above, as `contains` gives it: multipliers of rows, or (δ, ξ).
+Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y,
+                  Certificate* why = nullptr);
 
 }  // namespace cordon::diagnosers

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Diagnosis of an experiment by the output tubes of its modes: with Y_j^k(u_0 … u_k) the outputs y_0 … y_k that mode j can show,
+// Diagnosis of an experiment by the output tubes of its modes: with Y_j^k(u_0 … u_k) the outputs
+// y_0 … y_k that mode j can show,
 //   mode j is excluded at k  ⇔  (y_0 … y_k) ∉ Y_j^k(u_0 … u_k) is proven.
-// All samples enter at once, nothing is reduced and nothing is propagated: within rounding no method excludes a mode earlier. If
-// the inputs were designed so that the tubes of all modes are disjoint at the horizon N, at most one mode is left at k = N,
-// whatever the disturbances are [Rego2025, sec. 5] [Scott2014]; most often one is left before.
+// All samples enter at once, nothing is reduced and nothing is propagated: within rounding no
+// method excludes a mode earlier. If the inputs were designed so that the tubes of all modes are
+// disjoint at the horizon N, at most one mode is left at k = N, whatever the disturbances are
+// [Rego2025, sec. 5] [Scott2014]; most often one is left before.
 //
-// Every mode is a candidate at the first sample, and the experiment has one mode throughout: an excluded mode stays excluded, and
-// there is no reset. After N the decision stands.
+// Every mode is a candidate at the first sample, and the experiment has one mode throughout: an
+// excluded mode stays excluded, and there is no reset. After N the decision stands.
 //
-// `ModeEvidence::why` proves the answer about the rows of `output_tube` for the horizon k, above those of its outputs, as
-// `contains` does: multipliers of rows where the mode is excluded, (δ, ξ) where it is not.
+// `ModeEvidence::why` proves the answer about the rows of `output_tube` for the horizon k, above
+// those of its outputs, as `contains` does: multipliers of rows where the mode is excluded, (δ, ξ)
+// where it is not.
 #include "components.hpp"
 #include "designers/designer_parameters.hpp"
 #include "diagnosers/tube_membership/membership.hpp"
@@ -69,8 +72,8 @@ class TubeMembership final : public Diagnoser {
     std::vector<bool> candidate = candidate_;
     for (std::size_t j = 0; j < candidate.size(); ++j) {
       if (!candidate[j]) continue;
-      const designers::OutputTube tube =
-          designers::output_tube(bank().modes[j].model, backend(), {now.k - since_, false, admissible_});
+      const designers::OutputTube tube = designers::output_tube(
+          bank().modes[j].model, backend(), {now.k - since_, false, admissible_});
       Certificate why;
       const Answer answer = diagnosers::membership(tube, u, y, &why);
       candidate[j] = answer != Answer::no;
@@ -98,10 +101,13 @@ class TubeMembership final : public Diagnoser {
 };
 
 std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& params) {
-  std::vector<Diagnostic> problems = designers::check_tube_data({context.bank, context.backend}, params);
+  std::vector<Diagnostic> problems =
+      designers::check_tube_data({context.bank, context.backend}, params);
   for (const Mode& mode : context.bank.modes) {
     if (!mode.model.linear.has_ranges()) continue;
-    problems.push_back({"", "the effectiveness of mode \"" + mode.name + "\" is known by ranges only: its outputs are no tube",
+    problems.push_back({"",
+                        "the effectiveness of mode \"" + mode.name +
+                            "\" is known by ranges only: its outputs are no tube",
                         "give numbers, or use \"observer_bank\" or \"consistency_bank\""});
   }
   return problems;
@@ -111,18 +117,23 @@ std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& par
 
 void register_tube_membership(Registrar& registrar) {
   ParamSchema schema;
-  schema.integer("horizon", "N: the samples of k = 0 … N decide; the work for each grows with k", 20, 0, designers::most_horizon);
-  schema.set("admissible_set",
-             "a set that holds the state of descriptor systems at all times, as far as E does not determine it; exclusions rest "
-             "on it. Needed with \"constrained_zonotope\"; the one that the input was designed with");
-  registrar.diagnoser({{"tube_membership",
-                        "all samples of an experiment against the output tube of every mode; a mode is excluded when they are "
-                        "proven to lie outside",
-                        "Rego2025; Scott2014", schema},
-                       check,
-                       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
-                         return std::make_unique<TubeMembership>(context, params);
-                       }});
+  schema.integer("horizon", "N: the samples of k = 0 … N decide; the work for each grows with k",
+                 20, 0, designers::most_horizon);
+  schema.set(
+      "admissible_set",
+      "a set that holds the state of descriptor systems at all times, as far as E does not "
+      "determine it; exclusions rest "
+      "on it. Needed with \"constrained_zonotope\"; the one that the input was designed with");
+  registrar.diagnoser(
+      {{"tube_membership",
+        "all samples of an experiment against the output tube of every mode; a mode is excluded "
+        "when they are "
+        "proven to lie outside",
+        "Rego2025; Scott2014", schema},
+       check,
+       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
+         return std::make_unique<TubeMembership>(context, params);
+       }});
 }
 
 }  // namespace cordon::estimators

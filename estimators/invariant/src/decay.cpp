@@ -30,8 +30,8 @@ struct Bounded {
 };
 
 Bounded multiplied(const Bounded& X, const Bounded& Y) {
-  const Matrix error =
-      product(X.error, Y.bound()) + product(X.value.cwiseAbs(), Y.error) + rounding::product_error(X.value, Y.value);
+  const Matrix error = product(X.error, Y.bound()) + product(X.value.cwiseAbs(), Y.error) +
+                       rounding::product_error(X.value, Y.value);
   return {product(X.value, Y.value), error * (1 + 2 * rounding::gamma(2 * X.value.rows() + 16))};
 }
 
@@ -55,7 +55,8 @@ Decay::Decay(MatrixIn A, VectorIn size, const std::string& what) : A_(A) {
   if (A_.rows() != A_.cols()) throw Error(Errc::dimension, "a decay bound needs a square matrix");
   if (!A_.allFinite()) throw Error(Errc::not_finite, "a decay bound needs finite entries");
   const Index n = A_.rows();
-  if (size.size() != n) throw Error(Errc::dimension, "the sizes of a decay bound need one entry per state");
+  if (size.size() != n)
+    throw Error(Errc::dimension, "the sizes of a decay bound need one entry per state");
   if (!size.allFinite()) throw Error(Errc::not_finite, "the sizes of a decay bound are not finite");
   weights_ = decay_weights(A_, size.cwiseAbs());
   magnitude_ = product(A_.cwiseAbs(), weights_);
@@ -63,10 +64,12 @@ Decay::Decay(MatrixIn A, VectorIn size, const std::string& what) : A_(A) {
   // Σ_k ‖Aᵏ‖ over k = a + 16 b + 256 c + …, one factor per digit
   Bounded base{A_, Matrix::Zero(n, n)};
   for (int level = 0; level < most_levels; ++level) {
-    double terms = 1;                         // ‖I‖
-    std::vector<Bounded> powers{base, base};  // by exponent; 0 is not used. Halving exponents keeps errors small
+    double terms = 1;  // ‖I‖
+    std::vector<Bounded> powers{
+        base, base};  // by exponent; 0 is not used. Halving exponents keeps errors small
     for (std::size_t k = 1; k < terms_per_level; ++k) {
-      const double norm = raised((product(powers[k].bound(), weights_).array() / weights_.array()).maxCoeff(), n);
+      const double norm =
+          raised((product(powers[k].bound(), weights_).array() / weights_.array()).maxCoeff(), n);
       if (norm <= enough) {
         sum_ = raised(sum_ * terms / (1 - norm), 64);
         return;
@@ -80,7 +83,8 @@ Decay::Decay(MatrixIn A, VectorIn size, const std::string& what) : A_(A) {
   }
   require_schur(A, what);
   throw Error(Errc::unsupported,
-              "no decay of the powers of " + what + " can be proven: its largest eigenvalue is too near to the unit circle");
+              "no decay of the powers of " + what +
+                  " can be proven: its largest eigenvalue is too near to the unit circle");
 }
 
 double Decay::norm(VectorIn r) const { return raised(r.cwiseAbs().dot(weights_), dim()); }

@@ -65,27 +65,35 @@ RealBasis real_basis(const Matrix& A) {
 void require_eigenvectors(const Matrix& T) {
   const Vector sigma = linalg::svd(T).sigma;
   const double smallest = sigma[sigma.size() - 1];
-  const double condition = smallest > 0 ? sigma[0] / smallest : std::numeric_limits<double>::infinity();
+  const double condition =
+      smallest > 0 ? sigma[0] / smallest : std::numeric_limits<double>::infinity();
   if (condition <= largest_condition) return;
   char text[32];
   std::snprintf(text, sizeof text, "%.2g", condition);
-  throw Error(Errc::invalid, std::string("the matrix is defective, or nearly so: the condition of its eigenvectors is ") + text +
-                                 ", and the closed form of an invariant set needs a basis of them; use the minimal set");
+  throw Error(
+      Errc::invalid,
+      std::string("the matrix is defective, or nearly so: the condition of its eigenvectors is ") +
+          text +
+          ", and the closed form of an invariant set needs a basis of them; use the minimal set");
 }
 
-/// r with K r + s ≤ r, where K bounds what N = T⁻¹ A T makes of blocks: moduli on the diagonal, rounding elsewhere.
+/// r with K r + s ≤ r, where K bounds what N = T⁻¹ A T makes of blocks: moduli on the diagonal,
+/// rounding elsewhere.
 Vector block_radii(const std::vector<Block>& blocks, const Matrix& N, const Matrix& generators) {
   const Index m = static_cast<Index>(blocks.size());
   Matrix K(m, m);
   Vector s(m);
   for (Index a = 0; a < m; ++a) {
     const Block& row = blocks[static_cast<std::size_t>(a)];
-    s[a] = generators.cols() == 0 ? 0.0 : generators.middleRows(row.first, row.size).colwise().norm().sum();
+    s[a] = generators.cols() == 0
+               ? 0.0
+               : generators.middleRows(row.first, row.size).colwise().norm().sum();
     for (Index b = 0; b < m; ++b) {
       const Block& col = blocks[static_cast<std::size_t>(b)];
       Matrix part = N.block(row.first, col.first, row.size, col.size);
       double gain = part.norm();
-      if (a == b && row.size == 2) {  // ‖aI + bJ‖₂ = |λ|, and the Frobenius norm of what is not of this form
+      if (a == b &&
+          row.size == 2) {  // ‖aI + bJ‖₂ = |λ|, and the Frobenius norm of what is not of this form
         const double re = 0.5 * (part(0, 0) + part(1, 1)), im = 0.5 * (part(0, 1) - part(1, 0));
         part -= Matrix{{re, im}, {-im, re}};
         gain = std::hypot(re, im) + part.norm();
@@ -96,10 +104,12 @@ Vector block_radii(const std::vector<Block>& blocks, const Matrix& N, const Matr
   const std::optional<Matrix> r = linalg::solve(Matrix::Identity(m, m) - K, s);
   if (r && (r->array() >= 0).all()) {
     const Vector radii = r->col(0) * (1 + rounding_margin);
-    if (((product(K, radii) + s).array() <= radii.array() * (1 + rounding_margin)).all()) return radii;
+    if (((product(K, radii) + s).array() <= radii.array() * (1 + rounding_margin)).all())
+      return radii;
   }
   throw Error(Errc::invalid,
-              "no invariant set in closed form: an eigenvalue is too near to the unit circle for the rounding errors of "
+              "no invariant set in closed form: an eigenvalue is too near to the unit circle for "
+              "the rounding errors of "
               "the eigenvectors; use the minimal set");
 }
 
@@ -120,7 +130,8 @@ Matrix block_shape(const RealBasis& basis, const Vector& radii) {
     const double length = r * std::tan(step / 2);
     for (Index e = 0; e < block.edges; ++e) {
       const double angle = step * static_cast<double>(e);
-      H.col(next++) = length * (std::cos(angle) * basis.T.col(block.first) + std::sin(angle) * basis.T.col(block.first + 1));
+      H.col(next++) = length * (std::cos(angle) * basis.T.col(block.first) +
+                                std::sin(angle) * basis.T.col(block.first + 1));
     }
   }
   return H;
@@ -130,7 +141,8 @@ void check_system(MatrixIn A, const Zonotope& D) {
   if (A.rows() != A.cols()) throw Error(Errc::dimension, "an invariant set needs a square matrix");
   if (!A.allFinite()) throw Error(Errc::not_finite, "the matrix has entries that are not finite");
   sets::check(D, "the disturbance");
-  if (D.dim() != A.rows()) throw Error(Errc::dimension, "the disturbance has another dimension than the matrix");
+  if (D.dim() != A.rows())
+    throw Error(Errc::dimension, "the disturbance has another dimension than the matrix");
 }
 
 }  // namespace
@@ -145,7 +157,8 @@ Zonotope rpi_set(MatrixIn A, const Zonotope& D) {
   for (double& x : scale) x = std::ldexp(1.0, std::ilogb(x));
   const Vector inverse = scale.cwiseInverse();
   const Matrix scaled = inverse.asDiagonal() * Matrix(A) * scale.asDiagonal();
-  const std::optional<Matrix> solution = linalg::solve(Matrix::Identity(n, n) - scaled, inverse.cwiseProduct(D.c));
+  const std::optional<Matrix> solution =
+      linalg::solve(Matrix::Identity(n, n) - scaled, inverse.cwiseProduct(D.c));
   if (!solution) throw Error(Errc::invalid, "the matrix has an eigenvalue too near to 1");
   const Vector center = scale.cwiseProduct(solution->col(0));
   if (D.G.cols() == 0 || D.G.isZero(0)) return {center, Matrix(n, 0)};
@@ -158,13 +171,16 @@ Zonotope rpi_set(MatrixIn A, const Zonotope& D) {
   return {center, scale.asDiagonal() * block_shape(basis, radii)};
 }
 
-Zonotope iterate(MatrixIn A, const Zonotope& D, const Zonotope& start, Index steps, Index max_columns) {
+Zonotope iterate(MatrixIn A, const Zonotope& D, const Zonotope& start, Index steps,
+                 Index max_columns) {
   check_system(A, D);
   sets::check(start, "the start");
-  if (start.dim() != A.rows()) throw Error(Errc::dimension, "the start has another dimension than the matrix");
+  if (start.dim() != A.rows())
+    throw Error(Errc::dimension, "the start has another dimension than the matrix");
   if (steps < 0) throw Error(Errc::invalid, "the number of steps is negative");
   if (max_columns < 0 || (max_columns > 0 && max_columns < A.rows())) {
-    throw Error(Errc::invalid, "a reduction to " + std::to_string(max_columns) + " columns in " + std::to_string(A.rows()) +
+    throw Error(Errc::invalid, "a reduction to " + std::to_string(max_columns) + " columns in " +
+                                   std::to_string(A.rows()) +
                                    " dimensions: it needs one per dimension at least");
   }
   Zonotope X = start;
@@ -172,7 +188,8 @@ Zonotope iterate(MatrixIn A, const Zonotope& D, const Zonotope& start, Index ste
     Matrix G(X.dim(), X.G.cols() + D.G.cols());
     G << product(A, X.G), D.G;
     X = sets::drop_zero_generators({product(A, X.c) + D.c, std::move(G)});
-    if (max_columns > 0) X.G = sets::reduce_generators(X.G, max_columns, sets::GeneratorReduction::combastel);
+    if (max_columns > 0)
+      X.G = sets::reduce_generators(X.G, max_columns, sets::GeneratorReduction::combastel);
   }
   return X;
 }

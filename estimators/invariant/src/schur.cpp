@@ -50,9 +50,11 @@ ClosedLoop closed_loop(MatrixIn A, MatrixIn L, MatrixIn C) {
   known.value = A - shown;
   known.error = Matrix::Zero(A.rows(), A.rows());
   if (L.cols() > 0) {
-    known.error = rounding::product_error(L, C) + 2 * rounding::unit * (A.cwiseAbs() + 2 * shown.cwiseAbs());
+    known.error =
+        rounding::product_error(L, C) + 2 * rounding::unit * (A.cwiseAbs() + 2 * shown.cwiseAbs());
   }
-  if (known.value.allFinite() && known.error.allFinite()) known.radius = radius_bounds(known.value, known.error);
+  if (known.value.allFinite() && known.error.allFinite())
+    known.radius = radius_bounds(known.value, known.error);
   if (known.radius.upper < 1) {
     known.schur = Answer::yes;
   } else if (known.radius.lower > 1) {
@@ -74,25 +76,32 @@ ClosedLoop closed_loop(MatrixIn A, MatrixIn L, MatrixIn C) {
   return known;
 }
 
-Answer is_schur(MatrixIn A) { return closed_loop(A, Matrix(A.rows(), 0), Matrix(0, A.rows())).schur; }
+Answer is_schur(MatrixIn A) {
+  return closed_loop(A, Matrix(A.rows(), 0), Matrix(0, A.rows())).schur;
+}
 
 std::string not_schur(Answer schur, MatrixIn A) {
   const std::complex<double> value = dominant_eigenvalue(A);
   std::string text = number(value.real());
   if (value.imag() != 0) text += " + " + number(value.imag()) + "i";
   text += " (modulus " + number(std::abs(value)) + ")";
-  if (schur != Answer::no) return "could not be proven Schur: its largest eigenvalue comes out as " + text;
+  if (schur != Answer::no)
+    return "could not be proven Schur: its largest eigenvalue comes out as " + text;
   const RadiusBounds radius = radius_bounds(A);
-  const bool agrees = std::abs(value) >= 1 && std::abs(value) <= radius.upper * (1 + shown_digits) &&
+  const bool agrees = std::abs(value) >= 1 &&
+                      std::abs(value) <= radius.upper * (1 + shown_digits) &&
                       std::abs(value) >= radius.lower * (1 - shown_digits);
-  if (agrees && radius.upper <= radius.lower * (1 + shown_digits)) return "is not Schur: it has the eigenvalue " + text;
-  return "is not Schur: an eigenvalue is proven not to lie inside the unit circle (doubles find " + text + ")";
+  if (agrees && radius.upper <= radius.lower * (1 + shown_digits))
+    return "is not Schur: it has the eigenvalue " + text;
+  return "is not Schur: an eigenvalue is proven not to lie inside the unit circle (doubles find " +
+         text + ")";
 }
 
 void require_schur(MatrixIn A, const std::string& what) {
   const Answer schur = is_schur(A);
   if (schur == Answer::yes) return;
-  throw Error(schur == Answer::no ? Errc::invalid : Errc::unsupported, what + " " + not_schur(schur, A));
+  throw Error(schur == Answer::no ? Errc::invalid : Errc::unsupported,
+              what + " " + not_schur(schur, A));
 }
 
 }  // namespace cordon::invariant

@@ -6,9 +6,13 @@ namespace cordon {
 std::string_view to_string(Answer answer) noexcept {
   return answer == Answer::yes ? "yes" : answer == Answer::no ? "no" : "unknown";
 }
-std::string_view to_string(Tightness tightness) noexcept { return tightness == Tightness::exact ? "exact" : "outer"; }
+std::string_view to_string(Tightness tightness) noexcept {
+  return tightness == Tightness::exact ? "exact" : "outer";
+}
 std::string_view to_string(Rounding rounding) noexcept {
-  return rounding == Rounding::nominal ? "nominal" : rounding == Rounding::outward ? "outward" : "rational";
+  return rounding == Rounding::nominal   ? "nominal"
+         : rounding == Rounding::outward ? "outward"
+                                         : "rational";
 }
 std::string_view to_string(Certificate::Kind kind) noexcept {
   switch (kind) {

@@ -9,13 +9,16 @@ namespace cordon {
 
 namespace {
 
-/// Cancelled to this share of its terms, an entry is no pivot; directions are known to about 1e-11 then.
+/// Cancelled to this share of its terms, an entry is no pivot; directions are known to about 1e-11
+/// then.
 constexpr double vague = 1e-4;
 
 }  // namespace
 
 ColumnElimination::ColumnElimination(Matrix entries, Matrix sizes_of_terms)
-    : order(static_cast<std::size_t>(entries.cols())), columns_(std::move(entries)), terms_(std::move(sizes_of_terms)) {
+    : order(static_cast<std::size_t>(entries.cols())),
+      columns_(std::move(entries)),
+      terms_(std::move(sizes_of_terms)) {
   std::iota(order.begin(), order.end(), Index{0});
   for (Index row = 0, col = 0; find_pivot(row, col); ++kept) {
     columns_.col(kept).swap(columns_.col(col));

@@ -12,8 +12,8 @@ namespace cordon {
 namespace {
 
 std::string render(const std::string& file, const std::vector<Diagnostic>& diagnostics) {
-  std::string text =
-      detail::printable(file) + ": " + std::to_string(diagnostics.size()) + (diagnostics.size() == 1 ? " error" : " errors");
+  std::string text = detail::printable(file) + ": " + std::to_string(diagnostics.size()) +
+                     (diagnostics.size() == 1 ? " error" : " errors");
   for (const Diagnostic& d : diagnostics) {
     text += "\n  " + (d.pointer.empty() ? std::string("(document)") : detail::printable(d.pointer));
     if (d.line > 0) text += " (line " + std::to_string(d.line) + ")";
@@ -31,7 +31,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     row[0] = i + 1;
     for (std::size_t j = 0; j < b.size(); ++j) {
       row[j + 1] = std::min({last[j] + (a[i] == b[j] ? 0 : 1), row[j] + 1, last[j + 1] + 1});
-      if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j]) row[j + 1] = std::min(row[j + 1], before_last[j - 1] + 1);
+      if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
+        row[j + 1] = std::min(row[j + 1], before_last[j - 1] + 1);
     }
     std::swap(before_last, last);
     std::swap(last, row);
@@ -71,14 +72,17 @@ Error::~Error() = default;
 InputError::~InputError() = default;
 
 InputError::InputError(std::string file, std::vector<Diagnostic> diagnostics)
-    : Error(Errc::invalid, render(file, diagnostics)), file_(std::move(file)), diagnostics_(std::move(diagnostics)) {}
+    : Error(Errc::invalid, render(file, diagnostics)),
+      file_(std::move(file)),
+      diagnostics_(std::move(diagnostics)) {}
 
 namespace {
 
 /// Another word altogether is no spelling of one with a single letter, or with none.
 bool same_letters(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
+    return std::tolower(x) == std::tolower(y);
+  });
 }
 
 }  // namespace
@@ -98,10 +102,12 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 }
 
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
-  if (const std::string near = nearest(word, candidates); !near.empty()) return "did you mean \"" + near + "\"?";
+  if (const std::string near = nearest(word, candidates); !near.empty())
+    return "did you mean \"" + near + "\"?";
   if (candidates.empty()) return "";
   std::string text = candidates.size() == 1 ? "there is only" : "there are";
-  for (std::size_t i = 0; i < candidates.size(); ++i) text += (i == 0 ? " \"" : ", \"") + candidates[i] + "\"";
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    text += (i == 0 ? " \"" : ", \"") + candidates[i] + "\"";
   return text;
 }
 

@@ -17,7 +17,8 @@ constexpr int mantissa = 53;
 __extension__ using Product = unsigned __int128;
 
 std::uint64_t reduced(Product value) {
-  const std::uint64_t sum = static_cast<std::uint64_t>(value & prime) + static_cast<std::uint64_t>(value >> bits);
+  const std::uint64_t sum =
+      static_cast<std::uint64_t>(value & prime) + static_cast<std::uint64_t>(value >> bits);
   return sum >= prime ? sum - prime : sum;
 }
 
@@ -36,7 +37,8 @@ using Rows = std::vector<std::vector<std::uint64_t>>;
 Rows residues(MatrixIn A) {
   Rows rows(static_cast<std::size_t>(A.rows()));
   for (Index i = 0; i < A.rows(); ++i) {
-    for (Index j = 0; j < A.cols(); ++j) rows[static_cast<std::size_t>(i)].push_back(residue(A(i, j)));
+    for (Index j = 0; j < A.cols(); ++j)
+      rows[static_cast<std::size_t>(i)].push_back(residue(A(i, j)));
   }
   return rows;
 }

@@ -22,14 +22,15 @@ Index count_above(const Vector& sigma, double relative_tolerance) {
   return (sigma.array() > relative_tolerance * sigma[0]).count();
 }
 
-/// S⁻¹ A S with powers of two in S, so that rows and columns have like norms: eigenvalues of states in unlike units would drown
-/// in the rounding errors of the largest entries.
+/// S⁻¹ A S with powers of two in S, so that rows and columns have like norms: eigenvalues of states
+/// in unlike units would drown in the rounding errors of the largest entries.
 Matrix balanced(Matrix A) {
   const Index n = A.rows();
   for (int sweep = 0, changed = 1; changed && sweep < 100; ++sweep) {
     changed = 0;
     for (Index i = 0; i < n; ++i) {
-      const double own = std::abs(A(i, i)), row = A.row(i).cwiseAbs().sum() - own, col = A.col(i).cwiseAbs().sum() - own;
+      const double own = std::abs(A(i, i)), row = A.row(i).cwiseAbs().sum() - own,
+                   col = A.col(i).cwiseAbs().sum() - own;
       if (!(row > 0 && col > 0) || !std::isfinite(row) || !std::isfinite(col)) continue;
       const int power = static_cast<int>(std::lround(0.5 * (std::log2(row) - std::log2(col))));
       if (power == 0) continue;
@@ -50,7 +51,9 @@ Svd svd(MatrixIn A) {
   return {decomposition.matrixU(), decomposition.singularValues(), decomposition.matrixV()};
 }
 
-Index rank(MatrixIn A, double relative_tolerance) { return count_above(svd(A).sigma, relative_tolerance); }
+Index rank(MatrixIn A, double relative_tolerance) {
+  return count_above(svd(A).sigma, relative_tolerance);
+}
 
 Matrix pseudo_inverse(MatrixIn A, double relative_tolerance) {
   const Svd d = svd(A);
@@ -149,7 +152,8 @@ std::optional<Matrix> cholesky(MatrixIn A) {
 SymmetricEigen symmetric_eigen(MatrixIn A) {
   if (A.rows() == 0) return {Vector(0), Matrix(0, 0)};
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(A);
-  if (solver.info() != Eigen::Success) throw Error(Errc::solver, "eigenvalues of a symmetric matrix did not converge");
+  if (solver.info() != Eigen::Success)
+    throw Error(Errc::solver, "eigenvalues of a symmetric matrix did not converge");
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
@@ -220,9 +224,12 @@ namespace {
 
 constexpr double product_noise = 1e-14;  ///< cancelled to this share of its terms, an entry is zero
 
-[[noreturn]] void refuse_overflow() { throw Error(Errc::not_finite, "a matrix product overflows; scale the problem"); }
+[[noreturn]] void refuse_overflow() {
+  throw Error(Errc::not_finite, "a matrix product overflows; scale the problem");
+}
 
-/// The same sums in one pass. Terms that overflow in sum are refused as well: nothing could be told from their noise.
+/// The same sums in one pass. Terms that overflow in sum are refused as well: nothing could be told
+/// from their noise.
 Matrix small_denoised_product(MatrixIn A, MatrixIn B) {
   Matrix C(A.rows(), B.cols());
   double overflow = 0;  // NaN after one
@@ -257,7 +264,8 @@ Vector row_scales(MatrixIn A) {
   Vector scale = Vector::Ones(A.rows());
   for (Index i = 0; i < A.rows(); ++i) {
     const double largest = A.cols() ? A.row(i).cwiseAbs().maxCoeff() : 0.0;
-    if (largest > 0) scale[i] = std::ldexp(1.0, std::min(1000, std::max(-1000, -std::ilogb(largest))));
+    if (largest > 0)
+      scale[i] = std::ldexp(1.0, std::min(1000, std::max(-1000, -std::ilogb(largest))));
   }
   return scale;
 }

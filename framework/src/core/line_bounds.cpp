@@ -28,8 +28,8 @@ Matrix chosen(const Matrix& A, const std::vector<Index>& rows) {
   return B;
 }
 
-/// Rows that determine all columns of S, by Gaussian elimination with pivots over the whole of it; nothing for a smaller rank.
-/// The choice is a proposal: what follows from it is proven.
+/// Rows that determine all columns of S, by Gaussian elimination with pivots over the whole of it;
+/// nothing for a smaller rank. The choice is a proposal: what follows from it is proven.
 std::optional<std::vector<Index>> pivot_rows(Matrix S) {
   std::vector<Index> rows;
   std::vector<bool> row_used(at(S.rows()), false), col_used(at(S.cols()), false);
@@ -57,18 +57,21 @@ std::optional<std::vector<Index>> pivot_rows(Matrix S) {
 
 /// |A B|, entrywise, rounded up.
 Matrix product_magnitude(const Matrix& A, const Matrix& B) {
-  return (linalg::product(A, B).cwiseAbs() + rounding::product_error(A, B)) * (1 + 4 * rounding::unit);
+  return (linalg::product(A, B).cwiseAbs() + rounding::product_error(A, B)) *
+         (1 + 4 * rounding::unit);
 }
 
-/// d > 0, powers of two, with |δ| ≤ d for all solutions of S δ = b - Aξ, ‖ξ‖∞ ≤ 1, or nothing without a proof.
+/// d > 0, powers of two, with |δ| ≤ d for all solutions of S δ = b - Aξ, ‖ξ‖∞ ≤ 1, or nothing
+/// without a proof.
 std::optional<Vector> solution_bounds(const Matrix& S, const Matrix& A, const Vector& b) {
   constexpr double smallest = 1e-250;
   const Index l = S.cols();
   const std::optional<Matrix> R = linalg::solve(S, Matrix::Identity(l, l));
   if (!R || !R->allFinite()) return std::nullopt;
-  const Matrix E =
-      ((Matrix::Identity(l, l) - linalg::product(*R, S)).cwiseAbs() + rounding::product_error(*R, S)) * (1 + 4 * rounding::unit) +
-      Matrix::Constant(l, l, 2 * rounding::unit);
+  const Matrix E = ((Matrix::Identity(l, l) - linalg::product(*R, S)).cwiseAbs() +
+                    rounding::product_error(*R, S)) *
+                       (1 + 4 * rounding::unit) +
+                   Matrix::Constant(l, l, 2 * rounding::unit);
   const double slightly_more = 1 + 4 * rounding::gamma(A.cols() + l + 4);
   Vector v = product_magnitude(*R, b);
   if (A.cols() > 0) v += product_magnitude(*R, A).rowwise().sum();
@@ -96,7 +99,8 @@ struct Group {
 
 class Bounding {
  public:
-  explicit Bounding(const LineForm& X) : X_(X), bounded_(at(X.lines()), false), row_used_(at(X.constraints()), false) {}
+  explicit Bounding(const LineForm& X)
+      : X_(X), bounded_(at(X.lines()), false), row_used_(at(X.constraints()), false) {}
 
   BoundedLines run() {
     while (bound_single_lines()) {
@@ -170,7 +174,8 @@ class Bounding {
     S = row_scale.asDiagonal() * S;
     const Vector line_scale = linalg::row_scales(S.transpose());
     S = S * line_scale.asDiagonal();
-    if (((S.array() != 0) && (S.array().abs() < 1e-200)).any()) return false;  // scaling may have lost digits
+    if (((S.array() != 0) && (S.array().abs() < 1e-200)).any())
+      return false;  // scaling may have lost digits
     const auto pivots = pivot_rows(S);
     if (!pivots) return false;
     std::vector<Index> rows;

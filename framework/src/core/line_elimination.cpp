@@ -16,10 +16,11 @@ constexpr double vague = 1e-6;   ///< to this one, it is no pivot
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Rows of [S A b] above rows of [M G c], with the magnitude of the terms that each entry was computed from, and the combination
-/// of the original rows [S A b] that was added to each, if it is asked for (not kept up for rows that are used up). Rows of
-/// banded systems touch few others and in few places: only those are visited. Observers eliminate in every step: each thread
-/// keeps one, with its memory; unlike a plugin, the framework's library is never unloaded.
+/// Rows of [S A b] above rows of [M G c], with the magnitude of the terms that each entry was
+/// computed from, and the combination of the original rows [S A b] that was added to each, if it is
+/// asked for (not kept up for rows that are used up). Rows of banded systems touch few others and
+/// in few places: only those are visited. Observers eliminate in every step: each thread keeps one,
+/// with its memory; unlike a plugin, the framework's library is never unloaded.
 struct Tableau {
   /// The largest equilibrated entry of a row of S.
   struct Candidate {
@@ -53,14 +54,18 @@ struct Tableau {
     T.topRightCorner(rows, 1) = X.b;
     T.bottomLeftCorner(X.dim(), lines) = X.M;
     T.block(rows, lines, X.dim(), g) = X.G;
-    T.bottomRightCorner(X.dim(), 1) = -X.c;  // so that every row is treated alike: x = Mδ + Gξ - (-c)
+    T.bottomRightCorner(X.dim(), 1) =
+        -X.c;  // so that every row is treated alike: x = Mδ + Gξ - (-c)
     magnitude = T.cwiseAbs();
-    if (b_magnitude.size() > 0) magnitude.col(width - 1).head(rows) = magnitude.col(width - 1).head(rows).cwiseMax(b_magnitude);
+    if (b_magnitude.size() > 0)
+      magnitude.col(width - 1).head(rows) =
+          magnitude.col(width - 1).head(rows).cwiseMax(b_magnitude);
     candidates.reserve(static_cast<std::size_t>(rows));
     for (Index i = 0; i < rows; ++i) candidates.push_back(candidate(i));
   }
 
-  /// An entry that has cancelled to little is known with few digits: what is divided by it would be as vague.
+  /// An entry that has cancelled to little is known with few digits: what is divided by it would be
+  /// as vague.
   Candidate candidate(Index i) const {
     Candidate best;
     if (lines == 0) return best;
@@ -97,8 +102,9 @@ struct Tableau {
     }
   }
 
-  /// Terms inherit the magnitude of the pivot row: what cancelled there is noise here too. Of b and c nothing is left out: where
-  /// states are large and their sets small, 1e-13 of them is more than the set.
+  /// Terms inherit the magnitude of the pivot row: what cancelled there is noise here too. Of b and
+  /// c nothing is left out: where states are large and their sets small, 1e-13 of them is more than
+  /// the set.
   void eliminate(Index row, Index col) {
     used[static_cast<std::size_t>(row)] = true;
     const double divisor = T(row, col);
@@ -112,23 +118,26 @@ struct Tableau {
       if (i == row || factor == 0) continue;
       const double right = T(i, width - 1) - factor * pivot[width - 1];
       for (const Run& run : runs) {
-        subtract(factor, pivot.data(), pivot_magnitude.data(), run, T.row(i).data(), magnitude.row(i).data());
+        subtract(factor, pivot.data(), pivot_magnitude.data(), run, T.row(i).data(),
+                 magnitude.row(i).data());
       }
       T(i, width - 1) = right;
       T(i, col) = 0;
       if (i < rows && used[static_cast<std::size_t>(i)]) continue;
       for (const auto& [first, last] : trace_runs) {
-        trace.row(i).segment(first, last - first) -= factor * pivot_trace.segment(first, last - first);
+        trace.row(i).segment(first, last - first) -=
+            factor * pivot_trace.segment(first, last - first);
       }
       if (i < rows) candidates[static_cast<std::size_t>(i)] = candidate(i);
     }
-    T.row(row) = pivot;  // kept, and treated like the others from now on: it tells the line by the factors
+    T.row(row) =
+        pivot;  // kept, and treated like the others from now on: it tells the line by the factors
     magnitude.row(row) = pivot_magnitude;
     T(row, col) = 1;
   }
 
-  static void subtract(double factor, const double* pivot, const double* pivot_magnitude, Run run, double* entries,
-                       double* sizes) {
+  static void subtract(double factor, const double* pivot, const double* pivot_magnitude, Run run,
+                       double* entries, double* sizes) {
     const double size = std::abs(factor);
     for (Index j = run.first; j < run.last; ++j) {
       const double entry = entries[j] - factor * pivot[j];
@@ -138,14 +147,18 @@ struct Tableau {
     }
   }
 
-  /// 0 = 0 up to rounding: every coefficient and the right-hand side cancelled. Dropping a row never shrinks the set.
+  /// 0 = 0 up to rounding: every coefficient and the right-hand side cancelled. Dropping a row
+  /// never shrinks the set.
   bool vanished(Index row) const {
-    return (T.row(row).tail(width - lines).array().abs() <= noise * magnitude.row(row).tail(width - lines).array()).all();
+    return (T.row(row).tail(width - lines).array().abs() <=
+            noise * magnitude.row(row).tail(width - lines).array())
+        .all();
   }
 };
 
-/// The columns of M that span the same space, none of them superfluous: column elimination with the same rule for noise. Lines
-/// are unbounded, so a column may be scaled, and small entries of a column are directions like any other.
+/// The columns of M that span the same space, none of them superfluous: column elimination with the
+/// same rule for noise. Lines are unbounded, so a column may be scaled, and small entries of a
+/// column are directions like any other.
 Matrix independent_columns(Matrix M) {
   const Index n = M.rows();
   Matrix magnitude = M.cwiseAbs();
@@ -214,10 +227,12 @@ LinesLeft lines_left(const Tableau& tableau, const LineForm& X, const Pivots& pi
   for (Index j = 0; j < X.lines(); ++j) {
     if (!gone[static_cast<std::size_t>(j)]) kept.push_back(j);
   }
-  return {tableau.T.bottomRows(n)(Eigen::all, kept), tableau.magnitude.bottomRows(n)(Eigen::all, kept)};
+  return {tableau.T.bottomRows(n)(Eigen::all, kept),
+          tableau.magnitude.bottomRows(n)(Eigen::all, kept)};
 }
 
-/// Where rounding hides how many of the lines left are independent, adds the coordinates that they may reach. Was nothing added?
+/// Where rounding hides how many of the lines left are independent, adds the coordinates that they
+/// may reach. Was nothing added?
 bool hold_hidden_lines(LinesLeft& lines, const LineForm& X, const Pivots& pivots) {
   if (lines.M.cols() == 0) return true;
   const ColumnElimination known(lines.M, lines.terms);
@@ -233,12 +248,17 @@ bool hold_hidden_lines(LinesLeft& lines, const LineForm& X, const Pivots& pivots
 LineForm remainder(const Tableau& tableau, const LineForm& X, std::vector<Index>& kept) {
   const Index n = X.dim(), g = X.generators();
   for (Index i = 0; i < tableau.rows; ++i) {
-    if (!tableau.used[static_cast<std::size_t>(i)] && !tableau.vanished(i) && !tableau.holds_lines(i)) kept.push_back(i);
+    if (!tableau.used[static_cast<std::size_t>(i)] && !tableau.vanished(i) &&
+        !tableau.holds_lines(i))
+      kept.push_back(i);
   }
   const Index m = static_cast<Index>(kept.size());
-  LineForm Y{
-      Matrix(n, 0), tableau.T.block(tableau.rows, X.lines(), n, g), -tableau.T.bottomRightCorner(n, 1), Matrix(), Matrix(m, g),
-      Vector(m)};
+  LineForm Y{Matrix(n, 0),
+             tableau.T.block(tableau.rows, X.lines(), n, g),
+             -tableau.T.bottomRightCorner(n, 1),
+             Matrix(),
+             Matrix(m, g),
+             Vector(m)};
   for (Index k = 0; k < m; ++k) {
     const Index i = kept[static_cast<std::size_t>(k)];
     Y.A.row(k) = tableau.T.row(i).segment(X.lines(), g);
@@ -252,11 +272,14 @@ void set_lines(LineForm& Y, Matrix M) {
   Y.S = Matrix::Zero(Y.constraints(), Y.M.cols());
 }
 
-/// Largest terms of the factors and of the right-hand side. Those of lines do not count: a line may have any length.
+/// Largest terms of the factors and of the right-hand side. Those of lines do not count: a line may
+/// have any length.
 Vector largest(const Tableau& tableau, const std::vector<Index>& rows) {
   Vector sizes(static_cast<Index>(rows.size()));
   for (Index k = 0; k < sizes.size(); ++k)
-    sizes[k] = tableau.magnitude.row(rows[static_cast<std::size_t>(k)]).tail(tableau.width - tableau.lines).maxCoeff();
+    sizes[k] = tableau.magnitude.row(rows[static_cast<std::size_t>(k)])
+                   .tail(tableau.width - tableau.lines)
+                   .maxCoeff();
   return sizes;
 }
 
@@ -265,7 +288,8 @@ Vector state_terms(const Tableau& tableau, Index n) {
   return tableau.magnitude.bottomRightCorner(n, tableau.width - tableau.lines).rowwise().sum();
 }
 
-/// Whether S has more independent rows than pivots were found: what cancelled to noise was there, and held lines.
+/// Whether S has more independent rows than pivots were found: what cancelled to noise was there,
+/// and held lines.
 bool rank_was_lost(const LineForm& X, const Pivots& pivots) {
   const auto found = static_cast<Index>(pivots.size());
   if (found == X.lines() || found == (X.S.array() != 0).rowwise().any().count()) return false;
@@ -315,7 +339,8 @@ LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) 
   LineForm set = remainder(tableau, X, kept);
   set_lines(set, lines_left(tableau, X, pivots).M);
   Matrix rows(static_cast<Index>(kept.size()), all);
-  for (Index k = 0; k < rows.rows(); ++k) rows.row(k) = tableau.trace.row(kept[static_cast<std::size_t>(k)]);
+  for (Index k = 0; k < rows.rows(); ++k)
+    rows.row(k) = tableau.trace.row(kept[static_cast<std::size_t>(k)]);
   const Index vanished = all - static_cast<Index>(pivots.size()) - set.constraints();
   return {std::move(set),
           largest(tableau, kept),

@@ -28,21 +28,25 @@ Vector joined(VectorIn top, VectorIn bottom) {
 
 void require_same_dim(Index a, Index b, const char* operation) {
   if (a != b) {
-    throw Error(Errc::dimension,
-                std::string(operation) + ": dimensions " + std::to_string(a) + " and " + std::to_string(b) + " differ");
+    throw Error(Errc::dimension, std::string(operation) + ": dimensions " + std::to_string(a) +
+                                     " and " + std::to_string(b) + " differ");
   }
 }
 
 void require_map(MatrixIn T, Index dim, const char* operation) {
   if (T.cols() != dim) {
-    throw Error(Errc::dimension, std::string(operation) + ": a matrix with " + std::to_string(T.cols()) +
-                                     " columns does not act on a set of dimension " + std::to_string(dim));
+    throw Error(Errc::dimension,
+                std::string(operation) + ": a matrix with " + std::to_string(T.cols()) +
+                    " columns does not act on a set of dimension " + std::to_string(dim));
   }
-  if (!vectors::all_finite(T)) throw Error(Errc::not_finite, std::string(operation) + ": the matrix has a NaN or infinite entry");
+  if (!vectors::all_finite(T))
+    throw Error(Errc::not_finite,
+                std::string(operation) + ": the matrix has a NaN or infinite entry");
 }
 
 void require_finite(const Matrix& A) {
-  if (!vectors::all_finite(A)) throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
+  if (!vectors::all_finite(A))
+    throw Error(Errc::not_finite, "a set operation overflows; scale the problem");
 }
 
 LineForm finite(LineForm X) {
@@ -78,15 +82,17 @@ void check(const LineForm& X, const std::string& what) {
   const Index n = X.dim(), l = X.M.cols(), g = X.G.cols(), m = X.b.size();
   const auto wrong = [&](const char* name, const Matrix& B, Index rows, Index cols) {
     if (B.rows() == rows && B.cols() == cols) return;
-    throw Error(Errc::dimension, what + ": block " + name + " is " + std::to_string(B.rows()) + " x " + std::to_string(B.cols()) +
-                                     ", must be " + std::to_string(rows) + " x " + std::to_string(cols));
+    throw Error(Errc::dimension, what + ": block " + name + " is " + std::to_string(B.rows()) +
+                                     " x " + std::to_string(B.cols()) + ", must be " +
+                                     std::to_string(rows) + " x " + std::to_string(cols));
   };
   wrong("M", X.M, n, l);
   wrong("G", X.G, n, g);
   wrong("S", X.S, m, l);
   wrong("A", X.A, m, g);
   bool finite = vectors::all_finite(X.c) && vectors::all_finite(X.b);
-  for (const Matrix* block : {&X.M, &X.G, &X.S, &X.A}) finite = finite && vectors::all_finite(*block);
+  for (const Matrix* block : {&X.M, &X.G, &X.S, &X.A})
+    finite = finite && vectors::all_finite(*block);
   if (!finite) {
     throw Error(Errc::not_finite, what + ": a NaN or infinite entry");
   }
@@ -99,7 +105,8 @@ LineForm make_zonotope(VectorIn c, MatrixIn G) {
 LineForm make_point(VectorIn x) { return make_zonotope(x, Matrix(x.size(), 0)); }
 
 LineForm make_space(Index n) {
-  return {Matrix::Identity(n, n), Matrix(n, 0), Vector::Zero(n), Matrix(0, n), Matrix(0, 0), Vector(0)};
+  return {Matrix::Identity(n, n), Matrix(n, 0), Vector::Zero(n),
+          Matrix(0, n),           Matrix(0, 0), Vector(0)};
 }
 
 LineForm make_empty(Index n) {
@@ -112,11 +119,13 @@ LineForm make_box(const Box& box) {
   Index free = 0, wide = 0;
   for (Index i = 0; i < n; ++i) {
     const double lower = box.lower[i], upper = box.upper[i];
-    if (std::isnan(lower) || std::isnan(upper)) throw Error(Errc::not_finite, "box: a bound is NaN");
+    if (std::isnan(lower) || std::isnan(upper))
+      throw Error(Errc::not_finite, "box: a bound is NaN");
     if (lower > upper) return make_empty(n);
     if (std::isinf(lower) != std::isinf(upper) || (std::isinf(lower) && lower == upper)) {
       throw Error(Errc::invalid,
-                  "box: coordinate " + std::to_string(i) + " is bounded on one side only; a coordinate is bounded or free");
+                  "box: coordinate " + std::to_string(i) +
+                      " is bounded on one side only; a coordinate is bounded or free");
     }
     if (std::isinf(lower)) {
       ++free;
@@ -124,7 +133,8 @@ LineForm make_box(const Box& box) {
       ++wide;
     }
   }
-  LineForm X{Matrix::Zero(n, free), Matrix::Zero(n, wide), Vector::Zero(n), Matrix(0, free), Matrix(0, wide), Vector(0)};
+  LineForm X{Matrix::Zero(n, free), Matrix::Zero(n, wide), Vector::Zero(n),
+             Matrix(0, free),       Matrix(0, wide),       Vector(0)};
   Index line = 0, generator = 0;
   for (Index i = 0; i < n; ++i) {
     const double lower = box.lower[i], upper = box.upper[i];
@@ -136,7 +146,8 @@ LineForm make_box(const Box& box) {
       const double center = lower / 2 + upper / 2;
       double radius = std::max(upper - center, center - lower);
       // the larger of two differences, each rounded to the nearest: the next double is above both
-      if (!sum_reaches(center, radius, upper) || !sum_reaches(-center, radius, -lower)) radius = rounding::up(radius);
+      if (!sum_reaches(center, radius, upper) || !sum_reaches(-center, radius, -lower))
+        radius = rounding::up(radius);
       X.c[i] = center;
       X.G(i, generator++) = radius;
     }
@@ -159,7 +170,8 @@ LineForm make_strip(VectorIn rho, double d, double sigma) {
 LineForm affine_map(const LineForm& X, MatrixIn T, VectorIn t) {
   require_map(T, X.dim(), "affine map");
   require_same_dim(T.rows(), t.size(), "affine map");
-  return finite({linalg::denoised_product(T, X.M), linalg::product(T, X.G), linalg::product(T, X.c) + t, X.S, X.A, X.b});
+  return finite({linalg::denoised_product(T, X.M), linalg::product(T, X.G),
+                 linalg::product(T, X.c) + t, X.S, X.A, X.b});
 }
 
 LineForm minkowski_sum(const LineForm& X, const LineForm& Y) {
@@ -178,7 +190,11 @@ LineForm intersection(const LineForm& X, MatrixIn R, const LineForm& Y) {
   require_same_dim(R.rows(), Y.dim(), "intersection");
   const Index n = X.dim(), p = Y.dim(), mx = X.constraints(), my = Y.constraints();
   const Index lx = X.lines(), ly = Y.lines(), gx = X.generators(), gy = Y.generators();
-  LineForm Z{Matrix(n, lx + ly), Matrix(n, gx + gy), X.c, Matrix::Zero(mx + my + p, lx + ly), Matrix::Zero(mx + my + p, gx + gy),
+  LineForm Z{Matrix(n, lx + ly),
+             Matrix(n, gx + gy),
+             X.c,
+             Matrix::Zero(mx + my + p, lx + ly),
+             Matrix::Zero(mx + my + p, gx + gy),
              Vector(mx + my + p)};
   Z.M.leftCols(lx) = X.M;
   Z.M.rightCols(ly).setZero();
@@ -194,12 +210,14 @@ LineForm intersection(const LineForm& X, MatrixIn R, const LineForm& Y) {
   if (gx > 0) Z.A.bottomLeftCorner(p, gx) = linalg::product(R, X.G);
   Z.A.bottomRightCorner(p, gy) = -Y.G;
   Z.b << X.b, Y.b,
-      denoised_difference(Y.c, linalg::product(R, X.c), Y.c.cwiseAbs() + linalg::product(R.cwiseAbs(), X.c.cwiseAbs()));
+      denoised_difference(Y.c, linalg::product(R, X.c),
+                          Y.c.cwiseAbs() + linalg::product(R.cwiseAbs(), X.c.cwiseAbs()));
   return finite(std::move(Z));
 }
 
-// With λ = (1 + ξ₀)/2 the point is λ x + (1 - λ) y. The scaled factors become variables of their own, |α_i| ≤ λ and |β_i| ≤ 1 -
-// λ; the gap of each inequality lies in [0,2] and is written 1 + s with a slack s ∈ [-1,1].
+// With λ = (1 + ξ₀)/2 the point is λ x + (1 - λ) y. The scaled factors become variables of their
+// own, |α_i| ≤ λ and |β_i| ≤ 1 - λ; the gap of each inequality lies in [0,2] and is written 1 + s
+// with a slack s ∈ [-1,1].
 LineForm convex_hull(const LineForm& X, const LineForm& Y) {
   require_same_dim(X.dim(), Y.dim(), "convex hull");
   if (has_false_row(X)) return Y;

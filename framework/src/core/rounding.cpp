@@ -36,7 +36,8 @@ Range norm_1(VectorIn x) { return sum(x.cwiseAbs()); }
 Matrix product_error(MatrixIn A, MatrixIn B) {
   const Index n = A.cols();
   Matrix error = linalg::product(A.cwiseAbs(), B.cwiseAbs());
-  error = (error.array() * gamma(2 * n + 4) * (1 + 4 * unit) + static_cast<double>(n + 1) * tiny).matrix();
+  error = (error.array() * gamma(2 * n + 4) * (1 + 4 * unit) + static_cast<double>(n + 1) * tiny)
+              .matrix();
   return error;
 }
 
@@ -53,7 +54,8 @@ double residual_norm_1(VectorIn g, MatrixIn A, VectorIn y) {
     if (m == 0) {
       total += magnitude;
     } else {
-      total += up(std::abs(value) + up(gamma(2 * m + 4) * magnitude) + static_cast<double>(m + 1) * tiny);
+      total += up(std::abs(value) + up(gamma(2 * m + 4) * magnitude) +
+                  static_cast<double>(m + 1) * tiny);
     }
   }
   return up(total * (1 + 2 * gamma(g.size() + 2)));

@@ -13,7 +13,8 @@ namespace {
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-/// The character at the front of a text that is not empty, and its bytes; 0 bytes if they are no UTF-8.
+/// The character at the front of a text that is not empty, and its bytes; 0 bytes if they are no
+/// UTF-8.
 struct Character {
   std::uint32_t code = 0;
   std::size_t bytes = 0;
@@ -29,13 +30,14 @@ Character first_of(std::string_view text) {
     code = code << 6 | (byte(i) & 0x3Fu);
   }
   constexpr std::array<std::uint32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
-  const bool is_character = code >= least[bytes] && code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
+  const bool is_character =
+      code >= least[bytes] && code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
   return is_character ? Character{code, bytes} : Character{};
 }
 
 bool is_unprintable(std::uint32_t c) {
-  return c < 0x20 || (c >= 0x7F && c <= 0x9F) || c == 0x061C || c == 0x200E || c == 0x200F || (c >= 0x202A && c <= 0x202E) ||
-         (c >= 0x2066 && c <= 0x2069);
+  return c < 0x20 || (c >= 0x7F && c <= 0x9F) || c == 0x061C || c == 0x200E || c == 0x200F ||
+         (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
 }
 
 std::string escaped(std::string_view text, bool keeps_lines) {
@@ -44,7 +46,8 @@ std::string escaped(std::string_view text, bool keeps_lines) {
   while (!text.empty()) {
     const Character c = first_of(text);
     if (c.bytes == 0) {
-      std::snprintf(code.data(), code.size(), "\\x%02x", static_cast<unsigned>(static_cast<unsigned char>(text[0])));
+      std::snprintf(code.data(), code.size(), "\\x%02x",
+                    static_cast<unsigned>(static_cast<unsigned char>(text[0])));
       out += code.data();
     } else if (is_unprintable(c.code) && !(keeps_lines && c.code == '\n')) {
       std::snprintf(code.data(), code.size(), "\\u%04x", static_cast<unsigned>(c.code));

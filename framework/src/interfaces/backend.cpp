@@ -20,20 +20,24 @@ void require(bool fits, const std::string& message) {
 }
 
 void require_map(MatrixIn T, Index rows, Index cols, const char* what) {
-  if (T.rows() != rows || T.cols() != cols) {  // texts are made for errors only: a step of an observer asks this often
-    throw Error(Errc::dimension, std::string(what) + ": the matrix is " + std::to_string(T.rows()) + " x " +
-                                     std::to_string(T.cols()) + ", must be " + std::to_string(rows) + " x " +
-                                     std::to_string(cols));
+  if (T.rows() != rows ||
+      T.cols() != cols) {  // texts are made for errors only: a step of an observer asks this often
+    throw Error(Errc::dimension, std::string(what) + ": the matrix is " + std::to_string(T.rows()) +
+                                     " x " + std::to_string(T.cols()) + ", must be " +
+                                     std::to_string(rows) + " x " + std::to_string(cols));
   }
-  if (!vectors::all_finite(T)) throw Error(Errc::not_finite, std::string(what) + ": the matrix has a NaN or infinite entry");
+  if (!vectors::all_finite(T))
+    throw Error(Errc::not_finite, std::string(what) + ": the matrix has a NaN or infinite entry");
 }
 
 void require_vector(VectorIn t, Index size, const char* what) {
   if (t.size() != size) {
-    throw Error(Errc::dimension,
-                std::string(what) + ": the vector has size " + std::to_string(t.size()) + ", must be " + std::to_string(size));
+    throw Error(Errc::dimension, std::string(what) + ": the vector has size " +
+                                     std::to_string(t.size()) + ", must be " +
+                                     std::to_string(size));
   }
-  if (!vectors::all_finite(t)) throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
+  if (!vectors::all_finite(t))
+    throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
 }
 
 /// a + b = s without rounding? [Ogita2005]
@@ -48,7 +52,8 @@ bool has_bounds(const LineForm& X, const Box& box) {
   for (Index i = 0; i < X.dim(); ++i) {
     if (!std::isfinite(box.lower[i])) continue;
     const double radius = X.generators() ? X.G.row(i).cwiseAbs().maxCoeff() : 0.0;
-    if (!is_sum(X.c[i], radius, box.upper[i]) || !is_sum(X.c[i], -radius, box.lower[i])) return false;
+    if (!is_sum(X.c[i], radius, box.upper[i]) || !is_sum(X.c[i], -radius, box.lower[i]))
+      return false;
   }
   return true;
 }
@@ -58,15 +63,19 @@ const Set& require_set(const Enclosure& X, const char* what) {
   return *X.set;
 }
 
-bool is_own(const SetBackend& backend, const Enclosure& X) { return X.set && &X.set->backend() == &backend; }
+bool is_own(const SetBackend& backend, const Enclosure& X) {
+  return X.set && &X.set->backend() == &backend;
+}
 
-/// X itself where it is of the backend already, without counting one more reference to it; else X imported.
+/// X itself where it is of the backend already, without counting one more reference to it; else X
+/// imported.
 class Own {
   Enclosure imported_;
 
  public:
   Own(const SetBackend& backend, const Enclosure& X)
-      : imported_(is_own(backend, X) ? Enclosure{} : backend.import(X)), enclosure(is_own(backend, X) ? X : imported_) {}
+      : imported_(is_own(backend, X) ? Enclosure{} : backend.import(X)),
+        enclosure(is_own(backend, X) ? X : imported_) {}
   const Enclosure& enclosure;
 };
 
@@ -76,11 +85,12 @@ Made fitting(Made made, Index dim, const BackendInfo& info, const char* operatio
   if (made.set && made.set->dim() == dim) return made;
   const std::string who = "backend " + info.name + ", " + operation + ": ";
   if (!made.set) throw Error(Errc::plugin, who + "returned no set");
-  throw Error(Errc::plugin,
-              who + "returned a set of dimension " + std::to_string(made.set->dim()) + ", must be " + std::to_string(dim));
+  throw Error(Errc::plugin, who + "returned a set of dimension " + std::to_string(made.set->dim()) +
+                                ", must be " + std::to_string(dim));
 }
 
-/// What is computed on exchange forms that enclose their sets is outer, whatever the import of the result claims.
+/// What is computed on exchange forms that enclose their sets is outer, whatever the import of the
+/// result claims.
 template <class Made>
 Made through_exchange(const BackendInfo& info, Made made) {
   if (!info.exact_exchange) made.tightness = Tightness::outer;
@@ -89,8 +99,8 @@ Made through_exchange(const BackendInfo& info, Made made) {
 
 }  // namespace
 
-/// Control blocks are made here, so that no code of a plugin runs after its library has gone: the deleter destroys the set, then
-/// lets go of the backend.
+/// Control blocks are made here, so that no code of a plugin runs after its library has gone: the
+/// deleter destroys the set, then lets go of the backend.
 Enclosure SetBackend::adopt(Made made, Tightness inputs) const {
   const Set* raw = made.set.release();
   SetPtr set(raw, [keep = shared_from_this()](const Set* dying) { delete dying; });
@@ -105,7 +115,8 @@ Enclosure SetBackend::import(const LineForm& X, Tightness claim) const {
 Enclosure SetBackend::import(const Enclosure& X) const {
   const Set& set = require_set(X, "import");
   if (&set.backend() == this) return X;
-  const Tightness exchange = set.backend().info().exact_exchange ? Tightness::exact : Tightness::outer;
+  const Tightness exchange =
+      set.backend().info().exact_exchange ? Tightness::exact : Tightness::outer;
   return import(set.line_form(), meet(X.tightness, exchange));
 }
 
@@ -132,14 +143,16 @@ Enclosure SetBackend::predict(const Enclosure& X, const Predict& p) const {
       require_map(term.T, p.A.rows(), term.set->dim(), "predict: T");
       inputs = meet(inputs, term.set.tightness);
     }
-    return adopt(fitting(do_predict(*own.set, {p.A, p.f, terms}), p.A.rows(), info_, "predict"), inputs);
+    return adopt(fitting(do_predict(*own.set, {p.A, p.f, terms}), p.A.rows(), info_, "predict"),
+                 inputs);
   };
   if (all_own) return made(p.terms);
   std::vector<Enclosure> imported;
   imported.reserve(p.terms.size());
   std::vector<Term> terms;
   terms.reserve(p.terms.size());
-  for (const Term& term : p.terms) terms.push_back({term.T, imported.emplace_back(import(term.set))});
+  for (const Term& term : p.terms)
+    terms.push_back({term.T, imported.emplace_back(import(term.set))});
   return made(terms);
 }
 
@@ -149,12 +162,14 @@ Enclosure SetBackend::correct(const Enclosure& X, const Correct& c) const {
   require_map(c.C, c.C.rows(), own->dim(), "correct: C");
   require_vector(c.z, c.C.rows(), "correct: z");
   require_map(c.noise.T, c.C.rows(), noise->dim(), "correct: T");
-  return adopt(fitting(do_correct(*own.set, {c.C, c.z, {c.noise.T, noise}}), own->dim(), info_, "correct"),
-               meet(own.tightness, noise.tightness));
+  return adopt(
+      fitting(do_correct(*own.set, {c.C, c.z, {c.noise.T, noise}}), own->dim(), info_, "correct"),
+      meet(own.tightness, noise.tightness));
 }
 
 Enclosure SetBackend::reduce(const Enclosure& X, Budget budget) const {
-  if (budget.generators < 0 || budget.constraints < 0) throw Error(Errc::invalid, "reduce: a negative budget");
+  if (budget.generators < 0 || budget.constraints < 0)
+    throw Error(Errc::invalid, "reduce: a negative budget");
   const Own converted(*this, X);
   const Enclosure& own = converted.enclosure;
   Made made = do_reduce(*own.set, budget);
@@ -162,14 +177,18 @@ Enclosure SetBackend::reduce(const Enclosure& X, Budget budget) const {
   return adopt(fitting(std::move(made), own->dim(), info_, "reduce"), own.tightness);
 }
 
-Enclosure SetBackend::affine_map(const Enclosure& X, MatrixIn T, VectorIn t) const { return predict(X, {T, t, {}}); }
+Enclosure SetBackend::affine_map(const Enclosure& X, MatrixIn T, VectorIn t) const {
+  return predict(X, {T, t, {}});
+}
 
 Enclosure SetBackend::interval_map(const Enclosure& X, const IntervalMatrix& A) const {
   const Enclosure own = import(X);
   require_map(A.center, A.center.rows(), own->dim(), "interval map: centre");
   require_map(A.radius, A.center.rows(), own->dim(), "interval map: radius");
-  if (A.radius.size() && A.radius.minCoeff() < 0) throw Error(Errc::invalid, "interval map: a negative radius");
-  return adopt(fitting(do_interval_map(*own.set, A), A.rows(), info_, "interval map"), own.tightness);
+  if (A.radius.size() && A.radius.minCoeff() < 0)
+    throw Error(Errc::invalid, "interval map: a negative radius");
+  return adopt(fitting(do_interval_map(*own.set, A), A.rows(), info_, "interval map"),
+               own.tightness);
 }
 
 Enclosure SetBackend::sum(const Enclosure& X, const Enclosure& Y) const {
@@ -208,15 +227,18 @@ Enclosure SetBackend::convex_hull(const Enclosure& X, const Enclosure& Y) const 
 SetBackend::Made SetBackend::do_predict(const Set& X, const Predict& p) const {
   LineForm sum = cordon::affine_map(X.line_form(), p.A, p.f);
   for (const Term& term : p.terms) {
-    sum = minkowski_sum(sum, cordon::affine_map(term.set->line_form(), term.T, Vector::Zero(p.A.rows())));
+    sum = minkowski_sum(
+        sum, cordon::affine_map(term.set->line_form(), term.T, Vector::Zero(p.A.rows())));
   }
   return through_exchange(info_, do_import(sum));
 }
 
 namespace {
 
-/// Of rows of a correction whose noise has no extent: the size of the terms that they are made of; 0 for the others.
-Vector noise_free_terms(const Correct& c, const LineForm& state, const LineForm& noise, Vector terms) {
+/// Of rows of a correction whose noise has no extent: the size of the terms that they are made of;
+/// 0 for the others.
+Vector noise_free_terms(const Correct& c, const LineForm& state, const LineForm& noise,
+                        Vector terms) {
   const Matrix& T = c.noise.T;
   terms += linalg::product(c.C.cwiseAbs(), state.G.cwiseAbs().rowwise().sum());
   for (const Matrix& part : {noise.G, noise.M}) {
@@ -226,8 +248,9 @@ Vector noise_free_terms(const Correct& c, const LineForm& state, const LineForm&
   return terms;
 }
 
-/// The last rows of X with a factor of their own, for the rounding errors of their coefficients: where the noise has no extent,
-/// rows that repeat each other, or meet a set that is flat, would else turn these into statements.
+/// The last rows of X with a factor of their own, for the rounding errors of their coefficients:
+/// where the noise has no extent, rows that repeat each other, or meet a set that is flat, would
+/// else turn these into statements.
 LineForm with_room(LineForm X, const Vector& terms) {
   const Index rows = X.constraints(), first = rows - terms.size();
   for (Index i = 0; i < terms.size(); ++i) {
@@ -253,7 +276,8 @@ SetBackend::Made SetBackend::do_correct(const Set& X, const Correct& c) const {
                        linalg::product(c.C.cwiseAbs(), state.c.cwiseAbs());
   auto right = kept.b.tail(c.z.size());
   right = (right.array().abs() <= product_noise * terms.array()).select(0.0, right).eval();
-  if (info_.rounding == Rounding::nominal) kept = with_room(std::move(kept), noise_free_terms(c, state, noise, terms));
+  if (info_.rounding == Rounding::nominal)
+    kept = with_room(std::move(kept), noise_free_terms(c, state, noise, terms));
   return through_exchange(info_, do_import(kept));
 }
 
@@ -267,9 +291,11 @@ SetBackend::Made SetBackend::do_interval_map(const Set& X, const IntervalMatrix&
   for (Index i = 0; i < A.rows(); ++i) {
     double width = 0;
     for (Index j = 0; j < A.cols(); ++j) {
-      if (A.radius(i, j) > 0) width += A.radius(i, j) * std::max(std::abs(hull.lower[j]), std::abs(hull.upper[j]));
+      if (A.radius(i, j) > 0)
+        width += A.radius(i, j) * std::max(std::abs(hull.lower[j]), std::abs(hull.upper[j]));
     }
-    spread.upper[i] = width == 0 ? 0 : rounding::up(width * (1 + rounding::gamma(2 * A.cols() + 2)));
+    spread.upper[i] =
+        width == 0 ? 0 : rounding::up(width * (1 + rounding::gamma(2 * A.cols() + 2)));
     spread.lower[i] = -spread.upper[i];
   }
   Made made = do_import(minkowski_sum(mapped, make_box(spread)));

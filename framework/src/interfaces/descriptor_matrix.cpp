@@ -24,7 +24,9 @@ using Residue = std::uint64_t;
 constexpr Residue prime = (Residue{1} << 61) - 1;
 __extension__ using Wide = unsigned __int128;
 
-Residue times(Residue a, Residue b) { return static_cast<Residue>(static_cast<Wide>(a) * b % prime); }
+Residue times(Residue a, Residue b) {
+  return static_cast<Residue>(static_cast<Wide>(a) * b % prime);
+}
 
 Residue power(Residue base, Residue exponent) {
   Residue value = 1;
@@ -36,7 +38,8 @@ Residue power(Residue base, Residue exponent) {
 
 /// digits · base^exponent.
 Residue residue(std::uint64_t digits, bool negative, Residue base, int exponent) {
-  const Residue scale = power(exponent < 0 ? power(base, prime - 2) : base, static_cast<Residue>(std::abs(exponent)));
+  const Residue scale =
+      power(exponent < 0 ? power(base, prime - 2) : base, static_cast<Residue>(std::abs(exponent)));
   const Residue value = times(digits % prime, scale);
   return negative && value != 0 ? prime - value : value;
 }
@@ -49,7 +52,9 @@ Residue of_double(double x) {
 
 Residue of_decimal(double x) {
   std::array<char, 40> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), std::abs(x), std::chars_format::scientific).ptr;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), std::abs(x),
+                                 std::chars_format::scientific)
+                       .ptr;
   const std::string_view written(text.data(), static_cast<std::size_t>(end - text.data()));
   const std::size_t e = written.find('e');
   std::uint64_t digits = 0;
@@ -67,7 +72,8 @@ Residue of_decimal(double x) {
 Index modular_rank(MatrixIn E, Residue (*number)(double)) {
   std::vector<std::vector<Residue>> rows(static_cast<std::size_t>(E.rows()));
   for (Index i = 0; i < E.rows(); ++i) {
-    for (Index j = 0; j < E.cols(); ++j) rows[static_cast<std::size_t>(i)].push_back(number(E(i, j)));
+    for (Index j = 0; j < E.cols(); ++j)
+      rows[static_cast<std::size_t>(i)].push_back(number(E(i, j)));
   }
   std::size_t rank = 0;
   for (std::size_t j = 0; j < static_cast<std::size_t>(E.cols()) && rank < rows.size(); ++j) {
@@ -79,7 +85,8 @@ Index modular_rank(MatrixIn E, Residue (*number)(double)) {
     for (std::size_t i = rank + 1; i < rows.size(); ++i) {
       const Residue factor = prime - times(rows[i][j], inverse);
       if (factor == prime) continue;
-      for (std::size_t k = j; k < rows[i].size(); ++k) rows[i][k] = (rows[i][k] + times(factor, rows[rank][k])) % prime;
+      for (std::size_t k = j; k < rows[i].size(); ++k)
+        rows[i][k] = (rows[i][k] + times(factor, rows[rank][k])) % prime;
     }
     ++rank;
   }
@@ -127,7 +134,8 @@ DescriptorMatrix::Pivots DescriptorMatrix::pivots_of(MatrixIn E) {
 
 Index descriptor_rank(MatrixIn E) {
   if (E.rows() != E.cols()) throw Error(Errc::dimension, "the descriptor matrix is not square");
-  if (!E.allFinite()) throw Error(Errc::not_finite, "the descriptor matrix has a NaN or infinite entry");
+  if (!E.allFinite())
+    throw Error(Errc::not_finite, "the descriptor matrix has a NaN or infinite entry");
   return linalg::rank(scaled(E), rank_tolerance);
 }
 

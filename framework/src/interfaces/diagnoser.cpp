@@ -33,7 +33,8 @@ Diagnosis Diagnoser::step(const Sample& now) {
   if (!started_) start();
   const auto begin = std::chrono::steady_clock::now();
   Diagnosis diagnosis = do_step(before_ ? &*before_ : nullptr, now);
-  step_us_ = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+  step_us_ =
+      std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
   before_ = now;
   return diagnosis;
 }

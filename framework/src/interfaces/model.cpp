@@ -11,16 +11,20 @@ namespace {
 
 void check(const Box& effectiveness, Index size, const char* of) {
   if (effectiveness.lower.size() != size || effectiveness.upper.size() != size) {
-    throw Error(Errc::dimension, std::string("the effectiveness of the ") + of + " has " + std::to_string(effectiveness.dim()) +
+    throw Error(Errc::dimension, std::string("the effectiveness of the ") + of + " has " +
+                                     std::to_string(effectiveness.dim()) +
                                      " entries, the model has " + std::to_string(size) + " " + of);
   }
-  const bool inside = (effectiveness.lower.array() >= 0).all() && (effectiveness.upper.array() <= 1).all();
+  const bool inside =
+      (effectiveness.lower.array() >= 0).all() && (effectiveness.upper.array() <= 1).all();
   if (!inside || !(effectiveness.lower.array() <= effectiveness.upper.array()).all()) {
-    throw Error(Errc::invalid, std::string("the effectiveness of the ") + of + " must lie in [0, 1], lower bounds first");
+    throw Error(Errc::invalid, std::string("the effectiveness of the ") + of +
+                                   " must lie in [0, 1], lower bounds first");
   }
 }
 
-/// The exact entries, 1 in place of ranges; they become 1 in the box, which is emptied if no range is left.
+/// The exact entries, 1 in place of ranges; they become 1 in the box, which is emptied if no range
+/// is left.
 Vector take_exact(Box& effectiveness) {
   Vector factors = Vector::Ones(effectiveness.dim());
   bool ranges = false;
@@ -43,7 +47,8 @@ bool is_exact(double a, double b) {
   return a == 0 || b == 0 || (std::abs(product) >= smallest && std::fma(a, b, -product) == 0);
 }
 
-/// Are the products of diag(g) M diag(f) exact, one after the other as they are taken? A vector without entries stands for ones.
+/// Are the products of diag(g) M diag(f) exact, one after the other as they are taken? A vector
+/// without entries stands for ones.
 bool is_exact(const Vector& g, const Matrix& M, const Vector& f) {
   for (Index i = 0; i < M.rows(); ++i) {
     for (Index j = 0; j < M.cols(); ++j) {
@@ -67,9 +72,12 @@ LinearModel with_exact_effectiveness_applied(LinearModel model) {
     g = take_exact(model.sensor);
   }
   if (!is_exact({}, model.B, f) || !is_exact(g, model.C, {}) || !is_exact(g, model.D, f)) {
-    const auto ones_if_none = [](const Vector& factors, Index size) { return factors.size() ? factors : Vector::Ones(size); };
+    const auto ones_if_none = [](const Vector& factors, Index size) {
+      return factors.size() ? factors : Vector::Ones(size);
+    };
     model.unscaled = std::make_shared<LinearModel::Unscaled>(
-        LinearModel::Unscaled{model.B, model.C, model.D, ones_if_none(f, model.inputs()), ones_if_none(g, model.outputs())});
+        LinearModel::Unscaled{model.B, model.C, model.D, ones_if_none(f, model.inputs()),
+                              ones_if_none(g, model.outputs())});
   }
   if (f.size() != 0) {
     model.B = model.B * f.asDiagonal();

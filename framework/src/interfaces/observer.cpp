@@ -11,7 +11,9 @@ namespace cordon {
 namespace {
 
 long long now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 }  // namespace
@@ -51,9 +53,12 @@ Estimate Observer::step(const Sample& now) {
 }
 
 void Observer::replace(Enclosure X) {
-  if (!before_) throw Error(Errc::invalid, "replace: no sample has been taken; give the set to start() instead");
+  if (!before_)
+    throw Error(Errc::invalid,
+                "replace: no sample has been taken; give the set to start() instead");
   X = backend_->import(X);
-  if (X->dim() != model_.linear.states()) throw Error(Errc::dimension, "the replacing set has another dimension than the state");
+  if (X->dim() != model_.linear.states())
+    throw Error(Errc::dimension, "the replacing set has another dimension than the state");
   inconsistent_ = false;
   do_replace(X);
 }

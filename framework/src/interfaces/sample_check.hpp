@@ -8,6 +8,7 @@
 namespace cordon::detail {
 
 /// Throws unless the sample fits the model, has finite numbers and follows `before`.
-void check_sample(const Sample& sample, const std::optional<Sample>& before, const LinearModel& model);
+void check_sample(const Sample& sample, const std::optional<Sample>& before,
+                  const LinearModel& model);
 
 }  // namespace cordon::detail

@@ -28,7 +28,8 @@ std::vector<Index> others(const std::vector<Index>& chosen, Index n) {
 double in_doubles(const Rational& q, bool& is_exact) {
   const double nearest = rational::nearest(q);
   if (!std::isfinite(nearest))
-    throw Error(Errc::not_finite, "an equation of the descriptor system, solved for its states, overflows");
+    throw Error(Errc::not_finite,
+                "an equation of the descriptor system, solved for its states, overflows");
   is_exact = is_exact && Rational(nearest) == q;
   return nearest;
 }
@@ -42,16 +43,20 @@ SemiExplicitForm::Part rounded(const RationalMatrix& A) {
 }
 
 /// [E_RP⁻¹, E_RP⁻¹ E_RQ].
-RationalMatrix solved_core(MatrixIn E, const DescriptorMatrix::Pivots& pivots, const std::vector<Index>& Q) {
+RationalMatrix solved_core(MatrixIn E, const DescriptorMatrix::Pivots& pivots,
+                           const std::vector<Index>& Q) {
   const auto r = static_cast<Index>(pivots.rows.size());
   RationalMatrix rows(r, 2 * r + static_cast<Index>(Q.size()));
   for (Index i = 0; i < r; ++i) {
     const Index row = pivots.rows[static_cast<std::size_t>(i)];
-    for (Index j = 0; j < r; ++j) rows(i, j) = rational::exact(E(row, pivots.cols[static_cast<std::size_t>(j)]));
+    for (Index j = 0; j < r; ++j)
+      rows(i, j) = rational::exact(E(row, pivots.cols[static_cast<std::size_t>(j)]));
     rows(i, r + i) = 1;
-    for (std::size_t j = 0; j < Q.size(); ++j) rows(i, 2 * r + static_cast<Index>(j)) = rational::exact(E(row, Q[j]));
+    for (std::size_t j = 0; j < Q.size(); ++j)
+      rows(i, 2 * r + static_cast<Index>(j)) = rational::exact(E(row, Q[j]));
   }
-  if (static_cast<Index>(reduce_rows(rows, r).size()) < r) throw Error(Errc::invalid, "the pivots of E are not regular");
+  if (static_cast<Index>(reduce_rows(rows, r).size()) < r)
+    throw Error(Errc::invalid, "the pivots of E are not regular");
   RationalMatrix out(r, rows.cols() - r);
   for (Index i = 0; i < r; ++i) {
     for (Index j = 0; j < out.cols(); ++j) out(i, j) = rows(i, r + j);
@@ -65,7 +70,8 @@ struct SemiExplicitForm::Rows {
   RationalMatrix dynamic, fixed;
 };
 
-SemiExplicitForm::SemiExplicitForm(Index n) : rank_(n), T_(Matrix::Identity(n, n)), T_inverse_(T_) {}
+SemiExplicitForm::SemiExplicitForm(Index n)
+    : rank_(n), T_(Matrix::Identity(n, n)), T_inverse_(T_) {}
 
 SemiExplicitForm::SemiExplicitForm(MatrixIn E) {
   DescriptorMatrix::Pivots pivots = DescriptorMatrix::pivots_of(E);
@@ -77,7 +83,8 @@ SemiExplicitForm::SemiExplicitForm(MatrixIn E) {
   const RationalMatrix core = solved_core(E, pivots, Q);
   RationalMatrix dynamic(rank_, n), fixed(n - rank_, n);
   for (Index i = 0; i < rank_; ++i) {
-    for (Index j = 0; j < rank_; ++j) dynamic(i, pivots.rows[static_cast<std::size_t>(j)]) = core(i, j);
+    for (Index j = 0; j < rank_; ++j)
+      dynamic(i, pivots.rows[static_cast<std::size_t>(j)]) = core(i, j);
   }
   for (Index i = 0; i < n - rank_; ++i) {
     const Index row = S[static_cast<std::size_t>(i)];
@@ -115,12 +122,14 @@ SemiExplicitForm::Part SemiExplicitForm::static_part(MatrixIn M) const {
 
 SemiExplicitForm::Part SemiExplicitForm::dynamic_part_of_state(MatrixIn A) const {
   if (!rows_) return {A, true};
-  return rounded(product(rows_->dynamic, product(rational::exact_matrix(A), rational::exact_matrix(T_))));
+  return rounded(
+      product(rows_->dynamic, product(rational::exact_matrix(A), rational::exact_matrix(T_))));
 }
 
 SemiExplicitForm::Part SemiExplicitForm::static_part_of_state(MatrixIn A) const {
   if (!rows_) return {Matrix(0, A.cols()), true};
-  return rounded(product(rows_->fixed, product(rational::exact_matrix(A), rational::exact_matrix(T_))));
+  return rounded(
+      product(rows_->fixed, product(rational::exact_matrix(A), rational::exact_matrix(T_))));
 }
 
 }  // namespace cordon

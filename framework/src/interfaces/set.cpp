@@ -17,16 +17,18 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void require(VectorIn x, Index dim, const char* what) {
   if (x.size() != dim) {
-    throw Error(Errc::dimension, std::string(what) + ": a vector of size " + std::to_string(x.size()) +
-                                     " for a set of dimension " + std::to_string(dim));
+    throw Error(Errc::dimension, std::string(what) + ": a vector of size " +
+                                     std::to_string(x.size()) + " for a set of dimension " +
+                                     std::to_string(dim));
   }
-  if (!x.allFinite()) throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
+  if (!x.allFinite())
+    throw Error(Errc::not_finite, std::string(what) + ": the vector has a NaN or infinite entry");
 }
 
 void require_same(const Set& X, const Set& Y, const char* what) {
   if (X.dim() == Y.dim()) return;
-  throw Error(Errc::dimension,
-              std::string(what) + ": dimensions " + std::to_string(X.dim()) + " and " + std::to_string(Y.dim()) + " differ");
+  throw Error(Errc::dimension, std::string(what) + ": dimensions " + std::to_string(X.dim()) +
+                                   " and " + std::to_string(Y.dim()) + " differ");
 }
 
 /// Must answers hold for the numbers as stored?
@@ -50,10 +52,13 @@ Answer Set::contains(VectorIn x, Certificate* why) const {
 Answer Set::is_subset_of(const Set& other, Certificate* why) const {
   require_same(*this, other, "is_subset_of");
   if (this == &other) return Answer::yes;
-  const Answer answer = is_outward(*this) || is_outward(other) ? outward::is_subset(line_form(), other.line_form(), why)
-                                                               : is_subset(line_form(), other.line_form(), why);
-  // `yes` needs an exact right-hand side, `no` an exact left-hand side; an outer form of the other one only strengthens it
-  if (answer == Answer::yes && !other.exact_exchange() && is_empty() != Answer::yes) return Answer::unknown;
+  const Answer answer = is_outward(*this) || is_outward(other)
+                            ? outward::is_subset(line_form(), other.line_form(), why)
+                            : is_subset(line_form(), other.line_form(), why);
+  // `yes` needs an exact right-hand side, `no` an exact left-hand side; an outer form of the other
+  // one only strengthens it
+  if (answer == Answer::yes && !other.exact_exchange() && is_empty() != Answer::yes)
+    return Answer::unknown;
   if (answer == Answer::no && !exact_exchange()) return Answer::unknown;
   return answer;
 }
@@ -113,11 +118,13 @@ Answer Set::do_is_bounded() const {
 }
 
 double Set::do_support(VectorIn d, Certificate* why) const {
-  return is_outward(*this) ? outward::support(do_line_form(), d, why) : cordon::support(do_line_form(), d, why);
+  return is_outward(*this) ? outward::support(do_line_form(), d, why)
+                           : cordon::support(do_line_form(), d, why);
 }
 
 Box Set::do_interval_hull(std::vector<Certificate>* why) const {
-  return is_outward(*this) ? outward::interval_hull(do_line_form(), why) : cordon::interval_hull(do_line_form(), why);
+  return is_outward(*this) ? outward::interval_hull(do_line_form(), why)
+                           : cordon::interval_hull(do_line_form(), why);
 }
 
 }  // namespace cordon

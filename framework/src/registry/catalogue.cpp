@@ -9,11 +9,15 @@ namespace cordon::registry {
 
 namespace {
 
-void check_schema(const std::string& component, const ParamSchema& schema, std::vector<std::string>& problems) {
+void check_schema(const std::string& component, const ParamSchema& schema,
+                  std::vector<std::string>& problems) {
   for (const ParamSpec& spec : schema.specs()) {
     if (!is_snake_case(spec.name))
-      problems.push_back(fmt::format("parameter \"{}\" of {} is not in snake_case", spec.name, component));
-    if (spec.doc.empty()) problems.push_back(fmt::format("parameter \"{}\" of {} is not documented", spec.name, component));
+      problems.push_back(
+          fmt::format("parameter \"{}\" of {} is not in snake_case", spec.name, component));
+    if (spec.doc.empty())
+      problems.push_back(
+          fmt::format("parameter \"{}\" of {} is not documented", spec.name, component));
   }
 }
 
@@ -35,7 +39,8 @@ void Catalogue::remove(std::string_view plugin) {
 }
 
 template <class Entry>
-void Batch::add(Shelf<Entry>& mine, const Shelf<Entry>& known, const std::string& kind, Entry entry) {
+void Batch::add(Shelf<Entry>& mine, const Shelf<Entry>& known, const std::string& kind,
+                Entry entry) {
   const std::string component = kind + " \"" + entry.info.name + "\"";
   if (!is_snake_case(entry.info.name)) problems_.push_back(component + " is not in snake_case");
   if (entry.info.summary.empty()) problems_.push_back(component + " has no summary");
@@ -44,7 +49,8 @@ void Batch::add(Shelf<Entry>& mine, const Shelf<Entry>& known, const std::string
   if (mine.count(entry.info.name)) problems_.push_back(component + " is registered twice");
   if (const auto other = known.find(entry.info.name); other != known.end()) {
     left_out_.push_back(component + " is there already, from " +
-                        (other->second.plugin.empty() ? "this program itself" : "plugin \"" + other->second.plugin + "\""));
+                        (other->second.plugin.empty() ? "this program itself"
+                                                      : "plugin \"" + other->second.plugin + "\""));
     return;
   }
   components_.push_back(kind + " " + entry.info.name);
@@ -52,13 +58,23 @@ void Batch::add(Shelf<Entry>& mine, const Shelf<Entry>& known, const std::string
   mine.emplace(std::move(name), Provided<Entry>{std::move(entry), plugin_});
 }
 
-void Batch::backend(BackendEntry entry) { add(mine_.backends, known_.backends, "backend", std::move(entry)); }
-void Batch::observer(ObserverEntry entry) { add(mine_.observers, known_.observers, "observer", std::move(entry)); }
-void Batch::metric(MetricEntry entry) { add(mine_.metrics, known_.metrics, "metric", std::move(entry)); }
-void Batch::diagnoser(DiagnoserEntry entry) { add(mine_.diagnosers, known_.diagnosers, "diagnoser", std::move(entry)); }
+void Batch::backend(BackendEntry entry) {
+  add(mine_.backends, known_.backends, "backend", std::move(entry));
+}
+void Batch::observer(ObserverEntry entry) {
+  add(mine_.observers, known_.observers, "observer", std::move(entry));
+}
+void Batch::metric(MetricEntry entry) {
+  add(mine_.metrics, known_.metrics, "metric", std::move(entry));
+}
+void Batch::diagnoser(DiagnoserEntry entry) {
+  add(mine_.diagnosers, known_.diagnosers, "diagnoser", std::move(entry));
+}
 void Batch::plant(PlantEntry entry) { add(mine_.plants, known_.plants, "plant", std::move(entry)); }
 void Batch::gain(GainEntry entry) { add(mine_.gains, known_.gains, "gain", std::move(entry)); }
-void Batch::designer(DesignerEntry entry) { add(mine_.designers, known_.designers, "designer", std::move(entry)); }
+void Batch::designer(DesignerEntry entry) {
+  add(mine_.designers, known_.designers, "designer", std::move(entry));
+}
 
 void Batch::commit(Catalogue& catalogue) {
   catalogue.backends.merge(mine_.backends);

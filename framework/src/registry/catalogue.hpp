@@ -31,7 +31,8 @@ struct Catalogue {
   void remove(std::string_view plugin);
 };
 
-/// Collects what one plugin registers. Nothing reaches the catalogue before `commit`, so rolling back is dropping the batch.
+/// Collects what one plugin registers. Nothing reaches the catalogue before `commit`, so rolling
+/// back is dropping the batch.
 class Batch final : public Registrar {
  public:
   Batch(const Catalogue& known, std::string plugin) : known_(known), plugin_(std::move(plugin)) {}
@@ -44,9 +45,14 @@ class Batch final : public Registrar {
   void gain(GainEntry entry) override;
   void designer(DesignerEntry entry) override;
 
-  const std::vector<std::string>& problems() const { return problems_; }      ///< broken rules; none: may be committed
-  const std::vector<std::string>& components() const { return components_; }  ///< "backend zonotope", …
-  /// Components whose names somebody else has, with the reason: they are no part of what is committed.
+  const std::vector<std::string>& problems() const {
+    return problems_;
+  }  ///< broken rules; none: may be committed
+  const std::vector<std::string>& components() const {
+    return components_;
+  }  ///< "backend zonotope", …
+  /// Components whose names somebody else has, with the reason: they are no part of what is
+  /// committed.
   const std::vector<std::string>& left_out() const { return left_out_; }
   void commit(Catalogue& catalogue);
 

@@ -57,7 +57,8 @@ std::string tag_differences(const std::string& ours, const std::string& theirs) 
   };
   for (const auto& [key, value] : here) {
     const auto other = there.find(key);
-    if (other == there.end() || other->second != value) differ(key, value, other == there.end() ? "absent" : other->second);
+    if (other == there.end() || other->second != value)
+      differ(key, value, other == there.end() ? "absent" : other->second);
   }
   for (const auto& [key, value] : there) {
     if (!here.count(key)) differ(key, "absent", value);
@@ -69,7 +70,8 @@ bool is_snake_case(std::string_view name) {
   if (name.empty() || name.front() < 'a' || name.front() > 'z' || name.back() == '_') return false;
   char before = 'a';
   for (const char c : name) {
-    const bool allowed = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || (c == '_' && before != '_');
+    const bool allowed =
+        (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || (c == '_' && before != '_');
     if (!allowed) return false;
     before = c;
   }
@@ -80,36 +82,44 @@ std::optional<Refusal> read_descriptor(const ElfFile& file, PluginDescriptor& de
   const std::string_view there = file.exported(descriptor_symbol);
   if (there.empty()) {
     return Refusal{fmt::format("it exports no symbol {}: not a Cordon plugin", descriptor_symbol),
-                   "write CORDON_PLUGIN(...) in it and build it with cordon_add_plugin, or move it out of the plugin directory"};
+                   "write CORDON_PLUGIN(...) in it and build it with cordon_add_plugin, or move it "
+                   "out of the plugin directory"};
   }
   descriptor = {};
   constexpr std::size_t head = offsetof(PluginDescriptor, abi_tag);
   std::memcpy(&descriptor, there.data(), std::min(there.size(), head));
   if (descriptor.abi_version != CORDON_ABI_VERSION) {
-    return Refusal{fmt::format("it was built for plugin ABI {}, this is {}", descriptor.abi_version, CORDON_ABI_VERSION),
+    return Refusal{fmt::format("it was built for plugin ABI {}, this is {}", descriptor.abi_version,
+                               CORDON_ABI_VERSION),
                    rebuild};
   }
   if (descriptor.size != sizeof descriptor || there.size() < sizeof descriptor) {
     const std::size_t size = std::min<std::size_t>(descriptor.size, there.size());
-    return Refusal{fmt::format("its descriptor has {} bytes, must have {}", size, sizeof descriptor), rebuild};
+    return Refusal{
+        fmt::format("its descriptor has {} bytes, must have {}", size, sizeof descriptor), rebuild};
   }
   std::memcpy(&descriptor, there.data(), sizeof descriptor);
   std::string missing;
   for (const Text& text : texts(descriptor)) {
-    if (!text.is_sound()) return Refusal{fmt::format("the text \"{}\" of its descriptor is damaged", text.name), rebuild};
+    if (!text.is_sound())
+      return Refusal{fmt::format("the text \"{}\" of its descriptor is damaged", text.name),
+                     rebuild};
     if (text.is_empty()) missing += (missing.empty() ? "" : ", ") + std::string(text.name);
   }
-  if (!missing.empty()) return Refusal{"its descriptor lacks " + missing, "fill in every field of CORDON_PLUGIN(...)"};
+  if (!missing.empty())
+    return Refusal{"its descriptor lacks " + missing, "fill in every field of CORDON_PLUGIN(...)"};
   return {};
 }
 
 std::optional<Refusal> check_descriptor(const PluginDescriptor& d) {
   if (std::strcmp(d.abi_tag, CORDON_ABI_TAG) != 0) {
-    return Refusal{"it was built in a way that does not fit this program (" + tag_differences(CORDON_ABI_TAG, d.abi_tag) + ")",
+    return Refusal{"it was built in a way that does not fit this program (" +
+                       tag_differences(CORDON_ABI_TAG, d.abi_tag) + ")",
                    rebuild};
   }
   if (!is_snake_case(d.name)) {
-    return Refusal{fmt::format("its plugin name \"{}\" is not in snake_case", d.name), "rename it in CORDON_PLUGIN(...)"};
+    return Refusal{fmt::format("its plugin name \"{}\" is not in snake_case", d.name),
+                   "rename it in CORDON_PLUGIN(...)"};
   }
   return {};
 }

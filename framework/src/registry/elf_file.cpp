@@ -20,19 +20,25 @@ using Header = ElfW(Ehdr);  // of the class (32 or 64 bits) that this program wa
 
 constexpr std::uintmax_t largest_library = 256u << 20;  // bytes
 constexpr const char* copy_again = "copy or build the library again";
-constexpr const char* not_a_plugin = "move it out of the plugin directory, or build the plugin with cordon_add_plugin";
+constexpr const char* not_a_plugin =
+    "move it out of the plugin directory, or build the plugin with cordon_add_plugin";
 
 std::optional<Refusal> check_kind(const fs::path& file) {
   std::error_code error;
   if (fs::is_symlink(fs::symlink_status(file, error)) && !fs::exists(file, error)) {
-    return Refusal{fmt::format("it is a symbolic link to \"{}\", which does not exist", fs::read_symlink(file, error).string()),
+    return Refusal{fmt::format("it is a symbolic link to \"{}\", which does not exist",
+                               fs::read_symlink(file, error).string()),
                    "mend or remove the link"};
   }
   const fs::file_status status = fs::status(file, error);
-  if (status.type() == fs::file_type::not_found) return Refusal{"there is no such file", "check the path"};
-  if (status.type() == fs::file_type::none) return Refusal{"it cannot be examined: " + error.message(), "check its permissions"};
-  if (status.type() == fs::file_type::directory) return Refusal{"it is a directory, not a library", "rename or remove it"};
-  if (status.type() != fs::file_type::regular) return Refusal{"it is not a regular file", "remove it"};
+  if (status.type() == fs::file_type::not_found)
+    return Refusal{"there is no such file", "check the path"};
+  if (status.type() == fs::file_type::none)
+    return Refusal{"it cannot be examined: " + error.message(), "check its permissions"};
+  if (status.type() == fs::file_type::directory)
+    return Refusal{"it is a directory, not a library", "rename or remove it"};
+  if (status.type() != fs::file_type::regular)
+    return Refusal{"it is not a regular file", "remove it"};
   return {};
 }
 
@@ -51,15 +57,20 @@ std::optional<Refusal> check_header(const Header& header) {
   Header own{};
   const bool known = own_header(own);
   if (known && header.e_ident[EI_CLASS] != own.e_ident[EI_CLASS]) {
-    return Refusal{"it is a library for a different word size (32 or 64 bits)", "build the plugin for this machine"};
+    return Refusal{"it is a library for a different word size (32 or 64 bits)",
+                   "build the plugin for this machine"};
   }
-  if (known && (header.e_ident[EI_DATA] != own.e_ident[EI_DATA] || header.e_machine != own.e_machine)) {
+  if (known &&
+      (header.e_ident[EI_DATA] != own.e_ident[EI_DATA] || header.e_machine != own.e_machine)) {
     return Refusal{
-        fmt::format("it is built for another processor (ELF machine {}, this program has {})", header.e_machine, own.e_machine),
+        fmt::format("it is built for another processor (ELF machine {}, this program has {})",
+                    header.e_machine, own.e_machine),
         "build the plugin for this machine"};
   }
-  if (header.e_type != ET_DYN) return Refusal{"it is an ELF file but no shared library", not_a_plugin};
-  if (header.e_phnum == 0 || header.e_phnum == PN_XNUM || header.e_phentsize != sizeof(ElfW(Phdr))) {
+  if (header.e_type != ET_DYN)
+    return Refusal{"it is an ELF file but no shared library", not_a_plugin};
+  if (header.e_phnum == 0 || header.e_phnum == PN_XNUM ||
+      header.e_phentsize != sizeof(ElfW(Phdr))) {
     return Refusal{"its ELF header is damaged", copy_again};
   }
   return {};
@@ -72,9 +83,12 @@ std::optional<Refusal> read_whole(const fs::path& file, std::string& bytes) {
   if (error) return Refusal{"it cannot be examined: " + error.message(), "check its permissions"};
   if (size == 0) return Refusal{"it is empty", copy_again};
   if (size > largest_library)
-    return Refusal{fmt::format("it has {} bytes, at most {} are read", size, largest_library), not_a_plugin};
+    return Refusal{fmt::format("it has {} bytes, at most {} are read", size, largest_library),
+                   not_a_plugin};
   std::ifstream in(file, std::ios::binary);
-  if (!in) return Refusal{fmt::format("it cannot be read: {}", std::strerror(errno)), "check its permissions"};
+  if (!in)
+    return Refusal{fmt::format("it cannot be read: {}", std::strerror(errno)),
+                   "check its permissions"};
   bytes.resize(size);
   in.read(bytes.data(), static_cast<std::streamsize>(size));
   if (in.bad()) return Refusal{"it cannot be read", "check the disk"};
@@ -88,12 +102,17 @@ std::uint32_t gnu_hash(std::string_view name) {
   return hash;
 }
 
-/// The beginning of a table of hashed names: a filter, `buckets` numbers of symbols and the chains that start there follow.
+/// The beginning of a table of hashed names: a filter, `buckets` numbers of symbols and the chains
+/// that start there follow.
 struct GnuHash {
   std::uint32_t buckets, first, filter_words, filter_shift;
 
-  ElfW(Addr) first_bucket(ElfW(Addr) table) const { return table + sizeof(GnuHash) + filter_words * sizeof(ElfW(Addr)); }
-  ElfW(Addr) first_chain(ElfW(Addr) table) const { return first_bucket(table) + ElfW(Addr){4} * buckets; }
+  ElfW(Addr) first_bucket(ElfW(Addr) table) const {
+    return table + sizeof(GnuHash) + filter_words * sizeof(ElfW(Addr));
+  }
+  ElfW(Addr) first_chain(ElfW(Addr) table) const {
+    return first_bucket(table) + ElfW(Addr){4} * buckets;
+  }
 };
 
 std::uint64_t symbol_of(ElfW(Xword) info) {
@@ -108,63 +127,78 @@ std::uint64_t symbol_of(ElfW(Xword) info) {
 
 std::optional<Refusal> ElfFile::read(const fs::path& file) {
   if (auto refusal = read_whole(file, bytes_)) return refusal;
-  if (bytes_.compare(0, SELFMAG, ELFMAG) != 0) return Refusal{"it is not a shared library (no ELF file)", not_a_plugin};
+  if (bytes_.compare(0, SELFMAG, ELFMAG) != 0)
+    return Refusal{"it is not a shared library (no ELF file)", not_a_plugin};
   Header header{};
   if (bytes_.size() < sizeof header) {
-    return Refusal{fmt::format("it is truncated: {} bytes are less than an ELF header", bytes_.size()), copy_again};
+    return Refusal{
+        fmt::format("it is truncated: {} bytes are less than an ELF header", bytes_.size()),
+        copy_again};
   }
   std::memcpy(&header, bytes_.data(), sizeof header);
   if (auto refusal = check_header(header)) return refusal;
   if (auto refusal = check_extent(header)) return refusal;
-  if (!read_dynamic() || !symbols_are_sound() || !relocations_are_sound()) return Refusal{"its tables are damaged", copy_again};
+  if (!read_dynamic() || !symbols_are_sound() || !relocations_are_sound())
+    return Refusal{"its tables are damaged", copy_again};
   return {};
 }
 
 std::optional<Refusal> ElfFile::check_extent(const Header& header) {
   const std::uint64_t size = bytes_.size();
-  const Refusal truncated{fmt::format("it is truncated: {} bytes do not hold what its ELF header announces", size), copy_again};
+  const Refusal truncated{
+      fmt::format("it is truncated: {} bytes do not hold what its ELF header announces", size),
+      copy_again};
   if (!fits(header.e_phoff, header.e_phnum, header.e_phentsize, size)) return truncated;
-  if (header.e_shoff != 0 && !fits(header.e_shoff, header.e_shnum, header.e_shentsize, size)) return truncated;
+  if (header.e_shoff != 0 && !fits(header.e_shoff, header.e_shnum, header.e_shentsize, size))
+    return truncated;
   segments_.resize(header.e_phnum);
   std::memcpy(segments_.data(), bytes_.data() + header.e_phoff, segments_.size() * sizeof(Segment));
   for (const Segment& segment : segments_) {
-    if (segment.p_type != PT_NULL && !fits(segment.p_offset, segment.p_filesz, 1, size)) return truncated;
+    if (segment.p_type != PT_NULL && !fits(segment.p_offset, segment.p_filesz, 1, size))
+      return truncated;
     if (!is_loaded(segment)) return Refusal{"its program headers are damaged", copy_again};
   }
   if (!segments_are_apart()) return Refusal{"its program headers are damaged", copy_again};
   return {};
 }
 
-/// Loaded parts come in the order of their addresses and share no page: where one reaches into the next, or beyond what is
-/// reserved for all, it depends on the addresses of a process what is overwritten.
+/// Loaded parts come in the order of their addresses and share no page: where one reaches into the
+/// next, or beyond what is reserved for all, it depends on the addresses of a process what is
+/// overwritten.
 bool ElfFile::segments_are_apart() const {
   constexpr Address page = 1u << 12;
   Address end = 0;
   for (const Segment& s : segments_) {
     if (s.p_type != PT_LOAD) continue;
-    const bool aligned = s.p_align >= page && (s.p_align & (s.p_align - 1)) == 0 && (s.p_vaddr - s.p_offset) % s.p_align == 0;
+    const bool aligned = s.p_align >= page && (s.p_align & (s.p_align - 1)) == 0 &&
+                         (s.p_vaddr - s.p_offset) % s.p_align == 0;
     if (!aligned || s.p_vaddr / page * page < end || s.p_vaddr > largest_library) return false;
     end = (s.p_vaddr + s.p_memsz + page - 1) / page * page;
   }
   return true;
 }
 
-/// What a header describes must lie in memory that is loaded: tables for exceptions among it, which are read when one is thrown.
+/// What a header describes must lie in memory that is loaded: tables for exceptions among it, which
+/// are read when one is thrown.
 bool ElfFile::is_loaded(const Segment& part) const {
   constexpr Address page = 1u << 16;  // the largest in use; a part may end with its page
-  if (part.p_type == PT_LOAD) return part.p_memsz >= part.p_filesz && part.p_memsz <= largest_library;
+  if (part.p_type == PT_LOAD)
+    return part.p_memsz >= part.p_filesz && part.p_memsz <= largest_library;
   if (part.p_type == PT_NULL || part.p_type == PT_GNU_STACK || part.p_memsz == 0) return true;
   return std::any_of(segments_.begin(), segments_.end(), [&](const Segment& s) {
     return s.p_type == PT_LOAD && part.p_vaddr >= s.p_vaddr &&
            fits(part.p_vaddr - s.p_vaddr, part.p_memsz, 1, s.p_memsz + page) &&
-           (part.p_type == PT_GNU_RELRO || part.p_filesz == 0 || part.p_vaddr - s.p_vaddr == part.p_offset - s.p_offset);
+           (part.p_type == PT_GNU_RELRO || part.p_filesz == 0 ||
+            part.p_vaddr - s.p_vaddr == part.p_offset - s.p_offset);
   });
 }
 
 /// What stands in the file at an address, to the end of its segment.
 std::string_view ElfFile::at(Address address) const {
   for (const Segment& segment : segments_) {
-    if (segment.p_type != PT_LOAD || address < segment.p_vaddr || address - segment.p_vaddr >= segment.p_filesz) continue;
+    if (segment.p_type != PT_LOAD || address < segment.p_vaddr ||
+        address - segment.p_vaddr >= segment.p_filesz)
+      continue;
     const Address into = address - segment.p_vaddr;
     return std::string_view(bytes_).substr(segment.p_offset + into, segment.p_filesz - into);
   }
@@ -198,14 +232,17 @@ bool ElfFile::read_dynamic() {
       dynamic_[entry->d_tag] = entry->d_un.d_val;
     }
   }
-  if (!dynamic(DT_SYMTAB) || dynamic(DT_SYMENT) != sizeof(Symbol) || !dynamic(DT_STRTAB) || !dynamic(DT_STRSZ)) return false;
+  if (!dynamic(DT_SYMTAB) || dynamic(DT_SYMENT) != sizeof(Symbol) || !dynamic(DT_STRTAB) ||
+      !dynamic(DT_STRSZ))
+    return false;
   const std::string_view strings = at(*dynamic(DT_STRTAB));
   const Address size = *dynamic(DT_STRSZ);
   if (size == 0 || size > strings.size() || strings[size - 1] != '\0') return false;
   return std::all_of(names.begin(), names.end(), [&](Address name) { return name < size; });
 }
 
-/// Those that can be found by name, and what stands before them. Nothing where the hash table does not lie within the file.
+/// Those that can be found by name, and what stands before them. Nothing where the hash table does
+/// not lie within the file.
 std::optional<std::uint64_t> ElfFile::symbol_count() const {
   if (const auto older = dynamic(DT_HASH)) {
     const auto chains = get<std::uint32_t>(*older + 4);
@@ -213,12 +250,14 @@ std::optional<std::uint64_t> ElfFile::symbol_count() const {
   }
   const auto table = dynamic(DT_GNU_HASH);
   const auto head = table ? get<GnuHash>(*table) : std::nullopt;
-  const bool is_whole = head && head->filter_words != 0 && (head->filter_words & (head->filter_words - 1)) == 0 &&
+  const bool is_whole = head && head->filter_words != 0 &&
+                        (head->filter_words & (head->filter_words - 1)) == 0 &&
                         fits(head->first_bucket(0), head->buckets, 4, at(*table).size());
   if (!is_whole) return std::nullopt;
   std::uint64_t last = 0;
   for (std::uint32_t i = 0; i < head->buckets; ++i) {
-    const std::uint32_t first = get<std::uint32_t>(head->first_bucket(*table) + Address{4} * i).value_or(1);
+    const std::uint32_t first =
+        get<std::uint32_t>(head->first_bucket(*table) + Address{4} * i).value_or(1);
     if (first != 0 && first < head->first) return std::nullopt;
     last = std::max<std::uint64_t>(last, first);
   }
@@ -230,7 +269,8 @@ std::optional<std::uint64_t> ElfFile::symbol_count() const {
   }
 }
 
-/// The versions that are needed and defined have numbers below this one. Nothing where their lists leave the file.
+/// The versions that are needed and defined have numbers below this one. Nothing where their lists
+/// leave the file.
 std::optional<std::uint64_t> ElfFile::version_count() const {
   constexpr std::size_t most = 10'000;  // records that stand in a circle end here
   std::uint64_t count = 2;              // local and global
@@ -240,7 +280,8 @@ std::optional<std::uint64_t> ElfFile::version_count() const {
   Address next = dynamic(DT_VERNEED).value_or(0);
   while (next != 0) {
     const auto library = get<ElfW(Verneed)>(next);
-    if (!library || library->vn_version != VER_NEED_CURRENT || library->vn_file >= names) return std::nullopt;
+    if (!library || library->vn_version != VER_NEED_CURRENT || library->vn_file >= names)
+      return std::nullopt;
     Address part = next + library->vn_aux;
     for (bool more = true; more;) {
       const auto version = get<ElfW(Vernaux)>(part);
@@ -284,13 +325,14 @@ bool ElfFile::symbols_are_sound() {
 
 bool ElfFile::is_writable(Address address) const {
   return std::any_of(segments_.begin(), segments_.end(), [&](const Segment& s) {
-    return s.p_type == PT_LOAD && (s.p_flags & PF_W) && address >= s.p_vaddr && s.p_memsz >= sizeof(Address) &&
-           address - s.p_vaddr <= s.p_memsz - sizeof(Address);
+    return s.p_type == PT_LOAD && (s.p_flags & PF_W) && address >= s.p_vaddr &&
+           s.p_memsz >= sizeof(Address) && address - s.p_vaddr <= s.p_memsz - sizeof(Address);
   });
 }
 
 /// One table of relocations: each writes into data and refers to a symbol of the file.
-bool ElfFile::table_is_sound(std::int64_t address_tag, std::int64_t size_tag, std::uint64_t entry) const {
+bool ElfFile::table_is_sound(std::int64_t address_tag, std::int64_t size_tag,
+                             std::uint64_t entry) const {
   if (!dynamic(address_tag)) return true;
   const auto size = dynamic(size_tag);
   const std::string_view table = at(*dynamic(address_tag));
@@ -306,24 +348,30 @@ bool ElfFile::table_is_sound(std::int64_t address_tag, std::int64_t size_tag, st
 
 bool ElfFile::relocations_are_sound() const {
   const bool addends = dynamic(DT_PLTREL).value_or(DT_RELA) == DT_RELA;
-  return table_is_sound(DT_RELA, DT_RELASZ, sizeof(ElfW(Rela))) && table_is_sound(DT_REL, DT_RELSZ, sizeof(ElfW(Rel))) &&
+  return table_is_sound(DT_RELA, DT_RELASZ, sizeof(ElfW(Rela))) &&
+         table_is_sound(DT_REL, DT_RELSZ, sizeof(ElfW(Rel))) &&
          table_is_sound(DT_JMPREL, DT_PLTRELSZ, addends ? sizeof(ElfW(Rela)) : sizeof(ElfW(Rel)));
 }
 
 /// The symbol of this number, if it is defined and has this name.
-std::optional<ElfFile::Symbol> ElfFile::defined_as(std::string_view name, std::uint64_t index) const {
+std::optional<ElfFile::Symbol> ElfFile::defined_as(std::string_view name,
+                                                   std::uint64_t index) const {
   const auto symbol = get<Symbol>(*dynamic(DT_SYMTAB) + index * sizeof(Symbol));
-  if (!symbol || symbol->st_shndx == SHN_UNDEF || symbol->st_name >= *dynamic(DT_STRSZ)) return std::nullopt;
+  if (!symbol || symbol->st_shndx == SHN_UNDEF || symbol->st_name >= *dynamic(DT_STRSZ))
+    return std::nullopt;
   const std::string_view text = at(*dynamic(DT_STRTAB)).substr(symbol->st_name);
-  if (text.size() <= name.size() || !text.starts_with(name) || text[name.size()] != '\0') return std::nullopt;
+  if (text.size() <= name.size() || !text.starts_with(name) || text[name.size()] != '\0')
+    return std::nullopt;
   return symbol;
 }
 
-std::optional<ElfFile::Symbol> ElfFile::find_by_gnu_hash(Address table, std::string_view name) const {
+std::optional<ElfFile::Symbol> ElfFile::find_by_gnu_hash(Address table,
+                                                         std::string_view name) const {
   const auto head = get<GnuHash>(table);
   if (!head || head->buckets == 0) return std::nullopt;
   const std::uint32_t hash = gnu_hash(name);
-  const auto first = get<std::uint32_t>(head->first_bucket(table) + Address{4} * (hash % head->buckets));
+  const auto first =
+      get<std::uint32_t>(head->first_bucket(table) + Address{4} * (hash % head->buckets));
   if (!first || *first < head->first) return std::nullopt;
   for (std::uint64_t index = *first;; ++index) {
     const auto link = get<std::uint32_t>(head->first_chain(table) + 4 * (index - head->first));
@@ -336,8 +384,10 @@ std::optional<ElfFile::Symbol> ElfFile::find_by_gnu_hash(Address table, std::str
 }
 
 std::optional<ElfFile::Symbol> ElfFile::find_by_hash(Address table, std::string_view name) const {
-  const auto symbols = get<std::uint32_t>(table + 4);  // of the two sizes in front, that of the chains
-  for (std::uint64_t index = 0; symbols && index < *symbols && get<Symbol>(*dynamic(DT_SYMTAB) + index * sizeof(Symbol));
+  const auto symbols =
+      get<std::uint32_t>(table + 4);  // of the two sizes in front, that of the chains
+  for (std::uint64_t index = 0;
+       symbols && index < *symbols && get<Symbol>(*dynamic(DT_SYMTAB) + index * sizeof(Symbol));
        ++index) {
     if (const auto symbol = defined_as(name, index)) return symbol;
   }

@@ -19,15 +19,17 @@ namespace cordon::registry {
 /// The whole file in memory, and the tables by which the loader finds its way in it.
 class ElfFile {
  public:
-  /// Reads the file. Refused, and of no further use, unless it is a regular, readable ELF shared object of this machine whose
-  /// segments and tables lie within it, with relocations that write into its own data only, and symbols that have a name and a
-  /// version. The loader checks none of that: it dies of SIGBUS on a truncated library, writes wherever a damaged relocation
-  /// leads, and takes whatever stands behind the table of versions for one. O(bytes).
+  /// Reads the file. Refused, and of no further use, unless it is a regular, readable ELF shared
+  /// object of this machine whose segments and tables lie within it, with relocations that write
+  /// into its own data only, and symbols that have a name and a version. The loader checks none of
+  /// that: it dies of SIGBUS on a truncated library, writes wherever a damaged relocation leads,
+  /// and takes whatever stands behind the table of versions for one. O(bytes).
   std::optional<Refusal> read(const std::filesystem::path& file);
 
   const std::string& bytes() const { return bytes_; }
-  /// What stands in the file at an object that the library defines and exports (pointers among it are not relocated); nothing if
-  /// it exports no such object, or none that lies within the file. Found by the hash table that the loader uses.
+  /// What stands in the file at an object that the library defines and exports (pointers among it
+  /// are not relocated); nothing if it exports no such object, or none that lies within the file.
+  /// Found by the hash table that the loader uses.
   std::string_view exported(std::string_view symbol) const;
 
  private:

@@ -12,9 +12,9 @@ namespace cordon::registry {
 class Library;
 using LibraryPtr = std::shared_ptr<const Library>;
 
-/// Opens a library with all its symbols resolved. `file` is absolute: nothing is searched. Null, and the loader's words in `why`,
-/// if the loader refuses. The library's static constructors run here; one that throws ends the process, since exceptions do not
-/// pass the loader (trial.hpp).
+/// Opens a library with all its symbols resolved. `file` is absolute: nothing is searched. Null,
+/// and the loader's words in `why`, if the loader refuses. The library's static constructors run
+/// here; one that throws ends the process, since exceptions do not pass the loader (trial.hpp).
 LibraryPtr open_library(const std::filesystem::path& file, std::string& why);
 
 /// Address of a symbol defined in this very library (not in one it depends on), or null.

@@ -22,7 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t largest_library = 256u << 20;  // bytes; anything larger is no plugin that is worth reading for a name
+constexpr std::uintmax_t largest_library =
+    256u << 20;  // bytes; anything larger is no plugin that is worth reading for a name
 
 std::optional<Refusal> register_into(Batch& batch, const PluginDescriptor& descriptor) {
   const std::string fix = fmt::format("report it to the plugin's author, {}", descriptor.author);
@@ -34,18 +35,22 @@ std::optional<Refusal> register_into(Batch& batch, const PluginDescriptor& descr
     return Refusal{"it threw something that is no std::exception while registering", fix};
   }
   if (batch.problems().empty()) return {};
-  return Refusal{fmt::format("it broke the rules of registering: {}", fmt::join(batch.problems(), "; ")),
-                 "mend what the plugin registers: snake_case names, each once, with a summary and documentation"};
+  return Refusal{
+      fmt::format("it broke the rules of registering: {}", fmt::join(batch.problems(), "; ")),
+      "mend what the plugin registers: snake_case names, each once, with a summary and "
+      "documentation"};
 }
 
-/// Another plugin of the same name was there first: shadowed, or a contradiction within one directory.
+/// Another plugin of the same name was there first: shadowed, or a contradiction within one
+/// directory.
 bool is_taken(PluginReport& report, const LoadedPlugins& plugins) {
   const auto taken = plugins.find(report.name);
   if (taken == plugins.end()) return false;
   const fs::path& other = taken->second.file;
   if (other.parent_path() == report.file.parent_path()) {
     report.state = PluginReport::State::refused;
-    report.reason = fmt::format("{} in the same directory has the same plugin name \"{}\"", other.string(), report.name);
+    report.reason = fmt::format("{} in the same directory has the same plugin name \"{}\"",
+                                other.string(), report.name);
     report.fix = "remove one of the two files, or rename one of the plugins in CORDON_PLUGIN(...)";
   } else {
     report.state = PluginReport::State::shadowed;
@@ -67,18 +72,24 @@ struct Opened {
   const PluginDescriptor* descriptor = nullptr;
 };
 
-/// Opens the library, whose descriptor in the file is `announced`; here code of the plugin runs for the first time.
-std::optional<Refusal> open(const fs::path& file, const PluginDescriptor& announced, Opened& opened) {
+/// Opens the library, whose descriptor in the file is `announced`; here code of the plugin runs for
+/// the first time.
+std::optional<Refusal> open(const fs::path& file, const PluginDescriptor& announced,
+                            Opened& opened) {
   std::string why;
   opened.library = open_library(file, why);
   if (!opened.library)
-    return Refusal{"the loader refused it: " + why, "rebuild the plugin against this installation, with every library it needs"};
-  opened.descriptor = static_cast<const PluginDescriptor*>(find_symbol(*opened.library, descriptor_symbol));
+    return Refusal{"the loader refused it: " + why,
+                   "rebuild the plugin against this installation, with every library it needs"};
+  opened.descriptor =
+      static_cast<const PluginDescriptor*>(find_symbol(*opened.library, descriptor_symbol));
   constexpr std::size_t texts = offsetof(PluginDescriptor, register_components);
   if (!opened.descriptor || std::memcmp(opened.descriptor, &announced, texts) != 0)
-    return Refusal{"its descriptor is not the one that its file holds", "copy or build the library again"};
+    return Refusal{"its descriptor is not the one that its file holds",
+                   "copy or build the library again"};
   if (!opened.descriptor->register_components)
-    return Refusal{"its descriptor lacks register_components", "fill in every field of CORDON_PLUGIN(...)"};
+    return Refusal{"its descriptor lacks register_components",
+                   "fill in every field of CORDON_PLUGIN(...)"};
   return {};
 }
 
@@ -87,9 +98,11 @@ bool is_shipped(const fs::path& file) {
   return std::find(own.begin(), own.end(), file.parent_path()) != own.end();
 }
 
-/// What becomes of a process that opens the library, lets it register and closes it again. What such a process cannot open, this
-/// one does not try: it has less memory, and a library that asks for all of it would end whoever has more.
-std::optional<Refusal> try_out(const fs::path& file, const ElfFile& elf, const PluginDescriptor& announced) {
+/// What becomes of a process that opens the library, lets it register and closes it again. What
+/// such a process cannot open, this one does not try: it has less memory, and a library that asks
+/// for all of it would end whoever has more.
+std::optional<Refusal> try_out(const fs::path& file, const ElfFile& elf,
+                               const PluginDescriptor& announced) {
   const FileIdentity identity(file, elf.bytes());
   if (auto known = recall(identity)) return known->refusal;
   Trial trial = try_in_child([&] {
@@ -101,8 +114,9 @@ std::optional<Refusal> try_out(const fs::path& file, const ElfFile& elf, const P
     register_into(batch, *opened.descriptor);  // what breaks a rule is found again, with its place
     return refusal;
   });
-  // A damaged library may do well at some addresses and crash at others: what a child of this process survives, this process
-  // does, and not the next one. Only refusals last, and what is said of the plugins that came with the program.
+  // A damaged library may do well at some addresses and crash at others: what a child of this
+  // process survives, this process does, and not the next one. Only refusals last, and what is said
+  // of the plugins that came with the program.
   if (trial.repeats) remember(identity, {trial.refusal}, trial.refusal || is_shipped(file));
   return trial.refusal;
 }
@@ -148,13 +162,18 @@ PluginReport load_plugin(const fs::path& file, LoadedPlugins& plugins, Catalogue
 
 bool file_holds_name(const fs::path& file, std::string_view name) {
   std::error_code error;
-  if (name.empty() || !fs::is_regular_file(file, error) || fs::file_size(file, error) > largest_library) return false;
+  if (name.empty() || !fs::is_regular_file(file, error) ||
+      fs::file_size(file, error) > largest_library)
+    return false;
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  const auto is_word = [](char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)); };
+  const auto is_word = [](char c) {
+    return c == '_' || std::isalnum(static_cast<unsigned char>(c));
+  };
   for (std::size_t at = bytes.find(name); at != std::string::npos; at = bytes.find(name, at + 1)) {
     const std::size_t after = at + name.size();
-    if ((at == 0 || !is_word(bytes[at - 1])) && (after == bytes.size() || !is_word(bytes[after]))) return true;
+    if ((at == 0 || !is_word(bytes[at - 1])) && (after == bytes.size() || !is_word(bytes[after])))
+      return true;
   }
   return false;
 }

@@ -62,7 +62,8 @@ auto guarded(const std::string& plugin, const std::string& component, Call&& cal
   }
 }
 
-/// The control block is made here and pins the library: the last code of a plugin that runs is the object's destructor.
+/// The control block is made here and pins the library: the last code of a plugin that runs is the
+/// object's destructor.
 template <class T>
 std::shared_ptr<T> pin(std::unique_ptr<T> made, LibraryPtr library) {
   T* raw = made.release();
@@ -87,13 +88,13 @@ struct Registry::State {
 namespace {
 
 template <class Entry>
-const Provided<Entry>& require(const Registry& registry, const Shelf<Entry>& shelf, const std::string& kind,
-                               std::string_view name) {
+const Provided<Entry>& require(const Registry& registry, const Shelf<Entry>& shelf,
+                               const std::string& kind, std::string_view name) {
   const auto found = shelf.find(name);
   if (found != shelf.end()) return found->second;
   if (const PluginReport* refused = registry.refused_provider(name)) {
-    throw Error(Errc::plugin, fmt::format("no {} \"{}\": {} was refused, {}; {}", kind, name, refused->file.string(),
-                                          refused->reason, refused->fix));
+    throw Error(Errc::plugin, fmt::format("no {} \"{}\": {} was refused, {}; {}", kind, name,
+                                          refused->file.string(), refused->reason, refused->fix));
   }
   const std::string mend = shelf.empty() ? "no plugin provides one" : suggest(name, names(shelf));
   throw Error(Errc::invalid, fmt::format("no {} \"{}\"; {}", kind, name, mend));
@@ -107,14 +108,16 @@ Params completed(const std::string& component, const ParamSchema& schema, Params
 
 /// `create` is called with complete parameters.
 template <class T, class Entry, class Create>
-std::shared_ptr<T> make(const Provided<Entry>& provided, const std::string& kind, const Params& given, LibraryPtr library,
-                        Create&& create) {
+std::shared_ptr<T> make(const Provided<Entry>& provided, const std::string& kind,
+                        const Params& given, LibraryPtr library, Create&& create) {
   const std::string component = fmt::format("{} \"{}\"", kind, provided.entry.info.name);
   const Params params = completed(component, provided.entry.info.schema, given);
-  std::unique_ptr<T> made = guarded(provided.plugin, component, [&] { return create(provided.entry, params); });
+  std::unique_ptr<T> made =
+      guarded(provided.plugin, component, [&] { return create(provided.entry, params); });
   if (!made)
     throw Error(Errc::plugin,
-                fmt::format("{} of plugin \"{}\" was not made: its function returned nothing", component, provided.plugin));
+                fmt::format("{} of plugin \"{}\" was not made: its function returned nothing",
+                            component, provided.plugin));
   return pin(std::move(made), std::move(library));
 }
 
@@ -122,16 +125,19 @@ std::shared_ptr<T> make(const Provided<Entry>& provided, const std::string& kind
 class RegistryFactory final : public Factory {
  public:
   explicit RegistryFactory(const Registry& registry) : registry_(registry) {}
-  std::vector<Diagnostic> check_gain(const ComponentSpec& spec, const GainContext& context) const override {
+  std::vector<Diagnostic> check_gain(const ComponentSpec& spec,
+                                     const GainContext& context) const override {
     return registry_.check_gain(spec.type, context, spec.params);
   }
   std::shared_ptr<const GainDesigner> make_gain(const ComponentSpec& spec) const override {
     return registry_.make_gain(spec.type, spec.params);
   }
-  std::vector<Diagnostic> check_observer(const ComponentSpec& spec, const ObserverContext& context) const override {
+  std::vector<Diagnostic> check_observer(const ComponentSpec& spec,
+                                         const ObserverContext& context) const override {
     return registry_.check_observer(spec.type, context, spec.params);
   }
-  std::shared_ptr<Observer> make_observer(const ComponentSpec& spec, const ObserverContext& context) const override {
+  std::shared_ptr<Observer> make_observer(const ComponentSpec& spec,
+                                          const ObserverContext& context) const override {
     return registry_.make_observer(spec.type, context, spec.params);
   }
 
@@ -139,23 +145,29 @@ class RegistryFactory final : public Factory {
   const Registry& registry_;
 };
 
-/// A model with ranges, given to an observer that would take them for exact values, would give wrong sets in silence.
+/// A model with ranges, given to an observer that would take them for exact values, would give
+/// wrong sets in silence.
 std::vector<Diagnostic> refuse_ranges(const ObserverEntry& entry, const Model& model) {
   std::vector<Diagnostic> problems;
   if (!entry.takes_ranges && model.linear.has_ranges()) {
-    problems.push_back({"/type",
-                        fmt::format("\"{}\" does not take models whose effectiveness is known by a range only", entry.info.name),
-                        "use another observer, or give exact numbers"});
+    problems.push_back(
+        {"/type",
+         fmt::format("\"{}\" does not take models whose effectiveness is known by a range only",
+                     entry.info.name),
+         "use another observer, or give exact numbers"});
   }
   if (!entry.takes_uncertainty && model.linear.is_uncertain()) {
-    problems.push_back({"/type", fmt::format("\"{}\" does not take models with interval matrices", entry.info.name),
-                        "use an observer that does, such as \"zonotope_uncertain\", or give exact matrices"});
+    problems.push_back(
+        {"/type",
+         fmt::format("\"{}\" does not take models with interval matrices", entry.info.name),
+         "use an observer that does, such as \"zonotope_uncertain\", or give exact matrices"});
   }
   return problems;
 }
 
 Diagnostic no_modes(const std::string& kind) {
-  return {"", "there are no modes to tell apart", "this " + kind + " needs at least two: describe the faults in /system/modes"};
+  return {"", "there are no modes to tell apart",
+          "this " + kind + " needs at least two: describe the faults in /system/modes"};
 }
 
 /// Tubes are affine in the input for exactly known matrices only.
@@ -163,9 +175,12 @@ std::vector<Diagnostic> refuse_design(const ModeBank& bank) {
   std::vector<Diagnostic> problems;
   for (const Mode& mode : bank.modes) {
     if (!mode.model.linear.is_uncertain() && !mode.model.linear.has_ranges()) continue;
-    const char* what = mode.model.linear.is_uncertain() ? "interval matrices" : "an effectiveness known by a range only";
-    problems.push_back(
-        {"", fmt::format("input designers do not take models with {}, which \"{}\" has", what, mode.name), "give exact numbers"});
+    const char* what = mode.model.linear.is_uncertain() ? "interval matrices"
+                                                        : "an effectiveness known by a range only";
+    problems.push_back({"",
+                        fmt::format("input designers do not take models with {}, which \"{}\" has",
+                                    what, mode.name),
+                        "give exact numbers"});
   }
   if (bank.size() < 2) problems.push_back(no_modes("designer"));
   return problems;
@@ -176,7 +191,9 @@ std::vector<Diagnostic> refuse_bank(const DiagnoserEntry& entry, const ModeBank&
   for (const Mode& mode : bank.modes) {
     if (entry.takes_uncertainty || !mode.model.linear.is_uncertain()) continue;
     problems.push_back(
-        {"/type", fmt::format("\"{}\" does not take models with interval matrices, which \"{}\" has", entry.info.name, mode.name),
+        {"/type",
+         fmt::format("\"{}\" does not take models with interval matrices, which \"{}\" has",
+                     entry.info.name, mode.name),
          "use another diagnoser, or give exact matrices"});
     break;
   }
@@ -192,13 +209,16 @@ std::vector<Diagnostic> refuse_bank(const DiagnoserEntry& entry, const ModeBank&
 
 namespace {
 
-/// The components that `NAME.provides` beside a library announces, a line each; none if there is no such file.
+/// The components that `NAME.provides` beside a library announces, a line each; none if there is no
+/// such file.
 std::vector<std::string> announced(const fs::path& library) {
-  constexpr std::size_t most = 1000, most_bytes = std::size_t{1} << 20;  // the file is input like any other
+  constexpr std::size_t most = 1000,
+                        most_bytes = std::size_t{1} << 20;  // the file is input like any other
   const fs::path name = fs::path(library).replace_extension(".provides");
   std::vector<std::string> components;
   std::error_code error;
-  if (!fs::is_regular_file(name, error) || fs::file_size(name, error) > most_bytes) return components;
+  if (!fs::is_regular_file(name, error) || fs::file_size(name, error) > most_bytes)
+    return components;
   std::ifstream file(name);
   for (std::string line; components.size() < most && std::getline(file, line);) {
     if (!line.empty() && line.size() < 200) components.push_back(line);
@@ -207,11 +227,14 @@ std::vector<std::string> announced(const fs::path& library) {
 }
 
 /// The files of a directory whose names end in `extension`, absolute and sorted.
-std::vector<fs::path> files_of(const fs::path& directory, const char* extension, std::error_code& error) {
+std::vector<fs::path> files_of(const fs::path& directory, const char* extension,
+                               std::error_code& error) {
   std::vector<fs::path> files;
-  for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
+  for (fs::directory_iterator entry(directory, error), end; !error && entry != end;
+       entry.increment(error)) {
     std::error_code relative;
-    if (entry->path().extension() == extension) files.push_back(fs::absolute(entry->path(), relative).lexically_normal());
+    if (entry->path().extension() == extension)
+      files.push_back(fs::absolute(entry->path(), relative).lexically_normal());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -224,8 +247,9 @@ std::vector<fs::path> announced_without_file(const fs::path& directory) {
   std::error_code ignored;
   std::vector<fs::path> files = files_of(directory, ".provides", ignored);
   for (fs::path& file : files) file.replace_extension(".so");
-  std::erase_if(files,
-                [&](const fs::path& library) { return fs::symlink_status(library, ignored).type() != fs::file_type::not_found; });
+  std::erase_if(files, [&](const fs::path& library) {
+    return fs::symlink_status(library, ignored).type() != fs::file_type::not_found;
+  });
   return files;
 }
 
@@ -233,7 +257,8 @@ PluginReport missing(const fs::path& library) {
   PluginReport report;
   report.file = library;
   report.name = library.stem().string();
-  report.reason = "the file is missing, though " + library.stem().string() + ".provides beside it announces it";
+  report.reason =
+      "the file is missing, though " + library.stem().string() + ".provides beside it announces it";
   report.fix = "build or install the plugin again, or delete the announcement too";
   report.components = announced(library);
   return report;
@@ -249,7 +274,8 @@ void Registry::load(const SearchPath& path) {
     std::error_code error;
     state_->searched.push_back(fs::absolute(directory, error).lexically_normal());
     const std::vector<fs::path> files = libraries_in(directory, error);
-    for (const fs::path& library : announced_without_file(directory)) state_->reports.push_back(missing(library));
+    for (const fs::path& library : announced_without_file(directory))
+      state_->reports.push_back(missing(library));
     if (error && error != std::errc::no_such_file_or_directory) {
       PluginReport report;
       report.file = directory;
@@ -262,7 +288,8 @@ void Registry::load(const SearchPath& path) {
   }
 }
 
-void Registry::refuse(const fs::path& directory, const std::string& reason, const std::string& fix) {
+void Registry::refuse(const fs::path& directory, const std::string& reason,
+                      const std::string& fix) {
   std::error_code unreadable;
   for (const fs::path& file : libraries_in(directory, unreadable)) {
     PluginReport report;
@@ -280,12 +307,14 @@ const PluginReport& Registry::load_file(const fs::path& file) {
   const fs::path absolute = fs::absolute(file, error).lexically_normal();
   auto& reports = state_->reports;
   auto report = std::find_if(reports.begin(), reports.end(), [&](const PluginReport& r) {
-    return r.file == absolute || (r.state == PluginReport::State::loaded && fs::equivalent(r.file, absolute, error));
+    return r.file == absolute ||
+           (r.state == PluginReport::State::loaded && fs::equivalent(r.file, absolute, error));
   });
   if (report != reports.end() && report->state == PluginReport::State::loaded) return *report;
   if (report == reports.end()) report = reports.insert(reports.end(), PluginReport{});
   *report = load_plugin(absolute, state_->plugins, state_->catalogue);
-  if (report->state == PluginReport::State::refused && report->components.empty()) report->components = announced(absolute);
+  if (report->state == PluginReport::State::refused && report->components.empty())
+    report->components = announced(absolute);
   return *report;
 }
 
@@ -294,15 +323,20 @@ void Registry::unload(std::string_view plugin) {
   if (found == state_->plugins.end()) {
     std::vector<std::string> loaded;
     for (const auto& item : state_->plugins) loaded.push_back(item.first);
-    throw Error(Errc::invalid, fmt::format("no plugin \"{}\" is loaded; {}", plugin, suggest(plugin, loaded)));
+    throw Error(Errc::invalid,
+                fmt::format("no plugin \"{}\" is loaded; {}", plugin, suggest(plugin, loaded)));
   }
   if (const long live = found->second.library.use_count() - 1; live > 0) {
-    throw Error(Errc::plugin, fmt::format("plugin \"{}\" cannot be unloaded while {} of its backends, observers or metrics live; "
-                                          "let go of them and of their sets first",
-                                          plugin, live));
+    throw Error(
+        Errc::plugin,
+        fmt::format(
+            "plugin \"{}\" cannot be unloaded while {} of its backends, observers or metrics live; "
+            "let go of them and of their sets first",
+            plugin, live));
   }
-  std::erase_if(state_->reports,
-                [&](const PluginReport& r) { return r.state == PluginReport::State::loaded && r.name == plugin; });
+  std::erase_if(state_->reports, [&](const PluginReport& r) {
+    return r.state == PluginReport::State::loaded && r.name == plugin;
+  });
   state_->catalogue.remove(found->first);
   state_->plugins.erase(found);
 }
@@ -325,17 +359,33 @@ const std::vector<fs::path>& Registry::searched() const { return state_->searche
 std::vector<std::string> Registry::backends() const { return names(state_->catalogue.backends); }
 std::vector<std::string> Registry::observers() const { return names(state_->catalogue.observers); }
 std::vector<std::string> Registry::metrics() const { return names(state_->catalogue.metrics); }
-std::vector<std::string> Registry::diagnosers() const { return names(state_->catalogue.diagnosers); }
+std::vector<std::string> Registry::diagnosers() const {
+  return names(state_->catalogue.diagnosers);
+}
 std::vector<std::string> Registry::plants() const { return names(state_->catalogue.plants); }
 std::vector<std::string> Registry::gains() const { return names(state_->catalogue.gains); }
 std::vector<std::string> Registry::designers() const { return names(state_->catalogue.designers); }
-const ComponentInfo* Registry::backend_info(std::string_view name) const { return info(state_->catalogue.backends, name); }
-const ComponentInfo* Registry::observer_info(std::string_view name) const { return info(state_->catalogue.observers, name); }
-const ComponentInfo* Registry::metric_info(std::string_view name) const { return info(state_->catalogue.metrics, name); }
-const ComponentInfo* Registry::diagnoser_info(std::string_view name) const { return info(state_->catalogue.diagnosers, name); }
-const ComponentInfo* Registry::plant_info(std::string_view name) const { return info(state_->catalogue.plants, name); }
-const ComponentInfo* Registry::gain_info(std::string_view name) const { return info(state_->catalogue.gains, name); }
-const ComponentInfo* Registry::designer_info(std::string_view name) const { return info(state_->catalogue.designers, name); }
+const ComponentInfo* Registry::backend_info(std::string_view name) const {
+  return info(state_->catalogue.backends, name);
+}
+const ComponentInfo* Registry::observer_info(std::string_view name) const {
+  return info(state_->catalogue.observers, name);
+}
+const ComponentInfo* Registry::metric_info(std::string_view name) const {
+  return info(state_->catalogue.metrics, name);
+}
+const ComponentInfo* Registry::diagnoser_info(std::string_view name) const {
+  return info(state_->catalogue.diagnosers, name);
+}
+const ComponentInfo* Registry::plant_info(std::string_view name) const {
+  return info(state_->catalogue.plants, name);
+}
+const ComponentInfo* Registry::gain_info(std::string_view name) const {
+  return info(state_->catalogue.gains, name);
+}
+const ComponentInfo* Registry::designer_info(std::string_view name) const {
+  return info(state_->catalogue.designers, name);
+}
 
 const DiagnoserEntry* Registry::diagnoser_entry(std::string_view name) const {
   const auto found = state_->catalogue.diagnosers.find(name);
@@ -352,33 +402,43 @@ std::string Registry::plugin_of(std::string_view kind, std::string_view name) co
   if (kind == "designer") return provider(state_->catalogue.designers, name);
   throw Error(Errc::invalid,
               fmt::format("no kind of component \"{}\"; {}", kind,
-                          suggest(kind, {"backend", "observer", "metric", "diagnoser", "plant", "gain", "designer"})));
+                          suggest(kind, {"backend", "observer", "metric", "diagnoser", "plant",
+                                         "gain", "designer"})));
 }
 
 const PluginReport* Registry::refused_provider(std::string_view component) const {
   const auto refused = [&](auto&& holds) -> const PluginReport* {
-    const auto found = std::find_if(state_->reports.begin(), state_->reports.end(), [&](const PluginReport& report) {
-      return report.state == PluginReport::State::refused && holds(report);
-    });
+    const auto found = std::find_if(
+        state_->reports.begin(), state_->reports.end(), [&](const PluginReport& report) {
+          return report.state == PluginReport::State::refused && holds(report);
+        });
     return found == state_->reports.end() ? nullptr : &*found;
   };
   const auto registers = [&](const PluginReport& report) {
     return std::any_of(report.components.begin(), report.components.end(),
-                       [&](const std::string& c) { return std::string_view(c).substr(c.find(' ') + 1) == component; });
+                       [&](const std::string& c) {
+                         return std::string_view(c).substr(c.find(' ') + 1) == component;
+                       });
   };
-  const auto is_named = [&](const PluginReport& report) { return report.file.stem() == component || report.name == component; };
+  const auto is_named = [&](const PluginReport& report) {
+    return report.file.stem() == component || report.name == component;
+  };
   if (const PluginReport* report = refused(registers)) return report;
   if (const PluginReport* report = refused(is_named)) return report;
-  return refused([&](const PluginReport& report) { return file_holds_name(report.file, component); });
+  return refused(
+      [&](const PluginReport& report) { return file_holds_name(report.file, component); });
 }
 
-std::shared_ptr<const SetBackend> Registry::make_backend(std::string_view name, const Params& params) const {
+std::shared_ptr<const SetBackend> Registry::make_backend(std::string_view name,
+                                                         const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.backends, "backend", name);
-  return make<SetBackend>(provided, "backend", params, state_->library(provided.plugin),
-                          [](const BackendEntry& entry, const Params& p) { return entry.create(p); });
+  return make<SetBackend>(
+      provided, "backend", params, state_->library(provided.plugin),
+      [](const BackendEntry& entry, const Params& p) { return entry.create(p); });
 }
 
-std::vector<Diagnostic> Registry::check_observer(std::string_view name, const ObserverContext& context,
+std::vector<Diagnostic> Registry::check_observer(std::string_view name,
+                                                 const ObserverContext& context,
                                                  const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.observers, "observer", name);
   const std::string component = fmt::format("observer \"{}\"", name);
@@ -389,10 +449,12 @@ std::vector<Diagnostic> Registry::check_observer(std::string_view name, const Ob
   if (!problems.empty() || !provided.entry.check) return problems;
   const RegistryFactory factory(*this);
   const ObserverContext with_factory{context.model, context.backend, &factory};
-  return guarded(provided.plugin, component, [&] { return provided.entry.check(with_factory, complete); });
+  return guarded(provided.plugin, component,
+                 [&] { return provided.entry.check(with_factory, complete); });
 }
 
-std::shared_ptr<Observer> Registry::make_observer(std::string_view name, const ObserverContext& context,
+std::shared_ptr<Observer> Registry::make_observer(std::string_view name,
+                                                  const ObserverContext& context,
                                                   const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.observers, "observer", name);
   if (auto problems = refuse_ranges(provided.entry, context.model); !problems.empty()) {
@@ -405,13 +467,15 @@ std::shared_ptr<Observer> Registry::make_observer(std::string_view name, const O
                         });
 }
 
-std::vector<Diagnostic> Registry::check_metric(std::string_view name, const MetricContext& context, const Params& params) const {
+std::vector<Diagnostic> Registry::check_metric(std::string_view name, const MetricContext& context,
+                                               const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.metrics, "metric", name);
   const std::string component = fmt::format("metric \"{}\"", name);
   Params complete = params;
   std::vector<Diagnostic> problems = provided.entry.info.schema.complete(complete);
   if (!problems.empty() || !provided.entry.check) return problems;
-  return guarded(provided.plugin, component, [&] { return provided.entry.check(context, complete); });
+  return guarded(provided.plugin, component,
+                 [&] { return provided.entry.check(context, complete); });
 }
 
 std::shared_ptr<Metric> Registry::make_metric(std::string_view name, const Params& params) const {
@@ -421,7 +485,8 @@ std::shared_ptr<Metric> Registry::make_metric(std::string_view name, const Param
 }
 
 std::vector<Diagnostic> Registry::check_diagnoser(std::string_view name, const ModeBank& bank,
-                                                  std::shared_ptr<const SetBackend> backend, const Params& params) const {
+                                                  std::shared_ptr<const SetBackend> backend,
+                                                  const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.diagnosers, "diagnoser", name);
   const std::string component = fmt::format("diagnoser \"{}\"", name);
   Params complete = params;
@@ -429,11 +494,14 @@ std::vector<Diagnostic> Registry::check_diagnoser(std::string_view name, const M
   if (problems.empty()) problems = refuse_bank(provided.entry, bank);
   if (!problems.empty() || !provided.entry.check) return problems;
   const RegistryFactory factory(*this);
-  return guarded(provided.plugin, component, [&] { return provided.entry.check({bank, std::move(backend), factory}, complete); });
+  return guarded(provided.plugin, component, [&] {
+    return provided.entry.check({bank, std::move(backend), factory}, complete);
+  });
 }
 
 std::shared_ptr<Diagnoser> Registry::make_diagnoser(std::string_view name, const ModeBank& bank,
-                                                    std::shared_ptr<const SetBackend> backend, const Params& params) const {
+                                                    std::shared_ptr<const SetBackend> backend,
+                                                    const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.diagnosers, "diagnoser", name);
   if (auto problems = refuse_bank(provided.entry, bank); !problems.empty()) {
     throw InputError(fmt::format("diagnoser \"{}\"", name), std::move(problems));
@@ -451,39 +519,47 @@ std::shared_ptr<Plant> Registry::make_plant(std::string_view name, const Params&
                      [](const PlantEntry& entry, const Params& p) { return entry.create(p); });
 }
 
-std::vector<Diagnostic> Registry::check_gain(std::string_view name, const GainContext& context, const Params& params) const {
+std::vector<Diagnostic> Registry::check_gain(std::string_view name, const GainContext& context,
+                                             const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.gains, "gain", name);
   const std::string component = fmt::format("gain \"{}\"", name);
   Params complete = params;
   std::vector<Diagnostic> problems = provided.entry.info.schema.complete(complete);
   if (!problems.empty()) return problems;
   if (context.model.linear.is_descriptor()) {
-    return {{"/type", fmt::format("\"{}\" designs gains for systems without E", name), "use a system of type \"lti\""}};
+    return {{"/type", fmt::format("\"{}\" designs gains for systems without E", name),
+             "use a system of type \"lti\""}};
   }
   if (!provided.entry.check) return problems;
-  return guarded(provided.plugin, component, [&] { return provided.entry.check(context, complete); });
+  return guarded(provided.plugin, component,
+                 [&] { return provided.entry.check(context, complete); });
 }
 
-std::shared_ptr<const GainDesigner> Registry::make_gain(std::string_view name, const Params& params) const {
+std::shared_ptr<const GainDesigner> Registry::make_gain(std::string_view name,
+                                                        const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.gains, "gain", name);
-  return make<GainDesigner>(provided, "gain", params, state_->library(provided.plugin),
-                            [](const GainEntry& entry, const Params& p) { return entry.create(p); });
+  return make<GainDesigner>(
+      provided, "gain", params, state_->library(provided.plugin),
+      [](const GainEntry& entry, const Params& p) { return entry.create(p); });
 }
 
 std::vector<Diagnostic> Registry::check_designer(std::string_view name, const ModeBank& bank,
-                                                 std::shared_ptr<const SetBackend> backend, const Params& params) const {
+                                                 std::shared_ptr<const SetBackend> backend,
+                                                 const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.designers, "designer", name);
   const std::string component = fmt::format("designer \"{}\"", name);
   Params complete = params;
   std::vector<Diagnostic> problems = provided.entry.info.schema.complete(complete);
   if (problems.empty()) problems = refuse_design(bank);
   if (!problems.empty() || !provided.entry.check) return problems;
-  return guarded(provided.plugin, component, [&] { return provided.entry.check({bank, std::move(backend)}, complete); });
+  return guarded(provided.plugin, component, [&] {
+    return provided.entry.check({bank, std::move(backend)}, complete);
+  });
 }
 
-std::shared_ptr<const InputDesigner> Registry::make_designer(std::string_view name, const ModeBank& bank,
-                                                             std::shared_ptr<const SetBackend> backend,
-                                                             const Params& params) const {
+std::shared_ptr<const InputDesigner> Registry::make_designer(
+    std::string_view name, const ModeBank& bank, std::shared_ptr<const SetBackend> backend,
+    const Params& params) const {
   const auto& provided = require(*this, state_->catalogue.designers, "designer", name);
   if (auto problems = refuse_design(bank); !problems.empty()) {
     throw InputError(fmt::format("designer \"{}\"", name), std::move(problems));

@@ -13,16 +13,19 @@ namespace {
 constexpr std::int64_t exact_limit = std::int64_t{1} << 53;  // every integer up to here is a double
 
 /// In the order of Params::Value.
-constexpr const char* type_names[] = {"an integer", "a real number", "true or false",      "a text",     "a vector",
-                                      "a matrix",   "a set",         "a list of matrices", "a component"};
+constexpr const char* type_names[] = {"an integer", "a real number",      "true or false",
+                                      "a text",     "a vector",           "a matrix",
+                                      "a set",      "a list of matrices", "a component"};
 
 template <class T>
 const T& get(const Params& params, std::string_view name) {
   const auto found = params.values().find(name);
   if (found == params.values().end())
-    throw Error(Errc::invalid, fmt::format("no parameter \"{}\" was given and it has no default", name));
+    throw Error(Errc::invalid,
+                fmt::format("no parameter \"{}\" was given and it has no default", name));
   if (const T* value = std::get_if<T>(&found->second)) return *value;
-  throw Error(Errc::invalid, fmt::format("parameter \"{}\" is {}, asked for as {}", name, type_names[found->second.index()],
+  throw Error(Errc::invalid, fmt::format("parameter \"{}\" is {}, asked for as {}", name,
+                                         type_names[found->second.index()],
                                          type_names[Params::Value(T{}).index()]));
 }
 
@@ -68,7 +71,8 @@ std::string pointer_to(std::string_view name) {
 std::string limits(const ParamSpec& spec) {
   const bool below = std::isfinite(spec.lowest), above = std::isfinite(spec.highest);
   if (below && above) return fmt::format("must lie in [{}, {}]", spec.lowest, spec.highest);
-  return below ? fmt::format("must be at least {}", spec.lowest) : fmt::format("must be at most {}", spec.highest);
+  return below ? fmt::format("must be at least {}", spec.lowest)
+               : fmt::format("must be at most {}", spec.highest);
 }
 
 /// A reason and a mend; an empty reason: no problem.
@@ -77,7 +81,8 @@ struct Problem {
 };
 
 Problem wrong_type(const ParamSpec& spec, const Params::Value& value) {
-  Problem problem{fmt::format("is {}, must be {}", type_names[value.index()], expected(spec.kind)), ""};
+  Problem problem{fmt::format("is {}, must be {}", type_names[value.index()], expected(spec.kind)),
+                  ""};
   if (const double* real = std::get_if<double>(&value); real && spec.kind == ParamKind::integer) {
     if (*real == std::trunc(*real) && std::abs(*real) <= static_cast<double>(exact_limit)) {
       problem.suggestion = fmt::format("write {}", static_cast<std::int64_t>(*real));
@@ -90,7 +95,8 @@ Problem check_integer(const ParamSpec& spec, const Params::Value& value) {
   const auto* number = std::get_if<std::int64_t>(&value);
   if (!number) return wrong_type(spec, value);
   const auto wide = static_cast<long double>(*number);
-  if (wide < spec.lowest || wide > spec.highest) return {fmt::format("is {}, {}", *number, limits(spec)), ""};
+  if (wide < spec.lowest || wide > spec.highest)
+    return {fmt::format("is {}, {}", *number, limits(spec)), ""};
   return {};
 }
 
@@ -103,7 +109,8 @@ Problem check_real(const ParamSpec& spec, Params::Value& value) {
   const double* number = std::get_if<double>(&value);
   if (!number) return wrong_type(spec, value);
   if (!std::isfinite(*number)) return {fmt::format("is {}, must be a finite number", *number), ""};
-  if (*number < spec.lowest || *number > spec.highest) return {fmt::format("is {}, {}", *number, limits(spec)), ""};
+  if (*number < spec.lowest || *number > spec.highest)
+    return {fmt::format("is {}, {}", *number, limits(spec)), ""};
   return {};
 }
 
@@ -188,11 +195,15 @@ bool Params::has(std::string_view name) const { return values_.find(name) != val
 std::int64_t Params::integer(std::string_view name) const { return get<std::int64_t>(*this, name); }
 double Params::real(std::string_view name) const { return get<double>(*this, name); }
 bool Params::flag(std::string_view name) const { return get<bool>(*this, name); }
-const std::string& Params::text(std::string_view name) const { return get<std::string>(*this, name); }
+const std::string& Params::text(std::string_view name) const {
+  return get<std::string>(*this, name);
+}
 const Vector& Params::vector(std::string_view name) const { return get<Vector>(*this, name); }
 const Matrix& Params::matrix(std::string_view name) const { return get<Matrix>(*this, name); }
 const LineForm& Params::set_form(std::string_view name) const { return get<LineForm>(*this, name); }
-const std::vector<Matrix>& Params::matrices(std::string_view name) const { return get<std::vector<Matrix>>(*this, name); }
+const std::vector<Matrix>& Params::matrices(std::string_view name) const {
+  return get<std::vector<Matrix>>(*this, name);
+}
 const ComponentSpec& Params::component(std::string_view name) const {
   return *get<std::shared_ptr<const ComponentSpec>>(*this, name);
 }
@@ -229,7 +240,8 @@ ParamSchema& ParamSchema::add(ParamSpec spec) {
   };
   if (spec.name.empty()) refuse("has no name");
   if (find(spec.name)) refuse("is there twice");
-  if (!(spec.lowest <= spec.highest)) refuse(fmt::format("has the empty range [{}, {}]", spec.lowest, spec.highest));
+  if (!(spec.lowest <= spec.highest))
+    refuse(fmt::format("has the empty range [{}, {}]", spec.lowest, spec.highest));
   if (spec.kind == ParamKind::choice && spec.choices.empty()) refuse("has no choices");
   if (spec.fallback) {
     if (const Problem problem = check_value(spec, *spec.fallback); !problem.message.empty())
@@ -239,7 +251,8 @@ ParamSchema& ParamSchema::add(ParamSpec spec) {
   return *this;
 }
 
-ParamSchema& ParamSchema::integer(std::string name, std::string doc, std::optional<std::int64_t> fallback, std::int64_t lowest,
+ParamSchema& ParamSchema::integer(std::string name, std::string doc,
+                                  std::optional<std::int64_t> fallback, std::int64_t lowest,
                                   std::int64_t highest) {
   ParamSpec spec{.name = std::move(name),
                  .kind = ParamKind::integer,
@@ -253,7 +266,8 @@ ParamSchema& ParamSchema::integer(std::string name, std::string doc, std::option
   return add(std::move(spec));
 }
 
-ParamSchema& ParamSchema::real(std::string name, std::string doc, std::optional<double> fallback, double lowest, double highest) {
+ParamSchema& ParamSchema::real(std::string name, std::string doc, std::optional<double> fallback,
+                               double lowest, double highest) {
   ParamSpec spec{.name = std::move(name),
                  .kind = ParamKind::real,
                  .doc = std::move(doc),
@@ -275,7 +289,8 @@ ParamSchema& ParamSchema::flag(std::string name, std::string doc, bool fallback)
               .component_kind = {}});
 }
 
-ParamSchema& ParamSchema::choice(std::string name, std::string doc, std::vector<std::string> choices, std::string fallback) {
+ParamSchema& ParamSchema::choice(std::string name, std::string doc,
+                                 std::vector<std::string> choices, std::string fallback) {
   return add({.name = std::move(name),
               .kind = ParamKind::choice,
               .doc = std::move(doc),
@@ -284,7 +299,8 @@ ParamSchema& ParamSchema::choice(std::string name, std::string doc, std::vector<
               .component_kind = {}});
 }
 
-ParamSchema& ParamSchema::text(std::string name, std::string doc, std::optional<std::string> fallback) {
+ParamSchema& ParamSchema::text(std::string name, std::string doc,
+                               std::optional<std::string> fallback) {
   ParamSpec spec{.name = std::move(name),
                  .kind = ParamKind::text,
                  .doc = std::move(doc),
@@ -349,16 +365,19 @@ ParamSchema& ParamSchema::or_matrix(std::string type) {
 }
 
 ParamSchema& ParamSchema::required() {
-  if (specs_.empty()) throw Error(Errc::invalid, "schema: required() stands before the first parameter");
+  if (specs_.empty())
+    throw Error(Errc::invalid, "schema: required() stands before the first parameter");
   if (specs_.back().fallback) {
-    throw Error(Errc::invalid, fmt::format("schema: parameter \"{}\" is required and has a default", specs_.back().name));
+    throw Error(Errc::invalid, fmt::format("schema: parameter \"{}\" is required and has a default",
+                                           specs_.back().name));
   }
   specs_.back().required = true;
   return *this;
 }
 
 const ParamSpec* ParamSchema::find(std::string_view name) const {
-  const auto found = std::find_if(specs_.begin(), specs_.end(), [&](const ParamSpec& spec) { return spec.name == name; });
+  const auto found = std::find_if(specs_.begin(), specs_.end(),
+                                  [&](const ParamSpec& spec) { return spec.name == name; });
   return found == specs_.end() ? nullptr : &*found;
 }
 
@@ -372,25 +391,29 @@ std::vector<Diagnostic> ParamSchema::complete(Params& params) const {
   std::vector<Diagnostic> diagnostics;
   for (const auto& [name, value] : params.values()) {
     if (find(name)) continue;
-    diagnostics.push_back({pointer_to(name), "unknown parameter", specs_.empty() ? "there are none" : suggest(name, names())});
+    diagnostics.push_back({pointer_to(name), "unknown parameter",
+                           specs_.empty() ? "there are none" : suggest(name, names())});
   }
   for (const ParamSpec& spec : specs_) {
     const auto given = params.values().find(spec.name);
     if (given == params.values().end()) {
       if (spec.required)
-        diagnostics.push_back({pointer_to(spec.name), "is missing", fmt::format("give {}: {}", expected(spec.kind), spec.doc)});
+        diagnostics.push_back({pointer_to(spec.name), "is missing",
+                               fmt::format("give {}: {}", expected(spec.kind), spec.doc)});
       if (spec.fallback) params.set(spec.name, *spec.fallback);
       continue;
     }
     Params::Value value = given->second;
     if (const auto* A = std::get_if<Matrix>(&value); A && !spec.matrix_type.empty()) {
-      value = std::make_shared<const ComponentSpec>(ComponentSpec{spec.matrix_type, Params().set("matrix", *A)});
+      value = std::make_shared<const ComponentSpec>(
+          ComponentSpec{spec.matrix_type, Params().set("matrix", *A)});
     }
     Problem problem = check_value(spec, value);
     if (problem.message.empty()) {
       params.set(spec.name, std::move(value));
     } else {
-      diagnostics.push_back({pointer_to(spec.name), std::move(problem.message), std::move(problem.suggestion)});
+      diagnostics.push_back(
+          {pointer_to(spec.name), std::move(problem.message), std::move(problem.suggestion)});
     }
   }
   return diagnostics;

@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Adds a directory once; an empty name (which other programs read as the working directory) is left out.
+/// Adds a directory once; an empty name (which other programs read as the working directory) is
+/// left out.
 void append(SearchPath& path, const fs::path& directory) {
   if (directory.empty()) return;
   std::error_code error;

@@ -41,8 +41,10 @@ struct Arithmetic {
   friend bool operator==(const Arithmetic&, const Arithmetic&) = default;
 };
 Arithmetic arithmetic() {
-  volatile double smallest = std::numeric_limits<double>::min(), subnormal = std::numeric_limits<double>::denorm_min();
-  volatile double half = smallest / 2, twice = subnormal * 2;  // flushed as a result, or taken for zero as an operand
+  volatile double smallest = std::numeric_limits<double>::min(),
+                  subnormal = std::numeric_limits<double>::denorm_min();
+  volatile double half = smallest / 2,
+                  twice = subnormal * 2;  // flushed as a result, or taken for zero as an operand
   return {half != 0 && twice != 0, std::fegetround(), fegetexcept()};
 }
 
@@ -68,10 +70,12 @@ std::string words_of(const char (&text)[size]) {
 class Shared {
  public:
   Shared() : output_(memfd_create("cordon", MFD_ALLOW_SEALING | MFD_CLOEXEC)) {
-    void* const page = mmap(nullptr, sizeof(Message), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    void* const page =
+        mmap(nullptr, sizeof(Message), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     message_ = page == MAP_FAILED ? nullptr : new (page) Message{};
     // a process that prints without end fills this much and no more
-    good_ = message_ && output_ >= 0 && ftruncate(output_, most_said) == 0 && fcntl(output_, F_ADD_SEALS, F_SEAL_GROW) == 0;
+    good_ = message_ && output_ >= 0 && ftruncate(output_, most_said) == 0 &&
+            fcntl(output_, F_ADD_SEALS, F_SEAL_GROW) == 0;
   }
   ~Shared() {
     if (message_) munmap(message_, sizeof(Message));
@@ -125,8 +129,8 @@ void limit(decltype(RLIMIT_CPU) what, rlim_t soft, rlim_t hard) {
   _exit(1);
 }
 
-/// Uses what damaged code likes to write over: the environment, the heap, the stack, the tables for exceptions. Whoever finds it
-/// damaged crashes here.
+/// Uses what damaged code likes to write over: the environment, the heap, the stack, the tables for
+/// exceptions. Whoever finds it damaged crashes here.
 void use_everything() {
   std::size_t size = 0;
   for (char** variable = environ; variable && *variable; ++variable) {
@@ -175,7 +179,8 @@ bool wait_for(pid_t child, int& status) {
   const Clock::time_point end = Clock::now() + waiting;
   for (useconds_t nap = 100;; nap = std::min<useconds_t>(2 * nap, 5000)) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
-    if (ended == child || (ended < 0 && errno != EINTR)) return true;  // also where children are not waited for: SIGCHLD ignored
+    if (ended == child || (ended < 0 && errno != EINTR))
+      return true;  // also where children are not waited for: SIGCHLD ignored
     if (Clock::now() > end) {
       kill(child, SIGKILL);
       waitpid(child, &status, 0);
@@ -187,19 +192,26 @@ bool wait_for(pid_t child, int& status) {
 
 std::string ending(int status) {
   if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
-    return fmt::format("it does not come back from being opened: stopped after {} s of computing", computing_s);
+    return fmt::format("it does not come back from being opened: stopped after {} s of computing",
+                       computing_s);
   if (WIFSIGNALED(status))
-    return fmt::format("it ends the process when it is opened: signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    return fmt::format("it ends the process when it is opened: signal {} ({})", WTERMSIG(status),
+                       strsignal(WTERMSIG(status)));
   return fmt::format("it ends the process when it is opened: exit code {}", WEXITSTATUS(status));
 }
 
 std::optional<Refusal> judge(const Message& message) {
   if (message.refused) return Refusal{words_of(message.reason), words_of(message.fix)};
   if (message.same_arithmetic) return {};
-  const char* what = message.subnormals ? "its rounding or its traps" : "subnormal numbers become zero";
-  return Refusal{fmt::format("it changes the floating-point arithmetic of the whole process when it is opened: {}", what),
-                 message.subnormals ? "leave the floating-point environment alone"
-                                    : "compile and link it without -ffast-math, -Ofast and -funsafe-math-optimizations"};
+  const char* what =
+      message.subnormals ? "its rounding or its traps" : "subnormal numbers become zero";
+  return Refusal{
+      fmt::format(
+          "it changes the floating-point arithmetic of the whole process when it is opened: {}",
+          what),
+      message.subnormals
+          ? "leave the floating-point environment alone"
+          : "compile and link it without -ffast-math, -Ofast and -funsafe-math-optimizations"};
 }
 
 }  // namespace
@@ -210,12 +222,16 @@ Trial try_in_child(const TrialBody& body) {
   const pid_t parent = getpid(), child = shared.is_good() ? fork() : -1;
   if (child < 0) {
     const std::string why = std::strerror(errno);
-    return {Refusal{"it cannot be tried in a process of its own: " + why, "free memory and processes"}, false};
+    return {
+        Refusal{"it cannot be tried in a process of its own: " + why, "free memory and processes"},
+        false};
   }
   if (child == 0) be_the_child(shared, parent, body);
   int status = 0;
   if (!wait_for(child, status)) {
-    return {Refusal{fmt::format("it does not come back from being opened within {} s{}", waiting.count(), shared.said()), mend}};
+    return {Refusal{fmt::format("it does not come back from being opened within {} s{}",
+                                waiting.count(), shared.said()),
+                    mend}};
   }
   const Message& message = shared.message();
   if (!message.finished) return {Refusal{ending(status) + shared.said(), mend}};

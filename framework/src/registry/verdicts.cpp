@@ -66,7 +66,8 @@ std::string read_entry(const fs::path& file) {
   return text;
 }
 
-/// Under another name first: who reads meanwhile finds the old entry or the new one. Failures are nobody's loss.
+/// Under another name first: who reads meanwhile finds the old entry or the new one. Failures are
+/// nobody's loss.
 void write_entry(const fs::path& directory, const std::string& slot, const std::string& text) {
   std::error_code error;
   fs::create_directories(directory, error);
@@ -85,7 +86,8 @@ std::optional<Verdict> verdict_in(const std::string& entry, const FileIdentity& 
   if (rest == works) return Verdict{};
   const std::size_t middle = rest.find('\n');
   if (middle == std::string::npos || middle == 0 || !rest.ends_with('\n')) return std::nullopt;
-  return Verdict{Refusal{rest.substr(0, middle), rest.substr(middle + 1, rest.size() - middle - 2)}};
+  return Verdict{
+      Refusal{rest.substr(0, middle), rest.substr(middle + 1, rest.size() - middle - 2)}};
 }
 
 std::string entry_of(const FileIdentity& file, const Verdict& verdict) {
@@ -99,8 +101,9 @@ FileIdentity::FileIdentity(const fs::path& file, const std::string& bytes)
     : slot(fmt::format("{:03x}", checksum(file.native()) % slots)) {
   struct stat status {};
   if (stat(file.c_str(), &status) != 0) status = {};
-  text = fmt::format("{}\ninode {} size {} time {}.{:09} checksum {:016x}\n{} {}\n", file.native(), status.st_ino, bytes.size(),
-                     status.st_mtim.tv_sec, status.st_mtim.tv_nsec, checksum(bytes), CORDON_VERSION, CORDON_ABI_TAG);
+  text = fmt::format("{}\ninode {} size {} time {}.{:09} checksum {:016x}\n{} {}\n", file.native(),
+                     status.st_ino, bytes.size(), status.st_mtim.tv_sec, status.st_mtim.tv_nsec,
+                     checksum(bytes), CORDON_VERSION, CORDON_ABI_TAG);
 }
 
 std::optional<Verdict> recall(const FileIdentity& file) {
@@ -121,7 +124,8 @@ void remember(const FileIdentity& file, const Verdict& verdict, bool lasting) {
   Memory& mine = memory();
   const std::lock_guard lock(mine.mutex);
   std::string& entry = mine.entries[file.slot] = entry_of(file, verdict);
-  if (const fs::path directory = cache_directory(); lasting && !directory.empty()) write_entry(directory, file.slot, entry);
+  if (const fs::path directory = cache_directory(); lasting && !directory.empty())
+    write_entry(directory, file.slot, entry);
 }
 
 }  // namespace cordon::registry

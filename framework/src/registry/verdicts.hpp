@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What trials of library files have shown is kept in this process and, where it lasts, in the user's cache directory:
-// $XDG_CACHE_HOME/cordon or ~/.cache/cordon. Of bounded size; where nothing can be written, files are tried in every process.
+// What trials of library files have shown is kept in this process and, where it lasts, in the
+// user's cache directory: $XDG_CACHE_HOME/cordon or ~/.cache/cordon. Of bounded size; where nothing
+// can be written, files are tried in every process.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +12,8 @@
 
 namespace cordon::registry {
 
-/// Everything that a verdict depends on: the file's path, inode, size, time and content, and this build of the framework.
+/// Everything that a verdict depends on: the file's path, inode, size, time and content, and this
+/// build of the framework.
 struct FileIdentity {
   FileIdentity(const std::filesystem::path& file, const std::string& bytes);
 

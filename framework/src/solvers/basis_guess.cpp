@@ -11,7 +11,8 @@ namespace {
 
 constexpr Index width = Panels<float>::width;
 constexpr float relaxation = 1.6F;
-constexpr float dependent = 1e-4F;  ///< a row is taken for dependent when less than this share of it is left
+constexpr float dependent =
+    1e-4F;  ///< a row is taken for dependent when less than this share of it is left
 
 }  // namespace
 
@@ -25,7 +26,8 @@ BasisGuess::BasisGuess(const Matrix& A, VectorIn b)
       split_(g_.size()),
       dual_(g_.size()),
       scores_(A.cols()) {
-  for (Index i = 0; i < A.rows(); ++i) right_[static_cast<std::size_t>(i)] = static_cast<float>(std::clamp(b[i], -1e30, 1e30));
+  for (Index i = 0; i < A.rows(); ++i)
+    right_[static_cast<std::size_t>(i)] = static_cast<float>(std::clamp(b[i], -1e30, 1e30));
   orthonormalise();
 }
 
@@ -33,7 +35,8 @@ BasisGuess::BasisGuess(const Matrix& A, VectorIn b)
 void BasisGuess::orthonormalise() {
   const auto product = [this](Index i, Index k) {
     Line<float> sum;
-    for (Index p = 0; p < rows_.panels(); ++p) sum.add(Line<float>::load(rows_.line(p, i)), Line<float>::load(rows_.line(p, k)));
+    for (Index p = 0; p < rows_.panels(); ++p)
+      sum.add(Line<float>::load(rows_.line(p, i)), Line<float>::load(rows_.line(p, k)));
     return sum.total();
   };
   const auto add = [this](Index i, float factor, Index k) {
@@ -94,7 +97,9 @@ void BasisGuess::round(float relax) {
     const Line<float> g = Line<float>::load(&g_[first]);
     Line<float> split = Line<float>::load(&split_[first]), dual = Line<float>::load(&dual_[first]);
     for (int k = 0; k < 4; ++k) {
-      const Part v = g.part[k] - (relax * value.part[k] + (1 - relax) * (g.part[k] - split.part[k])) - dual.part[k];
+      const Part v = g.part[k] -
+                     (relax * value.part[k] + (1 - relax) * (g.part[k] - split.part[k])) -
+                     dual.part[k];
       const Part above = v - threshold, below = v + threshold;
       split.part[k] = (above > zero ? above : zero) + (below < zero ? below : zero);
       dual.part[k] = split.part[k] - v;
@@ -109,7 +114,8 @@ void BasisGuess::round(float relax) {
 
 /// w = totals - threshold q.
 void BasisGuess::total(float threshold) {
-  for (std::size_t i = 0; i < w_.size(); ++i) w_[i] = Line<float>::load(&sums_[i * width]).total() - threshold * right_[i];
+  for (std::size_t i = 0; i < w_.size(); ++i)
+    w_[i] = Line<float>::load(&sums_[i * width]).total() - threshold * right_[i];
 }
 
 }  // namespace cordon

@@ -9,9 +9,10 @@
 
 namespace cordon {
 
-/// A guess by a few rounds of the alternating direction method of multipliers on the dual, min bᵀy + ‖g - Aᵀy‖₁ [Boyd2011], over
-/// orthonormal rows and in single precision: it only orders the columns, and costs a fraction of the simplex iterations that a
-/// good first basis saves. The same guess for the same objective, whatever was asked before.
+/// A guess by a few rounds of the alternating direction method of multipliers on the dual, min bᵀy
+/// + ‖g - Aᵀy‖₁ [Boyd2011], over orthonormal rows and in single precision: it only orders the
+/// columns, and costs a fraction of the simplex iterations that a good first basis saves. The same
+/// guess for the same objective, whatever was asked before.
 class BasisGuess {
  public:
   /// Dependent rows are no obstacle.
@@ -31,7 +32,8 @@ class BasisGuess {
   std::vector<float> right_;             ///< the same combinations of b
   std::vector<float> w_;                 ///< multipliers of Q, Qᵀw = Aᵀy
   std::vector<float> sums_;              ///< of the next w, one per row and place in a panel
-  std::vector<float> g_, split_, dual_;  ///< per column, with padding: objective, copy of g - Aᵀy, scaled multiplier of the copy
+  std::vector<float> g_, split_, dual_;  ///< per column, with padding: objective, copy of g - Aᵀy,
+                                         ///< scaled multiplier of the copy
   float threshold_ = 0;
   Vector scores_;
 };

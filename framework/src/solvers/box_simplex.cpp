@@ -14,14 +14,17 @@ using vectors::store;
 
 namespace {
 
-constexpr double feasible = 1e-9;         ///< a bound may be exceeded by this
-constexpr double smallest_pivot = 1e-12;  ///< of a row of the tableau, relative to the norm of the inverse's row
-constexpr double first_pivot = 1e-3;      ///< of the columns that a basis is built from, relative to their size
-constexpr double agreement = 1e-7;        ///< of a pivot computed by row and by column
-constexpr Index fresh_enough = 30;        ///< updates after which basic values are computed anew before they are believed
-constexpr double no_step = 1e-12;         ///< of the multipliers: the bound stays where it is
-constexpr Index patience = 6;             ///< with as many such steps in a row
-constexpr double nudge = 1e-6;            ///< of the costs, after that
+constexpr double feasible = 1e-9;  ///< a bound may be exceeded by this
+constexpr double smallest_pivot =
+    1e-12;  ///< of a row of the tableau, relative to the norm of the inverse's row
+constexpr double first_pivot =
+    1e-3;  ///< of the columns that a basis is built from, relative to their size
+constexpr double agreement = 1e-7;  ///< of a pivot computed by row and by column
+constexpr Index fresh_enough =
+    30;  ///< updates after which basic values are computed anew before they are believed
+constexpr double no_step = 1e-12;  ///< of the multipliers: the bound stays where it is
+constexpr Index patience = 6;      ///< with as many such steps in a row
+constexpr double nudge = 1e-6;     ///< of the costs, after that
 
 }  // namespace
 
@@ -62,9 +65,11 @@ BoxSimplex::Status BoxSimplex::maximize(VectorIn g, VectorIn scores, double enou
   return solve(enough, most);
 }
 
-/// The m best come first and in order, of equal ones the first; one that is no number comes last. The others follow in any order.
+/// The m best come first and in order, of equal ones the first; one that is no number comes last.
+/// The others follow in any order.
 void BoxSimplex::order_by(VectorIn scores) {
-  reduced_.head(g_) = scores.array().isNaN().select(std::numeric_limits<double>::infinity(), scores);  // not in use yet
+  reduced_.head(g_) = scores.array().isNaN().select(std::numeric_limits<double>::infinity(),
+                                                    scores);  // not in use yet
   const double* const score = reduced_.data();
   const Index best = std::min(g_, m_);
   Index* const order = order_.data();
@@ -95,7 +100,8 @@ void BoxSimplex::build_basis() {
   }
   side_.head(g_).setOnes();
   Index made = 0;
-  for (std::size_t k = 0; k < order_.size() && k < static_cast<std::size_t>(2 * m_) && made < m_; ++k) {
+  for (std::size_t k = 0; k < order_.size() && k < static_cast<std::size_t>(2 * m_) && made < m_;
+       ++k) {
     if (!bring_in(order_[k])) continue;
     side_[order_[k]] = 0;
     ++made;
@@ -104,8 +110,8 @@ void BoxSimplex::build_basis() {
   for (Index k = 0; k < m_; ++k) norms_ += inverse_.col(k).cwiseAbs2();
 }
 
-/// In place of the artificial with the largest pivot, if that is large enough. The inverse's columns of rows whose artificials
-/// are basic are unit vectors still.
+/// In place of the artificial with the largest pivot, if that is large enough. The inverse's
+/// columns of rows whose artificials are basic are unit vectors still.
 bool BoxSimplex::bring_in(Index variable) {
   const double* const column = &columns_(0, variable);
   for (Index i = 0; i < height_; ++i) image_[i] = 0;
@@ -152,8 +158,8 @@ void BoxSimplex::transform(const double* v, Vector& image) const {
   }
 }
 
-/// After the column with this `image_` took the place of the basic variable of a row; `rho_` is that row of the inverse, and is
-/// divided by the pivot.
+/// After the column with this `image_` took the place of the basic variable of a row; `rho_` is
+/// that row of the inverse, and is divided by the pivot.
 void BoxSimplex::update_inverse(Index row) {
   const double pivot = image_[row];
   rho_ /= pivot;
@@ -193,8 +199,10 @@ bool BoxSimplex::take_objective() {
 void BoxSimplex::solve_basics() {
   constexpr Index width = Panels<double>::width;
   std::fill(sums_.begin(), sums_.end(), 0.0);
-  for (Index p = 0; p < panels_.panels(); ++p) panels_.add_times(p, Line<double>::load(&side_[p * width]), sums_.data());
-  for (Index i = 0; i < m_; ++i) change_[i] = b_[i] - Line<double>::load(&sums_[static_cast<std::size_t>(i * width)]).total();
+  for (Index p = 0; p < panels_.panels(); ++p)
+    panels_.add_times(p, Line<double>::load(&side_[p * width]), sums_.data());
+  for (Index i = 0; i < m_; ++i)
+    change_[i] = b_[i] - Line<double>::load(&sums_[static_cast<std::size_t>(i * width)]).total();
   transform(change_.data(), basic_value_);
   updates_ = 0;
 }
@@ -221,7 +229,9 @@ void BoxSimplex::find_multipliers() {
 /// By the reduced costs of basic variables, which should vanish.
 void BoxSimplex::refine_multipliers() {
   for (Index i = 0; i < m_; ++i) {
-    rho_[i] = is_artificial(basic(i)) ? -y_[basic(i) - g_] : cost_[basic(i)] - dot(height_, y_.data(), &columns_(0, basic(i)));
+    rho_[i] = is_artificial(basic(i))
+                  ? -y_[basic(i) - g_]
+                  : cost_[basic(i)] - dot(height_, y_.data(), &columns_(0, basic(i)));
   }
   for (Index k = 0; k < m_; ++k) y_[k] += dot(height_, rho_.data(), &inverse_(0, k));
 }
@@ -248,8 +258,9 @@ void BoxSimplex::take_point(Vector& xi) {
   }
 }
 
-/// Makes all reduced costs positive, by amounts that differ: where many vanish, as under an objective of few entries, the method
-/// would go around in circles among bases of one bound. The multipliers stay.
+/// Makes all reduced costs positive, by amounts that differ: where many vanish, as under an
+/// objective of few entries, the method would go around in circles among bases of one bound. The
+/// multipliers stay.
 void BoxSimplex::nudge_costs() {
   for (Index j = 0; j < g_; ++j) {
     const double place = static_cast<double>(j + 1) * 0.6180339887498949;
@@ -260,7 +271,8 @@ void BoxSimplex::nudge_costs() {
   nudged_ = true;
 }
 
-/// The objective as it was given. Variables whose reduced costs vanish stay where they are, as do the basic values then.
+/// The objective as it was given. Variables whose reduced costs vanish stay where they are, as do
+/// the basic values then.
 bool BoxSimplex::take_back_nudges() {
   cost_.head(g_) = objective_;
   nudged_ = false;
@@ -296,7 +308,8 @@ BoxSimplex::Status BoxSimplex::solve(double enough, Index most) {
   if (!take_objective()) return Status::unsolved;
   bool rebuilt = false;
   Index idle = 0;
-  for (const Index limit = std::min(most, 200 + 20 * (m_ + g_)); iterations_ < limit; ++iterations_) {
+  for (const Index limit = std::min(most, 200 + 20 * (m_ + g_)); iterations_ < limit;
+       ++iterations_) {
     const bool is_below = enough > any && objective() < enough;
     const Index row = is_below ? none : leaving_row();
     if (row == none && nudged_) {
@@ -359,13 +372,15 @@ void BoxSimplex::price(Index row) {
     candidates[count] = j;
     count += decrease[j] > least;
   }
-  for (std::size_t k = 0; k < count; ++k) steps[k] = reduced_[candidates[k]] / decrease[candidates[k]];
-  for (std::size_t k = count; k < count + vectors::block; ++k) steps[k] = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < count; ++k)
+    steps[k] = reduced_[candidates[k]] / decrease[candidates[k]];
+  for (std::size_t k = count; k < count + vectors::block; ++k)
+    steps[k] = std::numeric_limits<double>::infinity();
   candidate_count_ = count;
 }
 
-/// Passes breakpoints while the bound still falls; the last one enters. None if the bound falls without end, beyond what the
-/// tolerance of bounds explains.
+/// Passes breakpoints while the bound still falls; the last one enters. None if the bound falls
+/// without end, beyond what the tolerance of bounds explains.
 Index BoxSimplex::entering_variable(double infeasibility) {
   double slope = infeasibility, largest = 0;
   for (passed_ = 0; slope > feasible / 2; ++passed_) {
@@ -416,7 +431,8 @@ void BoxSimplex::flip_passed() {
 /// False, with nothing changed, if the pivot is not known well enough.
 bool BoxSimplex::exchange(Index row, Index entering) {
   transform(&columns_(0, entering), image_);
-  const double pivot = image_[row], step = steps_[passed_], side = side_[entering], size = decrease_[entering];
+  const double pivot = image_[row], step = steps_[passed_], side = side_[entering],
+               size = decrease_[entering];
   if (!(std::abs(pivot * direction_ * side - size) <= agreement * size)) return false;
 
   reduced_ -= step * decrease_;

@@ -10,14 +10,17 @@
 
 namespace cordon {
 
-/// max{gᵀξ : Aξ = b, ‖ξ‖∞ ≤ 1} by proposals: y and ξ are computed in doubles; what they prove is for others to say.
+/// max{gᵀξ : Aξ = b, ‖ξ‖∞ ≤ 1} by proposals: y and ξ are computed in doubles; what they prove is
+/// for others to say.
 ///
-/// Dual simplex method with bound flipping. Boxed variables make every basis dual feasible, so there is no first phase. Each row
-/// has an artificial variable in [0,0]: the first basis, which is never singular; once out, an artificial never returns, and
-/// redundant rows keep theirs. Where the bound does not move any more, costs are changed by some 1e-6 until the basis is optimal
-/// under these. The inverse of the basis is kept explicitly, by columns; the squared norms of its rows (exact
-/// steepest edges, [Forrest1992]) fall out of its update. Sums have one order on every machine. Nothing is allocated after
-/// construction. Tolerances are absolute: rows and objective should have entries of about 1. O(m (m + g)) per iteration.
+/// Dual simplex method with bound flipping. Boxed variables make every basis dual feasible, so
+/// there is no first phase. Each row has an artificial variable in [0,0]: the first basis, which is
+/// never singular; once out, an artificial never returns, and redundant rows keep theirs. Where the
+/// bound does not move any more, costs are changed by some 1e-6 until the basis is optimal under
+/// these. The inverse of the basis is kept explicitly, by columns; the squared norms of its rows
+/// (exact steepest edges, [Forrest1992]) fall out of its update. Sums have one order on every
+/// machine. Nothing is allocated after construction. Tolerances are absolute: rows and objective
+/// should have entries of about 1. O(m (m + g)) per iteration.
 class BoxSimplex {
  public:
   BoxSimplex(const Matrix& A, VectorIn b);
@@ -30,14 +33,17 @@ class BoxSimplex {
   };
   static constexpr double any = -std::numeric_limits<double>::infinity();
 
-  /// The first basis consists of the columns with the smallest scores, as far as they are independent. Ends early once the
-  /// maximum is known to be < enough, and unsolved after `most` iterations.
-  Status maximize(VectorIn g, VectorIn scores, double enough = any, Index most = std::numeric_limits<Index>::max());
+  /// The first basis consists of the columns with the smallest scores, as far as they are
+  /// independent. Ends early once the maximum is known to be < enough, and unsolved after `most`
+  /// iterations.
+  Status maximize(VectorIn g, VectorIn scores, double enough = any,
+                  Index most = std::numeric_limits<Index>::max());
 
   VectorIn multipliers() const { return y_.head(m_); }
   /// gᵀξ of the last basic solution.
   double objective() const;
-  /// The last basic solution: satisfies the rows up to rounding; the bounds too if optimal. O(m (m + g)).
+  /// The last basic solution: satisfies the rows up to rounding; the bounds too if optimal. O(m (m
+  /// + g)).
   void take_point(Vector& xi);
   Index iterations() const { return iterations_; }
 
@@ -74,17 +80,19 @@ class BoxSimplex {
   Panels<double> panels_;  ///< the columns once more
   std::vector<double> sums_;
   Vector b_, objective_, y_, basic_value_, norms_, rho_, image_, change_, change_image_;
-  std::vector<Index> basic_;       ///< variable in each position; artificial i is g + i
-  std::vector<Index> order_;       ///< columns, those to be made basic first
-  std::vector<Index> candidates_;  ///< variables whose reduced costs fall; those that were passed come first
-  std::vector<double> steps_;      ///< of the multipliers, where these costs vanish
-  /// Of the structural variables, with padding: objective; bound ±1, 0 for basic ones; side · reduced cost ≥ 0, its decrease per
-  /// step of the multipliers.
+  std::vector<Index> basic_;  ///< variable in each position; artificial i is g + i
+  std::vector<Index> order_;  ///< columns, those to be made basic first
+  std::vector<Index>
+      candidates_;  ///< variables whose reduced costs fall; those that were passed come first
+  std::vector<double> steps_;  ///< of the multipliers, where these costs vanish
+  /// Of the structural variables, with padding: objective; bound ±1, 0 for basic ones; side ·
+  /// reduced cost ≥ 0, its decrease per step of the multipliers.
   Vector cost_, side_, reduced_, decrease_;
   std::size_t candidate_count_ = 0, passed_ = 0;
   Index iterations_ = 0, updates_ = 0;
-  bool nudged_ = false;   ///< costs differ from the objective
-  double direction_ = 1;  ///< +1: the leaving variable is below its lower bound; -1: above its upper one
+  bool nudged_ = false;  ///< costs differ from the objective
+  double direction_ =
+      1;  ///< +1: the leaving variable is below its lower bound; -1: above its upper one
 };
 
 }  // namespace cordon

@@ -10,10 +10,13 @@ namespace cordon {
 
 namespace {
 
-/// Coefficients below this share of their row are left out: proposals need no more, and pivots on noise are bad ones.
+/// Coefficients below this share of their row are left out: proposals need no more, and pivots on
+/// noise are bad ones.
 constexpr double noise = 1e-13;
-constexpr Index some_rows = 40, many_rows = 100;  ///< from which on simplex iterations are counted, and not tried first
-constexpr Index long_way = 4;                     ///< as many iterations per row
+constexpr Index some_rows = 40,
+                many_rows =
+                    100;  ///< from which on simplex iterations are counted, and not tried first
+constexpr Index long_way = 4;  ///< as many iterations per row
 
 /// The power of two that brings the largest entry into [1, 2).
 int power_of(VectorIn g) {
@@ -32,7 +35,8 @@ void shift(Vector& v, int power) {
 
 }  // namespace
 
-BoxSolver::Scaled::Scaled(const Matrix& whole) : scale(linalg::row_scales(whole)), A(whole.rows(), whole.cols()) {
+BoxSolver::Scaled::Scaled(const Matrix& whole)
+    : scale(linalg::row_scales(whole)), A(whole.rows(), whole.cols()) {
   active.reserve(static_cast<std::size_t>(whole.cols()));
   for (Index j = 0; j < whole.cols(); ++j) {
     const Index k = static_cast<Index>(active.size());
@@ -42,7 +46,8 @@ BoxSolver::Scaled::Scaled(const Matrix& whole) : scale(linalg::row_scales(whole)
       A(i, k) = std::abs(entry) < noise ? 0.0 : entry;
       enters = enters || A(i, k) != 0;
     }
-    if (enters || (active.empty() && j + 1 == whole.cols())) active.push_back(j);  // solvers want one variable at least
+    if (enters || (active.empty() && j + 1 == whole.cols()))
+      active.push_back(j);  // solvers want one variable at least
   }
   A.conservativeResize(Eigen::NoChange, static_cast<Index>(active.size()));
 }
@@ -50,7 +55,10 @@ BoxSolver::Scaled::Scaled(const Matrix& whole) : scale(linalg::row_scales(whole)
 BoxSolver::BoxSolver(const Matrix& A, const Vector& b) : BoxSolver(Scaled(A), b, A.cols()) {}
 
 BoxSolver::BoxSolver(Scaled rows, const Vector& b, Index cols)
-    : rows_(std::move(rows)), b_(rows_.scale.cwiseProduct(b)), simplex_(rows_.A, b_), bounds_(cols) {}
+    : rows_(std::move(rows)),
+      b_(rows_.scale.cwiseProduct(b)),
+      simplex_(rows_.A, b_),
+      bounds_(cols) {}
 
 /// `objective_`: of the active variables, with its largest entry in [1, 2).
 void BoxSolver::take_objective(VectorIn g) {
@@ -74,7 +82,8 @@ BoxSolver::Status BoxSolver::solve(double enough) {
   if (rows >= many_rows) return solve_from_inside(enough);
   if (!guess_) guess_.emplace(rows_.A, b_);
   if (rows < some_rows) return simplex_.maximize(objective_, guess_->scores(objective_), enough);
-  const Status status = simplex_.maximize(objective_, guess_->scores(objective_), enough, long_way * rows);
+  const Status status =
+      simplex_.maximize(objective_, guess_->scores(objective_), enough, long_way * rows);
   return status == Status::unsolved ? solve_from_inside(enough) : status;
 }
 
@@ -105,7 +114,8 @@ BoxSolver::Status BoxSolver::maximize(VectorIn g, double enough) {
 
 BoxSolver::Status BoxSolver::second_opinion(VectorIn g) {
   take_objective(g);
-  constexpr int larger = 8;  // GLPK's tolerances are absolute: whatever the objective is, it sees one of some hundreds
+  constexpr int larger =
+      8;  // GLPK's tolerances are absolute: whatever the objective is, it sees one of some hundreds
   shift(objective_, larger);
   const Vector one = Vector::Ones(objective_.size());
   LinearProgram::Solution solution = LinearProgram(rows_.A, b_, -one, one).maximize(objective_);

@@ -12,11 +12,12 @@
 
 namespace cordon {
 
-/// Brings rows and objectives to entries near 1 by powers of two, guesses a basis and runs the dual simplex method from there.
-/// Programs of a hundred rows, and smaller ones that take the simplex method long, are solved by an interior-point method, whose
-/// solution becomes the guess, and the answer where a corner is still far from it. Where all that fails, GLPK may find
-/// multipliers. Variables that enter no row are left out and put at their bounds; sets that
-/// were reduced have many. A proposal depends on the question alone, not on what was asked before.
+/// Brings rows and objectives to entries near 1 by powers of two, guesses a basis and runs the dual
+/// simplex method from there. Programs of a hundred rows, and smaller ones that take the simplex
+/// method long, are solved by an interior-point method, whose solution becomes the guess, and the
+/// answer where a corner is still far from it. Where all that fails, GLPK may find multipliers.
+/// Variables that enter no row are left out and put at their bounds; sets that were reduced have
+/// many. A proposal depends on the question alone, not on what was asked before.
 class BoxSolver {
  public:
   BoxSolver(const Matrix& A, const Vector& b);
@@ -51,7 +52,7 @@ class BoxSolver {
   std::optional<BasisGuess> guess_;
   std::optional<InteriorPoint> interior_;
   std::optional<Vector> point_;  ///< another solver's than the simplex method's
-  Vector bounds_;                ///< where the objective is largest over the box alone: ±1 per variable
+  Vector bounds_;  ///< where the objective is largest over the box alone: ±1 per variable
   double idle_ = 0, value_ = 0;  ///< `idle_`: the part of the value by variables that enter no row
   int power_ = 0;                ///< the objective was divided by 2 to this power
 };

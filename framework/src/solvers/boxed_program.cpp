@@ -16,23 +16,29 @@ namespace cordon {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// A bound that exceeds the value of its point by this share of the objective is worth another solver's opinion.
+/// A bound that exceeds the value of its point by this share of the objective is worth another
+/// solver's opinion.
 constexpr double loose = 1e-7;
-/// Solutions of Aξ = (1 + σ) b with σ below this at most: the proof of emptiness will have a margin.
+/// Solutions of Aξ = (1 + σ) b with σ below this at most: the proof of emptiness will have a
+/// margin.
 constexpr double clearly_empty = -1e-6;
-/// An infeasibility smaller than this share of the terms it is made of may stem from the rounding errors of nominal operations.
+/// An infeasibility smaller than this share of the terms it is made of may stem from the rounding
+/// errors of nominal operations.
 constexpr double nominal_tolerance = 1e-10;
 
 /// |ξ| + radius ≤ 1 in every coordinate, rounding included.
 bool fits(VectorIn xi, const Vector& radius) {
   for (Index j = 0; j < xi.size(); ++j) {
-    const double reach = radius[j] == 0 ? std::abs(xi[j]) : rounding::up(std::abs(xi[j]) + radius[j]);
+    const double reach =
+        radius[j] == 0 ? std::abs(xi[j]) : rounding::up(std::abs(xi[j]) + radius[j]);
     if (!(reach <= 1)) return false;
   }
   return true;
 }
 
-bool fits(const Vector& xi, double distance) { return xi.size() == 0 || rounding::up(xi.cwiseAbs().maxCoeff() + distance) <= 1; }
+bool fits(const Vector& xi, double distance) {
+  return xi.size() == 0 || rounding::up(xi.cwiseAbs().maxCoeff() + distance) <= 1;
+}
 
 }  // namespace
 
@@ -44,7 +50,10 @@ struct BoxedProgram::State {
   std::optional<BoxSolver> objective_solver, scaling_solver;
 
   State(Matrix rows, Vector right, Accuracy known)
-      : A(std::move(rows)), b(std::move(right)), accuracy(std::move(known)), certificates(A, b, accuracy.error) {}
+      : A(std::move(rows)),
+        b(std::move(right)),
+        accuracy(std::move(known)),
+        certificates(A, b, accuracy.error) {}
 
   Answer is_empty(Certificate* why);
 
@@ -53,8 +62,9 @@ struct BoxedProgram::State {
     return *objective_solver;
   }
 
-  /// max σ with Aξ = (1 + σ) b, ‖ξ‖∞ ≤ 1, |σ| ≤ 1: feasible in any case. σ* < 0 means empty, and the multipliers prove it; else ξ
-  /// / (1 + σ*) is the solution of the rows with the smallest norm, or one of norm at most 1/2.
+  /// max σ with Aξ = (1 + σ) b, ‖ξ‖∞ ≤ 1, |σ| ≤ 1: feasible in any case. σ* < 0 means empty, and
+  /// the multipliers prove it; else ξ / (1 + σ*) is the solution of the rows with the smallest
+  /// norm, or one of norm at most 1/2.
   BoxSolver& for_scaling() {
     if (!scaling_solver) {
       Matrix rows(A.rows(), A.cols() + 1);
@@ -67,7 +77,8 @@ struct BoxedProgram::State {
   /// Nothing is said about emptiness by less than what rounding may have added.
   bool prove_empty(const Vector& y, double& margin) const {
     margin = certificates.farkas_margin(y);
-    return margin > nominal_tolerance * y.cwiseAbs().dot(b.cwiseAbs() + certificates.reach() + accuracy.magnitude);
+    return margin > nominal_tolerance *
+                        y.cwiseAbs().dot(b.cwiseAbs() + certificates.reach() + accuracy.magnitude);
   }
 
   /// A proof that P is empty, if there is one: the proposal, or what the question itself finds.
@@ -125,11 +136,14 @@ struct BoxedProgram::State {
 };
 
 BoxedProgram::BoxedProgram(Matrix A, Vector b, Accuracy accuracy) {
-  if (A.rows() != b.size()) throw Error(Errc::dimension, "boxed program: matrix and right-hand side differ in rows");
-  if (!A.allFinite() || !b.allFinite()) throw Error(Errc::not_finite, "boxed program: a NaN or infinite coefficient");
+  if (A.rows() != b.size())
+    throw Error(Errc::dimension, "boxed program: matrix and right-hand side differ in rows");
+  if (!A.allFinite() || !b.allFinite())
+    throw Error(Errc::not_finite, "boxed program: a NaN or infinite coefficient");
   for (Vector* part : {&accuracy.magnitude, &accuracy.error}) {
     if (part->size() == 0) part->setZero(b.size());
-    if (part->size() != b.size()) throw Error(Errc::dimension, "boxed program: the accuracy of the rows has the wrong size");
+    if (part->size() != b.size())
+      throw Error(Errc::dimension, "boxed program: the accuracy of the rows has the wrong size");
   }
   state_ = std::make_unique<State>(std::move(A), std::move(b), std::move(accuracy));
 }
@@ -151,7 +165,8 @@ BoxedProgram::Bound BoxedProgram::maximum(VectorIn g) {
 
 void BoxedProgram::upper_bound(VectorIn g, Bound& bound) {
   State& s = *state_;
-  if (g.size() != s.A.cols()) throw Error(Errc::dimension, "boxed program: the objective has the wrong size");
+  if (g.size() != s.A.cols())
+    throw Error(Errc::dimension, "boxed program: the objective has the wrong size");
   bound.solved = s.A.rows() == 0;
   bound.upper = infinity;
   bound.xi.reset();
@@ -174,7 +189,8 @@ Answer BoxedProgram::State::is_empty(Certificate* why) {
   if (why) *why = {};
   if (m == 0) return conclude(Answer::no, Certificate::Kind::structure, Vector(0), 1);
   double margin = 0;
-  if (auto y = missed_row(margin)) return conclude(Answer::yes, Certificate::Kind::farkas, std::move(*y), margin);
+  if (auto y = missed_row(margin))
+    return conclude(Answer::yes, Certificate::Kind::farkas, std::move(*y), margin);
 
   const RowGram gram(A, b, accuracy.error);
   const auto point_proves = [&](const Vector& xi) {
@@ -186,11 +202,13 @@ Answer BoxedProgram::State::is_empty(Certificate* why) {
     margin = g ? 1 - xi.cwiseAbs().maxCoeff() : 1;
     return conclude(Answer::no, Certificate::Kind::point, std::move(xi), margin);
   };
-  // Cheap first: the least-squares point proves either answer when it lies clearly inside or outside.
+  // Cheap first: the least-squares point proves either answer when it lies clearly inside or
+  // outside.
   if (gram.is_regular()) {
     RowGram::Point point = gram.least_squares();
     if (fits(point.xi, gram.distance(point.xi))) return found(std::move(point.xi));
-    if (prove_empty(point.y, margin)) return conclude(Answer::yes, Certificate::Kind::farkas, std::move(point.y), margin);
+    if (prove_empty(point.y, margin))
+      return conclude(Answer::yes, Certificate::Kind::farkas, std::move(point.y), margin);
   }
   BoxSolver& solver = for_scaling();
   const Vector sigma = Vector::Unit(g + 1, g);
@@ -223,10 +241,13 @@ double BoxedProgram::attained(VectorIn g, VectorIn xi) {
   const Vector inside = xi.cwiseMax(-1.0).cwiseMin(1.0);
   const std::optional<Vector> radius = repair_radius(s.A, s.b, inside, s.accuracy.error);
   if (!radius || !fits(inside, *radius)) return -infinity;
-  return rounding::down(rounding::dot(g, inside).lower - rounding::dot(g.cwiseAbs(), *radius).upper);
+  return rounding::down(rounding::dot(g, inside).lower -
+                        rounding::dot(g.cwiseAbs(), *radius).upper);
 }
 
-double farkas_margin(MatrixIn A, VectorIn b, VectorIn y, VectorIn error) { return RowCertificates(A, b, error).farkas_margin(y); }
+double farkas_margin(MatrixIn A, VectorIn b, VectorIn y, VectorIn error) {
+  return RowCertificates(A, b, error).farkas_margin(y);
+}
 
 std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi, VectorIn error) {
   const Index g = A.cols();
@@ -249,23 +270,27 @@ std::optional<Vector> repair_radius(MatrixIn A, VectorIn b, VectorIn xi, VectorI
   rows.conservativeResize(m, g);
 
   const Vector slack = (1 - xi.cwiseAbs().array()).cwiseMax(0.0).matrix();
-  const Matrix weighted = slack.asDiagonal() * rows.transpose();  // D Aᵀ as stored: the correction is sought in its span
+  const Matrix weighted = slack.asDiagonal() *
+                          rows.transpose();  // D Aᵀ as stored: the correction is sought in its span
   const Matrix K = linalg::product(rows, weighted);
   const std::optional<Matrix> R = linalg::solve(K, Matrix::Identity(m, m));
   if (!R || !R->allFinite()) return std::nullopt;
 
-  // E = I - (A D Aᵀ) R, bounded entrywise: computed value, error of its own product, error of K times |R|.
+  // E = I - (A D Aᵀ) R, bounded entrywise: computed value, error of its own product, error of K
+  // times |R|.
   const Matrix residual = Matrix::Identity(m, m) - linalg::product(K, *R);
-  const Matrix distance = residual.cwiseAbs() + 2 * rounding::product_error(K, *R) +
-                          2 * linalg::product(rounding::product_error(rows, weighted), R->cwiseAbs()) +
-                          Matrix::Constant(m, m, 4 * rounding::unit);
+  const Matrix distance =
+      residual.cwiseAbs() + 2 * rounding::product_error(K, *R) +
+      2 * linalg::product(rounding::product_error(rows, weighted), R->cwiseAbs()) +
+      Matrix::Constant(m, m, 4 * rounding::unit);
   const double alpha = distance.rowwise().sum().maxCoeff() * (1 + 1e-10);
   if (!(alpha < 0.5)) return std::nullopt;
 
   Vector gap(m);  // |b - A ξ|, rounded up
   for (Index i = 0; i < m; ++i) {
     const rounding::Range product = rounding::dot(rows.row(i).transpose(), xi);
-    gap[i] = std::max(std::abs(rounding::up(right[i] - product.lower)), std::abs(rounding::down(right[i] - product.upper)));
+    gap[i] = std::max(std::abs(rounding::up(right[i] - product.lower)),
+                      std::abs(rounding::down(right[i] - product.upper)));
     if (unsure[i] > 0) gap[i] = rounding::up(gap[i] + unsure[i]);
   }
   // δ = D Aᵀ R (I - E)⁻¹ (b - Aξ), |(I - E)⁻¹ r| ≤ |r| + α/(1-α) ‖r‖∞

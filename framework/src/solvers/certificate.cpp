@@ -19,8 +19,10 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void require_point(const LineForm& X, VectorIn x) {
   check(X, "certificate");
-  if (x.size() != X.dim()) throw Error(Errc::dimension, "certificate: the vector has another dimension than the set");
-  if (!x.allFinite()) throw Error(Errc::not_finite, "certificate: the vector has a NaN or infinite entry");
+  if (x.size() != X.dim())
+    throw Error(Errc::dimension, "certificate: the vector has another dimension than the set");
+  if (!x.allFinite())
+    throw Error(Errc::not_finite, "certificate: the vector has a NaN or infinite entry");
 }
 
 void require_pair(const LineForm& X, const LineForm& Y) {
@@ -32,7 +34,8 @@ void require_pair(const LineForm& X, const LineForm& Y) {
 bool infeasible(const Rows& rows, const Certificate& why) {
   if (why.kind == Kind::structure) {  // a row 0 = b
     for (Index i = 0; i < rows.plus.size(); ++i) {
-      if (rows.S.row(i).isZero(0) && rows.A.row(i).isZero(0) && rows.plus[i] != rows.minus[i]) return true;
+      if (rows.S.row(i).isZero(0) && rows.A.row(i).isZero(0) && rows.plus[i] != rows.minus[i])
+        return true;
     }
     return false;
   }
@@ -97,7 +100,8 @@ bool proves_support(const LineForm& X, VectorIn d, double bound, const Certifica
   if (bound == std::numeric_limits<double>::infinity()) return true;
   if (why.kind == Kind::farkas) return proves_empty(X, why);
   if (why.kind != Kind::dual && why.kind != Kind::structure) return false;
-  const auto proven = proven_support(X, d, why.kind == Kind::structure ? Vector(Vector::Zero(X.constraints())) : why.data);
+  const auto proven = proven_support(
+      X, d, why.kind == Kind::structure ? Vector(Vector::Zero(X.constraints())) : why.data);
   return proven && *proven <= bound;
 }
 

@@ -134,8 +134,10 @@ class PointedCone {
       for (const Ray* q : outside) {
         if (!adjacent(*p, *q, common)) continue;
         created.push_back({combination(*p, *q), common});
-        const std::size_t digits = digits_of(p->z) + digits_of(q->z) + mpz_size(p->value.get_mpz_t());
-        work_ += static_cast<double>(p->z.size() * digits * digits);  // products, and a greatest common divisor
+        const std::size_t digits =
+            digits_of(p->z) + digits_of(q->z) + mpz_size(p->value.get_mpz_t());
+        work_ += static_cast<double>(p->z.size() * digits *
+                                     digits);  // products, and a greatest common divisor
         created.back().zeros.insert(row);
         check_count(rays_.size() + created.size());
       }
@@ -161,7 +163,8 @@ class PointedCone {
     }
   }
 
-  /// The smallest face with both rays has no other ray. `common` receives the rows on which both lie.
+  /// The smallest face with both rays has no other ray. `common` receives the rows on which both
+  /// lie.
   bool adjacent(const Ray& p, const Ray& q, BitSet& common) {
     common.assign_intersection(p.zeros, q.zeros);
     work_ += static_cast<double>(common.words());
@@ -195,15 +198,18 @@ class PointedCone {
   }
 
   void check_count(std::size_t count) const {
-    if (count > most_rays) refuse("rows", static_cast<double>(count), static_cast<double>(most_rays));
+    if (count > most_rays)
+      refuse("rows", static_cast<double>(count), static_cast<double>(most_rays));
   }
   void check_work() const {
     if (work_ > most_work) refuse("operations", work_, most_work);
   }
   [[noreturn]] void refuse(const char* what, double amount, double limit) const {
-    throw Error(Errc::unsupported, "polytope: converting " + std::to_string(rows_.size()) + " rows in dimension " +
-                                       std::to_string(dim_ - 1) + " needs " + std::to_string(static_cast<long long>(amount)) +
-                                       " " + what + " or more; at most " + std::to_string(static_cast<long long>(limit)) +
+    throw Error(Errc::unsupported, "polytope: converting " + std::to_string(rows_.size()) +
+                                       " rows in dimension " + std::to_string(dim_ - 1) +
+                                       " needs " + std::to_string(static_cast<long long>(amount)) +
+                                       " " + what + " or more; at most " +
+                                       std::to_string(static_cast<long long>(limit)) +
                                        " are supported");
   }
 
@@ -228,7 +234,8 @@ RationalMatrix to_matrix(const std::vector<RationalVector>& rows, Index cols) {
 }
 
 /// Aᵀ of a basis: Σ y_i basis_i.
-RationalVector combine(const RationalMatrix& basis, const std::vector<Index>& chosen, const RationalVector& y) {
+RationalVector combine(const RationalMatrix& basis, const std::vector<Index>& chosen,
+                       const RationalVector& y) {
   RationalVector z(index(basis.cols()));
   for (std::size_t i = 0; i < y.size(); ++i) {
     if (sgn(y[i]) == 0) continue;
@@ -239,8 +246,10 @@ RationalVector combine(const RationalMatrix& basis, const std::vector<Index>& ch
   return z;
 }
 
-/// {z ∈ Rᵈ : inequalities z ≥ 0, equations z = 0}. Solved for the equations, cut free of its lines, and then pointed.
-ConeGenerators cone(const std::vector<RationalVector>& inequalities, const std::vector<RationalVector>& equations, Index d) {
+/// {z ∈ Rᵈ : inequalities z ≥ 0, equations z = 0}. Solved for the equations, cut free of its lines,
+/// and then pointed.
+ConeGenerators cone(const std::vector<RationalVector>& inequalities,
+                    const std::vector<RationalVector>& equations, Index d) {
   const RationalMatrix solutions = rational::null_space(to_matrix(equations, d));
   const Index k = solutions.rows();
   RationalMatrix A(static_cast<Index>(inequalities.size()), k);
@@ -255,13 +264,15 @@ ConeGenerators cone(const std::vector<RationalVector>& inequalities, const std::
 
   ConeGenerators out;
   const RationalMatrix lines = rational::null_space(A);
-  for (Index i = 0; i < lines.rows(); ++i) out.lines.push_back(combine(solutions, all, lines.row(i)));
+  for (Index i = 0; i < lines.rows(); ++i)
+    out.lines.push_back(combine(solutions, all, lines.row(i)));
   if (pivots.empty()) return out;
   std::vector<Integers> rows;
   for (Index i = 0; i < A.rows(); ++i) {
     RationalVector row;
     for (const Index j : pivots) row.push_back(A(i, j));
-    if (std::any_of(row.begin(), row.end(), [](const Rational& x) { return sgn(x) != 0; })) rows.push_back(to_integers(row));
+    if (std::any_of(row.begin(), row.end(), [](const Rational& x) { return sgn(x) != 0; }))
+      rows.push_back(to_integers(row));
   }
   const PointedCone pointed(std::move(rows), static_cast<Index>(pivots.size()));
   for (const Ray& ray : pointed.rays()) {
@@ -273,15 +284,18 @@ ConeGenerators cone(const std::vector<RationalVector>& inequalities, const std::
 /// Rows of the description by kind.
 ConeGenerators split(const Description& in) {
   if (in.dim > most_dimensions) {
-    throw Error(Errc::unsupported, "polytope: dimension " + std::to_string(in.dim) + " to convert; at most " +
-                                       std::to_string(most_dimensions) + " are supported");
+    throw Error(Errc::unsupported, "polytope: dimension " + std::to_string(in.dim) +
+                                       " to convert; at most " + std::to_string(most_dimensions) +
+                                       " are supported");
   }
   if (in.rows.size() > most_rows) {
-    throw Error(Errc::unsupported, "polytope: " + std::to_string(in.rows.size()) + " rows to convert; at most " +
-                                       std::to_string(most_rows) + " are supported");
+    throw Error(Errc::unsupported, "polytope: " + std::to_string(in.rows.size()) +
+                                       " rows to convert; at most " + std::to_string(most_rows) +
+                                       " are supported");
   }
   ConeGenerators out;
-  for (std::size_t i = 0; i < in.rows.size(); ++i) (in.linear[i] ? out.lines : out.rays).push_back(in.rows[i]);
+  for (std::size_t i = 0; i < in.rows.size(); ++i)
+    (in.linear[i] ? out.lines : out.rays).push_back(in.rows[i]);
   return out;
 }
 
@@ -325,7 +339,8 @@ Description inequalities_of(const Description& generators) {
   ConeGenerators found = cone(rows.rays, rows.lines, n + 1);
   for (RationalVector& row : found.rays) {
     // the plane at infinity, 1 ≥ 0, is no inequality
-    const bool constant = std::all_of(row.begin() + 1, row.end(), [](const Rational& x) { return sgn(x) == 0; });
+    const bool constant =
+        std::all_of(row.begin() + 1, row.end(), [](const Rational& x) { return sgn(x) == 0; });
     if (constant) continue;
     rational::make_primitive(row);
     out.add(std::move(row), false);

@@ -22,12 +22,14 @@ struct Description {
   }
 };
 
-/// Minimal generators of {x : inequalities}: no rows for ∅, (1) alone for n = 0. Points and rays are determined up to lines.
-/// Both conversions: Errc::unsupported above `most_dimensions` or `most_rows`, and when `most_rays` intermediate ones or
-/// `most_work` operations are exceeded, which takes seconds.
+/// Minimal generators of {x : inequalities}: no rows for ∅, (1) alone for n = 0. Points and rays
+/// are determined up to lines. Both conversions: Errc::unsupported above `most_dimensions` or
+/// `most_rows`, and when `most_rays` intermediate ones or `most_work` operations are exceeded,
+/// which takes seconds.
 Description generators_of(const Description& inequalities);
 
-/// Minimal inequalities of conv(points) ⊕ cone(rays) ⊕ span(lines). ∅ (no rows) gives the one row -1 ≥ 0.
+/// Minimal inequalities of conv(points) ⊕ cone(rays) ⊕ span(lines). ∅ (no rows) gives the one row
+/// -1 ≥ 0.
 Description inequalities_of(const Description& generators);
 
 inline constexpr Index most_dimensions = 20;

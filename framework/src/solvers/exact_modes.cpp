@@ -29,13 +29,15 @@ RationalVector times(const RationalVector& row, const RationalMatrix& A) {
   return image;
 }
 
-/// A basis of the span of C, C A, C A², …: each row is new to those before it, and images of rows that are not lie in the span.
+/// A basis of the span of C, C A, C A², …: each row is new to those before it, and images of rows
+/// that are not lie in the span.
 RationalMatrix shown_rows(const RationalMatrix& A, const RationalMatrix& C) {
   const Index n = A.rows();
   std::vector<RationalVector> basis, waiting;
   std::vector<std::size_t> pivots;
   for (Index i = 0; i < C.rows(); ++i) waiting.push_back(C.row(i));
-  for (std::size_t next = 0; next < waiting.size() && static_cast<Index>(basis.size()) < n; ++next) {
+  for (std::size_t next = 0; next < waiting.size() && static_cast<Index>(basis.size()) < n;
+       ++next) {
     RationalVector row = waiting[next];
     for (std::size_t k = 0; k < basis.size(); ++k) {
       const Rational factor = row[pivots[k]] / basis[k][pivots[k]];
@@ -52,13 +54,14 @@ RationalMatrix shown_rows(const RationalMatrix& A, const RationalMatrix& C) {
   }
   RationalMatrix rows(static_cast<Index>(basis.size()), n);
   for (std::size_t i = 0; i < basis.size(); ++i) {
-    for (Index j = 0; j < n; ++j) rows(static_cast<Index>(i), j) = basis[i][static_cast<std::size_t>(j)];
+    for (Index j = 0; j < n; ++j)
+      rows(static_cast<Index>(i), j) = basis[i][static_cast<std::size_t>(j)];
   }
   return rows;
 }
 
-/// A on the span of the rows of `basis`, which A maps into itself. Row i is the only one with an entry in its own free column,
-/// and that is 1: coordinates of an image are its entries there.
+/// A on the span of the rows of `basis`, which A maps into itself. Row i is the only one with an
+/// entry in its own free column, and that is 1: coordinates of an image are its entries there.
 RationalMatrix restricted(const RationalMatrix& A, const RationalMatrix& basis) {
   const Index d = basis.rows(), n = A.rows();
   const auto is_own = [&](Index i, Index j) {
@@ -105,11 +108,13 @@ RationalVector characteristic(const RationalMatrix& M) {
 }
 
 RationalMatrix closed_loop(MatrixIn A, MatrixIn L, MatrixIn C) {
-  if (A.cols() != A.rows() || L.rows() != A.rows() || C.cols() != A.rows() || L.cols() != C.rows()) {
+  if (A.cols() != A.rows() || L.rows() != A.rows() || C.cols() != A.rows() ||
+      L.cols() != C.rows()) {
     throw Error(Errc::dimension, "A - L C: the shapes of A, L and C do not fit");
   }
   RationalMatrix closed = rational::exact_matrix(A);
-  const RationalMatrix shown = rational::product(rational::exact_matrix(L), rational::exact_matrix(C));
+  const RationalMatrix shown =
+      rational::product(rational::exact_matrix(L), rational::exact_matrix(C));
   for (Index i = 0; i < closed.rows(); ++i) {
     for (Index j = 0; j < closed.cols(); ++j) closed(i, j) -= shown(i, j);
   }
@@ -118,19 +123,22 @@ RationalMatrix closed_loop(MatrixIn A, MatrixIn L, MatrixIn C) {
 
 void check_states(Index n) {
   if (n > most_states) {
-    throw Error(Errc::unsupported, "exact modes: " + std::to_string(n) + " states; at most " + std::to_string(most_states) +
+    throw Error(Errc::unsupported, "exact modes: " + std::to_string(n) + " states; at most " +
+                                       std::to_string(most_states) +
                                        " are supported in rational arithmetic");
   }
 }
 
-/// Are all roots of Σ p_j zʲ inside the unit circle? |p_0| < |p_d|, and so for (p_d p(z) - p_0 zᵈ p(1/z)) / z.
+/// Are all roots of Σ p_j zʲ inside the unit circle? |p_0| < |p_d|, and so for (p_d p(z) - p_0 zᵈ
+/// p(1/z)) / z.
 bool inside_circle(RationalVector p) {
   while (p.size() > 1) {
     rational::make_primitive(p);
     const Rational first = p.front(), last = p.back();
     if (abs(first) >= abs(last)) return false;
     RationalVector next(p.size() - 1);
-    for (std::size_t i = 0; i < next.size(); ++i) next[i] = last * p[i + 1] - first * p[p.size() - 2 - i];
+    for (std::size_t i = 0; i < next.size(); ++i)
+      next[i] = last * p[i + 1] - first * p[p.size() - 2 - i];
     p = std::move(next);
   }
   return true;
@@ -146,12 +154,15 @@ Index rank(MatrixIn M) {
 HiddenModes hidden_modes(MatrixIn A, MatrixIn C, double rate) {
   const Index n = A.rows();
   if (A.cols() != n || C.cols() != n) {
-    throw Error(Errc::dimension, "exact::hidden_modes: A must be square, with as many columns as C");
+    throw Error(Errc::dimension,
+                "exact::hidden_modes: A must be square, with as many columns as C");
   }
-  if (!(rate > 0) || !std::isfinite(rate)) throw Error(Errc::invalid, "exact::hidden_modes: the rate must be a positive number");
+  if (!(rate > 0) || !std::isfinite(rate))
+    throw Error(Errc::invalid, "exact::hidden_modes: the rate must be a positive number");
   check_states(n);
   const RationalMatrix exact_A = rational::exact_matrix(A);
-  const RationalMatrix hidden = rational::null_space(shown_rows(exact_A, rational::exact_matrix(C)));
+  const RationalMatrix hidden =
+      rational::null_space(shown_rows(exact_A, rational::exact_matrix(C)));
   HiddenModes modes{hidden.rows(), true, Matrix(n, 0), Matrix(0, 0)};
   if (modes.count == 0) return modes;
   RationalMatrix M = restricted(exact_A, hidden);

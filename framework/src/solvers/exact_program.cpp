@@ -16,7 +16,8 @@ namespace {
 
 using rational::Rational;
 
-/// The rows [S A | b] and the objective [f g | 0] (last), all times `scale`: a system that is solved for its basic columns.
+/// The rows [S A | b] and the objective [f g | 0] (last), all times `scale`: a system that is
+/// solved for its basic columns.
 class Tableau {
  public:
   explicit Tableau(const ExactProgram& p) : lines_(p.S.cols()), factors_(p.A.cols()) {
@@ -38,7 +39,8 @@ class Tableau {
   /// A line in the basis leaves it never, and its row holds for any ξ: the row is set aside.
   void eliminate_lines() {
     for (Index j = 0; j < lines_; ++j) {
-      const auto row = std::find_if(rows_.begin(), rows_.end() - 1, [&](const Row& r) { return r[index(j)] != 0; });
+      const auto row = std::find_if(rows_.begin(), rows_.end() - 1,
+                                    [&](const Row& r) { return r[index(j)] != 0; });
       if (row == rows_.end() - 1) continue;
       pivot(row - rows_.begin(), j);
       basic_.erase(basic_.begin() + (row - rows_.begin()));
@@ -47,10 +49,12 @@ class Tableau {
   }
 
   bool objective_has_lines() const {
-    return std::any_of(rows_.back().begin(), rows_.back().begin() + lines_, [](const mpz_class& x) { return x != 0; });
+    return std::any_of(rows_.back().begin(), rows_.back().begin() + lines_,
+                       [](const mpz_class& x) { return x != 0; });
   }
 
-  /// Fills the basis with factors, those named first in `order` before others. False: a row 0 = b ≠ 0, no solution.
+  /// Fills the basis with factors, those named first in `order` before others. False: a row 0 = b ≠
+  /// 0, no solution.
   bool fill_basis(const std::vector<Index>& order) {
     for (const Index j : order) {
       for (std::size_t i = 0; i < basic_.size(); ++i) {
@@ -73,10 +77,13 @@ class Tableau {
   Index factors() const { return factors_; }
   const std::vector<Index>& basis() const { return basic_; }
   const mpz_class& scale() const { return scale_; }
-  const mpz_class& entry(std::size_t row, Index factor) const { return rows_[row][index(lines_ + factor)]; }
+  const mpz_class& entry(std::size_t row, Index factor) const {
+    return rows_[row][index(lines_ + factor)];
+  }
   const mpz_class& cost(Index factor) const { return rows_.back()[index(lines_ + factor)]; }
 
-  /// Costs of second rank, integers for the factors that are not in the basis: they break ties among the costs.
+  /// Costs of second rank, integers for the factors that are not in the basis: they break ties
+  /// among the costs.
   void add_second_costs(const std::vector<int>& costs) {
     second_.assign(rows_.back().size(), 0);
     for (Index j = 0; j < factors_; ++j) second_[index(lines_ + j)] = costs[index(j)] * scale_;
@@ -122,7 +129,8 @@ class Tableau {
     mpz_class common = 1;
     for (const Rational& value : row) common = lcm(common, value.get_den());
     Row integers;
-    for (const Rational& value : row) integers.push_back(value.get_num() * (common / value.get_den()));
+    for (const Rational& value : row)
+      integers.push_back(value.get_num() * (common / value.get_den()));
     rows_.push_back(std::move(integers));
     objective_scale_ = common;
   }
@@ -144,7 +152,8 @@ class Tableau {
       const mpz_class factor = row[index(c)];
       for (std::size_t j = 0; j < row.size(); ++j) {
         row[j] *= p;
-        if (factor != 0) mpz_submul(row[j].get_mpz_t(), factor.get_mpz_t(), pivot_row[j].get_mpz_t());
+        if (factor != 0)
+          mpz_submul(row[j].get_mpz_t(), factor.get_mpz_t(), pivot_row[j].get_mpz_t());
         mpz_divexact(row[j].get_mpz_t(), row[j].get_mpz_t(), scale_.get_mpz_t());
       }
     };
@@ -164,7 +173,8 @@ class Tableau {
 
 Vector nearest(const rational::RationalVector& x) {
   Vector out(static_cast<Index>(x.size()));
-  std::transform(x.begin(), x.end(), out.begin(), [](const Rational& value) { return rational::nearest(value); });
+  std::transform(x.begin(), x.end(), out.begin(),
+                 [](const Rational& value) { return rational::nearest(value); });
   return out;
 }
 
@@ -186,21 +196,26 @@ std::vector<Index> proposed_order(const ExactProgram& p, Vector& xi) {
   upper.head(l).setConstant(std::numeric_limits<double>::infinity());
   try {
     const LinearProgram::Solution solution = LinearProgram(rows, b, -upper, upper).maximize(cost);
-    if (solution.status == LinearProgram::Status::optimal && solution.x.allFinite()) xi = solution.x.tail(g);
+    if (solution.status == LinearProgram::Status::optimal && solution.x.allFinite())
+      xi = solution.x.tail(g);
   } catch (const Error&) {
     return order;  // the proposal is dispensable
   }
-  std::stable_sort(order.begin(), order.end(), [&](Index i, Index j) { return std::abs(xi[i]) < std::abs(xi[j]); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index i, Index j) { return std::abs(xi[i]) < std::abs(xi[j]); });
   return order;
 }
 
-/// The sign of |a| / |b| - |c| / |d| for b, d ≠ 0, or, where a and c have signs of their own, of a / |b| - c / |d|.
+/// The sign of |a| / |b| - |c| / |d| for b, d ≠ 0, or, where a and c have signs of their own, of a
+/// / |b| - c / |d|.
 int compare_ratios(const mpz_class& a, const mpz_class& b, const mpz_class& c, const mpz_class& d) {
   return cmp(a * abs(d), c * abs(b));
 }
 
 /// A number of 16 bits that no structure of a program repeats (a linear congruence).
-int weight(Index j) { return 1 + static_cast<int>((static_cast<std::uint64_t>(j + 1) * 6364136223846793005ULL) >> 49); }
+int weight(Index j) {
+  return 1 + static_cast<int>((static_cast<std::uint64_t>(j + 1) * 6364136223846793005ULL) >> 49);
+}
 
 }  // namespace
 
@@ -217,15 +232,17 @@ ExactProgram::Result ExactProgram::maximum() const {
     at[static_cast<std::size_t>(j)] = sign != 0 ? sign : xi[j] < 0 ? -1 : 1;
   }
   for (const Index j : tableau.basis()) at[static_cast<std::size_t>(j)] = 0;
-  // Where costs are 0, as in every question of feasibility, ties would leave the method without a sense of progress: it wanders
-  // through thousands of bases. Costs of second rank, all different and at first on the side of the bounds, break them.
+  // Where costs are 0, as in every question of feasibility, ties would leave the method without a
+  // sense of progress: it wanders through thousands of bases. Costs of second rank, all different
+  // and at first on the side of the bounds, break them.
   std::vector<int> second = at;
   for (Index j = 0; j < count; ++j) second[static_cast<std::size_t>(j)] *= weight(j);
   tableau.add_second_costs(second);
 
   constexpr int fast_pivots = 1000, most_pivots = 100'000;
   for (int pivots = 0; pivots < most_pivots; ++pivots) {
-    // Leaving row: the largest violation while things go well, then the smallest index (Bland), which cannot cycle.
+    // Leaving row: the largest violation while things go well, then the smallest index (Bland),
+    // which cannot cycle.
     std::size_t leaving = tableau.basis().size();
     mpz_class violation = 0;
     int side = 0;
@@ -233,14 +250,18 @@ ExactProgram::Result ExactProgram::maximum() const {
       const mpz_class value = tableau.basic_value(i, at), excess = abs(value) - tableau.scale();
       if (excess <= 0) continue;
       const bool first = side == 0;  // there is no leaving row yet to compare with
-      const bool better = first || (pivots < fast_pivots ? excess > violation : tableau.basis()[i] < tableau.basis()[leaving]);
+      const bool better =
+          first || (pivots < fast_pivots ? excess > violation
+                                         : tableau.basis()[i] < tableau.basis()[leaving]);
       if (better) leaving = i, violation = excess, side = sgn(value);
     }
     if (side == 0) {
       if (tableau.objective_has_lines()) return {Status::unbounded, 0, {}, {}, pivots};
-      return {Status::optimal, tableau.objective(at), tableau.solution(at), tableau.basis(), pivots};
+      return {Status::optimal, tableau.objective(at), tableau.solution(at), tableau.basis(),
+              pivots};
     }
-    // Entering factor: one that can move the leaving one back; the smallest ratio keeps all costs on the right side.
+    // Entering factor: one that can move the leaving one back; the smallest ratio keeps all costs
+    // on the right side.
     Index entering = -1;
     for (Index j = 0; j < count; ++j) {
       const int bound = at[static_cast<std::size_t>(j)];
@@ -249,20 +270,27 @@ ExactProgram::Result ExactProgram::maximum() const {
       if (entering >= 0) {
         const mpz_class& other = tableau.entry(leaving, entering);
         const int other_bound = at[static_cast<std::size_t>(entering)];
-        int smaller = compare_ratios(abs(tableau.cost(j)), entry, abs(tableau.cost(entering)), other);
+        int smaller =
+            compare_ratios(abs(tableau.cost(j)), entry, abs(tableau.cost(entering)), other);
         if (smaller == 0)
-          smaller = compare_ratios(bound * tableau.second_cost(j), entry, other_bound * tableau.second_cost(entering), other);
+          smaller = compare_ratios(bound * tableau.second_cost(j), entry,
+                                   other_bound * tableau.second_cost(entering), other);
         if (smaller >= 0) continue;
       }
       entering = j;
     }
     if (entering < 0)
-      return {Status::infeasible, 0, {}, {}, pivots};  // the leaving factor is as near to its bound as the others let it
+      return {Status::infeasible,
+              0,
+              {},
+              {},
+              pivots};  // the leaving factor is as near to its bound as the others let it
     at[static_cast<std::size_t>(tableau.basis()[leaving])] = side;
     at[static_cast<std::size_t>(entering)] = 0;
     tableau.enter(leaving, entering);
   }
-  throw Error(Errc::solver, "exact linear program: no end after " + std::to_string(most_pivots) + " pivots");
+  throw Error(Errc::solver,
+              "exact linear program: no end after " + std::to_string(most_pivots) + " pivots");
 }
 
 }  // namespace cordon

@@ -21,19 +21,22 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check_size(Index columns, Index rows, const char* question) {
   if (columns <= max_columns && rows <= max_rows && columns * rows * rows <= max_work) return;
-  throw Error(Errc::unsupported, std::string(question) + ": " + std::to_string(columns) + " lines and generators with " +
-                                     std::to_string(rows) + " constraints; in rational arithmetic at most " +
-                                     std::to_string(max_columns) + " with " + std::to_string(max_rows) +
-                                     " are supported, and at most " + std::to_string(max_work) +
-                                     " for columns times rows squared");
+  throw Error(Errc::unsupported, std::string(question) + ": " + std::to_string(columns) +
+                                     " lines and generators with " + std::to_string(rows) +
+                                     " constraints; in rational arithmetic at most " +
+                                     std::to_string(max_columns) + " with " +
+                                     std::to_string(max_rows) + " are supported, and at most " +
+                                     std::to_string(max_work) + " for columns times rows squared");
 }
 
 RationalVector zeros(Index size) { return RationalVector(static_cast<std::size_t>(size)); }
 
-ExactProgram feasibility(const LineForm& X) { return {X.S, X.A, rational::exact(X.b), zeros(X.lines()), zeros(X.generators())}; }
+ExactProgram feasibility(const LineForm& X) {
+  return {X.S, X.A, rational::exact(X.b), zeros(X.lines()), zeros(X.generators())};
+}
 
-/// Gauss-Jordan with the largest entry of all as pivot, vectors scaled to about 1: a basis in the first places that stays one
-/// when it is rounded. Returns how many there are.
+/// Gauss-Jordan with the largest entry of all as pivot, vectors scaled to about 1: a basis in the
+/// first places that stays one when it is rounded. Returns how many there are.
 std::size_t reduce_to_basis(std::vector<rational::RationalVector>& vectors) {
   for (std::size_t rank = 0; rank < vectors.size(); ++rank) {
     std::size_t best = rank, pivot = 0;
@@ -52,7 +55,8 @@ std::size_t reduce_to_basis(std::vector<rational::RationalVector>& vectors) {
     for (std::size_t i = 0; i < vectors.size(); ++i) {
       if (i == rank || vectors[i][pivot] == 0) continue;
       const rational::Rational factor = vectors[i][pivot] / vectors[rank][pivot];
-      for (std::size_t j = 0; j < vectors[i].size(); ++j) vectors[i][j] -= factor * vectors[rank][j];
+      for (std::size_t j = 0; j < vectors[i].size(); ++j)
+        vectors[i][j] -= factor * vectors[rank][j];
     }
   }
   for (rational::RationalVector& vector : vectors) rational::scale_to_one(vector);
@@ -71,7 +75,8 @@ bool contains(const LineForm& X, const RationalVector& x, VectorIn margin, Vecto
   const Index n = X.dim(), m = X.constraints(), l = X.lines(), g = X.generators();
   const Index wide = (margin.array() != 0).count() + (slack.array() != 0).count();
   check_size(l + g + wide, m, "exact::contains");
-  ExactProgram program{Matrix(m + n, l), Matrix::Zero(m + n, g + wide), rational::exact(X.b), zeros(l), zeros(g + wide)};
+  ExactProgram program{Matrix(m + n, l), Matrix::Zero(m + n, g + wide), rational::exact(X.b),
+                       zeros(l), zeros(g + wide)};
   program.S << X.S, X.M;
   program.A.topLeftCorner(m, g) = X.A;
   program.A.block(m, 0, n, g) = X.G;
@@ -88,8 +93,10 @@ bool contains(const LineForm& X, const RationalVector& x, VectorIn margin, Vecto
 
 Answer contains(const LineForm& X, VectorIn x) {
   check(X, "exact::contains");
-  if (x.size() != X.dim()) throw Error(Errc::dimension, "exact::contains: the point has another dimension than the set");
-  if (!x.allFinite()) throw Error(Errc::not_finite, "exact::contains: the point has a NaN or infinite entry");
+  if (x.size() != X.dim())
+    throw Error(Errc::dimension, "exact::contains: the point has another dimension than the set");
+  if (!x.allFinite())
+    throw Error(Errc::not_finite, "exact::contains: the point has a NaN or infinite entry");
   return contains(X, rational::exact(x), Vector::Zero(x.size())) ? Answer::yes : Answer::no;
 }
 
@@ -97,7 +104,8 @@ Support support(const LineForm& X, const RationalVector& d) {
   const Index n = X.dim(), m = X.constraints(), l = X.lines(), g = X.generators();
   check_size(l + g, m, "exact::support");
   // max dᵀy over free y = Mδ + Gξ: the products Mᵀd and Gᵀd would be rounded
-  ExactProgram program{Matrix::Zero(m + n, l + n), Matrix(m + n, g), rational::exact(X.b), zeros(l), zeros(g)};
+  ExactProgram program{Matrix::Zero(m + n, l + n), Matrix(m + n, g), rational::exact(X.b), zeros(l),
+                       zeros(g)};
   program.S.topLeftCorner(m, l) = X.S;
   program.S.block(m, 0, n, l) = X.M;
   program.S.block(m, l, n, n) = -Matrix::Identity(n, n);
@@ -112,8 +120,11 @@ Support support(const LineForm& X, const RationalVector& d) {
 
 rounding::Range support(const LineForm& X, VectorIn d) {
   check(X, "exact::support");
-  if (d.size() != X.dim()) throw Error(Errc::dimension, "exact::support: the direction has another dimension than the set");
-  if (!d.allFinite()) throw Error(Errc::not_finite, "exact::support: the direction has a NaN or infinite entry");
+  if (d.size() != X.dim())
+    throw Error(Errc::dimension,
+                "exact::support: the direction has another dimension than the set");
+  if (!d.allFinite())
+    throw Error(Errc::not_finite, "exact::support: the direction has a NaN or infinite entry");
   const Support reached = support(X, rational::exact(d));
   if (reached.kind == Support::Kind::empty) return {-infinity, -infinity};
   if (reached.kind == Support::Kind::unbounded) return {infinity, infinity};
@@ -122,8 +133,8 @@ rounding::Range support(const LineForm& X, VectorIn d) {
 
 Matrix lineality_space(const LineForm& X) {
   if (X.lines() == 0) return Matrix(X.dim(), 0);
-  rational::RationalMatrix images =
-      rational::product(rational::null_space(rational::exact_matrix(X.S)), rational::exact_matrix(X.M.transpose()));
+  rational::RationalMatrix images = rational::product(
+      rational::null_space(rational::exact_matrix(X.S)), rational::exact_matrix(X.M.transpose()));
   std::vector<rational::RationalVector> basis;
   for (Index i = 0; i < images.rows(); ++i) basis.push_back(images.row(i));
   const std::size_t rank = reduce_to_basis(basis);
@@ -142,7 +153,8 @@ rounding::Range maximum(VectorIn c, MatrixIn K, VectorIn r, const std::vector<in
   }
   check_size(columns, rows, "exact::maximum");
   // x = 2^(bits - 1) (1 + ξ)
-  ExactProgram program{Matrix(rows, 0), Matrix(rows, columns), rational::exact(r), {}, rational::exact(c)};
+  ExactProgram program{
+      Matrix(rows, 0), Matrix(rows, columns), rational::exact(r), {}, rational::exact(c)};
   rational::Rational constant = 0;
   for (Index j = 0; j < columns; ++j) {
     const int half = bits[static_cast<std::size_t>(j)] - 1;

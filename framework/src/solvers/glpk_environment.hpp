@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only file that includes GLPK. Facts that its users live with: the environment is per thread; NaN or a bad index aborts the
-// process, so everything is validated before; an internal error calls a hook that must not return, so it jumps out, and the
-// thread's environment is thrown away with every problem in it.
+// The only file that includes GLPK. Facts that its users live with: the environment is per thread;
+// NaN or a bad index aborts the process, so everything is validated before; an internal error calls
+// a hook that must not return, so it jumps out, and the thread's environment is thrown away with
+// every problem in it.
 #pragma once
 
 #include <cmath>
@@ -13,11 +14,13 @@ namespace cordon::glpk {
 
 // Trivially destructible on purpose.
 inline thread_local std::jmp_buf escape;
-inline thread_local unsigned environment = 0;  ///< grows when the thread's environment was thrown away
+inline thread_local unsigned environment =
+    0;  ///< grows when the thread's environment was thrown away
 
 [[noreturn]] inline void leave(void*) { std::longjmp(escape, 1); }
 
-/// GLPK frees nothing when a thread ends. Problems that outlive it are lost with its environment, and know it by the counter.
+/// GLPK frees nothing when a thread ends. Problems that outlive it are lost with its environment,
+/// and know it by the counter.
 struct Reclaim {
   void keep() const {}
   ~Reclaim() {

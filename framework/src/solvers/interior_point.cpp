@@ -43,10 +43,12 @@ void InteriorPoint::arrange() {
     if (entries > 1) order_.push_back(j);
   }
   const auto begin = [&](Index j) { return begins[static_cast<std::size_t>(j)]; };
-  std::stable_sort(order_.begin(), order_.end(), [&](Index i, Index j) { return begin(i) < begin(j); });
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](Index i, Index j) { return begin(i) < begin(j); });
   const auto count = static_cast<Index>(order_.size());
   for (Index first = 0; first < count; first += group_size) {
-    groups_.push_back({begin(order_[static_cast<std::size_t>(first)]), first, std::min(group_size, count - first)});
+    groups_.push_back({begin(order_[static_cast<std::size_t>(first)]), first,
+                       std::min(group_size, count - first)});
   }
   sorted_ = A_(Eigen::all, order_);
   scaled_.resize(m, group_size);
@@ -79,11 +81,13 @@ bool InteriorPoint::factor() {
     auto part = scaled_.block(0, 0, height, group.count);
     for (Index k = 0; k < group.count; ++k) {
       const Index j = group.first + k;
-      part.col(k) = sorted_.col(j).tail(height) / std::sqrt(D_[order_[static_cast<std::size_t>(j)]]);
+      part.col(k) =
+          sorted_.col(j).tail(height) / std::sqrt(D_[order_[static_cast<std::size_t>(j)]]);
     }
     normal_.bottomRightCorner(height, height).selfadjointView<Eigen::Lower>().rankUpdate(part);
   }
-  for (const auto& [row, col] : singles_) normal_(row, row) += A_(row, col) * A_(row, col) / D_[col];
+  for (const auto& [row, col] : singles_)
+    normal_(row, row) += A_(row, col) * A_(row, col) / D_[col];
   if (!normal_.diagonal().allFinite()) return false;
   const auto found = linalg::cholesky(normal_);
   if (!found) return false;
@@ -97,9 +101,12 @@ void InteriorPoint::solve_normal(Vector& v) const {
   factor_.triangularView<Eigen::Lower>().transpose().solveInPlace(v);
 }
 
-/// The step that meets rows and costs and changes z⁺(1 - ξ), z⁻(1 + ξ) by the rests, to first order.
-void InteriorPoint::solve(const Vector& rest_above, const Vector& rest_below, Direction& step) const {
-  const Vector push = costs_left_ - rest_above.cwiseQuotient(to_upper_) + rest_below.cwiseQuotient(to_lower_);
+/// The step that meets rows and costs and changes z⁺(1 - ξ), z⁻(1 + ξ) by the rests, to first
+/// order.
+void InteriorPoint::solve(const Vector& rest_above, const Vector& rest_below,
+                          Direction& step) const {
+  const Vector push =
+      costs_left_ - rest_above.cwiseQuotient(to_upper_) + rest_below.cwiseQuotient(to_lower_);
   step.y = linalg::product(A_, push.cwiseQuotient(D_)) - rows_left_;
   solve_normal(step.y);
   step.xi = (push - linalg::transposed_product(A_, step.y)).cwiseQuotient(D_);
@@ -130,15 +137,18 @@ bool InteriorPoint::maximize(VectorIn g) {
     costs_left_ = reduced - above_ + below_;
     value_ = g.dot(xi_);
     D_ = above_.cwiseQuotient(to_upper_) + below_.cwiseQuotient(to_lower_);
-    const double gap = b_.dot(y_) + reduced.lpNorm<1>() - value_, tolerance = enough * (1 + std::abs(value_));
+    const double gap = b_.dot(y_) + reduced.lpNorm<1>() - value_,
+                 tolerance = enough * (1 + std::abs(value_));
     if (!std::isfinite(gap)) return false;
     if (std::abs(gap) <= tolerance && rows_left_.lpNorm<Eigen::Infinity>() <= enough) return true;
     if (!factor()) return false;
     const double mu = centrality();
     solve(-to_upper_.cwiseProduct(above_), -to_lower_.cwiseProduct(below_), step);
     const double target = mu * std::pow(centrality_after(step) / mu, 3);
-    const Vector above = target - (to_upper_.cwiseProduct(above_) - step.xi.cwiseProduct(step.above)).array();
-    const Vector below = target - (to_lower_.cwiseProduct(below_) + step.xi.cwiseProduct(step.below)).array();
+    const Vector above =
+        target - (to_upper_.cwiseProduct(above_) - step.xi.cwiseProduct(step.above)).array();
+    const Vector below =
+        target - (to_lower_.cwiseProduct(below_) + step.xi.cwiseProduct(step.below)).array();
     solve(above, below, step);
     const auto [primal, dual] = lengths(step);
     xi_ += primal * step.xi;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An interior-point method for programs of many rows, where a simplex method walks past thousands of corners.
+// An interior-point method for programs of many rows, where a simplex method walks past thousands
+// of corners.
 #pragma once
 
 #include <utility>
@@ -9,15 +10,17 @@
 
 namespace cordon {
 
-/// max{gᵀξ : Aξ = b, ‖ξ‖∞ ≤ 1} by proposals, as BoxSimplex makes them: Mehrotra's predictor and corrector on the normal equations
-/// A D⁻¹ Aᵀ Δy = r, D = z⁺/(1 - ξ) + z⁻/(1 + ξ) [Mehrotra1992]. Some twenty rounds whatever the program's size; the bound of the
-/// multipliers exceeds the optimum by some 1e-9 of it. Rows and objective should have entries of about 1.
-/// O(m² g + m³) per round, less where columns begin below the first row or have one entry only.
+/// max{gᵀξ : Aξ = b, ‖ξ‖∞ ≤ 1} by proposals, as BoxSimplex makes them: Mehrotra's predictor and
+/// corrector on the normal equations A D⁻¹ Aᵀ Δy = r, D = z⁺/(1 - ξ) + z⁻/(1 + ξ) [Mehrotra1992].
+/// Some twenty rounds whatever the program's size; the bound of the multipliers exceeds the optimum
+/// by some 1e-9 of it. Rows and objective should have entries of about 1. O(m² g + m³) per round,
+/// less where columns begin below the first row or have one entry only.
 class InteriorPoint {
  public:
   InteriorPoint(const Matrix& A, VectorIn b);
 
-  /// False: the rounds did not end within the tolerance, because P is empty or flat, or for want of digits.
+  /// False: the rounds did not end within the tolerance, because P is empty or flat, or for want of
+  /// digits.
   bool maximize(VectorIn g);
 
   const Vector& multipliers() const { return y_; }

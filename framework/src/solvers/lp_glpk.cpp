@@ -31,7 +31,9 @@ struct LinearProgram::State {
   std::thread::id home = std::this_thread::get_id();  ///< GLPK's memory belongs to a thread
 
   /// On another thread the problem cannot be touched: solves fail there, which is no answer.
-  bool alive() const { return problem != nullptr && born == environment && home == std::this_thread::get_id(); }
+  bool alive() const {
+    return problem != nullptr && born == environment && home == std::this_thread::get_id();
+  }
   ~State() {
     if (alive()) guarded([this] { glp_delete_prob(problem); });
   }
@@ -41,14 +43,18 @@ LinearProgram::LinearProgram(LinearProgram&&) noexcept = default;
 LinearProgram& LinearProgram::operator=(LinearProgram&&) noexcept = default;
 LinearProgram::~LinearProgram() = default;
 
-LinearProgram::LinearProgram(MatrixIn A, VectorIn b, VectorIn lower, VectorIn upper) : state_(std::make_unique<State>()) {
+LinearProgram::LinearProgram(MatrixIn A, VectorIn b, VectorIn lower, VectorIn upper)
+    : state_(std::make_unique<State>()) {
   const Index m = A.rows(), n = A.cols();
   if (b.size() != m || lower.size() != n || upper.size() != n) {
-    throw Error(Errc::dimension, "linear program: the sizes of matrix, right-hand side and bounds differ");
+    throw Error(Errc::dimension,
+                "linear program: the sizes of matrix, right-hand side and bounds differ");
   }
-  if (m > 1'000'000 || n > 1'000'000) throw Error(Errc::dimension, "linear program: more than a million rows or columns");
+  if (m > 1'000'000 || n > 1'000'000)
+    throw Error(Errc::dimension, "linear program: more than a million rows or columns");
   require_number(A.allFinite() && b.allFinite(), "a NaN or infinite coefficient");
-  require_number(!lower.hasNaN() && !upper.hasNaN() && (lower.array() <= upper.array()).all(), "a NaN or crossed bound");
+  require_number(!lower.hasNaN() && !upper.hasNaN() && (lower.array() <= upper.array()).all(),
+                 "a NaN or crossed bound");
   std::vector<int> row{0}, col{0};
   std::vector<double> value{0};
   for (Index j = 0; j < n; ++j) {
@@ -69,17 +75,21 @@ LinearProgram::LinearProgram(MatrixIn A, VectorIn b, VectorIn lower, VectorIn up
     glp_set_obj_dir(s.problem, GLP_MAX);
     if (m > 0) glp_add_rows(s.problem, static_cast<int>(m));
     if (n > 0) glp_add_cols(s.problem, static_cast<int>(n));
-    for (Index i = 0; i < m; ++i) glp_set_row_bnds(s.problem, static_cast<int>(i) + 1, GLP_FX, b[i], b[i]);
+    for (Index i = 0; i < m; ++i)
+      glp_set_row_bnds(s.problem, static_cast<int>(i) + 1, GLP_FX, b[i], b[i]);
     for (Index j = 0; j < n; ++j) {
-      glp_set_col_bnds(s.problem, static_cast<int>(j) + 1, bound_type(lower[j], upper[j]), lower[j], upper[j]);
+      glp_set_col_bnds(s.problem, static_cast<int>(j) + 1, bound_type(lower[j], upper[j]), lower[j],
+                       upper[j]);
     }
-    glp_load_matrix(s.problem, static_cast<int>(value.size()) - 1, row.data(), col.data(), value.data());
+    glp_load_matrix(s.problem, static_cast<int>(value.size()) - 1, row.data(), col.data(),
+                    value.data());
   });
 }
 
 LinearProgram::Solution LinearProgram::maximize(VectorIn g) {
   State& s = *state_;
-  if (g.size() != s.cols) throw Error(Errc::dimension, "linear program: the objective has the wrong size");
+  if (g.size() != s.cols)
+    throw Error(Errc::dimension, "linear program: the objective has the wrong size");
   require_number(g.allFinite(), "a NaN or infinite objective");
   Solution solution;
   if (!s.alive()) return solution;
@@ -91,7 +101,8 @@ LinearProgram::Solution LinearProgram::maximize(VectorIn g) {
     glp_init_smcp(&control);
     control.msg_lev = GLP_MSG_OFF;
     control.it_lim = static_cast<int>(std::min<Index>(1'000'000, 1000 + 100 * (s.rows + s.cols)));
-    // With boxed variables every basis is dual feasible: the dual method needs no first phase, whatever the last direction was.
+    // With boxed variables every basis is dual feasible: the dual method needs no first phase,
+    // whatever the last direction was.
     control.meth = GLP_DUALP;
     code = glp_simplex(s.problem, &control);
     status = glp_get_status(s.problem);

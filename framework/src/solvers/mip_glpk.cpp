@@ -23,35 +23,40 @@ void require(bool fine, Errc code, const char* what) {
 }
 
 bool ordered(const Vector& lower, const Vector& upper) {
-  return !lower.hasNaN() && !upper.hasNaN() && (lower.array() <= upper.array()).all() && (lower.array() < infinity).all() &&
-         (upper.array() > -infinity).all();
+  return !lower.hasNaN() && !upper.hasNaN() && (lower.array() <= upper.array()).all() &&
+         (lower.array() < infinity).all() && (upper.array() > -infinity).all();
 }
 
 void check(const MixedIntegerProgram& p, const MipOptions& options) {
   const Index n = p.cost.size(), m = p.row_lower.size();
-  require(p.lower.size() == n && p.upper.size() == n && static_cast<Index>(p.integer.size()) == n && p.row_upper.size() == m,
+  require(p.lower.size() == n && p.upper.size() == n && static_cast<Index>(p.integer.size()) == n &&
+              p.row_upper.size() == m,
           Errc::dimension, "the sizes of cost, bounds and kinds differ");
   require(n > 0, Errc::dimension, "no column");
   require(m <= 1'000'000 && n <= 1'000'000 && p.entries.size() <= 50'000'000, Errc::dimension,
           "more than a million rows or columns");
   require(p.cost.allFinite(), Errc::not_finite, "a NaN or infinite cost");
-  require(ordered(p.row_lower, p.row_upper) && ordered(p.lower, p.upper), Errc::not_finite, "a NaN or crossed bound");
+  require(ordered(p.row_lower, p.row_upper) && ordered(p.lower, p.upper), Errc::not_finite,
+          "a NaN or crossed bound");
   std::vector<std::pair<Index, Index>> places;
   places.reserve(p.entries.size());
   for (const auto& [row, col, value] : p.entries) {
-    require(row >= 0 && row < m && col >= 0 && col < n, Errc::dimension, "an entry outside of the matrix");
+    require(row >= 0 && row < m && col >= 0 && col < n, Errc::dimension,
+            "an entry outside of the matrix");
     require(std::isfinite(value), Errc::not_finite, "a NaN or infinite coefficient");
     places.emplace_back(row, col);
   }
   std::sort(places.begin(), places.end());
-  require(std::adjacent_find(places.begin(), places.end()) == places.end(), Errc::invalid, "two entries at one place");
+  require(std::adjacent_find(places.begin(), places.end()) == places.end(), Errc::invalid,
+          "two entries at one place");
   for (Index j = 0; j < n; ++j) {
     if (!p.integer[static_cast<std::size_t>(j)]) continue;
-    require(std::isfinite(p.lower[j]) && std::isfinite(p.upper[j]) && p.lower[j] == std::floor(p.lower[j]) &&
-                p.upper[j] == std::floor(p.upper[j]),
+    require(std::isfinite(p.lower[j]) && std::isfinite(p.upper[j]) &&
+                p.lower[j] == std::floor(p.lower[j]) && p.upper[j] == std::floor(p.upper[j]),
             Errc::invalid, "a whole number whose bounds are not");
   }
-  require(!std::isnan(options.time_limit) && options.gap >= 0, Errc::invalid, "a time limit or gap that is no number");
+  require(!std::isnan(options.time_limit) && options.gap >= 0, Errc::invalid,
+          "a time limit or gap that is no number");
   require(!options.start || options.start->size() == n, Errc::dimension, "a start of another size");
   for (const Index column : options.branching) {
     require(column >= 0 && column < n && p.integer[static_cast<std::size_t>(column)], Errc::invalid,
@@ -143,14 +148,16 @@ void load(glp_prob* problem, const MixedIntegerProgram& p, const Arrays& arrays)
   if (m > 0) glp_add_rows(problem, m);
   glp_add_cols(problem, n);
   for (int i = 0; i < m; ++i) {
-    glp_set_row_bnds(problem, i + 1, bound_type(p.row_lower[i], p.row_upper[i]), p.row_lower[i], p.row_upper[i]);
+    glp_set_row_bnds(problem, i + 1, bound_type(p.row_lower[i], p.row_upper[i]), p.row_lower[i],
+                     p.row_upper[i]);
   }
   for (int j = 0; j < n; ++j) {
     glp_set_col_bnds(problem, j + 1, bound_type(p.lower[j], p.upper[j]), p.lower[j], p.upper[j]);
     glp_set_obj_coef(problem, j + 1, p.cost[j]);
     if (p.integer[static_cast<std::size_t>(j)]) glp_set_col_kind(problem, j + 1, GLP_IV);
   }
-  glp_load_matrix(problem, static_cast<int>(arrays.value.size()) - 1, arrays.row.data(), arrays.col.data(), arrays.value.data());
+  glp_load_matrix(problem, static_cast<int>(arrays.value.size()) - 1, arrays.row.data(),
+                  arrays.col.data(), arrays.value.data());
   glp_scale_prob(problem, GLP_SF_AUTO);
 }
 
@@ -176,7 +183,8 @@ int branch_and_cut(glp_prob* problem, int milliseconds, Search& search) {
   control.msg_lev = GLP_MSG_OFF;
   control.tm_lim = milliseconds;
   control.mip_gap = search.options->gap;
-  if (search.options->cuts) control.gmi_cuts = control.mir_cuts = control.cov_cuts = control.clq_cuts = GLP_ON;
+  if (search.options->cuts)
+    control.gmi_cuts = control.mir_cuts = control.cov_cuts = control.clq_cuts = GLP_ON;
   control.cb_func = call_back;
   control.cb_info = &search;
   return glp_intopt(problem, &control);
@@ -189,7 +197,8 @@ MipSolution solve(const MixedIntegerProgram& program, const MipOptions& options)
   MipSolution solution;
   const auto begin = Clock::now();
   const auto milliseconds_left = [&] {
-    const double left = 1e3 * (options.time_limit - std::chrono::duration<double>(Clock::now() - begin).count());
+    const double left =
+        1e3 * (options.time_limit - std::chrono::duration<double>(Clock::now() - begin).count());
     return static_cast<int>(std::clamp(left, 1.0, 1e9));
   };
   const Arrays arrays(program);

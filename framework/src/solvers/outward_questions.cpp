@@ -20,7 +20,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Rational arithmetic takes milliseconds up to here.
 constexpr Index exact_columns = 60;
 
-/// X with lines bounded where that is proven, and a superset of it in which the other lines meet no row.
+/// X with lines bounded where that is proven, and a superset of it in which the other lines meet no
+/// row.
 struct Relaxed {
   LineForm set;     ///< equal to X
   LineForm larger;  ///< X ⊆ larger ⊕ M R^l, without lines; rows that involve lines read 0 = 0
@@ -37,10 +38,13 @@ struct Relaxed {
     larger.S.resize(set.constraints(), 0);
   }
 
-  /// h(d) with the rows that were forgotten, where there are any and rational arithmetic can take them all; else +inf. A set that
-  /// is empty by the last bits of its numbers gives +inf too: emptiness is left to the question for it, with its margin.
+  /// h(d) with the rows that were forgotten, where there are any and rational arithmetic can take
+  /// them all; else +inf. A set that is empty by the last bits of its numbers gives +inf too:
+  /// emptiness is left to the question for it, with its margin.
   double exact_support(VectorIn d) const {
-    if (forgotten.empty() || set.lines() + set.generators() > exact_columns || set.constraints() > exact_columns) return infinity;
+    if (forgotten.empty() || set.lines() + set.generators() > exact_columns ||
+        set.constraints() > exact_columns)
+      return infinity;
     const double h = exact::support(set, d).upper;
     return h == -infinity ? infinity : h;
   }
@@ -77,7 +81,7 @@ bool holds(const LineForm& Y, const Box& hull) {
     const bool one = (Y.G.row(i).array() != 0).count() == 1;
     const double radius = Y.generators() == 0 ? 0.0
                           : one               ? Y.G.row(i).cwiseAbs().maxCoeff()
-                                              : std::max(0.0, rounding::norm_1(Y.G.row(i).transpose()).lower);
+                                : std::max(0.0, rounding::norm_1(Y.G.row(i).transpose()).lower);
     const double above = radius == 0 ? Y.c[i] : rounding::down(Y.c[i] + radius);
     const double below = radius == 0 ? Y.c[i] : rounding::up(Y.c[i] - radius);
     if (!(hull.upper[i] <= above) || !(hull.lower[i] >= below)) return false;
@@ -88,14 +92,17 @@ bool holds(const LineForm& Y, const Box& hull) {
 }  // namespace
 
 double support(const LineForm& X, VectorIn d, Certificate* why) {
-  if (d.size() != X.dim()) throw Error(Errc::dimension, "support: the direction has another dimension than the set");
-  if (!d.allFinite()) throw Error(Errc::not_finite, "support: the direction has a NaN or infinite entry");
+  if (d.size() != X.dim())
+    throw Error(Errc::dimension, "support: the direction has another dimension than the set");
+  if (!d.allFinite())
+    throw Error(Errc::not_finite, "support: the direction has a NaN or infinite entry");
   const Relaxed relaxed(X);
   if (const double h = relaxed.exact_support(d); h < infinity) {
     if (why) *why = {};
     return h;
   }
-  if (!relaxed.bounded_along(d)) return cordon::is_empty(X, why) == Answer::yes ? -infinity : infinity;
+  if (!relaxed.bounded_along(d))
+    return cordon::is_empty(X, why) == Answer::yes ? -infinity : infinity;
   const double h = cordon::support(relaxed.larger, d, why);
   if (why) relaxed.complete(*why);
   return h;
@@ -111,7 +118,8 @@ Box interval_hull(const LineForm& X, std::vector<Certificate>* why) {
     const Vector d = Vector::Unit(X.dim(), i);
     hull.lower[i] = -relaxed.exact_support(-d);
     hull.upper[i] = relaxed.exact_support(d);
-    if (why) (*why)[static_cast<std::size_t>(2 * i)] = (*why)[static_cast<std::size_t>(2 * i + 1)] = {};
+    if (why)
+      (*why)[static_cast<std::size_t>(2 * i)] = (*why)[static_cast<std::size_t>(2 * i + 1)] = {};
   }
   return cordon::is_empty(X) == Answer::yes ? Box::empty(X.dim()) : hull;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small dense kernels with one order of summation: they vectorise across columns or entries, never within a sum, so that results
-// do not depend on the instructions that the compiler may use.
+// Small dense kernels with one order of summation: they vectorise across columns or entries, never
+// within a sum, so that results do not depend on the instructions that the compiler may use.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,8 @@
 
 namespace cordon {
 
-/// As many numbers as a cache line holds, computed with in parts that every processor has registers for.
+/// As many numbers as a cache line holds, computed with in parts that every processor has registers
+/// for.
 template <class Scalar>
 struct Line {
   using Part [[gnu::vector_size(16), gnu::may_alias]] = Scalar;
@@ -41,15 +42,18 @@ struct Line {
   }
 };
 
-/// A matrix in panels of columns, each a line wide: panel after panel, row after row, so that Aᵀy reads memory in order and keeps
-/// a sum per column in registers. The last panel is filled with zeros.
+/// A matrix in panels of columns, each a line wide: panel after panel, row after row, so that Aᵀy
+/// reads memory in order and keeps a sum per column in registers. The last panel is filled with
+/// zeros.
 template <class Scalar>
 class Panels {
  public:
   static constexpr Index width = Line<Scalar>::size;
 
   Panels(Index rows, Index cols)
-      : rows_(rows), panels_((cols + width - 1) / width), data_(static_cast<std::size_t>(rows_ * panels_ * width)) {}
+      : rows_(rows),
+        panels_((cols + width - 1) / width),
+        data_(static_cast<std::size_t>(rows_ * panels_ * width)) {}
   explicit Panels(const Matrix& A) : Panels(A.rows(), A.cols()) {
     for (Index j = 0; j < A.cols(); ++j) {
       Scalar* const to = line(j / width, 0) + j % width;
@@ -75,7 +79,8 @@ class Panels {
     for (Index i = 0; i < rows_; ++i, from += width) sum.add(y[i], Line<Scalar>::load(from));
     return sum;
   }
-  /// sums += (columns of one panel) x, place by place: one line of sums per row, whose totals are the product.
+  /// sums += (columns of one panel) x, place by place: one line of sums per row, whose totals are
+  /// the product.
   void add_times(Index p, const Line<Scalar>& x, Scalar* sums) const {
     const Scalar* from = line(p, 0);
     for (Index i = 0; i < rows_; ++i, from += width, sums += width) {

@@ -26,15 +26,19 @@ void require(bool holds, const std::string& message) {
 }
 
 void require_finite(MatrixIn A, const char* what) {
-  if (!A.allFinite()) throw Error(Errc::not_finite, std::string("polytope: ") + what + " has a NaN or infinite entry");
+  if (!A.allFinite())
+    throw Error(Errc::not_finite,
+                std::string("polytope: ") + what + " has a NaN or infinite entry");
 }
 
 /// Without repeated rows; inequalities that differ in β only are merged into the tightest.
 Description tidy(const Description& in, Form form) {
   struct Less {
-    bool operator()(const std::pair<RationalVector, bool>& a, const std::pair<RationalVector, bool>& b) const {
+    bool operator()(const std::pair<RationalVector, bool>& a,
+                    const std::pair<RationalVector, bool>& b) const {
       return a.second != b.second ? a.second < b.second
-                                  : std::lexicographical_compare(a.first.begin(), a.first.end(), b.first.begin(), b.first.end());
+                                  : std::lexicographical_compare(a.first.begin(), a.first.end(),
+                                                                 b.first.begin(), b.first.end());
     }
   };
   std::map<std::pair<RationalVector, bool>, std::size_t, Less> seen;  // to the place in `out`
@@ -46,17 +50,20 @@ Description tidy(const Description& in, Form form) {
       continue;
     }
     RationalVector normal(row.begin() + 1, row.end());
-    const bool zero = std::all_of(normal.begin(), normal.end(), [](const Rational& x) { return sgn(x) == 0; });
+    const bool zero =
+        std::all_of(normal.begin(), normal.end(), [](const Rational& x) { return sgn(x) == 0; });
     if (zero && form == Form::generators) continue;
     if (!zero) {
-      const auto first = std::find_if(normal.begin(), normal.end(), [](const Rational& x) { return sgn(x) != 0; });
+      const auto first =
+          std::find_if(normal.begin(), normal.end(), [](const Rational& x) { return sgn(x) != 0; });
       const Rational before = *first;
       rational::make_primitive(normal);
       row[0] *= *first / before;
     }
     std::copy(normal.begin(), normal.end(), row.begin() + 1);
     if (form == Form::generators || in.linear[i]) {
-      if (seen.emplace(std::pair(row, bool(in.linear[i])), out.rows.size()).second) out.add(row, in.linear[i]);
+      if (seen.emplace(std::pair(row, bool(in.linear[i])), out.rows.size()).second)
+        out.add(row, in.linear[i]);
       continue;
     }
     const auto [place, is_new] = seen.emplace(std::pair(normal, false), out.rows.size());
@@ -107,9 +114,11 @@ Description joined(const Description& a, const Description& b) {
 
 }  // namespace
 
-// ---- representation -----------------------------------------------------------------------------------------------------------
+// ---- representation
+// -----------------------------------------------------------------------------------------------------------
 
-Polytope::Representation::Representation(Form form, Description description) : dim(description.dim) {
+Polytope::Representation::Representation(Form form, Description description)
+    : dim(description.dim) {
   (form == Form::inequalities ? given_inequalities_ : given_generators_) = tidy(description, form);
 }
 
@@ -136,7 +145,8 @@ const Description& Polytope::Representation::generators() const {
 const Description& Polytope::Representation::inequalities() const {
   const std::lock_guard lock(lock_);
   if (!minimal_inequalities_) {
-    minimal_inequalities_ = cordon::inequalities_of(given_generators_ ? *given_generators_ : locked_generators());
+    minimal_inequalities_ =
+        cordon::inequalities_of(given_generators_ ? *given_generators_ : locked_generators());
   }
   return *minimal_inequalities_;
 }
@@ -145,9 +155,12 @@ const Description& Polytope::Representation::any_inequalities() const {
   return given_inequalities_ ? *given_inequalities_ : inequalities();
 }
 
-// ---- construction -------------------------------------------------------------------------------------------------------------
+// ---- construction
+// -------------------------------------------------------------------------------------------------------------
 
-Polytope Polytope::from_inequalities(MatrixIn H, VectorIn h) { return from_inequalities(H, h, Matrix(0, H.cols()), Vector(0)); }
+Polytope Polytope::from_inequalities(MatrixIn H, VectorIn h) {
+  return from_inequalities(H, h, Matrix(0, H.cols()), Vector(0));
+}
 
 Polytope Polytope::from_inequalities(MatrixIn H, VectorIn h, MatrixIn Q, VectorIn q) {
   require(H.rows() == h.size() && Q.rows() == q.size() && H.cols() == Q.cols(),
@@ -159,11 +172,15 @@ Polytope Polytope::from_inequalities(MatrixIn H, VectorIn h, MatrixIn Q, VectorI
   return Representation::make(Form::inequalities, std::move(out));
 }
 
-Polytope Polytope::from_generators(MatrixIn V) { return from_generators(V, Matrix(V.rows(), 0), Matrix(V.rows(), 0)); }
+Polytope Polytope::from_generators(MatrixIn V) {
+  return from_generators(V, Matrix(V.rows(), 0), Matrix(V.rows(), 0));
+}
 
 Polytope Polytope::from_generators(MatrixIn V, MatrixIn rays, MatrixIn lines) {
-  require(rays.rows() == V.rows() && lines.rows() == V.rows(), "points, rays and lines must have the same number of rows");
-  require_finite(V, "the list of points"), require_finite(rays, "the list of rays"), require_finite(lines, "the list of lines");
+  require(rays.rows() == V.rows() && lines.rows() == V.rows(),
+          "points, rays and lines must have the same number of rows");
+  require_finite(V, "the list of points"), require_finite(rays, "the list of rays"),
+      require_finite(lines, "the list of lines");
   if (V.cols() == 0) return empty(V.rows());
   Description out{V.rows(), {}, {}};
   append_columns(out, V, 1, false);
@@ -180,20 +197,23 @@ Polytope Polytope::from(const LineForm& X) {
 Polytope Polytope::empty(Index n) { return Representation::make(Form::generators, {n, {}, {}}); }
 Polytope Polytope::space(Index n) { return Representation::make(Form::inequalities, {n, {}, {}}); }
 
-// ---- questions ----------------------------------------------------------------------------------------------------------------
+// ---- questions
+// ----------------------------------------------------------------------------------------------------------------
 
 Index Polytope::dim() const { return representation_->dim; }
 bool Polytope::is_empty() const { return representation_->generators().rows.empty(); }
 
 bool Polytope::is_bounded() const {
   const auto& rows = representation_->generators().rows;
-  return std::all_of(rows.begin(), rows.end(), [](const RationalVector& row) { return sgn(row[0]) != 0; });
+  return std::all_of(rows.begin(), rows.end(),
+                     [](const RationalVector& row) { return sgn(row[0]) != 0; });
 }
 
 std::size_t Polytope::bits() const {
   std::size_t sum = 0;
   for (const RationalVector& row : representation_->generators().rows) {
-    for (const Rational& x : row) sum += mpz_sizeinbase(x.get_num_mpz_t(), 2) + mpz_sizeinbase(x.get_den_mpz_t(), 2);
+    for (const Rational& x : row)
+      sum += mpz_sizeinbase(x.get_num_mpz_t(), 2) + mpz_sizeinbase(x.get_den_mpz_t(), 2);
   }
   return sum;
 }
@@ -207,7 +227,8 @@ bool Polytope::contains(VectorIn x) const {
 }
 
 bool Polytope::contains(const Polytope& X) const {
-  require(X.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " + std::to_string(X.dim()) + " differ");
+  require(X.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " +
+                                std::to_string(X.dim()) + " differ");
   const Description& generators = X.representation_->generators();
   const Description& inequalities = representation_->any_inequalities();
   for (std::size_t i = 0; i < generators.rows.size(); ++i) {
@@ -216,7 +237,9 @@ bool Polytope::contains(const Polytope& X) const {
   return true;
 }
 
-bool operator==(const Polytope& X, const Polytope& Y) { return X.dim() == Y.dim() && X.contains(Y) && Y.contains(X); }
+bool operator==(const Polytope& X, const Polytope& Y) {
+  return X.dim() == Y.dim() && X.contains(Y) && Y.contains(X);
+}
 
 rounding::Range Polytope::support(VectorIn d) const {
   require(d.size() == dim(), "the direction has another dimension than the set");
@@ -242,7 +265,9 @@ rounding::Range Polytope::volume() const {
   if (generators.rows.empty()) return {0, 0};
   if (!is_bounded()) throw Error(Errc::unsupported, "polytope: an unbounded set has no volume");
   const Description& inequalities = representation_->inequalities();
-  if (std::find(inequalities.linear.begin(), inequalities.linear.end(), true) != inequalities.linear.end()) return {0, 0};
+  if (std::find(inequalities.linear.begin(), inequalities.linear.end(), true) !=
+      inequalities.linear.end())
+    return {0, 0};
   return rational::enclose(polytope::volume(generators, inequalities));
 }
 
@@ -257,7 +282,8 @@ Box Polytope::interval_hull() const {
   return hull;
 }
 
-// ---- operations ---------------------------------------------------------------------------------------------------------------
+// ---- operations
+// ---------------------------------------------------------------------------------------------------------------
 
 Polytope Polytope::affine_map(MatrixIn T, VectorIn t) const {
   require(T.cols() == dim() && T.rows() == t.size(), "the map does not fit the set");
@@ -300,13 +326,14 @@ Polytope Polytope::preimage(MatrixIn R, VectorIn t) const {
 }
 
 Polytope Polytope::minkowski_sum(const Polytope& Y) const {
-  require(Y.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " + std::to_string(Y.dim()) + " differ");
+  require(Y.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " +
+                                std::to_string(Y.dim()) + " differ");
   const Description &a = representation_->generators(), &b = Y.representation_->generators();
   if (a.rows.empty() || b.rows.empty()) return empty(dim());
   if (a.rows.size() * b.rows.size() > most_rows) {
     throw Error(Errc::unsupported, "polytope: a sum of " + std::to_string(a.rows.size()) + " and " +
-                                       std::to_string(b.rows.size()) + " generators; at most " + std::to_string(most_rows) +
-                                       " pairs are supported");
+                                       std::to_string(b.rows.size()) + " generators; at most " +
+                                       std::to_string(most_rows) + " pairs are supported");
   }
   Description out{dim(), {}, {}};
   for (const RationalVector& x : a.rows) {
@@ -326,7 +353,8 @@ Polytope Polytope::minkowski_sum(const Polytope& Y) const {
 }
 
 Polytope Polytope::cartesian_product(const Polytope& Y) const {
-  const Description &a = representation_->any_inequalities(), &b = Y.representation_->any_inequalities();
+  const Description &a = representation_->any_inequalities(),
+                    &b = Y.representation_->any_inequalities();
   Description out{dim() + Y.dim(), {}, {}};
   for (std::size_t i = 0; i < a.rows.size(); ++i) {
     RationalVector row = a.rows[i];
@@ -342,9 +370,10 @@ Polytope Polytope::cartesian_product(const Polytope& Y) const {
 }
 
 Polytope Polytope::intersection(const Polytope& Y) const {
-  require(Y.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " + std::to_string(Y.dim()) + " differ");
-  return Representation::make(Form::inequalities,
-                              joined(representation_->any_inequalities(), Y.representation_->any_inequalities()));
+  require(Y.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " +
+                                std::to_string(Y.dim()) + " differ");
+  return Representation::make(Form::inequalities, joined(representation_->any_inequalities(),
+                                                         Y.representation_->any_inequalities()));
 }
 
 Polytope Polytope::intersection(MatrixIn R, const Polytope& Y) const {
@@ -353,8 +382,10 @@ Polytope Polytope::intersection(MatrixIn R, const Polytope& Y) const {
 }
 
 Polytope Polytope::convex_hull(const Polytope& Y) const {
-  require(Y.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " + std::to_string(Y.dim()) + " differ");
-  return Representation::make(Form::generators, joined(representation_->generators(), Y.representation_->generators()));
+  require(Y.dim() == dim(), "the dimensions " + std::to_string(dim()) + " and " +
+                                std::to_string(Y.dim()) + " differ");
+  return Representation::make(
+      Form::generators, joined(representation_->generators(), Y.representation_->generators()));
 }
 
 }  // namespace cordon

@@ -17,7 +17,9 @@ using rational::RationalVector;
 
 std::size_t index(Index i) { return static_cast<std::size_t>(i); }
 
-[[noreturn]] void refuse_overflow() { throw Error(Errc::not_finite, "polytope: a number exceeds the range of doubles"); }
+[[noreturn]] void refuse_overflow() {
+  throw Error(Errc::not_finite, "polytope: a number exceeds the range of doubles");
+}
 
 double rounded(const Rational& q) {
   const double x = rational::nearest(q);
@@ -67,7 +69,8 @@ RationalVector scaled_row(const RationalVector& row) {
 /// Rows of the constrained zonotope under construction, in the variables ξ of the box.
 class Rows {
  public:
-  Rows(const Vector& center, const Vector& radius) : c_(rational::exact(center)), r_(rational::exact(radius)) {}
+  Rows(const Vector& center, const Vector& radius)
+      : c_(rational::exact(center)), r_(rational::exact(radius)) {}
 
   void add(const RationalVector& inequality, bool is_equation, const Description& generators) {
     const RationalVector row = scaled_row(inequality);
@@ -84,7 +87,8 @@ class Rows {
       if (sgn(error) != 0 || sgn(offset) != 0) exact_ = false;
       return;
     }
-    for (const RationalVector& vertex : generators.rows) slack = std::max(slack, rational::dot(row, vertex));
+    for (const RationalVector& vertex : generators.rows)
+      slack = std::max(slack, rational::dot(row, vertex));
     if (is_equation) {
       const double b = rounded(-offset);
       const Rational width = error + abs(rational::exact(b) + offset);
@@ -111,10 +115,12 @@ class Rows {
   bool exact() const { return exact_; }
   Index count() const { return static_cast<Index>(b_.size()); }
 
-  /// A and b over the factors of the box that are kept and one slack factor per row that has one; `kept` are columns.
+  /// A and b over the factors of the box that are kept and one slack factor per row that has one;
+  /// `kept` are columns.
   void fill(const std::vector<Index>& kept, LineForm& X) const {
     const Index g = static_cast<Index>(kept.size());
-    const Index slacks = static_cast<Index>(std::count_if(width_.begin(), width_.end(), [](double w) { return w != 0; }));
+    const Index slacks = static_cast<Index>(
+        std::count_if(width_.begin(), width_.end(), [](double w) { return w != 0; }));
     X.A = Matrix::Zero(count(), g + slacks);
     X.b = Eigen::Map<const Vector>(b_.data(), count());
     for (Index i = 0, next = g; i < count(); ++i) {
@@ -131,8 +137,10 @@ class Rows {
     return offset >= reach;
   }
   /// Half width of b + [-w, w] that holds Aξ = aᵀGξ + error for offset + aᵀGξ ∈ [0, slack].
-  static double width_of(double b, const Rational& offset, const Rational& slack, const Rational& error) {
-    const Rational below = rational::exact(b) + offset + error, above = slack - offset + error - rational::exact(b);
+  static double width_of(double b, const Rational& offset, const Rational& slack,
+                         const Rational& error) {
+    const Rational below = rational::exact(b) + offset + error,
+                   above = slack - offset + error - rational::exact(b);
     return rounded_up(std::max(below, above));
   }
   static bool reaches(double b, double width, const Rational& offset) {
@@ -167,14 +175,16 @@ Polytope::Export enclose_bounded(const Description& generators, const Descriptio
     if (radius[i] != 0) kept.push_back(i);
   }
   Rows rows(center, radius);
-  for (std::size_t i = 0; i < inequalities.rows.size(); ++i) rows.add(inequalities.rows[i], inequalities.linear[i], generators);
+  for (std::size_t i = 0; i < inequalities.rows.size(); ++i)
+    rows.add(inequalities.rows[i], inequalities.linear[i], generators);
   LineForm X;
   X.c = center;
   rows.fill(kept, X);
   X.M.resize(n, 0);
   X.S.resize(X.b.size(), 0);
   X.G = Matrix::Zero(n, X.A.cols());
-  for (Index j = 0; j < static_cast<Index>(kept.size()); ++j) X.G(kept[index(j)], j) = radius[kept[index(j)]];
+  for (Index j = 0; j < static_cast<Index>(kept.size()); ++j)
+    X.G(kept[index(j)], j) = radius[kept[index(j)]];
   return {std::move(X), rows.exact() ? Tightness::exact : Tightness::outer};
 }
 
@@ -207,7 +217,8 @@ Polytope::Export enclose(const Description& generators, const Description& inequ
   for (std::size_t i = 0; i < generators.rows.size(); ++i) {
     if (sgn(generators.rows[i][0]) == 0 && !generators.linear[i]) {
       throw Error(Errc::unsupported,
-                  "polytope: unbounded on one side only; the exchange form holds sets that are unbounded along subspaces");
+                  "polytope: unbounded on one side only; the exchange form holds sets that are "
+                  "unbounded along subspaces");
     }
   }
   const Lineality lines = lineality(generators);
@@ -225,7 +236,8 @@ Polytope::Export enclose(const Description& generators, const Description& inequ
     RationalVector point{row[0]};
     for (const Index i : rest) {
       Rational value = row[index(i + 1)];
-      for (Index j = 0; j < l; ++j) value -= row[index(lines.pivots[index(j)] + 1)] * lines.basis(j, i);
+      for (Index j = 0; j < l; ++j)
+        value -= row[index(lines.pivots[index(j)] + 1)] * lines.basis(j, i);
       point.push_back(std::move(value));
     }
     points.add(std::move(point), false);
@@ -272,17 +284,22 @@ Polytope::Export Polytope::to_line_form() const {
 
 Polytope::Generators Polytope::generators() const {
   const Description& all = representation_->generators();
-  return {columns_of(
-              all, [](const RationalVector& row, bool) { return sgn(row[0]) != 0; }, false),
-          columns_of(
-              all, [](const RationalVector& row, bool linear) { return sgn(row[0]) == 0 && !linear; }, true),
-          columns_of(
-              all, [](const RationalVector& row, bool linear) { return sgn(row[0]) == 0 && linear; }, true)};
+  return {
+      columns_of(
+          all, [](const RationalVector& row, bool) { return sgn(row[0]) != 0; }, false),
+      columns_of(
+          all, [](const RationalVector& row, bool linear) { return sgn(row[0]) == 0 && !linear; },
+          true),
+      columns_of(
+          all, [](const RationalVector& row, bool linear) { return sgn(row[0]) == 0 && linear; },
+          true)};
 }
 
 Polytope::Inequalities Polytope::inequalities() const {
   const Description& all = representation_->inequalities();
-  const Index n = dim(), equations = static_cast<Index>(std::count(all.linear.begin(), all.linear.end(), true));
+  const Index n = dim(),
+              equations =
+                  static_cast<Index>(std::count(all.linear.begin(), all.linear.end(), true));
   const Index rows = static_cast<Index>(all.rows.size()) - equations;
   Inequalities out{Matrix(rows, n), Vector(rows), Matrix(equations, n), Vector(equations)};
   Index next = 0, next_equation = 0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From exchange form to inequalities. The set is the section of the lifted zonotope {(c; -b) + (M; S)δ + (G; A)ξ} by the subspace
-// where its constraint coordinates vanish, and the facets of a zonotope are known in closed form: normals are orthogonal to all
-// but one of as many generators as there are dimensions. No vertices are enumerated in the space of the factors.
+// From exchange form to inequalities. The set is the section of the lifted zonotope {(c; -b) + (M;
+// S)δ + (G; A)ξ} by the subspace where its constraint coordinates vanish, and the facets of a
+// zonotope are known in closed form: normals are orthogonal to all but one of as many generators as
+// there are dimensions. No vertices are enumerated in the space of the factors.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -43,10 +44,12 @@ struct Less {
   }
 };
 
-/// A positive or negative multiple: integers without a common factor, the first nonzero one positive.
+/// A positive or negative multiple: integers without a common factor, the first nonzero one
+/// positive.
 void make_direction(RationalVector& x) {
   rational::make_primitive(x);
-  const auto first = std::find_if(x.begin(), x.end(), [](const Rational& value) { return sgn(value) != 0; });
+  const auto first =
+      std::find_if(x.begin(), x.end(), [](const Rational& value) { return sgn(value) != 0; });
   if (first == x.end() || sgn(*first) > 0) return;
   for (Rational& value : x) value = -value;
 }
@@ -58,22 +61,25 @@ std::vector<RationalVector> directions(const RationalMatrix& W) {
   for (Index j = 0; j < W.cols(); ++j) {
     RationalVector w = rows.row(j);
     make_direction(w);
-    if (std::any_of(w.begin(), w.end(), [](const Rational& value) { return sgn(value) != 0; })) all.insert(std::move(w));
+    if (std::any_of(w.begin(), w.end(), [](const Rational& value) { return sgn(value) != 0; }))
+      all.insert(std::move(w));
   }
   return {all.begin(), all.end()};
 }
 
-/// Collects the normals of a full-dimensional zonotope's facets. Rows of the chosen generators are kept in echelon form, so that
-/// subsets with a common beginning share its elimination.
+/// Collects the normals of a full-dimensional zonotope's facets. Rows of the chosen generators are
+/// kept in echelon form, so that subsets with a common beginning share its elimination.
 class Normals {
  public:
   explicit Normals(const RationalMatrix& W) : r_(W.rows()), generators_(directions(W)) {
     const double subsets = binomial(static_cast<Index>(generators_.size()), r_ - 1);
     if (subsets > most_subsets) {
       throw Error(Errc::unsupported,
-                  "polytope: a set with " + std::to_string(generators_.size()) + " generators, of rank " + std::to_string(r_) +
-                      " with its constraints, has " + std::to_string(std::llround(std::min(subsets, 1e15))) +
-                      " candidates for facets; at most " + std::to_string(std::llround(most_subsets)) + " are supported");
+                  "polytope: a set with " + std::to_string(generators_.size()) +
+                      " generators, of rank " + std::to_string(r_) + " with its constraints, has " +
+                      std::to_string(std::llround(std::min(subsets, 1e15))) +
+                      " candidates for facets; at most " +
+                      std::to_string(std::llround(most_subsets)) + " are supported");
     }
     extend(0, RationalMatrix(0, r_), {});
   }
@@ -99,7 +105,8 @@ class Normals {
         if (sgn(factor) == 0) continue;
         for (Index k = 0; k < r_; ++k) rest[index(k)] -= factor * echelon(static_cast<Index>(i), k);
       }
-      const auto pivot = std::find_if(rest.begin(), rest.end(), [](const Rational& x) { return sgn(x) != 0; });
+      const auto pivot =
+          std::find_if(rest.begin(), rest.end(), [](const Rational& x) { return sgn(x) != 0; });
       if (pivot == rest.end()) continue;
       const Rational inverse = 1 / *pivot;
       std::vector<Index> more = pivots;
@@ -114,7 +121,8 @@ class Normals {
   std::set<RationalVector, Less> normals_;
 };
 
-/// X's blocks, lifted and freed of lines: {y : K y ∈ z0 + Zξ}, of which X is the section y = (x, 0).
+/// X's blocks, lifted and freed of lines: {y : K y ∈ z0 + Zξ}, of which X is the section y = (x,
+/// 0).
 struct Lifted {
   RationalMatrix K, Z;
   RationalVector z0;
@@ -125,7 +133,8 @@ Lifted lift(const LineForm& X) {
   RationalMatrix lines(l, n + m), generators(n + m, g), center(n + m, 1);
   for (Index i = 0; i < n + m; ++i) {
     for (Index j = 0; j < l; ++j) lines(j, i) = rational::exact(i < n ? X.M(i, j) : X.S(i - n, j));
-    for (Index j = 0; j < g; ++j) generators(i, j) = rational::exact(i < n ? X.G(i, j) : X.A(i - n, j));
+    for (Index j = 0; j < g; ++j)
+      generators(i, j) = rational::exact(i < n ? X.G(i, j) : X.A(i - n, j));
     center(i, 0) = rational::exact(i < n ? X.c[i] : -X.b[i - n]);
   }
   RationalMatrix K = rational::null_space(lines);
@@ -139,11 +148,13 @@ Lifted lift(const LineForm& X) {
 Description inequalities_of(const LineForm& X) {
   const Index n = X.dim();
   if (n + X.constraints() > most_coordinates || X.generators() + X.lines() > most_columns) {
-    throw Error(Errc::unsupported, "polytope: a set in dimension " + std::to_string(n) + " with " +
-                                       std::to_string(X.constraints()) + " constraints, " + std::to_string(X.generators()) +
-                                       " generators and " + std::to_string(X.lines()) + " lines; at most " +
-                                       std::to_string(most_coordinates) + " dimensions and constraints with " +
-                                       std::to_string(most_columns) + " generators and lines are supported");
+    throw Error(Errc::unsupported,
+                "polytope: a set in dimension " + std::to_string(n) + " with " +
+                    std::to_string(X.constraints()) + " constraints, " +
+                    std::to_string(X.generators()) + " generators and " +
+                    std::to_string(X.lines()) + " lines; at most " +
+                    std::to_string(most_coordinates) + " dimensions and constraints with " +
+                    std::to_string(most_columns) + " generators and lines are supported");
   }
   const Lifted lifted = lift(X);
   const Index k = lifted.K.rows(), g = lifted.Z.cols();

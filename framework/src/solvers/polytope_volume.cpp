@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Volume by pulling: a polytope is the union of the pyramids over its facets that miss one of its vertices, and so are these.
+// Volume by pulling: a polytope is the union of the pyramids over its facets that miss one of its
+// vertices, and so are these.
 #include <algorithm>
 #include <string>
 
@@ -56,10 +57,12 @@ class Triangulation {
     std::vector<Face> sections;
     for (const Face& other : others) {
       Face section;
-      std::set_intersection(face.begin(), face.end(), other.begin(), other.end(), std::back_inserter(section));
+      std::set_intersection(face.begin(), face.end(), other.begin(), other.end(),
+                            std::back_inserter(section));
       if (!section.empty() && section.size() < face.size()) sections.push_back(std::move(section));
     }
-    std::sort(sections.begin(), sections.end(), [](const Face& a, const Face& b) { return a.size() > b.size(); });
+    std::sort(sections.begin(), sections.end(),
+              [](const Face& a, const Face& b) { return a.size() > b.size(); });
     std::vector<Face> largest;
     for (Face& section : sections) {
       const bool covered = std::any_of(largest.begin(), largest.end(), [&](const Face& other) {
@@ -72,14 +75,17 @@ class Triangulation {
 
   void add_simplex() {
     if (++simplices_ > most_simplices) {
-      throw Error(Errc::unsupported, "polytope: the volume needs more than " + std::to_string(most_simplices) + " simplices");
+      throw Error(Errc::unsupported, "polytope: the volume needs more than " +
+                                         std::to_string(most_simplices) + " simplices");
     }
     RationalMatrix edges(dim_, dim_);
     const RationalVector& origin = vertices_[static_cast<std::size_t>(apexes_[0])];
     for (Index i = 0; i < dim_; ++i) {
-      const RationalVector& vertex = vertices_[static_cast<std::size_t>(apexes_[static_cast<std::size_t>(i + 1)])];
+      const RationalVector& vertex =
+          vertices_[static_cast<std::size_t>(apexes_[static_cast<std::size_t>(i + 1)])];
       for (Index j = 0; j < dim_; ++j) {
-        edges(i, j) = vertex[static_cast<std::size_t>(j + 1)] - origin[static_cast<std::size_t>(j + 1)];
+        edges(i, j) =
+            vertex[static_cast<std::size_t>(j + 1)] - origin[static_cast<std::size_t>(j + 1)];
       }
     }
     sum_ += abs(rational::determinant(edges));
@@ -97,8 +103,8 @@ class Triangulation {
 
 Rational volume(const Description& generators, const Description& inequalities) {
   if (generators.dim > most_dimensions) {
-    throw Error(Errc::unsupported,
-                "polytope: dimension " + std::to_string(generators.dim) + " exceeds 6, the limit of exact volumes");
+    throw Error(Errc::unsupported, "polytope: dimension " + std::to_string(generators.dim) +
+                                       " exceeds 6, the limit of exact volumes");
   }
   Rational value = Triangulation(generators, inequalities).sum_of_determinants();
   for (Index i = 2; i <= generators.dim; ++i) value /= static_cast<long>(i);

@@ -24,7 +24,8 @@ void* reallocate(void* old, std::size_t, std::size_t size) {
   throw std::bad_alloc();
 }
 
-[[maybe_unused]] const bool gmp_throws = (mp_set_memory_functions(allocate, reallocate, nullptr), true);
+[[maybe_unused]] const bool gmp_throws =
+    (mp_set_memory_functions(allocate, reallocate, nullptr), true);
 
 }  // namespace
 
@@ -39,7 +40,8 @@ void RationalMatrix::swap_rows(Index i, Index k) {
 }
 
 Rational exact(double x) {
-  if (!std::isfinite(x)) throw Error(Errc::not_finite, "exact arithmetic needs numbers: a NaN or infinite entry");
+  if (!std::isfinite(x))
+    throw Error(Errc::not_finite, "exact arithmetic needs numbers: a NaN or infinite entry");
   return Rational(x);
 }
 
@@ -80,7 +82,8 @@ RationalMatrix product(const RationalMatrix& A, const RationalMatrix& B) {
 }
 
 rounding::Range enclose(const Rational& q) {
-  constexpr double largest = std::numeric_limits<double>::max(), infinity = std::numeric_limits<double>::infinity();
+  constexpr double largest = std::numeric_limits<double>::max(),
+                   infinity = std::numeric_limits<double>::infinity();
   if (q > Rational(largest)) return {largest, infinity};
   if (q < Rational(-largest)) return {-infinity, -largest};
   // mpq_get_d truncates; what it does near the smallest doubles is left to the comparisons
@@ -93,13 +96,15 @@ rounding::Range enclose(const Rational& q) {
 double nearest(const Rational& q) {
   const rounding::Range range = enclose(q);
   if (range.lower == range.upper) return range.lower;
-  if (std::isinf(range.lower) || std::isinf(range.upper)) return std::isinf(range.lower) ? range.lower : range.upper;
+  if (std::isinf(range.lower) || std::isinf(range.upper))
+    return std::isinf(range.lower) ? range.lower : range.upper;
   return q - Rational(range.lower) <= Rational(range.upper) - q ? range.lower : range.upper;
 }
 
 void make_primitive(RationalVector& x) {
   mpz_class denominator = 1, divisor = 0;
-  for (const Rational& value : x) mpz_lcm(denominator.get_mpz_t(), denominator.get_mpz_t(), value.get_den_mpz_t());
+  for (const Rational& value : x)
+    mpz_lcm(denominator.get_mpz_t(), denominator.get_mpz_t(), value.get_den_mpz_t());
   for (Rational& value : x) {
     value *= denominator;
     mpz_gcd(divisor.get_mpz_t(), divisor.get_mpz_t(), value.get_num_mpz_t());
@@ -114,11 +119,16 @@ void scale_to_one(RationalVector& x) {
     if (abs(value) > largest) largest = abs(value);
   }
   if (sgn(largest) == 0) return;
-  const auto bits = [](const mpz_class& z) { return static_cast<long>(mpz_sizeinbase(z.get_mpz_t(), 2)); };
-  const long shift = bits(largest.get_num()) - bits(largest.get_den());  // largest / 2^shift lies in (1/2, 2)
+  const auto bits = [](const mpz_class& z) {
+    return static_cast<long>(mpz_sizeinbase(z.get_mpz_t(), 2));
+  };
+  const long shift =
+      bits(largest.get_num()) - bits(largest.get_den());  // largest / 2^shift lies in (1/2, 2)
   for (Rational& value : x) {
-    if (shift > 0) mpq_div_2exp(value.get_mpq_t(), value.get_mpq_t(), static_cast<mp_bitcnt_t>(shift));
-    if (shift < 0) mpq_mul_2exp(value.get_mpq_t(), value.get_mpq_t(), static_cast<mp_bitcnt_t>(-shift));
+    if (shift > 0)
+      mpq_div_2exp(value.get_mpq_t(), value.get_mpq_t(), static_cast<mp_bitcnt_t>(shift));
+    if (shift < 0)
+      mpq_mul_2exp(value.get_mpq_t(), value.get_mpq_t(), static_cast<mp_bitcnt_t>(-shift));
   }
 }
 
@@ -166,11 +176,14 @@ Rational determinant(RationalMatrix A) {
   const Index n = A.rows();
   // rows are scaled to integers, so that the elimination needs no greatest common divisors
   std::vector<mpz_class> T(static_cast<std::size_t>(n * n));
-  const auto at = [&](Index i, Index j) -> mpz_class& { return T[static_cast<std::size_t>(i * n + j)]; };
+  const auto at = [&](Index i, Index j) -> mpz_class& {
+    return T[static_cast<std::size_t>(i * n + j)];
+  };
   mpz_class denominator = 1, previous = 1;
   for (Index i = 0; i < n; ++i) {
     mpz_class common = 1;
-    for (Index j = 0; j < n; ++j) mpz_lcm(common.get_mpz_t(), common.get_mpz_t(), A(i, j).get_den_mpz_t());
+    for (Index j = 0; j < n; ++j)
+      mpz_lcm(common.get_mpz_t(), common.get_mpz_t(), A(i, j).get_den_mpz_t());
     for (Index j = 0; j < n; ++j) at(i, j) = A(i, j).get_num() * (common / A(i, j).get_den());
     denominator *= common;
   }

@@ -21,7 +21,8 @@ void put(RationalMatrix& K, Index col, const Matrix& block) {
   }
 }
 
-/// y moved onto the equations Lᵀy = t, L the columns of the lines; nothing if they have no solution.
+/// y moved onto the equations Lᵀy = t, L the columns of the lines; nothing if they have no
+/// solution.
 std::optional<RationalVector> multipliers(const System& s, const RationalVector& t, VectorIn y) {
   RationalVector moved = exact(y);
   RationalMatrix equations(s.lines, s.K.rows());
@@ -36,7 +37,8 @@ std::optional<RationalVector> multipliers(const System& s, const RationalVector&
   }
   if (holds) return moved;
   const double largest = y.size() ? y.cwiseAbs().maxCoeff() : 0;
-  const Vector preference = y.cwiseAbs().cwiseMax(1e-6 * largest + 1e-300);  // large entries bear a change best
+  const Vector preference =
+      y.cwiseAbs().cwiseMax(1e-6 * largest + 1e-300);  // large entries bear a change best
   const auto change = solve(equations, missing, preference);
   if (!change) return std::nullopt;
   for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += (*change)[i];
@@ -49,21 +51,24 @@ Rational distance(const System& s, const RationalVector& g, const RationalVector
   for (Index j = 0; j < s.factors(); ++j) {
     Rational value = g[at(j)];
     for (Index i = 0; i < s.K.rows(); ++i) {
-      if (sgn(s.K(i, s.lines + j)) != 0 && sgn(y[at(i)]) != 0) value -= s.K(i, s.lines + j) * y[at(i)];
+      if (sgn(s.K(i, s.lines + j)) != 0 && sgn(y[at(i)]) != 0)
+        value -= s.K(i, s.lines + j) * y[at(i)];
     }
     sum += abs(value);
   }
   return sum;
 }
 
-/// max τ for the rows with the right-hand side times τ ∈ [-1, 1], for the exact simplex method: plus - minus is written with a
-/// factor that a row of its own fixes to τ, too. The rows have a solution if and only if τ reaches 1.
+/// max τ for the rows with the right-hand side times τ ∈ [-1, 1], for the exact simplex method:
+/// plus - minus is written with a factor that a row of its own fixes to τ, too. The rows have a
+/// solution if and only if τ reaches 1.
 ExactProgram share_of_right_side(const Rows& rows) {
   const Index m = rows.plus.size(), g = rows.A.cols(), l = rows.S.cols();
   const bool shifted = !rows.minus.isZero(0);
   const Index extra_row = shifted ? 1 : 0, constant = g, tau = g + extra_row, cols = tau + 1;
-  ExactProgram p{Matrix::Zero(m + extra_row, l), Matrix::Zero(m + extra_row, cols), RationalVector(at(m + extra_row)),
-                 RationalVector(at(l)), RationalVector(at(cols))};
+  ExactProgram p{Matrix::Zero(m + extra_row, l), Matrix::Zero(m + extra_row, cols),
+                 RationalVector(at(m + extra_row)), RationalVector(at(l)),
+                 RationalVector(at(cols))};
   p.S.topRows(m) = rows.S;
   p.A.topLeftCorner(m, g) = rows.A;
   p.A.block(0, tau, m, 1) = -rows.plus;
@@ -76,8 +81,9 @@ ExactProgram share_of_right_side(const Rows& rows) {
   return p;
 }
 
-/// K x = r in integers, row by row without common factors: their products need no greatest common divisors, and the numbers stay
-/// as short as determinants are [Bareiss1968]. Columns that no pivot may come from are left out.
+/// K x = r in integers, row by row without common factors: their products need no greatest common
+/// divisors, and the numbers stay as short as determinants are [Bareiss1968]. Columns that no pivot
+/// may come from are left out.
 class IntegerSystem {
  public:
   IntegerSystem(const RationalMatrix& K, const RationalVector& r, const Vector& preference) {
@@ -109,7 +115,8 @@ class IntegerSystem {
       used[*col] = true;
       pivots_.emplace_back(i, *col);
       const mpz_class pivot = rows_[i][*col];
-      for (std::size_t k = i + 1; k < rows_.size(); ++k) subtract(rows_[k], rows_[i], *col, pivot, before);
+      for (std::size_t k = i + 1; k < rows_.size(); ++k)
+        subtract(rows_[k], rows_[i], *col, pivot, before);
       before = pivot;
     }
     return true;
@@ -124,7 +131,8 @@ class IntegerSystem {
       const auto& [i, col] = *it;
       Rational left = rows_[i].back();
       for (auto later = pivots_.rbegin(); later != it; ++later) {
-        if (sgn(rows_[i][later->second]) != 0) left -= rows_[i][later->second] * x[at(columns_[later->second])];
+        if (sgn(rows_[i][later->second]) != 0)
+          left -= rows_[i][later->second] * x[at(columns_[later->second])];
       }
       x[at(columns_[col])] = left / rows_[i][col];
     }
@@ -134,7 +142,8 @@ class IntegerSystem {
  private:
   using Row = std::vector<mpz_class>;
 
-  static void subtract(Row& row, const Row& from, std::size_t col, const mpz_class& pivot, const mpz_class& before) {
+  static void subtract(Row& row, const Row& from, std::size_t col, const mpz_class& pivot,
+                       const mpz_class& before) {
     const mpz_class factor = row[col];
     for (std::size_t j = 0; j < row.size(); ++j) {
       row[j] *= pivot;
@@ -153,7 +162,8 @@ class IntegerSystem {
       long exponent = 0;
       const double size = std::abs(mpz_get_d_2exp(&exponent, row[j].get_mpz_t())) * preference_[j];
       if (!found) unit = exponent;
-      const double score = std::ldexp(size, static_cast<int>(std::clamp(exponent - unit, -2000L, 2000L)));
+      const double score =
+          std::ldexp(size, static_cast<int>(std::clamp(exponent - unit, -2000L, 2000L)));
       if (found && !(score > best)) continue;
       best = score;
       found = j;
@@ -176,14 +186,18 @@ Vector rounded(const RationalVector& x, Index size) {
 
 }  // namespace
 
-std::optional<RationalVector> solve(const RationalMatrix& K, const RationalVector& r, const Vector& preference, Index* rank) {
+std::optional<RationalVector> solve(const RationalMatrix& K, const RationalVector& r,
+                                    const Vector& preference, Index* rank) {
   IntegerSystem system(K, r, preference);
   if (!system.eliminate()) return std::nullopt;
   if (rank) *rank = system.rank();
   return system.solution(K.cols());
 }
 
-System::System(const Rows& rows) : K(rows.plus.size(), rows.S.cols() + rows.A.cols()), r(exact(rows.plus)), lines(rows.S.cols()) {
+System::System(const Rows& rows)
+    : K(rows.plus.size(), rows.S.cols() + rows.A.cols()),
+      r(exact(rows.plus)),
+      lines(rows.S.cols()) {
   put(K, 0, rows.S);
   put(K, lines, rows.A);
   for (Index i = 0; i < rows.minus.size(); ++i) {
@@ -204,7 +218,8 @@ std::optional<Rational> farkas_margin(const System& s, VectorIn y) {
   return Rational(terms->gain - terms->cost);
 }
 
-std::optional<Rational> dual_bound(const System& s, const RationalVector& t, const RationalVector& g, VectorIn y) {
+std::optional<Rational> dual_bound(const System& s, const RationalVector& t,
+                                   const RationalVector& g, VectorIn y) {
   if (y.size() != s.K.rows() || !y.allFinite()) return std::nullopt;
   const auto moved = multipliers(s, t, y);
   if (!moved) return std::nullopt;
@@ -214,7 +229,8 @@ std::optional<Rational> dual_bound(const System& s, const RationalVector& t, con
 namespace {
 
 /// The sum of both, if it keeps the bounds of the factors that change.
-std::optional<RationalVector> within_bounds(const System& s, RationalVector point, const RationalVector& change) {
+std::optional<RationalVector> within_bounds(const System& s, RationalVector point,
+                                            const RationalVector& change) {
   for (Index j = 0; j < s.K.cols(); ++j) {
     if (sgn(change[at(j)]) == 0) continue;
     point[at(j)] += change[at(j)];
@@ -223,7 +239,8 @@ std::optional<RationalVector> within_bounds(const System& s, RationalVector poin
   return point;
 }
 
-/// The solution W Kᵀy of K x = gap, W the squares of `room`: every variable takes its share, where one alone has too little room.
+/// The solution W Kᵀy of K x = gap, W the squares of `room`: every variable takes its share, where
+/// one alone has too little room.
 std::optional<RationalVector> spread(const System& s, RationalVector gap, const Vector& room) {
   const Index m = s.K.rows(), all = s.K.cols();
   RationalMatrix WKt(all, m), N(m, m);
@@ -292,7 +309,8 @@ Finding settle(const Rows& rows) {
   RationalVector costs(at(l + basic));
   for (Index j = 0; j < l + basic; ++j) {
     const Index column = j < l ? j : gap.basis[at(j - l)];
-    for (Index i = 0; i < all; ++i) equations(j, i) = exact(j < l ? scaled.S(i, column) : scaled.A(i, column));
+    for (Index i = 0; i < all; ++i)
+      equations(j, i) = exact(j < l ? scaled.S(i, column) : scaled.A(i, column));
     if (j >= l) costs[at(j)] = scaled.g[at(column)];
   }
   auto y = solve(equations, costs, Vector::Ones(all));

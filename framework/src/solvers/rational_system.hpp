@@ -26,8 +26,8 @@ struct System {
   Index factors() const { return K.cols() - lines; }
 };
 
-/// bᵀy and ‖Aᵀy‖₁ for the y nearby that solves Lᵀy = 0 exactly, L the lines' columns: the system has no solution with ‖ξ‖∞ < bᵀy
-/// / ‖Aᵀy‖₁. Nothing if there is no such y.
+/// bᵀy and ‖Aᵀy‖₁ for the y nearby that solves Lᵀy = 0 exactly, L the lines' columns: the system
+/// has no solution with ‖ξ‖∞ < bᵀy / ‖Aᵀy‖₁. Nothing if there is no such y.
 struct FarkasTerms {
   Rational gain, cost;
 };
@@ -36,24 +36,27 @@ std::optional<FarkasTerms> farkas_terms(const System& s, VectorIn y);
 std::optional<Rational> farkas_margin(const System& s, VectorIn y);
 
 /// gᵀξ + tᵀδ ≤ bᵀy + ‖g - Aᵀy‖₁ for the y nearby with Lᵀy = t: that bound.
-std::optional<Rational> dual_bound(const System& s, const RationalVector& t, const RationalVector& g, VectorIn y);
+std::optional<Rational> dual_bound(const System& s, const RationalVector& t,
+                                   const RationalVector& g, VectorIn y);
 
 /// The point (δ, ξ), moved onto the rows; nothing if it leaves the bounds then.
 std::optional<RationalVector> solution_near(const System& s, VectorIn point);
-inline bool has_solution_near(const System& s, VectorIn point) { return solution_near(s, point).has_value(); }
+inline bool has_solution_near(const System& s, VectorIn point) {
+  return solution_near(s, point).has_value();
+}
 
-/// What the exact simplex method finds: a solution (δ, ξ), or multipliers of the largest gap to a solution, each rounded to
-/// doubles. A proof only after one of the checks above.
+/// What the exact simplex method finds: a solution (δ, ξ), or multipliers of the largest gap to a
+/// solution, each rounded to doubles. A proof only after one of the checks above.
 struct Finding {
   bool feasible;
   Vector data;
 };
 Finding settle(const Rows& rows);
 
-/// K x = r by elimination in integers [Bareiss1968]; x is 0 outside the pivot columns, which are chosen by |entry| · preference
-/// (a column of preference 0 is never one). Nothing if the system is inconsistent on those columns. `rank` (may be null) receives
-/// the number of pivots.
-std::optional<RationalVector> solve(const RationalMatrix& K, const RationalVector& r, const Vector& preference,
-                                    Index* rank = nullptr);
+/// K x = r by elimination in integers [Bareiss1968]; x is 0 outside the pivot columns, which are
+/// chosen by |entry| · preference (a column of preference 0 is never one). Nothing if the system is
+/// inconsistent on those columns. `rank` (may be null) receives the number of pivots.
+std::optional<RationalVector> solve(const RationalMatrix& K, const RationalVector& r,
+                                    const Vector& preference, Index* rank = nullptr);
 
 }  // namespace cordon::rational

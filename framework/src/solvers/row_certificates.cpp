@@ -24,7 +24,9 @@ RowCertificates::RowCertificates(const Matrix& A, VectorIn b, VectorIn error)
 }
 
 /// What an uncertain right-hand side adds to bᵀy at most.
-double RowCertificates::doubt(VectorIn y) const { return exact_ ? 0.0 : rounding::dot(error_, y.cwiseAbs()).upper; }
+double RowCertificates::doubt(VectorIn y) const {
+  return exact_ ? 0.0 : rounding::dot(error_, y.cwiseAbs()).upper;
+}
 
 double RowCertificates::upper_bound(VectorIn g, VectorIn y) const {
   return up(up(rounding::dot(b_, y).upper + residual(g.data(), y)) + doubt(y));
@@ -35,7 +37,8 @@ double RowCertificates::farkas_margin(VectorIn y) const {
   return down(down(rounding::dot(b_, y).lower - residual(nullptr, y)) - doubt(y));
 }
 
-/// ≥ ‖g - Aᵀy‖₁. A column is off by γ (|g_j| + Σ|A_ij||y_i|) at most, all of them by γ (‖g‖₁ + Σ reach_i |y_i|).
+/// ≥ ‖g - Aᵀy‖₁. A column is off by γ (|g_j| + Σ|A_ij||y_i|) at most, all of them by γ (‖g‖₁ + Σ
+/// reach_i |y_i|).
 double RowCertificates::residual(const double* g, VectorIn y) const {
   constexpr Index width = Panels<double>::width;
   double sums[width] = {}, sizes[width] = {};
@@ -57,7 +60,8 @@ double RowCertificates::residual(const double* g, VectorIn y) const {
     size += sizes[k];
   }
   const Index m = panels_.rows();
-  const double terms = up(up(size * (1 + 2 * gamma(cols_ + 8))) + up(reach_.dot(y.cwiseAbs()) * (1 + 2 * gamma(m + 2))));
+  const double terms = up(up(size * (1 + 2 * gamma(cols_ + 8))) +
+                          up(reach_.dot(y.cwiseAbs()) * (1 + 2 * gamma(m + 2))));
   const double underflow = static_cast<double>((m + 2) * (cols_ + 2)) * rounding::tiny;
   return up(up(total * (1 + 2 * gamma(cols_ + 8))) + up(up(gamma(m + 4) * terms) + underflow));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What multipliers prove about {ξ : Aξ = b, ‖ξ‖∞ ≤ 1}, with rounding errors bounded a priori [Higham2002, ch. 3].
+// What multipliers prove about {ξ : Aξ = b, ‖ξ‖∞ ≤ 1}, with rounding errors bounded a priori
+// [Higham2002, ch. 3].
 #pragma once
 
 #include "cordon/core/types.hpp"
@@ -7,7 +8,8 @@
 
 namespace cordon {
 
-/// Many checks of the same rows: |A|1 is known once, so that the bound of the errors costs O(m) and a check one product with Aᵀ.
+/// Many checks of the same rows: |A|1 is known once, so that the bound of the errors costs O(m) and
+/// a check one product with Aᵀ.
 class RowCertificates {
  public:
   /// `error` bounds |b - true right-hand side|; it may be empty, for none.

@@ -23,7 +23,8 @@ constexpr double accurate = 1e-15;
 
 }  // namespace
 
-RowGram::RowGram(const Matrix& A, const Vector& b, const Vector& error) : A_(0, A.cols()), all_(A.rows()) {
+RowGram::RowGram(const Matrix& A, const Vector& b, const Vector& error)
+    : A_(0, A.cols()), all_(A.rows()) {
   const Index g = A.cols();
   rows_.reserve(static_cast<std::size_t>(all_));
   for (Index i = 0; i < all_; ++i) {
@@ -57,14 +58,15 @@ RowGram::RowGram(const Matrix& A, const Vector& b, const Vector& error) : A_(0, 
   factor();
 }
 
-/// |fl(K) - K| ≤ γ |A||A|ᵀ for K = A Aᵀ, whose 2-norm is at most the trace of K. A computed factor L of K - s I has |LLᵀ - (K -
-/// sI)| ≤ γ |L||L|ᵀ with ‖|L||L|ᵀ‖₂ ≤ trace(LLᵀ) [Higham2002, th. 10.3], and LLᵀ has no negative eigenvalue.
+/// |fl(K) - K| ≤ γ |A||A|ᵀ for K = A Aᵀ, whose 2-norm is at most the trace of K. A computed factor
+/// L of K - s I has |LLᵀ - (K - sI)| ≤ γ |L||L|ᵀ with ‖|L||L|ᵀ‖₂ ≤ trace(LLᵀ) [Higham2002,
+/// th. 10.3], and LLᵀ has no negative eigenvalue.
 void RowGram::factor() {
   const Index g = A_.cols(), m = A_.rows();
   Matrix K = linalg::gram(A_);
   const double trace = K.trace(), shift = shift_share * trace / static_cast<double>(m);
-  const double hidden =
-      1.01 * (gamma(g + 4) + gamma(m + 8) + 4 * rounding::unit) * trace + static_cast<double>((g + m + 4) * m) * rounding::tiny;
+  const double hidden = 1.01 * (gamma(g + 4) + gamma(m + 8) + 4 * rounding::unit) * trace +
+                        static_cast<double>((g + m + 4) * m) * rounding::tiny;
   K.diagonal().array() -= shift;
   auto L = linalg::cholesky(K);
   if (!L || !L->allFinite() || !(shift > 2 * hidden)) return;
@@ -91,7 +93,8 @@ RowGram::Point RowGram::least_squares() const {
     left = right() - linalg::product(A_, point.xi);
     if ((left.array().abs() <= accurate * (right().cwiseAbs() + reach()).array()).all()) break;
   }
-  for (Index k = 0; k < y.size(); ++k) point.y[rows_[static_cast<std::size_t>(k)]] = scale()[k] * y[k];
+  for (Index k = 0; k < y.size(); ++k)
+    point.y[rows_[static_cast<std::size_t>(k)]] = scale()[k] * y[k];
   return point;
 }
 
@@ -99,13 +102,15 @@ double RowGram::distance(const Vector& xi) const {
   if (rows_.empty()) return 0;
   const double largest = xi.size() ? xi.cwiseAbs().maxCoeff() : 0;
   if (!std::isfinite(largest)) return infinity;
-  const double share = gamma(A_.cols() + 4), underflow = static_cast<double>(A_.cols() + 4) * rounding::tiny;
+  const double share = gamma(A_.cols() + 4),
+               underflow = static_cast<double>(A_.cols() + 4) * rounding::tiny;
   const Vector image = linalg::product(A_, xi);
   double squares = 0;
   for (Index k = 0; k < image.size(); ++k) {
-    const double gap = std::abs(right()[k] - image[k]) * (1 + 4 * rounding::unit) +
-                       share * (reach()[k] * largest + std::abs(right()[k])) * (1 + 8 * rounding::unit) +
-                       unsure()[k] * (1 + 4 * rounding::unit) + underflow;
+    const double gap =
+        std::abs(right()[k] - image[k]) * (1 + 4 * rounding::unit) +
+        share * (reach()[k] * largest + std::abs(right()[k])) * (1 + 8 * rounding::unit) +
+        unsure()[k] * (1 + 4 * rounding::unit) + underflow;
     squares += gap * gap;
   }
   const double size = std::sqrt(squares / smallest_) * (1 + 4 * gamma(image.size() + 8));

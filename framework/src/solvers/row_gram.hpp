@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points that satisfy few equations in many variables: proposals by least squares, and a proof that a solution is near.
+// Points that satisfy few equations in many variables: proposals by least squares, and a proof that
+// a solution is near.
 #pragma once
 
 #include <vector>
@@ -8,11 +9,13 @@
 
 namespace cordon {
 
-/// A factor of A Aᵀ with a proven lower bound of its smallest eigenvalue λ: K - s I has a Cholesky factor in floating point, so λ
-/// ≥ s minus what rounding can hide [Rump2006]. Then A δ = r has a solution with ‖δ‖₂ ≤ ‖r‖₂ / √λ.
+/// A factor of A Aᵀ with a proven lower bound of its smallest eigenvalue λ: K - s I has a Cholesky
+/// factor in floating point, so λ ≥ s minus what rounding can hide [Rump2006]. Then A δ = r has a
+/// solution with ‖δ‖₂ ≤ ‖r‖₂ / √λ.
 class RowGram {
  public:
-  /// Zero rows are left out, the others scaled by powers of two. `error` bounds |b - true right-hand side|. O(m² g).
+  /// Zero rows are left out, the others scaled by powers of two. `error` bounds |b - true
+  /// right-hand side|. O(m² g).
   RowGram(const Matrix& A, const Vector& b, const Vector& error);
 
   /// Regular beyond doubt, and no row says 0 = b ≠ 0: only then may the others be called.
@@ -22,7 +25,8 @@ class RowGram {
     Vector xi, y;
   };
   Point least_squares() const;
-  /// Some solution, for every right-hand side within `error`, lies within this distance of ξ in every coordinate.
+  /// Some solution, for every right-hand side within `error`, lies within this distance of ξ in
+  /// every coordinate.
   double distance(const Vector& xi) const;
 
  private:

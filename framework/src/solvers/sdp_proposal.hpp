@@ -21,7 +21,9 @@ struct SdpProposal {
   std::vector<Matrix> Y;    ///< dual matrices, one per inequality
 };
 
-/// One run of SDPA. The program is checked already; it has variables, and every one appears in an inequality.
-SdpProposal run_sdpa(const SemidefiniteProgram& program, double accuracy, int iterations, const SdpTuning& tuning);
+/// One run of SDPA. The program is checked already; it has variables, and every one appears in an
+/// inequality.
+SdpProposal run_sdpa(const SemidefiniteProgram& program, double accuracy, int iterations,
+                     const SdpTuning& tuning);
 
 }  // namespace cordon

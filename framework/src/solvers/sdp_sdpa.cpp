@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only file that sees SDPA. Its form: minimise Σ c_i x_i subject to X = Σ F_i x_i - F_0 ⪰ 0; so F_0 is minus our constant.
-// Facts it lives with: the library keeps state in static variables, so that one solve runs at a time; it writes remarks to
-// std::cout; where it finds a defect it ends the process, with status 0, and where memory runs out it aborts. The linker sends
-// all three to this file (wrap options in cmake/Dependencies.cmake): the stream to nowhere, the ends of the process to an
-// exception.
+// The only file that sees SDPA. Its form: minimise Σ c_i x_i subject to X = Σ F_i x_i - F_0 ⪰ 0; so
+// F_0 is minus our constant. Facts it lives with: the library keeps state in static variables, so
+// that one solve runs at a time; it writes remarks to std::cout; where it finds a defect it ends
+// the process, with status 0, and where memory runs out it aborts. The linker sends all three to
+// this file (wrap options in cmake/Dependencies.cmake): the stream to nowhere, the ends of the
+// process to an exception.
 #include <cstddef>
 #include <limits>
 #include <mutex>
@@ -24,9 +25,12 @@ extern "C" {
 [[noreturn, gnu::visibility("hidden")]] void __wrap_exit(int) { throw GaveUp{}; }
 [[noreturn, gnu::visibility("hidden")]] void __wrap_abort() { throw GaveUp{}; }
 [[gnu::visibility("hidden")]] std::ostream __wrap__ZSt4cout(nullptr);
-[[noreturn, gnu::visibility("hidden")]] void xerbla_(const char*, const int*, std::size_t) { throw GaveUp{}; }
-// SDPA asks MUMPS, for more than 100 variables, what a sparse factorisation of its linear systems costs. The answer is: more than
-// a dense one, which the programs here fill anyway. It never asks for more then, and MUMPS (CeCILL-C) need not be linked.
+[[noreturn, gnu::visibility("hidden")]] void xerbla_(const char*, const int*, std::size_t) {
+  throw GaveUp{};
+}
+// SDPA asks MUMPS, for more than 100 variables, what a sparse factorisation of its linear systems
+// costs. The answer is: more than a dense one, which the programs here fill anyway. It never asks
+// for more then, and MUMPS (CeCILL-C) need not be linked.
 [[gnu::visibility("hidden")]] void dmumps_c(DMUMPS_STRUC_C* question) {
   question->infog[0] = 0;
   question->infog[19] = -std::numeric_limits<int>::max();  // millions of entries
@@ -42,7 +46,8 @@ void input_matrix(SDPA& problem, int k, int block, const Matrix& F, double sign)
   for (Index j = 0; j < F.cols(); ++j) {
     for (Index i = 0; i <= j; ++i) {
       if (F(i, j) == 0) continue;
-      problem.inputElement(k, block, static_cast<int>(i) + 1, static_cast<int>(j) + 1, sign * F(i, j));
+      problem.inputElement(k, block, static_cast<int>(i) + 1, static_cast<int>(j) + 1,
+                           sign * F(i, j));
     }
   }
 }
@@ -52,16 +57,19 @@ void input(SDPA& problem, const SemidefiniteProgram& program) {
   problem.inputConstraintNumber(static_cast<int>(program.cost.size()));
   problem.inputBlockNumber(blocks);
   for (int l = 1; l <= blocks; ++l) {
-    const auto size = static_cast<int>(program.inequalities[static_cast<std::size_t>(l) - 1].constant.rows());
+    const auto size =
+        static_cast<int>(program.inequalities[static_cast<std::size_t>(l) - 1].constant.rows());
     problem.inputBlockSize(l, size == 1 ? -1 : size);
     problem.inputBlockType(l, size == 1 ? SDPA::LP : SDPA::SDP);
   }
   problem.initializeUpperTriangleSpace();
-  for (Index i = 0; i < program.cost.size(); ++i) problem.inputCVec(static_cast<int>(i) + 1, program.cost[i]);
+  for (Index i = 0; i < program.cost.size(); ++i)
+    problem.inputCVec(static_cast<int>(i) + 1, program.cost[i]);
   for (int l = 1; l <= blocks; ++l) {
     const MatrixInequality& F = program.inequalities[static_cast<std::size_t>(l) - 1];
     input_matrix(problem, 0, l, F.constant, -1);
-    for (const auto& [i, term] : F.terms) input_matrix(problem, static_cast<int>(i) + 1, l, term, 1);
+    for (const auto& [i, term] : F.terms)
+      input_matrix(problem, static_cast<int>(i) + 1, l, term, 1);
   }
   problem.initializeUpperTriangle();
 }
@@ -76,7 +84,8 @@ SdpProposal output(SDPA& problem, const SemidefiniteProgram& program) {
   bool finite = x.allFinite();
   for (std::size_t l = 0; l < program.inequalities.size(); ++l) {
     const Index size = program.inequalities[l].constant.rows();
-    const Matrix Y = Eigen::Map<const Matrix>(problem.getResultYMat(static_cast<int>(l) + 1), size, size);
+    const Matrix Y =
+        Eigen::Map<const Matrix>(problem.getResultYMat(static_cast<int>(l) + 1), size, size);
     proposal.Y.push_back((Y + Y.transpose()) / 2);
     finite = finite && proposal.Y.back().allFinite();
   }
@@ -90,7 +99,8 @@ SdpProposal output(SDPA& problem, const SemidefiniteProgram& program) {
 
 }  // namespace
 
-SdpProposal run_sdpa(const SemidefiniteProgram& program, double accuracy, int iterations, const SdpTuning& tuning) {
+SdpProposal run_sdpa(const SemidefiniteProgram& program, double accuracy, int iterations,
+                     const SdpTuning& tuning) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   try {

@@ -17,7 +17,8 @@ namespace cordon {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// A violation smaller than this share of its terms may stem from rounding errors of nominal operations.
+/// A violation smaller than this share of its terms may stem from rounding errors of nominal
+/// operations.
 constexpr double nominal_tolerance = 1e-10;
 /// Candidates for facets that `is_subset` tries before it answers `unknown`.
 constexpr Index max_facets = 20'000;
@@ -39,8 +40,9 @@ double subsets(Index n, Index k) {
   return count;
 }
 
-/// A unit vector normal to the columns, which may be scaled; nothing where they are dependent. In the plane and in space without
-/// a decomposition: the sine of the angle between two columns takes the place of their singular values.
+/// A unit vector normal to the columns, which may be scaled; nothing where they are dependent. In
+/// the plane and in space without a decomposition: the sine of the angle between two columns takes
+/// the place of their singular values.
 std::optional<Vector> normal_of(const Matrix& columns) {
   constexpr double dependent = 1e-10;
   if (columns.rows() == 2 || columns.rows() == 3) {
@@ -60,8 +62,8 @@ std::optional<Vector> normal_of(const Matrix& columns) {
   return basis.cols() == 1 ? std::optional<Vector>(basis.col(0)) : std::nullopt;
 }
 
-/// Unit normals of all facets of the zonotope with generators L (full rank): cross products of (n-1)-subsets. Nothing when there
-/// are too many.
+/// Unit normals of all facets of the zonotope with generators L (full rank): cross products of
+/// (n-1)-subsets. Nothing when there are too many.
 std::optional<std::vector<Vector>> facet_normals(const Matrix& L) {
   const Index n = L.rows(), g = L.cols();
   if (g < n - 1 || subsets(g, n - 1) > static_cast<double>(max_facets)) return std::nullopt;
@@ -79,15 +81,18 @@ std::optional<std::vector<Vector>> facet_normals(const Matrix& L) {
 /// X ⊆ Y refuted along ±d? Fills `why`.
 bool refuted(const LineForm& X, const LineForm& Y, VectorIn d, Certificate* why) {
   const double inside = attained(X, d), bound = support(Y, d);
-  const double scale = d.cwiseAbs().dot(X.c.cwiseAbs() + Y.c.cwiseAbs()) + std::abs(inside) + std::abs(bound);
+  const double scale =
+      d.cwiseAbs().dot(X.c.cwiseAbs() + Y.c.cwiseAbs()) + std::abs(inside) + std::abs(bound);
   if (!(inside > -infinity) || !(bound < infinity)) return false;
-  if (inside < infinity && bound > -infinity && !(inside - bound > nominal_tolerance * scale)) return false;
+  if (inside < infinity && bound > -infinity && !(inside - bound > nominal_tolerance * scale))
+    return false;
   if (why) *why = {Certificate::Kind::direction, Vector(d), inside - bound};
   return true;
 }
 
-/// All of X's points satisfy the facets of the lifted zonotope {(Gξ, Aξ - b)} of Y at its section by 0, with a margin that covers
-/// the rounding errors of the normals. `terms`: size of the numbers that both were computed from.
+/// All of X's points satisfy the facets of the lifted zonotope {(Gξ, Aξ - b)} of Y at its section
+/// by 0, with a margin that covers the rounding errors of the normals. `terms`: size of the numbers
+/// that both were computed from.
 Answer within_facets(const LineForm& X, const LineForm& Y, double terms) {
   const Index n = Y.dim(), m = Y.constraints();
   Matrix lifted(n + m, Y.generators());
@@ -98,7 +103,8 @@ Answer within_facets(const LineForm& X, const LineForm& Y, double terms) {
   if (linalg::rank(lifted) < n + m) return Answer::unknown;  // flat: no facets with interior
   const auto normals = facet_normals(lifted);
   if (!normals) return Answer::unknown;
-  const double size = center.cwiseAbs().maxCoeff() + lifted.cwiseAbs().rowwise().sum().maxCoeff() + terms;
+  const double size =
+      center.cwiseAbs().maxCoeff() + lifted.cwiseAbs().rowwise().sum().maxCoeff() + terms;
   for (const Vector& normal : *normals) {
     const double spread = rounding::norm_1(linalg::transposed_product(lifted, normal)).lower;
     for (const double sign : {1.0, -1.0}) {
@@ -111,7 +117,8 @@ Answer within_facets(const LineForm& X, const LineForm& Y, double terms) {
   return Answer::yes;
 }
 
-/// Y is a box given without constraints (one non-zero per generator and row): compared bound by bound, without any margin.
+/// Y is a box given without constraints (one non-zero per generator and row): compared bound by
+/// bound, without any margin.
 bool is_plain_box(const LineForm& Y) {
   if (Y.constraints() > 0) return false;
   for (Index j = 0; j < Y.generators(); ++j) {
@@ -123,12 +130,14 @@ bool is_plain_box(const LineForm& Y) {
   return true;
 }
 
-/// Both plain boxes: |c_X - c_Y| + r_X ≤ r_Y in every coordinate, without rounding where the centres agree.
+/// Both plain boxes: |c_X - c_Y| + r_X ≤ r_Y in every coordinate, without rounding where the
+/// centres agree.
 Answer box_within_box(const LineForm& X, const LineForm& Y) {
   for (Index i = 0; i < Y.dim(); ++i) {
     if (Y.lines() > 0 && !Y.M.row(i).isZero(0)) continue;
     if (X.lines() > 0 && !X.M.row(i).isZero(0)) return Answer::unknown;
-    if ((Y.G.row(i).array() != 0).count() > 1 || (X.G.row(i).array() != 0).count() > 1) return Answer::unknown;
+    if ((Y.G.row(i).array() != 0).count() > 1 || (X.G.row(i).array() != 0).count() > 1)
+      return Answer::unknown;
     const double inner = X.generators() ? X.G.row(i).cwiseAbs().maxCoeff() : 0.0;
     const double outer = Y.generators() ? Y.G.row(i).cwiseAbs().maxCoeff() : 0.0;
     const double shift = X.c[i] == Y.c[i] ? 0.0 : rounding::up(std::abs(X.c[i] - Y.c[i]));
@@ -144,24 +153,28 @@ Answer within_box(const LineForm& X, const LineForm& Y) {
     if (Y.lines() > 0 && !Y.M.row(i).isZero(0)) continue;
     const rounding::Range radius = rounding::norm_1(Y.G.row(i).transpose());
     const bool one = (Y.G.row(i).array() != 0).count() <= 1;
-    const double reach = one ? (Y.generators() ? Y.G.row(i).cwiseAbs().maxCoeff() : 0.0) : radius.lower;
-    if (!(outer.upper[i] <= rounding::down(Y.c[i] + reach)) || !(outer.lower[i] >= rounding::up(Y.c[i] - reach)))
+    const double reach =
+        one ? (Y.generators() ? Y.G.row(i).cwiseAbs().maxCoeff() : 0.0) : radius.lower;
+    if (!(outer.upper[i] <= rounding::down(Y.c[i] + reach)) ||
+        !(outer.lower[i] >= rounding::up(Y.c[i] - reach)))
       return Answer::unknown;
   }
   return Answer::yes;
 }
 
-/// Are all of X's lines among those of Y? Rational: nothing covers a line that is almost another one.
+/// Are all of X's lines among those of Y? Rational: nothing covers a line that is almost another
+/// one.
 bool lines_within(const LineForm& X, const LineForm& Y) {
   if (X.lines() == 0) return true;
   const Matrix rows = Y.M.transpose(), lines = X.M.transpose();
-  return !has_lineality(
-      {lines, Matrix(X.lines(), 0), Vector::Zero(X.lines()), rows, Matrix(Y.lines(), 0), Vector::Zero(Y.lines())});
+  return !has_lineality({lines, Matrix(X.lines(), 0), Vector::Zero(X.lines()), rows,
+                         Matrix(Y.lines(), 0), Vector::Zero(Y.lines())});
 }
 
 /// Two sets without lines, seen across the lines of Y.
 struct Across {
-  Matrix normal;  ///< a basis of the directions normal to these lines; n×n identity where there are none
+  Matrix normal;  ///< a basis of the directions normal to these lines; n×n identity where there are
+                  ///< none
   LineForm X, Y;
 };
 std::optional<Across> across_lines(const LineForm& X, const LineForm& Y) {
@@ -185,7 +198,8 @@ std::optional<Across> across_lines(const LineForm& X, const LineForm& Y) {
 /// Largest entry of |c| + |G|1.
 double size_of(const LineForm& X) {
   if (X.dim() == 0) return 0;
-  const Vector size = X.c.cwiseAbs() + linalg::product(X.G.cwiseAbs(), Vector::Ones(X.generators()));
+  const Vector size =
+      X.c.cwiseAbs() + linalg::product(X.G.cwiseAbs(), Vector::Ones(X.generators()));
   return size.maxCoeff();
 }
 
@@ -212,7 +226,9 @@ Answer within_lifted(const LineForm& X, const LineForm& Y) {
 bool refuted_by_facets(const LineForm& X, const LineForm& Y, Certificate* why) {
   const LineForm left = eliminate_lines(X), right = eliminate_lines(Y);
   const auto seen = across_lines(left, right);
-  if (!seen || seen->normal.cols() == 0 || seen->Y.constraints() > 0 || linalg::rank(seen->Y.G) < seen->Y.dim()) return false;
+  if (!seen || seen->normal.cols() == 0 || seen->Y.constraints() > 0 ||
+      linalg::rank(seen->Y.G) < seen->Y.dim())
+    return false;
   const auto normals = facet_normals(seen->Y.G);
   if (!normals) return false;
   const bool lines = X.lines() + Y.lines() > 0;
@@ -238,7 +254,9 @@ Answer is_subset(const LineForm& X_in, const LineForm& Y_in, Certificate* why) {
       if (refuted(X, Y, sign * Vector::Unit(X.dim(), i), why)) return Answer::no;
     }
   }
-  return within_lifted(X, Y) == Answer::yes ? Answer::yes : refuted_by_facets(X, Y, why) ? Answer::no : Answer::unknown;
+  return within_lifted(X, Y) == Answer::yes ? Answer::yes
+         : refuted_by_facets(X, Y, why)     ? Answer::no
+                                            : Answer::unknown;
 }
 
 }  // namespace cordon

@@ -20,9 +20,11 @@ namespace cordon {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// A violation smaller than this share of its terms may stem from rounding errors of nominal operations.
+/// A violation smaller than this share of its terms may stem from rounding errors of nominal
+/// operations.
 constexpr double nominal_tolerance = 1e-10;
-/// Rational arithmetic beyond about a second is not worth an answer. Numbers grow with the spread of the exponents.
+/// Rational arithmetic beyond about a second is not worth an answer. Numbers grow with the spread
+/// of the exponents.
 bool is_affordable(double operations, MatrixIn S, MatrixIn A) {
   double smallest = infinity, largest = 0;
   for (const MatrixIn* block : {&S, &A}) {
@@ -41,13 +43,15 @@ bool is_affordable(double operations, MatrixIn S, MatrixIn A) {
 
 /// To solve the rows for a point.
 bool is_small(MatrixIn S, MatrixIn A) {
-  const double m = static_cast<double>(A.rows()), columns = static_cast<double>(S.cols() + A.cols());
+  const double m = static_cast<double>(A.rows()),
+               columns = static_cast<double>(S.cols() + A.cols());
   return is_affordable(m * m * columns, S, A);
 }
 
 /// To move multipliers onto the equations of the lines.
 bool has_few_lines(MatrixIn S, MatrixIn A) {
-  const double m = static_cast<double>(A.rows()), l = static_cast<double>(S.cols()), g = static_cast<double>(A.cols());
+  const double m = static_cast<double>(A.rows()), l = static_cast<double>(S.cols()),
+               g = static_cast<double>(A.cols());
   return is_affordable(m * (l * l + g), S, A);
 }
 
@@ -64,17 +68,20 @@ struct Questioned {
   Vector gradient;            ///< Gᵀd
   BoxedProgram::Bound bound;  ///< of the last direction; their memory is used again
 
-  /// `form` must outlive this; `magnitude` (may be empty) is the size of what cancelled in its b before.
+  /// `form` must outlive this; `magnitude` (may be empty) is the size of what cancelled in its b
+  /// before.
   explicit Questioned(const LineForm& form, VectorIn magnitude = Vector(0))
       : eliminated(without_lines(form, magnitude)),
         X(eliminated ? eliminated->set : form),
-        program(X.A, X.b, {eliminated ? eliminated->row_magnitude : Vector(magnitude), Vector(0)}) {}
+        program(X.A, X.b, {eliminated ? eliminated->row_magnitude : Vector(magnitude), Vector(0)}) {
+  }
   Questioned(const Questioned&) = delete;
   Questioned& operator=(const Questioned&) = delete;
 
   bool unbounded_along(VectorIn d) const {
     for (Index j = 0; j < X.lines(); ++j) {
-      if (std::abs(X.M.col(j).dot(d)) > 1e-14 * X.M.col(j).cwiseAbs().dot(d.cwiseAbs())) return true;
+      if (std::abs(X.M.col(j).dot(d)) > 1e-14 * X.M.col(j).cwiseAbs().dot(d.cwiseAbs()))
+        return true;
     }
     return false;
   }
@@ -86,7 +93,8 @@ struct Questioned {
     gradient = linalg::transposed_product(X.G, d);
     if (!gradient.allFinite()) return beyond(whole, why);  // an overflow
     if (eliminated) return support_through_lines(whole, d, why);
-    return support_of_gradient(rounding::dot(d, X.c).upper, rounding::product_error(X.G.transpose(), d).sum(), why);
+    return support_of_gradient(rounding::dot(d, X.c).upper,
+                               rounding::product_error(X.G.transpose(), d).sum(), why);
   }
 
   /// Along ±e_i: the gradient is a row of G.
@@ -108,7 +116,10 @@ struct Questioned {
   Answer is_empty(Certificate* why) {
     Certificate own;
     const Answer answer = program.is_empty(&own);
-    if (why) *why = answer == Answer::no ? point(own) : answer == Answer::yes ? farkas(own) : Certificate{};
+    if (why)
+      *why = answer == Answer::no    ? point(own)
+             : answer == Answer::yes ? farkas(own)
+                                     : Certificate{};
     return answer;
   }
 
@@ -143,12 +154,14 @@ struct Questioned {
     program.upper_bound(gradient, bound);
     const bool affordable = has_few_lines(whole.S, whole.A);
     if (bound.upper == -infinity) {
-      Certificate proof = farkas({Certificate::Kind::farkas, bound.y, farkas_margin(X.A, X.b, bound.y)});
+      Certificate proof =
+          farkas({Certificate::Kind::farkas, bound.y, farkas_margin(X.A, X.b, bound.y)});
       if (!(affordable && proves_empty(whole, proof))) return beyond(whole, why);
       if (why) *why = std::move(proof);
       return -infinity;
     }
-    Vector y = linalg::transposed_product(eliminated->rows, bound.y) - linalg::transposed_product(eliminated->outputs, d);
+    Vector y = linalg::transposed_product(eliminated->rows, bound.y) -
+               linalg::transposed_product(eliminated->outputs, d);
     const auto proven = affordable ? proven_support(whole, d, y) : std::nullopt;
     if (!proven) return beyond(whole, why);
     if (why) *why = {Certificate::Kind::dual, std::move(y), *proven};
@@ -161,7 +174,8 @@ struct Questioned {
   }
 
   Certificate point(const Certificate& own) const {
-    const Vector xi = own.kind == Certificate::Kind::structure ? Vector(Vector::Zero(X.generators())) : own.data;
+    const Vector xi =
+        own.kind == Certificate::Kind::structure ? Vector(Vector::Zero(X.generators())) : own.data;
     return {Certificate::Kind::point, with_lines(xi), own.margin};
   }
 };
@@ -175,17 +189,20 @@ void difference(VectorIn x, VectorIn y, Vector& value, Vector& error) {
     value[i] = d;
     error[i] = std::abs((x[i] - (d - part)) - (y[i] + part));
   }
-  if (!value.allFinite() || !error.allFinite()) throw Error(Errc::not_finite, "a set question overflows; scale the problem");
+  if (!value.allFinite() || !error.allFinite())
+    throw Error(Errc::not_finite, "a set question overflows; scale the problem");
 }
 
-/// Are the rows of a question unsatisfiable? What is proven with bounded rounding errors stands. Lines are unbounded, so that no
-/// bound of rounding errors covers their elimination: there, and where rows are dependent or a solution touches its bounds,
-/// rational arithmetic decides.
+/// Are the rows of a question unsatisfiable? What is proven with bounded rounding errors stands.
+/// Lines are unbounded, so that no bound of rounding errors covers their elimination: there, and
+/// where rows are dependent or a solution touches its bounds, rational arithmetic decides.
 class Infeasibility {
  public:
-  explicit Infeasibility(rational::Rows rows) : rows_(std::move(rows)), lines_(rows_.S.cols() > 0 && !rows_.S.isZero(0)) {
+  explicit Infeasibility(rational::Rows rows)
+      : rows_(std::move(rows)), lines_(rows_.S.cols() > 0 && !rows_.S.isZero(0)) {
     difference(rows_.plus, rows_.minus, b_, error_);
-    magnitude_ = (rows_.minus.array() == 0).select(0.0, rows_.plus.cwiseAbs() + rows_.minus.cwiseAbs());
+    magnitude_ =
+        (rows_.minus.array() == 0).select(0.0, rows_.plus.cwiseAbs() + rows_.minus.cwiseAbs());
   }
 
   Answer answer(Certificate* why) {
@@ -210,7 +227,8 @@ class Infeasibility {
   }
 
   Answer through_lines(Certificate& proof) {
-    const LineForm X{Matrix(0, rows_.S.cols()), Matrix(0, rows_.A.cols()), Vector(0), rows_.S, rows_.A, b_};
+    const LineForm X{
+        Matrix(0, rows_.S.cols()), Matrix(0, rows_.A.cols()), Vector(0), rows_.S, rows_.A, b_};
     Questioned q(X, magnitude_);
     const Answer answer = q.is_empty(&proof);
     if (answer != Answer::unknown && holds(proof)) return answer;
@@ -219,7 +237,8 @@ class Infeasibility {
 
   /// By rational arithmetic, from a point that may be a solution.
   Answer decided(Certificate candidate, Certificate& proof) {
-    proof = candidate.kind == Certificate::Kind::point && holds(candidate) ? std::move(candidate) : settled();
+    proof = candidate.kind == Certificate::Kind::point && holds(candidate) ? std::move(candidate)
+                                                                           : settled();
     return proof.kind == Certificate::Kind::none     ? Answer::unknown
            : proof.kind == Certificate::Kind::farkas ? Answer::yes
                                                      : Answer::no;
@@ -240,7 +259,8 @@ class Infeasibility {
     return proof;
   }
 
-  /// In rational arithmetic; a margin of emptiness must exceed what nominal operations may have added.
+  /// In rational arithmetic; a margin of emptiness must exceed what nominal operations may have
+  /// added.
   bool holds(Certificate& proof) {
     if (!is_small()) return false;
     if (!system_) system_.emplace(rows_);
@@ -254,7 +274,8 @@ class Infeasibility {
 
   Certificate settled() {
     const rational::Finding found = rational::settle(rows_);
-    Certificate proof{found.feasible ? Certificate::Kind::point : Certificate::Kind::farkas, found.data, 0};
+    Certificate proof{found.feasible ? Certificate::Kind::point : Certificate::Kind::farkas,
+                      found.data, 0};
     return holds(proof) ? proof : Certificate{};
   }
 
@@ -273,30 +294,36 @@ double value_at(const LineForm& X, VectorIn d, const rational::RationalVector& b
   rational::Rational sum = rational::dot(rational::exact(d), rational::exact(X.c));
   for (Index j = 0; j < X.lines() + X.generators(); ++j) {
     const Vector column = j < X.lines() ? X.M.col(j) : X.G.col(j - X.lines());
-    sum += both[static_cast<std::size_t>(j)] * rational::dot(rational::exact(d), rational::exact(column));
+    sum += both[static_cast<std::size_t>(j)] *
+           rational::dot(rational::exact(d), rational::exact(column));
   }
   return rational::enclose(sum).lower;
 }
 
-/// No bound of rounding errors covers the elimination of lines: the proposed points are moved onto the rows exactly.
+/// No bound of rounding errors covers the elimination of lines: the proposed points are moved onto
+/// the rows exactly.
 double attained_through_lines(const LineForm& X, VectorIn d) {
   check(X, "attained");
   if (!is_small(X.S, X.A)) return -infinity;
-  if (!proven_support(X, d, Vector::Zero(X.constraints()))) return is_empty(X) == Answer::no ? infinity : -infinity;
+  if (!proven_support(X, d, Vector::Zero(X.constraints())))
+    return is_empty(X) == Answer::no ? infinity : -infinity;
   Questioned q(X);
   const BoxedProgram::Bound bound = q.program.maximum(linalg::transposed_product(q.X.G, d));
   if (!bound.xi) return -infinity;
   const rational::System rows(rows_of(X));
-  if (const auto point = rational::solution_near(rows, q.with_lines(*bound.xi))) return value_at(X, d, *point);
+  if (const auto point = rational::solution_near(rows, q.with_lines(*bound.xi)))
+    return value_at(X, d, *point);
   const auto center = q.program.central_point();
   if (!center) return -infinity;
-  const auto point = rational::solution_near(rows, q.with_lines((1 - step_inward) * *bound.xi + step_inward * *center));
+  const auto point = rational::solution_near(
+      rows, q.with_lines((1 - step_inward) * *bound.xi + step_inward * *center));
   return point ? value_at(X, d, *point) : -infinity;
 }
 
 bool is_zonotope(const LineForm& X) { return X.lines() == 0 && X.constraints() == 0; }
 
-/// dᵀc + ‖Gᵀd‖₁, with its rounding errors: no program is needed. Unbounded on both sides where it overflows.
+/// dᵀc + ‖Gᵀd‖₁, with its rounding errors: no program is needed. Unbounded on both sides where it
+/// overflows.
 rounding::Range support_of_zonotope(const LineForm& X, VectorIn d) {
   const Vector gradient = linalg::transposed_product(X.G, d);
   if (!gradient.allFinite()) return {-infinity, infinity};
@@ -312,7 +339,8 @@ Answer is_empty(const LineForm& X, Certificate* why) {
     if (why) *why = {Certificate::Kind::structure, Vector(0), 1};
     return Answer::no;
   }
-  if (X.lines() == 0) {  // nearly always known at once, without a copy of the rows for rational arithmetic
+  if (X.lines() ==
+      0) {  // nearly always known at once, without a copy of the rows for rational arithmetic
     Certificate proof;
     const Answer answer = BoxedProgram(X.A, X.b).is_empty(&proof);
     if (why) *why = std::move(proof);
@@ -322,13 +350,16 @@ Answer is_empty(const LineForm& X, Certificate* why) {
 }
 
 Answer contains(const LineForm& X, VectorIn x, Certificate* why) {
-  if (x.size() != X.dim()) throw Error(Errc::dimension, "contains: the point has another dimension than the set");
+  if (x.size() != X.dim())
+    throw Error(Errc::dimension, "contains: the point has another dimension than the set");
   return negate(Infeasibility(rows_of_point(X, x)).answer(why));
 }
 
 double support(const LineForm& X, VectorIn d, Certificate* why) {
-  if (d.size() != X.dim()) throw Error(Errc::dimension, "support: the direction has another dimension than the set");
-  if (!d.allFinite()) throw Error(Errc::not_finite, "support: the direction has a NaN or infinite entry");
+  if (d.size() != X.dim())
+    throw Error(Errc::dimension, "support: the direction has another dimension than the set");
+  if (!d.allFinite())
+    throw Error(Errc::not_finite, "support: the direction has a NaN or infinite entry");
   if (is_zonotope(X)) {
     const double h = support_of_zonotope(X, d).upper;
     if (why) *why = {Certificate::Kind::dual, Vector(0), h};
@@ -346,7 +377,8 @@ double attained(const LineForm& X, VectorIn d) {
   const BoxedProgram::Bound bound = q.program.maximum(g);
   if (!bound.xi) return -infinity;
   double value = q.program.attained(g, *bound.xi);
-  if (value == -infinity) {  // a degenerate vertex: a step towards the middle has slack in every coordinate
+  if (value ==
+      -infinity) {  // a degenerate vertex: a step towards the middle has slack in every coordinate
     if (const auto center = q.program.central_point()) {
       value = q.program.attained(g, (1 - step_inward) * *bound.xi + step_inward * *center);
     }
@@ -371,14 +403,17 @@ Box interval_hull(const LineForm& X, std::vector<Certificate>* why) {
     if (hull.upper[i] == -infinity || hull.lower[i] == infinity) return Box::empty(n);
   }
   if (!asked && n > 0 && is_empty(X) == Answer::yes) return Box::empty(n);
-  // Bounds of a set that is flat up to rounding may cross: both are kept, an empty box would need a proof.
+  // Bounds of a set that is flat up to rounding may cross: both are kept, an empty box would need a
+  // proof.
   for (Index i = 0; i < n; ++i) {
     if (hull.lower[i] > hull.upper[i]) std::swap(hull.lower[i], hull.upper[i]);
   }
   return hull;
 }
 
-Matrix lineality_space(const LineForm& X) { return X.lines() ? linalg::range_basis(eliminate_lines(X).M) : Matrix(X.dim(), 0); }
+Matrix lineality_space(const LineForm& X) {
+  return X.lines() ? linalg::range_basis(eliminate_lines(X).M) : Matrix(X.dim(), 0);
+}
 
 Answer is_bounded(const LineForm& X) {
   if (!has_lineality(X)) return Answer::yes;

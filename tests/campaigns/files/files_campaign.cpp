@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever the bytes of a file are, it is accepted, or refused by an error that says why: no crash, no other exception, no
-// reading without end, no memory beyond a limit. Every kind of file that is read is made CORDON_CAMPAIGN_FILES times (default
-// 150) from valid examples, with the seed CORDON_CAMPAIGN_SEED (default 1).
+// Whatever the bytes of a file are, it is accepted, or refused by an error that says why: no crash,
+// no other exception, no reading without end, no memory beyond a limit. Every kind of file that is
+// read is made CORDON_CAMPAIGN_FILES times (default 150) from valid examples, with the seed
+// CORDON_CAMPAIGN_SEED (default 1).
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -67,12 +68,14 @@ class Limits {
   }
 };
 
-/// Makes files from the examples, writes each to `file` and hands it to `read`. How many broke the rule; these are kept beside
-/// the temporary directory, and named. Some have to be refused: else nothing was tried.
-std::size_t broken_files(const char* kind, const std::vector<std::string>& examples, const fs::path& file,
-                         const std::function<void()>& read) {
+/// Makes files from the examples, writes each to `file` and hands it to `read`. How many broke the
+/// rule; these are kept beside the temporary directory, and named. Some have to be refused: else
+/// nothing was tried.
+std::size_t broken_files(const char* kind, const std::vector<std::string>& examples,
+                         const fs::path& file, const std::function<void()>& read) {
   static const Limits limits;
-  const std::size_t count = from_environment("CORDON_CAMPAIGN_FILES", 150), seed = from_environment("CORDON_CAMPAIGN_SEED", 1);
+  const std::size_t count = from_environment("CORDON_CAMPAIGN_FILES", 150),
+                    seed = from_environment("CORDON_CAMPAIGN_SEED", 1);
   std::size_t accepted = 0, refused = 0, broke = 0;
   double slowest = 0;
   for (const std::string& example : examples) {
@@ -93,7 +96,8 @@ std::size_t broken_files(const char* kind, const std::vector<std::string>& examp
       ++accepted;
     } catch (const InputError& error) {
       ++refused;
-      if (error.diagnostics().empty() || error.file().empty()) broken = "an error without place and reason";
+      if (error.diagnostics().empty() || error.file().empty())
+        broken = "an error without place and reason";
       for (const Diagnostic& one : error.diagnostics()) {
         if (one.message.empty()) broken = "an error without a reason";
       }
@@ -106,19 +110,24 @@ std::size_t broken_files(const char* kind, const std::vector<std::string>& examp
     } catch (...) {
       broken = "an exception of unknown type";
     }
-    slowest = std::max(slowest, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    slowest = std::max(
+        slowest, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     if (broken.empty()) continue;
     ++broke;
-    const fs::path kept = fs::temp_directory_path() / (std::string("cordon-campaign-") + kind + "-" + std::to_string(i));
+    const fs::path kept = fs::temp_directory_path() /
+                          (std::string("cordon-campaign-") + kind + "-" + std::to_string(i));
     std::ofstream(kept, std::ios::binary) << bytes;
     FAIL_CHECK(kind << " " << i << " (" << kept.string() << "): " << broken);
   }
-  std::cout << kind << ": " << accepted << " accepted, " << refused << " refused, slowest " << slowest << " s" << std::endl;
+  std::cout << kind << ": " << accepted << " accepted, " << refused << " refused, slowest "
+            << slowest << " s" << std::endl;
   CHECK(refused > 0);
   return broke;
 }
 
-void load(Registry& registry) { registry.load({{fs::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}}); }
+void load(Registry& registry) {
+  registry.load({{fs::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+}
 
 /// Small studies: with data, modes, designers, a sweep.
 std::vector<std::string> studies() {
@@ -132,17 +141,23 @@ std::vector<std::string> studies() {
   const std::string data =
       R"("data": {"simulate": {"steps": 6, "seed": 3, "x0": [1, -1], "input": [{"type": "constant", "offset": 1}]}})";
   std::vector<std::string> all;
-  all.push_back("{\n  \"cordon\": 1, \"title\": \"plain\",\n  " + system + "},\n  " + data + ",\n  " + pipelines +
+  all.push_back("{\n  \"cordon\": 1, \"title\": \"plain\",\n  " + system + "},\n  " + data +
+                ",\n  " + pipelines +
                 ",\n  \"metrics\": [\"radius\", \"volume\", \"contains_truth\"]\n}\n");
-  all.push_back("{\n  \"cordon\": 1, \"title\": \"sweep\",\n  " + system + "},\n  " + data + ",\n  " + pipelines +
-                ",\n  \"sweep\": [{\"name\": \"seed\", \"path\": \"/data/simulate/seed\", \"range\": [1, 2]},"
-                " {\"name\": \"w\", \"path\": \"/system/W/upper/0\", \"values\": [0.5, 1]}]\n}\n");
+  all.push_back(
+      "{\n  \"cordon\": 1, \"title\": \"sweep\",\n  " + system + "},\n  " + data + ",\n  " +
+      pipelines +
+      ",\n  \"sweep\": [{\"name\": \"seed\", \"path\": \"/data/simulate/seed\", \"range\": [1, 2]},"
+      " {\"name\": \"w\", \"path\": \"/system/W/upper/0\", \"values\": [0.5, 1]}]\n}\n");
   all.push_back("{\n  \"cordon\": 1, \"title\": \"csv\",\n  " + system +
-                "},\n  \"data\": {\"csv\": {\"file\": \"data.csv\", \"inputs\": [\"u\"], \"outputs\": [\"y\"]}},\n  " +
+                "},\n  \"data\": {\"csv\": {\"file\": \"data.csv\", \"inputs\": [\"u\"], "
+                "\"outputs\": [\"y\"]}},\n  " +
                 pipelines + "\n}\n");
-  for (const char* name : {"descriptor_four_representations", "cstr_actuator_faults", "interval_observers_monotone",
-                           "active_diagnosis_unbounded", "compare_representations"}) {
-    all.push_back(bytes_of(fs::path(CORDON_SOURCE_DIR) / "examples/studies" / (std::string(name) + ".json")));
+  for (const char* name :
+       {"descriptor_four_representations", "cstr_actuator_faults", "interval_observers_monotone",
+        "active_diagnosis_unbounded", "compare_representations"}) {
+    all.push_back(
+        bytes_of(fs::path(CORDON_SOURCE_DIR) / "examples/studies" / (std::string(name) + ".json")));
   }
   return all;
 }
@@ -176,7 +191,9 @@ class Finished {
   }
 
  private:
-  Study read(std::size_t which) { return read_study(scratch_.write("study.json", studies()[which]), registry_, {}); }
+  Study read(std::size_t which) {
+    return read_study(scratch_.write("study.json", studies()[which]), registry_, {});
+  }
 
   Scratch scratch_;
   Registry registry_;
@@ -188,13 +205,14 @@ Finished& finished() {
 }
 
 /// Files of results, each with what reads it; the others stay as they are.
-std::size_t broken_results(const char* kind, const std::string& of, const std::vector<const char*>& names,
+std::size_t broken_results(const char* kind, const std::string& of,
+                           const std::vector<const char*>& names,
                            const std::function<void(const fs::path&)>& read) {
   std::size_t broke = 0;
   for (const char* name : names) {
     const fs::path directory = finished().copy(of, false);
-    broke += broken_files((std::string(kind) + "-" + name).c_str(), {bytes_of(directory / name)}, directory / name,
-                          [&] { read(directory); });
+    broke += broken_files((std::string(kind) + "-" + name).c_str(), {bytes_of(directory / name)},
+                          directory / name, [&] { read(directory); });
   }
   return broke;
 }
@@ -221,7 +239,8 @@ TEST_CASE("tables of recorded data") {
   load(registry);
   scratch.write("data.csv", table);
   const Study study = read_study(scratch.write("study.json", studies()[2]), registry, {});
-  const std::vector<std::string> examples{table, "\xEF\xBB\xBF" + table, "k,\"u\",y,z\r\n0,1,2,\"a,\"\"b\"\r\n1,2,3,4\r\n"};
+  const std::vector<std::string> examples{table, "\xEF\xBB\xBF" + table,
+                                          "k,\"u\",y,z\r\n0,1,2,\"a,\"\"b\"\r\n1,2,3,4\r\n"};
   CHECK(broken_files("csv", examples, scratch / "data.csv", [&] {
           const auto data = open_data(study);
           while (data->next()) {
@@ -233,26 +252,31 @@ TEST_CASE("MAT-files") {
   const Scratch scratch;
   Registry registry;
   load(registry);
-  study_to_mat(read_study(scratch.write("study.json", studies()[0]), registry, {}), {scratch / "study.mat", true});
+  study_to_mat(read_study(scratch.write("study.json", studies()[0]), registry, {}),
+               {scratch / "study.mat", true});
   results_to_mat(finished() / "run", {scratch / "run.mat", true}, true);
-  const std::vector<std::string> examples{bytes_of(scratch / "study.mat"), bytes_of(scratch / "run.mat")};
+  const std::vector<std::string> examples{bytes_of(scratch / "study.mat"),
+                                          bytes_of(scratch / "run.mat")};
   CHECK(broken_files("mat", examples, scratch / "in.mat", [&] {
           mat_to_json(scratch / "in.mat", {scratch / "out.json", true});
         }) == 0);
 }
 
 TEST_CASE("results that are verified") {
-  CHECK(broken_results("verify", "run", {"results.json", "sets.jsonl", "data.csv"}, [](const fs::path& d) {
-          VerifyOptions options;
-          options.directions = 2;
-          verify_run(d, options);
-        }) == 0);
+  CHECK(broken_results("verify", "run", {"results.json", "sets.jsonl", "data.csv"},
+                       [](const fs::path& d) {
+                         VerifyOptions options;
+                         options.directions = 2;
+                         verify_run(d, options);
+                       }) == 0);
 }
 
 TEST_CASE("results that are drawn") {
-  CHECK(broken_results("report", "run", {"results.json", "run.json", "steps.csv", "data.csv", "sets.jsonl"},
+  CHECK(broken_results("report", "run",
+                       {"results.json", "run.json", "steps.csv", "data.csv", "sets.jsonl"},
                        [](const fs::path& d) { write_report(d); }) == 0);
-  CHECK(broken_results("report-sweep", "part 1", {"results.json", "run.json"}, [](const fs::path& d) { write_report(d); }) == 0);
+  CHECK(broken_results("report-sweep", "part 1", {"results.json", "run.json"},
+                       [](const fs::path& d) { write_report(d); }) == 0);
 }
 
 TEST_CASE("results that are compared, converted and merged") {
@@ -260,9 +284,10 @@ TEST_CASE("results that are compared, converted and merged") {
           compare_results({finished() / "run", d});
         }) == 0);
   const Scratch scratch;
-  CHECK(broken_results("convert", "run", {"results.json", "sets.jsonl", "data.csv"}, [&](const fs::path& d) {
-          results_to_mat(d, {scratch / "out.mat", true}, true);
-        }) == 0);
+  CHECK(broken_results("convert", "run", {"results.json", "sets.jsonl", "data.csv"},
+                       [&](const fs::path& d) {
+                         results_to_mat(d, {scratch / "out.mat", true}, true);
+                       }) == 0);
   CHECK(broken_results("merge", "part 1", {"results.json", "run.json"}, [&](const fs::path& d) {
           merge_sweeps({d, finished() / "part 2"}, scratch / "whole");
         }) == 0);
@@ -300,7 +325,8 @@ TEST_CASE("journals") {
   {
     detail::Journal journal(scratch.path(), head, detail::Journal::Start::fresh, {});
     for (std::int64_t i = 0; i < 5; ++i) {
-      journal.add(detail::line_of({i, {{{"steps", false}, 3.0}, {{"wall_s", true}, 0.1 * static_cast<double>(i)}}, ""}));
+      journal.add(detail::line_of(
+          {i, {{{"steps", false}, 3.0}, {{"wall_s", true}, 0.1 * static_cast<double>(i)}}, ""}));
     }
     journal.sync();
   }
@@ -308,8 +334,10 @@ TEST_CASE("journals") {
   const std::string whole = bytes_of(file);
   CHECK(broken_files("journal", {whole}, file, [&] {
           const detail::Journal journal(
-              scratch.path(), head, detail::Journal::Start::resume, [](const detail::PointResult& point) {
-                const bool right = point.index >= 0 && point.index < 5 && point.numbers.size() == 2 && point.error.empty();
+              scratch.path(), head, detail::Journal::Start::resume,
+              [](const detail::PointResult& point) {
+                const bool right = point.index >= 0 && point.index < 5 &&
+                                   point.numbers.size() == 2 && point.error.empty();
                 if (!right) throw Error(Errc::internal, "a point that nobody wrote");
               });
         }) == 0);

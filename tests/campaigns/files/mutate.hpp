@@ -18,7 +18,8 @@ inline std::size_t below(Random& random, std::size_t count) {
   return std::uniform_int_distribution<std::size_t>(0, count > 0 ? count - 1 : 0)(random);
 }
 
-/// Where a word (a name, a number, a quoted text) or a single sign begins, and how long it is; nothing of an empty text.
+/// Where a word (a name, a number, a quoted text) or a single sign begins, and how long it is;
+/// nothing of an empty text.
 struct Span {
   std::size_t at = 0, length = 0;
 };
@@ -96,7 +97,8 @@ inline std::string hostile_word(Random& random) {
 inline std::string deeply_nested(Random& random) {
   const std::size_t depth = std::array<std::size_t, 4>{10, 63, 1000, 100'000}[below(random, 4)];
   const bool objects = below(random, 2) == 0, closed = below(random, 2) == 0;
-  return repeated(objects ? "{\"a\":" : "[", depth) + "1" + (closed ? repeated(objects ? "}" : "]", depth) : "");
+  return repeated(objects ? "{\"a\":" : "[", depth) + "1" +
+         (closed ? repeated(objects ? "}" : "]", depth) : "");
 }
 
 inline std::string very_long(Random& random) {
@@ -106,13 +108,15 @@ inline std::string very_long(Random& random) {
 
 /// Another number in the place of one, so that the file keeps its form; nothing if none is found.
 inline void mutate_number(Random& random, std::string& text) {
-  static const std::vector<std::string> numbers{"0",      "-0",    "1",      "-1",     "2",          "3",
-                                                "0.1",    "-2.5",  "1e-9",   "1e9",    "1e15",       "1e5",
-                                                "-1e300", "1e308", "-1e308", "5e-324", "1e20",       "1e-20",
-                                                "1e150",  "64",    "1000",   "100000", "4294967296", "9007199254740993"};
+  static const std::vector<std::string> numbers{
+      "0",    "-0",    "1",     "-1",  "2",      "3",      "0.1",        "-2.5",
+      "1e-9", "1e9",   "1e15",  "1e5", "-1e300", "1e308",  "-1e308",     "5e-324",
+      "1e20", "1e-20", "1e150", "64",  "1000",   "100000", "4294967296", "9007199254740993"};
   for (int trial = 0; trial < 50; ++trial) {
     const Span word = token(random, text);
-    if (word.length == 0 || !(std::isdigit(static_cast<unsigned char>(text[word.at])) || text[word.at] == '-')) continue;
+    if (word.length == 0 ||
+        !(std::isdigit(static_cast<unsigned char>(text[word.at])) || text[word.at] == '-'))
+      continue;
     text.replace(word.at, word.length, numbers[below(random, numbers.size())]);
     return;
   }
@@ -124,7 +128,8 @@ inline void mutate(Random& random, std::string& text) {
   switch (below(random, 14)) {
     case 0:
     case 1:
-      if (!text.empty()) text[below(random, text.size())] ^= static_cast<char>(1 << below(random, 8));
+      if (!text.empty())
+        text[below(random, text.size())] ^= static_cast<char>(1 << below(random, 8));
       break;
     case 2:
       text.resize(below(random, text.size() + 1));
@@ -133,7 +138,8 @@ inline void mutate(Random& random, std::string& text) {
       const std::string one = text.substr(word.at, word.length);
       const Span other = token(random, text);
       const std::string two = text.substr(other.at, other.length);
-      const Span &first = word.at < other.at ? word : other, &last = word.at < other.at ? other : word;
+      const Span &first = word.at < other.at ? word : other,
+                 &last = word.at < other.at ? other : word;
       text.replace(last.at, last.length, word.at < other.at ? one : two);
       text.replace(first.at, first.length, word.at < other.at ? two : one);
       break;
@@ -150,7 +156,8 @@ inline void mutate(Random& random, std::string& text) {
       text.insert(part.at, text.substr(part.at, part.length));
       break;
     case 9: {
-      const std::size_t end = text.find('\n', part.at), begin = end == std::string::npos ? 0 : text.rfind('\n', part.at);
+      const std::size_t end = text.find('\n', part.at),
+                        begin = end == std::string::npos ? 0 : text.rfind('\n', part.at);
       const std::size_t from = begin == std::string::npos ? 0 : begin;
       const std::string line = text.substr(from, end == std::string::npos ? 200 : end - from);
       text.insert(from, line);
@@ -163,7 +170,8 @@ inline void mutate(Random& random, std::string& text) {
       text.replace(word.at, word.length, deeply_nested(random));
       break;
     case 12:
-      for (std::size_t i = below(random, 20); i-- > 0;) text.insert(part.at, 1, static_cast<char>(below(random, 256)));
+      for (std::size_t i = below(random, 20); i-- > 0;)
+        text.insert(part.at, 1, static_cast<char>(below(random, 256)));
       break;
     default: {  // what stands elsewhere in the file
       const Span from = stretch(random, text, 100);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two runs into one directory, and runs that are killed: what is left is the results of one of them. CORDON_CAMPAIGN_PAIRS pairs
-// and kills (default 5).
+// Two runs into one directory, and runs that are killed: what is left is the results of one of
+// them. CORDON_CAMPAIGN_PAIRS pairs and kills (default 5).
 #include <cstdlib>
 #include <iostream>
 #include <random>
@@ -26,7 +26,8 @@ std::string study(int seed, int steps) {
   return text.substr(0, text.rfind(",\n  \"sweep\"")) + "\n}\n";
 }
 
-const std::vector<std::string> files{"results.json", "run.json", "sets.jsonl", "data.csv", "steps.csv", "summary.csv"};
+const std::vector<std::string> files{"results.json", "run.json",  "sets.jsonl",
+                                     "data.csv",     "steps.csv", "summary.csv"};
 
 /// The files of results that do not hold times, if all belong together.
 std::map<std::string, std::string> whole(const fs::path& out) {
@@ -47,8 +48,9 @@ TEST_CASE("of two runs at once one writes and the other is refused, or one comes
   std::map<int, std::map<std::string, std::string>> expected;
   for (const int seed : {1, 2}) {
     std::ofstream(scratch / ("study " + std::to_string(seed) + ".json")) << study(seed, 40);
-    const auto alone = program::run(scratch, {"run", scratch / ("study " + std::to_string(seed) + ".json"), "--out",
-                                              scratch / ("alone " + std::to_string(seed)), "--quiet"});
+    const auto alone =
+        program::run(scratch, {"run", scratch / ("study " + std::to_string(seed) + ".json"),
+                               "--out", scratch / ("alone " + std::to_string(seed)), "--quiet"});
     REQUIRE_MESSAGE(alone.exit == 0, alone.text);
     expected[seed] = whole(scratch / ("alone " + std::to_string(seed)));
   }
@@ -56,9 +58,12 @@ TEST_CASE("of two runs at once one writes and the other is refused, or one comes
   int both = 0, refused = 0;
   for (int round = 0; round < rounds(); ++round) {
     CAPTURE(round);
-    const fs::path out = scratch / (round % 2 == 0 ? "fresh " + std::to_string(round) : std::string("used"));
-    program::Process one({"run", scratch / "study 1.json", "--out", out, "--quiet"}, scratch / "one");
-    program::Process two({"run", scratch / "study 2.json", "--out", out, "--quiet"}, scratch / "two");
+    const fs::path out =
+        scratch / (round % 2 == 0 ? "fresh " + std::to_string(round) : std::string("used"));
+    program::Process one({"run", scratch / "study 1.json", "--out", out, "--quiet"},
+                         scratch / "one");
+    program::Process two({"run", scratch / "study 2.json", "--out", out, "--quiet"},
+                         scratch / "two");
     const int first = one.wait(), second = two.wait();
     CAPTURE(one.output());
     CAPTURE(two.output());
@@ -67,7 +72,8 @@ TEST_CASE("of two runs at once one writes and the other is refused, or one comes
     CHECK((first == 0 || second == 0));
     for (const program::Process* process : {&one, &two}) {
       const std::string text = process->output();
-      if (!text.empty()) CHECK(text.find("is writing results into this directory") != std::string::npos);
+      if (!text.empty())
+        CHECK(text.find("is writing results into this directory") != std::string::npos);
     }
     const auto left = whole(out);
     CHECK(((first == 0 && left == expected[1]) || (second == 0 && left == expected[2])));
@@ -75,7 +81,8 @@ TEST_CASE("of two runs at once one writes and the other is refused, or one comes
     CHECK_FALSE(fs::exists(out / ".committed"));
     (first == 0 && second == 0 ? both : refused) += 1;
   }
-  std::cout << "pairs: " << refused << " with one refused, " << both << " one after the other" << std::endl;
+  std::cout << "pairs: " << refused << " with one refused, " << both << " one after the other"
+            << std::endl;
 }
 
 TEST_CASE("killed at any time, a run leaves the earlier results or its own") {
@@ -83,13 +90,16 @@ TEST_CASE("killed at any time, a run leaves the earlier results or its own") {
   std::map<int, std::map<std::string, std::string>> expected;
   double lasted = 0;
   const auto arguments = [&](int seed, const fs::path& out) {
-    return std::vector<std::string>{"run",        scratch / ("study " + std::to_string(seed) + ".json"), "--out", out, "--quiet",
-                                    "--no-report"};
+    return std::vector<std::string>{
+        "run",     scratch / ("study " + std::to_string(seed) + ".json"),
+        "--out",   out,
+        "--quiet", "--no-report"};
   };
   for (const int seed : {1, 2}) {
     std::ofstream(scratch / ("study " + std::to_string(seed) + ".json")) << study(seed, 40);
     const auto begin = std::chrono::steady_clock::now();
-    const auto alone = program::run(scratch, arguments(seed, scratch / ("alone " + std::to_string(seed))));
+    const auto alone =
+        program::run(scratch, arguments(seed, scratch / ("alone " + std::to_string(seed))));
     lasted = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     REQUIRE_MESSAGE(alone.exit == 0, alone.text);
     expected[seed] = whole(scratch / ("alone " + std::to_string(seed)));
@@ -102,7 +112,8 @@ TEST_CASE("killed at any time, a run leaves the earlier results or its own") {
   for (; killed < rounds() && trials < 20 * rounds(); ++trials) {
     program::Process process(arguments(3 - now, out), scratch / "output");
     // Most of a run is its beginning; what matters is its end.
-    std::this_thread::sleep_for(std::chrono::duration<double>(std::uniform_real_distribution<double>(0.2, 1)(random) * lasted));
+    std::this_thread::sleep_for(std::chrono::duration<double>(
+        std::uniform_real_distribution<double>(0.2, 1)(random) * lasted));
     process.kill_it(SIGKILL);
     const int exit = process.wait();
     killed += exit == -SIGKILL;
@@ -113,6 +124,7 @@ TEST_CASE("killed at any time, a run leaves the earlier results or its own") {
     now = left == expected[1] ? 1 : 2;
     CHECK(bytes_of(out / "notes.txt") == "mine");
   }
-  std::cout << "kills: " << killed << " in " << trials << " runs, " << changed << " of which left new results" << std::endl;
+  std::cout << "kills: " << killed << " in " << trials << " runs, " << changed
+            << " of which left new results" << std::endl;
   CHECK(killed == rounds());
 }

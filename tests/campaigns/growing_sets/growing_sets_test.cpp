@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets of stable errors stay bounded: random plants, every reduction, budgets from n to 100, for as long as one likes.
-//   CORDON_PLANTS (6), CORDON_STEPS (400): how many plants, and for how long; CORDON_SEED (1): the first plant.
+// Sets of stable errors stay bounded: random plants, every reduction, budgets from n to 100, for as
+// long as one likes.
+//   CORDON_PLANTS (6), CORDON_STEPS (400): how many plants, and for how long; CORDON_SEED (1): the
+//   first plant.
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -30,7 +32,8 @@ Matrix random_matrix(sets::Random& random, Index rows, Index cols) {
   return M;
 }
 
-/// Slow modes that do not mix, rotations, chains of equal poles, dense matrices, and these in unlike units.
+/// Slow modes that do not mix, rotations, chains of equal poles, dense matrices, and these in
+/// unlike units.
 Matrix stable_matrix(sets::Random& random, Index n, int kind) {
   Matrix A = random_matrix(random, n, n);
   if (kind == 1) {
@@ -42,8 +45,8 @@ Matrix stable_matrix(sets::Random& random, Index n, int kind) {
     A.setZero();
     for (Index i = 0; i + 1 < n; i += 2) {
       const double angle = random.between(0, 3.1), radius = random.between(.8, 1);
-      A.block(i, i, 2, 2) << radius * std::cos(angle), radius * std::sin(angle), -radius * std::sin(angle),
-          radius * std::cos(angle);
+      A.block(i, i, 2, 2) << radius * std::cos(angle), radius * std::sin(angle),
+          -radius * std::sin(angle), radius * std::cos(angle);
     }
     if (n % 2) A(n - 1, n - 1) = random.between(.5, 1);
     const Matrix T = Matrix::Identity(n, n) + .3 * random_matrix(random, n, n);
@@ -101,7 +104,8 @@ struct Choice {
 
 const std::vector<Choice>& choices() {
   static const std::vector<Choice> all = [] {
-    std::vector<Choice> some{{"interval", ""}, {"constrained_zonotope", "adaptive"}, {"line_zonotope", "adaptive"}};
+    std::vector<Choice> some{
+        {"interval", ""}, {"constrained_zonotope", "adaptive"}, {"line_zonotope", "adaptive"}};
     for (const char* reduction : {"adaptive", "yang_scott", "girard", "combastel", "pca", "qr"})
       some.push_back({"zonotope", reduction});
     return some;
@@ -110,11 +114,13 @@ const std::vector<Choice>& choices() {
 }
 
 /// Widest estimate over the last tenth of the steps, in units of the unreduced limit.
-double widest(const Registry& registry, const Model& model, const Choice& choice, Index budget, int steps) {
+double widest(const Registry& registry, const Model& model, const Choice& choice, Index budget,
+              int steps) {
   Params backend, params;
   if (!choice.reduction.empty()) backend.set("reduction", choice.reduction);
   params.set("max_generators", static_cast<std::int64_t>(budget));
-  const auto observer = registry.make_observer("luenberger", {model, registry.make_backend(choice.backend, backend)}, params);
+  const auto observer = registry.make_observer(
+      "luenberger", {model, registry.make_backend(choice.backend, backend)}, params);
   const Vector limit = unreduced_limit(model, observer->gains().front().L);
   const Vector nothing(0), y = Vector::Zero(model.linear.outputs());
   double most = 0;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Damaged plugin files: each is refused or works, `cordon list` lives, and what else there is goes on working.
-//   CORDON_PLUGIN_FILES    how many (150; the nightly test takes 10,000), from number CORDON_CAMPAIGN_FIRST (0) on
-//   CORDON_CAMPAIGN_SEED   which (1)
-//   CORDON_CAMPAIGN_KEEP   a directory that keeps the files on which a check failed
+// Damaged plugin files: each is refused or works, `cordon list` lives, and what else there is goes
+// on working.
+//   CORDON_PLUGIN_FILES    how many (150; the nightly test takes 10,000), from number
+//   CORDON_CAMPAIGN_FIRST (0) on CORDON_CAMPAIGN_SEED   which (1) CORDON_CAMPAIGN_KEEP   a
+//   directory that keeps the files on which a check failed
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -31,8 +32,10 @@ class Damage {
   Damage(const std::string& bytes, std::uint64_t seed) : bytes_(bytes), random_(seed) {
     std::memcpy(&header_, bytes_.data(), sizeof header_);
     sections_.resize(header_.e_shnum);
-    std::memcpy(sections_.data(), bytes_.data() + header_.e_shoff, sections_.size() * sizeof sections_[0]);
-    std::erase_if(sections_, [](const Section& s) { return s.sh_type == SHT_NOBITS || s.sh_size == 0; });
+    std::memcpy(sections_.data(), bytes_.data() + header_.e_shoff,
+                sections_.size() * sizeof sections_[0]);
+    std::erase_if(sections_,
+                  [](const Section& s) { return s.sh_type == SHT_NOBITS || s.sh_size == 0; });
   }
 
   std::string make() {
@@ -107,16 +110,20 @@ constexpr std::size_t other_components = 5;
 
 enum class Became { working, refused, neither };
 
-std::size_t lines_of(const std::string& text) { return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')); }
+std::size_t lines_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
 
-/// What `cordon list` says of the file; whatever that is, the other plugin must work. A working one adds its components, under
-/// whatever name is left of theirs.
+/// What `cordon list` says of the file; whatever that is, the other plugin must work. A working one
+/// adds its components, under whatever name is left of theirs.
 Became listed(const fs::path& file, const std::string& cache) {
-  const Outcome outcome = cordon_with("list --plugins " + file.parent_path().string(), "XDG_CACHE_HOME=" + cache);
+  const Outcome outcome =
+      cordon_with("list --plugins " + file.parent_path().string(), "XDG_CACHE_HOME=" + cache);
   CHECK_MESSAGE(outcome.code == 0, outcome.err);
   CHECK_MESSAGE(contains(outcome.out, "throws_own"), outcome.out);
   const std::size_t reason = outcome.err.find("warning: " + file.string() + " was refused: ");
-  const bool refused = reason != std::string::npos && outcome.err.find("; ", reason) != std::string::npos;
+  const bool refused =
+      reason != std::string::npos && outcome.err.find("; ", reason) != std::string::npos;
   const bool works = lines_of(outcome.out) > other_components + 1;
   if (refused == works) MESSAGE(outcome.out << outcome.err);
   return refused == works ? Became::neither : refused ? Became::refused : Became::working;
@@ -125,13 +132,15 @@ Became listed(const fs::path& file, const std::string& cache) {
 }  // namespace
 
 TEST_CASE("a damaged plugin file is refused or works, and nothing else suffers") {
-  const std::size_t files = number_in("CORDON_PLUGIN_FILES", 150), seed = number_in("CORDON_CAMPAIGN_SEED", 1);
+  const std::size_t files = number_in("CORDON_PLUGIN_FILES", 150),
+                    seed = number_in("CORDON_CAMPAIGN_SEED", 1);
   const std::size_t begin = number_in("CORDON_CAMPAIGN_FIRST", 0);
   const char* keep = std::getenv("CORDON_CAMPAIGN_KEEP");
   fs::create_directories(CORDON_ALONE "/bin");
   fs::create_directories(CORDON_ALONE "/lib/cordon/plugins-v1");
   fs::copy_file(CORDON_BUILT_PROGRAM, CORDON_PROGRAM, fs::copy_options::overwrite_existing);
-  fs::copy_file(CORDON_OTHER_PLUGIN, CORDON_ALONE "/lib/cordon/plugins-v1/other.so", fs::copy_options::overwrite_existing);
+  fs::copy_file(CORDON_OTHER_PLUGIN, CORDON_ALONE "/lib/cordon/plugins-v1/other.so",
+                fs::copy_options::overwrite_existing);
   const TemporaryDirectory directory, cache;
   const std::string bytes = read(CORDON_DAMAGED_PLUGIN);
   const fs::path file = directory.write("damaged.so", bytes);
@@ -143,12 +152,15 @@ TEST_CASE("a damaged plugin file is refused or works, and nothing else suffers")
     INFO("seed ", seed, ", file ", k, ": ", damage.kind);
     const Became first = listed(file, cache.path().string());
     CHECK(first != Became::neither);
-    // once more, with what is remembered of the first time; at other addresses a damaged library may do otherwise
+    // once more, with what is remembered of the first time; at other addresses a damaged library
+    // may do otherwise
     const Became second = listed(file, cache.path().string());
     CHECK(second != Became::neither);
     if (keep && (first == Became::neither || second == Became::neither))
-      fs::copy_file(file, fs::path(keep) / (std::to_string(k) + ".so"), fs::copy_options::overwrite_existing);
+      fs::copy_file(file, fs::path(keep) / (std::to_string(k) + ".so"),
+                    fs::copy_options::overwrite_existing);
     ++counts[damage.kind][first == Became::refused];
   }
-  for (const auto& [kind, count] : counts) MESSAGE(kind << ": " << count[1] << " refused, " << count[0] << " work");
+  for (const auto& [kind, count] : counts)
+    MESSAGE(kind << ": " << count[1] << " refused, " << count[0] << " work");
 }

@@ -19,7 +19,9 @@ class Draw {
  public:
   explicit Draw(std::uint64_t seed) : engine_(seed) {}
 
-  Index below(Index count) { return static_cast<Index>(engine_() % static_cast<std::uint64_t>(count)); }
+  Index below(Index count) {
+    return static_cast<Index>(engine_() % static_cast<std::uint64_t>(count));
+  }
   bool one_in(Index count) { return below(count) == 0; }
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-52 - 1; }
   /// A number as somebody would write it, or one with all digits.
@@ -53,7 +55,9 @@ Json to_json(const Matrix& A) {
 }
 
 Json box(const Vector& center, const Vector& radius) {
-  return {{"type", "box"}, {"lower", to_json(Vector(center - radius))}, {"upper", to_json(Vector(center + radius))}};
+  return {{"type", "box"},
+          {"lower", to_json(Vector(center - radius))},
+          {"upper", to_json(Vector(center + radius))}};
 }
 
 /// The largest sum of magnitudes of a row bounds the spectral radius.
@@ -64,7 +68,8 @@ Matrix with_norm(Matrix A, double norm) {
 
 class StudyMaker {
  public:
-  StudyMaker(std::uint64_t number, Start start) : draw_(0x9e3779b97f4a7c15 * (number + 1)), number_(number), start_(start) {}
+  StudyMaker(std::uint64_t number, Start start)
+      : draw_(0x9e3779b97f4a7c15 * (number + 1)), number_(number), start_(start) {}
 
   Json make() {
     draw_.write_decimals(!draw_.one_in(3));
@@ -116,7 +121,8 @@ class StudyMaker {
       Matrix L = Matrix::Identity(n_, n_), R = L;
       for (Index i = 0; i < n_; ++i) {
         for (Index j = 0; j < i; ++j)
-          L(i, j) = static_cast<double>(draw_.below(5) - 2), R(j, i) = static_cast<double>(draw_.below(5) - 2);
+          L(i, j) = static_cast<double>(draw_.below(5) - 2),
+               R(j, i) = static_cast<double>(draw_.below(5) - 2);
       }
       E_ = L * E_ * R;
     }
@@ -178,7 +184,8 @@ class StudyMaker {
   }
 
   Json system() const {
-    Json system{{"type", descriptor_ ? "descriptor" : "lti"}, {"A", to_json(A_)}, {"C", to_json(C_)}};
+    Json system{
+        {"type", descriptor_ ? "descriptor" : "lti"}, {"A", to_json(A_)}, {"C", to_json(C_)}};
     if (start_ == Start::bounded) system["X0"] = box(x0_, X0_);
     if (descriptor_) system["E"] = to_json(E_);
     if (B_.cols() > 0) system["B"] = to_json(B_), system["D"] = to_json(D_);
@@ -194,13 +201,16 @@ class StudyMaker {
 
   Json data() {
     const std::vector<std::string> noise{"uniform", "vertex", "sine", "zero"};
-    Json spec{{"steps", 10}, {"seed", number_ + 1}, {"noise", noise[static_cast<std::size_t>(draw_.below(4))]}};
+    Json spec{{"steps", 10},
+              {"seed", number_ + 1},
+              {"noise", noise[static_cast<std::size_t>(draw_.below(4))]}};
     if (start_ == Start::unknown) {
       spec["steps"] = 3;
       spec["x0"] = box(x0_, std::pow(10.0, static_cast<double>(draw_.below(8))) * X0_);
     }
     for (Index i = 0; i < B_.cols(); ++i) {
-      spec["input"].push_back({{"type", "sine"}, {"amplitude", 1.0}, {"omega", 0.3 + 0.2 * static_cast<double>(i)}});
+      spec["input"].push_back(
+          {{"type", "sine"}, {"amplitude", 1.0}, {"omega", 0.3 + 0.2 * static_cast<double>(i)}});
     }
     return spec;
   }
@@ -210,23 +220,27 @@ class StudyMaker {
       std::string type;
       Json options;
     };
-    const std::vector<Choice> backends{{"interval", Json::object()},
-                                       {"zonotope", Json::object()},
-                                       {"zonotope", {{"reduction", "girard"}, {"strip", "volume"}}},
-                                       {"zonotope", {{"reduction", "pca"}, {"strip", "bravo"}}},
-                                       {"constrained_zonotope", Json::object()},
-                                       {"constrained_zonotope", {{"precondition", "gauss_jordan"}, {"rescale", true}}},
-                                       {"line_zonotope", Json::object()},
-                                       {"line_zonotope", {{"reduction", "combastel"}, {"rescale", true}}}};
+    const std::vector<Choice> backends{
+        {"interval", Json::object()},
+        {"zonotope", Json::object()},
+        {"zonotope", {{"reduction", "girard"}, {"strip", "volume"}}},
+        {"zonotope", {{"reduction", "pca"}, {"strip", "bravo"}}},
+        {"constrained_zonotope", Json::object()},
+        {"constrained_zonotope", {{"precondition", "gauss_jordan"}, {"rescale", true}}},
+        {"line_zonotope", Json::object()},
+        {"line_zonotope", {{"reduction", "combastel"}, {"rescale", true}}}};
     Json list = Json::array();
     for (const Choice& choice : backends) {
-      if (start_ == Start::unknown && choice.type != "line_zonotope") continue;  // others hold bounded sets only
-      if (n_ > 4 && !choice.options.empty()) continue;  // along directions every check is a linear program
+      if (start_ == Start::unknown && choice.type != "line_zonotope")
+        continue;  // others hold bounded sets only
+      if (n_ > 4 && !choice.options.empty())
+        continue;  // along directions every check is a linear program
       for (const std::string rounding : {"nominal", "outward"}) {
         Json backend{{"type", choice.type}, {"rounding", rounding}};
         backend.update(choice.options);
         for (const Json& observer : observers(choice.type)) {
-          Json pipeline{{"name", observer["type"].get<std::string>() + " " + std::to_string(list.size())}};
+          Json pipeline{
+              {"name", observer["type"].get<std::string>() + " " + std::to_string(list.size())}};
           pipeline["backend"] = backend;
           pipeline["observer"] = observer;
           list.push_back(std::move(pipeline));
@@ -244,7 +258,8 @@ class StudyMaker {
     if (descriptor_) {
       Json observer{{"type", "descriptor"}, {"max_generators", generators}};
       if (constrained) observer["max_constraints"] = constraints;
-      if (backend == "constrained_zonotope") observer["admissible_set"] = box(Vector::Zero(n_), 1e4 * X0_.cwiseMax(1e-6));
+      if (backend == "constrained_zonotope")
+        observer["admissible_set"] = box(Vector::Zero(n_), 1e4 * X0_.cwiseMax(1e-6));
       list.push_back(std::move(observer));
       return list;
     }
@@ -253,7 +268,8 @@ class StudyMaker {
     list.push_back(std::move(correction));
     if (n_ > 4 || start_ == Start::unknown) return list;
     for (const char* type : {"luenberger", "zonotope_uncertain"}) {
-      list.push_back({{"type", type}, {"gain", {{"type", "kalman"}}}, {"max_generators", generators}});
+      list.push_back(
+          {{"type", type}, {"gain", {{"type", "kalman"}}}, {"max_generators", generators}});
     }
     list.push_back({{"type", "interval_trajectory"}, {"gain", {{"type", "kalman"}}}});
     return list;

@@ -13,9 +13,10 @@ enum class Start {
   unknown,  ///< anywhere, up to 1e7 times as far from the origin; line zonotopes only
 };
 
-/// The study of this number: the same on every machine. Up to six states and three outputs; stable, unstable and singular A,
-/// singular and regular E, units from 1e-6 to 1e6, outputs without noise, repeated rows, matrices of zeros. Its pipelines are all
-/// observers on all backends, of which a study may refuse some.
+/// The study of this number: the same on every machine. Up to six states and three outputs; stable,
+/// unstable and singular A, singular and regular E, units from 1e-6 to 1e6, outputs without noise,
+/// repeated rows, matrices of zeros. Its pipelines are all observers on all backends, of which a
+/// study may refuse some.
 nlohmann::ordered_json random_study(std::uint64_t number, Start start = Start::bounded);
 
 }  // namespace cordon::campaigns

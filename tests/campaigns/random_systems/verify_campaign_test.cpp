@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `cordon run` and `cordon verify` on random systems, with every observer on every backend that takes them: nothing is refuted,
-// and little stays undecided.
-//   CORDON_CAMPAIGN_SYSTEMS   how many (40, and 150 that start anywhere), from number CORDON_CAMPAIGN_FIRST (0) on
-//   CORDON_CAMPAIGN_STATES    those with more states are left out (6)
-//   CORDON_CAMPAIGN_KEEP      a directory that keeps studies and results of those that were not verified
+// `cordon run` and `cordon verify` on random systems, with every observer on every backend that
+// takes them: nothing is refuted, and little stays undecided.
+//   CORDON_CAMPAIGN_SYSTEMS   how many (40, and 150 that start anywhere), from number
+//   CORDON_CAMPAIGN_FIRST (0) on CORDON_CAMPAIGN_STATES    those with more states are left out (6)
+//   CORDON_CAMPAIGN_KEEP      a directory that keeps studies and results of those that were not
+//   verified
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -36,10 +37,12 @@ bool drop_refused(Json& study, const std::string& message) {
   std::set<std::size_t, std::greater<>> refused;
   std::size_t lines = 0;
   static const std::regex place(R"(\n  /pipelines/(\d+)/)"), any(R"(\n  /)");
-  for (std::sregex_iterator it(message.begin(), message.end(), place), end; it != end; ++it) refused.insert(std::stoul((*it)[1]));
+  for (std::sregex_iterator it(message.begin(), message.end(), place), end; it != end; ++it)
+    refused.insert(std::stoul((*it)[1]));
   for (std::sregex_iterator it(message.begin(), message.end(), any), end; it != end; ++it) ++lines;
   std::size_t named = 0;
-  for (std::sregex_iterator it(message.begin(), message.end(), place), end; it != end; ++it) ++named;
+  for (std::sregex_iterator it(message.begin(), message.end(), place), end; it != end; ++it)
+    ++named;
   for (const std::size_t i : refused) study["pipelines"].erase(i);
   return named > 0 && named == lines;
 }
@@ -59,8 +62,10 @@ bool run(Json study, const fs::path& home, Outcome& outcome) {
   for (int tries = 0; tries < 10 && !study["pipelines"].empty(); ++tries) {
     std::ofstream(home / "study.json") << study.dump(1) << '\n';
     fs::remove_all(home / "out");
-    outcome = program("run --quiet --no-report --out " + (home / "out").string() + " " + (home / "study.json").string());
-    if (outcome.code != 2 || !drop_refused(study, outcome.out)) return fs::exists(home / "out" / "results.json");
+    outcome = program("run --quiet --no-report --out " + (home / "out").string() + " " +
+                      (home / "study.json").string());
+    if (outcome.code != 2 || !drop_refused(study, outcome.out))
+      return fs::exists(home / "out" / "results.json");
   }
   return false;
 }
@@ -80,7 +85,8 @@ struct Counts {
 Counts ran_and_verified(cordon::campaigns::Start start, const std::vector<std::uint64_t>& systems) {
   const std::uint64_t most_states = asked("CORDON_CAMPAIGN_STATES", 6);
   const char* keep = std::getenv("CORDON_CAMPAIGN_KEEP");
-  const fs::path home = fs::temp_directory_path() / ("cordon_campaign_" + std::to_string(::getpid()));
+  const fs::path home =
+      fs::temp_directory_path() / ("cordon_campaign_" + std::to_string(::getpid()));
   Counts count{systems.size()};
   for (const std::uint64_t number : systems) {
     fs::remove_all(home);
@@ -94,7 +100,8 @@ Counts ran_and_verified(cordon::campaigns::Start start, const std::vector<std::u
     CAPTURE(number);
     if (ran) {
       CAPTURE(outcome.out);
-      // data are rounded: with outward rounding they may contradict a model in the last digits, which leaves no true state
+      // data are rounded: with outward rounding they may contradict a model in the last digits,
+      // which leaves no true state
       const bool contradicts = outcome.code == 4 && !concerns_nominal(study, outcome.out);
       CHECK((outcome.code == 0 || contradicts));
       is_kept = is_kept || outcome.code != 0;
@@ -119,21 +126,27 @@ Counts ran_and_verified(cordon::campaigns::Start start, const std::vector<std::u
     }
     if (keep && (is_kept || outcome.code != 0)) {
       fs::create_directories(keep);
-      fs::copy(home, fs::path(keep) / std::to_string(number), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+      fs::copy(home, fs::path(keep) / std::to_string(number),
+               fs::copy_options::recursive | fs::copy_options::overwrite_existing);
     }
   }
   fs::remove_all(home);
-  MESSAGE(count.verified, " verified, ", count.refused, " refused by the program, ", count.contradictory,
-          " with data outside the model, ", count.undecided, " of ", count.small, " with up to four states undecided");
+  MESSAGE(count.verified, " verified, ", count.refused, " refused by the program, ",
+          count.contradictory, " with data outside the model, ", count.undecided, " of ",
+          count.small, " with up to four states undecided");
   return count;
 }
 
 /// At most two in a hundred undecided, and a quarter refused.
-bool most_are_decided(const Counts& count) { return count.undecided * 50 <= count.small && count.refused * 4 <= count.systems; }
+bool most_are_decided(const Counts& count) {
+  return count.undecided * 50 <= count.small && count.refused * 4 <= count.systems;
+}
 
 }  // namespace
 
-TEST_CASE("no result of a random system is refuted, and of up to four states at most two in a hundred stay undecided") {
+TEST_CASE(
+    "no result of a random system is refuted, and of up to four states at most two in a hundred "
+    "stay undecided") {
   const Counts count = ran_and_verified(cordon::campaigns::Start::bounded, numbers(40));
   CHECK(count.false_statements == 0);
   CHECK(most_are_decided(count));
@@ -145,19 +158,22 @@ TEST_CASE("nor of one that starts nobody knows where") {
   CHECK(most_are_decided(count));
 }
 
-// An admissible set that is left by a small state beside a large one; descriptor systems in unlike units; a rounded
-// pseudo-inverse beside an outward zonotope; exact outputs that hardly differ; B u of a descriptor system that no double holds; a
-// set that shrinks from 1e-4 to 1e-15; states of 1e15 whose sets are of size 1; entries of a pseudo-inverse without a digit;
-// factors rescaled to bounds that held but for rounding.
+// An admissible set that is left by a small state beside a large one; descriptor systems in unlike
+// units; a rounded pseudo-inverse beside an outward zonotope; exact outputs that hardly differ; B u
+// of a descriptor system that no double holds; a set that shrinks from 1e-4 to 1e-15; states of
+// 1e15 whose sets are of size 1; entries of a pseudo-inverse without a digit; factors rescaled to
+// bounds that held but for rounding.
 TEST_CASE("nor of those that once were refuted, or called defective") {
-  const Counts count = ran_and_verified(cordon::campaigns::Start::bounded,
-                                        {227, 1311, 1350, 1829, 1831, 10244, 10860, 10961, 11499, 11721, 50376});
+  const Counts count =
+      ran_and_verified(cordon::campaigns::Start::bounded,
+                       {227, 1311, 1350, 1829, 1831, 10244, 10860, 10961, 11499, 11721, 50376});
   CHECK(count.false_statements == 0);
   CHECK(count.verified > 0);
 }
 
-// Two outputs whose rows are proportional but for their last digit: they bound a direction, at 3e14. Maps that leave one of two
-// lines by their last digit only, and steps in whose descriptor rows the same happens.
+// Two outputs whose rows are proportional but for their last digit: they bound a direction, at
+// 3e14. Maps that leave one of two lines by their last digit only, and steps in whose descriptor
+// rows the same happens.
 TEST_CASE("nor of those that started nobody knew where") {
   const Counts count = ran_and_verified(cordon::campaigns::Start::unknown, {62101, 63068, 63838});
   CHECK(count.false_statements == 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How operations go together. Equality is asked where both sides claim to be exact; else what can be proven: an enclosure
-// encloses.
+// How operations go together. Equality is asked where both sides claim to be exact; else what can
+// be proven: an enclosure encloses.
 #include <cmath>
 #include <limits>
 
@@ -30,12 +30,15 @@ Truth truth_of(const LineForm& X, double terms) {
 }
 
 /// Two ways to the same set: if both are exact, neither exceeds the other.
-Verdict same(const Context& context, const Enclosure& left, const Enclosure& right, double terms, const TestCase& test) {
+Verdict same(const Context& context, const Enclosure& left, const Enclosure& right, double terms,
+             const TestCase& test) {
   if (left->dim() != right->dim()) return Verdict::fails("the two sides have different dimensions");
-  if (!context.exact_exchange() || left.tightness != Tightness::exact || right.tightness != Tightness::exact) {
+  if (!context.exact_exchange() || left.tightness != Tightness::exact ||
+      right.tightness != Tightness::exact) {
     return Verdict::inapplicable();
   }
-  Truth of_left = truth_of(left->line_form(), terms), of_right = truth_of(right->line_form(), terms);
+  Truth of_left = truth_of(left->line_form(), terms),
+        of_right = truth_of(right->line_form(), terms);
   Verdict verdict = stays_within(context, left, of_right, test);
   if (!verdict.failed()) verdict = stays_within(context, right, of_left, test);
   if (verdict.failed()) {
@@ -109,7 +112,8 @@ Verdict check_empty_absorbs(const Context& context, const TestCase& test) {
     }
     // a larger set is an honest outer enclosure of ∅, but no exact one
     if (result.tightness == Tightness::exact && context.tally(result->is_empty()) == Answer::no) {
-      return Verdict::fails(std::string(what) + " is ∅; it is claimed exact and said not to be empty");
+      return Verdict::fails(std::string(what) +
+                            " is ∅; it is claimed exact and said not to be empty");
     }
   }
   return {};
@@ -120,7 +124,8 @@ Verdict check_empty_hull(const Context& context, const TestCase& test) {
   const auto E = import_empty(context, test.set(1));
   if (!E) return Verdict::inapplicable();
   for (const bool first : {true, false}) {
-    const Enclosure hull = first ? context.backend->convex_hull(X.set, *E) : context.backend->convex_hull(*E, X.set);
+    const Enclosure hull =
+        first ? context.backend->convex_hull(X.set, *E) : context.backend->convex_hull(*E, X.set);
     Truth truth = truth_of(X.form, X.size);
     Verdict verdict = encloses(context, hull, truth, X.points, test.tame() && X.sure, test.seed);
     if (!verdict.failed() && X.equal) verdict = stays_within(context, hull, truth, test);
@@ -137,26 +142,30 @@ Verdict check_zero_neutral(const Context& context, const TestCase& test) {
   const Enclosure sum = context.backend->sum(X.set, zero);
   Truth truth = truth_of(X.form, X.size);
   Verdict verdict = encloses(context, sum, truth, X.points, test.tame() && X.sure, test.seed);
-  if (!verdict.failed() && X.equal && zero.tightness == Tightness::exact) verdict = stays_within(context, sum, truth, test);
+  if (!verdict.failed() && X.equal && zero.tightness == Tightness::exact)
+    verdict = stays_within(context, sum, truth, test);
   return verdict;
 }
 
 Verdict check_sum_commutes(const Context& context, const TestCase& test) {
   const Operand X = import_operand(context, test.set(0)), Y = import_operand(context, test.set(1));
-  return same(context, context.backend->sum(X.set, Y.set), context.backend->sum(Y.set, X.set), sizes({&X, &Y}), test);
+  return same(context, context.backend->sum(X.set, Y.set), context.backend->sum(Y.set, X.set),
+              sizes({&X, &Y}), test);
 }
 
 Verdict check_sum_associates(const Context& context, const TestCase& test) {
   const SetBackend& b = *context.backend;
   const Operand X = import_operand(context, test.set(0)), Y = import_operand(context, test.set(1)),
                 Z = import_operand(context, test.set(2));
-  return same(context, b.sum(b.sum(X.set, Y.set), Z.set), b.sum(X.set, b.sum(Y.set, Z.set)), sizes({&X, &Y, &Z}), test);
+  return same(context, b.sum(b.sum(X.set, Y.set), Z.set), b.sum(X.set, b.sum(Y.set, Z.set)),
+              sizes({&X, &Y, &Z}), test);
 }
 
 // ---- maps ----
 
-/// The maps are tame where X has lines: rounding of T₁T₂ turns the image of a line, or makes a plane of it, and between two lines
-/// that are not parallel no distance is small. T₁T₂ is exact then, and both sides are the same set whatever X is.
+/// The maps are tame where X has lines: rounding of T₁T₂ turns the image of a line, or makes a
+/// plane of it, and between two lines that are not parallel no distance is small. T₁T₂ is exact
+/// then, and both sides are the same set whatever X is.
 TestCase generate_two_maps(const Setting& s) {
   const Index p = s.random.between(1, 3), q = s.random.between(1, 3);
   TestCase test = sets(s, {"X"});
@@ -171,7 +180,8 @@ Verdict check_map_composes(const Context& context, const TestCase& test) {
   const Operand X = import_operand(context, test.set(0));
   const Matrix &T2 = test.matrix(0), &T1 = test.matrix(1);
   const bool sure = test.tame() && X.sure;
-  const Enclosure two = b.affine_map(b.affine_map(X.set, T2, Vector::Zero(T2.rows())), T1, Vector::Zero(T1.rows()));
+  const Enclosure two =
+      b.affine_map(b.affine_map(X.set, T2, Vector::Zero(T2.rows())), T1, Vector::Zero(T1.rows()));
   const Enclosure one = b.affine_map(X.set, T1 * T2, Vector::Zero(T1.rows()));
   std::vector<Vector> points;
   for (const Vector& x : X.points) points.push_back(T1 * (T2 * x));
@@ -180,7 +190,9 @@ Verdict check_map_composes(const Context& context, const TestCase& test) {
   Truth image;
   image.add(affine_map(X.form, T1 * T2, Vector::Zero(T1.rows())), points, terms, 0);
   for (const Enclosure* side : {&two, &one}) {
-    if (Verdict verdict = encloses(context, *side, image, points, sure, test.seed); verdict.failed()) return verdict;
+    if (Verdict verdict = encloses(context, *side, image, points, sure, test.seed);
+        verdict.failed())
+      return verdict;
   }
   return same(context, two, one, terms, test);
 }
@@ -215,9 +227,11 @@ Verdict check_import_of_line_form(const Context& context, const TestCase& test) 
   Random random(test.seed);
   for (const Vector& d : directions({X.form}, X.form.dim(), random, 4)) {
     const double reached = truth.lower(d), bound = X.set->support(d);
-    if (reached <= bound || (bound == -std::numeric_limits<double>::infinity() && !truth.robust())) continue;
+    if (reached <= bound || (bound == -std::numeric_limits<double>::infinity() && !truth.robust()))
+      continue;
     if (!(reached <= bound + truth.tolerance(d))) {
-      return Verdict::fails("in direction d = " + describe_vector(d) + " the exchange form reaches " + describe(reached) +
+      return Verdict::fails("in direction d = " + describe_vector(d) +
+                            " the exchange form reaches " + describe(reached) +
                             ", the set itself at most " + describe(bound));
     }
   }
@@ -252,12 +266,14 @@ Verdict check_monotone(const Context& context, const TestCase& test) {
     std::function<Vector(const Vector&)> map;
   };
   const std::vector<Step> steps{
-      {"A X", [&] { return b.affine_map(larger, A, zero); }, affine_map(X.form, A, zero), [&](const Vector& x) { return A * x; }},
+      {"A X", [&] { return b.affine_map(larger, A, zero); }, affine_map(X.form, A, zero),
+       [&](const Vector& x) { return A * x; }},
       {"X ⊕ Y", [&] { return b.sum(larger, Y.set); }, minkowski_sum(X.form, Y.form),
        [&](const Vector& x) { return x + Y.points.front(); }},
-      {"[A] X", [&] { return b.interval_map(larger, IntervalMatrix(A, radius)); }, affine_map(X.form, A + radius, zero),
-       [&](const Vector& x) { return (A + radius) * x; }},
-      {"X ∩ X", [&] { return b.intersection(larger, I, larger); }, X.form, [](const Vector& x) { return x; }},
+      {"[A] X", [&] { return b.interval_map(larger, IntervalMatrix(A, radius)); },
+       affine_map(X.form, A + radius, zero), [&](const Vector& x) { return (A + radius) * x; }},
+      {"X ∩ X", [&] { return b.intersection(larger, I, larger); }, X.form,
+       [](const Vector& x) { return x; }},
       {"reduce(X)",
        [&] {
          return b.reduce(larger, {n, 0});
@@ -279,7 +295,8 @@ Verdict check_monotone(const Context& context, const TestCase& test) {
     truth.add(step.exact, points, factor * size, size);
     Verdict verdict = encloses(context, result, truth, points, sure, test.seed);
     if (!verdict.failed()) continue;
-    verdict.message = std::string(step.what) + " of a larger set does not hold the one of X: " + verdict.message;
+    verdict.message =
+        std::string(step.what) + " of a larger set does not hold the one of X: " + verdict.message;
     return verdict;
   }
   return {};
@@ -295,17 +312,21 @@ TestCase generate_reduce(const Setting& s) {
   return test;
 }
 
-Budget budget_of(const TestCase& test) { return {test.set(0).form.dim() + test.number(0) + test.number(1), test.number(0)}; }
+Budget budget_of(const TestCase& test) {
+  return {test.set(0).form.dim() + test.number(0) + test.number(1), test.number(0)};
+}
 
-/// n generators hold a box, one more per constraint a constrained box: a budget of this size can always be met.
+/// n generators hold a box, one more per constraint a constrained box: a budget of this size can
+/// always be met.
 Verdict check_reduce_budget(const Context& context, const TestCase& test) {
   const Operand X = import_operand(context, test.set(0)), Y = import_operand(context, test.set(1));
   const Budget budget = budget_of(test);
   const Enclosure reduced = context.backend->reduce(context.backend->sum(X.set, Y.set), budget);
   const Complexity size = reduced->complexity();
   if (size.generators <= budget.generators && size.constraints <= budget.constraints) return {};
-  return Verdict::fails("X ⊕ Y reduced to at most " + std::to_string(budget.generators) + " generators and " +
-                        std::to_string(budget.constraints) + " constraints has " + std::to_string(size.generators) + " and " +
+  return Verdict::fails("X ⊕ Y reduced to at most " + std::to_string(budget.generators) +
+                        " generators and " + std::to_string(budget.constraints) +
+                        " constraints has " + std::to_string(size.generators) + " and " +
                         std::to_string(size.constraints));
 }
 
@@ -323,7 +344,9 @@ Verdict check_reduce_encloses(const Context& context, const TestCase& test) {
   Truth truth;
   truth.add(minkowski_sum(X.form, Y.form), points, sizes({&X, &Y}), 0);
   for (const Enclosure* result : {&once, &twice}) {
-    if (Verdict verdict = encloses(context, *result, truth, points, sure, test.seed); verdict.failed()) return verdict;
+    if (Verdict verdict = encloses(context, *result, truth, points, sure, test.seed);
+        verdict.failed())
+      return verdict;
   }
   if (context.exact_exchange() && context.tally(once->is_subset_of(*twice)) == Answer::no && sure) {
     return Verdict::fails("a reduced set is said not to lie in its own reduction");
@@ -350,24 +373,39 @@ void add_algebra(LawList& list) {
                   check_empty_absorbs,
                   {},
                   0.5});
-  list.push_back({{"algebra.empty_hull", "convex_hull(X, ∅) = X"}, generate_with_empty, check_empty_hull});
+  list.push_back(
+      {{"algebra.empty_hull", "convex_hull(X, ∅) = X"}, generate_with_empty, check_empty_hull});
   list.push_back({{"algebra.zero_neutral", "X ⊕ {0} = X"}, generate_sets<1>, check_zero_neutral});
   list.push_back({{"algebra.sum_commutes", "X ⊕ Y = Y ⊕ X"}, generate_sets<2>, check_sum_commutes});
-  list.push_back({{"algebra.sum_associates", "(X ⊕ Y) ⊕ Z = X ⊕ (Y ⊕ Z)"}, generate_sets<3>, check_sum_associates});
-  list.push_back({{"algebra.map_composes", "T₁(T₂ X) = (T₁ T₂) X"}, generate_two_maps, check_map_composes});
-  list.push_back({{"algebra.map_distributes", "T (X ⊕ Y) = T X ⊕ T Y"}, generate_map_of_sum, check_map_distributes});
-  list.push_back({{"algebra.import_of_line_form", "import(X.line_form()) = X"}, generate_sets<1>, check_import_of_line_form});
-  list.push_back({{"algebra.monotone", "X ⊆ Y ⇒ f(X) ⊆ f(Y) for maps, sums, intersections and reductions f"},
-                  generate_monotone,
-                  check_monotone,
+  list.push_back({{"algebra.sum_associates", "(X ⊕ Y) ⊕ Z = X ⊕ (Y ⊕ Z)"},
+                  generate_sets<3>,
+                  check_sum_associates});
+  list.push_back(
+      {{"algebra.map_composes", "T₁(T₂ X) = (T₁ T₂) X"}, generate_two_maps, check_map_composes});
+  list.push_back({{"algebra.map_distributes", "T (X ⊕ Y) = T X ⊕ T Y"},
+                  generate_map_of_sum,
+                  check_map_distributes});
+  list.push_back({{"algebra.import_of_line_form", "import(X.line_form()) = X"},
+                  generate_sets<1>,
+                  check_import_of_line_form});
+  list.push_back(
+      {{"algebra.monotone", "X ⊆ Y ⇒ f(X) ⊆ f(Y) for maps, sums, intersections and reductions f"},
+       generate_monotone,
+       check_monotone,
+       {},
+       0.5});
+  list.push_back(
+      {{"algebra.reduce_budget",
+        "reduce keeps to its budget if n generators and one more per constraint are allowed"},
+       generate_reduce,
+       check_reduce_budget});
+  list.push_back({{"algebra.reduce_encloses", "X ⊆ reduce(X) ⊆ reduce(reduce(X))"},
+                  generate_reduce,
+                  check_reduce_encloses,
                   {},
                   0.5});
-  list.push_back({{"algebra.reduce_budget", "reduce keeps to its budget if n generators and one more per constraint are allowed"},
-                  generate_reduce,
-                  check_reduce_budget});
   list.push_back(
-      {{"algebra.reduce_encloses", "X ⊆ reduce(X) ⊆ reduce(reduce(X))"}, generate_reduce, check_reduce_encloses, {}, 0.5});
-  list.push_back({{"algebra.self_intersection", "X ∩ X = X"}, generate_sets<1>, check_self_intersection});
+      {{"algebra.self_intersection", "X ∩ X = X"}, generate_sets<1>, check_self_intersection});
 }
 
 }  // namespace cordon::conformance

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What holds for every call: errors by code, operands that stay as they are, the same result every time, from any thread.
+// What holds for every call: errors by code, operands that stay as they are, the same result every
+// time, from any thread.
 #include <atomic>
 #include <cmath>
 #include <functional>
@@ -34,8 +35,8 @@ Verdict all_throw(const std::vector<Call>& calls, Errc code) {
       call();
     } catch (const Error& error) {
       if (error.code() == code) continue;
-      return Verdict::fails(what + ": expected " + expected + ", found Errc::" + std::string(to_string(error.code())) + ": " +
-                            error.what());
+      return Verdict::fails(what + ": expected " + expected + ", found Errc::" +
+                            std::string(to_string(error.code())) + ": " + error.what());
     }
     return Verdict::fails(what + ": expected " + expected + ", but nothing was thrown");
   }
@@ -75,7 +76,8 @@ Verdict check_dimension_errors(const Context& context, const TestCase& test) {
              b.correct(X, {I, zero, {wide, X}});
            }},
           {"interval_map by a wider matrix", [&] { b.interval_map(X, IntervalMatrix(wide)); }},
-          {"interval_map with a radius of another size", [&] { b.interval_map(X, IntervalMatrix(I, wide)); }},
+          {"interval_map with a radius of another size",
+           [&] { b.interval_map(X, IntervalMatrix(I, wide)); }},
           {"convex_hull of different dimensions", [&] { b.convex_hull(X, wider); }},
           {"import of blocks that do not fit", [&] { b.import(broken); }},
       },
@@ -152,11 +154,13 @@ Verdict check_operands_unchanged(const Context& context, const TestCase& test) {
 std::vector<std::string> outcomes(const SetBackend& b, const TestCase& test) {
   const Enclosure X = b.import(test.set(0).form), Y = b.import(test.set(1).form);
   std::vector<std::string> texts;
-  for (const auto& [name, run] : program(b, X, Y, test)) texts.push_back(name + ": " + fingerprint(attempt_operation(run)));
+  for (const auto& [name, run] : program(b, X, Y, test))
+    texts.push_back(name + ": " + fingerprint(attempt_operation(run)));
   return texts;
 }
 
-Verdict compare(const std::vector<std::string>& expected, const std::vector<std::string>& found, const std::string& when) {
+Verdict compare(const std::vector<std::string>& expected, const std::vector<std::string>& found,
+                const std::string& when) {
   for (std::size_t k = 0; k < expected.size(); ++k) {
     if (expected[k] == found[k]) continue;
     Verdict verdict = Verdict::fails("an operation gives another result " + when);
@@ -175,8 +179,8 @@ Verdict check_determinism(const Context& context, const TestCase& test) {
                  "on another backend with the same parameters");
 }
 
-/// Threads work on different operands at the same time, each on all of them in turn: what one leaves in a place that another uses
-/// shows as a difference.
+/// Threads work on different operands at the same time, each on all of them in turn: what one
+/// leaves in a place that another uses shows as a difference.
 Verdict check_threads(const Context& context, const TestCase& test) {
   constexpr int threads = 4, rounds = 12;
   const SetBackend& b = *context.backend;
@@ -199,9 +203,12 @@ Verdict check_threads(const Context& context, const TestCase& test) {
         const auto k = static_cast<std::size_t>((t + round) % threads);
         Verdict& verdict = verdicts[static_cast<std::size_t>(t)];
         try {
-          verdict = compare(expected[k], outcomes(b, variants[k]), "when other threads work at the same time");
+          verdict = compare(expected[k], outcomes(b, variants[k]),
+                            "when other threads work at the same time");
         } catch (const std::exception& error) {
-          verdict = Verdict::fails(std::string("an operation throws when other threads work at the same time: ") + error.what());
+          verdict = Verdict::fails(
+              std::string("an operation throws when other threads work at the same time: ") +
+              error.what());
         } catch (...) {
           verdict = Verdict::fails("an operation throws when other threads work at the same time");
         }
@@ -224,18 +231,21 @@ std::optional<std::string> needs_schema(const Context& context) {
 }
 
 /// A backend with this one parameter set works: it imports a box, adds it, and reduces.
-Verdict check_value(const Context& context, const TestCase& test, const std::string& name, const Params::Value& value) {
+Verdict check_value(const Context& context, const TestCase& test, const std::string& name,
+                    const Params::Value& value) {
   Params params = context.subject.params;
   params.set(name, value);
   const Context with{context.subject, context.subject.make(params), context.tally};
   const Operand X = import_operand(with, test.set(0));
-  const Enclosure result = with.backend->reduce(with.backend->sum(X.set, X.set), {test.set(0).form.dim(), 0});
+  const Enclosure result =
+      with.backend->reduce(with.backend->sum(X.set, X.set), {test.set(0).form.dim(), 0});
   Truth truth;
   std::vector<Vector> points;
   for (const Vector& x : X.points) points.push_back(x + X.points.front());
   truth.add(minkowski_sum(X.form, X.form), points, 2 * X.size, 0);
   Verdict verdict = encloses(with, result, truth, points, test.tame() && X.sure, test.seed);
-  if (verdict.failed()) verdict.message = "with another value of parameter \"" + name + "\": " + verdict.message;
+  if (verdict.failed())
+    verdict.message = "with another value of parameter \"" + name + "\": " + verdict.message;
   return verdict;
 }
 
@@ -248,12 +258,13 @@ TestCase one_box(const Setting& s) {
 Verdict check_parameters(const Context& context, const TestCase& test) {
   const BackendInfo& info = context.info();
   if (!context.subject.component.empty() && info.name != context.subject.component) {
-    return Verdict::fails("the backend is registered as \"" + context.subject.component + "\" and calls itself \"" + info.name +
-                          "\"");
+    return Verdict::fails("the backend is registered as \"" + context.subject.component +
+                          "\" and calls itself \"" + info.name + "\"");
   }
   if (info.summary.empty()) return Verdict::fails("BackendInfo::summary is empty");
   for (const ParamSpec& spec : context.subject.schema->specs()) {
-    if (spec.doc.empty()) return Verdict::fails("parameter \"" + spec.name + "\" has no documentation");
+    if (spec.doc.empty())
+      return Verdict::fails("parameter \"" + spec.name + "\" has no documentation");
     std::vector<Params::Value> values;
     if (spec.kind == ParamKind::choice) values.assign(spec.choices.begin(), spec.choices.end());
     if (spec.kind == ParamKind::flag) values = {true, false};
@@ -264,7 +275,8 @@ Verdict check_parameters(const Context& context, const TestCase& test) {
       if (spec.kind == ParamKind::real) values.emplace_back(limit);
     }
     for (const Params::Value& value : values) {
-      if (Verdict verdict = check_value(context, test, spec.name, value); verdict.failed()) return verdict;
+      if (Verdict verdict = check_value(context, test, spec.name, value); verdict.failed())
+        return verdict;
     }
   }
   return {};
@@ -272,7 +284,8 @@ Verdict check_parameters(const Context& context, const TestCase& test) {
 
 // ---- hostile calls ----
 
-/// Calls at the edge of what is legal, and beyond. What they return is for other laws; what they throw is a cordon::Error.
+/// Calls at the edge of what is legal, and beyond. What they return is for other laws; what they
+/// throw is a cordon::Error.
 Verdict check_only_cordon_errors(const Context& context, const TestCase& test) {
   const SetBackend& b = *context.backend;
   const Index n = test.set(0).form.dim();
@@ -323,12 +336,20 @@ Verdict check_only_cordon_errors(const Context& context, const TestCase& test) {
       {"a hull of a point and a set", [&] { b.convex_hull(point, X); }},
       {"a hull of a point with itself", [&] { b.convex_hull(point, point); }},
       {"questions about R⁰",
-       [&] { R0->is_empty(), R0->contains(nothing), R0->support(nothing), R0->interval_hull(), R0->volume(); }},
+       [&] {
+         R0->is_empty(), R0->contains(nothing), R0->support(nothing), R0->interval_hull(),
+             R0->volume();
+       }},
       {"support in direction 0", [&] { X->support(zero); }},
       {"an overflow of a map", [&] { b.affine_map(b.affine_map(X, huge, zero), huge, zero); }},
       {"an overflow of a translation",
-       [&] { b.affine_map(b.point(Vector::Constant(n, 1.7e308)), I, Vector::Constant(n, 1.7e308)); }},
-      {"an overflow of a sum", [&] { b.sum(b.point(Vector::Constant(n, 1.7e308)), b.point(Vector::Constant(n, 1.7e308))); }},
+       [&] {
+         b.affine_map(b.point(Vector::Constant(n, 1.7e308)), I, Vector::Constant(n, 1.7e308));
+       }},
+      {"an overflow of a sum",
+       [&] {
+         b.sum(b.point(Vector::Constant(n, 1.7e308)), b.point(Vector::Constant(n, 1.7e308)));
+       }},
       {"tiny numbers", [&] { b.affine_map(b.affine_map(X, 1e-200 * I, zero), 1e-200 * I, zero); }},
   };
   for (const auto& [what, call] : calls) {
@@ -336,7 +357,8 @@ Verdict check_only_cordon_errors(const Context& context, const TestCase& test) {
       call();
     } catch (const Error&) {
     } catch (const std::exception& error) {
-      return Verdict::fails(what + ": an exception that is no cordon::Error was thrown: " + error.what());
+      return Verdict::fails(what +
+                            ": an exception that is no cordon::Error was thrown: " + error.what());
     } catch (...) {
       return Verdict::fails(what + ": an exception that is no std::exception was thrown");
     }
@@ -349,21 +371,25 @@ bool has_nan(const Vector& x) { return x.array().isNaN().any(); }
 Verdict finite(const Set& X, const std::string& what, const std::vector<Vector>& along) {
   const LineForm form = X.line_form();
   for (const Matrix* block : {&form.M, &form.G, &form.S, &form.A}) {
-    if (!block->allFinite()) return Verdict::fails(what + ": the exchange form is not finite: " + describe(form));
+    if (!block->allFinite())
+      return Verdict::fails(what + ": the exchange form is not finite: " + describe(form));
   }
   if (!form.c.allFinite() || !form.b.allFinite())
     return Verdict::fails(what + ": the exchange form is not finite: " + describe(form));
   const Box hull = X.interval_hull();
   if (has_nan(hull.lower) || has_nan(hull.upper)) {
-    return Verdict::fails(what + ": the interval hull holds a NaN: " + describe_vector(hull.lower) + " to " +
-                          describe_vector(hull.upper));
+    return Verdict::fails(what + ": the interval hull holds a NaN: " + describe_vector(hull.lower) +
+                          " to " + describe_vector(hull.upper));
   }
   const double volume = X.volume().value;
   if (!(volume >= 0)) return Verdict::fails(what + ": the volume is " + describe(volume));
   for (const Vector& d : along) {
     const double h = X.support(d);
-    if (std::isnan(h)) return Verdict::fails(what + ": the support function in direction d = " + describe_vector(d) + " is NaN");
-    // Set::support replaces a NaN by +inf; without constraints and lines there is no program that could stay unsolved
+    if (std::isnan(h))
+      return Verdict::fails(what + ": the support function in direction d = " + describe_vector(d) +
+                            " is NaN");
+    // Set::support replaces a NaN by +inf; without constraints and lines there is no program that
+    // could stay unsolved
     if (h == infinity && form.constraints() == 0 && form.lines() == 0 && hull.is_bounded()) {
       return Verdict::fails(what + ": the support function in direction d = " + describe_vector(d) +
                             " is NaN or +inf, although the set is bounded");
@@ -403,38 +429,47 @@ void add_contract(LawList& list) {
                   check_dimension_errors,
                   {},
                   0.2});
-  list.push_back({{"contract.not_finite_errors", "NaN and infinite operands throw Errc::not_finite"},
-                  two_sets,
-                  check_not_finite_errors,
-                  {},
-                  0.2});
   list.push_back(
-      {{"contract.operands_unchanged", "no operation changes an operand"}, generate_program, check_operands_unchanged, {}, 0.5});
+      {{"contract.not_finite_errors", "NaN and infinite operands throw Errc::not_finite"},
+       two_sets,
+       check_not_finite_errors,
+       {},
+       0.2});
+  list.push_back({{"contract.operands_unchanged", "no operation changes an operand"},
+                  generate_program,
+                  check_operands_unchanged,
+                  {},
+                  0.5});
   list.push_back({{"contract.threads", "operations on different threads do not disturb each other"},
                   generate_program,
                   check_threads,
                   {},
                   0.1});
-  list.push_back({{"contract.determinism", "the same operation on the same operands gives the same bits"},
-                  generate_program,
-                  check_determinism,
-                  {},
-                  0.5});
-  list.push_back({{"contract.parameters_documented", "every parameter is documented, and every value that it allows works"},
+  list.push_back(
+      {{"contract.determinism", "the same operation on the same operands gives the same bits"},
+       generate_program,
+       check_determinism,
+       {},
+       0.5});
+  list.push_back({{"contract.parameters_documented",
+                   "every parameter is documented, and every value that it allows works"},
                   one_box,
                   check_parameters,
                   needs_schema,
                   0.05});
-  list.push_back({{"contract.only_cordon_errors", "whatever the call, what is thrown is a cordon::Error"},
-                  two_sets,
-                  check_only_cordon_errors,
-                  {},
-                  0.5});
-  list.push_back({{"contract.no_nan", "no NaN in exchange forms, hulls, volumes, and support functions of bounded sets"},
-                  generate_program,
-                  check_no_nan,
-                  {},
-                  0.5});
+  list.push_back(
+      {{"contract.only_cordon_errors", "whatever the call, what is thrown is a cordon::Error"},
+       two_sets,
+       check_only_cordon_errors,
+       {},
+       0.5});
+  list.push_back(
+      {{"contract.no_nan",
+        "no NaN in exchange forms, hulls, volumes, and support functions of bounded sets"},
+       generate_program,
+       check_no_nan,
+       {},
+       0.5});
 }
 
 }  // namespace cordon::conformance

@@ -9,9 +9,10 @@ std::string fingerprint(const Set& X) {
   const Index n = X.dim();
   const Complexity size = X.complexity();
   const Box hull = X.interval_hull();
-  std::string text = describe(X.line_form()) + " size " + std::to_string(size.generators) + "/" + std::to_string(size.lines) +
-                     "/" + std::to_string(size.constraints) + " hull " + describe_vector(hull.lower) + " " +
-                     describe_vector(hull.upper) + " empty " + std::string(to_string(X.is_empty())) +
+  std::string text = describe(X.line_form()) + " size " + std::to_string(size.generators) + "/" +
+                     std::to_string(size.lines) + "/" + std::to_string(size.constraints) +
+                     " hull " + describe_vector(hull.lower) + " " + describe_vector(hull.upper) +
+                     " empty " + std::string(to_string(X.is_empty())) +
                      " h(1) = " + describe(X.support(Vector::Ones(n)));
   return text;
 }
@@ -20,8 +21,8 @@ std::string fingerprint(const std::optional<Enclosure>& X) {
   return X ? std::string(to_string(X->tightness)) + " " + fingerprint(**X) : "refused";
 }
 
-std::vector<std::pair<std::string, Run>> program(const SetBackend& b, const Enclosure& X, const Enclosure& Y,
-                                                 const TestCase& test) {
+std::vector<std::pair<std::string, Run>> program(const SetBackend& b, const Enclosure& X,
+                                                 const Enclosure& Y, const TestCase& test) {
   const Matrix A = test.matrix(0);
   const Vector f = test.vector(0);
   const Index n = X->dim(), p = A.rows();
@@ -40,7 +41,8 @@ std::vector<std::pair<std::string, Run>> program(const SetBackend& b, const Encl
        [=, &b] {
          return b.correct(X, {A, f, {A, Y}});
        }},
-      {"interval_map", [=, &b] { return b.interval_map(X, IntervalMatrix(A, Matrix::Constant(p, n, 0.125))); }},
+      {"interval_map",
+       [=, &b] { return b.interval_map(X, IntervalMatrix(A, Matrix::Constant(p, n, 0.125))); }},
       {"convex_hull", [=, &b] { return b.convex_hull(X, Y); }},
       {"reduce",
        [=, &b] {

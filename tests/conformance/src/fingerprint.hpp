@@ -18,8 +18,8 @@ std::string fingerprint(const std::optional<Enclosure>& X);
 
 using Run = std::function<Enclosure()>;
 /// Every operation on X and Y (of one dimension), with the first matrix and vector of the case.
-std::vector<std::pair<std::string, Run>> program(const SetBackend& backend, const Enclosure& X, const Enclosure& Y,
-                                                 const TestCase& test);
+std::vector<std::pair<std::string, Run>> program(const SetBackend& backend, const Enclosure& X,
+                                                 const Enclosure& Y, const TestCase& test);
 
 /// The result, or nothing where the backend refuses (Errc::unsupported, Errc::solver).
 std::optional<Enclosure> attempt_operation(const Run& run);

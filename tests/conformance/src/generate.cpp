@@ -29,7 +29,8 @@ Matrix Generator::map(Index rows, Index cols) {
     }
     case 2: {  // of rank one
       Matrix A = matrix(rows, cols);
-      for (Index i = 1; i < rows; ++i) A.row(i) = A.row(0) * static_cast<double>(random_.between(-2, 2));
+      for (Index i = 1; i < rows; ++i)
+        A.row(i) = A.row(0) * static_cast<double>(random_.between(-2, 2));
       return A;
     }
     default:

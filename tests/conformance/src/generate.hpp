@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random sets, matrices and vectors: ordinary, degenerate, flat, points, boxes, with redundant or zero columns and rows, badly
-// scaled, unbounded, empty.
+// Random sets, matrices and vectors: ordinary, degenerate, flat, points, boxes, with redundant or
+// zero columns and rows, badly scaled, unbounded, empty.
 #pragma once
 
 #include "random.hpp"

@@ -21,8 +21,9 @@ struct Verdict {
     inapplicable  ///< says nothing about this backend: no exact claim, no such set
   };
   Kind kind = Kind::holds;
-  std::string message;                                       ///< fails: what was expected and what was found
-  std::vector<std::pair<std::string, std::string>> derived;  ///< fails: values that the law computed from the case
+  std::string message;  ///< fails: what was expected and what was found
+  std::vector<std::pair<std::string, std::string>>
+      derived;  ///< fails: values that the law computed from the case
 
   static Verdict holds() { return {}; }
   static Verdict inapplicable() { return {Kind::inapplicable, {}, {}}; }
@@ -67,8 +68,9 @@ struct LawEntry {
   std::function<std::optional<std::string>(const Context&)> skip = {};
   double share = 1;  ///< of Options::cases
   Index smallest_dim = 1, largest_dim = 4;
-  Shape shape = {true, 6, 2};    ///< lines only where the backend holds unbounded sets
-  bool without_backend = false;  ///< the law makes and destroys its own, so that none is alive besides
+  Shape shape = {true, 6, 2};  ///< lines only where the backend holds unbounded sets
+  bool without_backend =
+      false;  ///< the law makes and destroys its own, so that none is alive besides
 };
 
 using LawList = std::vector<LawEntry>;

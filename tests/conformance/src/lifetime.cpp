@@ -39,7 +39,8 @@ Verdict check_outlives(const Context& context, const TestCase& test) {
     const auto& [name, set] = results[k];
     if (const std::string now = fingerprint(*set); now != before[k]) {
       Verdict verdict =
-          Verdict::fails("the result of " + name + " is another set when the handles of operands and backend have gone");
+          Verdict::fails("the result of " + name +
+                         " is another set when the handles of operands and backend have gone");
       verdict.derived.emplace_back("before", before[k]);
       verdict.derived.emplace_back("after", now);
       return verdict;
@@ -80,7 +81,8 @@ Verdict check_unload(const Context& context, const TestCase& test) {
   {
     Registry registry;
     const PluginReport report = registry.load_file(context.subject.library);
-    if (report.state != PluginReport::State::loaded) return Verdict::fails("the plugin was refused: " + report.reason);
+    if (report.state != PluginReport::State::loaded)
+      return Verdict::fails("the plugin was refused: " + report.reason);
     Enclosure last;
     {
       const auto backend = registry.make_backend(context.subject.component, context.subject.params);
@@ -90,16 +92,19 @@ Verdict check_unload(const Context& context, const TestCase& test) {
       }
       if (!last.set) last = X;
     }
-    if (unloaded(registry, report.name).empty()) return Verdict::fails("the plugin was unloaded while a set of it was alive");
+    if (unloaded(registry, report.name).empty())
+      return Verdict::fails("the plugin was unloaded while a set of it was alive");
     (void)fingerprint(*last);
     last = {};
     if (const std::string why = unloaded(registry, report.name); !why.empty()) {
-      return Verdict::fails("all sets and backends have gone, but the plugin keeps objects of its own: " + why);
+      return Verdict::fails(
+          "all sets and backends have gone, but the plugin keeps objects of its own: " + why);
     }
   }
   if (!was_mapped && is_mapped(context.subject.library)) {
     return Verdict::fails(
-        "the library stays mapped after it was unloaded: a unique symbol or a thread_local object with a destructor");
+        "the library stays mapped after it was unloaded: a unique symbol or a thread_local object "
+        "with a destructor");
   }
   return {};
 }
@@ -107,12 +112,14 @@ Verdict check_unload(const Context& context, const TestCase& test) {
 }  // namespace
 
 void add_lifetime(LawList& list) {
-  LawEntry outlives{{"lifetime.set_outlives_handle", "a set outlives the handles of its operands, its backend and the registry"},
+  LawEntry outlives{{"lifetime.set_outlives_handle",
+                     "a set outlives the handles of its operands, its backend and the registry"},
                     generate_program,
                     check_outlives,
                     {},
                     0.1};
-  LawEntry unload{{"lifetime.unload", "the plugin can be unloaded when its last object has gone, and not before"},
+  LawEntry unload{{"lifetime.unload",
+                   "the plugin can be unloaded when its last object has gone, and not before"},
                   generate_program,
                   check_unload,
                   needs_library,

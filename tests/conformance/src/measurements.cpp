@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measurements that say what is known already: repeated, proportional and dependent rows, noise that is a point, sets without
-// interior, plants without noise. In some directions rounding is left only, and nothing may be concluded from it.
+// Measurements that say what is known already: repeated, proportional and dependent rows, noise
+// that is a point, sets without interior, plants without noise. In some directions rounding is left
+// only, and nothing may be concluded from it.
 #include "operations.hpp"
 
 namespace cordon::conformance {
@@ -25,7 +26,8 @@ Setting plain(Setting s) {
 /// Rows without zeros: what cancels in their products does so by rounding only.
 Matrix dense(const Setting& s, Index rows, Index cols) {
   Matrix A(rows, cols);
-  for (double& entry : A.reshaped()) entry = s.random.sign() * static_cast<double>(s.random.between(1, 6)) / 2;
+  for (double& entry : A.reshaped())
+    entry = s.random.sign() * static_cast<double>(s.random.between(1, 6)) / 2;
   return A;
 }
 
@@ -39,7 +41,8 @@ Matrix rows_for(const Setting& s, const TestCase& test, Index rows) {
     const Index j = s.random.below(s.n - 1);
     C.row(i).setZero();
     C.row(i).segment(j, 2) << (x[j + 1] == 0 ? 1.0 : x[j + 1]), (x[j] == 0 ? 1.0 : -x[j]);
-    if (x[j] == 0 || x[j + 1] == 0) C.row(i) = (x.array() == 0).select(C.row(i).transpose().array(), 0.0).transpose();
+    if (x[j] == 0 || x[j + 1] == 0)
+      C.row(i) = (x.array() == 0).select(C.row(i).transpose().array(), 0.0).transpose();
   }
   return C;
 }
@@ -52,13 +55,15 @@ TestCase two_sets(const Setting& s) {
     TestSet& X = test.sets.front();
     const Index g = s.random.between(s.n, s.n + 2);
     const Vector center = s.random.chance(0.5) ? Vector(Vector::Zero(s.n)) : s.make().vector(s.n);
-    X.form = make_zonotope(center, s.random.chance(0.5) ? dense(s, s.n, g) : Matrix(Matrix::Identity(s.n, g)));
+    X.form = make_zonotope(
+        center, s.random.chance(0.5) ? dense(s, s.n, g) : Matrix(Matrix::Identity(s.n, g)));
     X.delta = Vector(0);
     X.xi = Vector(g);
     for (double& x : X.xi) x = static_cast<double>(s.random.between(-2, 2)) / 2;
   }
   const Index q = s.random.between(0, 2);
-  test.sets.push_back(s.random.chance(0.7) ? point(s, 'q', q) : s.make().set("V", 'q', q, {false, 3, 1}));
+  test.sets.push_back(s.random.chance(0.7) ? point(s, 'q', q)
+                                           : s.make().set("V", 'q', q, {false, 3, 1}));
   return test;
 }
 
@@ -68,12 +73,15 @@ void add_rows(const Setting& s, TestCase& test, Index p) {
 }
 
 Verdict judge(const Context& context, const TestCase& test, Applied applied) {
-  Verdict verdict = encloses(context, applied.result, applied.truth, applied.points, applied.sure, test.seed);
+  Verdict verdict =
+      encloses(context, applied.result, applied.truth, applied.points, applied.sure, test.seed);
   verdict.derived.insert(verdict.derived.end(), applied.derived.begin(), applied.derived.end());
   return verdict;
 }
 
-Measurement rows_of(const TestCase& test) { return {test.matrix(0), test.matrix(1), Vector::Zero(test.matrix(0).rows())}; }
+Measurement rows_of(const TestCase& test) {
+  return {test.matrix(0), test.matrix(1), Vector::Zero(test.matrix(0).rows())};
+}
 
 TestCase generate_repeated(const Setting& setting) {
   const Setting s = plain(setting);
@@ -105,9 +113,11 @@ TestCase generate_dependent(const Setting& setting) {
   return test;
 }
 
-/// In few digits, so that the rows are dependent as they are stored: rounded ones may determine every state.
+/// In few digits, so that the rows are dependent as they are stored: rounded ones may determine
+/// every state.
 Verdict check_mixed(const Context& context, const TestCase& test) {
-  const Matrix rows = test.matrix(0).cast<float>().cast<double>(), mixed = (8 * test.matrix(2)).array().round() / 8;
+  const Matrix rows = test.matrix(0).cast<float>().cast<double>(),
+               mixed = (8 * test.matrix(2)).array().round() / 8;
   const Matrix C = mixed * rows;
   Applied applied = apply_measurement(context, test, {C, test.matrix(1), Vector::Zero(C.rows())});
   applied.derived.emplace_back("C", describe(C));
@@ -136,7 +146,8 @@ TestCase generate_steps(const Setting& setting) {
   const Setting s = plain(setting);
   TestCase test = two_sets(s);
   test.sets.pop_back();
-  test.matrices.push_back({"A", 'n', 'n', s.random.chance(0.5) ? dense(s, s.n, s.n) : s.make().map(s.n, s.n)});
+  test.matrices.push_back(
+      {"A", 'n', 'n', s.random.chance(0.5) ? dense(s, s.n, s.n) : s.make().map(s.n, s.n)});
   test.matrices.push_back({"C", 'p', 'n', rows_for(s, test, s.random.between(1, 3))});
   test.numbers.push_back({"steps", s.random.between(1, 3), 0});
   return test;
@@ -181,13 +192,21 @@ void add_measurements(LawList& list) {
     return judge(context, test, apply_measurement(context, test, rows_of(test), test.number(0)));
   };
   const std::string kept = "{x ∈ X : z - C x ∈ T V} ⊆ correct(X, C, z, T V) ";
-  list.push_back({{"soundness.repeated_strips", kept + "when it is carried out again and again"}, generate_repeated, repeat});
+  list.push_back({{"soundness.repeated_strips", kept + "when it is carried out again and again"},
+                  generate_repeated,
+                  repeat});
   list.push_back(
-      {{"soundness.proportional_strips", kept + "for rows of C that are multiples of one"}, generate_proportional, check_mixed});
-  list.push_back({{"soundness.dependent_strips", kept + "for linearly dependent rows of C"}, generate_dependent, check_mixed});
+      {{"soundness.proportional_strips", kept + "for rows of C that are multiples of one"},
+       generate_proportional,
+       check_mixed});
+  list.push_back({{"soundness.dependent_strips", kept + "for linearly dependent rows of C"},
+                  generate_dependent,
+                  check_mixed});
   list.push_back({{"soundness.point_noise", kept + "for a point V"}, generate_point_noise, check});
-  list.push_back({{"soundness.flat_strips", kept + "for X without interior"}, generate_flat, check, {}, 1, 2});
-  list.push_back({{"soundness.noise_free_steps", "the state of a plant without noise stays in predictions and corrections"},
+  list.push_back(
+      {{"soundness.flat_strips", kept + "for X without interior"}, generate_flat, check, {}, 1, 2});
+  list.push_back({{"soundness.noise_free_steps",
+                   "the state of a plant without noise stays in predictions and corrections"},
                   generate_steps,
                   check_steps});
 }

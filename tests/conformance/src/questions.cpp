@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Answers are right, agree with each other, and rest on proofs that can be checked. `unknown` is always allowed; how often it is
-// said is counted.
+// Answers are right, agree with each other, and rest on proofs that can be checked. `unknown` is
+// always allowed; how often it is said is counted.
 #include <cmath>
 #include <limits>
 
@@ -14,8 +14,9 @@ namespace cordon::conformance {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// A point this far beyond a bound, relative to the size of the set, is outside for every way of rounding, and near enough to
-/// tell a wrong tolerance. Far above the 1e-10 that nominal arithmetic may leave open.
+/// A point this far beyond a bound, relative to the size of the set, is outside for every way of
+/// rounding, and near enough to tell a wrong tolerance. Far above the 1e-10 that nominal arithmetic
+/// may leave open.
 constexpr double beyond = 1e-8;
 
 TestCase one_set(const Setting& s) {
@@ -33,7 +34,8 @@ std::string text_of(Answer answer) { return std::string(to_string(answer)); }
 
 // ---- emptiness ----
 
-/// Also sets that are nearly empty and nearly not: a sum of factors that must reach its largest value, or a little more or less.
+/// Also sets that are nearly empty and nearly not: a sum of factors that must reach its largest
+/// value, or a little more or less.
 TestCase generate_emptiness(const Setting& s) {
   TestCase test;
   const double choice = s.random.unit();
@@ -74,10 +76,12 @@ Verdict check_is_empty(const Context& context, const TestCase& test) {
   const Enclosure held = context.backend->import(X.form);
   const Answer answer = context.tally(held->is_empty());
   if (!X.empty && test.tame() && answer == Answer::yes) {
-    return Verdict::fails("the set holds the point " + describe_vector(X.point()) + " and is said to be empty");
+    return Verdict::fails("the set holds the point " + describe_vector(X.point()) +
+                          " and is said to be empty");
   }
   if (X.empty && held.tightness == Tightness::exact && answer == Answer::no) {
-    return Verdict::fails("the set is empty, its import is claimed exact, and it is said not to be empty");
+    return Verdict::fails(
+        "the set is empty, its import is claimed exact, and it is said not to be empty");
   }
   return {};
 }
@@ -91,7 +95,8 @@ Verdict check_contains(const Context& context, const TestCase& test) {
   if (X.sure && test.tame()) {
     for (const Vector& x : X.points) {
       if (context.tally(X.set->contains(x)) == Answer::no) {
-        return Verdict::fails("the point " + describe_vector(x) + " of the set is said to lie outside");
+        return Verdict::fails("the point " + describe_vector(x) +
+                              " of the set is said to lie outside");
       }
     }
   }
@@ -102,13 +107,15 @@ Verdict check_contains(const Context& context, const TestCase& test) {
     const double reach = truth.upper(d);
     const auto boundary = truth.maximizer(d);
     if (!std::isfinite(reach) || !boundary) continue;
-    const double size = d.lpNorm<1>() * (X.size > 0 ? X.size : 1) + std::abs(reach), tolerance = truth.tolerance(d);
+    const double size = d.lpNorm<1>() * (X.size > 0 ? X.size : 1) + std::abs(reach),
+                 tolerance = truth.tolerance(d);
     for (const double step : {beyond, 1e-3, 1.0}) {
       const Vector outside = *boundary + (step * size / d.squaredNorm()) * d;
       if (!(d.dot(outside) > reach + 0.5 * step * size + tolerance)) continue;
       if (context.tally(X.set->contains(outside)) == Answer::yes) {
-        return Verdict::fails("the point " + describe_vector(outside) + " lies beyond h(d) = " + describe(reach) +
-                              " in direction d = " + describe_vector(d) + ", and is said to lie in the set");
+        return Verdict::fails(
+            "the point " + describe_vector(outside) + " lies beyond h(d) = " + describe(reach) +
+            " in direction d = " + describe_vector(d) + ", and is said to lie in the set");
       }
     }
   }
@@ -135,14 +142,16 @@ TestCase generate_pair_or_empty(const Setting& s) {
   return test;
 }
 
-/// Also points in Y or a little outside: their exchange form is hard to get wrong, so that a wrong form of Y shows.
+/// Also points in Y or a little outside: their exchange form is hard to get wrong, so that a wrong
+/// form of Y shows.
 TestCase generate_inclusion(const Setting& s) {
   TestCase test = generate_pair(s);
   if (!s.random.chance(0.3)) return test;
   TestSet& X = test.sets.front();
   X.form = make_point(X.form.c);
   X.delta = X.xi = Vector(0);
-  for (double& entry : test.vectors.front().value) entry = static_cast<double>(s.random.between(-12, 12)) / 4;
+  for (double& entry : test.vectors.front().value)
+    entry = static_cast<double>(s.random.between(-12, 12)) / 4;
   return test;
 }
 
@@ -154,15 +163,18 @@ Pair import_pair(const Context& context, const TestCase& test) {
   TestSet moved = test.set(1);
   moved.form.c += test.set(0).point() - moved.point() + test.vector(0);
   Pair pair{import_operand(context, test.set(0)), import_operand(context, moved), false};
-  pair.common = !test.set(0).empty && test.tame() && pair.X.sure && pair.Y.sure && test.vector(0).isZero(0);
+  pair.common =
+      !test.set(0).empty && test.tame() && pair.X.sure && pair.Y.sure && test.vector(0).isZero(0);
   return pair;
 }
 
 /// A direction in which X lies behind Y by more than rounding; nothing without a proof.
-std::optional<Vector> separation(Reference& X, Reference& Y, const std::vector<Vector>& candidates) {
+std::optional<Vector> separation(Reference& X, Reference& Y,
+                                 const std::vector<Vector>& candidates) {
   for (const Vector& d : candidates) {
     const double x = X.upper(d), y = -Y.upper(-d);
-    if (std::isfinite(x) && std::isfinite(y) && y - x > 1e3 * (X.tolerance(d) + Y.tolerance(-d))) return d;
+    if (std::isfinite(x) && std::isfinite(y) && y - x > 1e3 * (X.tolerance(d) + Y.tolerance(-d)))
+      return d;
   }
   return std::nullopt;
 }
@@ -178,21 +190,25 @@ Verdict check_is_disjoint(const Context& context, const TestCase& test) {
   const Answer answer = context.tally(pair.X.set->is_disjoint_from(*pair.Y.set));
   if (pair.common && answer == Answer::yes) {
     return show_pair(
-        Verdict::fails("X and Y share the point " + describe_vector(pair.X.points.front()) + " and are said to be disjoint"),
+        Verdict::fails("X and Y share the point " + describe_vector(pair.X.points.front()) +
+                       " and are said to be disjoint"),
         pair);
   }
-  if (context.tally(pair.Y.set->is_disjoint_from(*pair.X.set)) != answer && answer != Answer::unknown &&
-      pair.Y.set->is_disjoint_from(*pair.X.set) == negate(answer)) {
-    return show_pair(Verdict::fails("X and Y are disjoint: " + text_of(answer) + "; Y and X: " + text_of(negate(answer))), pair);
+  if (context.tally(pair.Y.set->is_disjoint_from(*pair.X.set)) != answer &&
+      answer != Answer::unknown && pair.Y.set->is_disjoint_from(*pair.X.set) == negate(answer)) {
+    return show_pair(Verdict::fails("X and Y are disjoint: " + text_of(answer) +
+                                    "; Y and X: " + text_of(negate(answer))),
+                     pair);
   }
   if (!pair.X.equal || answer != Answer::no) return {};
   Reference X(pair.X.form, {}, pair.X.size), Y(pair.Y.form, {}, pair.Y.size);
   Random random(test.seed);
-  const auto d = separation(X, Y, directions({pair.X.form, pair.Y.form}, pair.X.form.dim(), random, 6));
+  const auto d =
+      separation(X, Y, directions({pair.X.form, pair.Y.form}, pair.X.form.dim(), random, 6));
   if (!d) return {};
-  return show_pair(
-      Verdict::fails("the direction d = " + describe_vector(*d) + " separates X from Y, and they are said not to be disjoint"),
-      pair);
+  return show_pair(Verdict::fails("the direction d = " + describe_vector(*d) +
+                                  " separates X from Y, and they are said not to be disjoint"),
+                   pair);
 }
 
 Verdict check_is_subset(const Context& context, const TestCase& test) {
@@ -200,19 +216,25 @@ Verdict check_is_subset(const Context& context, const TestCase& test) {
   const SetBackend& backend = *context.backend;
   // a set in one that was built around it
   const Index n = pair.X.form.dim();
-  const bool small =
-      pair.X.form.generators() + pair.Y.form.generators() <= 3 && pair.X.form.constraints() + pair.Y.form.constraints() == 0;
-  const Enclosure around = small ? backend.convex_hull(pair.X.set, pair.Y.set)
-                                 : backend.sum(pair.X.set, backend.box({Vector::Constant(n, -1), Vector::Ones(n)}));
+  const bool small = pair.X.form.generators() + pair.Y.form.generators() <= 3 &&
+                     pair.X.form.constraints() + pair.Y.form.constraints() == 0;
+  const Enclosure around =
+      small ? backend.convex_hull(pair.X.set, pair.Y.set)
+            : backend.sum(pair.X.set, backend.box({Vector::Constant(n, -1), Vector::Ones(n)}));
   if (test.tame() && pair.X.sure && around.tightness == Tightness::exact &&
       context.tally(pair.X.set->is_subset_of(*around)) == Answer::no) {
-    return show_pair(Verdict::fails("X is said not to lie in a set that was built around it and is claimed exact"), pair);
+    return show_pair(
+        Verdict::fails(
+            "X is said not to lie in a set that was built around it and is claimed exact"),
+        pair);
   }
   const Answer answer = context.tally(pair.X.set->is_subset_of(*pair.Y.set));
   if (answer == Answer::yes && test.tame() && pair.X.sure) {
     for (const Vector& x : pair.X.points) {
       if (context.tally(pair.Y.set->contains(x)) != Answer::no) continue;
-      return show_pair(Verdict::fails("X is said to lie in Y, and its point " + describe_vector(x) + " to lie outside Y"), pair);
+      return show_pair(Verdict::fails("X is said to lie in Y, and its point " + describe_vector(x) +
+                                      " to lie outside Y"),
+                       pair);
     }
   }
   if (answer != Answer::yes || !pair.X.equal) return {};
@@ -220,10 +242,12 @@ Verdict check_is_subset(const Context& context, const TestCase& test) {
   Random random(test.seed);
   for (const Vector& d : directions({pair.Y.form, pair.X.form}, pair.X.form.dim(), random, 6)) {
     const double inner = X.lower(d), outer = Y.upper(d);
-    if (inner > outer + (std::isinf(outer) || std::isinf(inner) ? 0 : X.tolerance(d) + Y.tolerance(d))) {
-      return show_pair(Verdict::fails("X is said to lie in Y, but reaches " + describe(inner) +
-                                      " in direction d = " + describe_vector(d) + ", Y only " + describe(outer)),
-                       pair);
+    if (inner >
+        outer + (std::isinf(outer) || std::isinf(inner) ? 0 : X.tolerance(d) + Y.tolerance(d))) {
+      return show_pair(
+          Verdict::fails("X is said to lie in Y, but reaches " + describe(inner) +
+                         " in direction d = " + describe_vector(d) + ", Y only " + describe(outer)),
+          pair);
     }
   }
   return {};
@@ -238,7 +262,8 @@ Verdict check_is_bounded(const Context& context, const TestCase& test) {
   Random random(test.seed);
   for (const Vector& d : directions({X.form}, X.form.dim(), random, 4)) {
     if (answer == Answer::yes && truth.lower(d) == infinity) {
-      return Verdict::fails("the set is said to be bounded, but has a line along which d = " + describe_vector(d) + " grows");
+      return Verdict::fails("the set is said to be bounded, but has a line along which d = " +
+                            describe_vector(d) + " grows");
     }
   }
   if (answer == Answer::no && test.set(0).form.lines() == 0 && X.equal && X.form.lines() == 0) {
@@ -246,8 +271,8 @@ Verdict check_is_bounded(const Context& context, const TestCase& test) {
   }
   const Box hull = X.set->interval_hull();
   if (answer == Answer::no && hull.is_bounded()) {
-    return Verdict::fails("the set is said to be unbounded, but its interval hull is " + describe_vector(hull.lower) + " to " +
-                          describe_vector(hull.upper));
+    return Verdict::fails("the set is said to be unbounded, but its interval hull is " +
+                          describe_vector(hull.lower) + " to " + describe_vector(hull.upper));
   }
   return {};
 }
@@ -263,17 +288,21 @@ Verdict check_agree(const Context& context, const TestCase& test) {
   Reference reference(pair.X.form, {}, pair.X.size);
   Random random(test.seed);
   const auto all = directions({pair.X.form}, n, random, 3);
-  if (empty == Answer::no && hull.is_empty()) return Verdict::fails("not empty, but the interval hull is");
-  if (empty == Answer::yes && !hull.is_empty()) return Verdict::fails("empty, but the interval hull is not");
+  if (empty == Answer::no && hull.is_empty())
+    return Verdict::fails("not empty, but the interval hull is");
+  if (empty == Answer::yes && !hull.is_empty())
+    return Verdict::fails("empty, but the interval hull is not");
   if (empty == Answer::yes && X.volume().value > 0)
     return Verdict::fails("empty, but the volume is " + describe(X.volume().value));
-  if (empty == Answer::yes && X.is_subset_of(Y) == Answer::no) return Verdict::fails("empty, but not a subset");
+  if (empty == Answer::yes && X.is_subset_of(Y) == Answer::no)
+    return Verdict::fails("empty, but not a subset");
   if (empty == Answer::yes && X.is_disjoint_from(Y) == Answer::no)
     return Verdict::fails("empty, but not disjoint from another set");
   for (const Vector& d : all) {
     const double up = X.support(d), down = -X.support(-d);
     if (empty == Answer::no && (up == -infinity || down == infinity)) {
-      return Verdict::fails("not empty, but the support function in direction d = " + describe_vector(d) + " is -inf");
+      return Verdict::fails("not empty, but the support function in direction d = " +
+                            describe_vector(d) + " is -inf");
     }
     if (empty != Answer::yes && std::isfinite(up) && std::isfinite(down) &&
         up < down - reference.tolerance(d) - reference.tolerance(-d)) {
@@ -288,30 +317,40 @@ Verdict check_agree(const Context& context, const TestCase& test) {
   for (const Vector& x : points) {
     const Answer inside = context.tally(X.contains(x));
     if (inside != Answer::yes) continue;
-    if (empty == Answer::yes) return Verdict::fails("empty, but holds the point " + describe_vector(x));
+    if (empty == Answer::yes)
+      return Verdict::fails("empty, but holds the point " + describe_vector(x));
     for (const Vector& d : all) {
       if (X.support(d) < d.dot(x) - reference.tolerance(d)) {
-        return Verdict::fails("holds the point " + describe_vector(x) + ", but the support function in direction d = " +
-                              describe_vector(d) + " is " + describe(X.support(d)));
+        return Verdict::fails("holds the point " + describe_vector(x) +
+                              ", but the support function in direction d = " + describe_vector(d) +
+                              " is " + describe(X.support(d)));
       }
     }
     for (Index i = 0; i < n; ++i) {
       const double tolerance = reference.tolerance(Vector::Unit(n, i));
       if (x[i] > hull.upper[i] + tolerance || x[i] < hull.lower[i] - tolerance) {
-        return Verdict::fails("holds the point " + describe_vector(x) + ", which its interval hull does not");
+        return Verdict::fails("holds the point " + describe_vector(x) +
+                              ", which its interval hull does not");
       }
     }
     const Answer in_Y = context.tally(Y.contains(x));
     if (in_Y == Answer::yes && X.is_disjoint_from(Y) == Answer::yes) {
-      return show_pair(Verdict::fails("X and Y are said to be disjoint, and both to hold the point " + describe_vector(x)), pair);
+      return show_pair(
+          Verdict::fails("X and Y are said to be disjoint, and both to hold the point " +
+                         describe_vector(x)),
+          pair);
     }
     if (in_Y == Answer::no && test.tame() && X.is_subset_of(Y) == Answer::yes) {
-      return show_pair(Verdict::fails("X is said to lie in Y; the point " + describe_vector(x) + " to lie in X and not in Y"),
+      return show_pair(Verdict::fails("X is said to lie in Y; the point " + describe_vector(x) +
+                                      " to lie in X and not in Y"),
                        pair);
     }
   }
-  if (empty == Answer::no && X.is_subset_of(Y) == Answer::yes && X.is_disjoint_from(Y) == Answer::yes) {
-    return show_pair(Verdict::fails("X is not empty, and said both to lie in Y and to be disjoint from it"), pair);
+  if (empty == Answer::no && X.is_subset_of(Y) == Answer::yes &&
+      X.is_disjoint_from(Y) == Answer::yes) {
+    return show_pair(
+        Verdict::fails("X is not empty, and said both to lie in Y and to be disjoint from it"),
+        pair);
   }
   return {};
 }
@@ -323,36 +362,46 @@ std::optional<std::string> needs_exact_exchange(const Context& context) {
   return "certificates are about the exchange form, which is an outer one here";
 }
 
-/// Certificates that are given prove the answer about the exported form, in rational arithmetic. Bounds hold up to the rounding
-/// of the export. `none` and `structure` carry no numbers; then there is nothing to check.
+/// Certificates that are given prove the answer about the exported form, in rational arithmetic.
+/// Bounds hold up to the rounding of the export. `none` and `structure` carry no numbers; then
+/// there is nothing to check.
 Verdict check_certificates(const Context& context, const TestCase& test) {
   const Pair pair = import_pair(context, test);
   const Set &X = *pair.X.set, &Y = *pair.Y.set;
   const LineForm &FX = pair.X.form, &FY = pair.Y.form;
   const Index n = X.dim();
   Certificate why;
-  const auto numeric = [&] { return why.kind != Certificate::Kind::none && why.kind != Certificate::Kind::structure; };
+  const auto numeric = [&] {
+    return why.kind != Certificate::Kind::none && why.kind != Certificate::Kind::structure;
+  };
   const auto wrong = [&](const std::string& answer) {
     Verdict verdict = Verdict::fails("the certificate does not prove \"" + answer + "\"");
-    verdict.derived.emplace_back("certificate", std::string(to_string(why.kind)) + " " + describe_vector(why.data));
+    verdict.derived.emplace_back(
+        "certificate", std::string(to_string(why.kind)) + " " + describe_vector(why.data));
     return show_pair(std::move(verdict), pair);
   };
   const Answer empty = context.tally(X.is_empty(&why));
   if (empty == Answer::yes && numeric() && !proves_empty(FX, why)) return wrong("X is empty");
-  if (empty == Answer::no && numeric() && !proves_not_empty(FX, why)) return wrong("X is not empty");
+  if (empty == Answer::no && numeric() && !proves_not_empty(FX, why))
+    return wrong("X is not empty");
   for (const Vector& x : {pair.X.points.front(), pair.Y.points.back()}) {
     why = {};
     const Answer inside = context.tally(X.contains(x, &why));
-    if (inside == Answer::yes && numeric() && !proves_contains(FX, x, why)) return wrong("X holds " + describe_vector(x));
-    if (inside == Answer::no && numeric() && !proves_excludes(FX, x, why)) return wrong("X does not hold " + describe_vector(x));
+    if (inside == Answer::yes && numeric() && !proves_contains(FX, x, why))
+      return wrong("X holds " + describe_vector(x));
+    if (inside == Answer::no && numeric() && !proves_excludes(FX, x, why))
+      return wrong("X does not hold " + describe_vector(x));
   }
   why = {};
   const Answer disjoint = context.tally(X.is_disjoint_from(Y, &why));
-  if (disjoint == Answer::yes && numeric() && !proves_disjoint(FX, FY, why)) return wrong("X and Y are disjoint");
-  if (disjoint == Answer::no && numeric() && !proves_meet(FX, FY, why)) return wrong("X and Y meet");
+  if (disjoint == Answer::yes && numeric() && !proves_disjoint(FX, FY, why))
+    return wrong("X and Y are disjoint");
+  if (disjoint == Answer::no && numeric() && !proves_meet(FX, FY, why))
+    return wrong("X and Y meet");
   Reference reference(FX, {}, pair.X.size);
   Random random(test.seed);
-  // normals to lines too: up to rounding only, the exact value is +inf there, and a finite one has no proof
+  // normals to lines too: up to rounding only, the exact value is +inf there, and a finite one has
+  // no proof
   LineForm columns = FX;
   columns.G.resize(n, FX.generators() + FX.lines());
   columns.G << FX.G, FX.M;
@@ -361,7 +410,8 @@ Verdict check_certificates(const Context& context, const TestCase& test) {
     const double h = X.support(d, &why);
     if (!numeric() || h == infinity) continue;
     const double bound = h == -infinity ? h : h + reference.tolerance(d);
-    if (!proves_support(FX, d, bound, why)) return wrong("h(d) ≤ " + describe(h) + " for d = " + describe_vector(d));
+    if (!proves_support(FX, d, bound, why))
+      return wrong("h(d) ≤ " + describe(h) + " for d = " + describe_vector(d));
   }
   return {};
 }
@@ -386,8 +436,10 @@ Verdict check_unknown_rate(const Context& context, const TestCase& test) {
   const Operand X = import_operand(context, test.set(0));
   const Index n = X.form.dim();
   const Vector inside = test.set(0).form.c, outside = inside + Vector::Constant(n, 100);
-  const Enclosure inner = context.backend->affine_map(X.set, Matrix::Identity(n, n) / 2, inside / 2);
-  const Enclosure far = context.backend->affine_map(X.set, Matrix::Identity(n, n), Vector::Constant(n, 100));
+  const Enclosure inner =
+      context.backend->affine_map(X.set, Matrix::Identity(n, n) / 2, inside / 2);
+  const Enclosure far =
+      context.backend->affine_map(X.set, Matrix::Identity(n, n), Vector::Constant(n, 100));
   struct Question {
     const char* text;
     Answer answer;
@@ -400,8 +452,10 @@ Verdict check_unknown_rate(const Context& context, const TestCase& test) {
       {"a box holds its centre", X.set->contains(inside), Answer::no, true},
       {"a box holds a point far away", X.set->contains(outside), Answer::yes, exact},
       {"a box is bounded", X.set->is_bounded(), Answer::no, exact},
-      {"half a box lies in the box", inner->is_subset_of(*X.set), Answer::no, exact && inner.tightness == Tightness::exact},
-      {"a box lies in half of it", X.set->is_subset_of(*inner), Answer::yes, exact && inner.tightness == Tightness::exact},
+      {"half a box lies in the box", inner->is_subset_of(*X.set), Answer::no,
+       exact && inner.tightness == Tightness::exact},
+      {"a box lies in half of it", X.set->is_subset_of(*inner), Answer::yes,
+       exact && inner.tightness == Tightness::exact},
       {"a box and one far away are disjoint", X.set->is_disjoint_from(*far), Answer::no,
        exact && far.tightness == Tightness::exact},
       {"a box and half of it are disjoint", X.set->is_disjoint_from(*inner), Answer::yes, true},
@@ -418,19 +472,32 @@ Verdict check_unknown_rate(const Context& context, const TestCase& test) {
 }  // namespace
 
 void add_questions(LawList& list) {
-  list.push_back({{"questions.is_empty", "is_empty is right about sets that are, or are nearly, empty"},
-                  generate_emptiness,
-                  check_is_empty});
   list.push_back(
-      {{"questions.contains", "contains is right about points next to the boundary, on either side"}, one_set, check_contains});
-  list.push_back({{"questions.is_disjoint", "is_disjoint_from is right, and symmetric"}, generate_pair, check_is_disjoint});
+      {{"questions.is_empty", "is_empty is right about sets that are, or are nearly, empty"},
+       generate_emptiness,
+       check_is_empty});
+  list.push_back({{"questions.contains",
+                   "contains is right about points next to the boundary, on either side"},
+                  one_set,
+                  check_contains});
+  list.push_back({{"questions.is_disjoint", "is_disjoint_from is right, and symmetric"},
+                  generate_pair,
+                  check_is_disjoint});
   // a proof may visit every facet of the lifted zonotope: small sets
-  list.push_back(
-      {{"questions.is_subset", "is_subset_of is right"}, generate_inclusion, check_is_subset, {}, 1, 1, 3, {true, 4, 1}});
+  list.push_back({{"questions.is_subset", "is_subset_of is right"},
+                  generate_inclusion,
+                  check_is_subset,
+                  {},
+                  1,
+                  1,
+                  3,
+                  {true, 4, 1}});
   list.push_back({{"questions.is_bounded", "is_bounded is right"}, one_set, check_is_bounded});
-  list.push_back(
-      {{"questions.agree", "no two answers about the same sets contradict each other"}, generate_pair_or_empty, check_agree});
-  list.push_back({{"questions.certificates", "a certificate proves its answer, checked in rational arithmetic"},
+  list.push_back({{"questions.agree", "no two answers about the same sets contradict each other"},
+                  generate_pair_or_empty,
+                  check_agree});
+  list.push_back({{"questions.certificates",
+                   "a certificate proves its answer, checked in rational arithmetic"},
                   generate_inclusion,
                   check_certificates,
                   needs_exact_exchange,
@@ -439,7 +506,8 @@ void add_questions(LawList& list) {
                   3,
                   {true, 4, 1}});
   list.push_back(
-      {{"questions.unknown_rate", "clear-cut questions about boxes are answered rightly or with unknown, which is counted"},
+      {{"questions.unknown_rate",
+        "clear-cut questions about boxes are answered rightly or with unknown, which is counted"},
        generate_clear,
        check_unknown_rate,
        {},

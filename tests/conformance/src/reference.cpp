@@ -20,7 +20,8 @@ constexpr double nominal = 1e-9;
 constexpr double underflow = 1e-290;
 
 bool is_moderate(const Matrix& A) {
-  return A.size() == 0 || ((A.array() == 0) || (A.array().abs() > 1e-4 && A.array().abs() < 1e4)).all();
+  return A.size() == 0 ||
+         ((A.array() == 0) || (A.array().abs() > 1e-4 && A.array().abs() < 1e4)).all();
 }
 
 }  // namespace
@@ -34,12 +35,14 @@ double size_of(const LineForm& X) {
 }
 
 Reference::Reference(const LineForm& X, std::vector<Vector> known, double terms, double row_terms)
-    : Reference(eliminate_lines_traced(X, Vector(0)), std::move(known), std::max(terms, size_of(X)), row_terms) {
+    : Reference(eliminate_lines_traced(X, Vector(0)), std::move(known), std::max(terms, size_of(X)),
+                row_terms) {
   trusted_ = X.lines() == 0 || (is_moderate(X.M) && is_moderate(X.S));
   if (X.lines() > 0) whole_ = X;
 }
 
-Reference::Reference(LinesEliminated eliminated, std::vector<Vector> known, double terms, double row_terms)
+Reference::Reference(LinesEliminated eliminated, std::vector<Vector> known, double terms,
+                     double row_terms)
     : X_(std::move(eliminated.set)),
       row_magnitude_(std::move(eliminated.row_magnitude)),
       vanished_(eliminated.vanished),
@@ -47,7 +50,8 @@ Reference::Reference(LinesEliminated eliminated, std::vector<Vector> known, doub
       known_(std::move(known)),
       terms_(std::max(terms, size_of(X_))),
       row_terms_(row_terms),
-      moderate_(is_moderate(X_.G) && is_moderate(X_.A) && is_moderate(X_.c) && is_moderate(X_.b) && row_terms < 1e4) {}
+      moderate_(is_moderate(X_.G) && is_moderate(X_.A) && is_moderate(X_.c) && is_moderate(X_.b) &&
+                row_terms < 1e4) {}
 
 Reference::Along Reference::along(VectorIn d) const {
   if (!trusted_) return Along::unclear;
@@ -80,17 +84,20 @@ double Reference::lower(VectorIn d) {
     reached = program_.attained(linalg::product(X_.G.transpose(), d), *bound.xi);
   }
   if (reached > -infinity) return std::max(value, d.dot(X_.c) + reached);
-  // dependent rows, or a set without interior: floating point proves nothing, rational arithmetic does where it is affordable
+  // dependent rows, or a set without interior: floating point proves nothing, rational arithmetic
+  // does where it is affordable
   if (!moderate_ || X_.generators() > 16 || X_.constraints() > 8) return value;
   // +inf here is a direction that misses being normal to a line by its own rounding
   const double exact = exact::support(X_, d).lower;
-  if (exact == -infinity && !whole_) return exact;  // empty by a hair: the known points were rounded
+  if (exact == -infinity && !whole_)
+    return exact;  // empty by a hair: the known points were rounded
   return exact < infinity ? std::max(value, exact) : value;
 }
 
 double Reference::upper(VectorIn d) {
   if (along(d) != Along::bounded) return infinity;
-  if (whole_) return cordon::support(*whole_, d);  // with lines, what rational arithmetic makes of it
+  if (whole_)
+    return cordon::support(*whole_, d);  // with lines, what rational arithmetic makes of it
   if (solve(d).upper == -infinity) return -infinity;
   const double gradient_error = rounding::product_error(X_.G.transpose(), d).sum();
   return rounding::up(d.dot(X_.c) + solve(d).upper) + gradient_error;
@@ -120,7 +127,8 @@ bool Reference::robust() {
   for (Index i = 0; i < X_.constraints(); ++i) {
     const double reach = X_.A.row(i).cwiseAbs().sum();
     const double magnitude = i < row_magnitude_.size() ? row_magnitude_[i] : 0.0;
-    if (!(slack * reach > nominal * (std::abs(X_.b[i]) + row_terms_ + magnitude + reach))) return false;
+    if (!(slack * reach > nominal * (std::abs(X_.b[i]) + row_terms_ + magnitude + reach)))
+      return false;
   }
   return true;
 }
@@ -157,7 +165,8 @@ bool Truth::robust() {
   return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->robust(); });
 }
 
-std::vector<Vector> directions(const std::vector<LineForm>& forms, Index n, Random& random, int count) {
+std::vector<Vector> directions(const std::vector<LineForm>& forms, Index n, Random& random,
+                               int count) {
   std::vector<Vector> found;
   for (Index i = 0; i < n; ++i) {
     found.push_back(Vector::Unit(n, i));
@@ -175,7 +184,8 @@ std::vector<Vector> directions(const std::vector<LineForm>& forms, Index n, Rand
     for (int k = 0; k < count; ++k) {
       const Vector u = X.G.col(random.below(g)), v = X.G.col(random.below(g));
       Vector d = n == 2 ? Vector{{-u[1], u[0]}}
-                        : Vector{{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]}};
+                        : Vector{{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                  u[0] * v[1] - u[1] * v[0]}};
       const double size = d.cwiseAbs().maxCoeff();
       if (!(size > 0) || !std::isfinite(size)) continue;
       found.push_back(d / size * random.sign());
@@ -184,7 +194,8 @@ std::vector<Vector> directions(const std::vector<LineForm>& forms, Index n, Rand
   return found;
 }
 
-std::vector<Vector> points_of(const LineForm& X, const Vector& delta, const Vector& xi, Random& random, int count) {
+std::vector<Vector> points_of(const LineForm& X, const Vector& delta, const Vector& xi,
+                              Random& random, int count) {
   const Index l = X.lines(), g = X.generators(), m = X.constraints();
   std::vector<Vector> points{X.c + X.M * delta + X.G * xi};
   if (l + g == 0) return points;
@@ -193,15 +204,19 @@ std::vector<Vector> points_of(const LineForm& X, const Vector& delta, const Vect
   columns << X.M, X.G;
   Vector full(l + g);
   full << delta, xi;
-  const auto within = [&](const Vector& f) { return g == 0 || f.tail(g).cwiseAbs().maxCoeff() <= 1; };
+  const auto within = [&](const Vector& f) {
+    return g == 0 || f.tail(g).cwiseAbs().maxCoeff() <= 1;
+  };
   for (int k = 0; k < count; ++k) {
     for (Index j = 0; m == 0 && j < l + g; ++j) {
-      full[j] = j >= l && random.chance(0.5) ? random.sign() : static_cast<double>(random.between(-4, 4)) / 4;
+      full[j] = j >= l && random.chance(0.5) ? random.sign()
+                                             : static_cast<double>(random.between(-4, 4)) / 4;
     }
     for (int trial = 0; m > 0 && trial < 8; ++trial) {
       const Index i = random.below(l + g), j = random.below(l + g), row = random.below(m);
       Vector moved = full;
-      const double length = random.sign() * std::ldexp(1.0, static_cast<int>(random.between(-4, 0)));
+      const double length =
+          random.sign() * std::ldexp(1.0, static_cast<int>(random.between(-4, 0)));
       moved[i] += length * (i == j ? 1 : rows(row, j));
       if (i != j) moved[j] -= length * rows(row, i);
       if (within(moved) && (rows * (moved - full)).isZero(0)) full = moved;

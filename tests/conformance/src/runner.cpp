@@ -11,7 +11,8 @@ namespace cordon::conformance {
 
 namespace {
 
-/// Trials of the search for a smaller case: enough to bring sets of this size down to a few numbers.
+/// Trials of the search for a smaller case: enough to bring sets of this size down to a few
+/// numbers.
 constexpr Index shrinking_limit = 1500;
 
 const LawEntry& entry_of(std::string_view name) {
@@ -24,11 +25,14 @@ const LawEntry& entry_of(std::string_view name) {
 }
 
 Index planned_cases(const LawEntry& entry, const Options& options) {
-  return std::max<Index>(1, static_cast<Index>(std::ceil(entry.share * static_cast<double>(options.cases))));
+  return std::max<Index>(
+      1, static_cast<Index>(std::ceil(entry.share * static_cast<double>(options.cases))));
 }
 
-/// Case `number` of a law: small dimensions and plain numbers first, so that a defect shows early and plainly.
-TestCase generate(const LawEntry& entry, const Options& options, const BackendInfo& info, Index number) {
+/// Case `number` of a law: small dimensions and plain numbers first, so that a defect shows early
+/// and plainly.
+TestCase generate(const LawEntry& entry, const Options& options, const BackendInfo& info,
+                  Index number) {
   Random random(seed_of(options.seed, entry.law.name, number));
   const Style style = number % 3 == 0      ? Style::tame
                       : number % 3 == 1    ? Style::full
@@ -53,23 +57,25 @@ Outcome attempt(const LawEntry& entry, const Context& context, const TestCase& t
     return {entry.check(context, test), false};
   } catch (const Error& error) {
     if (error.code() == Errc::unsupported || error.code() == Errc::solver) return {{}, true};
-    return {Verdict::fails("an operation with legal operands threw Errc::" + std::string(to_string(error.code())) + ": " +
-                           error.what()),
+    return {Verdict::fails("an operation with legal operands threw Errc::" +
+                           std::string(to_string(error.code())) + ": " + error.what()),
             false};
   } catch (const std::exception& error) {
-    return {Verdict::fails(std::string("an exception that is no cordon::Error was thrown: ") + error.what()), false};
+    return {Verdict::fails(std::string("an exception that is no cordon::Error was thrown: ") +
+                           error.what()),
+            false};
   } catch (...) {
     return {Verdict::fails("an exception that is no std::exception was thrown"), false};
   }
 }
 
 std::string replay_line(const Subject& subject, const LawEntry& entry, const Options& options) {
-  return subject.command + " --law " + entry.law.name + " --seed " + std::to_string(options.seed) + " --cases " +
-         std::to_string(options.cases);
+  return subject.command + " --law " + entry.law.name + " --seed " + std::to_string(options.seed) +
+         " --cases " + std::to_string(options.cases);
 }
 
-void report_failure(const LawEntry& entry, const Context& context, const Options& options, TestCase test,
-                    const std::function<void()>& sign_of_life, Result& result) {
+void report_failure(const LawEntry& entry, const Context& context, const Options& options,
+                    TestCase test, const std::function<void()>& sign_of_life, Result& result) {
   const auto fails = [&](const TestCase& candidate) {
     sign_of_life();
     return attempt(entry, context, candidate).verdict.failed();
@@ -84,13 +90,15 @@ void report_failure(const LawEntry& entry, const Context& context, const Options
   result.replay = replay_line(context.subject, entry, options);
 }
 
-Result check_entry(const LawEntry& entry, const Subject& subject, const Options& options, const Progress& progress) {
+Result check_entry(const LawEntry& entry, const Subject& subject, const Options& options,
+                   const Progress& progress) {
   Result result;
   result.law = entry.law.name;
   const Index planned = planned_cases(entry, options);
   if (progress) progress(entry.law, -1, planned);
   Tally tally;
-  const Context context{subject, entry.without_backend ? nullptr : subject.make(subject.params), tally};
+  const Context context{subject, entry.without_backend ? nullptr : subject.make(subject.params),
+                        tally};
   if (entry.skip) {
     if (const auto why = entry.skip(context)) {
       result.status = Status::skipped;
@@ -100,7 +108,8 @@ Result check_entry(const LawEntry& entry, const Subject& subject, const Options&
   }
   for (Index k = 0; k < planned; ++k) {
     if (progress) progress(entry.law, k, planned);
-    TestCase test = generate(entry, options, entry.without_backend ? BackendInfo{} : context.info(), k);
+    TestCase test =
+        generate(entry, options, entry.without_backend ? BackendInfo{} : context.info(), k);
     ++result.cases;
     const Outcome outcome = attempt(entry, context, test);
     result.unsupported += outcome.unsupported;
@@ -163,19 +172,23 @@ bool matches(std::string_view pattern, std::string_view name) {
          matches(pattern.substr(1), name.substr(1));
 }
 
-Result check(const Subject& subject, std::string_view law, const Options& options, const Progress& progress) {
+Result check(const Subject& subject, std::string_view law, const Options& options,
+             const Progress& progress) {
   return check_entry(entry_of(law), subject, options, progress);
 }
 
-std::vector<Result> check(const Subject& subject, const Options& options, const Progress& progress) {
+std::vector<Result> check(const Subject& subject, const Options& options,
+                          const Progress& progress) {
   std::vector<Result> results;
   for (const LawEntry& entry : law_list()) {
-    if (matches(options.laws, entry.law.name)) results.push_back(check_entry(entry, subject, options, progress));
+    if (matches(options.laws, entry.law.name))
+      results.push_back(check_entry(entry, subject, options, progress));
   }
   return results;
 }
 
-std::string describe_case(std::string_view law, const Options& options, const BackendInfo& info, Index number) {
+std::string describe_case(std::string_view law, const Options& options, const BackendInfo& info,
+                          Index number) {
   return describe(generate(entry_of(law), options, info, number));
 }
 

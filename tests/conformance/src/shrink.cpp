@@ -116,7 +116,8 @@ class Shrinker {
            });
     }
     for (std::size_t k = 0; k < best_.numbers.size(); ++k) {
-      while (best_.numbers[k].value > best_.numbers[k].lowest && attempt([&](TestCase& test) { --test.numbers[k].value; })) {
+      while (best_.numbers[k].value > best_.numbers[k].lowest &&
+             attempt([&](TestCase& test) { --test.numbers[k].value; })) {
       }
     }
   }
@@ -137,8 +138,8 @@ class Shrinker {
       const double value = array(best_)[k];
       if (value == 0) continue;
       const double sign = value < 0 ? -1 : 1;
-      for (const double simple :
-           {0.0, 1.0, -1.0, sign * std::min(std::floor(std::abs(value)), 1e9), std::nearbyint(value * 2) / 2}) {
+      for (const double simple : {0.0, 1.0, -1.0, sign * std::min(std::floor(std::abs(value)), 1e9),
+                                  std::nearbyint(value * 2) / 2}) {
         if (simple == value) break;  // all that follow are no simpler
         if (attempt([&](TestCase& test) { array(test)[k] = simple; })) break;
       }
@@ -155,18 +156,23 @@ class Shrinker {
       simplify([k](TestCase& t) { return t.sets[k].form.M.data(); }, F.M.size());
       simplify([k](TestCase& t) { return t.sets[k].form.S.data(); }, F.S.size());
       simplify([k](TestCase& t) { return t.sets[k].form.A.data(); }, F.A.size());
-      if (best_.sets[k].empty) simplify([k](TestCase& t) { return t.sets[k].form.b.data(); }, F.b.size());
+      if (best_.sets[k].empty)
+        simplify([k](TestCase& t) { return t.sets[k].form.b.data(); }, F.b.size());
     }
     for (std::size_t k = 0; k < best_.matrices.size(); ++k) {
       TestMatrix& A = best_.matrices[k];
       if (A.value.rows() == A.value.cols() && !A.value.isIdentity(0)) {
         attempt([&](TestCase& test) { test.matrices[k].value.setIdentity(); });
       }
-      if (best_.matrices[k].value.rows() == best_.matrices[k].value.cols() && best_.matrices[k].value.isIdentity(0)) continue;
-      simplify([k](TestCase& t) { return t.matrices[k].value.data(); }, best_.matrices[k].value.size());
+      if (best_.matrices[k].value.rows() == best_.matrices[k].value.cols() &&
+          best_.matrices[k].value.isIdentity(0))
+        continue;
+      simplify([k](TestCase& t) { return t.matrices[k].value.data(); },
+               best_.matrices[k].value.size());
     }
     for (std::size_t k = 0; k < best_.vectors.size(); ++k) {
-      simplify([k](TestCase& t) { return t.vectors[k].value.data(); }, best_.vectors[k].value.size());
+      simplify([k](TestCase& t) { return t.vectors[k].value.data(); },
+               best_.vectors[k].value.size());
     }
   }
 

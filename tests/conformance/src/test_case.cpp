@@ -45,7 +45,8 @@ bool TestCase::tame() const {
     for (const Matrix* block : {&X.form.M, &X.form.G, &X.form.S, &X.form.A}) {
       if (!is_tame(*block)) return false;
     }
-    if (!is_tame(X.form.c) || !is_tame(X.form.b) || !is_tame(X.delta) || !is_tame(X.xi)) return false;
+    if (!is_tame(X.form.c) || !is_tame(X.form.b) || !is_tame(X.delta) || !is_tame(X.xi))
+      return false;
   }
   for (const TestMatrix& A : matrices) {
     if (!is_tame(A.value)) return false;
@@ -73,13 +74,18 @@ std::string describe_vector(const Vector& x) {
 
 std::string describe(const Matrix& A) {
   std::string text = "[";
-  for (Index i = 0; i < A.rows(); ++i) text += (i ? ", " : "") + describe_vector(A.row(i).transpose());
+  for (Index i = 0; i < A.rows(); ++i)
+    text += (i ? ", " : "") + describe_vector(A.row(i).transpose());
   return text + "]";
 }
 
 std::string describe(const LineForm& X) {
-  const bool lines = X.lines() > 0, constraints = X.constraints() > 0, generators = X.generators() > 0;
-  const std::string type = lines ? "line_zonotope" : constraints ? "constrained_zonotope" : generators ? "zonotope" : "point";
+  const bool lines = X.lines() > 0, constraints = X.constraints() > 0,
+             generators = X.generators() > 0;
+  const std::string type = lines         ? "line_zonotope"
+                           : constraints ? "constrained_zonotope"
+                           : generators  ? "zonotope"
+                                         : "point";
   std::string text = "{\"type\": \"" + type + "\", \"center\": " + describe_vector(X.c);
   if (lines) text += ", \"lines\": " + describe(X.M);
   if (generators) text += ", \"generators\": " + describe(X.G);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The random input of a law: sets, matrices, vectors and numbers with names. Each size belongs to a space ('n', 'p', …), so that
-// a case can be made smaller, coordinate by coordinate, without knowing the law.
+// The random input of a law: sets, matrices, vectors and numbers with names. Each size belongs to a
+// space ('n', 'p', …), so that a case can be made smaller, coordinate by coordinate, without
+// knowing the law.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +53,8 @@ struct TestCase {
   Index number(std::size_t i) const { return numbers.at(i).value; }
 
   Index dim(char space) const;  ///< -1 if nothing of the case has that space
-  /// Numbers of few binary digits and of like size only: sums and products of two are exact, and nothing is badly scaled.
+  /// Numbers of few binary digits and of like size only: sums and products of two are exact, and
+  /// nothing is badly scaled.
   bool tame() const;
 };
 

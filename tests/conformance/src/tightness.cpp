@@ -40,7 +40,8 @@ Verdict check_claims_meet(const Context& context, const TestCase& test) {
        [&] {
          return backend.correct(outer_X, {I, zero, {I, Y}});
        }},
-      {"interval_map of an outer X", [&] { return backend.interval_map(outer_X, IntervalMatrix(I)); }},
+      {"interval_map of an outer X",
+       [&] { return backend.interval_map(outer_X, IntervalMatrix(I)); }},
       {"convex_hull with an outer X", [&] { return backend.convex_hull(outer_X, Y); }},
       {"convex_hull with an outer Y", [&] { return backend.convex_hull(X, outer_Y); }},
       {"reduce of an outer X",
@@ -50,7 +51,8 @@ Verdict check_claims_meet(const Context& context, const TestCase& test) {
   };
   for (const auto& [what, operation] : results) {
     try {
-      if (operation().tightness == Tightness::exact) return Verdict::fails(what + " is claimed exact");
+      if (operation().tightness == Tightness::exact)
+        return Verdict::fails(what + " is claimed exact");
     } catch (const Error& error) {
       if (error.code() != Errc::unsupported && error.code() != Errc::solver) throw;
     }
@@ -75,16 +77,18 @@ void add_tightness(LawList& list) {
                       Applied applied = operation.apply(context, test);
                       if (!applied.complete) return Verdict::inapplicable();
                       Verdict verdict = stays_within(context, applied.result, applied.truth, test);
-                      verdict.derived.insert(verdict.derived.end(), applied.derived.begin(), applied.derived.end());
+                      verdict.derived.insert(verdict.derived.end(), applied.derived.begin(),
+                                             applied.derived.end());
                       return verdict;
                     },
                     needs_exact_exchange});
   }
-  list.push_back({{"tightness.claims_meet", "an operand claimed outer ⇒ the result is claimed outer"},
-                  two_sets,
-                  check_claims_meet,
-                  {},
-                  0.5});
+  list.push_back(
+      {{"tightness.claims_meet", "an operand claimed outer ⇒ the result is claimed outer"},
+       two_sets,
+       check_claims_meet,
+       {},
+       0.5});
 }
 
 }  // namespace cordon::conformance

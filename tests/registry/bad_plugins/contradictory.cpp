@@ -8,4 +8,5 @@ static void register_components(cordon::Registrar& registrar) {
   registrar.metric(nothing("with_contradictory_schema", schema));
 }
 
-CORDON_PLUGIN("contradictory", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("contradictory", "1.0.0", "GPL-3.0-or-later", "A. Uthor",
+              "a plugin that must be refused", register_components)

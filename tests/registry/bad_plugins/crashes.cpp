@@ -5,4 +5,5 @@
 
 static void register_components(cordon::Registrar&) { std::raise(SIGSEGV); }
 
-CORDON_PLUGIN("crashes", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("crashes", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused",
+              register_components)

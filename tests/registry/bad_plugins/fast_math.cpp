@@ -2,6 +2,9 @@
 #include "nothing.hpp"
 #include "trace.hpp"
 
-static void register_components(cordon::Registrar& registrar) { registrar.metric(nothing("nearly")); }
+static void register_components(cordon::Registrar& registrar) {
+  registrar.metric(nothing("nearly"));
+}
 
-CORDON_PLUGIN("fast_math", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("fast_math", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused",
+              register_components)

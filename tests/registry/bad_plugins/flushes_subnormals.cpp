@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "nothing.hpp"
 
-static void register_components(cordon::Registrar& registrar) { registrar.metric(nothing("without_subnormals")); }
+static void register_components(cordon::Registrar& registrar) {
+  registrar.metric(nothing("without_subnormals"));
+}
 
-CORDON_PLUGIN("flushes_subnormals", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("flushes_subnormals", "1.0.0", "GPL-3.0-or-later", "A. Uthor",
+              "a plugin that must be refused", register_components)

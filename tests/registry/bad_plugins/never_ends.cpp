@@ -7,6 +7,9 @@ static const int never = [] {
   return 0;
 }();
 
-static void register_components(cordon::Registrar& registrar) { registrar.metric(nothing("after_never")); }
+static void register_components(cordon::Registrar& registrar) {
+  registrar.metric(nothing("after_never"));
+}
 
-CORDON_PLUGIN("never_ends", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("never_ends", "1.0.0", "GPL-3.0-or-later", "A. Uthor",
+              "a plugin that must be refused", register_components)

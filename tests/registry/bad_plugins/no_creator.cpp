@@ -6,4 +6,5 @@ static void register_components(cordon::Registrar& registrar) {
   registrar.metric({{"without_creator", "cannot be made", "", {}}, {}});
 }
 
-CORDON_PLUGIN("no_creator", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("no_creator", "1.0.0", "GPL-3.0-or-later", "A. Uthor",
+              "a plugin that must be refused", register_components)

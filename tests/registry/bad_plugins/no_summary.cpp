@@ -2,6 +2,9 @@
 
 #include "nothing.hpp"
 
-static void register_components(cordon::Registrar& registrar) { registrar.metric(nothing("without_summary", {}, "")); }
+static void register_components(cordon::Registrar& registrar) {
+  registrar.metric(nothing("without_summary", {}, ""));
+}
 
-CORDON_PLUGIN("no_summary", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("no_summary", "1.0.0", "GPL-3.0-or-later", "A. Uthor",
+              "a plugin that must be refused", register_components)

@@ -10,6 +10,8 @@ class Nothing final : public cordon::Metric {
   std::vector<cordon::MetricValue> summary() const override { return {}; }
 };
 
-inline cordon::MetricEntry nothing(const char* name, cordon::ParamSchema schema = {}, const char* summary = "nothing") {
-  return {{name, summary, "", std::move(schema)}, [](const cordon::Params&) { return std::make_unique<Nothing>(); }};
+inline cordon::MetricEntry nothing(const char* name, cordon::ParamSchema schema = {},
+                                   const char* summary = "nothing") {
+  return {{name, summary, "", std::move(schema)},
+          [](const cordon::Params&) { return std::make_unique<Nothing>(); }};
 }

@@ -7,4 +7,5 @@ static void register_components(cordon::Registrar& registrar) {
   registrar.metric(nothing("step_count"));  // of test_box
 }
 
-CORDON_PLUGIN("repeats_component", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("repeats_component", "1.0.0", "GPL-3.0-or-later", "A. Uthor",
+              "a plugin that must be refused", register_components)

@@ -2,6 +2,9 @@
 
 #include "nothing.hpp"
 
-static void register_components(cordon::Registrar& registrar) { registrar.metric(nothing("of_the_other_test_box")); }
+static void register_components(cordon::Registrar& registrar) {
+  registrar.metric(nothing("of_the_other_test_box"));
+}
 
-CORDON_PLUGIN("test_box", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("test_box", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused",
+              register_components)

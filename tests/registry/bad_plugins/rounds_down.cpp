@@ -8,4 +8,5 @@ static void register_components(cordon::Registrar& registrar) {
   std::fesetround(FE_DOWNWARD);
 }
 
-CORDON_PLUGIN("rounds_down", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("rounds_down", "1.0.0", "GPL-3.0-or-later", "A. Uthor",
+              "a plugin that must be refused", register_components)

@@ -8,4 +8,5 @@ static void register_components(cordon::Registrar& registrar) {
   throw std::runtime_error("no licence server");
 }
 
-CORDON_PLUGIN("throws_late", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("throws_late", "1.0.0", "GPL-3.0-or-later", "A. Uthor",
+              "a plugin that must be refused", register_components)

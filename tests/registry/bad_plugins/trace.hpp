@@ -4,7 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// A static object of the plugin: when the library is opened, it adds a line to the file that CORDON_TEST_TRACE names.
+/// A static object of the plugin: when the library is opened, it adds a line to the file that
+/// CORDON_TEST_TRACE names.
 struct Trace {
   Trace() {
     const char* file = std::getenv("CORDON_TEST_TRACE");

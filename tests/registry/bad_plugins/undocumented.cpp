@@ -8,4 +8,5 @@ static void register_components(cordon::Registrar& registrar) {
   registrar.metric(nothing("with_undocumented_parameter", schema));
 }
 
-CORDON_PLUGIN("undocumented", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("undocumented", "1.0.0", "GPL-3.0-or-later", "A. Uthor",
+              "a plugin that must be refused", register_components)

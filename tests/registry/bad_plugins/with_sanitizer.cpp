@@ -2,6 +2,9 @@
 #include "nothing.hpp"
 #include "trace.hpp"
 
-static void register_components(cordon::Registrar& registrar) { registrar.metric(nothing("sanitized")); }
+static void register_components(cordon::Registrar& registrar) {
+  registrar.metric(nothing("sanitized"));
+}
 
-CORDON_PLUGIN("with_sanitizer", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused", register_components)
+CORDON_PLUGIN("with_sanitizer", "1.0.0", "GPL-3.0-or-later", "A. Uthor",
+              "a plugin that must be refused", register_components)

@@ -6,7 +6,8 @@
 
 static void register_components(cordon::Registrar&) { std::abort(); }  // must never be called
 
-extern "C" __attribute__((visibility("default"))) const cordon::PluginDescriptor cordon_plugin_descriptor;
+extern "C" __attribute__((visibility("default")))
+const cordon::PluginDescriptor cordon_plugin_descriptor;
 extern "C" const cordon::PluginDescriptor cordon_plugin_descriptor{sizeof(cordon::PluginDescriptor),
                                                                    CORDON_ABI_VERSION,
                                                                    CORDON_ABI_TAG ";simd=avx2",

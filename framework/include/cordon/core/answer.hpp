@@ -9,8 +9,9 @@
 
 namespace cordon {
 
-/// Answer to a question about sets. `yes` and `no` are given on a proof only; everything else is `unknown`:
-/// a solver that failed, a value within its tolerance, an outer approximation that cannot tell.
+/// Answer to a question about sets. `yes` and `no` are given on a proof only; everything else is
+/// `unknown`: a solver that failed, a value within its tolerance, an outer approximation that
+/// cannot tell.
 enum class Answer { no, yes, unknown };
 
 /// Claim that travels with a set: equal to the mathematical result, or enclosing it.
@@ -25,21 +26,24 @@ enum class Rounding {
 
 /// The weaker of two claims.
 inline Tightness meet(Tightness a, Tightness b) { return std::max(a, b); }
-inline Answer negate(Answer a) { return a == Answer::yes ? Answer::no : a == Answer::no ? Answer::yes : a; }
+inline Answer negate(Answer a) {
+  return a == Answer::yes ? Answer::no : a == Answer::no ? Answer::yes : a;
+}
 
 std::string_view to_string(Answer answer) noexcept;
 std::string_view to_string(Tightness tightness) noexcept;
 std::string_view to_string(Rounding rounding) noexcept;
 
-/// Proof of an answer about a set in exchange form {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}, which can be checked again without a
-/// solver (solvers/certificate.hpp).
-///   farkas     y, one entry per constraint, with Sᵀy = 0 and bᵀy > ‖Aᵀy‖₁: the set is empty; margin = bᵀy - ‖Aᵀy‖₁
-///   point      (δ, ξ), near a solution of the constraints: the set is not empty; margin = the slack 1 - ‖ξ‖∞
-///   dual       y with Sᵀy = Mᵀd: h(d) ≤ dᵀc + bᵀy + ‖Gᵀd - Aᵀy‖₁; margin = that bound
-///   direction  d with h_X(d) > h_Y(d): X is not a subset of Y; margin = the difference
-///   structure  follows from the representation alone (no constraints, no lines)
-/// The numbers are those of a solver: equations hold up to rounding, and the check restores them exactly.
-/// For `contains` the set is {(δ, ξ)} with the rows Mδ + Gξ = x - c below its own, for `is_disjoint_from` the intersection.
+/// Proof of an answer about a set in exchange form {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}, which can
+/// be checked again without a solver (solvers/certificate.hpp).
+///   farkas     y, one entry per constraint, with Sᵀy = 0 and bᵀy > ‖Aᵀy‖₁: the set is empty;
+///   margin = bᵀy - ‖Aᵀy‖₁ point      (δ, ξ), near a solution of the constraints: the set is not
+///   empty; margin = the slack 1 - ‖ξ‖∞ dual       y with Sᵀy = Mᵀd: h(d) ≤ dᵀc + bᵀy + ‖Gᵀd -
+///   Aᵀy‖₁; margin = that bound direction  d with h_X(d) > h_Y(d): X is not a subset of Y; margin =
+///   the difference structure  follows from the representation alone (no constraints, no lines)
+/// The numbers are those of a solver: equations hold up to rounding, and the check restores them
+/// exactly. For `contains` the set is {(δ, ξ)} with the rows Mδ + Gξ = x - c below its own, for
+/// `is_disjoint_from` the intersection.
 struct Certificate {
   enum class Kind { none, farkas, point, dual, direction, structure };
   Kind kind = Kind::none;

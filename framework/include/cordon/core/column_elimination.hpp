@@ -7,9 +7,9 @@
 
 namespace cordon {
 
-/// Which columns of a computed matrix are independent, as far as their digits tell. Every entry comes with the size of the terms
-/// that it cancelled from; one that is 1e-4 of them or less is no pivot, since directions divided by it are known to few digits.
-/// O(rows · columns · kept).
+/// Which columns of a computed matrix are independent, as far as their digits tell. Every entry
+/// comes with the size of the terms that it cancelled from; one that is 1e-4 of them or less is no
+/// pivot, since directions divided by it are known to few digits. O(rows · columns · kept).
 struct ColumnElimination {
   ColumnElimination(Matrix entries, Matrix sizes_of_terms);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors are for broken contracts; outcomes of a computation (empty, unknown, infeasible) are values.
+// Errors are for broken contracts; outcomes of a computation (empty, unknown, infeasible) are
+// values.
 #pragma once
 
 #include <stdexcept>
@@ -31,7 +32,8 @@ class Error : public std::runtime_error {
   Error(Errc code, const std::string& message) : std::runtime_error(message), code_(code) {}
   Error(const Error&) = default;
   Error& operator=(const Error&) = default;
-  ~Error() override;  // defined in the framework: an error thrown by a plugin must be readable after its library has gone
+  ~Error() override;  // defined in the framework: an error thrown by a plugin must be readable
+                      // after its library has gone
   Errc code() const noexcept { return code_; }
 
  private:
@@ -40,7 +42,8 @@ class Error : public std::runtime_error {
 
 /// One problem of an input file: where, what, and what to do about it.
 struct Diagnostic {
-  std::string pointer;     ///< JSON pointer (RFC 6901) of the offending value; "" is the whole document
+  std::string
+      pointer;  ///< JSON pointer (RFC 6901) of the offending value; "" is the whole document
   std::string message;     ///< the reason, without the place
   std::string suggestion;  ///< the mend; may be empty
   int line = 0;            ///< 1-based line in the file; 0: not known
@@ -61,7 +64,8 @@ class InputError : public Error {
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// The candidate nearest to `word` by edit distance, or "" when none is near (for "did you mean …?").
+/// The candidate nearest to `word` by edit distance, or "" when none is near (for "did you mean
+/// …?").
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// `did you mean "x"?`, or the list of what there is; "" when there is nothing to suggest.

@@ -10,7 +10,8 @@ struct IntervalMatrix {
   Matrix center, radius;
 
   IntervalMatrix() = default;
-  IntervalMatrix(Matrix A) : center(std::move(A)), radius(Matrix::Zero(center.rows(), center.cols())) {}
+  IntervalMatrix(Matrix A)
+      : center(std::move(A)), radius(Matrix::Zero(center.rows(), center.cols())) {}
   IntervalMatrix(Matrix mid, Matrix rad) : center(std::move(mid)), radius(std::move(rad)) {}
 
   Index rows() const { return center.rows(); }

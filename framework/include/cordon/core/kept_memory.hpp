@@ -9,8 +9,9 @@
 
 namespace cordon {
 
-/// Matrices between two calls of a kernel; their entries mean nothing. They belong to the framework's library: a thread_local
-/// object of a plugin would keep the plugin mapped for as long as the thread lives.
+/// Matrices between two calls of a kernel; their entries mean nothing. They belong to the
+/// framework's library: a thread_local object of a plugin would keep the plugin mapped for as long
+/// as the thread lives.
 struct KeptMemory {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   std::vector<Matrix> matrices;
@@ -49,8 +50,8 @@ class MemoryExchange {
   std::size_t matrices_ = 0, rows_ = 0, vectors_ = 0, numbers_ = 0;
 };
 
-/// A kernel's object, with void exchange(MemoryExchange&), for one call: it has the memory of the last one, and leaves it to the
-/// next. One within another has memory of its own.
+/// A kernel's object, with void exchange(MemoryExchange&), for one call: it has the memory of the
+/// last one, and leaves it to the next. One within another has memory of its own.
 template <class Object>
 class WithKeptMemory {
  public:

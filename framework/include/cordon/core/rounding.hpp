@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rigorous bounds of floating-point sums and products without changing the rounding mode: the value is computed in the
-// ordinary way, then widened by an a-priori error bound [Higham2002, ch. 3]. Valid for every order of summation, with and
-// without fused operations; underflow is covered by an absolute term.
+// Rigorous bounds of floating-point sums and products without changing the rounding mode: the value
+// is computed in the ordinary way, then widened by an a-priori error bound [Higham2002, ch. 3].
+// Valid for every order of summation, with and without fused operations; underflow is covered by an
+// absolute term.
 #pragma once
 
 #include <bit>
@@ -14,9 +15,11 @@
 namespace cordon::rounding {
 
 inline constexpr double unit = std::numeric_limits<double>::epsilon() / 2;  ///< unit roundoff 2⁻⁵³
-inline constexpr double tiny = std::numeric_limits<double>::min();          ///< covers underflow, one per operation
+inline constexpr double tiny =
+    std::numeric_limits<double>::min();  ///< covers underflow, one per operation
 
-/// The next double above or below; infinities and NaN stay. Doubles of one sign are ordered like their bits.
+/// The next double above or below; infinities and NaN stay. Doubles of one sign are ordered like
+/// their bits.
 inline double up(double x) {
   if (!(x < std::numeric_limits<double>::infinity())) return x;
   if (x == 0) return std::numeric_limits<double>::denorm_min();
@@ -31,7 +34,9 @@ struct Range {
 };
 
 /// γₙ = n u / (1 - n u), itself rounded up.
-inline double gamma(Index n) { return up(static_cast<double>(n) * unit / (1 - static_cast<double>(n) * unit)) * (1 + 4 * unit); }
+inline double gamma(Index n) {
+  return up(static_cast<double>(n) * unit / (1 - static_cast<double>(n) * unit)) * (1 + 4 * unit);
+}
 
 Range sum(VectorIn x);              ///< Σ x_i
 Range dot(VectorIn x, VectorIn y);  ///< xᵀy

@@ -10,7 +10,8 @@ using Index = Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// Read-only views: bind to a matrix, a block or a map without a copy. Never store one beyond the call.
+/// Read-only views: bind to a matrix, a block or a map without a copy. Never store one beyond the
+/// call.
 using MatrixIn = Eigen::Ref<const Matrix>;
 using VectorIn = Eigen::Ref<const Vector>;
 

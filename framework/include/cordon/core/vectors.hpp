@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loops over numbers in a row, with one order of summation on every machine: they vectorise across entries, in registers of 16
-// bytes. Where a function says "padded", numbers lie in memory up to the next multiple of `block`, and those beyond the end are
-// 0.
+// Loops over numbers in a row, with one order of summation on every machine: they vectorise across
+// entries, in registers of 16 bytes. Where a function says "padded", numbers lie in memory up to
+// the next multiple of `block`, and those beyond the end are 0.
 #pragma once
 
 #include "cordon/core/types.hpp"
@@ -90,7 +90,8 @@ bool all_finite(const Eigen::DenseBase<Derived>& A) {
   return true;
 }
 
-/// Most maps of observers have so few rows and columns that preparing for large ones would cost more than the product itself.
+/// Most maps of observers have so few rows and columns that preparing for large ones would cost
+/// more than the product itself.
 inline bool is_small(MatrixIn A) { return A.rows() <= 6 && A.cols() <= 12; }
 
 /// C = A B for a small A.
@@ -123,7 +124,8 @@ void small_gram(MatrixIn A, Matrix& K) {
 }
 inline void small_gram(MatrixIn A, Matrix& K) {
   using Gram = void (*)(MatrixIn, Matrix&);
-  constexpr Gram of_rows[] = {small_gram<1>, small_gram<2>, small_gram<3>, small_gram<4>, small_gram<5>, small_gram<6>};
+  constexpr Gram of_rows[] = {small_gram<1>, small_gram<2>, small_gram<3>,
+                              small_gram<4>, small_gram<5>, small_gram<6>};
   K.resize(A.rows(), A.rows());
   if (A.rows() > 0) of_rows[A.rows() - 1](A, K);
 }

@@ -22,7 +22,8 @@ struct BackendInfo {
   std::string summary, citation;
 };
 
-/// Upper limits of a representation's size after `reduce`; a representation without the notion ignores the number.
+/// Upper limits of a representation's size after `reduce`; a representation without the notion
+/// ignores the number.
 struct Budget {
   static constexpr Index unlimited = std::numeric_limits<Index>::max();
   Index generators = unlimited, constraints = unlimited;
@@ -46,9 +47,10 @@ struct Correct {
   Term noise;
 };
 
-/// A representation. Public functions check shapes, convert operands of other backends by `import`, meet the claims and keep
-/// the backend (and its plugin) alive as long as a set of it lives; `do_…` functions see operands of their own type only.
-/// Backends are immutable after construction and are used from several threads.
+/// A representation. Public functions check shapes, convert operands of other backends by `import`,
+/// meet the claims and keep the backend (and its plugin) alive as long as a set of it lives; `do_…`
+/// functions see operands of their own type only. Backends are immutable after construction and are
+/// used from several threads.
 class SetBackend : public std::enable_shared_from_this<SetBackend> {
  public:
   virtual ~SetBackend() = default;
@@ -57,8 +59,9 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
 
   const BackendInfo& info() const { return info_; }
 
-  /// An enclosure of X; exact if the representation can hold X. Throws Errc::unsupported if it cannot enclose X at all
-  /// (an unbounded set in a bounded representation). `claim` is the claim of X itself.
+  /// An enclosure of X; exact if the representation can hold X. Throws Errc::unsupported if it
+  /// cannot enclose X at all (an unbounded set in a bounded representation). `claim` is the claim
+  /// of X itself.
   Enclosure import(const LineForm& X, Tightness claim = Tightness::exact) const;
   Enclosure import(const Enclosure& X) const;  ///< X itself if it is of this backend already
   Enclosure box(const Box& box) const;
@@ -68,21 +71,24 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
 
   Enclosure predict(const Enclosure& X, const Predict& p) const;
   Enclosure correct(const Enclosure& X, const Correct& c) const;
-  /// Encloses X within the budget. X itself if it fits already. Separate from the rest, so that it is timed and chosen
-  /// separately.
+  /// Encloses X within the budget. X itself if it fits already. Separate from the rest, so that it
+  /// is timed and chosen separately.
   Enclosure reduce(const Enclosure& X, Budget budget) const;
 
-  Enclosure affine_map(const Enclosure& X, MatrixIn T, VectorIn t) const;            ///< T X + t
-  Enclosure interval_map(const Enclosure& X, const IntervalMatrix& A) const;         ///< {A x : A ∈ [A], x ∈ X}, outer
-  Enclosure sum(const Enclosure& X, const Enclosure& Y) const;                       ///< X ⊕ Y
-  Enclosure product(const Enclosure& X, const Enclosure& Y) const;                   ///< X × Y
-  Enclosure intersection(const Enclosure& X, MatrixIn R, const Enclosure& Y) const;  ///< {x ∈ X : R x ∈ Y}
-  Enclosure convex_hull(const Enclosure& X, const Enclosure& Y) const;               ///< closure of conv(X ∪ Y)
+  Enclosure affine_map(const Enclosure& X, MatrixIn T, VectorIn t) const;  ///< T X + t
+  Enclosure interval_map(const Enclosure& X,
+                         const IntervalMatrix& A) const;  ///< {A x : A ∈ [A], x ∈ X}, outer
+  Enclosure sum(const Enclosure& X, const Enclosure& Y) const;      ///< X ⊕ Y
+  Enclosure product(const Enclosure& X, const Enclosure& Y) const;  ///< X × Y
+  Enclosure intersection(const Enclosure& X, MatrixIn R,
+                         const Enclosure& Y) const;                     ///< {x ∈ X : R x ∈ Y}
+  Enclosure convex_hull(const Enclosure& X, const Enclosure& Y) const;  ///< closure of conv(X ∪ Y)
 
  protected:
   explicit SetBackend(BackendInfo info) : info_(std::move(info)) {}
 
-  /// A new set and the claim of the operation alone (the public function meets it with the inputs' claims).
+  /// A new set and the claim of the operation alone (the public function meets it with the inputs'
+  /// claims).
   struct Made {
     std::unique_ptr<const Set> set;
     Tightness tightness = Tightness::exact;
@@ -90,7 +96,8 @@ class SetBackend : public std::enable_shared_from_this<SetBackend> {
 
  private:
   virtual Made do_import(const LineForm& X) const = 0;
-  // Defaults: the exact block matrices of core/line_form.hpp on the exchange forms, then one import.
+  // Defaults: the exact block matrices of core/line_form.hpp on the exchange forms, then one
+  // import.
   virtual Made do_predict(const Set& X, const Predict& p) const;
   virtual Made do_correct(const Set& X, const Correct& c) const;
   virtual Made do_interval_map(const Set& X, const IntervalMatrix& A) const;

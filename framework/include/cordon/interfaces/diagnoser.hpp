@@ -14,28 +14,30 @@ namespace cordon {
 
 /// What a diagnoser makes of the data so far.
 enum class Decision {
-  monitoring,    ///< the plant is in `mode`: assumed at the start, or isolated since: the only mode that is not excluded
+  monitoring,    ///< the plant is in `mode`: assumed at the start, or isolated since: the only mode
+                 ///< that is not excluded
   isolating,     ///< that mode is excluded, several are possible
   ambiguous,     ///< several modes are still possible after the waiting time
   unknown_fault  ///< every mode of the bank is excluded
 };
 std::string_view to_string(Decision decision) noexcept;
 
-/// What is known about one mode. An exclusion is a statement about the time from `Diagnosis::since` to k: the plant has not been
-/// in this mode throughout. It is made on a proof only.
+/// What is known about one mode. An exclusion is a statement about the time from `Diagnosis::since`
+/// to k: the plant has not been in this mode throughout. It is made on a proof only.
 struct ModeEvidence {
   bool candidate = true;  ///< not excluded by now; after a reset every mode is a candidate again
-  Answer consistent =
-      Answer::unknown;  ///< by the samples from `since` to k: `no`: proven to contradict the mode; `yes`: proven not to
-  Certificate why;      ///< proof of `consistent`, of the kind that the diagnoser documents
-  Box residual;         ///< hull of what has to contain 0 (dimension 0: not offered)
-  Box reset_residual;   ///< the same of the copy that was made at the last reset, on which exclusions rest (dimension 0: none)
+  Answer consistent = Answer::unknown;  ///< by the samples from `since` to k: `no`: proven to
+                                        ///< contradict the mode; `yes`: proven not to
+  Certificate why;     ///< proof of `consistent`, of the kind that the diagnoser documents
+  Box residual;        ///< hull of what has to contain 0 (dimension 0: not offered)
+  Box reset_residual;  ///< the same of the copy that was made at the last reset, on which
+                       ///< exclusions rest (dimension 0: none)
 };
 
 /// Bounds of one additive fault at one time, proven by the samples up to now.
 struct FaultBound {
   Index fault = 0;  ///< column of F
-  Index at = 0;     ///< the time of n(at), which lies behind that of the sample by the fault's delay
+  Index at = 0;  ///< the time of n(at), which lies behind that of the sample by the fault's delay
   double lower = 0, upper = 0;
   double estimate = 0;  ///< inside
 };
@@ -43,32 +45,36 @@ struct FaultBound {
 struct Diagnosis {
   Index k = 0;
   Decision decision = Decision::monitoring;
-  Index mode = -1;       ///< `monitoring`: the mode, else -1
-  Index since = 0;       ///< the time from which on the evidence of this step speaks
-  bool reset = false;    ///< every mode is excluded or given up at k: all are candidates again, later evidence speaks of k on
+  Index mode = -1;     ///< `monitoring`: the mode, else -1
+  Index since = 0;     ///< the time from which on the evidence of this step speaks
+  bool reset = false;  ///< every mode is excluded or given up at k: all are candidates again, later
+                       ///< evidence speaks of k on
   Index suggested = -1;  ///< a mode that a heuristic points to, without proof; -1: none
   std::vector<ModeEvidence> modes;
-  std::vector<FaultBound> faults;     ///< additive faults that can be bounded at k; one that excludes 0 excludes every mode
-  std::optional<Enclosure> estimate;  ///< `monitoring`: contains the state as long as the plant is in `mode`
+  std::vector<FaultBound> faults;  ///< additive faults that can be bounded at k; one that excludes
+                                   ///< 0 excludes every mode
+  std::optional<Enclosure>
+      estimate;  ///< `monitoring`: contains the state as long as the plant is in `mode`
 };
 
 /// A statement made in advance about the true mode i and the observer of mode j.
 struct PairGuarantee {
   Index mode = 0, observer = 0;
-  Box residual;  ///< hull of R̊_ij, which contains the residual sets of observer j in the steady state of mode i, but for what
-                 ///< reductions and coarser representations add to them
-  Answer holds =
-      Answer::unknown;  ///< the FDI condition, 0 ∈ R̊_ii or 0 ∉ R̊_ij; `no`: it is proven to fail; `unknown`: not guaranteed
-  Box iterated = {};    ///< where a published iteration was asked for, what it came to: it need not hold the limit, `residual`
-                        ///< does; else of dimension 0
+  Box residual;  ///< hull of R̊_ij, which contains the residual sets of observer j in the steady
+                 ///< state of mode i, but for what reductions and coarser representations add to
+                 ///< them
+  Answer holds = Answer::unknown;  ///< the FDI condition, 0 ∈ R̊_ii or 0 ∉ R̊_ij; `no`: it is proven
+                                   ///< to fail; `unknown`: not guaranteed
+  Box iterated = {};  ///< where a published iteration was asked for, what it came to: it need not
+                      ///< hold the limit, `residual` does; else of dimension 0
 };
 
-/// The set X̃ that must hold the errors of the point observers, centres in place of sets, whatever the modes have been, and how
-/// far it does.
+/// The set X̃ that must hold the errors of the point observers, centres in place of sets, whatever
+/// the modes have been, and how far it does.
 struct ErrorSetCheck {
-  LineForm set;                    ///< X̃
-  bool computed = false;           ///< made by the diagnoser: it contains the errors by construction
-  double factor = 0;               ///< all errors lie in `factor` · X̃ about its centre; above 1: too small
+  LineForm set;           ///< X̃
+  bool computed = false;  ///< made by the diagnoser: it contains the errors by construction
+  double factor = 0;  ///< all errors lie in `factor` · X̃ about its centre; above 1: too small
   double steady_factor = 0;        ///< the same for the invariant sets S_ij alone
   Index mode = -1, observer = -1;  ///< where `steady_factor` is attained
 };
@@ -76,8 +82,9 @@ struct ErrorSetCheck {
 /// A statement made in advance about the bounds of one additive fault.
 struct FaultGuarantee {
   Index fault = 0;
-  Index delay = 0;        ///< n(k - delay) is bounded at k
-  double half_width = 0;  ///< at all times of the steady state, whatever the data are; infinite: no bound is proven
+  Index delay = 0;  ///< n(k - delay) is bounded at k
+  double half_width =
+      0;  ///< at all times of the steady state, whatever the data are; infinite: no bound is proven
 };
 
 struct Guarantees {
@@ -88,7 +95,8 @@ struct Guarantees {
   std::vector<FaultGuarantee> faults = {};
 };
 
-/// Decides, sample by sample, which modes of a bank are possible. The base class checks samples and keeps the previous one.
+/// Decides, sample by sample, which modes of a bank are possible. The base class checks samples and
+/// keeps the previous one.
 class Diagnoser {
  public:
   virtual ~Diagnoser() = default;
@@ -108,7 +116,8 @@ class Diagnoser {
   double step_us() const { return step_us_; }
 
  protected:
-  Diagnoser(ModeBank bank, std::shared_ptr<const SetBackend> backend) : bank_(std::move(bank)), backend_(std::move(backend)) {}
+  Diagnoser(ModeBank bank, std::shared_ptr<const SetBackend> backend)
+      : bank_(std::move(bank)), backend_(std::move(backend)) {}
   const SetBackend& backend() const { return *backend_; }
   const std::shared_ptr<const SetBackend>& shared_backend() const { return backend_; }
 

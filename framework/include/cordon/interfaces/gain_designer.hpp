@@ -10,21 +10,27 @@
 
 namespace cordon {
 
-/// What was found out about a gain after it was designed, by other means than those that found it. C̄ = mid(g) C.
+/// What was found out about a gain after it was designed, by other means than those that found it.
+/// C̄ = mid(g) C.
 struct GainCertificate {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-  /// A bound of that of A - L C̄ from above, proven, and equal to it where A - L C̄ is not far from normal
+  /// A bound of that of A - L C̄ from above, proven, and equal to it where A - L C̄ is not far from
+  /// normal
   double spectral_radius = none;
-  /// A - L C̄ ≥ 0 in every entry, without rounding; `unknown`: not so, but no entry is below zero by more than its rounding
+  /// A - L C̄ ≥ 0 in every entry, without rounding; `unknown`: not so, but no entry is below zero by
+  /// more than its rounding
   Answer monotone = Answer::unknown;
-  /// Bounds of ‖G_ed‖∞, G_ed(z) = (zI - (A - L C̄))⁻¹ [Eθ, Bw G_W, -L Dv G_V], with the shapes G of zonotopes around W and V; Eθ
-  /// holds the directions of the parameter uncertainty in the design. Infinite if A - L C̄ is not stable.
+  /// Bounds of ‖G_ed‖∞, G_ed(z) = (zI - (A - L C̄))⁻¹ [Eθ, Bw G_W, -L Dv G_V], with the shapes G of
+  /// zonotopes around W and V; Eθ holds the directions of the parameter uncertainty in the design.
+  /// Infinite if A - L C̄ is not stable.
   double norm_lower = none, norm_upper = none;
-  std::string objective = {};   ///< what was optimised, for people: "γ", "τ", "sum of half widths"; empty: nothing was
+  std::string objective =
+      {};  ///< what was optimised, for people: "γ", "τ", "sum of half widths"; empty: nothing was
   double optimum = none;        ///< its optimal value, as the solver found it
   double optimum_bound = none;  ///< the bound of the optimum from the dual side
-  double margin = none;  ///< smallest eigenvalue of the matrix inequality at the solution, recomputed; negative: violated by that
+  double margin = none;         ///< smallest eigenvalue of the matrix inequality at the solution,
+                                ///< recomputed; negative: violated by that
 };
 
 struct Gain {
@@ -36,13 +42,15 @@ struct Gain {
 
 /// A gain, or why there is none.
 struct GainDesign {
-  Answer feasible = Answer::unknown;  ///< `no`: it is proven that no gain meets the conditions; `unknown`: none was found
+  Answer feasible = Answer::unknown;  ///< `no`: it is proven that no gain meets the conditions;
+                                      ///< `unknown`: none was found
   Gain gain = {};                     ///< if `feasible` is yes
   std::string reason = {};            ///< else
   std::string suggestion = {};        ///< may be empty
 };
 
-/// Immutable; used from several threads. Models with E are refused by the registry's callers before a designer sees them.
+/// Immutable; used from several threads. Models with E are refused by the registry's callers before
+/// a designer sees them.
 class GainDesigner {
  public:
   virtual ~GainDesigner() = default;
@@ -54,8 +62,8 @@ class GainDesigner {
 
   /// Does the gain follow the set of states?
   virtual bool is_time_varying() const { return false; }
-  /// The gain of this step for a set of states with covariation P = R Rᵀ (R the generators of a zonotope around it). Called if
-  /// `is_time_varying`; O(n³).
+  /// The gain of this step for a set of states with covariation P = R Rᵀ (R the generators of a
+  /// zonotope around it). Called if `is_time_varying`; O(n³).
   virtual Matrix update(const Model& model, MatrixIn P) const;
 
  protected:

@@ -14,7 +14,8 @@ struct StepView {
   const Estimate& estimate;
   const Box& hull;        ///< interval hull of the estimate
   const Vector* truth;    ///< true state, if the data have it
-  bool assumptions_hold;  ///< the truth has kept to the pipeline's own assumptions (its admissible set) so far
+  bool assumptions_hold;  ///< the truth has kept to the pipeline's own assumptions (its admissible
+                          ///< set) so far
   const PhaseTimes& times;
 };
 
@@ -24,8 +25,8 @@ struct MetricValue {
   std::variant<double, Index, std::string> value;
 };
 
-/// A figure of merit, fed step by step. `step` gives the values of one step (names and their number never change),
-/// `summary` those of the run so far.
+/// A figure of merit, fed step by step. `step` gives the values of one step (names and their number
+/// never change), `summary` those of the run so far.
 class Metric {
  public:
   virtual ~Metric() = default;

@@ -13,19 +13,23 @@
 namespace cordon {
 
 /// Discrete-time linear model
-///   E x⁺ = A x + B diag(f) u + Bw w + F n,   y = diag(g) (C x + D diag(f) u) + Dv v,   f ∈ actuator, g ∈ sensor.
-/// E is n×n and may be singular (descriptor system); an E of size 0×0 stands for the identity. The effectiveness f of the
-/// actuators and g of the sensors lies in boxes within [0,1], 0 meaning outage and 1 health, and may change from step to step; a
-/// box of dimension 0 stands for the exact value (1, …, 1).
+///   E x⁺ = A x + B diag(f) u + Bw w + F n,   y = diag(g) (C x + D diag(f) u) + Dv v,   f ∈
+///   actuator, g ∈ sensor.
+/// E is n×n and may be singular (descriptor system); an E of size 0×0 stands for the identity. The
+/// effectiveness f of the actuators and g of the sensors lies in boxes within [0,1], 0 meaning
+/// outage and 1 health, and may change from step to step; a box of dimension 0 stands for the exact
+/// value (1, …, 1).
 ///
-/// Parametric uncertainty: A, B and C are the centres of interval matrices, the true ones lie within ± A_radius, ± B_radius and
-/// ± C_radius entrywise and may change from step to step as well; a radius of size 0×0 stands for 0.
+/// Parametric uncertainty: A, B and C are the centres of interval matrices, the true ones lie
+/// within ± A_radius, ± B_radius and ± C_radius entrywise and may change from step to step as well;
+/// a radius of size 0×0 stands for 0.
 ///
-/// F (n×n_f) holds the directions of additive faults n, in a column each; n = 0 in every mode, so that only who looks for n reads
-/// F. 0 columns or 0×0: there are none. Member names equal the JSON keys, but for the radii, which JSON holds with their centres,
-/// and for `unscaled`.
+/// F (n×n_f) holds the directions of additive faults n, in a column each; n = 0 in every mode, so
+/// that only who looks for n reads F. 0 columns or 0×0: there are none. Member names equal the JSON
+/// keys, but for the radii, which JSON holds with their centres, and for `unscaled`.
 struct LinearModel {
-  /// B diag(actuator), diag(sensor) C and diag(sensor) D diag(actuator) are the model's matrices but for rounding.
+  /// B diag(actuator), diag(sensor) C and diag(sensor) D diag(actuator) are the model's matrices
+  /// but for rounding.
   struct Unscaled {
     Matrix B, C, D;
     Vector actuator, sensor;
@@ -35,12 +39,15 @@ struct LinearModel {
   Box actuator = {}, sensor = {};
   Matrix A_radius = {}, B_radius = {}, C_radius = {};
   Matrix F = {};
-  /// What `with_exact_effectiveness_applied` has multiplied, where a product was rounded; for proofs in rational arithmetic.
+  /// What `with_exact_effectiveness_applied` has multiplied, where a product was rounded; for
+  /// proofs in rational arithmetic.
   std::shared_ptr<const Unscaled> unscaled = {};
 
   bool is_descriptor() const { return E.size() != 0; }
   /// Is a matrix known by an interval only?
-  bool is_uncertain() const { return is_positive(A_radius) || is_positive(B_radius) || is_positive(C_radius); }
+  bool is_uncertain() const {
+    return is_positive(A_radius) || is_positive(B_radius) || is_positive(C_radius);
+  }
   bool has_ranges() const { return actuator.dim() != 0 || sensor.dim() != 0; }
   Index states() const { return A.rows(); }
   Index inputs() const { return B.cols(); }
@@ -53,27 +60,34 @@ struct LinearModel {
   IntervalMatrix interval_B() const { return interval(B, B_radius); }
   IntervalMatrix interval_C() const { return interval(C, C_radius); }
 
-  Vector actuator_center() const { return actuator.dim() ? actuator.center() : Vector::Ones(inputs()); }
-  Vector actuator_radius() const { return actuator.dim() ? actuator.radius() : Vector::Zero(inputs()); }
+  Vector actuator_center() const {
+    return actuator.dim() ? actuator.center() : Vector::Ones(inputs());
+  }
+  Vector actuator_radius() const {
+    return actuator.dim() ? actuator.radius() : Vector::Zero(inputs());
+  }
   Vector sensor_center() const { return sensor.dim() ? sensor.center() : Vector::Ones(outputs()); }
   Vector sensor_radius() const { return sensor.dim() ? sensor.radius() : Vector::Zero(outputs()); }
 
  private:
-  static bool is_positive(const Matrix& radius) { return radius.size() != 0 && radius.maxCoeff() > 0; }
+  static bool is_positive(const Matrix& radius) {
+    return radius.size() != 0 && radius.maxCoeff() > 0;
+  }
   static IntervalMatrix interval(const Matrix& center, const Matrix& radius) {
     return radius.size() == 0 ? IntervalMatrix(center) : IntervalMatrix(center, radius);
   }
 };
 
-/// The same model with the exactly known part of the effectiveness moved into B, C and D: columns of B and D are scaled by exact
-/// f_i, rows of C and D by exact g_i (radii as their centres), and these entries become 1. Products are rounded to doubles, which
-/// are the model from here on; `unscaled` keeps what they are products of. Boxes without any range become empty,
-/// so that whoever ignores effectiveness still sees the right model when `has_ranges()` is false. Throws Errc::dimension, and
-/// Errc::invalid for bounds outside [0,1] or in the wrong order.
+/// The same model with the exactly known part of the effectiveness moved into B, C and D: columns
+/// of B and D are scaled by exact f_i, rows of C and D by exact g_i (radii as their centres), and
+/// these entries become 1. Products are rounded to doubles, which are the model from here on;
+/// `unscaled` keeps what they are products of. Boxes without any range become empty, so that
+/// whoever ignores effectiveness still sees the right model when `has_ranges()` is false. Throws
+/// Errc::dimension, and Errc::invalid for bounds outside [0,1] or in the wrong order.
 LinearModel with_exact_effectiveness_applied(LinearModel model);
 
-/// A model with its bounds: x₀ ∈ X0, w_k ∈ W, v_k ∈ V for all k. U contains every input; Rⁿ where nothing is said of it.
-/// Observers know u and do not use U, statements made in advance rest on it.
+/// A model with its bounds: x₀ ∈ X0, w_k ∈ W, v_k ∈ V for all k. U contains every input; Rⁿ where
+/// nothing is said of it. Observers know u and do not use U, statements made in advance rest on it.
 struct Model {
   LinearModel linear;
   LineForm X0, W, V, U = {};
@@ -85,8 +99,8 @@ struct Mode {
   Model model;
 };
 
-/// The modes that a diagnoser tells apart; all have the same numbers of states, inputs and outputs. The numbers of disturbances
-/// and noises, and the sets W and V, are each mode's own.
+/// The modes that a diagnoser tells apart; all have the same numbers of states, inputs and outputs.
+/// The numbers of disturbances and noises, and the sets W and V, are each mode's own.
 struct ModeBank {
   std::vector<Mode> modes;
   Index nominal = 0;  ///< the mode that the plant starts in

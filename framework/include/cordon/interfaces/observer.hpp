@@ -14,8 +14,9 @@ namespace cordon {
 struct Estimate {
   Index k = 0;  ///< may lag behind the sample
   Enclosure set;
-  Answer consistent = Answer::unknown;  ///< `no`: the set is proven empty, so the data contradict model or bounds
-  Certificate why;                      ///< proof of `consistent` (of the emptiness of `set`)
+  Answer consistent =
+      Answer::unknown;  ///< `no`: the set is proven empty, so the data contradict model or bounds
+  Certificate why;      ///< proof of `consistent` (of the emptiness of `set`)
 };
 
 /// Wall-clock time of the last step by phase, in microseconds; `question` is the emptiness test.
@@ -24,8 +25,9 @@ struct PhaseTimes {
   double step() const { return predict + correct + reduce; }
 };
 
-/// A set-based observer. The base class keeps the previous sample, asks for emptiness after each step, and holds on to ∅: once
-/// the data are proven inconsistent every later estimate is ∅, until `replace`.
+/// A set-based observer. The base class keeps the previous sample, asks for emptiness after each
+/// step, and holds on to ∅: once the data are proven inconsistent every later estimate is ∅, until
+/// `replace`.
 class Observer {
  public:
   virtual ~Observer() = default;
@@ -41,30 +43,34 @@ class Observer {
 
   const PhaseTimes& times() const { return times_; }
 
-  /// The set that the observer assumes to contain the state at the first sample: the model's X0, or what its parameters put
-  /// there.
+  /// The set that the observer assumes to contain the state at the first sample: the model's X0, or
+  /// what its parameters put there.
   virtual LineForm initial_set() const { return model_.X0; }
 
-  /// A set that the observer assumes to contain the true state at all times (beyond the model's bounds), or none. Guarantees hold
-  /// while it does.
+  /// A set that the observer assumes to contain the true state at all times (beyond the model's
+  /// bounds), or none. Guarantees hold while it does.
   virtual const Set* admissible_set() const { return nullptr; }
 
-  /// The gains it works with, with what is known about them; of gains that vary in time those of the steady state.
+  /// The gains it works with, with what is known about them; of gains that vary in time those of
+  /// the steady state.
   virtual std::vector<Gain> gains() const { return {}; }
 
-  /// What the recursion itself promises where every set operation in it is exact. `exact`: its estimate at k is then the set of
-  /// all states that the model, the assumptions and all samples up to k allow. No recursion is that by itself: one that leaves
-  /// out a measurement, an input or the previous sample only encloses this set, however exact its operations are. The claim of an
-  /// estimate is the meet of this one and of its set's, so that `exact` is said only where an observer states it here, and
-  /// `cordon verify` compares the sets.
+  /// What the recursion itself promises where every set operation in it is exact. `exact`: its
+  /// estimate at k is then the set of all states that the model, the assumptions and all samples up
+  /// to k allow. No recursion is that by itself: one that leaves out a measurement, an input or the
+  /// previous sample only encloses this set, however exact its operations are. The claim of an
+  /// estimate is the meet of this one and of its set's, so that `exact` is said only where an
+  /// observer states it here, and `cordon verify` compares the sets.
   virtual Tightness claim() const { return Tightness::outer; }
 
-  /// A box inside the hull of the last estimate, made of trajectories that the observer must enclose: what is left between the
-  /// two is the price of the enclosure. Never an enclosure itself. Nothing: not offered.
+  /// A box inside the hull of the last estimate, made of trajectories that the observer must
+  /// enclose: what is left between the two is the price of the enclosure. Never an enclosure
+  /// itself. Nothing: not offered.
   virtual std::optional<Box> inner_estimate() const { return std::nullopt; }
 
  protected:
-  Observer(Model model, std::shared_ptr<const SetBackend> backend) : model_(std::move(model)), backend_(std::move(backend)) {}
+  Observer(Model model, std::shared_ptr<const SetBackend> backend)
+      : model_(std::move(model)), backend_(std::move(backend)) {}
 
   const Model& model() const { return model_; }
   const SetBackend& backend() const { return *backend_; }
@@ -73,7 +79,9 @@ class Observer {
   /// Runs `work` and books its time to the phase.
   template <class Work>
   auto timed(Phase phase, Work&& work) {
-    const Stopwatch watch(phase == Phase::predict ? times_.predict : phase == Phase::correct ? times_.correct : times_.reduce);
+    const Stopwatch watch(phase == Phase::predict   ? times_.predict
+                          : phase == Phase::correct ? times_.correct
+                                                    : times_.reduce);
     return work();
   }
 

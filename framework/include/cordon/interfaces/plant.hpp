@@ -5,12 +5,14 @@
 
 namespace cordon {
 
-/// A plant that is not the study's linear model, as a source of simulated data: x⁺ = next(k, x, u), y = output(k, x, u), in the
-/// coordinates of the model (deviations from an operating point, if the model has one). The simulation applies the effectiveness
-/// of a fault to u before and to y after, and adds the measurement noise Dv v; it draws no disturbance w: what the linear model
-/// misses of the plant is what its W has to bound.
+/// A plant that is not the study's linear model, as a source of simulated data: x⁺ = next(k, x, u),
+/// y = output(k, x, u), in the coordinates of the model (deviations from an operating point, if the
+/// model has one). The simulation applies the effectiveness of a fault to u before and to y after,
+/// and adds the measurement noise Dv v; it draws no disturbance w: what the linear model misses of
+/// the plant is what its W has to bound.
 ///
-/// Immutable; used from several threads. Results that are not finite end the simulation with an error.
+/// Immutable; used from several threads. Results that are not finite end the simulation with an
+/// error.
 class Plant {
  public:
   virtual ~Plant() = default;

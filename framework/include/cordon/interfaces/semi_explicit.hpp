@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The semi-explicit form of a descriptor system E x⁺ = f: equations that give the next dynamic states, and equations without x⁺.
+// The semi-explicit form of a descriptor system E x⁺ = f: equations that give the next dynamic
+// states, and equations without x⁺.
 #pragma once
 
 #include <memory>
@@ -8,20 +9,23 @@
 
 namespace cordon {
 
-/// E (n×n, finite) of rank r, decided as in descriptor_matrix.hpp. P are the columns and R the rows of its pivots, Q and S the
-/// others, each in its order. With Φ = E_RP⁻¹ E_RQ, coordinates z = (z̃, ž) and equations are
+/// E (n×n, finite) of rank r, decided as in descriptor_matrix.hpp. P are the columns and R the rows
+/// of its pivots, Q and S the others, each in its order. With Φ = E_RP⁻¹ E_RQ, coordinates z = (z̃,
+/// ž) and equations are
 ///   x_P = z̃ - Φ ž,  x_Q = ž;           z = T⁻¹ x
 ///   z̃⁺ = E_RP⁻¹ f_R,   0 = f_S - E_SP E_RP⁻¹ f_R
-/// Every state and every equation keeps its unit, so that a system in other units has the same digits, which coordinates that
-/// mix states (singular vectors) cannot promise.
+/// Every state and every equation keeps its unit, so that a system in other units has the same
+/// digits, which coordinates that mix states (singular vectors) cannot promise.
 ///
-/// E_RP⁻¹ and all products below are computed in rational numbers and rounded to the nearest double once, entry by entry. Φ is
-/// rounded too, and T and T⁻¹ are inverse to each other with the Φ that they hold. O(n³) products of rationals.
+/// E_RP⁻¹ and all products below are computed in rational numbers and rounded to the nearest double
+/// once, entry by entry. Φ is rounded too, and T and T⁻¹ are inverse to each other with the Φ that
+/// they hold. O(n³) products of rationals.
 class SemiExplicitForm {
  public:
   /// The identity, where x_{k+1} is given as it stands.
   explicit SemiExplicitForm(Index n);
-  /// Errc::dimension if E is not square; Errc::not_finite, here and below, for NaN and infinity and where a result overflows.
+  /// Errc::dimension if E is not square; Errc::not_finite, here and below, for NaN and infinity and
+  /// where a result overflows.
   explicit SemiExplicitForm(MatrixIn E);
 
   Index states() const { return T_.rows(); }

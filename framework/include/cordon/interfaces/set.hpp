@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The abstract set. A plugin author derives from Set and SetBackend (backend.hpp); a caller sees the public functions only.
+// The abstract set. A plugin author derives from Set and SetBackend (backend.hpp); a caller sees
+// the public functions only.
 #pragma once
 
 #include <memory>
@@ -14,10 +15,12 @@ namespace cordon {
 class Set;
 class SetBackend;
 
-/// Sets are immutable and shared: no operation changes an operand, a copy is a reference count, threads need no locks.
+/// Sets are immutable and shared: no operation changes an operand, a copy is a reference count,
+/// threads need no locks.
 using SetPtr = std::shared_ptr<const Set>;
 
-/// A set and its producer's claim; they travel together. An operation's result claims at most the weakest claim of its inputs.
+/// A set and its producer's claim; they travel together. An operation's result claims at most the
+/// weakest claim of its inputs.
 struct Enclosure {
   SetPtr set;
   Tightness tightness = Tightness::exact;
@@ -39,9 +42,10 @@ struct Volume {
 
 /// A closed convex subset of Rⁿ in some representation.
 ///
-/// Public functions check dimensions and finiteness (Errc::dimension, Errc::not_finite), settle n = 0 and what follows from the
-/// answer "empty", and then call the private `do_…` function, whose preconditions are thereby met. Every `do_…` function but the
-/// first two has a default through the exchange form.
+/// Public functions check dimensions and finiteness (Errc::dimension, Errc::not_finite), settle n =
+/// 0 and what follows from the answer "empty", and then call the private `do_…` function, whose
+/// preconditions are thereby met. Every `do_…` function but the first two has a default through the
+/// exchange form.
 class Set {
  public:
   virtual ~Set() = default;
@@ -52,25 +56,30 @@ class Set {
   const SetBackend& backend() const { return *backend_; }
   Complexity complexity() const { return do_complexity(); }
 
-  /// The set in the common form: equal to it if the backend's `exact_exchange` holds, else enclosing it.
+  /// The set in the common form: equal to it if the backend's `exact_exchange` holds, else
+  /// enclosing it.
   LineForm line_form() const;
 
-  /// Three-valued questions. Through an outer exchange form only `is_empty: yes`, `contains: no`, `is_disjoint_from: yes`,
-  /// `is_bounded: yes` and, for an exact right-hand side, `is_subset_of: yes` are given. `why` receives the proof.
+  /// Three-valued questions. Through an outer exchange form only `is_empty: yes`, `contains: no`,
+  /// `is_disjoint_from: yes`, `is_bounded: yes` and, for an exact right-hand side, `is_subset_of:
+  /// yes` are given. `why` receives the proof.
   Answer is_empty(Certificate* why = nullptr) const;
   Answer contains(VectorIn x, Certificate* why = nullptr) const;
   Answer is_subset_of(const Set& other, Certificate* why = nullptr) const;
   Answer is_disjoint_from(const Set& other, Certificate* why = nullptr) const;
   Answer is_bounded() const;
 
-  /// Upper bound of h_X(d) = sup{dᵀx : x ∈ X}; +inf when unbounded or unsolved, -inf when proven empty.
+  /// Upper bound of h_X(d) = sup{dᵀx : x ∈ X}; +inf when unbounded or unsolved, -inf when proven
+  /// empty.
   double support(VectorIn d, Certificate* why = nullptr) const;
 
-  /// Smallest box around the set as far as proven: contains X in any case. An empty box only if X is proven empty.
-  /// `why` receives the proofs of the bounds: two per coordinate, of the upper bound (direction e_i) and of the lower (-e_i).
+  /// Smallest box around the set as far as proven: contains X in any case. An empty box only if X
+  /// is proven empty. `why` receives the proofs of the bounds: two per coordinate, of the upper
+  /// bound (direction e_i) and of the lower (-e_i).
   Box interval_hull(std::vector<Certificate>* why = nullptr) const;
 
-  /// Exact where the representation offers it (see the backend), else the volume of the interval hull.
+  /// Exact where the representation offers it (see the backend), else the volume of the interval
+  /// hull.
   Volume volume() const;
 
  protected:

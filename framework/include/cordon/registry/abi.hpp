@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The ABI tag: a text of everything that changes the layout of a shared type or the allocator behind it. Host and plugin
-// compare it in the plugin's file, before the library is opened; built with other flags, a plugin would corrupt memory instead.
+// The ABI tag: a text of everything that changes the layout of a shared type or the allocator
+// behind it. Host and plugin compare it in the plugin's file, before the library is opened; built
+// with other flags, a plugin would corrupt memory instead.
 #pragma once
 
 #include <Eigen/Core>

@@ -9,9 +9,10 @@
 namespace cordon {
 
 struct BuildInfo {
-  std::string version;                                     ///< of cordon
-  std::string abi_tag;                                     ///< what a plugin must agree with
-  std::vector<std::pair<std::string, std::string>> tools;  ///< compiler and libraries with their versions
+  std::string version;  ///< of cordon
+  std::string abi_tag;  ///< what a plugin must agree with
+  std::vector<std::pair<std::string, std::string>>
+      tools;  ///< compiler and libraries with their versions
 };
 BuildInfo build_info();
 

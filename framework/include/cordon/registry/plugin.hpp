@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a plugin is: a shared library with one exported descriptor. A plugin author includes this file. The
-// descriptor is read from the file before the library is opened. Keep static objects trivial all the same: what their
-// constructors throw ends the process, and the plugin is refused.
+// What a plugin is: a shared library with one exported descriptor. A plugin author includes this
+// file. The descriptor is read from the file before the library is opened. Keep static objects
+// trivial all the same: what their constructors throw ends the process, and the plugin is refused.
 //
 //   void register_components(cordon::Registrar& registrar) { registrar.backend({...}); }
-//   CORDON_PLUGIN("my_box", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "axis-aligned boxes", register_components)
+//   CORDON_PLUGIN("my_box", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "axis-aligned boxes",
+//   register_components)
 #pragma once
 
 #include <cstdint>
@@ -31,17 +32,19 @@ struct ComponentInfo {
   std::string summary;   ///< one sentence
   std::string citation;  ///< bibliography key, may be empty
   ParamSchema schema;
-  std::string details = {};  ///< further paragraphs for `cordon info`, lines of at most 100 characters: what is computed, and how
+  std::string details = {};  ///< further paragraphs for `cordon info`, lines of at most 100
+                             ///< characters: what is computed, and how
 };
 
 class Factory;
 
-/// What an observer is made for. `check` functions see the same, so that impossible combinations are reported with all other
-/// errors.
+/// What an observer is made for. `check` functions see the same, so that impossible combinations
+/// are reported with all other errors.
 struct ObserverContext {
   const Model& model;
   std::shared_ptr<const SetBackend> backend;
-  const Factory* make = nullptr;  ///< never null in `check` and `create`: the registry puts itself there
+  const Factory* make =
+      nullptr;  ///< never null in `check` and `create`: the registry puts itself there
 };
 
 /// What a gain is designed for.
@@ -49,15 +52,18 @@ struct GainContext {
   const Model& model;
 };
 
-/// Makes components for components: a bank builds its observers by it, an observer its gain. Parameters are completed and
-/// checked.
+/// Makes components for components: a bank builds its observers by it, an observer its gain.
+/// Parameters are completed and checked.
 class Factory {
  public:
   virtual ~Factory() = default;
-  virtual std::vector<Diagnostic> check_gain(const ComponentSpec& spec, const GainContext& context) const = 0;
+  virtual std::vector<Diagnostic> check_gain(const ComponentSpec& spec,
+                                             const GainContext& context) const = 0;
   virtual std::shared_ptr<const GainDesigner> make_gain(const ComponentSpec& spec) const = 0;
-  virtual std::vector<Diagnostic> check_observer(const ComponentSpec& spec, const ObserverContext& context) const = 0;
-  virtual std::shared_ptr<Observer> make_observer(const ComponentSpec& spec, const ObserverContext& context) const = 0;
+  virtual std::vector<Diagnostic> check_observer(const ComponentSpec& spec,
+                                                 const ObserverContext& context) const = 0;
+  virtual std::shared_ptr<Observer> make_observer(const ComponentSpec& spec,
+                                                  const ObserverContext& context) const = 0;
 };
 
 /// What a diagnoser is made for.
@@ -79,12 +85,12 @@ struct BackendEntry {
 };
 struct ObserverEntry {
   ComponentInfo info;
-  /// Problems of this combination of model, backend and parameters (pointers relative to the observer's object, "/name"); empty:
-  /// `create` will succeed.
+  /// Problems of this combination of model, backend and parameters (pointers relative to the
+  /// observer's object, "/name"); empty: `create` will succeed.
   std::function<std::vector<Diagnostic>(const ObserverContext&, const Params&)> check;
   std::function<std::unique_ptr<Observer>(const ObserverContext&, const Params&)> create;
-  /// It encloses the states of models whose effectiveness is known by ranges only. Otherwise such models are refused before
-  /// `check` is asked.
+  /// It encloses the states of models whose effectiveness is known by ranges only. Otherwise such
+  /// models are refused before `check` is asked.
   bool takes_ranges = false;
   /// The same of models with parametric uncertainty.
   bool takes_uncertainty = false;
@@ -94,21 +100,24 @@ struct DiagnoserEntry {
   /// As for observers. May take its time: what a diagnoser promises in advance is checked here.
   std::function<std::vector<Diagnostic>(const DiagnoserContext&, const Params&)> check;
   std::function<std::unique_ptr<Diagnoser>(const DiagnoserContext&, const Params&)> create;
-  /// Its exclusions hold for models with parametric uncertainty. Otherwise such banks are refused before `check` is asked.
+  /// Its exclusions hold for models with parametric uncertainty. Otherwise such banks are refused
+  /// before `check` is asked.
   bool takes_uncertainty = false;
-  /// It tells modes apart, and is of no use for one alone. False: it finds additive faults, and is refused where there is no F.
+  /// It tells modes apart, and is of no use for one alone. False: it finds additive faults, and is
+  /// refused where there is no F.
   bool needs_modes = true;
 };
 struct GainEntry {
   ComponentInfo info;
-  /// Problems of this combination of model and parameters, as for observers; models with E are refused before. What the design
-  /// itself finds out is told by `design`.
+  /// Problems of this combination of model and parameters, as for observers; models with E are
+  /// refused before. What the design itself finds out is told by `design`.
   std::function<std::vector<Diagnostic>(const GainContext&, const Params&)> check;
   std::function<std::unique_ptr<GainDesigner>(const Params&)> create;
 };
 struct DesignerEntry {
   ComponentInfo info;
-  /// As for observers. Banks with fewer than two modes, ranges of effectiveness or interval matrices are refused before.
+  /// As for observers. Banks with fewer than two modes, ranges of effectiveness or interval
+  /// matrices are refused before.
   std::function<std::vector<Diagnostic>(const DesignerContext&, const Params&)> check;
   std::function<std::unique_ptr<InputDesigner>(const DesignerContext&, const Params&)> create;
 };
@@ -127,9 +136,9 @@ struct MetricEntry {
   std::function<std::vector<Diagnostic>(const MetricContext&, const Params&)> check = {};
 };
 
-/// Handed to a plugin's register function; what was added is rolled back if that function throws or breaks a rule. Names of
-/// components and parameters are in snake_case, components have a summary, parameters a documentation, and no name is there twice
-/// in its kind.
+/// Handed to a plugin's register function; what was added is rolled back if that function throws or
+/// breaks a rule. Names of components and parameters are in snake_case, components have a summary,
+/// parameters a documentation, and no name is there twice in its kind.
 class Registrar {
  public:
   virtual ~Registrar() = default;
@@ -142,9 +151,9 @@ class Registrar {
   virtual void designer(DesignerEntry entry) = 0;
 };
 
-/// Plain data, read from the plugin's file before any code of the plugin runs: texts stand in it whole, ended by 0, since
-/// pointers to them would not be known before the library is opened. Layout changes only with `abi_version`; the first two
-/// members stay.
+/// Plain data, read from the plugin's file before any code of the plugin runs: texts stand in it
+/// whole, ended by 0, since pointers to them would not be known before the library is opened.
+/// Layout changes only with `abi_version`; the first two members stay.
 struct PluginDescriptor {
   std::uint32_t size;         ///< sizeof(PluginDescriptor)
   std::uint32_t abi_version;  ///< CORDON_ABI_VERSION
@@ -159,16 +168,19 @@ struct PluginDescriptor {
 
 }  // namespace cordon
 
-/// Exports the descriptor under the one symbol that the host looks for. The texts are literals; one that is too long does not
-/// compile.
-#define CORDON_PLUGIN(plugin_name, plugin_version, plugin_license, plugin_author, plugin_summary, register_function) \
-  extern "C" __attribute__((visibility("default"))) const ::cordon::PluginDescriptor cordon_plugin_descriptor;       \
-  extern "C" const ::cordon::PluginDescriptor cordon_plugin_descriptor{sizeof(::cordon::PluginDescriptor),           \
-                                                                       CORDON_ABI_VERSION,                           \
-                                                                       CORDON_ABI_TAG,                               \
-                                                                       plugin_name,                                  \
-                                                                       plugin_version,                               \
-                                                                       plugin_license,                               \
-                                                                       plugin_author,                                \
-                                                                       plugin_summary,                               \
-                                                                       register_function};
+/// Exports the descriptor under the one symbol that the host looks for. The texts are literals; one
+/// that is too long does not compile.
+#define CORDON_PLUGIN(plugin_name, plugin_version, plugin_license, plugin_author, plugin_summary, \
+                      register_function)                                                          \
+  extern "C" __attribute__((visibility("default")))                                               \
+  const ::cordon::PluginDescriptor cordon_plugin_descriptor;                                      \
+  extern "C" const ::cordon::PluginDescriptor cordon_plugin_descriptor{                           \
+      sizeof(::cordon::PluginDescriptor),                                                         \
+      CORDON_ABI_VERSION,                                                                         \
+      CORDON_ABI_TAG,                                                                             \
+      plugin_name,                                                                                \
+      plugin_version,                                                                             \
+      plugin_license,                                                                             \
+      plugin_author,                                                                              \
+      plugin_summary,                                                                             \
+      register_function};

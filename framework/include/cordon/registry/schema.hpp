@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Typed parameters of components. One schema drives validation, defaults, `cordon info`, the tables of the manual and the JSON
-// Schema for editors. No JSON type appears here: parameters can be built from C++ as well.
+// Typed parameters of components. One schema drives validation, defaults, `cordon info`, the tables
+// of the manual and the JSON Schema for editors. No JSON type appears here: parameters can be built
+// from C++ as well.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +21,12 @@ namespace cordon {
 
 struct ComponentSpec;
 
-/// Values by name. Asking for a name that is absent, or for another type, throws Errc::invalid: validated parameters hold every
-/// name of their schema that is required or has a default.
+/// Values by name. Asking for a name that is absent, or for another type, throws Errc::invalid:
+/// validated parameters hold every name of their schema that is required or has a default.
 class Params {
  public:
-  using Value = std::variant<std::int64_t, double, bool, std::string, Vector, Matrix, LineForm, std::vector<Matrix>,
-                             std::shared_ptr<const ComponentSpec>>;
+  using Value = std::variant<std::int64_t, double, bool, std::string, Vector, Matrix, LineForm,
+                             std::vector<Matrix>, std::shared_ptr<const ComponentSpec>>;
 
   Params& set(std::string name, Value value);
   bool has(std::string_view name) const;
@@ -51,8 +52,20 @@ struct ComponentSpec {
   Params params;  ///< in studies complete: every default filled in
 };
 
-/// `matrices` is a list of matrices; `component` a nested component of the kind `ParamSpec::component_kind`.
-enum class ParamKind { integer, real, flag, choice, text, vector, matrix, set, matrices, component };
+/// `matrices` is a list of matrices; `component` a nested component of the kind
+/// `ParamSpec::component_kind`.
+enum class ParamKind {
+  integer,
+  real,
+  flag,
+  choice,
+  text,
+  vector,
+  matrix,
+  set,
+  matrices,
+  component
+};
 std::string_view to_string(ParamKind kind) noexcept;
 
 /// One parameter of a component.
@@ -61,23 +74,29 @@ struct ParamSpec {
   ParamKind kind;
   std::string doc;  ///< one sentence, with unit and meaning of the limits
   bool required = false;
-  std::optional<Params::Value> fallback;  ///< value when absent; none and not required: the parameter stays absent
-  double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
+  std::optional<Params::Value>
+      fallback;  ///< value when absent; none and not required: the parameter stays absent
+  double lowest = -std::numeric_limits<double>::infinity(),
+         highest = std::numeric_limits<double>::infinity();
   std::vector<std::string> choices;
   std::string component_kind;  ///< "observer", …
-  /// A component that may be written as a matrix: the component of this type with the matrix as the parameter "matrix".
+  /// A component that may be written as a matrix: the component of this type with the matrix as the
+  /// parameter "matrix".
   std::string matrix_type = {};
 };
 
-/// The parameters a component takes, in the order of the manual. A schema that contradicts itself (a name twice, a default
-/// outside its own limits, a choice without choices) throws Errc::invalid where it is written.
+/// The parameters a component takes, in the order of the manual. A schema that contradicts itself
+/// (a name twice, a default outside its own limits, a choice without choices) throws Errc::invalid
+/// where it is written.
 class ParamSchema {
  public:
-  ParamSchema& integer(std::string name, std::string doc, std::optional<std::int64_t> fallback, std::int64_t lowest,
-                       std::int64_t highest);
-  ParamSchema& real(std::string name, std::string doc, std::optional<double> fallback, double lowest, double highest);
+  ParamSchema& integer(std::string name, std::string doc, std::optional<std::int64_t> fallback,
+                       std::int64_t lowest, std::int64_t highest);
+  ParamSchema& real(std::string name, std::string doc, std::optional<double> fallback,
+                    double lowest, double highest);
   ParamSchema& flag(std::string name, std::string doc, bool fallback);
-  ParamSchema& choice(std::string name, std::string doc, std::vector<std::string> choices, std::string fallback);
+  ParamSchema& choice(std::string name, std::string doc, std::vector<std::string> choices,
+                      std::string fallback);
   ParamSchema& text(std::string name, std::string doc, std::optional<std::string> fallback = {});
   ParamSchema& vector(std::string name, std::string doc);
   ParamSchema& matrix(std::string name, std::string doc);
@@ -93,8 +112,9 @@ class ParamSchema {
   const ParamSpec* find(std::string_view name) const;
   std::vector<std::string> names() const;
 
-  /// Fills in defaults, makes an integer real where a real is asked for, and returns every problem (unknown name, wrong type, out
-  /// of range, NaN or infinite, missing); pointers are "/name". An integer beyond ±2⁵³ is no exact real and is refused as one.
+  /// Fills in defaults, makes an integer real where a real is asked for, and returns every problem
+  /// (unknown name, wrong type, out of range, NaN or infinite, missing); pointers are "/name". An
+  /// integer beyond ±2⁵³ is no exact real and is refused as one.
   std::vector<Diagnostic> complete(Params& params) const;
 
  private:

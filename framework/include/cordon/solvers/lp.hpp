@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Façade of the linear-programming solver. Its answers are proposals: see boxed_program.hpp for what is proven.
+// Façade of the linear-programming solver. Its answers are proposals: see boxed_program.hpp for
+// what is proven.
 #pragma once
 
 #include <memory>
@@ -10,7 +11,8 @@ namespace cordon {
 
 /// maximise gᵀx subject to A x = b, lower ≤ x ≤ upper. Bounds may be infinite; A may have no rows.
 /// An object belongs to the thread that made it: on another one every solve is `failed`.
-/// The constraint matrix is loaded once; objectives change cheaply and the basis is kept from solve to solve.
+/// The constraint matrix is loaded once; objectives change cheaply and the basis is kept from solve
+/// to solve.
 class LinearProgram {
  public:
   LinearProgram(MatrixIn A, VectorIn b, VectorIn lower, VectorIn upper);

@@ -11,13 +11,15 @@
 
 namespace cordon {
 
-/// Convex polyhedron in Rⁿ, bounded or not, given by inequalities (H) or generators (V), converted by the double-description
-/// method on integers when the other form is needed [Fukuda1996]. Every double is taken as the number it is, and every
-/// operation is exact. Immutable; a copy shares the representation. Redundant rows and generators are removed.
+/// Convex polyhedron in Rⁿ, bounded or not, given by inequalities (H) or generators (V), converted
+/// by the double-description method on integers when the other form is needed [Fukuda1996]. Every
+/// double is taken as the number it is, and every operation is exact. Immutable; a copy shares the
+/// representation. Redundant rows and generators are removed.
 ///
-/// Degenerate cases: ∅ in any dimension; n = 0: the point or ∅. Errors: Errc::dimension, Errc::not_finite (NaN and infinity never
-/// reach GMP), Errc::unsupported when an operation exceeds its size limit, with the size and the limit in the message. Safe to
-/// share between threads. Cost grows exponentially with n: practical up to a few hundred vertices and facets for n ≤ 4, dozens
+/// Degenerate cases: ∅ in any dimension; n = 0: the point or ∅. Errors: Errc::dimension,
+/// Errc::not_finite (NaN and infinity never reach GMP), Errc::unsupported when an operation exceeds
+/// its size limit, with the size and the limit in the message. Safe to share between threads. Cost
+/// grows exponentially with n: practical up to a few hundred vertices and facets for n ≤ 4, dozens
 /// for n = 5, 6; a conversion gives up after some seconds.
 class Polytope {
  public:
@@ -27,9 +29,9 @@ class Polytope {
   /// conv(columns of V) ⊕ cone(columns of rays) ⊕ span(columns of lines); ∅ if V has no columns.
   static Polytope from_generators(MatrixIn V);
   static Polytope from_generators(MatrixIn V, MatrixIn rays, MatrixIn lines);
-  /// The projection {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b} of the lifted set, by the closed form of a zonotope's
-  /// facets in Rⁿ⁺ᵐ: for rank r of the lifted generators, up to 20,000 (r-1)-subsets of them (g = 14 for n = 3, m = 4; g = 150
-  /// for n = 3 without constraints).
+  /// The projection {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b} of the lifted set, by the closed form of
+  /// a zonotope's facets in Rⁿ⁺ᵐ: for rank r of the lifted generators, up to 20,000 (r-1)-subsets
+  /// of them (g = 14 for n = 3, m = 4; g = 150 for n = 3 without constraints).
   static Polytope from(const LineForm& X);
   static Polytope empty(Index n);
   static Polytope space(Index n);
@@ -37,7 +39,8 @@ class Polytope {
   Index dim() const;
   bool is_empty() const;
   bool is_bounded() const;
-  std::size_t bits() const;  ///< digits of all numbers of the vertices, rays and lines: the cost of going on with them
+  std::size_t bits() const;  ///< digits of all numbers of the vertices, rays and lines: the cost of
+                             ///< going on with them
   bool contains(VectorIn x) const;
   bool contains(const Polytope& X) const;  ///< X ⊆ *this
   friend bool operator==(const Polytope& X, const Polytope& Y);
@@ -52,13 +55,13 @@ class Polytope {
 
   /// h(d) = sup{dᵀx} between neighbouring doubles; ±inf as in exact::support.
   rounding::Range support(VectorIn d) const;
-  /// Volume of a bounded polytope between neighbouring doubles; 0 if flat or empty, 1 for the point of n = 0. Errc::unsupported
-  /// if unbounded, for n > 6, and beyond 200,000 simplices.
+  /// Volume of a bounded polytope between neighbouring doubles; 0 if flat or empty, 1 for the point
+  /// of n = 0. Errc::unsupported if unbounded, for n > 6, and beyond 200,000 simplices.
   rounding::Range volume() const;
   Box interval_hull() const;  ///< rounded outward to neighbouring doubles
 
-  /// Generators and inequalities without redundancy, rounded to the nearest double each (rays, lines and rows are scaled to a
-  /// largest entry of about 1 first). Equations of H stand in Q, q.
+  /// Generators and inequalities without redundancy, rounded to the nearest double each (rays,
+  /// lines and rows are scaled to a largest entry of about 1 first). Equations of H stand in Q, q.
   struct Generators {
     Matrix vertices, rays, lines;  ///< one per column
   };
@@ -71,21 +74,25 @@ class Polytope {
   Generators generators() const;
   Inequalities inequalities() const;
 
-  /// In exchange form: lines as they are, and the section that remains as its interval hull, cut by one constraint with one slack
-  /// factor per facet that is not one of the hull (a constrained zonotope, or a line zonotope). Encloses the polyhedron; `exact`
-  /// if no number had to be rounded. Errc::unsupported for sets that are unbounded on one side only, which the form cannot hold.
+  /// In exchange form: lines as they are, and the section that remains as its interval hull, cut by
+  /// one constraint with one slack factor per facet that is not one of the hull (a constrained
+  /// zonotope, or a line zonotope). Encloses the polyhedron; `exact` if no number had to be
+  /// rounded. Errc::unsupported for sets that are unbounded on one side only, which the form cannot
+  /// hold.
   struct Export {
     LineForm form;
     Tightness tightness = Tightness::outer;
   };
   Export to_line_form() const;
 
-  /// The rational numbers themselves, for the framework's own sources (solvers/polytope_representation.hpp).
+  /// The rational numbers themselves, for the framework's own sources
+  /// (solvers/polytope_representation.hpp).
   struct Representation;
   const Representation& representation() const { return *representation_; }
 
  private:
-  explicit Polytope(std::shared_ptr<const Representation> representation) : representation_(std::move(representation)) {}
+  explicit Polytope(std::shared_ptr<const Representation> representation)
+      : representation_(std::move(representation)) {}
   std::shared_ptr<const Representation> representation_;
 };
 

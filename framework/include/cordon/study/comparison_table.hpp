@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The numbers of a table that matter, side by side as people read them: means with deviations, the best ones marked.
+// The numbers of a table that matter, side by side as people read them: means with deviations, the
+// best ones marked.
 #pragma once
 
 #include <string>
@@ -29,11 +30,12 @@ struct ComparisonTable {
   std::vector<std::string> notes;                 ///< what the marks in the cells mean
 };
 
-/// Of all columns the important ones that have a number: sizes of sets, containment, delays and rates of diagnoses, cost, times.
+/// Of all columns the important ones that have a number: sizes of sets, containment, delays and
+/// rates of diagnoses, cost, times.
 ComparisonTable comparison_table(const ResultTable& table, const Summary& summary);
 
-/// A number with so many significant digits, as short as people write it: "0.00123", "1.20", "3.4e+07", "∞", "–" for NaN. Whole
-/// numbers below a million are written out.
+/// A number with so many significant digits, as short as people write it: "0.00123", "1.20",
+/// "3.4e+07", "∞", "–" for NaN. Whole numbers below a million are written out.
 std::string number_text(double value, int digits = 4);
 
 }  // namespace cordon

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The samples of a study, one after another: simulated or recorded. Nothing is kept, so that memory does not grow with the length
-// of a run.
+// The samples of a study, one after another: simulated or recorded. Nothing is kept, so that memory
+// does not grow with the length of a run.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,10 @@ namespace cordon {
 struct Record {
   Sample sample;
   std::optional<Vector> truth;
-  std::optional<Index> mode = {};    ///< index of the true mode in the study's bank, -1: outside the bank
-  std::optional<Vector> fault = {};  ///< n_k, one entry per column of F; while one is not 0, the mode is -1
+  std::optional<Index> mode =
+      {};  ///< index of the true mode in the study's bank, -1: outside the bank
+  std::optional<Vector> fault =
+      {};  ///< n_k, one entry per column of F; while one is not 0, the mode is -1
 };
 
 /// A stream of records. Two streams of one study give the same records bit by bit.
@@ -26,8 +28,8 @@ class DataSource {
   virtual std::optional<std::int64_t> size() const = 0;
 };
 
-/// Opens the data of a study, simulated data with their seed + `seed_offset`. Throws InputError (CSV problems with their lines;
-/// an inconsistent x0).
+/// Opens the data of a study, simulated data with their seed + `seed_offset`. Throws InputError
+/// (CSV problems with their lines; an inconsistent x0).
 std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_offset = 0);
 
 }  // namespace cordon

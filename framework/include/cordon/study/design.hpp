@@ -12,12 +12,15 @@
 
 namespace cordon {
 
-/// A pair of modes, judged in rational arithmetic on the equations of the study as they stand in the file.
+/// A pair of modes, judged in rational arithmetic on the equations of the study as they stand in
+/// the file.
 struct ExactPair {
   Index i = 0, j = 0;
-  Answer disjoint = Answer::unknown;  ///< `unknown` beyond the size limits of the exact programs only
-  double kappa_lower = 0;             ///< proven: κ is at least this (rounded down); meaningful if `disjoint` is yes
-  std::string reason = {};            ///< if unknown
+  Answer disjoint =
+      Answer::unknown;  ///< `unknown` beyond the size limits of the exact programs only
+  double kappa_lower =
+      0;  ///< proven: κ is at least this (rounded down); meaningful if `disjoint` is yes
+  std::string reason = {};  ///< if unknown
 };
 
 /// What is proven of an input sequence without any rounding.
@@ -29,17 +32,21 @@ struct ExactSeparation {
   Answer separates() const;
 };
 
-/// Is the input of this outcome separating the modes of the bank? Doubles are taken as the numbers they are, no line is
-/// eliminated in floating point, and the designer is not asked. Errc::dimension if the outcome has no input or does not fit.
-/// `stop` (may be null) ends it early: what is open then is `unknown`.
-ExactSeparation verify_design(const ModeBank& bank, const DesignOutcome& outcome, const std::atomic<bool>* stop = nullptr);
+/// Is the input of this outcome separating the modes of the bank? Doubles are taken as the numbers
+/// they are, no line is eliminated in floating point, and the designer is not asked.
+/// Errc::dimension if the outcome has no input or does not fit. `stop` (may be null) ends it early:
+/// what is open then is `unknown`.
+ExactSeparation verify_design(const ModeBank& bank, const DesignOutcome& outcome,
+                              const std::atomic<bool>* stop = nullptr);
 
-/// What of a designer's answer is proven false: by the exact separation of its input, and by what the study asks for in the
-/// parameters of these names, where the designer has them: `horizon`, `max_horizon`, `input`, `input_set` (absent: U of the
-/// nominal mode), `first_input`, `epsilon`, `outputs`, `admissible_set`. An input is outside the set, or another than the one
-/// that was asked for, if it is so by more than rounding (1e-9 of its size). One sentence each; none: nothing is contradicted.
-std::vector<std::string> refuted_claims(const ModeBank& bank, const ComponentSpec& designer, const DesignOutcome& outcome,
-                                        const ExactSeparation* exact);
+/// What of a designer's answer is proven false: by the exact separation of its input, and by what
+/// the study asks for in the parameters of these names, where the designer has them: `horizon`,
+/// `max_horizon`, `input`, `input_set` (absent: U of the nominal mode), `first_input`, `epsilon`,
+/// `outputs`, `admissible_set`. An input is outside the set, or another than the one that was asked
+/// for, if it is so by more than rounding (1e-9 of its size). One sentence each; none: nothing is
+/// contradicted.
+std::vector<std::string> refuted_claims(const ModeBank& bank, const ComponentSpec& designer,
+                                        const DesignOutcome& outcome, const ExactSeparation* exact);
 
 struct DesignOptions {
   std::string pipeline;                     ///< this one only; empty: all that have a designer
@@ -59,11 +66,14 @@ struct PipelineDesign {
   std::optional<Errc> error_code = {};
 };
 
-/// Designs the inputs of all pipelines with a designer, one after another, and checks every answer. Throws InputError if
-/// `pipeline` is unknown or has no designer. An exception of a component ends its pipeline only.
-std::vector<PipelineDesign> design_study(const Study& study, const Registry& registry, const DesignOptions& options);
+/// Designs the inputs of all pipelines with a designer, one after another, and checks every answer.
+/// Throws InputError if `pipeline` is unknown or has no designer. An exception of a component ends
+/// its pipeline only.
+std::vector<PipelineDesign> design_study(const Study& study, const Registry& registry,
+                                         const DesignOptions& options);
 
-/// The same as JSON objects (docs/results_format.md). What is exact has no time in it, so that it repeats.
+/// The same as JSON objects (docs/results_format.md). What is exact has no time in it, so that it
+/// repeats.
 std::string json_of(const DesignOutcome& outcome, const std::vector<std::string>& modes);
 std::string json_of(const ExactSeparation& exact, const std::vector<std::string>& modes);
 

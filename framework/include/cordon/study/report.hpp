@@ -13,9 +13,11 @@ struct ReportOptions {
   bool csv = false;  ///< figures/NAME.csv: the numbers of each figure
 };
 
-/// Reads the files that `cordon run` has left in `directory`, and no plugin, and writes the figures there. Size of the page
-/// and memory (but for `csv`, which holds every number) do not depend on the length of the run: curves are thinned out so that
-/// bands still enclose what they stand for. Returns the files. Throws InputError, Errc::io.
-std::vector<std::filesystem::path> write_report(const std::filesystem::path& directory, const ReportOptions& options = {});
+/// Reads the files that `cordon run` has left in `directory`, and no plugin, and writes the figures
+/// there. Size of the page and memory (but for `csv`, which holds every number) do not depend on
+/// the length of the run: curves are thinned out so that bands still enclose what they stand for.
+/// Returns the files. Throws InputError, Errc::io.
+std::vector<std::filesystem::path> write_report(const std::filesystem::path& directory,
+                                                const ReportOptions& options = {});
 
 }  // namespace cordon

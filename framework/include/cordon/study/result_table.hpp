@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The results of a run or a sweep as a table of numbers: what statistics, comparisons and reports are made of.
+// The results of a run or a sweep as a table of numbers: what statistics, comparisons and reports
+// are made of.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,9 @@ struct ResultNumber {
   double value = 0;
 };
 
-/// Everything of an outcome that is a number, under the names of docs/results_format.md: counts, summaries of metrics, delays and
-/// rates of diagnoses, cost and separation of designs, and times. Answers count 1 for yes, 0 for no, NaN for unknown.
+/// Everything of an outcome that is a number, under the names of docs/results_format.md: counts,
+/// summaries of metrics, delays and rates of diagnoses, cost and separation of designs, and times.
+/// Answers count 1 for yes, 0 for no, NaN for unknown.
 std::vector<ResultNumber> numbers_of(const PipelineOutcome& outcome);
 
 struct ResultRow {

@@ -11,7 +11,8 @@
 
 namespace cordon {
 
-/// Of the finite numbers among some values. Quantiles interpolate linearly between order statistics (type 7). No number: NaN.
+/// Of the finite numbers among some values. Quantiles interpolate linearly between order statistics
+/// (type 7). No number: NaN.
 struct Statistics {
   std::int64_t count = 0;          ///< finite numbers
   std::int64_t infinite = 0;       ///< infinite ones, which are left out of all that follows
@@ -26,9 +27,10 @@ struct SummaryRow {
   std::vector<std::size_t> at;  ///< per axis; 0 for repetitions
   std::int64_t points = 0, failed = 0;
   std::vector<Statistics> columns;  ///< by column of the table, over the points that did not fail
-  /// By column: mean / smallest mean among the pipelines under the same combination. NaN where smaller is not better, a mean is
-  /// not positive, or a point of the row has no finite number; but for times, also where an estimate was proven empty, the truth
-  /// has left what the pipeline assumes, or a guarantee was violated.
+  /// By column: mean / smallest mean among the pipelines under the same combination. NaN where
+  /// smaller is not better, a mean is not positive, or a point of the row has no finite number; but
+  /// for times, also where an estimate was proven empty, the truth has left what the pipeline
+  /// assumes, or a guarantee was violated.
   std::vector<double> relative;
 };
 
@@ -37,7 +39,8 @@ struct Summary {
 };
 Summary summarise(const ResultTable& table);
 
-/// Is less of this number better (radius, volume, delays, false alarms, times, cost), more, or neither?
+/// Is less of this number better (radius, volume, delays, false alarms, times, cost), more, or
+/// neither?
 enum class Preference { less, more, none };
 Preference preference_of(const std::string& column);
 

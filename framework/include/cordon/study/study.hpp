@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A study: one system, its data, and pipelines that are compared on them. Read from a JSON file (docs/study_format.md).
+// A study: one system, its data, and pipelines that are compared on them. Read from a JSON file
+// (docs/study_format.md).
 #pragma once
 
 #include <cstdint>
@@ -33,25 +34,27 @@ struct Signal {
   Vector values;
 };
 
-/// How the bounded disturbances are drawn: uniform in the generators' factors, at random vertices of the factor box, all zero
-/// (the centre), or as sines of different frequency per factor.
+/// How the bounded disturbances are drawn: uniform in the generators' factors, at random vertices
+/// of the factor box, all zero (the centre), or as sines of different frequency per factor.
 enum class Noise { uniform, vertex, zero, sine };
 
-/// A fault of simulated data: for k = from … to, x_{k+1} and y_k are made with `model`. W, V and effectiveness are drawn from its
-/// sets. Of a descriptor system the equation E x_{k+1} = …, static rows included, is the fault's.
+/// A fault of simulated data: for k = from … to, x_{k+1} and y_k are made with `model`. W, V and
+/// effectiveness are drawn from its sets. Of a descriptor system the equation E x_{k+1} = …, static
+/// rows included, is the fault's.
 struct FaultSpec {
   std::int64_t from = 0;
   std::int64_t to = std::numeric_limits<std::int64_t>::max();
   std::string name;  ///< for people: the mode's, or the fault's own
   Index mode = -1;   ///< index in the study's bank; -1: outside the bank
   Model model;
-  /// The whole effectiveness, of which `model` has the exact part in its matrices: what a `plant` is simulated with. Dimension 0:
-  /// exactly 1.
+  /// The whole effectiveness, of which `model` has the exact part in its matrices: what a `plant`
+  /// is simulated with. Dimension 0: exactly 1.
   Box actuator = {}, sensor = {};
 };
 
-/// An additive fault of simulated data: for k = from … to, n_k of the fault is the signal's value at k, to which other entries of
-/// the same fault add theirs; it is 0 otherwise. F n_k acts on E x_{k+1} = …, static rows included.
+/// An additive fault of simulated data: for k = from … to, n_k of the fault is the signal's value
+/// at k, to which other entries of the same fault add theirs; it is 0 otherwise. F n_k acts on E
+/// x_{k+1} = …, static rows included.
 struct AdditiveFaultSpec {
   Index fault = 0;  ///< column of F; in studies counted from 1
   std::int64_t from = 0;
@@ -59,8 +62,8 @@ struct AdditiveFaultSpec {
   Signal signal = {};
 };
 
-/// What the matrices of an uncertain model are in a simulation; drawn by the kind of its noise: uniform in their intervals, at
-/// vertices, or in the middle (zero, sine).
+/// What the matrices of an uncertain model are in a simulation; drawn by the kind of its noise:
+/// uniform in their intervals, at vertices, or in the middle (zero, sine).
 enum class ParameterDraw {
   constant,  ///< drawn once: parameters that do not change
   varying    ///< drawn anew at every step
@@ -71,12 +74,15 @@ struct SimulateSpec {
   std::int64_t steps = 0;  ///< samples k = 0 … steps
   std::uint64_t seed = 1;
   Noise noise = Noise::uniform;
-  /// In place of x0: it is drawn from this set, by the kind of the noise and the seed. Of a descriptor system the part of the
-  /// draw that E determines is taken, and draws are repeated until the whole state lies in the set.
+  /// In place of x0: it is drawn from this set, by the kind of the noise and the seed. Of a
+  /// descriptor system the part of the draw that E determines is taken, and draws are repeated
+  /// until the whole state lies in the set.
   std::optional<LineForm> x0_set = {};
-  std::optional<Vector> x0;       ///< default: the centre of X0. Descriptor systems: must meet the static rows for some w_0 ∈ W
-  std::vector<Signal> input;      ///< one per input channel
-  std::vector<FaultSpec> faults;  ///< in order of time, without overlap; between them the plant is in the nominal mode
+  std::optional<Vector> x0;   ///< default: the centre of X0. Descriptor systems: must meet the
+                              ///< static rows for some w_0 ∈ W
+  std::vector<Signal> input;  ///< one per input channel
+  std::vector<FaultSpec>
+      faults;  ///< in order of time, without overlap; between them the plant is in the nominal mode
   std::optional<ComponentSpec> plant;  ///< in place of the linear model
   std::shared_ptr<const Plant> made_plant;
   std::vector<AdditiveFaultSpec> additive_faults = {};
@@ -86,59 +92,67 @@ struct SimulateSpec {
 
 /// Recorded data: a CSV file with a header row and named columns.
 struct CsvSpec {
-  std::filesystem::path file;                       ///< absolute, or relative to the study's folder (resolved when read)
+  std::filesystem::path file;  ///< absolute, or relative to the study's folder (resolved when read)
   std::vector<std::string> inputs, outputs, truth;  ///< column names; truth may be empty
-  std::string mode = {};                            ///< column with the names of the true modes; empty: not known
+  std::string mode = {};  ///< column with the names of the true modes; empty: not known
 };
 
-/// A backend with an observer, with a diagnoser, or with an input designer and perhaps a diagnoser for its experiment.
+/// A backend with an observer, with a diagnoser, or with an input designer and perhaps a diagnoser
+/// for its experiment.
 struct PipelineSpec {
   std::string name;
   ComponentSpec backend, observer;
   std::optional<ComponentSpec> diagnoser = {};  ///< if there is one, `observer` is empty
-  std::optional<ComponentSpec> designer = {};   ///< likewise; the pipeline has an input of its own then
+  std::optional<ComponentSpec> designer =
+      {};  ///< likewise; the pipeline has an input of its own then
 };
 
-/// One axis of a sweep: each of its values takes the place of what stands at `path`, in every place that the path matches.
+/// One axis of a sweep: each of its values takes the place of what stands at `path`, in every place
+/// that the path matches.
 struct SweepAxis {
   std::string name;
-  std::string path;                 ///< JSON pointer into the study; "*" stands for every element of an array
+  std::string path;  ///< JSON pointer into the study; "*" stands for every element of an array
   std::vector<std::string> values;  ///< JSON texts, none twice
-  bool repeat = false;              ///< repetitions, seeds for example: statistics are taken over this axis
+  bool repeat = false;  ///< repetitions, seeds for example: statistics are taken over this axis
 };
 
 /// Of a study with a sweep everything but `sweep` is that of the first values of all axes.
 struct Study {
   std::filesystem::path file;
   std::string title;
-  Model model;                               ///< of the nominal mode
-  std::string nominal = "healthy";           ///< its name
-  std::vector<Mode> modes;                   ///< the other modes
-  std::variant<SimulateSpec, CsvSpec> data;  ///< pipelines with a designer take seed, seeds, noise and start of simulated data
+  Model model;                      ///< of the nominal mode
+  std::string nominal = "healthy";  ///< its name
+  std::vector<Mode> modes;          ///< the other modes
+  std::variant<SimulateSpec, CsvSpec>
+      data;  ///< pipelines with a designer take seed, seeds, noise and start of simulated data
   std::vector<PipelineSpec> pipelines;
   std::vector<ComponentSpec> metrics;
-  std::vector<SweepAxis> sweep = {};               ///< in order; the grid of points is described in sweep.hpp
+  std::vector<SweepAxis> sweep = {};  ///< in order; the grid of points is described in sweep.hpp
   std::shared_ptr<const std::string> source = {};  ///< the text of the file
-  std::vector<std::string> warnings;               ///< e.g. a refused plugin that the study does not need
-  std::string resolved;                            ///< the study as JSON with every default, for the results file
+  std::vector<std::string> warnings;  ///< e.g. a refused plugin that the study does not need
+  std::string resolved;  ///< the study as JSON with every default, for the results file
 };
 
 /// The nominal mode first, then the others in the order of the study.
 ModeBank bank_of(const Study& study);
 
-/// What becomes of plugins in directories that a study names. Plugins are programs, and a study may come from anywhere:
-/// directories count as trusted if they are on `path` or the registry was told to search them before. The others are
+/// What becomes of plugins in directories that a study names. Plugins are programs, and a study may
+/// come from anywhere: directories count as trusted if they are on `path` or the registry was told
+/// to search them before. The others are
 enum class StudyPlugins {
   refuse,  ///< reported, each with its place, and nothing of them is loaded
-  ignore,  ///< not loaded, with a warning each; components found nowhere else are reported as not checked
+  ignore,  ///< not loaded, with a warning each; components found nowhere else are reported as not
+           ///< checked
   load     ///< trusted too
 };
 
-/// Reads, loads plugins from the directories that the study names, as far as `plugins` says, and then from `path` (the first
-/// plugin of a name wins), validates against the registry, and resolves. Throws InputError with every problem at once (pointer,
-/// line, reason, suggestion), or Errc::plugin if nothing is wrong but components that are missing because their plugin was
+/// Reads, loads plugins from the directories that the study names, as far as `plugins` says, and
+/// then from `path` (the first plugin of a name wins), validates against the registry, and
+/// resolves. Throws InputError with every problem at once (pointer, line, reason, suggestion), or
+/// Errc::plugin if nothing is wrong but components that are missing because their plugin was
 /// refused, or directories that are not trusted. Writes nothing.
-Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path = default_search_path(),
+Study read_study(const std::filesystem::path& file, Registry& registry,
+                 const SearchPath& path = default_search_path(),
                  StudyPlugins plugins = StudyPlugins::refuse);
 
 /// JSON Schema (2020-12) of study files, with the components that the registry knows. For editors.

@@ -17,9 +17,10 @@ struct CsvRow {
   std::string problem;    ///< not empty: the row is malformed
 };
 
-/// Reads rows of bytes. Lines end with LF, CR LF or CR; quoted fields may hold commas, quotes ("") and line ends; a UTF-8 byte
-/// order mark is skipped; blank lines at the end of the file are ignored, elsewhere they are malformed rows. A row beyond 1 MiB
-/// is malformed and skipped to its end of line, so that memory stays bounded for any file. Throws InputError: not a regular file,
+/// Reads rows of bytes. Lines end with LF, CR LF or CR; quoted fields may hold commas, quotes ("")
+/// and line ends; a UTF-8 byte order mark is skipped; blank lines at the end of the file are
+/// ignored, elsewhere they are malformed rows. A row beyond 1 MiB is malformed and skipped to its
+/// end of line, so that memory stays bounded for any file. Throws InputError: not a regular file,
 /// or an error of reading.
 class CsvReader {
  public:

@@ -24,11 +24,14 @@ void require_file(const std::filesystem::path& file) {
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
   const auto fail = [&](const std::string& why) {
-    throw InputError(file.string(), {{"/data/csv/file", why, "the path is relative to the folder of the study"}});
+    throw InputError(file.string(),
+                     {{"/data/csv/file", why, "the path is relative to the folder of the study"}});
   };
   if (status.type() == std::filesystem::file_type::not_found) fail("there is no such file");
-  if (status.type() == std::filesystem::file_type::directory) fail("is a directory, not a CSV file");
-  if (status.type() != std::filesystem::file_type::regular) fail("is not a regular file (it is read twice)");
+  if (status.type() == std::filesystem::file_type::directory)
+    fail("is a directory, not a CSV file");
+  if (status.type() != std::filesystem::file_type::regular)
+    fail("is not a regular file (it is read twice)");
 }
 
 }  // namespace
@@ -46,7 +49,8 @@ CsvSource::CsvSource(const CsvSpec& spec, const LinearModel& model, std::vector<
   validate();
   if (!problems_.empty()) {
     if (too_many())
-      problems_.back().suggestion += std::string(problems_.back().suggestion.empty() ? "" : "; ") + "reading stopped here";
+      problems_.back().suggestion +=
+          std::string(problems_.back().suggestion.empty() ? "" : "; ") + "reading stopped here";
     throw InputError(file_.string(), std::move(problems_));
   }
   reader_.emplace(file_);
@@ -58,26 +62,31 @@ void CsvSource::check_sizes(const CsvSpec& spec, const LinearModel& model) const
   std::vector<Diagnostic> problems;
   const auto require = [&](std::size_t size, Index wanted, const char* pointer, const char* of) {
     if (static_cast<Index>(size) == wanted) return;
-    problems.push_back(
-        {pointer, "names " + std::to_string(size) + " columns, must be " + std::to_string(wanted) + ", " + of, ""});
+    problems.push_back({pointer,
+                        "names " + std::to_string(size) + " columns, must be " +
+                            std::to_string(wanted) + ", " + of,
+                        ""});
   };
   require(spec.inputs.size(), model.inputs(), "/data/csv/inputs", "one per column of /system/B");
   require(spec.outputs.size(), model.outputs(), "/data/csv/outputs", "one per row of /system/C");
-  if (!spec.truth.empty()) require(spec.truth.size(), model.states(), "/data/csv/truth", "one per state");
+  if (!spec.truth.empty())
+    require(spec.truth.size(), model.states(), "/data/csv/truth", "one per state");
   if (!problems.empty()) throw InputError(file_.string(), std::move(problems));
 }
 
-void CsvSource::report(std::string pointer, std::int64_t line, std::string message, std::string mend) {
+void CsvSource::report(std::string pointer, std::int64_t line, std::string message,
+                       std::string mend) {
   if (too_many()) return;
-  problems_.push_back(
-      {std::move(pointer), std::move(message), std::move(mend), static_cast<int>(std::min<std::int64_t>(line, 2147483647))});
+  problems_.push_back({std::move(pointer), std::move(message), std::move(mend),
+                       static_cast<int>(std::min<std::int64_t>(line, 2147483647))});
 }
 
 void CsvSource::validate() {
   CsvReader reader(file_);
   CsvRow row;
   if (!reader.next(row)) {
-    report("/data/csv/file", 0, "the file is empty", "it needs a header row with the names of its columns, and rows of numbers");
+    report("/data/csv/file", 0, "the file is empty",
+           "it needs a header row with the names of its columns, and rows of numbers");
     return;
   }
   if (!row.problem.empty()) {
@@ -89,7 +98,8 @@ void CsvSource::validate() {
     check_row(row);
     ++rows_;
   }
-  if (rows_ == 0 && !too_many()) report("/data/csv/file", 0, "there is a header but no row of numbers");
+  if (rows_ == 0 && !too_many())
+    report("/data/csv/file", 0, "there is a header but no row of numbers");
 }
 
 void CsvSource::locate(const CsvRow& row) {
@@ -103,13 +113,16 @@ void CsvSource::locate(const CsvRow& row) {
   }
   if (header.size() == 1 && first.find_first_of(";\t") != std::string::npos) {
     const bool semicolon = first.find(';') != std::string::npos;
-    report("/data/csv/file", row.line, std::string("the header seems to be separated by ") + (semicolon ? "semicolons" : "tabs"),
-           "only commas separate columns, with a decimal point in numbers");
+    report(
+        "/data/csv/file", row.line,
+        std::string("the header seems to be separated by ") + (semicolon ? "semicolons" : "tabs"),
+        "only commas separate columns, with a decimal point in numbers");
   }
   std::set<std::string> seen, told;
   for (const std::string& name : header) {
     if (name.empty() || seen.insert(name).second || !told.insert(name).second) continue;
-    report("/data/csv/file", row.line, "the column " + json::in_quotes(name) + " appears more than once", "rename one of them");
+    report("/data/csv/file", row.line,
+           "the column " + json::in_quotes(name) + " appears more than once", "rename one of them");
   }
   for (Columns* columns : {&inputs_, &outputs_, &truth_, &mode_}) find_columns(*columns, header);
 }
@@ -117,14 +130,16 @@ void CsvSource::locate(const CsvRow& row) {
 void CsvSource::find_columns(Columns& columns, const std::vector<std::string>& header) {
   for (std::size_t i = 0; i < columns.names.size(); ++i) {
     const auto place = std::find(header.begin(), header.end(), columns.names[i]);
-    columns.at.push_back(place == header.end() ? missing : static_cast<std::size_t>(place - header.begin()));
+    columns.at.push_back(place == header.end() ? missing
+                                               : static_cast<std::size_t>(place - header.begin()));
     if (place != header.end()) continue;
     std::vector<std::string> candidates;
     for (const std::string& name : header) {
       if (candidates.size() < 30 && name.size() <= 60) candidates.push_back(name);
     }
     report(&columns == &mode_ ? columns.pointer : columns.pointer + "/" + std::to_string(i), 1,
-           "there is no column " + json::in_quotes(columns.names[i]) + " in the header", suggest(columns.names[i], candidates));
+           "there is no column " + json::in_quotes(columns.names[i]) + " in the header",
+           suggest(columns.names[i], candidates));
   }
 }
 
@@ -133,8 +148,9 @@ void CsvSource::check_row(const CsvRow& row) {
     report("/data/csv/file", row.line, row.problem);
   } else if (row.fields.size() != width_) {
     report("/data/csv/file", row.line,
-           "the row has " + std::to_string(row.fields.size()) + (row.fields.size() == 1 ? " field" : " fields") +
-               ", the header " + std::to_string(width_));
+           "the row has " + std::to_string(row.fields.size()) +
+               (row.fields.size() == 1 ? " field" : " fields") + ", the header " +
+               std::to_string(width_));
   } else {
     for (const Columns* columns : {&inputs_, &outputs_, &truth_}) numbers(row, *columns);
     mode(row);
@@ -151,22 +167,26 @@ std::optional<Vector> CsvSource::numbers(const CsvRow& row, const Columns& colum
     values[static_cast<Index>(i)] = number.value;
     if (number.problem.empty()) continue;
     good = false;
-    report("/data/csv/file", row.line, "column " + json::in_quotes(columns.names[i]) + ": " + number.problem);
+    report("/data/csv/file", row.line,
+           "column " + json::in_quotes(columns.names[i]) + ": " + number.problem);
   }
   return good ? std::optional<Vector>(std::move(values)) : std::nullopt;
 }
 
-/// The mode of a row, -1 for an empty field: outside the bank; nothing if it is not recorded, or after reporting what is wrong.
+/// The mode of a row, -1 for an empty field: outside the bank; nothing if it is not recorded, or
+/// after reporting what is wrong.
 std::optional<Index> CsvSource::mode(const CsvRow& row) {
   if (mode_.at.empty() || mode_.at.front() == missing) return std::nullopt;
   const std::string& field = row.fields[mode_.at.front()];
   const std::string name = trimmed(field);
   if (name.empty()) return -1;
-  const auto found = std::find_if(modes_.begin(), modes_.end(),
-                                  [&](const std::string& m) { return m == field || m == name || no_formula(m) == field; });
+  const auto found = std::find_if(modes_.begin(), modes_.end(), [&](const std::string& m) {
+    return m == field || m == name || no_formula(m) == field;
+  });
   if (found != modes_.end()) return static_cast<Index>(found - modes_.begin());
   report("/data/csv/file", row.line,
-         "column " + json::in_quotes(mode_.names.front()) + ": there is no mode " + json::in_quotes(name),
+         "column " + json::in_quotes(mode_.names.front()) + ": there is no mode " +
+             json::in_quotes(name),
          suggest(name.substr(0, 200), modes_));
   return std::nullopt;
 }
@@ -183,8 +203,10 @@ std::optional<Record> CsvSource::next() {
     true_mode = mode(row);
   }
   if (!u || !y || !truth || (!true_mode && !mode_.names.empty()))
-    throw Error(Errc::io, file_.string() + " was changed while it was read (line " + std::to_string(row.line) + ")");
-  Record record{{static_cast<Index>(k_++), std::move(*u), std::move(*y)}, std::nullopt, std::nullopt};
+    throw Error(Errc::io, file_.string() + " was changed while it was read (line " +
+                              std::to_string(row.line) + ")");
+  Record record{
+      {static_cast<Index>(k_++), std::move(*u), std::move(*y)}, std::nullopt, std::nullopt};
   if (!truth_.names.empty()) record.truth = std::move(truth);
   record.mode = true_mode;
   return record;

@@ -10,10 +10,11 @@
 
 namespace cordon::detail {
 
-/// Samples in the order of rows, k = row index from 0. The constructor reads the whole file once and throws InputError (file: the
-/// CSV file) with up to 20 problems and their lines: missing or repeated columns, ragged rows, text or non-finite values in a
-/// number of a column that is used, a mode that there is not, no header, no rows. Afterwards rows are read again one by one;
-/// memory is constant.
+/// Samples in the order of rows, k = row index from 0. The constructor reads the whole file once
+/// and throws InputError (file: the CSV file) with up to 20 problems and their lines: missing or
+/// repeated columns, ragged rows, text or non-finite values in a number of a column that is used, a
+/// mode that there is not, no header, no rows. Afterwards rows are read again one by one; memory is
+/// constant.
 class CsvSource final : public DataSource {
  public:
   /// `modes`: the names that the column of modes may hold, in the order of the bank.

@@ -19,8 +19,9 @@ class NoData final : public DataSource {
 };
 
 bool all_designed(const Study& study) {
-  return !study.pipelines.empty() && std::all_of(study.pipelines.begin(), study.pipelines.end(),
-                                                 [](const PipelineSpec& pipeline) { return pipeline.designer.has_value(); });
+  return !study.pipelines.empty() &&
+         std::all_of(study.pipelines.begin(), study.pipelines.end(),
+                     [](const PipelineSpec& pipeline) { return pipeline.designer.has_value(); });
 }
 
 }  // namespace
@@ -30,14 +31,18 @@ std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_off
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
     SimulateSpec spec = *simulate;
     spec.seed += seed_offset;
-    const bool modes = !study.modes.empty() || !spec.faults.empty();  // with one mode there is nothing to tell
-    if (spec.made_plant) return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string(), modes);
+    const bool modes =
+        !study.modes.empty() || !spec.faults.empty();  // with one mode there is nothing to tell
+    if (spec.made_plant)
+      return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string(), modes);
     const bool additive = study.model.linear.faults() > 0;
-    return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string(), modes || additive);
+    return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string(),
+                                                     modes || additive);
   }
   std::vector<std::string> modes{study.nominal};
   for (const Mode& mode : study.modes) modes.push_back(mode.name);
-  return std::make_unique<detail::CsvSource>(std::get<CsvSpec>(study.data), study.model.linear, std::move(modes));
+  return std::make_unique<detail::CsvSource>(std::get<CsvSpec>(study.data), study.model.linear,
+                                             std::move(modes));
 }
 
 }  // namespace cordon

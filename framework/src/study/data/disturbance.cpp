@@ -19,7 +19,8 @@ LineForm without_lines(const LineForm& X) { return X.lines() == 0 ? X : eliminat
 std::optional<Vector> central_factors(const LineForm& X) {
   if (X.constraints() == 0) return Vector(Vector::Zero(X.generators()));
   std::optional<Vector> xi = BoxedProgram(X.A, X.b).central_point();
-  if (!xi || !xi->allFinite() || (xi->size() > 0 && xi->cwiseAbs().maxCoeff() > 1 + 1e-9)) return std::nullopt;
+  if (!xi || !xi->allFinite() || (xi->size() > 0 && xi->cwiseAbs().maxCoeff() > 1 + 1e-9))
+    return std::nullopt;
   return Vector(xi->cwiseMax(-1.0).cwiseMin(1.0));
 }
 
@@ -51,18 +52,20 @@ std::optional<Vector> central_point(const LineForm& X) {
   return Vector(Z.c + linalg::product(Z.G, *xi));
 }
 
-Disturbance::Disturbance(const LineForm& X, Noise noise, RandomStream stream, Index first_prime, const std::string& file,
-                         const std::string& pointer)
+Disturbance::Disturbance(const LineForm& X, Noise noise, RandomStream stream, Index first_prime,
+                         const std::string& file, const std::string& pointer)
     : X_(without_lines(X)), noise_(noise), stream_(stream) {
   if (X_.lines() > 0) {
-    throw InputError(file, {{pointer, "cannot be simulated: unbounded", "give a bounded set, or use recorded data"}});
+    throw InputError(file, {{pointer, "cannot be simulated: unbounded",
+                             "give a bounded set, or use recorded data"}});
   }
   const std::optional<Vector> anchor = central_factors(X_);
   if (!anchor) {
     const bool empty = is_empty(X_) == Answer::yes;
-    throw InputError(
-        file, {{pointer, empty ? "cannot be simulated: the set is empty" : "cannot be simulated: no point of the set was found",
-                "check its constraints"}});
+    throw InputError(file, {{pointer,
+                             empty ? "cannot be simulated: the set is empty"
+                                   : "cannot be simulated: no point of the set was found",
+                             "check its constraints"}});
   }
   anchor_ = *anchor;
   if (X_.constraints() > 0) inverse_ = linalg::pseudo_inverse(X_.A);
@@ -99,7 +102,8 @@ Vector Disturbance::factor_draw(std::int64_t k) {
 Vector Disturbance::into_rows(const Vector& xi) const {
   const Vector residual = linalg::product(X_.A, xi) - X_.b;
   const Vector direction = xi - linalg::product(inverse_, residual) - anchor_;
-  double reach = std::numeric_limits<double>::infinity();  // largest t with ‖anchor + t direction‖∞ ≤ 1
+  double reach =
+      std::numeric_limits<double>::infinity();  // largest t with ‖anchor + t direction‖∞ ≤ 1
   for (Index i = 0; i < direction.size(); ++i) {
     if (std::abs(direction[i]) < 1e-12) continue;  // the rows fix this factor
     const double bound = direction[i] > 0 ? 1.0 : -1.0;

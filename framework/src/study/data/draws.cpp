@@ -8,7 +8,9 @@ namespace cordon::detail {
 namespace {
 
 /// A plant is not disturbed by W.
-LineForm drawn_W(const Model& model, const SimulateSpec& spec) { return spec.made_plant ? make_point(Vector(0)) : model.W; }
+LineForm drawn_W(const Model& model, const SimulateSpec& spec) {
+  return spec.made_plant ? make_point(Vector(0)) : model.W;
+}
 
 /// A plant has no matrices that hold the exact part of the effectiveness.
 const Box& actuator_of(const FaultSpec& fault, const SimulateSpec& spec) {
@@ -18,7 +20,8 @@ const Box& sensor_of(const FaultSpec& fault, const SimulateSpec& spec) {
   return spec.made_plant ? fault.sensor : fault.model.linear.sensor;
 }
 
-void check_radius(const Matrix& A, const Matrix& radius, const std::string& pointer, std::vector<Diagnostic>& problems) {
+void check_radius(const Matrix& A, const Matrix& radius, const std::string& pointer,
+                  std::vector<Diagnostic>& problems) {
   if (radius.size() == 0) return;
   if (radius.rows() != A.rows() || radius.cols() != A.cols()) {
     problems.push_back({pointer, "has a radius of another size", ""});
@@ -27,13 +30,17 @@ void check_radius(const Matrix& A, const Matrix& radius, const std::string& poin
   }
 }
 
-void check_additive_faults(const SimulateSpec& spec, Index faults, std::vector<Diagnostic>& problems) {
+void check_additive_faults(const SimulateSpec& spec, Index faults,
+                           std::vector<Diagnostic>& problems) {
   for (std::size_t i = 0; i < spec.additive_faults.size(); ++i) {
     const AdditiveFaultSpec& fault = spec.additive_faults[i];
     const std::string place = "/data/simulate/additive_faults/" + std::to_string(i);
-    if (fault.fault < 0 || fault.fault >= faults) problems.push_back({place + "/fault", "is no column of /system/F", ""});
-    if (fault.from < 0 || fault.to < fault.from) problems.push_back({place, "ends before it begins, or begins before k = 0", ""});
-    for (Diagnostic& d : problems_of(fault.signal, place + "/signal")) problems.push_back(std::move(d));
+    if (fault.fault < 0 || fault.fault >= faults)
+      problems.push_back({place + "/fault", "is no column of /system/F", ""});
+    if (fault.from < 0 || fault.to < fault.from)
+      problems.push_back({place, "ends before it begins, or begins before k = 0", ""});
+    for (Diagnostic& d : problems_of(fault.signal, place + "/signal"))
+      problems.push_back(std::move(d));
   }
 }
 
@@ -43,17 +50,25 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
   std::vector<Diagnostic> problems;
   const auto require = [&](Index size, Index wanted, const std::string& pointer, const char* of) {
     if (size == wanted) return;
-    problems.push_back({pointer, "has size " + std::to_string(size) + ", must be " + std::to_string(wanted) + ", " + of, ""});
+    problems.push_back(
+        {pointer,
+         "has size " + std::to_string(size) + ", must be " + std::to_string(wanted) + ", " + of,
+         ""});
   };
   const LinearModel& linear = model.linear;
-  require(static_cast<Index>(spec.input.size()), linear.inputs(), "/data/simulate/input", "one signal per column of /system/B");
+  require(static_cast<Index>(spec.input.size()), linear.inputs(), "/data/simulate/input",
+          "one signal per column of /system/B");
   require(model.W.dim(), linear.disturbances(), "/system/W", "the columns of /system/Bw");
   require(model.V.dim(), linear.noises(), "/system/V", "the columns of /system/Dv");
-  if (spec.x0) require(spec.x0->size(), linear.states(), "/data/simulate/x0", "the rows of /system/A");
-  if (spec.x0 && !spec.x0->allFinite()) problems.push_back({"/data/simulate/x0", "has a NaN or infinite number", ""});
-  if (spec.x0_set) require(spec.x0_set->dim(), linear.states(), "/data/simulate/x0", "the rows of /system/A");
+  if (spec.x0)
+    require(spec.x0->size(), linear.states(), "/data/simulate/x0", "the rows of /system/A");
+  if (spec.x0 && !spec.x0->allFinite())
+    problems.push_back({"/data/simulate/x0", "has a NaN or infinite number", ""});
+  if (spec.x0_set)
+    require(spec.x0_set->dim(), linear.states(), "/data/simulate/x0", "the rows of /system/A");
   if (spec.x0 && spec.x0_set)
-    problems.push_back({"/data/simulate/x0", "is both a state and a set of states", "give one of them"});
+    problems.push_back(
+        {"/data/simulate/x0", "is both a state and a set of states", "give one of them"});
   if (spec.steps < 0) problems.push_back({"/data/simulate/steps", "is negative", ""});
   for (std::size_t i = 0; i < spec.input.size(); ++i) {
     for (Diagnostic& d : problems_of(spec.input[i], "/data/simulate/input/" + std::to_string(i)))
@@ -62,11 +77,12 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
   check_radius(linear.A, linear.A_radius, "/system/A", problems);
   check_radius(linear.B, linear.B_radius, "/system/B", problems);
   check_radius(linear.C, linear.C_radius, "/system/C", problems);
-  if (linear.faults() > 0) require(linear.F.rows(), linear.states(), "/system/F", "the rows of /system/A");
+  if (linear.faults() > 0)
+    require(linear.F.rows(), linear.states(), "/system/F", "the rows of /system/A");
   check_additive_faults(spec, linear.faults(), problems);
   if (spec.made_plant && !spec.additive_faults.empty()) {
-    problems.push_back(
-        {"/data/simulate/additive_faults", "cannot be simulated with a plant: they are about the linear model", ""});
+    problems.push_back({"/data/simulate/additive_faults",
+                        "cannot be simulated with a plant: they are about the linear model", ""});
   }
   for (std::size_t i = 0; i < spec.faults.size(); ++i) {
     const Model& fault = spec.faults[i].model;
@@ -76,9 +92,9 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
     require(fault.W.dim(), fault.linear.disturbances(), place_of_fault(i), "the columns of its Bw");
     require(fault.V.dim(), fault.linear.noises(), place_of_fault(i), "the columns of its Dv");
     require(fault.linear.faults(), linear.faults(), place_of_fault(i), "the columns of /system/F");
-    for (const auto& [A, radius] :
-         {std::pair(&fault.linear.A, &fault.linear.A_radius), std::pair(&fault.linear.B, &fault.linear.B_radius),
-          std::pair(&fault.linear.C, &fault.linear.C_radius)}) {
+    for (const auto& [A, radius] : {std::pair(&fault.linear.A, &fault.linear.A_radius),
+                                    std::pair(&fault.linear.B, &fault.linear.B_radius),
+                                    std::pair(&fault.linear.C, &fault.linear.C_radius)}) {
       check_radius(*A, *radius, place_of_fault(i), problems);
     }
   }
@@ -86,7 +102,8 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
 }
 
 Disturbance start_draws(const SimulateSpec& spec, const std::string& file) {
-  return {*spec.x0_set, spec.noise, RandomStream(spec.seed, Purpose::start), 0, file, "/data/simulate/x0"};
+  return {*spec.x0_set, spec.noise,         RandomStream(spec.seed, Purpose::start), 0,
+          file,         "/data/simulate/x0"};
 }
 
 InputSource::InputSource(const std::vector<Signal>& signals) {
@@ -99,7 +116,8 @@ Vector InputSource::at(std::int64_t k) {
   return u;
 }
 
-AdditiveFaultSource::AdditiveFaultSource(const std::vector<AdditiveFaultSpec>& specs, Index faults) : faults_(faults) {
+AdditiveFaultSource::AdditiveFaultSource(const std::vector<AdditiveFaultSpec>& specs, Index faults)
+    : faults_(faults) {
   for (std::size_t i = 0; i < specs.size(); ++i)
     entries_.push_back({specs[i], SignalSource(specs[i].signal, i, Purpose::additive_fault)});
 }
@@ -112,7 +130,8 @@ Vector AdditiveFaultSource::at(std::int64_t k) {
   return n;
 }
 
-ParameterSource::ParameterSource(const LinearModel& model, Noise noise, ParameterDraw draw, RandomStream stream)
+ParameterSource::ParameterSource(const LinearModel& model, Noise noise, ParameterDraw draw,
+                                 RandomStream stream)
     : A_(model.interval_A()),
       B_(model.interval_B()),
       C_(model.interval_C()),
@@ -126,7 +145,9 @@ Matrix ParameterSource::drawn(const IntervalMatrix& A) {
   Matrix inside = A.center;
   for (Index i = 0; i < A.rows(); ++i) {
     for (Index j = 0; j < A.cols(); ++j) {
-      if (A.radius(i, j) > 0) inside(i, j) += A.radius(i, j) * (noise_ == Noise::vertex ? stream_.sign() : stream_.symmetric());
+      if (A.radius(i, j) > 0)
+        inside(i, j) +=
+            A.radius(i, j) * (noise_ == Noise::vertex ? stream_.sign() : stream_.symmetric());
     }
   }
   return inside;
@@ -143,21 +164,27 @@ std::optional<DrawnMatrices> ParameterSource::next() {
 }
 
 DrawSource::DrawSource(const Model& model, const SimulateSpec& spec, const std::string& file)
-    : DrawSource(model, model.linear.actuator, model.linear.sensor, spec, 0, file, {"/system/W", "/system/V", "/system"}) {}
+    : DrawSource(model, model.linear.actuator, model.linear.sensor, spec, 0, file,
+                 {"/system/W", "/system/V", "/system"}) {}
 
 DrawSource::DrawSource(const SimulateSpec& spec, std::size_t fault, const std::string& file)
-    : DrawSource(spec.faults[fault].model, actuator_of(spec.faults[fault], spec), sensor_of(spec.faults[fault], spec), spec,
+    : DrawSource(spec.faults[fault].model, actuator_of(spec.faults[fault], spec),
+                 sensor_of(spec.faults[fault], spec), spec,
                  static_cast<std::uint64_t>(spec.faults[fault].from) + 1, file,
                  {place_of_fault(fault), place_of_fault(fault), place_of_fault(fault)}) {}
 
-DrawSource::DrawSource(const Model& model, const Box& actuator, const Box& sensor, const SimulateSpec& spec, std::uint64_t stream,
-                       const std::string& file, const Place& place)
-    : disturbance_(drawn_W(model, spec), spec.noise, RandomStream(spec.seed, Purpose::disturbance, stream), 0, file, place.W),
-      noise_(model.V, spec.noise, RandomStream(spec.seed, Purpose::noise, stream), disturbance_.factors(), file, place.V),
+DrawSource::DrawSource(const Model& model, const Box& actuator, const Box& sensor,
+                       const SimulateSpec& spec, std::uint64_t stream, const std::string& file,
+                       const Place& place)
+    : disturbance_(drawn_W(model, spec), spec.noise,
+                   RandomStream(spec.seed, Purpose::disturbance, stream), 0, file, place.W),
+      noise_(model.V, spec.noise, RandomStream(spec.seed, Purpose::noise, stream),
+             disturbance_.factors(), file, place.V),
       effectiveness_(actuator, sensor, model.linear.inputs(), model.linear.outputs(), spec.noise,
-                     RandomStream(spec.seed, Purpose::effectiveness, stream), disturbance_.factors() + noise_.factors(), file,
-                     place.effectiveness),
-      parameters_(model.linear, spec.noise, spec.parameters, RandomStream(spec.seed, Purpose::parameters, stream)) {}
+                     RandomStream(spec.seed, Purpose::effectiveness, stream),
+                     disturbance_.factors() + noise_.factors(), file, place.effectiveness),
+      parameters_(model.linear, spec.noise, spec.parameters,
+                  RandomStream(spec.seed, Purpose::parameters, stream)) {}
 
 Draw DrawSource::at(std::int64_t k) {
   Draw draw;

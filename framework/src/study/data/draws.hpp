@@ -13,10 +13,12 @@
 
 namespace cordon::detail {
 
-/// Throws InputError with all problems: sizes of sets, signals and x0 that do not fit the model, numbers that are not finite.
+/// Throws InputError with all problems: sizes of sets, signals and x0 that do not fit the model,
+/// numbers that are not finite.
 void check_simulation(const Model& model, const SimulateSpec& spec, const std::string& file);
 
-/// Draws of x_0 from the x0_set of `spec`, in a sequence of their own. Throws InputError if the set is unbounded.
+/// Draws of x_0 from the x0_set of `spec`, in a sequence of their own. Throws InputError if the set
+/// is unbounded.
 Disturbance start_draws(const SimulateSpec& spec, const std::string& file);
 
 /// The inputs u_k.
@@ -51,8 +53,9 @@ struct DrawnMatrices {
   Matrix A, B, C;
 };
 
-/// Draws the matrices of an uncertain model, entry by entry: uniform in their intervals, or at one of their ends (`vertex`). For
-/// `zero` and `sine` they stay in the middle, as those of an exact model do.
+/// Draws the matrices of an uncertain model, entry by entry: uniform in their intervals, or at one
+/// of their ends (`vertex`). For `zero` and `sine` they stay in the middle, as those of an exact
+/// model do.
 class ParameterSource {
  public:
   ParameterSource(const LinearModel& model, Noise noise, ParameterDraw draw, RandomStream stream);
@@ -68,15 +71,17 @@ class ParameterSource {
   RandomStream stream_;
 };
 
-/// w_k, v_k, the effectiveness of actuators and sensors at time k, and the matrices where they change.
+/// w_k, v_k, the effectiveness of actuators and sensors at time k, and the matrices where they
+/// change.
 struct Draw {
   Vector w, v;
   Effectiveness::Value effectiveness;
   std::optional<DrawnMatrices> matrices = {};
 };
 
-/// Draws for one model: the nominal one, or that of a fault. Each has its own streams of random numbers: what is drawn for one
-/// does not depend on the others. Those of a fault follow from the time at which it begins.
+/// Draws for one model: the nominal one, or that of a fault. Each has its own streams of random
+/// numbers: what is drawn for one does not depend on the others. Those of a fault follow from the
+/// time at which it begins.
 class DrawSource {
  public:
   /// Of the nominal model.
@@ -91,8 +96,8 @@ class DrawSource {
   struct Place {
     std::string W, V, effectiveness;
   };
-  DrawSource(const Model& model, const Box& actuator, const Box& sensor, const SimulateSpec& spec, std::uint64_t stream,
-             const std::string& file, const Place& place);
+  DrawSource(const Model& model, const Box& actuator, const Box& sensor, const SimulateSpec& spec,
+             std::uint64_t stream, const std::string& file, const Place& place);
 
   Disturbance disturbance_, noise_;
   Effectiveness effectiveness_;

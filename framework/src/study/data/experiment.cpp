@@ -34,7 +34,8 @@ SimulateSpec spec_of(const Study& study, MatrixIn u, std::uint64_t seed_offset) 
 /// Simulated data of one mode, whose records name it.
 class Experiment final : public DataSource {
  public:
-  Experiment(const Study& study, const Mode& mode, Index index, SimulateSpec spec) : name_(mode.name), index_(index) {
+  Experiment(const Study& study, const Mode& mode, Index index, SimulateSpec spec)
+      : name_(mode.name), index_(index) {
     own_start_ = !spec.x0 && !spec.x0_set;
     if (own_start_ && is_bounded(mode.model.X0) == Answer::yes) spec.x0_set = mode.model.X0;
     placed([&] { source_.emplace(mode.model, spec, study.file.string()); });
@@ -49,7 +50,8 @@ class Experiment final : public DataSource {
   std::optional<std::int64_t> size() const override { return source_->size(); }
 
  private:
-  /// Problems of the simulation are problems of the mode, but for those of a start that the study gives.
+  /// Problems of the simulation are problems of the mode, but for those of a start that the study
+  /// gives.
   template <class Work>
   void placed(Work&& work) const {
     try {
@@ -59,7 +61,8 @@ class Experiment final : public DataSource {
       for (Diagnostic& problem : problems) {
         problem.message = "an experiment with mode \"" + name_ + "\": " + problem.message;
         const bool start = problem.pointer.starts_with("/data/simulate/x0") && !own_start_;
-        if (!start) problem.pointer = index_ == 0 ? "/system" : "/system/modes/" + std::to_string(index_ - 1);
+        if (!start)
+          problem.pointer = index_ == 0 ? "/system" : "/system/modes/" + std::to_string(index_ - 1);
       }
       throw InputError(error.file(), std::move(problems));
     }
@@ -73,12 +76,14 @@ class Experiment final : public DataSource {
 
 }  // namespace
 
-std::unique_ptr<DataSource> open_experiment(const Study& study, const ModeBank& bank, Index mode, MatrixIn u,
-                                            std::uint64_t seed_offset) {
-  if (mode < 0 || mode >= bank.size()) throw Error(Errc::dimension, "an experiment: there is no such mode");
+std::unique_ptr<DataSource> open_experiment(const Study& study, const ModeBank& bank, Index mode,
+                                            MatrixIn u, std::uint64_t seed_offset) {
+  if (mode < 0 || mode >= bank.size())
+    throw Error(Errc::dimension, "an experiment: there is no such mode");
   if (u.rows() == 0 || u.cols() != bank[mode].model.linear.inputs())
     throw Error(Errc::dimension, "an experiment: the inputs have another size than the model");
-  if (!u.allFinite()) throw Error(Errc::not_finite, "an experiment: the inputs have a NaN or infinite number");
+  if (!u.allFinite())
+    throw Error(Errc::not_finite, "an experiment: the inputs have a NaN or infinite number");
   return std::make_unique<Experiment>(study, bank[mode], mode, spec_of(study, u, seed_offset));
 }
 

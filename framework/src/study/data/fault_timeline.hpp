@@ -13,7 +13,8 @@ namespace cordon::detail {
 /// The faults of a simulation in the order of time.
 class FaultTimeline {
  public:
-  /// Throws InputError: a fault that ends before it begins, or begins before the one ahead of it has ended.
+  /// Throws InputError: a fault that ends before it begins, or begins before the one ahead of it
+  /// has ended.
   FaultTimeline(const std::vector<FaultSpec>& faults, const std::string& file);
 
   /// Index of the fault at time k, or -1; k must not decrease from call to call. O(1).
@@ -27,13 +28,15 @@ class FaultTimeline {
 /// "/data/simulate/faults/3".
 std::string place_of_fault(std::size_t index);
 
-/// Draws the effectiveness (f, g) of actuators and sensors from their ranges, anew at every step, by the same kinds of noise as
-/// disturbances: `vertex` takes an end of each range, `zero` the middle. Exact entries are exact.
+/// Draws the effectiveness (f, g) of actuators and sensors from their ranges, anew at every step,
+/// by the same kinds of noise as disturbances: `vertex` takes an end of each range, `zero` the
+/// middle. Exact entries are exact.
 class Effectiveness {
  public:
   /// Boxes of dimension 0 stand for 1.
-  Effectiveness(const Box& actuator, const Box& sensor, Index inputs, Index outputs, Noise noise, RandomStream stream,
-                Index first_prime, const std::string& file, const std::string& pointer);
+  Effectiveness(const Box& actuator, const Box& sensor, Index inputs, Index outputs, Noise noise,
+                RandomStream stream, Index first_prime, const std::string& file,
+                const std::string& pointer);
 
   struct Value {
     Vector actuator, sensor;

@@ -28,15 +28,21 @@ auto in_doubles(const std::string& file, const std::string& pointer, const Make&
   }
 }
 
-SemiExplicitForm form_of(const LinearModel& model, const std::string& file, const std::string& pointer) {
+SemiExplicitForm form_of(const LinearModel& model, const std::string& file,
+                         const std::string& pointer) {
   if (!model.is_descriptor()) return SemiExplicitForm(model.states());
   return in_doubles(file, pointer, [&] { return SemiExplicitForm(model.E); });
 }
 
 }  // namespace
 
-LinearPlant::LinearPlant(const LinearModel& model, const std::string& file, const std::string& pointer)
-    : model_(model), file_(file), pointer_(pointer), form_(form_of(model, file, pointer)), z_(Vector::Zero(form_.rank())) {
+LinearPlant::LinearPlant(const LinearModel& model, const std::string& file,
+                         const std::string& pointer)
+    : model_(model),
+      file_(file),
+      pointer_(pointer),
+      form_(form_of(model, file, pointer)),
+      z_(Vector::Zero(form_.rank())) {
   model_.B = beside(model.B, model.F);
   model_.D = beside(model.D, Matrix::Zero(model.outputs(), model.faults()));
   split_rows();
@@ -55,12 +61,14 @@ void LinearPlant::split_rows() {
   const Vector units = linalg::row_scales(static_A_);
   for (Matrix* part : {&static_A_, &static_B_, &static_Bw_}) *part = units.asDiagonal() * *part;
   const Matrix block = linalg::product(static_A_, form_.T().rightCols(form_.static_rows()));
-  const Vector rows = linalg::row_scales(block), cols = linalg::row_scales(block.transpose());  // the index has no units
+  const Vector rows = linalg::row_scales(block),
+               cols = linalg::row_scales(block.transpose());  // the index has no units
   const Matrix scaled = rows.asDiagonal() * block * cols.asDiagonal();
   const Vector sizes = linalg::svd(scaled).sigma;
   if (sizes[sizes.size() - 1] <= rank_tolerance * sizes[0]) {
     throw InputError(file_, {{pointer_,
-                              "the descriptor system has an index above 1: its static rows do not determine the static states, "
+                              "the descriptor system has an index above 1: its static rows do not "
+                              "determine the static states, "
                               "so that x_k would depend on later inputs and disturbances",
                               "use recorded data, or a model of index 1"}});
   }
@@ -74,7 +82,9 @@ void LinearPlant::exchange(const Matrix& A, const Matrix& B, const Matrix& C) {
   split_rows();
 }
 
-void LinearPlant::start(VectorIn x0) { z_ = linalg::product(form_.T_inverse().topRows(z_.size()), x0); }
+void LinearPlant::start(VectorIn x0) {
+  z_ = linalg::product(form_.T_inverse().topRows(z_.size()), x0);
+}
 
 Vector LinearPlant::state(VectorIn u, VectorIn w) const {
   const Index r = z_.size(), n = form_.states();
@@ -85,7 +95,8 @@ Vector LinearPlant::state(VectorIn u, VectorIn w) const {
   for (int i = 0; i < 2; ++i) {  // the second time for the digits that cancelled in the first
     const Vector rest = linalg::product(static_A_, x) + inputs;
     x += linalg::product(form_.T().rightCols(n - r), linalg::product(solve_, rest));
-    x += linalg::product(form_.T().leftCols(r), z_ - linalg::product(form_.T_inverse().topRows(r), x));
+    x += linalg::product(form_.T().leftCols(r),
+                         z_ - linalg::product(form_.T_inverse().topRows(r), x));
   }
   return x;
 }
@@ -95,7 +106,8 @@ LinearPlant::Output LinearPlant::step(VectorIn u, VectorIn w, VectorIn v, Vector
   now.x = state(u, w);
   const Vector shown = linalg::product(model_.C, now.x) + linalg::product(model_.D, u);
   now.y = shown.cwiseProduct(sensor) + linalg::product(model_.Dv, v);
-  z_ = linalg::product(dynamic_A_, now.x) + linalg::product(dynamic_B_, u) + linalg::product(dynamic_Bw_, w);
+  z_ = linalg::product(dynamic_A_, now.x) + linalg::product(dynamic_B_, u) +
+       linalg::product(dynamic_Bw_, w);
   return now;
 }
 

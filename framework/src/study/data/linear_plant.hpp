@@ -9,22 +9,27 @@
 
 namespace cordon::detail {
 
-/// E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with E singular of index 1, regular, or the identity. Additive faults n are
-/// further inputs: (u, n) and [B F] take the places of u and B from here on, and the outputs do not show n.
+/// E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v with E singular of index 1, regular, or the
+/// identity. Additive faults n are further inputs: (u, n) and [B F] take the places of u and B from
+/// here on, and the outputs do not show n.
 ///
 /// In the coordinates z = T⁻¹x = (z̃, ž) of cordon/interfaces/semi_explicit.hpp:
 ///   z̃⁺ = Λ (A x + B u + Bw w)     (r dynamic rows)
-///   0  = Σ (A x + B u + Bw w)     (n - r static rows; they hold at every k with the w of the same k)
-/// The static rows are solved for ž: Σ A Ť (Ť: columns of T of ž) must be regular, else the index is above 1 and the constructor
-/// throws InputError. r = n: no static rows, any E of full rank. One step is O(n (n + n_u + n_w + n_y)).
+///   0  = Σ (A x + B u + Bw w)     (n - r static rows; they hold at every k with the w of the same
+///   k)
+/// The static rows are solved for ž: Σ A Ť (Ť: columns of T of ž) must be regular, else the index
+/// is above 1 and the constructor throws InputError. r = n: no static rows, any E of full rank. One
+/// step is O(n (n + n_u + n_w + n_y)).
 class LinearPlant {
  public:
   /// `pointer`: where the model stands in the study.
-  LinearPlant(const LinearModel& model, const std::string& file, const std::string& pointer = "/system/E");
+  LinearPlant(const LinearModel& model, const std::string& file,
+              const std::string& pointer = "/system/E");
 
   /// Sets z̃_0 from a state; its static part is found by the first step.
   void start(VectorIn x0);
-  /// Exchanges A, B and C; z̃ keeps its meaning, which depends on E only. Throws as the constructor does.
+  /// Exchanges A, B and C; z̃ keeps its meaning, which depends on E only. Throws as the constructor
+  /// does.
   void exchange(const Matrix& A, const Matrix& B, const Matrix& C);
   /// Goes on from z̃_k of a plant of the same E, whose z̃ means the same.
   void resume(const LinearPlant& other) { z_ = other.z_; }
@@ -32,10 +37,12 @@ class LinearPlant {
   struct Output {
     Vector x, y;
   };
-  /// x_k and y_k for the current k, then moves on to k + 1. u is what the actuators do, and n; the sensors show diag(sensor)
-  /// (C x + D u).
+  /// x_k and y_k for the current k, then moves on to k + 1. u is what the actuators do, and n; the
+  /// sensors show diag(sensor) (C x + D u).
   Output step(VectorIn u, VectorIn w, VectorIn v, VectorIn sensor);
-  Output step(VectorIn u, VectorIn w, VectorIn v) { return step(u, w, v, Vector::Ones(model_.outputs())); }
+  Output step(VectorIn u, VectorIn w, VectorIn v) {
+    return step(u, w, v, Vector::Ones(model_.outputs()));
+  }
 
   /// The state that belongs to z̃_k, u_k and w_k.
   Vector state(VectorIn u, VectorIn w) const;

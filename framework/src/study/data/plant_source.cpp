@@ -16,23 +16,27 @@ PlantSource::PlantSource(const Model& model, const SimulateSpec& spec, std::stri
       inputs_(spec_.input) {
   const Plant& plant = *spec_.made_plant;
   const LinearModel& linear = model.linear;
-  if (plant.states() != linear.states() || plant.inputs() != linear.inputs() || plant.outputs() != linear.outputs())
+  if (plant.states() != linear.states() || plant.inputs() != linear.inputs() ||
+      plant.outputs() != linear.outputs())
     fail("/data/simulate/plant", "has other numbers of states, inputs or outputs than /system", "");
   for (std::size_t i = 0; i < spec_.faults.size(); ++i) DrawSource(spec_, i, file_);
   std::optional<Vector> start = spec_.x0;
   if (!start) start = spec_.x0_set ? start_draws(spec_, file_).at(0) : central_point(model.X0);
   if (!start)
-    fail("/system/X0", "no point of the set was found to start from", "check its constraints, or give /data/simulate/x0");
+    fail("/system/X0", "no point of the set was found to start from",
+         "check its constraints, or give /data/simulate/x0");
   x_ = *start;
 }
 
-void PlantSource::fail(const std::string& pointer, const std::string& message, const std::string& mend) const {
+void PlantSource::fail(const std::string& pointer, const std::string& message,
+                       const std::string& mend) const {
   throw InputError(file_, {{pointer, message, mend}});
 }
 
 /// What the plant answers, checked.
-Vector PlantSource::ask(const char* what, Vector (Plant::*function)(Index, VectorIn, VectorIn) const, Index size, std::int64_t k,
-                        const Vector& u) const {
+Vector PlantSource::ask(const char* what,
+                        Vector (Plant::*function)(Index, VectorIn, VectorIn) const, Index size,
+                        std::int64_t k, const Vector& u) const {
   Vector answer;
   const auto broken = [&](const std::string& how) {
     const std::string name = spec_.plant ? "plant \"" + spec_.plant->type + "\"" : "the plant";
@@ -45,9 +49,11 @@ Vector PlantSource::ask(const char* what, Vector (Plant::*function)(Index, Vecto
   } catch (const std::exception& error) {
     throw broken(std::string("threw ") + error.what());
   }
-  if (answer.size() != size) throw broken("has " + std::to_string(answer.size()) + " entries, not " + std::to_string(size));
+  if (answer.size() != size)
+    throw broken("has " + std::to_string(answer.size()) + " entries, not " + std::to_string(size));
   if (!answer.allFinite()) {
-    fail("/data/simulate/plant", std::string("its ") + what + " is not finite at k = " + std::to_string(k),
+    fail("/data/simulate/plant",
+         std::string("its ") + what + " is not finite at k = " + std::to_string(k),
          "simulate fewer steps, or with other inputs");
   }
   return answer;
@@ -71,7 +77,8 @@ std::optional<Record> PlantSource::next() {
   if (modes_) record.mode = fault ? fault->mode : 0;
   const Vector u = draw.effectiveness.actuator.cwiseProduct(record.sample.u);
   const Vector y = ask("output", &Plant::output, draw.effectiveness.sensor.size(), k, u);
-  record.sample.y = y.cwiseProduct(draw.effectiveness.sensor) + linalg::product(fault ? fault->model.linear.Dv : Dv_, draw.v);
+  record.sample.y = y.cwiseProduct(draw.effectiveness.sensor) +
+                    linalg::product(fault ? fault->model.linear.Dv : Dv_, draw.v);
   if (k < spec_.steps) x_ = ask("next state", &Plant::next, x_.size(), k, u);
   return record;
 }

@@ -9,10 +9,11 @@
 
 namespace cordon::detail {
 
-/// Samples k = 0 … steps of x⁺ = next(k, x, diag(f) u), y = diag(g) output(k, x, diag(f) u) + Dv v, with the true state and mode.
-/// f, g, Dv and V are those of the fault that acts at k; without one f = g = 1. It starts in x0, in a point of x0_set, or in the
-/// centre of X0. Throws InputError: sizes, unbounded V, a state that is not finite; Errc::plugin where the plant throws or
-/// returns another size.
+/// Samples k = 0 … steps of x⁺ = next(k, x, diag(f) u), y = diag(g) output(k, x, diag(f) u) + Dv v,
+/// with the true state and mode. f, g, Dv and V are those of the fault that acts at k; without one
+/// f = g = 1. It starts in x0, in a point of x0_set, or in the centre of X0. Throws InputError:
+/// sizes, unbounded V, a state that is not finite; Errc::plugin where the plant throws or returns
+/// another size.
 class PlantSource final : public DataSource {
  public:
   /// `modes`: the records name the true mode.
@@ -22,9 +23,10 @@ class PlantSource final : public DataSource {
   std::optional<std::int64_t> size() const override { return spec_.steps + 1; }
 
  private:
-  Vector ask(const char* what, Vector (Plant::*function)(Index, VectorIn, VectorIn) const, Index size, std::int64_t k,
-             const Vector& u) const;
-  [[noreturn]] void fail(const std::string& pointer, const std::string& message, const std::string& mend) const;
+  Vector ask(const char* what, Vector (Plant::*function)(Index, VectorIn, VectorIn) const,
+             Index size, std::int64_t k, const Vector& u) const;
+  [[noreturn]] void fail(const std::string& pointer, const std::string& message,
+                         const std::string& mend) const;
 
   SimulateSpec spec_;
   std::string file_;

@@ -9,13 +9,18 @@ namespace cordon::detail {
 namespace {
 
 long double angle(double omega, std::int64_t k, double phase) {
-  return static_cast<long double>(omega) * static_cast<long double>(k) + static_cast<long double>(phase);
+  return static_cast<long double>(omega) * static_cast<long double>(k) +
+         static_cast<long double>(phase);
 }
 
 }  // namespace
 
-double sine(double omega, std::int64_t k, double phase) { return static_cast<double>(std::sin(angle(omega, k, phase))); }
-double cosine(double omega, std::int64_t k, double phase) { return static_cast<double>(std::cos(angle(omega, k, phase))); }
+double sine(double omega, std::int64_t k, double phase) {
+  return static_cast<double>(std::sin(angle(omega, k, phase)));
+}
+double cosine(double omega, std::int64_t k, double phase) {
+  return static_cast<double>(std::cos(angle(omega, k, phase)));
+}
 
 std::vector<Diagnostic> problems_of(const Signal& signal, const std::string& pointer) {
   std::vector<Diagnostic> problems;
@@ -23,20 +28,24 @@ std::vector<Diagnostic> problems_of(const Signal& signal, const std::string& poi
     problems.push_back({pointer + "/values", "a table needs at least one value", ""});
   }
   const bool periodic = signal.type == Signal::Type::square || signal.type == Signal::Type::prbs;
-  if (periodic && signal.period < 1) problems.push_back({pointer + "/period", "must be at least 1", ""});
+  if (periodic && signal.period < 1)
+    problems.push_back({pointer + "/period", "must be at least 1", ""});
   const auto finite = [&](const char* name, double value) {
-    if (!std::isfinite(value)) problems.push_back({pointer + "/" + name, "is not a finite number", ""});
+    if (!std::isfinite(value))
+      problems.push_back({pointer + "/" + name, "is not a finite number", ""});
   };
   finite("offset", signal.offset);
   finite("amplitude", signal.amplitude);
   finite("omega", signal.omega);
   finite("phase", signal.phase);
-  if (!signal.values.allFinite()) problems.push_back({pointer + "/values", "has a NaN or infinite number", ""});
+  if (!signal.values.allFinite())
+    problems.push_back({pointer + "/values", "has a NaN or infinite number", ""});
   return problems;
 }
 
 SignalSource::SignalSource(Signal signal, std::size_t channel, Purpose purpose)
-    : signal_(std::move(signal)), stream_(static_cast<std::uint64_t>(signal_.seed), purpose, channel) {}
+    : signal_(std::move(signal)),
+      stream_(static_cast<std::uint64_t>(signal_.seed), purpose, channel) {}
 
 double SignalSource::at(std::int64_t k) {
   const Signal& s = signal_;
@@ -62,7 +71,8 @@ double SignalSource::at(std::int64_t k) {
 }
 
 double SignalSource::pseudo_random(std::int64_t k) {
-  for (const std::int64_t interval = k / signal_.period; drawn_ < interval; ++drawn_) sign_ = stream_.sign();
+  for (const std::int64_t interval = k / signal_.period; drawn_ < interval; ++drawn_)
+    sign_ = stream_.sign();
   return signal_.offset + sign_ * signal_.amplitude;
 }
 

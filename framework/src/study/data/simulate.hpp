@@ -13,20 +13,23 @@ namespace cordon::detail {
 
 /// Samples k = 0 … steps with the true state, mode and additive faults. Memory is constant.
 ///
-/// At every k one model makes y_k and x_{k+1}: that of the fault that acts at k, else the nominal one. The draws of the nominal
-/// model go on unseen during a fault, so that faults do not change what comes after them. Additive faults act on all models.
+/// At every k one model makes y_k and x_{k+1}: that of the fault that acts at k, else the nominal
+/// one. The draws of the nominal model go on unseen during a fault, so that faults do not change
+/// what comes after them. Additive faults act on all models.
 ///
-/// Start of a system with static rows: x0 must satisfy them, F n_0 included, for some w_0 ∈ W. The drawn w_0 is corrected by
-/// least squares on the static rows; where that leaves W, a central point of {w ∈ W : static rows} replaces it. Without x0, the
-/// dynamic part of the centre of X0 is taken and the static part follows from w_0; where that state leaves X0, a central pair
-/// (x_0, w_0) is taken. With x0_set, the same is tried with draws of x0 and, after the first, of w_0 from sequences of their own;
-/// where none of a hundred states lies in the set, a pair is drawn from {(x,w) ∈ x0_set × W : static rows}. Throws InputError:
-/// sizes, unbounded W or V, index above 1, models of different E one after another, an x0 that no w_0 ∈ W explains (with the
-/// residual).
+/// Start of a system with static rows: x0 must satisfy them, F n_0 included, for some w_0 ∈ W. The
+/// drawn w_0 is corrected by least squares on the static rows; where that leaves W, a central point
+/// of {w ∈ W : static rows} replaces it. Without x0, the dynamic part of the centre of X0 is taken
+/// and the static part follows from w_0; where that state leaves X0, a central pair (x_0, w_0) is
+/// taken. With x0_set, the same is tried with draws of x0 and, after the first, of w_0 from
+/// sequences of their own; where none of a hundred states lies in the set, a pair is drawn from
+/// {(x,w) ∈ x0_set × W : static rows}. Throws InputError: sizes, unbounded W or V, index above 1,
+/// models of different E one after another, an x0 that no w_0 ∈ W explains (with the residual).
 class SimulatedSource final : public DataSource {
  public:
   /// `modes`: the records name the true mode.
-  SimulatedSource(const Model& model, const SimulateSpec& spec, std::string file, bool modes = true);
+  SimulatedSource(const Model& model, const SimulateSpec& spec, std::string file,
+                  bool modes = true);
 
   std::optional<Record> next() override;
   std::optional<std::int64_t> size() const override { return spec_.steps + 1; }
@@ -51,7 +54,8 @@ class SimulatedSource final : public DataSource {
   LineForm joint_set(const LineForm& X0, const LineForm& W, const Vector& u0);
   bool start_from_pair(const Vector& pair, const Vector& u0);
   bool start_from_joint_set(const LineForm& X0, const LineForm& W, const Vector& u0);
-  [[noreturn]] void fail(const std::string& pointer, const std::string& message, const std::string& mend) const;
+  [[noreturn]] void fail(const std::string& pointer, const std::string& message,
+                         const std::string& mend) const;
 
   SimulateSpec spec_;
   std::string file_;

@@ -12,7 +12,8 @@ constexpr std::size_t width = 120;
 
 bool is_flat(const Json& value) {
   return !value.is_structured() || value.empty() ||
-         (value.is_array() && std::none_of(value.begin(), value.end(), [](const Json& v) { return v.is_structured(); }));
+         (value.is_array() && std::none_of(value.begin(), value.end(),
+                                           [](const Json& v) { return v.is_structured(); }));
 }
 
 std::string in_one_line(const Json& value) {
@@ -72,7 +73,8 @@ std::string pretty(const Json& value) {
 
 Json to_json(double x) {
   if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
-  const bool whole = x == std::floor(x) && std::abs(x) <= 9007199254740992.0 && !(x == 0 && std::signbit(x));
+  const bool whole =
+      x == std::floor(x) && std::abs(x) <= 9007199254740992.0 && !(x == 0 && std::signbit(x));
   return whole ? Json(static_cast<std::int64_t>(x)) : Json(x);
 }
 
@@ -90,7 +92,8 @@ Json to_sparse(MatrixIn A) {
   Json entries = Json::array();
   for (Index j = 0; j < A.cols(); ++j) {
     for (Index i = 0; i < A.rows(); ++i) {
-      if (A(i, j) != 0 || std::signbit(A(i, j))) entries.push_back(Json{i + 1, j + 1, to_json(A(i, j))});
+      if (A(i, j) != 0 || std::signbit(A(i, j)))
+        entries.push_back(Json{i + 1, j + 1, to_json(A(i, j))});
     }
   }
   return {{"rows", A.rows()}, {"cols", A.cols()}, {"entries", std::move(entries)}};

@@ -12,7 +12,8 @@ namespace cordon::json {
 
 using Json = nlohmann::ordered_json;
 
-/// Values that fit into a line of about 120 characters stand on one; rows of numbers always do. Ends with a line break.
+/// Values that fit into a line of about 120 characters stand on one; rows of numbers always do.
+/// Ends with a line break.
 std::string pretty(const Json& value);
 
 /// A number as it is written in studies: 3, not 3.0. Infinite ones are "inf" and "-inf".

@@ -11,13 +11,16 @@ namespace {
 using JsonKind = json::Value::Kind;
 
 bool is_row(const json::Value& value) {
-  return value.kind == JsonKind::array && std::all_of(value.items().begin(), value.items().end(), is_number);
+  return value.kind == JsonKind::array &&
+         std::all_of(value.items().begin(), value.items().end(), is_number);
 }
 
 bool is_matrix(const json::Value& value) {
   const std::vector<json::Value>& rows = value.items();
   if (rows.empty() || !std::all_of(rows.begin(), rows.end(), is_row)) return false;
-  return std::all_of(rows.begin(), rows.end(), [&](const json::Value& r) { return r.items().size() == rows[0].items().size(); });
+  return std::all_of(rows.begin(), rows.end(), [&](const json::Value& r) {
+    return r.items().size() == rows[0].items().size();
+  });
 }
 
 Matrix rows_of(const std::vector<json::Value>& rows) {
@@ -32,7 +35,8 @@ Matrix rows_of(const std::vector<json::Value>& rows) {
 
 Matrix row_of(const json::Value& list) {
   Matrix row(1, static_cast<Index>(list.items().size()));
-  for (Index j = 0; j < row.cols(); ++j) row(0, j) = number_of(list.items()[static_cast<std::size_t>(j)]);
+  for (Index j = 0; j < row.cols(); ++j)
+    row(0, j) = number_of(list.items()[static_cast<std::size_t>(j)]);
   return row;
 }
 
@@ -47,7 +51,8 @@ Value object_to_mat(const json::Value& object) {
   Struct fields;
   for (std::size_t i = 0; i < names.size(); ++i) {
     Value item = to_mat(object.items()[i]);
-    if (form && (names[i] == "c" || names[i] == "b")) item.numbers = item.numbers.transpose().eval();
+    if (form && (names[i] == "c" || names[i] == "b"))
+      item.numbers = item.numbers.transpose().eval();
     fields.set(names[i], std::move(item));
   }
   return std::move(fields).value();

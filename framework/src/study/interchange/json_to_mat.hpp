@@ -7,8 +7,9 @@
 
 namespace cordon::mat {
 
-/// null is NaN, "inf" and "-inf" are numbers; a list of numbers is a row, a list of such lists of equal length a matrix, any
-/// other list a cell array; an object is a struct. A set in exchange form gets columns c and b.
+/// null is NaN, "inf" and "-inf" are numbers; a list of numbers is a row, a list of such lists of
+/// equal length a matrix, any other list a cell array; an object is a struct. A set in exchange
+/// form gets columns c and b.
 Value to_mat(const json::Value& value);
 
 /// A number, null, "inf" or "-inf" as a number.

@@ -45,7 +45,9 @@ struct FreeVariable {
 using MatFile = std::unique_ptr<mat_t, CloseFile>;
 using MatVariable = std::unique_ptr<matvar_t, FreeVariable>;
 
-[[noreturn]] void fail(const std::string& what, int reason) { throw Error(Errc::io, what + ": " + std::strerror(reason)); }
+[[noreturn]] void fail(const std::string& what, int reason) {
+  throw Error(Errc::io, what + ": " + std::strerror(reason));
+}
 
 /// A descriptor that closes itself.
 class Descriptor {
@@ -69,7 +71,8 @@ class Descriptor {
 constexpr std::size_t largest_variable = (std::size_t{1} << 31) - (std::size_t{1} << 24);
 
 std::size_t size_of(const Value& value) {
-  std::size_t bytes = 200 + 8 * static_cast<std::size_t>(value.numbers.size()) + 2 * value.text.size() + 64 * value.names.size();
+  std::size_t bytes = 200 + 8 * static_cast<std::size_t>(value.numbers.size()) +
+                      2 * value.text.size() + 64 * value.names.size();
   for (const Value& item : value.items) bytes += size_of(item);
   return bytes;
 }
@@ -82,28 +85,34 @@ matvar_t* checked(matvar_t* variable) {
 matvar_t* to_matio(const char* name, const Value& value);
 
 matvar_t* text_to_matio(const char* name, const std::string& utf8) {
-  const bool ascii = std::all_of(utf8.begin(), utf8.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  const bool ascii = std::all_of(utf8.begin(), utf8.end(),
+                                 [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   std::u16string units = to_utf16(utf8);
   std::string bytes = utf8;
   std::size_t dims[2] = {units.empty() ? std::size_t{0} : 1, units.size()};
   void* data = ascii ? static_cast<void*>(bytes.data()) : static_cast<void*>(units.data());
-  return checked(Mat_VarCreate(name, MAT_C_CHAR, ascii ? MAT_T_UTF8 : MAT_T_UTF16, 2, dims, data, 0));
+  return checked(
+      Mat_VarCreate(name, MAT_C_CHAR, ascii ? MAT_T_UTF8 : MAT_T_UTF16, 2, dims, data, 0));
 }
 
 matvar_t* structs_to_matio(const char* name, const Value& value) {
   std::vector<const char*> names;
   for (const std::string& one : value.names) names.push_back(one.c_str());
-  std::size_t dims[2] = {static_cast<std::size_t>(value.rows), static_cast<std::size_t>(value.cols)};
-  MatVariable all(checked(Mat_VarCreateStruct(name, 2, dims, names.data(), static_cast<unsigned>(names.size()))));
+  std::size_t dims[2] = {static_cast<std::size_t>(value.rows),
+                         static_cast<std::size_t>(value.cols)};
+  MatVariable all(checked(
+      Mat_VarCreateStruct(name, 2, dims, names.data(), static_cast<unsigned>(names.size()))));
   for (std::size_t i = 0; i < value.items.size(); ++i) {
     const std::size_t field = i % names.size();
-    Mat_VarSetStructFieldByIndex(all.get(), field, i / names.size(), to_matio(names[field], value.items[i]));
+    Mat_VarSetStructFieldByIndex(all.get(), field, i / names.size(),
+                                 to_matio(names[field], value.items[i]));
   }
   return all.release();
 }
 
 matvar_t* to_matio(const char* name, const Value& value) {
-  std::size_t dims[2] = {static_cast<std::size_t>(value.rows), static_cast<std::size_t>(value.cols)};
+  std::size_t dims[2] = {static_cast<std::size_t>(value.rows),
+                         static_cast<std::size_t>(value.cols)};
   if (value.is(Kind::text)) return text_to_matio(name, value.text);
   if (value.is(Kind::structs)) return structs_to_matio(name, value);
   if (value.is(Kind::cell)) {
@@ -116,7 +125,8 @@ matvar_t* to_matio(const char* name, const Value& value) {
     for (MatVariable& item : items) item.release();
     return all;
   }
-  dims[0] = static_cast<std::size_t>(value.numbers.rows()), dims[1] = static_cast<std::size_t>(value.numbers.cols());
+  dims[0] = static_cast<std::size_t>(value.numbers.rows()),
+  dims[1] = static_cast<std::size_t>(value.numbers.cols());
   Matrix numbers = value.numbers;
   double none = 0;
   void* data = numbers.size() > 0 ? numbers.data() : &none;
@@ -138,7 +148,8 @@ std::string bytes_of(int descriptor) {
 
 // ---- reading, in a process of its own
 
-constexpr std::size_t most_sparse = 1'000'000;  // entries of a matrix of a study, those that are 0 included
+constexpr std::size_t most_sparse =
+    1'000'000;  // entries of a matrix of a study, those that are 0 included
 
 bool is_moderate(const matvar_t& v) {
   std::size_t size = 1;
@@ -159,7 +170,8 @@ std::string objection(const matvar_t& v, int depth, std::size_t& budget) {
   const std::string too_large = "it holds more than " + std::to_string(max_numbers) + " numbers";
   if (!is_moderate(v)) return too_large;
   const std::size_t size = v.dims[0] * v.dims[1];
-  const std::size_t cost = 1 + (v.class_type == MAT_C_SPARSE ? std::min<std::size_t>(size, most_sparse) : size);
+  const std::size_t cost =
+      1 + (v.class_type == MAT_C_SPARSE ? std::min<std::size_t>(size, most_sparse) : size);
   if (cost > budget) return too_large;
   budget -= cost;
   if (depth > max_nesting) return "it is nested more than " + std::to_string(max_nesting) + " deep";
@@ -200,7 +212,9 @@ Value read(const matvar_t& v, int depth, std::size_t& budget) {
       return refused("it is a function");
     case MAT_C_OBJECT:
     case MAT_C_OPAQUE:
-      return refused("it is an object; save its numbers, those of a state-space model with [A,B,C,D] = ssdata(sys)");
+      return refused(
+          "it is an object; save its numbers, those of a state-space model with [A,B,C,D] = "
+          "ssdata(sys)");
   }
   return refused("its class is not known");
 }
@@ -211,7 +225,8 @@ bool is_rounded(T x, double y) {
   if constexpr (sizeof(T) < 8 || !std::is_integral_v<T>) {
     return false;
   } else {
-    const double end = std::ldexp(1.0, std::numeric_limits<T>::digits);  // one more than the largest
+    const double end =
+        std::ldexp(1.0, std::numeric_limits<T>::digits);  // one more than the largest
     return y >= end || static_cast<T>(y) != x;
   }
 }
@@ -227,7 +242,8 @@ void copy(const void* data, std::size_t count, double* out, bool& inexact) {
 }
 
 /// Empty, or why the numbers cannot be taken.
-std::string convert(matio_types type, const void* data, std::size_t bytes, std::size_t count, double* out) {
+std::string convert(matio_types type, const void* data, std::size_t bytes, std::size_t count,
+                    double* out) {
   const std::size_t size = Mat_SizeOf(type);
   if (count == 0) return "";
   if (!data || size == 0 || bytes / size < count) return "it is damaged";
@@ -272,13 +288,15 @@ std::string convert(matio_types type, const void* data, std::size_t bytes, std::
 Value read_numbers(const matvar_t& v) {
   if (v.isComplex) return refused("it is complex");
   Matrix numbers(static_cast<Index>(v.dims[0]), static_cast<Index>(v.dims[1]));
-  const std::string why = convert(v.data_type, v.data, v.nbytes, static_cast<std::size_t>(numbers.size()), numbers.data());
+  const std::string why = convert(v.data_type, v.data, v.nbytes,
+                                  static_cast<std::size_t>(numbers.size()), numbers.data());
   return why.empty() ? matrix(std::move(numbers)) : refused(why);
 }
 
 Value read_sparse(const matvar_t& v) {
   if (v.isComplex) return refused("it is complex");
-  if (v.dims[0] * std::max<std::size_t>(v.dims[1], 1) > most_sparse) return refused("it has more than 1000000 entries");
+  if (v.dims[0] * std::max<std::size_t>(v.dims[1], 1) > most_sparse)
+    return refused("it has more than 1000000 entries");
   Matrix numbers = Matrix::Zero(static_cast<Index>(v.dims[0]), static_cast<Index>(v.dims[1]));
   const auto* s = static_cast<const mat_sparse_t*>(v.data);
   if (!s || numbers.size() == 0) return matrix(std::move(numbers));
@@ -286,9 +304,11 @@ Value read_sparse(const matvar_t& v) {
   const std::size_t count = s->jc[v.dims[1]];
   if (count > s->nir || count > s->ndata || (count > 0 && !s->ir)) return refused("it is damaged");
   std::vector<double> entries(count);
-  const std::string why = convert(v.data_type, s->data, s->ndata * Mat_SizeOf(v.data_type), count, entries.data());
+  const std::string why =
+      convert(v.data_type, s->data, s->ndata * Mat_SizeOf(v.data_type), count, entries.data());
   if (!why.empty()) return refused(why);
-  std::vector<std::size_t> last(v.dims[0], v.dims[1]);  // the column with the last entry of each row
+  std::vector<std::size_t> last(v.dims[0],
+                                v.dims[1]);  // the column with the last entry of each row
   for (std::size_t j = 0; j < v.dims[1]; ++j) {
     if (s->jc[j] > s->jc[j + 1] || s->jc[j + 1] > count) return refused("it is damaged");
     for (std::size_t k = s->jc[j]; k < s->jc[j + 1]; ++k) {
@@ -335,14 +355,16 @@ Value read_items(const matvar_t& v, Kind kind, int depth, std::size_t& budget) {
     count *= fields;
   }
   auto* const* items = static_cast<matvar_t* const*>(v.data);
-  if (count > 0 && (!items || v.nbytes / sizeof(matvar_t*) < count)) return refused("it is damaged");
+  if (count > 0 && (!items || v.nbytes / sizeof(matvar_t*) < count))
+    return refused("it is damaged");
   for (std::size_t i = 0; i < count; ++i) {
     value.items.push_back(items[i] ? read(*items[i], depth + 1, budget) : matrix(Matrix(0, 0)));
   }
   return value;
 }
 
-/// As `objection`, for everything inside as well: the children of structs and cells are known before their data.
+/// As `objection`, for everything inside as well: the children of structs and cells are known
+/// before their data.
 std::string objection_inside(const matvar_t& v, int depth, std::size_t& budget) {
   std::string why = objection(v, depth, budget);
   if (!why.empty() || (v.class_type != MAT_C_CELL && v.class_type != MAT_C_STRUCT)) return why;
@@ -388,10 +410,13 @@ void limit(int resource, rlim_t most) {
 
 /// There are damaged files that libmatio reads for ever, or takes any memory for.
 void limit_this_process(const char* path) {
-  const int nowhere = ::open("/dev/null", O_RDWR);  // libraries below print what they think of damaged files
+  const int nowhere =
+      ::open("/dev/null", O_RDWR);  // libraries below print what they think of damaged files
   if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO), ::dup2(nowhere, STDOUT_FILENO);
   limit(RLIMIT_CORE, 0);
-  ::mallopt(M_PERTURB, 0xFF);  // memory begins as zeros: what libmatio leaves unread shows nothing of this process
+  ::mallopt(
+      M_PERTURB,
+      0xFF);  // memory begins as zeros: what libmatio leaves unread shows nothing of this process
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(path, error);
   limit(RLIMIT_CPU, 3 + (error ? rlim_t{0} : static_cast<rlim_t>(bytes >> 22)));  // seconds
@@ -413,7 +438,8 @@ void limit_this_process(const char* path) {
   _exit(0);
 }
 
-/// All that comes until the other end is closed; nothing if that is more than the limits of a file can make.
+/// All that comes until the other end is closed; nothing if that is more than the limits of a file
+/// can make.
 std::optional<std::string> receive(int descriptor) {
   constexpr std::size_t most = std::size_t{1} << 30;
   std::string bytes;
@@ -428,7 +454,8 @@ std::optional<std::string> receive(int descriptor) {
   }
 }
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& message, const std::string& mend) {
+[[noreturn]] void refuse(const fs::path& file, const std::string& message,
+                         const std::string& mend) {
   throw InputError(file.string(), {{"", message, mend}});
 }
 
@@ -441,11 +468,16 @@ void check_header(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string header(128, '\0');
   stream.read(header.data(), static_cast<std::streamsize>(header.size()));
-  if (!stream) refuse(file, "is too short for a MAT-file", "save it in MATLAB with save(name, '-v7')");
+  if (!stream)
+    refuse(file, "is too short for a MAT-file", "save it in MATLAB with save(name, '-v7')");
   const std::string version = header.substr(124, 4);
-  const std::string known[] = {{'\0', '\1', 'I', 'M'}, {'\1', '\0', 'M', 'I'}, {'\0', '\2', 'I', 'M'}, {'\2', '\0', 'M', 'I'}};
+  const std::string known[] = {{'\0', '\1', 'I', 'M'},
+                               {'\1', '\0', 'M', 'I'},
+                               {'\0', '\2', 'I', 'M'},
+                               {'\2', '\0', 'M', 'I'}};
   if (std::find(std::begin(known), std::end(known), version) != std::end(known)) return;
-  refuse(file, "is no MAT-file of version 5 or later", "save it in MATLAB with save(name, '-v7'), in Octave with save -v7");
+  refuse(file, "is no MAT-file of version 5 or later",
+         "save it in MATLAB with save(name, '-v7'), in Octave with save -v7");
 }
 
 }  // namespace
@@ -459,7 +491,8 @@ std::string to_bytes(const Variables& variables) {
   if (!file) throw Error(Errc::io, "cannot make the MAT-file: libmatio cannot write to memory");
   for (const Variable& variable : variables) {
     if (size_of(variable.value) > largest_variable) {
-      throw Error(Errc::invalid, "the variable " + variable.name + " is larger than 2 GB, more than a MAT-file can hold");
+      throw Error(Errc::invalid, "the variable " + variable.name +
+                                     " is larger than 2 GB, more than a MAT-file can hold");
     }
     const MatVariable v(to_matio(variable.name.c_str(), variable.value));
     if (Mat_VarWrite(file.get(), v.get(), MAT_COMPRESSION_ZLIB) != 0) {
@@ -486,9 +519,13 @@ Variables read_file(const fs::path& file) {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   const bool ended = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  if (ended && answer && answer->starts_with('-')) refuse(file, answer->substr(1), "save it again with save(name, '-v7')");
-  auto variables = ended && answer && answer->starts_with('+') ? from_wire(std::string_view(*answer).substr(1)) : std::nullopt;
-  if (!variables) refuse(file, "is damaged: libmatio broke down on it", "save it again with save(name, '-v7')");
+  if (ended && answer && answer->starts_with('-'))
+    refuse(file, answer->substr(1), "save it again with save(name, '-v7')");
+  auto variables = ended && answer && answer->starts_with('+')
+                       ? from_wire(std::string_view(*answer).substr(1))
+                       : std::nullopt;
+  if (!variables)
+    refuse(file, "is damaged: libmatio broke down on it", "save it again with save(name, '-v7')");
   return std::move(*variables);
 }
 

@@ -16,7 +16,8 @@ namespace cordon::mat {
 
 namespace {
 
-/// Thrown inside only: the sizes contradict each other, or the variable is one that is refused by its size.
+/// Thrown inside only: the sizes contradict each other, or the variable is one that is refused by
+/// its size.
 struct Damaged {};
 struct TooLarge {};
 
@@ -31,14 +32,17 @@ class Input {
   virtual void read(char* to, std::size_t size) = 0;
   void skip(std::uint64_t size) {
     char part[4096];
-    for (; size > 0; size -= std::min<std::uint64_t>(size, sizeof(part))) read(part, std::min<std::uint64_t>(size, sizeof(part)));
+    for (; size > 0; size -= std::min<std::uint64_t>(size, sizeof(part)))
+      read(part, std::min<std::uint64_t>(size, sizeof(part)));
   }
 };
 
 class FileInput : public Input {
  public:
   explicit FileInput(std::istream& stream) : stream_(stream) {}
-  void read(char* to, std::size_t size) override { require(bool(stream_.read(to, static_cast<std::streamsize>(size)))); }
+  void read(char* to, std::size_t size) override {
+    require(bool(stream_.read(to, static_cast<std::streamsize>(size))));
+  }
 
  private:
   std::istream& stream_;
@@ -48,7 +52,8 @@ class FileInput : public Input {
 class PackedInput : public Input {
  public:
   PackedInput(std::istream& stream, std::uint64_t size) : file_(stream), left_(size) {
-    if (inflateInit(&state_) != Z_OK) throw Error(Errc::internal, "a compressed variable cannot be read");
+    if (inflateInit(&state_) != Z_OK)
+      throw Error(Errc::internal, "a compressed variable cannot be read");
   }
   ~PackedInput() override { inflateEnd(&state_); }
   PackedInput(const PackedInput&) = delete;
@@ -91,7 +96,15 @@ class PackedInput : public Input {
 };
 
 // The numbers of the format.
-enum Type : std::uint32_t { int8 = 1, uint8 = 2, int32 = 5, uint32 = 6, matrix_type = 14, packed = 15, utf8 = 16 };
+enum Type : std::uint32_t {
+  int8 = 1,
+  uint8 = 2,
+  int32 = 5,
+  uint32 = 6,
+  matrix_type = 14,
+  packed = 15,
+  utf8 = 16
+};
 enum Class : std::uint32_t {
   cells = 1,
   structs = 2,
@@ -171,9 +184,11 @@ class Layout {
   }
 
   /// An element of at most 16 whole numbers, or of this many.
-  std::vector<std::uint32_t> numbers(std::uint64_t& left, std::uint32_t type, std::uint64_t count = 0) {
+  std::vector<std::uint32_t> numbers(std::uint64_t& left, std::uint32_t type,
+                                     std::uint64_t count = 0) {
     const Element e = element(left);
-    require(e.type == type && e.bytes % 4 == 0 && e.bytes <= 64 && (count == 0 || e.bytes == 4 * count));
+    require(e.type == type && e.bytes % 4 == 0 && e.bytes <= 64 &&
+            (count == 0 || e.bytes == 4 * count));
     char data[64] = {};
     if (e.small) {
       std::copy(std::begin(e.data), std::end(e.data), data);
@@ -229,12 +244,14 @@ class Layout {
     require(dims.size() >= 2);
     std::uint64_t count = 1;
     for (const std::uint32_t dim : dims) {
-      if (dim > max_numbers || (count *= dim) > static_cast<std::uint64_t>(max_numbers)) throw TooLarge{};
+      if (dim > max_numbers || (count *= dim) > static_cast<std::uint64_t>(max_numbers))
+        throw TooLarge{};
     }
     name(left);
     if (kind == cells) return items(count, left, depth);
     if (kind == structs) return items(count * fields(left), left, depth);
-    if (kind != sparse && (total_ += count) > static_cast<std::uint64_t>(max_numbers)) throw TooLarge{};
+    if (kind != sparse && (total_ += count) > static_cast<std::uint64_t>(max_numbers))
+      throw TooLarge{};
     if (count == 0 && left == 0) return;
     if (kind == sparse) {
       entries(left, -1);
@@ -248,7 +265,8 @@ class Layout {
   std::uint64_t fields(std::uint64_t& left) {
     const std::uint32_t length = numbers(left, int32, 1)[0];
     const Element e = element(left);
-    require(e.type == int8 && (e.bytes == 0 || (length > 0 && e.bytes % length == 0)) && e.bytes < (1 << 24));
+    require(e.type == int8 && (e.bytes == 0 || (length > 0 && e.bytes % length == 0)) &&
+            e.bytes < (1 << 24));
     pass(e, left);
     return e.bytes == 0 ? 0 : e.bytes / length;
   }

@@ -31,7 +31,8 @@ class DataReader {
   Index samples_ = -1;  ///< not known yet
 };
 
-std::optional<Matrix> DataReader::signal(const char* name, Index channels, const char* of, bool required) {
+std::optional<Matrix> DataReader::signal(const char* name, Index channels, const char* of,
+                                         bool required) {
   const Value* value = data_.field(name);
   const auto report = [&](const std::string& message, const std::string& mend = "") {
     problems_.add(place(name), 0, message, mend);
@@ -39,47 +40,55 @@ std::optional<Matrix> DataReader::signal(const char* name, Index channels, const
   };
   if (!value || (value->is(Value::Kind::numbers) && value->numbers.size() == 0)) {
     if (!required) return std::nullopt;
-    return report("is missing", "a matrix with " + json::counted(channels, "row") + ", " + of + ", and a column per sample");
+    return report("is missing", "a matrix with " + json::counted(channels, "row") + ", " + of +
+                                    ", and a column per sample");
   }
-  if (!value->is(Value::Kind::numbers)) return report(kind_of(*value) + ", must be a matrix of real numbers");
+  if (!value->is(Value::Kind::numbers))
+    return report(kind_of(*value) + ", must be a matrix of real numbers");
   Matrix rows = value->numbers;
   if (rows.rows() != channels && rows.cols() == channels) rows.transposeInPlace();
   if (rows.rows() != channels) {
-    return report("is " + json::shape(rows.rows(), rows.cols()) + ", must have " + json::counted(channels, "row") + ", " + of,
+    return report("is " + json::shape(rows.rows(), rows.cols()) + ", must have " +
+                      json::counted(channels, "row") + ", " + of,
                   "a column per sample, or a row per sample");
   }
   if (samples_ >= 0 && rows.cols() != samples_)
-    return report("has " + json::counted(rows.cols(), "sample") + ", the others have " + std::to_string(samples_));
+    return report("has " + json::counted(rows.cols(), "sample") + ", the others have " +
+                  std::to_string(samples_));
   samples_ = rows.cols();
   for (Index k = 0; k < rows.cols(); ++k) {
     if (!rows.col(k).array().isFinite().all()) {
-      return report("holds NaN or Inf in sample " + std::to_string(k + 1), "recorded data are complete: cut or mend them first");
+      return report("holds NaN or Inf in sample " + std::to_string(k + 1),
+                    "recorded data are complete: cut or mend them first");
     }
   }
   return rows;
 }
 
 /// Names of the modes: 0 is the nominal one, j the j-th of the others, -1 none of them.
-std::vector<std::string> mode_names(const Matrix& modes, const json::SystemPart& system, const std::string& place,
-                                    Problems& problems) {
+std::vector<std::string> mode_names(const Matrix& modes, const json::SystemPart& system,
+                                    const std::string& place, Problems& problems) {
   std::vector<std::string> names;
   const auto count = static_cast<double>(system.modes.size());
   for (Index k = 0; k < modes.cols(); ++k) {
     const double mode = modes(0, k);
     if (mode != std::floor(mode) || mode < -1 || mode > count) {
-      problems.add(place, 0, "holds " + detail::to_text(mode) + " in sample " + std::to_string(k + 1),
+      problems.add(place, 0,
+                   "holds " + detail::to_text(mode) + " in sample " + std::to_string(k + 1),
                    "0 is the nominal mode, j the j-th of the others, -1 none of them");
       return {};
     }
-    names.push_back(mode < 0 ? "" : mode == 0 ? system.nominal : system.modes[static_cast<std::size_t>(mode) - 1].name);
+    names.push_back(mode < 0    ? ""
+                    : mode == 0 ? system.nominal
+                                : system.modes[static_cast<std::size_t>(mode) - 1].name);
   }
   return names;
 }
 
 }  // namespace
 
-std::optional<CsvData> data_of(const Value& data, const json::SystemPart& system, const std::string& pointer,
-                               Problems& problems) {
+std::optional<CsvData> data_of(const Value& data, const json::SystemPart& system,
+                               const std::string& pointer, Problems& problems) {
   if (!data.field("y")) return std::nullopt;
   const LinearModel& m = system.model.linear;
   DataReader reader(data, pointer, problems);
@@ -95,7 +104,8 @@ std::optional<CsvData> data_of(const Value& data, const json::SystemPart& system
   CsvData csv;
   std::vector<std::string> header{"k"};
   std::vector<const Matrix*> parts;
-  const auto add = [&](const char* name, const std::optional<Matrix>& part, std::vector<std::string>& names) {
+  const auto add = [&](const char* name, const std::optional<Matrix>& part,
+                       std::vector<std::string>& names) {
     for (Index i = 1; part && i <= part->rows(); ++i) names.push_back(name + std::to_string(i));
     header.insert(header.end(), names.begin(), names.end());
     if (part) parts.push_back(&*part);

@@ -17,9 +17,9 @@ struct CsvData {
   CsvSpec spec;  ///< the names of the columns
 };
 
-/// u, y, and x and mode where they are, of a struct; samples stand in columns or in rows. Nothing if there is no y. Reports what
-/// is wrong at `pointer`.
-std::optional<CsvData> data_of(const Value& data, const json::SystemPart& system, const std::string& pointer,
-                               json::Problems& problems);
+/// u, y, and x and mode where they are, of a struct; samples stand in columns or in rows. Nothing
+/// if there is no y. Reports what is wrong at `pointer`.
+std::optional<CsvData> data_of(const Value& data, const json::SystemPart& system,
+                               const std::string& pointer, json::Problems& problems);
 
 }  // namespace cordon::mat

@@ -23,12 +23,14 @@ using mat::Value;
 using mat::Variable;
 using mat::Variables;
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& place, const std::string& message, const std::string& mend) {
+[[noreturn]] void refuse(const fs::path& file, const std::string& place, const std::string& message,
+                         const std::string& mend) {
   throw InputError(file.string(), {{place, message, mend}});
 }
 
 const Value* find(const Variables& all, const std::string& name) {
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Variable& v) { return v.name == name; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Variable& v) { return v.name == name; });
   return found == all.end() ? nullptr : &found->value;
 }
 
@@ -55,15 +57,18 @@ Value as_struct(const Variables& all) {
 void refuse_twins(const Variables& all, const fs::path& file) {
   std::set<std::string> names;
   for (const Variable& v : all) {
-    if (!names.insert(v.name).second) refuse(file, json::child("", v.name), "stands there twice", "save it again, once");
+    if (!names.insert(v.name).second)
+      refuse(file, json::child("", v.name), "stands there twice", "save it again, once");
   }
 }
 
-/// Variables that would be the system if there were no struct that is one, for a warning; "" if there are none.
+/// Variables that would be the system if there were no struct that is one, for a warning; "" if
+/// there are none.
 std::string other_system(const Variables& all) {
   std::string names;
   if (!find(all, "A") || !find(all, "C")) return names;
-  for (const char* name : {"E", "A", "B", "Bw", "C", "D", "Dv", "F", "X0", "W", "V", "U", "modes"}) {
+  for (const char* name :
+       {"E", "A", "B", "Bw", "C", "D", "Dv", "F", "X0", "W", "V", "U", "modes"}) {
     if (find(all, name)) names += (names.empty() ? "" : ", ") + std::string(name);
   }
   return "the variables " + names + " (the system is taken from a struct beside them)";
@@ -73,7 +78,8 @@ std::string other_system(const Variables& all) {
 std::string refusals(const Variables& all) {
   std::string text;
   for (const Variable& v : all) {
-    if (v.value.is(Value::Kind::refused)) text += "; " + json::in_quotes(v.name) + " cannot be used: " + v.value.text;
+    if (v.value.is(Value::Kind::refused))
+      text += "; " + json::in_quotes(v.name) + " cannot be used: " + v.value.text;
   }
   return text;
 }
@@ -89,30 +95,36 @@ Choice choose(const Variables& all, const fs::path& file, const std::string& var
     const Value* value = find(all, variable);
     std::vector<std::string> names;
     for (const Variable& v : all) names.push_back(v.name);
-    if (!value) refuse(file, "", "holds no variable " + json::in_quotes(variable), suggest(variable, names));
+    if (!value)
+      refuse(file, "", "holds no variable " + json::in_quotes(variable), suggest(variable, names));
     if (mat::is_system(*value)) return {*value, true};
     if (is_set_or_sets(*value)) return {*value};
     refuse(file, json::child("", variable),
-           value->is(Value::Kind::refused) ? mat::kind_of(*value) : mat::kind_of(*value) + ", neither a system nor sets",
+           value->is(Value::Kind::refused) ? mat::kind_of(*value)
+                                           : mat::kind_of(*value) + ", neither a system nor sets",
            "a system is a struct with A and C");
   }
-  if (const Value* system = find(all, "system"); system && mat::is_system(*system)) return {*system, true};
+  if (const Value* system = find(all, "system"); system && mat::is_system(*system))
+    return {*system, true};
   if (find(all, "A") && find(all, "C")) return {as_struct(all), true, true};
   for (bool system : {true, false}) {
     const std::vector<std::string> names = names_of(all, system ? mat::is_system : is_set_or_sets);
     if (names.size() == 1) return {*find(all, names[0]), system};
     if (names.size() > 1) {
-      refuse(file, "", std::string("holds more than one ") + (system ? "system" : "variable with sets"),
+      refuse(file, "",
+             std::string("holds more than one ") + (system ? "system" : "variable with sets"),
              "choose one with --variable: " + suggest("", names));
     }
   }
   refuse(file, "", "holds no system and no sets" + refusals(all),
-         "a system is a struct with matrices A and C, or variables of these names; a set is a struct with lower and upper, or c "
+         "a system is a struct with matrices A and C, or variables of these names; a set is a "
+         "struct with lower and upper, or c "
          "and G");
 }
 
 Json sets_json(const Value& sets, json::Problems& problems) {
-  if (sets.is(Value::Kind::structs) && sets.rows * sets.cols == 1) return mat::set_of(sets, 0, "", problems);
+  if (sets.is(Value::Kind::structs) && sets.rows * sets.cols == 1)
+    return mat::set_of(sets, 0, "", problems);
   Json list = Json::array();
   const Index count = sets.rows * sets.cols;
   for (Index i = 0; i < count; ++i) {
@@ -159,14 +171,18 @@ json::SystemPart checked(const Json& system, const fs::path& file) {
 
 Json pipelines_for(const json::SystemPart& system) {
   const LinearModel& m = system.model.linear;
-  Json observer{{"type", m.is_descriptor() ? "descriptor" : "prediction_correction"}, {"max_generators", 40}};
-  if (m.is_uncertain() && !m.is_descriptor()) observer = {{"type", "zonotope_uncertain"}, {"gain", {{"type", "h_infinity"}}}};
+  Json observer{{"type", m.is_descriptor() ? "descriptor" : "prediction_correction"},
+                {"max_generators", 40}};
+  if (m.is_uncertain() && !m.is_descriptor())
+    observer = {{"type", "zonotope_uncertain"}, {"gain", {{"type", "h_infinity"}}}};
   const bool bounded = is_bounded(system.model.X0) == Answer::yes;
   Json list = Json::array();
   // of a descriptor system, a zonotope needs [E; C] of full column rank
-  if (bounded && !m.is_descriptor()) list.push_back({{"name", "Zonotope"}, {"backend", "zonotope"}, {"observer", observer}});
+  if (bounded && !m.is_descriptor())
+    list.push_back({{"name", "Zonotope"}, {"backend", "zonotope"}, {"observer", observer}});
   if (!bounded || m.is_descriptor() || !m.is_uncertain()) {
-    list.push_back({{"name", "Line zonotope"}, {"backend", "line_zonotope"}, {"observer", observer}});
+    list.push_back(
+        {{"name", "Line zonotope"}, {"backend", "line_zonotope"}, {"observer", observer}});
   }
   return list;
 }
@@ -175,7 +191,8 @@ Json simulated(const LinearModel& m) {
   Json simulate{{"steps", 50}, {"seed", 1}};
   if (m.inputs() > 0) {
     simulate["input"] = Json::array();
-    for (Index i = 0; i < m.inputs(); ++i) simulate["input"].push_back({{"type", "constant"}, {"offset", 0}});
+    for (Index i = 0; i < m.inputs(); ++i)
+      simulate["input"].push_back({{"type", "constant"}, {"offset", 0}});
   }
   return {{"simulate", std::move(simulate)}};
 }
@@ -192,18 +209,22 @@ Json recorded(const CsvSpec& spec, const fs::path& file) {
 std::string title_of(const Variables& all, const fs::path& file) {
   const Value* about = find(all, "cordon");
   const Value* title = about ? about->field("title") : nullptr;
-  std::string text = title && title->is(Value::Kind::text) && !title->text.empty() ? title->text : file.stem().string();
+  std::string text = title && title->is(Value::Kind::text) && !title->text.empty()
+                         ? title->text
+                         : file.stem().string();
   const auto control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
   std::replace_if(text.begin(), text.end(), control, ' ');
   return text;
 }
 
 std::string comment_for(const fs::path& file, const std::vector<std::string>& missing) {
-  std::string text = "Made from " + file.filename().string() + ". Data and pipelines are a beginning: change them at will.";
+  std::string text = "Made from " + file.filename().string() +
+                     ". Data and pipelines are a beginning: change them at will.";
   for (const std::string& set : missing) {
-    text += set == "W"
-                ? " Add \"W\" to the system, a set that contains every disturbance w (one coordinate per column of Bw)."
-                : " Add \"V\" to the system, a set that contains every measurement noise v (one coordinate per column of Dv).";
+    text += set == "W" ? " Add \"W\" to the system, a set that contains every disturbance w (one "
+                         "coordinate per column of Bw)."
+                       : " Add \"V\" to the system, a set that contains every measurement noise v "
+                         "(one coordinate per column of Dv).";
   }
   return text;
 }
@@ -232,7 +253,8 @@ ImportedStudy mat_to_json(const fs::path& file, const Target& target, const std:
   const json::SystemPart part = checked(with_placeholders(system, imported.missing), file);
   const Value* data = find(all, "data");
   const bool in_struct = data && data->field("y");
-  const auto csv = mat::data_of(in_struct ? *data : as_struct(all), part, in_struct ? "/data" : "", problems);
+  const auto csv =
+      mat::data_of(in_struct ? *data : as_struct(all), part, in_struct ? "/data" : "", problems);
   if (problems.any()) fail(file, problems);
   fs::path table = target.file;
   table.replace_extension(".csv");
@@ -243,7 +265,8 @@ ImportedStudy mat_to_json(const fs::path& file, const Target& target, const std:
   study["system"] = system;
   study["data"] = csv ? recorded(csv->spec, table) : simulated(part.model.linear);
   study["pipelines"] = pipelines_for(part);
-  study["metrics"] = csv && csv->spec.truth.empty() ? Json{"radius", "step_time"} : Json{"radius", "contains_truth", "step_time"};
+  study["metrics"] = csv && csv->spec.truth.empty() ? Json{"radius", "step_time"}
+                                                    : Json{"radius", "contains_truth", "step_time"};
   std::vector<std::pair<fs::path, std::string>> files;
   if (csv) files.emplace_back(table, csv->text);
   files.emplace_back(target.file, json::pretty(study));
@@ -266,7 +289,8 @@ void sets_to_mat(const fs::path& file, const Target& target) {
   if (!list) add(root);
   if (problems.any()) throw InputError(file.string(), problems.sorted());
   Variables all{{"cordon", mat::about("sets", file.stem().string())}};
-  all.push_back(list ? Variable{"sets", mat::cell(std::move(sets))} : Variable{"set", std::move(sets.front())});
+  all.push_back(list ? Variable{"sets", mat::cell(std::move(sets))}
+                     : Variable{"set", std::move(sets.front())});
   detail::write_files({{target.file, mat::to_bytes(all)}}, target.replace);
 }
 

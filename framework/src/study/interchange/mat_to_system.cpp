@@ -24,12 +24,15 @@ struct SetKey {
 using Shape = SetKey::Shape;
 
 constexpr SetKey set_keys[] = {
-    {"c", "center", Shape::vector},    {"center", "center", Shape::vector}, {"M", "lines", Shape::matrix},
-    {"lines", "lines", Shape::matrix}, {"G", "generators", Shape::matrix},  {"generators", "generators", Shape::matrix},
-    {"S", "S", Shape::matrix},         {"A", "A", Shape::matrix},           {"b", "b", Shape::vector},
-    {"lower", "lower", Shape::bounds}, {"upper", "upper", Shape::bounds},   {"rho", "rho", Shape::vector},
-    {"d", "d", Shape::number},         {"sigma", "sigma", Shape::number},   {"dim", "dim", Shape::number},
-    {"H", "H", Shape::matrix},         {"h", "h", Shape::vector},           {"vertices", "vertices", Shape::matrix}};
+    {"c", "center", Shape::vector},     {"center", "center", Shape::vector},
+    {"M", "lines", Shape::matrix},      {"lines", "lines", Shape::matrix},
+    {"G", "generators", Shape::matrix}, {"generators", "generators", Shape::matrix},
+    {"S", "S", Shape::matrix},          {"A", "A", Shape::matrix},
+    {"b", "b", Shape::vector},          {"lower", "lower", Shape::bounds},
+    {"upper", "upper", Shape::bounds},  {"rho", "rho", Shape::vector},
+    {"d", "d", Shape::number},          {"sigma", "sigma", Shape::number},
+    {"dim", "dim", Shape::number},      {"H", "H", Shape::matrix},
+    {"h", "h", Shape::vector},          {"vertices", "vertices", Shape::matrix}};
 
 struct SetKeys {
   const char* type;
@@ -37,16 +40,18 @@ struct SetKeys {
 };
 
 const std::vector<std::string>& keys_of(const std::string& type) {
-  static const std::vector<SetKeys> all{{"box", {"lower", "upper"}},
-                                        {"zonotope", {"center", "generators"}},
-                                        {"constrained_zonotope", {"center", "generators", "A", "b"}},
-                                        {"line_zonotope", {"center", "lines", "generators", "S", "A", "b"}},
-                                        {"strip", {"rho", "d", "sigma"}},
-                                        {"space", {"dim"}},
-                                        {"point", {"center"}},
-                                        {"polytope", {"lower", "upper", "H", "h", "vertices"}}};
+  static const std::vector<SetKeys> all{
+      {"box", {"lower", "upper"}},
+      {"zonotope", {"center", "generators"}},
+      {"constrained_zonotope", {"center", "generators", "A", "b"}},
+      {"line_zonotope", {"center", "lines", "generators", "S", "A", "b"}},
+      {"strip", {"rho", "d", "sigma"}},
+      {"space", {"dim"}},
+      {"point", {"center"}},
+      {"polytope", {"lower", "upper", "H", "h", "vertices"}}};
   static const std::vector<std::string> none;
-  const auto found = std::find_if(all.begin(), all.end(), [&](const SetKeys& one) { return one.type == type; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const SetKeys& one) { return one.type == type; });
   return found == all.end() ? none : found->keys;
 }
 
@@ -55,11 +60,13 @@ bool holds(const std::vector<std::string>& list, std::string_view word) {
 }
 
 bool is_given(const Value* value) {
-  return value && !(value->is(Value::Kind::numbers) && (value->numbers.rows() == 0 || value->numbers.cols() == 0));
+  return value && !(value->is(Value::Kind::numbers) &&
+                    (value->numbers.rows() == 0 || value->numbers.cols() == 0));
 }
 
 /// Reports the first entry that is not finite, or NaN where infinite ones are allowed.
-bool expect_numbers(const Value& value, bool infinite, const std::string& pointer, Problems& problems) {
+bool expect_numbers(const Value& value, bool infinite, const std::string& pointer,
+                    Problems& problems) {
   if (!value.is(Value::Kind::numbers)) {
     problems.add(pointer, 0, kind_of(value) + ", must be a matrix of real numbers");
     return false;
@@ -73,7 +80,9 @@ bool expect_numbers(const Value& value, bool infinite, const std::string& pointe
     for (Index i = 0; i < A.rows(); ++i) {
       if (std::isnan(A(i, j)) || (!infinite && std::isinf(A(i, j)))) {
         const std::string what = std::isnan(A(i, j)) ? "NaN" : "Inf";
-        problems.add(pointer, 0, "holds " + what + " in row " + std::to_string(i + 1) + ", column " + std::to_string(j + 1),
+        problems.add(pointer, 0,
+                     "holds " + what + " in row " + std::to_string(i + 1) + ", column " +
+                         std::to_string(j + 1),
                      "a study holds finite numbers; only bounds of a box may be infinite");
         return false;
       }
@@ -96,7 +105,8 @@ Json vector_of(const Value& value, bool infinite, const std::string& pointer, Pr
 }
 
 Json matrix_of(const Value& value, const std::string& pointer, Problems& problems) {
-  return expect_numbers(value, false, pointer, problems) ? json::to_json(value.numbers) : Json::array();
+  return expect_numbers(value, false, pointer, problems) ? json::to_json(value.numbers)
+                                                         : Json::array();
 }
 
 Json key_of(const SetKey& key, const Value& value, const std::string& pointer, Problems& problems) {
@@ -111,7 +121,9 @@ Json key_of(const SetKey& key, const Value& value, const std::string& pointer, P
   }
   if (!expect_numbers(value, false, pointer, problems)) return nullptr;
   if (value.numbers.size() == 1) return json::to_json(value.numbers(0, 0));
-  problems.add(pointer, 0, "is " + json::shape(value.numbers.rows(), value.numbers.cols()) + ", must be a number");
+  problems.add(
+      pointer, 0,
+      "is " + json::shape(value.numbers.rows(), value.numbers.cols()) + ", must be a number");
   return nullptr;
 }
 
@@ -176,7 +188,8 @@ void SystemReader::interval(Json& out, const char* name, const std::string& radi
   matrix(out, name);
   const Value* radius = find(radius_name.c_str());
   if (!is_given(radius) || !out.contains(name)) return;
-  Json both{{"center", out[name]}, {"radius", matrix_of(*radius, place(radius_name.c_str()), problems_)}};
+  Json both{{"center", out[name]},
+            {"radius", matrix_of(*radius, place(radius_name.c_str()), problems_)}};
   out[name] = std::move(both);
 }
 
@@ -190,7 +203,8 @@ Json SystemReader::read() {
   Json system;
   system["type"] = "";
   const Value* E = find("E");
-  const bool intervals = is_given(find("A_radius")) || is_given(find("B_radius")) || is_given(find("C_radius"));
+  const bool intervals =
+      is_given(find("A_radius")) || is_given(find("B_radius")) || is_given(find("C_radius"));
   system["type"] = text_of("type", is_given(E) ? "descriptor" : intervals ? "interval_lti" : "lti");
   matrix(system, "E");
   interval(system, "A", "A_radius");
@@ -202,8 +216,10 @@ Json SystemReader::read() {
   for (const char* name : {"X0", "W", "V"}) set(system, name);
   for (const char* name : {"Ts", "dt"}) {
     const Value* time = find(name);
-    if (time && time->is(Value::Kind::numbers) && time->numbers.size() == 1 && time->numbers(0, 0) == 0)
-      problems_.add(place(name), 0, "is 0: the system is one of continuous time", "discretise it first, with c2d for example");
+    if (time && time->is(Value::Kind::numbers) && time->numbers.size() == 1 &&
+        time->numbers(0, 0) == 0)
+      problems_.add(place(name), 0, "is 0: the system is one of continuous time",
+                    "discretise it first, with c2d for example");
   }
   return system;
 }
@@ -217,7 +233,8 @@ Index size_of(const Json& system, const char* key, bool columns) {
 }
 
 /// Effectiveness: `size` numbers, or `size` rows [low high].
-Json effectiveness_of(const Value& value, Index size, const std::string& pointer, Problems& problems) {
+Json effectiveness_of(const Value& value, Index size, const std::string& pointer,
+                      Problems& problems) {
   Json list = Json::array();
   if (!expect_numbers(value, false, pointer, problems)) return list;
   const Matrix& A = value.numbers;
@@ -235,7 +252,8 @@ Json effectiveness_of(const Value& value, Index size, const std::string& pointer
   return list;
 }
 
-Json mode_of(const Value& modes, Index j, const Json& nominal, const std::string& pointer, Problems& problems) {
+Json mode_of(const Value& modes, Index j, const Json& nominal, const std::string& pointer,
+             Problems& problems) {
   SystemReader reader(modes, j, pointer, problems);
   Json mode;
   mode["name"] = reader.text_of("name", "mode " + std::to_string(j + 1));
@@ -274,13 +292,15 @@ std::string kind_of(const Value& value) {
   return "cannot be used: " + value.text;
 }
 
-bool is_system(const Value& value) { return value.rows * value.cols == 1 && value.field("A") && value.field("C"); }
+bool is_system(const Value& value) {
+  return value.rows * value.cols == 1 && value.field("A") && value.field("C");
+}
 
 bool is_set(const Value& value) {
   if (!value.is(Value::Kind::structs) || is_system(value)) return false;
   const auto has = [&](const char* name) { return holds(value.names, name); };
-  return has("c") || has("center") || (has("lower") && has("upper")) || has("rho") || has("vertices") || has("H") ||
-         (has("type") && has("dim"));
+  return has("c") || has("center") || (has("lower") && has("upper")) || has("rho") ||
+         has("vertices") || has("H") || (has("type") && has("dim"));
 }
 
 Json set_of(const Value& set, Index element, const std::string& pointer, Problems& problems) {
@@ -303,7 +323,8 @@ Json set_of(const Value& set, Index element, const std::string& pointer, Problem
   const std::vector<std::string>& keys = keys_of(name);
   out["type"] = name;
   if (keys.empty()) {
-    problems.add(child(pointer, "type"), 0, "no set " + json::in_quotes(name), suggest(name, json::set_types()));
+    problems.add(child(pointer, "type"), 0, "no set " + json::in_quotes(name),
+                 suggest(name, json::set_types()));
     return out;
   }
   // what a box or a space is besides, as a zonotope, follows from its bounds
@@ -314,13 +335,15 @@ Json set_of(const Value& set, Index element, const std::string& pointer, Problem
     if (holds(keys, key.key)) {
       out[key.key] = key_of(key, *value, child(pointer, key.field), problems);
     } else if (!has_more) {
-      problems.add(child(pointer, key.field), 0, "does not belong to a set of type " + json::in_quotes(name),
+      problems.add(child(pointer, key.field), 0,
+                   "does not belong to a set of type " + json::in_quotes(name),
                    "change the type, or remove it");
     }
   }
   const Value* center = set.field("c", element);
   if (name == "space" && !out.contains("dim") && center) out["dim"] = center->numbers.size();
-  if (holds(keys, "center") && !out.contains("center")) out["center"] = Json::array();  // of dimension 0
+  if (holds(keys, "center") && !out.contains("center"))
+    out["center"] = Json::array();  // of dimension 0
   return out;
 }
 
@@ -328,7 +351,8 @@ Json system_of(const Value& value, std::vector<std::string>& ignored, Problems& 
   SystemReader reader(value, 0, "", problems);
   Json system = reader.read();
   std::vector<std::string> known = reader.known();
-  if (const Value* F = value.field("F"); F && is_given(F)) system["F"] = matrix_of(*F, "/F", problems);
+  if (const Value* F = value.field("F"); F && is_given(F))
+    system["F"] = matrix_of(*F, "/F", problems);
   if (const Value* U = value.field("U"); is_given(U)) system["U"] = set_of(*U, 0, "/U", problems);
   const std::string nominal = reader.text_of("nominal", "");
   if (!nominal.empty()) system["nominal"] = nominal;
@@ -336,7 +360,8 @@ Json system_of(const Value& value, std::vector<std::string>& ignored, Problems& 
     if (modes->is(Value::Kind::structs)) {
       system["modes"] = Json::array();
       for (Index j = 0; j < modes->rows * modes->cols; ++j) {
-        system["modes"].push_back(mode_of(*modes, j, system, child("/modes", static_cast<std::size_t>(j)), problems));
+        system["modes"].push_back(
+            mode_of(*modes, j, system, child("/modes", static_cast<std::size_t>(j)), problems));
       }
     } else {
       problems.add("/modes", 0, kind_of(*modes) + ", must be a struct array");

@@ -14,10 +14,12 @@ bool is_system(const Value& value);
 bool is_set(const Value& value);
 
 /// The set of a struct. Reports what is wrong at `pointer`.
-json::Json set_of(const Value& set, Index element, const std::string& pointer, json::Problems& problems);
-/// The system of a struct with the fields of docs/interchange.md, modes included; `ignored` gets the fields that are none of
-/// them.
-json::Json system_of(const Value& system, std::vector<std::string>& ignored, json::Problems& problems);
+json::Json set_of(const Value& set, Index element, const std::string& pointer,
+                  json::Problems& problems);
+/// The system of a struct with the fields of docs/interchange.md, modes included; `ignored` gets
+/// the fields that are none of them.
+json::Json system_of(const Value& system, std::vector<std::string>& ignored,
+                     json::Problems& problems);
 
 /// "is complex", "is a cell array": why it is no matrix.
 std::string kind_of(const Value& value);

@@ -50,8 +50,10 @@ constexpr std::string_view keywords[] = {"break",
 
 const Value* Value::field(std::string_view name, Index element) const {
   const auto found = std::find(names.begin(), names.end(), name);
-  if (kind != Kind::structs || found == names.end() || element < 0 || element >= rows * cols) return nullptr;
-  return &items[static_cast<std::size_t>(element) * names.size() + static_cast<std::size_t>(found - names.begin())];
+  if (kind != Kind::structs || found == names.end() || element < 0 || element >= rows * cols)
+    return nullptr;
+  return &items[static_cast<std::size_t>(element) * names.size() +
+                static_cast<std::size_t>(found - names.begin())];
 }
 
 Value number(double x) { return matrix(Matrix::Constant(1, 1, x)); }
@@ -111,7 +113,8 @@ Value Struct::array(std::vector<Struct> elements) {
   value.rows = 1, value.cols = static_cast<Index>(elements.size());
   if (!elements.empty()) value.names = elements.front().names_;
   for (Struct& element : elements) {
-    if (element.names_ != value.names) throw Error(Errc::internal, "a struct array of different structs");
+    if (element.names_ != value.names)
+      throw Error(Errc::internal, "a struct array of different structs");
     std::move(element.fields_.begin(), element.fields_.end(), std::back_inserter(value.items));
   }
   return value;
@@ -120,7 +123,8 @@ Value Struct::array(std::vector<Struct> elements) {
 std::string valid_name(std::string_view name) {
   std::string valid;
   for (const char c : name) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'), digit = c >= '0' && c <= '9';
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'),
+               digit = c >= '0' && c <= '9';
     if (!letter && valid.empty()) valid += 'x';
     if (letter || digit) {
       valid += c;
@@ -128,7 +132,8 @@ std::string valid_name(std::string_view name) {
       valid += '_';
     }
   }
-  const bool keyword = std::find(std::begin(keywords), std::end(keywords), valid) != std::end(keywords);
+  const bool keyword =
+      std::find(std::begin(keywords), std::end(keywords), valid) != std::end(keywords);
   if (valid.empty() || keyword) valid.insert(valid.begin(), 'x');
   return valid.substr(0, longest_name);
 }

@@ -12,8 +12,8 @@
 
 namespace cordon::mat {
 
-/// A matrix of real numbers (of any numeric class, full or sparse), a text of one row, a cell array, a struct array, or something
-/// of a file that is not read.
+/// A matrix of real numbers (of any numeric class, full or sparse), a text of one row, a cell
+/// array, a struct array, or something of a file that is not read.
 struct Value {
   enum class Kind : std::uint8_t { numbers, text, cell, structs, refused };
 
@@ -22,7 +22,8 @@ struct Value {
   std::string text;                ///< of `text`, UTF-8; of `refused` why it was not read
   Index rows = 0, cols = 0;        ///< of cells and structs
   std::vector<std::string> names;  ///< of structs: their fields
-  std::vector<Value> items;        ///< of cells and structs, column by column; of each struct its fields, in the order of `names`
+  std::vector<Value> items;  ///< of cells and structs, column by column; of each struct its fields,
+                             ///< in the order of `names`
 
   bool is(Kind k) const { return kind == k; }
   /// The field of the struct at this place; null if there is none.
@@ -56,8 +57,9 @@ class Struct {
   std::vector<Value> fields_;
 };
 
-/// Names that MATLAB takes for variables and fields: a letter, then letters, digits and underscores, 63 at most. Runs of other
-/// characters become an underscore, and keywords begin with an x.
+/// Names that MATLAB takes for variables and fields: a letter, then letters, digits and
+/// underscores, 63 at most. Runs of other characters become an underscore, and keywords begin with
+/// an x.
 std::string valid_name(std::string_view name);
 /// The same for several names; those that would be equal get "_2", "_3", ….
 std::vector<std::string> valid_names(const std::vector<std::string>& names);

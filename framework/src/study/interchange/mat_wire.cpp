@@ -9,7 +9,9 @@ namespace cordon::mat {
 
 namespace {
 
-void put(std::string& out, std::int64_t number) { out.append(reinterpret_cast<const char*>(&number), sizeof number); }
+void put(std::string& out, std::int64_t number) {
+  out.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
 
 void put(std::string& out, const std::string& text) {
   put(out, static_cast<std::int64_t>(text.size()));
@@ -88,7 +90,8 @@ class WireReader {
       value.names.push_back(std::move(*name));
     }
     const std::int64_t elements = *rows * *cols;
-    const bool structs = value.is(Value::Kind::structs), container = structs || value.is(Value::Kind::cell);
+    const bool structs = value.is(Value::Kind::structs),
+               container = structs || value.is(Value::Kind::cell);
     if (!container) return elements == 0 && *names == 0;
     if (elements > static_cast<std::int64_t>(rest_.size())) return false;  // each takes some bytes
     const std::int64_t all = structs ? elements * *names : elements;

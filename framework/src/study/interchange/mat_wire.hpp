@@ -11,7 +11,8 @@
 namespace cordon::mat {
 
 std::string to_wire(const Variables& variables);
-/// Nothing if the bytes are not what `to_wire` has made: the process that sends them may have lost its mind.
+/// Nothing if the bytes are not what `to_wire` has made: the process that sends them may have lost
+/// its mind.
 std::optional<Variables> from_wire(std::string_view bytes);
 
 }  // namespace cordon::mat

@@ -16,11 +16,13 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-bool equal(const Matrix& A, const Matrix& B) { return A.rows() == B.rows() && A.cols() == B.cols() && A == B; }
+bool equal(const Matrix& A, const Matrix& B) {
+  return A.rows() == B.rows() && A.cols() == B.cols() && A == B;
+}
 
 bool equal(const LineForm& X, const LineForm& Y) {
-  return X.c.size() == Y.c.size() && X.c == Y.c && equal(X.M, Y.M) && equal(X.G, Y.G) && equal(X.S, Y.S) && equal(X.A, Y.A) &&
-         X.b.size() == Y.b.size();
+  return X.c.size() == Y.c.size() && X.c == Y.c && equal(X.M, Y.M) && equal(X.G, Y.G) &&
+         equal(X.S, Y.S) && equal(X.A, Y.A) && X.b.size() == Y.b.size();
 }
 
 /// x + y, if that is a double.
@@ -46,7 +48,9 @@ Struct matrices(const Model& model) {
   system.set("type", text(m.is_descriptor() ? "descriptor" : intervals ? "interval_lti" : "lti"));
   system.set("E", matrix(m.E)).set("A", matrix(m.A)).set("B", matrix(m.B)).set("Bw", matrix(m.Bw));
   system.set("C", matrix(m.C)).set("D", matrix(m.D)).set("Dv", matrix(m.Dv));
-  system.set("A_radius", matrix(m.A_radius)).set("B_radius", matrix(m.B_radius)).set("C_radius", matrix(m.C_radius));
+  system.set("A_radius", matrix(m.A_radius))
+      .set("B_radius", matrix(m.B_radius))
+      .set("C_radius", matrix(m.C_radius));
   system.set("X0", to_mat(model.X0)).set("W", to_mat(model.W)).set("V", to_mat(model.V));
   return system;
 }
@@ -65,8 +69,9 @@ class Columns {
   void add(const Vector& column) {
     budget_ -= column.size();
     if (budget_ < 0) {
-      throw Error(Errc::invalid, "the data hold more than " + std::to_string(max_numbers) +
-                                     " numbers: leave them out with --no-data, or take fewer steps");
+      throw Error(Errc::invalid,
+                  "the data hold more than " + std::to_string(max_numbers) +
+                      " numbers: leave them out with --no-data, or take fewer steps");
     }
     rows_ = column.size(), ++count_;
     numbers_.insert(numbers_.end(), column.begin(), column.end());
@@ -111,7 +116,9 @@ Value to_mat(const LineForm& X) {
 Value to_mat(const ModeBank& bank) {
   const Mode& nominal = bank[bank.nominal];
   Struct system = matrices(nominal.model);
-  system.set("F", matrix(nominal.model.linear.F)).set("U", to_mat(nominal.model.U)).set("nominal", text(nominal.name));
+  system.set("F", matrix(nominal.model.linear.F))
+      .set("U", to_mat(nominal.model.U))
+      .set("nominal", text(nominal.name));
   std::vector<Struct> modes;
   for (Index j = 0; j < bank.size(); ++j) {
     if (j == bank.nominal) continue;
@@ -146,7 +153,10 @@ Value to_mat(DataSource& data) {
 
 Value about(const std::string& what, const std::string& title) {
   Struct fields;
-  fields.set("format", number(1)).set("holds", text(what)).set("title", text(title)).set("version", text(build_info().version));
+  fields.set("format", number(1))
+      .set("holds", text(what))
+      .set("title", text(title))
+      .set("version", text(build_info().version));
   return std::move(fields).value();
 }
 
@@ -155,9 +165,11 @@ Value about(const std::string& what, const std::string& title) {
 namespace cordon {
 
 void study_to_mat(const Study& study, const Target& target, bool with_data) {
-  mat::Variables all{{"cordon", mat::about("study", study.title)}, {"system", mat::to_mat(bank_of(study))}};
+  mat::Variables all{{"cordon", mat::about("study", study.title)},
+                     {"system", mat::to_mat(bank_of(study))}};
   const auto* simulate = std::get_if<SimulateSpec>(&study.data);
-  if (with_data && !(simulate && simulate->steps == 0)) all.push_back({"data", mat::to_mat(*open_data(study))});
+  if (with_data && !(simulate && simulate->steps == 0))
+    all.push_back({"data", mat::to_mat(*open_data(study))});
   detail::write_files({{target.file, mat::to_bytes(all)}}, target.replace);
 }
 

@@ -25,11 +25,13 @@ using Kind = json::Value::Kind;
 
 const char* const mend = "the file is not as \"cordon run\" wrote it; run the study again";
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& message, const std::string& suggestion, int line = 0) {
+[[noreturn]] void refuse(const fs::path& file, const std::string& message,
+                         const std::string& suggestion, int line = 0) {
   throw InputError(file.string(), {{"", message, suggestion, line}});
 }
 
-/// The columns of data.csv by the first part of their names, "u" of "u_1"; a sample per column of the matrices.
+/// The columns of data.csv by the first part of their names, "u" of "u_1"; a sample per column of
+/// the matrices.
 Value data_of(const fs::path& file) {
   detail::CsvReader reader(file);
   detail::CsvRow row;
@@ -45,10 +47,13 @@ Value data_of(const fs::path& file) {
     if (row.fields.size() != names.size())
       refuse(file, "a row of another length than the header", mend, static_cast<int>(row.line));
     budget -= static_cast<std::int64_t>(names.size());
-    if (budget < 0) refuse(file, "holds more than " + std::to_string(mat::max_numbers) + " numbers", "use data.csv itself");
+    if (budget < 0)
+      refuse(file, "holds more than " + std::to_string(mat::max_numbers) + " numbers",
+             "use data.csv itself");
     for (std::size_t i = 0; i < names.size(); ++i) {
       const detail::ParsedNumber number = detail::parse_number(row.fields[i]);
-      numbers[names[i]].push_back(number.problem.empty() ? number.value : std::numeric_limits<double>::quiet_NaN());
+      numbers[names[i]].push_back(
+          number.problem.empty() ? number.value : std::numeric_limits<double>::quiet_NaN());
     }
   }
   mat::Struct data;
@@ -68,8 +73,11 @@ std::map<std::string, std::vector<Value>> sets_of(const detail::RecordedFiles& f
   std::int64_t budget = mat::max_numbers;
   while (const auto row = reader.next()) {
     const LineForm& X = row->set;
-    budget -= X.c.size() * (1 + X.G.cols() + X.M.cols()) + X.b.size() * (1 + X.A.cols() + X.S.cols()) + 20;
-    if (budget < 0) refuse(files.directory() / "sets.jsonl", "holds more sets than one MAT-file takes", "leave out --sets");
+    budget -= X.c.size() * (1 + X.G.cols() + X.M.cols()) +
+              X.b.size() * (1 + X.A.cols() + X.S.cols()) + 20;
+    if (budget < 0)
+      refuse(files.directory() / "sets.jsonl", "holds more sets than one MAT-file takes",
+             "leave out --sets");
     sets[row->pipeline].push_back(mat::to_mat(X));
   }
   return sets;
@@ -89,7 +97,8 @@ Value pipeline_to_mat(const Cursor& at, std::vector<Value>* sets) {
   return std::move(pipeline).value();
 }
 
-Value pipelines_to_mat(const Cursor& pipelines, const detail::RecordedFiles& files, bool with_sets) {
+Value pipelines_to_mat(const Cursor& pipelines, const detail::RecordedFiles& files,
+                       bool with_sets) {
   std::map<std::string, std::vector<Value>> sets;
   if (with_sets) sets = sets_of(files);
   std::vector<std::string> names;
@@ -101,7 +110,8 @@ Value pipelines_to_mat(const Cursor& pipelines, const detail::RecordedFiles& fil
   mat::Struct results;
   for (std::size_t p = 0; p < pipelines.size(); ++p) {
     const auto found = sets.find(names[p]);
-    results.set(valid[p], pipeline_to_mat(pipelines.item(p), found == sets.end() ? nullptr : &found->second));
+    results.set(valid[p],
+                pipeline_to_mat(pipelines.item(p), found == sets.end() ? nullptr : &found->second));
   }
   return std::move(results).value();
 }
@@ -124,7 +134,10 @@ Value to_mat(const ResultTable& table) {
     std::vector<Value> values;
     for (const std::string& one : axis.values) values.push_back(value_of(one));
     axes.emplace_back();
-    axes.back().set("name", text(axis.name)).set("path", text(axis.path)).set("repeat", number(axis.repeat ? 1 : 0));
+    axes.back()
+        .set("name", text(axis.name))
+        .set("path", text(axis.path))
+        .set("repeat", number(axis.repeat ? 1 : 0));
     axes.back().set("values", cell(std::move(values)));
   }
   std::vector<std::string> names{"point", "pipeline", "error"};
@@ -140,13 +153,16 @@ Value to_mat(const ResultTable& table) {
   }
   Value error_column = cell(std::move(errors));
   std::swap(error_column.rows, error_column.cols);
-  columns.set(names[0], matrix(point)).set(names[1], matrix(pipeline)).set(names[2], std::move(error_column));
+  columns.set(names[0], matrix(point))
+      .set(names[1], matrix(pipeline))
+      .set(names[2], std::move(error_column));
   for (std::size_t a = 0; a < table.axes.size(); ++a) {
     std::vector<Value> values;
     bool numbers = true;
     Matrix column(rows, 1);
     for (Index i = 0; i < rows; ++i) {
-      values.push_back(value_of(table.axes[a].values[table.rows[static_cast<std::size_t>(i)].at[a]]));
+      values.push_back(
+          value_of(table.axes[a].values[table.rows[static_cast<std::size_t>(i)].at[a]]));
       const Value& value = values.back();
       numbers = numbers && value.is(Value::Kind::numbers) && value.numbers.size() == 1;
       if (numbers) column(i, 0) = value.numbers(0, 0);
@@ -157,7 +173,8 @@ Value to_mat(const ResultTable& table) {
   }
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     Matrix column(rows, 1);
-    for (Index i = 0; i < rows; ++i) column(i, 0) = table.rows[static_cast<std::size_t>(i)].values[c];
+    for (Index i = 0; i < rows; ++i)
+      column(i, 0) = table.rows[static_cast<std::size_t>(i)].values[c];
     columns.set(names[3 + table.axes.size() + c], matrix(std::move(column)));
   }
   sweep.set("pipelines", cell(table.pipelines));
@@ -176,12 +193,15 @@ void results_to_mat(const fs::path& directory, const Target& target, bool with_s
   const Cursor root(tree, "", problems);
   mat::Variables all;
   std::vector<std::string> warnings;
-  if (root.expect(Kind::object, "a results file of \"cordon run\" is an object") && root.need("cordon_results", mend)) {
-    const auto title = root.need("title", mend), study = root.need("study", mend), pipelines = root.need("pipelines", mend);
+  if (root.expect(Kind::object, "a results file of \"cordon run\" is an object") &&
+      root.need("cordon_results", mend)) {
+    const auto title = root.need("title", mend), study = root.need("study", mend),
+               pipelines = root.need("pipelines", mend);
     const bool sweep = root.find("points") != std::nullopt;
     const std::string name = title ? json::read_text(*title, 100'000).value_or("") : "";
     all.push_back({"cordon", mat::about(sweep ? "sweep" : "results", name)});
-    const auto system = study && study->expect(Kind::object, mend) ? study->need("system", mend) : std::nullopt;
+    const auto system =
+        study && study->expect(Kind::object, mend) ? study->need("system", mend) : std::nullopt;
     if (system) {
       const json::SystemPart part = json::read_system(*system, warnings);
       ModeBank bank;
@@ -189,7 +209,8 @@ void results_to_mat(const fs::path& directory, const Target& target, bool with_s
       bank.modes.insert(bank.modes.end(), part.modes.begin(), part.modes.end());
       if (part.good) all.push_back({"system", mat::to_mat(bank)});
     }
-    if (!problems.any() && sweep) all.push_back({"sweep", mat::to_mat(read_result_table(directory))});
+    if (!problems.any() && sweep)
+      all.push_back({"sweep", mat::to_mat(read_result_table(directory))});
     if (!problems.any() && !sweep && pipelines && pipelines->expect(Kind::array, mend)) {
       all.push_back({"data", data_of(files.file("data.csv"))});
       all.push_back({"results", pipelines_to_mat(*pipelines, files, with_sets)});

@@ -22,14 +22,16 @@ const std::vector<std::string> no_matrices{"actuator", "sensor", "sweep", "$comm
 
 bool is_row(const json::Value& value) {
   const auto is_number = [](const json::Value& v) { return v.kind == Kind::number; };
-  return value.kind == Kind::array && std::all_of(value.items().begin(), value.items().end(), is_number);
+  return value.kind == Kind::array &&
+         std::all_of(value.items().begin(), value.items().end(), is_number);
 }
 
 bool is_dense_matrix(const json::Value& value) {
   const std::vector<json::Value>& rows = value.items();
   if (value.kind != Kind::array || rows.empty()) return false;
-  return std::all_of(rows.begin(), rows.end(),
-                     [&](const json::Value& row) { return is_row(row) && row.items().size() == rows[0].items().size(); });
+  return std::all_of(rows.begin(), rows.end(), [&](const json::Value& row) {
+    return is_row(row) && row.items().size() == rows[0].items().size();
+  });
 }
 
 std::vector<std::string> steps_of(const std::string& pointer) {
@@ -65,7 +67,9 @@ class Rewriter {
     return std::any_of(axes_.begin(), axes_.end(), [&](const std::vector<std::string>& axis) {
       if (axis.size() <= place.size()) return false;
       return std::equal(place.begin(), place.end(), axis.begin(),
-                        [](const std::string& step, const std::string& own) { return own == "*" || own == step; });
+                        [](const std::string& step, const std::string& own) {
+                          return own == "*" || own == step;
+                        });
     });
   }
 
@@ -89,13 +93,15 @@ class Rewriter {
         return value.text();
       case Kind::array:
         out = Json::array();
-        for (std::size_t i = 0; i < at.size(); ++i) out.push_back(matrices ? rewrite(at.item(i)) : copy(at.item(i), false));
+        for (std::size_t i = 0; i < at.size(); ++i)
+          out.push_back(matrices ? rewrite(at.item(i)) : copy(at.item(i), false));
         return out;
       case Kind::object:
         out = Json::object();
         for (std::size_t i = 0; i < at.size(); ++i) {
           const std::string& key = value.keys()[i];
-          const bool inside = matrices && std::find(no_matrices.begin(), no_matrices.end(), key) == no_matrices.end();
+          const bool inside = matrices && std::find(no_matrices.begin(), no_matrices.end(), key) ==
+                                              no_matrices.end();
           const Cursor member(value.items()[i], json::child(at.pointer(), key), at.problems());
           out[key] = inside ? rewrite(member) : copy(member, false);
         }
@@ -112,14 +118,15 @@ class Rewriter {
 bool is_set(const json::Value& value) {
   const json::Value* type = value.find("type");
   const std::vector<std::string>& types = json::set_types();
-  return type && type->kind == Kind::text && std::find(types.begin(), types.end(), type->text()) != types.end();
+  return type && type->kind == Kind::text &&
+         std::find(types.begin(), types.end(), type->text()) != types.end();
 }
 
 JsonFile kind_of(const json::Value& root) {
   if (root.find("cordon_results") || root.find("cordon_run")) return JsonFile::results;
   if (root.find("cordon") || root.find("system")) return JsonFile::study;
-  const bool list =
-      root.kind == Kind::array && !root.items().empty() && std::all_of(root.items().begin(), root.items().end(), is_set);
+  const bool list = root.kind == Kind::array && !root.items().empty() &&
+                    std::all_of(root.items().begin(), root.items().end(), is_set);
   return list || is_set(root) ? JsonFile::sets : JsonFile::other;
 }
 
@@ -140,7 +147,8 @@ void rewrite_matrices(const fs::path& file, const Target& target, MatrixForm for
   if (!problems.any()) {
     const JsonFile kind = kind_of(tree);
     if (kind != JsonFile::study && kind != JsonFile::sets)
-      root.error("is neither a study nor a set nor a list of sets", "a set is {\"type\": \"zonotope\", \"center\": [...], ...}");
+      root.error("is neither a study nor a set nor a list of sets",
+                 "a set is {\"type\": \"zonotope\", \"center\": [...], ...}");
     out = Rewriter(root, form).rewrite(root);
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());

@@ -12,7 +12,8 @@ namespace cordon::mat {
 namespace {
 
 using JsonKind = json::Value::Kind;
-using Steps = std::vector<const json::Value*>;  ///< an object per step, or null where a step has none
+using Steps =
+    std::vector<const json::Value*>;  ///< an object per step, or null where a step has none
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -41,7 +42,8 @@ Value scalars(const Steps& values) {
 
 Value texts(const Steps& values) {
   std::vector<std::string> all;
-  for (const json::Value* value : values) all.push_back(value && value->kind == JsonKind::text ? value->text() : "");
+  for (const json::Value* value : values)
+    all.push_back(value && value->kind == JsonKind::text ? value->text() : "");
   return cell(all);
 }
 
@@ -60,19 +62,23 @@ Value columns(const Steps& lists) {
 
 /// "lower" and "upper" of boxes, under names that begin with `prefix`.
 void add_bounds(Struct& out, const Steps& boxes, const std::string& prefix) {
-  out.set(prefix + "lower", columns(members(boxes, "lower"))).set(prefix + "upper", columns(members(boxes, "upper")));
+  out.set(prefix + "lower", columns(members(boxes, "lower")))
+      .set(prefix + "upper", columns(members(boxes, "upper")));
 }
 
 /// Numbers as a row, texts as a cell array.
 Value plain(const Steps& values) {
-  const auto is_text = [](const json::Value* v) { return v && v->kind == JsonKind::text && !is_number(*v); };
+  const auto is_text = [](const json::Value* v) {
+    return v && v->kind == JsonKind::text && !is_number(*v);
+  };
   return std::any_of(values.begin(), values.end(), is_text) ? texts(values) : scalars(values);
 }
 
 /// Item i of the list that each step has under this key.
 Steps item(const Steps& lists, std::size_t i) {
   Steps items;
-  for (const json::Value* list : lists) items.push_back(list && i < list->items().size() ? &list->items()[i] : nullptr);
+  for (const json::Value* list : lists)
+    items.push_back(list && i < list->items().size() ? &list->items()[i] : nullptr);
   return items;
 }
 
@@ -83,7 +89,9 @@ Value modes(const Steps& lists) {
   std::vector<Struct> all(count);
   for (std::size_t j = 0; j < count; ++j) {
     const Steps mode = item(lists, j);
-    all[j].set("candidate", scalars(members(mode, "candidate"))).set("consistent", scalars(members(mode, "consistent")));
+    all[j]
+        .set("candidate", scalars(members(mode, "candidate")))
+        .set("consistent", scalars(members(mode, "consistent")));
     add_bounds(all[j], members(mode, "residual"), "");
     add_bounds(all[j], members(mode, "reset_residual"), "reset_");
   }
@@ -114,7 +122,8 @@ Value faults(const Steps& lists) {
     Steps entries;
     for (const json::Value* list : lists) entries.push_back(entry_of(list, fault));
     Struct& own = all.emplace_back();
-    for (const char* key : {"at", "lower", "estimate", "upper", "truth"}) own.set(key, scalars(members(entries, key)));
+    for (const char* key : {"at", "lower", "estimate", "upper", "truth"})
+      own.set(key, scalars(members(entries, key)));
   }
   return Struct::array(std::move(all));
 }
@@ -152,21 +161,24 @@ void add_steps(Struct& pipeline, const json::Value& list) {
     if (key == "tightness") {
       Matrix row = Matrix::Zero(1, static_cast<Index>(steps.size()));
       for (std::size_t k = 0; k < steps.size(); ++k) {
-        row(0, static_cast<Index>(k)) = values[k] && values[k]->kind == JsonKind::text && values[k]->text() == "exact" ? 1 : 0;
+        row(0, static_cast<Index>(k)) =
+            values[k] && values[k]->kind == JsonKind::text && values[k]->text() == "exact" ? 1 : 0;
       }
       pipeline.set("exact", matrix(std::move(row)));
     }
-    if (is_among(key, {"decision", "mode", "true_mode", "suggested"})) pipeline.set(key, texts(values));
+    if (is_among(key, {"decision", "mode", "true_mode", "suggested"}))
+      pipeline.set(key, texts(values));
     if (key == "modes") pipeline.set("evidence", modes(values));
     if (key == "faults") pipeline.set("faults", faults(values));
-    if (!is_among(key, {"k", "hull", "inner", "consistent", "since", "reset", "tightness", "decision", "mode", "true_mode",
-                        "suggested", "modes", "faults"})) {
+    if (!is_among(key, {"k", "hull", "inner", "consistent", "since", "reset", "tightness",
+                        "decision", "mode", "true_mode", "suggested", "modes", "faults"})) {
       metric_names.push_back(key);
     }
   }
   if (metric_names.empty()) return;
   const std::vector<std::string> valid = valid_names(metric_names);
-  for (std::size_t i = 0; i < valid.size(); ++i) metrics.set(valid[i], plain(members(steps, metric_names[i])));
+  for (std::size_t i = 0; i < valid.size(); ++i)
+    metrics.set(valid[i], plain(members(steps, metric_names[i])));
   pipeline.set("metrics", std::move(metrics).value());
 }
 

@@ -31,7 +31,8 @@ std::uint32_t take(std::string_view& utf8) {
   const std::size_t length = detail::utf8_length(utf8);
   const auto lead = static_cast<unsigned char>(utf8[0]);
   std::uint32_t point = length == 0 ? 0xFFFD : length == 1 ? lead : lead & (0x7Fu >> length);
-  for (std::size_t i = 1; i < length; ++i) point = (point << 6) | (static_cast<unsigned char>(utf8[i]) & 0x3Fu);
+  for (std::size_t i = 1; i < length; ++i)
+    point = (point << 6) | (static_cast<unsigned char>(utf8[i]) & 0x3Fu);
   utf8.remove_prefix(std::max<std::size_t>(1, length));
   return point;
 }

@@ -11,7 +11,9 @@
 
 namespace cordon::detail {
 
-/// Writes files side by side, all or none; they replace what is there only if asked for. Throws Errc::invalid, Errc::io.
-void write_files(const std::vector<std::pair<std::filesystem::path, std::string>>& files, bool replace);
+/// Writes files side by side, all or none; they replace what is there only if asked for. Throws
+/// Errc::invalid, Errc::io.
+void write_files(const std::vector<std::pair<std::filesystem::path, std::string>>& files,
+                 bool replace);
 
 }  // namespace cordon::detail

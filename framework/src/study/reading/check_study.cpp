@@ -8,7 +8,8 @@ namespace cordon::json {
 
 namespace {
 
-/// The parameters that hold a set to start from, of the component or of one inside it; null: it starts from X0.
+/// The parameters that hold a set to start from, of the component or of one inside it; null: it
+/// starts from X0.
 const Params* starting_params(const ComponentSpec& spec) {
   if (spec.params.has("initial_set")) return &spec.params;
   for (const auto& [name, value] : spec.params.values()) {
@@ -24,11 +25,15 @@ const Params* starting_params(const PipelineSpec& pipeline) {
 }
 
 bool same_blocks(const LineForm& X, const LineForm& Y) {
-  const auto same = [](const auto& A, const auto& B) { return A.rows() == B.rows() && A.cols() == B.cols() && A == B; };
-  return same(X.M, Y.M) && same(X.G, Y.G) && same(X.c, Y.c) && same(X.S, Y.S) && same(X.A, Y.A) && same(X.b, Y.b);
+  const auto same = [](const auto& A, const auto& B) {
+    return A.rows() == B.rows() && A.cols() == B.cols() && A == B;
+  };
+  return same(X.M, Y.M) && same(X.G, Y.G) && same(X.c, Y.c) && same(X.S, Y.S) && same(X.A, Y.A) &&
+         same(X.b, Y.b);
 }
 
-/// Where simulations start: a state, which must not be proven outside, or a set, which must be proven inside.
+/// Where simulations start: a state, which must not be proven outside, or a set, which must be
+/// proven inside.
 class Start {
  public:
   Start(const Cursor& at, const SimulateSpec& spec) : at_(at), spec_(spec) {}
@@ -42,8 +47,10 @@ class Start {
     }
     if (X.dim() != spec_.x0_set->dim()) return true;
     const Answer inside = same_blocks(*spec_.x0_set, X) ? Answer::yes : is_subset(*spec_.x0_set, X);
-    if (inside == Answer::no) at_.error("does not lie inside " + name, "choose a set inside" + mend);
-    if (inside == Answer::unknown) at_.error("could not be proven to lie inside " + name, "give a smaller or a simpler set");
+    if (inside == Answer::no)
+      at_.error("does not lie inside " + name, "choose a set inside" + mend);
+    if (inside == Answer::unknown)
+      at_.error("could not be proven to lie inside " + name, "give a smaller or a simpler set");
     return inside == Answer::yes;
   }
 
@@ -55,12 +62,15 @@ class Start {
 /// Designed inputs are tried on every mode, from the X0 of each.
 void check_start_of_modes(const Start& start, const Study& study) {
   for (const Mode& mode : study.modes) {
-    start.expect_inside(mode.model.X0, "X0 of mode " + in_quotes(mode.name) + ", which designed inputs are tried on",
-                        ", or widen that set");
+    start.expect_inside(
+        mode.model.X0,
+        "X0 of mode " + in_quotes(mode.name) + ", which designed inputs are tried on",
+        ", or widen that set");
   }
 }
 
-/// A simulation that starts outside the set an observer starts from would break its guarantee by construction.
+/// A simulation that starts outside the set an observer starts from would break its guarantee by
+/// construction.
 void check_start(const Cursor& root, const Study& study, std::optional<std::size_t> only) {
   const auto* spec = std::get_if<SimulateSpec>(&study.data);
   if (!spec || (!spec->x0 && !spec->x0_set)) return;
@@ -74,14 +84,16 @@ void check_start(const Cursor& root, const Study& study, std::optional<std::size
     designed = designed || pipeline.designer;
     own = own || !params || pipeline.designer;
     if (params) {
-      start.expect_inside(params->set_form("initial_set"), "the initial_set of pipeline " + in_quotes(pipeline.name),
+      start.expect_inside(params->set_form("initial_set"),
+                          "the initial_set of pipeline " + in_quotes(pipeline.name),
                           ", or widen the set");
     }
   }
   if (own && !start.expect_inside(study.model.X0, "X0", " /system/X0, or widen that set")) return;
   if (!spec->faults.empty() && spec->faults.front().from == 0) {
     const FaultSpec& fault = spec->faults.front();
-    start.expect_inside(fault.model.X0, "X0 of the fault that acts from the beginning: " + in_quotes(fault.name),
+    start.expect_inside(fault.model.X0,
+                        "X0 of the fault that acts from the beginning: " + in_quotes(fault.name),
                         ", or widen that set");
   }
   if (designed) check_start_of_modes(start, study);
@@ -109,7 +121,8 @@ void check_experiments(const Cursor& root, const Study& study, std::optional<std
     const Cursor at = *pipelines.item(i).find("diagnoser");
     for (const Mode& mode : bank_of(study).modes) {
       if (const std::string reason = obstacle(mode, study.file.string()); !reason.empty())
-        at.error("its experiments cannot be simulated: " + reason, "change that mode, or remove the diagnoser");
+        at.error("its experiments cannot be simulated: " + reason,
+                 "change that mode, or remove the diagnoser");
     }
   }
 }

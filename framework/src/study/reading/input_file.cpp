@@ -30,12 +30,15 @@ const char* kind_of(mode_t mode) {
 
 InputFile::InputFile(std::filesystem::path path, std::string mend) : path_(std::move(path)) {
   struct stat status;
-  // Looked at before it is opened: opening a device can do something. And again after: it may be another one by then.
+  // Looked at before it is opened: opening a device can do something. And again after: it may be
+  // another one by then.
   const char* kind = ::stat(path_.c_str(), &status) == 0 ? kind_of(status.st_mode) : nullptr;
   if (!kind) {
     descriptor_ = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor_ < 0) {
-      refuse(errno == ENOENT ? "there is no such file" : std::string("cannot be read: ") + std::strerror(errno), mend);
+      refuse(errno == ENOENT ? "there is no such file"
+                             : std::string("cannot be read: ") + std::strerror(errno),
+             mend);
     }
     if (::fstat(descriptor_, &status) == 0) kind = kind_of(status.st_mode);
   }
@@ -61,7 +64,9 @@ std::size_t InputFile::read(char* to, std::size_t most) {
   while (got < most) {
     const ssize_t now = ::read(descriptor_, to + got, most - got);
     if (now < 0 && errno == EINTR) continue;
-    if (now < 0) refuse(std::string("cannot be read to its end: ") + std::strerror(errno), "check the file system");
+    if (now < 0)
+      refuse(std::string("cannot be read to its end: ") + std::strerror(errno),
+             "check the file system");
     if (now == 0) break;
     got += static_cast<std::size_t>(now);
   }
@@ -82,7 +87,8 @@ bool InputFile::line(std::string& text, std::size_t longest) {
   ended_ = false;
   do {
     const std::size_t end = buffer_.find('\n', at_), stop = std::min(end, buffer_.size());
-    if (text.size() + (stop - at_) > longest) refuse("a line is longer than " + std::to_string(longest) + " bytes", "", lines_);
+    if (text.size() + (stop - at_) > longest)
+      refuse("a line is longer than " + std::to_string(longest) + " bytes", "", lines_);
     text.append(buffer_, at_, stop - at_);
     ended_ = end != std::string::npos;
     at_ = stop + (ended_ ? 1 : 0);
@@ -102,8 +108,11 @@ std::string InputFile::rest(std::size_t most, const std::string& mend) {
   }
 }
 
-void InputFile::refuse(const std::string& reason, const std::string& mend, std::int64_t line) const {
-  throw InputError(path_.string(), {{"", reason, mend, static_cast<int>(std::min<std::int64_t>(line, 1'000'000'000))}});
+void InputFile::refuse(const std::string& reason, const std::string& mend,
+                       std::int64_t line) const {
+  throw InputError(
+      path_.string(),
+      {{"", reason, mend, static_cast<int>(std::min<std::int64_t>(line, 1'000'000'000))}});
 }
 
 }  // namespace cordon::detail

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file that is read: whatever its name stands for, reading ends, and an error is never taken for the end.
+// A file that is read: whatever its name stands for, reading ends, and an error is never taken for
+// the end.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +9,13 @@
 
 namespace cordon::detail {
 
-/// A regular file, read once from its beginning to its end. Directories, pipes, devices and sockets are refused without waiting
-/// for them. Every error of reading is an InputError about the file; `mend` is what to do about one that cannot be opened.
+/// A regular file, read once from its beginning to its end. Directories, pipes, devices and sockets
+/// are refused without waiting for them. Every error of reading is an InputError about the file;
+/// `mend` is what to do about one that cannot be opened.
 class InputFile {
  public:
-  explicit InputFile(std::filesystem::path path, std::string mend = "check its name and its permissions");
+  explicit InputFile(std::filesystem::path path,
+                     std::string mend = "check its name and its permissions");
   ~InputFile();
   InputFile(InputFile&& other) noexcept;
   InputFile& operator=(InputFile&&) = delete;
@@ -20,7 +23,8 @@ class InputFile {
   const std::filesystem::path& path() const { return path_; }
   /// Up to `most` bytes; fewer only at the end, where it is 0.
   std::size_t read(char* to, std::size_t most);
-  /// The next line without its end; false behind the last one. Throws InputError for one longer than `longest` bytes.
+  /// The next line without its end; false behind the last one. Throws InputError for one longer
+  /// than `longest` bytes.
   bool line(std::string& text, std::size_t longest);
   std::int64_t lines() const { return lines_; }  ///< handed out so far
   bool ended_line() const { return ended_; }     ///< the last one had its end: it was not cut off
@@ -28,7 +32,8 @@ class InputFile {
   std::string rest(std::size_t most, const std::string& mend);
 
  private:
-  [[noreturn]] void refuse(const std::string& reason, const std::string& mend, std::int64_t line = 0) const;
+  [[noreturn]] void refuse(const std::string& reason, const std::string& mend,
+                           std::int64_t line = 0) const;
   bool fill();
 
   std::filesystem::path path_;

@@ -18,17 +18,20 @@ std::string number_text(double x) {
   return text;
 }
 
-/// U+0000 … U+001F, U+007F … U+009F: what a terminal would act on, and what would break a line of a table. The text is UTF-8.
+/// U+0000 … U+001F, U+007F … U+009F: what a terminal would act on, and what would break a line of a
+/// table. The text is UTF-8.
 bool holds_control_characters(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
-    const bool wide = byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    const bool wide =
+        byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
     if (byte < 0x20 || byte == 0x7F || wide) return true;
   }
   return false;
 }
 
-/// Reads the entries of a list of numbers into `out`; reports the first wrong ones and the number of the others.
+/// Reads the entries of a list of numbers into `out`; reports the first wrong ones and the number
+/// of the others.
 template <class Entry, class Out>
 bool read_entries(const Cursor& list, Entry&& entry, Out&& out) {
   std::size_t wrong = 0;
@@ -41,7 +44,9 @@ bool read_entries(const Cursor& list, Entry&& entry, Out&& out) {
       list.item(j).expect(Kind::number, "");
     }
   }
-  if (wrong > shown_entries) list.error("holds " + std::to_string(wrong - shown_entries) + " more entries that are not numbers");
+  if (wrong > shown_entries)
+    list.error("holds " + std::to_string(wrong - shown_entries) +
+               " more entries that are not numbers");
   return wrong == 0;
 }
 
@@ -68,8 +73,9 @@ bool read_sparse_entry(const Cursor& at, Matrix& A, std::vector<bool>& taken) {
   if (!row || !column || !number) return false;
   const auto place = static_cast<std::size_t>((*row - 1) * A.cols() + *column - 1);
   if (taken[place]) {
-    at.error("repeats the entry in row " + std::to_string(*row) + ", column " + std::to_string(*column),
-             "name each entry once; entries are not added up");
+    at.error(
+        "repeats the entry in row " + std::to_string(*row) + ", column " + std::to_string(*column),
+        "name each entry once; entries are not added up");
     return false;
   }
   taken[place] = true;
@@ -78,9 +84,11 @@ bool read_sparse_entry(const Cursor& at, Matrix& A, std::vector<bool>& taken) {
 }
 
 std::optional<Matrix> read_sparse_matrix(const Cursor& at) {
-  const std::string form = "the sparse form is {\"rows\": 2, \"cols\": 3, \"entries\": [[1, 3, 0.5]]}";
+  const std::string form =
+      "the sparse form is {\"rows\": 2, \"cols\": 3, \"entries\": [[1, 3, 0.5]]}";
   at.expect_keys({"rows", "cols", "entries"}, "key of a sparse matrix", "");
-  const auto rows_at = at.need("rows", form), cols_at = at.need("cols", form), entries = at.need("entries", form);
+  const auto rows_at = at.need("rows", form), cols_at = at.need("cols", form),
+             entries = at.need("entries", form);
   const auto limit = static_cast<double>(max_entries);
   const Index rows = rows_at ? read_integer(*rows_at, 0, limit).value_or(-1) : -1;
   const Index cols = cols_at ? read_integer(*cols_at, 0, limit).value_or(-1) : -1;
@@ -103,8 +111,10 @@ std::optional<Matrix> read_sparse_matrix(const Cursor& at) {
 }
 
 std::optional<double> bound_entry(const Value& value) {
-  if (value.kind == Kind::text && value.text() == "inf") return std::numeric_limits<double>::infinity();
-  if (value.kind == Kind::text && value.text() == "-inf") return -std::numeric_limits<double>::infinity();
+  if (value.kind == Kind::text && value.text() == "inf")
+    return std::numeric_limits<double>::infinity();
+  if (value.kind == Kind::text && value.text() == "-inf")
+    return -std::numeric_limits<double>::infinity();
   return finite_entry(value);
 }
 
@@ -112,7 +122,8 @@ std::optional<double> bound_entry(const Value& value) {
 
 std::optional<Cursor> Cursor::find(std::string_view key) const {
   const Value* found = value_->find(key);
-  return found ? std::optional<Cursor>(Cursor(*found, child(pointer_, key), *problems_)) : std::nullopt;
+  return found ? std::optional<Cursor>(Cursor(*found, child(pointer_, key), *problems_))
+               : std::nullopt;
 }
 
 std::optional<Cursor> Cursor::need(std::string_view key, const std::string& suggestion) const {
@@ -131,18 +142,25 @@ bool Cursor::expect(Kind kind, const std::string& suggestion) const {
     problems_->pass_over();
   } else {
     std::string hint = suggestion;
-    if (hint.empty() && is(Kind::text) && kind == Kind::number) hint = "write the number without quotes";
-    error("is " + std::string(kind_name(value_->kind)) + ", must be " + std::string(kind_name(kind)), std::move(hint));
+    if (hint.empty() && is(Kind::text) && kind == Kind::number)
+      hint = "write the number without quotes";
+    error(
+        "is " + std::string(kind_name(value_->kind)) + ", must be " + std::string(kind_name(kind)),
+        std::move(hint));
   }
   return false;
 }
 
-bool Cursor::expect_keys(const std::vector<std::string>& keys, const std::string& noun, const std::string& suggestion) const {
+bool Cursor::expect_keys(const std::vector<std::string>& keys, const std::string& noun,
+                         const std::string& suggestion) const {
   if (!expect(Kind::object, suggestion)) return false;
   for (std::size_t i = 0; i < size(); ++i) {
     const std::string& key = value_->keys()[i];
-    if (key == "$comment" || key == "$schema" || std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-    problems_->add_unknown(child(pointer_, key), value_->items()[i].line, "unknown " + noun, suggest(key, keys));
+    if (key == "$comment" || key == "$schema" ||
+        std::find(keys.begin(), keys.end(), key) != keys.end())
+      continue;
+    problems_->add_unknown(child(pointer_, key), value_->items()[i].line, "unknown " + noun,
+                           suggest(key, keys));
   }
   return true;
 }
@@ -156,19 +174,23 @@ std::optional<std::int64_t> read_integer(const Cursor& at, double lowest, double
   if (!x) return std::nullopt;
   const double low = std::max(lowest, -max_integer), high = std::min(highest, max_integer);
   if (*x != std::floor(*x)) {
-    at.error("must be an integer", "the next ones are " + number_text(std::clamp(std::floor(*x), low, high)) + " and " +
-                                       number_text(std::clamp(std::ceil(*x), low, high)));
+    at.error("must be an integer", "the next ones are " +
+                                       number_text(std::clamp(std::floor(*x), low, high)) +
+                                       " and " + number_text(std::clamp(std::ceil(*x), low, high)));
     return std::nullopt;
   }
   if (*x < low || *x > high) {
-    at.error(*x < low ? "is too small" : "is too large", "must lie between " + number_text(low) + " and " + number_text(high));
+    at.error(*x < low ? "is too small" : "is too large",
+             "must lie between " + number_text(low) + " and " + number_text(high));
     return std::nullopt;
   }
   return static_cast<std::int64_t>(*x);
 }
 
 std::optional<bool> read_flag(const Cursor& at) {
-  return at.expect(Kind::boolean, "write true or false without quotes") ? std::optional<bool>(at.value().flag) : std::nullopt;
+  return at.expect(Kind::boolean, "write true or false without quotes")
+             ? std::optional<bool>(at.value().flag)
+             : std::nullopt;
 }
 
 std::optional<std::string> read_text(const Cursor& at, std::size_t limit) {
@@ -203,18 +225,23 @@ std::optional<std::string> read_choice(const Cursor& at, const std::vector<std::
 std::optional<Vector> read_vector(const Cursor& at, Index limit) {
   if (!at.expect(Kind::array, "write a list of numbers: [1, 2]")) return std::nullopt;
   if (static_cast<Index>(at.size()) > limit) {
-    at.error("has " + std::to_string(at.size()) + " entries, at most " + std::to_string(limit) + " are allowed");
+    at.error("has " + std::to_string(at.size()) + " entries, at most " + std::to_string(limit) +
+             " are allowed");
     return std::nullopt;
   }
   Vector x(static_cast<Index>(at.size()));
-  const bool good = read_entries(at, finite_entry, [&](std::size_t j, double entry) { x[static_cast<Index>(j)] = entry; });
+  const bool good = read_entries(
+      at, finite_entry, [&](std::size_t j, double entry) { x[static_cast<Index>(j)] = entry; });
   return good ? std::optional<Vector>(std::move(x)) : std::nullopt;
 }
 
 std::optional<Vector> read_bounds(const Cursor& at) {
-  if (!at.expect(Kind::array, "write a list of numbers; a free coordinate has \"-inf\" and \"inf\"")) return std::nullopt;
+  if (!at.expect(Kind::array,
+                 "write a list of numbers; a free coordinate has \"-inf\" and \"inf\""))
+    return std::nullopt;
   if (static_cast<Index>(at.size()) > max_dimension) {
-    at.error("has " + std::to_string(at.size()) + " entries, at most " + std::to_string(max_dimension) + " are allowed");
+    at.error("has " + std::to_string(at.size()) + " entries, at most " +
+             std::to_string(max_dimension) + " are allowed");
     return std::nullopt;
   }
   Vector x(static_cast<Index>(at.size()));
@@ -246,13 +273,16 @@ std::optional<Matrix> read_matrix(const Cursor& at) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < rows.size() && wrong < shown_entries; ++i) {
     const Cursor row = at.item(i);
-    if (!row.expect(Kind::array, form)) return std::nullopt;  // the other rows are probably of the same kind
+    if (!row.expect(Kind::array, form))
+      return std::nullopt;  // the other rows are probably of the same kind
     if (row.size() != cols) {
       ++wrong;
-      row.error("has " + counted(static_cast<Index>(row.size()), "number") + ", the first row has " + std::to_string(cols),
+      row.error("has " + counted(static_cast<Index>(row.size()), "number") +
+                    ", the first row has " + std::to_string(cols),
                 "all rows are of equal length");
-    } else if (!read_entries(row, finite_entry,
-                             [&](std::size_t j, double x) { A(static_cast<Index>(i), static_cast<Index>(j)) = x; })) {
+    } else if (!read_entries(row, finite_entry, [&](std::size_t j, double x) {
+                 A(static_cast<Index>(i), static_cast<Index>(j)) = x;
+               })) {
       ++wrong;
     }
   }
@@ -271,7 +301,8 @@ Cursor entry_of(const Cursor& matrix, Index row, Index column) {
   const Cursor entries = *matrix.find("entries");
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::vector<Value>& entry = entries.value().items()[i].items();
-    if (entry[0].number == static_cast<double>(row + 1) && entry[1].number == static_cast<double>(column + 1)) {
+    if (entry[0].number == static_cast<double>(row + 1) &&
+        entry[1].number == static_cast<double>(column + 1)) {
       return entries.item(i);
     }
   }
@@ -297,7 +328,9 @@ std::optional<std::vector<std::string>> read_names(const Cursor& at, const std::
   return good ? std::optional<std::vector<std::string>>(std::move(names)) : std::nullopt;
 }
 
-std::string shape(Index rows, Index cols) { return std::to_string(rows) + " × " + std::to_string(cols); }
+std::string shape(Index rows, Index cols) {
+  return std::to_string(rows) + " × " + std::to_string(cols);
+}
 
 std::string counted(Index number, const std::string& noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
@@ -305,7 +338,8 @@ std::string counted(Index number, const std::string& noun) {
 
 bool expect_size(const Cursor& at, const Vector& x, Index size, const std::string& like) {
   if (x.size() == size) return true;
-  at.error("has " + counted(x.size(), "number") + ", must have " + std::to_string(size) + " like " + like);
+  at.error("has " + counted(x.size(), "number") + ", must have " + std::to_string(size) + " like " +
+           like);
   return false;
 }
 

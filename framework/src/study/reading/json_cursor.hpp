@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Typed reading of a JSON tree. A reader returns nothing when the value is wrong, after it has reported why: whoever asked goes
-// on with the rest of the file, and skips only what depends on the missing value.
+// Typed reading of a JSON tree. A reader returns nothing when the value is wrong, after it has
+// reported why: whoever asked goes on with the rest of the file, and skips only what depends on the
+// missing value.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,9 @@
 namespace cordon::json {
 
 inline constexpr Index max_dimension = 1000;
-inline constexpr Index max_entries = 1'000'000;          ///< of one matrix
-inline constexpr double max_integer = 9007199254740992;  ///< 2⁵³: every integer up to here is a double
+inline constexpr Index max_entries = 1'000'000;  ///< of one matrix
+inline constexpr double max_integer =
+    9007199254740992;  ///< 2⁵³: every integer up to here is a double
 
 /// A value with its place in the file.
 class Cursor {
@@ -37,9 +39,10 @@ class Cursor {
   void error(std::string message, std::string suggestion = "") const;
   /// Reports unless the value is of this kind; silent for a value that was reported before.
   bool expect(Value::Kind kind, const std::string& suggestion) const;
-  /// An object with no other keys than these ($comment and $schema are always allowed): reports every other key as an unknown
-  /// `noun`.
-  bool expect_keys(const std::vector<std::string>& keys, const std::string& noun, const std::string& suggestion) const;
+  /// An object with no other keys than these ($comment and $schema are always allowed): reports
+  /// every other key as an unknown `noun`.
+  bool expect_keys(const std::vector<std::string>& keys, const std::string& noun,
+                   const std::string& suggestion) const;
 
  private:
   const Value* value_;
@@ -61,9 +64,11 @@ std::optional<Vector> read_vector(const Cursor& at, Index limit = max_entries);
 std::optional<Vector> read_bounds(const Cursor& at);
 /// A list of rows of equal length; [] is 0 × 0, [[], []] is 2 × 0. Or the sparse form.
 std::optional<Matrix> read_matrix(const Cursor& at);
-/// Is this the sparse form of a matrix, right or wrong: {"rows", "cols", "entries": [[row, column, number], …]}, counted from 1?
+/// Is this the sparse form of a matrix, right or wrong: {"rows", "cols", "entries": [[row, column,
+/// number], …]}, counted from 1?
 bool is_sparse_matrix(const Value& value);
-/// The place of an entry of a matrix that was read, counted from 0; that of the matrix where the sparse form does not name it.
+/// The place of an entry of a matrix that was read, counted from 0; that of the matrix where the
+/// sparse form does not name it.
 Cursor entry_of(const Cursor& matrix, Index row, Index column);
 /// A list of texts that are all different.
 std::optional<std::vector<std::string>> read_names(const Cursor& at, const std::string& noun);

@@ -15,7 +15,8 @@ std::size_t first_invalid_utf8(std::string_view text) {
   while (i < text.size()) {
     const auto lead = static_cast<unsigned char>(text[i]);
     std::size_t length = 0;
-    unsigned low = 0x80, high = 0xBF;  // range of the second byte: refuses overlong forms, surrogates and values over 10FFFF
+    unsigned low = 0x80, high = 0xBF;  // range of the second byte: refuses overlong forms,
+                                       // surrogates and values over 10FFFF
     if (lead < 0x80) {
       length = 1;
     } else if (lead >= 0xC2 && lead <= 0xDF) {
@@ -79,7 +80,8 @@ class Parser {
   [[noreturn]] void fail(std::string message, std::string suggestion = "") const {
     fail_at(at_, std::move(message), std::move(suggestion));
   }
-  [[noreturn]] static void fail_at(std::size_t position, std::string message, std::string suggestion = "") {
+  [[noreturn]] static void fail_at(std::size_t position, std::string message,
+                                   std::string suggestion = "") {
     throw SyntaxError{position, std::move(message), std::move(suggestion)};
   }
   std::string found() const;
@@ -96,27 +98,34 @@ class Parser {
 
 std::string Parser::pointer() const {
   std::string text;
-  for (const Step& step : path_) text = step.in_array ? child(text, step.index) : child(text, step.key);
+  for (const Step& step : path_)
+    text = step.in_array ? child(text, step.index) : child(text, step.key);
   return text;
 }
 
 std::string Parser::found() const {
   if (at_end()) return "the file ends here";
   std::size_t end = at_ + 1;
-  while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0u) == 0x80u) ++end;  // a whole character
+  while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0u) == 0x80u)
+    ++end;  // a whole character
   if (is_word(peek()))
-    end = static_cast<std::size_t>(std::find_if_not(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), is_word) -
-                                   text_.begin());
-  return "found " + (peek() == '"' ? std::string("a text") : in_quotes(text_.substr(at_, end - at_)));
+    end = static_cast<std::size_t>(
+        std::find_if_not(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), is_word) -
+        text_.begin());
+  return "found " +
+         (peek() == '"' ? std::string("a text") : in_quotes(text_.substr(at_, end - at_)));
 }
 
 void Parser::report_syntax(std::size_t position, std::string message, std::string suggestion) {
   const std::string_view before = text_.substr(0, position);
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::string_view row = before.substr(before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1);
-  const auto column =
-      1 + std::count_if(row.begin(), row.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; });
-  problems_.add(pointer(), static_cast<int>(line), "column " + std::to_string(column) + ": " + std::move(message),
+  const std::string_view row =
+      before.substr(before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1);
+  const auto column = 1 + std::count_if(row.begin(), row.end(), [](char c) {
+                        return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
+                      });
+  problems_.add(pointer(), static_cast<int>(line),
+                "column " + std::to_string(column) + ": " + std::move(message),
                 std::move(suggestion));
 }
 
@@ -131,7 +140,8 @@ Value Parser::document() {
     Value root = value();
     skip_space();
     if (!at_end())
-      fail("more text after the end of the document, " + found(), "a file holds one JSON value; is there a brace too many?");
+      fail("more text after the end of the document, " + found(),
+           "a file holds one JSON value; is there a brace too many?");
     return root;
   } catch (SyntaxError& error) {
     report_syntax(error.position, std::move(error.message), std::move(error.suggestion));
@@ -160,11 +170,13 @@ Value Parser::of_kind(Value::Kind kind) const {
 }
 
 Value Parser::value() {
-  if (++values_ > max_values) fail("the file holds more than 10 million values", "recorded data belong into a CSV file");
+  if (++values_ > max_values)
+    fail("the file holds more than 10 million values", "recorded data belong into a CSV file");
   if (at_end()) fail("a value is missing: the file ends here", "is the file complete?");
   const char c = peek();
   if (c == '{' || c == '[') {
-    if (path_.size() >= static_cast<std::size_t>(max_depth)) fail("nested deeper than 64 levels", "a study needs less than ten");
+    if (path_.size() >= static_cast<std::size_t>(max_depth))
+      fail("nested deeper than 64 levels", "a study needs less than ten");
     return c == '{' ? object() : array();
   }
   if (c == '"') {
@@ -177,7 +189,9 @@ Value Parser::value() {
   if (c == '-' || is_digit(c)) return number();
   if (is_word(c)) return word();
   if (c == '\'') fail("texts are written in double quotes");
-  if (c == '+' || c == '.') fail("a number cannot begin with " + in_quotes(std::string_view(&c, 1)), "write 0.5, not .5 or +0.5");
+  if (c == '+' || c == '.')
+    fail("a number cannot begin with " + in_quotes(std::string_view(&c, 1)),
+         "write 0.5, not .5 or +0.5");
   fail("a value is missing, " + found(), c == ']' || c == '}' ? "is there a comma too many?" : "");
 }
 
@@ -192,7 +206,8 @@ Value Parser::object() {
   path_.emplace_back();
   for (;;) {
     if (next_is('}')) fail("a key is missing, found \"}\"", "remove the comma before it");
-    if (!next_is('"')) fail("a key in double quotes is missing, " + found(), "keys are texts: \"key\": value");
+    if (!next_is('"'))
+      fail("a key in double quotes is missing, " + found(), "keys are texts: \"key\": value");
     const int key_line = line_;
     std::string key = string();
     path_.back().key = key;
@@ -204,12 +219,15 @@ Value Parser::object() {
       parts->keys.push_back(std::move(key));
       parts->items.push_back(std::move(member));
     } else {
-      problems_.add(pointer(), key_line, "the key is repeated (first on line " + std::to_string(result.find(key)->line) + ")",
-                    "remove one of the two");
+      problems_.add(
+          pointer(), key_line,
+          "the key is repeated (first on line " + std::to_string(result.find(key)->line) + ")",
+          "remove one of the two");
     }
     skip_space();
     if (take('}')) break;
-    if (!take(',')) fail("\",\" or \"}\" is missing, " + found(), at_end() ? "is the file complete?" : "");
+    if (!take(','))
+      fail("\",\" or \"}\" is missing, " + found(), at_end() ? "is the file complete?" : "");
     skip_space();
   }
   path_.pop_back();
@@ -230,7 +248,8 @@ Value Parser::array() {
     parts->items.push_back(value());
     skip_space();
     if (take(']')) break;
-    if (!take(',')) fail("\",\" or \"]\" is missing, " + found(), at_end() ? "is the file complete?" : "");
+    if (!take(','))
+      fail("\",\" or \"]\" is missing, " + found(), at_end() ? "is the file complete?" : "");
     skip_space();
   }
   path_.pop_back();
@@ -252,10 +271,12 @@ Value Parser::word() {
     return result;
   }
   if (name == "null") return of_kind(Value::Kind::null);
-  for (const std::string_view infinite : {"NaN", "nan", "NAN", "Infinity", "infinity", "inf", "Inf", "INF"}) {
+  for (const std::string_view infinite :
+       {"NaN", "nan", "NAN", "Infinity", "infinity", "inf", "Inf", "INF"}) {
     if (name != infinite) continue;
-    return broken_number(std::string(name) + " is not a number",
-                         "numbers are finite; only bounds of a box may be free: \"-inf\" and \"inf\" in quotes");
+    return broken_number(
+        std::string(name) + " is not a number",
+        "numbers are finite; only bounds of a box may be free: \"-inf\" and \"inf\" in quotes");
   }
   fail_at(begin, "unknown word " + in_quotes(name),
           "texts are written in double quotes; the words of JSON are true, false and null");
@@ -274,7 +295,8 @@ Value Parser::number() {
   }
   const std::size_t first = at_;
   digits("in a number");
-  if (text_[first] == '0' && at_ > first + 1) fail_at(first, "a number begins with a superfluous 0", "write 7, not 07");
+  if (text_[first] == '0' && at_ > first + 1)
+    fail_at(first, "a number begins with a superfluous 0", "write 7, not 07");
   if (take('.')) digits("after the decimal point");
   if (take('e') || take('E')) {
     if (!take('+')) take('-');
@@ -283,8 +305,9 @@ Value Parser::number() {
   Value result = of_kind(Value::Kind::number);
   const auto [end, code] = std::from_chars(text_.data() + begin, text_.data() + at_, result.number);
   if (code != std::errc() || end != text_.data() + at_) {
-    return broken_number(in_quotes(text_.substr(begin, at_ - begin)) + " is beyond the range of double numbers",
-                         "about 1e-308 to 1.8e308, or 0");
+    return broken_number(
+        in_quotes(text_.substr(begin, at_ - begin)) + " is beyond the range of double numbers",
+        "about 1e-308 to 1.8e308, or 0");
   }
   return result;
 }
@@ -293,7 +316,8 @@ unsigned Parser::hex4() {
   unsigned code = 0;
   const char* begin = text_.data() + at_;
   const char* end = text_.data() + std::min(at_ + 4, text_.size());
-  if (std::from_chars(begin, end, code, 16).ptr - begin != 4) fail("\\u needs four hexadecimal digits");
+  if (std::from_chars(begin, end, code, 16).ptr - begin != 4)
+    fail("\\u needs four hexadecimal digits");
   at_ += 4;
   return code;
 }
@@ -301,7 +325,8 @@ unsigned Parser::hex4() {
 void Parser::escape(std::string& out) {
   static constexpr std::string_view names = "\"\\/bfnrt", bytes = "\"\\/\b\f\n\r\t";
   const std::size_t begin = at_ - 1;
-  if (const std::size_t i = at_end() ? std::string_view::npos : names.find(peek()); i != std::string_view::npos) {
+  if (const std::size_t i = at_end() ? std::string_view::npos : names.find(peek());
+      i != std::string_view::npos) {
     ++at_;
     out += bytes[i];
     return;
@@ -312,7 +337,8 @@ void Parser::escape(std::string& out) {
     const bool pair = code <= 0xDBFF && text_.substr(at_, 2) == "\\u";
     if (pair) at_ += 2;
     const unsigned low = pair ? hex4() : 0;
-    if (low < 0xDC00 || low > 0xDFFF) fail_at(begin, "half of a surrogate pair in a text", "write the character itself");
+    if (low < 0xDC00 || low > 0xDFFF)
+      fail_at(begin, "half of a surrogate pair in a text", "write the character itself");
     code = 0x10000 + ((code - 0xD800) << 10) + (low - 0xDC00);
   }
   const auto tail = [&](int shift) { out += static_cast<char>(0x80 | ((code >> shift) & 0x3F)); };
@@ -337,8 +363,10 @@ std::string Parser::string() {
     if (at_end()) fail_at(begin, "a text without its closing quote");
     const char c = text_[at_++];
     if (c == '"') return result;
-    if (c == '\n') fail_at(begin, "a text without its closing quote on the line", "write a line break as \\n");
-    if (static_cast<unsigned char>(c) < 0x20) fail_at(at_ - 1, "a control character in a text", "write it as \\u00..");
+    if (c == '\n')
+      fail_at(begin, "a text without its closing quote on the line", "write a line break as \\n");
+    if (static_cast<unsigned char>(c) < 0x20)
+      fail_at(at_ - 1, "a control character in a text", "write it as \\u00..");
     if (c == '\\') {
       escape(result);
     } else {

@@ -29,7 +29,9 @@ const Parts& no_parts() {
 
 const std::string& Value::text() const { return parts ? parts->text : no_parts().text; }
 const std::vector<Value>& Value::items() const { return parts ? parts->items : no_parts().items; }
-const std::vector<std::string>& Value::keys() const { return parts ? parts->keys : no_parts().keys; }
+const std::vector<std::string>& Value::keys() const {
+  return parts ? parts->keys : no_parts().keys;
+}
 
 const Value* Value::find(std::string_view key) const {
   const auto& all = keys();
@@ -57,7 +59,9 @@ std::string_view kind_name(Value::Kind kind) noexcept {
   return "broken";
 }
 
-std::string in_quotes(std::string_view word, std::size_t limit) { return '"' + escaped(word, limit) + '"'; }
+std::string in_quotes(std::string_view word, std::size_t limit) {
+  return '"' + escaped(word, limit) + '"';
+}
 
 std::string child(std::string_view pointer, std::string_view key) {
   std::string text(pointer);
@@ -74,29 +78,35 @@ std::string child(std::string_view pointer, std::string_view key) {
   return text;
 }
 
-std::string child(std::string_view pointer, std::size_t index) { return std::string(pointer) + '/' + std::to_string(index); }
+std::string child(std::string_view pointer, std::size_t index) {
+  return std::string(pointer) + '/' + std::to_string(index);
+}
 
 void Problems::add(std::string pointer, int line, std::string message, std::string suggestion) {
   if (++count_ > max_problems) return;
   found_.push_back({escaped(pointer, 300), std::move(message), std::move(suggestion), line});
 }
 
-void Problems::add_unknown(std::string pointer, int line, std::string message, std::string suggestion) {
+void Problems::add_unknown(std::string pointer, int line, std::string message,
+                           std::string suggestion) {
   if (count_ < max_problems) unknown_.insert(escaped(pointer, 300));
   add(std::move(pointer), line, std::move(message), std::move(suggestion));
 }
 
 std::vector<Diagnostic> Problems::sorted() const {
   std::vector<Diagnostic> result = found_;
-  std::stable_sort(result.begin(), result.end(), [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });
+  std::stable_sort(result.begin(), result.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });
   if (count_ > max_problems) {
-    result.push_back({"", "and " + std::to_string(count_ - max_problems) + " more problems", "mend these first", 0});
+    result.push_back({"", "and " + std::to_string(count_ - max_problems) + " more problems",
+                      "mend these first", 0});
   }
   return result;
 }
 
 std::string read_file(const std::string& file) {
-  return detail::InputFile(file, "name a JSON file that can be read").rest(max_bytes, "recorded data belong into a CSV file");
+  return detail::InputFile(file, "name a JSON file that can be read")
+      .rest(max_bytes, "recorded data belong into a CSV file");
 }
 
 }  // namespace cordon::json

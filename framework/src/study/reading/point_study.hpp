@@ -6,8 +6,8 @@
 
 namespace cordon {
 
-/// As study_at, but with all pipelines and without the resolved text, which takes more time than the rest. Safe to call from
-/// several threads.
+/// As study_at, but with all pipelines and without the resolved text, which takes more time than
+/// the rest. Safe to call from several threads.
 Study study_of_point(const Study& study, const SweepPoint& point, const Registry& registry);
 
 }  // namespace cordon

@@ -13,7 +13,8 @@ using Kind = Value::Kind;
 constexpr double max_steps = 1e9;
 constexpr double max_seeds = 1e5;
 constexpr std::size_t max_additive_faults = 10'000;
-constexpr const char* additive_fault_form = "{\"fault\": 1, \"from\": 50, \"signal\": {\"type\": \"constant\", \"offset\": 1}}";
+constexpr const char* additive_fault_form =
+    "{\"fault\": 1, \"from\": 50, \"signal\": {\"type\": \"constant\", \"offset\": 1}}";
 
 void real(const Cursor& signal, std::string_view key, double& out) {
   if (const auto at = signal.find(key)) out = read_number(*at).value_or(0);
@@ -25,12 +26,13 @@ void integer(const Cursor& signal, std::string_view key, double lowest, std::int
 
 Signal read_signal(const Cursor& at) {
   Signal signal;
-  if (!at.expect(Kind::object, "write a signal: {\"type\": \"constant\", \"offset\": 1}")) return signal;
+  if (!at.expect(Kind::object, "write a signal: {\"type\": \"constant\", \"offset\": 1}"))
+    return signal;
   const auto type_at = at.need("type", suggest("", signal_types()));
   const auto name = type_at ? read_choice(*type_at, signal_types()) : std::nullopt;
   if (!name) return signal;
-  signal.type =
-      static_cast<Signal::Type>(std::find(signal_types().begin(), signal_types().end(), *name) - signal_types().begin());
+  signal.type = static_cast<Signal::Type>(
+      std::find(signal_types().begin(), signal_types().end(), *name) - signal_types().begin());
   std::vector<std::string> keys = signal_keys(signal.type);
   for (std::size_t i = 0; i < required_signal_keys(signal.type); ++i)
     at.need(keys[i], "needed by a signal of type " + in_quotes(*name));
@@ -51,17 +53,19 @@ Signal read_signal(const Cursor& at) {
   return signal;
 }
 
-void read_input(const Cursor& simulate, std::optional<Index> inputs, const DataUse& use, std::vector<Signal>& out) {
+void read_input(const Cursor& simulate, std::optional<Index> inputs, const DataUse& use,
+                std::vector<Signal>& out) {
   const auto at = simulate.find("input");
   if (!at) {
     if (inputs && *inputs > 0)
-      simulate.need("input", "a list of " + counted(*inputs, "signal") + ", one per column of /system/B" + use.reason());
+      simulate.need("input", "a list of " + counted(*inputs, "signal") +
+                                 ", one per column of /system/B" + use.reason());
     return;
   }
   if (!at->expect(Kind::array, "a list of signals, one per column of /system/B")) return;
   if (inputs && static_cast<Index>(at->size()) != *inputs) {
-    at->error("has " + counted(static_cast<Index>(at->size()), "signal") + ", must have " + std::to_string(*inputs) +
-              " like the columns of /system/B");
+    at->error("has " + counted(static_cast<Index>(at->size()), "signal") + ", must have " +
+              std::to_string(*inputs) + " like the columns of /system/B");
   }
   for (std::size_t i = 0; i < at->size(); ++i) out.push_back(read_signal(at->item(i)));
 }
@@ -69,7 +73,8 @@ void read_input(const Cursor& simulate, std::optional<Index> inputs, const DataU
 /// Reads the additive faults of a simulation; `faults`: columns of F, if known.
 class AdditiveFaultReader {
  public:
-  AdditiveFaultReader(SimulateSpec& spec, std::optional<Index> faults, std::vector<std::string>& warnings)
+  AdditiveFaultReader(SimulateSpec& spec, std::optional<Index> faults,
+                      std::vector<std::string>& warnings)
       : spec_(spec), faults_(faults), warnings_(warnings) {}
 
   void read(const Cursor& list);
@@ -83,16 +88,20 @@ class AdditiveFaultReader {
 };
 
 void AdditiveFaultReader::read_one(const Cursor& at) {
-  if (!at.expect_keys({"fault", "from", "to", "signal"}, "key of an additive fault", additive_fault_form)) return;
+  if (!at.expect_keys({"fault", "from", "to", "signal"}, "key of an additive fault",
+                      additive_fault_form))
+    return;
   AdditiveFaultSpec fault;
   const auto number_at = at.need("fault", "the number of a column of /system/F, from 1 on");
   const auto number = number_at ? read_integer(*number_at, 1, max_integer) : std::nullopt;
   if (number && faults_ && *number > *faults_) {
-    number_at->error("there is no fault " + std::to_string(*number) + ": /system/F has " + counted(*faults_, "column"),
+    number_at->error("there is no fault " + std::to_string(*number) + ": /system/F has " +
+                         counted(*faults_, "column"),
                      "faults are counted from 1");
   }
   fault.fault = static_cast<Index>(number.value_or(1)) - 1;
-  if (const auto signal = at.need("signal", "the fault over time: {\"type\": \"constant\", \"offset\": 1}"))
+  if (const auto signal =
+          at.need("signal", "the fault over time: {\"type\": \"constant\", \"offset\": 1}"))
     fault.signal = read_signal(*signal);
   read_times(at, spec_.steps, fault.from, fault.to, warnings_);
   spec_.additive_faults.push_back(std::move(fault));
@@ -100,10 +109,13 @@ void AdditiveFaultReader::read_one(const Cursor& at) {
 
 void AdditiveFaultReader::read(const Cursor& list) {
   if (spec_.plant) {
-    list.error("cannot be simulated with a plant: F is about the linear model", "remove them, or the plant");
+    list.error("cannot be simulated with a plant: F is about the linear model",
+               "remove them, or the plant");
     return;
   }
-  if (!list.expect(Kind::array, std::string("a list of additive faults: [") + additive_fault_form + "]")) return;
+  if (!list.expect(Kind::array,
+                   std::string("a list of additive faults: [") + additive_fault_form + "]"))
+    return;
   if (faults_ == Index{0} && list.size() > 0) {
     list.error("there is no such fault: the system has no F",
                "give the directions of additive faults in /system/F, in a column each");
@@ -124,9 +136,13 @@ void expect_bounded(const Cursor& data, const LineForm& X, const char* key) {
 }
 
 /// Where a simulation starts: a state, or a bounded set that it is drawn from.
-void read_start(const Cursor& at, const Sizes& sizes, SimulateSpec& spec, std::vector<std::string>& warnings) {
+void read_start(const Cursor& at, const Sizes& sizes, SimulateSpec& spec,
+                std::vector<std::string>& warnings) {
   if (!at.is(Kind::object)) {
-    if (!at.expect(Kind::array, "write a state, or a bounded set that it is drawn from: {\"type\": \"box\", ...}")) return;
+    if (!at.expect(
+            Kind::array,
+            "write a state, or a bounded set that it is drawn from: {\"type\": \"box\", ...}"))
+      return;
     spec.x0 = read_vector(at, max_dimension);
     if (spec.x0 && sizes.states) expect_size(at, *spec.x0, *sizes.states, "the rows of /system/A");
     return;
@@ -134,21 +150,25 @@ void read_start(const Cursor& at, const Sizes& sizes, SimulateSpec& spec, std::v
   spec.x0_set = read_set(at, warnings);
   if (!spec.x0_set) return;
   if (sizes.states && spec.x0_set->dim() != *sizes.states) {
-    at.error("has dimension " + std::to_string(spec.x0_set->dim()) + ", must have " + std::to_string(*sizes.states) +
-             " like the rows of /system/A");
+    at.error("has dimension " + std::to_string(spec.x0_set->dim()) + ", must have " +
+             std::to_string(*sizes.states) + " like the rows of /system/A");
   } else if (is_bounded(*spec.x0_set) != Answer::yes) {
     at.error("is unbounded: no state can be drawn from it", "give a bounded set, or one state");
   }
 }
 
-/// What pipelines without a designer need: how long, with which inputs, and what goes wrong meanwhile.
-void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use, const ComponentContext& context,
-                 SimulateSpec& spec, std::vector<WrittenFault>& written_faults) {
-  if (const auto steps = at.need("steps", "the number of steps: samples k = 0 ... steps" + use.reason()))
+/// What pipelines without a designer need: how long, with which inputs, and what goes wrong
+/// meanwhile.
+void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use,
+                 const ComponentContext& context, SimulateSpec& spec,
+                 std::vector<WrittenFault>& written_faults) {
+  if (const auto steps =
+          at.need("steps", "the number of steps: samples k = 0 ... steps" + use.reason()))
     spec.steps = read_integer(*steps, 1, max_steps).value_or(0);
   if (const auto parameters = at.find("parameters")) {
     if (at.find("plant")) {
-      parameters->error("cannot stand beside \"plant\", which takes the place of the model", "remove one of the two");
+      parameters->error("cannot stand beside \"plant\", which takes the place of the model",
+                        "remove one of the two");
     } else if (const auto name = read_choice(*parameters, parameter_draw_names())) {
       spec.parameters = *name == "varying" ? ParameterDraw::varying : ParameterDraw::constant;
     }
@@ -160,7 +180,8 @@ void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use,
     if (!plant) expect_bounded(at, system.model.W, "W");
     expect_bounded(at, system.model.V, "V");
   }
-  if (const auto faults = at.find("faults")) read_faults(*faults, system, spec, written_faults, context.warnings);
+  if (const auto faults = at.find("faults"))
+    read_faults(*faults, system, spec, written_faults, context.warnings);
   if (const auto additive = at.find("additive_faults"))
     AdditiveFaultReader(spec, system.sizes.faults, context.warnings).read(*additive);
 }
@@ -174,23 +195,29 @@ void refuse_stream(const Cursor& at) {
   }
   for (const char* key : {"parameters", "plant", "faults", "additive_faults"}) {
     if (const auto found = at.find(key)) {
-      found->error("has no meaning where every pipeline has a designer",
-                   "remove it: designed inputs are tried on every mode of the system, by its model");
+      found->error(
+          "has no meaning where every pipeline has a designer",
+          "remove it: designed inputs are tried on every mode of the system, by its model");
     }
   }
 }
 
-SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const DataUse& use, const ComponentContext& context,
+SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const DataUse& use,
+                           const ComponentContext& context,
                            std::vector<WrittenFault>& written_faults) {
   SimulateSpec spec;
-  if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults", "additive_faults", "parameters"},
+  if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults",
+                       "additive_faults", "parameters"},
                       "key of simulated data", "{\"steps\": 100, \"input\": [...]}"))
     return spec;
-  if (const auto seed = at.find("seed")) spec.seed = static_cast<std::uint64_t>(read_integer(*seed, 0, max_integer).value_or(0));
-  if (const auto seeds = at.find("seeds")) spec.seeds = read_integer(*seeds, 1, max_seeds).value_or(1);
+  if (const auto seed = at.find("seed"))
+    spec.seed = static_cast<std::uint64_t>(read_integer(*seed, 0, max_integer).value_or(0));
+  if (const auto seeds = at.find("seeds"))
+    spec.seeds = read_integer(*seeds, 1, max_seeds).value_or(1);
   if (const auto noise = at.find("noise")) {
     if (const auto name = read_choice(*noise, noise_names())) {
-      spec.noise = static_cast<Noise>(std::find(noise_names().begin(), noise_names().end(), *name) - noise_names().begin());
+      spec.noise = static_cast<Noise>(std::find(noise_names().begin(), noise_names().end(), *name) -
+                                      noise_names().begin());
     }
   }
   if (const auto x0 = at.find("x0")) read_start(*x0, system.sizes, spec, context.warnings);
@@ -202,16 +229,16 @@ SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const Dat
   return spec;
 }
 
-std::vector<std::string> read_columns(const Cursor& csv, const char* key, std::optional<Index> size, const char* like,
-                                      bool needed) {
+std::vector<std::string> read_columns(const Cursor& csv, const char* key, std::optional<Index> size,
+                                      const char* like, bool needed) {
   const bool absent = !csv.find(key);
   if (absent && (!needed || size == Index{0})) return {};
   const auto at = csv.need(key, "a list of column names");
   if (!at) return {};
   auto names = read_names(*at, "column");
   if (names && size && static_cast<Index>(names->size()) != *size) {
-    at->error("names " + counted(static_cast<Index>(names->size()), "column") + ", must name " + std::to_string(*size) +
-              " like " + like);
+    at->error("names " + counted(static_cast<Index>(names->size()), "column") + ", must name " +
+              std::to_string(*size) + " like " + like);
   }
   return names.value_or(std::vector<std::string>{});
 }
@@ -229,9 +256,11 @@ DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::p
     std::error_code failure;
     const auto status = std::filesystem::status(spec.file, failure);
     if (!std::filesystem::exists(status)) {
-      file_at->error("no such file: " + in_quotes(spec.file.string(), 1000), "the path is relative to the folder of the study");
+      file_at->error("no such file: " + in_quotes(spec.file.string(), 1000),
+                     "the path is relative to the folder of the study");
     } else if (std::filesystem::is_directory(status)) {
-      file_at->error("is a directory: " + in_quotes(spec.file.string(), 1000), "name the CSV file inside it");
+      file_at->error("is a directory: " + in_quotes(spec.file.string(), 1000),
+                     "name the CSV file inside it");
     }
   }
   spec.inputs = read_columns(at, "inputs", sizes.inputs, "the columns of /system/B", true);
@@ -245,7 +274,8 @@ DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::p
 }  // namespace
 
 const std::vector<std::string>& signal_types() {
-  static const std::vector<std::string> names{"constant", "sine", "cosine", "step", "square", "prbs", "table"};
+  static const std::vector<std::string> names{"constant", "sine", "cosine", "step",
+                                              "square",   "prbs", "table"};
   return names;
 }
 
@@ -279,7 +309,9 @@ std::vector<std::string> signal_keys(Signal::Type type) {
 }
 
 std::size_t required_signal_keys(Signal::Type type) {
-  return type == Signal::Type::constant || type == Signal::Type::prbs || type == Signal::Type::table ? 1 : 2;
+  return type == Signal::Type::constant || type == Signal::Type::prbs || type == Signal::Type::table
+             ? 1
+             : 2;
 }
 
 DataUse data_use(const Cursor& root) {
@@ -296,19 +328,23 @@ DataUse data_use(const Cursor& root) {
   return use;
 }
 
-DataPart read_data(const Cursor& data, const SystemPart& system, const DataUse& use, const std::filesystem::path& folder,
-                   const ComponentContext& context) {
+DataPart read_data(const Cursor& data, const SystemPart& system, const DataUse& use,
+                   const std::filesystem::path& folder, const ComponentContext& context) {
   const std::size_t before = data.problems().count();
-  if (!data.expect_keys({"simulate", "csv"}, "kind of data", "{\"simulate\": {...}} or {\"csv\": {...}}")) return {};
+  if (!data.expect_keys({"simulate", "csv"}, "kind of data",
+                        "{\"simulate\": {...}} or {\"csv\": {...}}"))
+    return {};
   const auto simulate = data.find("simulate"), csv = data.find("csv");
   if (simulate && csv) {
     data.error("holds both \"simulate\" and \"csv\"", "remove one of the two");
   } else if (!simulate && !csv) {
-    if (data.problems().count() == before) data.error("holds neither \"simulate\" nor \"csv\"", "give one of the two");
+    if (data.problems().count() == before)
+      data.error("holds neither \"simulate\" nor \"csv\"", "give one of the two");
   } else if (csv) {
     if (use.designed) {
-      csv->error("cannot stand beside a pipeline with a designer, whose inputs are tried in simulations",
-                 "use simulated data, or make two studies");
+      csv->error(
+          "cannot stand beside a pipeline with a designer, whose inputs are tried in simulations",
+          "use simulated data, or make two studies");
     }
     return read_csv(*csv, system.sizes, folder);
   } else {

@@ -18,7 +18,8 @@ constexpr std::int64_t the_end = std::numeric_limits<std::int64_t>::max();
 /// Reads the faults of a simulation one after another.
 class FaultReader {
  public:
-  FaultReader(const Cursor& list, const SystemPart& system, SimulateSpec& spec, std::vector<std::string>& warnings)
+  FaultReader(const Cursor& list, const SystemPart& system, SimulateSpec& spec,
+              std::vector<std::string>& warnings)
       : list_(list), system_(system), spec_(spec), warnings_(warnings) {}
 
   void read(std::vector<WrittenFault>& written);
@@ -32,9 +33,10 @@ class FaultReader {
   bool read_mode_fault(const Cursor& at, Fault& fault);
   bool read_outside_fault(const Cursor& at, Fault& fault);
   std::optional<Index> find_mode(const Cursor& at);
-  std::optional<Box> read_magnitudes(const Cursor& at, const std::optional<Box>& range, Index size, const std::string& mode,
-                                     const std::string& like);
-  bool refuse(const Cursor& at, const std::vector<std::string>& keys, const std::string& reason, const std::string& mend);
+  std::optional<Box> read_magnitudes(const Cursor& at, const std::optional<Box>& range, Index size,
+                                     const std::string& mode, const std::string& like);
+  bool refuse(const Cursor& at, const std::vector<std::string>& keys, const std::string& reason,
+              const std::string& mend);
   void check_plant(const Cursor& at, const Fault& fault);
   void check_bounded(const Cursor& at, const FaultSpec& fault);
   void check_order(const std::vector<std::pair<Cursor, FaultSpec>>& all);
@@ -46,8 +48,8 @@ class FaultReader {
   std::vector<std::string>& warnings_;
 };
 
-bool FaultReader::refuse(const Cursor& at, const std::vector<std::string>& keys, const std::string& reason,
-                         const std::string& mend) {
+bool FaultReader::refuse(const Cursor& at, const std::vector<std::string>& keys,
+                         const std::string& reason, const std::string& mend) {
   bool good = true;
   for (const std::string& key : keys) {
     const auto other = at.find(key);
@@ -70,20 +72,24 @@ std::optional<Index> FaultReader::find_mode(const Cursor& at) {
 }
 
 /// Magnitudes of a fault, inside the range of its mode.
-std::optional<Box> FaultReader::read_magnitudes(const Cursor& at, const std::optional<Box>& range, Index size,
-                                                const std::string& mode, const std::string& like) {
+std::optional<Box> FaultReader::read_magnitudes(const Cursor& at, const std::optional<Box>& range,
+                                                Index size, const std::string& mode,
+                                                const std::string& like) {
   auto box = read_effectiveness(at, size, like);
   if (!box) return std::nullopt;
   const auto text = [](double low, double high) {
-    return low == high ? detail::to_text(low) : "[" + detail::to_text(low) + ", " + detail::to_text(high) + "]";
+    return low == high ? detail::to_text(low)
+                       : "[" + detail::to_text(low) + ", " + detail::to_text(high) + "]";
   };
   bool good = true;
   for (Index i = 0; i < size; ++i) {
     const double low = range ? range->lower[i] : 1, high = range ? range->upper[i] : 1;
     if (box->lower[i] >= low && box->upper[i] <= high) continue;
     at.item(static_cast<std::size_t>(i))
-        .error("is " + text(box->lower[i], box->upper[i]) + ", the mode " + in_quotes(mode) + " has " + text(low, high),
-               "a fault of a mode keeps to its range; leave \"mode\" out to describe another fault");
+        .error(
+            "is " + text(box->lower[i], box->upper[i]) + ", the mode " + in_quotes(mode) + " has " +
+                text(low, high),
+            "a fault of a mode keeps to its range; leave \"mode\" out to describe another fault");
     good = false;
   }
   return good ? box : std::nullopt;
@@ -103,12 +109,13 @@ bool FaultReader::read_mode_fault(const Cursor& at, Fault& fault) {
   fault.spec.name = fault.written.mode = *mode > 0 ? whole.name : system_.nominal;
   const LinearModel& linear = system_.model.linear;
   if (const auto key = at.find("actuator")) {
-    fault.written.own.actuator =
-        read_magnitudes(*key, whole.actuator, linear.inputs(), fault.spec.name, "the columns of /system/B");
+    fault.written.own.actuator = read_magnitudes(*key, whole.actuator, linear.inputs(),
+                                                 fault.spec.name, "the columns of /system/B");
     whole.actuator = fault.written.own.actuator;
   }
   if (const auto key = at.find("sensor")) {
-    fault.written.own.sensor = read_magnitudes(*key, whole.sensor, linear.outputs(), fault.spec.name, "the rows of /system/C");
+    fault.written.own.sensor = read_magnitudes(*key, whole.sensor, linear.outputs(),
+                                               fault.spec.name, "the rows of /system/C");
     whole.sensor = fault.written.own.sensor;
   }
   if (at.problems().met() != before) return false;
@@ -121,9 +128,11 @@ bool FaultReader::read_mode_fault(const Cursor& at, Fault& fault) {
 bool FaultReader::read_outside_fault(const Cursor& at, Fault& fault) {
   fault.spec.name = "outside the bank";
   if (const auto name = at.find("name")) fault.spec.name = read_line(*name, max_name).value_or("");
-  const bool described = std::any_of(mode_keys().begin(), mode_keys().end(), [&](const auto& key) { return at.find(key); });
+  const bool described = std::any_of(mode_keys().begin(), mode_keys().end(),
+                                     [&](const auto& key) { return at.find(key); });
   if (!described) {
-    at.error("does not tell what is different", "name a \"mode\", or give one of " + suggest("", mode_keys()));
+    at.error("does not tell what is different",
+             "name a \"mode\", or give one of " + suggest("", mode_keys()));
     return false;
   }
   auto own = read_mode(at, system_, warnings_);
@@ -138,11 +147,16 @@ bool FaultReader::read_outside_fault(const Cursor& at, Fault& fault) {
 
 /// A plant has no matrices that a fault could exchange.
 void FaultReader::check_plant(const Cursor& at, const Fault& fault) {
-  const WrittenMode& mode =
-      fault.spec.mode > 0 ? system_.written[static_cast<std::size_t>(fault.spec.mode - 1)] : fault.written.own;
-  const char* key = mode.system ? "system" : mode.additive ? "additive" : !fault.written.mode.empty() || !mode.W ? nullptr : "W";
+  const WrittenMode& mode = fault.spec.mode > 0
+                                ? system_.written[static_cast<std::size_t>(fault.spec.mode - 1)]
+                                : fault.written.own;
+  const char* key = mode.system                              ? "system"
+                    : mode.additive                          ? "additive"
+                    : !fault.written.mode.empty() || !mode.W ? nullptr
+                                                             : "W";
   if (!key) return;
-  at.error("cannot be simulated with a plant: its \"" + std::string(key) + "\" is about the linear model",
+  at.error("cannot be simulated with a plant: its \"" + std::string(key) +
+               "\" is about the linear model",
            "with a plant, faults act on actuators, sensors and V only");
 }
 
@@ -150,8 +164,10 @@ void FaultReader::check_plant(const Cursor& at, const Fault& fault) {
 void FaultReader::check_bounded(const Cursor& at, const FaultSpec& fault) {
   const auto check = [&](const LineForm& X, const char* key) {
     if (X.lines() == 0 || is_bounded(X) == Answer::yes) return;
-    at.error("cannot be simulated: " + std::string(key) + " of " + in_quotes(fault.name) + " is unbounded",
-             "bound " + std::string(key) + " and the additive fault, or use recorded data: \"csv\"");
+    at.error(
+        "cannot be simulated: " + std::string(key) + " of " + in_quotes(fault.name) +
+            " is unbounded",
+        "bound " + std::string(key) + " and the additive fault, or use recorded data: \"csv\"");
   };
   if (!spec_.plant) check(fault.model.W, "W");
   check(fault.model.V, "V");
@@ -163,15 +179,19 @@ void FaultReader::check_order(const std::vector<std::pair<Cursor, FaultSpec>>& a
     const auto& [at, fault] = all[i];
     if (fault.from > before.to) continue;
     if (fault.from < before.from && fault.to < before.from) {
-      at.error("comes before " + before_at.pointer() + ", which begins at k = " + std::to_string(before.from),
+      at.error("comes before " + before_at.pointer() +
+                   ", which begins at k = " + std::to_string(before.from),
                "list faults in the order of time: this one first");
       continue;
     }
-    const std::string lasts = before.to == the_end ? "to the end" : "to k = " + std::to_string(before.to);
+    const std::string lasts =
+        before.to == the_end ? "to the end" : "to k = " + std::to_string(before.to);
     at.error(
-        "overlaps with " + before_at.pointer() + ": begins at k = " + std::to_string(fault.from) + ", that one lasts " + lasts,
-        fault.from > before.from ? "end that one with \"to\": " + std::to_string(fault.from - 1) + ", or begin later"
-                                 : "one fault at a time; make a mode of both together, or move one of them");
+        "overlaps with " + before_at.pointer() + ": begins at k = " + std::to_string(fault.from) +
+            ", that one lasts " + lasts,
+        fault.from > before.from
+            ? "end that one with \"to\": " + std::to_string(fault.from - 1) + ", or begin later"
+            : "one fault at a time; make a mode of both together, or move one of them");
   }
 }
 
@@ -185,28 +205,33 @@ void FaultReader::check_descriptors(const std::vector<std::pair<Cursor, FaultSpe
     return different;
   };
   const auto report = [](const Cursor& at, const char* how) {
-    at.error(
-        std::string("cannot be simulated: ") + how + " another E than the model before, so that the state cannot be carried over",
-        "simulate this fault from k = 0 to the end, in a study of its own");
+    at.error(std::string("cannot be simulated: ") + how +
+                 " another E than the model before, so that the state cannot be carried over",
+             "simulate this fault from k = 0 to the end, in a study of its own");
   };
   for (const auto& [at, fault] : all) {
     if (fault.from > spec_.steps) break;
-    if (fault.from > next && differs(system_.model.linear)) report(at, "the nominal mode before it has");
+    if (fault.from > next && differs(system_.model.linear))
+      report(at, "the nominal mode before it has");
     if (differs(fault.model.linear)) report(at, "it has");
     if (fault.to >= spec_.steps) return;
     next = fault.to + 1;
   }
-  if (!all.empty() && differs(system_.model.linear)) report(all.back().first, "the nominal mode after it has");
+  if (!all.empty() && differs(system_.model.linear))
+    report(all.back().first, "the nominal mode after it has");
 }
 
 std::optional<FaultReader::Fault> FaultReader::read_fault(const Cursor& at) {
   std::vector<std::string> keys = mode_keys();
   keys.insert(keys.begin(), {"mode", "name", "from", "to"});
-  if (!at.expect_keys(keys, "key of a fault", "{\"mode\": ..., \"from\": 50, \"to\": 99}")) return std::nullopt;
+  if (!at.expect_keys(keys, "key of a fault", "{\"mode\": ..., \"from\": 50, \"to\": 99}"))
+    return std::nullopt;
   Fault fault;
   if (!read_times(at, spec_.steps, fault.spec.from, fault.spec.to, warnings_)) return std::nullopt;
-  if (!system_.good || !system_.modes_good) return std::nullopt;  // what is wrong there is reported there
-  if (!(at.find("mode") ? read_mode_fault(at, fault) : read_outside_fault(at, fault))) return std::nullopt;
+  if (!system_.good || !system_.modes_good)
+    return std::nullopt;  // what is wrong there is reported there
+  if (!(at.find("mode") ? read_mode_fault(at, fault) : read_outside_fault(at, fault)))
+    return std::nullopt;
   if (spec_.plant) check_plant(at, fault);
   check_bounded(at, fault.spec);
   return fault;
@@ -214,7 +239,8 @@ std::optional<FaultReader::Fault> FaultReader::read_fault(const Cursor& at) {
 
 void FaultReader::read(std::vector<WrittenFault>& written) {
   const std::size_t before = list_.problems().met();
-  if (!list_.expect(Kind::array, "a list of faults: [{\"mode\": ..., \"from\": 50, \"to\": 99}]")) return;
+  if (!list_.expect(Kind::array, "a list of faults: [{\"mode\": ..., \"from\": 50, \"to\": 99}]"))
+    return;
   if (!expect_moderate(list_, system_.model, max_faults, "faults")) return;
   std::vector<std::pair<Cursor, FaultSpec>> all;
   for (std::size_t i = 0; i < list_.size(); ++i) {
@@ -230,14 +256,16 @@ void FaultReader::read(std::vector<WrittenFault>& written) {
 
 }  // namespace
 
-bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::int64_t& to, std::vector<std::string>& warnings) {
+bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::int64_t& to,
+                std::vector<std::string>& warnings) {
   const std::size_t before = at.problems().met();
   const auto from_at = at.find("from"), to_at = at.find("to");
   if (from_at) from = read_integer(*from_at, 0, max_integer).value_or(0);
   if (to_at) to = read_integer(*to_at, 0, max_integer).value_or(the_end);
   if (at.problems().met() != before) return false;
   if (to < from) {
-    to_at->error("is below \"from\": " + std::to_string(to) + " < " + std::to_string(from), "the fault acts for k = from ... to");
+    to_at->error("is below \"from\": " + std::to_string(to) + " < " + std::to_string(from),
+                 "the fault acts for k = from ... to");
     return false;
   }
   if (steps > 0 && from > steps) {
@@ -247,8 +275,8 @@ bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::i
   return true;
 }
 
-void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& spec, std::vector<WrittenFault>& written,
-                 std::vector<std::string>& warnings) {
+void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& spec,
+                 std::vector<WrittenFault>& written, std::vector<std::string>& warnings) {
   FaultReader(faults, system, spec, warnings).read(written);
 }
 

@@ -19,9 +19,11 @@ double difference_above(double a, double b) {
   return error > 0 ? rounding::up(s) : s;
 }
 
-/// Reports every entry for which `wrong` has a message: the first ones one by one, at their places in `at`.
+/// Reports every entry for which `wrong` has a message: the first ones one by one, at their places
+/// in `at`.
 template <class Wrong>
-bool expect_entries(const Cursor& at, const Matrix& A, Wrong&& wrong, const std::string& suggestion) {
+bool expect_entries(const Cursor& at, const Matrix& A, Wrong&& wrong,
+                    const std::string& suggestion) {
   int count = 0;
   for (Index i = 0; i < A.rows(); ++i) {
     for (Index j = 0; j < A.cols(); ++j) {
@@ -30,18 +32,22 @@ bool expect_entries(const Cursor& at, const Matrix& A, Wrong&& wrong, const std:
       entry_of(at, i, j).error(message, suggestion);
     }
   }
-  if (count > shown_entries) at.error("holds " + std::to_string(count - shown_entries) + " more entries of this kind");
+  if (count > shown_entries)
+    at.error("holds " + std::to_string(count - shown_entries) + " more entries of this kind");
   return count == 0;
 }
 
 /// Two matrices of the same size.
 bool read_pair(const Cursor& at, const char* first, const char* second, Matrix& A, Matrix& B) {
-  const auto a_at = at.need(first, std::string("an interval matrix holds both ") + first + " and " + second);
-  const auto b_at = at.need(second, std::string("an interval matrix holds both ") + first + " and " + second);
+  const auto a_at =
+      at.need(first, std::string("an interval matrix holds both ") + first + " and " + second);
+  const auto b_at =
+      at.need(second, std::string("an interval matrix holds both ") + first + " and " + second);
   auto a = a_at ? read_matrix(*a_at) : std::nullopt, b = b_at ? read_matrix(*b_at) : std::nullopt;
   if (!a || !b) return false;
   if (a->rows() != b->rows() || a->cols() != b->cols()) {
-    b_at->error("is " + shape(b->rows(), b->cols()) + ", must be " + shape(a->rows(), a->cols()) + " like " + a_at->pointer());
+    b_at->error("is " + shape(b->rows(), b->cols()) + ", must be " + shape(a->rows(), a->cols()) +
+                " like " + a_at->pointer());
     return false;
   }
   A = std::move(*a), B = std::move(*b);
@@ -70,9 +76,12 @@ std::optional<IntervalMatrix> read_lower_and_upper(const Cursor& at) {
   if (!read_pair(at, "lower", "upper", lower, upper)) return std::nullopt;
   const auto reversed = [&](Index i, Index j) {
     const double low = lower(i, j), high = upper(i, j);
-    return low <= high ? std::string() : "the interval is empty: " + detail::to_text(low) + " is above " + detail::to_text(high);
+    return low <= high ? std::string()
+                       : "the interval is empty: " + detail::to_text(low) + " is above " +
+                             detail::to_text(high);
   };
-  if (!expect_entries(*at.find("lower"), lower, reversed, "exchange lower and upper")) return std::nullopt;
+  if (!expect_entries(*at.find("lower"), lower, reversed, "exchange lower and upper"))
+    return std::nullopt;
   IntervalMatrix A(lower);
   for (Index i = 0; i < lower.rows(); ++i) {
     for (Index j = 0; j < lower.cols(); ++j) {
@@ -92,11 +101,16 @@ std::optional<IntervalMatrix> read_interval_matrix(const Cursor& at) {
     auto exact = read_matrix(at);
     return exact ? std::optional(IntervalMatrix(std::move(*exact), Matrix())) : std::nullopt;
   }
-  const std::string form = "write {\"center\": [[...]], \"radius\": [[...]]}, or {\"lower\": [[...]], \"upper\": [[...]]}";
+  const std::string form =
+      "write {\"center\": [[...]], \"radius\": [[...]]}, or {\"lower\": [[...]], \"upper\": "
+      "[[...]]}";
   at.expect_keys({"center", "radius", "lower", "upper"}, "key of an interval matrix", "");
-  const bool middle = at.find("center") || at.find("radius"), bounds = at.find("lower") || at.find("upper");
+  const bool middle = at.find("center") || at.find("radius"),
+             bounds = at.find("lower") || at.find("upper");
   if (middle == bounds) {
-    at.error(middle ? "holds both a centre or radius and bounds" : "holds neither centre and radius nor bounds", form);
+    at.error(middle ? "holds both a centre or radius and bounds"
+                    : "holds neither centre and radius nor bounds",
+             form);
     return std::nullopt;
   }
   return middle ? read_center_and_radius(at) : read_lower_and_upper(at);

@@ -11,10 +11,15 @@ using namespace json;
 /// Reads one file.
 class StudyReader {
  public:
-  StudyReader(const std::filesystem::path& file, Registry& registry, const SearchPath& path, StudyPlugins plugins)
-      : registry_(registry), path_(path), plugins_(plugins), source_(std::make_shared<StudySource>()) {
+  StudyReader(const std::filesystem::path& file, Registry& registry, const SearchPath& path,
+              StudyPlugins plugins)
+      : registry_(registry),
+        path_(path),
+        plugins_(plugins),
+        source_(std::make_shared<StudySource>()) {
     source_->file = file;
-    std::error_code failure;  // absolute, so that a later change of the working directory does not matter
+    std::error_code
+        failure;  // absolute, so that a later change of the working directory does not matter
     const std::filesystem::path absolute = std::filesystem::absolute(file, failure);
     source_->folder = (failure ? file : absolute).parent_path();
   }
@@ -41,24 +46,31 @@ bool StudyReader::is_trusted(const std::filesystem::path& directory) const {
     std::error_code unknown;  // a directory that does not exist is equivalent to none
     return std::filesystem::equivalent(known, directory, unknown);
   };
-  return plugins_ == StudyPlugins::load || std::any_of(path_.directories.begin(), path_.directories.end(), is_it) ||
+  return plugins_ == StudyPlugins::load ||
+         std::any_of(path_.directories.begin(), path_.directories.end(), is_it) ||
          std::any_of(registry_.searched().begin(), registry_.searched().end(), is_it);
 }
 
 /// Opens no library of the directory, and says so.
 void StudyReader::pass_over(const Cursor& at, const std::filesystem::path& directory) {
-  const std::string trust = "if you trust what is in " + in_quotes(directory.string(), 1000) +
-                            ", give --trust-plugins, or that directory by --plugins or CORDON_PLUGIN_PATH";
-  registry_.refuse(directory, "it was not opened and nothing of it is checked, since only the study names its directory", trust);
+  const std::string trust =
+      "if you trust what is in " + in_quotes(directory.string(), 1000) +
+      ", give --trust-plugins, or that directory by --plugins or CORDON_PLUGIN_PATH";
+  registry_.refuse(
+      directory,
+      "it was not opened and nothing of it is checked, since only the study names its directory",
+      trust);
   if (plugins_ == StudyPlugins::ignore) return;
-  untrusted_.push_back(
-      {at.pointer(), "plugins are programs, and only the study names this directory of them", trust, at.value().line});
+  untrusted_.push_back({at.pointer(),
+                        "plugins are programs, and only the study names this directory of them",
+                        trust, at.value().line});
 }
 
 void StudyReader::load_plugins(const Cursor& root) {
   SearchPath path;
   if (const auto at = root.find("plugins")) {
-    const std::vector<std::string> names = read_names(*at, "directory").value_or(std::vector<std::string>{});
+    const std::vector<std::string> names =
+        read_names(*at, "directory").value_or(std::vector<std::string>{});
     for (std::size_t i = 0; i < names.size(); ++i) {
       const std::filesystem::path directory = source_->folder / names[i];
       std::error_code failure;
@@ -72,22 +84,26 @@ void StudyReader::load_plugins(const Cursor& root) {
       }
     }
   }
-  path.directories.insert(path.directories.end(), path_.directories.begin(), path_.directories.end());
+  path.directories.insert(path.directories.end(), path_.directories.begin(),
+                          path_.directories.end());
   registry_.load(path);
 }
 
 void StudyReader::add_plugin_warnings(Study& study) const {
   for (const PluginReport& report : registry_.reports()) {
     for (const std::string& component : report.left_out) {
-      study.warnings.push_back("plugin " + report.file.string() + ": " + component + "; rename it, or remove one of the two");
+      study.warnings.push_back("plugin " + report.file.string() + ": " + component +
+                               "; rename it, or remove one of the two");
     }
     if (report.state != PluginReport::State::refused) continue;
-    study.warnings.push_back("plugin " + report.file.string() + " was refused: " + report.reason + "; " + report.fix);
+    study.warnings.push_back("plugin " + report.file.string() + " was refused: " + report.reason +
+                             "; " + report.fix);
   }
 }
 
-/// Throws if there is any problem. Directories that are not trusted and components of refused plugins are a matter of the
-/// installation: they make the exit code only if the file itself is right, and are listed with its problems otherwise.
+/// Throws if there is any problem. Directories that are not trusted and components of refused
+/// plugins are a matter of the installation: they make the exit code only if the file itself is
+/// right, and are listed with its problems otherwise.
 void StudyReader::finish(const std::vector<Diagnostic>& refusals) {
   if (!problems_.any() && refusals.empty()) return;
   const bool file_is_right = !problems_.any();
@@ -109,7 +125,8 @@ Study StudyReader::read() {
   Study study = std::move(reading.study);
   add_plugin_warnings(study);
   for (const WrittenAxis& axis : source_->sweep) {
-    SweepAxis& made = study.sweep.emplace_back(SweepAxis{axis.name, axis.path.text, {}, axis.repeat});
+    SweepAxis& made =
+        study.sweep.emplace_back(SweepAxis{axis.name, axis.path.text, {}, axis.repeat});
     for (const Value& value : axis.values) made.values.push_back(canonical_text(value));
   }
   if (std::string warning = overlapping_seeds(study, source_->sweep); !warning.empty())
@@ -125,7 +142,8 @@ Study StudyReader::read() {
 
 }  // namespace
 
-Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path, StudyPlugins plugins) {
+Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path,
+                 StudyPlugins plugins) {
   return StudyReader(file, registry, path, plugins).read();
 }
 

@@ -16,7 +16,8 @@ using Kind = Value::Kind;
 constexpr std::size_t max_axes = 100;
 constexpr std::size_t max_values = 100'000;
 constexpr double max_points = 1e7;
-constexpr const char* axis_form = "{\"name\": \"seed\", \"path\": \"/data/simulate/seed\", \"range\": [1, 50]}";
+constexpr const char* axis_form =
+    "{\"name\": \"seed\", \"path\": \"/data/simulate/seed\", \"range\": [1, 50]}";
 
 /// Why no axis may write there; empty: it may.
 std::string refusal(const std::vector<PathStep>& steps) {
@@ -26,14 +27,17 @@ std::string refusal(const std::vector<PathStep>& steps) {
   if (first == "pipelines" && (steps.size() < 3 || (steps.size() == 3 && steps[2].key == "name")))
     return "leads to pipelines themselves, which are compared under every combination of values";
   for (const PathStep& step : steps)
-    if (step.key == "$comment" || step.key == "$schema") return "leads into " + step.key + ", which is not read";
+    if (step.key == "$comment" || step.key == "$schema")
+      return "leads into " + step.key + ", which is not read";
   return "";
 }
 
 std::optional<SweepPath> read_path(const Cursor& at) {
   const auto text = read_line(at, 4096);
   if (!text) return std::nullopt;
-  const std::string form = "a JSON pointer, with \"*\" for every element of a list: \"/pipelines/*/observer/max_generators\"";
+  const std::string form =
+      "a JSON pointer, with \"*\" for every element of a list: "
+      "\"/pipelines/*/observer/max_generators\"";
   auto steps = path_steps(*text);
   if (!steps) {
     at.error("is no path", form);
@@ -83,10 +87,13 @@ std::vector<Value> read_range(const Cursor& at) {
   }
   const auto first = read_integer(at.item(0), -max_integer, max_integer),
              last = read_integer(at.item(1), -max_integer, max_integer);
-  const auto step = at.size() == 3 ? read_integer(at.item(2), 1, max_integer) : std::optional<std::int64_t>(1);
+  const auto step =
+      at.size() == 3 ? read_integer(at.item(2), 1, max_integer) : std::optional<std::int64_t>(1);
   if (!first || !last || !step) return {};
   if (*last < *first) {
-    at.item(1).error("lies below the first one: " + std::to_string(*last) + " < " + std::to_string(*first), "exchange the two");
+    at.item(1).error(
+        "lies below the first one: " + std::to_string(*last) + " < " + std::to_string(*first),
+        "exchange the two");
     return {};
   }
   if ((*last - *first) / *step >= static_cast<std::int64_t>(max_values)) {
@@ -104,24 +111,30 @@ std::vector<Value> read_range(const Cursor& at) {
 }
 
 std::optional<WrittenAxis> read_axis(const Cursor& at) {
-  if (!at.expect_keys({"name", "path", "values", "range", "repeat"}, "key of an axis", axis_form)) return std::nullopt;
+  if (!at.expect_keys({"name", "path", "values", "range", "repeat"}, "key of an axis", axis_form))
+    return std::nullopt;
   WrittenAxis axis;
   axis.pointer = at.pointer();
   const auto name_at = at.need("name", "the name of its column in tables");
   const auto name = name_at ? read_line(*name_at, max_name) : std::nullopt;
-  for (const char* taken : {"point", "pipeline", "error", "measure", "points", "failed", "count", "infinite", "mean", "deviation",
-                            "min", "q05", "q25", "median", "q75", "q95", "max", "relative"})
-    if (name == taken) name_at->error("is the name of another column of the results", "choose another one");
+  for (const char* taken :
+       {"point", "pipeline", "error", "measure", "points", "failed", "count", "infinite", "mean",
+        "deviation", "min", "q05", "q25", "median", "q75", "q95", "max", "relative"})
+    if (name == taken)
+      name_at->error("is the name of another column of the results", "choose another one");
   const auto path_at = at.need("path", "what is varied: \"/pipelines/*/observer/max_generators\"");
   auto path = path_at ? read_path(*path_at) : std::nullopt;
   const auto values_at = at.find("values"), range_at = at.find("range");
-  if (values_at && range_at) at.error("holds both \"values\" and \"range\"", "remove one of the two");
-  if (!values_at && !range_at) at.need("values", "a list of values; or \"range\": [first, last] of integers");
+  if (values_at && range_at)
+    at.error("holds both \"values\" and \"range\"", "remove one of the two");
+  if (!values_at && !range_at)
+    at.need("values", "a list of values; or \"range\": [first, last] of integers");
   axis.range = !values_at;
   if (values_at) axis.values = read_values(*values_at);
   if (range_at) axis.values = read_range(*range_at);
   const auto repeat_at = at.find("repeat");
-  axis.repeat = repeat_at ? read_flag(*repeat_at).value_or(false) : path && path->steps.back().key == "seed";
+  axis.repeat =
+      repeat_at ? read_flag(*repeat_at).value_or(false) : path && path->steps.back().key == "seed";
   if (!name || !path || axis.values.empty()) return std::nullopt;
   axis.name = *name;
   axis.path = std::move(*path);
@@ -131,17 +144,20 @@ std::optional<WrittenAxis> read_axis(const Cursor& at) {
 
 /// Compares every axis with those before it.
 /// Returns places of those that cannot stay.
-std::set<std::size_t> check_pairs(const Cursor& list, const std::vector<std::pair<std::size_t, WrittenAxis>>& axes) {
+std::set<std::size_t> check_pairs(const Cursor& list,
+                                  const std::vector<std::pair<std::size_t, WrittenAxis>>& axes) {
   std::set<std::size_t> wrong;
   for (std::size_t j = 0; j < axes.size(); ++j) {
     for (std::size_t i = 0; i < j; ++i) {
       const auto& [before, earlier] = axes[i];
       const auto& [index, axis] = axes[j];
       const std::string other = child(list.pointer(), before);
-      if (axis.name == earlier.name) list.item(index).find("name")->error("repeats the name of " + other, "names are unique");
+      if (axis.name == earlier.name)
+        list.item(index).find("name")->error("repeats the name of " + other, "names are unique");
       if (axis.path.meets(earlier.path)) {
-        list.item(index).find("path")->error("writes where " + other + " writes too: " + earlier.path.text,
-                                             "remove one of the two, or make them one axis with objects as values");
+        list.item(index).find("path")->error(
+            "writes where " + other + " writes too: " + earlier.path.text,
+            "remove one of the two, or make them one axis with objects as values");
         wrong.insert(j);
       }
     }
@@ -149,11 +165,15 @@ std::set<std::size_t> check_pairs(const Cursor& list, const std::vector<std::pai
   return wrong;
 }
 
-void check_points(const Cursor& root, const Cursor& list, const std::vector<std::pair<std::size_t, WrittenAxis>>& axes) {
+void check_points(const Cursor& root, const Cursor& list,
+                  const std::vector<std::pair<std::size_t, WrittenAxis>>& axes) {
   const auto pipelines = root.find("pipelines");
-  double points = pipelines && pipelines->is(Kind::array) ? static_cast<double>(std::max<std::size_t>(pipelines->size(), 1)) : 1;
+  double points = pipelines && pipelines->is(Kind::array)
+                      ? static_cast<double>(std::max<std::size_t>(pipelines->size(), 1))
+                      : 1;
   for (const auto& axis : axes) points *= static_cast<double>(axis.second.values.size());
-  if (points > max_points) list.error("makes more than 10 million points", "fewer values, or several studies");
+  if (points > max_points)
+    list.error("makes more than 10 million points", "fewer values, or several studies");
 }
 
 }  // namespace
@@ -162,7 +182,8 @@ std::vector<WrittenAxis> read_sweep(const Cursor& root) {
   const auto list = root.find("sweep");
   if (!list) return {};
   if (!list->expect(Kind::array, std::string("a list of axes: [") + axis_form + "]")) return {};
-  if (list->size() == 0) list->error("is an empty list", std::string("remove it, or give an axis: ") + axis_form);
+  if (list->size() == 0)
+    list->error("is an empty list", std::string("remove it, or give an axis: ") + axis_form);
   if (list->size() > max_axes) {
     list->error("holds more than " + std::to_string(max_axes) + " axes");
     return {};
@@ -173,25 +194,29 @@ std::vector<WrittenAxis> read_sweep(const Cursor& root) {
   }
   const std::set<std::size_t> wrong = check_pairs(*list, axes);
   check_points(root, *list, axes);
-  std::vector<WrittenAxis> result;  // those that are right, so that all their problems are told as well
+  std::vector<WrittenAxis>
+      result;  // those that are right, so that all their problems are told as well
   for (std::size_t i = 0; i < axes.size(); ++i)
     if (wrong.count(i) == 0) result.push_back(std::move(axes[i].second));
   return result;
 }
 
-Value substituted(const Value& tree, const std::vector<WrittenAxis>& axes, const std::vector<std::size_t>& at,
-                  const Registry& registry, Problems& problems) {
+Value substituted(const Value& tree, const std::vector<WrittenAxis>& axes,
+                  const std::vector<std::size_t>& at, const Registry& registry,
+                  Problems& problems) {
   std::vector<std::size_t> order(axes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto rank = [&](std::size_t i) {
     return axes[i].path.is_type() ? axes[i].path.steps.size() : std::size_t{max_depth} + 1;
   };
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return rank(i) < rank(j); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return rank(i) < rank(j); });
   Value result = tree;
   for (const std::size_t i : order) {
     Placement placement = place(result, axes[i].path, axes[i].values[at[i]], registry);
     if (!placement.problem.empty()) {
-      problems.add(axes[i].pointer + "/path", axes[i].path_line, std::move(placement.problem), std::move(placement.suggestion));
+      problems.add(axes[i].pointer + "/path", axes[i].path_line, std::move(placement.problem),
+                   std::move(placement.suggestion));
     }
     result = std::move(placement.tree);
   }

@@ -22,14 +22,14 @@ struct WrittenAxis {
   int path_line = 0;
 };
 
-/// Reads /sweep: none if there is no such key, or if anything is wrong with it. Two axes do not meet, no value comes twice, and
-/// there are at most 10 million points.
+/// Reads /sweep: none if there is no such key, or if anything is wrong with it. Two axes do not
+/// meet, no value comes twice, and there are at most 10 million points.
 std::vector<WrittenAxis> read_sweep(const Cursor& root);
 
-/// `tree` with the value of each axis in its places, the types of components first: `at` are indices of values. What cannot be
-/// put where it belongs is reported at the path of its axis.
-Value substituted(const Value& tree, const std::vector<WrittenAxis>& axes, const std::vector<std::size_t>& at,
-                  const Registry& registry, Problems& problems);
+/// `tree` with the value of each axis in its places, the types of components first: `at` are
+/// indices of values. What cannot be put where it belongs is reported at the path of its axis.
+Value substituted(const Value& tree, const std::vector<WrittenAxis>& axes,
+                  const std::vector<std::size_t>& at, const Registry& registry, Problems& problems);
 
 /// A value as JSON on one line, with numbers in their shortest form and without comments.
 std::string canonical_text(const Value& value);

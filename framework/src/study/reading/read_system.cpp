@@ -7,8 +7,9 @@ namespace cordon::json {
 
 namespace {
 
-/// Reads the matrices of a model one after another and compares their shapes with those read before. A matrix that is wrong
-/// leaves the sizes it would have fixed unknown, and what depends on them unchecked.
+/// Reads the matrices of a model one after another and compares their shapes with those read
+/// before. A matrix that is wrong leaves the sizes it would have fixed unknown, and what depends on
+/// them unchecked.
 class SystemReader {
  public:
   /// `nominal`: the system is that of a mode.
@@ -20,17 +21,21 @@ class SystemReader {
  private:
   std::optional<Matrix> matrix(const char* key);
   std::optional<Matrix> interval_matrix(const char* key, Matrix& radius);
-  bool has_rows(const char* key, const std::optional<Matrix>& A, std::optional<Index> rows, const char* like);
-  bool has_cols(const char* key, const std::optional<Matrix>& A, std::optional<Index> cols, const char* like);
+  bool has_rows(const char* key, const std::optional<Matrix>& A, std::optional<Index> rows,
+                const char* like);
+  bool has_cols(const char* key, const std::optional<Matrix>& A, std::optional<Index> cols,
+                const char* like);
   void read_dynamics(bool descriptor);
   void read_descriptor_matrix();
   void warn_of_rank(const Matrix& E);
   void read_outputs();
   void read_faults();
   void read_sets(std::optional<Index> disturbances, std::optional<Index> noises);
-  void read_bounds_set(const char* key, std::optional<Index> dim, const std::string& like, LineForm& out);
+  void read_bounds_set(const char* key, std::optional<Index> dim, const std::string& like,
+                       LineForm& out);
   void compare_with_nominal();
-  void compare(const char* key, std::optional<Index> size, std::optional<Index> wanted, const char* noun);
+  void compare(const char* key, std::optional<Index> size, std::optional<Index> wanted,
+               const char* noun);
   std::string place(const char* key) const { return child(system_.pointer(), key); }
 
   const Cursor& system_;
@@ -46,7 +51,8 @@ std::optional<Matrix> SystemReader::matrix(const char* key) {
   const auto at = system_.find(key);
   if (!at) return std::nullopt;
   const bool by_interval = at->is(Value::Kind::object) && !is_sparse_matrix(at->value());
-  if (by_interval && !at->expect(Value::Kind::array, "only A, B and C can be known by an interval")) return std::nullopt;
+  if (by_interval && !at->expect(Value::Kind::array, "only A, B and C can be known by an interval"))
+    return std::nullopt;
   return read_matrix(*at);
 }
 
@@ -55,7 +61,8 @@ std::optional<Matrix> SystemReader::interval_matrix(const char* key, Matrix& rad
   const auto at = system_.find(key);
   if (!at) return std::nullopt;
   if (exact_ && at->is(Value::Kind::object) && !is_sparse_matrix(at->value())) {
-    at->error("is an interval matrix, in a system of type \"lti\"", "write \"type\": \"interval_lti\"");
+    at->error("is an interval matrix, in a system of type \"lti\"",
+              "write \"type\": \"interval_lti\"");
     return std::nullopt;
   }
   auto read = read_interval_matrix(*at);
@@ -64,16 +71,19 @@ std::optional<Matrix> SystemReader::interval_matrix(const char* key, Matrix& rad
   return std::move(read->center);
 }
 
-bool SystemReader::has_rows(const char* key, const std::optional<Matrix>& A, std::optional<Index> rows, const char* like) {
+bool SystemReader::has_rows(const char* key, const std::optional<Matrix>& A,
+                            std::optional<Index> rows, const char* like) {
   if (!A || !rows || A->rows() == *rows) return A.has_value();
-  system_.find(key)->error("is " + shape(A->rows(), A->cols()) + ", must have " + counted(*rows, "row") + " like " + place(like));
+  system_.find(key)->error("is " + shape(A->rows(), A->cols()) + ", must have " +
+                           counted(*rows, "row") + " like " + place(like));
   return false;
 }
 
-bool SystemReader::has_cols(const char* key, const std::optional<Matrix>& A, std::optional<Index> cols, const char* like) {
+bool SystemReader::has_cols(const char* key, const std::optional<Matrix>& A,
+                            std::optional<Index> cols, const char* like) {
   if (!A || !cols || A->cols() == *cols) return A.has_value();
-  system_.find(key)->error("is " + shape(A->rows(), A->cols()) + ", must have " + counted(*cols, "column") + " like " +
-                           place(like));
+  system_.find(key)->error("is " + shape(A->rows(), A->cols()) + ", must have " +
+                           counted(*cols, "column") + " like " + place(like));
   return false;
 }
 
@@ -83,8 +93,9 @@ void SystemReader::read_dynamics(bool descriptor) {
   system_.need("A", "the matrix of x⁺ = A x + B u + Bw w, n × n");
   if (const auto A = interval_matrix("A", model.A_radius)) {
     if (A->rows() != A->cols() || A->rows() == 0 || A->rows() > max_dimension) {
-      system_.find("A")->error("is " + shape(A->rows(), A->cols()) +
-                               (A->rows() == A->cols() ? ", must have 1 to 1000 rows" : ", must be square"));
+      system_.find("A")->error(
+          "is " + shape(A->rows(), A->cols()) +
+          (A->rows() == A->cols() ? ", must have 1 to 1000 rows" : ", must be square"));
     } else {
       n = A->rows();
       model.A = *A;
@@ -108,7 +119,8 @@ void SystemReader::read_dynamics(bool descriptor) {
 }
 
 void SystemReader::read_descriptor_matrix() {
-  system_.need("E", "the matrix of E x⁺ = A x + B u + Bw w, n × n; without one the type is \"lti\"");
+  system_.need("E",
+               "the matrix of E x⁺ = A x + B u + Bw w, n × n; without one the type is \"lti\"");
   const auto E = matrix("E");
   if (!E) return;
   if (E->rows() != E->cols()) {
@@ -126,10 +138,12 @@ void SystemReader::warn_of_rank(const Matrix& E) {
   const Index doubles = rank_of_doubles(E), decimals = rank_of_decimals(E);
   if (doubles == used && decimals == used) return;
   const Cursor at = *system_.find("E");
-  warnings_.push_back(at.pointer() + " (line " + std::to_string(at.value().line) + "): has rank " + std::to_string(decimals) +
-                      " as it is written in decimals, " + std::to_string(doubles) + " as doubles, and " + std::to_string(used) +
-                      " up to rounding errors; rank " + std::to_string(used) +
-                      " is used throughout: a singular value below 1e-10 of the largest counts as zero");
+  warnings_.push_back(
+      at.pointer() + " (line " + std::to_string(at.value().line) + "): has rank " +
+      std::to_string(decimals) + " as it is written in decimals, " + std::to_string(doubles) +
+      " as doubles, and " + std::to_string(used) + " up to rounding errors; rank " +
+      std::to_string(used) +
+      " is used throughout: a singular value below 1e-10 of the largest counts as zero");
 }
 
 void SystemReader::read_outputs() {
@@ -165,7 +179,8 @@ void SystemReader::read_outputs() {
 void SystemReader::read_faults() {
   const auto at = system_.find("F");
   if (at && nominal_) {
-    at->error("belongs to /system: additive faults have the same directions in all modes", "remove it here");
+    at->error("belongs to /system: additive faults have the same directions in all modes",
+              "remove it here");
     return;
   }
   if (!at) {
@@ -175,24 +190,28 @@ void SystemReader::read_faults() {
   const auto F = matrix("F");
   if (!has_rows("F", F, part_.sizes.states, "A")) return;
   if (F->cols() > max_dimension) {
-    at->error("is " + shape(F->rows(), F->cols()) + ", must have at most " + std::to_string(max_dimension) + " columns");
+    at->error("is " + shape(F->rows(), F->cols()) + ", must have at most " +
+              std::to_string(max_dimension) + " columns");
     return;
   }
   part_.sizes.faults = F->cols();
   if (F->cols() > 0) part_.model.linear.F = *F;
 }
 
-void SystemReader::read_bounds_set(const char* key, std::optional<Index> dim, const std::string& like, LineForm& out) {
+void SystemReader::read_bounds_set(const char* key, std::optional<Index> dim,
+                                   const std::string& like, LineForm& out) {
   if (!system_.find(key) && dim == Index{0}) {
     out = make_point(Vector(0));
     return;
   }
-  const auto at =
-      system_.need(key, "the set of all values it can take, for example {\"type\": \"box\", \"lower\": [...], \"upper\": [...]}");
+  const auto at = system_.need(key,
+                               "the set of all values it can take, for example {\"type\": \"box\", "
+                               "\"lower\": [...], \"upper\": [...]}");
   auto X = at ? read_set(*at, warnings_) : std::nullopt;
   if (!X) return;
   if (dim && X->dim() != *dim) {
-    at->error("has dimension " + std::to_string(X->dim()) + ", must have " + std::to_string(*dim) + " like " + like);
+    at->error("has dimension " + std::to_string(X->dim()) + ", must have " + std::to_string(*dim) +
+              " like " + like);
     return;
   }
   out = std::move(*X);
@@ -207,10 +226,12 @@ void SystemReader::read_sets(std::optional<Index> disturbances, std::optional<In
   } else if (sizes.states) {
     part_.model.X0 = make_space(*sizes.states);
   }
-  const std::string w_like =
-      system_.find("Bw") ? "the columns of " + place("Bw") : "the rows of " + place("A") + " (Bw is the identity by default)";
-  const std::string v_like =
-      system_.find("Dv") ? "the columns of " + place("Dv") : "the rows of " + place("C") + " (Dv is the identity by default)";
+  const std::string w_like = system_.find("Bw")
+                                 ? "the columns of " + place("Bw")
+                                 : "the rows of " + place("A") + " (Bw is the identity by default)";
+  const std::string v_like = system_.find("Dv")
+                                 ? "the columns of " + place("Dv")
+                                 : "the rows of " + place("C") + " (Dv is the identity by default)";
   if (system_.find("U") && !nominal_) {
     read_bounds_set("U", sizes.inputs, "the columns of " + place("B"), part_.model.U);
   } else if (sizes.inputs) {
@@ -220,7 +241,8 @@ void SystemReader::read_sets(std::optional<Index> disturbances, std::optional<In
   read_bounds_set("V", noises, v_like, part_.model.V);
 }
 
-void SystemReader::compare(const char* key, std::optional<Index> size, std::optional<Index> wanted, const char* noun) {
+void SystemReader::compare(const char* key, std::optional<Index> size, std::optional<Index> wanted,
+                           const char* noun) {
   if (!size || !wanted || size == wanted) return;
   const auto at = system_.find(key);
   (at ? *at : system_)
@@ -267,7 +289,8 @@ SystemPart read_system(const Cursor& system, std::vector<std::string>& warnings)
   return SystemReader(system, nullptr, warnings).read();
 }
 
-SystemPart read_mode_system(const Cursor& system, const SystemPart& nominal, std::vector<std::string>& warnings) {
+SystemPart read_mode_system(const Cursor& system, const SystemPart& nominal,
+                            std::vector<std::string>& warnings) {
   return SystemReader(system, &nominal, warnings).read();
 }
 

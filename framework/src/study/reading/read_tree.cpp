@@ -15,7 +15,8 @@ class TreeReader {
 
   TreeReading read() {
     read_sections();
-    if (options_.checks && !root_.problems().any()) check_study(root_, result_.study, options_.only);
+    if (options_.checks && !root_.problems().any())
+      check_study(root_, result_.study, options_.only);
     return std::move(result_);
   }
 
@@ -33,7 +34,8 @@ class TreeReader {
 void TreeReader::read_version() {
   const auto at = root_.need("cordon", "write \"cordon\": 1, the version of the format");
   const auto version = at ? read_number(*at) : std::nullopt;
-  if (version && *version != 1) at->error("this version of the format is not known", "this program reads \"cordon\": 1");
+  if (version && *version != 1)
+    at->error("this version of the format is not known", "this program reads \"cordon\": 1");
 }
 
 /// A system that comes from the same text as the known one is the same.
@@ -56,9 +58,11 @@ SystemPart TreeReader::read_known_system(const Cursor& at) {
 }
 
 void TreeReader::read_sections() {
-  const std::vector<std::string> keys{"cordon", "title", "plugins", "system", "data", "pipelines", "metrics", "sweep"};
+  const std::vector<std::string> keys{"cordon", "title",     "plugins", "system",
+                                      "data",   "pipelines", "metrics", "sweep"};
   if (!root_.expect_keys(keys, "key of a study",
-                         "a study is an object: {\"cordon\": 1, \"system\": ..., \"data\": ..., \"pipelines\": ...}"))
+                         "a study is an object: {\"cordon\": 1, \"system\": ..., \"data\": ..., "
+                         "\"pipelines\": ...}"))
     return;
   read_version();
   Study& study = result_.study;
@@ -67,17 +71,21 @@ void TreeReader::read_sections() {
   study.title = title ? read_line(*title, max_title).value_or("") : options_.file.stem().string();
   const ComponentContext context{registry_, study.warnings, result_.refusals};
   SystemPart system;
-  if (const auto at = root_.need("system", "the plant: {\"type\": \"lti\", ...}")) system = read_known_system(*at);
+  if (const auto at = root_.need("system", "the plant: {\"type\": \"lti\", ...}"))
+    system = read_known_system(*at);
   const DataUse use = data_use(root_);
   const auto data =
-      use.streamed() ? root_.need("data", "{\"simulate\": {...}} or {\"csv\": {...}}" + use.reason()) : root_.find("data");
+      use.streamed()
+          ? root_.need("data", "{\"simulate\": {...}} or {\"csv\": {...}}" + use.reason())
+          : root_.find("data");
   if (data) {
     DataPart part = read_data(*data, system, use, options_.folder, context);
     study.data = std::move(part.data);
     written.faults = std::move(part.written_faults);
     written.csv_file = std::move(part.written_file);
   }
-  if (const auto at = root_.need("pipelines", "a list of pipelines: [{\"backend\": ..., \"observer\": ...}]")) {
+  if (const auto at =
+          root_.need("pipelines", "a list of pipelines: [{\"backend\": ..., \"observer\": ...}]")) {
     study.pipelines = read_pipelines(*at, system, context, [&](std::size_t i) {
       return (!options_.only || *options_.only == i) && (!options_.asks || options_.asks(i));
     });
@@ -91,7 +99,8 @@ void TreeReader::read_sections() {
 
 }  // namespace
 
-TreeReading read_tree(const Value& tree, const Registry& registry, const TreeOptions& options, Problems& problems) {
+TreeReading read_tree(const Value& tree, const Registry& registry, const TreeOptions& options,
+                      Problems& problems) {
   const Cursor root(tree, "", problems);
   TreeReading result = TreeReader(root, registry, options).read();
   result.study.file = options.file;

@@ -17,10 +17,11 @@ struct KnownSystem {
 };
 
 struct TreeOptions {
-  std::filesystem::path file, folder;             ///< of the study; the folder absolute
-  bool checks = true;                             ///< nothing was wrong with the text: check the study as a whole
-  std::optional<std::size_t> only = {};           ///< the only pipeline that must go together with the rest
-  std::function<bool(std::size_t)> asks = {};     ///< which pipelines are asked about the model; none: all
+  std::filesystem::path file, folder;  ///< of the study; the folder absolute
+  bool checks = true;  ///< nothing was wrong with the text: check the study as a whole
+  std::optional<std::size_t> only = {};  ///< the only pipeline that must go together with the rest
+  std::function<bool(std::size_t)> asks =
+      {};  ///< which pipelines are asked about the model; none: all
   std::shared_ptr<const KnownSystem> known = {};  ///< may be null
 };
 
@@ -31,6 +32,7 @@ struct TreeReading {
   std::shared_ptr<const KnownSystem> known;  ///< the system, if it is right
 };
 
-TreeReading read_tree(const Value& tree, const Registry& registry, const TreeOptions& options, Problems& problems);
+TreeReading read_tree(const Value& tree, const Registry& registry, const TreeOptions& options,
+                      Problems& problems);
 
 }  // namespace cordon::json

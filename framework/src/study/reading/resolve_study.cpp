@@ -31,7 +31,8 @@ Json to_json(const Matrix& center, const Matrix& radius) {
 }
 
 bool is_whole_space(const LineForm& X) {
-  return X.constraints() == 0 && X.generators() == 0 && X.lines() == X.dim() && X.M.isIdentity(0) && X.c.isZero(0);
+  return X.constraints() == 0 && X.generators() == 0 && X.lines() == X.dim() && X.M.isIdentity(0) &&
+         X.c.isZero(0);
 }
 
 /// The simplest type that holds the blocks as they are.
@@ -43,7 +44,10 @@ Json to_json(const LineForm& X) {
     set["dim"] = X.dim();
     return set;
   }
-  set["type"] = lines ? "line_zonotope" : constraints ? "constrained_zonotope" : X.generators() > 0 ? "zonotope" : "point";
+  set["type"] = lines                ? "line_zonotope"
+                : constraints        ? "constrained_zonotope"
+                : X.generators() > 0 ? "zonotope"
+                                     : "point";
   set["center"] = to_json(X.c);
   if (lines) set["lines"] = to_json(X.M);
   if (X.generators() > 0) set["generators"] = to_json(X.G);
@@ -83,7 +87,8 @@ Json to_json(const ComponentSpec& spec, const std::string& kind, const Registry&
   object["type"] = spec.type;
   for (const ParamSpec& param : (registry.*shelf_of(kind)->info)(spec.type)->schema.specs()) {
     const auto found = spec.params.values().find(param.name);
-    if (found != spec.params.values().end()) object[param.name] = std::visit(ToJson{param, registry}, found->second);
+    if (found != spec.params.values().end())
+      object[param.name] = std::visit(ToJson{param, registry}, found->second);
   }
   return object;
 }
@@ -91,7 +96,8 @@ Json to_json(const ComponentSpec& spec, const std::string& kind, const Registry&
 Json to_json(const Model& model) {
   const LinearModel& linear = model.linear;
   Json system;
-  const bool intervals = linear.A_radius.size() > 0 || linear.B_radius.size() > 0 || linear.C_radius.size() > 0;
+  const bool intervals =
+      linear.A_radius.size() > 0 || linear.B_radius.size() > 0 || linear.C_radius.size() > 0;
   system["type"] = linear.is_descriptor() ? "descriptor" : intervals ? "interval_lti" : "lti";
   if (linear.is_descriptor()) system["E"] = to_json(linear.E);
   system["A"] = to_json(linear.A, linear.A_radius);
@@ -111,7 +117,8 @@ Json to_json(const Model& model) {
 Json to_json(const Box& box) {
   Json list = Json::array();
   for (Index i = 0; i < box.dim(); ++i) {
-    list.push_back(box.lower[i] == box.upper[i] ? Json(box.lower[i]) : Json{box.lower[i], box.upper[i]});
+    list.push_back(box.lower[i] == box.upper[i] ? Json(box.lower[i])
+                                                : Json{box.lower[i], box.upper[i]});
   }
   return list;
 }
@@ -181,8 +188,8 @@ Json to_json(const AdditiveFaultSpec& fault) {
 }
 
 /// What pipelines without a designer need is left out where all have one: `streamed` is false.
-Json to_json(const SimulateSpec& spec, const LinearModel& model, bool streamed, const Written& written,
-             const Registry& registry) {
+Json to_json(const SimulateSpec& spec, const LinearModel& model, bool streamed,
+             const Written& written, const Registry& registry) {
   Json object;
   if (streamed) object["steps"] = spec.steps;
   object["seed"] = spec.seed;
@@ -196,8 +203,10 @@ Json to_json(const SimulateSpec& spec, const LinearModel& model, bool streamed, 
   object["input"] = Json::array();
   for (const Signal& signal : spec.input) object["input"].push_back(to_json(signal));
   if (spec.plant) object["plant"] = to_json(*spec.plant, "plant", registry);
-  for (std::size_t i = 0; i < spec.faults.size(); ++i) object["faults"].push_back(to_json(spec.faults[i], written.faults[i]));
-  for (const AdditiveFaultSpec& fault : spec.additive_faults) object["additive_faults"].push_back(to_json(fault));
+  for (std::size_t i = 0; i < spec.faults.size(); ++i)
+    object["faults"].push_back(to_json(spec.faults[i], written.faults[i]));
+  for (const AdditiveFaultSpec& fault : spec.additive_faults)
+    object["additive_faults"].push_back(to_json(fault));
   return object;
 }
 
@@ -213,7 +222,9 @@ Json to_json(const CsvSpec& spec, const std::string& written_file) {
 
 /// Like dump(2), but a list of plain values stays on one line: a matrix takes a line per row.
 void print(const Json& value, const std::string& indent, std::string& out) {
-  const bool flat = value.is_array() && std::none_of(value.begin(), value.end(), [](const Json& v) { return v.is_structured(); });
+  const bool flat = value.is_array() && std::none_of(value.begin(), value.end(), [](const Json& v) {
+                      return v.is_structured();
+                    });
   if (!value.is_structured() || value.empty() || flat) {
     out += value.dump();
     return;
@@ -233,7 +244,8 @@ void print(const Json& value, const std::string& indent, std::string& out) {
 
 }  // namespace
 
-std::string resolve(const Study& study, const Written& written, const std::vector<WrittenAxis>& sweep, const Registry& registry) {
+std::string resolve(const Study& study, const Written& written,
+                    const std::vector<WrittenAxis>& sweep, const Registry& registry) {
   Json root;
   root["cordon"] = 1;
   root["title"] = study.title;
@@ -241,8 +253,8 @@ std::string resolve(const Study& study, const Written& written, const std::vecto
   root["system"] = to_json(study.model);
   add_modes(root["system"], study, written);
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
-    const bool streamed =
-        std::any_of(study.pipelines.begin(), study.pipelines.end(), [](const PipelineSpec& p) { return !p.designer; });
+    const bool streamed = std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                                      [](const PipelineSpec& p) { return !p.designer; });
     root["data"]["simulate"] = to_json(*simulate, study.model.linear, streamed, written, registry);
   } else {
     root["data"]["csv"] = to_json(std::get<CsvSpec>(study.data), written.csv_file);
@@ -254,11 +266,13 @@ std::string resolve(const Study& study, const Written& written, const std::vecto
     pipeline["backend"] = to_json(spec.backend, "backend", registry);
     if (spec.designer) pipeline["designer"] = to_json(*spec.designer, "designer", registry);
     if (spec.diagnoser) pipeline["diagnoser"] = to_json(*spec.diagnoser, "diagnoser", registry);
-    if (!spec.designer && !spec.diagnoser) pipeline["observer"] = to_json(spec.observer, "observer", registry);
+    if (!spec.designer && !spec.diagnoser)
+      pipeline["observer"] = to_json(spec.observer, "observer", registry);
     root["pipelines"].push_back(std::move(pipeline));
   }
   root["metrics"] = Json::array();
-  for (const ComponentSpec& spec : study.metrics) root["metrics"].push_back(to_json(spec, "metric", registry));
+  for (const ComponentSpec& spec : study.metrics)
+    root["metrics"].push_back(to_json(spec, "metric", registry));
   if (!sweep.empty()) add_sweep(root, written.tree, sweep);
   std::string text;
   print(root, "", text);

@@ -11,13 +11,15 @@ using Kind = Value::Kind;
 using Json = nlohmann::ordered_json;
 
 Json number(double x) {
-  const bool whole = x == std::floor(x) && std::abs(x) <= max_integer && !(x == 0 && std::signbit(x));
+  const bool whole =
+      x == std::floor(x) && std::abs(x) <= max_integer && !(x == 0 && std::signbit(x));
   return whole ? Json(static_cast<std::int64_t>(x)) : Json(x);
 }
 
 /// Do the two have the same parts at the same places?
 bool same_form(const Json& resolved, const Value& written) {
-  if (written.kind == Kind::array) return resolved.is_array() && resolved.size() == written.items().size();
+  if (written.kind == Kind::array)
+    return resolved.is_array() && resolved.size() == written.items().size();
   if (written.kind != Kind::object || !resolved.is_object()) return false;
   const Value* type = written.find("type");
   return type ? resolved.value("type", "") == type->text() : !resolved.contains("type");
@@ -29,14 +31,17 @@ class Keeper {
 
   void keep(Json& resolved, const Value& written, std::size_t depth) const {
     const bool structured = written.kind == Kind::array || written.kind == Kind::object;
-    if (depth == steps_.size() || !structured) return;  // a component that the path passes over is written as its name alone
+    if (depth == steps_.size() || !structured)
+      return;  // a component that the path passes over is written as its name alone
     const PathStep& step = steps_[depth];
-    if (written.kind == Kind::array && resolved.is_object() && !step.every && !step_index(step.key)) return;  // as a matrix
+    if (written.kind == Kind::array && resolved.is_object() && !step.every && !step_index(step.key))
+      return;  // as a matrix
     const bool type = depth + 1 == steps_.size() && step.key == "type";
     if (type || !same_form(resolved, written)) {
       resolved = written_json(written);
     } else if (step.every) {
-      for (std::size_t i = 0; i < written.items().size(); ++i) keep(resolved[i], written.items()[i], depth + 1);
+      for (std::size_t i = 0; i < written.items().size(); ++i)
+        keep(resolved[i], written.items()[i], depth + 1);
     } else if (written.kind == Kind::array) {
       const std::size_t i = *step_index(step.key);
       keep(resolved[i], written.items()[i], depth + 1);
@@ -81,7 +86,9 @@ Json written_json(const Value& value) {
 
 std::string canonical_text(const Value& value) { return written_json(value).dump(); }
 
-std::string text_to_compare(const Value& value) { return nlohmann::json(written_json(value)).dump(); }
+std::string text_to_compare(const Value& value) {
+  return nlohmann::json(written_json(value)).dump();
+}
 
 void add_sweep(Json& resolved, const Value& tree, const std::vector<WrittenAxis>& axes) {
   Json list = Json::array();
@@ -91,7 +98,10 @@ void add_sweep(Json& resolved, const Value& tree, const std::vector<WrittenAxis>
     } else {
       Keeper(axis.path).keep(resolved, tree, 0);
     }
-    Json entry{{"name", axis.name}, {"path", axis.path.text}, {"repeat", axis.repeat}, {"values", Json::array()}};
+    Json entry{{"name", axis.name},
+               {"path", axis.path.text},
+               {"repeat", axis.repeat},
+               {"values", Json::array()}};
     for (const Value& value : axis.values) entry["values"].push_back(written_json(value));
     list.push_back(std::move(entry));
   }

@@ -29,7 +29,8 @@ Json one_of(const std::vector<std::string>& words) { return {{"enum", words}}; }
 Json object(Json properties, const std::vector<std::string>& required) {
   properties["$comment"] = true;
   properties["$schema"] = {{"type", "string"}};
-  Json schema{{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+  Json schema{
+      {"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
   if (!required.empty()) schema["required"] = required;
   return schema;
 }
@@ -42,41 +43,55 @@ Json typed(const std::string& type, Json properties, std::vector<std::string> re
 }
 
 Json sets() {
-  const Json vector = reference("vector"), matrix = reference("matrix"), bounds = reference("bounds"), number{{"type", "number"}};
+  const Json vector = reference("vector"), matrix = reference("matrix"),
+             bounds = reference("bounds"), number{{"type", "number"}};
   Json all = Json::array();
   all.push_back(described(typed("box", {{"lower", bounds}, {"upper", bounds}}, {"lower", "upper"}),
                           "{x : lower ≤ x ≤ upper}; a coordinate is bounded or free"));
-  all.push_back(described(typed("zonotope", {{"center", vector}, {"generators", matrix}}, {"center"}),
-                          "{c + Gξ : ‖ξ‖∞ ≤ 1}; one generator per column"));
+  all.push_back(
+      described(typed("zonotope", {{"center", vector}, {"generators", matrix}}, {"center"}),
+                "{c + Gξ : ‖ξ‖∞ ≤ 1}; one generator per column"));
   all.push_back(described(
-      typed("constrained_zonotope", {{"center", vector}, {"generators", matrix}, {"A", matrix}, {"b", vector}}, {"center"}),
+      typed("constrained_zonotope",
+            {{"center", vector}, {"generators", matrix}, {"A", matrix}, {"b", vector}}, {"center"}),
       "{c + Gξ : ‖ξ‖∞ ≤ 1, Aξ = b}"));
+  all.push_back(described(typed("line_zonotope",
+                                {{"center", vector},
+                                 {"lines", matrix},
+                                 {"generators", matrix},
+                                 {"S", matrix},
+                                 {"A", matrix},
+                                 {"b", vector}},
+                                {"center"}),
+                          "{c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}; M holds the lines"));
   all.push_back(described(
-      typed("line_zonotope",
-            {{"center", vector}, {"lines", matrix}, {"generators", matrix}, {"S", matrix}, {"A", matrix}, {"b", vector}},
-            {"center"}),
-      "{c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}; M holds the lines"));
-  all.push_back(described(
-      typed("strip", {{"rho", vector}, {"d", number}, {"sigma", {{"type", "number"}, {"minimum", 0}}}}, {"rho", "d", "sigma"}),
+      typed("strip",
+            {{"rho", vector}, {"d", number}, {"sigma", {{"type", "number"}, {"minimum", 0}}}},
+            {"rho", "d", "sigma"}),
       "{x : |rhoᵀx - d| ≤ sigma}"));
-  all.push_back(described(typed("space", {{"dim", integer(0, json::max_dimension)}}, {"dim"}), "the whole space"));
+  all.push_back(described(typed("space", {{"dim", integer(0, json::max_dimension)}}, {"dim"}),
+                          "the whole space"));
   all.push_back(described(typed("point", {{"center", vector}}, {"center"}), "a single point"));
-  Json polytope = typed("polytope", {{"lower", vector}, {"upper", vector}, {"H", matrix}, {"h", vector}}, {"H", "h"});
+  Json polytope = typed(
+      "polytope", {{"lower", vector}, {"upper", vector}, {"H", matrix}, {"h", vector}}, {"H", "h"});
   polytope["dependentRequired"] = {{"lower", {"upper"}}, {"upper", {"lower"}}};
-  all.push_back(described(polytope, "{x : lower ≤ x ≤ upper, H x ≤ h}; without bounds they are found exactly"));
-  all.push_back(described(typed("polytope", {{"vertices", matrix}}, {"vertices"}), "convex hull; one vertex per row"));
+  all.push_back(described(
+      polytope, "{x : lower ≤ x ≤ upper, H x ≤ h}; without bounds they are found exactly"));
+  all.push_back(described(typed("polytope", {{"vertices", matrix}}, {"vertices"}),
+                          "convex hull; one vertex per row"));
   return {{"oneOf", all}};
 }
 
 Json signals() {
-  const Json properties{{"amplitude", {{"type", "number"}}},
-                        {"omega", described({{"type", "number"}}, "radians per step")},
-                        {"phase", described({{"type", "number"}, {"default", 0}}, "radians")},
-                        {"offset", {{"type", "number"}}},
-                        {"from", integer(0, static_cast<std::int64_t>(json::max_integer))},
-                        {"period", integer(1, static_cast<std::int64_t>(json::max_integer))},
-                        {"seed", integer(0, static_cast<std::int64_t>(json::max_integer))},
-                        {"values", {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 1}}}};
+  const Json properties{
+      {"amplitude", {{"type", "number"}}},
+      {"omega", described({{"type", "number"}}, "radians per step")},
+      {"phase", described({{"type", "number"}, {"default", 0}}, "radians")},
+      {"offset", {{"type", "number"}}},
+      {"from", integer(0, static_cast<std::int64_t>(json::max_integer))},
+      {"period", integer(1, static_cast<std::int64_t>(json::max_integer))},
+      {"seed", integer(0, static_cast<std::int64_t>(json::max_integer))},
+      {"values", {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 1}}}};
   Json all = Json::array();
   for (std::size_t i = 0; i < json::signal_types().size(); ++i) {
     const auto type = static_cast<Signal::Type>(i);
@@ -91,8 +106,13 @@ Json signals() {
 
 Json sparse_matrix() {
   const Json size = integer(0, json::max_entries), place = integer(1, json::max_entries);
-  const Json entry{{"type", "array"}, {"prefixItems", {place, place, {{"type", "number"}}}}, {"minItems", 3}, {"maxItems", 3}};
-  return described(object({{"rows", size}, {"cols", size}, {"entries", described(list_of(entry), "[row, column, number]")}},
+  const Json entry{{"type", "array"},
+                   {"prefixItems", {place, place, {{"type", "number"}}}},
+                   {"minItems", 3},
+                   {"maxItems", 3}};
+  return described(object({{"rows", size},
+                           {"cols", size},
+                           {"entries", described(list_of(entry), "[row, column, number]")}},
                           {"rows", "cols", "entries"}),
                    "sparse: the entries that are not 0, rows and columns counted from 1");
 }
@@ -100,7 +120,9 @@ Json sparse_matrix() {
 Json interval_matrix() {
   const Json matrix = reference("matrix");
   return {{"anyOf",
-           {matrix, object({{"center", matrix}, {"radius", described(matrix, "at least 0")}}, {"center", "radius"}),
+           {matrix,
+            object({{"center", matrix}, {"radius", described(matrix, "at least 0")}},
+                   {"center", "radius"}),
             object({{"lower", matrix}, {"upper", matrix}}, {"lower", "upper"})}}};
 }
 
@@ -114,9 +136,12 @@ Json model_properties(const std::string& general) {
   properties["C"] = described(interval, "outputs × n");
   properties["D"] = described(matrix, "outputs × inputs; zero by default");
   properties["Dv"] = described(matrix, "outputs × noises; the identity by default");
-  properties["X0"] = described(set, "contains the initial state; the whole space by default, in a mode the nominal one");
-  properties["W"] = described(set, "contains every disturbance w; may be absent only if Bw has no columns");
-  properties["V"] = described(set, "contains every measurement noise v; may be absent only if Dv has no columns");
+  properties["X0"] = described(
+      set, "contains the initial state; the whole space by default, in a mode the nominal one");
+  properties["W"] =
+      described(set, "contains every disturbance w; may be absent only if Bw has no columns");
+  properties["V"] =
+      described(set, "contains every measurement noise v; may be absent only if Dv has no columns");
   return properties;
 }
 
@@ -124,7 +149,8 @@ Json systems(const Json& more) {
   Json exact = model_properties("matrix"), general = model_properties("interval_matrix");
   exact.update(more);
   general.update(more);
-  const Json lti = typed("lti", exact, {"A", "C"}), interval_lti = typed("interval_lti", general, {"A", "C"});
+  const Json lti = typed("lti", exact, {"A", "C"}),
+             interval_lti = typed("interval_lti", general, {"A", "C"});
   general["E"] = described(reference("matrix"), "n × n, may be singular");
   const Json descriptor = typed("descriptor", general, {"E", "A", "C"});
   return {{"oneOf",
@@ -136,7 +162,8 @@ Json systems(const Json& more) {
 Json effectiveness() {
   const Json share{{"type", "number"}, {"minimum", 0}, {"maximum", 1}};
   const Json range{{"type", "array"}, {"items", share}, {"minItems", 2}, {"maxItems", 2}};
-  return described(list_of({{"anyOf", {share, range}}}), "0: outage, 1: health; a number, or a range [low, high]");
+  return described(list_of({{"anyOf", {share, range}}}),
+                   "0: outage, 1: health; a number, or a range [low, high]");
 }
 
 /// What is different in a mode or a fault.
@@ -150,10 +177,12 @@ Json mode_properties() {
   Json properties;
   properties["actuator"] = described(reference("effectiveness"), "one entry per column of B");
   properties["sensor"] = described(reference("effectiveness"), "one entry per row of C");
-  properties["additive"] = described(additive, "F f is added to the state's equation, Fy f to the outputs");
+  properties["additive"] =
+      described(additive, "F f is added to the state's equation, Fy f to the outputs");
   properties["W"] = described(set, "in place of the system's W");
   properties["V"] = described(set, "in place of the system's V");
-  properties["system"] = described(reference("mode_system"), "another model; in place of additive, W and V");
+  properties["system"] =
+      described(reference("mode_system"), "another model; in place of additive, W and V");
   return properties;
 }
 
@@ -172,23 +201,26 @@ Json faults() {
   Json inside{{"mode", described(text(200), "name of a mode")}};
   inside.update(times);
   for (const char* key : {"actuator", "sensor"})
-    inside[key] = described(reference("effectiveness"), "inside the range of the mode; its range by default");
+    inside[key] =
+        described(reference("effectiveness"), "inside the range of the mode; its range by default");
   Json outside{{"name", described(text(200), "for people")}};
   outside.update(times);
   outside.update(mode_properties());
-  return {
-      {"oneOf",
-       {described(object(inside, {"mode"}), "a mode of the bank"), described(object(outside, {}), "a fault outside the bank")}}};
+  return {{"oneOf",
+           {described(object(inside, {"mode"}), "a mode of the bank"),
+            described(object(outside, {}), "a fault outside the bank")}}};
 }
 
 Json additive_faults() {
   const Json time = integer(0, static_cast<std::int64_t>(json::max_integer));
   Json properties;
-  properties["fault"] = described(integer(1, json::max_dimension), "number of a column of F, from 1 on");
+  properties["fault"] =
+      described(integer(1, json::max_dimension), "number of a column of F, from 1 on");
   properties["from"] = described(time, "the first k at which the fault acts");
   properties["from"]["default"] = 0;
   properties["to"] = described(time, "the last such k; the end by default");
-  properties["signal"] = described(reference("signal"), "the value at k; entries of the same fault add up");
+  properties["signal"] =
+      described(reference("signal"), "the value at k; entries of the same fault add up");
   return list_of(object(properties, {"fault", "signal"}));
 }
 
@@ -197,26 +229,31 @@ Json data() {
   simulate["steps"] = described(integer(1, 1'000'000'000), "samples k = 0 ... steps");
   simulate["seed"] = integer(0, static_cast<std::int64_t>(json::max_integer));
   simulate["seed"]["default"] = 1;
-  simulate["seeds"] = described(integer(1, 100'000), "diagnosers are tried on so many seeds, from seed on");
+  simulate["seeds"] =
+      described(integer(1, 100'000), "diagnosers are tried on so many seeds, from seed on");
   simulate["seeds"]["default"] = 1;
   simulate["noise"] = one_of(json::noise_names());
   simulate["noise"]["default"] = "uniform";
-  simulate["parameters"] =
-      described(one_of(json::parameter_draw_names()), "whether uncertain matrices are drawn once or at every step");
+  simulate["parameters"] = described(one_of(json::parameter_draw_names()),
+                                     "whether uncertain matrices are drawn once or at every step");
   simulate["parameters"]["default"] = "constant";
-  simulate["x0"] = described(Json{{"anyOf", {reference("vector"), reference("set")}}},
-                             "initial state, or a bounded set that it is drawn from; the centre of X0 by default");
+  simulate["x0"] = described(
+      Json{{"anyOf", {reference("vector"), reference("set")}}},
+      "initial state, or a bounded set that it is drawn from; the centre of X0 by default");
   simulate["input"] = described(list_of(reference("signal")), "one signal per column of B");
   simulate["plant"] = described(reference("plant"), "makes the data in place of the system");
-  simulate["faults"] = described(list_of(reference("fault")), "in the order of time, without overlap");
-  simulate["additive_faults"] = described(additive_faults(), "values of the faults in the directions of F; 0 otherwise");
+  simulate["faults"] =
+      described(list_of(reference("fault")), "in the order of time, without overlap");
+  simulate["additive_faults"] =
+      described(additive_faults(), "values of the faults in the directions of F; 0 otherwise");
   const Json names{{"type", "array"}, {"items", text(4096)}, {"uniqueItems", true}};
   Json csv;
   csv["file"] = described(text(4096), "relative to the folder of the study");
   csv["inputs"] = described(names, "columns of u, one per column of B");
   csv["outputs"] = described(names, "columns of y, one per row of C");
   csv["truth"] = described(names, "columns of the true state, one per row of A");
-  csv["mode"] = described(text(4096), "column with the name of the true mode, empty outside the bank");
+  csv["mode"] =
+      described(text(4096), "column with the name of the true mode, empty outside the bank");
   return {{"oneOf",
            {object({{"simulate", object(simulate, {})}}, {"simulate"}),
             object({{"csv", object(csv, {"file", "outputs"})}}, {"csv"})}}};
@@ -226,8 +263,10 @@ void add_limits(Json& schema, const ParamSpec& spec) {
   const double inf = std::numeric_limits<double>::infinity();
   const bool whole = spec.kind == ParamKind::integer;
   const auto limit = [&](double x) { return whole ? Json(static_cast<std::int64_t>(x)) : Json(x); };
-  if (spec.lowest > -inf && std::abs(spec.lowest) <= json::max_integer) schema["minimum"] = limit(spec.lowest);
-  if (spec.highest < inf && std::abs(spec.highest) <= json::max_integer) schema["maximum"] = limit(spec.highest);
+  if (spec.lowest > -inf && std::abs(spec.lowest) <= json::max_integer)
+    schema["minimum"] = limit(spec.lowest);
+  if (spec.highest < inf && std::abs(spec.highest) <= json::max_integer)
+    schema["maximum"] = limit(spec.highest);
 }
 
 Json parameter(const ParamSpec& spec) {
@@ -299,22 +338,28 @@ Json components(const Registry& registry, const char* kind) {
 Json definitions(const Registry& registry) {
   Json defs;
   defs["vector"] = list_of({{"type", "number"}});
-  defs["matrix"] = {{"anyOf", {described(list_of(reference("vector")), "a list of rows of equal length"), sparse_matrix()}}};
+  defs["matrix"] = {{"anyOf",
+                     {described(list_of(reference("vector")), "a list of rows of equal length"),
+                      sparse_matrix()}}};
   defs["interval_matrix"] = interval_matrix();
   defs["bounds"] = list_of({{"anyOf", {{{"type", "number"}}, one_of({"inf", "-inf"})}}});
   defs["set"] = sets();
   defs["signal"] = signals();
-  defs["system"] = systems({{"F", described(reference("matrix"), "n × faults: directions of additive faults, a column each")},
-                            {"U", described(reference("set"), "contains every input u; the whole space by default")},
-                            {"nominal", described(text(200), "name of the nominal mode; \"healthy\" by default")},
-                            {"modes", described(Json{{"type", "array"}, {"items", reference("mode")}, {"maxItems", 1000}},
-                                                "the faults that diagnosers tell apart")}});
+  defs["system"] = systems(
+      {{"F",
+        described(reference("matrix"), "n × faults: directions of additive faults, a column each")},
+       {"U", described(reference("set"), "contains every input u; the whole space by default")},
+       {"nominal", described(text(200), "name of the nominal mode; \"healthy\" by default")},
+       {"modes",
+        described(Json{{"type", "array"}, {"items", reference("mode")}, {"maxItems", 1000}},
+                  "the faults that diagnosers tell apart")}});
   defs["mode_system"] = systems(Json::object());
   defs["effectiveness"] = effectiveness();
   defs["mode"] = modes();
   defs["fault"] = faults();
   defs["data"] = data();
-  for (const char* kind : {"backend", "observer", "metric", "diagnoser", "plant", "gain", "designer"})
+  for (const char* kind :
+       {"backend", "observer", "metric", "diagnoser", "plant", "gain", "designer"})
     defs[kind] = components(registry, kind);
   Json pipeline = object({{"name", described(text(200), "unique; the backend's name by default")},
                           {"backend", reference("backend")},
@@ -329,18 +374,23 @@ Json definitions(const Registry& registry) {
 }
 
 Json sweep() {
-  const Json whole = integer(-static_cast<std::int64_t>(json::max_integer), static_cast<std::int64_t>(json::max_integer));
+  const Json whole = integer(-static_cast<std::int64_t>(json::max_integer),
+                             static_cast<std::int64_t>(json::max_integer));
   Json properties;
   properties["name"] = described(text(200), "unique; the name of its column in tables");
   properties["path"] =
       described(Json{{"type", "string"}, {"pattern", "^(/([^~]|~[01])*)+$"}, {"maxLength", 4096}},
-                "what is varied: a JSON pointer, with \"*\" for every element of a list: /pipelines/*/observer/max_generators");
-  properties["values"] = described(Json{{"type", "array"}, {"minItems", 1}, {"maxItems", 100'000}, {"uniqueItems", true}},
-                                   "they take the place of what stands there, one after another");
-  properties["range"] = described(Json{{"type", "array"}, {"items", whole}, {"minItems", 2}, {"maxItems", 3}},
-                                  "[first, last] or [first, last, step]: integers, in place of values");
-  properties["repeat"] = described(Json{{"type", "boolean"}},
-                                   "statistics are taken over these values; by default true where the path ends in /seed");
+                "what is varied: a JSON pointer, with \"*\" for every element of a list: "
+                "/pipelines/*/observer/max_generators");
+  properties["values"] = described(
+      Json{{"type", "array"}, {"minItems", 1}, {"maxItems", 100'000}, {"uniqueItems", true}},
+      "they take the place of what stands there, one after another");
+  properties["range"] =
+      described(Json{{"type", "array"}, {"items", whole}, {"minItems", 2}, {"maxItems", 3}},
+                "[first, last] or [first, last, step]: integers, in place of values");
+  properties["repeat"] = described(
+      Json{{"type", "boolean"}},
+      "statistics are taken over these values; by default true where the path ends in /seed");
   Json axis = object(properties, {"name", "path"});
   axis["oneOf"] = {{{"required", {"values"}}}, {{"required", {"range"}}}};
   return {{"type", "array"}, {"items", axis}, {"minItems", 1}, {"maxItems", 100}};
@@ -357,7 +407,8 @@ Json conditions() {
   const Json designer{{"required", {"designer"}}};
   Json all_designed{{"properties", {{"pipelines", {{"items", designer}}}}}};
   Json refused;
-  for (const char* key : {"steps", "input", "parameters", "plant", "faults", "additive_faults"}) refused[key] = false;
+  for (const char* key : {"steps", "input", "parameters", "plant", "faults", "additive_faults"})
+    refused[key] = false;
   Json streamed = with_simulate(Json::object(), {"steps"});
   streamed["required"] = {"data"};
   Json one_designed{{"properties", {{"pipelines", {{"contains", designer}}}}}};
@@ -372,11 +423,13 @@ std::string study_json_schema(const Registry& registry) {
   Json properties;
   properties["cordon"] = described({{"const", 1}}, "version of the format");
   properties["title"] = text(1000);
-  properties["plugins"] = described({{"type", "array"}, {"items", text(4096)}, {"uniqueItems", true}},
-                                    "directories of plugins, relative to the folder of the study");
+  properties["plugins"] =
+      described({{"type", "array"}, {"items", text(4096)}, {"uniqueItems", true}},
+                "directories of plugins, relative to the folder of the study");
   properties["system"] = reference("system");
   properties["data"] = reference("data");
-  properties["pipelines"] = {{"type", "array"}, {"items", reference("pipeline")}, {"minItems", 1}, {"maxItems", 1000}};
+  properties["pipelines"] = {
+      {"type", "array"}, {"items", reference("pipeline")}, {"minItems", 1}, {"maxItems", 1000}};
   properties["metrics"] = list_of(reference("metric"));
   properties["sweep"] = described(sweep(), "the study is run under all combinations of the values");
   Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Cordon study"}};

@@ -18,26 +18,31 @@ struct Keeper {
 
 bool concerns(const SweepPath& path, std::size_t pipeline) {
   if (path.steps[0].key == "system") return true;
-  return path.steps[0].key == "pipelines" && (path.steps[1].every || step_index(path.steps[1].key) == pipeline);
+  return path.steps[0].key == "pipelines" &&
+         (path.steps[1].every || step_index(path.steps[1].key) == pipeline);
 }
 
 }  // namespace
 
-std::string StudySource::question(const Registry& registry, std::size_t pipeline, const std::vector<std::size_t>& at) const {
-  std::string key = std::to_string(reinterpret_cast<std::uintptr_t>(&registry)) + ' ' + std::to_string(pipeline);
+std::string StudySource::question(const Registry& registry, std::size_t pipeline,
+                                  const std::vector<std::size_t>& at) const {
+  std::string key =
+      std::to_string(reinterpret_cast<std::uintptr_t>(&registry)) + ' ' + std::to_string(pipeline);
   for (std::size_t i = 0; i < sweep.size(); ++i) {
     if (concerns(sweep[i].path, pipeline)) key += ' ' + std::to_string(at[i]);
   }
   return key;
 }
 
-bool StudySource::is_known(const Registry& registry, std::size_t pipeline, const std::vector<std::size_t>& at) const {
+bool StudySource::is_known(const Registry& registry, std::size_t pipeline,
+                           const std::vector<std::size_t>& at) const {
   const std::string key = question(registry, pipeline, at);
   const std::lock_guard lock(mutex_);
   return known_.count(key) > 0;
 }
 
-void StudySource::remember(const Registry& registry, std::size_t pipeline, const std::vector<std::size_t>& at) const {
+void StudySource::remember(const Registry& registry, std::size_t pipeline,
+                           const std::vector<std::size_t>& at) const {
   std::string key = question(registry, pipeline, at);
   const std::lock_guard lock(mutex_);
   if (known_.size() >= max_known) known_.clear();

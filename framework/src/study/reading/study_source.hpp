@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a study was read from, kept beside it so that its points are read without parsing the file again. Immutable but for the
-// memory of questions, and shared by all copies of the study and by threads.
+// What a study was read from, kept beside it so that its points are read without parsing the file
+// again. Immutable but for the memory of questions, and shared by all copies of the study and by
+// threads.
 #pragma once
 
 #include <memory>
@@ -20,13 +21,16 @@ struct StudySource {
   std::vector<WrittenAxis> sweep;
   std::shared_ptr<const KnownSystem> system;  ///< of the first values
 
-  /// Pipelines need not be asked again whether they go together with a model: they answered yes under the same values of all axes
-  /// that lead into them or into the system.
-  bool is_known(const Registry& registry, std::size_t pipeline, const std::vector<std::size_t>& at) const;
-  void remember(const Registry& registry, std::size_t pipeline, const std::vector<std::size_t>& at) const;
+  /// Pipelines need not be asked again whether they go together with a model: they answered yes
+  /// under the same values of all axes that lead into them or into the system.
+  bool is_known(const Registry& registry, std::size_t pipeline,
+                const std::vector<std::size_t>& at) const;
+  void remember(const Registry& registry, std::size_t pipeline,
+                const std::vector<std::size_t>& at) const;
 
  private:
-  std::string question(const Registry& registry, std::size_t pipeline, const std::vector<std::size_t>& at) const;
+  std::string question(const Registry& registry, std::size_t pipeline,
+                       const std::vector<std::size_t>& at) const;
 
   mutable std::mutex mutex_;
   mutable std::unordered_set<std::string> known_;

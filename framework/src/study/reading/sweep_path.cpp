@@ -18,7 +18,8 @@ bool same_step(const PathStep& a, const PathStep& b) {
 }
 
 bool begins_with(const std::vector<PathStep>& all, const std::vector<PathStep>& first) {
-  return first.size() <= all.size() && std::equal(first.begin(), first.end(), all.begin(), same_step);
+  return first.size() <= all.size() &&
+         std::equal(first.begin(), first.end(), all.begin(), same_step);
 }
 
 Value text_value(const std::string& text, int line) {
@@ -50,7 +51,9 @@ class Draft {
     own().items.push_back(std::move(item));
   }
   /// Nothing if nothing was exchanged.
-  std::optional<Value> changed() const { return parts_ ? std::optional<Value>(value_) : std::nullopt; }
+  std::optional<Value> changed() const {
+    return parts_ ? std::optional<Value>(value_) : std::nullopt;
+  }
 
  private:
   Parts& own() {
@@ -65,7 +68,8 @@ class Draft {
   std::shared_ptr<Parts> parts_;
 };
 
-/// What the schema of a component says about a place: a component of a kind, perhaps one that may be written as a matrix.
+/// What the schema of a component says about a place: a component of a kind, perhaps one that may
+/// be written as a matrix.
 struct Role {
   std::string kind;         ///< empty: not a component
   std::string matrix_type;  ///< of a component that may be written as a matrix
@@ -73,7 +77,8 @@ struct Role {
 
 class Placer {
  public:
-  Placer(const SweepPath& path, const Value& value, const Registry& registry) : path_(path), value_(value), registry_(registry) {}
+  Placer(const SweepPath& path, const Value& value, const Registry& registry)
+      : path_(path), value_(value), registry_(registry) {}
 
   Placement placed(const Value& tree) {
     Placement result;
@@ -85,7 +90,9 @@ class Placer {
     result.suggestion = suggestion_;
     if (result.problem.empty() && places_ == 0 && !reported_) {
       const std::string& last = path_.steps.back().key;
-      result.problem = lacking_.empty() ? "matches nothing" : "no component that it matches has the parameter " + in_quotes(last);
+      result.problem = lacking_.empty()
+                           ? "matches nothing"
+                           : "no component that it matches has the parameter " + in_quotes(last);
       result.suggestion = lacking_.empty() ? "" : suggest(last, lacking_);
     }
     return result;
@@ -113,7 +120,8 @@ class Placer {
   Role role_by_place(std::size_t depth) const {
     const auto is = [&](std::size_t i, const char* key) { return step(i).key == key; };
     static const std::vector<std::string> parts{"backend", "observer", "diagnoser", "designer"};
-    if (depth == 2 && is(0, "pipelines") && std::find(parts.begin(), parts.end(), step(2).key) != parts.end())
+    if (depth == 2 && is(0, "pipelines") &&
+        std::find(parts.begin(), parts.end(), step(2).key) != parts.end())
       return {step(2).key, ""};
     if (depth == 1 && is(0, "metrics")) return {"metric", ""};
     if (depth == 2 && is(0, "data") && is(1, "simulate") && is(2, "plant")) return {"plant", ""};
@@ -130,17 +138,21 @@ class Placer {
       reported_ = true;
       return std::nullopt;
     }
-    if (!role.kind.empty() && !(node.kind == Kind::array && (step(depth).every || step_index(step(depth).key))))
+    if (!role.kind.empty() &&
+        !(node.kind == Kind::array && (step(depth).every || step_index(step(depth).key))))
       return put_into_component(node, depth, role, starred);
     if (step(depth).every) return put_into_all(node, depth);
     if (node.kind == Kind::array) return put_into_array(node, depth, starred);
-    if (node.kind == Kind::object) return put_into_object(node, depth, role_by_place(depth), starred);
-    return fail(pointer(depth) + " is " + std::string(kind_name(node.kind)) + ", it has no " + in_quotes(step(depth).key));
+    if (node.kind == Kind::object)
+      return put_into_object(node, depth, role_by_place(depth), starred);
+    return fail(pointer(depth) + " is " + std::string(kind_name(node.kind)) + ", it has no " +
+                in_quotes(step(depth).key));
   }
 
   std::optional<Value> put_into_all(const Value& node, std::size_t depth) {
     if (node.kind != Kind::array) {
-      return fail(pointer(depth) + " is " + std::string(kind_name(node.kind)) + ", \"*\" stands for the elements of a list",
+      return fail(pointer(depth) + " is " + std::string(kind_name(node.kind)) +
+                      ", \"*\" stands for the elements of a list",
                   node.kind == Kind::object ? suggest("", node.keys()) : "");
     }
     Draft draft(node);
@@ -155,15 +167,18 @@ class Placer {
     const auto index = step_index(step(depth).key);
     if (!index || *index >= node.items().size()) {
       const std::string size = counted(static_cast<Index>(node.items().size()), "element");
-      return fail(pointer(depth) + " is a list of " + size + ", it has no " + in_quotes(step(depth).key),
-                  "elements are counted from 0; \"*\" stands for all of them");
+      return fail(
+          pointer(depth) + " is a list of " + size + ", it has no " + in_quotes(step(depth).key),
+          "elements are counted from 0; \"*\" stands for all of them");
     }
     Draft draft(node);
-    if (auto item = put(node.items()[*index], depth + 1, role_by_place(depth), starred)) draft.set(*index, std::move(*item));
+    if (auto item = put(node.items()[*index], depth + 1, role_by_place(depth), starred))
+      draft.set(*index, std::move(*item));
     return draft.changed();
   }
 
-  std::optional<Value> put_into_object(const Value& node, std::size_t depth, const Role& role, bool starred) {
+  std::optional<Value> put_into_object(const Value& node, std::size_t depth, const Role& role,
+                                       bool starred) {
     const std::string& key = step(depth).key;
     if (is_sparse_matrix(node) && step_index(key)) {
       return fail(pointer(depth) + " is a sparse matrix, its entries have no places",
@@ -173,18 +188,21 @@ class Placer {
     Draft draft(node);
     if (found != node.keys().end()) {
       const auto i = static_cast<std::size_t>(found - node.keys().begin());
-      if (auto item = put(node.items()[i], depth + 1, role, starred)) draft.set(i, std::move(*item));
+      if (auto item = put(node.items()[i], depth + 1, role, starred))
+        draft.set(i, std::move(*item));
     } else if (is_last(depth)) {
       ++places_;
       draft.append(key, value_);
     } else if (!starred) {
-      fail(pointer(depth) + " has no " + in_quotes(key), nearest(key, node.keys()).empty() ? "" : suggest(key, node.keys()));
+      fail(pointer(depth) + " has no " + in_quotes(key),
+           nearest(key, node.keys()).empty() ? "" : suggest(key, node.keys()));
     }
     return draft.changed();
   }
 
   /// A component is an object with its type and parameters, its name alone, or a matrix.
-  std::optional<Value> put_into_component(const Value& node, std::size_t depth, const Role& role, bool starred) {
+  std::optional<Value> put_into_component(const Value& node, std::size_t depth, const Role& role,
+                                          bool starred) {
     Draft object(empty_object(node.line));
     if (node.kind == Kind::text) object.append("type", node);
     if (node.kind == Kind::array && !role.matrix_type.empty()) {
@@ -193,15 +211,17 @@ class Placer {
     }
     const Value component = object.changed().value_or(node);
     if (component.kind != Kind::object || step(depth).every) {
-      return fail(pointer(depth) + " is " + std::string(step(depth).every ? "a component" : kind_name(component.kind)) +
+      return fail(pointer(depth) + " is " +
+                  std::string(step(depth).every ? "a component" : kind_name(component.kind)) +
                   ", it has no " + in_quotes(step(depth).key));
     }
     const std::string& key = step(depth).key;
     Role inner;
     if (key != "type") {
       const Value* type = component.find("type");
-      const ComponentInfo* info =
-          type && type->kind == Kind::text ? (registry_.*shelf_of(role.kind)->info)(type->text()) : nullptr;
+      const ComponentInfo* info = type && type->kind == Kind::text
+                                      ? (registry_.*shelf_of(role.kind)->info)(type->text())
+                                      : nullptr;
       const ParamSpec* spec = info ? info->schema.find(key) : nullptr;
       if (!info) reported_ = true;
       if (info && !spec && starred) {
@@ -225,7 +245,8 @@ class Placer {
 }  // namespace
 
 std::optional<std::size_t> step_index(const std::string& key) {
-  const bool digits = !key.empty() && key.size() < 10 && key.find_first_not_of("0123456789") == std::string::npos;
+  const bool digits =
+      !key.empty() && key.size() < 10 && key.find_first_not_of("0123456789") == std::string::npos;
   if (!digits || (key.size() > 1 && key[0] == '0')) return std::nullopt;
   return std::stoul(key);
 }
@@ -258,9 +279,12 @@ bool SweepPath::ends_at(std::string_view pointer) const {
   return other && other->size() == steps.size() && begins_with(*other, steps);
 }
 
-bool SweepPath::meets(const SweepPath& other) const { return begins_with(steps, other.steps) || begins_with(other.steps, steps); }
+bool SweepPath::meets(const SweepPath& other) const {
+  return begins_with(steps, other.steps) || begins_with(other.steps, steps);
+}
 
-Placement place(const Value& tree, const SweepPath& path, const Value& value, const Registry& registry) {
+Placement place(const Value& tree, const SweepPath& path, const Value& value,
+                const Registry& registry) {
   return Placer(path, value, registry).placed(tree);
 }
 

@@ -39,14 +39,17 @@ std::optional<std::size_t> step_index(const std::string& key);
 /// A tree with a value in every place that a path matches.
 struct Placement {
   Value tree;
-  bool reported = false;            ///< nothing is matched, but a broken value or an unknown component may be the reason
+  bool reported =
+      false;  ///< nothing is matched, but a broken value or an unknown component may be the reason
   std::size_t places = 0;           ///< that were written
   std::string problem, suggestion;  ///< why it could not be put there
 };
 
-/// Puts `value` into every place of `tree` that `path` matches. A parameter that is absent is added; components that "*" matches
-/// and that do not have the parameter are left as they are. The name of a component becomes an object where parameters are added.
-/// Only what is on the way is copied.
-Placement place(const Value& tree, const SweepPath& path, const Value& value, const Registry& registry);
+/// Puts `value` into every place of `tree` that `path` matches. A parameter that is absent is
+/// added; components that "*" matches and that do not have the parameter are left as they are. The
+/// name of a component becomes an object where parameters are added. Only what is on the way is
+/// copied.
+Placement place(const Value& tree, const SweepPath& path, const Value& value,
+                const Registry& registry);
 
 }  // namespace cordon::json

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a report shows, apart from how: made from the files of a run, drawn as a page, as SVG, or written as CSV.
+// What a report shows, apart from how: made from the files of a run, drawn as a page, as SVG, or
+// written as CSV.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +53,8 @@ struct Plot {
 struct Polygon {
   int pipeline = 0;
   std::vector<double> x, y;
-  std::vector<bool> open = {};  ///< per edge i → i+1: it lies on the frame, the set goes on beyond it; empty: none does
+  std::vector<bool> open =
+      {};  ///< per edge i → i+1: it lies on the frame, the set goes on beyond it; empty: none does
 };
 
 /// The sets of all pipelines at one time.
@@ -82,7 +84,8 @@ struct Timeline {
   std::vector<Mark> marks;
 };
 
-/// Intervals that must not overlap, in rows: two tubes seen along the direction that separates them.
+/// Intervals that must not overlap, in rows: two tubes seen along the direction that separates
+/// them.
 struct Intervals {
   struct Row {
     std::string name;
@@ -115,11 +118,13 @@ struct Figure {
 
 struct Report {
   std::string title;
-  std::vector<std::string> pipelines;                         ///< names, in the order of the colours
-  std::vector<std::string> notes;                             ///< what a reader must know first: violations, errors, decimation
-  std::vector<Figure> figures;                                ///< in the order of the page
-  std::vector<std::pair<std::string, std::string>> versions;  ///< program, tools, plugins, hash of the study, host
-  std::string study;                                          ///< the resolved study, JSON text
+  std::vector<std::string> pipelines;  ///< names, in the order of the colours
+  std::vector<std::string>
+      notes;                    ///< what a reader must know first: violations, errors, decimation
+  std::vector<Figure> figures;  ///< in the order of the page
+  std::vector<std::pair<std::string, std::string>>
+      versions;       ///< program, tools, plugins, hash of the study, host
+  std::string study;  ///< the resolved study, JSON text
 };
 
 }  // namespace cordon::report

@@ -33,24 +33,28 @@ std::string name_of(Timeline::State state) {
 }
 
 std::string table_of(const Plot& plot, const Report& report) {
-  std::string text = joined({"pipeline", "series", csv_field(plot.x_label), csv_field(plot.y_label), "upper"});
+  std::string text =
+      joined({"pipeline", "series", csv_field(plot.x_label), csv_field(plot.y_label), "upper"});
   for (const Series& series : plot.series) {
     for (std::size_t i = 0; i < series.x.size(); ++i) {
       const auto name = static_cast<std::size_t>(series.x[i]);
-      const std::string x = plot.x_names.empty() || !(series.x[i] >= 0) || name >= plot.x_names.size()
-                                ? csv_number(series.x[i])
-                                : csv_field(plot.x_names[name]);
-      text += joined({pipeline_field(report, series.pipeline), csv_field(series.name), x, csv_number(series.y[i]),
+      const std::string x =
+          plot.x_names.empty() || !(series.x[i] >= 0) || name >= plot.x_names.size()
+              ? csv_number(series.x[i])
+              : csv_field(plot.x_names[name]);
+      text += joined({pipeline_field(report, series.pipeline), csv_field(series.name), x,
+                      csv_number(series.y[i]),
                       i < series.upper.size() ? csv_number(series.upper[i]) : ""});
     }
   }
   return text;
 }
 
-/// One row per vertex; an empty set has one row without numbers. The truth stands in a row without a pipeline.
+/// One row per vertex; an empty set has one row without numbers. The truth stands in a row without
+/// a pipeline.
 std::string table_of(const Projection& projection, const Report& report) {
-  std::string text =
-      joined({"k", "pipeline", "vertex", csv_field(projection.x_label), csv_field(projection.y_label), "edge_to_next"});
+  std::string text = joined({"k", "pipeline", "vertex", csv_field(projection.x_label),
+                             csv_field(projection.y_label), "edge_to_next"});
   for (const SetFrame& frame : projection.frames) {
     const std::string k = std::to_string(frame.k);
     for (const Polygon& set : frame.sets) {
@@ -58,10 +62,13 @@ std::string table_of(const Projection& projection, const Report& report) {
       if (set.x.empty()) text += joined({k, name, "", "", "", "empty"});
       for (std::size_t i = 0; i < set.x.size(); ++i) {
         const bool open = i < set.open.size() && set.open[i];
-        text += joined({k, name, std::to_string(i), csv_number(set.x[i]), csv_number(set.y[i]), open ? "open" : "edge"});
+        text += joined({k, name, std::to_string(i), csv_number(set.x[i]), csv_number(set.y[i]),
+                        open ? "open" : "edge"});
       }
     }
-    if (frame.truth) text += joined({k, "", "", csv_number(frame.truth->first), csv_number(frame.truth->second), "truth"});
+    if (frame.truth)
+      text += joined(
+          {k, "", "", csv_number(frame.truth->first), csv_number(frame.truth->second), "truth"});
   }
   return text;
 }
@@ -69,17 +76,21 @@ std::string table_of(const Projection& projection, const Report& report) {
 std::string table_of(const Timeline& timeline, const Report&) {
   std::string text = joined({"row", "from", "to", "state"});
   for (const Timeline::Span& span : timeline.spans) {
-    const std::string row = span.row < timeline.rows.size() ? csv_field(timeline.rows[span.row]) : "";
+    const std::string row =
+        span.row < timeline.rows.size() ? csv_field(timeline.rows[span.row]) : "";
     text += joined({row, csv_number(span.from), csv_number(span.to), name_of(span.state)});
   }
   return text;
 }
 
 std::string table_of(const Intervals& intervals, const Report&) {
-  std::string text = joined({"name", "first", "first_lower", "first_upper", "second", "second_lower", "second_upper", "verdict"});
+  std::string text = joined({"name", "first", "first_lower", "first_upper", "second",
+                             "second_lower", "second_upper", "verdict"});
   for (const Intervals::Row& row : intervals.rows) {
-    text += joined({csv_field(row.name), csv_field(row.first), csv_number(row.first_lower), csv_number(row.first_upper),
-                    csv_field(row.second), csv_number(row.second_lower), csv_number(row.second_upper), csv_field(row.verdict)});
+    text +=
+        joined({csv_field(row.name), csv_field(row.first), csv_number(row.first_lower),
+                csv_number(row.first_upper), csv_field(row.second), csv_number(row.second_lower),
+                csv_number(row.second_upper), csv_field(row.verdict)});
   }
   return text;
 }

@@ -7,7 +7,8 @@
 
 namespace cordon::report {
 
-/// The numbers of a figure as a table with a header, one row per point, vertex, span, interval or row.
+/// The numbers of a figure as a table with a header, one row per point, vertex, span, interval or
+/// row.
 std::string csv_of(const Figure& figure, const Report& report);
 
 }  // namespace cordon::report

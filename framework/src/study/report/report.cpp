@@ -23,13 +23,18 @@ void commit(detail::AtomicDirectory& directory, Files& files) {
 
 /// Figures of earlier results: drawings and tables that are none of this report.
 void remove_others(const std::filesystem::path& directory, const report::Report& report) {
-  const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
   Files others;
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
     const std::string name = entry.path().stem().string(), kind = entry.path().extension().string();
-    if (!entry.is_regular_file() || (kind != ".svg" && kind != ".csv") || !std::all_of(name.begin(), name.end(), plain)) continue;
+    if (!entry.is_regular_file() || (kind != ".svg" && kind != ".csv") ||
+        !std::all_of(name.begin(), name.end(), plain))
+      continue;
     const auto is_it = [&](const report::Figure& figure) { return figure.id == name; };
-    if (std::none_of(report.figures.begin(), report.figures.end(), is_it)) others.push_back(entry.path());
+    if (std::none_of(report.figures.begin(), report.figures.end(), is_it))
+      others.push_back(entry.path());
   }
   for (const std::filesystem::path& file : others) std::filesystem::remove(file);
 }
@@ -40,9 +45,11 @@ namespace {
 
 Files write_figures(const std::filesystem::path& directory, const ReportOptions& options) {
   Files files;
-  // Others' figures go from that folder: a link in its place could lead to files that are none of this program's.
+  // Others' figures go from that folder: a link in its place could lead to files that are none of
+  // this program's.
   if ((options.svg || options.csv) && std::filesystem::is_symlink(directory / "figures")) {
-    throw InputError((directory / "figures").string(), {{"", "is a symbolic link", "remove the link"}});
+    throw InputError((directory / "figures").string(),
+                     {{"", "is a symbolic link", "remove the link"}});
   }
   if (options.html || options.svg) {
     const report::Report page = report::read_report(directory);
@@ -53,7 +60,8 @@ Files write_figures(const std::filesystem::path& directory, const ReportOptions&
     }
     if (options.svg) {
       detail::AtomicDirectory out(directory / "figures");
-      for (const report::Figure& figure : page.figures) out.create(figure.id + ".svg").write(report::svg_of(figure, page));
+      for (const report::Figure& figure : page.figures)
+        out.create(figure.id + ".svg").write(report::svg_of(figure, page));
       commit(out, files);
       remove_others(directory / "figures", page);
     }
@@ -61,7 +69,8 @@ Files write_figures(const std::filesystem::path& directory, const ReportOptions&
   if (options.csv) {
     const report::Report all = report::read_report(directory, report::Detail::all);
     detail::AtomicDirectory out(directory / "figures");
-    for (const report::Figure& figure : all.figures) out.create(figure.id + ".csv").write(report::csv_of(figure, all));
+    for (const report::Figure& figure : all.figures)
+      out.create(figure.id + ".csv").write(report::csv_of(figure, all));
     commit(out, files);
     remove_others(directory / "figures", all);
   }
@@ -74,15 +83,18 @@ Files write_report(const std::filesystem::path& directory, const ReportOptions& 
   std::error_code failed;
   if (!std::filesystem::is_directory(directory, failed)) {
     throw InputError(directory.string(),
-                     {{"", "is no directory", "name the directory that \"cordon run\" wrote its results to", 0}});
+                     {{"", "is no directory",
+                       "name the directory that \"cordon run\" wrote its results to", 0}});
   }
   const detail::DirectoryLock lock(directory);
   return write_figures(directory, options);
 }
 
-std::string report::try_report(const detail::DirectoryLock& directory, std::vector<std::filesystem::path>& files) noexcept {
+std::string report::try_report(const detail::DirectoryLock& directory,
+                               std::vector<std::filesystem::path>& files) noexcept {
   try {
-    for (std::filesystem::path& file : write_figures(directory.directory(), {})) files.push_back(std::move(file));
+    for (std::filesystem::path& file : write_figures(directory.directory(), {}))
+      files.push_back(std::move(file));
     return "";
   } catch (const std::exception& error) {
     return error.what();

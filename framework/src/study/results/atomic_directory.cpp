@@ -23,12 +23,14 @@ constexpr const char* prefix = ".partial-";
   throw Error(Errc::io, what + " " + path.string() + ": " + why);
 }
 
-int open_directory(const fs::path& path) { return ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW); }
+int open_directory(const fs::path& path) {
+  return ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+}
 
 bool same_directory(int descriptor, const fs::path& path) {
   struct stat held, there;
-  return ::fstat(descriptor, &held) == 0 && ::lstat(path.c_str(), &there) == 0 && held.st_dev == there.st_dev &&
-         held.st_ino == there.st_ino;
+  return ::fstat(descriptor, &held) == 0 && ::lstat(path.c_str(), &there) == 0 &&
+         held.st_dev == there.st_dev && held.st_ino == there.st_ino;
 }
 
 /// No signal is delivered to this thread while it lives.
@@ -50,7 +52,10 @@ class SignalsBlocked {
 }  // namespace
 
 AtomicDirectory::AtomicDirectory(fs::path target, bool whole, Rename rename)
-    : target_(fs::absolute(target).lexically_normal()), whole_(whole), rename_(std::move(rename)), made_(target_) {
+    : target_(fs::absolute(target).lexically_normal()),
+      whole_(whole),
+      rename_(std::move(rename)),
+      made_(target_) {
   try {
     remove_leftovers();
     make_partial();
@@ -60,7 +65,8 @@ AtomicDirectory::AtomicDirectory(fs::path target, bool whole, Rename rename)
   }
 }
 
-AtomicDirectory::AtomicDirectory(fs::path target) : AtomicDirectory(std::move(target), false, rename_file) {}
+AtomicDirectory::AtomicDirectory(fs::path target)
+    : AtomicDirectory(std::move(target), false, rename_file) {}
 
 AtomicDirectory::AtomicDirectory(const DirectoryLock& lock, Rename rename)
     : AtomicDirectory(lock.directory(), true, std::move(rename)) {}
@@ -69,12 +75,14 @@ AtomicDirectory::~AtomicDirectory() { discard(); }
 
 void AtomicDirectory::remove_leftovers() const {
   std::error_code error;
-  for (fs::directory_iterator entry(target_, error), end; !error && entry != end; entry.increment(error)) {
+  for (fs::directory_iterator entry(target_, error), end; !error && entry != end;
+       entry.increment(error)) {
     if (!entry->path().filename().string().starts_with(prefix)) continue;
     const int owner = open_directory(entry->path());
     if (owner < 0) continue;
     std::error_code ignored;
-    if (::flock(owner, LOCK_EX | LOCK_NB) == 0) fs::remove_all(entry->path(), ignored);  // nobody alive holds it
+    if (::flock(owner, LOCK_EX | LOCK_NB) == 0)
+      fs::remove_all(entry->path(), ignored);  // nobody alive holds it
     ::close(owner);
   }
 }
@@ -115,7 +123,8 @@ std::vector<fs::path> AtomicDirectory::commit() {
   std::vector<fs::path> results;
   for (const auto& [name, file] : files_) {
     std::error_code ignored;
-    if (fs::is_directory(target_ / name, ignored)) fail(target_ / name, "cannot replace", "it is a directory");
+    if (fs::is_directory(target_ / name, ignored))
+      fail(target_ / name, "cannot replace", "it is a directory");
     file->close();
     results.push_back(target_ / name);
   }
@@ -127,14 +136,16 @@ std::vector<fs::path> AtomicDirectory::commit() {
     const fs::path committed = target_ / committed_folder;
     write_manifest();
     sync_names(partial_);
-    if (rename_(partial_.c_str(), committed.c_str()) != 0) fail(committed, "cannot make", std::strerror(errno));
+    if (rename_(partial_.c_str(), committed.c_str()) != 0)
+      fail(committed, "cannot make", std::strerror(errno));
     partial_.clear();  // from here on these are the results
     sync_names(target_);
     publish(target_, rename_);
   } else {
     for (const auto& [name, file] : files_) {
       const fs::path final = target_ / name;
-      if (rename_((partial_ / name).c_str(), final.c_str()) != 0) fail(final, "cannot replace", std::strerror(errno));
+      if (rename_((partial_ / name).c_str(), final.c_str()) != 0)
+        fail(final, "cannot replace", std::strerror(errno));
     }
     sync_names(target_);
   }

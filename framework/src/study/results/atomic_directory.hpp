@@ -24,7 +24,7 @@ class OutputFile final : public Sink {
   OutputFile& operator=(const OutputFile&) = delete;
 
   void write(std::string_view bytes) override;
-  void close();                 ///< writes what is buffered, waits until it is on the disk, and closes
+  void close();  ///< writes what is buffered, waits until it is on the disk, and closes
   ManifestEntry entry() const;  ///< of all that was written and is no longer buffered
 
  private:
@@ -37,15 +37,17 @@ class OutputFile final : public Sink {
   Fnv1a64 hash_;
 };
 
-/// Files under `<target>/.partial-<pid>-<n>/` until `commit` moves them into `target`. Destroyed before that, it removes its
-/// files and the directories it made, and `target` is as it was. Leftovers of processes that were killed are removed at the
-/// start: a living owner holds a lock on its directory. Throws Errc::io: `target` is a file, or cannot be written to.
+/// Files under `<target>/.partial-<pid>-<n>/` until `commit` moves them into `target`. Destroyed
+/// before that, it removes its files and the directories it made, and `target` is as it was.
+/// Leftovers of processes that were killed are removed at the start: a living owner holds a lock on
+/// its directory. Throws Errc::io: `target` is a file, or cannot be written to.
 class AtomicDirectory {
  public:
   /// For files that stand beside others: each appears whole, one after another.
   explicit AtomicDirectory(std::filesystem::path target);
-  /// For results: they appear all or none, with a manifest, and take the place of earlier ones. Whatever the process dies of, the
-  /// directory holds the earlier results or the new ones. `lock` is held longer than this object lives.
+  /// For results: they appear all or none, with a manifest, and take the place of earlier ones.
+  /// Whatever the process dies of, the directory holds the earlier results or the new ones. `lock`
+  /// is held longer than this object lives.
   explicit AtomicDirectory(const DirectoryLock& lock, Rename rename = rename_file);
   ~AtomicDirectory();
   AtomicDirectory(const AtomicDirectory&) = delete;
@@ -54,7 +56,8 @@ class AtomicDirectory {
   const std::filesystem::path& path() const { return target_; }
   /// Opens a new file; it belongs to this object.
   OutputFile& create(const std::string& name);
-  /// Closes all files and moves them into the target in the order of creation, with signals blocked. Returns their final paths.
+  /// Closes all files and moves them into the target in the order of creation, with signals
+  /// blocked. Returns their final paths.
   std::vector<std::filesystem::path> commit();
 
  private:

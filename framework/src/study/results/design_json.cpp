@@ -22,7 +22,8 @@ void text_or_null(JsonWriter& json, std::string_view key, const std::string& tex
 
 void write_pair(JsonWriter& json, const ModeNames& modes, Index i, Index j) {
   json.key("modes").begin_array();
-  for (const Index mode : {i, j}) json.value(std::string_view(modes.at(static_cast<std::size_t>(mode))));
+  for (const Index mode : {i, j})
+    json.value(std::string_view(modes.at(static_cast<std::size_t>(mode))));
   json.end_array();
 }
 
@@ -45,12 +46,17 @@ void write_best(JsonWriter& json, const DesignOutcome& outcome, const ModeNames&
     return;
   }
   const InputDesign& design = *outcome.best;
-  json.member("cost", design.cost).key("u").matrix(design.u).member("separates", to_string(design.separates()));
+  json.member("cost", design.cost)
+      .key("u")
+      .matrix(design.u)
+      .member("separates", to_string(design.separates()));
   json.key("pairs").begin_array(Layout::lines);
   for (const PairSeparation& pair : design.pairs) {
     json.begin_object();
     write_pair(json, modes, pair.i, pair.j);
-    json.member("kappa", pair.kappa).member("kappa_lower", pair.kappa_lower).member("disjoint", to_string(pair.disjoint));
+    json.member("kappa", pair.kappa)
+        .member("kappa_lower", pair.kappa_lower)
+        .member("disjoint", to_string(pair.disjoint));
     json.key("proof");
     write(json, pair.why);
     json.end_object();
@@ -62,17 +68,25 @@ void write_best(JsonWriter& json, const DesignOutcome& outcome, const ModeNames&
 }  // namespace
 
 void write(JsonWriter& json, const DesignOutcome& outcome, const ModeNames& modes) {
-  json.begin_object(Layout::lines).member("status", to_string(outcome.status)).member("horizon", outcome.horizon);
-  json.member("epsilon", outcome.epsilon).member("outputs", outcome.last_output_only ? "last" : "all").key("admissible_set");
+  json.begin_object(Layout::lines)
+      .member("status", to_string(outcome.status))
+      .member("horizon", outcome.horizon);
+  json.member("epsilon", outcome.epsilon)
+      .member("outputs", outcome.last_output_only ? "last" : "all")
+      .key("admissible_set");
   outcome.admissible_set ? write(json, *outcome.admissible_set) : void(json.null());
   write_best(json, outcome, modes);
   json.member("lower_bound", outcome.lower_bound).key("restriction");
   if (const auto& restriction = outcome.restriction) {
-    json.begin_object().member("problem", restriction->name).member("lower_bound", restriction->lower_bound).end_object();
+    json.begin_object()
+        .member("problem", restriction->name)
+        .member("lower_bound", restriction->lower_bound)
+        .end_object();
   } else {
     json.null();
   }
-  json.member("gap", std::isfinite(outcome.gap()) ? outcome.gap() : none).member("stopped", outcome.stopped);
+  json.member("gap", std::isfinite(outcome.gap()) ? outcome.gap() : none)
+      .member("stopped", outcome.stopped);
   text_or_null(json, "reason", outcome.reason);
   text_or_null(json, "suggestion", outcome.suggestion);
   json.key("tried").begin_array(outcome.tried.empty() ? Layout::line : Layout::lines);
@@ -81,12 +95,19 @@ void write(JsonWriter& json, const DesignOutcome& outcome, const ModeNames& mode
     text_or_null(json, "reason", trial.reason);
     json.end_object();
   }
-  json.end_array().key("search").begin_object().member("nodes", outcome.nodes).member("programs", outcome.programs);
+  json.end_array()
+      .key("search")
+      .begin_object()
+      .member("nodes", outcome.nodes)
+      .member("programs", outcome.programs);
   json.member("facets", outcome.facets).end_object().end_object();
 }
 
 void write(JsonWriter& json, const ExactSeparation& exact, const ModeNames& modes) {
-  json.begin_object(Layout::lines).member("separates", to_string(exact.separates())).key("pairs").begin_array(Layout::lines);
+  json.begin_object(Layout::lines)
+      .member("separates", to_string(exact.separates()))
+      .key("pairs")
+      .begin_array(Layout::lines);
   for (const ExactPair& pair : exact.pairs) {
     json.begin_object();
     write_pair(json, modes, pair.i, pair.j);
@@ -104,7 +125,8 @@ void write(JsonWriter& json, const ExactSeparation& exact, const ModeNames& mode
   json.end_array().end_object();
 }
 
-void write(JsonWriter& json, const std::vector<ExperimentRow>& experiments, const ModeNames& modes) {
+void write(JsonWriter& json, const std::vector<ExperimentRow>& experiments,
+           const ModeNames& modes) {
   json.begin_array(experiments.empty() ? Layout::line : Layout::lines);
   for (const ExperimentRow& row : experiments) {
     json.begin_object();
@@ -135,8 +157,12 @@ std::string text_of(const Item& item, const std::vector<std::string>& modes) {
 
 }  // namespace
 
-std::string json_of(const DesignOutcome& outcome, const std::vector<std::string>& modes) { return text_of(outcome, modes); }
+std::string json_of(const DesignOutcome& outcome, const std::vector<std::string>& modes) {
+  return text_of(outcome, modes);
+}
 
-std::string json_of(const ExactSeparation& exact, const std::vector<std::string>& modes) { return text_of(exact, modes); }
+std::string json_of(const ExactSeparation& exact, const std::vector<std::string>& modes) {
+  return text_of(exact, modes);
+}
 
 }  // namespace cordon

@@ -43,8 +43,12 @@ void write_rate(JsonWriter& json, std::string_view key, std::int64_t count, std:
 void write(JsonWriter& json, const ModeStatistics& counts, const Names& modes) {
   json.begin_object();
   write_mode(json, "mode", modes, counts.mode);
-  json.member("segments", counts.segments).member("detected", counts.detected).member("isolated", counts.isolated);
-  json.member("missed", counts.missed).member("wrong", counts.wrong).member("unknown_fault", counts.unknown_fault);
+  json.member("segments", counts.segments)
+      .member("detected", counts.detected)
+      .member("isolated", counts.isolated);
+  json.member("missed", counts.missed)
+      .member("wrong", counts.wrong)
+      .member("unknown_fault", counts.unknown_fault);
   write_rate(json, "missed_rate", counts.missed, counts.segments);
   write_rate(json, "wrong_rate", counts.wrong, counts.segments);
   write_rate(json, "unknown_fault_rate", counts.unknown_fault, counts.segments);
@@ -62,7 +66,10 @@ void write_list(JsonWriter& json, std::string_view key, const Items& items, cons
 
 void write(JsonWriter& json, const JudgedBound& judged) {
   const FaultBound& bound = judged.bound;
-  json.begin_object().member("fault", bound.fault + 1).member("at", bound.at).member("lower", bound.lower);
+  json.begin_object()
+      .member("fault", bound.fault + 1)
+      .member("at", bound.at)
+      .member("lower", bound.lower);
   json.member("upper", bound.upper).member("estimate", bound.estimate);
   if (judged.truth) json.member("truth", *judged.truth);
   json.end_object();
@@ -72,7 +79,9 @@ void write(JsonWriter& json, const FaultStatistics& counts) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   json.begin_object().member("fault", counts.fault + 1);
   write_time(json, "delay", counts.delay);
-  json.member("bounds", counts.bounds).member("checked", counts.checked).member("outside", counts.outside);
+  json.member("bounds", counts.bounds)
+      .member("checked", counts.checked)
+      .member("outside", counts.outside);
   json.member("excluded_0", counts.excluded_0);
   json.member("mean_half_width", counts.bounds > 0 ? counts.mean_half_width : none);
   json.member("last_half_width", counts.bounds > 0 ? counts.last_half_width : none);
@@ -123,11 +132,17 @@ void write_delays(JsonWriter& json, std::string_view key, const DelayStatistics&
     json.null();
     return;
   }
-  json.begin_object().member("min", delays.min).member("median", delays.median).member("max", delays.max).end_object();
+  json.begin_object()
+      .member("min", delays.min)
+      .member("median", delays.median)
+      .member("max", delays.max)
+      .end_object();
 }
 
 void write(JsonWriter& json, const ModeEvidence& evidence) {
-  json.begin_object().member("candidate", evidence.candidate).member("consistent", to_string(evidence.consistent));
+  json.begin_object()
+      .member("candidate", evidence.candidate)
+      .member("consistent", to_string(evidence.consistent));
   if (evidence.residual.dim() > 0) write_box(json, "residual", evidence.residual);
   if (evidence.reset_residual.dim() > 0) write_box(json, "reset_residual", evidence.reset_residual);
   if (evidence.why.kind != Certificate::Kind::none) {
@@ -165,7 +180,10 @@ void write_members(JsonWriter& json, const DiagnosisOutcome& outcome) {
   for (const FaultStatistics& counts : outcome.faults) write(json, counts);
   json.end_array().key("fault_outside");
   if (const auto& outside = outcome.fault_outside) {
-    json.begin_object().member("k", outside->k).member("at", outside->at).member("fault", outside->fault + 1);
+    json.begin_object()
+        .member("k", outside->k)
+        .member("at", outside->at)
+        .member("fault", outside->fault + 1);
     json.member("seed_offset", outside->seed_offset).end_object();
   } else {
     json.null();
@@ -173,7 +191,9 @@ void write_members(JsonWriter& json, const DiagnosisOutcome& outcome) {
 }
 
 void write(JsonWriter& json, const Guarantees& guarantees, const Names& modes) {
-  json.begin_object(Layout::lines).member("method", guarantees.method).member("all", to_string(guarantees.all));
+  json.begin_object(Layout::lines)
+      .member("method", guarantees.method)
+      .member("all", to_string(guarantees.all));
   json.key("pairs").begin_array(guarantees.pairs.empty() ? Layout::line : Layout::lines);
   for (const PairGuarantee& pair : guarantees.pairs) {
     json.begin_object();

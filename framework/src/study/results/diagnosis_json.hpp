@@ -17,7 +17,8 @@ struct JudgedBound {
 };
 
 /// The name of a mode as a value; null for -1.
-void write_mode(JsonWriter& json, std::string_view key, const std::vector<std::string>& modes, Index mode);
+void write_mode(JsonWriter& json, std::string_view key, const std::vector<std::string>& modes,
+                Index mode);
 
 /// {min, median, max}; null if there are none.
 void write_delays(JsonWriter& json, std::string_view key, const DelayStatistics& delays);

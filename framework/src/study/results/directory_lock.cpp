@@ -42,7 +42,9 @@ std::string holder(int descriptor) {
 MadeDirectories::MadeDirectories(const fs::path& directory) {
   std::vector<fs::path> missing;
   std::error_code error;
-  for (fs::path at = directory; !fs::exists(at, error) && at.has_relative_path(); at = at.parent_path()) missing.push_back(at);
+  for (fs::path at = directory; !fs::exists(at, error) && at.has_relative_path();
+       at = at.parent_path())
+    missing.push_back(at);
   if (missing.empty() && !fs::is_directory(directory, error)) {
     fail(directory, "cannot write results to", "it is a file; name a directory");
   }
@@ -64,7 +66,9 @@ MadeDirectories::~MadeDirectories() {
 }
 
 DirectoryLock::DirectoryLock(const fs::path& directory)
-    : directory_(fs::absolute(directory).lexically_normal()), file_(directory_ / ".cordon-lock"), made_(directory_) {
+    : directory_(fs::absolute(directory).lexically_normal()),
+      file_(directory_ / ".cordon-lock"),
+      made_(directory_) {
   take();
   try {
     sign();
@@ -80,7 +84,8 @@ DirectoryLock::~DirectoryLock() { release(); }
 /// The lock is on a file, not on the directory: network file systems lock nothing else.
 void DirectoryLock::take() {
   for (;;) {
-    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    descriptor_ =
+        ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (descriptor_ < 0) fail(directory_, "cannot write results to", std::strerror(errno));
     struct stat held, there;
     if (::fstat(descriptor_, &held) != 0 || !S_ISREG(held.st_mode)) {
@@ -90,18 +95,21 @@ void DirectoryLock::take() {
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       const std::string who = holder(descriptor_);
       ::close(std::exchange(descriptor_, -1));
-      throw InputError(directory_.string(),
-                       {{"", who + " is writing results into this directory", "wait for its end, or name another \"--out\""}});
+      throw InputError(directory_.string(), {{"", who + " is writing results into this directory",
+                                              "wait for its end, or name another \"--out\""}});
     }
     // The holder removes the file as it goes: a lock on one that has gone keeps nobody out.
-    if (::lstat(file_.c_str(), &there) == 0 && held.st_dev == there.st_dev && held.st_ino == there.st_ino) return;
+    if (::lstat(file_.c_str(), &there) == 0 && held.st_dev == there.st_dev &&
+        held.st_ino == there.st_ino)
+      return;
     ::close(std::exchange(descriptor_, -1));
   }
 }
 
 /// For those who come while it is held.
 void DirectoryLock::sign() const {
-  const std::string text = "process " + std::to_string(::getpid()) + " on " + this_host().name + ", begun " + utc_now() + "\n";
+  const std::string text = "process " + std::to_string(::getpid()) + " on " + this_host().name +
+                           ", begun " + utc_now() + "\n";
   if (::ftruncate(descriptor_, 0) != 0) return;
   const ssize_t written = ::pwrite(descriptor_, text.data(), text.size(), 0);
   if (written < 0) return;  // a full disk: the lock holds without

@@ -7,7 +7,8 @@
 
 namespace cordon::detail {
 
-/// Makes a directory with those above it that are missing; destroyed, it removes those of them that are empty. Throws Errc::io.
+/// Makes a directory with those above it that are missing; destroyed, it removes those of them that
+/// are empty. Throws Errc::io.
 class MadeDirectories {
  public:
   explicit MadeDirectories(const std::filesystem::path& directory);
@@ -19,9 +20,10 @@ class MadeDirectories {
   std::vector<std::filesystem::path> made_;  ///< outermost first
 };
 
-/// Holds a directory, which is made if it is missing, by a lock on its file .cordon-lock; the file goes with the object. What a
-/// writer that has died while it put its results in place has left is finished first. Throws InputError: another process holds
-/// it, and which; Errc::io: the file cannot be written. Where the file system knows no locks, nobody is kept out.
+/// Holds a directory, which is made if it is missing, by a lock on its file .cordon-lock; the file
+/// goes with the object. What a writer that has died while it put its results in place has left is
+/// finished first. Throws InputError: another process holds it, and which; Errc::io: the file
+/// cannot be written. Where the file system knows no locks, nobody is kept out.
 class DirectoryLock {
  public:
   explicit DirectoryLock(const std::filesystem::path& directory);

@@ -12,7 +12,11 @@ using Layout = JsonWriter::Layout;
 void begin_results_file(JsonWriter& json, const Study& study, const Registry& registry) {
   const BuildInfo build = build_info();
   json.begin_object(Layout::lines).member("cordon_results", 1);
-  json.key("cordon").begin_object().member("version", build.version).member("abi_tag", build.abi_tag).end_object();
+  json.key("cordon")
+      .begin_object()
+      .member("version", build.version)
+      .member("abi_tag", build.abi_tag)
+      .end_object();
   json.key("tools").begin_object();
   for (const auto& [tool, version] : build.tools) json.member(tool, version);
   json.end_object();
@@ -27,14 +31,26 @@ void begin_results_file(JsonWriter& json, const Study& study, const Registry& re
   study.resolved.empty() ? json.null() : json.raw(study.resolved);
 }
 
-void begin_run_file(JsonWriter& json, const Study& study, const Registry& registry, const std::string& started) {
+void begin_run_file(JsonWriter& json, const Study& study, const Registry& registry,
+                    const std::string& started) {
   const Host host = this_host();
-  json.begin_object(Layout::lines).member("cordon_run", 1).member("study", study.file.string()).member("started", started);
-  json.key("host").begin_object().member("name", host.name).member("system", host.system).member("cpu", host.cpu).end_object();
+  json.begin_object(Layout::lines)
+      .member("cordon_run", 1)
+      .member("study", study.file.string())
+      .member("started", started);
+  json.key("host")
+      .begin_object()
+      .member("name", host.name)
+      .member("system", host.system)
+      .member("cpu", host.cpu)
+      .end_object();
   json.key("plugins").begin_array(Layout::lines);
   for (const PluginReport& report : registry.reports()) {
     if (report.state != PluginReport::State::loaded) continue;
-    json.begin_object().member("name", report.name).member("file", report.file.string()).end_object();
+    json.begin_object()
+        .member("name", report.name)
+        .member("file", report.file.string())
+        .end_object();
   }
   json.end_array();
   json.key("warnings").begin_array(Layout::lines);

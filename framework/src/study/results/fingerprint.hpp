@@ -7,7 +7,8 @@
 
 namespace cordon::detail {
 
-/// FNV-1a with 64 bits of bytes that come piece by piece. Two texts that differ in one byte never have the same.
+/// FNV-1a with 64 bits of bytes that come piece by piece. Two texts that differ in one byte never
+/// have the same.
 class Fnv1a64 {
  public:
   void add(std::string_view text) {

@@ -35,8 +35,12 @@ std::string escaped(char c) {
 
 // Table 3-7 of the Unicode standard.
 std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
-  const auto within = [&](std::size_t i, unsigned low, unsigned high) { return byte(i) >= low && byte(i) <= high; };
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const auto within = [&](std::size_t i, unsigned low, unsigned high) {
+    return byte(i) >= low && byte(i) <= high;
+  };
   const unsigned lead = byte(0);
   if (lead < 0x80) return 1;
   if (lead >= 0xC2 && lead <= 0xDF) return within(1, 0x80, 0xBF) ? 2 : 0;
@@ -65,7 +69,9 @@ std::string json_string(std::string_view text) {
   return out + '"';
 }
 
-void JsonWriter::new_line(std::size_t depth) { sink_->write(std::string(1, '\n').append(2 * depth, ' ')); }
+void JsonWriter::new_line(std::size_t depth) {
+  sink_->write(std::string(1, '\n').append(2 * depth, ' '));
+}
 
 /// What stands between the previous value and the next one.
 void JsonWriter::separate() {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// JSON as a stream: nothing of the document is kept, so that a file of any length takes constant memory.
+// JSON as a stream: nothing of the document is kept, so that a file of any length takes constant
+// memory.
 #pragma once
 
 #include <concepts>
@@ -16,12 +17,13 @@ namespace cordon::detail {
 /// Length of the well-formed UTF-8 sequence at the front of `text`, 0 if there is none.
 std::size_t utf8_length(std::string_view text);
 
-/// Text as a JSON string with its quotes: `"`, `\` and control characters escaped, bytes that are no UTF-8 replaced by U+FFFD.
+/// Text as a JSON string with its quotes: `"`, `\` and control characters escaped, bytes that are
+/// no UTF-8 replaced by U+FFFD.
 std::string json_string(std::string_view text);
 
-/// Writes values one after another; commas, colons and line ends are its business. Doubles are shortest round-trip,
-/// infinities the strings "inf" and "-inf", NaN is null. A wrong order of calls (a key outside an object, …) throws
-/// Errc::internal.
+/// Writes values one after another; commas, colons and line ends are its business. Doubles are
+/// shortest round-trip, infinities the strings "inf" and "-inf", NaN is null. A wrong order of
+/// calls (a key outside an object, …) throws Errc::internal.
 class JsonWriter {
  public:
   /// How a container is laid out: its elements on one line, or one per line.

@@ -24,20 +24,24 @@ using Kind = json::Value::Kind;
 constexpr std::size_t most_bytes = std::size_t{1} << 20, most_files = 1000, longest_name = 255;
 const std::string mend = "run the study again";
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& reason, const std::string& what_to_do) {
+[[noreturn]] void refuse(const fs::path& file, const std::string& reason,
+                         const std::string& what_to_do) {
   throw InputError(file.string(), {{"", reason, what_to_do}});
 }
 
 /// A plain name: none of another folder, none that is hidden.
 bool is_plain(const std::string& name) {
-  return !name.empty() && name.front() != '.' && name.size() <= longest_name && name != manifest_name &&
-         std::all_of(name.begin(), name.end(), [](unsigned char c) { return c > ' ' && c < 0x7f && c != '/'; });
+  return !name.empty() && name.front() != '.' && name.size() <= longest_name &&
+         name != manifest_name && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+           return c > ' ' && c < 0x7f && c != '/';
+         });
 }
 
 ManifestEntry read_entry(const Cursor& at) {
   ManifestEntry entry;
   if (!at.expect(Kind::object, mend)) return entry;
-  const auto name = at.need("name", mend), bytes = at.need("bytes", mend), checksum = at.need("fnv1a64", mend);
+  const auto name = at.need("name", mend), bytes = at.need("bytes", mend),
+             checksum = at.need("fnv1a64", mend);
   if (name) entry.name = json::read_text(*name, longest_name).value_or("");
   if (name && !is_plain(entry.name)) name->error("is no name of a file of results", mend);
   if (bytes) entry.bytes = json::read_integer(*bytes, 0, json::max_integer).value_or(0);
@@ -69,9 +73,16 @@ ManifestEntry entry_of(const fs::path& directory, const std::string& name) {
 std::string manifest_text(const std::vector<ManifestEntry>& files) {
   StringSink sink;
   JsonWriter json(sink);
-  json.begin_object(JsonWriter::Layout::lines).member("cordon_manifest", 1).key("files").begin_array(JsonWriter::Layout::lines);
+  json.begin_object(JsonWriter::Layout::lines)
+      .member("cordon_manifest", 1)
+      .key("files")
+      .begin_array(JsonWriter::Layout::lines);
   for (const ManifestEntry& file : files) {
-    json.begin_object().member("name", file.name).member("bytes", file.bytes).member("fnv1a64", file.fnv1a64).end_object();
+    json.begin_object()
+        .member("name", file.name)
+        .member("bytes", file.bytes)
+        .member("fnv1a64", file.fnv1a64)
+        .end_object();
   }
   json.end_array().end_object();
   return sink.text + "\n";
@@ -87,7 +98,8 @@ std::vector<ManifestEntry> read_manifest(const fs::path& file) {
     const auto files = root.need("files", mend);
     if (files && files->expect(Kind::array, mend)) {
       if (files->size() > most_files) files->error("lists more files than results have", mend);
-      for (std::size_t i = 0; i < std::min(files->size(), most_files); ++i) entries.push_back(read_entry(files->item(i)));
+      for (std::size_t i = 0; i < std::min(files->size(), most_files); ++i)
+        entries.push_back(read_entry(files->item(i)));
     }
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());
@@ -95,7 +107,8 @@ std::vector<ManifestEntry> read_manifest(const fs::path& file) {
 }
 
 RecordedFiles::RecordedFiles(fs::path directory) : directory_(std::move(directory)) {
-  if (is_there(directory_ / committed_folder)) const DirectoryLock finishing(directory_);  // which it does as it begins
+  if (is_there(directory_ / committed_folder))
+    const DirectoryLock finishing(directory_);  // which it does as it begins
   const fs::path manifest = directory_ / manifest_name;
   listed_ = is_there(manifest);
   if (listed_) files_ = read_manifest(manifest);
@@ -103,18 +116,23 @@ RecordedFiles::RecordedFiles(fs::path directory) : directory_(std::move(director
 
 fs::path RecordedFiles::file(const std::string& name) const {
   if (!listed_) return directory_ / name;
-  const auto listed = std::find_if(files_.begin(), files_.end(), [&](const ManifestEntry& entry) { return entry.name == name; });
+  const auto listed = std::find_if(files_.begin(), files_.end(),
+                                   [&](const ManifestEntry& entry) { return entry.name == name; });
   if (listed == files_.end()) {
-    refuse(directory_ / name, "does not belong to the results in this directory: manifest.json does not list it", mend);
+    refuse(directory_ / name,
+           "does not belong to the results in this directory: manifest.json does not list it",
+           mend);
   }
   if (entry_of(directory_, name) == *listed) return directory_ / name;
-  refuse(directory_ / name, "is not the file that manifest.json lists: it was changed, cut off, or is of another run",
+  refuse(directory_ / name,
+         "is not the file that manifest.json lists: it was changed, cut off, or is of another run",
          mend + "; who changes a file on purpose removes manifest.json");
 }
 
 void RecordedFiles::check_unchanged() const {
   const fs::path manifest = directory_ / manifest_name;
-  const bool same = listed_ ? is_there(manifest) && read_manifest(manifest) == files_ : !is_there(manifest);
+  const bool same =
+      listed_ ? is_there(manifest) && read_manifest(manifest) == files_ : !is_there(manifest);
   if (!same) refuse(directory_, "was given other results while it was read", "read it again");
 }
 

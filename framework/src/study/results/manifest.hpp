@@ -24,12 +24,12 @@ std::string manifest_text(const std::vector<ManifestEntry>& files);
 /// Throws InputError: the file cannot be read, or is no manifest.
 std::vector<ManifestEntry> read_manifest(const std::filesystem::path& file);
 
-/// Results that are read. Where there is a manifest.json, every file that is read must be the one it lists; results without one,
-/// of earlier versions or changed by hand, are taken as they are.
+/// Results that are read. Where there is a manifest.json, every file that is read must be the one
+/// it lists; results without one, of earlier versions or changed by hand, are taken as they are.
 class RecordedFiles {
  public:
-  /// Finishes what a writer that has died while it put its results in place has left. Throws InputError, Errc::io: that is not
-  /// possible, or the manifest is damaged.
+  /// Finishes what a writer that has died while it put its results in place has left. Throws
+  /// InputError, Errc::io: that is not possible, or the manifest is damaged.
   explicit RecordedFiles(std::filesystem::path directory);
 
   const std::filesystem::path& directory() const { return directory_; }

@@ -19,7 +19,9 @@ std::size_t bin_of(double value) {
 }
 
 /// The geometric mean of a bin's ends.
-double center_of(std::size_t bin) { return bin == 0 ? 0 : smallest * std::pow(ratio, static_cast<double>(bin) - 0.5); }
+double center_of(std::size_t bin) {
+  return bin == 0 ? 0 : smallest * std::pow(ratio, static_cast<double>(bin) - 0.5);
+}
 
 }  // namespace
 
@@ -43,7 +45,8 @@ double Median::value() const {
     std::vector<double> sorted = samples_;
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
-    return sorted.size() % 2 == 1 ? *middle : (*middle + *std::max_element(sorted.begin(), middle)) / 2;
+    return sorted.size() % 2 == 1 ? *middle
+                                  : (*middle + *std::max_element(sorted.begin(), middle)) / 2;
   }
   std::uint64_t below = 0;
   std::size_t bin = 0;

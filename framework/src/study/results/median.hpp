@@ -6,8 +6,9 @@
 
 namespace cordon::detail {
 
-/// Median of a stream of non-negative numbers in constant memory: exact up to 10,000 samples, afterwards within 0.5 % from a
-/// histogram of logarithmic bins over [1e-3, 1e10]; values outside count as the nearest end (0 below it). No samples: 0.
+/// Median of a stream of non-negative numbers in constant memory: exact up to 10,000 samples,
+/// afterwards within 0.5 % from a histogram of logarithmic bins over [1e-3, 1e10]; values outside
+/// count as the nearest end (0 below it). No samples: 0.
 class Median {
  public:
   void add(double value);

@@ -60,7 +60,8 @@ class Names {
 }  // namespace
 
 MetricBoard::MetricBoard(const std::vector<ComponentSpec>& metrics, const Registry& registry) {
-  for (const ComponentSpec& spec : metrics) entries_.push_back({spec.type, registry.make_metric(spec.type, spec.params), {}});
+  for (const ComponentSpec& spec : metrics)
+    entries_.push_back({spec.type, registry.make_metric(spec.type, spec.params), {}});
 }
 
 const MetricValues& MetricBoard::step(const StepView& view) {
@@ -75,7 +76,8 @@ const MetricValues& MetricBoard::step(const StepView& view) {
     bool same = values.size() == entry.names.size();
     for (std::size_t i = 0; same && i < values.size(); ++i) same = values[i].name == entry.names[i];
     if (!same)
-      throw Error(Errc::plugin, "metric \"" + entry.type + "\" changed the names of its values from one step to another");
+      throw Error(Errc::plugin, "metric \"" + entry.type +
+                                    "\" changed the names of its values from one step to another");
     auto& to = entry.metric->reproducible() ? values_.reproducible : values_.measured;
     for (MetricValue& value : values) names.add(to, std::move(value), entry.type);
   }

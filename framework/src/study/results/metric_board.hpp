@@ -15,9 +15,10 @@ struct MetricValues {
   std::vector<MetricValue> reproducible, measured;
 };
 
-/// A value is called as its metric calls it. A name that two metrics use, or that the results files use themselves ("k", "hull",
-/// …), is written as <metric>_<name>, except "consistent" and "tightness", which the files hold already. Broken contracts of a
-/// metric (names that change from step to step) throw Errc::plugin.
+/// A value is called as its metric calls it. A name that two metrics use, or that the results files
+/// use themselves ("k", "hull", …), is written as <metric>_<name>, except "consistent" and
+/// "tightness", which the files hold already. Broken contracts of a metric (names that change from
+/// step to step) throw Errc::plugin.
 class MetricBoard {
  public:
   MetricBoard(const std::vector<ComponentSpec>& metrics, const Registry& registry);

@@ -32,8 +32,10 @@ ParsedNumber parse_number(std::string_view text) {
   if (digits.front() == '+' && digits.size() > 1 && digits[1] != '-') digits.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range) return {0, quoted(text) + " is beyond the range of a double"};
-  if (error != std::errc{} || end != digits.data() + digits.size()) return {0, quoted(text) + " is not a number"};
+  if (error == std::errc::result_out_of_range)
+    return {0, quoted(text) + " is beyond the range of a double"};
+  if (error != std::errc{} || end != digits.data() + digits.size())
+    return {0, quoted(text) + " is not a number"};
   if (!std::isfinite(value)) return {0, quoted(text) + " is not finite"};
   return {value, ""};
 }

@@ -11,7 +11,8 @@ namespace cordon::detail {
 /// The shortest decimal text that reads back as the same double; "inf", "-inf", "nan".
 std::string to_text(double value);
 
-/// A finite decimal number, or the reason why `text` is none. Surrounding blanks and one leading '+' are allowed.
+/// A finite decimal number, or the reason why `text` is none. Surrounding blanks and one leading
+/// '+' are allowed.
 struct ParsedNumber {
   double value = 0;
   std::string problem;  ///< empty: `value` holds

@@ -13,14 +13,21 @@ void write(JsonWriter& json, const std::vector<Gain>& gains) {
   json.key("gains").begin_array(gains.empty() ? Layout::line : Layout::lines);
   for (const Gain& gain : gains) {
     const GainCertificate& known = gain.certificate;
-    json.begin_object().member("name", gain.name).member("type", gain.type).key("matrix").matrix(gain.L);
+    json.begin_object()
+        .member("name", gain.name)
+        .member("type", gain.type)
+        .key("matrix")
+        .matrix(gain.L);
     json.member("spectral_radius", known.spectral_radius).key("monotone");
     known.monotone == Answer::unknown ? json.null() : json.value(known.monotone == Answer::yes);
     json.key("norm");
     if (std::isnan(known.norm_lower) && std::isnan(known.norm_upper)) {
       json.null();
     } else {
-      json.begin_object().member("lower", known.norm_lower).member("upper", known.norm_upper).end_object();
+      json.begin_object()
+          .member("lower", known.norm_lower)
+          .member("upper", known.norm_upper)
+          .end_object();
     }
     if (!known.objective.empty()) {
       json.member("objective", known.objective).member("optimum", known.optimum);
@@ -58,7 +65,9 @@ void write_growth(JsonWriter& json, const PipelineOutcome& outcome) {
   }
   const WidthGrowth& growth = *outcome.growth;
   json.begin_object().member("state", growth.state + 1).member("smallest", growth.smallest);
-  json.member("smallest_at", growth.smallest_at).member("last", growth.last).member("factor", growth.factor);
+  json.member("smallest_at", growth.smallest_at)
+      .member("last", growth.last)
+      .member("factor", growth.factor);
   json.member("advice", advice_on(growth)).end_object();
 }
 

@@ -9,8 +9,9 @@
 
 namespace cordon::detail {
 
-/// "gains": [{name, type, matrix, spectral_radius, monotone, norm {lower, upper}, objective, optimum, optimum_bound, margin}];
-/// the last four only where something was optimised. What is not known is null.
+/// "gains": [{name, type, matrix, spectral_radius, monotone, norm {lower, upper}, objective,
+/// optimum, optimum_bound, margin}]; the last four only where something was optimised. What is not
+/// known is null.
 void write(JsonWriter& json, const std::vector<Gain>& gains);
 
 /// "last": {k, hull, width}, width being null for the empty set; null if there was no step.

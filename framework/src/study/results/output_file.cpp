@@ -15,15 +15,17 @@ namespace {
 constexpr std::size_t buffer_size = 1 << 16;
 
 [[noreturn]] void fail(const std::filesystem::path& path, int reason) {
-  const std::string mend = reason == ENOSPC || reason == EDQUOT ? "; free some space or write elsewhere" : "";
-  throw Error(Errc::io,
-              "cannot write " + path.string() + ": " + std::strerror(reason) + mend + "; earlier results are unchanged");
+  const std::string mend =
+      reason == ENOSPC || reason == EDQUOT ? "; free some space or write elsewhere" : "";
+  throw Error(Errc::io, "cannot write " + path.string() + ": " + std::strerror(reason) + mend +
+                            "; earlier results are unchanged");
 }
 
 }  // namespace
 
 OutputFile::OutputFile(std::filesystem::path path)
-    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
+    : path_(std::move(path)),
+      descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) fail(path_, errno);
   buffer_.reserve(buffer_size);
 }
@@ -50,14 +52,17 @@ void OutputFile::flush() {
   buffer_.clear();
 }
 
-ManifestEntry OutputFile::entry() const { return {path_.filename().string(), bytes_, hash_.digits()}; }
+ManifestEntry OutputFile::entry() const {
+  return {path_.filename().string(), bytes_, hash_.digits()};
+}
 
 void OutputFile::close() {
   if (descriptor_ < 0) return;
   flush();
   int result = ::fsync(descriptor_);
   while (result != 0 && errno == EINTR) result = ::fsync(descriptor_);
-  if (result != 0 && errno != EINVAL && errno != EROFS) fail(path_, errno);  // those two: not a file that can be synchronised
+  if (result != 0 && errno != EINVAL && errno != EROFS)
+    fail(path_, errno);  // those two: not a file that can be synchronised
   const int closing = std::exchange(descriptor_, -1);
   if (::close(closing) != 0 && errno != EINTR) fail(path_, errno);
 }

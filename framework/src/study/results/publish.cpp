@@ -30,9 +30,11 @@ bool is_there(const fs::path& path) {
 /// Files of earlier results in the target that are none of the new ones.
 void remove_outdated(const fs::path& target, const std::vector<ManifestEntry>& files) {
   for (const std::string& name : files_of_earlier_results(target)) {
-    const bool is_new = std::any_of(files.begin(), files.end(), [&](const ManifestEntry& file) { return file.name == name; });
+    const bool is_new = std::any_of(files.begin(), files.end(),
+                                    [&](const ManifestEntry& file) { return file.name == name; });
     const fs::path path = target / name;
-    if (!is_new && ::unlink(path.c_str()) != 0 && errno != ENOENT && errno != EISDIR) fail(path, "remove");
+    if (!is_new && ::unlink(path.c_str()) != 0 && errno != ENOENT && errno != EISDIR)
+      fail(path, "remove");
   }
 }
 
@@ -41,12 +43,15 @@ void remove_outdated(const fs::path& target, const std::vector<ManifestEntry>& f
 int rename_file(const char* from, const char* to) { return std::rename(from, to); }
 
 void publish(const fs::path& target, const Rename& rename) {
-  const fs::path folder = target / committed_folder, manifest = target / manifest_name, fresh = folder / manifest_name;
+  const fs::path folder = target / committed_folder, manifest = target / manifest_name,
+                 fresh = folder / manifest_name;
   std::error_code error;
   const fs::file_status status = fs::symlink_status(folder, error);
   if (!fs::exists(status)) return;
   if (!fs::is_directory(status)) {
-    throw InputError(folder.string(), {{"", "stands where results are put in place, and is no directory", "remove it"}});
+    throw InputError(
+        folder.string(),
+        {{"", "stands where results are put in place, and is no directory", "remove it"}});
   }
   if (is_there(fresh)) {
     remove_outdated(target, read_manifest(fresh));

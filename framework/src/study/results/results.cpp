@@ -31,12 +31,18 @@ std::string csv_value(const MetricValue& metric) {
 }
 
 void write(JsonWriter& json, std::string_view name, const AnswerCount& count) {
-  json.key(name).begin_object().member("proven", count.proven).member("unknown", count.unknown).end_object();
+  json.key(name)
+      .begin_object()
+      .member("proven", count.proven)
+      .member("unknown", count.unknown)
+      .end_object();
 }
 
 void write_times(JsonWriter& json, const PhaseTimes& times, double hull_us) {
   json.begin_object();
-  json.member("predict", times.predict).member("correct", times.correct).member("reduce", times.reduce);
+  json.member("predict", times.predict)
+      .member("correct", times.correct)
+      .member("reduce", times.reduce);
   json.member("question", times.question).member("hull", hull_us).end_object();
 }
 
@@ -83,7 +89,8 @@ void Results::begin_run(const Registry& registry) {
 }
 
 void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding,
-                             const std::optional<Assumptions>& assumptions, const std::vector<Gain>& gains) {
+                             const std::optional<Assumptions>& assumptions,
+                             const std::vector<Gain>& gains) {
   pipeline_ = csv_field(spec.name);
   pipeline_json_ = json_string(spec.name);
   rounding_ = rounding;
@@ -98,22 +105,27 @@ void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> r
     results_.begin_object(Layout::lines).key("initial_set");
     write(results_, assumptions->initial_set);
     results_.key("admissible_set");
-    assumptions->admissible_set ? write(results_, *assumptions->admissible_set) : void(results_.null());
+    assumptions->admissible_set ? write(results_, *assumptions->admissible_set)
+                                : void(results_.null());
     results_.end_object();
   } else {
     results_.null();
   }
   write(results_, gains);
   results_.key("steps").begin_array(Layout::lines);
-  run_.begin_object(Layout::lines).member("name", spec.name).key("steps").begin_array(Layout::lines);
+  run_.begin_object(Layout::lines)
+      .member("name", spec.name)
+      .key("steps")
+      .begin_array(Layout::lines);
 }
 
 void Results::data(const Record& record) {
   if (last_sample_ && record.sample.k <= *last_sample_) return;
-  const std::pair<const char*, const Vector*> parts[]{{"u_", &record.sample.u},
-                                                      {"y_", &record.sample.y},
-                                                      {"x_", record.truth ? &*record.truth : nullptr},
-                                                      {"n_", record.fault ? &*record.fault : nullptr}};
+  const std::pair<const char*, const Vector*> parts[]{
+      {"u_", &record.sample.u},
+      {"y_", &record.sample.y},
+      {"x_", record.truth ? &*record.truth : nullptr},
+      {"n_", record.fault ? &*record.fault : nullptr}};
   if (!last_sample_) {
     std::vector<std::string> names{"k"};
     for (const auto& [name, part] : parts) {
@@ -139,8 +151,11 @@ void Results::check_columns(const MetricValues& metrics) {
     return;
   }
   bool same = columns_->size() == metrics.reproducible.size();
-  for (std::size_t i = 0; same && i < columns_->size(); ++i) same = (*columns_)[i] == metrics.reproducible[i].name;
-  if (!same) throw Error(Errc::plugin, "the metrics name their values otherwise than in an earlier pipeline");
+  for (std::size_t i = 0; same && i < columns_->size(); ++i)
+    same = (*columns_)[i] == metrics.reproducible[i].name;
+  if (!same)
+    throw Error(Errc::plugin,
+                "the metrics name their values otherwise than in an earlier pipeline");
 }
 
 void Results::step(const StepResult& result) {
@@ -148,7 +163,8 @@ void Results::step(const StepResult& result) {
   results_.begin_object().member("k", estimate.k);
   write_box(results_, "hull", result.hull);
   if (result.inner) write_box(results_, "inner", *result.inner);
-  results_.member("consistent", to_string(estimate.consistent)).member("tightness", to_string(estimate.set.tightness));
+  results_.member("consistent", to_string(estimate.consistent))
+      .member("tightness", to_string(estimate.set.tightness));
   for (const MetricValue& metric : result.metrics.reproducible) write(results_, metric);
   results_.end_object();
   run_.begin_object().member("k", estimate.k).key("time_us");
@@ -177,7 +193,8 @@ void Results::write_header(Index states) {
 
 void Results::write_row(const StepResult& result) {
   if (!header_written_) write_header(result.hull.dim());
-  std::vector<std::string> row{pipeline_, std::to_string(result.estimate.k), std::string(to_string(result.estimate.consistent)),
+  std::vector<std::string> row{pipeline_, std::to_string(result.estimate.k),
+                               std::string(to_string(result.estimate.consistent)),
                                std::string(to_string(result.estimate.set.tightness))};
   for (const Vector* bound : {&result.hull.lower, &result.hull.upper}) {
     for (const double x : *bound) row.push_back(csv_number(x));
@@ -218,7 +235,9 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
   results_.end_array();
   write_last(results_, last_estimate_, outcome.last_hull);
   results_.key("summary").begin_object(Layout::lines);
-  results_.member("steps", outcome.steps).member("consistent", outcome.consistent).member("inconsistent", outcome.inconsistent);
+  results_.member("steps", outcome.steps)
+      .member("consistent", outcome.consistent)
+      .member("inconsistent", outcome.inconsistent);
   results_.member("undecided", outcome.undecided);
   write_time(results_, "inconsistent_from", outcome.inconsistent_from);
   std::vector<std::string> modes;
@@ -239,28 +258,31 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
   for (const MetricValue& metric : summary.reproducible) {
     write(results_, metric);
     row.metrics[metric.name] = csv_value(metric);
-    const bool known = std::find(summary_columns_.begin(), summary_columns_.end(), metric.name) != summary_columns_.end();
+    const bool known = std::find(summary_columns_.begin(), summary_columns_.end(), metric.name) !=
+                       summary_columns_.end();
     if (!known) summary_columns_.push_back(metric.name);
   }
   const std::vector<ResultNumber> numbers = numbers_of(outcome);
   results_.end_object();
   write_numbers(results_, numbers, false);
   results_.end_object();
-  row.fields = {pipeline_,
-                csv_field(outcome.backend),
-                csv_field(outcome.observer),
-                rounding_ ? std::string(to_string(*rounding_)) : "",
-                std::to_string(outcome.steps),
-                std::to_string(outcome.consistent),
-                std::to_string(outcome.inconsistent),
-                std::to_string(outcome.undecided),
-                csv_time(outcome.inconsistent_from),
-                csv_time(outcome.assumptions_until),
-                csv_time(outcome.outside_from),
-                csv_time(outcome.violated_at),
-                std::to_string(outcome.emptiness.proven + outcome.containment.proven + outcome.bounds.proven),
-                std::to_string(outcome.emptiness.unknown + outcome.containment.unknown + outcome.bounds.unknown),
-                csv_field(outcome.error)};
+  row.fields = {
+      pipeline_,
+      csv_field(outcome.backend),
+      csv_field(outcome.observer),
+      rounding_ ? std::string(to_string(*rounding_)) : "",
+      std::to_string(outcome.steps),
+      std::to_string(outcome.consistent),
+      std::to_string(outcome.inconsistent),
+      std::to_string(outcome.undecided),
+      csv_time(outcome.inconsistent_from),
+      csv_time(outcome.assumptions_until),
+      csv_time(outcome.outside_from),
+      csv_time(outcome.violated_at),
+      std::to_string(outcome.emptiness.proven + outcome.containment.proven + outcome.bounds.proven),
+      std::to_string(outcome.emptiness.unknown + outcome.containment.unknown +
+                     outcome.bounds.unknown),
+      csv_field(outcome.error)};
   summaries_.push_back(std::move(row));
   run_.end_array().key("summary").begin_object(Layout::lines).key("median_time_us");
   write_times(run_, outcome.median_us, outcome.median_hull_us);
@@ -273,11 +295,13 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
 }
 
 void Results::write_summaries() {
-  std::vector<std::string> names{"pipeline",     "backend",      "observer",       "rounding",          "steps",
-                                 "consistent",   "inconsistent", "undecided",      "inconsistent_from", "assumptions_until",
-                                 "outside_from", "violated_at",  "answers_proven", "answers_unknown",   "error"};
-  const std::vector<std::string> none, &diagnosis = diagnosis_file_ ? diagnosis_summary_columns() : none,
-                                       &design = inputs_file_ ? design_summary_columns() : none;
+  std::vector<std::string> names{
+      "pipeline",     "backend",      "observer",       "rounding",          "steps",
+      "consistent",   "inconsistent", "undecided",      "inconsistent_from", "assumptions_until",
+      "outside_from", "violated_at",  "answers_proven", "answers_unknown",   "error"};
+  const std::vector<std::string> none,
+      &diagnosis = diagnosis_file_ ? diagnosis_summary_columns() : none,
+      &design = inputs_file_ ? design_summary_columns() : none;
   names.insert(names.end(), diagnosis.begin(), diagnosis.end());
   names.insert(names.end(), design.begin(), design.end());
   for (const std::string& name : summary_columns_) names.push_back(csv_field(name));
@@ -287,14 +311,16 @@ void Results::write_summaries() {
     summary.fields.insert(summary.fields.end(), summary.diagnosis.begin(), summary.diagnosis.end());
     summary.design.resize(design.size());
     summary.fields.insert(summary.fields.end(), summary.design.begin(), summary.design.end());
-    for (const std::string& name : summary_columns_) summary.fields.push_back(summary.metrics[name]);
+    for (const std::string& name : summary_columns_)
+      summary.fields.push_back(summary.metrics[name]);
     summary_file_.write(joined(summary.fields));
   }
 }
 
 std::vector<std::filesystem::path> Results::commit(const RunOutcome& outcome) {
   if (!header_written_) write_header(study_.model.linear.states());
-  if (diagnosis_file_ && !diagnosis_header_written_) write_diagnosis_header(study_.modes.size() + 1);
+  if (diagnosis_file_ && !diagnosis_header_written_)
+    write_diagnosis_header(study_.modes.size() + 1);
   write_summaries();
   const ResultTable table = table_of(study_, outcome);
   tables_.write(table, summarise(table));

@@ -18,8 +18,9 @@ namespace cordon::detail {
 struct StepResult {
   const Estimate& estimate;
   const Box& hull;
-  const std::vector<Certificate>& hull_proofs;  ///< two per coordinate: of the upper and of the lower bound
-  const std::optional<Box>& inner;              ///< if the observer offers one
+  const std::vector<Certificate>&
+      hull_proofs;                  ///< two per coordinate: of the upper and of the lower bound
+  const std::optional<Box>& inner;  ///< if the observer offers one
   const MetricValues& metrics;
   const PhaseTimes& times;
   double hull_us;
@@ -40,40 +41,45 @@ struct Assumptions {
 };
 
 /// Writes into `out`:
-///   results.json  resolved study, versions, and per pipeline gains, steps[] {k, hull, consistent, tightness, metrics}, last
+///   results.json  resolved study, versions, and per pipeline gains, steps[] {k, hull, consistent,
+///   tightness, metrics}, last
 ///                 and summary
-///   sets.jsonl    one line per step and pipeline: the estimate's exchange form, the proofs of its emptiness or non-emptiness and
-///   of its
+///   sets.jsonl    one line per step and pipeline: the estimate's exchange form, the proofs of its
+///   emptiness or non-emptiness and of its
 ///                 hull's bounds
 ///   data.csv      the samples, and the truth where it is known
 ///   steps.csv, summary.csv   the same numbers as tables (∞ as inf, absent values as empty fields)
-///   diagnosis.csv the steps of pipelines with a diagnoser, if there are any (their steps[] in results.json hold decisions)
-///   inputs.csv    the designed inputs, if there are pipelines with a designer
-///   summary.tex, summary.md, benchmarks.csv   the summaries as tables to print, with times
-///   run.json      host, times, and what else differs from run to run
-///   manifest.json which files these are
+///   diagnosis.csv the steps of pipelines with a diagnoser, if there are any (their steps[] in
+///   results.json hold decisions) inputs.csv    the designed inputs, if there are pipelines with a
+///   designer summary.tex, summary.md, benchmarks.csv   the summaries as tables to print, with
+///   times run.json      host, times, and what else differs from run to run manifest.json which
+///   files these are
 /// Nothing is visible under its name before `commit`, and then all is.
 class Results {
  public:
   /// Into the directory of `out`, which lives longer.
   Results(const Study& study, const Registry& registry, const DirectoryLock& out);
 
-  void begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding, const std::optional<Assumptions>& assumptions,
+  void begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding,
+                      const std::optional<Assumptions>& assumptions,
                       const std::vector<Gain>& gains);
   /// Every pipeline hands over its records; each is written once.
   void data(const Record& record);
-  /// Throws Errc::plugin, before anything is written, if the metrics have names that they had not in an earlier pipeline.
+  /// Throws Errc::plugin, before anything is written, if the metrics have names that they had not
+  /// in an earlier pipeline.
   void check_columns(const MetricValues& metrics);
   void step(const StepResult& result);
   void end_pipeline(const PipelineOutcome& outcome, const MetricValues& summary);
 
   /// The same of a pipeline with a diagnoser.
-  void begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> rounding, const DiagnosisOutcome& outcome);
+  void begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> rounding,
+                       const DiagnosisOutcome& outcome);
   void diagnosis(const DiagnosisResult& result);
   void end_diagnosis(const PipelineOutcome& outcome);
 
   /// All of a pipeline with a designer.
-  void design(const PipelineSpec& spec, std::optional<Rounding> rounding, const PipelineOutcome& outcome);
+  void design(const PipelineSpec& spec, std::optional<Rounding> rounding,
+              const PipelineOutcome& outcome);
 
   std::vector<std::filesystem::path> commit(const RunOutcome& outcome);
 
@@ -100,7 +106,8 @@ class Results {
   JsonWriter results_, run_;
   std::string pipeline_;  ///< name of the current one, as a CSV field
   std::string pipeline_json_;
-  std::optional<std::vector<std::string>> columns_;  ///< of metrics in steps.csv, from the first step
+  std::optional<std::vector<std::string>>
+      columns_;  ///< of metrics in steps.csv, from the first step
   bool header_written_ = false, diagnosis_header_written_ = false, with_mode_ = false;
   std::vector<std::string> modes_;    ///< names, in a diagnosis
   std::optional<Index> last_sample_;  ///< the last k in data.csv

@@ -45,9 +45,16 @@ std::vector<std::string> summary_fields(const PipelineOutcome& outcome) {
 }  // namespace
 
 const std::vector<std::string>& design_summary_columns() {
-  static const std::vector<std::string> names{
-      "designer",  "experiment_diagnoser", "design_status",        "horizon",          "cost", "lower_bound",
-      "separates", "experiments",          "experiments_isolated", "experiments_wrong"};
+  static const std::vector<std::string> names{"designer",
+                                              "experiment_diagnoser",
+                                              "design_status",
+                                              "horizon",
+                                              "cost",
+                                              "lower_bound",
+                                              "separates",
+                                              "experiments",
+                                              "experiments_isolated",
+                                              "experiments_wrong"};
   return names;
 }
 
@@ -57,10 +64,12 @@ void write_inputs_header(Sink& file, Index inputs) {
   file.write(joined(names));
 }
 
-void Results::design(const PipelineSpec& spec, std::optional<Rounding> rounding, const PipelineOutcome& outcome) {
+void Results::design(const PipelineSpec& spec, std::optional<Rounding> rounding,
+                     const PipelineOutcome& outcome) {
   ModeNames modes;
   for (const Mode& mode : bank_of(study_).modes) modes.push_back(mode.name);
-  const std::string name = csv_field(spec.name), used = rounding ? std::string(to_string(*rounding)) : "";
+  const std::string name = csv_field(spec.name),
+                    used = rounding ? std::string(to_string(*rounding)) : "";
   results_.begin_object(Layout::lines)
       .member("name", spec.name)
       .member("backend", spec.backend.type)
@@ -89,7 +98,8 @@ void Results::design(const PipelineSpec& spec, std::optional<Rounding> rounding,
   results_.end_object();
   write_numbers(results_, numbers, false);
   results_.end_object();
-  if (outcome.design && outcome.design->best) write_inputs(*inputs_file_, name, outcome.design->best->u);
+  if (outcome.design && outcome.design->best)
+    write_inputs(*inputs_file_, name, outcome.design->best->u);
   Summary row;
   row.fields.assign(15, "");
   row.fields[0] = name;

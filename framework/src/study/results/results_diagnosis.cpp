@@ -30,8 +30,8 @@ std::vector<std::string> summary_fields(const PipelineOutcome& outcome) {
     outside += counts.mode < 0 ? counts.segments : 0;
     unknown += counts.mode < 0 ? counts.unknown_fault : 0;
   }
-  for (const std::int64_t count : {segments, isolated, missed, outside, unknown, found.false_alarms, found.runs_with_false_alarm,
-                                   found.runs_with_wrong_mode}) {
+  for (const std::int64_t count : {segments, isolated, missed, outside, unknown, found.false_alarms,
+                                   found.runs_with_false_alarm, found.runs_with_wrong_mode}) {
     fields.push_back(std::to_string(count));
   }
   return fields;
@@ -67,7 +67,8 @@ const std::vector<std::string>& diagnosis_summary_columns() {
   return names;
 }
 
-void Results::begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> rounding, const DiagnosisOutcome& outcome) {
+void Results::begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> rounding,
+                              const DiagnosisOutcome& outcome) {
   pipeline_ = csv_field(spec.name);
   rounding_ = rounding;
   modes_ = outcome.modes;
@@ -86,21 +87,27 @@ void Results::begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> 
     results_.null();
   }
   results_.key("steps").begin_array(Layout::lines);
-  run_.begin_object(Layout::lines).member("name", spec.name).key("steps").begin_array(Layout::lines);
+  run_.begin_object(Layout::lines)
+      .member("name", spec.name)
+      .key("steps")
+      .begin_array(Layout::lines);
 }
 
 void Results::write_diagnosis_header(std::size_t modes) {
-  std::vector<std::string> names{"pipeline", "k", "decision", "mode", "truth", "since", "suggested"};
+  std::vector<std::string> names{"pipeline", "k",     "decision", "mode",
+                                 "truth",    "since", "suggested"};
   for (std::size_t j = 0; j < modes; ++j) {
     const std::string of_mode = fmt::format("_{}", j);
     names.push_back("candidate" + of_mode);
     names.push_back("consistent" + of_mode);
     for (const char* bound : {"lower", "upper"}) {
-      for (Index i = 1; i <= study_.model.linear.outputs(); ++i) names.push_back(fmt::format("{}{}_{}", bound, of_mode, i));
+      for (Index i = 1; i <= study_.model.linear.outputs(); ++i)
+        names.push_back(fmt::format("{}{}_{}", bound, of_mode, i));
     }
   }
   for (Index i = 1; i <= study_.model.linear.faults(); ++i) {
-    for (const char* name : {"at", "lower", "estimate", "upper", "truth"}) names.push_back(fmt::format("fault_{}_{}", name, i));
+    for (const char* name : {"at", "lower", "estimate", "upper", "truth"})
+      names.push_back(fmt::format("fault_{}_{}", name, i));
   }
   diagnosis_file_->write(joined(names));
   diagnosis_header_written_ = true;
@@ -123,7 +130,8 @@ void Results::diagnosis(const DiagnosisResult& result) {
     row.emplace_back(evidence.candidate ? "1" : "0");
     row.emplace_back(to_string(evidence.consistent));
     for (const Vector* bound : {&evidence.residual.lower, &evidence.residual.upper}) {
-      std::vector<std::string> fields(outputs);  // empty where the diagnoser offers no residual of this size
+      std::vector<std::string> fields(
+          outputs);  // empty where the diagnoser offers no residual of this size
       for (std::size_t i = 0; i < outputs && static_cast<Index>(outputs) == bound->size(); ++i) {
         fields[i] = csv_number((*bound)[static_cast<Index>(i)]);
       }

@@ -31,7 +31,16 @@ void write_blocks(JsonWriter& json, const LineForm& X) {
       .member("lines", X.lines())
       .member("generators", X.generators())
       .member("constraints", X.constraints());
-  json.key("M").matrix(X.M).key("G").matrix(X.G).member("c", X.c).key("S").matrix(X.S).key("A").matrix(X.A).member("b", X.b);
+  json.key("M")
+      .matrix(X.M)
+      .key("G")
+      .matrix(X.G)
+      .member("c", X.c)
+      .key("S")
+      .matrix(X.S)
+      .key("A")
+      .matrix(X.A)
+      .member("b", X.b);
 }
 
 void write_numbers(JsonWriter& json, const std::vector<ResultNumber>& numbers, bool measured) {
@@ -42,7 +51,8 @@ void write_numbers(JsonWriter& json, const std::vector<ResultNumber>& numbers, b
   json.end_object();
 }
 
-void write_assumptions(JsonWriter& json, const PipelineOutcome& outcome, const std::vector<std::string>& modes) {
+void write_assumptions(JsonWriter& json, const PipelineOutcome& outcome,
+                       const std::vector<std::string>& modes) {
   write_time(json, "assumptions_until", outcome.assumptions_until);
   json.key("failed_assumption");
   if (!outcome.failed_assumption) return void(json.null());
@@ -50,7 +60,9 @@ void write_assumptions(JsonWriter& json, const PipelineOutcome& outcome, const s
   json.begin_object().member("what", to_string(failed.what)).member("k", failed.k).key("mode");
   const bool named = failed.mode >= 0 && static_cast<std::size_t>(failed.mode) < modes.size();
   named ? json.value(modes[static_cast<std::size_t>(failed.mode)]) : json.null();
-  json.member("seed_offset", failed.seed_offset).member("text", text_of(failed, modes)).end_object();
+  json.member("seed_offset", failed.seed_offset)
+      .member("text", text_of(failed, modes))
+      .end_object();
 }
 
 void write(JsonWriter& json, const LineForm& X) {

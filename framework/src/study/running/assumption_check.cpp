@@ -35,7 +35,9 @@ void collect(const ComponentSpec& spec, PipelineAssumptions& found) {
   }
 }
 
-Vector product_of_sizes(const Matrix& A, const Vector& x) { return linalg::product(A.cwiseAbs(), x.cwiseAbs()); }
+Vector product_of_sizes(const Matrix& A, const Vector& x) {
+  return linalg::product(A.cwiseAbs(), x.cwiseAbs());
+}
 
 /// |Δ| |x| of an interval matrix, 0 without a radius.
 Vector spread(const Matrix& radius, const Vector& x, Index rows) {
@@ -43,7 +45,8 @@ Vector spread(const Matrix& radius, const Vector& x, Index rows) {
 }
 
 /// value ∈ image of `set` by T, but for a box of this radius?
-bool is_missing(const LineForm& set, const Matrix& T, const Vector& value, const Vector& radius, const Vector& terms) {
+bool is_missing(const LineForm& set, const Matrix& T, const Vector& value, const Vector& radius,
+                const Vector& terms) {
   LineForm image = affine_map(set, T, Vector::Zero(value.size()));
   if (!radius.isZero(0)) image = minkowski_sum(image, make_box({-radius, radius}));
   return clearly_outside(image, value, row_rounding * (terms + radius));
@@ -58,29 +61,36 @@ bool leaves_W(const Model& model, const Record& before, const Record& now) {
   const Vector w = left - linalg::product(m.A, x) - linalg::product(m.B, pushed);
   const Vector radius = spread(m.A_radius, x, m.states()) + spread(m.B_radius, u, m.states()) +
                         product_of_sizes(m.B, m.actuator_radius().cwiseProduct(u));
-  const Vector terms = (m.is_descriptor() ? product_of_sizes(m.E, next) : Vector(next.cwiseAbs())) + product_of_sizes(m.A, x) +
-                       product_of_sizes(m.B, pushed);
+  const Vector terms = (m.is_descriptor() ? product_of_sizes(m.E, next) : Vector(next.cwiseAbs())) +
+                       product_of_sizes(m.A, x) + product_of_sizes(m.B, pushed);
   return is_missing(model.W, m.Bw, w, radius, terms);
 }
 
 /// The same of v.
 bool leaves_V(const Model& model, const Record& now) {
   const LinearModel& m = model.linear;
-  const Vector &x = *now.truth, &u = now.sample.u, g = m.sensor_center(), ranges = m.sensor_radius();
+  const Vector &x = *now.truth, &u = now.sample.u, g = m.sensor_center(),
+               ranges = m.sensor_radius();
   const Vector pushed = m.actuator_center().cwiseProduct(u);
   const Vector shown = linalg::product(m.C, x) + linalg::product(m.D, pushed);
-  const Vector shown_radius = spread(m.C_radius, x, m.outputs()) + product_of_sizes(m.D, m.actuator_radius().cwiseProduct(u));
+  const Vector shown_radius = spread(m.C_radius, x, m.outputs()) +
+                              product_of_sizes(m.D, m.actuator_radius().cwiseProduct(u));
   const Vector v = now.sample.y - g.cwiseProduct(shown);
-  const Vector radius = (g + ranges).cwiseProduct(shown_radius) + ranges.cwiseProduct(shown.cwiseAbs());
-  const Vector terms = now.sample.y.cwiseAbs() + g.cwiseProduct(product_of_sizes(m.C, x) + product_of_sizes(m.D, pushed));
+  const Vector radius =
+      (g + ranges).cwiseProduct(shown_radius) + ranges.cwiseProduct(shown.cwiseAbs());
+  const Vector terms = now.sample.y.cwiseAbs() +
+                       g.cwiseProduct(product_of_sizes(m.C, x) + product_of_sizes(m.D, pushed));
   return is_missing(model.V, m.Dv, v, radius, terms);
 }
 
-bool earlier(const FailedAssumption& a, const std::optional<FailedAssumption>& b) { return !b || a.from < b->from; }
+bool earlier(const FailedAssumption& a, const std::optional<FailedAssumption>& b) {
+  return !b || a.from < b->from;
+}
 
 }  // namespace
 
-PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser, std::optional<Rounding> rounding) {
+PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser,
+                                   std::optional<Rounding> rounding) {
   PipelineAssumptions found;
   collect(diagnoser, found);
   found.admissible_from = 1;
@@ -90,7 +100,10 @@ PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser, std::optional
 }
 
 AssumptionCheck::AssumptionCheck(const Study& study, PipelineAssumptions assumed)
-    : study_(study), bank_(bank_of(study)), assumed_(std::move(assumed)), by_plant_(is_by_plant(study)) {}
+    : study_(study),
+      bank_(bank_of(study)),
+      assumed_(std::move(assumed)),
+      by_plant_(is_by_plant(study)) {}
 
 void AssumptionCheck::begin_run(std::int64_t seed_offset) {
   seed_offset_ = seed_offset;
@@ -168,16 +181,19 @@ void AssumptionCheck::check_sets(const Record& record) {
     if (other_ || !record.truth || k < assumed_.admissible_from) break;
     if (clearly_outside(set, *record.truth)) fail(What::admissible_set, k, k);
   }
-  if (!other_ && assumed_.inputs && clearly_outside(study_.model.U, record.sample.u)) fail(What::U, k, k);
+  if (!other_ && assumed_.inputs && clearly_outside(study_.model.U, record.sample.u))
+    fail(What::U, k, k);
 }
 
 void AssumptionCheck::check_plant(const Record& now) {
   if (!now.truth) return;
   const Index k = now.sample.k;
-  if (const Index mode = last_ ? mode_of(*last_) : -1; !other_ && mode >= 0 && last_->sample.k + 1 == k) {
+  if (const Index mode = last_ ? mode_of(*last_) : -1;
+      !other_ && mode >= 0 && last_->sample.k + 1 == k) {
     if (leaves_W(bank_[mode].model, *last_, now)) fail(What::W, k - 1, k, mode);
   }
-  if (const Index mode = mode_of(now); !other_ && mode >= 0 && leaves_V(bank_[mode].model, now)) fail(What::V, k, k, mode);
+  if (const Index mode = mode_of(now); !other_ && mode >= 0 && leaves_V(bank_[mode].model, now))
+    fail(What::V, k, k, mode);
 }
 
 void AssumptionCheck::fail(What what, Index k, Index from, Index mode) {
@@ -221,29 +237,41 @@ std::string_view to_string(FailedAssumption::What what) noexcept {
 
 std::string text_of(const FailedAssumption& failed, const std::vector<std::string>& modes) {
   const bool named = failed.mode >= 0 && static_cast<std::size_t>(failed.mode) < modes.size();
-  const std::string of = named ? fmt::format(" of mode \"{}\"", modes[static_cast<std::size_t>(failed.mode)]) : "";
+  const std::string of =
+      named ? fmt::format(" of mode \"{}\"", modes[static_cast<std::size_t>(failed.mode)]) : "";
   const Index k = failed.k;
   switch (failed.what) {
     case FailedAssumption::What::initial_set:
       return fmt::format("x_{} lies outside {}{}", k, named ? "X0" : "the initial set", of);
     case FailedAssumption::What::restart_set:
-      return fmt::format("x_{} lies outside the restart set, from which all modes begin anew at k = {}", k, k);
+      return fmt::format(
+          "x_{} lies outside the restart set, from which all modes begin anew at k = {}", k, k);
     case FailedAssumption::What::admissible_set:
       return fmt::format("x_{} lies outside an admissible set of the pipeline", k);
     case FailedAssumption::What::U:
-      return fmt::format("u_{} lies outside the input set U, on which statements made in advance rest", k);
+      return fmt::format(
+          "u_{} lies outside the input set U, on which statements made in advance rest", k);
     case FailedAssumption::What::modes:
-      return fmt::format("the plant at k = {} follows no mode that the diagnoser knows, and what it does then lasts in the state",
-                         k);
+      return fmt::format(
+          "the plant at k = {} follows no mode that the diagnoser knows, and what it does then "
+          "lasts in the state",
+          k);
     case FailedAssumption::What::W:
-      return fmt::format("no w in W{} leads from x_{} to x_{}, the states of the simulated plant", of, k, k + 1);
+      return fmt::format("no w in W{} leads from x_{} to x_{}, the states of the simulated plant",
+                         of, k, k + 1);
     case FailedAssumption::What::V:
-      return fmt::format("no v in V{} leads from x_{} to y_{}, the output of the simulated plant", of, k, k);
+      return fmt::format("no v in V{} leads from x_{} to y_{}, the output of the simulated plant",
+                         of, k, k);
     case FailedAssumption::What::W_exactly:
-      return fmt::format("no w in W{} leads from x_{} to the very numbers of x_{}, which the simulation has rounded", of, k,
-                         k + 1);
+      return fmt::format(
+          "no w in W{} leads from x_{} to the very numbers of x_{}, which the simulation has "
+          "rounded",
+          of, k, k + 1);
     case FailedAssumption::What::V_exactly:
-      return fmt::format("no v in V{} leads from x_{} to the very numbers of y_{}, which the simulation has rounded", of, k, k);
+      return fmt::format(
+          "no v in V{} leads from x_{} to the very numbers of y_{}, which the simulation has "
+          "rounded",
+          of, k, k);
   }
   return "";
 }

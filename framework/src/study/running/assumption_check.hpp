@@ -13,7 +13,8 @@ namespace cordon::detail {
 
 /// What a pipeline assumes beside X0, W and V of the modes.
 struct PipelineAssumptions {
-  std::optional<LineForm> initial_set = {};    ///< holds x at the first sample, in place of X0 of the true mode
+  std::optional<LineForm> initial_set =
+      {};  ///< holds x at the first sample, in place of X0 of the true mode
   std::vector<LineForm> admissible_sets = {};  ///< hold x_k for k ≥ `admissible_from`
   Index admissible_from = 0;
   std::optional<LineForm> restart_set = {};  ///< holds x_k where a diagnoser begins anew at k
@@ -23,22 +24,25 @@ struct PipelineAssumptions {
     of_the_bank,        ///< one of the bank
     nominal_and_faults  ///< the nominal one, with additive faults
   } modes = Modes::any;
-  bool inputs = false;  ///< statements made in advance rest on u_k ∈ U
-  bool exact_data =
-      false;  ///< with outward or rational rounding: statements rest on data that keep to the model in the last digit
+  bool inputs = false;      ///< statements made in advance rest on u_k ∈ U
+  bool exact_data = false;  ///< with outward or rational rounding: statements rest on data that
+                            ///< keep to the model in the last digit
 };
 
-/// What a diagnoser assumes by the word of the study: its parameters "admissible_set" and "restart_set", those of components
-/// nested in it, and U. Of x_0 it is X0 of the mode that is assumed.
-PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser, std::optional<Rounding> rounding);
+/// What a diagnoser assumes by the word of the study: its parameters "admissible_set" and
+/// "restart_set", those of components nested in it, and U. Of x_0 it is X0 of the mode that is
+/// assumed.
+PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser,
+                                   std::optional<Rounding> rounding);
 
 /// Follows the runs of one pipeline. Where the truth is known:
 ///   x_0 ∈ X0, x_k in the sets of the pipeline, u_k ∈ U: outside by more than 1e-9 of their size;
-///   of a `Plant`, which is no linear model, w and v are what is missing in the model of the true mode,
+///   of a `Plant`, which is no linear model, w and v are what is missing in the model of the true
+///   mode,
 ///     E x_{k+1} - A x_k - B diag(f) u_k ∈ Bw W,   y_k - diag(g) (C x_k + D diag(f) u_k) ∈ Dv V
-///   with intervals of A, B, C and ranges of f and g as boxes: outside by more than 1e-12 of the terms of a row, which the
-///   operations of the plant may have rounded. What linear models simulate is drawn from W and V.
-///   modes: by the data's word.
+///   with intervals of A, B, C and ranges of f and g as boxes: outside by more than 1e-12 of the
+///   terms of a row, which the operations of the plant may have rounded. What linear models
+///   simulate is drawn from W and V. modes: by the data's word.
 /// Every "outside" is proven by a certificate. Memory is constant, but for the last 10,000 records.
 class AssumptionCheck {
  public:
@@ -50,14 +54,15 @@ class AssumptionCheck {
   /// The diagnoser has begun anew at the last record.
   void restarted();
 
-  /// Does a statement of time k about the times from `since` on rest on an assumption that has failed? What has begun anew does
-  /// not rest on the initial set.
+  /// Does a statement of time k about the times from `since` on rest on an assumption that has
+  /// failed? What has begun anew does not rest on the initial set.
   bool excuses(Index k, Index since = 0) const;
-  /// To be asked where the statement is proven false, and nothing above excuses it. Was it made of data that contradict the
-  /// equations of the true mode, of time k or before, by rounding alone? A simulation rounds: without noise, or at the boundary
-  /// of W and V, no w or v may lead to the very doubles that it shows, and outward rounding excludes the truth rightly. Proven in
-  /// exact arithmetic. Nominal rounding leaves room for it, but later steps may amplify it beyond that: there it is an excuse for
-  /// what excludes the truth `barely` only.
+  /// To be asked where the statement is proven false, and nothing above excuses it. Was it made of
+  /// data that contradict the equations of the true mode, of time k or before, by rounding alone? A
+  /// simulation rounds: without noise, or at the boundary of W and V, no w or v may lead to the
+  /// very doubles that it shows, and outward rounding excludes the truth rightly. Proven in exact
+  /// arithmetic. Nominal rounding leaves room for it, but later steps may amplify it beyond that:
+  /// there it is an excuse for what excludes the truth `barely` only.
   bool excuses_by_rounding(Index k, bool barely = false);
   /// The earliest over all runs.
   const std::optional<FailedAssumption>& failed() const { return earliest_; }
@@ -76,8 +81,9 @@ class AssumptionCheck {
   bool by_plant_;
   std::int64_t seed_offset_ = 0;
   std::optional<Record> last_;
-  std::deque<Record> kept_;                        ///< for `excuses_by_rounding`
-  std::optional<FailedAssumption> start_, other_;  ///< of this run: of the initial set, and the first of the others
+  std::deque<Record> kept_;  ///< for `excuses_by_rounding`
+  std::optional<FailedAssumption> start_,
+      other_;  ///< of this run: of the initial set, and the first of the others
   std::optional<FailedAssumption> earliest_;
 };
 

@@ -10,7 +10,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 void check_name(const Study& study, const std::string& name) {
   std::vector<std::string> designing;
@@ -19,13 +21,16 @@ void check_name(const Study& study, const std::string& name) {
     if (spec.designer) designing.push_back(spec.name);
     if (spec.name != name) continue;
     if (spec.designer) return;
-    throw InputError(study.file.string(), {{"/pipelines/" + std::to_string(i), "pipeline \"" + name + "\" has no designer",
+    throw InputError(study.file.string(), {{"/pipelines/" + std::to_string(i),
+                                            "pipeline \"" + name + "\" has no designer",
                                             "add \"designer\" to it, or name another one"}});
   }
-  throw InputError(study.file.string(), {{"/pipelines", "there is no pipeline \"" + name + "\"", suggest(name, designing)}});
+  throw InputError(study.file.string(), {{"/pipelines", "there is no pipeline \"" + name + "\"",
+                                          suggest(name, designing)}});
 }
 
-PipelineDesign design_one(const Study& study, std::size_t index, const Registry& registry, const DesignOptions& options) {
+PipelineDesign design_one(const Study& study, std::size_t index, const Registry& registry,
+                          const DesignOptions& options) {
   const PipelineSpec& spec = study.pipelines[index];
   const ModeBank bank = bank_of(study);
   PipelineDesign made;
@@ -36,10 +41,13 @@ PipelineDesign design_one(const Study& study, std::size_t index, const Registry&
   const Clock::time_point begin = Clock::now();
   detail::guarded(made, [&] {
     const auto backend = registry.make_backend(spec.backend.type, spec.backend.params);
-    const auto designer = registry.make_designer(spec.designer->type, bank, backend, spec.designer->params);
+    const auto designer =
+        registry.make_designer(spec.designer->type, bank, backend, spec.designer->params);
     detail::WatchedDesign::Tell tell;
     if (options.progress) {
-      tell = [&](Index horizon, double best, double bound) { options.progress(index, horizon, best, bound); };
+      tell = [&](Index horizon, double best, double bound) {
+        options.progress(index, horizon, best, bound);
+      };
     }
     detail::WatchedDesign control([&] { return options.stop && options.stop->load(); }, tell);
     made.outcome = designer->design(control);
@@ -48,14 +56,16 @@ PipelineDesign design_one(const Study& study, std::size_t index, const Registry&
   detail::guarded(made, [&] {
     if (!made.outcome) return;
     if (made.outcome->best) made.exact = verify_design(bank, *made.outcome, options.stop);
-    made.refuted = refuted_claims(bank, *spec.designer, *made.outcome, made.exact ? &*made.exact : nullptr);
+    made.refuted =
+        refuted_claims(bank, *spec.designer, *made.outcome, made.exact ? &*made.exact : nullptr);
   });
   return made;
 }
 
 }  // namespace
 
-std::vector<PipelineDesign> design_study(const Study& study, const Registry& registry, const DesignOptions& options) {
+std::vector<PipelineDesign> design_study(const Study& study, const Registry& registry,
+                                         const DesignOptions& options) {
   if (!options.pipeline.empty()) check_name(study, options.pipeline);
   std::vector<PipelineDesign> designs;
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {

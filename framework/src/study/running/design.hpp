@@ -13,7 +13,8 @@ namespace cordon::detail {
 class WatchedDesign final : public DesignControl {
  public:
   using Tell = std::function<void(Index, double, double)>;
-  explicit WatchedDesign(std::function<bool()> stop, Tell tell = {}) : stop_(std::move(stop)), tell_(std::move(tell)) {}
+  explicit WatchedDesign(std::function<bool()> stop, Tell tell = {})
+      : stop_(std::move(stop)), tell_(std::move(tell)) {}
 
   bool stop() const noexcept override {
     stopped_ = stopped_ || stop_();

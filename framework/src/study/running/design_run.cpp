@@ -19,12 +19,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 /// A designer and a diagnoser with what they have found so far.
 class DesignPipeline {
  public:
-  DesignPipeline(const Study& study, const PipelineSpec& spec, const TimeLimit& limit, const std::atomic<bool>* stop)
+  DesignPipeline(const Study& study, const PipelineSpec& spec, const TimeLimit& limit,
+                 const std::atomic<bool>* stop)
       : study_(study), bank_(bank_of(study)), limit_(limit), stop_(stop) {
     outcome_.name = spec.name;
     outcome_.backend = spec.backend.type;
@@ -35,14 +38,18 @@ class DesignPipeline {
   void design(const PipelineSpec& spec, const Registry& registry, WatchedDesign& control) {
     guarded(outcome_, [&] {
       backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
-      outcome_.design = registry.make_designer(spec.designer->type, bank_, backend_, spec.designer->params)->design(control);
+      outcome_.design =
+          registry.make_designer(spec.designer->type, bank_, backend_, spec.designer->params)
+              ->design(control);
       if (control.stopped()) limit_.check(0);
       prove(spec);
       if (outcome_.design->best && spec.diagnoser) {
-        diagnoser_ = registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
+        diagnoser_ =
+            registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
         PipelineAssumptions assumed = assumptions_of(*spec.diagnoser, rounding());
         assumed.inputs = false;  // the input of an experiment is known beforehand
-        if (const auto& admissible = outcome_.design->admissible_set) assumed.admissible_sets.push_back(*admissible);
+        if (const auto& admissible = outcome_.design->admissible_set)
+          assumed.admissible_sets.push_back(*admissible);
         check_.emplace(study_, std::move(assumed));
       }
     });
@@ -52,15 +59,26 @@ class DesignPipeline {
   void prove(const PipelineSpec& spec) {
     const DesignOutcome& design = *outcome_.design;
     if (design.best) outcome_.exact = verify_design(bank_, design, stop_);
-    outcome_.refuted = refuted_claims(bank_, *spec.designer, design, outcome_.exact ? &*outcome_.exact : nullptr);
+    outcome_.refuted =
+        refuted_claims(bank_, *spec.designer, design, outcome_.exact ? &*outcome_.exact : nullptr);
   }
 
-  std::optional<Rounding> rounding() const { return backend_ ? std::optional(backend_->info().rounding) : std::nullopt; }
+  std::optional<Rounding> rounding() const {
+    return backend_ ? std::optional(backend_->info().rounding) : std::nullopt;
+  }
   bool experiments_follow() const { return diagnoser_ && outcome_.error.empty(); }
   Index modes() const { return bank_.size(); }
 
   void begin_mode(Index mode) {
-    outcome_.experiments.push_back({mode, 0, std::vector<std::int64_t>(static_cast<std::size_t>(bank_.size())), 0, 0, 0, 0, {}});
+    outcome_.experiments.push_back(
+        {mode,
+         0,
+         std::vector<std::int64_t>(static_cast<std::size_t>(bank_.size())),
+         0,
+         0,
+         0,
+         0,
+         {}});
     isolated_at_.clear();
   }
 
@@ -71,7 +89,8 @@ class DesignPipeline {
     Matrix shown(outcome_.design->best->u.rows(), bank_[mode].model.linear.outputs());
     DiagnosisScore score([](const DiagnosisSegment&) {});
     guarded(outcome_, [&] {
-      const auto data = open_experiment(study_, bank_, mode, outcome_.design->best->u, static_cast<std::uint64_t>(seed_offset));
+      const auto data = open_experiment(study_, bank_, mode, outcome_.design->best->u,
+                                        static_cast<std::uint64_t>(seed_offset));
       diagnoser_->start();
       check_->begin_run(seed_offset);
       while (const std::optional<Record> record = data->next()) {
@@ -92,7 +111,8 @@ class DesignPipeline {
       }
     });
     if (!outcome_.error.empty()) {
-      outcome_.error += " (experiment with mode \"" + bank_[mode].name + "\", seed " + std::to_string(seed_offset + 1) + ")";
+      outcome_.error += " (experiment with mode \"" + bank_[mode].name + "\", seed " +
+                        std::to_string(seed_offset + 1) + ")";
       return false;
     }
     const auto& excluded = score.true_mode_excluded();
@@ -121,27 +141,30 @@ class DesignPipeline {
     return diagnosis.decision == Decision::monitoring && diagnosis.mode == mode;
   }
 
-  /// Outputs of the true mode that lie in the tube of another one refute that both are disjoint. Asked where that is not decided
-  /// yet and the diagnoser leaves both modes.
-  void compare_with_claims(Index mode, std::int64_t seed_offset, const Diagnosis& last, const Matrix& shown) {
+  /// Outputs of the true mode that lie in the tube of another one refute that both are disjoint.
+  /// Asked where that is not decided yet and the diagnoser leaves both modes.
+  void compare_with_claims(Index mode, std::int64_t seed_offset, const Diagnosis& last,
+                           const Matrix& shown) {
     const DesignOutcome& design = *outcome_.design;
     for (std::size_t q = 0; q < design.best->pairs.size(); ++q) {
       const PairSeparation& claim = design.best->pairs[q];
       const Index other = claim.i == mode ? claim.j : claim.j == mode ? claim.i : -1;
       const bool open = !outcome_.exact || outcome_.exact->pairs[q].disjoint == Answer::unknown;
-      if (other < 0 || claim.disjoint != Answer::yes || !open || contradicted_[{claim.i, claim.j}]) continue;
+      if (other < 0 || claim.disjoint != Answer::yes || !open || contradicted_[{claim.i, claim.j}])
+        continue;
       if (!last.modes[static_cast<std::size_t>(other)].candidate) continue;
-      const LineForm tube =
-          verification::output_tube(bank_[other].model, {design.best->u, design.last_output_only, design.admissible_set});
+      const LineForm tube = verification::output_tube(
+          bank_[other].model, {design.best->u, design.last_output_only, design.admissible_set});
       const Matrix counted = design.last_output_only ? Matrix(shown.bottomRows(1)) : shown;
-      const LineForm runs =
-          intersection(tube, Matrix::Identity(tube.dim(), tube.dim()), make_point(counted.transpose().reshaped()));
+      const LineForm runs = intersection(tube, Matrix::Identity(tube.dim(), tube.dim()),
+                                         make_point(counted.transpose().reshaped()));
       if (verification::exact_emptiness(runs).empty != Answer::no) continue;
       contradicted_[{claim.i, claim.j}] = true;
-      outcome_.refuted.push_back("the output tubes of " + bank_[claim.i].name + " and " + bank_[claim.j].name +
-                                 " are called disjoint, and in the experiment with mode \"" + bank_[mode].name + "\" and seed " +
-                                 std::to_string(seed_offset + 1) + " of " + std::to_string(seeds_of(study_)) +
-                                 " the outputs are those of both");
+      outcome_.refuted.push_back(
+          "the output tubes of " + bank_[claim.i].name + " and " + bank_[claim.j].name +
+          " are called disjoint, and in the experiment with mode \"" + bank_[mode].name +
+          "\" and seed " + std::to_string(seed_offset + 1) + " of " +
+          std::to_string(seeds_of(study_)) + " the outputs are those of both");
     }
   }
 
@@ -179,8 +202,9 @@ class DesignPipeline {
 
 }  // namespace
 
-std::optional<PipelineOutcome> run_design(const Study& study, std::size_t index, const Registry& registry,
-                                          const RunOptions& options, const TimeLimit& limit, Results* results) {
+std::optional<PipelineOutcome> run_design(const Study& study, std::size_t index,
+                                          const Registry& registry, const RunOptions& options,
+                                          const TimeLimit& limit, Results* results) {
   const PipelineSpec& spec = study.pipelines[index];
   const auto stopped = [&] { return options.stop && options.stop->load(); };
   const Clock::time_point begin = Clock::now();

@@ -18,7 +18,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t most_kept = 10'000;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 /// Simulated by a linear model, so that a proven exclusion of the true mode is a defect.
 bool is_own_model(const Study& study) {
@@ -29,7 +31,8 @@ bool is_own_model(const Study& study) {
 /// The first k at which simulated data leave the nominal model otherwise than by additive faults.
 Index first_other_fault(const Study& study) {
   const auto* simulate = std::get_if<SimulateSpec>(&study.data);
-  return simulate && !simulate->faults.empty() ? simulate->faults.front().from : std::numeric_limits<Index>::max();
+  return simulate && !simulate->faults.empty() ? simulate->faults.front().from
+                                               : std::numeric_limits<Index>::max();
 }
 
 /// A diagnoser with what it has found so far.
@@ -51,7 +54,8 @@ class DiagnosisPipeline {
   void make(const PipelineSpec& spec, const Registry& registry) {
     guarded(outcome_, [&] {
       backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
-      diagnoser_ = registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
+      diagnoser_ =
+          registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
       found_.guarantees = diagnoser_->guarantees();
       PipelineAssumptions assumed = assumptions_of(*spec.diagnoser, rounding());
       const DiagnoserEntry* const entry = registry.diagnoser_entry(spec.diagnoser->type);
@@ -61,7 +65,9 @@ class DiagnosisPipeline {
     });
   }
 
-  std::optional<Rounding> rounding() const { return backend_ ? std::optional(backend_->info().rounding) : std::nullopt; }
+  std::optional<Rounding> rounding() const {
+    return backend_ ? std::optional(backend_->info().rounding) : std::nullopt;
+  }
   const DiagnosisOutcome& found() const { return found_; }
   bool failed() const { return !outcome_.error.empty(); }
 
@@ -98,7 +104,8 @@ class DiagnosisPipeline {
     ++found_.steps;
     if (seed_offset_ == 0) {
       ++outcome_.steps;
-      timeline_->step(record.mode, *diagnosis, [&](DiagnosisEvent event) { keep(found_.events, std::move(event)); });
+      timeline_->step(record.mode, *diagnosis,
+                      [&](DiagnosisEvent event) { keep(found_.events, std::move(event)); });
     }
     median_.add(diagnoser_->step_us());
     score_->step(record.mode, *diagnosis);
@@ -113,7 +120,8 @@ class DiagnosisPipeline {
     found_.runs_with_wrong_mode += score_->wrong_mode();
     judge_run();
     if (failed() && seeds_ > 1)
-      outcome_.error += " (seed " + std::to_string(seed_offset_ + 1) + " of " + std::to_string(seeds_) + ")";
+      outcome_.error +=
+          " (seed " + std::to_string(seed_offset_ + 1) + " of " + std::to_string(seeds_) + ")";
   }
 
   PipelineOutcome finish(double wall_s) {
@@ -130,8 +138,8 @@ class DiagnosisPipeline {
   }
 
  private:
-  /// The first exclusion of a true mode, and the first bounds without the true fault; where no failed assumption excuses one,
-  /// that.
+  /// The first exclusion of a true mode, and the first bounds without the true fault; where no
+  /// failed assumption excuses one, that.
   void judge_run() {
     if (auto excluded = score_->true_mode_excluded()) {
       excluded->seed_offset = seed_offset_;
@@ -149,7 +157,8 @@ class DiagnosisPipeline {
     violated_in_run_.reset();
   }
 
-  /// A statement that is proven false: a defect where the data are made by the model itself, and keep to what is assumed.
+  /// A statement that is proven false: a defect where the data are made by the model itself, and
+  /// keep to what is assumed.
   bool blame(Index k, Index since) {
     if (!own_model_ || check_->excuses(k, since) || check_->excuses_by_rounding(k)) return false;
     violated_in_run_ = std::min(k, violated_in_run_.value_or(k));
@@ -192,15 +201,18 @@ std::int64_t seeds_of(const Study& study) {
 }
 
 void check_fits(const Diagnosis& diagnosis, const ModeBank& bank, const std::string& diagnoser) {
-  const bool mode_fits =
-      diagnosis.decision == Decision::monitoring ? diagnosis.mode >= 0 && diagnosis.mode < bank.size() : diagnosis.mode == -1;
+  const bool mode_fits = diagnosis.decision == Decision::monitoring
+                             ? diagnosis.mode >= 0 && diagnosis.mode < bank.size()
+                             : diagnosis.mode == -1;
   if (static_cast<Index>(diagnosis.modes.size()) == bank.size() && mode_fits) return;
   throw Error(Errc::plugin, "the diagnoser \"" + diagnoser +
-                                "\" gave a diagnosis that does not fit its bank at k = " + std::to_string(diagnosis.k));
+                                "\" gave a diagnosis that does not fit its bank at k = " +
+                                std::to_string(diagnosis.k));
 }
 
-std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study, std::size_t index,
-                                             const Registry& registry, const RunOptions& options, const TimeLimit& limit,
+std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study,
+                                             std::size_t index, const Registry& registry,
+                                             const RunOptions& options, const TimeLimit& limit,
                                              Results* results) {
   const PipelineSpec& spec = study.pipelines[index];
   const Clock::time_point begin = Clock::now();

@@ -10,8 +10,9 @@
 namespace cordon::detail {
 
 /// Over all seeds of the study, the first of which is written. Nothing: stopped from outside.
-std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study, std::size_t index,
-                                             const Registry& registry, const RunOptions& options, const TimeLimit& limit,
+std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study,
+                                             std::size_t index, const Registry& registry,
+                                             const RunOptions& options, const TimeLimit& limit,
                                              Results* results);
 
 /// How many seeds diagnosers are tried on.

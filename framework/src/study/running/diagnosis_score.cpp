@@ -11,7 +11,8 @@ void first_at(Index& time, Index k) {
   if (time < 0) time = k;
 }
 
-/// The time from which on the exclusions of this step speak. Bounds of additive faults speak of a time that may lie before.
+/// The time from which on the exclusions of this step speak. Bounds of additive faults speak of a
+/// time that may lie before.
 Index since_of(const Diagnosis& now) {
   Index since = now.since;
   for (const FaultBound& bound : now.faults) {
@@ -22,7 +23,8 @@ Index since_of(const Diagnosis& now) {
 
 }  // namespace
 
-DiagnosisBefore::DiagnosisBefore(const Diagnosis& diagnosis) : decision(diagnosis.decision), mode(diagnosis.mode) {
+DiagnosisBefore::DiagnosisBefore(const Diagnosis& diagnosis)
+    : decision(diagnosis.decision), mode(diagnosis.mode) {
   for (const ModeEvidence& evidence : diagnosis.modes) candidate.push_back(evidence.candidate);
 }
 
@@ -32,7 +34,8 @@ bool DiagnosisBefore::is_given_up_in(const Diagnosis& now) const {
 
 void DiagnosisScore::step(const std::optional<Index>& truth, const Diagnosis& now) {
   follow(truth, now);
-  if (before_ && before_->is_given_up_in(now) && throughout(before_->mode, since_of(now))) ++false_alarms_;
+  if (before_ && before_->is_given_up_in(now) && throughout(before_->mode, since_of(now)))
+    ++false_alarms_;
   if (segment_) judge_segment(now);
   judge_exclusions(now);
   before_.emplace(now);
@@ -119,18 +122,24 @@ void DiagnosisTimeline::step(const std::optional<Index>& truth, const Diagnosis&
   before_.emplace(now);
 }
 
-void DiagnosisTimeline::exclusions(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell) const {
+void DiagnosisTimeline::exclusions(const Diagnosis& now,
+                                   const std::function<void(DiagnosisEvent)>& tell) const {
   using Kind = DiagnosisEvent::Kind;
   const bool given_up = before_->is_given_up_in(now);
-  const auto of = [&](std::size_t j) { return j < now.modes.size() ? now.modes[j] : ModeEvidence{}; };
-  if (given_up) tell({now.k, Kind::detected, before_->mode, of(static_cast<std::size_t>(before_->mode))});
+  const auto of = [&](std::size_t j) {
+    return j < now.modes.size() ? now.modes[j] : ModeEvidence{};
+  };
+  if (given_up)
+    tell({now.k, Kind::detected, before_->mode, of(static_cast<std::size_t>(before_->mode))});
   // outside the bank all modes are excluded again and again: said once
-  if (before_->decision == Decision::unknown_fault && now.decision == Decision::unknown_fault) return;
+  if (before_->decision == Decision::unknown_fault && now.decision == Decision::unknown_fault)
+    return;
   for (std::size_t j = 0; j < now.modes.size(); ++j) {
     if (given_up && static_cast<Index>(j) == before_->mode) continue;
     // after a reset all modes are candidates again: what it rests on is told by the evidence
     const bool gone = now.reset ? now.modes[j].consistent == Answer::no : !now.modes[j].candidate;
-    if (gone && before_->candidate[j]) tell({now.k, Kind::excluded, static_cast<Index>(j), now.modes[j]});
+    if (gone && before_->candidate[j])
+      tell({now.k, Kind::excluded, static_cast<Index>(j), now.modes[j]});
   }
 }
 

@@ -15,8 +15,8 @@ namespace cordon::detail {
 struct DiagnosisBefore {
   explicit DiagnosisBefore(const Diagnosis& diagnosis);
   bool monitors() const { return decision == Decision::monitoring; }
-  /// Is the mode that was monitored here given up in `now`, the next diagnosis? A reset gives it up too, even if it is isolated
-  /// again at once.
+  /// Is the mode that was monitored here given up in `now`, the next diagnosis? A reset gives it up
+  /// too, even if it is isolated again at once.
   bool is_given_up_in(const Diagnosis& now) const;
 
   Decision decision;
@@ -24,12 +24,13 @@ struct DiagnosisBefore {
   std::vector<bool> candidate;
 };
 
-/// Follows one run. The true mode at k is the one that makes y_k and x_{k+1}: a mode has been active throughout from s to k if it
-/// is the true one at s, …, k.
+/// Follows one run. The true mode at k is the one that makes y_k and x_{k+1}: a mode has been
+/// active throughout from s to k if it is the true one at s, …, k.
 class DiagnosisScore {
  public:
   /// `ended` receives each segment when it is over.
-  explicit DiagnosisScore(std::function<void(const DiagnosisSegment&)> ended) : ended_(std::move(ended)) {}
+  explicit DiagnosisScore(std::function<void(const DiagnosisSegment&)> ended)
+      : ended_(std::move(ended)) {}
 
   /// Steps come in order. No `truth`: it is not known.
   void step(const std::optional<Index>& truth, const Diagnosis& now);
@@ -50,7 +51,8 @@ class DiagnosisScore {
   std::function<void(const DiagnosisSegment&)> ended_;
   std::optional<DiagnosisSegment> segment_;
   std::optional<DiagnosisBefore> before_;
-  bool watching_ = false;  ///< another mode was monitored when the segment began, and has not been given up
+  bool watching_ =
+      false;  ///< another mode was monitored when the segment began, and has not been given up
   std::int64_t false_alarms_ = 0;
   bool wrong_mode_ = false;
   std::optional<TrueModeExcluded> excluded_;
@@ -59,7 +61,8 @@ class DiagnosisScore {
 /// Makes events of what changes from step to step.
 class DiagnosisTimeline {
  public:
-  void step(const std::optional<Index>& truth, const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell);
+  void step(const std::optional<Index>& truth, const Diagnosis& now,
+            const std::function<void(DiagnosisEvent)>& tell);
 
  private:
   void exclusions(const Diagnosis& now, const std::function<void(DiagnosisEvent)>& tell) const;
@@ -71,13 +74,16 @@ class DiagnosisTimeline {
 using Delays = std::map<std::int64_t, std::int64_t>;  ///< how often each delay occurred
 DelayStatistics summary(const Delays& delays);
 
-/// Counts scored segments by their true mode. Memory depends on the number of different delays only.
+/// Counts scored segments by their true mode. Memory depends on the number of different delays
+/// only.
 class DiagnosisTally {
  public:
   void add(const DiagnosisSegment& segment);
   std::vector<ModeStatistics> statistics() const;
   DelayStatistics detection() const { return summary(detection_); }  ///< of all segments
-  DelayStatistics isolation() const { return summary(isolation_); }  ///< of those in a mode of the bank
+  DelayStatistics isolation() const {
+    return summary(isolation_);
+  }  ///< of those in a mode of the bank
 
  private:
   struct Entry {

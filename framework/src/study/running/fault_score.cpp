@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t most_remembered = 1000;
 
 bool is_outside(double truth, const FaultBound& bound) {
-  const double margin = 1e-9 * std::max({std::abs(truth), std::abs(bound.lower), std::abs(bound.upper)});
+  const double margin =
+      1e-9 * std::max({std::abs(truth), std::abs(bound.lower), std::abs(bound.upper)});
   return truth < bound.lower - margin || truth > bound.upper + margin;
 }
 
@@ -24,7 +25,8 @@ void FaultScore::begin_run(std::int64_t seed_offset) {
   truths_.clear();
 }
 
-std::vector<JudgedBound> FaultScore::step(const std::optional<Vector>& truth, const Diagnosis& now, bool promises) {
+std::vector<JudgedBound> FaultScore::step(const std::optional<Vector>& truth, const Diagnosis& now,
+                                          bool promises) {
   check(now);
   if (truth && truth->size() == faults_) truths_.emplace_back(now.k, *truth);
   if (truths_.size() > most_remembered) truths_.pop_front();
@@ -39,19 +41,23 @@ std::vector<JudgedBound> FaultScore::step(const std::optional<Vector>& truth, co
 void FaultScore::check(const Diagnosis& now) const {
   std::vector<bool> seen(static_cast<std::size_t>(faults_));
   for (const FaultBound& bound : now.faults) {
-    const bool known = bound.fault >= 0 && bound.fault < faults_ && !seen[static_cast<std::size_t>(bound.fault)];
+    const bool known =
+        bound.fault >= 0 && bound.fault < faults_ && !seen[static_cast<std::size_t>(bound.fault)];
     const bool in_time = bound.at >= 0 && bound.at <= now.k;
-    const bool ordered = bound.lower <= bound.estimate && bound.estimate <= bound.upper && std::isfinite(bound.estimate);
+    const bool ordered = bound.lower <= bound.estimate && bound.estimate <= bound.upper &&
+                         std::isfinite(bound.estimate);
     if (!known || !in_time || !ordered) {
-      throw Error(Errc::plugin, "the diagnoser gave bounds of an additive fault that are none at k = " + std::to_string(now.k));
+      throw Error(Errc::plugin,
+                  "the diagnoser gave bounds of an additive fault that are none at k = " +
+                      std::to_string(now.k));
     }
     seen[static_cast<std::size_t>(bound.fault)] = true;
   }
 }
 
 std::optional<double> FaultScore::truth_of(const FaultBound& bound) const {
-  const auto found =
-      std::lower_bound(truths_.begin(), truths_.end(), bound.at, [](const auto& truth, Index at) { return truth.first < at; });
+  const auto found = std::lower_bound(truths_.begin(), truths_.end(), bound.at,
+                                      [](const auto& truth, Index at) { return truth.first < at; });
   if (found == truths_.end() || found->first != bound.at) return std::nullopt;
   return found->second[bound.fault];
 }
@@ -81,11 +87,14 @@ std::vector<FaultStatistics> FaultScore::statistics() const {
   for (const Entry& entry : entries_) {
     FaultStatistics counts = entry.counts;
     counts.fault = static_cast<Index>(all.size());
-    if (counts.bounds > 0) counts.mean_half_width = entry.half_widths / static_cast<double>(counts.bounds);
-    if (counts.checked > 0) counts.rms_error = std::sqrt(entry.squares / static_cast<double>(counts.checked));
+    if (counts.bounds > 0)
+      counts.mean_half_width = entry.half_widths / static_cast<double>(counts.bounds);
+    if (counts.checked > 0)
+      counts.rms_error = std::sqrt(entry.squares / static_cast<double>(counts.checked));
     all.push_back(counts);
   }
-  const bool any = std::any_of(all.begin(), all.end(), [](const FaultStatistics& counts) { return counts.bounds > 0; });
+  const bool any = std::any_of(all.begin(), all.end(),
+                               [](const FaultStatistics& counts) { return counts.bounds > 0; });
   return any ? all : std::vector<FaultStatistics>{};
 }
 

@@ -11,7 +11,8 @@
 
 namespace cordon::detail {
 
-/// Follows all runs of one diagnoser. Bounds lag behind the samples, so that true values are remembered: the last 1000 of them.
+/// Follows all runs of one diagnoser. Bounds lag behind the samples, so that true values are
+/// remembered: the last 1000 of them.
 class FaultScore {
  public:
   /// For models with `faults` columns in F.
@@ -20,9 +21,10 @@ class FaultScore {
   void begin_run(std::int64_t seed_offset);
   /// `truth` is n_k of the sample's time; nothing: not known. Bounds are compared with it where the
   /// diagnoser `promises` something at this time. Throws Errc::plugin for bounds
-  /// that are none: of a fault that does not exist or twice of one, of times to come, in the wrong order, or with an estimate
-  /// outside.
-  std::vector<JudgedBound> step(const std::optional<Vector>& truth, const Diagnosis& now, bool promises = true);
+  /// that are none: of a fault that does not exist or twice of one, of times to come, in the wrong
+  /// order, or with an estimate outside.
+  std::vector<JudgedBound> step(const std::optional<Vector>& truth, const Diagnosis& now,
+                                bool promises = true);
 
   /// Of every column of F, if there was a bound of any.
   std::vector<FaultStatistics> statistics() const;

@@ -40,7 +40,8 @@ std::optional<WidthGrowth> GrowthWatch::growth() const {
     if (width.smallest_at < 0 || width.last < width.largest / 2) continue;
     const double factor = width.last / width.smallest;
     if (factor < growth_factor || (most && most->factor >= factor)) continue;
-    most = WidthGrowth{static_cast<Index>(i), width.smallest_at, width.smallest, width.last, factor};
+    most =
+        WidthGrowth{static_cast<Index>(i), width.smallest_at, width.smallest, width.last, factor};
   }
   return most;
 }
@@ -50,8 +51,10 @@ std::optional<WidthGrowth> GrowthWatch::growth() const {
 namespace cordon {
 
 std::string advice_on(const WidthGrowth&) {
-  return "either the outputs do not bound this state and the plant lets errors grow, or what reductions add in every step adds "
-         "up: allow more generators (max_generators), use \"reduction\": \"adaptive\" or \"qr\", or an observer with a gain that "
+  return "either the outputs do not bound this state and the plant lets errors grow, or what "
+         "reductions add in every step adds "
+         "up: allow more generators (max_generators), use \"reduction\": \"adaptive\" or \"qr\", "
+         "or an observer with a gain that "
          "makes A - L C stable and a widening_limit";
 }
 

@@ -10,9 +10,10 @@
 
 namespace cordon::detail {
 
-/// Watches the widths of the hulls of one pipeline. A state's bounds grow if the last width is at least ten times the smallest
-/// one after the start (of the first ten samples nothing is said), and no less than half of the largest one, so that it is wide
-/// at the end. Empty, unbounded and flat hulls count for nothing.
+/// Watches the widths of the hulls of one pipeline. A state's bounds grow if the last width is at
+/// least ten times the smallest one after the start (of the first ten samples nothing is said), and
+/// no less than half of the largest one, so that it is wide at the end. Empty, unbounded and flat
+/// hulls count for nothing.
 class GrowthWatch {
  public:
   void step(Index k, const Box& hull);

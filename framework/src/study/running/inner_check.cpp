@@ -16,7 +16,8 @@ bool leaves(const Box& inner, const Box& hull) {
       if (std::isfinite(bound)) size = std::max(size, std::abs(bound));
     }
     const double margin = 1e-9 * size;
-    if (inner.lower[i] < hull.lower[i] - margin || inner.upper[i] > hull.upper[i] + margin) return true;
+    if (inner.lower[i] < hull.lower[i] - margin || inner.upper[i] > hull.upper[i] + margin)
+      return true;
   }
   return false;
 }
@@ -24,7 +25,9 @@ bool leaves(const Box& inner, const Box& hull) {
 void InnerCheck::step(Index k, const Box& inner, const Box& hull) {
   const bool fits = inner.lower.size() == hull.dim() && inner.upper.size() == hull.dim();
   if (!fits || !(inner.lower.array() <= inner.upper.array()).all()) {
-    throw Error(Errc::plugin, "the observer gave an inner estimate that is no box of its states at k = " + std::to_string(k));
+    throw Error(Errc::plugin,
+                "the observer gave an inner estimate that is no box of its states at k = " +
+                    std::to_string(k));
   }
   ++steps_;
   if (outside_ < 0 && leaves(inner, hull)) outside_ = k;
@@ -38,7 +41,8 @@ void InnerCheck::step(Index k, const Box& inner, const Box& hull) {
 }
 
 double InnerCheck::share() const {
-  return shares_ > 0 ? sum_ / static_cast<double>(shares_) : std::numeric_limits<double>::quiet_NaN();
+  return shares_ > 0 ? sum_ / static_cast<double>(shares_)
+                     : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace cordon::detail

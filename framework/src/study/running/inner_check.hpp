@@ -14,9 +14,11 @@ class InnerCheck {
   void step(Index k, const Box& inner, const Box& hull);
 
   std::int64_t steps() const { return steps_; }
-  /// First k at which it leaves the hull by more than 1e-9 of the larger one's size (at least of 1); -1: never.
+  /// First k at which it leaves the hull by more than 1e-9 of the larger one's size (at least of
+  /// 1); -1: never.
   std::int64_t outside() const { return outside_; }
-  /// Mean of width of the inner estimate / width of the hull over steps and states, where that is a number; NaN: nowhere.
+  /// Mean of width of the inner estimate / width of the hull over steps and states, where that is a
+  /// number; NaN: nowhere.
   double share() const;
 
  private:

@@ -41,7 +41,8 @@ bool outside_by_its_size(const LineForm& X, VectorIn x, VectorIn rounding) {
 
 bool barely_outside(const LineForm& X, VectorIn x) {
   if (X.dim() != x.size()) return false;
-  const Vector margin = barely * x.cwiseAbs().cwiseMax(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
+  const Vector margin =
+      barely * x.cwiseAbs().cwiseMax(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
   const Vector row_margin = barely * (X.b.cwiseAbs() + X.A.cwiseAbs().rowwise().sum());
   try {
     return exact::contains(X, rational::exact(x), margin, row_margin);

@@ -16,8 +16,8 @@ void stop(Outcome& outcome, Errc code, const std::string& message) {
   outcome.error = message.empty() ? std::string(to_string(code)) : message;
 }
 
-/// Runs code of components: what it throws stops this pipeline and no other. What the machine does not give (memory, a thread) is
-/// no fault of a component: it is thrown on, and ends the run.
+/// Runs code of components: what it throws stops this pipeline and no other. What the machine does
+/// not give (memory, a thread) is no fault of a component: it is thrown on, and ends the run.
 template <class Outcome, class Work>
 void guarded(Outcome& outcome, Work&& work) {
   try {

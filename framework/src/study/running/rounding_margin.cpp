@@ -8,7 +8,8 @@ namespace cordon::detail {
 
 namespace {
 
-constexpr double of_operations = 1e-13, of_observers = 1e-14, of_outward_data = 1e-15, of_all = 1e-9, shown_at_all = 1e-10;
+constexpr double of_operations = 1e-13, of_observers = 1e-14, of_outward_data = 1e-15,
+                 of_all = 1e-9, shown_at_all = 1e-10;
 
 Vector reach_of(const LineForm& X) { return X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum(); }
 
@@ -47,22 +48,28 @@ RoundingMargin::RoundingMargin(const Model& model, const LineForm& initial_set, 
   Matrix rows(n, n);
   rows << form.T_inverse().topRows(r), form.static_part(model_.A).rows;
   const Vector of_rows = linalg::row_scales(rows), of_cols = linalg::row_scales(rows.transpose());
-  const Matrix solved = of_cols.asDiagonal() * linalg::pseudo_inverse(of_rows.asDiagonal() * rows * of_cols.asDiagonal(), 1e-14) *
-                        of_rows.asDiagonal();
+  const Matrix solved =
+      of_cols.asDiagonal() *
+      linalg::pseudo_inverse(of_rows.asDiagonal() * rows * of_cols.asDiagonal(), 1e-14) *
+      of_rows.asDiagonal();
   dynamic_ = (solved.leftCols(r) * to_dynamic).cwiseAbs();
   static_ = (solved.rightCols(n - r) * to_static).cwiseAbs();
 }
 
-Vector RoundingMargin::forces(VectorIn u) const { return model_.B.cwiseAbs() * u.cwiseAbs() + disturbance_; }
+Vector RoundingMargin::forces(VectorIn u) const {
+  return model_.B.cwiseAbs() * u.cwiseAbs() + disturbance_;
+}
 
-/// What the outputs leave of the lines of the set before, one step on: y_k = C A M t + … is solved for their lengths t, in units
-/// of its largest entries.
+/// What the outputs leave of the lines of the set before, one step on: y_k = C A M t + … is solved
+/// for their lengths t, in units of its largest entries.
 Vector RoundingMargin::cut_lines(const Vector& data) const {
   const Matrix moved = model_.A * lines_, shown = model_.C * moved;
   const Vector rows = linalg::row_scales(shown), cols = linalg::row_scales(shown.transpose());
-  const Matrix solved = linalg::pseudo_inverse(rows.asDiagonal() * shown * cols.asDiagonal(), shown_at_all);
+  const Matrix solved =
+      linalg::pseudo_inverse(rows.asDiagonal() * shown * cols.asDiagonal(), shown_at_all);
   const Vector lengths = cols.asDiagonal() * (solved.cwiseAbs() * rows.cwiseProduct(data));
-  const auto operations = static_cast<double>(1 + lines_.cols());  // a line each, and the correction
+  const auto operations =
+      static_cast<double>(1 + lines_.cols());  // a line each, and the correction
   return operations * (dynamic_ * (moved.cwiseAbs() * lengths));
 }
 
@@ -92,7 +99,9 @@ Vector RoundingMargin::next(const LineForm& X, const Sample* before, const Sampl
   }
   error_ += of_the_data_ * from_outputs;
   largest_ = largest_.cwiseMax(from_outputs);
-  return error_.cwiseMin(of_all * largest_).unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
+  return error_.cwiseMin(of_all * largest_).unaryExpr([](double x) {
+    return std::isfinite(x) ? x : 0.0;
+  });
 }
 
 }  // namespace cordon::detail

@@ -7,28 +7,31 @@
 
 namespace cordon::detail {
 
-/// Per coordinate a bound τ_k of what nominal operations and the observer's own arithmetic may add up to, from the recorded sets
-/// alone. With s_k, the magnitude of the terms that x_k is made of:
-///   r_k = |c| + Σ|G| of X_k,   a_k = M (|A| r_{k-1} + |B||u_{k-1}| + |Bw| w) + N (|B||u_k| + |Bw| w),   a_0 = |c| + Σ|G| of X_0,
-///   s_k = |T||T⁻¹| max(r_k, a_k),
-///   e_k = M |A| e_{k-1} + ε s_k + ε_t t_k,   τ_k = min(e_k, 1e-9 max_{j ≤ k} max(s_j, t_j))
-/// where a_k grows by (1 + l) |A M| t for l lines M of X_{k-1} that y_k cuts to lengths t = |(C A M)⁺| |y_k|, and M = T = I, N =
-/// 0 without E, and else z = T⁻¹x the coordinates of cordon/interfaces/semi_explicit.hpp, in which its observers work, M and N
-/// the magnitudes of what solves dynamic and static rows for x_k; w the reach of W; and t_k,i the terms |y_k| + |D||u_k| + |Dv| v
-/// of the outputs in which coordinate i has the largest coefficient, divided by it. ε = ε_t = 1e-13 for nominal rounding: a step
-/// is a product, a sum, a correction and a reduction, each of which may cancel or add 1e-14 of its terms. With outward rounding
-/// the operations enclose, and what is left is what observers compute from model and data before: ε = 1e-14, ε_t = 1e-15. A bound
-/// of the size of rounding, not a proof: where e_k grows without limit, so does the error, up to 1e-9 of the largest terms there
-/// were.
+/// Per coordinate a bound τ_k of what nominal operations and the observer's own arithmetic may add
+/// up to, from the recorded sets alone. With s_k, the magnitude of the terms that x_k is made of:
+///   r_k = |c| + Σ|G| of X_k,   a_k = M (|A| r_{k-1} + |B||u_{k-1}| + |Bw| w) + N (|B||u_k| + |Bw|
+///   w),   a_0 = |c| + Σ|G| of X_0, s_k = |T||T⁻¹| max(r_k, a_k), e_k = M |A| e_{k-1} + ε s_k + ε_t
+///   t_k,   τ_k = min(e_k, 1e-9 max_{j ≤ k} max(s_j, t_j))
+/// where a_k grows by (1 + l) |A M| t for l lines M of X_{k-1} that y_k cuts to lengths t = |(C A
+/// M)⁺| |y_k|, and M = T = I, N = 0 without E, and else z = T⁻¹x the coordinates of
+/// cordon/interfaces/semi_explicit.hpp, in which its observers work, M and N the magnitudes of what
+/// solves dynamic and static rows for x_k; w the reach of W; and t_k,i the terms |y_k| + |D||u_k| +
+/// |Dv| v of the outputs in which coordinate i has the largest coefficient, divided by it. ε = ε_t
+/// = 1e-13 for nominal rounding: a step is a product, a sum, a correction and a reduction, each of
+/// which may cancel or add 1e-14 of its terms. With outward rounding the operations enclose, and
+/// what is left is what observers compute from model and data before: ε = 1e-14, ε_t = 1e-15. A
+/// bound of the size of rounding, not a proof: where e_k grows without limit, so does the error, up
+/// to 1e-9 of the largest terms there were.
 class RoundingMargin {
  public:
   RoundingMargin(const Model& model, const LineForm& initial_set, Rounding rounding);
 
-  /// τ_k. For every recorded step, in order; `before` is the sample of k-1, or null if X_{k-1} was not recorded.
+  /// τ_k. For every recorded step, in order; `before` is the sample of k-1, or null if X_{k-1} was
+  /// not recorded.
   Vector next(const LineForm& X, const Sample* before, const Sample& now);
 
-  /// Per output, 1e-13 of the terms of y_k = C x_k + D u_k + Dv v_k for the last step; x_k as far out along lines as without
-  /// them.
+  /// Per output, 1e-13 of the terms of y_k = C x_k + D u_k + Dv v_k for the last step; x_k as far
+  /// out along lines as without them.
   const Vector& of_outputs() const { return of_outputs_; }
 
  private:

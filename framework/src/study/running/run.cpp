@@ -36,7 +36,9 @@ using detail::Results;
 using detail::RoundingMargin;
 using detail::TimeLimit;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 struct Medians {
   Median predict, correct, reduce, question, hull, step;
@@ -62,27 +64,34 @@ bool is_own_model(const Study& study) {
 /// One pipeline: its components, and what became of it so far.
 class Pipeline {
  public:
-  Pipeline(const Study& study, const PipelineSpec& spec) : study_(study), own_model_(is_own_model(study)) {
+  Pipeline(const Study& study, const PipelineSpec& spec)
+      : study_(study), own_model_(is_own_model(study)) {
     outcome_.name = spec.name;
     outcome_.backend = spec.backend.type;
     outcome_.observer = spec.observer.type;
   }
 
-  std::optional<Rounding> rounding() const { return backend_ ? std::optional(backend_->info().rounding) : std::nullopt; }
+  std::optional<Rounding> rounding() const {
+    return backend_ ? std::optional(backend_->info().rounding) : std::nullopt;
+  }
   const std::optional<Assumptions>& assumptions() const { return assumptions_; }
   const std::vector<Gain>& gains() const { return outcome_.gains; }
 
   void make(const PipelineSpec& spec, const Registry& registry) {
     guarded([&] {
       backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
-      observer_ = registry.make_observer(spec.observer.type, {study_.model, backend_}, spec.observer.params);
+      observer_ = registry.make_observer(spec.observer.type, {study_.model, backend_},
+                                         spec.observer.params);
       board_.emplace(study_.metrics, registry);
       observer_->start();
       assumptions_ = {observer_->initial_set(), std::nullopt};
-      if (const Set* admissible = observer_->admissible_set()) assumptions_->admissible_set = admissible->line_form();
-      detail::PipelineAssumptions assumed{.initial_set = assumptions_->initial_set,
-                                          .exact_data = backend_->info().rounding != Rounding::nominal};
-      if (assumptions_->admissible_set) assumed.admissible_sets.push_back(*assumptions_->admissible_set);
+      if (const Set* admissible = observer_->admissible_set())
+        assumptions_->admissible_set = admissible->line_form();
+      detail::PipelineAssumptions assumed{
+          .initial_set = assumptions_->initial_set,
+          .exact_data = backend_->info().rounding != Rounding::nominal};
+      if (assumptions_->admissible_set)
+        assumed.admissible_sets.push_back(*assumptions_->admissible_set);
       check_.emplace(study_, std::move(assumed));
       rounding_.emplace(study_.model, assumptions_->initial_set, backend_->info().rounding);
       outcome_.gains = observer_->gains();
@@ -106,8 +115,9 @@ class Pipeline {
     guarded([&] {
       estimate = observer_->step(record.sample);
       const Clock::time_point begin = Clock::now();
-      hull = estimate->consistent == Answer::no ? Box::empty(estimate->set->dim())
-                                                : estimate->set->interval_hull(results ? &hull_proofs_ : nullptr);
+      hull = estimate->consistent == Answer::no
+                 ? Box::empty(estimate->set->dim())
+                 : estimate->set->interval_hull(results ? &hull_proofs_ : nullptr);
       hull_us = seconds_since(begin) * 1e6;
       inner = observer_->inner_estimate();
       if (inner) inner_.step(estimate->k, *inner, hull);
@@ -117,9 +127,11 @@ class Pipeline {
       if (results) results->check_columns(*values);
     });
     if (!outcome_.error.empty()) return false;
-    if (outcome_.inconsistent_from < 0) medians_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
+    if (outcome_.inconsistent_from < 0)
+      medians_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
     count(*estimate, hull);
-    if (results) results->step({*estimate, hull, hull_proofs_, inner, *values, observer_->times(), hull_us});
+    if (results)
+      results->step({*estimate, hull, hull_proofs_, inner, *values, observer_->times(), hull_us});
     growth_.step(estimate->k, hull);
     outcome_.last_hull = std::move(hull);
     return true;
@@ -130,8 +142,10 @@ class Pipeline {
     if (board_) guarded([&] { summary = board_->summary(); });
     outcome_.summary = summary.reproducible;
     outcome_.reproducible = summary.reproducible.size();
-    outcome_.summary.insert(outcome_.summary.end(), summary.measured.begin(), summary.measured.end());
-    outcome_.median_us = {medians_.predict.value(), medians_.correct.value(), medians_.reduce.value(), medians_.question.value()};
+    outcome_.summary.insert(outcome_.summary.end(), summary.measured.begin(),
+                            summary.measured.end());
+    outcome_.median_us = {medians_.predict.value(), medians_.correct.value(),
+                          medians_.reduce.value(), medians_.question.value()};
     outcome_.median_hull_us = medians_.hull.value();
     outcome_.median_step_us = medians_.step.value();
     outcome_.largest_step_us = medians_.step.largest();
@@ -153,12 +167,14 @@ class Pipeline {
     detail::guarded(outcome_, std::forward<Work>(work));
   }
 
-  /// Looks at assumptions and containment; returns the truth at the estimate's time, if the data have it.
+  /// Looks at assumptions and containment; returns the truth at the estimate's time, if the data
+  /// have it.
   const Vector* judge(const Record& record, const Estimate& estimate) {
     check_->step(record);
     if (!record.truth) return nullptr;
     passed_.push_back({record.sample, *record.truth});
-    while (!passed_.empty() && passed_.front().sample.k < estimate.k) {  // estimates may lag behind the samples
+    while (!passed_.empty() &&
+           passed_.front().sample.k < estimate.k) {  // estimates may lag behind the samples
       before_ = std::move(passed_.front().sample);
       passed_.pop_front();
     }
@@ -180,7 +196,8 @@ class Pipeline {
     const LineForm X = estimate.set->line_form();
     const bool follows = before_ && before_->k + 1 == estimate.k;
     const Vector margin = rounding_->next(X, follows ? &*before_ : nullptr, passed_.front().sample);
-    return holds(*estimate.set, truth) == Answer::no && detail::outside_by_its_size(X, truth, margin);
+    return holds(*estimate.set, truth) == Answer::no &&
+           detail::outside_by_its_size(X, truth, margin);
   }
 
   Answer holds(const Set& X, const Vector& x) {
@@ -236,14 +253,16 @@ class Pipeline {
 };
 
 /// Runs one pipeline over its own stream of the data. False: stopped from outside.
-bool run_pipeline(const Study& study, std::size_t index, const Registry& registry, const RunOptions& options,
-                  const TimeLimit& limit, DataSource& data, Results* results, RunOutcome& outcome) {
+bool run_pipeline(const Study& study, std::size_t index, const Registry& registry,
+                  const RunOptions& options, const TimeLimit& limit, DataSource& data,
+                  Results* results, RunOutcome& outcome) {
   const PipelineSpec& spec = study.pipelines[index];
   const Clock::time_point begin = Clock::now();
   const std::int64_t total = data.size().value_or(0);
   Pipeline pipeline(study, spec);
   pipeline.make(spec, registry);
-  if (results) results->begin_pipeline(spec, pipeline.rounding(), pipeline.assumptions(), pipeline.gains());
+  if (results)
+    results->begin_pipeline(spec, pipeline.rounding(), pipeline.assumptions(), pipeline.gains());
   std::int64_t done = 0;
   Clock::time_point told = begin;
   while (!pipeline.failed()) {
@@ -269,16 +288,19 @@ std::size_t index_of(const Study& study, const std::string& name) {
   for (const PipelineSpec& spec : study.pipelines) names.push_back(spec.name);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  throw InputError(study.file.string(), {{"/pipelines", "there is no pipeline \"" + name + "\"", suggest(name, names)}});
+  throw InputError(study.file.string(),
+                   {{"/pipelines", "there is no pipeline \"" + name + "\"", suggest(name, names)}});
 }
 
 /// run_on for one of the pipelines.
-RunOutcome run_one(const detail::OpenData& open, Study study, const Registry& registry, RunOptions options) {
+RunOutcome run_one(const detail::OpenData& open, Study study, const Registry& registry,
+                   RunOptions options) {
   const std::size_t index = index_of(study, options.pipeline);
   study.pipelines = {study.pipelines[index]};
   options.pipeline.clear();
   if (options.progress) {
-    options.progress = [index, tell = options.progress](std::size_t, std::int64_t done, std::int64_t total) {
+    options.progress = [index, tell = options.progress](std::size_t, std::int64_t done,
+                                                        std::int64_t total) {
       tell(index, done, total);
     };
   }
@@ -287,11 +309,14 @@ RunOutcome run_one(const detail::OpenData& open, Study study, const Registry& re
 
 }  // namespace
 
-RunOutcome detail::run_on(const OpenData& open, const Study& study, const Registry& registry, const RunOptions& options) {
+RunOutcome detail::run_on(const OpenData& open, const Study& study, const Registry& registry,
+                          const RunOptions& options) {
   if (!options.pipeline.empty()) return run_one(open, study, registry, options);
   const TimeLimit limit(options.deadline);
-  const bool streams = std::any_of(study.pipelines.begin(), study.pipelines.end(), [](const auto& p) { return !p.designer; });
-  std::unique_ptr<DataSource> data = streams ? open(0) : nullptr;  // first: bad data leave no trace on the disk
+  const bool streams = std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                                   [](const auto& p) { return !p.designer; });
+  std::unique_ptr<DataSource> data =
+      streams ? open(0) : nullptr;  // first: bad data leave no trace on the disk
   std::optional<detail::DirectoryLock> lock;
   std::optional<Results> results;
   if (!options.out.empty()) results.emplace(study, registry, lock.emplace(options.out));
@@ -300,9 +325,10 @@ RunOutcome detail::run_on(const OpenData& open, const Study& study, const Regist
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
     bool done = true;
     if (study.pipelines[i].designer || study.pipelines[i].diagnoser) {
-      std::optional<PipelineOutcome> found = study.pipelines[i].designer
-                                                 ? detail::run_design(study, i, registry, options, limit, writer)
-                                                 : detail::run_diagnosis(open, study, i, registry, options, limit, writer);
+      std::optional<PipelineOutcome> found =
+          study.pipelines[i].designer
+              ? detail::run_design(study, i, registry, options, limit, writer)
+              : detail::run_diagnosis(open, study, i, registry, options, limit, writer);
       done = found.has_value();
       if (found) outcome.pipelines.push_back(std::move(*found));
     } else {
@@ -325,7 +351,8 @@ RunOutcome detail::run_on(const OpenData& open, const Study& study, const Regist
 }
 
 RunOutcome run_study(const Study& study, const Registry& registry, const RunOptions& options) {
-  return detail::run_on([&](std::uint64_t seed_offset) { return open_data(study, seed_offset); }, study, registry, options);
+  return detail::run_on([&](std::uint64_t seed_offset) { return open_data(study, seed_offset); },
+                        study, registry, options);
 }
 
 }  // namespace cordon

@@ -12,6 +12,7 @@ namespace cordon::detail {
 using OpenData = std::function<std::unique_ptr<DataSource>(std::uint64_t)>;
 
 /// run_study on data from anywhere.
-RunOutcome run_on(const OpenData& open, const Study& study, const Registry& registry, const RunOptions& options);
+RunOutcome run_on(const OpenData& open, const Study& study, const Registry& registry,
+                  const RunOptions& options);
 
 }  // namespace cordon::detail

@@ -13,7 +13,8 @@ class TimeLimit {
   using Clock = std::chrono::steady_clock;
 
   /// Of a run that begins now; nothing: never.
-  explicit TimeLimit(std::optional<Clock::time_point> deadline) : begin_(Clock::now()), deadline_(deadline) {}
+  explicit TimeLimit(std::optional<Clock::time_point> deadline)
+      : begin_(Clock::now()), deadline_(deadline) {}
 
   bool reached() const { return deadline_ && Clock::now() >= *deadline_; }
   /// Throws Errc::time_limit once it is reached.

@@ -50,8 +50,10 @@ struct Run {
   explicit Run(RecordedTable read) : recorded(std::move(read)) {
     const ResultTable& table = recorded.table;
     for (const ResultRow& row : table.rows) groups[key_of(table, row, false)].push_back(&row);
-    for (std::size_t i = 0; i < table.columns.size(); ++i) columns.emplace(table.columns[i].name, i);
-    for (std::size_t i = 0; i < table.pipelines.size(); ++i) pipelines.emplace(table.pipelines[i], i);
+    for (std::size_t i = 0; i < table.columns.size(); ++i)
+      columns.emplace(table.columns[i].name, i);
+    for (std::size_t i = 0; i < table.pipelines.size(); ++i)
+      pipelines.emplace(table.pipelines[i], i);
   }
 
   /// The number of a point; NaN where there is none, or the point failed.
@@ -80,7 +82,8 @@ struct Run {
   /// Times of the steps of a single run.
   const std::vector<double>* steps(const Key& key, const std::string& column) const {
     const auto pipeline = pipelines.find(key.front());
-    const bool known = column == "step_us" && pipeline != pipelines.end() && pipeline->second < recorded.step_us.size();
+    const bool known = column == "step_us" && pipeline != pipelines.end() &&
+                       pipeline->second < recorded.step_us.size();
     return known ? &recorded.step_us[pipeline->second] : nullptr;
   }
 };
@@ -91,7 +94,8 @@ struct Shared {
   std::vector<double> first, other;  ///< where it is finite in both
 };
 
-Shared shared_points(const Run& first, const Run& other, const Key& key, const std::string& column) {
+Shared shared_points(const Run& first, const Run& other, const Key& key,
+                     const std::string& column) {
   Shared found;
   const auto theirs = other.points(key);
   for (const auto& [point, row] : first.points(key)) {
@@ -109,13 +113,14 @@ Shared shared_points(const Run& first, const Run& other, const Key& key, const s
   return found;
 }
 
-ComparedNumber compared(const Run& first, const Run& other, const Key& key, const ResultColumn& column) {
+ComparedNumber compared(const Run& first, const Run& other, const Key& key,
+                        const ResultColumn& column) {
   ComparedNumber found;
   found.statistics = statistics_of(other.values(key, column.name));
   if (const auto group = other.groups.find(key); group != other.groups.end()) {
     found.points = static_cast<std::int64_t>(group->second.size());
-    found.failed =
-        std::count_if(group->second.begin(), group->second.end(), [](const ResultRow* row) { return !row->error.empty(); });
+    found.failed = std::count_if(group->second.begin(), group->second.end(),
+                                 [](const ResultRow* row) { return !row->error.empty(); });
   }
   const Shared shared = shared_points(first, other, key, column.name);
   found.common = shared.common;
@@ -145,15 +150,16 @@ std::vector<ResultColumn> columns_of(const std::vector<Run>& runs) {
   std::vector<ResultColumn> columns;
   for (const Run& run : runs) {
     for (const ResultColumn& column : run.recorded.table.columns) {
-      const bool known =
-          std::any_of(columns.begin(), columns.end(), [&](const ResultColumn& c) { return c.name == column.name; });
+      const bool known = std::any_of(columns.begin(), columns.end(),
+                                     [&](const ResultColumn& c) { return c.name == column.name; });
       if (!known) columns.push_back(column);
     }
   }
   return columns;
 }
 
-ComparedMeasure measure_of(const std::vector<Run>& runs, const std::vector<Key>& keys, const ResultColumn& column) {
+ComparedMeasure measure_of(const std::vector<Run>& runs, const std::vector<Key>& keys,
+                           const ResultColumn& column) {
   ComparedMeasure measure{column, {}};
   for (const Key& key : keys) {
     ComparedRow row{key.front(), {key.begin() + 1, key.end()}, {}};
@@ -167,8 +173,8 @@ ComparedMeasure measure_of(const std::vector<Run>& runs, const std::vector<Key>&
   return measure;
 }
 
-/// The measurements of one number in the first run and in another one: at the points that failed in neither, or of single runs
-/// their steps.
+/// The measurements of one number in the first run and in another one: at the points that failed in
+/// neither, or of single runs their steps.
 struct Samples {
   ComparedNumber* number;
   std::vector<double> first, other;
@@ -182,7 +188,8 @@ std::vector<Samples> samples_of(const std::vector<Run>& runs, ComparedMeasure& m
     for (std::size_t i = 1; i < runs.size(); ++i) {
       Shared shared = shared_points(runs[0], runs[i], key, measure.column.name);
       Samples one{&row.runs[i], std::move(shared.first), std::move(shared.other)};
-      const auto *first = runs[0].steps(key, measure.column.name), *other = runs[i].steps(key, measure.column.name);
+      const auto *first = runs[0].steps(key, measure.column.name),
+                 *other = runs[i].steps(key, measure.column.name);
       if (first && other) {
         one.first = *first;
         one.other = *other;
@@ -193,7 +200,8 @@ std::vector<Samples> samples_of(const std::vector<Run>& runs, ComparedMeasure& m
   return samples;
 }
 
-/// All tests of a measure are judged together: each measure answers a question of its own, and most times are parts of others.
+/// All tests of a measure are judged together: each measure answers a question of its own, and most
+/// times are parts of others.
 void add_tests(const std::vector<Run>& runs, ComparedMeasure& measure) {
   if (!measure.column.measured) return;
   constexpr double level = .05;
@@ -204,7 +212,8 @@ void add_tests(const std::vector<Run>& runs, ComparedMeasure& measure) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto& [number, first, other] = samples[i];
     auto [ratio, lower, upper] = detail::median_ratio(first, other, levels[i]);
-    const double least = std::min(1., static_cast<double>(samples.size()) * detail::least_p(first.size(), other.size()));
+    const double least = std::min(
+        1., static_cast<double>(samples.size()) * detail::least_p(first.size(), other.size()));
     TimeTest test{static_cast<std::int64_t>(first.size()),
                   static_cast<std::int64_t>(other.size()),
                   ratio,
@@ -227,28 +236,34 @@ std::vector<std::string> warnings_of(const std::vector<Run>& runs, const std::ve
     const auto warn = [&](bool differs, const char* what) {
       if (differs) warnings.push_back(fmt::format("{} and {}: {}", names[0], names[i], what));
     };
-    warn(other.table.study_hash != first.table.study_hash, "different studies: numbers differ for that reason alone");
+    warn(other.table.study_hash != first.table.study_hash,
+         "different studies: numbers differ for that reason alone");
     warn(other.host != first.host || other.processor != first.processor,
          "different machines: times say nothing about the programs");
     warn(other.table.version != first.table.version, "different versions of the program");
-    warn(other.table.version == first.table.version && (other.abi_tag != first.abi_tag || other.tools != first.tools),
+    warn(other.table.version == first.table.version &&
+             (other.abi_tag != first.abi_tag || other.tools != first.tools),
          "different builds of one version");
   }
   if (!first.step_us.empty()) {
     warnings.emplace_back(
-        "single runs: steps of one run depend on each other; repeat the runs, by a sweep over seeds, for firm statements about "
+        "single runs: steps of one run depend on each other; repeat the runs, by a sweep over "
+        "seeds, for firm statements about "
         "times");
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto& rows = runs[i].recorded.table.rows;
-    const auto failed = std::count_if(rows.begin(), rows.end(), [](const ResultRow& row) { return !row.error.empty(); });
+    const auto failed = std::count_if(rows.begin(), rows.end(),
+                                      [](const ResultRow& row) { return !row.error.empty(); });
     if (rows.empty()) {
       warnings.push_back(fmt::format("{} has no points", names[i]));
     } else if (failed == static_cast<std::ptrdiff_t>(rows.size())) {
-      warnings.push_back(fmt::format("{}: all {} points failed, there is nothing to compare", names[i], failed));
+      warnings.push_back(
+          fmt::format("{}: all {} points failed, there is nothing to compare", names[i], failed));
     } else if (failed > 0) {
-      warnings.push_back(fmt::format("{}: {} of {} points failed; differences are over the points that failed in neither run",
-                                     names[i], failed, rows.size()));
+      warnings.push_back(fmt::format(
+          "{}: {} of {} points failed; differences are over the points that failed in neither run",
+          names[i], failed, rows.size()));
     }
   }
   for (const Key& key : keys) {
@@ -267,14 +282,17 @@ std::vector<std::string> warnings_of(const std::vector<Run>& runs, const std::ve
 bool ComparedMeasure::is_equal() const {
   return std::all_of(rows.begin(), rows.end(), [](const ComparedRow& row) {
     return std::all_of(row.runs.begin(), row.runs.end(), [&](const ComparedNumber& number) {
-      return number.different == 0 && number.common > 0 && number.common == row.runs.front().common &&
-             number.finished == row.runs.front().finished && number.failed == row.runs.front().failed;
+      return number.different == 0 && number.common > 0 &&
+             number.common == row.runs.front().common &&
+             number.finished == row.runs.front().finished &&
+             number.failed == row.runs.front().failed;
     });
   });
 }
 
 Comparison compare_results(const std::vector<std::filesystem::path>& directories) {
-  if (directories.size() < 2) throw Error(Errc::invalid, "a comparison needs two directories or more");
+  if (directories.size() < 2)
+    throw Error(Errc::invalid, "a comparison needs two directories or more");
   Comparison result;
   std::vector<Run> runs;
   std::vector<std::string> names;
@@ -283,17 +301,20 @@ Comparison compare_results(const std::vector<std::filesystem::path>& directories
     runs.emplace_back(detail::read_recorded_table(directory));
     const RecordedTable& recorded = runs.back().recorded;
     names.push_back(directory.string());
-    result.runs.push_back({names.back(), recorded.table.version, recorded.table.study_hash, recorded.host});
+    result.runs.push_back(
+        {names.back(), recorded.table.version, recorded.table.study_hash, recorded.host});
     if (names_of(recorded.table, false) != names_of(runs.front().recorded.table, false) ||
         names_of(recorded.table, true) != names_of(runs.front().recorded.table, true)) {
-      throw InputError(names.back(),
-                       {{"", "is over other axes than " + names.front(), "compare sweeps over axes of the same names", 0}});
+      throw InputError(names.back(), {{"", "is over other axes than " + names.front(),
+                                       "compare sweeps over axes of the same names", 0}});
     }
   }
   result.axes = names_of(runs.front().recorded.table, false);
   const std::vector<Key> keys = keys_of(runs);
-  for (const ResultColumn& column : columns_of(runs)) result.measures.push_back(measure_of(runs, keys, column));
-  std::erase_if(result.measures, [](const ComparedMeasure& measure) { return measure.rows.empty(); });
+  for (const ResultColumn& column : columns_of(runs))
+    result.measures.push_back(measure_of(runs, keys, column));
+  std::erase_if(result.measures,
+                [](const ComparedMeasure& measure) { return measure.rows.empty(); });
   for (ComparedMeasure& measure : result.measures) add_tests(runs, measure);
   result.warnings = warnings_of(runs, keys, names);
   return result;

@@ -62,33 +62,41 @@ struct Shown {
   std::size_t column;
 };
 
-bool is_half_width(const std::string& name) { return name.starts_with("fault_") && name.ends_with("_half_width"); }
+bool is_half_width(const std::string& name) {
+  return name.starts_with("fault_") && name.ends_with("_half_width");
+}
 
 /// Has the column a number in some row, and one that is worth a column?
 bool is_worth(const Summary& summary, const Shown& shown) {
   return std::any_of(summary.rows.begin(), summary.rows.end(), [&](const SummaryRow& row) {
     const Statistics& found = row.columns[shown.column];
-    return found.infinite > 0 || (found.count > 0 && (!shown.measure.only_if_any || found.mean != 0));
+    return found.infinite > 0 ||
+           (found.count > 0 && (!shown.measure.only_if_any || found.mean != 0));
   });
 }
 
 std::vector<Shown> shown_columns(const ResultTable& table, const Summary& summary) {
   std::vector<Shown> found;
   const auto add = [&](const Measure& measure, std::size_t column) {
-    if (column < table.columns.size() && is_worth(summary, {measure, column})) found.push_back({measure, column});
+    if (column < table.columns.size() && is_worth(summary, {measure, column}))
+      found.push_back({measure, column});
   };
   for (const Measure& measure : measures()) {
-    if (measure.name == std::string_view("cost")) {  // before designs: what was bounded of additive faults
+    if (measure.name ==
+        std::string_view("cost")) {  // before designs: what was bounded of additive faults
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
         if (is_half_width(table.columns[i].name)) add({table.columns[i].name.c_str(), "", true}, i);
       }
     }
     add(measure, detail::column_of(table, measure.name));
   }
-  const bool steps =
-      std::any_of(found.begin(), found.end(), [](const Shown& s) { return s.measure.name == std::string_view("step_us"); });
+  const bool steps = std::any_of(found.begin(), found.end(), [](const Shown& s) {
+    return s.measure.name == std::string_view("step_us");
+  });
   const bool designs = detail::column_of(table, "cost") < table.columns.size();
-  if (steps && !designs) std::erase_if(found, [](const Shown& s) { return s.measure.name == std::string_view("wall_s"); });
+  if (steps && !designs)
+    std::erase_if(found,
+                  [](const Shown& s) { return s.measure.name == std::string_view("wall_s"); });
   return found;
 }
 
@@ -97,8 +105,8 @@ std::string title_of(const Shown& shown, const std::string& name) {
   return "half width " + name.substr(6, name.size() - 6 - std::string_view("_half_width").size());
 }
 
-/// "1.689 ± 0.012 (∞: 2) [40]": mean and deviation of the finite numbers; how many were infinite; how many there are, if fewer
-/// than the points that did not fail.
+/// "1.689 ± 0.012 (∞: 2) [40]": mean and deviation of the finite numbers; how many were infinite;
+/// how many there are, if fewer than the points that did not fail.
 std::string value_text(const SummaryRow& row, const Statistics& found, bool percent) {
   const double scale = percent ? 100 : 1;
   const std::int64_t finished = row.points - row.failed;
@@ -117,22 +125,27 @@ bool any_row(const Summary& summary, const std::vector<Shown>& shown, auto&& hol
   });
 }
 
-std::vector<std::string> notes_of(const ResultTable& table, const Summary& summary, const std::vector<Shown>& shown) {
+std::vector<std::string> notes_of(const ResultTable& table, const Summary& summary,
+                                  const std::vector<Shown>& shown) {
   std::vector<std::string> notes;
   std::int64_t most = 0;
   for (const SummaryRow& row : summary.rows) most = std::max(most, row.points);
-  if (most > 1) notes.push_back(fmt::format("Mean ± standard deviation over up to {} repetitions.", most));
+  if (most > 1)
+    notes.push_back(fmt::format("Mean ± standard deviation over up to {} repetitions.", most));
   const auto partial = [](const SummaryRow& row, const Shown& s) {
     const Statistics& found = row.columns[s.column];
     return found.count > 0 && found.count + found.infinite < row.points - row.failed;
   };
-  if (any_row(summary, shown, partial)) notes.emplace_back("[n]: only n points have such a number; the mean is over them.");
+  if (any_row(summary, shown, partial))
+    notes.emplace_back("[n]: only n points have such a number; the mean is over them.");
   const auto ended = [&](const SummaryRow& row, const Shown& s) {
-    return row.columns[s.column].count == row.points && !detail::is_comparable(table, row, s.column);
+    return row.columns[s.column].count == row.points &&
+           !detail::is_comparable(table, row, s.column);
   };
   if (any_row(summary, shown, ended)) {
     notes.emplace_back(
-        "†: an estimate was proven empty, the truth left what the pipeline assumes, or a guarantee was violated: its sets are "
+        "†: an estimate was proven empty, the truth left what the pipeline assumes, or a guarantee "
+        "was violated: its sets are "
         "not "
         "compared with the others.");
   }
@@ -151,12 +164,13 @@ ComparisonTable comparison_table(const ResultTable& table, const Summary& summar
   }
   result.columns.push_back({"pipeline", "pipeline", false, false});
   const std::vector<Shown> shown = shown_columns(table, summary);
-  const bool failures =
-      std::any_of(summary.rows.begin(), summary.rows.end(), [](const SummaryRow& row) { return row.failed > 0; });
+  const bool failures = std::any_of(summary.rows.begin(), summary.rows.end(),
+                                    [](const SummaryRow& row) { return row.failed > 0; });
   for (const Shown& s : shown) {
     const std::string& name = table.columns[s.column].name;
     result.columns.push_back({title_of(s, name), name, true, false});
-    if (s.measure.relative && table.pipelines.size() > 1) result.columns.push_back({"× best", name, true, true});
+    if (s.measure.relative && table.pipelines.size() > 1)
+      result.columns.push_back({"× best", name, true, true});
   }
   if (failures) result.columns.push_back({"failed", "failed", true, false});
   for (const std::span<const SummaryRow> rows : detail::combinations(summary)) {
@@ -164,7 +178,8 @@ ComparisonTable comparison_table(const ResultTable& table, const Summary& summar
     const std::size_t first = result.rows.size();
     for (const SummaryRow& row : rows) {
       auto& cells = result.rows.emplace_back();
-      for (const std::size_t axis : axes) cells.push_back({detail::axis_value(table, axis, row.at[axis]), false});
+      for (const std::size_t axis : axes)
+        cells.push_back({detail::axis_value(table, axis, row.at[axis]), false});
       cells.push_back({table.pipelines[row.pipeline], false});
     }
     for (const Shown& s : shown) {
@@ -172,14 +187,16 @@ ComparisonTable comparison_table(const ResultTable& table, const Summary& summar
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const Statistics& found = rows[i].columns[s.column];
         std::string text = value_text(rows[i], found, s.measure.percent);
-        if (found.count == rows[i].points && !detail::is_comparable(table, rows[i], s.column)) text += " †";
+        if (found.count == rows[i].points && !detail::is_comparable(table, rows[i], s.column))
+          text += " †";
         result.rows[first + i].push_back({std::move(text), best[i]});
         if (s.measure.relative && table.pipelines.size() > 1)
           result.rows[first + i].push_back({number_text(rows[i].relative[s.column], 3), false});
       }
     }
     for (std::size_t i = 0; failures && i < rows.size(); ++i) {
-      result.rows[first + i].push_back({fmt::format("{}/{}", rows[i].failed, rows[i].points), false});
+      result.rows[first + i].push_back(
+          {fmt::format("{}/{}", rows[i].failed, rows[i].points), false});
     }
   }
   result.notes = notes_of(table, summary, shown);

@@ -17,7 +17,8 @@ using Kind = Value::Kind;
 /// The bytes of a file, one after another, with the line of the last one.
 class Bytes {
  public:
-  explicit Bytes(const std::filesystem::path& file) : file_(file, "\"cordon run\" writes it"), chunk_(std::size_t{1} << 16) {
+  explicit Bytes(const std::filesystem::path& file)
+      : file_(file, "\"cordon run\" writes it"), chunk_(std::size_t{1} << 16) {
     fill();
   }
 
@@ -28,7 +29,8 @@ class Bytes {
     after_line_ = chunk_[at_] == '\n';
     if (++at_ == size_) fill();
   }
-  /// Of the byte before `now`, a line end being part of its line: the parser reads one byte beyond a number.
+  /// Of the byte before `now`, a line end being part of its line: the parser reads one byte beyond
+  /// a number.
   int line() const { return line_; }
 
  private:
@@ -82,7 +84,8 @@ Pattern split(const std::string& pointer) {
 /// Receives the events of the library's parser, and keeps what is wanted.
 class Builder {
  public:
-  Builder(const Wanted& wanted, const Bytes& bytes, Problems& problems) : wanted_(wanted), bytes_(bytes), problems_(problems) {
+  Builder(const Wanted& wanted, const Bytes& bytes, Problems& problems)
+      : wanted_(wanted), bytes_(bytes), problems_(problems) {
     for (const std::string& pointer : wanted.kept) patterns_.push_back({split(pointer), false});
     for (const std::string& pointer : wanted.streamed) patterns_.push_back({split(pointer), true});
   }
@@ -96,7 +99,9 @@ class Builder {
     return leaf(Kind::boolean, [&](Value& value) { value.flag = flag; });
   }
   bool number_integer(std::int64_t number) { return number_float(static_cast<double>(number), {}); }
-  bool number_unsigned(std::uint64_t number) { return number_float(static_cast<double>(number), {}); }
+  bool number_unsigned(std::uint64_t number) {
+    return number_float(static_cast<double>(number), {});
+  }
   bool number_float(double number, const std::string&) {
     return leaf(Kind::number, [&](Value& value) { value.number = number; });
   }
@@ -116,12 +121,13 @@ class Builder {
     if (skipped_ == 0) open_.back().key = std::move(text);
     return true;
   }
-  bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& problem) {
+  bool parse_error(std::size_t position, const std::string&,
+                   const nlohmann::json::exception& problem) {
     const bool overflow = problem.id == 406;
-    problems_.add(
-        pointer(), bytes_.line(),
-        overflow ? "a number is beyond the range of double numbers" : "is not JSON in UTF-8 at byte " + std::to_string(position),
-        "the file is not as \"cordon run\" wrote it; is it complete?");
+    problems_.add(pointer(), bytes_.line(),
+                  overflow ? "a number is beyond the range of double numbers"
+                           : "is not JSON in UTF-8 at byte " + std::to_string(position),
+                  "the file is not as \"cordon run\" wrote it; is it complete?");
     return false;
   }
 
@@ -131,7 +137,8 @@ class Builder {
 
   struct Level {
     Value value;
-    std::shared_ptr<Parts> parts = std::make_shared<Parts>();  ///< of the value, once it is complete
+    std::shared_ptr<Parts> parts =
+        std::make_shared<Parts>();  ///< of the value, once it is complete
     Wish wish = Wish::way;
     std::string key;                            ///< of the member that is read
     std::size_t index = 0;                      ///< of the element that is read
@@ -146,7 +153,8 @@ class Builder {
 
   std::string pointer() const {
     std::string text;
-    for (const Level& level : open_) text = level.in_array() ? child(text, level.index) : child(text, level.key);
+    for (const Level& level : open_)
+      text = level.in_array() ? child(text, level.index) : child(text, level.key);
     return text;
   }
 
@@ -187,7 +195,8 @@ class Builder {
       ++skipped_;
       return true;
     }
-    if (open_.size() >= static_cast<std::size_t>(max_depth)) return refuse("nested deeper than 64 levels");
+    if (open_.size() >= static_cast<std::size_t>(max_depth))
+      return refuse("nested deeper than 64 levels");
     Level& level = open_.emplace_back();
     level.wish = wished;
     level.value = begun(kind);
@@ -210,7 +219,8 @@ class Builder {
   }
 
   bool refuse(std::string message) {
-    problems_.add(pointer(), bytes_.line(), std::move(message), "the file is not as \"cordon run\" wrote it");
+    problems_.add(pointer(), bytes_.line(), std::move(message),
+                  "the file is not as \"cordon run\" wrote it");
     return false;
   }
 
@@ -221,7 +231,8 @@ class Builder {
       return true;
     }
     Level& parent = open_.back();
-    if (wished != Wish::none && ++values_ > max_values) return refuse("the file holds more than 10 million values");
+    if (wished != Wish::none && ++values_ > max_values)
+      return refuse("the file holds more than 10 million values");
     if (!parent.in_array() && wished != Wish::none && !parent.seen.insert(parent.key).second) {
       problems_.add(pointer(), value.line, "the key is repeated", "remove one of the two");
     } else if (wished == Wish::stream) {

@@ -12,7 +12,8 @@ namespace cordon::detail {
 
 namespace {
 
-/// A number of a comparison table, which consists of digits and a few marks, in the mathematics of LaTeX.
+/// A number of a comparison table, which consists of digits and a few marks, in the mathematics of
+/// LaTeX.
 std::string latex_number(std::string_view text, bool best) {
   if (text == "–") return "--";
   std::string out;
@@ -63,10 +64,12 @@ std::string label_of(std::string_view title) {
   return label.empty() ? "results" : label;
 }
 
-/// The first cell of a row: a bracket or star would be an argument of the command before it, across spaces and lines.
+/// The first cell of a row: a bracket or star would be an argument of the command before it, across
+/// spaces and lines.
 std::string first_latex_cell(std::string text) {
   const std::size_t first = text.find_first_not_of(' ');
-  return first != std::string::npos && (text[first] == '[' || text[first] == '*') ? "{}" + text : text;
+  return first != std::string::npos && (text[first] == '[' || text[first] == '*') ? "{}" + text
+                                                                                  : text;
 }
 
 /// The two lines of a heading.
@@ -75,7 +78,8 @@ struct Heading {
   std::size_t columns = 1;
 };
 
-/// Long titles of numbers take two lines, and a measure spans the multiples of the best beside it: a page is narrow.
+/// Long titles of numbers take two lines, and a measure spans the multiples of the best beside it:
+/// a page is narrow.
 std::vector<Heading> headings_of(const ComparisonTable& table) {
   std::vector<Heading> headings;
   for (std::size_t j = 0; j < table.columns.size(); ++j) {
@@ -85,7 +89,8 @@ std::vector<Heading> headings_of(const ComparisonTable& table) {
     if (column.relative) {
       headings.push_back({"", latex_text(column.title), 0});
     } else if (middle != std::string::npos) {
-      headings.push_back({latex_text(column.title.substr(0, middle)), latex_text(column.title.substr(middle + 1))});
+      headings.push_back({latex_text(column.title.substr(0, middle)),
+                          latex_text(column.title.substr(middle + 1))});
     } else {
       headings.push_back({latex_text(column.title), "", spans ? 2U : 1U});
     }
@@ -108,7 +113,8 @@ std::string heading_text(const ComparisonTable& table) {
       first += j == 0 ? first_latex_cell(heading.first) : heading.first;
     }
   }
-  const bool has_second = std::any_of(headings.begin(), headings.end(), [](const Heading& h) { return !h.second.empty(); });
+  const bool has_second = std::any_of(headings.begin(), headings.end(),
+                                      [](const Heading& h) { return !h.second.empty(); });
   std::string text = first + " \\\\\n";
   if (rules.size() > 4) text += rules + "\n";
   return has_second ? text + second + " \\\\\n" : text;
@@ -121,19 +127,24 @@ void write_latex(Sink& file, const std::string& title, const ComparisonTable& ta
   if (!caption.ends_with('.')) caption += '.';
   for (const std::string& note : table.notes) caption.append(" ").append(latex_text(note));
   file.write(
-      "% Needs \\usepackage{booktabs,graphicx}; in two-column papers table* in place of table. Shrunk where it is wider than the "
+      "% Needs \\usepackage{booktabs,graphicx}; in two-column papers table* in place of table. "
+      "Shrunk where it is wider than the "
       "text.\n\\begin{table}\n  \\centering\\footnotesize\\setlength{\\tabcolsep}{4pt}\n");
   file.write("  \\caption{" + caption + "}\n  \\label{tab:" + label_of(title) + "}\n");
-  file.write("  \\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n  \\begin{tabular}{");
+  file.write(
+      "  \\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n  "
+      "\\begin{tabular}{");
   for (const ComparisonColumn& column : table.columns) file.write(column.number ? "r" : "l");
   file.write("}\n    \\toprule\n" + heading_text(table));
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    if (std::find(table.groups.begin(), table.groups.end(), i) != table.groups.end()) file.write("    \\midrule\n");
+    if (std::find(table.groups.begin(), table.groups.end(), i) != table.groups.end())
+      file.write("    \\midrule\n");
     std::string line = "    ";
     for (std::size_t j = 0; j < table.columns.size(); ++j) {
       const ComparisonCell& cell = table.rows[i][j];
       line += j > 0 ? " & " : "";
-      const std::string text = table.columns[j].number ? latex_number(cell.text, cell.best) : latex_text(cell.text);
+      const std::string text =
+          table.columns[j].number ? latex_number(cell.text, cell.best) : latex_text(cell.text);
       line += j == 0 ? first_latex_cell(text) : text;
     }
     file.write(line + " \\\\\n");

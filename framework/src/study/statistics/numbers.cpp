@@ -15,12 +15,17 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 class Numbers {
  public:
   void add(const std::string& name, double value, bool measured = false) {
-    const bool taken = std::any_of(all_.begin(), all_.end(), [&](const ResultNumber& n) { return n.column.name == name; });
+    const bool taken = std::any_of(all_.begin(), all_.end(),
+                                   [&](const ResultNumber& n) { return n.column.name == name; });
     if (!taken) all_.push_back({{name, measured}, value});
   }
-  void count(const std::string& name, std::int64_t number) { add(name, static_cast<double>(number)); }
+  void count(const std::string& name, std::int64_t number) {
+    add(name, static_cast<double>(number));
+  }
   /// A time index; negative: it did not happen.
-  void time(const std::string& name, std::int64_t k) { add(name, k < 0 ? none : static_cast<double>(k)); }
+  void time(const std::string& name, std::int64_t k) {
+    add(name, k < 0 ? none : static_cast<double>(k));
+  }
   void share(const std::string& name, std::int64_t part, std::int64_t of) {
     add(name, of > 0 ? static_cast<double>(part) / static_cast<double>(of) : none);
   }
@@ -56,9 +61,11 @@ void add_metrics(Numbers& numbers, const PipelineOutcome& outcome) {
     if (!number) continue;
     numbers.add(metric.name, *number, i >= outcome.reproducible);
     if (metric.name == "contains_truth_yes") yes = *number;
-    if (metric.name == "contains_truth_no" || metric.name == "contains_truth_unknown") others += *number;
+    if (metric.name == "contains_truth_no" || metric.name == "contains_truth_unknown")
+      others += *number;
   }
-  if (!std::isnan(yes)) numbers.add("contains_truth_share", yes + others > 0 ? yes / (yes + others) : none);
+  if (!std::isnan(yes))
+    numbers.add("contains_truth_share", yes + others > 0 ? yes / (yes + others) : none);
 }
 
 void add_observer(Numbers& numbers, const PipelineOutcome& outcome) {
@@ -69,8 +76,10 @@ void add_observer(Numbers& numbers, const PipelineOutcome& outcome) {
   numbers.time("assumptions_until", outcome.assumptions_until);
   numbers.time("outside_from", outcome.outside_from);
   numbers.time("violated_at", outcome.violated_at);
-  numbers.count("answers_proven", outcome.emptiness.proven + outcome.containment.proven + outcome.bounds.proven);
-  numbers.count("answers_unknown", outcome.emptiness.unknown + outcome.containment.unknown + outcome.bounds.unknown);
+  numbers.count("answers_proven",
+                outcome.emptiness.proven + outcome.containment.proven + outcome.bounds.proven);
+  numbers.count("answers_unknown",
+                outcome.emptiness.unknown + outcome.containment.unknown + outcome.bounds.unknown);
   numbers.add("inner_share", outcome.inner_steps > 0 ? outcome.inner_share : none);
   numbers.time("inner_outside", outcome.inner_outside);
   add_metrics(numbers, outcome);
@@ -126,7 +135,8 @@ void add_diagnosis(Numbers& numbers, const PipelineOutcome& outcome) {
   add_faults(numbers, found.faults);
 }
 
-/// What every separating input costs at least, infinite if there is none; a search that proved nothing has no bound.
+/// What every separating input costs at least, infinite if there is none; a search that proved
+/// nothing has no bound.
 double bound_of(const DesignOutcome& design) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (design.status == DesignStatus::infeasible) return infinity;
@@ -139,7 +149,8 @@ double smallest_kappa(const PipelineOutcome& outcome) {
   double kappa = std::numeric_limits<double>::infinity();
   for (std::size_t q = 0; q < outcome.design->best->pairs.size(); ++q) {
     const bool apart = outcome.exact && outcome.exact->pairs[q].disjoint == Answer::yes;
-    kappa = std::min(kappa, apart ? outcome.exact->pairs[q].kappa_lower : std::min(0.0, outcome.design->best->pairs[q].kappa));
+    kappa = std::min(kappa, apart ? outcome.exact->pairs[q].kappa_lower
+                                  : std::min(0.0, outcome.design->best->pairs[q].kappa));
   }
   return kappa;
 }
@@ -154,8 +165,10 @@ void add_design(Numbers& numbers, const PipelineOutcome& outcome) {
     numbers.add("lower_bound", bound_of(*design));
     numbers.add("gap", std::isfinite(design->gap()) ? design->gap() : none);
     const bool searched = design->status != DesignStatus::given;
-    numbers.add("optimal", searched ? static_cast<double>(design->status == DesignStatus::optimal) : none);
-    numbers.add("infeasible", searched ? static_cast<double>(design->status == DesignStatus::infeasible) : none);
+    numbers.add("optimal",
+                searched ? static_cast<double>(design->status == DesignStatus::optimal) : none);
+    numbers.add("infeasible",
+                searched ? static_cast<double>(design->status == DesignStatus::infeasible) : none);
     numbers.answer("separates", outcome.exact ? outcome.exact->separates() : Answer::unknown);
     numbers.add("kappa_min", smallest_kappa(outcome));
     numbers.count("refuted_claims", static_cast<std::int64_t>(outcome.refuted.size()));

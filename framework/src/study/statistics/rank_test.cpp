@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t most_exact = 40, most_ratios = 500;
 
-/// Of two series in one order: the sum over the values of the first of the values of the second below it (ties: half), and what
-/// ties take from the variance.
+/// Of two series in one order: the sum over the values of the first of the values of the second
+/// below it (ties: half), and what ties take from the variance.
 struct Ranked {
   double u = 0;
   double ties = 0;  ///< Σ t³ - t over groups of equal values
@@ -30,7 +30,8 @@ Ranked ranked(std::span<const double> first, std::span<const double> second) {
   for (std::size_t begin = 0; begin < all.size();) {
     std::size_t end = begin;
     double ours = 0, theirs = 0;
-    for (; end < all.size() && all[end].first == all[begin].first; ++end) (all[end].second ? ours : theirs) += 1;
+    for (; end < all.size() && all[end].first == all[begin].first; ++end)
+      (all[end].second ? ours : theirs) += 1;
     found.u += ours * (below + theirs / 2);
     const double t = ours + theirs;
     found.ties += t * t * t - t;
@@ -40,21 +41,25 @@ Ranked ranked(std::span<const double> first, std::span<const double> second) {
   return found;
 }
 
-/// P(U ≤ u) for series of m and n values without ties: counts of arrangements, built up value by value.
+/// P(U ≤ u) for series of m and n values without ties: counts of arrangements, built up value by
+/// value.
 double exact_lower_tail(std::size_t m, std::size_t n, std::size_t u) {
-  // counts[i][w]: arrangements of i values of the first series among the values of the second so far with sum w
+  // counts[i][w]: arrangements of i values of the first series among the values of the second so
+  // far with sum w
   std::vector<std::vector<double>> counts(m + 1, std::vector<double>(m * n + 1));
   counts[0][0] = 1;
   for (std::size_t place = 1; place <= m + n; ++place) {
     for (std::size_t i = std::min(m, place); i >= 1; --i) {
-      // the value at this place of the order is the i-th of the first series: place - i of the second lie below it
+      // the value at this place of the order is the i-th of the first series: place - i of the
+      // second lie below it
       const std::size_t below = place - i;
       if (below > n) continue;
       for (std::size_t w = m * n; w + 1 > below; --w) counts[i][w] += counts[i - 1][w - below];
     }
   }
   const double all = std::accumulate(counts[m].begin(), counts[m].end(), 0.);
-  const double tail = std::accumulate(counts[m].begin(), counts[m].begin() + static_cast<std::ptrdiff_t>(u + 1), 0.);
+  const double tail = std::accumulate(counts[m].begin(),
+                                      counts[m].begin() + static_cast<std::ptrdiff_t>(u + 1), 0.);
   return tail / all;
 }
 
@@ -90,12 +95,14 @@ std::vector<double> thinned(std::span<const double> values) {
   std::sort(sorted.begin(), sorted.end());
   if (sorted.size() <= most_ratios) return sorted;
   std::vector<double> kept;
-  for (std::size_t i = 0; i < most_ratios; ++i) kept.push_back(sorted[i * (sorted.size() - 1) / (most_ratios - 1)]);
+  for (std::size_t i = 0; i < most_ratios; ++i)
+    kept.push_back(sorted[i * (sorted.size() - 1) / (most_ratios - 1)]);
   return kept;
 }
 
 bool all_positive(std::span<const double> values) {
-  return !values.empty() && std::all_of(values.begin(), values.end(), [](double x) { return x > 0 && std::isfinite(x); });
+  return !values.empty() && std::all_of(values.begin(), values.end(),
+                                        [](double x) { return x > 0 && std::isfinite(x); });
 }
 
 }  // namespace
@@ -107,9 +114,12 @@ double mann_whitney_p(std::span<const double> first, std::span<const double> sec
   return p_of(std::min(found.u, all - found.u), first.size(), second.size(), found.ties);
 }
 
-double least_p(std::size_t first, std::size_t second) { return first == 0 || second == 0 ? 1 : p_of(0, first, second, 0); }
+double least_p(std::size_t first, std::size_t second) {
+  return first == 0 || second == 0 ? 1 : p_of(0, first, second, 0);
+}
 
-MedianRatio median_ratio(std::span<const double> first, std::span<const double> second, double level) {
+MedianRatio median_ratio(std::span<const double> first, std::span<const double> second,
+                         double level) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (!all_positive(first) || !all_positive(second)) return {none, none, none};
   const std::vector<double> a = thinned(first), b = thinned(second);
@@ -121,12 +131,13 @@ MedianRatio median_ratio(std::span<const double> first, std::span<const double> 
   std::sort(ratios.begin(), ratios.end());
   const auto last = ratios.size() - 1;
   const double median = (ratios[last / 2] + ratios[(last + 1) / 2]) / 2;
-  std::size_t below =
-      rejected(first.size(), second.size(), ranked(first, second).ties, level);  // 1 is not among so many at an end
+  std::size_t below = rejected(first.size(), second.size(), ranked(first, second).ties,
+                               level);  // 1 is not among so many at an end
   if (below == 0) return {median, none, none};
   if (ratios.size() < first.size() * second.size()) {
     const double all = static_cast<double>(first.size()) * static_cast<double>(second.size());
-    below = static_cast<std::size_t>(static_cast<double>(below) / all * static_cast<double>(ratios.size()));
+    below = static_cast<std::size_t>(static_cast<double>(below) / all *
+                                     static_cast<double>(ratios.size()));
     if (below == 0) return {median, none, none};
   }
   return {median, ratios[below - 1], ratios[last - (below - 1)]};
@@ -135,7 +146,8 @@ MedianRatio median_ratio(std::span<const double> first, std::span<const double> 
 std::vector<double> holm(const std::vector<double>& p) {
   std::vector<std::size_t> order(p.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return p[i] < p[j]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return p[i] < p[j]; });
   std::vector<double> adjusted(p.size());
   double largest = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -148,7 +160,8 @@ std::vector<double> holm(const std::vector<double>& p) {
 std::vector<double> holm_levels(const std::vector<double>& p, double level) {
   std::vector<std::size_t> order(p.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return p[i] < p[j]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return p[i] < p[j]; });
   std::vector<double> levels(p.size());
   bool failed = false;
   double now = level;

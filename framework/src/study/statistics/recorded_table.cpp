@@ -17,7 +17,8 @@ namespace {
 using namespace json;
 using Kind = Value::Kind;
 
-constexpr std::size_t longest_name = 4096, longest_error = std::size_t{1} << 20, most_samples = 100'000;
+constexpr std::size_t longest_name = 4096, longest_error = std::size_t{1} << 20,
+                      most_samples = 100'000;
 
 const std::string& mend() {
   static const std::string text = "the file is not as \"cordon run\" wrote it; run the study again";
@@ -30,7 +31,9 @@ std::string text_of(const Cursor& object, const char* key) {
   return read_line(*at, longest_name).value_or("");
 }
 
-std::size_t index_of(const Cursor& at) { return static_cast<std::size_t>(read_integer(at, 0, max_integer).value_or(0)); }
+std::size_t index_of(const Cursor& at) {
+  return static_cast<std::size_t>(read_integer(at, 0, max_integer).value_or(0));
+}
 
 /// {name: number, "inf" or "-inf"}.
 std::vector<ResultNumber> read_numbers(const Cursor& at, bool measured) {
@@ -40,7 +43,8 @@ std::vector<ResultNumber> read_numbers(const Cursor& at, bool measured) {
     const std::string& name = at.value().keys()[i];
     const Cursor item(at.value().items()[i], child(at.pointer(), name), at.problems());
     const bool named = !name.empty() && name.size() <= longest_name &&
-                       std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+                       std::none_of(name.begin(), name.end(),
+                                    [](unsigned char c) { return c < 0x20 || c == 0x7f; });
     if (!named) at.error("has a number without a proper name", mend());
     if (item.is(Kind::text)) {
       const auto word = read_choice(item, {"inf", "-inf"});
@@ -78,7 +82,8 @@ class Thinned {
 
 class TableReader {
  public:
-  explicit TableReader(const std::filesystem::path& directory) : files_(directory), builder_(read_.table) {}
+  explicit TableReader(const std::filesystem::path& directory)
+      : files_(directory), builder_(read_.table) {}
 
   RecordedTable read() {
     read_results();
@@ -112,8 +117,8 @@ class TableReader {
 void TableReader::read_results() {
   const std::filesystem::path file = files_.file("results.json");
   Problems problems;
-  Wanted wanted{{"/cordon_results", "/cordon", "/tools", "/title", "/study_hash", "/study/sweep", "/pipelines/*/name",
-                 "/pipelines/*/numbers", "/pipelines/*/summary/error"},
+  Wanted wanted{{"/cordon_results", "/cordon", "/tools", "/title", "/study_hash", "/study/sweep",
+                 "/pipelines/*/name", "/pipelines/*/numbers", "/pipelines/*/summary/error"},
                 {"/points/*"},
                 [this](const Cursor& at, const std::vector<std::size_t>&) { read_point(at); }};
   const Value tree = read_large(file, wanted, problems);
@@ -132,7 +137,8 @@ void TableReader::read_head(const Cursor& root) {
   if (const auto version = root.need("cordon_results", mend())) read_integer(*version, 1, 1);
   read_.table.title = text_of(root, "title");
   read_.table.study_hash = text_of(root, "study_hash");
-  if (const auto cordon = root.need("cordon", mend()); cordon && cordon->expect(Kind::object, mend())) {
+  if (const auto cordon = root.need("cordon", mend());
+      cordon && cordon->expect(Kind::object, mend())) {
     read_.table.version = text_of(*cordon, "version");
     read_.abi_tag = text_of(*cordon, "abi_tag");
   }
@@ -152,7 +158,8 @@ void TableReader::read_axes(const Cursor& root) {
     SweepAxis& axis = read_.table.axes.emplace_back();
     axis.name = text_of(at, "name");
     axis.path = text_of(at, "path");
-    if (const auto repeat = at.need("repeat", mend())) axis.repeat = read_flag(*repeat).value_or(false);
+    if (const auto repeat = at.need("repeat", mend()))
+      axis.repeat = read_flag(*repeat).value_or(false);
     const auto values = at.need("values", mend());
     if (!values || !values->expect(Kind::array, mend())) continue;
     for (const Value& value : values->value().items()) axis.values.push_back(canonical_text(value));
@@ -169,7 +176,8 @@ void TableReader::read_pipelines(const Cursor& root) {
     read_.table.pipelines.push_back(text_of(at, "name"));
     if (is_sweep_) continue;
     const auto numbers = at.find("numbers"), summary = at.need("summary", mend());
-    if (!numbers) at.error("has no \"numbers\"", "the run was made by an older version; run the study again");
+    if (!numbers)
+      at.error("has no \"numbers\"", "the run was made by an older version; run the study again");
     if (!numbers || !summary || !summary->expect(Kind::object, mend())) continue;
     builder_.add({i, std::vector<std::size_t>(read_.table.axes.size()), {}, read_failure(*summary)},
                  read_numbers(*numbers, false));
@@ -178,15 +186,16 @@ void TableReader::read_pipelines(const Cursor& root) {
 
 void TableReader::read_point(const Cursor& at) {
   if (!at.expect(Kind::object, mend())) return;
-  const auto point = at.need("point", mend()), pipeline = at.need("pipeline", mend()), place = at.need("at", mend()),
-             numbers = at.need("numbers", mend());
+  const auto point = at.need("point", mend()), pipeline = at.need("pipeline", mend()),
+             place = at.need("at", mend()), numbers = at.need("numbers", mend());
   if (!point || !pipeline || !place || !numbers || !place->expect(Kind::array, mend())) return;
   ResultRow row;
   row.pipeline = index_of(*pipeline);
   for (std::size_t i = 0; i < place->size(); ++i) row.at.push_back(index_of(place->item(i)));
   row.error = read_failure(at);
   const std::size_t index = index_of(*point);
-  if (!points_.empty() && index <= points_.back()) point->error("does not come after the point before it", mend());
+  if (!points_.empty() && index <= points_.back())
+    point->error("does not come after the point before it", mend());
   points_.push_back(index);
   builder_.add(std::move(row), read_numbers(*numbers, false));
 }
@@ -197,9 +206,11 @@ void TableReader::check_rows(const Cursor& root) {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const ResultRow& row = table.rows[i];
     bool fits = row.pipeline < table.pipelines.size() && row.at.size() == table.axes.size();
-    for (std::size_t j = 0; is_sweep_ && fits && j < row.at.size(); ++j) fits = row.at[j] < table.axes[j].values.size();
+    for (std::size_t j = 0; is_sweep_ && fits && j < row.at.size(); ++j)
+      fits = row.at[j] < table.axes[j].values.size();
     if (!fits) {
-      root.problems().add(child("/points", i), 0, "names a pipeline or a value that is not there", mend());
+      root.problems().add(child("/points", i), 0, "names a pipeline or a value that is not there",
+                          mend());
       return;
     }
   }
@@ -244,15 +255,19 @@ void TableReader::read_times_of_pipelines(const Cursor& root, std::vector<Thinne
   const auto pipelines = root.need("pipelines", mend());
   if (!pipelines || !pipelines->expect(Kind::array, mend())) return;
   if (pipelines->size() != read_.table.pipelines.size()) {
-    pipelines->error("does not have the pipelines of results.json", "both files must be of one run");
+    pipelines->error("does not have the pipelines of results.json",
+                     "both files must be of one run");
     return;
   }
   for (std::size_t i = 0; i < pipelines->size(); ++i) {
     const Cursor at = pipelines->item(i);
     if (!at.expect(Kind::object, mend())) continue;
-    if (text_of(at, "name") != read_.table.pipelines[i]) at.error("is not the pipeline of results.json", mend());
+    if (text_of(at, "name") != read_.table.pipelines[i])
+      at.error("is not the pipeline of results.json", mend());
     const auto summary = at.need("summary", mend());
-    const auto numbers = summary && summary->expect(Kind::object, mend()) ? summary->need("numbers", mend()) : std::nullopt;
+    const auto numbers = summary && summary->expect(Kind::object, mend())
+                             ? summary->need("numbers", mend())
+                             : std::nullopt;
     if (numbers) builder_.extend(i, read_numbers(*numbers, true));
     read_.step_us.push_back(steps[i].take());
   }
@@ -287,12 +302,16 @@ void TableReader::read_times_of_step(const Cursor& at, Thinned& steps) {
 
 }  // namespace
 
-RecordedTable read_recorded_table(const std::filesystem::path& directory) { return TableReader(directory).read(); }
+RecordedTable read_recorded_table(const std::filesystem::path& directory) {
+  return TableReader(directory).read();
+}
 
 }  // namespace cordon::detail
 
 namespace cordon {
 
-ResultTable read_result_table(const std::filesystem::path& directory) { return detail::read_recorded_table(directory).table; }
+ResultTable read_result_table(const std::filesystem::path& directory) {
+  return detail::read_recorded_table(directory).table;
+}
 
 }  // namespace cordon

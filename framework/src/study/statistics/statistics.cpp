@@ -24,29 +24,34 @@ double quantile(const std::vector<double>& sorted, double share) {
   return std::lerp(sorted[below], sorted[above], place - std::floor(place));
 }
 
-/// Sums over sorted values: the same to the last bit whatever their order was. The wider type keeps squares in range.
+/// Sums over sorted values: the same to the last bit whatever their order was. The wider type keeps
+/// squares in range.
 void add_moments(Statistics& found, const std::vector<double>& sorted) {
   const auto n = static_cast<long double>(sorted.size());
   long double sum = 0;
   for (const double x : sorted) sum += static_cast<long double>(x);
   const long double mean = sum / n;
   long double squares = 0;
-  for (const double x : sorted) squares += (static_cast<long double>(x) - mean) * (static_cast<long double>(x) - mean);
+  for (const double x : sorted)
+    squares += (static_cast<long double>(x) - mean) * (static_cast<long double>(x) - mean);
   found.mean = std::clamp(static_cast<double>(mean), sorted.front(), sorted.back());
   found.deviation = sorted.size() < 2 ? 0 : static_cast<double>(std::sqrt(squares / (n - 1)));
   if (sorted.front() == sorted.back()) found.deviation = 0;
 }
 
 bool has(std::string_view text, std::initializer_list<std::string_view> words) {
-  return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return text == word; });
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return text == word; });
 }
 
 bool is_of(std::string_view text, std::initializer_list<std::string_view> beginnings) {
-  return std::any_of(beginnings.begin(), beginnings.end(), [&](std::string_view word) { return text.starts_with(word); });
+  return std::any_of(beginnings.begin(), beginnings.end(),
+                     [&](std::string_view word) { return text.starts_with(word); });
 }
 
 bool is_time(std::string_view column) {
-  return column.ends_with("_us") || column.ends_with("_us_mean") || column.ends_with("_us_max") || column == "wall_s";
+  return column.ends_with("_us") || column.ends_with("_us_mean") || column.ends_with("_us_max") ||
+         column == "wall_s";
 }
 
 /// `relative` of one column over the rows of one combination.
@@ -54,11 +59,13 @@ void add_relative(const ResultTable& table, std::span<SummaryRow> rows, std::siz
   if (preference_of(table.columns[column].name) != Preference::less) return;
   double smallest = std::numeric_limits<double>::infinity();
   for (const SummaryRow& row : rows) {
-    if (detail::is_comparable(table, row, column)) smallest = std::min(smallest, row.columns[column].mean);
+    if (detail::is_comparable(table, row, column))
+      smallest = std::min(smallest, row.columns[column].mean);
   }
   if (!(smallest > 0)) return;
   for (SummaryRow& row : rows) {
-    if (detail::is_comparable(table, row, column)) row.relative[column] = row.columns[column].mean / smallest;
+    if (detail::is_comparable(table, row, column))
+      row.relative[column] = row.columns[column].mean / smallest;
   }
 }
 
@@ -73,7 +80,8 @@ Statistics statistics_of(std::span<const double> values) {
   }
   found.count = static_cast<std::int64_t>(sorted.size());
   if (sorted.empty()) {
-    found.mean = found.deviation = found.min = found.q05 = found.q25 = found.median = found.q75 = found.q95 = found.max = none;
+    found.mean = found.deviation = found.min = found.q05 = found.q25 = found.median = found.q75 =
+        found.q95 = found.max = none;
     return found;
   }
   std::sort(sorted.begin(), sorted.end());
@@ -89,17 +97,19 @@ Statistics statistics_of(std::span<const double> values) {
 }
 
 Preference preference_of(const std::string& column) {
-  if (has(column, {"contains_truth_yes", "contains_truth_share", "exact_share", "inner_share", "detected", "isolated",
-                   "faults_proven", "optimal", "separates", "kappa_min", "experiments_isolated"}))
+  if (has(column, {"contains_truth_yes", "contains_truth_share", "exact_share", "inner_share",
+                   "detected", "isolated", "faults_proven", "optimal", "separates", "kappa_min",
+                   "experiments_isolated"}))
     return Preference::more;
   if (has(column, {"volume_of_hull_steps"})) return Preference::none;
-  if (has(column, {"undecided", "answers_unknown", "contains_truth_no", "contains_truth_unknown", "wrong_mode_rate",
-                   "faults_outside", "cost", "gap", "experiments_wrong"}))
+  if (has(column, {"undecided", "answers_unknown", "contains_truth_no", "contains_truth_unknown",
+                   "wrong_mode_rate", "faults_outside", "cost", "gap", "experiments_wrong"}))
     return Preference::less;
-  if (is_of(column,
-            {"radius", "volume", "w_radius", "f_w_radius", "detection_delay", "isolation_delay", "false_alarm", "missed"}))
+  if (is_of(column, {"radius", "volume", "w_radius", "f_w_radius", "detection_delay",
+                     "isolation_delay", "false_alarm", "missed"}))
     return Preference::less;
-  if (column.starts_with("fault_") && (column.ends_with("_half_width") || column.ends_with("_rms_error")))
+  if (column.starts_with("fault_") &&
+      (column.ends_with("_half_width") || column.ends_with("_rms_error")))
     return Preference::less;
   return is_time(column) ? Preference::less : Preference::none;
 }
@@ -127,12 +137,14 @@ Summary summarise(const ResultTable& table) {
     std::vector<double> values;
     for (std::size_t column = 0; column < table.columns.size(); ++column) {
       values.clear();
-      for (const ResultRow* point : finished) values.push_back(column < point->values.size() ? point->values[column] : none);
+      for (const ResultRow* point : finished)
+        values.push_back(column < point->values.size() ? point->values[column] : none);
       row.columns.push_back(statistics_of(values));
     }
   }
   for (const std::span<SummaryRow> rows : detail::combinations(summary)) {
-    for (std::size_t column = 0; column < table.columns.size(); ++column) add_relative(table, rows, column);
+    for (std::size_t column = 0; column < table.columns.size(); ++column)
+      add_relative(table, rows, column);
   }
   return summary;
 }

@@ -24,15 +24,16 @@ void write_statistics(Sink& file, const ResultTable& table, const Summary& summa
   for (const SweepAxis& axis : table.axes) {
     if (!axis.repeat) header.push_back(csv_field(axis.name));
   }
-  for (const char* name : {"measure", "points", "failed", "count", "infinite", "mean", "deviation", "min", "q05", "q25", "median",
-                           "q75", "q95", "max", "relative"}) {
+  for (const char* name : {"measure", "points", "failed", "count", "infinite", "mean", "deviation",
+                           "min", "q05", "q25", "median", "q75", "q95", "max", "relative"}) {
     header.emplace_back(name);
   }
   file.write(joined(header));
   for (const SummaryRow& row : summary.rows) {
     std::vector<std::string> beginning{csv_field(table.pipelines[row.pipeline])};
     for (std::size_t i = 0; i < table.axes.size(); ++i) {
-      if (!table.axes[i].repeat) beginning.push_back(csv_field(axis_value(table, i, row.at[i], whole)));
+      if (!table.axes[i].repeat)
+        beginning.push_back(csv_field(axis_value(table, i, row.at[i], whole)));
     }
     for (std::size_t column = 0; column < table.columns.size(); ++column) {
       const Statistics& found = row.columns[column];
@@ -41,8 +42,8 @@ void write_statistics(Sink& file, const ResultTable& table, const Summary& summa
       fields.push_back(csv_field(table.columns[column].name));
       for (const std::int64_t count : {row.points, row.failed, found.count, found.infinite})
         fields.push_back(std::to_string(count));
-      for (const double x : {found.mean, found.deviation, found.min, found.q05, found.q25, found.median, found.q75, found.q95,
-                             found.max, row.relative[column]}) {
+      for (const double x : {found.mean, found.deviation, found.min, found.q05, found.q25,
+                             found.median, found.q75, found.q95, found.max, row.relative[column]}) {
         fields.push_back(csv_number(x));
       }
       file.write(joined(fields));
@@ -66,11 +67,13 @@ void write_markdown(Sink& file, const std::string& title, const ComparisonTable&
     }
     file.write(cells + "\n");
   }
-  for (const std::string& note : table.notes) file.write(fmt::format("\n{}\n", markdown_text(note)));
+  for (const std::string& note : table.notes)
+    file.write(fmt::format("\n{}\n", markdown_text(note)));
 }
 
-/// Did everything hold that the pipeline claims? "1", "0", or nothing if it did not come to its end or has no answer; of a design
-/// "infeasible" if its designer says that no input separates the modes.
+/// Did everything hold that the pipeline claims? "1", "0", or nothing if it did not come to its end
+/// or has no answer; of a design "infeasible" if its designer says that no input separates the
+/// modes.
 std::string verdict(const ResultTable& table, const ResultRow& row) {
   if (!row.error.empty()) return "";
   const auto value = [&](std::string_view name) {
@@ -78,9 +81,12 @@ std::string verdict(const ResultTable& table, const ResultRow& row) {
     return column < row.values.size() ? row.values[column] : std::nan("");
   };
   if (value("refuted_claims") > 0) return "0";
-  if (!std::isnan(value("violated_at")) || !std::isnan(value("inner_outside")) || value("inconsistent") > 0) return "0";
+  if (!std::isnan(value("violated_at")) || !std::isnan(value("inner_outside")) ||
+      value("inconsistent") > 0)
+    return "0";
   if (value("infeasible") == 1) return "infeasible";
-  if (!std::isnan(value("horizon"))) return std::isnan(value("separates")) ? "" : to_text(value("separates"));
+  if (!std::isnan(value("horizon")))
+    return std::isnan(value("separates")) ? "" : to_text(value("separates"));
   return "1";
 }
 
@@ -90,7 +96,8 @@ void write_benchmarks(Sink& file, const ResultTable& table) {
   for (const ResultRow& row : table.rows) {
     std::string instance = table.pipelines[row.pipeline];
     for (std::size_t i = 0; i < table.axes.size(); ++i) {
-      instance += fmt::format("{}{}={}", i == 0 ? " " : ",", table.axes[i].name, axis_value(table, i, row.at[i], whole));
+      instance += fmt::format("{}{}={}", i == 0 ? " " : ",", table.axes[i].name,
+                              axis_value(table, i, row.at[i], whole));
     }
     const std::string time = wall < row.values.size() ? csv_number(row.values[wall]) : "";
     file.write(joined({csv_field(table.title), csv_field(instance), verdict(table, row), time}));

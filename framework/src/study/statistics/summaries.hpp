@@ -7,7 +7,8 @@
 
 namespace cordon::detail {
 
-/// summary.tex, summary.md, benchmarks.csv: created first, so that they have their place in the order of files.
+/// summary.tex, summary.md, benchmarks.csv: created first, so that they have their place in the
+/// order of files.
 class TableFiles {
  public:
   explicit TableFiles(AtomicDirectory& directory);
@@ -17,7 +18,8 @@ class TableFiles {
   Sink &tex_, &markdown_, &benchmarks_;
 };
 
-/// Those of a sweep: these three, summary.csv, and times.csv with the statistics of measured numbers.
+/// Those of a sweep: these three, summary.csv, and times.csv with the statistics of measured
+/// numbers.
 void write_summaries(AtomicDirectory& directory, const ResultTable& table, const Summary& summary);
 
 }  // namespace cordon::detail

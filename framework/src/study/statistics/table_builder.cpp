@@ -31,7 +31,8 @@ void TableBuilder::extend(std::size_t row, const std::vector<ResultNumber>& numb
 }
 
 void TableBuilder::finish() {
-  for (ResultRow& row : table_.rows) row.values.resize(table_.columns.size(), std::numeric_limits<double>::quiet_NaN());
+  for (ResultRow& row : table_.rows)
+    row.values.resize(table_.columns.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
 ResultTable table_of(const Study& study, const RunOutcome& outcome) {

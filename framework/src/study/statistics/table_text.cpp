@@ -17,7 +17,9 @@ bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x
 
 /// Replaces what stands in `pairs`, longest first where one begins like another.
 template <std::size_t Count>
-std::string replaced(std::string_view text, const std::array<std::pair<std::string_view, std::string_view>, Count>& pairs) {
+std::string replaced(
+    std::string_view text,
+    const std::array<std::pair<std::string_view, std::string_view>, Count>& pairs) {
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     std::size_t taken = 1;
@@ -36,7 +38,8 @@ std::string replaced(std::string_view text, const std::array<std::pair<std::stri
 
 }  // namespace
 
-std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t index, std::size_t limit) {
+std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t index,
+                       std::size_t limit) {
   const std::vector<std::string>& values = table.axes.at(axis).values;
   std::string text = index < values.size() ? values[index] : "?";
   if (text.starts_with('"')) {
@@ -46,49 +49,52 @@ std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t i
   text = printable(text);
   if (text.size() <= limit) return text;
   std::size_t end = limit;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;  // never inside a character
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u)
+    --end;  // never inside a character
   return text.substr(0, end) + "…";
 }
 
 std::string latex_text(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 21> pairs{{{"\\", "\\textbackslash{}"},
-                                                                                        {"{", "\\{"},
-                                                                                        {"}", "\\}"},
-                                                                                        {"$", "\\$"},
-                                                                                        {"&", "\\&"},
-                                                                                        {"#", "\\#"},
-                                                                                        {"%", "\\%"},
-                                                                                        {"_", "\\_"},
-                                                                                        {"^", "\\textasciicircum{}"},
-                                                                                        {"~", "\\textasciitilde{}"},
-                                                                                        {"<", "\\textless{}"},
-                                                                                        {">", "\\textgreater{}"},
-                                                                                        {"|", "\\textbar{}"},
-                                                                                        {"\"", "\\textquotedbl{}"},
-                                                                                        {"±", "$\\pm$"},
-                                                                                        {"×", "$\\times$"},
-                                                                                        {"∞", "$\\infty$"},
-                                                                                        {"µ", "$\\mu$"},
-                                                                                        {"κ", "$\\kappa$"},
-                                                                                        {"†", "$\\dagger$"},
-                                                                                        {"–", "--"}}};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 21> pairs{
+      {{"\\", "\\textbackslash{}"},
+       {"{", "\\{"},
+       {"}", "\\}"},
+       {"$", "\\$"},
+       {"&", "\\&"},
+       {"#", "\\#"},
+       {"%", "\\%"},
+       {"_", "\\_"},
+       {"^", "\\textasciicircum{}"},
+       {"~", "\\textasciitilde{}"},
+       {"<", "\\textless{}"},
+       {">", "\\textgreater{}"},
+       {"|", "\\textbar{}"},
+       {"\"", "\\textquotedbl{}"},
+       {"±", "$\\pm$"},
+       {"×", "$\\times$"},
+       {"∞", "$\\infty$"},
+       {"µ", "$\\mu$"},
+       {"κ", "$\\kappa$"},
+       {"†", "$\\dagger$"},
+       {"–", "--"}}};
   return replaced(text, pairs);
 }
 
 std::string markdown_text(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 13> pairs{{{"\\", "\\\\"},
-                                                                                        {"|", "\\|"},
-                                                                                        {"`", "\\`"},
-                                                                                        {"$", "\\$"},
-                                                                                        {"*", "\\*"},
-                                                                                        {"_", "\\_"},
-                                                                                        {"[", "\\["},
-                                                                                        {"]", "\\]"},
-                                                                                        {"#", "\\#"},
-                                                                                        {"~", "\\~"},
-                                                                                        {"&", "&amp;"},
-                                                                                        {"<", "&lt;"},
-                                                                                        {">", "&gt;"}}};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 13> pairs{
+      {{"\\", "\\\\"},
+       {"|", "\\|"},
+       {"`", "\\`"},
+       {"$", "\\$"},
+       {"*", "\\*"},
+       {"_", "\\_"},
+       {"[", "\\["},
+       {"]", "\\]"},
+       {"#", "\\#"},
+       {"~", "\\~"},
+       {"&", "&amp;"},
+       {"<", "&lt;"},
+       {">", "&gt;"}}};
   return replaced(text, pairs);
 }
 

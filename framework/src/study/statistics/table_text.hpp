@@ -9,11 +9,13 @@
 
 namespace cordon::detail {
 
-/// A value of an axis as people write it: texts without their quotes, everything else as JSON; printable, and what is
-/// longer than `limit` bytes is cut.
-std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t index, std::size_t limit = 32);
+/// A value of an axis as people write it: texts without their quotes, everything else as JSON;
+/// printable, and what is longer than `limit` bytes is cut.
+std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t index,
+                       std::size_t limit = 32);
 
-/// Text for LaTeX: special characters escaped, control characters as blanks. Other characters stay as they are, in UTF-8.
+/// Text for LaTeX: special characters escaped, control characters as blanks. Other characters stay
+/// as they are, in UTF-8.
 std::string latex_text(std::string_view text);
 
 /// Text for a cell of a Markdown table, without markup and HTML.

@@ -22,12 +22,14 @@ namespace {
 
 constexpr const char* folder = ".sweep";
 constexpr std::size_t longest_line = json::max_bytes;
-const std::string discard = "\"--restart\" throws the unfinished sweep away; another \"--out\" keeps it";
+const std::string discard =
+    "\"--restart\" throws the unfinished sweep away; another \"--out\" keeps it";
 
 [[noreturn]] void fail(const fs::path& path, int reason) {
-  const std::string mend = reason == ENOSPC || reason == EDQUOT ? "; free some space, then go on with --resume" : "";
-  throw Error(Errc::io,
-              "cannot write " + path.string() + ": " + std::strerror(reason) + mend + "; points that were finished are kept");
+  const std::string mend =
+      reason == ENOSPC || reason == EDQUOT ? "; free some space, then go on with --resume" : "";
+  throw Error(Errc::io, "cannot write " + path.string() + ": " + std::strerror(reason) + mend +
+                            "; points that were finished are kept");
 }
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& reason, const std::string& mend) {
@@ -50,7 +52,10 @@ std::string text_of(const JournalHead& head) {
   json.begin_object().member("cordon_journal", 1).member("study_hash", head.study_hash);
   json.member("version", head.version).member("abi_tag", head.abi_tag).key("plugins").begin_array();
   for (const std::string& plugin : head.plugins) json.value(plugin);
-  json.end_array().member("part", head.shard.part).member("of", head.shard.of).member("limit", head.limit_s);
+  json.end_array()
+      .member("part", head.shard.part)
+      .member("of", head.shard.of)
+      .member("limit", head.limit_s);
   json.member("started", head.started).end_object();
   return std::move(sink.text);
 }
@@ -75,7 +80,8 @@ std::optional<JournalHead> head_of(const std::string& text) {
   head.started = word("started");
   head.shard = {whole("part"), whole("of")};
   if (const auto plugins = root.need("plugins", "")) {
-    for (const json::Value& plugin : plugins->value().items()) head.plugins.push_back(plugin.text());
+    for (const json::Value& plugin : plugins->value().items())
+      head.plugins.push_back(plugin.text());
   }
   const auto limit = root.need("limit", "");
   head.limit_s = limit && limit->is(json::Value::Kind::number) ? limit->value().number : HUGE_VAL;
@@ -86,15 +92,19 @@ std::optional<JournalHead> head_of(const std::string& text) {
 /// Why points of one sweep are no points of the other, and the mend; two empty texts if they are.
 std::pair<std::string, std::string> difference(const JournalHead& old, const JournalHead& now) {
   if (old.study_hash != now.study_hash)
-    return {"holds the unfinished sweep of another study, or of an earlier version of this one", discard};
+    return {"holds the unfinished sweep of another study, or of an earlier version of this one",
+            discard};
   if (old.version != now.version || old.abi_tag != now.abi_tag)
-    return {"holds an unfinished sweep of another build of this program (version " + old.version + ")", discard};
+    return {
+        "holds an unfinished sweep of another build of this program (version " + old.version + ")",
+        discard};
   if (old.plugins != now.plugins) return {"holds an unfinished sweep with other plugins", discard};
   if (old.shard.part != now.shard.part || old.shard.of != now.shard.of)
     return {"holds " + name_of(old.shard) + ", and " + name_of(now.shard) + " was asked for",
             "every part needs an \"--out\" of its own"};
   if (old.limit_s != now.limit_s)
-    return {"was begun with " + name_of_limit(old.limit_s) + " per point, now there is " + name_of_limit(now.limit_s),
+    return {"was begun with " + name_of_limit(old.limit_s) + " per point, now there is " +
+                name_of_limit(now.limit_s),
             "go on with the same limit; " + discard};
   return {};
 }
@@ -102,7 +112,8 @@ std::pair<std::string, std::string> difference(const JournalHead& old, const Jou
 }  // namespace
 
 std::string name_of(const Shard& shard) {
-  return shard.of == 1 ? "all points" : "part " + std::to_string(shard.part) + " of " + std::to_string(shard.of);
+  return shard.of == 1 ? "all points"
+                       : "part " + std::to_string(shard.part) + " of " + std::to_string(shard.of);
 }
 
 std::string name_of_limit(double seconds) {
@@ -114,16 +125,22 @@ bool Journal::is_in(const fs::path& out) {
   return fs::exists(fs::symlink_status(out / folder / "journal", ignored));
 }
 
-Journal::Journal(const fs::path& out, const JournalHead& head, Start start, const std::function<void(PointResult)>& earlier)
-    : lock_(out), directory_(lock_.directory() / folder), file_(directory_ / "journal"), head_(head) {
+Journal::Journal(const fs::path& out, const JournalHead& head, Start start,
+                 const std::function<void(PointResult)>& earlier)
+    : lock_(out),
+      directory_(lock_.directory() / folder),
+      file_(directory_ / "journal"),
+      head_(head) {
   try {
     make_folder();
     std::optional<InputFile> old;
     if (is_in(out) && start == Start::fresh) {
-      refuse(out, "holds an unfinished sweep", "\"--resume\" goes on with it, \"--restart\" throws it away");
+      refuse(out, "holds an unfinished sweep",
+             "\"--resume\" goes on with it, \"--restart\" throws it away");
     }
     if (is_in(out) && start == Start::resume) {
-      if (!fs::is_regular_file(fs::symlink_status(file_))) refuse(file_, "is no regular file", discard);
+      if (!fs::is_regular_file(fs::symlink_status(file_)))
+        refuse(file_, "is no regular file", discard);
       check_head(old.emplace(file_, discard));
     }
     begin(old, earlier);
@@ -141,9 +158,11 @@ Journal::~Journal() {
 void Journal::make_folder() const {
   std::error_code error;
   if (!fs::create_directory(directory_, error) && error) {
-    throw Error(Errc::io, "cannot make the directory " + directory_.string() + ": " + error.message());
+    throw Error(Errc::io,
+                "cannot make the directory " + directory_.string() + ": " + error.message());
   }
-  if (!fs::is_directory(fs::symlink_status(directory_))) refuse(directory_, "is a symbolic link", "remove the link");
+  if (!fs::is_directory(fs::symlink_status(directory_)))
+    refuse(directory_, "is a symbolic link", "remove the link");
 }
 
 /// Leaves the file behind the head.
@@ -158,14 +177,17 @@ void Journal::check_head(InputFile& old) {
   head_.started = head->started;
 }
 
-/// A new file takes the place of the old one, with its lines that are whole, and is left open at its end.
-void Journal::begin(std::optional<InputFile>& old, const std::function<void(PointResult)>& earlier) {
+/// A new file takes the place of the old one, with its lines that are whole, and is left open at
+/// its end.
+void Journal::begin(std::optional<InputFile>& old,
+                    const std::function<void(PointResult)>& earlier) {
   const fs::path fresh = directory_ / "journal.new";
   ::unlink(fresh.c_str());  // whatever it is
   descriptor_ = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(fresh, errno);
   write(with_checksum(text_of(head_)));
-  for (std::string line; old && old->line(line, longest_line) && old->ended_line();) {  // a last line without its end is torn
+  for (std::string line; old && old->line(line, longest_line) &&
+                         old->ended_line();) {  // a last line without its end is torn
     const std::optional<std::string> text = checked(line);
     auto point = text ? point_of(*text) : std::nullopt;
     if (!point) continue;
@@ -183,7 +205,9 @@ void Journal::add(const std::string& line) {
 }
 
 void Journal::write(std::string_view bytes) {
-  if (broken_) throw Error(Errc::io, "cannot write " + file_.string() + " any more");  // a torn line must stay the last one
+  if (broken_)
+    throw Error(Errc::io, "cannot write " + file_.string() +
+                              " any more");  // a torn line must stay the last one
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
@@ -198,7 +222,8 @@ void Journal::write(std::string_view bytes) {
 void Journal::sync() {
   int result = ::fsync(descriptor_);
   while (result != 0 && errno == EINTR) result = ::fsync(descriptor_);
-  if (result != 0 && errno != EINVAL && errno != EROFS) fail(file_, errno);  // those two: it cannot be synchronised
+  if (result != 0 && errno != EINVAL && errno != EROFS)
+    fail(file_, errno);  // those two: it cannot be synchronised
 }
 
 void Journal::remove() {

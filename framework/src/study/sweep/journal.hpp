@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The finished points of a sweep that is not finished, on the disk: what is left when the process dies.
+// The finished points of a sweep that is not finished, on the disk: what is left when the process
+// dies.
 #pragma once
 
 #include <filesystem>
@@ -28,15 +29,16 @@ struct JournalHead {
 std::string name_of(const Shard& shard);
 std::string name_of_limit(double seconds);
 
-/// Lines in OUT/.sweep/journal, each with a checksum: the head, then a point each. A line that is cut off or damaged counts for
-/// nothing. OUT is held by a lock while the object lives, so that two processes cannot write into it; symbolic links are not
-/// followed. Errors of writing are Errc::io; what was written stays.
+/// Lines in OUT/.sweep/journal, each with a checksum: the head, then a point each. A line that is
+/// cut off or damaged counts for nothing. OUT is held by a lock while the object lives, so that two
+/// processes cannot write into it; symbolic links are not followed. Errors of writing are Errc::io;
+/// what was written stays.
 class Journal {
  public:
   enum class Start { fresh, resume, restart };
 
-  /// Hands what an earlier process has left to `earlier`. Throws InputError: another process holds it; `fresh`, and there is a
-  /// journal; `resume`, and it is of another sweep.
+  /// Hands what an earlier process has left to `earlier`. Throws InputError: another process holds
+  /// it; `fresh`, and there is a journal; `resume`, and it is of another sweep.
   Journal(const std::filesystem::path& out, const JournalHead& head, Start start,
           const std::function<void(PointResult)>& earlier);
   ~Journal();

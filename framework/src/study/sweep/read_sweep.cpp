@@ -19,7 +19,8 @@ using Kind = json::Value::Kind;
 
 const std::string mend = "the file is not as \"cordon run\" wrote it; run the study again";
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& reason, const std::string& what_to_do) {
+[[noreturn]] void refuse(const fs::path& file, const std::string& reason,
+                         const std::string& what_to_do) {
   throw InputError(file.string(), {{"", reason, what_to_do}});
 }
 
@@ -36,7 +37,8 @@ void end_member(std::string& text) {
   if (text.ends_with(',')) text.pop_back();
 }
 
-/// Calls `begin` when the head is there, then hands each point to `point`, which tells whether it is right.
+/// Calls `begin` when the head is there, then hands each point to `point`, which tells whether it
+/// is right.
 Frame read_points(const fs::path& file, const std::function<void(const Frame&)>& begin,
                   const std::function<bool(const Cursor&)>& point) {
   InputFile input(file, "\"cordon run\" writes it at the end of a sweep");
@@ -49,8 +51,10 @@ Frame read_points(const fs::path& file, const std::function<void(const Frame&)>&
       const json::Value tree = json::parse(line, problems);
       const Cursor at(tree, "", problems);
       if (!point(at) || problems.any())
-        throw InputError(file.string(), {{"", "this line is no point of a sweep", mend,
-                                          static_cast<int>(std::min<std::int64_t>(input.lines(), 1'000'000'000))}});
+        throw InputError(
+            file.string(),
+            {{"", "this line is no point of a sweep", mend,
+              static_cast<int>(std::min<std::int64_t>(input.lines(), 1'000'000'000))}});
       continue;
     }
     if (place == Place::head && line == "  \"points\": [") {
@@ -66,7 +70,9 @@ Frame read_points(const fs::path& file, const std::function<void(const Frame&)>&
     }
     if (frame.head.size() + frame.tail.size() > json::max_bytes) refuse(file, "is too large", mend);
   }
-  if (place == Place::head) refuse(file, "has no points: it is not of a sweep", "name a directory that a sweep was written to");
+  if (place == Place::head)
+    refuse(file, "has no points: it is not of a sweep",
+           "name a directory that a sweep was written to");
   if (place == Place::points) refuse(file, "ends in the middle", mend);
   return frame;
 }
@@ -78,7 +84,9 @@ std::string text(const Cursor& root, const char* key) {
 
 std::int64_t whole(const Cursor& object, const char* key, std::int64_t lowest) {
   const auto at = object.need(key, mend);
-  return at ? json::read_integer(*at, static_cast<double>(lowest), json::max_integer).value_or(lowest) : lowest;
+  return at ? json::read_integer(*at, static_cast<double>(lowest), json::max_integer)
+                  .value_or(lowest)
+            : lowest;
 }
 
 void read_axis(const Cursor& at, Study& study) {
@@ -88,7 +96,8 @@ void read_axis(const Cursor& at, Study& study) {
   axis.path = text(at, "path");
   const auto repeat = at.need("repeat", mend), values = at.need("values", mend);
   axis.repeat = repeat && json::read_flag(*repeat).value_or(false);
-  if (values && values->expect(Kind::array, mend) && values->size() == 0) values->error("is empty", mend);
+  if (values && values->expect(Kind::array, mend) && values->size() == 0)
+    values->error("is empty", mend);
 }
 
 void read_names(const Cursor& root, SweepFiles& sweep) {
@@ -100,17 +109,21 @@ void read_names(const Cursor& root, SweepFiles& sweep) {
     sweep.abi_tag = text(*cordon, "abi_tag");
   }
   const auto pipelines = root.need("pipelines", mend);
-  for (std::size_t i = 0; pipelines && pipelines->expect(Kind::array, mend) && i < pipelines->size(); ++i) {
+  for (std::size_t i = 0;
+       pipelines && pipelines->expect(Kind::array, mend) && i < pipelines->size(); ++i) {
     const Cursor pipeline = pipelines->item(i);
-    sweep.study.pipelines.emplace_back().name = pipeline.expect(Kind::object, mend) ? text(pipeline, "name") : "";
+    sweep.study.pipelines.emplace_back().name =
+        pipeline.expect(Kind::object, mend) ? text(pipeline, "name") : "";
   }
   if (pipelines && pipelines->size() == 0) pipelines->error("is empty", mend);
   const auto limit = root.need("point_limit_s", mend);
-  if (limit && !limit->is(Kind::null)) sweep.limit_s = json::read_number(*limit).value_or(sweep.limit_s);
+  if (limit && !limit->is(Kind::null))
+    sweep.limit_s = json::read_number(*limit).value_or(sweep.limit_s);
   const auto study = root.need("study", mend);
   if (!study || study->is(Kind::null)) return;
   const auto axes = study->expect(Kind::object, mend) ? study->find("sweep") : std::nullopt;
-  for (std::size_t i = 0; axes && axes->expect(Kind::array, mend) && i < axes->size(); ++i) read_axis(axes->item(i), sweep.study);
+  for (std::size_t i = 0; axes && axes->expect(Kind::array, mend) && i < axes->size(); ++i)
+    read_axis(axes->item(i), sweep.study);
 }
 
 /// The numbers of a line of results.json or run.json.
@@ -127,7 +140,8 @@ bool is_at(const Cursor& at, const SweepPoint& point) {
   if (!place || !place->expect(Kind::array, mend) || place->size() != point.at.size()) return false;
   bool same = whole(at, "pipeline", 0) == static_cast<std::int64_t>(point.pipeline);
   for (std::size_t i = 0; i < point.at.size(); ++i) {
-    same = same && json::read_integer(place->item(i), 0, json::max_integer) == static_cast<std::int64_t>(point.at[i]);
+    same = same && json::read_integer(place->item(i), 0, json::max_integer) ==
+                       static_cast<std::int64_t>(point.at[i]);
   }
   return same;
 }
@@ -139,7 +153,8 @@ Shard shard_of(const std::string& line, const fs::path& file) {
   Shard shard;
   const auto at = root.expect(Kind::object, mend) ? root.need("shard", mend) : std::nullopt;
   if (at && at->expect(Kind::object, mend)) shard = {whole(*at, "part", 1), whole(*at, "of", 1)};
-  if (problems.any() || shard.part > shard.of || shard.of > most_parts) refuse(file, "has a shard that is none", mend);
+  if (problems.any() || shard.part > shard.of || shard.of > most_parts)
+    refuse(file, "has a shard that is none", mend);
   return shard;
 }
 
@@ -164,7 +179,8 @@ void check_complete(const SweepFiles& sweep, const SweepGrid& grid, const fs::pa
   for (std::int64_t i = 0; i < grid.size(); ++i) {
     const bool mine = shard.has(grid[i], sweep.study.pipelines.size());
     if (mine != sweep.rows.has(i))
-      refuse(file, "point " + std::to_string(i) + (mine ? " is missing" : " does not belong here"), mend);
+      refuse(file, "point " + std::to_string(i) + (mine ? " is missing" : " does not belong here"),
+             mend);
     count += mine;
   }
   if (count != sweep.rows.size()) refuse(file, "has points that are not in its sweep", mend);
@@ -179,10 +195,12 @@ void read_head(SweepFiles& sweep, const fs::path& file) {
   const Cursor root(tree, "", problems);
   if (root.expect(Kind::object, mend)) read_names(root, sweep);
   if (problems.any()) throw InputError(file.string(), problems.sorted());
-  // What was checked is read again, by a parser that can also write: values are texts, the same whoever reads this head.
+  // What was checked is read again, by a parser that can also write: values are texts, the same
+  // whoever reads this head.
   const auto whole_head = nlohmann::ordered_json::parse(head);
   for (std::size_t i = 0; i < sweep.study.sweep.size(); ++i) {
-    for (const auto& value : whole_head["study"]["sweep"][i]["values"]) sweep.study.sweep[i].values.push_back(value.dump());
+    for (const auto& value : whole_head["study"]["sweep"][i]["values"])
+      sweep.study.sweep[i].values.push_back(value.dump());
   }
 }
 
@@ -201,9 +219,12 @@ SweepFiles read_sweep(const fs::path& directory) {
       },
       [&](const Cursor& at) {
         PointResult result;
-        if (!read_point(at, false, result) || result.index >= grid->size() || sweep.rows.has(result.index)) return false;
+        if (!read_point(at, false, result) || result.index >= grid->size() ||
+            sweep.rows.has(result.index))
+          return false;
         const auto error = at.need("error", mend);
-        if (error && !error->is(Kind::null)) result.error = json::read_text(*error, json::max_bytes).value_or("");
+        if (error && !error->is(Kind::null))
+          result.error = json::read_text(*error, json::max_bytes).value_or("");
         if (const auto code = at.find("error_code")) {
           result.code = code->is(Kind::text) ? error_code(code->value().text()) : std::nullopt;
           if (!result.code) return false;

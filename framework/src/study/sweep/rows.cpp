@@ -17,7 +17,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 void write_numbers_of(JsonWriter& json, const char* key, const PointResult& result, bool measured) {
   json.key(key).begin_object();
   for (const ResultNumber& number : result.numbers) {
-    if (number.column.measured == measured && !std::isnan(number.value)) json.member(number.column.name, number.value);
+    if (number.column.measured == measured && !std::isnan(number.value))
+      json.member(number.column.name, number.value);
   }
   json.end_object();
 }
@@ -25,8 +26,8 @@ void write_numbers_of(JsonWriter& json, const char* key, const PointResult& resu
 }  // namespace
 
 std::optional<Errc> error_code(std::string_view name) {
-  for (const Errc code : {Errc::dimension, Errc::not_finite, Errc::invalid, Errc::unsupported, Errc::solver, Errc::time_limit,
-                          Errc::plugin, Errc::io, Errc::internal}) {
+  for (const Errc code : {Errc::dimension, Errc::not_finite, Errc::invalid, Errc::unsupported,
+                          Errc::solver, Errc::time_limit, Errc::plugin, Errc::io, Errc::internal}) {
     if (to_string(code) == name) return code;
   }
   return std::nullopt;
@@ -48,7 +49,8 @@ std::optional<PointResult> point_of(std::string_view line) {
   json::Problems problems;
   const json::Value tree = json::parse(line, problems);
   const json::Cursor root(tree, "", problems);
-  if (!root.expect_keys({"point", "numbers", "measured", "error", "code"}, "member of a point", "")) return std::nullopt;
+  if (!root.expect_keys({"point", "numbers", "measured", "error", "code"}, "member of a point", ""))
+    return std::nullopt;
   PointResult result;
   const auto point = root.need("point", "");
   result.index = point ? json::read_integer(*point, 0, json::max_integer).value_or(0) : 0;
@@ -56,7 +58,8 @@ std::optional<PointResult> point_of(std::string_view line) {
     const auto numbers = root.need(measured ? "measured" : "numbers", "");
     if (!numbers || !read_numbers(*numbers, measured, result.numbers)) return std::nullopt;
   }
-  if (const auto error = root.find("error")) result.error = json::read_text(*error, json::max_bytes).value_or("");
+  if (const auto error = root.find("error"))
+    result.error = json::read_text(*error, json::max_bytes).value_or("");
   if (const auto code = root.find("code"); code && code->is(json::Value::Kind::text))
     result.code = error_code(code->value().text());
   return problems.any() ? std::nullopt : std::optional(std::move(result));
@@ -67,8 +70,10 @@ bool read_numbers(const json::Cursor& at, bool measured, std::vector<ResultNumbe
   for (std::size_t i = 0; i < at.size(); ++i) {
     const json::Value& value = at.value().items()[i];
     double number = value.number;
-    if (value.kind == json::Value::Kind::text && (value.text() == "inf" || value.text() == "-inf")) {
-      number = value.text() == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+    if (value.kind == json::Value::Kind::text &&
+        (value.text() == "inf" || value.text() == "-inf")) {
+      number = value.text() == "inf" ? std::numeric_limits<double>::infinity()
+                                     : -std::numeric_limits<double>::infinity();
     } else if (value.kind != json::Value::Kind::number) {
       at.problems().add(at.pointer(), value.line, "is no number");
       return false;
@@ -80,7 +85,8 @@ bool read_numbers(const json::Cursor& at, bool measured, std::vector<ResultNumbe
 
 void SweepRows::add(const PointResult& result) {
   Row row{{}, result.error, result.code};
-  for (const ResultNumber& number : result.numbers) row.numbers.emplace_back(id(number.column), number.value);
+  for (const ResultNumber& number : result.numbers)
+    row.numbers.emplace_back(id(number.column), number.value);
   const bool failed = !row.error.empty();
   if (rows_.try_emplace(result.index, std::move(row)).second) failed_ += failed;
 }
@@ -88,14 +94,16 @@ void SweepRows::add(const PointResult& result) {
 bool SweepRows::extend(const PointResult& more) {
   const auto row = rows_.find(more.index);
   if (row == rows_.end()) return false;
-  for (const ResultNumber& number : more.numbers) row->second.numbers.emplace_back(id(number.column), number.value);
+  for (const ResultNumber& number : more.numbers)
+    row->second.numbers.emplace_back(id(number.column), number.value);
   return true;
 }
 
 void SweepRows::merge(const SweepRows& other) {
   for (const auto& [index, row] : other.rows_) {
     PointResult point{index, {}, row.error, row.code};
-    for (const auto& [name, value] : row.numbers) point.numbers.push_back({other.names_[name], value});
+    for (const auto& [name, value] : row.numbers)
+      point.numbers.push_back({other.names_[name], value});
     add(point);
   }
 }
@@ -107,7 +115,8 @@ std::size_t SweepRows::id(const ResultColumn& column) {
 }
 
 std::optional<Errc> SweepRows::first_error() const {
-  const auto found = std::find_if(rows_.begin(), rows_.end(), [](const auto& row) { return !row.second.error.empty(); });
+  const auto found = std::find_if(rows_.begin(), rows_.end(),
+                                  [](const auto& row) { return !row.second.error.empty(); });
   return found == rows_.end() ? std::nullopt : found->second.code;
 }
 
@@ -122,7 +131,8 @@ ResultTable SweepRows::table(const Study& study) const {
   table.axes = study.sweep;
   for (const PipelineSpec& pipeline : study.pipelines) table.pipelines.push_back(pipeline.name);
   constexpr std::size_t unused = std::numeric_limits<std::size_t>::max();
-  std::vector<std::size_t> place(names_.size(), unused);  // of a name among the columns: names came as points were done
+  std::vector<std::size_t> place(
+      names_.size(), unused);  // of a name among the columns: names came as points were done
   for (const auto& [index, row] : rows_) {
     for (const auto& [name, value] : row.numbers) {
       if (place[name] != unused) continue;
@@ -144,15 +154,17 @@ ResultTable SweepRows::table(const Study& study) const {
 }
 
 std::int64_t violations(const ResultTable& table) {
-  std::vector<std::pair<std::size_t, double>> columns;  // of a time, or of a count: values from here on are violations
+  std::vector<std::pair<std::size_t, double>>
+      columns;  // of a time, or of a count: values from here on are violations
   for (std::size_t j = 0; j < table.columns.size(); ++j) {
     const std::string& name = table.columns[j].name;
     if (name == "violated_at" || name == "inner_outside") columns.emplace_back(j, 0);
     if (name == "refuted_claims") columns.emplace_back(j, 1);
   }
   return std::count_if(table.rows.begin(), table.rows.end(), [&](const ResultRow& row) {
-    return std::any_of(columns.begin(), columns.end(),
-                       [&](const auto& column) { return row.values[column.first] >= column.second; });
+    return std::any_of(columns.begin(), columns.end(), [&](const auto& column) {
+      return row.values[column.first] >= column.second;
+    });
   });
 }
 

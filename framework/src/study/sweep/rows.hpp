@@ -24,8 +24,8 @@ struct PointResult {
   std::optional<Errc> code = {};      ///< of the error
 };
 
-/// One line of JSON, without its end. Reading it gives the same result to the last bit, but for numbers that are NaN and bytes
-/// that are no UTF-8.
+/// One line of JSON, without its end. Reading it gives the same result to the last bit, but for
+/// numbers that are NaN and bytes that are no UTF-8.
 std::string line_of(const PointResult& result);
 /// Nothing if the text is no such line.
 std::optional<PointResult> point_of(std::string_view line);
@@ -33,7 +33,8 @@ std::optional<PointResult> point_of(std::string_view line);
 /// The error of this name.
 std::optional<Errc> error_code(std::string_view name);
 
-/// Adds the members of an object: numbers, "inf" and "-inf". False, and a problem is told, if there is anything else.
+/// Adds the members of an object: numbers, "inf" and "-inf". False, and a problem is told, if there
+/// is anything else.
 bool read_numbers(const json::Cursor& at, bool measured, std::vector<ResultNumber>& numbers);
 
 /// The points that are done, by index.

@@ -29,16 +29,21 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double longest_limit_s = 1e9;  // beyond that the clock would overflow, and nobody waits
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 void check(const SweepOptions& options) {
   if (options.out.empty()) throw Error(Errc::invalid, "a sweep needs a directory for its results");
   if (options.jobs < 1) throw Error(Errc::invalid, "a sweep needs one job at least");
-  if (options.resume && options.restart) throw Error(Errc::invalid, "resume and restart exclude each other");
-  if (!(options.point_limit_s > 0)) throw Error(Errc::invalid, "the time limit of a point must be above 0");
-  if (options.shard.of < 1 || options.shard.part < 1 || options.shard.part > options.shard.of || options.shard.of > most_parts)
-    throw Error(Errc::invalid,
-                "a shard is a part between 1 and the number of parts, which is " + std::to_string(most_parts) + " at most");
+  if (options.resume && options.restart)
+    throw Error(Errc::invalid, "resume and restart exclude each other");
+  if (!(options.point_limit_s > 0))
+    throw Error(Errc::invalid, "the time limit of a point must be above 0");
+  if (options.shard.of < 1 || options.shard.part < 1 || options.shard.part > options.shard.of ||
+      options.shard.of > most_parts)
+    throw Error(Errc::invalid, "a shard is a part between 1 and the number of parts, which is " +
+                                   std::to_string(most_parts) + " at most");
 }
 
 JournalHead head_of(const Study& study, const Registry& registry, const SweepOptions& options) {
@@ -46,12 +51,14 @@ JournalHead head_of(const Study& study, const Registry& registry, const SweepOpt
   JournalHead head{fingerprint(study.resolved), build.version, build.abi_tag, {}, options.shard,
                    options.point_limit_s,       utc_now()};
   for (const PluginReport& report : registry.reports()) {
-    if (report.state == PluginReport::State::loaded) head.plugins.push_back(report.name + ' ' + report.version);
+    if (report.state == PluginReport::State::loaded)
+      head.plugins.push_back(report.name + ' ' + report.version);
   }
   return head;
 }
 
-/// One line for the problems of an input, without the name of the study's file, which is not part of the results.
+/// One line for the problems of an input, without the name of the study's file, which is not part
+/// of the results.
 std::string text_of(const InputError& error, const Study& study) {
   std::string text = error.file() == study.file.string() ? "" : error.file() + ": ";
   bool first = true;
@@ -68,7 +75,8 @@ std::string text_of(const InputError& error, const Study& study) {
 /// Paths as the study writes them: without its folder, which is another one elsewhere.
 std::string without_folder(std::string text, const Study& study) {
   std::error_code failure;
-  const std::string folder = (std::filesystem::absolute(study.file, failure).parent_path() / "").string();
+  const std::string folder =
+      (std::filesystem::absolute(study.file, failure).parent_path() / "").string();
   if (failure || folder.size() < 2) return text;
   for (std::size_t at = 0; (at = text.find(folder, at)) != std::string::npos;) {
     if (at == 0 || std::string_view(" \"'(\n").find(text[at - 1]) != std::string_view::npos) {
@@ -83,7 +91,8 @@ std::string without_folder(std::string text, const Study& study) {
 /// Runs points, one after another: what one thread of a sweep does.
 class PointRunner {
  public:
-  PointRunner(const StudyOf& of, const Study& study, const Registry& registry, double limit_s, const std::atomic<bool>& stop)
+  PointRunner(const StudyOf& of, const Study& study, const Registry& registry, double limit_s,
+              const std::atomic<bool>& stop)
       : of_(of), study_(study), registry_(registry), limit_s_(limit_s), stop_(stop) {}
 
   /// Nothing: stopped.
@@ -116,7 +125,8 @@ class PointRunner {
     options.pipeline = now.pipelines.at(point.pipeline).name;
     options.stop = &stop_;
     if (limit_s_ < longest_limit_s)
-      options.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_s_));
+      options.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                            std::chrono::duration<double>(limit_s_));
     const RunOutcome outcome = run_study(now, registry_, options);
     if (outcome.interrupted) return false;
     const PipelineOutcome& pipeline = outcome.pipelines.front();
@@ -140,7 +150,8 @@ class PointRunner {
 
 class SweepRun {
  public:
-  SweepRun(const StudyOf& of, const Study& study, const Registry& registry, const SweepOptions& options)
+  SweepRun(const StudyOf& of, const Study& study, const Registry& registry,
+           const SweepOptions& options)
       : of_(of), study_(study), registry_(registry), options_(options), grid_(study) {
     for (std::int64_t i = 0; i < grid_.size(); ++i) total_ += is_mine(i);
   }
@@ -179,7 +190,9 @@ class SweepRun {
 
  private:
   bool stopped_from_outside() const { return options_.stop && options_.stop->load(); }
-  bool is_mine(std::int64_t index) const { return options_.shard.has(grid_[index], study_.pipelines.size()); }
+  bool is_mine(std::int64_t index) const {
+    return options_.shard.has(grid_[index], study_.pipelines.size());
+  }
 
   SweepFiles described(const std::string& started) const {
     SweepFiles files;
@@ -195,15 +208,18 @@ class SweepRun {
     };
     const Shard shard = finished.shard.value_or(Shard{});
     if (shard.part != options_.shard.part || shard.of != options_.shard.of)
-      refuse("holds the results of " + name_of(shard) + ", and " + name_of(options_.shard) + " was asked for",
-             "every part needs an \"--out\" of its own; without \"--resume\" the results there are replaced");
+      refuse("holds the results of " + name_of(shard) + ", and " + name_of(options_.shard) +
+                 " was asked for",
+             "every part needs an \"--out\" of its own; without \"--resume\" the results there are "
+             "replaced");
     if (finished.limit_s != options_.point_limit_s)
       refuse("holds results with " + name_of_limit(finished.limit_s) + " per point, now there is " +
                  name_of_limit(options_.point_limit_s),
              "give the same limit; without \"--resume\" all points are run again");
   }
 
-  /// Results of this sweep that are there already. Throws InputError if they are of another part or limit.
+  /// Results of this sweep that are there already. Throws InputError if they are of another part or
+  /// limit.
   std::optional<SweepOutcome> finished_before(const JournalHead& head) const {
     std::optional<SweepFiles> files;
     try {
@@ -220,7 +236,8 @@ class SweepRun {
     outcome.first_error = files->rows.first_error();
     std::error_code ignored;
     if (options_.report && !std::filesystem::exists(options_.out / "report.html", ignored)) {
-      std::vector<std::filesystem::path> added;  // ended between the results and their report, or had none
+      std::vector<std::filesystem::path>
+          added;  // ended between the results and their report, or had none
       try {
         outcome.report_error = report::try_report(DirectoryLock(options_.out), added);
       } catch (const Error& error) {
@@ -235,7 +252,8 @@ class SweepRun {
     return {rows_.size(), total_, rows_.failed(), resumed_, seconds_since(begin_)};
   }
 
-  /// Runs what is left. Returns when all is done, or when it was stopped; throws what a thread could not deal with.
+  /// Runs what is left. Returns when all is done, or when it was stopped; throws what a thread
+  /// could not deal with.
   void work() {
     const std::int64_t left = total_ - rows_.size();
     const std::int64_t jobs = std::min<std::int64_t>(options_.jobs, left);
@@ -251,7 +269,8 @@ class SweepRun {
     if (failure_) std::rethrow_exception(failure_);
   }
 
-  /// None of them takes a point before all have started: if they cannot, nothing is left behind that did not finish.
+  /// None of them takes a point before all have started: if they cannot, nothing is left behind
+  /// that did not finish.
   void start(std::vector<std::jthread>& threads, std::int64_t jobs) {
     const std::lock_guard guard(sharing_);
     try {
@@ -259,7 +278,8 @@ class SweepRun {
     } catch (const std::system_error& error) {
       stop_ = true;
       if (rows_.size() == 0) journal_->remove();
-      throw std::system_error(error.code(), fmt::format("cannot start {} threads, give fewer with --jobs", jobs));
+      throw std::system_error(error.code(),
+                              fmt::format("cannot start {} threads, give fewer with --jobs", jobs));
     }
   }
 
@@ -268,7 +288,9 @@ class SweepRun {
     for (;;) {
       {
         std::unique_lock guard(sharing_);
-        if (ended_.wait_for(guard, std::chrono::milliseconds(50), [this] { return finished_ == working_; })) break;
+        if (ended_.wait_for(guard, std::chrono::milliseconds(50),
+                            [this] { return finished_ == working_; }))
+          break;
       }
       if (stopped_from_outside()) stop_ = true;
       if (options_.progress) options_.progress(progress());
@@ -335,7 +357,8 @@ class SweepRun {
 
 }  // namespace
 
-SweepOutcome run_sweep_on(const StudyOf& of, const Study& study, const Registry& registry, const SweepOptions& options) {
+SweepOutcome run_sweep_on(const StudyOf& of, const Study& study, const Registry& registry,
+                          const SweepOptions& options) {
   check(options);
   return SweepRun(of, study, registry, options).run();
 }
@@ -345,8 +368,9 @@ SweepOutcome run_sweep_on(const StudyOf& of, const Study& study, const Registry&
 namespace cordon {
 
 SweepOutcome run_sweep(const Study& study, const Registry& registry, const SweepOptions& options) {
-  return detail::run_sweep_on([&](const SweepPoint& point) { return study_of_point(study, point, registry); }, study, registry,
-                              options);
+  return detail::run_sweep_on(
+      [&](const SweepPoint& point) { return study_of_point(study, point, registry); }, study,
+      registry, options);
 }
 
 }  // namespace cordon

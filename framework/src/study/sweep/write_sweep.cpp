@@ -21,14 +21,17 @@ using Layout = JsonWriter::Layout;
 /// Where a row stands in the grid.
 std::int64_t index_of(const ResultTable& table, const ResultRow& row) {
   std::size_t combination = 0;
-  for (std::size_t i = 0; i < table.axes.size(); ++i) combination = combination * table.axes[i].values.size() + row.at[i];
+  for (std::size_t i = 0; i < table.axes.size(); ++i)
+    combination = combination * table.axes[i].values.size() + row.at[i];
   return static_cast<std::int64_t>(combination * table.pipelines.size() + row.pipeline);
 }
 
-void write_numbers_of(JsonWriter& json, const ResultTable& table, const ResultRow& row, bool measured) {
+void write_numbers_of(JsonWriter& json, const ResultTable& table, const ResultRow& row,
+                      bool measured) {
   json.key("numbers").begin_object();
   for (std::size_t j = 0; j < table.columns.size(); ++j) {
-    if (table.columns[j].measured == measured && !std::isnan(row.values[j])) json.member(table.columns[j].name, row.values[j]);
+    if (table.columns[j].measured == measured && !std::isnan(row.values[j]))
+      json.member(table.columns[j].name, row.values[j]);
   }
   json.end_object();
 }
@@ -53,7 +56,11 @@ void write_results(Sink& file, const SweepFiles& sweep, const ResultTable& table
   file.write(sweep.heads.results);
   if (sweep.shard) {
     file.write(",\n  \"shard\": ");
-    JsonWriter(file).begin_object().member("part", sweep.shard->part).member("of", sweep.shard->of).end_object();
+    JsonWriter(file)
+        .begin_object()
+        .member("part", sweep.shard->part)
+        .member("of", sweep.shard->of)
+        .end_object();
   }
   write_points(file, table, [&](JsonWriter& json, const ResultRow& row) {
     json.member("pipeline", static_cast<std::int64_t>(row.pipeline)).key("at").begin_array();
@@ -62,17 +69,21 @@ void write_results(Sink& file, const SweepFiles& sweep, const ResultTable& table
     write_numbers_of(json, table, row, false);
     json.key("error");
     row.error.empty() ? json.null() : json.value(row.error);
-    if (const auto code = sweep.rows.code(index_of(table, row))) json.member("error_code", to_string(*code));
+    if (const auto code = sweep.rows.code(index_of(table, row)))
+      json.member("error_code", to_string(*code));
   });
   file.write("\n}\n");
 }
 
 void write_run(Sink& file, const SweepFiles& sweep, const ResultTable& table) {
   file.write(sweep.heads.run);
-  write_points(file, table, [&](JsonWriter& json, const ResultRow& row) { write_numbers_of(json, table, row, true); });
+  write_points(file, table, [&](JsonWriter& json, const ResultRow& row) {
+    write_numbers_of(json, table, row, true);
+  });
   file.write(",\n  \"wall_s\": ");
   JsonWriter(file).value(sweep.wall_s);
-  file.write(",\n  \"finished\": " + json_string(sweep.finished.empty() ? utc_now() : sweep.finished) + "\n}\n");
+  file.write(",\n  \"finished\": " +
+             json_string(sweep.finished.empty() ? utc_now() : sweep.finished) + "\n}\n");
 }
 
 /// A JSON text as a field: texts without their quotes.
@@ -85,11 +96,13 @@ std::string csv_value(const std::string& json) {
 /// The name of an axis, or another one if a number or an axis has it.
 std::string column_of(const ResultTable& table, const SweepAxis& axis) {
   const auto is_number = [&](const std::string& name) {
-    return std::any_of(table.columns.begin(), table.columns.end(),
-                       [&](const ResultColumn& column) { return !column.measured && column.name == name; });
+    return std::any_of(table.columns.begin(), table.columns.end(), [&](const ResultColumn& column) {
+      return !column.measured && column.name == name;
+    });
   };
   const auto is_axis = [&](const std::string& name) {
-    return std::any_of(table.axes.begin(), table.axes.end(), [&](const SweepAxis& other) { return other.name == name; });
+    return std::any_of(table.axes.begin(), table.axes.end(),
+                       [&](const SweepAxis& other) { return other.name == name; });
   };
   std::string name = axis.name;
   if (!is_number(name)) return name;
@@ -124,7 +137,8 @@ void write_table(Sink& file, const ResultTable& table) {
 
 }  // namespace
 
-SweepHeads heads_of(const Study& study, const Registry& registry, const std::string& started, double limit_s) {
+SweepHeads heads_of(const Study& study, const Registry& registry, const std::string& started,
+                    double limit_s) {
   StringSink results, run;
   JsonWriter json(results);
   begin_results_file(json, study, registry);
@@ -151,7 +165,8 @@ ResultTable table_of(const SweepFiles& sweep) {
   return table;
 }
 
-std::vector<std::filesystem::path> write_sweep(const DirectoryLock& out, const SweepFiles& sweep, const ResultTable& table) {
+std::vector<std::filesystem::path> write_sweep(const DirectoryLock& out, const SweepFiles& sweep,
+                                               const ResultTable& table) {
   AtomicDirectory directory(out);
   write_table(directory.create("points.csv"), table);
   write_summaries(directory, table, summarise(table));

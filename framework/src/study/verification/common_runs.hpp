@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Can several modes show the same outputs under one input sequence? Rows and proofs without any rounding.
+// Can several modes show the same outputs under one input sequence? Rows and proofs without any
+// rounding.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,8 @@
 
 namespace cordon::verification {
 
-/// What is compared: the inputs u_0 … u_N, a row each, and what DesignOutcome says of outputs and states.
+/// What is compared: the inputs u_0 … u_N, a row each, and what DesignOutcome says of outputs and
+/// states.
 struct Experiment {
   const Matrix& u;
   bool last_output_only = false;
@@ -19,18 +21,23 @@ struct Experiment {
 };
 
 /// The rows that the runs of all models satisfy at once: for k = 0 … N
-///   E x_{k+1} = A x_k + B u_k + Bw w_k,   y_k = C x_k + D u_k + Dv v_k,   x_0 ∈ X0, w_k ∈ W, v_k ∈ V
-/// of each, with the same u_k and, where outputs count, the same y_k. Without E the equation of k = N says nothing and is left
-/// out. With an admissible set X_A also x_k = a + Eᵀλ, a ∈ X_A, for k = 1 … N: the part of x_k that E does not determine is that
-/// of a. A set of dimension 0, empty if and only if the models' outputs differ; of one model, if and only if its tube is empty.
-/// Every entry is a number of the models; effectiveness that is known exactly multiplies in rows of its own.
+///   E x_{k+1} = A x_k + B u_k + Bw w_k,   y_k = C x_k + D u_k + Dv v_k,   x_0 ∈ X0, w_k ∈ W, v_k ∈
+///   V
+/// of each, with the same u_k and, where outputs count, the same y_k. Without E the equation of k =
+/// N says nothing and is left out. With an admissible set X_A also x_k = a + Eᵀλ, a ∈ X_A, for k =
+/// 1 … N: the part of x_k that E does not determine is that of a. A set of dimension 0, empty if
+/// and only if the models' outputs differ; of one model, if and only if its tube is empty. Every
+/// entry is a number of the models; effectiveness that is known exactly multiplies in rows of its
+/// own.
 LineForm common_runs(std::span<const Model* const> models, const Experiment& experiment);
 
-/// The outputs of all times that count, one below the other, which a model can show under the inputs, by the same rows.
+/// The outputs of all times that count, one below the other, which a model can show under the
+/// inputs, by the same rows.
 LineForm output_tube(const Model& model, const Experiment& experiment);
 
-/// Is the set of such rows empty? `yes` by a Farkas vector y with bᵀy > ‖Aᵀy‖₁, `no` by a solution, both exact. If `yes`, it is
-/// empty for all ‖ξ‖∞ < 1 + κ too, with `kappa_lower` ≤ κ, rounded down.
+/// Is the set of such rows empty? `yes` by a Farkas vector y with bᵀy > ‖Aᵀy‖₁, `no` by a solution,
+/// both exact. If `yes`, it is empty for all ‖ξ‖∞ < 1 + κ too, with `kappa_lower` ≤ κ, rounded
+/// down.
 struct ExactEmptiness {
   Answer empty = Answer::unknown;
   double kappa_lower = 0;

@@ -14,7 +14,8 @@ constexpr double most_asked = 1e9;  ///< of κ: an infinite one shows as a very 
 
 class DesignCheck {
  public:
-  void pair(std::size_t q, const PairSeparation& claim, const ExactPair& exact, const std::string& names) {
+  void pair(std::size_t q, const PairSeparation& claim, const ExactPair& exact,
+            const std::string& names) {
     if (claim.disjoint == Answer::unknown) return;
     const std::string tubes = "the output tubes of " + names;
     if (exact.disjoint == Answer::unknown) return open(tubes + ": " + exact.reason);
@@ -23,10 +24,11 @@ class DesignCheck {
       const double asked = std::min(claim.kappa_lower, most_asked);
       if (!apart) return refute(tubes + " are called disjoint, and meet", "/design/pairs/", q);
       if (exact.kappa_lower >= asked - tolerance * (1 + asked)) return holds();
-      return open(
-          fmt::format("{} are disjoint, and κ ≥ {} is proven in place of {}", tubes, exact.kappa_lower, claim.kappa_lower));
+      return open(fmt::format("{} are disjoint, and κ ≥ {} is proven in place of {}", tubes,
+                              exact.kappa_lower, claim.kappa_lower));
     }
-    if (apart && exact.kappa_lower > tolerance) return refute(tubes + " are said to meet, and are disjoint", "/design/pairs/", q);
+    if (apart && exact.kappa_lower > tolerance)
+      return refute(tubes + " are said to meet, and are disjoint", "/design/pairs/", q);
     holds();
   }
 
@@ -34,8 +36,8 @@ class DesignCheck {
     if (claim == Answer::unknown) return;
     if (exact == Answer::unknown) return open("is the output tube of " + name + " empty?");
     if (claim == exact) return holds();
-    refute(fmt::format("the output tube of {} is called {}empty, and is {}", name, claim == Answer::yes ? "" : "not ",
-                       claim == Answer::yes ? "not" : "empty"),
+    refute(fmt::format("the output tube of {} is called {}empty, and is {}", name,
+                       claim == Answer::yes ? "" : "not ", claim == Answer::yes ? "not" : "empty"),
            "/design/tubes/", i);
   }
 
@@ -46,28 +48,34 @@ class DesignCheck {
       const std::string what = fmt::format("what is called proven of pair {}", q + 1);
       if (!same(claim.disjoint, exact.pairs[q].disjoint, what, "/exact/pairs/", q)) continue;
       if (claim.disjoint == Answer::yes && claim.kappa_lower > exact.pairs[q].kappa_lower) {
-        refute(fmt::format("κ ≥ {} is called proven, and κ ≥ {} is", claim.kappa_lower, exact.pairs[q].kappa_lower),
+        refute(fmt::format("κ ≥ {} is called proven, and κ ≥ {} is", claim.kappa_lower,
+                           exact.pairs[q].kappa_lower),
                "/exact/pairs/", q);
       }
     }
     for (std::size_t i = 0; i < exact.empty.size(); ++i) {
-      same(recorded.empty.at(i), exact.empty[i], fmt::format("what is called proven of tube {}", i + 1), "/exact/tubes/", i);
+      same(recorded.empty.at(i), exact.empty[i],
+           fmt::format("what is called proven of tube {}", i + 1), "/exact/tubes/", i);
     }
   }
   /// A word about all pairs and tubes, beside what these say.
   void summary(Answer claim, Answer of_parts, const std::string& pointer) {
     if (claim == Answer::unknown || claim == of_parts) return;
-    found.refuted.push_back(
-        {fmt::format("\"separates\" is \"{}\"; pairs and tubes make it \"{}\"", to_string(claim), to_string(of_parts)), pointer});
+    found.refuted.push_back({fmt::format("\"separates\" is \"{}\"; pairs and tubes make it \"{}\"",
+                                         to_string(claim), to_string(of_parts)),
+                             pointer});
   }
 
   DesignFindings found;
 
  private:
-  bool same(Answer claim, Answer exact, const std::string& what, const char* list, std::size_t index) {
+  bool same(Answer claim, Answer exact, const std::string& what, const char* list,
+            std::size_t index) {
     if (claim == Answer::unknown || claim == exact) return true;
     if (exact == Answer::unknown) return open(what + " is not proven again"), false;
-    return refute(fmt::format("{} is false: \"{}\" is, not \"{}\"", what, to_string(exact), to_string(claim)), list, index),
+    return refute(fmt::format("{} is false: \"{}\" is, not \"{}\"", what, to_string(exact),
+                              to_string(claim)),
+                  list, index),
            false;
   }
 
@@ -84,7 +92,8 @@ class DesignCheck {
 
 namespace {
 
-void compare_claims(DesignCheck& check, const ModeBank& bank, const DesignOutcome& outcome, const ExactSeparation& exact) {
+void compare_claims(DesignCheck& check, const ModeBank& bank, const DesignOutcome& outcome,
+                    const ExactSeparation& exact) {
   for (std::size_t q = 0; q < exact.pairs.size(); ++q) {
     const ExactPair& pair = exact.pairs[q];
     check.pair(q, outcome.best->pairs.at(q), pair, bank[pair.i].name + " and " + bank[pair.j].name);
@@ -96,16 +105,19 @@ void compare_claims(DesignCheck& check, const ModeBank& bank, const DesignOutcom
 
 }  // namespace
 
-DesignFindings compare_design(const ModeBank& bank, const DesignOutcome& outcome, const ExactSeparation& exact) {
+DesignFindings compare_design(const ModeBank& bank, const DesignOutcome& outcome,
+                              const ExactSeparation& exact) {
   DesignCheck check;
   compare_claims(check, bank, outcome, exact);
   return std::move(check.found);
 }
 
-DesignFindings compare_recorded(const ModeBank& bank, const RecordedPipeline& recorded, const ExactSeparation& exact) {
+DesignFindings compare_recorded(const ModeBank& bank, const RecordedPipeline& recorded,
+                                const ExactSeparation& exact) {
   DesignCheck check;
   compare_claims(check, bank, *recorded.design, exact);
-  check.summary(recorded.claimed_separation, recorded.design->best->separates(), "/design/separates");
+  check.summary(recorded.claimed_separation, recorded.design->best->separates(),
+                "/design/separates");
   if (recorded.proven) {
     check.proven(*recorded.proven, exact);
     check.summary(recorded.proven_separation, exact.separates(), "/exact/separates");

@@ -22,14 +22,18 @@ struct DesignFindings {
   std::vector<Refuted> refuted = {};
 };
 
-/// "disjoint", bounds of κ, "meet" and "empty" by `verify_design`. A claim that tubes meet is made up to rounding: it is false
-/// only if κ exceeds 1e-9. Bounds of κ have to be proven up to 1e-9 of 1 + κ, and up to 1e9.
-DesignFindings compare_design(const ModeBank& bank, const DesignOutcome& outcome, const ExactSeparation& exact);
+/// "disjoint", bounds of κ, "meet" and "empty" by `verify_design`. A claim that tubes meet is made
+/// up to rounding: it is false only if κ exceeds 1e-9. Bounds of κ have to be proven up to 1e-9 of
+/// 1 + κ, and up to 1e9.
+DesignFindings compare_design(const ModeBank& bank, const DesignOutcome& outcome,
+                              const ExactSeparation& exact);
 
-/// These, and of a pipeline with a design what the host has recorded as proven, which has to be proven again, bound for bound;
-/// "separates" has to be what pairs and tubes say.
-DesignFindings compare_recorded(const ModeBank& bank, const RecordedPipeline& recorded, const ExactSeparation& exact);
-inline DesignFindings check_design(const ModeBank& bank, const RecordedPipeline& recorded, const std::atomic<bool>* stop) {
+/// These, and of a pipeline with a design what the host has recorded as proven, which has to be
+/// proven again, bound for bound; "separates" has to be what pairs and tubes say.
+DesignFindings compare_recorded(const ModeBank& bank, const RecordedPipeline& recorded,
+                                const ExactSeparation& exact);
+inline DesignFindings check_design(const ModeBank& bank, const RecordedPipeline& recorded,
+                                   const std::atomic<bool>* stop) {
   return compare_recorded(bank, recorded, verify_design(bank, *recorded.design, stop));
 }
 

@@ -9,7 +9,8 @@ namespace cordon::verification {
 
 namespace {
 
-/// Errors are sums of a few products of numbers that are not negative: this covers their own rounding.
+/// Errors are sums of a few products of numbers that are not negative: this covers their own
+/// rounding.
 constexpr double rounded_up = 1 + 1e-10;
 
 Vector zero(Index n) { return Vector::Zero(n); }
@@ -32,7 +33,9 @@ Vector image_errors(MatrixIn T, const Rounded& X) {
   return errors * rounded_up;
 }
 
-Rounded image(MatrixIn T, const Rounded& X) { return {affine_map(X.set, T, zero(T.rows())), image_errors(T, X), X.rows}; }
+Rounded image(MatrixIn T, const Rounded& X) {
+  return {affine_map(X.set, T, zero(T.rows())), image_errors(T, X), X.rows};
+}
 
 Vector joined(const Vector& x, const Vector& y) {
   Vector both(x.size() + y.size());
@@ -54,8 +57,8 @@ Rounded restricted(const Rounded& X, MatrixIn R, const Rounded& Y) {
   return {intersection(X.set, R, Y.set), X.center, joined(joined(X.rows, Y.rows), errors)};
 }
 
-Rounded enclosed(const Model& model, const LineForm& X, const std::optional<LineForm>& admissible_set,
-                 const Transition& transition) {
+Rounded enclosed(const Model& model, const LineForm& X,
+                 const std::optional<LineForm>& admissible_set, const Transition& transition) {
   const LinearModel& m = model.linear;
   const Index n = m.states();
   const Rounded noise = image(-m.Dv, exactly(model.V)), disturbance = image(m.Bw, exactly(model.W));
@@ -63,11 +66,14 @@ Rounded enclosed(const Model& model, const LineForm& X, const std::optional<Line
     const Rounded y = exactly(make_point(sample.y)), u = exactly(make_point(sample.u));
     return m.outputs() > 0 ? restricted(x, m.C, sum(sum(y, image(-m.D, u)), noise)) : x;
   };
-  const auto driven = [&](const Sample& sample) { return sum(image(m.B, exactly(make_point(sample.u))), disturbance); };
+  const auto driven = [&](const Sample& sample) {
+    return sum(image(m.B, exactly(make_point(sample.u))), disturbance);
+  };
   Rounded x = exactly(X);
   if (transition.before) {
     const Rounded f = sum(image(m.A, measured(x, *transition.before)), driven(*transition.before));
-    x = m.is_descriptor() ? restricted(exactly(make_space(n)), m.E, f) : f;  // its lines are the columns of the identity
+    x = m.is_descriptor() ? restricted(exactly(make_space(n)), m.E, f)
+                          : f;  // its lines are the columns of the identity
   }
   x = measured(x, transition.now);
   if (m.is_descriptor()) {  // A x + B u + Bw w is reached by some E z
@@ -90,11 +96,13 @@ LineForm widened(const Rounded& x) {
 
 }  // namespace
 
-std::optional<Enclosure> enclosed_successors(const Model& model, const LineForm& X, const std::optional<LineForm>& admissible_set,
+std::optional<Enclosure> enclosed_successors(const Model& model, const LineForm& X,
+                                             const std::optional<LineForm>& admissible_set,
                                              const Transition& transition) {
   if (X.lines() > 0 || model.W.lines() > 0 || model.V.lines() > 0) return std::nullopt;
   if (admissible_set && admissible_set->lines() > 0) return std::nullopt;
-  if (model.linear.is_descriptor() && !DescriptorMatrix(model.linear.E).as_written) return std::nullopt;
+  if (model.linear.is_descriptor() && !DescriptorMatrix(model.linear.E).as_written)
+    return std::nullopt;
   try {
     Rounded x = enclosed(model, X, admissible_set, transition);
     LineForm all = widened(x);

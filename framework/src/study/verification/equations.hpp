@@ -9,8 +9,9 @@
 
 namespace cordon::verification {
 
-/// Equations, block by block. All variables but the sets' factors are lines, so that every coefficient is a number of a model or
-/// of a set as it stands: nothing is multiplied, and nothing is rounded.
+/// Equations, block by block. All variables but the sets' factors are lines, so that every
+/// coefficient is a number of a model or of a set as it stands: nothing is multiplied, and nothing
+/// is rounded.
 class Equations {
  public:
   /// A vector of lines.
@@ -43,7 +44,9 @@ class Equations {
   };
 
   Index add_rows(VectorIn b);
-  void put(Index row, const Line& variable, const Matrix& block) { put(row, variable.first, block, false); }
+  void put(Index row, const Line& variable, const Matrix& block) {
+    put(row, variable.first, block, false);
+  }
   void put(Index row, Index col, const Matrix& block, bool factor);
 
   Index lines_ = 0, factors_ = 0, rows_ = 0;

@@ -17,34 +17,45 @@ constexpr double almost_all = 0.999;  // of a radius: no rounding leads out of t
 Vector zero(Index n) { return Vector::Zero(n); }
 
 /// T x as a polytope of one point: the product is exact there.
-Polytope image(MatrixIn T, VectorIn x) { return Polytope::from_generators(x).affine_map(T, zero(T.rows())); }
+Polytope image(MatrixIn T, VectorIn x) {
+  return Polytope::from_generators(x).affine_map(T, zero(T.rows()));
+}
 
 Matrix identity(Index n) { return Matrix::Identity(n, n); }
 
 }  // namespace
 
-FeasibleSets::FeasibleSets(const Model& model, const LineForm& initial_set, const std::optional<LineForm>& admissible_set)
+FeasibleSets::FeasibleSets(const Model& model, const LineForm& initial_set,
+                           const std::optional<LineForm>& admissible_set)
     : model_(model.linear),
       E_(model.linear.is_descriptor() ? model.linear.E : identity(model.linear.states())),
       initial_(Polytope::from(initial_set)),
       admissible_(admissible_set ? std::optional(Polytope::from(*admissible_set)) : std::nullopt),
-      disturbance_(Polytope::from(model.W).affine_map(model.linear.Bw, zero(model.linear.states()))),
-      minus_disturbance_(Polytope::from(model.W).affine_map(-model.linear.Bw, zero(model.linear.states()))),
-      minus_noise_(Polytope::from(model.V).affine_map(-model.linear.Dv, zero(model.linear.outputs()))) {}
+      disturbance_(
+          Polytope::from(model.W).affine_map(model.linear.Bw, zero(model.linear.states()))),
+      minus_disturbance_(
+          Polytope::from(model.W).affine_map(-model.linear.Bw, zero(model.linear.states()))),
+      minus_noise_(
+          Polytope::from(model.V).affine_map(-model.linear.Dv, zero(model.linear.outputs()))) {}
 
 /// C x ∈ {y} ⊕ {-D u} ⊕ (-Dv V).
 Polytope FeasibleSets::measured(const LinearModel& m, const Polytope& X, const Sample& now) const {
   if (m.outputs() == 0) return X;
-  const Polytope target = minus_noise_.minkowski_sum(Polytope::from_generators(now.y)).minkowski_sum(image(-m.D, now.u));
+  const Polytope target = minus_noise_.minkowski_sum(Polytope::from_generators(now.y))
+                              .minkowski_sum(image(-m.D, now.u));
   return X.intersection(m.C, target);
 }
 
 /// {x : E x ∈ A P_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W}.
 Polytope FeasibleSets::next(const LinearModel& m) const {
-  const Polytope f = P_->affine_map(m.A, zero(m.states())).minkowski_sum(image(m.B, before_->u)).minkowski_sum(disturbance_);
+  const Polytope f = P_->affine_map(m.A, zero(m.states()))
+                         .minkowski_sum(image(m.B, before_->u))
+                         .minkowski_sum(disturbance_);
   if (!m.is_descriptor()) return f;
   if (E_.as_written) return f.preimage(E_.left, zero(m.states()));
-  return f.preimage(E_.left, zero(m.states())).affine_map(E_.core, zero(E_.rank)).preimage(E_.right, zero(E_.rank));
+  return f.preimage(E_.left, zero(m.states()))
+      .affine_map(E_.core, zero(E_.rank))
+      .preimage(E_.right, zero(E_.rank));
 }
 
 /// P_k with the matrices of `m`.
@@ -61,41 +72,48 @@ Polytope FeasibleSets::step(const Sample& now) {
     P = reached(drawn(model_, now.k, draw), now);
   }
   if (P.bits() > most_bits) {
-    throw Error(Errc::unsupported, "the numbers of the exact set have " + std::to_string(P.bits()) + " binary digits; at most " +
-                                       std::to_string(most_bits) + " are supported");
+    throw Error(Errc::unsupported, "the numbers of the exact set have " + std::to_string(P.bits()) +
+                                       " binary digits; at most " + std::to_string(most_bits) +
+                                       " are supported");
   }
   P_ = std::move(P);
   before_ = now;
   if (!model_.is_descriptor()) return *P_;
   const Polytope range = Polytope::from_generators(zero(n), Matrix(n, 0), E_.left);
-  const Polytope target = minus_disturbance_.minkowski_sum(image(-model_.B, now.u)).minkowski_sum(range);
+  const Polytope target =
+      minus_disturbance_.minkowski_sum(image(-model_.B, now.u)).minkowski_sum(range);
   return P_->intersection(model_.A, target);
 }
 
 LinearModel drawn(const LinearModel& model, Index k, int draw) {
   LinearModel m = model;
   if (!model.is_uncertain() || model.is_descriptor() || draw == 1) return m;
-  detail::RandomStream random(static_cast<std::uint64_t>(draw), detail::Purpose::direction, static_cast<std::uint64_t>(k));
-  for (const auto& [center, radius] : {std::pair(&m.A, &model.A_radius), {&m.B, &model.B_radius}, {&m.C, &model.C_radius}}) {
+  detail::RandomStream random(static_cast<std::uint64_t>(draw), detail::Purpose::direction,
+                              static_cast<std::uint64_t>(k));
+  for (const auto& [center, radius] :
+       {std::pair(&m.A, &model.A_radius), {&m.B, &model.B_radius}, {&m.C, &model.C_radius}}) {
     for (Index j = 0; j < radius->cols(); ++j) {
-      for (Index i = 0; i < radius->rows(); ++i) (*center)(i, j) += random.sign() * almost_all * (*radius)(i, j);
+      for (Index i = 0; i < radius->rows(); ++i)
+        (*center)(i, j) += random.sign() * almost_all * (*radius)(i, j);
     }
   }
   return m;
 }
 
-LineForm successors(const Model& model, const LineForm& X, const std::optional<LineForm>& admissible_set,
-                    const Transition& transition) {
+LineForm successors(const Model& model, const LineForm& X,
+                    const std::optional<LineForm>& admissible_set, const Transition& transition) {
   const LinearModel& m = model.linear;
   const Index n = m.states(), p = m.outputs();
   const DescriptorMatrix E(m.is_descriptor() ? m.E : identity(n));
   Equations rows;
   const auto measured = [&](const Equations::Line& x, const Sample& sample) {
-    const Equations::Line u = rows.constant(sample.u), y = rows.constant(sample.y), v = rows.element(model.V);
+    const Equations::Line u = rows.constant(sample.u), y = rows.constant(sample.y),
+                          v = rows.element(model.V);
     rows.add(p, {{y, identity(p)}, {x, -m.C}, {u, -m.D}, {v, -m.Dv}});
     return u;
   };
-  const auto follows = [&](const Equations::Line& next, const Equations::Line& x, const Equations::Line& u) {
+  const auto follows = [&](const Equations::Line& next, const Equations::Line& x,
+                           const Equations::Line& u) {
     const Equations::Line w = rows.element(model.W);
     rows.add(n, {rows.product(E, next), {x, -m.A}, {u, -m.B}, {w, -m.Bw}});
   };

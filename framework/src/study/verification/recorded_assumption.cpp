@@ -15,8 +15,9 @@ using namespace json;
 using Kind = Value::Kind;
 using What = FailedAssumption::What;
 
-constexpr std::array all{What::initial_set, What::restart_set, What::admissible_set, What::U,        What::modes,
-                         What::W,           What::V,           What::W_exactly,      What::V_exactly};
+constexpr std::array all{What::initial_set, What::restart_set, What::admissible_set,
+                         What::U,           What::modes,       What::W,
+                         What::V,           What::W_exactly,   What::V_exactly};
 
 const char* const mend = "the file is not as \"cordon run\" wrote it; run the study again";
 
@@ -32,11 +33,13 @@ std::optional<Index> read_mode(const Cursor& at, const SystemPart& system) {
 
 }  // namespace
 
-std::optional<RecordedAssumption> read_failed_assumption(const Cursor& summary, const SystemPart& system) {
+std::optional<RecordedAssumption> read_failed_assumption(const Cursor& summary,
+                                                         const SystemPart& system) {
   const auto at = summary.find("failed_assumption");
   if (!at || at->is(Kind::null) || !at->expect(Kind::object, mend)) return std::nullopt;
   const auto what = at->need("what", mend), k = at->need("k", mend), mode = at->need("mode", mend),
-             seed = at->need("seed_offset", mend), text = at->need("text", mend), from = summary.need("assumptions_until", mend);
+             seed = at->need("seed_offset", mend), text = at->need("text", mend),
+             from = summary.need("assumptions_until", mend);
   if (!what || !k || !mode || !seed || !text || !from) return std::nullopt;
   std::vector<std::string> words;
   for (const What one : all) words.emplace_back(to_string(one));
@@ -47,13 +50,15 @@ std::optional<RecordedAssumption> read_failed_assumption(const Cursor& summary, 
   auto told = read_text(*text, 10'000);
   if (!word || !time || !since || !offset || !of || !told) return std::nullopt;
   const auto place = std::find(words.begin(), words.end(), *word) - words.begin();
-  return RecordedAssumption{{all[static_cast<std::size_t>(place)], *time, *since, *of, *offset}, std::move(*told)};
+  return RecordedAssumption{{all[static_cast<std::size_t>(place)], *time, *since, *of, *offset},
+                            std::move(*told)};
 }
 
 Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   const FailedAssumption& failed = pipeline.failed->failed;
   const bool of_diagnoser = pipeline.is_diagnosis || pipeline.is_design;
-  if (failed.seed_offset != 0 || pipeline.is_design || failed.what == What::restart_set || failed.what == What::modes)
+  if (failed.seed_offset != 0 || pipeline.is_design || failed.what == What::restart_set ||
+      failed.what == What::modes)
     return Answer::unknown;
   if (failed.what == What::admissible_set && of_diagnoser) return Answer::unknown;
   Study study;
@@ -66,7 +71,8 @@ Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   if (!of_diagnoser && from_start) assumed.initial_set = pipeline.initial_set;
   if (pipeline.admissible_set) assumed.admissible_sets.push_back(*pipeline.admissible_set);
   CsvSpec with_truth = run.data;
-  for (Index i = 1; i <= run.model.linear.states(); ++i) with_truth.truth.push_back("x_" + std::to_string(i));
+  for (Index i = 1; i <= run.model.linear.states(); ++i)
+    with_truth.truth.push_back("x_" + std::to_string(i));
   study.data = with_truth;
   const std::unique_ptr<DataSource> data = open_data(study);
   SimulateSpec by_plant;
@@ -74,7 +80,8 @@ Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   study.data = by_plant;
   detail::AssumptionCheck check(study, std::move(assumed));
   check.begin_run(0);
-  const Index last = failed.what == What::W || failed.what == What::W_exactly ? failed.k + 1 : failed.k;
+  const Index last =
+      failed.what == What::W || failed.what == What::W_exactly ? failed.k + 1 : failed.k;
   while (std::optional<Record> record = data->next()) {
     const Index k = record->sample.k;
     if (k > last) break;

@@ -26,7 +26,8 @@ std::optional<Matrix> read_block(const Cursor& set, const char* key, Index rows,
   if (!entries) return std::nullopt;
   if (entries->size() == 0 && rows * cols == 0) return Matrix(rows, cols);
   if (entries->rows() == rows && entries->cols() == cols) return entries;
-  at->error("is " + shape(entries->rows(), entries->cols()) + ", must be " + shape(rows, cols), mend());
+  at->error("is " + shape(entries->rows(), entries->cols()) + ", must be " + shape(rows, cols),
+            mend());
   return std::nullopt;
 }
 
@@ -34,7 +35,9 @@ std::optional<Vector> read_part(const Cursor& set, const char* key, Index size) 
   const auto at = set.need(key, mend());
   auto entries = at ? read_vector(*at) : std::nullopt;
   if (!entries || entries->size() == size) return entries;
-  at->error("has " + std::to_string(entries->size()) + " numbers, must have " + std::to_string(size), mend());
+  at->error(
+      "has " + std::to_string(entries->size()) + " numbers, must have " + std::to_string(size),
+      mend());
   return std::nullopt;
 }
 
@@ -52,20 +55,23 @@ std::optional<LineForm> read_form(const Cursor& at, Index dim) {
              m = read_size(at, "constraints");
   if (!n || !l || !g || !m) return std::nullopt;
   if (*n != dim) {
-    at.error("has dimension " + std::to_string(*n) + ", the state has " + std::to_string(dim), mend());
+    at.error("has dimension " + std::to_string(*n) + ", the state has " + std::to_string(dim),
+             mend());
     return std::nullopt;
   }
-  auto M = read_block(at, "M", *n, *l), G = read_block(at, "G", *n, *g), S = read_block(at, "S", *m, *l),
-       A = read_block(at, "A", *m, *g);
+  auto M = read_block(at, "M", *n, *l), G = read_block(at, "G", *n, *g),
+       S = read_block(at, "S", *m, *l), A = read_block(at, "A", *m, *g);
   auto c = read_part(at, "c", *n), b = read_part(at, "b", *m);
   if (!M || !G || !S || !A || !c || !b) return std::nullopt;
-  return LineForm{std::move(*M), std::move(*G), std::move(*c), std::move(*S), std::move(*A), std::move(*b)};
+  return LineForm{std::move(*M), std::move(*G), std::move(*c),
+                  std::move(*S), std::move(*A), std::move(*b)};
 }
 
 namespace {
 
 template <class Enum>
-std::optional<Enum> read_word(const Cursor& object, const char* key, std::initializer_list<Enum> all) {
+std::optional<Enum> read_word(const Cursor& object, const char* key,
+                              std::initializer_list<Enum> all) {
   const auto at = object.need(key, mend());
   if (!at) return std::nullopt;
   std::vector<std::string> words;
@@ -78,8 +84,9 @@ std::optional<Enum> read_word(const Cursor& object, const char* key, std::initia
 std::optional<Certificate> read_certificate(const Cursor& at) {
   if (!at.expect(Kind::object, mend())) return std::nullopt;
   using Proof = Certificate::Kind;
-  const auto kind =
-      read_word(at, "kind", {Proof::none, Proof::farkas, Proof::point, Proof::dual, Proof::direction, Proof::structure});
+  const auto kind = read_word(
+      at, "kind",
+      {Proof::none, Proof::farkas, Proof::point, Proof::dual, Proof::direction, Proof::structure});
   if (!kind) return std::nullopt;
   Certificate why{*kind, Vector(0), 0};
   if (const auto data = at.find("data")) {
@@ -100,14 +107,18 @@ std::optional<RecordedStep> read_step(const Cursor& at, Index n) {
   const auto tightness = read_word(at, "tightness", {Tightness::exact, Tightness::outer});
   if (!hull || !hull->expect(Kind::object, mend())) return std::nullopt;
   const auto lower_at = hull->need("lower", mend()), upper_at = hull->need("upper", mend());
-  auto lower = lower_at ? read_bounds(*lower_at) : std::nullopt, upper = upper_at ? read_bounds(*upper_at) : std::nullopt;
+  auto lower = lower_at ? read_bounds(*lower_at) : std::nullopt,
+       upper = upper_at ? read_bounds(*upper_at) : std::nullopt;
   if (!k || !consistent || !tightness || !lower || !upper) return std::nullopt;
-  if (!expect_size(*lower_at, *lower, n, "the state") || !expect_size(*upper_at, *upper, n, "the state")) return std::nullopt;
+  if (!expect_size(*lower_at, *lower, n, "the state") ||
+      !expect_size(*upper_at, *upper, n, "the state"))
+    return std::nullopt;
   return RecordedStep{*k, {std::move(*lower), std::move(*upper)}, *consistent, *tightness};
 }
 
 std::optional<Rounding> read_rounding(const Cursor& pipeline) {
-  return read_word(pipeline, "rounding", {Rounding::nominal, Rounding::outward, Rounding::rational});
+  return read_word(pipeline, "rounding",
+                   {Rounding::nominal, Rounding::outward, Rounding::rational});
 }
 
 /// A bound of κ: a number or "inf".
@@ -122,35 +133,43 @@ std::optional<double> read_kappa(const Cursor& at) {
 /// "pairs" and "tubes" of a design, one after another.
 void read_claims(const Cursor& at, InputDesign& design, Index modes) {
   const auto pairs = at.need("pairs", mend()), tubes = at.need("tubes", mend());
-  if (!pairs || !tubes || !pairs->expect(Kind::array, mend()) || !tubes->expect(Kind::array, mend())) return;
+  if (!pairs || !tubes || !pairs->expect(Kind::array, mend()) ||
+      !tubes->expect(Kind::array, mend()))
+    return;
   const auto count = static_cast<std::size_t>(modes);
-  if (pairs->size() != count * (count - 1) / 2) pairs->error("does not hold every pair of modes", mend());
+  if (pairs->size() != count * (count - 1) / 2)
+    pairs->error("does not hold every pair of modes", mend());
   if (tubes->size() != count) tubes->error("does not hold every mode", mend());
   for (std::size_t q = 0; q < pairs->size(); ++q) {
     const Cursor item = pairs->item(q);
     if (!item.expect(Kind::object, mend())) continue;
     PairSeparation& pair = design.pairs.emplace_back();
-    pair.disjoint = read_word(item, "disjoint", {Answer::yes, Answer::no, Answer::unknown}).value_or(Answer::unknown);
+    pair.disjoint = read_word(item, "disjoint", {Answer::yes, Answer::no, Answer::unknown})
+                        .value_or(Answer::unknown);
     const auto kappa = item.need("kappa_lower", mend());
     if (kappa && pair.disjoint == Answer::yes) pair.kappa_lower = read_kappa(*kappa).value_or(0);
   }
   for (std::size_t i = 0; i < tubes->size(); ++i) {
     const Cursor item = tubes->item(i);
     if (!item.expect(Kind::object, mend())) continue;
-    design.empty.push_back(read_word(item, "empty", {Answer::yes, Answer::no, Answer::unknown}).value_or(Answer::unknown));
+    design.empty.push_back(read_word(item, "empty", {Answer::yes, Answer::no, Answer::unknown})
+                               .value_or(Answer::unknown));
   }
 }
 
 std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& system) {
   if (at.is(Kind::null) || !at.expect(Kind::object, mend())) return std::nullopt;
-  const auto u = at.need("u", mend()), outputs = at.need("outputs", mend()), admissible = at.need("admissible_set", mend());
+  const auto u = at.need("u", mend()), outputs = at.need("outputs", mend()),
+             admissible = at.need("admissible_set", mend());
   if (!u || !outputs || !admissible || u->is(Kind::null)) return std::nullopt;
   const LinearModel& m = system.model.linear;
   DesignOutcome outcome;
   outcome.status = DesignStatus::given;
   auto inputs = read_matrix(*u);
   if (inputs && (inputs->rows() == 0 || inputs->cols() != m.inputs())) {
-    u->error("is " + shape(inputs->rows(), inputs->cols()) + ", must have " + counted(m.inputs(), "column"), mend());
+    u->error("is " + shape(inputs->rows(), inputs->cols()) + ", must have " +
+                 counted(m.inputs(), "column"),
+             mend());
   }
   const auto which = read_choice(*outputs, {"all", "last"});
   outcome.last_output_only = which && *which == "last";
@@ -165,9 +184,11 @@ std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& sys
 /// What beside the input stands in "design" and "exact".
 void read_separation(const Cursor& at, Index modes, RecordedPipeline& pipeline) {
   const auto word = [](const Cursor& object) {
-    return read_word(object, "separates", {Answer::yes, Answer::no, Answer::unknown}).value_or(Answer::unknown);
+    return read_word(object, "separates", {Answer::yes, Answer::no, Answer::unknown})
+        .value_or(Answer::unknown);
   };
-  if (const auto design = at.find("design"); pipeline.design && design) pipeline.claimed_separation = word(*design);
+  if (const auto design = at.find("design"); pipeline.design && design)
+    pipeline.claimed_separation = word(*design);
   const auto exact = at.find("exact");
   if (!exact || exact->is(Kind::null) || !exact->expect(Kind::object, mend())) return;
   pipeline.proven_separation = word(*exact);
@@ -184,7 +205,8 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
   pipeline.backend = read_text(*backend, 1000).value_or("");
   if (at.find("designer")) {
     pipeline.is_design = true;
-    if (const auto design = at.need("design", mend())) pipeline.design = read_design(*design, system);
+    if (const auto design = at.need("design", mend()))
+      pipeline.design = read_design(*design, system);
     read_separation(at, static_cast<Index>(system.modes.size()) + 1, pipeline);
   } else if (at.find("diagnoser")) {
     pipeline.is_diagnosis = true;
@@ -203,13 +225,15 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
   }
   const auto assumed = at.need("assumptions", mend()), steps = at.need("steps", mend());
   if (!assumed || !steps || !steps->expect(Kind::array, mend())) return std::nullopt;
-  if (assumed->is(Kind::null) && steps->size() == 0) return pipeline;  // stopped before its first step
+  if (assumed->is(Kind::null) && steps->size() == 0)
+    return pipeline;  // stopped before its first step
   pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);
   if (!assumed->expect(Kind::object, mend())) return std::nullopt;
   if (const auto initial = assumed->need("initial_set", mend())) {
     if (auto form = read_form(*initial, n)) pipeline.initial_set = std::move(*form);
   }
-  if (const auto admissible = assumed->need("admissible_set", mend()); admissible && !admissible->is(Kind::null)) {
+  if (const auto admissible = assumed->need("admissible_set", mend());
+      admissible && !admissible->is(Kind::null)) {
     pipeline.admissible_set = read_form(*admissible, n);
   }
   for (std::size_t i = 0; i < steps->size(); ++i) {
@@ -229,7 +253,9 @@ bool follows_its_sets(const Cursor& study) {
   return limit && read_number(*limit).value_or(1) == 0;
 }
 
-int line_number(const detail::InputFile& file) { return static_cast<int>(std::min<std::int64_t>(file.lines(), 1'000'000'000)); }
+int line_number(const detail::InputFile& file) {
+  return static_cast<int>(std::min<std::int64_t>(file.lines(), 1'000'000'000));
+}
 
 CsvSpec data_of(std::filesystem::path file, const LinearModel& model) {
   CsvSpec spec;
@@ -243,7 +269,8 @@ CsvSpec data_of(std::filesystem::path file, const LinearModel& model) {
 bool next_line(detail::InputFile& file, std::string& line) {
   if (!file.line(line, max_bytes)) return false;
   if (file.ended_line()) return true;
-  throw InputError(file.path().string(), {{"", "ends in the middle of a line", mend(), line_number(file)}});
+  throw InputError(file.path().string(),
+                   {{"", "ends in the middle of a line", mend(), line_number(file)}});
 }
 
 /// The first column of data.csv counts the rows from 0: estimates are matched with samples by it.
@@ -254,12 +281,13 @@ void check_times(const std::filesystem::path& path) {
   for (std::int64_t k = 0; next_line(file, row); ++k) {
     if (row.substr(0, row.find(',')) == std::to_string(k)) continue;
     throw InputError(path.string(),
-                     {{"", "must tell of k = " + std::to_string(k) + " in its first column", mend(), line_number(file)}});
+                     {{"", "must tell of k = " + std::to_string(k) + " in its first column", mend(),
+                       line_number(file)}});
   }
 }
 
-/// `k` of a line of sets.jsonl, if it stands there as it was written. (A quote inside of a text is escaped, so that no name holds
-/// the key.)
+/// `k` of a line of sets.jsonl, if it stands there as it was written. (A quote inside of a text is
+/// escaped, so that no name holds the key.)
 std::optional<Index> time_of(const std::string& text) {
   static const std::string key = "\"k\": ";
   const std::size_t at = text.find(key);
@@ -267,7 +295,8 @@ std::optional<Index> time_of(const std::string& text) {
   Index k = 0;
   const char *first = text.data() + at + key.size(), *last = text.data() + text.size();
   const auto [end, error] = std::from_chars(first, last, k);
-  return error == std::errc{} && end != last && *end == ',' ? std::optional<Index>(k) : std::nullopt;
+  return error == std::errc{} && end != last && *end == ',' ? std::optional<Index>(k)
+                                                            : std::nullopt;
 }
 
 }  // namespace
@@ -280,23 +309,27 @@ RecordedRun read_run(const std::filesystem::path& directory) {
   const Value tree = parse(text, problems);
   const Cursor root(tree, "", problems);
   if (root.expect(Kind::object, "a results file of \"cordon run\" is an object")) {
-    const auto version = root.need("cordon_results", "this is not a results file of \"cordon run\"");
+    const auto version =
+        root.need("cordon_results", "this is not a results file of \"cordon run\"");
     const auto number = version ? read_number(*version) : std::nullopt;
-    if (number && *number != 1) version->error("this version of the format is not known", "this program reads 1");
+    if (number && *number != 1)
+      version->error("this version of the format is not known", "this program reads 1");
     if (root.find("points")) {
-      throw InputError(file.string(), {{"/points", "is a sweep, which keeps no sets",
-                                        "\"cordon run STUDY --point INDEX\" runs one point with all files"}});
+      throw InputError(file.string(),
+                       {{"/points", "is a sweep, which keeps no sets",
+                         "\"cordon run STUDY --point INDEX\" runs one point with all files"}});
     }
     const auto study = root.need("study", mend()), pipelines = root.need("pipelines", mend());
-    const auto system = study && study->expect(Kind::object, mend()) ? study->need("system", mend()) : std::nullopt;
+    const auto system =
+        study && study->expect(Kind::object, mend()) ? study->need("system", mend()) : std::nullopt;
     std::vector<std::string> warnings;
     SystemPart part = system ? read_system(*system, warnings) : SystemPart{};
     if (part.good && pipelines && pipelines->expect(Kind::array, mend())) {
       const auto studied = study->find("pipelines");
       for (std::size_t i = 0; i < pipelines->size(); ++i) {
         if (auto pipeline = read_pipeline(pipelines->item(i), part)) {
-          pipeline->follows_its_sets =
-              studied && studied->is(Kind::array) && i < studied->size() && follows_its_sets(studied->item(i));
+          pipeline->follows_its_sets = studied && studied->is(Kind::array) && i < studied->size() &&
+                                       follows_its_sets(studied->item(i));
           run.pipelines.push_back(std::move(*pipeline));
         }
       }
@@ -312,7 +345,8 @@ RecordedRun read_run(const std::filesystem::path& directory) {
 }
 
 SetReader::SetReader(const detail::RecordedFiles& files)
-    : files_(files), input_(files.file("sets.jsonl"), "\"cordon run\" writes it beside results.json") {}
+    : files_(files),
+      input_(files.file("sets.jsonl"), "\"cordon run\" writes it beside results.json") {}
 
 std::optional<RecordedSet> SetReader::next(const std::function<bool(Index)>& wanted) {
   std::string text;
@@ -330,7 +364,8 @@ std::optional<RecordedSet> SetReader::next(const std::function<bool(Index)>& wan
   const Value tree = parse(text, problems);
   const Cursor root(tree, "", problems);
   if (root.expect(Kind::object, mend())) {
-    const auto name = root.need("pipeline", mend()), k_at = root.need("k", mend()), proof = root.need("proof", mend());
+    const auto name = root.need("pipeline", mend()), k_at = root.need("k", mend()),
+               proof = root.need("proof", mend());
     const auto exchange = read_word(root, "exchange", {Tightness::exact, Tightness::outer});
     const auto dim = read_size(root, "dim");
     if (name) row.pipeline = read_text(*name, 1000).value_or("");
@@ -338,7 +373,8 @@ std::optional<RecordedSet> SetReader::next(const std::function<bool(Index)>& wan
     if (exchange) row.exact_exchange = *exchange == Tightness::exact;
     if (auto form = dim ? read_form(root, *dim) : std::nullopt) row.set = std::move(*form);
     if (proof) row.proof = read_certificate(*proof).value_or(Certificate{});
-    if (const auto proofs = root.find("hull_proofs"); proofs && proofs->expect(Kind::array, mend())) {
+    if (const auto proofs = root.find("hull_proofs");
+        proofs && proofs->expect(Kind::array, mend())) {
       for (std::size_t i = 0; i < proofs->size(); ++i) {
         row.hull_proofs.push_back(read_certificate(proofs->item(i)).value_or(Certificate{}));
       }

@@ -29,16 +29,18 @@ struct RecordedStep {
 struct RecordedPipeline {
   std::string name, backend;
   std::optional<RecordedAssumption> failed;  ///< that the run found to fail
-  std::vector<std::string> refuted;          ///< what of a designer's answer the run found to be false
-  bool is_diagnosis = false;                 ///< of a diagnoser: nothing else is read, no sets are stored
-  bool is_design = false;                    ///< of a designer: only `design` is read
-  std::optional<DesignOutcome> design = {};  ///< horizon, input, what is said of pairs and tubes; nothing: there is no input
-  /// What results say of the design: the designer, and what the host has proven of its pairs and tubes.
+  std::vector<std::string> refuted;  ///< what of a designer's answer the run found to be false
+  bool is_diagnosis = false;         ///< of a diagnoser: nothing else is read, no sets are stored
+  bool is_design = false;            ///< of a designer: only `design` is read
+  std::optional<DesignOutcome> design =
+      {};  ///< horizon, input, what is said of pairs and tubes; nothing: there is no input
+  /// What results say of the design: the designer, and what the host has proven of its pairs and
+  /// tubes.
   Answer claimed_separation = Answer::unknown, proven_separation = Answer::unknown;
   std::optional<InputDesign> proven = {};
   Rounding rounding = Rounding::nominal;
-  /// Each set holds all successors of the one before that are consistent with the data. Observers that know more than their last
-  /// set, as a bound of their error for all times, may keep to less.
+  /// Each set holds all successors of the one before that are consistent with the data. Observers
+  /// that know more than their last set, as a bound of their error for all times, may keep to less.
   bool follows_its_sets = false;
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
@@ -74,8 +76,8 @@ RecordedRun read_run(const std::filesystem::path& directory);
 class SetReader {
  public:
   explicit SetReader(const detail::RecordedFiles& files);
-  /// The next line; nothing at the end, where `files` must be unchanged. Lines of times that are not `wanted` are passed over
-  /// unread. Throws InputError.
+  /// The next line; nothing at the end, where `files` must be unchanged. Lines of times that are
+  /// not `wanted` are passed over unread. Throws InputError.
   std::optional<RecordedSet> next(const std::function<bool(Index)>& wanted = {});
 
  private:

@@ -25,20 +25,27 @@ namespace {
 using rational::Rational;
 using rational::RationalVector;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Of a coordinate's size: what nominal operations add up to at least, and the rounding of a box to centre and radius.
+/// Of a coordinate's size: what nominal operations add up to at least, and the rounding of a box to
+/// centre and radius.
 constexpr double nominal_tolerance = 1e-9, box_tolerance = 1e-14;
-/// Of the direction of a line that an observer has found: operations enclose, its own coordinates are rounded.
+/// Of the direction of a line that an observer has found: operations enclose, its own coordinates
+/// are rounded.
 constexpr double outward_line_tolerance = 1e-12;
-constexpr double underflow = 1e-300;      ///< of bounds that are 0 but for the smallest numbers there are
-constexpr double ill_conditioned = 1e-6;  ///< rounding moves an inequality by more than this share of it
-constexpr double row_tolerance = 1e-13;   ///< of a nominal constraint's terms
-constexpr double almost_all = 0.999;      ///< of a margin: what is left covers the rounding of a vertex or a facet
+constexpr double underflow =
+    1e-300;  ///< of bounds that are 0 but for the smallest numbers there are
+constexpr double ill_conditioned =
+    1e-6;  ///< rounding moves an inequality by more than this share of it
+constexpr double row_tolerance = 1e-13;  ///< of a nominal constraint's terms
+constexpr double almost_all =
+    0.999;  ///< of a margin: what is left covers the rounding of a vertex or a facet
 
 std::size_t index(Index i) { return static_cast<std::size_t>(i); }
 
-/// The largest entry of each coordinate among the lines: how far off their directions are is a share of it.
+/// The largest entry of each coordinate among the lines: how far off their directions are is a
+/// share of it.
 Vector reach_of(const Matrix& lines) {
-  return lines.cols() ? Vector(lines.cwiseAbs().rowwise().maxCoeff()) : Vector(Vector::Zero(lines.rows()));
+  return lines.cols() ? Vector(lines.cwiseAbs().rowwise().maxCoeff())
+                      : Vector(Vector::Zero(lines.rows()));
 }
 /// How many times as large as the lines' entries x is.
 double length_along(const Vector& reach, const Vector& x) {
@@ -48,7 +55,8 @@ double length_along(const Vector& reach, const Vector& x) {
   }
   return length;
 }
-/// Their largest entries, for divisions: where no line has an entry, that of d, or 1 where that is 0 too.
+/// Their largest entries, for divisions: where no line has an entry, that of d, or 1 where that is
+/// 0 too.
 Vector units_of(const Matrix& lines, const Vector& d) {
   Vector units = reach_of(lines);
   for (Index i = 0; i < units.size(); ++i) {
@@ -57,7 +65,8 @@ Vector units_of(const Matrix& lines, const Vector& d) {
   return units;
 }
 
-/// Is nothing left of a set but for the rounding of its rows? By how much that moves it cannot be told.
+/// Is nothing left of a set but for the rounding of its rows? By how much that moves it cannot be
+/// told.
 bool empty_by_rounding(const LineForm& strict, const LineForm& relaxed) {
   return exact::is_empty(strict) == Answer::yes && is_empty(relaxed) != Answer::yes;
 }
@@ -79,7 +88,8 @@ std::string text(VectorIn x) {
   return out + ")";
 }
 
-StepCheck::StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding, const Vector& margin)
+StepCheck::StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding,
+                     const Vector& margin)
     : step_(step),
       row_(row),
       nominal_(rounding == Rounding::nominal),
@@ -115,7 +125,8 @@ void StepCheck::open(std::string what) {
 
 void StepCheck::proofs() {
   emptiness_proof();
-  // An outer export is larger than the set whose hull was reported: nothing follows about the bounds.
+  // An outer export is larger than the set whose hull was reported: nothing follows about the
+  // bounds.
   if (reported_empty() || !row_.exact_exchange) return;
   for (Index i = 0; i < step_.hull.dim() && !violation_; ++i) {
     bound_proof(i, true);
@@ -128,18 +139,26 @@ void StepCheck::emptiness_proof() {
   if (row_.proof.kind == Certificate::Kind::none) return emptiness_without_proof();
   if (step_.consistent == Answer::no) {
     if (!proves_empty(row_.set, row_.proof)) {
-      return violated("the estimate is called empty, but the stored proof does not hold in rational arithmetic", true);
+      return violated(
+          "the estimate is called empty, but the stored proof does not hold in rational arithmetic",
+          true);
     }
   } else if (row_.exact_exchange && !proves_not_empty(row_.set, row_.proof)) {
-    // rows of flat sets contradict each other in the last digits, which is not taken for emptiness with nominal rounding
-    const bool may_be_rounding = row_.proof.kind == Certificate::Kind::point && (row_margin_.array() > 0).any();
+    // rows of flat sets contradict each other in the last digits, which is not taken for emptiness
+    // with nominal rounding
+    const bool may_be_rounding =
+        row_.proof.kind == Certificate::Kind::point && (row_margin_.array() > 0).any();
     if (may_be_rounding) return emptiness_without_proof();
-    return violated("the estimate is called non-empty, but the stored proof does not hold in rational arithmetic", true);
+    return violated(
+        "the estimate is called non-empty, but the stored proof does not hold in rational "
+        "arithmetic",
+        true);
   }
   ++proofs_;
 }
 
-/// A backend may answer exactly and give no certificate: the recorded set decides, unless it is larger than the one in question.
+/// A backend may answer exactly and give no certificate: the recorded set decides, unless it is
+/// larger than the one in question.
 void StepCheck::emptiness_without_proof() {
   const bool called_empty = reported_empty();
   try {
@@ -147,20 +166,23 @@ void StepCheck::emptiness_without_proof() {
     rows.M.resize(0, rows.lines());
     rows.G.resize(0, rows.generators());
     rows.c.resize(0);
-    const bool empty = called_empty ? exact::is_empty(rows) == Answer::yes : !exact::contains(rows, {}, Vector(), row_margin_);
+    const bool empty = called_empty ? exact::is_empty(rows) == Answer::yes
+                                    : !exact::contains(rows, {}, Vector(), row_margin_);
     if (empty == called_empty && (empty || row_.exact_exchange)) {
       ++proofs_;
       return;
     }
     if (empty != called_empty && row_.exact_exchange) {
-      return violated(fmt::format("the estimate is called {}, without a proof, and the recorded set is not",
-                                  called_empty ? "empty" : "non-empty"),
-                      true);
+      return violated(
+          fmt::format("the estimate is called {}, without a proof, and the recorded set is not",
+                      called_empty ? "empty" : "non-empty"),
+          true);
     }
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported) throw;
   }
-  open(fmt::format("\"consistent\" is \"{}\", but no proof was stored", to_string(step_.consistent)));
+  open(fmt::format("\"consistent\" is \"{}\", but no proof was stored",
+                   to_string(step_.consistent)));
 }
 
 void StepCheck::bound_proof(Index i, bool upper) {
@@ -176,10 +198,11 @@ void StepCheck::bound_proof(Index i, bool upper) {
     return;
   }
   const double reached = attained(row_.set, d);
-  const std::string name =
-      fmt::format("the {} bound of coordinate {}, {:.17g},", upper ? "upper" : "lower", i + 1, upper ? bound : -bound);
+  const std::string name = fmt::format("the {} bound of coordinate {}, {:.17g},",
+                                       upper ? "upper" : "lower", i + 1, upper ? bound : -bound);
   if (reached > bound + slack) {
-    return violated(fmt::format("{} lies inside the reported set, which reaches {:.17g}", name, upper ? reached : -reached),
+    return violated(fmt::format("{} lies inside the reported set, which reaches {:.17g}", name,
+                                upper ? reached : -reached),
                     false);
   }
   if (why.kind == Certificate::Kind::none) {
@@ -197,8 +220,9 @@ void StepCheck::bound_proof(Index i, bool upper) {
   violated(name + " is not what its stored proof proves in rational arithmetic", false);
 }
 
-/// Is a point of X_k within the tolerance of x? Vertices of an exact estimate lie on its boundary, where no proof for x itself
-/// succeeds with bounded rounding errors: a step of a quarter of the tolerance towards the centre makes room.
+/// Is a point of X_k within the tolerance of x? Vertices of an exact estimate lie on its boundary,
+/// where no proof for x itself succeeds with bounded rounding errors: a step of a quarter of the
+/// tolerance towards the centre makes room.
 bool StepCheck::holds_nearby(const Vector& x) {
   const LineForm& X = row_.set;
   if (X.lines() > 0 || (margin_.array() == 0).any()) return false;
@@ -210,7 +234,8 @@ bool StepCheck::holds_nearby(const Vector& x) {
   right << X.b, x - X.c;
   const auto found = BoxedProgram(rows, right).central_point(1e-6);
   if (!found) return false;
-  const double step = std::min(1.0, (margin_.array() / size_.cwiseMax(margin_).array()).minCoeff()) / 4;
+  const double step =
+      std::min(1.0, (margin_.array() / size_.cwiseMax(margin_).array()).minCoeff()) / 4;
   const Vector xi = (1 - step) * found->cwiseMax(-1.0).cwiseMin(1.0) + step * **center_;
   const auto radius = repair_radius(X.A, X.b, xi);
   if (!radius || ((xi.cwiseAbs() + *radius).array() > 1 - rounding::unit * 4).any()) return false;
@@ -237,7 +262,8 @@ std::optional<Index> StepCheck::outside_hull(const RationalVector& x, const Vect
   return std::nullopt;
 }
 
-/// By how much farther the successors reach along each coordinate if rows are relaxed; infinity for what cannot be found out.
+/// By how much farther the successors reach along each coordinate if rows are relaxed; infinity for
+/// what cannot be found out.
 Vector StepCheck::moved_by_rounding(const Successors& successors) {
   if (moved_) return *moved_;
   moved_ = Vector::Zero(size_.size());
@@ -257,22 +283,25 @@ void StepCheck::contains_vertex(const RationalVector& exact, const Successors& s
   Vector x(size_.size());
   for (Index i = 0; i < x.size(); ++i) x[i] = rational::nearest(exact[index(i)]);
   if (reported_empty()) {
-    return violated(fmt::format("the estimate is called empty, but the state {} is consistent with model and data", text(x)),
-                    true);
+    return violated(
+        fmt::format(
+            "the estimate is called empty, but the state {} is consistent with model and data",
+            text(x)),
+        true);
   }
-  const std::string whether = fmt::format("whether the reported set contains the vertex {} of the exact one", text(x));
+  const std::string whether =
+      fmt::format("whether the reported set contains the vertex {} of the exact one", text(x));
   const bool has_room = (margin_.array() > 0).all();
   Vector margin = margin_ + turned_by(x);
   try {
     if (nominal_ && outside_hull(exact, margin)) margin += moved_by_rounding(successors);
     if (!margin.allFinite()) return open(whether);
     if (const auto i = outside_hull(exact, margin)) {
-      return missed(
-          fmt::format(
-              "the state {} is consistent with model and data, but lies outside the hull in coordinate {}: {:.17g} is not "
-              "in [{:.17g}, {:.17g}]",
-              text(x), *i + 1, x[*i], step_.hull.lower[*i], step_.hull.upper[*i]),
-          false);
+      return missed(fmt::format("the state {} is consistent with model and data, but lies outside "
+                                "the hull in coordinate {}: {:.17g} is not "
+                                "in [{:.17g}, {:.17g}]",
+                                text(x), *i + 1, x[*i], step_.hull.lower[*i], step_.hull.upper[*i]),
+                    false);
     }
     if (has_room && (holds_nearby(x) || contains(widened_, x) == Answer::yes)) return;
     if (exact::contains(row_.set, exact, margin, row_margin_)) return;
@@ -281,7 +310,10 @@ void StepCheck::contains_vertex(const RationalVector& exact, const Successors& s
       if (!margin.allFinite()) return open(whether);
       if (exact::contains(row_.set, exact, margin, row_margin_)) return;
     }
-    missed(fmt::format("the state {} is consistent with model and data, but lies outside the reported set", text(x)), true);
+    missed(fmt::format(
+               "the state {} is consistent with model and data, but lies outside the reported set",
+               text(x)),
+           true);
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported) throw;
     open(whether);
@@ -293,7 +325,8 @@ void StepCheck::contains_direction(const Vector& d, bool line) {
   const auto spanned = [&](const Vector& units) {
     const Matrix basis = linalg::range_basis(units.cwiseInverse().asDiagonal() * lines);
     const Vector scaled = d.cwiseQuotient(units);
-    const Vector beyond = scaled - linalg::product(basis, linalg::transposed_product(basis, scaled));
+    const Vector beyond =
+        scaled - linalg::product(basis, linalg::transposed_product(basis, scaled));
     return beyond.norm() <= line_tolerance_ * scaled.norm();
   };
   if (!reported_empty() && spanned(units_of(lines, d))) return;
@@ -305,20 +338,23 @@ void StepCheck::contains_direction(const Vector& d, bool line) {
   missed(fmt::format("the exact set is unbounded along {}, the reported set is not", along), true);
 }
 
-/// Does X_k keep to dᵀx ≤ limit but for lines that leave it by the rounding of their directions alone?
+/// Does X_k keep to dᵀx ≤ limit but for lines that leave it by the rounding of their directions
+/// alone?
 bool StepCheck::keeps_across_lines(const Vector& d, double limit) const {
   LineForm X = eliminate_lines(row_.set);
   const Vector off = linalg::transposed_product(X.M, d).cwiseAbs();
   const Matrix scaled = units_of(X.M, d).cwiseInverse().asDiagonal() * X.M;
   const Vector lengths = scaled.colwise().lpNorm<Eigen::Infinity>();
-  if ((off.array() > line_tolerance_ * d.cwiseAbs().dot(reach_of(X.M)) * lengths.array()).any()) return false;
+  if ((off.array() > line_tolerance_ * d.cwiseAbs().dot(reach_of(X.M)) * lengths.array()).any())
+    return false;
   X.M.resize(X.dim(), 0);
   X.S.resize(X.constraints(), 0);
   return support(X, d) <= limit + underflow;
 }
 
 /// X_k keeps to the inequality normalᵀx ≤ h of F.
-void StepCheck::within(const RationalVector& normal, const Rational& h, const Successors& successors) {
+void StepCheck::within(const RationalVector& normal, const Rational& h,
+                       const Successors& successors) {
   Rational slack = 0;
   Vector d(size_.size());
   for (Index i = 0; i < d.size(); ++i) {
@@ -330,9 +366,11 @@ void StepCheck::within(const RationalVector& normal, const Rational& h, const Su
   try {
     const exact::Support reached = exact::support(row_.set, normal);
     using Kind = exact::Support::Kind;
-    if (reached.kind == Kind::empty || (reached.kind == Kind::finite && reached.value <= h + slack)) return;
+    if (reached.kind == Kind::empty || (reached.kind == Kind::finite && reached.value <= h + slack))
+      return;
     if (reached.kind == Kind::unbounded && keeps_across_lines(d, limit + almost_all * room)) return;
-    bool may_be_one = false;  // two rows that are parallel but for rounding, of which nominal operations make one
+    bool may_be_one =
+        false;  // two rows that are parallel but for rounding, of which nominal operations make one
     if (nominal_) {
       const exact::Support strict = exact::support(successors.exact(), normal);
       const exact::Support relaxed = exact::support(successors.relaxed(), normal);
@@ -344,15 +382,18 @@ void StepCheck::within(const RationalVector& normal, const Rational& h, const Su
         const Rational moved = relaxed.value - strict.value;
         if (reached.kind == Kind::finite && reached.value <= h + slack + moved) return;
         const double size = std::abs(limit) + d.cwiseAbs().dot(size_ + reach_of(row_.set.M));
-        may_be_one = reached.kind == Kind::unbounded && moved > rational::exact(ill_conditioned * size);
+        may_be_one =
+            reached.kind == Kind::unbounded && moved > rational::exact(ill_conditioned * size);
       }
     }
-    if (row_.exact_exchange && !may_be_one) {  // an outer export may reach beyond the set that the claim is about
-      const double value = reached.kind == Kind::finite ? rational::nearest(reached.value) : infinity;
-      return missed(
-          fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where no consistent state lies beyond {:.17g}",
-                      value, text(d), limit),
-          true);
+    if (row_.exact_exchange &&
+        !may_be_one) {  // an outer export may reach beyond the set that the claim is about
+      const double value =
+          reached.kind == Kind::finite ? rational::nearest(reached.value) : infinity;
+      return missed(fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where "
+                                "no consistent state lies beyond {:.17g}",
+                                value, text(d), limit),
+                    true);
     }
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported) throw;
@@ -368,14 +409,17 @@ void StepCheck::against(const Polytope& F, const Successors& successors) {
   }
   const Polytope::Generators g = F.generators();
   for (Index j = 0; j < g.rays.cols() && !violation_; ++j) contains_direction(g.rays.col(j), false);
-  for (Index j = 0; j < g.lines.cols() && !violation_; ++j) contains_direction(g.lines.col(j), true);
+  for (Index j = 0; j < g.lines.cols() && !violation_; ++j)
+    contains_direction(g.lines.col(j), true);
   if (violation_ || step_.tightness != Tightness::exact || reported_empty()) return;
   const std::int64_t before = undecided_;
   if (F.is_empty()) {
     // data are rounded: with nominal operations as well, there is nothing to compare with
     exact_holds_ = claim_margin_.isZero(0) && is_proven_empty(row_.set);
     if (claim_margin_.isZero(0) && !exact_holds_)
-      open("the estimate is claimed exact and is not called empty, but no state is consistent with model and data");
+      open(
+          "the estimate is claimed exact and is not called empty, but no state is consistent with "
+          "model and data");
     return;
   }
   const Description& faces = F.representation().inequalities();
@@ -383,7 +427,9 @@ void StepCheck::against(const Polytope& F, const Successors& successors) {
     // β + aᵀx ≥ 0, divided by the largest entry of a
     RationalVector row = faces.rows[i];
     const Rational largest =
-        abs(*std::max_element(row.begin() + 1, row.end(), [](const Rational& a, const Rational& b) { return abs(a) < abs(b); }));
+        abs(*std::max_element(row.begin() + 1, row.end(), [](const Rational& a, const Rational& b) {
+          return abs(a) < abs(b);
+        }));
     for (Rational& entry : row) entry /= largest;
     RationalVector normal(row.begin() + 1, row.end());
     if (faces.linear[i]) within(normal, -row[0], successors);

@@ -22,26 +22,31 @@ std::string text(VectorIn x);
 class StepCheck {
  public:
   /// `margin`: what rounding errors may amount to, per coordinate (RoundingMargin).
-  StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding, const Vector& margin);
+  StepCheck(const RecordedStep& step, const RecordedSet& row, Rounding rounding,
+            const Vector& margin);
 
-  /// X_k or the set before it has lines, and the model takes them to directions of which nominal operations keep few digits: what
-  /// is missed along them is undecided.
+  /// X_k or the set before it has lines, and the model takes them to directions of which nominal
+  /// operations keep few digits: what is missed along them is undecided.
   void lines_have_few_digits() { few_digits_ = nominal_; }
 
   void proofs();
-  /// Successors of X_{k-1}: as they are, and with outputs and rows that hold up to rounding. By as much as these reach farther, a
-  /// nominal claim may do so too, and nominal operations may fall short: the rounding of rows that nearly depend on each other,
-  /// or that leave hardly anything, moves a set by far more than itself.
+  /// Successors of X_{k-1}: as they are, and with outputs and rows that hold up to rounding. By as
+  /// much as these reach farther, a nominal claim may do so too, and nominal operations may fall
+  /// short: the rounding of rows that nearly depend on each other, or that leave hardly anything,
+  /// moves a set by far more than itself.
   struct Successors {
     std::function<LineForm()> exact, relaxed;
     std::function<std::optional<Enclosure>()> enclosed;  ///< of the exact ones, if there is one
   };
 
-  /// F ⊆ X_k and F ⊆ hull, by the vertices of F; where `exact` is claimed, X_k ⊆ F by its inequalities.
+  /// F ⊆ X_k and F ⊆ hull, by the vertices of F; where `exact` is claimed, X_k ⊆ F by its
+  /// inequalities.
   void against(const Polytope& F, const Successors& successors);
-  /// The same inclusions for the successors, in the directions of the columns. Is X_k an estimate that `holds_them_all`? Else one
-  /// that it does not hold decides nothing. Ends early, with nothing decided, once `stop` is set.
-  void against(const Successors& successors, const Matrix& directions, bool holds_them_all, const std::atomic<bool>* stop);
+  /// The same inclusions for the successors, in the directions of the columns. Is X_k an estimate
+  /// that `holds_them_all`? Else one that it does not hold decides nothing. Ends early, with
+  /// nothing decided, once `stop` is set.
+  void against(const Successors& successors, const Matrix& directions, bool holds_them_all,
+               const std::atomic<bool>* stop);
 
   /// An inclusion could not be checked at all.
   void skipped(std::string why) { open(std::move(why)); }
@@ -66,27 +71,31 @@ class StepCheck {
   void emptiness_without_proof();
   void bound_proof(Index i, bool upper);
   void contains_vertex(const rational::RationalVector& exact, const Successors& successors);
-  std::optional<Index> outside_hull(const rational::RationalVector& exact, const Vector& margin) const;
+  std::optional<Index> outside_hull(const rational::RationalVector& exact,
+                                    const Vector& margin) const;
   Vector moved_by_rounding(const Successors& successors);
   bool holds_nearby(const Vector& x);
   void contains_direction(const Vector& d, bool line);
   Vector turned_by(const Vector& x) const;
   bool keeps_across_lines(const Vector& d, double limit) const;
-  void within(const rational::RationalVector& normal, const rational::Rational& h, const Successors& successors);
+  void within(const rational::RationalVector& normal, const rational::Rational& h,
+              const Successors& successors);
   bool reported_empty() const { return step_.consistent == Answer::no; }
 
   const RecordedStep& step_;
   const RecordedSet& row_;
-  bool nominal_;                 ///< operations were rounded to nearest
-  bool few_digits_ = false;      ///< of the directions of lines
-  double line_tolerance_;        ///< of the directions of lines
-  Vector size_;                  ///< of each coordinate
-  Vector margin_;                ///< within which F_k has to lie in X_k and in the hull
-  Vector claim_margin_;          ///< within which X_k has to lie in F_k, if it is claimed exact
-  Vector row_margin_;            ///< within which constraints of X_k have to hold
-  LineForm widened_;             ///< X_k ⊕ margin_
-  std::optional<Vector> moved_;  ///< per coordinate, by how much the rounding of rows moves the set, once asked for
-  std::optional<std::optional<Vector>> center_;  ///< factors of a point well inside X_k, once asked for
+  bool nominal_;             ///< operations were rounded to nearest
+  bool few_digits_ = false;  ///< of the directions of lines
+  double line_tolerance_;    ///< of the directions of lines
+  Vector size_;              ///< of each coordinate
+  Vector margin_;            ///< within which F_k has to lie in X_k and in the hull
+  Vector claim_margin_;      ///< within which X_k has to lie in F_k, if it is claimed exact
+  Vector row_margin_;        ///< within which constraints of X_k have to hold
+  LineForm widened_;         ///< X_k ⊕ margin_
+  std::optional<Vector>
+      moved_;  ///< per coordinate, by how much the rounding of rows moves the set, once asked for
+  std::optional<std::optional<Vector>>
+      center_;  ///< factors of a point well inside X_k, once asked for
   std::optional<Finding> violation_;
   std::int64_t proofs_ = 0, undecided_ = 0;
   std::string first_undecided_;

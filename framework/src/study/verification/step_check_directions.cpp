@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks of a step along directions: beside the successors of the set before, which need no vertices.
+// Checks of a step along directions: beside the successors of the set before, which need no
+// vertices.
 #include <cmath>
 #include <limits>
 
@@ -35,7 +36,8 @@ struct Bound {
     if (value == -infinity) {
       shown = proves_empty(X.widened, why);
     } else {
-      if (why.data.size() == X.rows.size()) value += why.data.cwiseAbs().dot(X.rows) + d.cwiseAbs().dot(X.center);
+      if (why.data.size() == X.rows.size())
+        value += why.data.cwiseAbs().dot(X.rows) + d.cwiseAbs().dot(X.center);
       shown = proves_support(X.widened, d, value + share_of_proof * slack, why);
     }
   }
@@ -43,7 +45,8 @@ struct Bound {
   bool shown;
 };
 
-/// By rational arithmetic, where proofs with bounded rounding errors fail: rows that depend on each other.
+/// By rational arithmetic, where proofs with bounded rounding errors fail: rows that depend on each
+/// other.
 double least_support(const LineForm& X, const Vector& d) {
   try {
     return exact::support(X, d).lower;
@@ -71,10 +74,16 @@ struct StepCheck::Along {
   }
 };
 
-void StepCheck::against(const Successors& of_the_set_before, const Matrix& directions, bool holds_them_all,
-                        const std::atomic<bool>* stop) {
-  const bool claims = step_.tightness == Tightness::exact && !reported_empty() && row_.exact_exchange;
-  Along by{of_the_set_before.exact(), of_the_set_before.enclosed(), of_the_set_before.relaxed, nominal_, claims, holds_them_all};
+void StepCheck::against(const Successors& of_the_set_before, const Matrix& directions,
+                        bool holds_them_all, const std::atomic<bool>* stop) {
+  const bool claims =
+      step_.tightness == Tightness::exact && !reported_empty() && row_.exact_exchange;
+  Along by{of_the_set_before.exact(),
+           of_the_set_before.enclosed(),
+           of_the_set_before.relaxed,
+           nominal_,
+           claims,
+           holds_them_all};
   for (Index j = 0; j < directions.cols() && !violation_; ++j) {
     if (stop && stop->load()) return;
     along(directions.col(j), by);
@@ -87,7 +96,9 @@ void StepCheck::along(const Vector& d, Along& by) {
   const bool coordinate = (d.array() != 0).count() == 1;
   Index i = 0;
   d.cwiseAbs().maxCoeff(&i);
-  const double hull = !coordinate ? infinity : d[i] > 0 ? d[i] * step_.hull.upper[i] : d[i] * step_.hull.lower[i];
+  const double hull = !coordinate ? infinity
+                      : d[i] > 0  ? d[i] * step_.hull.upper[i]
+                                  : d[i] * step_.hull.lower[i];
   const double set = reported_empty() ? -infinity : support(row_.set, d);
   double reached = reported_empty() ? -infinity : attained(row_.set, d);
   const auto settled = [&](const Bound& bound) {
@@ -96,19 +107,22 @@ void StepCheck::along(const Vector& d, Along& by) {
   if (by.enclosed) {
     const Bound bound(*by.enclosed, d, slack);
     const bool in_hull = bound.shown && bound.value + share_of_proof * slack <= hull + slack;
-    if (in_hull && !settled(bound) && !reported_empty()) reached = std::max(reached, least_support(row_.set, d));
+    if (in_hull && !settled(bound) && !reported_empty())
+      reached = std::max(reached, least_support(row_.set, d));
     if (settled(bound) && !(by.claims && reached > bound.value + slack)) return;
   }
   const Bound bound(by.successors, d, slack);
   const double needed = bound.value;
-  if (by.claims && needed != -infinity && reached > needed + slack && reached > needed + slack + by.moved(d, needed)) {
-    return violated(
-        fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where no successor of the set before that is "
-                    "consistent with the data lies beyond {:.17g}",
-                    reached, text(d), needed),
-        true);
+  if (by.claims && needed != -infinity && reached > needed + slack &&
+      reached > needed + slack + by.moved(d, needed)) {
+    return violated(fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where "
+                                "no successor of the set before that is "
+                                "consistent with the data lies beyond {:.17g}",
+                                reached, text(d), needed),
+                    true);
   }
-  // nothing beyond: a rational proof that the successors keep below a value that the set is proven to reach
+  // nothing beyond: a rational proof that the successors keep below a value that the set is proven
+  // to reach
   const double allowed = std::min(hull, set);
   if (allowed == infinity && needed == infinity && row_.set.lines() > 0) return;
   if (settled(bound)) return;
@@ -118,18 +132,23 @@ void StepCheck::along(const Vector& d, Along& by) {
     if (std::isfinite(slack)) {
       if (exact.lower > allowed + slack && by.holds_them_all) {
         const bool of_hull = allowed == hull && coordinate;
-        return violated(fmt::format("a successor of the set before, consistent with the data, reaches {:.17g} along {}; the "
+        return violated(fmt::format("a successor of the set before, consistent with the data, "
+                                    "reaches {:.17g} along {}; the "
                                     "reported {} only {:.17g}",
                                     exact.lower, text(d), of_hull ? "hull" : "set", allowed),
                         !of_hull);
       }
       if (exact.upper <= std::min(hull, reached) + slack) return;
-      if (!reported_empty() && exact.upper <= std::min(hull, exact::support(row_.set, d).lower) + slack) return;
+      if (!reported_empty() &&
+          exact.upper <= std::min(hull, exact::support(row_.set, d).lower) + slack)
+        return;
     }
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported) throw;
   }
-  open(fmt::format("whether the reported set reaches as far along {} as the successors of the set before", text(d)));
+  open(fmt::format(
+      "whether the reported set reaches as far along {} as the successors of the set before",
+      text(d)));
 }
 
 }  // namespace cordon::verification

@@ -27,10 +27,12 @@ namespace {
 using namespace verification;
 using Clock = std::chrono::steady_clock;
 
-/// Are there directions that A takes to next to nothing, beside others or by entries that cancel, and not to nothing?
+/// Are there directions that A takes to next to nothing, beside others or by entries that cancel,
+/// and not to nothing?
 bool hides_directions(const Matrix& A) {
   constexpr double little = 1e-6;
-  const Index known = std::min(ColumnElimination(A, A.cwiseAbs()).kept, linalg::range_basis(A, little).cols());
+  const Index known =
+      std::min(ColumnElimination(A, A.cwiseAbs()).kept, linalg::range_basis(A, little).cols());
   return known < A.cols() && known < rank_modulo_prime(A);
 }
 
@@ -38,12 +40,17 @@ constexpr Index most_states_of_polytopes = 4;
 constexpr std::size_t most_kept_polytopes = 5000, most_kept_bits = std::size_t{1} << 31;
 constexpr std::size_t most_bits_in_all = std::size_t{1} << 25;  // of the exact sets of a run
 
-bool same(const Matrix& A, const Matrix& B) { return A.rows() == B.rows() && A.cols() == B.cols() && A == B; }
+bool same(const Matrix& A, const Matrix& B) {
+  return A.rows() == B.rows() && A.cols() == B.cols() && A == B;
+}
 bool same(const LineForm& X, const LineForm& Y) {
-  return same(X.M, Y.M) && same(X.G, Y.G) && same(X.c, Y.c) && same(X.S, Y.S) && same(X.A, Y.A) && same(X.b, Y.b);
+  return same(X.M, Y.M) && same(X.G, Y.G) && same(X.c, Y.c) && same(X.S, Y.S) && same(X.A, Y.A) &&
+         same(X.b, Y.b);
 }
 bool same_assumptions(const RecordedPipeline& a, const RecordedPipeline& b) {
-  if (!same(a.initial_set, b.initial_set) || a.admissible_set.has_value() != b.admissible_set.has_value()) return false;
+  if (!same(a.initial_set, b.initial_set) ||
+      a.admissible_set.has_value() != b.admissible_set.has_value())
+    return false;
   return !a.admissible_set || same(*a.admissible_set, *b.admissible_set);
 }
 
@@ -76,7 +83,8 @@ class FeasibleSequence {
       try {
         F = sets_->step(sample);
         bits_ += F->bits();
-        if (uncertain_ && F->is_empty()) {  // which says nothing about other matrices of the intervals
+        if (uncertain_ &&
+            F->is_empty()) {  // which says nothing about other matrices of the intervals
           F.reset();
           sets_.reset();
         }
@@ -109,15 +117,18 @@ Matrix directions_of(Index n, const VerifyOptions& options, Index k) {
   Matrix D(n, 2 * n + options.directions);
   D.leftCols(n).setIdentity();
   D.middleCols(n, n) = -Matrix::Identity(n, n);
-  detail::RandomStream random(options.seed, detail::Purpose::direction, static_cast<std::uint64_t>(k));
+  detail::RandomStream random(options.seed, detail::Purpose::direction,
+                              static_cast<std::uint64_t>(k));
   for (Index j = 2 * n; j < D.cols(); ++j) {
     for (Index i = 0; i < n; ++i) D(i, j) = random.symmetric();
   }
   return D;
 }
 
-/// False where F cannot be converted into vertices and inequalities, which is found out before anything is checked.
-bool against_polytope(StepCheck& check, const Polytope& F, const StepCheck::Successors& successors) {
+/// False where F cannot be converted into vertices and inequalities, which is found out before
+/// anything is checked.
+bool against_polytope(StepCheck& check, const Polytope& F,
+                      const StepCheck::Successors& successors) {
   try {
     F.representation().generators();
     F.representation().inequalities();
@@ -166,7 +177,8 @@ class Verification {
       check(p, *feasible);
       if (outcome_.violation || outcome_.interrupted) return std::move(outcome_);
     }
-    if (const auto extra = sets_.next()) refuse(extra->line, "has more lines than results.json has steps");
+    if (const auto extra = sets_.next())
+      refuse(extra->line, "has more lines than results.json has steps");
     return std::move(outcome_);
   }
 
@@ -174,15 +186,19 @@ class Verification {
 
  private:
   [[noreturn]] void refuse(std::int64_t line, const std::string& reason) const {
-    throw InputError((run_.files.directory() / "sets.jsonl").string(),
-                     {{"", reason, "the file is not as \"cordon run\" wrote it; run the study again", static_cast<int>(line)}});
+    throw InputError(
+        (run_.files.directory() / "sets.jsonl").string(),
+        {{"", reason, "the file is not as \"cordon run\" wrote it; run the study again",
+          static_cast<int>(line)}});
   }
 
   RecordedSet set_of(const RecordedPipeline& pipeline, const RecordedStep& step) {
     std::optional<RecordedSet> row = sets_.next();
     if (!row) refuse(0, fmt::format("ends before pipeline \"{}\", k = {}", pipeline.name, step.k));
-    if (row->pipeline != pipeline.name || row->k != step.k || row->set.dim() != run_.model.linear.states()) {
-      refuse(row->line, fmt::format("does not hold the set of pipeline \"{}\", k = {}", pipeline.name, step.k));
+    if (row->pipeline != pipeline.name || row->k != step.k ||
+        row->set.dim() != run_.model.linear.states()) {
+      refuse(row->line, fmt::format("does not hold the set of pipeline \"{}\", k = {}",
+                                    pipeline.name, step.k));
     }
     return std::move(*row);
   }
@@ -193,7 +209,8 @@ class Verification {
     VerifiedPipeline& found = outcome_.pipelines.back();
     if (!pipeline.refuted.empty()) {
       const Index horizon = pipeline.design ? pipeline.design->horizon : 0;
-      outcome_.violation = {pipeline.name, horizon, pipeline.refuted[0], fmt::format("/pipelines/{}/summary/refuted/0", p)};
+      outcome_.violation = {pipeline.name, horizon, pipeline.refuted[0],
+                            fmt::format("/pipelines/{}/summary/refuted/0", p)};
     }
     if (!pipeline.failed) return;
     found.failed_assumption = pipeline.failed->text;
@@ -201,8 +218,9 @@ class Verification {
     found.fails_again = fails_again(run_, pipeline);
     if (found.fails_again == Answer::no) {
       ++found.undecided;
-      found.first_undecided = fmt::format("k = {}: that an assumption fails is not proven again: {}", pipeline.failed->failed.k,
-                                          found.failed_assumption);
+      found.first_undecided =
+          fmt::format("k = {}: that an assumption fails is not proven again: {}",
+                      pipeline.failed->failed.k, found.failed_assumption);
     }
   }
 
@@ -244,9 +262,11 @@ class Verification {
       std::optional<Polytope> F;
       while (!sample || sample->k < step.k) {
         std::optional<Record> record = data->next();
-        if (!record) refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
+        if (!record)
+          refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
         if (record->sample.k < step.k) {
-          refuse(0, fmt::format("has no step k = {} of pipeline \"{}\", which data.csv has", record->sample.k, pipeline.name));
+          refuse(0, fmt::format("has no step k = {} of pipeline \"{}\", which data.csv has",
+                                record->sample.k, pipeline.name));
         }
         before = std::move(sample);
         sample = std::move(record->sample);
@@ -254,15 +274,19 @@ class Verification {
       }
       row_before = std::move(row);
       row = set_of(pipeline, step);
-      const bool follows = row_before && before && row_before->k + 1 == step.k && before->k + 1 == step.k;
+      const bool follows =
+          row_before && before && row_before->k + 1 == step.k && before->k + 1 == step.k;
       const Transition transition{follows ? &*before : nullptr, *sample};
-      const Vector outputs_before = rounding.of_outputs(), margin = rounding.next(row->set, transition.before, *sample);
-      const Vector outputs = follows ? Vector(rounding.of_outputs().cwiseMax(outputs_before)) : rounding.of_outputs();
+      const Vector outputs_before = rounding.of_outputs(),
+                   margin = rounding.next(row->set, transition.before, *sample);
+      const Vector outputs =
+          follows ? Vector(rounding.of_outputs().cwiseMax(outputs_before)) : rounding.of_outputs();
       if (static_cast<std::int64_t>(i) % options_.every != 0) continue;
       check_step(p, i, *row, {margin, outputs}, F, follows ? &*row_before : nullptr, transition);
       if (outcome_.violation) return;
       if (options_.progress && Clock::now() - told > std::chrono::milliseconds(50)) {
-        options_.progress(names_, p, static_cast<std::int64_t>(i), static_cast<std::int64_t>(pipeline.steps.size()));
+        options_.progress(names_, p, static_cast<std::int64_t>(i),
+                          static_cast<std::int64_t>(pipeline.steps.size()));
         told = Clock::now();
       }
     }
@@ -274,28 +298,36 @@ class Verification {
     Vector states, outputs;
   };
 
-  void check_step(std::size_t p, std::size_t i, const RecordedSet& row, const Margins& margins, const std::optional<Polytope>& F,
-                  const RecordedSet* row_before, const Transition& transition) {
+  void check_step(std::size_t p, std::size_t i, const RecordedSet& row, const Margins& margins,
+                  const std::optional<Polytope>& F, const RecordedSet* row_before,
+                  const Transition& transition) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
     VerifiedPipeline& found = outcome_.pipelines.back();
     const bool uncertain = run_.model.linear.is_uncertain();
     const RecordedStep step = uncertain ? without_claim(pipeline.steps[i]) : pipeline.steps[i];
     StepCheck check(step, row, pipeline.rounding, margins.states);
     const LineForm& start = row_before ? row_before->set : pipeline.initial_set;
-    if ((start.lines() > 0 || row.set.lines() > 0) && hides_directions(run_.model.linear.A)) check.lines_have_few_digits();
+    if ((start.lines() > 0 || row.set.lines() > 0) && hides_directions(run_.model.linear.A))
+      check.lines_have_few_digits();
     check.proofs();
     if (uncertain && pipeline.steps[i].tightness == Tightness::exact) {
-      check.skipped("a claim of \"exact\" is not checked where matrices are known by intervals only");
+      check.skipped(
+          "a claim of \"exact\" is not checked where matrices are known by intervals only");
     }
     const auto successors_in = [&](const Model& model) {
       return StepCheck::Successors{
           [&] { return successors(model, start, pipeline.admissible_set, transition); },
-          [&] { return successors(widened(model, margins.outputs), widened(start), pipeline.admissible_set, transition); },
+          [&] {
+            return successors(widened(model, margins.outputs), widened(start),
+                              pipeline.admissible_set, transition);
+          },
           [&] { return enclosed_successors(model, start, pipeline.admissible_set, transition); }};
     };
     const bool follows = i == 0 || row_before;
     if (!check.violation()) {
-      if (F && against_polytope(check, *F, follows ? successors_in(run_.model) : unknown_successors(row.set.dim()))) {
+      if (F &&
+          against_polytope(
+              check, *F, follows ? successors_in(run_.model) : unknown_successors(row.set.dim()))) {
         ++found.by_polytopes;
       } else if (!follows) {
         check.skipped("the step does not follow the one before: its successors are not checked");
@@ -317,9 +349,10 @@ class Verification {
     }
     found.undecided += check.undecided();
     if (const auto& violation = check.violation()) {
-      outcome_.violation = {
-          pipeline.name, row.k, violation->what,
-          violation->in_sets_file ? fmt::format("sets.jsonl:{}", row.line) : fmt::format("/pipelines/{}/steps/{}/hull", p, i)};
+      outcome_.violation = {pipeline.name, row.k, violation->what,
+                            violation->in_sets_file
+                                ? fmt::format("sets.jsonl:{}", row.line)
+                                : fmt::format("/pipelines/{}/steps/{}/hull", p, i)};
     }
   }
 
@@ -333,7 +366,8 @@ class Verification {
 }  // namespace
 
 VerifyOutcome verify_run(const std::filesystem::path& directory, const VerifyOptions& options) {
-  if (options.every < 1 || options.directions < 0) throw Error(Errc::invalid, "verify: every and directions must be positive");
+  if (options.every < 1 || options.directions < 0)
+    throw Error(Errc::invalid, "verify: every and directions must be positive");
   Verification verification(directory, options);
   VerifyOutcome outcome = verification.run();
   verification.check_unchanged();

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Interval vectors (boxes): the kernels of the cheapest representation.
 //
-// Definition: {x ∈ Rⁿ : lower ≤ x ≤ upper} (cordon::Box). A coordinate is bounded or free (both bounds infinite), never
-// half-bounded: half-bounded or NaN bounds of an operand throw Errc::invalid or Errc::not_finite, and an operation whose
-// result would be half-bounded (by overflow) makes the coordinate free.
-// Rounding: outward, to the last place; an operation whose result is representable returns it unchanged.
-// Degenerate cases: an empty operand gives the canonical empty box (but convex_hull gives the other operand); 0·∞ = 0.
-// In dimension 0 a box is a point: the empty set of R⁰ is not representable.
-// Source: [Jaulin2001, ch. 2 and 4].
+// Definition: {x ∈ Rⁿ : lower ≤ x ≤ upper} (cordon::Box). A coordinate is bounded or free (both
+// bounds infinite), never half-bounded: half-bounded or NaN bounds of an operand throw
+// Errc::invalid or Errc::not_finite, and an operation whose result would be half-bounded (by
+// overflow) makes the coordinate free. Rounding: outward, to the last place; an operation whose
+// result is representable returns it unchanged. Degenerate cases: an empty operand gives the
+// canonical empty box (but convex_hull gives the other operand); 0·∞ = 0. In dimension 0 a box is a
+// point: the empty set of R⁰ is not representable. Source: [Jaulin2001, ch. 2 and 4].
 #pragma once
 
 #include <span>
@@ -17,7 +17,8 @@
 
 namespace cordon::sets {
 
-/// Throws unless every coordinate is bounded or free; `what` names the set in the message. An empty box passes.
+/// Throws unless every coordinate is bounded or free; `what` names the set in the message. An empty
+/// box passes.
 void check(const Box& X, const char* what);
 
 /// At most one nonzero entry in every row and column of T: then T maps boxes to boxes.
@@ -37,8 +38,8 @@ struct MappedBox {
   const Box& set;
 };
 
-/// Smallest box around A X, plus f, plus the smallest boxes around Tᵢ Xᵢ: what affine_map and minkowski_sum make of them, to the
-/// last bit. A is m×n, Tᵢ is m×dim Xᵢ. O(m Σ nᵢ).
+/// Smallest box around A X, plus f, plus the smallest boxes around Tᵢ Xᵢ: what affine_map and
+/// minkowski_sum make of them, to the last bit. A is m×n, Tᵢ is m×dim Xᵢ. O(m Σ nᵢ).
 Box affine_sum(const Box& X, MatrixIn A, VectorIn f, std::span<const MappedBox> summands);
 
 /// X × Y; exact. O(n).
@@ -53,12 +54,13 @@ Box interval_map(const Box& X, const IntervalMatrix& A);
 /// Smallest box around X ∪ Y, without rounding; hull(X, ∅) = X. O(n).
 Box convex_hull(const Box& X, const Box& Y);
 
-/// A box around {x ∈ X : z - C x ∈ T V} by forward and backward contraction row by row, repeated until no width shrinks by
-/// more than 1e-9 of itself or 20 sweeps are done. A result that is empty is proven empty. T with no columns: C x = z.
-/// Exact if has_monomial_rows(C) and is_monomial(T), else outer. O(p n) per sweep.
-/// `off`: z may be off by this share of the terms of its row. Rows that T V leaves narrower than 1e10 times that get as much
-/// room: a box that loses x by the last digit of z loses it by some hundred times as much in every sweep over rows that are
-/// nearly parallel.
+/// A box around {x ∈ X : z - C x ∈ T V} by forward and backward contraction row by row, repeated
+/// until no width shrinks by more than 1e-9 of itself or 20 sweeps are done. A result that is empty
+/// is proven empty. T with no columns: C x = z. Exact if has_monomial_rows(C) and is_monomial(T),
+/// else outer. O(p n) per sweep. `off`: z may be off by this share of the terms of its row. Rows
+/// that T V leaves narrower than 1e10 times that get as much room: a box that loses x by the last
+/// digit of z loses it by some hundred times as much in every sweep over rows that are nearly
+/// parallel.
 Box contract(const Box& X, MatrixIn C, VectorIn z, MatrixIn T, const Box& V, double off = 0);
 
 }  // namespace cordon::sets

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vertices, area and volume of bounded sets of two and three dimensions, found through their support functions.
+// Vertices, area and volume of bounded sets of two and three dimensions, found through their
+// support functions.
 #pragma once
 
 #include <functional>
@@ -13,19 +14,22 @@ struct SupportPoint {
   double h = 0;
   Vector x;
 };
-/// Answers for any direction d ≠ 0. An empty set answers h = -∞, an unbounded direction h = +∞ (x is not read then).
+/// Answers for any direction d ≠ 0. An empty set answers h = -∞, an unbounded direction h = +∞ (x
+/// is not read then).
 using SupportOracle = std::function<SupportPoint(const Vector& d)>;
 
 /// The oracle of a zonotope: c + G sgn(Gᵀd).
 SupportOracle support_oracle(const Zonotope& Z);
 
-/// Vertices of a bounded set X ⊂ R² as the columns of a matrix, counter-clockwise; one column for a point, two for a segment,
-/// none for ∅. Each edge between known points is confirmed by its normal or split by a new point. Exact for a polygon up to
-/// `tolerance` relative to each coordinate's width; a curved set is cut off after 10,000 queries by an inscribed polygon.
-/// Two queries per vertex and edge. Errors: Errc::unsupported for an unbounded set.
+/// Vertices of a bounded set X ⊂ R² as the columns of a matrix, counter-clockwise; one column for a
+/// point, two for a segment, none for ∅. Each edge between known points is confirmed by its normal
+/// or split by a new point. Exact for a polygon up to `tolerance` relative to each coordinate's
+/// width; a curved set is cut off after 10,000 queries by an inscribed polygon. Two queries per
+/// vertex and edge. Errors: Errc::unsupported for an unbounded set.
 Matrix polygon(const SupportOracle& X, double tolerance = 1e-10);
 
-/// Vertices of a zonotope in R² from its generators in the order of their angles: exact; at most 2g. O(g log g).
+/// Vertices of a zonotope in R² from its generators in the order of their angles: exact; at most
+/// 2g. O(g log g).
 Matrix polygon(const Zonotope& Z);
 
 /// Area of the polygon with the given vertices (2×k, counter-clockwise); 0 for k < 3. O(k).
@@ -37,13 +41,16 @@ struct VolumeBounds {
   bool converged = false;  ///< lower and upper agree to the tolerance
 };
 
-/// Volume of a bounded set X ⊂ R³. Known points of X, moved to a fine grid of coordinates in which X is about as thick as it is
-/// long, have a hull that is exact in integers; it grows until the support function confirms each of its facets. Bounds follow
-/// from what the points are moved, 1e-11 of the set's size, and from the largest gap between a facet and its support; they hold
-/// up to rounding errors of the support function. Asking goes on until they agree to a hundredth of the tolerance; the rest
-/// leaves room for an inexact support function. For curved sets, and where rounding hides the thickness of a set, the bounds at
-/// the limit of queries or of resolution are returned. Flat sets (thinner than 1e-12 of their interval hull) and ∅ have the
-/// volume 0. Errors: Errc::unsupported for an unbounded set. O(V²) for V vertices, one query per facet tried.
-VolumeBounds volume(const SupportOracle& X, double relative_tolerance = 1e-7, Index max_queries = 20000);
+/// Volume of a bounded set X ⊂ R³. Known points of X, moved to a fine grid of coordinates in which
+/// X is about as thick as it is long, have a hull that is exact in integers; it grows until the
+/// support function confirms each of its facets. Bounds follow from what the points are moved,
+/// 1e-11 of the set's size, and from the largest gap between a facet and its support; they hold up
+/// to rounding errors of the support function. Asking goes on until they agree to a hundredth of
+/// the tolerance; the rest leaves room for an inexact support function. For curved sets, and where
+/// rounding hides the thickness of a set, the bounds at the limit of queries or of resolution are
+/// returned. Flat sets (thinner than 1e-12 of their interval hull) and ∅ have the volume 0. Errors:
+/// Errc::unsupported for an unbounded set. O(V²) for V vertices, one query per facet tried.
+VolumeBounds volume(const SupportOracle& X, double relative_tolerance = 1e-7,
+                    Index max_queries = 20000);
 
 }  // namespace cordon::sets

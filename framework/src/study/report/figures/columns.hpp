@@ -23,7 +23,8 @@ class ColumnReader {
   /// Columns PREFIX1, PREFIX2, … up to the first that is missing.
   std::vector<std::size_t> numbered(const std::string& prefix) const;
 
-  /// The next row; false at the end. Throws InputError if it has another number of fields than the header.
+  /// The next row; false at the end. Throws InputError if it has another number of fields than the
+  /// header.
   bool next();
   const std::string& text(std::size_t column) const { return row_.fields[column]; }
   /// NaN for an empty field, ±∞ for "inf" and "-inf"; nothing if it is no number.

@@ -25,11 +25,13 @@ struct BoundColumns {
 
 BoundColumns bounds_of(const ColumnReader& table, const std::string& prefix) {
   BoundColumns columns{table.numbered(prefix + "lower_"), table.numbered(prefix + "upper_")};
-  if (columns.lower.size() != columns.upper.size()) table.refuse("does not have as many upper as lower bounds");
+  if (columns.lower.size() != columns.upper.size())
+    table.refuse("does not have as many upper as lower bounds");
   return columns;
 }
 
-void add_bounds(const ColumnReader& table, const BoundColumns& columns, bool empty, std::int64_t k, std::vector<Thinner>& out) {
+void add_bounds(const ColumnReader& table, const BoundColumns& columns, bool empty, std::int64_t k,
+                std::vector<Thinner>& out) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double lower = table.number(columns.lower[i]), upper = table.number(columns.upper[i]);
     out[i].add(static_cast<double>(k), empty ? none : lower, empty ? none : upper);
@@ -44,7 +46,8 @@ std::optional<ColumnReader> open_data_table(const RunFiles& files) {
   return ColumnReader(file);
 }
 
-/// The true states at one time after another. Times of data.csv increase, so that it is read along with the steps of a pipeline.
+/// The true states at one time after another. Times of data.csv increase, so that it is read along
+/// with the steps of a pipeline.
 class TruthReader {
  public:
   TruthReader(const RunFiles& files, std::size_t states) : table_(open_data_table(files)) {
@@ -73,7 +76,8 @@ class TruthReader {
 
 class StepsReader {
  public:
-  StepsReader(const RunFiles& files, Curves& curves) : files_(files), curves_(curves), table_(files.files().file("steps.csv")) {
+  StepsReader(const RunFiles& files, Curves& curves)
+      : files_(files), curves_(curves), table_(files.files().file("steps.csv")) {
     name_ = table_.need("pipeline");
     k_ = table_.need("k");
     consistent_ = table_.need("consistent");
@@ -81,12 +85,15 @@ class StepsReader {
     hull_ = bounds_of(table_, "");
     inner_ = bounds_of(table_, "inner_");
     curves_.all_states = hull_.lower.size();
-    curves_.states = files.detail() == Detail::all ? curves_.all_states : std::min(curves_.all_states, page_states);
+    curves_.states = files.detail() == Detail::all ? curves_.all_states
+                                                   : std::min(curves_.all_states, page_states);
     find_metrics();
     const std::size_t pipelines = files.pipelines().size();
     const std::size_t inner_states = inner_.lower.empty() ? 0 : curves_.states;
-    const std::size_t error_states = TruthReader(files, curves_.all_states).is_known() ? curves_.states : 0;
-    const std::size_t series = pipelines * (curves_.states + inner_states + error_states + metrics_.size());
+    const std::size_t error_states =
+        TruthReader(files, curves_.all_states).is_known() ? curves_.states : 0;
+    const std::size_t series =
+        pipelines * (curves_.states + inner_states + error_states + metrics_.size());
     if (series > max_curves) table_.refuse("holds more curves than a report can show");
     const Thinner curve(points_per_series(files.detail(), series));
     StepCurves empty;
@@ -108,7 +115,8 @@ class StepsReader {
         pipeline = files_.pipeline(name, "steps.csv");
         was_empty = false;
         truth.reset();
-        // Rows of a pipeline stand together: the data are read once for each, whatever the file holds.
+        // Rows of a pipeline stand together: the data are read once for each, whatever the file
+        // holds.
         if (curves_.pipelines[static_cast<std::size_t>(pipeline)].first < 0)
           truth = std::make_unique<TruthReader>(files_, curves_.all_states);
       }
@@ -142,7 +150,8 @@ class StepsReader {
     const bool known = table_.text(consistent_) != "no" && truth && truth->reach(k);
     for (std::size_t i = 0; i < steps.error.size(); ++i) {
       const double x = known ? truth->state(i) : none;
-      steps.error[i].add(static_cast<double>(k), table_.number(hull_.lower[i]) - x, table_.number(hull_.upper[i]) - x);
+      steps.error[i].add(static_cast<double>(k), table_.number(hull_.lower[i]) - x,
+                         table_.number(hull_.upper[i]) - x);
     }
   }
 
@@ -168,11 +177,13 @@ class StepsReader {
   /// Columns with texts are no curves, nor are those without any value.
   void drop_texts() {
     for (std::size_t i = metrics_.size(); i-- > 0;) {
-      const bool any = std::any_of(curves_.pipelines.begin(), curves_.pipelines.end(),
-                                   [&](const StepCurves& steps) { return steps.metrics[i].has_values(); });
+      const bool any =
+          std::any_of(curves_.pipelines.begin(), curves_.pipelines.end(),
+                      [&](const StepCurves& steps) { return steps.metrics[i].has_values(); });
       if (numeric_[i] && any) continue;
       metrics_.erase(metrics_.begin() + static_cast<std::ptrdiff_t>(i));
-      for (StepCurves& steps : curves_.pipelines) steps.metrics.erase(steps.metrics.begin() + static_cast<std::ptrdiff_t>(i));
+      for (StepCurves& steps : curves_.pipelines)
+        steps.metrics.erase(steps.metrics.begin() + static_cast<std::ptrdiff_t>(i));
     }
     for (const std::size_t column : metrics_) curves_.metrics.push_back(table_.names()[column]);
   }
@@ -187,12 +198,14 @@ class StepsReader {
 };
 
 /// Which additive faults are not 0 now, and which mode the plant is in.
-std::string plant_state(const RunFiles& files, const ColumnReader& table, const std::vector<std::size_t>& faults,
+std::string plant_state(const RunFiles& files, const ColumnReader& table,
+                        const std::vector<std::size_t>& faults,
                         const std::optional<std::size_t>& mode) {
   std::string text;
   for (std::size_t i = 0; i < faults.size(); ++i) {
     const double value = table.number(faults[i]);
-    if (value != 0 && !std::isnan(value)) text += (text.empty() ? "fault " : ", fault ") + std::to_string(i + 1);
+    if (value != 0 && !std::isnan(value))
+      text += (text.empty() ? "fault " : ", fault ") + std::to_string(i + 1);
   }
   if (!text.empty() || !mode || table.text(*mode).empty()) return text;
   return files.mode(table.integer(*mode));
@@ -205,11 +218,13 @@ void read_data(const RunFiles& files, Curves& curves) {
   const std::vector<std::size_t> states = table->numbered("x_"), faults = table->numbered("n_");
   const auto mode = table->find("mode");
   if (states.size() == curves.all_states)
-    curves.truth.assign(curves.states, Thinner(points_per_series(files.detail(), curves.states * 10)));
+    curves.truth.assign(curves.states,
+                        Thinner(points_per_series(files.detail(), curves.states * 10)));
   std::optional<std::string> before;
   while (table->next()) {
     const std::int64_t k = table->integer(k_column);
-    for (std::size_t i = 0; i < curves.truth.size(); ++i) curves.truth[i].add(static_cast<double>(k), table->number(states[i]));
+    for (std::size_t i = 0; i < curves.truth.size(); ++i)
+      curves.truth[i].add(static_cast<double>(k), table->number(states[i]));
     std::string now = plant_state(files, *table, faults, mode);
     if (before && now != *before && curves.events.size() < max_marks) {
       curves.events.push_back({k, now.empty() ? "no fault" : now});
@@ -227,7 +242,8 @@ Curves read_curves(const RunFiles& files) {
   return curves;
 }
 
-std::vector<std::pair<std::int64_t, std::vector<double>>> truth_at(const RunFiles& files, const std::set<std::int64_t>& times) {
+std::vector<std::pair<std::int64_t, std::vector<double>>> truth_at(
+    const RunFiles& files, const std::set<std::int64_t>& times) {
   std::vector<std::pair<std::int64_t, std::vector<double>>> found;
   auto table = open_data_table(files);
   if (!table) return found;

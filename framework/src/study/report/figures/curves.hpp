@@ -15,12 +15,13 @@ namespace cordon::report {
 
 /// Steps of one pipeline.
 struct StepCurves {
-  std::vector<Thinner> hull, inner;      ///< by state
-  std::vector<Thinner> error;            ///< by state: the hull less the true state; none: it is not known
-  std::vector<Thinner> metrics;          ///< by column
-  std::int64_t first = -1, last = -1;    ///< k; -1: there are no steps
-  std::int64_t exact = 0;                ///< steps that are claimed to be exact
-  std::vector<std::int64_t> empty_from;  ///< where an estimate is proven empty and the one before was not
+  std::vector<Thinner> hull, inner;  ///< by state
+  std::vector<Thinner> error;    ///< by state: the hull less the true state; none: it is not known
+  std::vector<Thinner> metrics;  ///< by column
+  std::int64_t first = -1, last = -1;  ///< k; -1: there are no steps
+  std::int64_t exact = 0;              ///< steps that are claimed to be exact
+  std::vector<std::int64_t>
+      empty_from;  ///< where an estimate is proven empty and the one before was not
 };
 
 struct Curves {
@@ -39,6 +40,7 @@ inline constexpr std::size_t page_states = 12;
 Curves read_curves(const RunFiles& files);
 
 /// The true states at these times, as far as data.csv tells them.
-std::vector<std::pair<std::int64_t, std::vector<double>>> truth_at(const RunFiles& files, const std::set<std::int64_t>& times);
+std::vector<std::pair<std::int64_t, std::vector<double>>> truth_at(
+    const RunFiles& files, const std::set<std::int64_t>& times);
 
 }  // namespace cordon::report

@@ -24,13 +24,17 @@ class DiagnosisReader {
     truth_ = table_.need("truth");
     while (const auto candidate = table_.find("candidate_" + std::to_string(modes_.size()))) {
       const std::string number = std::to_string(modes_.size());
-      modes_.push_back({*candidate, table_.numbered("lower_" + number + "_"), table_.numbered("upper_" + number + "_")});
-      if (modes_.back().lower.size() != modes_.back().upper.size()) table_.refuse("does not have as many upper as lower bounds");
-      if (modes_.back().lower.size() != modes_.front().lower.size()) table_.refuse("has modes with different outputs");
+      modes_.push_back({*candidate, table_.numbered("lower_" + number + "_"),
+                        table_.numbered("upper_" + number + "_")});
+      if (modes_.back().lower.size() != modes_.back().upper.size())
+        table_.refuse("does not have as many upper as lower bounds");
+      if (modes_.back().lower.size() != modes_.front().lower.size())
+        table_.refuse("has modes with different outputs");
     }
     for (const char* name : {"at", "lower", "estimate", "upper", "truth"}) {
       faults_.push_back(table_.numbered(std::string("fault_") + name + "_"));
-      if (faults_.back().size() != faults_.front().size()) table_.refuse("does not have all columns of every fault");
+      if (faults_.back().size() != faults_.front().size())
+        table_.refuse("does not have all columns of every fault");
     }
     make_curves();
   }
@@ -84,7 +88,8 @@ class DiagnosisReader {
                                                                    : Timeline::State::excluded;
       extend(curves, open_[pipeline][j], {j, k, k, state}, curves.spans);
       for (std::size_t i = 0; i < out_.outputs; ++i) {
-        curves.residuals[j][i].add(k, table_.number(modes_[j].lower[i]), table_.number(modes_[j].upper[i]));
+        curves.residuals[j][i].add(k, table_.number(modes_[j].lower[i]),
+                                   table_.number(modes_[j].upper[i]));
       }
     }
     if (!table_.text(truth_).empty()) {
@@ -108,9 +113,12 @@ class DiagnosisReader {
     out_.fault_truth[i].add(x, table_.number(faults_[4][i]));
   }
 
-  std::int64_t mode_of(std::size_t column) const { return table_.text(column).empty() ? -1 : table_.integer(column); }
+  std::int64_t mode_of(std::size_t column) const {
+    return table_.text(column).empty() ? -1 : table_.integer(column);
+  }
 
-  void extend(DiagnosisCurves& curves, std::size_t& open, const Timeline::Span& now, std::vector<Timeline::Span>& spans) const {
+  void extend(DiagnosisCurves& curves, std::size_t& open, const Timeline::Span& now,
+              std::vector<Timeline::Span>& spans) const {
     if (open != none && spans[open].row == now.row && spans[open].state == now.state) {
       spans[open].to = std::max(spans[open].to, now.to);
     } else if (spans.size() < max_spans) {
@@ -130,7 +138,8 @@ class DiagnosisReader {
   std::vector<ModeColumns> modes_;
   std::vector<std::vector<std::size_t>> faults_;  ///< at, lower, estimate, upper, truth
   std::vector<std::int64_t> fault_told_;
-  std::vector<std::vector<std::size_t>> open_;  ///< by pipeline, by mode: its last span; the last one: that of the truth
+  std::vector<std::vector<std::size_t>>
+      open_;  ///< by pipeline, by mode: its last span; the last one: that of the truth
 };
 
 }  // namespace

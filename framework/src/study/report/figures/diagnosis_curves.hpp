@@ -12,11 +12,12 @@ namespace cordon::report {
 
 /// One pipeline with a diagnoser.
 struct DiagnosisCurves {
-  bool any = false;                              ///< the table has rows of it
-  std::vector<std::vector<Thinner>> residuals;   ///< by mode, by output
-  std::vector<Thinner> faults, fault_estimates;  ///< by column of F, over the time that is spoken of
-  std::vector<Timeline::Span> spans;             ///< what became of the modes; row: the mode
-  std::vector<Timeline::Span> truth;             ///< row: the true mode; of `outside`: the number of modes
+  bool any = false;                             ///< the table has rows of it
+  std::vector<std::vector<Thinner>> residuals;  ///< by mode, by output
+  std::vector<Thinner> faults,
+      fault_estimates;                ///< by column of F, over the time that is spoken of
+  std::vector<Timeline::Span> spans;  ///< what became of the modes; row: the mode
+  std::vector<Timeline::Span> truth;  ///< row: the true mode; of `outside`: the number of modes
   bool spans_left_out = false;
 };
 

@@ -10,11 +10,13 @@ namespace cordon::report {
 
 /// Where a figure stands: the headings of a page.
 namespace section {
-inline const std::string bounds = "Bounds", sets = "Sets", metrics = "Metrics", diagnosis = "Diagnosis",
-                         designs = "Designed inputs", answers = "Answers and proofs", comparison = "Comparison", sweep = "Sweep";
+inline const std::string bounds = "Bounds", sets = "Sets", metrics = "Metrics",
+                         diagnosis = "Diagnosis", designs = "Designed inputs",
+                         answers = "Answers and proofs", comparison = "Comparison", sweep = "Sweep";
 }
 
-/// Pipelines side by side: who is best where, means and deviations, and measures over the values of a sweep.
+/// Pipelines side by side: who is best where, means and deviations, and measures over the values of
+/// a sweep.
 void add_comparisons(const RunFiles& files, Report& report);
 /// Bounds of every state over time.
 void add_bounds(const RunFiles& files, const Curves& curves, Report& report);

@@ -23,7 +23,8 @@ Plot plot_of(const RunFiles& files, const std::vector<Curve>& curves, const std:
   double smallest = std::numeric_limits<double>::infinity(), largest = 0;
   for (const auto& [values, pipeline] : curves) {
     if (!values->has_values()) continue;
-    plot.series.push_back(values->line(files.pipelines()[static_cast<std::size_t>(pipeline)].name, pipeline));
+    plot.series.push_back(
+        values->line(files.pipelines()[static_cast<std::size_t>(pipeline)].name, pipeline));
     smallest = std::min(smallest, values->smallest());
     largest = std::max(largest, values->largest());
   }
@@ -35,13 +36,15 @@ Plot plot_of(const RunFiles& files, const std::vector<Curve>& curves, const std:
 std::string title_of(const std::string& column) {
   std::string title = column;
   std::replace(title.begin(), title.end(), '_', ' ');
-  if (!title.empty() && title[0] >= 'a' && title[0] <= 'z') title[0] = static_cast<char>(title[0] - 'a' + 'A');
+  if (!title.empty() && title[0] >= 'a' && title[0] <= 'z')
+    title[0] = static_cast<char>(title[0] - 'a' + 'A');
   return title;
 }
 
 void add(Report& report, std::string id, std::string title, std::string caption, Plot plot) {
   if (plot.series.empty()) return;
-  report.figures.push_back({std::move(id), section::metrics, std::move(title), std::move(caption), std::move(plot)});
+  report.figures.push_back(
+      {std::move(id), section::metrics, std::move(title), std::move(caption), std::move(plot)});
 }
 
 }  // namespace
@@ -53,13 +56,16 @@ void add_metrics(const RunFiles& files, const Curves& curves, Report& report) {
       values.push_back({&curves.pipelines[p].metrics[i], static_cast<int>(p)});
     }
     Plot plot = plot_of(files, values, curves.metrics[i]);
-    for (const PlantEvent& event : curves.events) plot.marks.push_back({static_cast<double>(event.k), event.text});
+    for (const PlantEvent& event : curves.events)
+      plot.marks.push_back({static_cast<double>(event.k), event.text});
     add(report, fmt::format("metric_{}", i + 1), title_of(curves.metrics[i]),
         fmt::format("The metric {} over time.", curves.metrics[i]), std::move(plot));
   }
   std::vector<Curve> times;
-  for (std::size_t p = 0; p < files.step_times().size(); ++p) times.push_back({&files.step_times()[p], static_cast<int>(p)});
-  add(report, "step_time", "Time of a step", "Measured on the machine of this run: it differs from run to run.",
+  for (std::size_t p = 0; p < files.step_times().size(); ++p)
+    times.push_back({&files.step_times()[p], static_cast<int>(p)});
+  add(report, "step_time", "Time of a step",
+      "Measured on the machine of this run: it differs from run to run.",
       plot_of(files, times, "µs"));
 }
 

@@ -75,7 +75,8 @@ class Scanner {
       case ':':
         if (!levels_.empty()) levels_.back().at_key = false;
         keep(c);
-        if (levels_.size() == 1 && levels_.back().key == "study") study_from_ = outline_.text.size();
+        if (levels_.size() == 1 && levels_.back().key == "study")
+          study_from_ = outline_.text.size();
         break;
       default:
         if (!left_out_ || (c != ' ' && c != '\n' && c != '\r' && c != '\t')) keep(c);
@@ -121,7 +122,8 @@ class Scanner {
   void keep(char c) {
     std::string& text = left_out_ ? item_ : outline_.text;
     text += c;
-    if (text.size() > (left_out_ ? item_limit : json::max_bytes)) refuse("is larger than any that \"cordon run\" writes");
+    if (text.size() > (left_out_ ? item_limit : json::max_bytes))
+      refuse("is larger than any that \"cordon run\" writes");
   }
 
   void hand_over() {
@@ -136,7 +138,9 @@ class Scanner {
     study_from_.reset();
   }
 
-  [[noreturn]] void refuse(const std::string& reason) const { throw InputError(file_, {{"", reason, "run the study again", 0}}); }
+  [[noreturn]] void refuse(const std::string& reason) const {
+    throw InputError(file_, {{"", reason, "run the study again", 0}});
+  }
 
   std::string file_;
   const ItemVisitor& visit_;

@@ -19,7 +19,7 @@ namespace {
 using Point = PlanePoint;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double parallel = 1e-13;          ///< sine of the angle between generators that count as one
+constexpr double parallel = 1e-13;  ///< sine of the angle between generators that count as one
 constexpr double display_precision = 1e-7;  ///< of the set's size
 constexpr double same_vertex = 1e-10;       ///< of the set's size: vertices that count as one
 
@@ -31,9 +31,12 @@ double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
 double length(Point a) { return std::hypot(a.x, a.y); }
 
 /// Where a line through p along d meets one through q along e.
-Point meeting(Point p, Point d, Point q, Point e) { return p + (cross(q - p, e) / cross(d, e)) * d; }
+Point meeting(Point p, Point d, Point q, Point e) {
+  return p + (cross(q - p, e) / cross(d, e)) * d;
+}
 
-/// Coordinates in which a set has about the same size along both axes, whatever their units: center + 2^exponent times these.
+/// Coordinates in which a set has about the same size along both axes, whatever their units: center
+/// + 2^exponent times these.
 struct Scaling {
   Point center = {};
   int x = 0, y = 0;  ///< exponents: scaling back and forth is exact
@@ -56,7 +59,9 @@ struct Scaling {
     return scaled;
   }
   Point scaled(Point p) const { return {std::ldexp(p.x, -x), std::ldexp(p.y, -y)}; }
-  Point back(Point p) const { return {center.x + std::ldexp(p.x, x), center.y + std::ldexp(p.y, y)}; }
+  Point back(Point p) const {
+    return {center.x + std::ldexp(p.x, x), center.y + std::ldexp(p.y, y)};
+  }
 };
 
 /// Without vertices that repeat their predecessor.
@@ -81,7 +86,8 @@ PlaneSet bounded(const std::vector<Point>& scaled, const Scaling& scaling, std::
   return set;
 }
 
-/// Half of the vertices of {Gξ : ‖ξ‖∞ ≤ 1}: from the lowest one up along the generators by their angles.
+/// Half of the vertices of {Gξ : ‖ξ‖∞ ≤ 1}: from the lowest one up along the generators by their
+/// angles.
 std::vector<Point> half_of_zonotope(const Matrix& G) {
   std::vector<Point> generators;
   for (Index k = 0; k < G.cols(); ++k) {
@@ -90,12 +96,14 @@ std::vector<Point> half_of_zonotope(const Matrix& G) {
     if (g.y < 0 || (g.y == 0 && g.x < 0)) g = -1.0 * g;
     generators.push_back(g);
   }
-  std::sort(generators.begin(), generators.end(), [](Point a, Point b) { return std::atan2(a.y, a.x) < std::atan2(b.y, b.x); });
+  std::sort(generators.begin(), generators.end(),
+            [](Point a, Point b) { return std::atan2(a.y, a.x) < std::atan2(b.y, b.x); });
   std::vector<Point> half;
   Point at{}, last{};
   for (const Point& g : generators) at = at - g;
   for (const Point& g : generators) {
-    if (half.empty() || std::abs(cross(last, g)) > parallel * length(last) * length(g)) half.push_back(at);
+    if (half.empty() || std::abs(cross(last, g)) > parallel * length(last) * length(g))
+      half.push_back(at);
     at = at + 2.0 * g;
     last = g;
   }
@@ -148,13 +156,16 @@ class Sandwich {
       if (bounds.back().upper == -infinity) return {};
     }
     middle_ = {(bounds[0].upper - bounds[2].upper) / 2, (bounds[1].upper - bounds[3].upper) / 2};
-    const double x = half_width(bounds[0], bounds[2], 0, middle_.x), y = half_width(bounds[1], bounds[3], 1, middle_.y);
+    const double x = half_width(bounds[0], bounds[2], 0, middle_.x),
+                 y = half_width(bounds[1], bounds[3], 1, middle_.y);
     scaling_.set_x(X_.c[0] + middle_.x, x);
     scaling_.set_y(X_.c[1] + middle_.y, y);
     middle_ = scaling_.scaled(middle_);
     const Point corner = scaling_.scaled(Point{x, y});
-    const std::vector<Point> box{{-corner.x, -corner.y}, {corner.x, -corner.y}, {corner.x, corner.y}, {-corner.x, corner.y}};
-    if (x == 0 || y == 0) return bounded(distinct(box, 0), scaling_, limit_);  // a point, or a segment along an axis
+    const std::vector<Point> box{
+        {-corner.x, -corner.y}, {corner.x, -corner.y}, {corner.x, corner.y}, {-corner.x, corner.y}};
+    if (x == 0 || y == 0)
+      return bounded(distinct(box, 0), scaling_, limit_);  // a point, or a segment along an axis
 
     G_ = scaling_.scaled(X_.G);
     const Point c = scaling_.scaled(Point{X_.c[0], X_.c[1]});
@@ -163,15 +174,16 @@ class Sandwich {
     if (!std::isfinite(rounding_.x + rounding_.y))
       throw Error(Errc::not_finite, "projection: the numbers of the set are too large");
     const Point axes[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-    for (std::size_t q = 0; q < 4; ++q) supports_.push_back(support(axes[q], bounds[q], q % 2 == 0 ? corner.x : corner.y));
+    for (std::size_t q = 0; q < 4; ++q)
+      supports_.push_back(support(axes[q], bounds[q], q % 2 == 0 ? corner.x : corner.y));
     for (std::size_t i = 0; i < 4; ++i) measure(i);
     while (left_ > 0 && refine()) --left_;
     return bounded(outer(box), scaling_, limit_);
   }
 
  private:
-  /// In scaled coordinates: the set lies in {directionᵀx ≤ height} and touches its edge from `first` to `last`,
-  /// counter-clockwise.
+  /// In scaled coordinates: the set lies in {directionᵀx ≤ height} and touches its edge from
+  /// `first` to `last`, counter-clockwise.
   struct Support {
     Point direction;
     double height = 0;
@@ -180,7 +192,8 @@ class Sandwich {
     double open = 0;  ///< how far the corner to the next support lies outside of the inner polygon
   };
 
-  /// Of a coordinate up or down. The solver's tolerances are absolute, so that it is asked for numbers near 1.
+  /// Of a coordinate up or down. The solver's tolerances are absolute, so that it is asked for
+  /// numbers near 1.
   BoxedProgram::Bound axis(Index row, double sign) {
     int exponent = 0;
     std::frexp(X_.G.row(row).lpNorm<1>(), &exponent);
@@ -192,7 +205,8 @@ class Sandwich {
   }
 
   /// Of a coordinate; 0 if what is left is rounding.
-  double half_width(const BoxedProgram::Bound& up, const BoxedProgram::Bound& down, Index row, double middle) const {
+  double half_width(const BoxedProgram::Bound& up, const BoxedProgram::Bound& down, Index row,
+                    double middle) const {
     const double half = up.upper / 2 + down.upper / 2;
     const double terms = X_.G.row(row).lpNorm<1>() + std::abs(X_.c[row]) + std::abs(middle);
     return half > 1e-12 * terms ? half : 0;
@@ -233,12 +247,14 @@ class Sandwich {
   /// Asks along the normal of the chord of the largest corner; false if no corner is worth it.
   bool refine() {
     const auto largest =
-        std::max_element(supports_.begin(), supports_.end(), [](const auto& a, const auto& b) { return a.open < b.open; });
+        std::max_element(supports_.begin(), supports_.end(),
+                         [](const auto& a, const auto& b) { return a.open < b.open; });
     if (!(largest->open > display_precision)) return false;
     const auto i = static_cast<std::size_t>(largest - supports_.begin());
     const Point from = largest->last, to = after(i).first, chord = to - from;
     const Point normal = (1 / length(chord)) * Point{chord.y, -chord.x};
-    if (cross(largest->direction, normal) <= parallel || cross(normal, after(i).direction) <= parallel) {
+    if (cross(largest->direction, normal) <= parallel ||
+        cross(normal, after(i).direction) <= parallel) {
       largest->open = 0;  // points that are known too inexactly show no further direction
       return true;
     }
@@ -256,7 +272,8 @@ class Sandwich {
 
   /// The box within the supporting lines, all moved outwards by what rounding may cost.
   std::vector<Point> outer(std::vector<Point> points) const {
-    for (Point& p : points) p = p + Point{std::copysign(rounding_.x, p.x), std::copysign(rounding_.y, p.y)};
+    for (Point& p : points)
+      p = p + Point{std::copysign(rounding_.x, p.x), std::copysign(rounding_.y, p.y)};
     const std::vector<Point> box = points;
     std::vector<bool> flags(points.size(), false);
     for (const Support& s : supports_) {
@@ -283,9 +300,11 @@ PlaneSet strip(const LineForm& X) {
   set.kind = PlaneSet::Kind::strip;
   const Point along{X.M(0, 0), X.M(1, 0)};
   set.normal = (1 / length(along)) * Point{-along.y, along.x};
-  const Vector normal = Eigen::Vector2d(set.normal.x, set.normal.y), g = linalg::transposed_product(X.G, normal);
+  const Vector normal = Eigen::Vector2d(set.normal.x, set.normal.y),
+               g = linalg::transposed_product(X.G, normal);
   BoxedProgram program(X.A, X.b);
-  const double middle = normal.dot(X.c), up = program.maximum(g).upper, down = program.maximum(-g).upper;
+  const double middle = normal.dot(X.c), up = program.maximum(g).upper,
+               down = program.maximum(-g).upper;
   if (up == -infinity || down == -infinity) return {};
   set.upper = middle + up;
   set.lower = middle - down;
@@ -304,16 +323,18 @@ PlaneSet project(const LineForm& X, Index i, Index j, const PlaneLimits& limits)
     return set;
   }
   if (flat.lines() == 1) return strip(flat);
-  return flat.constraints() == 0 ? zonotope(flat, limits.vertices) : Sandwich(flat, limits).enclose();
+  return flat.constraints() == 0 ? zonotope(flat, limits.vertices)
+                                 : Sandwich(flat, limits).enclose();
 }
 
 std::vector<PlanePoint> with_fewer_vertices(std::vector<PlanePoint> polygon, std::size_t limit) {
-  // Edge i from vertex i to i + 1 goes when its neighbours, made longer, meet: area of the triangle that is added, +∞ if they do
-  // not.
+  // Edge i from vertex i to i + 1 goes when its neighbours, made longer, meet: area of the triangle
+  // that is added, +∞ if they do not.
   const auto at = [&](std::size_t i) { return polygon[i % polygon.size()]; };
   const auto added = [&](std::size_t i) {
     const std::size_t n = polygon.size();
-    const Point p = at(i), q = at(i + 1), before = p - at(i + n - 1), behind = at(i + 2) - q, edge = q - p;
+    const Point p = at(i), q = at(i + 1), before = p - at(i + n - 1), behind = at(i + 2) - q,
+                edge = q - p;
     const double turn = cross(before, behind);
     if (!(turn > 0)) return infinity;
     return std::abs(cross(before, edge) * cross(edge, behind) / turn) / 2;
@@ -322,7 +343,8 @@ std::vector<PlanePoint> with_fewer_vertices(std::vector<PlanePoint> polygon, std
   for (std::size_t i = 0; i < polygon.size(); ++i) areas[i] = added(i);
   while (polygon.size() > std::max<std::size_t>(limit, 4)) {
     const std::size_t n = polygon.size();
-    const auto i = static_cast<std::size_t>(std::min_element(areas.begin(), areas.end()) - areas.begin());
+    const auto i =
+        static_cast<std::size_t>(std::min_element(areas.begin(), areas.end()) - areas.begin());
     if (areas[i] == infinity) break;
     const Point p = at(i), q = at(i + 1);
     polygon[i] = meeting(p, p - at(i + n - 1), q, at(i + 2) - q);
@@ -330,7 +352,8 @@ std::vector<PlanePoint> with_fewer_vertices(std::vector<PlanePoint> polygon, std
     polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(gone));
     areas.erase(areas.begin() + static_cast<std::ptrdiff_t>(gone));
     const std::size_t m = polygon.size(), here = gone < i ? i - 1 : i;
-    for (std::size_t k = 0; k < 4; ++k) areas[(here + m + k - 2) % m] = added((here + m + k - 2) % m);
+    for (std::size_t k = 0; k < 4; ++k)
+      areas[(here + m + k - 2) % m] = added((here + m + k - 2) % m);
   }
   return polygon;
 }
@@ -340,8 +363,10 @@ bool cut(const PlaneSet& set, const SetFrame& frame, Polygon& out) {
   out.y.clear();
   out.open.clear();
   if (set.kind == PlaneSet::Kind::empty) return true;
-  std::vector<Point> points{
-      {frame.left, frame.bottom}, {frame.right, frame.bottom}, {frame.right, frame.top}, {frame.left, frame.top}};
+  std::vector<Point> points{{frame.left, frame.bottom},
+                            {frame.right, frame.bottom},
+                            {frame.right, frame.top},
+                            {frame.left, frame.top}};
   std::vector<bool> flags(points.size(), true);
   if (set.kind == PlaneSet::Kind::strip) {
     cut_with(points, flags, set.normal, set.upper, false);

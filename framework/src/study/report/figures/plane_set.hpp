@@ -14,7 +14,8 @@ struct PlanePoint {
   double x = 0, y = 0;
 };
 
-/// The projection of a set to two coordinates. What it stands for lies inside, up to 1e-6 of its size.
+/// The projection of a set to two coordinates. What it stands for lies inside, up to 1e-6 of its
+/// size.
 struct PlaneSet {
   enum class Kind {
     empty,    ///< proven
@@ -34,15 +35,18 @@ struct PlaneLimits {
 };
 
 /// Coordinates i and j (i ≠ j) of X. Without constraints and lines from the generators
-/// alone; otherwise by support values: of the region between an inner and an outer polygon, the largest corner is asked for
-/// first, until every edge of the outer polygon is one of the set. What is left open, and vertices beyond the limit, make the
-/// polygon larger, never smaller. Recession cones of exchange forms are subspaces, so that there are no other kinds.
+/// alone; otherwise by support values: of the region between an inner and an outer polygon, the
+/// largest corner is asked for first, until every edge of the outer polygon is one of the set. What
+/// is left open, and vertices beyond the limit, make the polygon larger, never smaller. Recession
+/// cones of exchange forms are subspaces, so that there are no other kinds.
 PlaneSet project(const LineForm& X, Index i, Index j, const PlaneLimits& limits = {});
 
-/// Joins edges where that adds least area, until there are `limit` ≥ 4 vertices at most: the result contains the polygon.
+/// Joins edges where that adds least area, until there are `limit` ≥ 4 vertices at most: the result
+/// contains the polygon.
 std::vector<PlanePoint> with_fewer_vertices(std::vector<PlanePoint> polygon, std::size_t limit);
 
-/// The part of the set inside the window of `frame`, as a polygon whose edges on the window are `open`. False: there is none.
+/// The part of the set inside the window of `frame`, as a polygon whose edges on the window are
+/// `open`. False: there is none.
 bool cut(const PlaneSet& set, const SetFrame& frame, Polygon& out);
 
 }  // namespace cordon::report

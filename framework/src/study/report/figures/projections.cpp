@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t most_times = 60, most_events = 20, most_vertices = 64;
 constexpr std::size_t page_polygons = 1800, page_vertices = 40'000;
-/// What support values may cost together: each takes about (constraints + 1)(generators + 1) units, of which a second has some
-/// four million.
+/// What support values may cost together: each takes about (constraints + 1)(generators + 1) units,
+/// of which a second has some four million.
 constexpr double page_work = 1.6e7;
 /// A set is cut by the window if it is so much larger than others, which would be dots.
 constexpr double much_larger = 20;
@@ -51,9 +51,11 @@ std::set<std::int64_t> times_of(const Curves& curves, std::size_t count) {
   std::set<std::int64_t> times;
   if (last < 0) return times;
   for (const PlantEvent& event : curves.events) events.insert(event.k);
-  const double span = static_cast<double>(last - first), parts = static_cast<double>(std::max<std::size_t>(count, 2) - 1);
+  const double span = static_cast<double>(last - first),
+               parts = static_cast<double>(std::max<std::size_t>(count, 2) - 1);
   for (std::size_t i = 0; i < std::max<std::size_t>(count, 2); ++i) {
-    times.insert(first + static_cast<std::int64_t>(std::llround(span * static_cast<double>(i) / parts)));
+    times.insert(first +
+                 static_cast<std::int64_t>(std::llround(span * static_cast<double>(i) / parts)));
   }
   std::size_t added = 0;
   for (const std::int64_t k : events) {
@@ -104,7 +106,8 @@ Extent around_strips(const Drawn& drawn) {
   Extent extent;
   for (const auto& [pipeline, set] : drawn.sets) {
     if (set.kind != PlaneSet::Kind::strip || !std::isfinite(set.upper - set.lower)) continue;
-    const double at = std::clamp(0.0, set.lower, set.upper), half = std::max(set.upper - set.lower, 1e-3 * std::abs(at));
+    const double at = std::clamp(0.0, set.lower, set.upper),
+                 half = std::max(set.upper - set.lower, 1e-3 * std::abs(at));
     extent.add(at * set.normal.x - half, at * set.normal.y - half);
     extent.add(at * set.normal.x + half, at * set.normal.y + half);
   }
@@ -121,7 +124,8 @@ void widen(double& low, double& high) {
   high = middle + half;
 }
 
-/// Of the sizes of sets in one coordinate: above it a set is much larger than half of those that have a size.
+/// Of the sizes of sets in one coordinate: above it a set is much larger than half of those that
+/// have a size.
 double limit_of(std::vector<double> sizes) {
   std::erase_if(sizes, [](double size) { return !(size > 0); });
   if (sizes.empty()) return 0;
@@ -129,7 +133,8 @@ double limit_of(std::vector<double> sizes) {
   return much_larger * sizes[(sizes.size() - 1) / 2];
 }
 
-/// The window: in each coordinate all bounded sets that are not much larger than half of them, and the truth.
+/// The window: in each coordinate all bounded sets that are not much larger than half of them, and
+/// the truth.
 SetFrame frame_of(std::int64_t k, const Drawn& drawn) {
   std::vector<Extent> extents;
   std::vector<double> widths, heights;
@@ -166,11 +171,14 @@ SetFrame frame_of(std::int64_t k, const Drawn& drawn) {
 
 class Projector {
  public:
-  Projector(const RunFiles& files, const Curves& curves) : files_(files), pairs_(pairs_of(curves.all_states)) {
-    const auto observers = static_cast<std::size_t>(std::count_if(curves.pipelines.begin(), curves.pipelines.end(),
-                                                                  [](const StepCurves& steps) { return steps.first >= 0; }));
+  Projector(const RunFiles& files, const Curves& curves)
+      : files_(files), pairs_(pairs_of(curves.all_states)) {
+    const auto observers = static_cast<std::size_t>(
+        std::count_if(curves.pipelines.begin(), curves.pipelines.end(),
+                      [](const StepCurves& steps) { return steps.first >= 0; }));
     const std::size_t polygons_per_time = std::max<std::size_t>(observers * pairs_.size(), 1);
-    times_ = times_of(curves, std::clamp<std::size_t>(page_polygons / polygons_per_time, 6, most_times));
+    times_ =
+        times_of(curves, std::clamp<std::size_t>(page_polygons / polygons_per_time, 6, most_times));
     const std::size_t polygons = std::max<std::size_t>(times_.size() * polygons_per_time, 1);
     if (files.detail() == Detail::page) {
       limits_.vertices = std::clamp<std::size_t>(page_vertices / polygons, 8, most_vertices);
@@ -185,28 +193,36 @@ class Projector {
     while (const auto row = reader.next([&](Index k) { return times_.contains(k); })) {
       const int pipeline = files_.pipeline(row->pipeline, "sets.jsonl");
       if (row->set.dim() != states_) {
-        throw InputError((files_.directory() / "sets.jsonl").string(),
-                         {{"/dim", fmt::format("is {}, steps.csv has {} states", row->set.dim(), states_), "run the study again",
-                           static_cast<int>(std::min<std::int64_t>(row->line, 1'000'000'000))}});
+        throw InputError(
+            (files_.directory() / "sets.jsonl").string(),
+            {{"/dim", fmt::format("is {}, steps.csv has {} states", row->set.dim(), states_),
+              "run the study again",
+              static_cast<int>(std::min<std::int64_t>(row->line, 1'000'000'000))}});
       }
       if (times_.contains(row->k)) add(*row, pipeline);
     }
     for (const auto& [k, x] : truth_at(files_, times_)) {
       if (static_cast<Index>(x.size()) != states_) continue;
       for (std::size_t q = 0; q < pairs_.size(); ++q) {
-        const double a = x[static_cast<std::size_t>(pairs_[q].first)], b = x[static_cast<std::size_t>(pairs_[q].second)];
+        const double a = x[static_cast<std::size_t>(pairs_[q].first)],
+                     b = x[static_cast<std::size_t>(pairs_[q].second)];
         if (std::isfinite(a) && std::isfinite(b)) drawn(k)[q].truth = {a, b};
       }
     }
   }
 
   void draw(Report& report) const {
-    if (failed_ > 0) report.notes.push_back(fmt::format("{} sets have numbers too large to be drawn.", failed_));
+    if (failed_ > 0)
+      report.notes.push_back(fmt::format("{} sets have numbers too large to be drawn.", failed_));
     std::string caption =
-        "The sets of all pipelines, seen in two coordinates. Polygons contain the sets, and touch them unless they have too many "
+        "The sets of all pipelines, seen in two coordinates. Polygons contain the sets, and touch "
+        "them unless they have too many "
         "vertices to be drawn; "
         "dotted edges lie on the edge of the picture, where the set goes on.";
-    if (outer_) caption += " Of some sets an enclosure is drawn, since their representation has no exact exchange form.";
+    if (outer_)
+      caption +=
+          " Of some sets an enclosure is drawn, since their representation has no exact exchange "
+          "form.";
     for (std::size_t q = 0; q < pairs_.size(); ++q) {
       const auto [i, j] = pairs_[q];
       Projection projection{fmt::format("x_{}", i + 1), fmt::format("x_{}", j + 1), {}};
@@ -215,7 +231,8 @@ class Projector {
       }
       if (projection.frames.empty()) continue;
       report.figures.push_back({fmt::format("sets_{}_{}", i + 1, j + 1), section::sets,
-                                fmt::format("Sets in states {} and {}", i + 1, j + 1), caption, std::move(projection)});
+                                fmt::format("Sets in states {} and {}", i + 1, j + 1), caption,
+                                std::move(projection)});
     }
   }
 
@@ -229,16 +246,19 @@ class Projector {
   }
 
   void add(const verification::RecordedSet& row, int pipeline) {
-    const double cost = static_cast<double>((row.set.constraints() + 1) * (row.set.generators() + 1));
+    const double cost =
+        static_cast<double>((row.set.constraints() + 1) * (row.set.generators() + 1));
     PlaneLimits limits = limits_;
     if (files_.detail() == Detail::page) {
-      limits.directions = std::min(limits.directions, static_cast<std::size_t>(std::max(work_ / cost, 4.0)));
+      limits.directions =
+          std::min(limits.directions, static_cast<std::size_t>(std::max(work_ / cost, 4.0)));
     }
     outer_ = outer_ || !row.exact_exchange;
     std::vector<Drawn>& pictures = drawn(row.k);
     for (std::size_t q = 0; q < pairs_.size(); ++q) {
       try {
-        pictures[q].sets.emplace_back(pipeline, project(row.set, pairs_[q].first, pairs_[q].second, limits));
+        pictures[q].sets.emplace_back(pipeline,
+                                      project(row.set, pairs_[q].first, pairs_[q].second, limits));
       } catch (const Error&) {
         ++failed_;
       }

@@ -52,12 +52,14 @@ PipelineHead read_pipeline(const Cursor& at) {
 }
 
 /// The members of an object that are texts.
-void add_texts(const Cursor& object, const std::string& prefix, std::vector<std::pair<std::string, std::string>>& out) {
+void add_texts(const Cursor& object, const std::string& prefix,
+               std::vector<std::pair<std::string, std::string>>& out) {
   if (!object.is(Kind::object)) return;
   for (std::size_t i = 0; i < object.size(); ++i) {
     const Cursor item = object.item(i);
     if (item.is(Kind::text)) {
-      out.emplace_back(prefix + printable(object.value().keys()[i]), printable(item.value().text().substr(0, name_limit)));
+      out.emplace_back(prefix + printable(object.value().keys()[i]),
+                       printable(item.value().text().substr(0, name_limit)));
     }
   }
 }
@@ -70,7 +72,8 @@ double value_of(const Cursor& object, std::string_view key) {
   if (at->is(Kind::text)) {
     const auto word = read_choice(*at, {"inf", "-inf"});
     if (!word) return none;
-    return *word == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+    return *word == "inf" ? std::numeric_limits<double>::infinity()
+                          : -std::numeric_limits<double>::infinity();
   }
   return read_number(*at).value_or(none);
 }
@@ -89,7 +92,8 @@ std::vector<Cursor> items_of(const Cursor& object, std::string_view key) {
   return items;
 }
 
-RunFiles::RunFiles(std::filesystem::path directory, Detail detail) : files_(std::move(directory)), detail_(detail) {
+RunFiles::RunFiles(std::filesystem::path directory, Detail detail)
+    : files_(std::move(directory)), detail_(detail) {
   const Outline outline = outline_of(files_.file("results.json"));
   tree_ = parse(outline.text, problems_);
   study_ = detail::printable_lines(outline.study);
@@ -102,18 +106,22 @@ RunFiles::RunFiles(std::filesystem::path directory, Detail detail) : files_(std:
 void RunFiles::read_head(const Cursor& root) {
   const auto version = root.need("cordon_results", "this is not a results file of \"cordon run\"");
   const auto number = version ? read_number(*version) : std::nullopt;
-  if (number && *number != 1) version->error("this version of the format is not known", "this program reads 1");
+  if (number && *number != 1)
+    version->error("this version of the format is not known", "this program reads 1");
   is_sweep_ = root.find("points").has_value();
   title_ = text_of(root, "title");
   const auto pipelines = root.need("pipelines", mend());
   if (pipelines && pipelines->expect(Kind::array, mend())) {
-    if (pipelines->size() > max_pipelines) pipelines->error("has more than " + std::to_string(max_pipelines) + " pipelines");
+    if (pipelines->size() > max_pipelines)
+      pipelines->error("has more than " + std::to_string(max_pipelines) + " pipelines");
     for (std::size_t i = 0; i < std::min(pipelines->size(), max_pipelines); ++i) {
       pipelines_.push_back(read_pipeline(pipelines->item(i)));
       keys_.push_back(std::exchange(pipelines_.back().name, printable(pipelines_.back().name)));
       const std::string& name = pipelines_.back().name;
-      const auto same = std::find_if(pipelines_.begin(), pipelines_.end() - 1, [&](const auto& p) { return p.name == name; });
-      if (same != pipelines_.end() - 1) pipelines->item(i).error("repeats the name " + in_quotes(name), mend());
+      const auto same = std::find_if(pipelines_.begin(), pipelines_.end() - 1,
+                                     [&](const auto& p) { return p.name == name; });
+      if (same != pipelines_.end() - 1)
+        pipelines->item(i).error("repeats the name " + in_quotes(name), mend());
     }
   }
   read_modes(root);
@@ -136,44 +144,52 @@ void RunFiles::read_modes(const Cursor& root) {
   if (modes.empty()) return;
   const std::string nominal = text_of(*system, "nominal");
   modes_.push_back(nominal.empty() ? "healthy" : nominal);
-  for (const Cursor& mode : modes) modes_.push_back(mode.is(Kind::object) ? text_of(mode, "name") : "");
+  for (const Cursor& mode : modes)
+    modes_.push_back(mode.is(Kind::object) ? text_of(mode, "name") : "");
 }
 
 /// From run.json, which holds what differs from run to run.
 void RunFiles::read_times() {
-  const std::size_t points = points_per_series(detail_, 10 * std::max<std::size_t>(pipelines_.size(), 1));
+  const std::size_t points =
+      points_per_series(detail_, 10 * std::max<std::size_t>(pipelines_.size(), 1));
   step_times_.assign(pipelines_.size(), Thinner(points));
   Problems problems;
-  const Outline outline = outline_of(files_.file("run.json"), [&](std::size_t pipeline, const std::string& item) {
-    if (is_sweep_ || pipeline >= step_times_.size()) return;
-    const Value step = parse(item, problems);
-    const Cursor at(step, "/pipelines/" + std::to_string(pipeline) + "/steps", problems);
-    if (!at.expect(Kind::object, mend())) return;
-    const auto times = at.find("time_us");
-    const double time = times && times->is(Kind::object)
-                            ? value_of(*times, "predict") + value_of(*times, "correct") + value_of(*times, "reduce")
-                            : value_of(at, "step_us");
-    step_times_[pipeline].add(value_of(at, "k"), time);
-  });
+  const Outline outline =
+      outline_of(files_.file("run.json"), [&](std::size_t pipeline, const std::string& item) {
+        if (is_sweep_ || pipeline >= step_times_.size()) return;
+        const Value step = parse(item, problems);
+        const Cursor at(step, "/pipelines/" + std::to_string(pipeline) + "/steps", problems);
+        if (!at.expect(Kind::object, mend())) return;
+        const auto times = at.find("time_us");
+        const double time = times && times->is(Kind::object)
+                                ? value_of(*times, "predict") + value_of(*times, "correct") +
+                                      value_of(*times, "reduce")
+                                : value_of(at, "step_us");
+        step_times_[pipeline].add(value_of(at, "k"), time);
+      });
   const Value tree = parse(outline.text, problems);
   const Cursor root(tree, "", problems);
   if (root.expect(Kind::object, mend())) {
     if (const auto host = root.find("host")) add_texts(*host, "host ", versions_);
-    if (const std::string started = text_of(root, "started"); !started.empty()) versions_.emplace_back("started", started);
+    if (const std::string started = text_of(root, "started"); !started.empty())
+      versions_.emplace_back("started", started);
   }
   if (problems.any()) throw InputError((directory() / "run.json").string(), problems.sorted());
 }
 
 bool RunFiles::any(PipelineHead::Kind kind) const {
-  return std::any_of(pipelines_.begin(), pipelines_.end(), [&](const PipelineHead& head) { return head.kind == kind; });
+  return std::any_of(pipelines_.begin(), pipelines_.end(),
+                     [&](const PipelineHead& head) { return head.kind == kind; });
 }
 
 int RunFiles::pipeline(const std::string& name, const std::string& file) const {
   for (std::size_t i = 0; i < pipelines_.size(); ++i) {
     if (keys_[i] == name || detail::no_formula(keys_[i]) == name) return static_cast<int>(i);
   }
-  throw InputError((directory() / file).string(),
-                   {{"", "names the pipeline " + in_quotes(name) + ", which results.json does not have", mend(), 0}});
+  throw InputError(
+      (directory() / file).string(),
+      {{"", "names the pipeline " + in_quotes(name) + ", which results.json does not have", mend(),
+        0}});
 }
 
 std::string RunFiles::mode(std::int64_t index) const {
@@ -182,17 +198,21 @@ std::string RunFiles::mode(std::int64_t index) const {
   return at < modes_.size() ? modes_[at] : fmt::format("mode {}", index);
 }
 
-Cursor RunFiles::tree(std::size_t pipeline) const { return Cursor(tree_, "", problems_).find("pipelines")->item(pipeline); }
+Cursor RunFiles::tree(std::size_t pipeline) const {
+  return Cursor(tree_, "", problems_).find("pipelines")->item(pipeline);
+}
 
 void RunFiles::check() const {
-  if (problems_.any()) throw InputError((directory() / "results.json").string(), problems_.sorted());
+  if (problems_.any())
+    throw InputError((directory() / "results.json").string(), problems_.sorted());
   files_.check_unchanged();
 }
 
 std::size_t points_per_series(Detail detail, std::size_t series) {
   if (detail == Detail::all) return 0;
   constexpr std::size_t numbers_per_point = 3;
-  return std::clamp<std::size_t>(page_numbers / numbers_per_point / std::max<std::size_t>(series, 1), 20, series_points);
+  return std::clamp<std::size_t>(
+      page_numbers / numbers_per_point / std::max<std::size_t>(series, 1), 20, series_points);
 }
 
 std::string shown(double value, int digits) {

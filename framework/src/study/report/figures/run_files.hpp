@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a directory of results is about: everything of results.json but the steps, and the host of run.json.
+// What a directory of results is about: everything of results.json but the steps, and the host of
+// run.json.
 #pragma once
 
 #include <filesystem>
@@ -44,15 +45,18 @@ class RunFiles {
   bool any(PipelineHead::Kind kind) const;
   /// The index of a pipeline by its name; throws InputError about `file`.
   int pipeline(const std::string& name, const std::string& file) const;
-  const std::vector<std::string>& modes() const { return modes_; }  ///< of the bank; empty if there is one mode only
-  std::string mode(std::int64_t index) const;                       ///< "outside the bank" for -1
+  const std::vector<std::string>& modes() const {
+    return modes_;
+  }                                            ///< of the bank; empty if there is one mode only
+  std::string mode(std::int64_t index) const;  ///< "outside the bank" for -1
   const std::vector<std::pair<std::string, std::string>>& versions() const { return versions_; }
   const std::vector<Thinner>& step_times() const { return step_times_; }  ///< µs by pipeline
 
   json::Cursor root() const { return {tree_, "", problems_}; }
   /// The entry of `pipelines` in results.json, without its steps.
   json::Cursor tree(std::size_t pipeline) const;
-  /// Throws InputError if the tree was not as it should be, or the files have changed since they were first read.
+  /// Throws InputError if the tree was not as it should be, or the files have changed since they
+  /// were first read.
   void check() const;
 
  private:
@@ -80,7 +84,8 @@ std::string text_of(const json::Cursor& object, std::string_view key);
 /// The items of a list; none if it is null or missing.
 std::vector<json::Cursor> items_of(const json::Cursor& object, std::string_view key);
 
-/// How many numbers all curves of a page may have together, and how many points one of them has at most.
+/// How many numbers all curves of a page may have together, and how many points one of them has at
+/// most.
 inline constexpr std::size_t page_numbers = 250'000, series_points = 1000;
 /// Points of one of `series` curves; 0: all.
 std::size_t points_per_series(Detail detail, std::size_t series);

@@ -14,19 +14,23 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double most_entries = 1e6;  ///< of the rows of both sets
-constexpr double across = 1e-8;       ///< cosine of the angle between a line and a direction across it
+constexpr double across = 1e-8;  ///< cosine of the angle between a line and a direction across it
 
 }  // namespace
 
 std::optional<Vector> separating_direction(const LineForm& X, const LineForm& Y) {
   const Index n = X.dim();
   const auto size = [](Index x, Index y) { return static_cast<double>(x + y); };
-  if (size(X.constraints(), Y.constraints() + n) * size(X.generators(), Y.generators()) > most_entries) return std::nullopt;
+  if (size(X.constraints(), Y.constraints() + n) * size(X.generators(), Y.generators()) >
+      most_entries)
+    return std::nullopt;
   // y of the rows below, which say that a point of X is one of Y, is a direction
-  const LinesEliminated both = eliminate_lines_traced(intersection(X, Matrix::Identity(n, n), Y), Vector(0));
+  const LinesEliminated both =
+      eliminate_lines_traced(intersection(X, Matrix::Identity(n, n), Y), Vector(0));
   BoxedProgram program(both.set.A, both.set.b, {both.row_magnitude, Vector(0)});
   Certificate why;
-  if (program.is_empty(&why) != Answer::yes || why.kind != Certificate::Kind::farkas) return std::nullopt;
+  if (program.is_empty(&why) != Answer::yes || why.kind != Certificate::Kind::farkas)
+    return std::nullopt;
   const Vector multipliers = linalg::transposed_product(both.rows, why.data);
   Vector d = multipliers.tail(n);
   const double length = d.norm();
@@ -38,7 +42,8 @@ std::optional<Vector> separating_direction(const LineForm& X, const LineForm& Y)
 
 std::pair<double, double> range_along(const LineForm& X, VectorIn d) {
   for (Index j = 0; j < X.lines(); ++j) {
-    if (std::abs(X.M.col(j).dot(d)) > across * X.M.col(j).norm() * d.norm()) return {-infinity, infinity};
+    if (std::abs(X.M.col(j).dot(d)) > across * X.M.col(j).norm() * d.norm())
+      return {-infinity, infinity};
   }
   BoxedProgram program(X.A, X.b);
   const Vector g = linalg::transposed_product(X.G, d);

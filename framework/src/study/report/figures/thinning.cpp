@@ -8,7 +8,8 @@ namespace cordon::report {
 
 void Thinner::add(double x, double lower, double upper) {
   if (!std::isfinite(x)) return;
-  if (std::isnan(lower) || std::isnan(upper)) lower = upper = std::numeric_limits<double>::quiet_NaN();
+  if (std::isnan(lower) || std::isnan(upper))
+    lower = upper = std::numeric_limits<double>::quiet_NaN();
   if (buckets_.empty()) origin_ = x;
   if (!std::isnan(lower)) {
     has_values_ = true;
@@ -20,14 +21,22 @@ void Thinner::add(double x, double lower, double upper) {
   }
   if (!buckets_.empty()) x = std::max(x, buckets_.back().last);
   Bucket bucket{
-      limit_ == 0 ? static_cast<double>(buckets_.size()) : std::floor((x - origin_) / width_), x, x, lower, upper, x, x};
+      limit_ == 0 ? static_cast<double>(buckets_.size()) : std::floor((x - origin_) / width_),
+      x,
+      x,
+      lower,
+      upper,
+      x,
+      x};
   if (!buckets_.empty() && buckets_.back().number == bucket.number) {
     join(buckets_.back(), bucket);
     return;
   }
   buckets_.push_back(bucket);
   // a bucket of more than one x takes two points
-  while (limit_ > 0 && buckets_.size() > std::max<std::size_t>(is_thinned() ? limit_ / 2 : limit_, 2)) widen();
+  while (limit_ > 0 &&
+         buckets_.size() > std::max<std::size_t>(is_thinned() ? limit_ / 2 : limit_, 2))
+    widen();
 }
 
 void Thinner::widen() {

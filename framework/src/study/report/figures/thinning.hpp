@@ -11,9 +11,10 @@
 
 namespace cordon::report {
 
-/// Takes the values of a curve one by one, by increasing x, and keeps at most about `limit` points: neighbours share a bucket,
-/// and all buckets are made twice as wide when there are too many. A bucket holds the smallest and the largest value of its x, so
-/// that a thinned band encloses the band, between its points too. NaN is a gap; one is left if a whole bucket is missing.
+/// Takes the values of a curve one by one, by increasing x, and keeps at most about `limit` points:
+/// neighbours share a bucket, and all buckets are made twice as wide when there are too many. A
+/// bucket holds the smallest and the largest value of its x, so that a thinned band encloses the
+/// band, between its points too. NaN is a gap; one is left if a whole bucket is missing.
 class Thinner {
  public:
   explicit Thinner(std::size_t limit) : limit_(limit) {}  ///< 4 at least; 0: nothing is thinned
@@ -46,7 +47,8 @@ class Thinner {
   double origin_ = 0, width_ = 1;
   std::vector<Bucket> buckets_;
   bool has_values_ = false;
-  double smallest_ = std::numeric_limits<double>::infinity(), largest_ = -std::numeric_limits<double>::infinity();
+  double smallest_ = std::numeric_limits<double>::infinity(),
+         largest_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace cordon::report

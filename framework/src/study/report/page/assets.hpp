@@ -11,6 +11,7 @@ struct Asset {
   std::string_view sha256;  ///< hexadecimal
 };
 
-extern const Asset report_html, report_css, chart_licence, chart_js, parts_js, plot_js, projection_js, report_js;
+extern const Asset report_html, report_css, chart_licence, chart_js, parts_js, plot_js,
+    projection_js, report_js;
 
 }  // namespace cordon::report::page

@@ -20,7 +20,8 @@ std::string_view character(std::string_view c) {
   if (c == ">") return "&gt;";
   if (c == "\"") return "&quot;";
   if (c == "'") return "&#39;";
-  const bool control = c.size() == 1 && static_cast<unsigned char>(c[0]) < 0x20 && c != "\n" && c != "\t";
+  const bool control =
+      c.size() == 1 && static_cast<unsigned char>(c[0]) < 0x20 && c != "\n" && c != "\t";
   return control || c == "\xEF\xBF\xBE" || c == "\xEF\xBF\xBF" ? replacement : c;
 }
 
@@ -76,37 +77,46 @@ std::string shortened(std::string_view text, double width) {
   return out + "…";
 }
 
-Drawing::Drawing(double width, double height, std::string_view title) : width_(width), height_(height), title_(title) {}
+Drawing::Drawing(double width, double height, std::string_view title)
+    : width_(width), height_(height), title_(title) {}
 
 void Drawing::line(Point from, Point to, std::string_view style) {
-  body_ += fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>\n", place(from.first), place(from.second),
-                       place(to.first), place(to.second), style);
+  body_ += fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>\n", place(from.first),
+                       place(from.second), place(to.first), place(to.second), style);
 }
 
 void Drawing::rectangle(Point corner, double width, double height, std::string_view style) {
-  body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {}/>\n", place(corner.first), place(corner.second),
-                       place(std::max(0.0, width)), place(std::max(0.0, height)), style);
+  body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {}/>\n",
+                       place(corner.first), place(corner.second), place(std::max(0.0, width)),
+                       place(std::max(0.0, height)), style);
 }
 
 void Drawing::circle(Point centre, double radius, std::string_view style) {
-  body_ +=
-      fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" {}/>\n", place(centre.first), place(centre.second), place(radius), style);
+  body_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" {}/>\n", place(centre.first),
+                       place(centre.second), place(radius), style);
 }
 
-void Drawing::points(std::string_view name, const std::vector<Point>& points, std::string_view style) {
+void Drawing::points(std::string_view name, const std::vector<Point>& points,
+                     std::string_view style) {
   body_ += fmt::format("<{} points=\"", name);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    body_ += fmt::format("{}{},{}", i > 0 ? " " : "", place(points[i].first), place(points[i].second));
+    body_ +=
+        fmt::format("{}{},{}", i > 0 ? " " : "", place(points[i].first), place(points[i].second));
   }
   body_ += fmt::format("\" {}/>\n", style);
 }
 
-void Drawing::polyline(const std::vector<Point>& points, std::string_view style) { this->points("polyline", points, style); }
+void Drawing::polyline(const std::vector<Point>& points, std::string_view style) {
+  this->points("polyline", points, style);
+}
 
-void Drawing::polygon(const std::vector<Point>& points, std::string_view style) { this->points("polygon", points, style); }
+void Drawing::polygon(const std::vector<Point>& points, std::string_view style) {
+  this->points("polygon", points, style);
+}
 
 void Drawing::text(Point at, std::string_view text, std::string_view style) {
-  body_ += fmt::format("<text x=\"{}\" y=\"{}\" {}>{}</text>\n", place(at.first), place(at.second), style, escaped(text));
+  body_ += fmt::format("<text x=\"{}\" y=\"{}\" {}>{}</text>\n", place(at.first), place(at.second),
+                       style, escaped(text));
 }
 
 void Drawing::begin_group(std::string_view style) { body_ += fmt::format("<g {}>\n", style); }
@@ -121,8 +131,10 @@ void Drawing::begin_clip(Point corner, double width, double height) {
 
 std::string Drawing::str() const {
   return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
-      "font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\" font-size=\"12\" fill=\"none\">\n<title>{2}</title>\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+      "height=\"{1}\" role=\"img\" "
+      "font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\" font-size=\"12\" "
+      "fill=\"none\">\n<title>{2}</title>\n"
       "<rect class=\"paper\" width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n{3}</svg>\n",
       place(width_), place(height_), escaped(title_), body_);
 }

@@ -9,7 +9,8 @@
 
 namespace cordon::report {
 
-/// Text that may stand in HTML and XML, between tags and in quotes: what XML does not allow becomes U+FFFD.
+/// Text that may stand in HTML and XML, between tags and in quotes: what XML does not allow becomes
+/// U+FFFD.
 std::string escaped(std::string_view text);
 
 /// About how wide a text is that is 12 units high.
@@ -20,8 +21,8 @@ std::string shortened(std::string_view text, double width);
 
 using Point = std::pair<double, double>;
 
-/// Coordinates are units of the drawing, y goes downwards. `style` is SVG as it is, never a text of a study. Classes let a page
-/// give its own colours to what is not a pipeline's.
+/// Coordinates are units of the drawing, y goes downwards. `style` is SVG as it is, never a text of
+/// a study. Classes let a page give its own colours to what is not a pipeline's.
 class Drawing {
  public:
   Drawing(double width, double height, std::string_view title);

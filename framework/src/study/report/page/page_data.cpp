@@ -21,7 +21,8 @@ using detail::JsonWriter;
 std::string rounded(double value, int digits) {
   if (std::isnan(value)) return "null";
   if (std::isinf(value)) return value > 0 ? "\"inf\"" : "\"-inf\"";
-  if (std::abs(value) < 1e15 && value == std::floor(value)) return fmt::format("{:.0f}", value == 0 ? 0.0 : value);
+  if (std::abs(value) < 1e15 && value == std::floor(value))
+    return fmt::format("{:.0f}", value == 0 ? 0.0 : value);
   return fmt::format("{:.{}g}", value, digits);
 }
 
@@ -30,7 +31,8 @@ std::string rounded(double value, int digits, Rounding rounding) {
   std::string text = rounded(value, digits);
   if (rounding == Rounding::nearest || !std::isfinite(value)) return text;
   const auto fits = [&] {
-    return rounding == Rounding::down ? std::strtod(text.c_str(), nullptr) <= value : std::strtod(text.c_str(), nullptr) >= value;
+    return rounding == Rounding::down ? std::strtod(text.c_str(), nullptr) <= value
+                                      : std::strtod(text.c_str(), nullptr) >= value;
   };
   if (fits()) return text;
   const double half = std::pow(10.0, std::floor(std::log10(std::abs(value))) - digits + 1) / 2;
@@ -90,31 +92,47 @@ std::string_view name_of(Series::Kind kind) {
 }
 
 void write(JsonWriter& json, const Plot& plot) {
-  json.key("plot").begin_object().member("x_label", plot.x_label).member("y_label", plot.y_label).member("log_y", plot.log_y);
+  json.key("plot")
+      .begin_object()
+      .member("x_label", plot.x_label)
+      .member("y_label", plot.y_label)
+      .member("log_y", plot.log_y);
   json.key("x_names");
   write_texts(json, plot.x_names);
   json.key("series").begin_array(JsonWriter::Layout::lines);
   for (const Series& series : plot.series) {
-    json.begin_object().member("kind", name_of(series.kind)).member("name", series.name).member("pipeline", series.pipeline);
+    json.begin_object()
+        .member("kind", name_of(series.kind))
+        .member("name", series.name)
+        .member("pipeline", series.pipeline);
     const bool band = series.kind == Series::Kind::band;  // which encloses what it shows
     json.member("shade", series.shade).key("x").raw(packed_numbers(series.x));
     json.key("y").raw(packed_numbers(series.y, band ? Rounding::down : Rounding::nearest));
-    json.key("upper").raw(packed_numbers(series.upper, band ? Rounding::up : Rounding::nearest)).end_object();
+    json.key("upper")
+        .raw(packed_numbers(series.upper, band ? Rounding::up : Rounding::nearest))
+        .end_object();
   }
   json.end_array().key("thresholds").begin_array();
   for (const auto& [name, value] : plot.thresholds) {
-    if (std::isfinite(value)) json.begin_object().member("name", name).member("value", value).end_object();
+    if (std::isfinite(value))
+      json.begin_object().member("name", name).member("value", value).end_object();
   }
   json.end_array().key("marks").begin_array();
   for (const Mark& mark : plot.marks) {
     if (!std::isfinite(mark.x)) continue;
-    json.begin_object().member("x", mark.x).member("text", mark.text).member("pipeline", mark.pipeline).end_object();
+    json.begin_object()
+        .member("x", mark.x)
+        .member("text", mark.text)
+        .member("pipeline", mark.pipeline)
+        .end_object();
   }
   json.end_array().end_object();
 }
 
 /// With all digits that the number has.
-std::string with_all_digits(double value) { return std::isfinite(value) ? fmt::format("{}", value + 0.0) : rounded(value, 17); }
+std::string with_all_digits(double value) {
+  return std::isfinite(value) ? fmt::format("{}", value + 0.0) : rounded(value, 17);
+}
 
 /// Coordinates in a frame: what its drawing can show, and no more.
 std::string coordinates(const std::vector<double>& values, double span) {
@@ -129,13 +147,22 @@ std::string coordinates(const std::vector<double>& values, double span) {
 }
 
 void write(JsonWriter& json, const Projection& projection) {
-  json.key("projection").begin_object().member("x_label", projection.x_label).member("y_label", projection.y_label);
+  json.key("projection")
+      .begin_object()
+      .member("x_label", projection.x_label)
+      .member("y_label", projection.y_label);
   json.key("frames").begin_array(JsonWriter::Layout::lines);
   for (const SetFrame& frame : projection.frames) {
-    json.begin_object().member("k", frame.k).member("left", frame.left).member("right", frame.right);
+    json.begin_object()
+        .member("k", frame.k)
+        .member("left", frame.left)
+        .member("right", frame.right);
     json.member("bottom", frame.bottom).member("top", frame.top).key("sets").begin_array();
     for (const Polygon& set : frame.sets) {
-      json.begin_object().member("pipeline", set.pipeline).key("x").raw(coordinates(set.x, frame.right - frame.left));
+      json.begin_object()
+          .member("pipeline", set.pipeline)
+          .key("x")
+          .raw(coordinates(set.x, frame.right - frame.left));
       json.key("y").raw(coordinates(set.y, frame.top - frame.bottom)).key("open").begin_array();
       if (std::find(set.open.begin(), set.open.end(), true) != set.open.end()) {
         for (const bool open : set.open) json.value(open ? 1 : 0);
@@ -183,7 +210,8 @@ void write(JsonWriter& json, const Intervals& intervals) {
 
 constexpr std::string_view kinds[] = {"plot", "projection", "timeline", "intervals", "table"};
 
-void write_colours(JsonWriter& json, std::string_view name, const std::array<std::string_view, 8>& colours) {
+void write_colours(JsonWriter& json, std::string_view name,
+                   const std::array<std::string_view, 8>& colours) {
   json.key(name).begin_array();
   for (const std::string_view colour : colours) json.value(colour);
   json.end_array();
@@ -193,7 +221,8 @@ void write_colours(JsonWriter& json, std::string_view name, const std::array<std
 
 std::string packed_numbers(const std::vector<double>& values, Rounding rounding) {
   if (has_equal_steps(values)) {
-    return fmt::format(R"({{"from":{:.0f},"by":{:.0f},"count":{}}})", values[0], values[1] - values[0], values.size());
+    return fmt::format(R"({{"from":{:.0f},"by":{:.0f},"count":{}}})", values[0],
+                       values[1] - values[0], values.size());
   }
   const int digits = digits_of(values);
   std::string out = "[";
@@ -209,18 +238,20 @@ std::string plain_text(double value) { return fmt::format("{:.6g}", value); }
 Numbers numbers_of(const Timeline& timeline) {
   Numbers numbers{{"row", "from k", "to k", "state"}, {}};
   for (const Timeline::Span& span : timeline.spans) {
-    numbers.rows.push_back(
-        {timeline.rows.at(span.row), plain_text(span.from), plain_text(span.to), std::string(name_of(span.state))});
+    numbers.rows.push_back({timeline.rows.at(span.row), plain_text(span.from), plain_text(span.to),
+                            std::string(name_of(span.state))});
   }
-  for (const Mark& mark : timeline.marks) numbers.rows.push_back({"", plain_text(mark.x), "", mark.text});
+  for (const Mark& mark : timeline.marks)
+    numbers.rows.push_back({"", plain_text(mark.x), "", mark.text});
   return numbers;
 }
 
 Numbers numbers_of(const Intervals& intervals) {
   Numbers numbers{{"row", "of", "from", "to", "of", "from", "to", "verdict"}, {}};
   for (const Intervals::Row& row : intervals.rows) {
-    numbers.rows.push_back({row.name, row.first, plain_text(row.first_lower), plain_text(row.first_upper), row.second,
-                            plain_text(row.second_lower), plain_text(row.second_upper), row.verdict});
+    numbers.rows.push_back({row.name, row.first, plain_text(row.first_lower),
+                            plain_text(row.first_upper), row.second, plain_text(row.second_lower),
+                            plain_text(row.second_upper), row.verdict});
   }
   return numbers;
 }
@@ -237,13 +268,19 @@ std::string page_data(const Report& report) {
   write_texts(json, report.notes);
   json.key("figures").begin_array(JsonWriter::Layout::lines);
   for (const Figure& figure : report.figures) {
-    json.begin_object().member("id", figure.id).member("section", figure.section).member("title", figure.title);
-    json.member("caption", figure.caption).member("pipeline", figure.pipeline).member("kind", kinds[figure.content.index()]);
+    json.begin_object()
+        .member("id", figure.id)
+        .member("section", figure.section)
+        .member("title", figure.title);
+    json.member("caption", figure.caption)
+        .member("pipeline", figure.pipeline)
+        .member("kind", kinds[figure.content.index()]);
     std::visit([&](const auto& content) { write(json, content); }, figure.content);
     json.end_object();
   }
   json.end_array().key("versions").begin_array();
-  for (const auto& [name, value] : report.versions) json.begin_array().value(name).value(value).end_array();
+  for (const auto& [name, value] : report.versions)
+    json.begin_array().value(name).value(value).end_array();
   json.end_array().member("study", report.study).end_object();
 
   // Inside a `script` element, `<` is the only character that could end it.

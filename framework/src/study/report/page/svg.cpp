@@ -30,7 +30,8 @@ std::string draw(const Table& table, const Figure& figure) {
   const double width = std::max(200.0, lefts.back() - gap / 2);
   const double height = row_height * static_cast<double>(table.rows.size() + 1) + 16;
   Drawing drawing(width, height, figure.title);
-  const auto write = [&](std::size_t i, double y, const std::string& text, bool to_right, const std::string& style) {
+  const auto write = [&](std::size_t i, double y, const std::string& text, bool to_right,
+                         const std::string& style) {
     const std::string shown = shortened(text, most);
     if (to_right) {
       drawing.text({lefts[i] + widths[i], y}, shown, at_end(style));
@@ -38,7 +39,8 @@ std::string draw(const Table& table, const Figure& figure) {
       drawing.text({lefts[i], y}, shown, style);
     }
   };
-  for (std::size_t i = 0; i < table.header.size(); ++i) write(i, 20, table.header[i], numbers[i], std::string(soft));
+  for (std::size_t i = 0; i < table.header.size(); ++i)
+    write(i, 20, table.header[i], numbers[i], std::string(soft));
   drawing.line({0, 28}, {width, 28}, outline);
   double y = 28;
   for (const auto& row : table.rows) {
@@ -46,9 +48,11 @@ std::string draw(const Table& table, const Figure& figure) {
       const Table::Cell& cell = row[i];
       if (cell.share > 0) {
         drawing.rectangle({lefts[i] - gap / 2, y + 1}, widths[i] + gap, row_height - 2,
-                          fmt::format("fill=\"#0072b2\" fill-opacity=\"{:.3f}\"", 0.06 + 0.3 * std::min(1.0, cell.share)));
+                          fmt::format("fill=\"#0072b2\" fill-opacity=\"{:.3f}\"",
+                                      0.06 + 0.3 * std::min(1.0, cell.share)));
       }
-      write(i, y + 16, cell.text, cell.number, std::string(ink) + (cell.best ? " font-weight=\"bold\"" : ""));
+      write(i, y + 16, cell.text, cell.number,
+            std::string(ink) + (cell.best ? " font-weight=\"bold\"" : ""));
     }
     y += row_height;
   }
@@ -60,7 +64,9 @@ std::string svg_of(const Figure& figure, const Report& report) {
   struct {
     const Figure& figure;
     const Report& report;
-    std::string operator()(const Projection& projection) const { return draw(projection, figure, report); }
+    std::string operator()(const Projection& projection) const {
+      return draw(projection, figure, report);
+    }
     std::string operator()(const Plot& plot) const { return draw(plot, figure); }
     std::string operator()(const Timeline& timeline) const { return draw(timeline, figure); }
     std::string operator()(const Intervals& intervals) const { return draw(intervals, figure); }

@@ -48,8 +48,10 @@ void draw_frame(Drawing& drawing, const Frame& frame);
 /// What the ticks and the label of y take to the left of the frame.
 double room_beside(const Axis& y);
 
-/// Vertical lines with texts above `top`, in up to three rows of 13 units; a text that would cover another one is left out.
-void draw_marks(Drawing& drawing, std::vector<Mark> marks, const Axis& x, double top, double bottom);
+/// Vertical lines with texts above `top`, in up to three rows of 13 units; a text that would cover
+/// another one is left out.
+void draw_marks(Drawing& drawing, std::vector<Mark> marks, const Axis& x, double top,
+                double bottom);
 
 struct LegendEntry {
   enum class Kind { line, band, points, fill };
@@ -57,7 +59,9 @@ struct LegendEntry {
   std::string text;
   std::string style;  ///< of what stands before the text
 };
-/// Rows from `top` on, between `left` and `right`; returns their height. Without a drawing it only measures.
-double draw_legend(Drawing* drawing, const std::vector<LegendEntry>& entries, double left, double right, double top);
+/// Rows from `top` on, between `left` and `right`; returns their height. Without a drawing it only
+/// measures.
+double draw_legend(Drawing* drawing, const std::vector<LegendEntry>& entries, double left,
+                   double right, double top);
 
 }  // namespace cordon::report

@@ -16,7 +16,8 @@ template <class Draw>
 void for_each_run(const Series& series, const Draw& draw) {
   const bool band = series.kind == Series::Kind::band;
   const auto has = [&](std::size_t i) {
-    return std::isfinite(series.x[i]) && !std::isnan(series.y[i]) && !(band && std::isnan(series.upper[i]));
+    return std::isfinite(series.x[i]) && !std::isnan(series.y[i]) &&
+           !(band && std::isnan(series.upper[i]));
   };
   for (std::size_t begin = 0; begin < series.x.size();) {
     std::size_t end = begin;
@@ -26,7 +27,8 @@ void for_each_run(const Series& series, const Draw& draw) {
   }
 }
 
-void draw_band(Drawing& drawing, const Series& series, const Frame& frame, std::size_t begin, std::size_t end) {
+void draw_band(Drawing& drawing, const Series& series, const Frame& frame, std::size_t begin,
+               std::size_t end) {
   std::vector<Point> lower, upper;
   for (std::size_t i = begin; i < end; ++i) {
     lower.emplace_back(frame.x(series.x[i]), frame.y(series.y[i]));
@@ -34,12 +36,14 @@ void draw_band(Drawing& drawing, const Series& series, const Frame& frame, std::
   }
   std::vector<Point> around = lower;
   around.insert(around.end(), upper.rbegin(), upper.rend());
-  drawing.polygon(around, fmt::format("fill=\"{}\" fill-opacity=\"0.15\"", colour_of(series.pipeline, series.shade)));
+  drawing.polygon(around, fmt::format("fill=\"{}\" fill-opacity=\"0.15\"",
+                                      colour_of(series.pipeline, series.shade)));
   drawing.polyline(lower, stroke_of(series.pipeline, series.shade, 1.1));
   drawing.polyline(upper, stroke_of(series.pipeline, series.shade, 1.1));
 }
 
-void draw_points(Drawing& drawing, const Series& series, const Frame& frame, std::size_t begin, std::size_t end) {
+void draw_points(Drawing& drawing, const Series& series, const Frame& frame, std::size_t begin,
+                 std::size_t end) {
   const std::string fill = fmt::format("fill=\"{}\"", colour_of(series.pipeline, series.shade));
   for (std::size_t i = begin; i < end; ++i) {
     const Point at{frame.x(series.x[i]), frame.y(series.y[i])};
@@ -51,17 +55,20 @@ void draw_points(Drawing& drawing, const Series& series, const Frame& frame, std
   }
 }
 
-void draw_line(Drawing& drawing, const Series& series, const Frame& frame, std::size_t begin, std::size_t end) {
+void draw_line(Drawing& drawing, const Series& series, const Frame& frame, std::size_t begin,
+               std::size_t end) {
   std::vector<Point> points;
   for (std::size_t i = begin; i < end; ++i) {
     const Point at{frame.x(series.x[i]), frame.y(series.y[i])};
-    if (series.kind == Series::Kind::steps && !points.empty()) points.emplace_back(at.first, points.back().second);
+    if (series.kind == Series::Kind::steps && !points.empty())
+      points.emplace_back(at.first, points.back().second);
     points.push_back(at);
   }
   // Few values are seen as such.
   if (points.size() == 1 || (series.kind == Series::Kind::line && series.x.size() <= 12)) {
     for (const Point& point : points)
-      drawing.circle(point, 2.5, fmt::format("fill=\"{}\"", colour_of(series.pipeline, series.shade)));
+      drawing.circle(point, 2.5,
+                     fmt::format("fill=\"{}\"", colour_of(series.pipeline, series.shade)));
   }
   if (points.size() > 1) drawing.polyline(points, stroke_of(series.pipeline, series.shade));
 }
@@ -80,19 +87,22 @@ std::vector<LegendEntry> legend_of(const Plot& plot) {
     if (series.name.empty()) continue;
     const std::string fill = fmt::format("fill=\"{}\"", colour_of(series.pipeline, series.shade));
     if (series.kind == Series::Kind::band) {
-      entries.push_back({LegendEntry::Kind::band, series.name,
-                         fill + " fill-opacity=\"0.15\" " + stroke_of(series.pipeline, series.shade, 1.1)});
+      entries.push_back(
+          {LegendEntry::Kind::band, series.name,
+           fill + " fill-opacity=\"0.15\" " + stroke_of(series.pipeline, series.shade, 1.1)});
     } else if (series.kind == Series::Kind::points) {
       entries.push_back({LegendEntry::Kind::points, series.name, fill});
     } else {
-      entries.push_back({LegendEntry::Kind::line, series.name, stroke_of(series.pipeline, series.shade)});
+      entries.push_back(
+          {LegendEntry::Kind::line, series.name, stroke_of(series.pipeline, series.shade)});
     }
   }
   return entries;
 }
 
 Axis x_axis(const Plot& plot, double begin, double end) {
-  if (!plot.x_names.empty()) return {-0.5, static_cast<double>(plot.x_names.size()) - 0.5, begin, end};
+  if (!plot.x_names.empty())
+    return {-0.5, static_cast<double>(plot.x_names.size()) - 0.5, begin, end};
   double lower = INFINITY, upper = -INFINITY;
   bool single = false;
   for (const Series& series : plot.series) {
@@ -123,11 +133,13 @@ std::string draw(const Plot& plot, const Figure& figure) {
   for (const auto& threshold : plot.thresholds) values.push_back(threshold.second);
   const Axis y_axis = axis_over(values, plot.log_y, bottom, top);
   const double left = room_beside(y_axis) + 8;
-  const Frame frame{x_axis(plot, left, right), y_axis, plot.x_label, plot.y_label, plot.x_names, whole};
+  const Frame frame{
+      x_axis(plot, left, right), y_axis, plot.x_label, plot.y_label, plot.x_names, whole};
   const std::vector<LegendEntry> legend = legend_of(plot);
   const double legend_top = bottom + 60;
 
-  Drawing drawing(width, legend_top + draw_legend(nullptr, legend, left, right, legend_top), figure.title);
+  Drawing drawing(width, legend_top + draw_legend(nullptr, legend, left, right, legend_top),
+                  figure.title);
   draw_frame(drawing, frame);
   drawing.begin_clip({left, top}, right - left, bottom - top);
   for (const Series& series : plot.series) draw_series(drawing, series, frame);
@@ -135,8 +147,10 @@ std::string draw(const Plot& plot, const Figure& figure) {
   for (const auto& [name, value] : plot.thresholds) {
     if (!(value >= frame.y.lower && value <= frame.y.upper)) continue;
     const double y = frame.y(value);
-    drawing.line({left, y}, {right, y}, "class=\"trace\" stroke=\"#1b2230\" stroke-dasharray=\"6 4\"");
-    drawing.text({right - 4, y < top + 16 ? y + 13 : y - 4}, name, at_end(ink) + " font-size=\"11\"");
+    drawing.line({left, y}, {right, y},
+                 "class=\"trace\" stroke=\"#1b2230\" stroke-dasharray=\"6 4\"");
+    drawing.text({right - 4, y < top + 16 ? y + 13 : y - 4}, name,
+                 at_end(ink) + " font-size=\"11\"");
   }
   draw_marks(drawing, plot.marks, frame.x, top, bottom);
   draw_legend(&drawing, legend, left, right, legend_top);

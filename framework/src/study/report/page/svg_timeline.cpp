@@ -33,7 +33,8 @@ std::string_view style_of(Timeline::State state) {
 std::string draw(const Timeline& timeline, const Figure& figure) {
   constexpr double width = 960, right = 946, row_height = 30, most = 220;
   double names = 60;
-  for (const std::string& row : timeline.rows) names = std::max(names, std::min(most, text_width(row)));
+  for (const std::string& row : timeline.rows)
+    names = std::max(names, std::min(most, text_width(row)));
   const double left = names + 24, top = timeline.marks.empty() ? 12 : 52;
   const double bottom = top + row_height * static_cast<double>(timeline.rows.size());
   double first = INFINITY, last = -INFINITY;
@@ -48,10 +49,12 @@ std::string draw(const Timeline& timeline, const Figure& figure) {
 
   std::vector<LegendEntry> legend;
   for (const Timeline::State state : states) {
-    legend.push_back({LegendEntry::Kind::fill, std::string(name_of(state)), std::string(style_of(state))});
+    legend.push_back(
+        {LegendEntry::Kind::fill, std::string(name_of(state)), std::string(style_of(state))});
   }
   const double legend_top = bottom + 60;
-  Drawing drawing(width, legend_top + draw_legend(nullptr, legend, left, right, legend_top), figure.title);
+  Drawing drawing(width, legend_top + draw_legend(nullptr, legend, left, right, legend_top),
+                  figure.title);
   for (const double tick : x.ticks(10, true)) {
     drawing.line({x(tick), top}, {x(tick), bottom}, rule);
     drawing.text({x(tick), bottom + 17}, short_text(tick), at_middle(soft));
@@ -59,15 +62,19 @@ std::string draw(const Timeline& timeline, const Figure& figure) {
   drawing.text({(left + right) / 2, bottom + 36}, "k", at_middle(ink));
   for (std::size_t i = 0; i < timeline.rows.size(); ++i) {
     const double y = top + row_height * static_cast<double>(i);
-    drawing.text({left - 12, y + row_height / 2 + 4}, shortened(timeline.rows[i], most), at_end(ink));
+    drawing.text({left - 12, y + row_height / 2 + 4}, shortened(timeline.rows[i], most),
+                 at_end(ink));
     drawing.line({left, y + row_height}, {right, y + row_height}, rule);
   }
   for (const Timeline::Span& span : timeline.spans) {
-    const double y = top + row_height * static_cast<double>(span.row), from = x(span.from - 0.5), to = x(span.to + 0.5);
+    const double y = top + row_height * static_cast<double>(span.row), from = x(span.from - 0.5),
+                 to = x(span.to + 0.5);
     if (span.state == Timeline::State::truth) {
-      drawing.rectangle({from, y + row_height - 8}, std::max(1.0, to - from), 4, style_of(span.state));
+      drawing.rectangle({from, y + row_height - 8}, std::max(1.0, to - from), 4,
+                        style_of(span.state));
     } else {
-      drawing.rectangle({from, y + 5}, std::max(1.0, to - from), row_height - 15, style_of(span.state));
+      drawing.rectangle({from, y + 5}, std::max(1.0, to - from), row_height - 15,
+                        style_of(span.state));
     }
   }
   drawing.rectangle({left, top}, right - left, bottom - top, outline);

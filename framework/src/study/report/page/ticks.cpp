@@ -17,9 +17,11 @@ namespace {
 double clean(double value) { return std::strtod(fmt::format("{:.14g}", value).c_str(), nullptr); }
 
 std::string superscript(int exponent) {
-  constexpr std::array<std::string_view, 10> digits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  constexpr std::array<std::string_view, 10> digits = {"⁰", "¹", "²", "³", "⁴",
+                                                       "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string out;
-  for (const char c : std::to_string(exponent)) out += c == '-' ? "⁻" : digits[static_cast<std::size_t>(c - '0')];
+  for (const char c : std::to_string(exponent))
+    out += c == '-' ? "⁻" : digits[static_cast<std::size_t>(c - '0')];
   return out;
 }
 
@@ -36,7 +38,8 @@ std::vector<double> nice_ticks(double lower, double upper, int count, bool whole
   if (whole) step = std::max(1.0, step);
   std::vector<double> ticks;
   const double first = std::ceil(lower / step - 1e-9), last = std::floor(upper / step + 1e-9);
-  for (double i = first; i <= last && ticks.size() < 100; ++i) ticks.push_back(clean(i * step) + 0.0);
+  for (double i = first; i <= last && ticks.size() < 100; ++i)
+    ticks.push_back(clean(i * step) + 0.0);
   return ticks;
 }
 
@@ -79,12 +82,15 @@ std::string short_text(double value, int digits) {
 
 int digits_within(double lower, double upper) {
   const double size = std::max(std::abs(lower), std::abs(upper)) / (upper - lower);
-  return std::isfinite(size) && size > 0 ? std::clamp(static_cast<int>(std::ceil(std::log10(size))) + 4, 6, 15) : 6;
+  return std::isfinite(size) && size > 0
+             ? std::clamp(static_cast<int>(std::ceil(std::log10(size))) + 4, 6, 15)
+             : 6;
 }
 
 std::string log_text(double value) {
   const double power = std::round(std::log10(value));
-  if (std::abs(power) < 3 || std::abs(value / std::pow(10.0, power) - 1) > 1e-9) return short_text(value);
+  if (std::abs(power) < 3 || std::abs(value / std::pow(10.0, power) - 1) > 1e-9)
+    return short_text(value);
   return "10" + superscript(static_cast<int>(power));
 }
 
@@ -92,7 +98,8 @@ double Axis::operator()(double value) const {
   const double beyond = 20 * (end - begin);
   if (std::isinf(value)) return value > 0 ? begin + beyond : begin - beyond;
   if (log && !(value > 0)) return begin - beyond;
-  const double share = log ? std::log(value / lower) / std::log(upper / lower) : (value - lower) / (upper - lower);
+  const double share =
+      log ? std::log(value / lower) / std::log(upper / lower) : (value - lower) / (upper - lower);
   return begin + std::clamp(share, -20.0, 20.0) * (end - begin);
 }
 
@@ -108,8 +115,10 @@ Axis axis_over(const std::vector<double>& values, bool log, double begin, double
     const double margin = lower == upper ? 2 : std::pow(upper / lower, 0.05);
     return {lower / margin, upper * margin, begin, end, log};
   }
-  const double margin = lower == upper ? (lower != 0 ? 0.1 * std::abs(lower) : 1) : 0.05 * (upper - lower);
-  return {lower >= 0 && lower < 0.35 * upper ? 0.0 : lower - margin, upper + margin, begin, end, log};
+  const double margin =
+      lower == upper ? (lower != 0 ? 0.1 * std::abs(lower) : 1) : 0.05 * (upper - lower);
+  return {lower >= 0 && lower < 0.35 * upper ? 0.0 : lower - margin, upper + margin, begin, end,
+          log};
 }
 
 }  // namespace cordon::report

@@ -8,13 +8,16 @@
 
 namespace cordon::report {
 
-/// Round numbers (1, 2 or 5 times a power of ten apart) within [lower, upper], about `count` of them.
+/// Round numbers (1, 2 or 5 times a power of ten apart) within [lower, upper], about `count` of
+/// them.
 std::vector<double> nice_ticks(double lower, double upper, int count, bool whole = false);
 
-/// Powers of ten within [lower, upper], with 2 and 5 between them over three decades or less. Both bounds are positive.
+/// Powers of ten within [lower, upper], with 2 and 5 between them over three decades or less. Both
+/// bounds are positive.
 std::vector<double> log_ticks(double lower, double upper);
 
-/// A number with at most `digits` digits, with a power of ten where it is very large or small; ∞ and − as they are printed.
+/// A number with at most `digits` digits, with a power of ten where it is very large or small; ∞
+/// and − as they are printed.
 std::string short_text(double value, int digits = 6);
 
 /// The digits, from 6 to 15, that tell values of [lower, upper] apart, also far from the origin.
@@ -35,11 +38,13 @@ struct Axis {
     return log ? log_ticks(lower, upper) : nice_ticks(lower, upper, count, whole);
   }
   /// A tick, or a value between the ticks.
-  std::string text(double value) const { return log ? log_text(value) : short_text(value, digits_within(lower, upper)); }
+  std::string text(double value) const {
+    return log ? log_text(value) : short_text(value, digits_within(lower, upper));
+  }
 };
 
-/// An axis over the finite ones among the values (positive ones if `log`), with a margin, from `begin` to `end`. An axis of
-/// positive values begins at zero where that costs little room.
+/// An axis over the finite ones among the values (positive ones if `log`), with a margin, from
+/// `begin` to `end`. An axis of positive values begins at zero where that costs little room.
 Axis axis_over(const std::vector<double>& values, bool log, double begin, double end);
 
 }  // namespace cordon::report

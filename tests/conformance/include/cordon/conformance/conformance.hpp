@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The conformance kit: named laws that every set backend keeps, tried on random sets. A violation is answered by the smallest
-// case that was found and by a command that repeats it. Depends on the framework only.
+// The conformance kit: named laws that every set backend keeps, tried on random sets. A violation
+// is answered by the smallest case that was found and by a command that repeats it. Depends on the
+// framework only.
 #pragma once
 
 #include <cstdint>
@@ -23,17 +24,22 @@ struct Law {
 /// All laws in the order in which they are checked.
 std::vector<Law> laws();
 
-/// Does the name match a pattern of the shell's kind, in which `*` stands for any text and `?` for one character?
+/// Does the name match a pattern of the shell's kind, in which `*` stands for any text and `?` for
+/// one character?
 bool matches(std::string_view pattern, std::string_view name);
 
-/// What is checked. `make` gives a new backend on each call; what it returns keeps its plugin loaded by itself.
+/// What is checked. `make` gives a new backend on each call; what it returns keeps its plugin
+/// loaded by itself.
 struct Subject {
   std::function<std::shared_ptr<const SetBackend>(const Params&)> make;
-  Params params;                        ///< handed to `make` except where a law tries others
-  const ParamSchema* schema = nullptr;  ///< of the parameters; without it the laws about parameters are skipped
-  std::filesystem::path library;        ///< the plugin's file and
-  std::string component;                ///< the backend's name in it; without them the laws about unloading are skipped
-  std::string command;  ///< how a failure is repeated, without law, seed and cases: "cordon conform x.so --backend b"
+  Params params;  ///< handed to `make` except where a law tries others
+  const ParamSchema* schema =
+      nullptr;  ///< of the parameters; without it the laws about parameters are skipped
+  std::filesystem::path library;  ///< the plugin's file and
+  std::string
+      component;  ///< the backend's name in it; without them the laws about unloading are skipped
+  std::string command;  ///< how a failure is repeated, without law, seed and cases: "cordon conform
+                        ///< x.so --backend b"
 };
 
 struct Options {
@@ -53,25 +59,36 @@ std::string_view to_string(Status status) noexcept;
 struct Result {
   std::string law;
   Status status = Status::passed;
-  std::string reason;                       ///< failed: what was expected and what was found; skipped: why
-  Index cases = 0;                          ///< that were tried, the failing one included
-  Index unsupported = 0, inapplicable = 0;  ///< cases that the backend refused; cases that do not bear on the law for it
-  Index questions = 0, unknown = 0;         ///< three-valued questions that were asked, and how often the answer was `unknown`
-  std::string witness;  ///< failed: the smallest failing case, one object per line, in the form of study files
+  std::string reason;  ///< failed: what was expected and what was found; skipped: why
+  Index cases = 0;     ///< that were tried, the failing one included
+  Index unsupported = 0,
+        inapplicable =
+            0;  ///< cases that the backend refused; cases that do not bear on the law for it
+  Index questions = 0,
+        unknown =
+            0;  ///< three-valued questions that were asked, and how often the answer was `unknown`
+  std::string witness;  ///< failed: the smallest failing case, one object per line, in the form of
+                        ///< study files
   std::string replay;   ///< failed: the command that repeats it
 };
 
-/// Told before each case, and before each trial of the search for a smaller one, which case runs out of how many (-1: the backend
-/// is made). For progress, and to know what ran when a process ends.
+/// Told before each case, and before each trial of the search for a smaller one, which case runs
+/// out of how many (-1: the backend is made). For progress, and to know what ran when a process
+/// ends.
 using Progress = std::function<void(const Law& law, Index number, Index planned)>;
 
-/// Checks one law. A crash or a hang of the backend is one of the caller: `cordon conform` runs this in a child process.
-/// Deterministic in the subject and the options. Errors: Errc::invalid for a name that is no law.
-Result check(const Subject& subject, std::string_view law, const Options& options, const Progress& progress = {});
+/// Checks one law. A crash or a hang of the backend is one of the caller: `cordon conform` runs
+/// this in a child process. Deterministic in the subject and the options. Errors: Errc::invalid for
+/// a name that is no law.
+Result check(const Subject& subject, std::string_view law, const Options& options,
+             const Progress& progress = {});
 /// Checks all laws that match.
-std::vector<Result> check(const Subject& subject, const Options& options, const Progress& progress = {});
+std::vector<Result> check(const Subject& subject, const Options& options,
+                          const Progress& progress = {});
 
-/// The case of that number as it is generated (not shrunk), for a backend of this kind: what ran when a process ended.
-std::string describe_case(std::string_view law, const Options& options, const BackendInfo& info, Index number);
+/// The case of that number as it is generated (not shrunk), for a backend of this kind: what ran
+/// when a process ended.
+std::string describe_case(std::string_view law, const Options& options, const BackendInfo& info,
+                          Index number);
 
 }  // namespace cordon::conformance
