@@ -13,7 +13,7 @@ find_library(GMP_LIBRARY gmp REQUIRED)
 find_library(GMPXX_LIBRARY gmpxx REQUIRED)
 add_library(gmp INTERFACE)
 target_link_libraries(gmp INTERFACE "${GMPXX_LIBRARY}" "${GMP_LIBRARY}")
-# cddlib over GMP rationals, a second opinion in tests. libcddgmp holds the double version too: linking libcdd beside it crashes.
+# cddlib over GMP rationals, a second opinion on exact answers. libcddgmp holds the double version too: linking libcdd beside it crashes.
 find_path(CDD_INCLUDE_DIR cdd.h PATH_SUFFIXES cddlib REQUIRED)
 find_library(CDDGMP_LIBRARY cddgmp REQUIRED)
 add_library(cddgmp INTERFACE)

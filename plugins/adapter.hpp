@@ -101,12 +101,12 @@ class ValueBackend final : public SetBackend {
 
   Made do_import(const LineForm& X) const override { return make(representation_.import(X)); }
 
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     Few<Operand<Value>> operands;
     for (const Term& term : p.terms) operands.push_back({term.T, value(*term.set)});
     return make(representation_.predict(value(X), p.A, p.f, {operands.data(), operands.size()}));
   }
-  Made do_correct(const Set& X, const Correct& c) const override {
+  Made do_correct(const Set& X, const CorrectionArgs& c) const override {
     return make(representation_.correct(value(X), c.C, c.z,
                                         Operand<Value>{c.noise.T, value(*c.noise.set)}));
   }

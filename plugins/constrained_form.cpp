@@ -51,8 +51,8 @@ double ConstrainedForm::exact_volume(const Value& X) const {
     const Vector g = linalg::transposed_product(Y.G, d);
     const BoxedProgram::Bound bound = program.maximum(g);
     if (!bound.xi) {
-      solved = solved && bound.upper == -std::numeric_limits<double>::infinity();
-      return {-std::numeric_limits<double>::infinity(), Y.c};
+      solved = solved && bound.upper == -infinity;
+      return {-infinity, Y.c};
     }
     // the solver's point must be one of the set, and the certified bound its value
     const double size = 1e-9 * (g.lpNorm<1>() + d.cwiseAbs().dot(Y.c.cwiseAbs()));

@@ -6,6 +6,7 @@
 
 #include "adapter.hpp"
 #include "cordon/core/rounding.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "cordon/registry/plugin.hpp"
 #include "cordon/sets/zonotope.hpp"
 #include "cordon/solvers/outward_questions.hpp"
@@ -17,9 +18,7 @@ namespace {
 using namespace cordon;
 using plugins::Operand;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// A point that is outside by less than this share of the bound may be so by rounding errors.
-constexpr double nominal_tolerance = 1e-10;
 /// Of its terms, an output may be off by this: it was rounded before it came here.
 constexpr double rounding_of_data = 1e-14;
 
@@ -102,7 +101,7 @@ struct Intervals {
       const double beyond = std::max(X.lower[i] - x[i], x[i] - X.upper[i]);
       if (beyond <= 0) continue;
       const double bound = x[i] > X.upper[i] ? X.upper[i] : X.lower[i];
-      if (beyond > nominal_tolerance * (std::abs(x[i]) + std::abs(bound))) return Answer::no;
+      if (beyond > tolerances::proof_margin * (std::abs(x[i]) + std::abs(bound))) return Answer::no;
       answer = Answer::unknown;
     }
     return answer;

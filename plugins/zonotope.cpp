@@ -20,8 +20,6 @@ namespace {
 using namespace cordon;
 using plugins::Operand;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A zonotope, or the empty set, which has no generators' form of its own.
 struct MaybeZonotope {
   Index n = 0;

@@ -61,7 +61,7 @@ std::string duration(double us) {
 }
 
 struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
+  double low = infinity, high = 0;
   void include(double value) {
     low = std::min(low, value);
     high = std::max(high, value);

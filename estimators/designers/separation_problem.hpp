@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "designers/tube/separation.hpp"
+#include "tubes/separation.hpp"
 
 namespace cordon::designers {
 
@@ -45,7 +45,7 @@ std::string modes_of(const SeparationProblem& problem, const PairProgram& pair);
 struct SearchResult {
   DesignStatus status = DesignStatus::unknown;
   std::optional<Vector> u;
-  double cost = 0, lower_bound = -std::numeric_limits<double>::infinity();
+  double cost = 0, lower_bound = -infinity;
   std::optional<RestrictedProblem> restriction = {};  ///< as in DesignOutcome
   bool stopped = false;
   std::string reason = {}, suggestion = {};

@@ -125,7 +125,7 @@ std::optional<InputDesign> judge(const ModeBank& bank, const SetBackend& backend
 DesignOutcome without_answer(DesignOutcome outcome, std::string reason, std::string suggestion) {
   outcome.status = DesignStatus::unknown;
   outcome.best = std::nullopt;
-  outcome.lower_bound = -std::numeric_limits<double>::infinity();
+  outcome.lower_bound = -infinity;
   outcome.restriction.reset();
   outcome.nodes = outcome.programs = outcome.facets = 0;
   outcome.stopped = true;

@@ -30,7 +30,7 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr std::int64_t most_steps = 1'000'000'000;
+constexpr std::int64_t longest_wait = 1'000'000'000;
 
 class ConsistencyBank final : public Diagnoser {
  public:
@@ -180,7 +180,8 @@ std::vector<Diagnostic> observer_problems(const DiagnoserContext& context, const
   return problems;
 }
 
-std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& params) {
+std::vector<Diagnostic> check_consistency_bank(const DiagnoserContext& context,
+                                               const Params& params) {
   std::vector<Diagnostic> problems = observer_problems(context, params);
   if (params.has("restart_set")) {
     const LineForm& set = params.set_form("restart_set");
@@ -216,7 +217,7 @@ void register_consistency_bank(Registrar& registrar) {
       .integer(
           "waiting_time",
           "steps that a mode lasts at least; several modes that are left after it are ambiguous",
-          {}, 1, most_steps)
+          {}, 1, longest_wait)
       .required();
   schema.choice("start",
                 "modes that are possible at the first sample: \"any\", or the \"nominal\" one",
@@ -232,7 +233,7 @@ void register_consistency_bank(Registrar& registrar) {
       {{"consistency_bank",
         "one observer per mode; a mode is excluded when its estimate is proven empty",
         "Rego2025; Rego2020b", schema},
-       check,
+       check_consistency_bank,
        [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
          return std::make_unique<ConsistencyBank>(context, params);
        }});

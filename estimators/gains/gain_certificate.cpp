@@ -45,8 +45,7 @@ double norm_of_error(const Matrix& A) {
 }
 
 NormBounds norm_of(const invariant::ClosedLoop& closed, const Computed& B) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  if (closed.schur != Answer::yes) return {closed.schur == Answer::no ? infinite : 0, infinite};
+  if (closed.schur != Answer::yes) return {closed.schur == Answer::no ? infinity : 0, infinity};
   const double A_error = closed.error.isZero(0) ? 0 : norm_of_error(closed.error);
   return h_infinity_norm(closed.value, B.value, A_error,
                          B.error.isZero(0) ? 0 : norm_of_error(B.error));

@@ -9,18 +9,19 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr const char* mend = "a row per state, a column per output, with A - L C stable";
+constexpr const char* gain_suggestion = "a row per state, a column per output, with A - L C stable";
 
 class Given final : public GainDesigner {
  public:
   explicit Given(Matrix L) : L_(std::move(L)) {}
 
-  GainDesign design(const Model& model) const override {
+ private:
+  GainDesign do_design(const Model& model) const override {
     if (std::string problem = gain_problem(model, L_); !problem.empty()) {
       return {refuted(model) ? Answer::no : Answer::unknown,
               {},
               "the gain " + std::move(problem),
-              mend};
+              gain_suggestion};
     }
     Gain gain;
     gain.L = L_;
@@ -28,7 +29,6 @@ class Given final : public GainDesigner {
     return {Answer::yes, std::move(gain)};
   }
 
- private:
   /// Of a loop with many states it may be open whether it is stable.
   bool refuted(const Model& model) const {
     const LinearModel& m = model.linear;
@@ -39,10 +39,10 @@ class Given final : public GainDesigner {
   Matrix L_;
 };
 
-std::vector<Diagnostic> check(const GainContext& context, const Params& params) {
+std::vector<Diagnostic> check_given_gain(const GainContext& context, const Params& params) {
   if (std::string problem = gain_problem(context.model, params.matrix("matrix"));
       !problem.empty()) {
-    return {{"/matrix", std::move(problem), mend}};
+    return {{"/matrix", std::move(problem), gain_suggestion}};
   }
   return {};
 }
@@ -57,7 +57,7 @@ void register_given_gain(Registrar& registrar) {
       {{"given",
         "a matrix that is given; where a gain is asked for, the matrix alone may stand as well", "",
         std::move(schema)},
-       check,
+       check_given_gain,
        [](const Params& params) { return std::make_unique<Given>(params.matrix("matrix")); }});
 }
 

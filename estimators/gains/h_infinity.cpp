@@ -8,7 +8,7 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr const char* details =
+constexpr const char* h_infinity_details =
     R"(The errors e⁺ = (A - L C) e + Eθ θ + Bw w - L Dv v of an observer have the norm ‖G_ed‖∞ < γ if and
 only if there are P = Pᵀ ≻ 0 and M with
 
@@ -34,14 +34,14 @@ class HInfinity final : public GainDesigner {
  public:
   explicit HInfinity(std::optional<Matrix> theta) : theta_(std::move(theta)) {}
 
-  GainDesign design(const Model& model) const override {
+ private:
+  GainDesign do_design(const Model& model) const override {
     const Matrix theta = theta_of(model, theta_);
     const ErrorDynamics errors = error_dynamics(model, theta);
     if (std::optional<GainDesign> none = without_gain(model, errors)) return std::move(*none);
     return h_infinity_design(model, theta, errors, false);
   }
 
- private:
   std::optional<Matrix> theta_;
 };
 
@@ -53,7 +53,7 @@ void register_h_infinity_gain(Registrar& registrar) {
   registrar.gain(
       {{"h_infinity",
         "the least H∞ norm from disturbances to errors, by a linear matrix inequality",
-        "Pourasghar2021", std::move(schema), details},
+        "Pourasghar2021", std::move(schema), h_infinity_details},
        check_design,
        [](const Params& params) { return std::make_unique<HInfinity>(theta_from(params)); }});
 }

@@ -10,7 +10,7 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr const char* details =
+constexpr const char* h_infinity_monotone_details =
     R"(The matrix inequality of "h_infinity" with two conditions more: P is diagonal, and
 
   PA - MC ≥ 0 in every entry,
@@ -32,7 +32,8 @@ class HInfinityMonotone final : public GainDesigner {
  public:
   explicit HInfinityMonotone(std::optional<Matrix> theta) : theta_(std::move(theta)) {}
 
-  GainDesign design(const Model& model) const override {
+ private:
+  GainDesign do_design(const Model& model) const override {
     const Matrix theta = theta_of(model, theta_);
     const ErrorDynamics errors = error_dynamics(model, theta);
     if (std::optional<Obstacle> why = no_monotone_gain(errors.A, shown_outputs(model.linear))) {
@@ -43,7 +44,6 @@ class HInfinityMonotone final : public GainDesigner {
     return h_infinity_design(model, theta, errors, true);
   }
 
- private:
   std::optional<Matrix> theta_;
 };
 
@@ -54,7 +54,7 @@ void register_h_infinity_monotone_gain(Registrar& registrar) {
   add_theta_parameter(schema);
   registrar.gain({{"h_infinity_monotone",
                    "the least bound of the H∞ norm by a diagonal P, among gains with A - L C ≥ 0",
-                   "Pourasghar2021", std::move(schema), details},
+                   "Pourasghar2021", std::move(schema), h_infinity_monotone_details},
                   check_design,
                   [](const Params& params) {
                     return std::make_unique<HInfinityMonotone>(theta_from(params));

@@ -17,7 +17,6 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double gap = 1e-9;
 constexpr int most_frequencies = 20'000;
 constexpr int first_intervals = 16;
@@ -26,7 +25,7 @@ constexpr double most_error = 0.1;  ///< of a value, relative; with more it coun
 /// What is known at one frequency: σ₁(H), ‖T‖ and the relative error of both that rounding can have
 /// made.
 struct Value {
-  double omega = 0, sigma = infinite, spread = infinite, error = 0;
+  double omega = 0, sigma = infinity, spread = infinity, error = 0;
 };
 
 double largest_singular_value(const Matrix& A) {
@@ -55,8 +54,8 @@ Value value_at(const Matrix& A, const Matrix& B, double omega) {
 
 struct Interval {
   Value from, to;
-  double upper = infinite;   ///< of σ₁ in between
-  double spread = infinite;  ///< of ‖(I - e^{-iω} A)⁻¹‖ in between
+  double upper = infinity;   ///< of σ₁ in between
+  double spread = infinity;  ///< of ‖(I - e^{-iω} A)⁻¹‖ in between
   bool operator<(const Interval& other) const { return upper < other.upper; }
 };
 
@@ -78,7 +77,7 @@ struct Errors {
 };
 
 double at_most(double sigma, double spread, Errors error) {
-  if (!std::isfinite(sigma) || !(spread * error.A < 1 - gap)) return infinite;
+  if (!std::isfinite(sigma) || !(spread * error.A < 1 - gap)) return infinity;
   return (sigma + spread * error.B) / (1 - spread * error.A) * (1 + 16 * rounding::unit);
 }
 
@@ -144,10 +143,10 @@ NormBounds h_infinity_norm(MatrixIn A, MatrixIn B, double A_error, double B_erro
     throw Error(Errc::dimension, "A must be square, B of as many rows");
   if (!B.allFinite()) throw Error(Errc::not_finite, "the norm needs finite entries");
   const Answer schur = invariant::is_schur(A);
-  if (schur != Answer::yes) return {schur == Answer::no && A_error == 0 ? infinite : 0, infinite};
+  if (schur != Answer::yes) return {schur == Answer::no && A_error == 0 ? infinity : 0, infinity};
   if (B.size() == 0 || (B.isZero(0) && B_error == 0)) return {0, 0};
   const double largest = std::max(B.cwiseAbs().maxCoeff(), B_error);
-  if (!std::isfinite(largest)) return {0, infinite};
+  if (!std::isfinite(largest)) return {0, infinity};
   const int exponent = std::ilogb(largest);  // extreme sizes would overflow when squared
   const Matrix scaled = B.unaryExpr([&](double x) { return std::scalbn(x, -exponent); });
   Division division(A, scaled, {A_error, std::scalbn(B_error, -exponent)});

@@ -10,7 +10,7 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr const char* details =
+constexpr const char* kalman_details =
     "For a set of states whose zonotope has the generators R, and zonotopes with the shapes G_W "
     "and G_V around W and V,\n"
     "  L = A P C' (C P C' + Dv G_V G_V' Dv')⁻¹,   P = R R',\n"
@@ -27,10 +27,11 @@ class Kalman final : public GainDesigner {
  public:
   explicit Kalman(bool steady) : steady_(steady) {}
 
-  GainDesign design(const Model& model) const override {
-    const std::string mend = "measure what is unstable, or use an observer without a gain";
+ private:
+  GainDesign do_design(const Model& model) const override {
+    const std::string suggestion = "measure what is unstable, or use an observer without a gain";
     if (auto hidden = undetectable_mode(model.linear.A, shown_outputs(model.linear))) {
-      return {hidden->gain_exists, {}, not_detectable(*hidden), mend};
+      return {hidden->gain_exists, {}, not_detectable(*hidden), suggestion};
     }
     Gain gain;
     try {
@@ -42,16 +43,15 @@ class Kalman final : public GainDesigner {
       return {Answer::unknown,
               {},
               "the limit of the Kalman recursion does not serve: " + std::move(problem),
-              mend};
+              suggestion};
     }
     gain.certificate = certify(model, gain.L, theta_of(model));
     return {Answer::yes, std::move(gain)};
   }
 
-  bool is_time_varying() const override { return !steady_; }
-  Matrix update(const Model& model, MatrixIn P) const override { return kalman_gain(model, P); }
+  bool do_is_time_varying() const override { return !steady_; }
+  Matrix do_update(const Model& model, MatrixIn P) const override { return kalman_gain(model, P); }
 
- private:
   bool steady_;
 };
 
@@ -64,7 +64,7 @@ void register_kalman_gain(Registrar& registrar) {
               false);
   registrar.gain(
       {{"kalman", "the zonotopic Kalman gain, of least F-radius at every step", "Combastel2015",
-        std::move(schema), details},
+        std::move(schema), kalman_details},
        {},
        [](const Params& params) { return std::make_unique<Kalman>(params.flag("steady")); }});
 }

@@ -57,7 +57,7 @@ Matrix steady_kalman_gain(const Model& model) {
   Q += extra * Matrix::Identity(n, n);
   R += extra * Matrix::Identity(p, p);
   Matrix P = Q;
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   int waited = 0;
   for (int step = 0; step < most_steps; ++step) {
     const Matrix PCt = linalg::product(P, C.transpose());

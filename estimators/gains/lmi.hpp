@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cordon/registry/plugin.hpp"
-#include "cordon/solvers/sdp.hpp"
+#include "cordon/sdp/sdp.hpp"
 
 namespace cordon::estimators {
 

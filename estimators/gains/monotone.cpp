@@ -16,7 +16,6 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double equal = 1e-10, margin = 1e-8, noise = 1e-9;
 constexpr int most_rounds = 10;
 
@@ -65,7 +64,7 @@ std::optional<Obstacle> by_structure(const Matrix& A, const Matrix& C) {
 }
 
 /// Entries are scaled to 1, and what is below `noise` of that is none.
-Vector cleaned(const Vector& x) {
+Vector without_noise(const Vector& x) {
   const double size = x.cwiseAbs().maxCoeff();
   if (!(size > 0)) return x;
   return (x / size).unaryExpr([](double value) { return value < noise ? 0.0 : value; });
@@ -78,7 +77,7 @@ std::optional<Obstacle> by_row(const Matrix& A, const Matrix& C) {
     const Vector row = A.row(i).transpose();
     const LinearProgram::Solution solution = program.maximize(-row);
     if (solution.status != LinearProgram::Status::optimal || !(solution.objective > 0)) continue;
-    const Vector mu = cleaned(solution.x);
+    const Vector mu = without_noise(solution.x);
     if (!(row.dot(mu) < -margin * row.cwiseAbs().dot(mu)) || !is_zero(C, mu)) continue;
     const Answer proof = is_positive(-row, C, std::vector<int>(static_cast<std::size_t>(n), 0));
     return obstacle(proof, "the outputs do not show the direction " + direction(mu) +
@@ -122,7 +121,7 @@ std::optional<Obstacle> by_growth(const Matrix& A, const Matrix& C) {
     M.block(n + i * p, 0, p, n) = C;
     M.block(n + i * p, n + i * n, p, n) = -C;
   }
-  Vector upper = Vector::Constant(columns, infinite), objective = Vector::Zero(columns);
+  Vector upper = Vector::Constant(columns, infinity), objective = Vector::Zero(columns);
   upper.head(n).setOnes();
   objective.head(n).setOnes();
   LinearProgram program(M, Vector::Zero(M.rows()), Vector::Zero(columns), upper);
@@ -138,7 +137,7 @@ std::optional<Obstacle> by_growth(const Matrix& A, const Matrix& C) {
     if (A.row(i).dot(x - y) < x[i] - equal * terms) return std::nullopt;
   }
   const Answer proof = is_growth_proven(A, C, std::max(1.0, solution.x.maxCoeff()));
-  return obstacle(proof, "every monotone A - L C leaves the states " + direction(cleaned(x)) +
+  return obstacle(proof, "every monotone A - L C leaves the states " + direction(without_noise(x)) +
                              ", to four digits, as large as they are, and is not stable");
 }
 
@@ -159,7 +158,7 @@ Matrix projected(const Matrix& A, const Matrix& C, Matrix L) {
   const Index n = A.rows(), p = C.rows();
   Matrix rows(n, 2 * p + n);
   rows << C.transpose(), -C.transpose(), Matrix::Identity(n, n);
-  const Vector lower = Vector::Zero(2 * p + n), upper = Vector::Constant(2 * p + n, infinite);
+  const Vector lower = Vector::Zero(2 * p + n), upper = Vector::Constant(2 * p + n, infinity);
   Vector cost = Vector::Zero(2 * p + n);
   cost.head(2 * p).setConstant(-1);
   for (Index i = 0; i < n; ++i) {

@@ -16,10 +16,9 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double dual_tolerance = 1e-7;
 
-constexpr const char* details =
+constexpr const char* peak_details =
     "Where A - L C ≥ 0, bounds of the state by intervals settle at the half widths h = (I - (A - L "
     "C))⁻¹ (r + |L Ev| 1),\n"
     "r = |Eω| 1 + |Eθ| 1, with Eω = Bw G_W and Ev = Dv G_V for zonotopes around W and V. Their sum "
@@ -41,9 +40,9 @@ Program program(const Matrix& A, const Matrix& C, const Vector& r, const Matrix&
   const Index n = A.rows(), p = C.rows(), q = Ev.cols();
   const Index at_S = n + n * p, at_slack = at_S + n * q, rows = n * n + n + 2 * n * q;
   Program made{Matrix::Zero(rows, at_slack + rows), Vector::Zero(rows),
-               Vector::Zero(at_slack + rows), Vector::Constant(at_slack + rows, infinite),
+               Vector::Zero(at_slack + rows), Vector::Constant(at_slack + rows, infinity),
                Vector::Zero(at_slack + rows)};
-  made.lower.segment(n, n * p).setConstant(-infinite);
+  made.lower.segment(n, n * p).setConstant(-infinity);
   made.objective.head(n) = -r;
   made.objective.segment(at_S, n * q).setConstant(-1);
   made.M.rightCols(rows) = -Matrix::Identity(rows, rows);
@@ -88,7 +87,8 @@ class Peak final : public GainDesigner {
  public:
   explicit Peak(std::optional<Matrix> theta) : theta_(std::move(theta)) {}
 
-  GainDesign design(const Model& model) const override {
+ private:
+  GainDesign do_design(const Model& model) const override {
     const LinearModel& m = model.linear;
     const Matrix C = mean_outputs(m), theta = theta_of(model, theta_);
     Matrix Ew, Ev;
@@ -136,11 +136,10 @@ class Peak final : public GainDesigner {
     return {Answer::yes, std::move(gain)};
   }
 
- private:
   std::optional<Matrix> theta_;
 };
 
-std::vector<Diagnostic> check(const GainContext& context, const Params& params) {
+std::vector<Diagnostic> check_peak(const GainContext& context, const Params& params) {
   std::vector<Diagnostic> problems;
   check_theta(context.model, params, problems);
   return problems;
@@ -153,8 +152,8 @@ void register_peak_gain(Registrar& registrar) {
   add_theta_parameter(schema);
   registrar.gain(
       {{"peak", "least sum of steady widths with A - L C ≥ 0 in every entry; a linear program", "",
-        std::move(schema), details},
-       check,
+        std::move(schema), peak_details},
+       check_peak,
        [](const Params& params) { return std::make_unique<Peak>(theta_from(params)); }});
 }
 

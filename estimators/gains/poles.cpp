@@ -19,9 +19,9 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr double tolerance = 1e-8;
+constexpr double pole_tolerance = 1e-8;
 
-constexpr const char* details =
+constexpr const char* poles_details =
     "The eigenvalues of A - L C are put at the given poles, to 1e-8. For one output L is unique; "
     "for several, eigenvectors are\n"
     "chosen as perpendicular to each other as the outputs allow, so that the poles move least with "
@@ -67,7 +67,8 @@ class Poles final : public GainDesigner {
  public:
   explicit Poles(std::vector<Pole> poles) : poles_(std::move(poles)) {}
 
-  GainDesign design(const Model& model) const override {
+ private:
+  GainDesign do_design(const Model& model) const override {
     const Matrix& A = model.linear.A;
     const Matrix C = mean_outputs(model.linear);
     if (static_cast<Index>(poles_.size()) != model.linear.states()) {
@@ -98,7 +99,7 @@ class Poles final : public GainDesigner {
     std::vector<std::complex<double>> values;
     for (const Pole& pole : poles_) values.emplace_back(pole.real, pole.imaginary);
     std::optional<PlacedPoles> placed = placed_poles(A, C, values);
-    if (!placed || !(placed->error <= tolerance)) {
+    if (!placed || !(placed->error <= pole_tolerance)) {
       const std::string why =
           placed ? "they came out " + text(placed->error) + " away, more than 1e-08"
                  : "their eigenvectors are too nearly dependent";
@@ -119,11 +120,10 @@ class Poles final : public GainDesigner {
     return {Answer::yes, std::move(gain)};
   }
 
- private:
   std::vector<Pole> poles_;
 };
 
-std::vector<Diagnostic> check(const GainContext& context, const Params& params) {
+std::vector<Diagnostic> check_poles(const GainContext& context, const Params& params) {
   const Index n = context.model.linear.states(), count = params.vector("poles").size();
   std::vector<Diagnostic> problems;
   if (count != n) {
@@ -164,8 +164,8 @@ void register_poles_gain(Registrar& registrar) {
       .required();
   schema.vector("poles_imaginary", "their imaginary parts, in pairs of opposite sign; absent: 0");
   registrar.gain({{"poles", "puts the eigenvalues of A - L C where they are asked for",
-                   "Kautsky1985", std::move(schema), details},
-                  check,
+                   "Kautsky1985", std::move(schema), poles_details},
+                  check_poles,
                   [](const Params& params) -> std::unique_ptr<GainDesigner> {
                     const bool same_size =
                         !params.has("poles_imaginary") ||

@@ -13,7 +13,7 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr const char* details =
+constexpr const char* w_radius_details =
     R"(The W-radius of a zonotope of errors is max eᵀWe over its elements. It obeys ι⁺ ≤ ρ ι + 1 - ρ for
 the errors e⁺ = (A - L C) e + Eθ θ + Bw w - L Dv v if there are W = Wᵀ, Y and diagonal Γ, Υ and Ω
 with
@@ -74,7 +74,8 @@ class WRadius final : public GainDesigner {
  public:
   WRadius(std::optional<Matrix> theta, double rho) : theta_(std::move(theta)), rho_(rho) {}
 
-  GainDesign design(const Model& model) const override {
+ private:
+  GainDesign do_design(const Model& model) const override {
     const Matrix theta = theta_of(model, theta_);
     const ErrorDynamics errors = error_dynamics(model, theta);
     if (std::optional<GainDesign> none = without_gain(model, errors)) return std::move(*none);
@@ -109,7 +110,6 @@ class WRadius final : public GainDesigner {
     return design;
   }
 
- private:
   std::optional<Matrix> theta_;
   double rho_;
 };
@@ -126,7 +126,7 @@ void register_w_radius_gain(Registrar& registrar) {
   registrar.gain({{"w_radius",
                    "the smallest ellipsoid that holds the errors for a given contraction, by a "
                    "linear matrix inequality",
-                   "Pourasghar2021", std::move(schema), details},
+                   "Pourasghar2021", std::move(schema), w_radius_details},
                   check_design,
                   [](const Params& params) {
                     return std::make_unique<WRadius>(theta_from(params), params.real("rho"));

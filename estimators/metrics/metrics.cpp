@@ -15,8 +15,6 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr double not_available = std::numeric_limits<double>::quiet_NaN();
-
 /// Mean over the finite values and the largest of them; how many were unbounded.
 class Average {
  public:
@@ -42,108 +40,96 @@ class Average {
 bool is_set(const StepView& view) { return view.estimate.consistent != Answer::no; }
 
 class Radius final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView& view) override {
+  std::vector<MetricValue> do_step(const StepView& view) override {
     if (!is_set(view)) return {{"radius", not_available}};
     const double radius = view.hull.longest_half_edge();
     average_.add(radius);
     return {{"radius", radius}};
   }
-  std::vector<MetricValue> summary() const override {
+  std::vector<MetricValue> do_summary() const override {
     return {{"radius_mean", average_.mean()},
             {"radius_max", average_.largest()},
             {"radius_unbounded_steps", average_.unbounded()}};
   }
 
- private:
   Average average_;
 };
 
 class VolumeOfSet final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView& view) override {
+  std::vector<MetricValue> do_step(const StepView& view) override {
     if (!is_set(view)) return {{"volume", not_available}, {"volume_of", std::string("none")}};
     const Volume volume = view.estimate.set->volume();
     average_.add(volume.value);
     if (!volume.exact) ++hulls_;
     return {{"volume", volume.value}, {"volume_of", std::string(volume.exact ? "set" : "hull")}};
   }
-  std::vector<MetricValue> summary() const override {
+  std::vector<MetricValue> do_summary() const override {
     return {{"volume_mean", average_.mean()}, {"volume_of_hull_steps", hulls_}};
   }
 
- private:
   Average average_;
   Index hulls_ = 0;
 };
 
 class ContainsTruth final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView& view) override {
+  std::vector<MetricValue> do_step(const StepView& view) override {
     if (!view.truth || !view.assumptions_hold)
       return {{"contains_truth", std::string("not_applicable")}};
     const Answer answer = view.estimate.set->contains(*view.truth);
     ++(answer == Answer::yes ? yes_ : answer == Answer::no ? no_ : unknown_);
     return {{"contains_truth", std::string(to_string(answer))}};
   }
-  std::vector<MetricValue> summary() const override {
+  std::vector<MetricValue> do_summary() const override {
     return {{"contains_truth_yes", yes_},
             {"contains_truth_no", no_},
             {"contains_truth_unknown", unknown_}};
   }
 
- private:
   Index yes_ = 0, no_ = 0, unknown_ = 0;
 };
 
 class Size final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView& view) override {
+  std::vector<MetricValue> do_step(const StepView& view) override {
     const Complexity c = view.estimate.set->complexity();
     largest_ = {std::max(largest_.generators, c.generators), std::max(largest_.lines, c.lines),
                 std::max(largest_.constraints, c.constraints)};
     return {{"generators", c.generators}, {"lines", c.lines}, {"constraints", c.constraints}};
   }
-  std::vector<MetricValue> summary() const override {
+  std::vector<MetricValue> do_summary() const override {
     return {{"generators_max", largest_.generators},
             {"lines_max", largest_.lines},
             {"constraints_max", largest_.constraints}};
   }
 
- private:
   Complexity largest_;
 };
 
 class ExactSteps final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView& view) override {
+  std::vector<MetricValue> do_step(const StepView& view) override {
     ++steps_;
     const bool exact = view.estimate.set.tightness == Tightness::exact;
     if (exact) ++exact_;
     return {{"exact", std::string(exact ? "yes" : "no")}};
   }
-  std::vector<MetricValue> summary() const override {
+  std::vector<MetricValue> do_summary() const override {
     return {{"exact_share",
              steps_ ? static_cast<double>(exact_) / static_cast<double>(steps_) : not_available}};
   }
 
- private:
   Index steps_ = 0, exact_ = 0;
 };
 
 class StepTime final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView& view) override {
+  std::vector<MetricValue> do_step(const StepView& view) override {
     const double time = view.times.step();
     average_.add(time);
     return {{"step_time_us", time}};
   }
-  std::vector<MetricValue> summary() const override {
+  std::vector<MetricValue> do_summary() const override {
     return {{"step_time_us_mean", average_.mean()}, {"step_time_us_max", average_.largest()}};
   }
-  bool reproducible() const override { return false; }
+  bool do_reproducible() const override { return false; }
 
- private:
   Average average_;
 };
 

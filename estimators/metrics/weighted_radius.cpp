@@ -50,8 +50,6 @@ WRadius w_radius(MatrixIn R, MatrixIn W) {
 
 namespace {
 
-constexpr double not_available = std::numeric_limits<double>::quiet_NaN();
-
 bool is_weight(const Matrix& W) {
   return W.rows() == W.cols() && W == W.transpose() && linalg::cholesky(W);
 }
@@ -115,7 +113,8 @@ class WeightedRadius final : public Metric {
  public:
   explicit WeightedRadius(const Params& params) : weighted_(params) {}
 
-  std::vector<MetricValue> step(const StepView& view) override {
+ private:
+  std::vector<MetricValue> do_step(const StepView& view) override {
     const auto seen = weighted_.see(view);
     if (!seen)
       return {{Measure::name, not_available},
@@ -129,13 +128,12 @@ class WeightedRadius final : public Metric {
                                                              : found.exact ? "set"
                                                                            : "reduced set")}};
   }
-  std::vector<MetricValue> summary() const override {
+  std::vector<MetricValue> do_summary() const override {
     const std::string name = Measure::name;
     return {{name + "_mean", count_ ? sum_ / static_cast<double>(count_) : not_available},
             {name + "_max", count_ ? largest_ : not_available}};
   }
 
- private:
   Weighted weighted_;
   Index count_ = 0;
   double sum_ = 0, largest_ = 0;

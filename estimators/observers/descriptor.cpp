@@ -18,7 +18,7 @@ namespace {
 
 bool in_semi_explicit_form(const SetBackend& backend) { return backend.info().intersections; }
 
-std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
+std::vector<Diagnostic> check_descriptor(const ObserverContext& context, const Params& params) {
   std::vector<Diagnostic> problems = check_common(context, params);
   const LinearModel& m = context.model.linear;
   const BackendInfo& info = context.backend->info();
@@ -92,7 +92,7 @@ void register_descriptor(Registrar& registrar) {
   registrar.observer(
       {{"descriptor", "descriptor systems with singular E, any backend",
         "Rego2025; Rego2020b; Wang2018a", schema},
-       check,
+       check_descriptor,
        [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
          if (in_semi_explicit_form(*context.backend))
            return semi_explicit_observer(context, params);

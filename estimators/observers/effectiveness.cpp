@@ -14,8 +14,6 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
 std::vector<Index> positive(const Vector& radii) {
   std::vector<Index> found;
   for (Index i = 0; i < radii.size(); ++i) {
@@ -111,7 +109,7 @@ Vector Effectiveness::output_bound(const Sample& now, const Box* reach) const {
   const Vector terms = linalg::product(
       m.D.cwiseAbs(), now.u.cwiseAbs());  // at least the size of those of D diag(f) u
   for (const Index i : ranged_outputs_) {
-    double bound = infinite;
+    double bound = infinity;
     if (reach && !reach->is_empty()) {
       const double size =
           std::max(std::abs(reach->lower[i] + through[i]), std::abs(reach->upper[i] + through[i])) +
@@ -124,7 +122,7 @@ Vector Effectiveness::output_bound(const Sample& now, const Box* reach) const {
                                    std::abs(now.y[i] - noise_hull_.upper[i]));
       bound = std::min(bound, upwards(size / least, 2));
     }
-    zeta[i] = std::isnan(bound) ? infinite : bound;
+    zeta[i] = std::isnan(bound) ? infinity : bound;
   }
   return zeta;
 }

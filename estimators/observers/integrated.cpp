@@ -34,7 +34,7 @@ std::string negative_entries(const Model& model, const Matrix& L) {
   return found;
 }
 
-std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
+std::vector<Diagnostic> check_integrated(const ObserverContext& context, const Params& params) {
   std::vector<Diagnostic> problems;
   if (!check_interval_observer(context, params, problems)) return problems;
   const std::size_t before = problems.size();
@@ -52,7 +52,7 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   return problems;
 }
 
-constexpr const char* details =
+constexpr const char* integrated_details =
     "Centre and half widths of a box, with Ac = A - L C ≥ 0:\n"
     "    c⁺ = Ac c + B u + L y,   r⁺ = Ac r + rad(A) (|c| + r) + rad(B) |u| + |L| rad(C) (|c| + r) "
     "+ |Bw W| + |L Dv V|.\n"
@@ -74,8 +74,8 @@ void register_integrated(Registrar& registrar) {
   registrar.observer(
       {{"integrated",
         "interval observer with a monotone gain; standard linear systems with interval matrices",
-        "Pourasghar2021", std::move(schema), details},
-       check,
+        "Pourasghar2021", std::move(schema), integrated_details},
+       check_integrated,
        [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
          return std::make_unique<IntervalObserver>(
              context, params, observer_gain(context, params, "gain", absent()).gain);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/interval_observer.hpp"
 
+#include "cordon/core/tolerances.hpp"
 #include "observer_parameters.hpp"
 
 namespace cordon::estimators {
 
-namespace {
-constexpr double margin = 1e-10;  // of a proof of emptiness, as a share of the terms of its numbers
-}
+namespace {}
 
 IntervalObserver::IntervalObserver(const ObserverContext& context, const Params& params, Gain upper,
                                    std::optional<Gain> lower)
@@ -84,7 +83,7 @@ bool IntervalObserver::settle_crossing() {
   for (Index i = 0; i < c_.size(); ++i) {
     const double by = hull_.lower[i] - hull_.upper[i];
     if (by <= 0) continue;
-    proven = proven || by > margin * (upper_.size()[i] + lower_->size()[i]);
+    proven = proven || by > tolerances::proof_margin * (upper_.size()[i] + lower_->size()[i]);
     std::swap(hull_.lower[i], hull_.upper[i]);
   }
   return proven;

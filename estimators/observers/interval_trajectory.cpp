@@ -8,9 +8,8 @@ namespace cordon::estimators {
 
 namespace {
 
-ComponentSpec absent() { return {"kalman", Params().set("steady", true)}; }
-
-std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
+std::vector<Diagnostic> check_interval_trajectory(const ObserverContext& context,
+                                                  const Params& params) {
   std::vector<Diagnostic> problems;
   if (!check_interval_observer(context, params, problems)) return problems;
   const bool upper = params.has("upper_gain"), lower = params.has("lower_gain");
@@ -23,8 +22,8 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
          std::string("is given without \"") + (upper ? "lower" : "upper") + "_gain\"",
          "give both, or \"gain\" for both bounds"});
   } else if (upper) {
-    check_observer_gain(context, params, "upper_gain", absent(), problems);
-    check_observer_gain(context, params, "lower_gain", absent(), problems);
+    check_observer_gain(context, params, "upper_gain", steady_kalman(), problems);
+    check_observer_gain(context, params, "lower_gain", steady_kalman(), problems);
     if (params.integer("inner_samples") > 0) {
       problems.push_back({"/inner_samples",
                           "an inner estimate is made for one gain: with two, a bound needs not "
@@ -32,7 +31,7 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
                           "leave it out, or give \"gain\""});
     }
   } else {
-    check_observer_gain(context, params, "gain", absent(), problems);
+    check_observer_gain(context, params, "gain", steady_kalman(), problems);
   }
   return problems;
 }
@@ -40,13 +39,13 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
 std::unique_ptr<Observer> create(const ObserverContext& context, const Params& params) {
   if (!params.has("upper_gain"))
     return std::make_unique<IntervalObserver>(
-        context, params, observer_gain(context, params, "gain", absent()).gain);
+        context, params, observer_gain(context, params, "gain", steady_kalman()).gain);
   return std::make_unique<IntervalObserver>(
-      context, params, observer_gain(context, params, "upper_gain", absent()).gain,
-      observer_gain(context, params, "lower_gain", absent()).gain);
+      context, params, observer_gain(context, params, "upper_gain", steady_kalman()).gain,
+      observer_gain(context, params, "lower_gain", steady_kalman()).gain);
 }
 
-constexpr const char* details =
+constexpr const char* interval_trajectory_details =
     "With Ac = A - L C = Ac⁺ - Ac⁻ split by the signs of its entries, bounds lo ≤ x ≤ hi become\n"
     "    hi⁺ = Ac⁺ hi - Ac⁻ lo + B u + L y + ρ,   lo⁺ = Ac⁺ lo - Ac⁻ hi + B u + L y - ρ,\n"
     "    ρ = rad(A) max(|lo|, |hi|) + rad(B) |u| + |L| rad(C) max(|lo|, |hi|) + |Bw W| + |L Dv "
@@ -70,8 +69,8 @@ void register_interval_trajectory(Registrar& registrar) {
   registrar.observer({{"interval_trajectory",
                        "upper and lower trajectories around the state; standard linear systems "
                        "with interval matrices",
-                       "Pourasghar2021", std::move(schema), details},
-                      check,
+                       "Pourasghar2021", std::move(schema), interval_trajectory_details},
+                      check_interval_trajectory,
                       create,
                       true,
                       true});

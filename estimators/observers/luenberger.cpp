@@ -60,7 +60,7 @@ class Luenberger final : public Observer {
   Enclosure X_;
 };
 
-std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
+std::vector<Diagnostic> check_luenberger(const ObserverContext& context, const Params& params) {
   std::vector<Diagnostic> problems = check_common(context, params);
   const LinearModel& m = context.model.linear;
   if (m.is_descriptor()) {
@@ -87,7 +87,7 @@ void register_luenberger(Registrar& registrar) {
   registrar.observer(
       {{"luenberger", "set recursion with an output gain; standard linear systems, any backend",
         "Xu2014", std::move(schema)},
-       check,
+       check_luenberger,
        [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
          return std::make_unique<Luenberger>(context, params);
        },

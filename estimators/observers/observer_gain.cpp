@@ -53,6 +53,8 @@ void add_gain_parameter(ParamSchema& schema, const std::string& name, const std:
   schema.component(name, doc, "gain").or_matrix(matrix_type);
 }
 
+ComponentSpec steady_kalman() { return {"kalman", Params().set("steady", true)}; }
+
 ObserverGain observer_gain(const ObserverContext& context, const Params& params,
                            const std::string& name, const ComponentSpec& absent) {
   std::vector<Diagnostic> problems;

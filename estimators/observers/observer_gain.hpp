@@ -19,6 +19,9 @@ struct ObserverGain {
   Gain gain;
 };
 
+/// What most observers take where no gain is given: "kalman" with "steady".
+ComponentSpec steady_kalman();
+
 /// The gain by the parameter `name`, or by `absent` where it is not given. Throws InputError with
 /// the reason if there is none.
 ObserverGain observer_gain(const ObserverContext& context, const Params& params,

@@ -7,18 +7,18 @@
 namespace cordon::estimators {
 
 namespace {
-constexpr std::int64_t most = 100'000;
+constexpr std::int64_t most_generators = 100'000;
 }
 
 ParamSchema common_parameters() {
   ParamSchema schema;
   schema.integer("max_generators",
                  "most generators of an estimate after reduction; at least the number of states",
-                 30, 1, most);
+                 30, 1, most_generators);
   schema.integer(
       "max_constraints",
       "most constraints of an estimate after reduction, where the representation has them", 5, 0,
-      most);
+      most_generators);
   schema.set("initial_set", "set of initial states in place of the system's X0");
   return schema;
 }

@@ -87,7 +87,8 @@ class PredictionCorrection final : public Observer {
   Tightness recursion_;
 };
 
-std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
+std::vector<Diagnostic> check_prediction_correction(const ObserverContext& context,
+                                                    const Params& params) {
   std::vector<Diagnostic> problems = check_common(context, params);
   if (context.model.linear.is_descriptor()) {
     problems.push_back({"/type", "\"prediction_correction\" takes systems of type \"lti\"",
@@ -104,7 +105,7 @@ void register_prediction_correction(Registrar& registrar) {
         "prediction by the model, correction by the measurement; standard linear systems, any "
         "backend",
         "Combastel2003; Scott2016", common_parameters()},
-       check,
+       check_prediction_correction,
        [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
          return std::make_unique<PredictionCorrection>(context, params);
        },

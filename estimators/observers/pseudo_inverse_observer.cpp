@@ -9,6 +9,7 @@
 #include <boost/container/small_vector.hpp>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
 #include "observers/interval_spread.hpp"
@@ -18,7 +19,6 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr double rank_tolerance = 1e-10;
 constexpr double steady = 1e-12;  ///< changes of entries of P, relative to their states' sizes,
                                   ///< that leave the gain as it is
 
@@ -247,8 +247,7 @@ class PseudoInverseObserver final : public Observer {
     Vector next = terms, lacking = amplified(inverse_error_, next);
     next += 2 * lacking;
     lacking = amplified(inverse_error_, next);
-    if ((lacking.array() > 0.5 * next.array()).any())
-      lacking.setConstant(std::numeric_limits<double>::infinity());
+    if ((lacking.array() > 0.5 * next.array()).any()) lacking.setConstant(infinity);
     return 1.01 * (accumulated(used_) * terms + 2 * lacking);
   }
 
@@ -343,7 +342,7 @@ std::unique_ptr<Observer> pseudo_inverse_observer(const ObserverContext& context
 }
 
 bool has_pseudo_inverse(const LinearModel& model) {
-  return linalg::rank(stacked_E_C(with_bounded_outputs(model)), rank_tolerance) >= model.states();
+  return linalg::rank(stacked_E_C(with_bounded_outputs(model)), tolerances::rank) >= model.states();
 }
 
 }  // namespace cordon::estimators

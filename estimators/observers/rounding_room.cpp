@@ -41,7 +41,7 @@ bool RoundingRoom::may_be_needed(double most, double least_width) {
   return !(share * most <= negligible * least_width);
 }
 
-Enclosure RoundingRoom::correct(const Enclosure& X, const Correct& measurement) const {
+Enclosure RoundingRoom::correct(const Enclosure& X, const CorrectionArgs& measurement) const {
   if (!is_needed()) return backend_.correct(X, measurement);
   Matrix T(columns_.rows(), measurement.noise.T.cols() + columns_.cols());
   T << measurement.noise.T, columns_;
@@ -53,7 +53,7 @@ Vector half_widths(const LineForm& X, MatrixIn T) {
   Vector widths = linalg::product(T, X.G).cwiseAbs().rowwise().sum();
   const Vector lines = linalg::product(T, X.M).cwiseAbs().rowwise().sum();
   for (Index i = 0; i < widths.size(); ++i) {
-    if (lines[i] > 0) widths[i] = std::numeric_limits<double>::infinity();
+    if (lines[i] > 0) widths[i] = infinity;
   }
   return widths;
 }

@@ -26,7 +26,7 @@ class RoundingRoom {
   /// The box, to be added to what is predicted. Lives as long as the room.
   Term term() const { return {columns_, factors_}; }
   /// {x ∈ X : z - C x ∈ T V}, with room in its rows.
-  Enclosure correct(const Enclosure& X, const Correct& measurement) const;
+  Enclosure correct(const Enclosure& X, const CorrectionArgs& measurement) const;
 
  private:
   const SetBackend& backend_;

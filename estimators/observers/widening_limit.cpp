@@ -10,12 +10,12 @@ namespace cordon::estimators {
 namespace {
 
 /// What is left of Fᵏ once it counts for nothing.
-constexpr double negligible = 1e-13;
+constexpr double negligible_widening = 1e-13;
 /// Rounding errors of the sums, as a share of them: far above those, far below what the limit is
 /// about.
 constexpr double rounding_share = 1e-9;
 
-Vector row_sums(const Matrix& M) { return M.cwiseAbs().rowwise().sum(); }
+Vector absolute_row_sums(const Matrix& M) { return M.cwiseAbs().rowwise().sum(); }
 
 }  // namespace
 
@@ -30,12 +30,14 @@ ErrorHull::ErrorHull(Matrix F, Matrix N, Vector start)
 void ErrorHull::step(const Vector& b) {
   if (b.size() > 0) b_ = b_.size() > 0 ? Vector(b_.cwiseMax(b)) : b;
   if (settled_) return;
-  sum_ += row_sums(noise_);
+  sum_ += absolute_row_sums(noise_);
   powers_ += power_.cwiseAbs();
   noise_ = linalg::product(F_, noise_);
   power_ = linalg::product(F_, power_);
   const Vector all = half_widths();
-  settled_ = (row_sums(power_ * all.asDiagonal()).array() <= negligible * all.array()).all();
+  settled_ =
+      (absolute_row_sums(power_ * all.asDiagonal()).array() <= negligible_widening * all.array())
+          .all();
 }
 
 Vector ErrorHull::half_widths() const {

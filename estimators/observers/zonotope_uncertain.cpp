@@ -17,8 +17,6 @@ namespace cordon::estimators {
 
 namespace {
 
-ComponentSpec absent() { return {"kalman", Params().set("steady", true)}; }
-
 class ZonotopeUncertain final : public Observer {
  public:
   ZonotopeUncertain(const ObserverContext& context, const Params& params, ObserverGain gain)
@@ -74,7 +72,8 @@ class ZonotopeUncertain final : public Observer {
   Enclosure X_;
 };
 
-std::vector<Diagnostic> check(const ObserverContext& context, const Params& params) {
+std::vector<Diagnostic> check_zonotope_uncertain(const ObserverContext& context,
+                                                 const Params& params) {
   std::vector<Diagnostic> problems = check_common(context, params);
   const LinearModel& m = context.model.linear;
   if (m.is_descriptor()) {
@@ -87,10 +86,10 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   if (problems.empty() && grows) check_bounded_start(context, params, problems);
   check_noises(context, problems);
   if (!problems.empty()) return problems;  // gains are designed for these sets
-  check_observer_gain(context, params, "gain", absent(), problems);
+  check_observer_gain(context, params, "gain", steady_kalman(), problems);
   if (!problems.empty() || params.integer("inner_samples") == 0) return problems;
   InnerEnvelope::check(context, params, problems);
-  if (observer_gain(context, params, "gain", absent()).designer->is_time_varying()) {
+  if (observer_gain(context, params, "gain", steady_kalman()).designer->is_time_varying()) {
     problems.push_back({"/inner_samples",
                         "an inner estimate is made for a gain that does not vary in time",
                         "leave it out, or give another gain"});
@@ -98,7 +97,7 @@ std::vector<Diagnostic> check(const ObserverContext& context, const Params& para
   return problems;
 }
 
-constexpr const char* details =
+constexpr const char* zonotope_uncertain_details =
     "A zonotope <c, R>, reduced to <c, Ř> with max_generators columns, becomes\n"
     "    c⁺ = (A - L C) c + B u + L y,\n"
     "    R⁺ = [(A - L C) Ř, diag(rad(A) (|c| + |Ř| 1) + rad(B) |u|), Bw W, -L Dv V, -L diag(rad(C) "
@@ -120,11 +119,11 @@ void register_zonotope_uncertain(Registrar& registrar) {
   registrar.observer(
       {{"zonotope_uncertain",
         "set recursion with an output gain; standard linear systems with interval matrices",
-        "Pourasghar2021", std::move(schema), details},
-       check,
+        "Pourasghar2021", std::move(schema), zonotope_uncertain_details},
+       check_zonotope_uncertain,
        [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
          return std::make_unique<ZonotopeUncertain>(
-             context, params, observer_gain(context, params, "gain", absent()));
+             context, params, observer_gain(context, params, "gain", steady_kalman()));
        },
        true,
        true});

@@ -76,7 +76,7 @@ class EllipsoidBackend final : public SetBackend {
     return make(std::move(set), exact);
   }
 
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     std::vector<Ellipsoid> summands{ellipsoid::affine_map(value(X), p.A, p.f)};
     for (const Term& term : p.terms) {
       summands.push_back(ellipsoid::affine_map(value(term), term.T, Vector::Zero(p.A.rows())));
@@ -86,7 +86,7 @@ class EllipsoidBackend final : public SetBackend {
   }
 
   /// Row by row: z_i - C_i x ∈ T_i V is a strip, whose width is the support of V along T_i.
-  Made do_correct(const Set& X, const Correct& c) const override {
+  Made do_correct(const Set& X, const CorrectionArgs& c) const override {
     const Ellipsoid& noise = value(c.noise);
     if (noise.empty) return make(ellipsoid::make_empty(X.dim()), true);
     Ellipsoid result = value(X);

@@ -28,7 +28,7 @@ CoupledTanks::CoupledTanks(const CoupledTanksParameters& parameters) : of_(param
                                  std::to_string(of_.height) + " cm: give a lower voltage");
 }
 
-Vector CoupledTanks::next(Index, VectorIn x, VectorIn u) const {
+Vector CoupledTanks::do_next(Index, VectorIn x, VectorIn u) const {
   const double voltage = of_.voltage + u[0];
   if (!(voltage >= 0 && voltage <= of_.highest_voltage))
     return Vector::Constant(2, std::numeric_limits<double>::quiet_NaN());
@@ -45,6 +45,6 @@ Vector CoupledTanks::next(Index, VectorIn x, VectorIn u) const {
   return Vector{{upper - upper_, lower - lower_}};
 }
 
-Vector CoupledTanks::output(Index, VectorIn x, VectorIn) const { return x.tail(1); }
+Vector CoupledTanks::do_output(Index, VectorIn x, VectorIn) const { return x.tail(1); }
 
 }  // namespace cordon::plants

@@ -40,13 +40,14 @@ struct CoupledTanksParameters {
 class CoupledTanks final : public Plant {
  public:
   explicit CoupledTanks(const CoupledTanksParameters& parameters);
-  Index states() const override { return 2; }
-  Index inputs() const override { return 1; }
-  Index outputs() const override { return 1; }
-  Vector next(Index k, VectorIn x, VectorIn u) const override;
-  Vector output(Index k, VectorIn x, VectorIn u) const override;
 
  private:
+  Index do_states() const override { return 2; }
+  Index do_inputs() const override { return 1; }
+  Index do_outputs() const override { return 1; }
+  Vector do_next(Index k, VectorIn x, VectorIn u) const override;
+  Vector do_output(Index k, VectorIn x, VectorIn u) const override;
+
   CoupledTanksParameters of_;
   double upper_ = 0, lower_ = 0;  ///< levels at the operating point
 };

@@ -78,7 +78,7 @@ void StirredTank::find_equilibrium() {
                                  ": give values nearer to one, or another coolant_flow");
 }
 
-Vector StirredTank::next(Index, VectorIn x, VectorIn u) const {
+Vector StirredTank::do_next(Index, VectorIn x, VectorIn u) const {
   const double lost = cooling(of_.coolant_flow + u[0]),
                h = of_.sampling / static_cast<double>(of_.substeps);
   State at{equilibrium_.concentration + x[0], equilibrium_.temperature + x[1]};
@@ -100,6 +100,6 @@ Vector StirredTank::next(Index, VectorIn x, VectorIn u) const {
       {at.concentration - equilibrium_.concentration, at.temperature - equilibrium_.temperature}};
 }
 
-Vector StirredTank::output(Index, VectorIn x, VectorIn) const { return x.head(1); }
+Vector StirredTank::do_output(Index, VectorIn x, VectorIn) const { return x.head(1); }
 
 }  // namespace cordon::plants

@@ -41,13 +41,14 @@ struct StirredTankParameters {
 class StirredTank final : public Plant {
  public:
   explicit StirredTank(const StirredTankParameters& parameters);
-  Index states() const override { return 2; }
-  Index inputs() const override { return 1; }
-  Index outputs() const override { return 1; }
-  Vector next(Index k, VectorIn x, VectorIn u) const override;
-  Vector output(Index k, VectorIn x, VectorIn u) const override;
 
  private:
+  Index do_states() const override { return 2; }
+  Index do_inputs() const override { return 1; }
+  Index do_outputs() const override { return 1; }
+  Vector do_next(Index k, VectorIn x, VectorIn u) const override;
+  Vector do_output(Index k, VectorIn x, VectorIn u) const override;
+
   struct State {
     double concentration, temperature;
   };

@@ -6,7 +6,8 @@
 #include <numeric>
 #include <vector>
 
-#include "cordon/core/kept_memory.hpp"
+#include "cordon/core/tolerances.hpp"
+#include "cordon/core/workspace.hpp"
 #include "nonzero_columns.hpp"
 #include "row_scales.hpp"
 #include "rows.hpp"
@@ -17,10 +18,8 @@ namespace {
 
 /// A pivot below this part of its row's scale does not count: the row is then left to the slack of
 /// `BasisReduction`.
-constexpr double rank_tolerance = 1e-10;
 /// Rounding level of the elimination, relative to a row's scale: below it a computed residual is
 /// not distinguishable from 0.
-constexpr double noise = 1e-14;
 
 /// Method 4 of [Yang2018]: G = [T V] with a basis T of large columns found by full pivoting, R =
 /// T⁻¹V. Replacing T and v_j by T (I + diag|r_j|) adds the volume ∏(1 + |r_ij|) - 1 - Σ|r_ij| (in
@@ -40,7 +39,7 @@ class BasisReduction {
     eliminate();
   }
 
-  void exchange(MemoryExchange& memory) {
+  void exchange(WorkspaceExchange& memory) {
     memory.swap(G_, scale_, W_, row_, order_, growth_, slack_, sum_, cost_);
   }
 
@@ -84,7 +83,7 @@ class BasisReduction {
   /// Is there more than rounding in a row without a pivot?
   bool has_residual(Index i) const {
     for (Index k = rank_; k < G_.cols(); ++k) {
-      if (std::abs(W_(i, at(order_, k))) > noise) return true;
+      if (std::abs(W_(i, at(order_, k))) > tolerances::product_noise) return true;
     }
     return false;
   }
@@ -120,7 +119,7 @@ class BasisReduction {
       if (sum_[at(order_, k)] > sum_[at(order_, place)]) place = k;
     }
     const double pivot = sum_[at(order_, place)];
-    if (!(pivot > rank_tolerance)) return false;
+    if (!(pivot > tolerances::rank)) return false;
     swap(order_, rank_, place);
     for (Index i = rank_; i < G_.rows(); ++i) {
       if (std::abs(W_(at(row_, i), at(order_, rank_))) != pivot) continue;
@@ -179,7 +178,7 @@ class BasisReduction {
       H.col(k) = (k < rank_ ? growth_[k] : 1.0) * G_.col(at(order_, k));
     Index count = last;
     for (Index i = 0; i < slack_.size(); ++i) {
-      if (!(slack_[i] > noise * static_cast<double>(g - last))) continue;
+      if (!(slack_[i] > tolerances::product_noise * static_cast<double>(g - last))) continue;
       const Index place = at(row_, rank_ + i);
       H(place, count++) = slack_[i] / scale_[place];
     }
@@ -199,13 +198,13 @@ class BasisReduction {
 }  // namespace
 
 Matrix reduce_into_basis(MatrixIn G, Index max_generators) {
-  WithKeptMemory<BasisReduction> basis(KeptFor::generator_reduction);
+  WithWorkspace<BasisReduction> basis(WorkspaceOf::generator_reduction);
   basis->take(G);
   return basis->reduce(max_generators);
 }
 
 ReductionSplit split_into_basis(MatrixIn G, Index max_generators) {
-  WithKeptMemory<BasisReduction> basis(KeptFor::generator_reduction);
+  WithWorkspace<BasisReduction> basis(WorkspaceOf::generator_reduction);
   basis->take(G);
   return basis->split(max_generators);
 }

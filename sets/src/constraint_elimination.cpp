@@ -8,6 +8,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "elimination_plan.hpp"
 #include "elimination_scores.hpp"
 #include "residue.hpp"
@@ -16,15 +17,12 @@ namespace cordon::sets {
 
 namespace {
 
-constexpr double noise = 1e-13;  ///< cancelled to this share of its terms, a coefficient is zero
 constexpr double unreliable = 1e-5;  ///< a row cancelled to this share of its terms is dropped:
                                      ///< what is left is too uncertain to prove anything
 constexpr double rescaling_room = 1e-12;  ///< of its terms: a bound that a factor is rescaled to,
                                           ///< above what roundings of many steps add up to
 constexpr double exact_share = 1e-10;  ///< of its size: a coordinate moved by less counts as exact
 constexpr double pivot_floor = 1e-9;   ///< pivots below this share of their row are not used
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The rows and outputs being reduced. Factors and rows are marked instead of moved. Observers
 /// eliminate in every step: memory is kept.
@@ -41,13 +39,13 @@ class Elimination {
     b_terms_ = X.b.cwiseAbs();
     before_ = before;
     computed_ = (before.rows.array() > 0).any() || (before.state.array() > 0).any();
-    steps_.reserve(at(X.constraints()));
-    in_row_.assign(at(X.constraints()), 1);
+    steps_.reserve(as_size(X.constraints()));
+    in_row_.assign(as_size(X.constraints()), 1);
     free_.setZero(A_.cols());
     free_.head(factors_).setOnes();
   }
 
-  void exchange(MemoryExchange& memory) {
+  void exchange(WorkspaceExchange& memory) {
     memory.swap(G_, A_, A_terms_, c_, b_, b_terms_, before_.rows, before_.state, free_, lower_,
                 upper_, room_, allowed_lower_);
     memory.swap(allowed_upper_, share_, binding_row_, in_row_, live_rows_, live_factors_);
@@ -60,7 +58,7 @@ class Elimination {
   const std::vector<Index>& live_rows() {
     live_rows_.clear();
     for (Index i = 0; i < rows(); ++i) {
-      if (in_row_[at(i)]) live_rows_.push_back(i);
+      if (in_row_[as_size(i)]) live_rows_.push_back(i);
     }
     return live_rows_;
   }
@@ -71,28 +69,28 @@ class Elimination {
   /// noise was dropped.
   void drop_unreliable_rows() {
     for (Index i = 0; i < rows(); ++i) {
-      if (in_row_[at(i)] == 0) continue;
+      if (in_row_[as_size(i)] == 0) continue;
       const double terms =
           std::max(b_terms_[i],
                    vectors::largest_product(width(), free_.data(), A_terms_.data() + i * width()));
       const double left = std::max(scale(i), std::abs(b_[i]));
       if (left > unreliable * terms) continue;
-      in_row_[at(i)] = 0;
+      in_row_[as_size(i)] = 0;
       steps_.push_back({EliminationStep::drop, i, 0});
-      exact_ = exact_ && left <= noise * terms;
+      exact_ = exact_ && left <= tolerances::elimination_noise * terms;
     }
   }
 
   bool exact() const { return exact_; }
 
   void to_gauss_jordan() {
-    std::vector<bool> done(at(rows()), false);
+    std::vector<bool> done(as_size(rows()), false);
     for (Index step = 0; step < rows(); ++step) {
       Index row = -1, col = -1;
       double best = 0;
       for (Index i = 0; i < rows(); ++i) {
         const double largest = scale(i);
-        if (done[at(i)] || !in_row_[at(i)] || largest == 0) continue;
+        if (done[as_size(i)] || !in_row_[as_size(i)] || largest == 0) continue;
         for (Index j = 0; j < factors(); ++j) {
           if (std::abs(A_(i, j)) > best * largest) {
             best = std::abs(A_(i, j)) / largest;
@@ -102,7 +100,7 @@ class Elimination {
         }
       }
       if (row < 0) return;
-      done[at(row)] = true;
+      done[as_size(row)] = true;
       const double pivot = A_(row, col);
       A_.row(row) /= pivot;
       A_terms_.row(row) /= std::abs(pivot);
@@ -111,7 +109,7 @@ class Elimination {
       before_.rows[row] /= std::abs(pivot);
       steps_.push_back({EliminationStep::clear_column, row, col});
       for (Index i = 0; i < rows(); ++i) {
-        if (i != row && in_row_[at(i)]) subtract_row(i, row, A_(i, col), col);
+        if (i != row && in_row_[as_size(i)]) subtract_row(i, row, A_(i, col), col);
       }
       drop_unreliable_rows();
     }
@@ -127,7 +125,7 @@ class Elimination {
     share_.setConstant(width(), pivot_floor);
     binding_row_.setConstant(width(), -1);
     for (Index i = 0; i < rows(); ++i) {
-      if (in_row_[at(i)] == 0) continue;
+      if (in_row_[as_size(i)] == 0) continue;
       survey_row(i, A_.row(i).lpNorm<1>(), pivot_floor * scale(i));
     }
   }
@@ -142,7 +140,7 @@ class Elimination {
     room_ = upper_.array() - 1;
     for (int pass = 0; pass < 2; ++pass) {
       for (Index i = 0; i < rows(); ++i) {
-        if (in_row_[at(i)]) tighten_by_row(i);
+        if (in_row_[as_size(i)]) tighten_by_row(i);
       }
     }
   }
@@ -217,9 +215,9 @@ class Elimination {
       G_(i, col) = 0;
     }
     for (Index i = 0; i < rows(); ++i) {
-      if (i != row && in_row_[at(i)]) subtract_row(i, row, A_(i, col) / A_(row, col), col);
+      if (i != row && in_row_[as_size(i)]) subtract_row(i, row, A_(i, col) / A_(row, col), col);
     }
-    in_row_[at(row)] = 0;
+    in_row_[as_size(row)] = 0;
     free_[col] = 0;
   }
 
@@ -238,12 +236,12 @@ class Elimination {
                 g = static_cast<Index>(live_factors_.size());
     LineForm X{M, Matrix(n, g), c_, Matrix::Zero(m, M.cols()), Matrix(m, g), Vector(m)};
     const auto copy = [&](const Rows& from, Index row, Matrix& to, Index place) {
-      for (Index j = 0; j < g; ++j) to(place, j) = from(row, live_factors_[at(j)]);
+      for (Index j = 0; j < g; ++j) to(place, j) = from(row, live_factors_[as_size(j)]);
     };
     for (Index i = 0; i < n; ++i) copy(G_, i, X.G, i);
     Terms terms{Vector::Zero(m), before_.state};
     for (Index i = 0; i < m; ++i) {
-      const Index row = rows_left[at(i)];
+      const Index row = rows_left[as_size(i)];
       copy(A_, row, X.A, i);
       X.b[i] = b_[row];
       // a row 0 = b that was not dropped is false by more than rounding
@@ -255,7 +253,6 @@ class Elimination {
   }
 
  private:
-  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   Index width() const { return A_.cols(); }
   double scale(Index i) const { return vectors::largest_size(width(), A_.data() + i * width()); }
 
@@ -292,7 +289,7 @@ class Elimination {
         const double entry = to[j] - factor * from[j], passed = size * from_terms[j];
         const double terms = to_terms[j] < passed ? passed : to_terms[j];
         to_terms[j] = terms;
-        to[j] = std::abs(entry) <= noise * terms ? 0 : entry;
+        to[j] = std::abs(entry) <= tolerances::elimination_noise * terms ? 0 : entry;
       }
       b_[i] -= factor * b_[row];
       b_terms_[i] = std::max(b_terms_[i], size * b_terms_[row]);
@@ -380,7 +377,7 @@ Reduced eliminate_constraints(const LineForm& X, const Terms& before, Index max_
     throw Error(Errc::invalid, "constraint elimination: a negative number of constraints");
   if (X.lines() > 0 && X.S.size() > 0 && !X.S.isZero(0))
     throw Error(Errc::invalid, "constraint elimination: lines must be eliminated first");
-  WithKeptMemory<Elimination> work(KeptFor::constraint_elimination);
+  WithWorkspace<Elimination> work(WorkspaceOf::constraint_elimination);
   work->take(X, before);
   const bool exact = run(*work, max_constraints, options);
   return {work->result(X.M), exact};
@@ -393,7 +390,7 @@ Reduced eliminate_constraints(const LineForm& X, Index max_constraints,
 
 std::vector<EliminationStep> plan_elimination(const LineForm& X, Index max_constraints,
                                               const ConstraintElimination& options) {
-  WithKeptMemory<Elimination> work(KeptFor::constraint_elimination);
+  WithWorkspace<Elimination> work(WorkspaceOf::constraint_elimination);
   work->take(X, no_terms(X));
   run(*work, max_constraints, options);
   return work->steps();

@@ -62,8 +62,6 @@ inline rounding::Range times(rounding::Range a, rounding::Range x) {
 inline bool is_finite(rounding::Range x) {
   return std::isfinite(x.lower) && std::isfinite(x.upper);
 }
-inline rounding::Range line() {
-  return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-}
+inline rounding::Range line() { return {-infinity, infinity}; }
 
 }  // namespace cordon::sets::directed

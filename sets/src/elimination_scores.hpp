@@ -22,7 +22,7 @@ class EliminationScores {
   /// ξ_col is no longer bounded.
   void forget(Index col);
 
-  void exchange(MemoryExchange& memory) {
+  void exchange(WorkspaceExchange& memory) {
     memory.swap(F_, Q_, moved_, diagonal_, moved_squares_, K_, independent_);
   }
 

@@ -11,6 +11,7 @@
 #include "basis_reduction.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "nonzero_columns.hpp"
 #include "reduction_split.hpp"
 #include "require.hpp"
@@ -21,7 +22,6 @@ namespace cordon::sets {
 namespace {
 
 /// Radii below this share of the largest are rounding of the rotation: flat sets stay flat.
-constexpr double noise = 1e-14;
 /// `adaptive` keeps the result of `yang_scott` as long as it widens no coordinate by more than this
 /// factor.
 constexpr double most_widening = 1.01;
@@ -61,7 +61,7 @@ using Rows = std::vector<Index>;
 
 /// The last of the sorted columns are replaced by a box along the columns of S⁻¹ Q, Q orthogonal, S
 /// = diag(scale).
-struct Box {
+struct ReductionBox {
   Matrix sorted;
   Index kept = 0;
   Vector scale;
@@ -76,7 +76,8 @@ struct Box {
     Vector radii = box_radii(linalg::transposed_product(Q, scale.asDiagonal() * replaced()));
     for (const Rows& group : groups) {
       const double largest = radii(group).maxCoeff();
-      for (const Index i : group) radii[i] = radii[i] <= noise * largest ? 0.0 : radii[i];
+      for (const Index i : group)
+        radii[i] = radii[i] <= tolerances::product_noise * largest ? 0.0 : radii[i];
     }
     Matrix H(dim(), kept + dim());
     H << sorted.leftCols(kept), directions() * radii.asDiagonal();
@@ -84,7 +85,7 @@ struct Box {
   }
 };
 
-Box along_coordinates(const Matrix& G, Index max_generators, Size size) {
+ReductionBox along_coordinates(const Matrix& G, Index max_generators, Size size) {
   const Index n = G.rows();
   return {sorted_by_size(G, size),
           std::min(max_generators - n, G.cols()),
@@ -94,7 +95,7 @@ Box along_coordinates(const Matrix& G, Index max_generators, Size size) {
 }
 
 /// Radii per coordinate need no rotation, and none is left out.
-Matrix boxed(const Box& box) {
+Matrix boxed(const ReductionBox& box) {
   const Index n = box.dim();
   Matrix H(n, box.kept + n);
   H << box.sorted.leftCols(box.kept), box_radii(box.replaced()).asDiagonal().toDenseMatrix();
@@ -102,9 +103,9 @@ Matrix boxed(const Box& box) {
 }
 
 /// Rows whose largest entries differ by up to 2¹⁶, from the largest downwards. Axes are sought
-/// within each group alone: a row of smaller numbers is as often rounding noise as it is a small
-/// unit, and a rotation that mixes both widens the larger one by what is noise, or swamps the
-/// smaller one by rounding errors of the larger.
+/// within each group alone: a row of smaller numbers is as often rounding noise
+/// as it is a small unit, and a rotation that mixes both widens the larger one by what is
+/// noise, or swamps the smaller one by rounding errors of the larger.
 std::vector<Rows> comparable_rows(MatrixIn G) {
   Rows order(static_cast<std::size_t>(G.rows()));
   std::iota(order.begin(), order.end(), Index{0});
@@ -126,8 +127,8 @@ enum class Axes { principal, qr };
 
 enum class Units { own, equal };  ///< of the rows: as they are, or by the largest entry of each
 
-Box along_axes(const Matrix& G, Index max_generators, Size size, Axes kind, Units units) {
-  Box box = along_coordinates(G, max_generators, size);
+ReductionBox along_axes(const Matrix& G, Index max_generators, Size size, Axes kind, Units units) {
+  ReductionBox box = along_coordinates(G, max_generators, size);
   const Matrix replaced = box.replaced();
   if (units == Units::equal) box.scale = row_scales(replaced);
   const Matrix scaled = box.scale.asDiagonal() * replaced;
@@ -140,8 +141,8 @@ Box along_axes(const Matrix& G, Index max_generators, Size size, Axes kind, Unit
   return box;
 }
 
-Box box_of(const Matrix& G, Index max_generators, GeneratorReduction method,
-           Units units = Units::own) {
+ReductionBox box_of(const Matrix& G, Index max_generators, GeneratorReduction method,
+                    Units units = Units::own) {
   switch (method) {
     case GeneratorReduction::pca:
       return along_axes(G, max_generators, Size::norm_1_minus_max, Axes::principal, units);
@@ -162,8 +163,8 @@ Vector widening(MatrixIn G, MatrixIn H) {
 
 /// The result of `yang_scott`, or a box that widens the coordinates less in their sum.
 struct Adapted {
-  Matrix basis;            ///< the result of yang_scott
-  std::optional<Box> box;  ///< the box in its place
+  Matrix basis;                     ///< the result of yang_scott
+  std::optional<ReductionBox> box;  ///< the box in its place
 };
 
 Adapted adapt(const Matrix& G, Index max_generators) {
@@ -172,7 +173,7 @@ Adapted adapt(const Matrix& G, Index max_generators) {
   if (wider.size() == 0 || wider.maxCoeff() <= most_widening) return best;
   double least = wider.sum();
   const auto try_box = [&](GeneratorReduction method, Units units) {
-    Box box = box_of(G, max_generators, method, units);
+    ReductionBox box = box_of(G, max_generators, method, units);
     const double sum = widening(G, box.reduced()).sum();
     if (!(sum < least)) return;
     least = sum;
@@ -184,7 +185,7 @@ Adapted adapt(const Matrix& G, Index max_generators) {
   return best;
 }
 
-ReductionSplit as_split(const Box& box) {
+ReductionSplit as_split(const ReductionBox& box) {
   return {box.sorted.leftCols(box.kept), box.replaced(), box.directions(), false};
 }
 

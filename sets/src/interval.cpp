@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "cordon/core/tolerances.hpp"
 #include "directed.hpp"
 #include "require.hpp"
 
@@ -41,7 +42,6 @@ using Row = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
 
 /// Rounding errors of the nominal operations that made a measurement or a box, relative to their
 /// terms: less is no proof of emptiness.
-constexpr double nominal_error = 1e-10;
 
 enum class Progress { none, some, empty };
 
@@ -70,8 +70,9 @@ class RowContractor {
       after(j) = directed::plus(after(j + 1), own);
       terms += largest(own);
     }
-    const double doubt = nominal_error * terms, room = off_ * terms;
-    if (room > nominal_error * (y.upper - y.lower)) y = directed::plus(y, Range{-room, room});
+    const double doubt = tolerances::proof_margin * terms, room = off_ * terms;
+    if (room > tolerances::proof_margin * (y.upper - y.lower))
+      y = directed::plus(y, Range{-room, room});
     if (frees == 0 && (after(0).lower - y.upper > doubt || y.lower - after(0).upper > doubt))
       return Progress::empty;
     Progress progress = Progress::none;

@@ -24,8 +24,6 @@ namespace {
 /// errors.
 constexpr double rounding_share = 1e-9;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// H, square, with {Wξ} ⊆ {Hη}: the frame's columns, scaled. With R ≈ H⁻¹, E = I - R H and V = Σ_j
 /// |R w_j| it holds Y = Σ_j |H⁻¹ w_j| ≤ V + |E| Y, so that V + |E| 1 ≤ 1, |E| 1 < 1 proves Y ≤ 1.
 /// Nothing without a proof.
@@ -107,8 +105,8 @@ void follow_plan(TrackedForm& form, Index max_constraints, const ConstraintElimi
   std::vector<Index> row_of, factor_of;
   const LineForm nominal = form.nominal(row_of, factor_of);
   for (const EliminationStep& step : plan_elimination(nominal, max_constraints, options)) {
-    const Index row = row_of[at(step.row)];
-    const Index col = factor_of.empty() ? 0 : factor_of[at(step.col)];
+    const Index row = row_of[as_size(step.row)];
+    const Index col = factor_of.empty() ? 0 : factor_of[as_size(step.col)];
     if (step.kind != EliminationStep::drop &&
         form.coefficient(row, col) == 0) {  // cancelled here, not there
       form.drop(row);
@@ -203,13 +201,13 @@ Matrix reduce_generators(MatrixIn G, Index max_generators, GeneratorReduction me
     if (!all.row(i).isZero(0)) rows.push_back(i);
   }
   Matrix dense(static_cast<Index>(rows.size()), all.cols());
-  for (Index i = 0; i < dense.rows(); ++i) dense.row(i) = all.row(rows[at(i)]);
+  for (Index i = 0; i < dense.rows(); ++i) dense.row(i) = all.row(rows[as_size(i)]);
   const Columns columns(dense);
   const Matrix reduced = columns.count() <= max_generators
                              ? columns.beside(columns.others)
                              : reduce_columns(columns, max_generators, method);
   Matrix H = Matrix::Zero(G.rows(), reduced.cols());
-  for (Index i = 0; i < dense.rows(); ++i) H.row(rows[at(i)]) = reduced.row(i);
+  for (Index i = 0; i < dense.rows(); ++i) H.row(rows[as_size(i)]) = reduced.row(i);
   if (!H.allFinite())
     throw Error(Errc::not_finite, "generator reduction: overflow; scale the problem");
   return without_zero_columns(H);

@@ -23,15 +23,15 @@ using Node =
 __extension__ typedef __int128 Wide;
 
 constexpr double flat_tolerance =
-    1e-12;                        ///< thickness, relative to the interval hull, that counts as none
-constexpr double step = 0x1p-36;  ///< of the grid
+    1e-12;  ///< thickness, relative to the interval hull, that counts as none
+constexpr double grid_step = 0x1p-36;  ///< of the grid
 constexpr double moved =
-    0.8661 * step;  ///< how far a point is moved to the grid at most: √3/2 steps
+    0.8661 * grid_step;  ///< how far a point is moved to the grid at most: √3/2 steps
 /// Differences of such nodes are at most 2⁴¹ steps, so that their determinants stay below 2¹²⁶.
 constexpr double largest_coordinate = 16;
 
-Node nearest_node(const Point& x) { return (x / step).array().round().cast<std::int64_t>(); }
-Point position(const Node& a) { return a.cast<double>() * step; }
+Node nearest_node(const Point& x) { return (x / grid_step).array().round().cast<std::int64_t>(); }
+Point position(const Node& a) { return a.cast<double>() * grid_step; }
 
 Point cross(const Point& a, const Point& b) {
   return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
@@ -273,7 +273,7 @@ VolumeBounds volume(const SupportOracle& X, double relative_tolerance, Index max
   const double factor = set.volume_factor(), aim = relative_tolerance / 100;
   Hull hull;
   Index queries = 0;
-  VolumeBounds bounds{0, std::numeric_limits<double>::infinity(), false};
+  VolumeBounds bounds{0, infinity, false};
   while (ask_facets(hull, set, queries, max_queries)) {
     const VolumeBounds found = bounds_of(hull);
     bounds = {factor * found.lower, factor * found.upper, false};

@@ -3,13 +3,13 @@
 // loop is faster than preparing for large ones. Large ones go the usual way.
 #pragma once
 
-#include "cordon/core/kept_memory.hpp"
 #include "cordon/core/vectors.hpp"
+#include "cordon/core/workspace.hpp"
 
 namespace cordon::sets {
 
 /// Rows filled with zeros up to whole vectors: cols() is the padded number.
-using Rows = KeptMemory::Rows;
+using Rows = Workspace::Rows;
 
 Rows padded_rows(MatrixIn A);
 void take_padded_rows(MatrixIn A, Rows& rows);

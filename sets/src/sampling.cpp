@@ -55,7 +55,7 @@ class Walk {
   void step(Random& random) {
     const Vector direction = random.cube(N_.cols());
     const Vector along = linalg::product(N_, direction), offset = point() - middle_;
-    double first = -std::numeric_limits<double>::infinity(), last = -first;
+    double first = -infinity, last = -first;
     for (Index i = 0; i < along.size(); ++i) {
       if (along[i] == 0) continue;
       const double a = (-radius_[i] - offset[i]) / along[i],

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cordon/core/rounding.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "require.hpp"
 #include "residue.hpp"
 #include "strip_gain.hpp"
@@ -15,7 +16,6 @@ namespace {
 
 /// Accumulated rounding errors of a nominal set, relative to its size: less is no proof of
 /// emptiness.
-constexpr double nominal_error = 1e-10;
 
 /// A zonotope that is known up to rounding errors, coordinate by coordinate.
 struct Computed {
@@ -60,7 +60,8 @@ bool intersect(Computed& X, VectorIn rho, Strip strip, StripMethod method) {
                highest = rounding::up(middle.upper + spread);
   const double lower = rounding::down(strip.d - strip.sigma),
                upper = rounding::up(strip.d + strip.sigma);
-  const double margin = nominal_error * (strip.terms + rho.cwiseAbs().dot(Z.c.cwiseAbs()) + spread);
+  const double margin =
+      tolerances::proof_margin * (strip.terms + rho.cwiseAbs().dot(Z.c.cwiseAbs()) + spread);
   if (lowest - upper > margin || lower - highest > margin) return false;
   if (lower <= lowest && highest <= upper) return true;
   double d = strip.d, sigma = strip.sigma;

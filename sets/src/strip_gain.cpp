@@ -24,7 +24,6 @@ constexpr Index max_normals = 20000;
 constexpr double smallest_part = 1e-6;
 /// A strip whose share of what Z meets is no larger counts as a hyperplane.
 constexpr double hyperplane = 1e-10;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// ρᵀx, or 0 where too much of it has cancelled. This is decided in the coordinates of the set: in
 /// any other basis the terms that cancelled are no longer seen.

@@ -11,7 +11,6 @@
 namespace cordon::sets {
 
 namespace {
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// A number of this size is the outward rounding of 0; its inverse would overflow.
 constexpr double underflow = 1e-290;
 }  // namespace

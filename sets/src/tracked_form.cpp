@@ -11,8 +11,6 @@ namespace cordon::sets {
 
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// row -= factor · pivot, entry by entry; errors go to the radius.
 template <class Row, class Pivot>
 void combine(Row row, double factor, const Pivot& pivot, double& radius) {
@@ -43,8 +41,8 @@ TrackedForm::TrackedForm(LineForm X)
       row_radius_(Vector::Zero(X_.constraints())),
       state_radius_(Vector::Zero(X_.dim())),
       row_terms_(X_.constraints()),
-      live_(at(X_.constraints()), true),
-      free_(at(X_.generators()), true) {
+      live_(as_size(X_.constraints()), true),
+      free_(as_size(X_.generators()), true) {
   for (Index i = 0; i < rows(); ++i) row_terms_[i] = scale(i);
 }
 
@@ -88,7 +86,7 @@ void TrackedForm::eliminate(Index row, Index col) {
   }
   for (Index i = 0; i < X_.dim(); ++i) subtract_from_state(i, row, col);
   drop(row);
-  free_[at(col)] = false;
+  free_[as_size(col)] = false;
 }
 
 bool TrackedForm::best_pivot(const std::vector<Index>& among_rows,
@@ -99,7 +97,7 @@ bool TrackedForm::best_pivot(const std::vector<Index>& among_rows,
     if (!is_live(i)) continue;
     const double largest = X_.A.row(i).cwiseAbs().maxCoeff();
     for (const Index j : among_factors) {
-      if (free_[at(j)] && std::abs(X_.A(i, j)) > best * largest) {
+      if (free_[as_size(j)] && std::abs(X_.A(i, j)) > best * largest) {
         best = std::abs(X_.A(i, j)) / largest;
         row = i;
         col = j;
@@ -133,7 +131,7 @@ bool TrackedForm::rescale() {
       contract(unit_box(g), A, b, row_radius_.asDiagonal().toDenseMatrix(), unit_box(m));
   if (left.is_empty()) return false;
   for (Index j = 0; j < g; ++j) {
-    if (!free_[at(j)] || (left.lower[j] == -1 && left.upper[j] == 1)) continue;
+    if (!free_[as_size(j)] || (left.lower[j] == -1 && left.upper[j] == 1)) continue;
     const double mid = left.lower[j] / 2 + left.upper[j] / 2;
     const double rad = std::max({0.0, directed::plus(left.upper[j], -mid).upper,
                                  directed::plus(mid, -left.lower[j]).upper});
@@ -161,16 +159,16 @@ LineForm TrackedForm::nominal(std::vector<Index>& row_of, std::vector<Index>& fa
     if (is_live(i) && !has_lines(i)) row_of.push_back(i);
   }
   for (Index j = 0; j < factors(); ++j) {
-    if (free_[at(j)]) factor_of.push_back(j);
+    if (free_[as_size(j)]) factor_of.push_back(j);
   }
   const Index m = static_cast<Index>(row_of.size()), g = static_cast<Index>(factor_of.size()),
               n = X_.dim();
   LineForm Y{Matrix(n, 0), Matrix(n, g), X_.c, Matrix(m, 0), Matrix(m, g), Vector(m)};
   for (Index k = 0; k < g; ++k) {
-    Y.G.col(k) = X_.G.col(factor_of[at(k)]);
-    for (Index i = 0; i < m; ++i) Y.A(i, k) = X_.A(row_of[at(i)], factor_of[at(k)]);
+    Y.G.col(k) = X_.G.col(factor_of[as_size(k)]);
+    for (Index i = 0; i < m; ++i) Y.A(i, k) = X_.A(row_of[as_size(i)], factor_of[as_size(k)]);
   }
-  for (Index i = 0; i < m; ++i) Y.b[i] = X_.b[row_of[at(i)]];
+  for (Index i = 0; i < m; ++i) Y.b[i] = X_.b[row_of[as_size(i)]];
   return Y;
 }
 
@@ -180,15 +178,15 @@ LineForm TrackedForm::result() const {
     if (is_live(i)) row_of.push_back(i);
   }
   for (Index j = 0; j < factors(); ++j) {
-    if (free_[at(j)]) factor_of.push_back(j);
+    if (free_[as_size(j)]) factor_of.push_back(j);
   }
   const Index m = static_cast<Index>(row_of.size()), g = static_cast<Index>(factor_of.size());
   LineForm Y{X_.M, Matrix(X_.dim(), g), X_.c, Matrix(m, X_.lines()), Matrix(m, g), Vector(m)};
   Vector row_radius(m);
-  for (Index k = 0; k < g; ++k) Y.G.col(k) = X_.G.col(factor_of[at(k)]);
+  for (Index k = 0; k < g; ++k) Y.G.col(k) = X_.G.col(factor_of[as_size(k)]);
   for (Index i = 0; i < m; ++i) {
-    const Index row = row_of[at(i)];
-    for (Index k = 0; k < g; ++k) Y.A(i, k) = X_.A(row, factor_of[at(k)]);
+    const Index row = row_of[as_size(i)];
+    for (Index k = 0; k < g; ++k) Y.A(i, k) = X_.A(row, factor_of[as_size(k)]);
     Y.S.row(i) = X_.S.row(row);
     Y.b[i] = X_.b[row];
     row_radius[i] = row_radius_[row];

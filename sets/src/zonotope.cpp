@@ -196,7 +196,7 @@ double support(const Zonotope& Z, VectorIn d) {
   const double spread =
       Z.generators() == 0 ? 0.0 : rounding::residual_norm_1(Vector::Zero(Z.generators()), Z.G, d);
   const double h = rounding::up(rounding::dot(d, Z.c).upper + spread);
-  return std::isnan(h) ? std::numeric_limits<double>::infinity() : h;
+  return std::isnan(h) ? infinity : h;
 }
 
 double f_radius(const Zonotope& Z) { return Z.G.size() == 0 ? 0.0 : Z.G.stableNorm(); }

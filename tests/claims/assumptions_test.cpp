@@ -7,8 +7,8 @@
 
 #include "claims/program.hpp"
 #include "cordon/solvers/set_questions.hpp"
-#include "study/running/assumption_check.hpp"
-#include "study/running/outside.hpp"
+#include "study/checks/assumption_check.hpp"
+#include "study/checks/outside.hpp"
 
 using namespace claims;
 using namespace cordon;

@@ -79,14 +79,13 @@ class OpenLoop final : public Observer {
 
 /// x⁺ = 0.5 x + u + 0.01 x², y = x + 0.02 x³: no linear model.
 class Bent final : public Plant {
- public:
-  Index states() const override { return 1; }
-  Index inputs() const override { return 1; }
-  Index outputs() const override { return 1; }
-  Vector next(Index, VectorIn x, VectorIn u) const override {
+  Index do_states() const override { return 1; }
+  Index do_inputs() const override { return 1; }
+  Index do_outputs() const override { return 1; }
+  Vector do_next(Index, VectorIn x, VectorIn u) const override {
     return Vector{{.5 * x[0] + u[0] + .01 * x[0] * x[0]}};
   }
-  Vector output(Index, VectorIn x, VectorIn) const override {
+  Vector do_output(Index, VectorIn x, VectorIn) const override {
     return Vector{{x[0] + .02 * x[0] * x[0] * x[0]}};
   }
 };

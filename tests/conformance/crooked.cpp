@@ -38,7 +38,7 @@ class Crooked final : public SetBackend {
       std::raise(SIGSEGV);
     return {std::make_unique<Form>(*this, X), Tightness::exact};
   }
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     LineForm sum = cordon::affine_map(X.line_form(), p.A, p.f);
     for (const Term& term : p.terms) {
       sum = minkowski_sum(

@@ -90,7 +90,7 @@ class Polyhedra final : public SetBackend {
             out.tightness};
   }
   Made do_import(const LineForm& X) const override { return made(Polytope::from(X)); }
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     Polytope sum = value(X).affine_map(p.A, p.f);
     for (const Term& term : p.terms)
       sum = sum.minkowski_sum(value(*term.set).affine_map(term.T, Vector::Zero(p.A.rows())));

@@ -7,7 +7,7 @@
 #include <rapidcheck.h>
 
 #include "study/data/csv_source.hpp"
-#include "study/results/numbers.hpp"
+#include "study/text/numbers.hpp"
 
 using namespace cordon;
 

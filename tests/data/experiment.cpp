@@ -116,12 +116,11 @@ const Matrix pulses{{1.}, {-2.}, {0.}, {3.}};
 
 /// x⁺ = x / 2, y = x1.
 class HalvingPlant final : public Plant {
- public:
-  Index states() const override { return 2; }
-  Index inputs() const override { return 1; }
-  Index outputs() const override { return 1; }
-  Vector next(Index, VectorIn x, VectorIn) const override { return x / 2; }
-  Vector output(Index, VectorIn x, VectorIn) const override { return x.head(1); }
+  Index do_states() const override { return 2; }
+  Index do_inputs() const override { return 1; }
+  Index do_outputs() const override { return 1; }
+  Vector do_next(Index, VectorIn x, VectorIn) const override { return x / 2; }
+  Vector do_output(Index, VectorIn x, VectorIn) const override { return x.head(1); }
 };
 
 }  // namespace

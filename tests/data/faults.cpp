@@ -76,19 +76,21 @@ const Box half{Vector{{.5, 1.}}, Vector{{.5, 1.}}}, weak{Vector{{.2, 1.}}, Vecto
 
 class Tank final : public Plant {
  public:
-  Index states() const override { return 2; }
-  Index inputs() const override { return 2; }
-  Index outputs() const override { return 2; }
-  Vector next(Index k, VectorIn x, VectorIn u) const override {
+  Index throws_at = -1, wrong_at = -1, overflows_at = -1;
+
+ private:
+  Index do_states() const override { return 2; }
+  Index do_inputs() const override { return 2; }
+  Index do_outputs() const override { return 2; }
+  Vector do_next(Index k, VectorIn x, VectorIn u) const override {
     if (k == throws_at) throw std::runtime_error("the tank is empty");
     if (k == wrong_at) return Vector(3);
     if (k == overflows_at) return Vector{{1., std::numeric_limits<double>::infinity()}};
     return Vector{{.5 * x[0] + u[0], x[1] * x[1] / 16 + u[1]}};
   }
-  Vector output(Index, VectorIn x, VectorIn u) const override {
+  Vector do_output(Index, VectorIn x, VectorIn u) const override {
     return Vector{{x[0] + u[0], x[1]}};
   }
-  Index throws_at = -1, wrong_at = -1, overflows_at = -1;
 };
 
 Study tank_study(std::vector<FaultSpec> faults, Noise noise, Tank tank = {}) {
@@ -301,7 +303,7 @@ TEST_CASE("a plant that misbehaves") {
   CHECK(end_of(tank).find("next state at k = 7 threw the tank is empty") != std::string::npos);
   tank = {};
   tank.wrong_at = 3;
-  CHECK(end_of(tank).find("next state at k = 3 has 3 entries, not 2") != std::string::npos);
+  CHECK(end_of(tank).find("has size 3, must be 2") != std::string::npos);
   tank = {};
   tank.overflows_at = 3;
   CHECK(end_of(tank).find("/data/simulate/plant: its next state is not finite at k = 3") !=

@@ -16,8 +16,6 @@ using namespace cordon::examples;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// What every answer with an input has to keep.
 void check_answer(const SeparationProblem& problem, const SearchResult& found) {
   REQUIRE(found.u);

@@ -18,8 +18,6 @@ using examples::random_vector;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 Index draw(std::mt19937& random, Index least, Index most) {
   return std::uniform_int_distribution<Index>(least, most)(random);
 }

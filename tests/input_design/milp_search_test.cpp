@@ -15,8 +15,6 @@ using examples::scalar_problem;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 MilpLimits generators(Index count) { return {count, 2, 1e-6, 60}; }
 
 SearchResult search(const SeparationProblem& problem, const MilpLimits& limits) {

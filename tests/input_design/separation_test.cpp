@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "designers/tube/separation.hpp"
+#include "tubes/separation.hpp"
 
 #include <cmath>
 #include <random>

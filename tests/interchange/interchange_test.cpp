@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Studies and sets that go to MATLAB come back as they were.
-#include "cordon/study/interchange.hpp"
+#include "cordon/experiments/interchange.hpp"
 
 #include <cmath>
 #include <limits>
@@ -8,11 +8,11 @@
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
+#include "experiments/interchange/json_to_mat.hpp"
+#include "experiments/interchange/mat_file.hpp"
+#include "experiments/interchange/model_to_mat.hpp"
 #include "run/scratch.hpp"
 #include "study/fakes.hpp"
-#include "study/interchange/json_to_mat.hpp"
-#include "study/interchange/mat_file.hpp"
-#include "study/interchange/model_to_mat.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/reading/read_sets.hpp"
 #include "study/same_study.hpp"
@@ -22,8 +22,6 @@ using mat::Value;
 using study_test::exchanged;
 
 namespace {
-
-const double inf = std::numeric_limits<double>::infinity();
 
 void put(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary) << text;
@@ -152,7 +150,7 @@ TEST_CASE("boxes are recognised, and only boxes") {
       const double x = *rc::gen::inRange(-1000, 1000) / 64.0,
                    y = *rc::gen::inRange(-1000, 1000) / 256.0;
       box.lower[i] = std::min(x, y), box.upper[i] = std::max(x, y);
-      if (*rc::gen::inRange(0, 5) == 0) box.lower[i] = -inf, box.upper[i] = inf;
+      if (*rc::gen::inRange(0, 5) == 0) box.lower[i] = -infinity, box.upper[i] = infinity;
       if (*rc::gen::inRange(0, 5) == 0) box.lower[i] = box.upper[i] = x;
     }
     const LineForm X = make_box(box);
@@ -222,10 +220,10 @@ TEST_CASE("sets come back bit by bit, and as they were written") {
 }
 
 TEST_CASE("the fields of a set") {
-  const Value X = mat::to_mat(make_box({Vector{{-1, -inf}}, Vector{{3, inf}}}));
+  const Value X = mat::to_mat(make_box({Vector{{-1, -infinity}}, Vector{{3, infinity}}}));
   CHECK(X.field("type")->text == "box");
-  CHECK(X.field("lower")->numbers == Matrix{{-1}, {-inf}});
-  CHECK(X.field("upper")->numbers == Matrix{{3}, {inf}});
+  CHECK(X.field("lower")->numbers == Matrix{{-1}, {-infinity}});
+  CHECK(X.field("upper")->numbers == Matrix{{3}, {infinity}});
   CHECK(X.field("c")->numbers == Matrix{{1}, {0}});
   CHECK(X.field("G")->numbers == Matrix{{2}, {0}});
   CHECK(X.field("M")->numbers == Matrix{{0}, {1}});
@@ -396,7 +394,7 @@ TEST_CASE("what is wrong in a system is told by its field") {
   const double nan = std::nan("");
   expect_problem(with(plain(), "A", mat::matrix(Matrix{{1, nan}, {0, 1}})), "/A",
                  "holds NaN in row 1, column 2");
-  expect_problem(with(plain(), "A", mat::matrix(Matrix{{1, inf}, {0, 1}})), "/A",
+  expect_problem(with(plain(), "A", mat::matrix(Matrix{{1, infinity}, {0, 1}})), "/A",
                  "holds Inf in row 1, column 2");
   expect_problem(with(plain(), "A", mat::text("x")), "/A", "is a text");
   expect_problem(with(plain(), "C", mat::matrix(Matrix{{1, 0, 0}})), "/C", "must have 2 columns");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // MAT-files are read as they were written, and whatever their bytes are, the program goes on.
-#include "study/interchange/mat_file.hpp"
+#include "experiments/interchange/mat_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,9 +13,9 @@
 #include <rapidcheck.h>
 
 #include "cordon/core/error.hpp"
+#include "experiments/interchange/mat_wire.hpp"
+#include "experiments/interchange/utf16.hpp"
 #include "run/scratch.hpp"
-#include "study/interchange/mat_wire.hpp"
-#include "study/interchange/utf16.hpp"
 
 using namespace cordon;
 using mat::Value;
@@ -49,10 +49,9 @@ bool same(const mat::Variables& a, const mat::Variables& b) {
 }
 
 mat::Variables sample() {
-  const double inf = std::numeric_limits<double>::infinity();
   mat::Struct inner;
   inner.set("type", mat::text("box"))
-      .set("lower", mat::matrix(Matrix{{-inf, 0.1}}))
+      .set("lower", mat::matrix(Matrix{{-infinity, 0.1}}))
       .set("none", mat::matrix(Matrix(2, 0)));
   mat::Struct first, second;
   first.set("name", mat::text("Grüße an „x“ 😀")).set("x", mat::number(std::nan("")));

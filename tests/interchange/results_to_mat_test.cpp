@@ -5,19 +5,15 @@
 
 #include <doctest/doctest.h>
 
-#include "study/interchange/json_to_mat.hpp"
-#include "study/interchange/mat_file.hpp"
-#include "study/interchange/steps_to_mat.hpp"
+#include "experiments/interchange/json_to_mat.hpp"
+#include "experiments/interchange/mat_file.hpp"
+#include "experiments/interchange/steps_to_mat.hpp"
 #include "study/reading/read_parts.hpp"
 
 using namespace cordon;
 using mat::Value;
 
-namespace {
-
-const double inf = std::numeric_limits<double>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("JSON values as values of MATLAB") {
   json::Problems problems;
@@ -28,11 +24,11 @@ TEST_CASE("JSON values as values of MATLAB") {
   REQUIRE_FALSE(problems.any());
   const Value value = mat::to_mat(tree);
   CHECK(std::isnan(value.field("a_b")->numbers(0, 0)));
-  CHECK(value.field("inf")->numbers(0, 0) == -inf);
+  CHECK(value.field("inf")->numbers(0, 0) == -infinity);
   CHECK(value.field("t")->text == "text");
   CHECK(value.field("yes")->numbers(0, 0) == 1);
   CHECK(value.field("row")->numbers.cols() == 3);
-  CHECK(value.field("row")->numbers(0, 2) == inf);
+  CHECK(value.field("row")->numbers(0, 2) == infinity);
   CHECK(value.field("M")->numbers == Matrix{{1, 2}, {3, 4}});
   CHECK(value.field("ragged")->is(Value::Kind::cell));
   CHECK(value.field("list")->items[0].field("x")->numbers(0, 0) == 1);
@@ -52,8 +48,8 @@ TEST_CASE("steps become rows") {
   mat::add_steps(out, observer);
   const Value steps = std::move(out).value();
   CHECK(steps.field("k")->numbers == Matrix{{0, 1}});
-  CHECK(steps.field("lower")->numbers == Matrix{{1, 3}, {-inf, 4}});
-  CHECK(steps.field("upper")->numbers == Matrix{{2, 5}, {inf, 6}});
+  CHECK(steps.field("lower")->numbers == Matrix{{1, 3}, {-infinity, 4}});
+  CHECK(steps.field("upper")->numbers == Matrix{{2, 5}, {infinity, 6}});
   CHECK(std::isnan(steps.field("inner_lower")->numbers(1, 0)));
   CHECK(steps.field("inner_upper")->numbers(1, 1) == 5);
   CHECK(steps.field("consistent")->numbers(0, 0) == 1);

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "cordon/study/interchange.hpp"
+#include "cordon/experiments/interchange.hpp"
 #include "run/scratch.hpp"
 #include "study/fakes.hpp"
 

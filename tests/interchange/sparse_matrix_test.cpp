@@ -16,8 +16,9 @@ const std::string sparse_A =
     R"("A": {"rows": 2, "cols": 2, "entries": [[2, 2, 2], [1, 1, 0.5], [1, 2, 1]]})";
 
 void expect_wrong(const std::string& matrix, const std::string& place, const std::string& message,
-                  const std::string& mend) {
-  expect_reported(valid_study, {dense_A, "\"A\": " + matrix, "/system/A" + place, message, mend});
+                  const std::string& suggestion) {
+  expect_reported(valid_study,
+                  {dense_A, "\"A\": " + matrix, "/system/A" + place, message, suggestion});
 }
 
 }  // namespace

@@ -12,7 +12,6 @@ using banks::registry;
 namespace {
 
 const char* const observers[] = {"zonotope_uncertain", "interval_trajectory", "integrated"};
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::vector<Diagnostic> check(const std::string& name, const Model& model, const Params& params,
                               const std::string& sets = "line_zonotope") {
@@ -59,7 +58,7 @@ TEST_CASE("sets without bounds, of another dimension, empty") {
     without.X0 = make_space(3);
     expect_one(check(name, without, monotone()), "", "the system's X0 is unbounded");
     CHECK(check(name, without, monotone().set("initial_set", model.X0)).empty());
-    const LineForm slab = make_box({Vector{{0, 0, -infinite}}, Vector{{1, 1, infinite}}});
+    const LineForm slab = make_box({Vector{{0, 0, -infinity}}, Vector{{1, 1, infinity}}});
     expect_one(check(name, model, monotone().set("initial_set", slab)), "/initial_set",
                "unbounded");
     expect_one(check(name, model, monotone().set("initial_set", make_point(Vector::Zero(2)))),

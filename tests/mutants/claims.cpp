@@ -21,7 +21,7 @@ class ImportBoxes final : public Reference {
 
 class SumBoxesTerms final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     LineForm sum = cordon::affine_map(form(X), p.A, p.f);
     for (const Term& term : p.terms) {
       sum = minkowski_sum(
@@ -34,7 +34,7 @@ class SumBoxesTerms final : public Reference {
 /// Sums of many generators are cut down on the way.
 class LongSumsAreBoxed final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     const LineForm sum = predicted(X, p);
     return {make(!p.terms.empty() && form(X).generators() > 4 ? hull_of(sum) : sum),
             Tightness::exact};
@@ -43,14 +43,14 @@ class LongSumsAreBoxed final : public Reference {
 
 class MapBoxes final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     return {make(hull_of(predicted(X, p))), Tightness::exact};
   }
 };
 
 class ProductBoxes final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     const LineForm sum = predicted(X, p);
     return {make(p.A.rows() > p.A.cols() && !p.terms.empty() ? hull_of(sum) : sum),
             Tightness::exact};
@@ -66,7 +66,7 @@ class IntersectionOfHulls final : public Reference {
 
 class CorrectByHull final : public Reference {
   using Reference::Reference;
-  Made do_correct(const Set& X, const Correct& c) const override {
+  Made do_correct(const Set& X, const CorrectionArgs& c) const override {
     const LineForm target = cordon::affine_map(form(*c.noise.set), -c.noise.T, c.z);
     return {make(cordon::intersection(form(X), c.C, hull_of(target))), Tightness::exact};
   }
@@ -107,7 +107,7 @@ class SelfIntersectionIsBox final : public Reference {
 
 class ZeroIsNotNeutral final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     LineForm sum = predicted(X, p);
     for (const Term& term : p.terms) {
       if (form(*term.set).generators() == 0) sum = hull_of(sum);

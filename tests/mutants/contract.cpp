@@ -33,7 +33,7 @@ class ReduceInPlace final : public Reference {
 /// values and of nothing else.
 class SharedScratch final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     static std::array<std::atomic<double>, 64> scratch;
     LineForm sum = predicted(X, p);
     const Index n = std::min<Index>(sum.dim(), 64);
@@ -47,7 +47,7 @@ class SharedScratch final : public Reference {
 /// Every other sum has a small generator more: sound, but another set.
 class DependsOnHistory final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     static std::atomic<unsigned> calls{0};
     const LineForm sum = predicted(X, p);
     if (++calls % 2 == 0) return {make(sum), Tightness::exact};
@@ -67,7 +67,7 @@ class ThrowsOutOfRange final : public Reference {
 
 class ThrowsNumber final : public Reference {
   using Reference::Reference;
-  Made do_correct(const Set& X, const Correct& c) const override {
+  Made do_correct(const Set& X, const CorrectionArgs& c) const override {
     if (c.C.isZero(0)) throw 7;
     return Reference::do_correct(X, c);
   }
@@ -106,7 +106,7 @@ class LendsForms final : public Reference {
   std::unique_ptr<const Set> make(LineForm form) const override {
     return std::make_unique<Borrowed>(*this, std::move(form));
   }
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     return {
         std::make_unique<Borrowed>(*this, predicted(X, p), static_cast<const Borrowed&>(X).alive()),
         Tightness::exact};
@@ -116,7 +116,7 @@ class LendsForms final : public Reference {
 /// Keeps the backend, and so the plugin, alive for ever.
 class KeepsItself final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     static const auto* const kept = new std::shared_ptr<const SetBackend>(shared_from_this());
     return {make(predicted(X, p)), *kept ? Tightness::exact : Tightness::outer};
   }
@@ -124,7 +124,7 @@ class KeepsItself final : public Reference {
 
 class CrashesInOneDimension final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     if (X.dim() == 1) std::raise(SIGSEGV);
     return Reference::do_predict(X, p);
   }
@@ -160,7 +160,7 @@ ParamSchema schema_of_half() {
 /// A map keeps as many coordinates as its operand has.
 class WrongDimension final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     const LineForm sum = predicted(X, p);
     const Index kept = std::min(sum.dim(), X.dim());
     return {make(cordon::affine_map(sum, Matrix::Identity(kept, sum.dim()), Vector::Zero(kept))),

@@ -30,7 +30,7 @@ class ImportDropsGenerator final : public Reference {
 
 class SumDropsGenerator final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     const LineForm sum = predicted(X, p);
     return {make(p.terms.empty() ? sum : without_last_generator(sum)), Tightness::exact};
   }
@@ -38,7 +38,7 @@ class SumDropsGenerator final : public Reference {
 
 class MapOfOneSign final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     LineForm sum = predicted(X, p);
     const Index g = form(X).generators();
     sum.G.leftCols(g) = linalg::product(p.A.cwiseMax(0.0), form(X).G);
@@ -48,14 +48,14 @@ class MapOfOneSign final : public Reference {
 
 class PredictForgetsTranslation final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     return {make(predicted(X, {p.A, Vector::Zero(p.f.size()), p.terms})), Tightness::exact};
   }
 };
 
 class PredictForgetsMap final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     LineForm sum = cordon::affine_map(form(X), p.A, p.f);
     for (const Term& term : p.terms) {
       const Matrix T = ones(term.T.rows(), term.T.cols());
@@ -67,7 +67,7 @@ class PredictForgetsMap final : public Reference {
 
 class ProductSwapsBlocks final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     const LineForm sum = predicted(X, p);
     const Index n = p.A.cols(), m = p.A.rows() - n;
     const bool product = p.terms.size() == 1 && p.terms.front().T.cols() == m && m > 0 &&
@@ -90,7 +90,7 @@ class IntersectionForgetsMap final : public Reference {
 
 class CorrectForgetsNoiseMap final : public Reference {
   using Reference::Reference;
-  Made do_correct(const Set& X, const Correct& c) const override {
+  Made do_correct(const Set& X, const CorrectionArgs& c) const override {
     const MatrixIn& T = c.noise.T;
     return {make(corrected(X, c.C, c.z, ones(T.rows(), T.cols()), *c.noise.set)), Tightness::exact};
   }
@@ -98,14 +98,14 @@ class CorrectForgetsNoiseMap final : public Reference {
 
 class CorrectMirrorsNoise final : public Reference {
   using Reference::Reference;
-  Made do_correct(const Set& X, const Correct& c) const override {
+  Made do_correct(const Set& X, const CorrectionArgs& c) const override {
     return {make(corrected(X, c.C, c.z, -c.noise.T, *c.noise.set)), Tightness::exact};
   }
 };
 
 class CorrectIgnoresPointNoise final : public Reference {
   using Reference::Reference;
-  Made do_correct(const Set& X, const Correct& c) const override {
+  Made do_correct(const Set& X, const CorrectionArgs& c) const override {
     const bool point = form(*c.noise.set).generators() == 0;
     const Matrix T =
         point ? Matrix(Matrix::Zero(c.noise.T.rows(), c.noise.T.cols())) : Matrix(c.noise.T);
@@ -116,7 +116,7 @@ class CorrectIgnoresPointNoise final : public Reference {
 /// Where a set knows C_i x already, rounding decides where it moves.
 class DividesByNoise final : public Reference {
   using Reference::Reference;
-  Made do_correct(const Set& X, const Correct& c) const override {
+  Made do_correct(const Set& X, const CorrectionArgs& c) const override {
     LineForm known = form(X);
     for (Index i = 0; i < c.C.rows(); ++i) {
       const Box seen =
@@ -176,7 +176,7 @@ class ReduceExceedsBudget final : public Reference {
 
 class EmptyNeutralInSum final : public Reference {
   using Reference::Reference;
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     LineForm sum = cordon::affine_map(form(X), p.A, p.f);
     for (const Term& term : p.terms) {
       if (term.set->is_empty() == Answer::yes) continue;

@@ -11,8 +11,6 @@ namespace mutants {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 double largest(const LineForm& X) {
   double size = 0;
   if (X.dim() > 0) size = X.c.cwiseAbs().maxCoeff();

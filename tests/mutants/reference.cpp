@@ -23,7 +23,7 @@ Box LineSet::do_interval_hull(std::vector<Certificate>* why) const {
   return cordon::interval_hull(form_, why);
 }
 
-LineForm Reference::predicted(const Set& X, const Predict& p) {
+LineForm Reference::predicted(const Set& X, const PredictionArgs& p) {
   LineForm sum = cordon::affine_map(form(X), p.A, p.f);
   for (const Term& term : p.terms) {
     sum = minkowski_sum(sum, cordon::affine_map(form(*term.set), term.T, Vector::Zero(p.A.rows())));
@@ -43,7 +43,6 @@ LineForm Reference::boxed(const LineForm& X, Budget budget) {
   Box hull = cordon::interval_hull(X);
   // ∅ takes a row; where the budget has none, any set encloses it
   if (hull.is_empty()) return budget.constraints > 0 ? make_empty(X.dim()) : make_point(X.c);
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   for (Index i = 0; i < hull.dim(); ++i) {
     if (std::isfinite(hull.lower[i]) && std::isfinite(hull.upper[i])) continue;
     hull.lower[i] = -infinity;
@@ -59,7 +58,7 @@ LineForm Reference::boxed(const LineForm& X, Budget budget) {
   return box;
 }
 
-SetBackend::Made Reference::do_correct(const Set& X, const Correct& c) const {
+SetBackend::Made Reference::do_correct(const Set& X, const CorrectionArgs& c) const {
   return {make(corrected(X, c.C, c.z, c.noise.T, *c.noise.set)), Tightness::exact};
 }
 

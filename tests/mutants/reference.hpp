@@ -49,7 +49,7 @@ class Reference : public SetBackend {
     return std::make_unique<LineSet>(*this, std::move(form));
   }
 
-  static LineForm predicted(const Set& X, const Predict& p);
+  static LineForm predicted(const Set& X, const PredictionArgs& p);
   static LineForm corrected(const Set& X, MatrixIn C, VectorIn z, MatrixIn T, const Set& noise);
   /// The hull as a set within the budget; Errc::invalid if it has more edges than the budget
   /// generators.
@@ -57,10 +57,10 @@ class Reference : public SetBackend {
   static bool fits(const LineForm& X, Budget budget);
 
   Made do_import(const LineForm& X) const override { return {make(X), Tightness::exact}; }
-  Made do_predict(const Set& X, const Predict& p) const override {
+  Made do_predict(const Set& X, const PredictionArgs& p) const override {
     return {make(predicted(X, p)), Tightness::exact};
   }
-  Made do_correct(const Set& X, const Correct& c) const override;
+  Made do_correct(const Set& X, const CorrectionArgs& c) const override;
   Made do_interval_map(const Set& X, const IntervalMatrix& A) const override;
   Made do_intersection(const Set& X, MatrixIn R, const Set& Y) const override;
   Made do_convex_hull(const Set& X, const Set& Y) const override;

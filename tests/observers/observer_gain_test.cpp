@@ -14,9 +14,10 @@ namespace {
 class Fixed final : public GainDesigner {
  public:
   explicit Fixed(GainDesign answer) : answer_(std::move(answer)) {}
-  GainDesign design(const Model&) const override { return answer_; }
 
  private:
+  GainDesign do_design(const Model&) const override { return answer_; }
+
   GainDesign answer_;
 };
 

@@ -11,8 +11,6 @@ using namespace uncertain;
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
 void expect_truth_inside(const std::string& observer_name, const std::string& name,
                          const Model& model, const Params& params) {
   const auto observer = registry().make_observer(observer_name, {model, backend(name)}, params);
@@ -149,8 +147,8 @@ TEST_CASE("what nothing bounds is left open, what is exact is used") {
       registry().make_observer("prediction_correction", {model, backend("line_zonotope")}, {});
   for (Index k = 0; k < 3; ++k)
     hull = blind->step({k, Vector(0), Vector{{1, 2, 2}}}).set->interval_hull();
-  CHECK(hull.lower[0] == -infinite);  // only ever seen through the interval
-  CHECK(hull.upper[0] == infinite);
+  CHECK(hull.lower[0] == -infinity);  // only ever seen through the interval
+  CHECK(hull.upper[0] == infinity);
   CHECK(hull.upper[1] < 3);
 }
 

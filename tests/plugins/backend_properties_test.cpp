@@ -17,8 +17,6 @@ using namespace cordon;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-
 /// A set with points known to lie in it.
 struct Sampled {
   LineForm form;
@@ -213,7 +211,7 @@ TEST_CASE("the empty set absorbs, and is neutral in the hull") {
     CHECK(backend->product(X, none)->is_empty() == Answer::yes);
     CHECK(backend->intersection(X, I, none)->is_empty() == Answer::yes);
     CHECK(backend->affine_map(none, I, Vector::Zero(2))->is_empty() == Answer::yes);
-    CHECK(none->support(Vector{{1, 0}}) == -inf);
+    CHECK(none->support(Vector{{1, 0}}) == -infinity);
     CHECK(none->interval_hull().is_empty());
     CHECK(none->contains(Vector{{0, 0}}) == Answer::no);
     CHECK(none->is_subset_of(*X) == Answer::yes);
@@ -242,11 +240,11 @@ TEST_CASE("unbounded sets: lines and boxes hold them, the others refuse") {
     CHECK(space->is_empty() == Answer::no);
     CHECK(space->contains(Vector{{0, 0}}) == Answer::yes);
     CHECK(space->is_bounded() == Answer::no);
-    CHECK(space->support(Vector{{0, 1}}) == inf);
+    CHECK(space->support(Vector{{0, 1}}) == infinity);
     const Enclosure strip = backend->correct(
         space, {Matrix{{0, 1}}, Vector{{3}}, {Matrix{{1.0}}, backend->box(cube(1, 1))}});
     const Box hull = strip->interval_hull();
-    CHECK(hull.upper[0] == inf);
+    CHECK(hull.upper[0] == infinity);
     CHECK(hull.lower[1] == doctest::Approx(2));
     CHECK(hull.upper[1] == doctest::Approx(4));
   }

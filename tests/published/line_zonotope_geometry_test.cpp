@@ -12,8 +12,6 @@ using namespace cordon;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-
 Matrix matrix(Index rows, Index cols, std::initializer_list<double> values) {
   Matrix A(rows, cols);
   Index k = 0;
@@ -80,7 +78,7 @@ TEST_CASE("3.2.2: two strips in space") {
   CHECK(reduced.constraints() == 0);
   CHECK(std::abs(std::abs(lineality_space(X).col(0).dot(vector({1, 0, -1}) / std::sqrt(2.0))) - 1) <
         1e-12);
-  check_hull(X, vector({-inf, -.1, -inf}), vector({inf, .1, inf}));
+  check_hull(X, vector({-infinity, -.1, -infinity}), vector({infinity, .1, infinity}));
   CHECK(support(X, vector({1, 0, 1})) == doctest::Approx(1.1).epsilon(1e-9));
   CHECK(-support(X, vector({-1, 0, -1})) == doctest::Approx(.9).epsilon(1e-9));
   CHECK(is_bounded(X) == Answer::no);
@@ -112,11 +110,12 @@ TEST_CASE("2.1: feasible sets of a descriptor system, bounded and unbounded star
   check_hull(S[1], vector({.2, -1.105, -.1125}), vector({.3, -.4875, .505}));
   check_hull(S[2], vector({.1, -.88975, .003125}), vector({.15, -.303125, .58975}));
 
-  LineForm start = make_box({vector({.4, -inf, -inf}), vector({.6, inf, inf})});
+  LineForm start = make_box({vector({.4, -infinity, -infinity}), vector({.6, infinity, infinity})});
   const double bounds[3][2] = {{.4, .6}, {.2, .3}, {.1, .15}};
   int k = 0;
   for (const LineForm& X : feasible(start)) {
-    check_hull(X, vector({bounds[k][0], -inf, -inf}), vector({bounds[k][1], inf, inf}));
+    check_hull(X, vector({bounds[k][0], -infinity, -infinity}),
+               vector({bounds[k][1], infinity, infinity}));
     const Matrix lines = lineality_space(X);
     CHECK(lines.cols() == 1);
     CHECK(std::abs(std::abs(lines.col(0).dot(vector({0, -1, 1}) / std::sqrt(2.0))) - 1) < 1e-12);

@@ -95,7 +95,7 @@ TEST_CASE("doctor tells what became of every library, and returns 3 if any was r
   const json report = json::parse(machine.out);
   CHECK(report.at("search_path").at(0) ==
         json{{"directory", CORDON_GOOD_PLUGINS}, {"exists", true}});
-  for (const char* tool : {"cordon", "compiler", "eigen", "boost", "nlohmann_json"})
+  for (const char* tool : {"cordon", "compiler", "eigen", "boost", "nlohmann_json", "cddlib"})
     CHECK(report.at("versions").contains(tool));
   const json* refused = entry(report.at("plugins"), "file", CORDON_BAD_PLUGINS "/unresolved.so");
   REQUIRE(refused);

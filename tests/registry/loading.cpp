@@ -181,7 +181,7 @@ TEST_CASE("exceptions of a plugin arrive as errors that name it, and outlive it"
       "metric \"throws_int\" of plugin \"test_faults\" threw something that is no std::exception");
   CHECK(message_of(Errc::unsupported, [&] { made("throws_error"); }) == "cannot enclose");
   CHECK(message_of(Errc::invalid, [&] { made("throws_input_error"); }) ==
-        "study.json: 1 error\n  /a: is wrong; mend it");
+        "study.json: 1 error\n  /a: is wrong; repair it");
   CHECK(message_of(Errc::plugin, [&] { made("returns_nothing"); }) ==
         "metric \"returns_nothing\" of plugin \"test_faults\" was not made: its function returned "
         "nothing");

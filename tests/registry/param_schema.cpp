@@ -11,7 +11,6 @@ using namespace cordon;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 ParamSchema everything() {
@@ -108,7 +107,7 @@ TEST_CASE("an integer becomes real where a real is asked for, never the other wa
   CHECK(only_problem(everything(), Params().set("max_generators", 30.5)).suggestion.empty());
 
   ParamSchema wide;
-  wide.real("x", "any number", {}, -inf, inf);
+  wide.real("x", "any number", {}, -infinity, infinity);
   Params exact, inexact;
   exact.set("x", std::int64_t{1} << 53);
   CHECK(wide.complete(exact).empty());
@@ -117,11 +116,11 @@ TEST_CASE("an integer becomes real where a real is asked for, never the other wa
 
 TEST_CASE("NaN and infinite numbers are refused everywhere, also without limits") {
   ParamSchema schema;
-  schema.real("x", "any number", {}, -inf, inf)
+  schema.real("x", "any number", {}, -infinity, infinity)
       .vector("v", "vector")
       .matrix("m", "matrix")
       .set("s", "set");
-  for (const double number : {not_a_number, inf, -inf}) {
+  for (const double number : {not_a_number, infinity, -infinity}) {
     CHECK(only_problem(schema, Params().set("x", number)).pointer == "/x");
     CHECK(only_problem(schema, Params().set("v", Vector(Vector::Constant(2, number)))).pointer ==
           "/v");
@@ -135,7 +134,7 @@ TEST_CASE("NaN and infinite numbers are refused everywhere, also without limits"
 
 TEST_CASE("the limits belong to the range; one-sided limits are named as such") {
   ParamSchema schema;
-  schema.real("above", "a", {}, 2.0, inf).real("below", "b", {}, -inf, 2.0);
+  schema.real("above", "a", {}, 2.0, infinity).real("below", "b", {}, -infinity, 2.0);
   Params edge;
   CHECK(schema.complete(edge.set("above", 2.0).set("below", 2.0)).empty());
   CHECK(only_problem(schema, Params().set("above", 1.5)).message == "is 1.5, must be at least 2");

@@ -38,27 +38,29 @@ struct BadPlugin {
 };
 
 const BadPlugin bad_plugins[] = {
-    {"bad_name", "metric \"CamelCase\" is not in snake_case", "mend what the plugin registers"},
+    {"bad_name", "metric \"CamelCase\" is not in snake_case", "repair what the plugin registers"},
     {"contradictory", "parameter \"size\" has a default that is 11, must lie in [0, 10]",
      "A. Uthor"},
     {"control_characters", "the text \"summary\" of its descriptor is damaged", "rebuild"},
     {"crashes",
      "it ends the process when it is opened: ", "it is tried again when the file changes"},
     {"empty_string", "its descriptor lacks author", "fill in every field"},
-    {"ends_the_process", "it ends the process when it is opened: exit code 0", "mend or remove it"},
+    {"ends_the_process", "it ends the process when it is opened: exit code 0",
+     "repair or remove it"},
     {"fast_math", "fast_math: 1 in the plugin, 0 here",
      "rebuild the plugin with this installation's headers and flags"},
     {"flushes_subnormals",
      "changes the floating-point arithmetic of the whole process when it is opened: subnormal "
      "numbers become zero",
      "link it without -ffast-math"},
-    {"grows", "it ends the process when it is opened: exit code 1; it said: ", "mend or remove it"},
+    {"grows",
+     "it ends the process when it is opened: exit code 1; it said: ", "repair or remove it"},
     {"no_creator", "metric \"without_creator\" has no function that makes it",
-     "mend what the plugin registers"},
+     "repair what the plugin registers"},
     {"no_descriptor", "exports no symbol cordon_plugin_descriptor", "cordon_add_plugin"},
-    {"no_summary", "metric \"without_summary\" has no summary", "mend what the plugin registers"},
+    {"no_summary", "metric \"without_summary\" has no summary", "repair what the plugin registers"},
     {"registers_nothing", "its descriptor lacks register_components", "fill in every field"},
-    {"repeats_itself", "metric \"twice\" is registered twice", "mend what the plugin registers"},
+    {"repeats_itself", "metric \"twice\" is registered twice", "repair what the plugin registers"},
     {"rounds_down",
      "changes the floating-point arithmetic of the whole process when it is opened: its rounding "
      "or its traps",
@@ -67,12 +69,12 @@ const BadPlugin bad_plugins[] = {
      "signal 6 (Aborted); it said: terminate called after throwing an instance of "
      "'std::runtime_error' what(): no "
      "room for static objects",
-     "mend or remove it"},
+     "repair or remove it"},
     {"throws_int", "threw something that is no std::exception while registering", "A. Uthor"},
     {"throws_late", "threw while registering: no licence server", "A. Uthor"},
     {"undocumented",
      "parameter \"quiet\" of metric \"with_undocumented_parameter\" is not documented",
-     "mend what the plugin registers"},
+     "repair what the plugin registers"},
     {"unresolved", "cordon_test_function_that_is_nowhere", "with every library it needs"},
     {"wrong_size", "its descriptor has 1096 bytes, must have 1104",
      "rebuild the plugin with this installation's headers and flags"},
@@ -81,7 +83,7 @@ const BadPlugin bad_plugins[] = {
     {"wrong_version", "it was built for plugin ABI 3, this is 2",
      "rebuild the plugin with this installation's headers and flags"},
 #if defined(CORDON_SANITIZED_PLUGINS)
-    {"linked_with_sanitizer", "exit code 1; it said: ==", "mend or remove it"},
+    {"linked_with_sanitizer", "exit code 1; it said: ==", "repair or remove it"},
     {"with_sanitizer", "asan: 1 in the plugin, 0 here",
      "rebuild the plugin with this installation's headers and flags"},
 #endif

@@ -65,11 +65,9 @@ class OpenLoop final : public Observer {
 };
 
 class StepCount final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView&) override { return {{"steps", ++steps_}}; }
-  std::vector<MetricValue> summary() const override { return {{"steps", steps_}}; }
+  std::vector<MetricValue> do_step(const StepView&) override { return {{"steps", ++steps_}}; }
+  std::vector<MetricValue> do_summary() const override { return {{"steps", steps_}}; }
 
- private:
   Index steps_ = 0;
 };
 

@@ -26,7 +26,7 @@ void register_components(Registrar& registrar) {
     throw Error(Errc::unsupported, "cannot enclose");
   });
   metric("throws_input_error", [](const Params&) -> std::unique_ptr<Metric> {
-    throw InputError("study.json", {{"/a", "is wrong", "mend it"}});
+    throw InputError("study.json", {{"/a", "is wrong", "repair it"}});
   });
   metric("returns_nothing", [](const Params&) -> std::unique_ptr<Metric> { return nullptr; });
 }

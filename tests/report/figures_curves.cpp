@@ -8,15 +8,13 @@
 #include <rapidcheck.h>
 
 #include "cordon/core/error.hpp"
+#include "experiments/report/read_report.hpp"
 #include "report/results_files.hpp"
-#include "study/report/read_report.hpp"
 
 using namespace cordon;
 using namespace cordon::report;
 
 namespace {
-
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 const Plot& plot(const Report& report, const std::string& id) {
   for (const Figure& figure : report.figures) {
@@ -63,8 +61,8 @@ TEST_CASE("bounds: bands of pipelines, inner bands, truth, gaps and marks") {
   CHECK(truth.pipeline == of_data);
   CHECK(truth.y == std::vector<double>{0.25, 0.75, 1});
   const Plot& second = plot(report, "bounds_2");
-  CHECK(second.series[0].y[0] == -inf);
-  CHECK(second.series[0].upper[0] == inf);
+  CHECK(second.series[0].y[0] == -infinity);
+  CHECK(second.series[0].upper[0] == infinity);
   CHECK(second.series[1].upper[1] == 1.5);
   CHECK(second.series[3].y == std::vector<double>{0.5, -0.5, 2});
   REQUIRE(first.marks.size() == 2);
@@ -97,7 +95,7 @@ TEST_CASE("bounds less the truth, for every pipeline from its first step on") {
   REQUIRE(first.marks.size() == 1);
   CHECK(first.marks[0].text == "outside the bank");
   const Plot& second = plot(report, "bounds_less_truth_2");
-  CHECK(second.series[0].y[0] == -inf);
+  CHECK(second.series[0].y[0] == -infinity);
   CHECK(second.series[0].upper[1] == 3.5);
   std::string rows = "k,y_1,x_1,x_2\n1,0,0.75,-0.5\n";  // the truth of one time
   files.write("data.csv", rows);

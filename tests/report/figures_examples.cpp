@@ -12,8 +12,8 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/report/read_report.hpp"
 #include "report/find_figure.hpp"
-#include "study/report/read_report.hpp"
 
 using namespace cordon::report;
 using Json = nlohmann::ordered_json;

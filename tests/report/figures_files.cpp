@@ -5,10 +5,9 @@
 #include <doctest/doctest.h>
 
 #include "cordon/core/error.hpp"
-#include "cordon/study/report.hpp"
+#include "cordon/experiments/report.hpp"
+#include "experiments/report/figure_csv.hpp"
 #include "report/results_files.hpp"
-#include "study/report/figure_csv.hpp"
-#include "study/report/try_report.hpp"
 
 using namespace cordon;
 using namespace cordon::report;
@@ -103,14 +102,13 @@ TEST_CASE("a report that fails says why and leaves the old one") {
   const std::string page = files.read("report.html");
   files.replace("steps.csv", "a,1,", "a,x,");
   std::vector<std::filesystem::path> written;
-  CHECK(try_report(cordon::detail::DirectoryLock(files.path()), written).find("steps.csv") !=
-        std::string::npos);
+  CHECK(add_report(files.path(), written).find("steps.csv") != std::string::npos);
   CHECK(written.empty());
   CHECK(files.read("report.html") == page);
   CHECK_THROWS_WITH_AS(write_report(files.path() / "nothing"), doctest::Contains("is no directory"),
                        InputError);
   CHECK_THROWS_AS(write_report(files.path() / "steps.csv"), InputError);
   files.replace("steps.csv", "a,x,", "a,1,");
-  CHECK(try_report(cordon::detail::DirectoryLock(files.path()), written).empty());
+  CHECK(add_report(files.path(), written).empty());
   CHECK(written.size() == 1);
 }

@@ -8,8 +8,8 @@
 #include <rapidcheck.h>
 
 #include "cordon/core/error.hpp"
+#include "experiments/report/outline.hpp"
 #include "run/scratch.hpp"
-#include "study/report/figures/outline.hpp"
 
 using namespace cordon;
 using report::Outline;

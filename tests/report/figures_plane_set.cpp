@@ -8,7 +8,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/solvers/polytope.hpp"
-#include "study/report/figures/plane_set.hpp"
+#include "experiments/report/plane_set.hpp"
 
 using namespace cordon;
 using namespace cordon::report;

@@ -7,8 +7,8 @@
 #include <rapidcheck.h>
 
 #include "cordon/core/error.hpp"
+#include "experiments/report/read_report.hpp"
 #include "report/results_files.hpp"
-#include "study/report/read_report.hpp"
 
 using namespace cordon;
 using namespace cordon::report;

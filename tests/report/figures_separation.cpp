@@ -8,8 +8,8 @@
 #include "cordon/core/line_elimination.hpp"
 #include "cordon/solvers/polytope.hpp"
 #include "cordon/solvers/set_questions.hpp"
-#include "study/report/figures/separation.hpp"
-#include "study/verification/common_runs.hpp"
+#include "experiments/report/separation.hpp"
+#include "study/checks/common_runs.hpp"
 
 using namespace cordon;
 using namespace cordon::report;

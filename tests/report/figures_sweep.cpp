@@ -6,9 +6,9 @@
 
 #include <doctest/doctest.h>
 
+#include "experiments/report/read_report.hpp"
 #include "report/find_figure.hpp"
 #include "report/results_files.hpp"
-#include "study/report/read_report.hpp"
 
 using namespace cordon::report;
 

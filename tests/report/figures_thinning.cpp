@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
-#include "study/report/figures/thinning.hpp"
+#include "experiments/report/thinning.hpp"
 
 using namespace cordon::report;
 

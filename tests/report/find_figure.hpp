@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "study/report/figure.hpp"
+#include "experiments/report/figure.hpp"
 
 inline const cordon::report::Figure* find_figure(const cordon::report::Report& report,
                                                  const std::string& id) {

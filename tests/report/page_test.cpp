@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/report/page/page.hpp"
+#include "experiments/report/page.hpp"
 
 #include <fstream>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/report/page_data.hpp"
 #include "report/sample_reports.hpp"
-#include "study/report/page/page_data.hpp"
 
 using namespace cordon::report;
 using Json = nlohmann::json;
@@ -39,7 +39,7 @@ TEST_CASE("numbers have six digits, more where they differ little") {
   CHECK(packed_numbers({1.23456789, -1e-9, 1e300}) == "[1.23457,-1e-09,1e+300]");
   CHECK(packed_numbers({1000.00012, 1000.00034}) == "[1000.00012,1000.00034]");
   CHECK(packed_numbers({1000.0001234567, 1000.0003}) == "[1000.000123457,1000.0003]");
-  CHECK(packed_numbers({sample::infinite, -sample::infinite, sample::missing}) ==
+  CHECK(packed_numbers({cordon::infinity, -cordon::infinity, sample::missing}) ==
         "[\"inf\",\"-inf\",null]");
   CHECK(packed_numbers({1234567, 0, -0.0}) == "[1234567,0,0]");
   CHECK(packed_numbers({}) == "[]");
@@ -80,7 +80,7 @@ TEST_CASE("bands are rounded outwards") {
   const std::vector<double> values{1.23456789, -1.23456749, 9.9999999e-9, -9999999900.5, 0, 0.5};
   CHECK(packed_numbers(values, Rounding::down) == "[1.23456,-1.23457,9.99999e-09,-1e+10,0,0.5]");
   CHECK(packed_numbers(values, Rounding::up) == "[1.23457,-1.23456,1e-08,-9.99999e+09,0,0.5]");
-  CHECK(packed_numbers({1e-310, sample::infinite, -sample::infinite, sample::missing},
+  CHECK(packed_numbers({1e-310, cordon::infinity, -cordon::infinity, sample::missing},
                        Rounding::up) == "[1e-310,\"inf\",\"-inf\",null]");
   Report report;
   report.pipelines = {"a"};

@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "study/report/figure.hpp"
+#include "experiments/report/figure.hpp"
 
 namespace sample {
 
 using namespace cordon::report;
 
-inline constexpr double infinite = std::numeric_limits<double>::infinity();
 inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 inline Plot plot(int pipelines, std::size_t steps, bool log) {
@@ -91,7 +90,7 @@ inline Timeline timeline() {
 
 inline Intervals intervals() {
   return {{{"model 1, model 2", "model 1", "model 2", -1.25, 0.5, 0.75, 3, "proven disjoint"},
-           {"model 1, model 3", "model 1", "model 3", -infinite, 2, 1, 5, "overlap"}}};
+           {"model 1, model 3", "model 1", "model 3", -cordon::infinity, 2, 1, 5, "overlap"}}};
 }
 
 inline Table table() {
@@ -112,7 +111,7 @@ inline Report every_kind() {
   curves.thresholds = {{"bound", 1.85}};
   curves.marks = {{20, "fault begins"}, {26, "empty", 1}};
   curves.series[1].y[30] = missing;
-  curves.series[1].y[31] = infinite;
+  curves.series[1].y[31] = cordon::infinity;
   Plot steps = plot(2, 40, true);
   for (Series& series : steps.series) series.kind = Series::Kind::steps;
   steps.series[0].y[10] = 0;

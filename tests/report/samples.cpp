@@ -4,9 +4,9 @@
 #include <fstream>
 #include <iostream>
 
+#include "experiments/report/page.hpp"
+#include "experiments/report/svg.hpp"
 #include "report/sample_reports.hpp"
-#include "study/report/page/page.hpp"
-#include "study/report/page/svg.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/report/page/svg.hpp"
+#include "experiments/report/svg.hpp"
 
 #include <sstream>
 
@@ -7,8 +7,8 @@
 #include <boost/property_tree/xml_parser.hpp>
 #include <doctest/doctest.h>
 
+#include "experiments/report/drawing.hpp"
 #include "report/sample_reports.hpp"
-#include "study/report/page/drawing.hpp"
 
 using namespace cordon::report;
 
@@ -137,7 +137,7 @@ TEST_CASE("a gap interrupts a line, infinity leaves the frame, a single value is
               "a",
               0,
               {0, 1, 2, 3, 4, 5},
-              {1, 2, sample::missing, sample::infinite, 2, sample::missing}}}};
+              {1, 2, sample::missing, cordon::infinity, 2, sample::missing}}}};
   const auto curves_tree = drawn(plot);
   const auto curves = drawn_curves(curves_tree);
   REQUIRE(curves.size() == 2);
@@ -251,7 +251,7 @@ TEST_CASE("words stand in place of numbers") {
 
 TEST_CASE("thresholds have their names, and marks theirs where they do not cover each other") {
   Plot plot{"k", "y", false, {{Series::Kind::line, "a", 0, {0, 100}, {0, 1}}}};
-  plot.thresholds = {{"bound", 0.5}, {"at infinity", sample::infinite}};
+  plot.thresholds = {{"bound", 0.5}, {"at infinity", cordon::infinity}};
   for (int i = 0; i < 5; ++i) plot.marks.push_back({50, "something happens " + std::to_string(i)});
   plot.marks.push_back({200, "outside"});
   const Tree tree = drawn(plot);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/report/page/ticks.hpp"
+#include "experiments/report/ticks.hpp"
 
 #include <cmath>
 #include <limits>
@@ -9,7 +9,6 @@
 
 using namespace cordon::report;
 using Ticks = std::vector<double>;
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 TEST_CASE("ticks are 1, 2 or 5 times a power of ten apart") {
   CHECK(nice_ticks(0, 10, 5) == Ticks{0, 2, 4, 6, 8, 10});
@@ -62,30 +61,30 @@ TEST_CASE("numbers are short") {
   CHECK(short_text(0.0001) == "0.0001");
   CHECK(short_text(0.00002) == "2·10⁻⁵");
   CHECK(short_text(999999.9) == "10⁶");
-  CHECK(short_text(infinite) == "∞");
-  CHECK(short_text(-infinite) == "−∞");
+  CHECK(short_text(cordon::infinity) == "∞");
+  CHECK(short_text(-cordon::infinity) == "−∞");
   CHECK(short_text(std::numeric_limits<double>::quiet_NaN()) == "–");
 }
 
-TEST_CASE("an axis maps its ends to its places, and infinity beyond them") {
+TEST_CASE("an axis maps its ends to its places, and cordon::infinity beyond them") {
   const Axis down{2, 6, 100, 20};
   CHECK(down(2) == 100);
   CHECK(down(6) == 20);
   CHECK(down(4) == 60);
-  CHECK(down(infinite) < 20);
-  CHECK(down(-infinite) > 100);
-  CHECK(std::isfinite(down(infinite)));
+  CHECK(down(cordon::infinity) < 20);
+  CHECK(down(-cordon::infinity) > 100);
+  CHECK(std::isfinite(down(cordon::infinity)));
   CHECK(std::isfinite(down(1e300)));
   const Axis log{1, 100, 0, 200, true};
   CHECK(log(10) == doctest::Approx(100));
   CHECK(log(0) < 0);
   CHECK(log(-3) < 0);
-  CHECK(log(infinite) > 200);
+  CHECK(log(cordon::infinity) > 200);
 }
 
 TEST_CASE("an axis covers the finite values, and no more than a margin beyond") {
   const Axis axis =
-      axis_over({-1, 3, infinite, std::numeric_limits<double>::quiet_NaN()}, false, 0, 1);
+      axis_over({-1, 3, cordon::infinity, std::numeric_limits<double>::quiet_NaN()}, false, 0, 1);
   CHECK(axis.lower == doctest::Approx(-1.2));
   CHECK(axis.upper == doctest::Approx(3.2));
   CHECK(axis_over({1, 10}, false, 0, 1).lower == 0);
@@ -95,7 +94,7 @@ TEST_CASE("an axis covers the finite values, and no more than a margin beyond") 
   CHECK(single.upper > 5);
   const Axis zero = axis_over({0}, false, 0, 1);
   CHECK(zero.lower < zero.upper);
-  const Axis nothing = axis_over({infinite}, true, 0, 1);
+  const Axis nothing = axis_over({cordon::infinity}, true, 0, 1);
   CHECK(nothing.lower > 0);
   CHECK(nothing.upper > nothing.lower);
   const Axis log = axis_over({0, -1, 0.01, 100}, true, 0, 1);

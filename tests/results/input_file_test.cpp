@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/reading/input_file.hpp"
+#include "study/text/input_file.hpp"
 
 #include <sys/stat.h>
 

@@ -8,7 +8,7 @@
 
 #include "cordon/core/error.hpp"
 #include "run/scratch.hpp"
-#include "study/results/directory_lock.hpp"
+#include "study/text/directory_lock.hpp"
 
 using namespace cordon;
 using detail::DirectoryLock;

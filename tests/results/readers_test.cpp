@@ -6,15 +6,15 @@
 
 #include <doctest/doctest.h>
 
+#include "cordon/experiments/compare.hpp"
+#include "cordon/experiments/interchange.hpp"
+#include "cordon/experiments/report.hpp"
+#include "cordon/experiments/sweep.hpp"
 #include "cordon/registry/registry.hpp"
-#include "cordon/study/compare.hpp"
-#include "cordon/study/interchange.hpp"
-#include "cordon/study/report.hpp"
 #include "cordon/study/run.hpp"
-#include "cordon/study/sweep.hpp"
 #include "cordon/study/verify.hpp"
 #include "run/scratch.hpp"
-#include "study/reading/input_file.hpp"
+#include "study/text/input_file.hpp"
 
 using namespace cordon;
 

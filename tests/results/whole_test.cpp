@@ -8,7 +8,7 @@
 
 #include "cordon/core/error.hpp"
 #include "run/scratch.hpp"
-#include "study/results/atomic_directory.hpp"
+#include "study/text/atomic_directory.hpp"
 
 using namespace cordon;
 using detail::AtomicDirectory;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/results/atomic_directory.hpp"
+#include "study/text/atomic_directory.hpp"
 
 #include <csignal>
 #include <sys/resource.h>

@@ -264,8 +264,7 @@ class Claiming final : public Observer {
 };
 
 class Radius final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView& view) override {
+  std::vector<MetricValue> do_step(const StepView& view) override {
     largest_ = std::max(largest_, view.hull.longest_half_edge());
     return {{"radius", view.hull.longest_half_edge()},
             {"tightness", std::string("hidden")},
@@ -273,28 +272,25 @@ class Radius final : public Metric {
             {"assumed", std::string(view.assumptions_hold ? "yes" : "no")},
             {"missing", std::nan("")}};
   }
-  std::vector<MetricValue> summary() const override { return {{"radius_max", largest_}}; }
+  std::vector<MetricValue> do_summary() const override { return {{"radius_max", largest_}}; }
 
- private:
   double largest_ = 0;
 };
 
 class Time final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView& view) override {
+  std::vector<MetricValue> do_step(const StepView& view) override {
     return {{"step_time", view.times.step()}};
   }
-  std::vector<MetricValue> summary() const override { return {{"steps_timed", Index{1}}}; }
-  bool reproducible() const override { return false; }
+  std::vector<MetricValue> do_summary() const override { return {{"steps_timed", Index{1}}}; }
+  bool do_reproducible() const override { return false; }
 };
 
 /// Changes the names of its values after the first step.
 class Fickle final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView& view) override {
+  std::vector<MetricValue> do_step(const StepView& view) override {
     return {{view.estimate.k == 0 ? "a" : "b", 1.0}};
   }
-  std::vector<MetricValue> summary() const override { return {}; }
+  std::vector<MetricValue> do_summary() const override { return {}; }
 };
 
 /// Says what its script tells it, whatever the data are: `excludes` is contradicted, and the

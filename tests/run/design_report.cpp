@@ -303,7 +303,6 @@ TEST_CASE("experiments that stay open because the diagnoser stops before the inp
 }
 
 TEST_CASE("how far a search is") {
-  const double infinity = std::numeric_limits<double>::infinity();
   CHECK(apps::design_progress("AFD", 3, infinity, -infinity) == "AFD  N = 3");
   CHECK(apps::design_progress("AFD", 3, infinity, 2) == "AFD  N = 3  at least 2");
   CHECK(apps::design_progress("AFD", 3, 4, 3) == "AFD  N = 3  best 4  at least 3  (25 %)");

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "cordon/experiments/report.hpp"
 #include "cordon/study/design.hpp"
 #include "run/components.hpp"
 #include "run/scratch.hpp"
@@ -31,6 +32,7 @@ Registry& registry() {
 
 RunOutcome run(const Study& study, const std::filesystem::path& out = {}, RunOptions options = {}) {
   options.out = out;
+  options.report = add_report;
   return run_study(study, registry(), options);
 }
 

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "cordon/experiments/report.hpp"
 #include "run/components.hpp"
 #include "run/scratch.hpp"
 #include "study/running/run_on.hpp"
@@ -49,6 +50,7 @@ RunOutcome run(const Study& study, const Truth& truth, const std::filesystem::pa
   Registry registry;
   registry.add(fakes::register_all);
   options.out = out;
+  options.report = add_report;
   return detail::run_on(
       [&](std::uint64_t offset) {
         return std::make_unique<WithModes>(open_data(study, offset), truth);

@@ -128,7 +128,6 @@ TEST_CASE("a thousand true values are remembered") {
 }
 
 TEST_CASE("unbounded bounds have an infinite width and no share") {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   FaultScore score(1);
   score.begin_run(0);
   score.step(Vector::Constant(1, 3.), bounded(0, {{0, 0, -infinity, infinity, 0}}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/running/growth.hpp"
+#include "study/checks/growth.hpp"
 
 #include <cmath>
 #include <limits>
@@ -47,7 +47,6 @@ TEST_CASE("widths that shrink, settle, or were wide for a while do not grow") {
 
 TEST_CASE("empty, unbounded and flat hulls are nothing to compare with") {
   GrowthWatch watch;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   for (Index k = 0; k < 20; ++k)
     watch.step(k, around(1, k == 12 ? 1e-16 : k == 13 ? 0 : k == 14 ? infinity : 1));
   watch.step(20, Box::empty(1));

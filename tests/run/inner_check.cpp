@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gains, last hulls and inner estimates of observers, in outcomes and files.
-#include "study/running/inner_check.hpp"
+#include "study/checks/inner_check.hpp"
 
 #include <sstream>
 
@@ -15,8 +15,6 @@ using detail::InnerCheck;
 using nlohmann::json;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Box box(std::initializer_list<double> lower, std::initializer_list<double> upper) {
   Box made{Vector(static_cast<Index>(lower.size())), Vector(static_cast<Index>(upper.size()))};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/results/json_writer.hpp"
+#include "study/text/json_writer.hpp"
 
 #include <cmath>
 

@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "cordon/experiments/report.hpp"
 #include "run/components.hpp"
 #include "run/scratch.hpp"
 
@@ -24,6 +25,7 @@ RunOutcome run(const Study& study, const std::filesystem::path& out = {},
   RunOptions options;
   options.out = out;
   options.stop = stop;
+  options.report = add_report;
   return run_study(study, registry, options);
 }
 

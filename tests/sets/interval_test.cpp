@@ -14,8 +14,6 @@ using namespace cordon::test;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A box with some free and some degenerate coordinates.
 Box arbitrary_box(Index n, const Vector& scales) {
   Box X = Box::space(n);

@@ -18,8 +18,6 @@ using Support = test::RationalSet::Support;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 Matrix random_matrix(sets::Random& random, Index rows, Index cols) {
   Matrix A(rows, cols);
   for (double& a : A.reshaped()) a = random.between(-1, 1);

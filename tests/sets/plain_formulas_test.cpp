@@ -148,7 +148,6 @@ TEST_CASE("loops over padded numbers") {
 }
 
 TEST_CASE("one number that is not finite is seen, wherever it is") {
-  const double infinity = std::numeric_limits<double>::infinity();
   for (Index rows = 1; rows < 7; ++rows) {
     Matrix A = Matrix::Constant(rows + 1, 5, std::numeric_limits<double>::max());
     CHECK(vectors::all_finite(A));

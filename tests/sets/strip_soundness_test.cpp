@@ -199,7 +199,7 @@ TEST_CASE("points that explain dependent outputs survive their corrections") {
       for (int k = 0; k < 3 && X; ++k) X = correct(*X, C, z, T, V, method);
       RC_ASSERT(holds(X, test.x, sizes_of(test.Z)));
       std::optional<Zonotope> Y = test.Z;
-      for (int k = 0; k < 3 && Y; ++k) Y = outward::correct(*Y, C, z, T, V, method);
+      for (int k = 0; k < 3 && Y; ++k) Y = sets::outward::correct(*Y, C, z, T, V, method);
       RC_ASSERT(holds(Y, test.x, sizes_of(test.Z)));
     }
   }));

@@ -15,8 +15,6 @@ using namespace cordon::test;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// Hull of finitely many points.
 SupportOracle hull_of(const Matrix& points) {
   return [points](const Vector& d) {

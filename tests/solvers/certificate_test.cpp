@@ -14,7 +14,6 @@ using namespace cordon;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
 using Kind = Certificate::Kind;
 
 LineForm with_rows(LineForm X, const Matrix& S, const Matrix& A, const Vector& b) {
@@ -153,8 +152,8 @@ TEST_CASE("a bound through lines is proven for large sets too") {
   const Vector d{{1.0, -.3, .7}};
   Certificate why;
   const double h = support(X, d, &why);
-  REQUIRE(h < inf);
-  CHECK(proven_support(X, d, why.data).value_or(inf) ==
+  REQUIRE(h < infinity);
+  CHECK(proven_support(X, d, why.data).value_or(infinity) ==
         h);  // what the multipliers prove, not what was computed
 }
 
@@ -172,7 +171,7 @@ TEST_CASE("lineality is a matter of ranks") {
 TEST_CASE("questions that do not fit are refused") {
   const LineForm X = make_space(2);
   CHECK_THROWS_AS(proves_contains(X, Vector{{1.0}}, {}), Error);
-  CHECK_THROWS_AS(proves_support(X, Vector{{1.0, inf}}, 1, {}), Error);
+  CHECK_THROWS_AS(proves_support(X, Vector{{1.0, infinity}}, 1, {}), Error);
   CHECK_THROWS_AS(proves_disjoint(X, make_space(3), {}), Error);
 }
 

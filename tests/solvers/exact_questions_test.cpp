@@ -16,8 +16,6 @@ using namespace cordon;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-
 double number() { return *rc::gen::inRange(-20, 21) / 10.0; }
 
 Matrix matrix(Index rows, Index cols) {
@@ -72,15 +70,15 @@ TEST_CASE("degenerate sets") {
   CHECK(exact::contains(make_point(Vector{{1.0, 2.0}}), Vector{{1.0, 2.0}}) == Answer::yes);
   CHECK(exact::contains(make_point(Vector{{1.0, 2.0}}), Vector{{1.0, std::nextafter(2.0, 3.0)}}) ==
         Answer::no);
-  CHECK(exact::support(make_empty(2), Vector{{1.0, 0.0}}).upper == -inf);
-  CHECK(exact::support(make_space(2), Vector{{1.0, 0.0}}).lower == inf);
+  CHECK(exact::support(make_empty(2), Vector{{1.0, 0.0}}).upper == -infinity);
+  CHECK(exact::support(make_space(2), Vector{{1.0, 0.0}}).lower == infinity);
   CHECK(exact::support(make_space(2), Vector::Zero(2)).upper == 0);
   // a line whose freedom a row takes away, and an empty set with a line along the direction
   LineForm X = make_space(1);
   X.S = Matrix{{2.0}}, X.A.resize(1, 0), X.b = Vector{{1.0}};
   CHECK(exact::support(X, Vector{{1.0}}).upper == 0.5);
   X.S = Matrix{{0.0}};
-  CHECK(exact::support(X, Vector{{1.0}}).upper == -inf);
+  CHECK(exact::support(X, Vector{{1.0}}).upper == -infinity);
 }
 
 TEST_CASE("the directions without a bound are exact") {
@@ -109,8 +107,8 @@ TEST_CASE("what does not fit is refused") {
   CHECK_THROWS_AS(exact::contains(X, Vector::Zero(3)), Error);
   CHECK_THROWS_AS(exact::support(X, Vector::Zero(3)), Error);
   CHECK_THROWS_AS(exact::support(X, Vector{{std::nan(""), 0.0}}), Error);
-  CHECK_THROWS_AS(exact::contains(X, Vector{{inf, 0.0}}), Error);
-  LineForm broken = make_zonotope(Vector::Zero(1), Matrix{{inf}});
+  CHECK_THROWS_AS(exact::contains(X, Vector{{infinity, 0.0}}), Error);
+  LineForm broken = make_zonotope(Vector::Zero(1), Matrix{{infinity}});
   CHECK_THROWS_AS(exact::is_empty(broken), Error);
   const auto refusal = [](Index g, Index m) -> std::string {
     const LineForm big = constrained(Matrix::Ones(1, g), Matrix::Ones(m, g), Vector::Zero(m));
@@ -135,7 +133,7 @@ TEST_CASE("extreme numbers stay exact") {
   CHECK(h.lower == rounding::down(h.upper));  // 2e-300 · 1e300 for the doubles, which is not 2
   CHECK(h.upper == doctest::Approx(2.0).epsilon(1e-15));
   CHECK(exact::support(make_zonotope(Vector{{1e300}}, Matrix{{1e300}}), Vector{{1e300}}).upper ==
-        inf);
+        infinity);
   CHECK(exact::support(make_zonotope(Vector{{1e300}}, Matrix{{1e300}}), Vector{{1e300}}).lower ==
         std::numeric_limits<double>::max());
   CHECK(exact::support(make_point(Vector{{1e-200}}), Vector{{1e-200}}).lower == 0);
@@ -188,11 +186,11 @@ TEST_CASE("linear programs over boxes of non-negative numbers") {
   CHECK(one.upper == std::nextafter(one.lower, 1));
   CHECK(maximum(Vector{{1, 1}}, Matrix(0, 2), Vector(), {3, -1}).upper == 8.5);
   CHECK(maximum(Vector{{1, 0}}, Matrix{{1, -1}}, Vector{{2}}, {0, 0}).upper ==
-        -inf);  // x = 2 + y > 1
+        -infinity);  // x = 2 + y > 1
   CHECK(maximum(Vector{{1}}, Matrix{{1}, {.1}}, Vector{{.5, .05}}, {0}).lower == .5);
   CHECK(maximum(Vector{{1}}, Matrix{{3}, {.3}}, Vector{{1, .1}}, {0}).upper ==
-        -inf);  // 3 · .1 ≠ .3, for the doubles
+        -infinity);  // 3 · .1 ≠ .3, for the doubles
   CHECK_THROWS_AS(maximum(Vector{{1}}, Matrix{{1e-320}}, Vector{{1}}, {-20}), Error);
   CHECK_THROWS_AS(maximum(Vector{{1}}, Matrix{{1}}, Vector{{1}}, {0, 0}), Error);
-  CHECK_THROWS_AS(maximum(Vector{{inf}}, Matrix{{1}}, Vector{{1}}, {0}), Error);
+  CHECK_THROWS_AS(maximum(Vector{{infinity}}, Matrix{{1}}, Vector{{1}}, {0}), Error);
 }

@@ -21,7 +21,6 @@ using doctest::Approx;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 MixedIntegerProgram program(const Matrix& A, const Vector& row_lower, const Vector& row_upper,

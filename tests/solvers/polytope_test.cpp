@@ -18,8 +18,6 @@ using namespace cordon;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-
 Matrix stacked(Index n) {
   Matrix H(2 * n, n);
   H << Matrix::Identity(n, n), -Matrix::Identity(n, n);
@@ -136,7 +134,7 @@ TEST_CASE("lines, rays and half-spaces") {
   const Polytope half = Polytope::from_inequalities(Matrix{{1.0, 1.0}}, Vector{{1.0}});
   CHECK(!half.is_bounded());
   CHECK(half.support(Vector{{2.0, 2.0}}).upper == 2);
-  CHECK(half.support(Vector{{1.0, 0.0}}).lower == inf);
+  CHECK(half.support(Vector{{1.0, 0.0}}).lower == infinity);
   CHECK(half.generators().rays.cols() == 1);
   CHECK(half.generators().lines.cols() == 1);
   CHECK(code_of([&] { half.volume(); }) == Errc::unsupported);
@@ -147,7 +145,7 @@ TEST_CASE("lines, rays and half-spaces") {
   CHECK(strip == Polytope::from_inequalities(Matrix{{1, -2}, {-1, 2}}, Vector{{0.75, -0.25}}));
   CHECK(Polytope::from_generators(Matrix{{0.0}}, Matrix{{1.0, -1.0}}, Matrix(1, 0)) ==
         Polytope::space(1));
-  CHECK(Polytope::space(2).interval_hull().upper[1] == inf);
+  CHECK(Polytope::space(2).interval_hull().upper[1] == infinity);
 }
 
 TEST_CASE("the empty set and the space of dimension 0") {
@@ -169,7 +167,7 @@ TEST_CASE("the empty set and the space of dimension 0") {
     CHECK(none.convex_hull(all) == all);
     CHECK(all.intersection(none) == none);
     CHECK(none.affine_map(Matrix::Zero(2, n), Vector::Zero(2)).is_empty());
-    CHECK(none.support(Vector::Ones(n)).upper == -inf);
+    CHECK(none.support(Vector::Ones(n)).upper == -infinity);
     CHECK(is(none.volume(), 0));
     CHECK(none.cartesian_product(all) == Polytope::empty(2 * n));
     CHECK(exact::is_empty(none.to_line_form().form) == Answer::yes);
@@ -234,15 +232,17 @@ TEST_CASE("what does not fit is refused, and quickly") {
         Errc::dimension);
   CHECK(code_of([] { Polytope::from_inequalities(Matrix{{std::nan("")}}, Vector{{1.0}}); }) ==
         Errc::not_finite);
-  CHECK(code_of([] { Polytope::from_inequalities(Matrix{{1.0}}, Vector{{inf}}); }) ==
+  CHECK(code_of([] { Polytope::from_inequalities(Matrix{{1.0}}, Vector{{infinity}}); }) ==
         Errc::not_finite);
-  CHECK(code_of([] { Polytope::from_generators(Matrix{{-inf}}); }) == Errc::not_finite);
+  CHECK(code_of([] { Polytope::from_generators(Matrix{{-infinity}}); }) == Errc::not_finite);
   CHECK(code_of([] {
           Polytope::from_generators(Matrix{{1.0}}, Matrix{{std::nan("")}}, Matrix(1, 0));
         }) == Errc::not_finite);
   CHECK(code_of([] { cube(2).contains(Vector{{std::nan(""), 0.0}}); }) == Errc::not_finite);
-  CHECK(code_of([] { cube(2).support(Vector{{inf, 0.0}}); }) == Errc::not_finite);
-  CHECK(code_of([] { cube(2).affine_map(Matrix{{1.0, inf}}, Vector{{0.0}}); }) == Errc::not_finite);
+  CHECK(code_of([] { cube(2).support(Vector{{infinity, 0.0}}); }) == Errc::not_finite);
+  CHECK(code_of([] {
+          cube(2).affine_map(Matrix{{1.0, infinity}}, Vector{{0.0}});
+        }) == Errc::not_finite);
   CHECK(code_of([] {
           cube(2).preimage(Matrix{{1.0}, {1.0}}, Vector{{0.0, std::nan("")}});
         }) == Errc::not_finite);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Semidefinite programs with known answers, broken ones, and the solver's manners.
-#include "cordon/solvers/sdp.hpp"
+#include "cordon/sdp/sdp.hpp"
 
 #include <cmath>
 #include <cstdio>

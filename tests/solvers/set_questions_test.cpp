@@ -16,8 +16,6 @@ using namespace cordon;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-
 /// A random constrained set that contains `inside` by construction.
 LineForm random_set(Index n, Index g, Index m, Index lines, Vector& inside, double spread) {
   const auto number = [&] {
@@ -46,7 +44,7 @@ TEST_CASE("an empty set is proven empty, and the proof can be checked") {
   CHECK(why.kind == Certificate::Kind::farkas);
   CHECK(why.data.dot(X.b) > (X.A.transpose() * why.data).lpNorm<1>());
   CHECK(interval_hull(X).is_empty());
-  CHECK(support(X, Vector{{1.0, 0.0}}) == -inf);
+  CHECK(support(X, Vector{{1.0, 0.0}}) == -infinity);
   CHECK(is_empty(make_empty(3)) == Answer::yes);
   CHECK(is_empty(make_space(3)) == Answer::no);
   CHECK(contains(make_space(3), Vector::Zero(3)) == Answer::yes);
@@ -102,7 +100,7 @@ TEST_CASE("known traps do not make a set empty") {
       intersection(make_space(2), Matrix{{0.0, 1.0}}, make_box({Vector{{1.0}}, Vector{{2.0}}}));
   CHECK(eliminate_lines(strip).lines() == 1);
   CHECK(interval_hull(strip).lower[1] == doctest::Approx(1.0));
-  CHECK(interval_hull(strip).upper[0] == inf);
+  CHECK(interval_hull(strip).upper[0] == infinity);
   // a small coefficient of a line is a coefficient: |1e-12 x - 5| ≤ 1 is not empty
   const LineForm steep = make_strip(Vector{{1e-12, 0.0}}, 5, 1);
   CHECK(is_empty(steep) == Answer::no);
@@ -125,13 +123,14 @@ TEST_CASE(
 TEST_CASE("lines keep their directions, whatever their scale") {
   const LineForm plane =
       affine_map(make_space(2), Matrix{{1e6, 0.0}, {0.0, 1e-6}}, Vector::Zero(2));
-  CHECK(interval_hull(plane).upper[1] == inf);
+  CHECK(interval_hull(plane).upper[1] == infinity);
   CHECK(contains(plane, Vector{{0.0, 5.0}}) == Answer::yes);
-  CHECK(is_subset(plane, make_box({Vector{{-inf, -1.0}}, Vector{{inf, 1.0}}})) != Answer::yes);
+  CHECK(is_subset(plane, make_box({Vector{{-infinity, -1.0}}, Vector{{infinity, 1.0}}})) !=
+        Answer::yes);
   LineForm line = make_point(Vector{{0.0, 0.0}});
   line.M = Matrix{{1e8}, {1e-8}};
   line.S.resize(0, 1);
-  CHECK(interval_hull(line).upper[1] == inf);
+  CHECK(interval_hull(line).upper[1] == infinity);
   // a line that three nearly dependent rows leave, (4, 9, -3)
   const double e = std::ldexp(1.0, -27);
   LineForm space = make_space(3);
@@ -148,7 +147,8 @@ TEST_CASE("lines keep their directions, whatever their scale") {
   steep.b = Vector{{0.0, 5.0}};
   CHECK(is_empty(steep) != Answer::yes);
   // the support along a direction that leaves the lines by a little
-  CHECK(support(make_box({Vector{{-1.0, -inf}}, Vector{{1.0, inf}}}), Vector{{1.0, 1e-13}}) == inf);
+  CHECK(support(make_box({Vector{{-1.0, -infinity}}, Vector{{1.0, infinity}}}),
+                Vector{{1.0, 1e-13}}) == infinity);
 }
 
 TEST_CASE("an empty right-hand side that spans the space holds nothing") {
@@ -170,8 +170,8 @@ TEST_CASE("operations that overflow throw") {
 
 TEST_CASE("a support beyond the range of doubles is infinite") {
   const LineForm X = make_zonotope(Vector{{0.0}}, Matrix{{1e200, -1e200}});
-  CHECK(support(X, Vector{{1e200}}) == inf);
-  CHECK(attained(X, Vector{{1e200}}) < inf);
+  CHECK(support(X, Vector{{1e200}}) == infinity);
+  CHECK(attained(X, Vector{{1e200}}) < infinity);
 }
 
 TEST_CASE("a singleton contains its point, and nothing is said within rounding errors") {
@@ -205,7 +205,7 @@ TEST_CASE("containment of sets") {
 TEST_CASE("bad questions are refused") {
   CHECK_THROWS_AS(contains(make_space(2), Vector::Zero(3)), Error);
   CHECK_THROWS_AS(support(make_space(2), Vector{{std::nan(""), 1.0}}), Error);
-  CHECK_THROWS_AS(make_box({Vector{{0.0}}, Vector{{inf}}}), Error);
+  CHECK_THROWS_AS(make_box({Vector{{0.0}}, Vector{{infinity}}}), Error);
   CHECK_THROWS_AS(affine_map(make_space(2), Matrix::Zero(2, 3), Vector::Zero(2)), Error);
 }
 
@@ -275,7 +275,7 @@ TEST_CASE(
                    Matrix(0, 1),         Matrix(0, 1),     Vector(0)};
   const Vector d{{0.7083333333333334, -1}};
   Certificate why;
-  CHECK(support(X, d, &why) == inf);
+  CHECK(support(X, d, &why) == infinity);
   CHECK(support(X, Vector{{2.125, -3}}, &why) == 2.125 + 2.125 - 3);
   CHECK(proves_support(X, Vector{{2.125, -3}}, 1.25, why));
 }
@@ -285,11 +285,11 @@ TEST_CASE("through lines, points and inclusions are proven for the numbers as st
   // anything
   const LineForm none{Matrix{{1}},      Matrix(1, 0), Vector::Zero(1),
                       Matrix{{1}, {1}}, Matrix(2, 0), Vector{{1, 1 + 0x1p-52}}};
-  CHECK(attained(none, Vector{{1}}) == -inf);
+  CHECK(attained(none, Vector{{1}}) == -infinity);
   const LineForm line{Matrix{{1}, {1}}, Matrix(2, 0), Vector::Zero(2),
                       Matrix(0, 1),     Matrix(0, 0), Vector(0)};
   CHECK(attained(line, Vector{{1, -1}}) == 0);
-  CHECK(attained(line, Vector{{1, 0}}) == inf);
+  CHECK(attained(line, Vector{{1, 0}}) == infinity);
   // almost parallel lines
   const LineForm strip{Matrix{{1}, {1 + 0x1p-52}},
                        Matrix{{1}, {0}},
@@ -325,7 +325,7 @@ TEST_CASE("a hull is empty only on a proof for the numbers as stored") {
       RC_ASSERT(!interval_hull(X).is_empty());
       RC_ASSERT(attained(X, Vector{{1}}) <= exact::support(X, Vector{{1}}).upper);
     } else {
-      RC_ASSERT(attained(X, Vector{{1}}) == -inf);
+      RC_ASSERT(attained(X, Vector{{1}}) == -infinity);
     }
   }));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finished runs side by side: what is equal, what is not, and what times say.
-#include "cordon/study/compare.hpp"
+#include "cordon/experiments/compare.hpp"
 
 #include <cmath>
 #include <functional>

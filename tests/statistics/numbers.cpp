@@ -12,8 +12,6 @@ using namespace cordon;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-
 struct Found {
   std::map<std::string, double> repeat, measured;
 };
@@ -61,7 +59,7 @@ TEST_CASE(
   outcome.containment = {7, 2};
   outcome.bounds = {20, 4};
   outcome.summary = {{"radius_mean", 1.5},
-                     {"radius_max", inf},
+                     {"radius_max", infinity},
                      {"kind", std::string("hull")},
                      {"contains_truth_yes", Index{6}},
                      {"contains_truth_no", Index{1}},
@@ -87,7 +85,7 @@ TEST_CASE(
   CHECK(is_none(repeat, "inner_share"));
   CHECK(is_none(repeat, "inner_outside"));
   CHECK(repeat.at("radius_mean") == 1.5);
-  CHECK(repeat.at("radius_max") == inf);
+  CHECK(repeat.at("radius_max") == infinity);
   CHECK(!repeat.contains("kind"));
   CHECK(repeat.at("contains_truth_no") == 1);
   CHECK(repeat.at("contains_truth_share") == .75);
@@ -274,7 +272,7 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   design.best.reset();
   design.status = DesignStatus::infeasible;
   repeat = found(outcome).repeat;
-  CHECK(repeat.at("lower_bound") == inf);
+  CHECK(repeat.at("lower_bound") == infinity);
   CHECK(repeat.at("infeasible") == 1);
   CHECK(repeat.at("optimal") == 0);
   design.status = DesignStatus::given;

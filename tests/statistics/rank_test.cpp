@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rank test against tables and against counting all arrangements; ratios and adjustments by
 // hand.
-#include "study/statistics/rank_test.hpp"
+#include "experiments/statistics/rank_test.hpp"
 
 #include <algorithm>
 #include <cmath>

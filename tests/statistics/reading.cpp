@@ -8,18 +8,16 @@
 #include <nlohmann/json.hpp>
 #include <rapidcheck.h>
 
+#include "experiments/statistics/large_json.hpp"
+#include "experiments/statistics/recorded_table.hpp"
 #include "run/components.hpp"
 #include "run/scratch.hpp"
-#include "study/statistics/large_json.hpp"
-#include "study/statistics/recorded_table.hpp"
-#include "study/statistics/table_builder.hpp"
+#include "study/results/table_builder.hpp"
 
 using namespace cordon;
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 void write_file(const std::filesystem::path& file, const std::string& bytes) {
   std::filesystem::create_directories(file.parent_path());
@@ -165,8 +163,8 @@ TEST_CASE("a sweep is read as it was written, however it is laid out") {
     CHECK(table.rows[5].at == std::vector<std::size_t>{1, 0});
     CHECK(table.rows[5].error == "broken");
     CHECK(table.rows[4].error.empty());
-    CHECK(table.rows[3].values[1] == inf);
-    CHECK(table.rows[3].values[2] == -inf);
+    CHECK(table.rows[3].values[1] == infinity);
+    CHECK(table.rows[3].values[2] == -infinity);
     CHECK(std::isnan(table.rows[3].values[0]));
     CHECK(table.rows[7].values[0] == 10);
     CHECK(table.rows[7].values[3] == 3.5);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tables as files: what stands in them, and that names cannot break them.
-#include "study/statistics/summaries.hpp"
+#include "study/results/summaries.hpp"
 
 #include <limits>
 
@@ -9,8 +9,8 @@
 
 #include "core/text.hpp"
 #include "run/scratch.hpp"
-#include "study/results/string_sink.hpp"
-#include "study/statistics/table_text.hpp"
+#include "study/results/table_text.hpp"
+#include "study/text/string_sink.hpp"
 #include "table.hpp"
 
 using namespace cordon;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One mistake each in a study that is otherwise valid: exactly one problem is reported, at its
-// place, with its reason and mend.
+// place, with its reason and suggestion.
 #include <algorithm>
 #include <string>
 

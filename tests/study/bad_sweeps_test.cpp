@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mistakes in the sweep of a study that is otherwise valid: each is reported at its place, with its
-// reason and mend.
+// reason and suggestion.
 #include <string>
 
 #include <doctest/doctest.h>

@@ -73,27 +73,26 @@ class FakeDesigner final : public InputDesigner {
 class FakePlant final : public Plant {
  public:
   explicit FakePlant(double tempo) : tempo_(tempo) {}
-  Index states() const override { return 2; }
-  Index inputs() const override { return 2; }
-  Index outputs() const override { return 1; }
-  Vector next(Index, VectorIn x, VectorIn u) const override {
-    return Vector{{x[0] / 2 + u[0] + u[1], tempo_ * x[0] * x[0]}};
-  }
-  Vector output(Index, VectorIn x, VectorIn) const override { return Vector{{x[1]}}; }
 
  private:
+  Index do_states() const override { return 2; }
+  Index do_inputs() const override { return 2; }
+  Index do_outputs() const override { return 1; }
+  Vector do_next(Index, VectorIn x, VectorIn u) const override {
+    return Vector{{x[0] / 2 + u[0] + u[1], tempo_ * x[0] * x[0]}};
+  }
+  Vector do_output(Index, VectorIn x, VectorIn) const override { return Vector{{x[1]}}; }
+
   double tempo_;
 };
 
 class FakeGain final : public GainDesigner {
- public:
-  GainDesign design(const Model&) const override { return {}; }
+  GainDesign do_design(const Model&) const override { return {}; }
 };
 
 class FakeMetric final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView&) override { return {}; }
-  std::vector<MetricValue> summary() const override { return {}; }
+  std::vector<MetricValue> do_step(const StepView&) override { return {}; }
+  std::vector<MetricValue> do_summary() const override { return {}; }
 };
 
 void add_backend(Registrar& registrar, const std::string& name, bool unbounded,

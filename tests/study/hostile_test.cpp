@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
-#include "cordon/study/sweep.hpp"
+#include "cordon/experiments/sweep.hpp"
 #include "run/scratch.hpp"
 #include "study/fakes.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/reading/json_text.hpp"
+#include "study/text/json_text.hpp"
 
 #include <cmath>
 #include <limits>

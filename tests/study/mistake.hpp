@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One mistake in a study that is otherwise valid: exactly one problem is reported, at its place,
-// with its reason and mend.
+// with its reason and suggestion.
 #pragma once
 
 #include <string>

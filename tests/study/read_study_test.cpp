@@ -193,7 +193,7 @@ TEST_CASE(
   for (std::size_t i = 1; i < problems.size(); ++i) CHECK(problems[i - 1].line <= problems[i].line);
 }
 
-TEST_CASE("the printed text names file, place, line, reason and mend") {
+TEST_CASE("the printed text names file, place, line, reason and suggestion") {
   const Scratch scratch;
   const auto file =
       scratch.write("s.json", exchanged(valid_study, "\"max_generators\"", "\"max_generatrs\""));

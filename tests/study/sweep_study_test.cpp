@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <rapidcheck.h>
 
-#include "cordon/study/sweep.hpp"
+#include "cordon/experiments/sweep.hpp"
 #include "run/scratch.hpp"
 #include "study/fakes.hpp"
 #include "study/reading/point_study.hpp"

@@ -3,7 +3,7 @@
 #include <rapidcheck.h>
 
 #include "cordon/core/error.hpp"
-#include "cordon/study/sweep.hpp"
+#include "cordon/experiments/sweep.hpp"
 
 using namespace cordon;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/sweep/journal.hpp"
+#include "experiments/sweep/journal.hpp"
 
 #include <cmath>
 #include <csignal>
@@ -14,9 +14,9 @@
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
+#include "experiments/sweep/sweep_files.hpp"
 #include "run/scratch.hpp"
-#include "study/results/fingerprint.hpp"
-#include "study/sweep/sweep_files.hpp"
+#include "study/text/fingerprint.hpp"
 #include "sweep/sweeps.hpp"
 
 using namespace cordon;
@@ -26,8 +26,6 @@ using detail::PointResult;
 using Start = detail::Journal::Start;
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 JournalHead head() {
   return {"fnv1a64:0123", "1.0", "tag", {"a 1", "b 2"}, {2, 3}, infinity, "then"};
@@ -230,7 +228,7 @@ TEST_CASE("any damage leaves points that are right") {
   }));
 }
 
-TEST_CASE("what belongs to another sweep is refused, with the reason and the mend") {
+TEST_CASE("what belongs to another sweep is refused, with the reason and the suggestion") {
   const Scratch scratch;
   write(scratch.path(), 2);
   const auto other = [](auto change) {
@@ -238,11 +236,11 @@ TEST_CASE("what belongs to another sweep is refused, with the reason and the men
     change(h);
     return h;
   };
-  const auto check = [&](auto change, const char* reason, const char* mend) {
+  const auto check = [&](auto change, const char* reason, const char* suggestion) {
     const std::string text = refusal(scratch.path(), other(change));
     CAPTURE(text);
     CHECK(text.find(reason) != std::string::npos);
-    CHECK(text.find(mend) != std::string::npos);
+    CHECK(text.find(suggestion) != std::string::npos);
   };
   check([](JournalHead& h) { h.study_hash = "x"; }, "of another study", "--restart");
   check([](JournalHead& h) { h.version = "2.0"; }, "another build of this program (version 1.0)",

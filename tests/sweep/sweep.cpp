@@ -141,7 +141,7 @@ TEST_CASE("a point that fails stops no other") {
   const auto made_at = [&](const std::vector<std::size_t>& place) -> Study {
     if (place == std::vector<std::size_t>{0, 1})
       throw InputError(study.file.string(),
-                       {{"/system/A", "is wrong", "mend it"}, {"", "is bad", ""}});
+                       {{"/system/A", "is wrong", "repair it"}, {"", "is bad", ""}});
     if (place == std::vector<std::size_t>{1, 0})
       throw InputError("data.csv", {{"", "is missing", "", 3}});
     if (place == std::vector<std::size_t>{1, 1})
@@ -158,7 +158,7 @@ TEST_CASE("a point that fails stops no other") {
   CHECK(rows[0].error.empty());
   CHECK(rows[1].error == "out of \"order\",\nat k = 5");
   CHECK(rows[1].values[column(outcome.table, "steps")] == 5);
-  CHECK(rows[2].error == "/system/A is wrong; mend it; is bad");
+  CHECK(rows[2].error == "/system/A is wrong; repair it; is bad");
   CHECK(rows[3].error == rows[2].error);
   CHECK(rows[6].error == "data.csv: is missing");
   CHECK(rows[8].error == "out of luck\nand \xEF\xBF\xBD memory");

@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/sweep/sweep_run.hpp"
 #include "run/components.hpp"
 #include "run/scratch.hpp"
-#include "study/sweep/sweep_run.hpp"
 
 namespace sweeps {
 
@@ -16,14 +16,12 @@ using namespace cordon;
 
 /// Where the last estimate is: what depends on the data.
 class Place final : public Metric {
- public:
-  std::vector<MetricValue> step(const StepView& view) override {
+  std::vector<MetricValue> do_step(const StepView& view) override {
     place_ = view.hull.center().sum();
     return {{"place", place_}};
   }
-  std::vector<MetricValue> summary() const override { return {{"place_last", place_}}; }
+  std::vector<MetricValue> do_summary() const override { return {{"place_last", place_}}; }
 
- private:
   double place_ = 0;
 };
 

@@ -86,7 +86,7 @@ struct Compared {
   int close = 0;  ///< the enclosure reaches farther by less than 1e-9 of the set's size
 };
 
-void compare(const LineForm& exact, const Enclosure& enclosure, Compared& found) {
+void compare(const LineForm& exact, const verification::Enclosure& enclosure, Compared& found) {
   const Index n = exact.dim();
   for (Index i = 0; i < n; ++i) {
     const Vector d = Vector::Unit(n, i);

@@ -11,7 +11,7 @@
 #include "cordon/study/design.hpp"
 #include "input_design/plugins.hpp"
 #include "input_design/systems.hpp"
-#include "study/verification/common_runs.hpp"
+#include "study/checks/common_runs.hpp"
 
 using namespace cordon;
 

@@ -12,7 +12,7 @@ namespace cordon::designers {
 namespace {
 
 constexpr int chances = 8;           ///< directions by chance
-constexpr int halvings = 6;          ///< of the way to an input that separates
+constexpr int input_halvings = 6;    ///< of the way to an input that separates
 constexpr Index most_singles = 200;  ///< inputs at one time that are tried
 
 std::vector<Vector> directions(const SeparationProblem& problem) {
@@ -96,9 +96,9 @@ FirstInput first_input(const SeparationProblem& problem, NodeProgram& program,
         return Vector(*cheapest.zeta + share * (*end - *cheapest.zeta));
       };
       double near = 0, far = 1;
-      for (int k = 0; k < halvings && !trial.is_cheaper(along(far)); ++k) far /= 2;
+      for (int k = 0; k < input_halvings && !trial.is_cheaper(along(far)); ++k) far /= 2;
       if (!trial.offer(along(far))) continue;
-      for (int k = 0; k < halvings; ++k) {
+      for (int k = 0; k < input_halvings; ++k) {
         const double middle = (near + far) / 2;
         (trial.offer(along(middle)) ? far : near) = middle;
       }

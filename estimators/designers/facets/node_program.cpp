@@ -60,7 +60,7 @@ void BoundedProgram::add_row_above(Vector row, double right, double row_error, d
 }
 
 double proven_minimum(const BoundedProgram& program, VectorIn y) {
-  if (!y.allFinite()) return -std::numeric_limits<double>::infinity();
+  if (!y.allFinite()) return -infinity;
   const Index n = program.lower.size();
   Vector parts(n + 2);
   for (Index j = 0; j < n; ++j) {

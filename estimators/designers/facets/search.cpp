@@ -18,7 +18,6 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double met_tolerance = 1e-9;  ///< by which a solver's point may miss a chosen facet; the
                                         ///< factors of inputs are of size 1
 constexpr int most_refinements = 60;    ///< of a node; each divides the error of the tangents by 4
@@ -58,9 +57,9 @@ bool is_beyond(const SeparatingFacet& facet, const Vector& zeta, double toleranc
   return facet.a.dot(zeta) >= facet.out - tolerance;
 }
 
-class Search {
+class FacetSearch {
  public:
-  Search(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control)
+  FacetSearch(const SeparationProblem& problem, const FacetLimits& limits, DesignControl& control)
       : problem_(problem),
         limits_(limits),
         control_(control),
@@ -117,7 +116,7 @@ class Search {
 };
 
 /// False if the answer is known without a search.
-bool Search::find_facets() {
+bool FacetSearch::find_facets() {
   for (const PairProgram& pair : problem_.pairs) {
     ForbiddenSet set =
         forbidden_set(pair, problem_.U, problem_.epsilon, limits_.max_facets, watch_);
@@ -135,7 +134,7 @@ bool Search::find_facets() {
   return true;
 }
 
-bool Search::keep_pair(const PairProgram& pair, ForbiddenSet set) {
+bool FacetSearch::keep_pair(const PairProgram& pair, ForbiddenSet set) {
   std::erase_if(set.facets, [](const SeparatingFacet& facet) {
     return facet.a.lpNorm<1>() < facet.in - 1e-9 * std::abs(facet.in);
   });
@@ -165,18 +164,18 @@ bool Search::keep_pair(const PairProgram& pair, ForbiddenSet set) {
   return true;
 }
 
-double Search::best_cost() const {
+double FacetSearch::best_cost() const {
   return std::min(first_.u ? first_.cost : infinity, result_.u ? result_.cost : infinity);
 }
 
-bool Search::separates_left_out(const Vector& u) const {
+bool FacetSearch::separates_left_out(const Vector& u) const {
   return std::all_of(left_out_.begin(), left_out_.end(), [&](const PairProgram* pair) {
     const PairSeparation apart = separation(*pair, u);
     return apart.disjoint == Answer::yes && apart.kappa_lower >= problem_.epsilon;
   });
 }
 
-void Search::branch_and_bound() {
+void FacetSearch::branch_and_bound() {
   Node root;
   root.facet.assign(pairs_.size(), -1);
   keep(std::move(root));
@@ -197,14 +196,14 @@ void Search::branch_and_bound() {
   conclude();
 }
 
-double Search::lower_bound() const {
+double FacetSearch::lower_bound() const {
   double bound = closed_;
   if (!open_.empty()) bound = std::min(bound, open_.begin()->first);
   if (next_) bound = std::min(bound, next_->bound);
   return bound;
 }
 
-std::optional<Node> Search::take() {
+std::optional<Node> FacetSearch::take() {
   if (next_ && (result_.u || (!left_out_.empty() && closed_ < infinity)))
     keep(std::move(*std::exchange(next_, std::nullopt)));
   if (!next_ && open_.empty()) return std::nullopt;
@@ -217,8 +216,8 @@ std::optional<Node> Search::take() {
   return node;
 }
 
-Node Search::child(const Node& like, std::shared_ptr<const Children> children,
-                   std::size_t place) const {
+Node FacetSearch::child(const Node& like, std::shared_ptr<const Children> children,
+                        std::size_t place) const {
   const auto& [bound, facet] = children->bound_and_facet[place];
   Node child{like.facet, bound};
   child.facet[children->pair] = facet;
@@ -228,7 +227,7 @@ Node Search::child(const Node& like, std::shared_ptr<const Children> children,
   return child;
 }
 
-void Search::visit(Node node) {
+void FacetSearch::visit(Node node) {
   if (!node.solved) {
     if (!evaluate(node)) return;
     if (result_.u && !open_.empty() && node.bound > open_.begin()->first)
@@ -255,7 +254,7 @@ void Search::visit(Node node) {
 
 /// Of the pairs that the input of the node does not separate, the one whose cheapest child costs
 /// most by what the parent's multipliers say; of equal ones that with the fewest facets.
-std::optional<Children> Search::violated(const Node& node) const {
+std::optional<Children> FacetSearch::violated(const Node& node) const {
   std::optional<Children> best;
   double most = 0;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
@@ -281,13 +280,13 @@ std::optional<Children> Search::violated(const Node& node) const {
   return best;
 }
 
-void Search::branch(const Node& node, Children children) {
+void FacetSearch::branch(const Node& node, Children children) {
   std::sort(children.bound_and_facet.begin(), children.bound_and_facet.end());
   next_ = child(node, std::make_shared<const Children>(std::move(children)), 0);
 }
 
 /// The bound and the input of a node; false if it is proven impossible or has to be put aside.
-bool Search::evaluate(Node& node) {
+bool FacetSearch::evaluate(Node& node) {
   std::vector<const SeparatingFacet*> chosen;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
     if (node.facet[q] >= 0)
@@ -309,7 +308,7 @@ bool Search::evaluate(Node& node) {
   return true;
 }
 
-void Search::conclude() {
+void FacetSearch::conclude() {
   const bool complete = !result_.stopped && left_out_.empty() && (result_.u || closed_ == infinity);
   if (!complete && first_.u && (!result_.u || first_.cost < result_.cost)) {
     result_.u = first_.u;
@@ -343,7 +342,7 @@ void Search::conclude() {
   }
 }
 
-void Search::conclude_without_input() {
+void FacetSearch::conclude_without_input() {
   if (result_.stopped) {
     result_.lower_bound = lower_bound();
     result_.reason = "no input was found before the search was stopped";
@@ -377,7 +376,7 @@ void Search::conclude_without_input() {
 }
 
 /// Is no input beyond any of the facets?
-bool Search::is_hopeless(const OpenPair& open) {
+bool FacetSearch::is_hopeless(const OpenPair& open) {
   return std::all_of(
       open.set.facets.begin(), open.set.facets.end(),
       [&](const SeparatingFacet& facet) { return program_.solve({&facet}).impossible; });
@@ -387,7 +386,7 @@ bool Search::is_hopeless(const OpenPair& open) {
 
 SearchResult search_facets(const SeparationProblem& problem, const FacetLimits& limits,
                            DesignControl& control) {
-  return Search(problem, limits, control).run();
+  return FacetSearch(problem, limits, control).run();
 }
 
 }  // namespace cordon::designers

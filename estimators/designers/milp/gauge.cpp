@@ -7,8 +7,6 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// Columns (λ, μ₁, μ₂, slack), rows Gᵀλ - μ₁ + μ₂ = 0 and 1ᵀ(μ₁ + μ₂) + slack = 1.
 LinearProgram dual_program(const Matrix& G) {
   const Index m = G.rows(), g = G.cols(), n = m + 2 * g + 1;

@@ -10,7 +10,6 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int most_rounds = 50;         ///< of normals, and of tangents
 constexpr double near = 1e-5;           ///< a quadratic cost is met up to this share
 constexpr Index most_free_inputs = 10;  ///< whose box's vertices are enumerated

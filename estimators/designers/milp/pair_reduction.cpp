@@ -14,10 +14,9 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double input_rank =
     1e-9;  ///< singular values of N below this share of the largest count as zero
-constexpr double flat =
+constexpr double flat_pair =
     1e-3;  ///< directions narrower than this share of what they are compared with are padded
 
 /// Points of U are point + directions·ζ with ‖ζ‖∞ ≤ √g.
@@ -76,7 +75,7 @@ Matrix padding(const Matrix& G, const Vector& size) {
   Index count = 0;
   for (Index k = 0; k < G.rows(); ++k) {
     const double sigma = k < parts.sigma.size() ? parts.sigma[k] : 0;
-    if (sigma < flat) pads.col(count++) = size.asDiagonal() * parts.U.col(k) * flat;
+    if (sigma < flat_pair) pads.col(count++) = size.asDiagonal() * parts.U.col(k) * flat_pair;
   }
   return pads.leftCols(count);
 }
@@ -183,8 +182,8 @@ std::optional<PairProgram> reduce_pair(const PairProgram& pair, const InputSeque
   const auto [X, N, reach] = separate(pair, U);
   const Index r = X.dim();
   if (r == 0 || r > max_generators) return std::nullopt;
-  const Matrix directions =
-      sampled_directions(X.G.cwiseAbs().rowwise().sum().cwiseMax(flat * reach).cwiseMax(1e-12));
+  const Matrix directions = sampled_directions(
+      X.G.cwiseAbs().rowwise().sum().cwiseMax(flat_pair * reach).cwiseMax(1e-12));
   const Vector exact = supports(directions, X.c, X.G, X.A, X.b);
   std::optional<PairProgram> best;
   double least = infinity;

@@ -8,8 +8,6 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 void append(Vector& v, Index count, double value) {
   v.conservativeResize(v.size() + count);
   v.tail(count).setConstant(value);

@@ -17,17 +17,16 @@ namespace cordon::designers {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double share_of_starts = .1, share_of_single_pairs = .2,
                  share_of_first_start = .5;  ///< of the time limit, ends of these parts
-constexpr double tolerance = 1e-6;           ///< of κ, for the solvers
+constexpr double kappa_tolerance = 1e-6;     ///< of κ, for the solvers
 constexpr double zero = 1e-9;                ///< multipliers below are 0
 constexpr double closed_tangents =
     1e-9;  ///< a quadratic cost is met where tangents miss it by this share
 
-class Search {
+class MilpSearch {
  public:
-  Search(const SeparationProblem& problem, const MilpLimits& limits, DesignControl& control)
+  MilpSearch(const SeparationProblem& problem, const MilpLimits& limits, DesignControl& control)
       : problem_(problem),
         limits_(limits),
         control_(control),
@@ -91,7 +90,7 @@ class Search {
 };
 
 /// A pair that no input changes. True: it is apart whatever the input is.
-bool Search::settled(const PairProgram& pair) {
+bool MilpSearch::settled(const PairProgram& pair) {
   const InputSequences& U = problem_.U;
   Vector u = U.c;
   if (U.b.size() > 0) u += linalg::product(U.G, linalg::product(linalg::pseudo_inverse(U.A), U.b));
@@ -108,7 +107,7 @@ bool Search::settled(const PairProgram& pair) {
   return false;
 }
 
-bool Search::reduce() {
+bool MilpSearch::reduce() {
   for (const PairProgram& pair : problem_.pairs) {
     if (pair.rows() > 0) continue;
     if (pair.vanished > 0) {
@@ -148,14 +147,14 @@ bool Search::reduce() {
 }
 
 /// Takes u if it is cheaper and proven to separate the pairs themselves (without ε they may touch).
-void Search::offer(const Vector& u) {
+void MilpSearch::offer(const Vector& u) {
   const double cost = problem_.cost.at(u);
   if (result_.u && !(cost < result_.cost)) return;
   for (const PairProgram& pair : problem_.pairs) {
     if (control_.stop()) return;
     const PairSeparation apart = separation(pair, u);
     const bool proven = apart.disjoint == Answer::yes || problem_.epsilon == 0;
-    if (proven && apart.kappa >= problem_.epsilon - tolerance) continue;
+    if (proven && apart.kappa >= problem_.epsilon - kappa_tolerance) continue;
     unproven_ = true;
     return;
   }
@@ -164,7 +163,7 @@ void Search::offer(const Vector& u) {
   control_.progress(problem_.horizon, cost, -infinity);
 }
 
-void Search::look_for_starts(LocalSearch& local) {
+void MilpSearch::look_for_starts(LocalSearch& local) {
   std::mt19937_64 engine(1);
   const Index g = problem_.U.G.cols(), most = 8 * g + 32, most_in_vain = 4 * g + 16;
   for (Index k = 0, in_vain = 0; k < most && in_vain < most_in_vain && left_to_start() > 0; ++k) {
@@ -176,7 +175,8 @@ void Search::look_for_starts(LocalSearch& local) {
   }
 }
 
-std::vector<double> Search::largest_kappas(LocalSearch& local, const InputProgram& inputs) const {
+std::vector<double> MilpSearch::largest_kappas(LocalSearch& local,
+                                               const InputProgram& inputs) const {
   std::vector<double> most;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
     const double kappa =
@@ -186,7 +186,7 @@ std::vector<double> Search::largest_kappas(LocalSearch& local, const InputProgra
   return most;
 }
 
-MipOptions Search::options(double share, const std::vector<PairColumns>& columns) const {
+MipOptions MilpSearch::options(double share, const std::vector<PairColumns>& columns) const {
   MipOptions options;
   options.time_limit = left(share);
   options.gap = limits_.gap;
@@ -203,7 +203,7 @@ MipOptions Search::options(double share, const std::vector<PairColumns>& columns
 
 /// What each pair alone costs bounds the whole, and says which pair to branch on first. False: one
 /// has no solution.
-bool Search::bound_single_pairs(InputProgram& inputs, const std::vector<double>& most) {
+bool MilpSearch::bound_single_pairs(InputProgram& inputs, const std::vector<double>& most) {
   std::vector<double> alone(pairs_.size(), -infinity);
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
     order_.push_back(q);
@@ -220,12 +220,12 @@ bool Search::bound_single_pairs(InputProgram& inputs, const std::vector<double>&
   }
   std::stable_sort(order_.begin(), order_.end(),
                    [&](std::size_t a, std::size_t b) { return alone[a] > alone[b]; });
-  if (bound() > 0) inputs.demand_cost(bound() * (1 - tolerance));
+  if (bound() > 0) inputs.demand_cost(bound() * (1 - kappa_tolerance));
   control_.progress(problem_.horizon, result_.u ? result_.cost : infinity, -infinity);
   return true;
 }
 
-void Search::branch(InputProgram whole, const std::vector<double>& most) {
+void MilpSearch::branch(InputProgram whole, const std::vector<double>& most) {
   std::vector<PairColumns> columns(pairs_.size());
   for (std::size_t q = 0; q < pairs_.size(); ++q)
     columns[q] = add_pair(whole, pairs_[q], problem_.epsilon, most[q]);
@@ -256,8 +256,8 @@ void Search::branch(InputProgram whole, const std::vector<double>& most) {
 
 /// All columns for the input that is known: its sides are those that the multipliers of every pair
 /// tell, the rest is linear.
-std::optional<Vector> Search::start(const InputProgram& whole,
-                                    const std::vector<PairColumns>& columns) {
+std::optional<Vector> MilpSearch::start(const InputProgram& whole,
+                                        const std::vector<PairColumns>& columns) {
   MixedIntegerProgram fixed = whole.program();
   fixed.lower.head(whole.inputs()) = fixed.upper.head(whole.inputs()) = *result_.u;
   for (std::size_t q = 0; q < pairs_.size(); ++q) {
@@ -277,7 +277,7 @@ std::optional<Vector> Search::start(const InputProgram& whole,
   return std::move(solution.x);
 }
 
-void Search::conclude() {
+void MilpSearch::conclude() {
   result_.stopped = !closed_ && !impossible_ && left(1) <= 0;
   const std::string ended =
       control_.stop() ? "the search was ended from outside" : "the time limit is over";
@@ -313,7 +313,7 @@ void Search::conclude() {
 
 SearchResult search_milp(const SeparationProblem& problem, const MilpLimits& limits,
                          DesignControl& control) {
-  return Search(problem, limits, control).run();
+  return MilpSearch(problem, limits, control).run();
 }
 
 }  // namespace cordon::designers

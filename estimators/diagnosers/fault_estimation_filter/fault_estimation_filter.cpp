@@ -19,6 +19,7 @@
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "cordon/sets/generator_reduction.hpp"
 #include "diagnosers/fault_estimation_filter/filter_recursion.hpp"
@@ -29,7 +30,6 @@ using linalg::product;
 
 namespace {
 
-constexpr double rounding_share = 1e-10;  // of the numbers of the last step
 constexpr double rounding_of_step =
     1e-14;  // of those of any step; what it leaves in x̂ goes on by TA - G C
 constexpr Index rounding_columns_per_state = 4;
@@ -144,8 +144,9 @@ class FaultEstimationFilter final : public Diagnoser {
 
   std::vector<FaultBound> bounds(Index k) const {
     const Vector r = product(design_.M, y_.value - product(model_.linear.C, x_));
-    const Vector slack = rounding_share * product(M_size_, y_.size + product(C_size_, size_)) +
-                         product(MC_, rounding_).cwiseAbs().rowwise().sum();
+    const Vector slack =
+        tolerances::proof_margin * product(M_size_, y_.size + product(C_size_, size_)) +
+        product(MC_, rounding_).cwiseAbs().rowwise().sum();
     const Vector half = recursion_.half_widths() + slack;
     if (!(r + half).allFinite())
       throw Error(Errc::not_finite, "the estimate of a fault has outgrown the numbers");
@@ -248,7 +249,7 @@ void check_parameters(const LinearModel& m, const Params& params,
   }
 }
 
-std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& params) {
+std::vector<Diagnostic> check_filter(const DiagnoserContext& context, const Params& params) {
   const Model& model = context.bank[context.bank.nominal].model;
   std::vector<Diagnostic> problems;
   if (context.backend->info().rounding != Rounding::nominal) {
@@ -270,7 +271,7 @@ std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& par
   return problems;
 }
 
-ParamSchema parameters() {
+ParamSchema filter_parameters() {
   ParamSchema schema;
   schema.integer(
       "max_columns",
@@ -286,7 +287,7 @@ ParamSchema parameters() {
   return schema;
 }
 
-constexpr const char* details =
+constexpr const char* filter_details =
     "With Θ = [E; C], rank Θ = n, and ỹ = y - D u less the centre of Dv V:\n"
     "  [T N] = Θ⁺ + S (I - Θ Θ⁺), so that T E + N C = I\n"
     "  ρ_i = min {σ : C (TA)^(σ-1) T f_i ≠ 0}, Ψ = [(TA)^(ρ_i - 1) T f_i]_i, Υ = C Ψ, rank Υ = "
@@ -325,10 +326,10 @@ void register_fault_estimation_filter(Registrar& registrar) {
   registrar.diagnoser(
       {{"fault_estimation_filter",
         "bounds of additive faults in systems with and without E, a few steps later", "Wang2017",
-        parameters(), details},
-       check,
+        filter_parameters(), filter_details},
+       check_filter,
        [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
-         if (auto problems = check(context, params); !problems.empty()) {
+         if (auto problems = check_filter(context, params); !problems.empty()) {
            throw InputError("diagnoser \"fault_estimation_filter\"", std::move(problems));
          }
          return std::make_unique<FaultEstimationFilter>(context, params);

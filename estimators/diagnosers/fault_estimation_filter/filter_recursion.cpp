@@ -19,7 +19,6 @@ using linalg::product;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// S̃ is kept so far from singular, relative to the terms of its diagonal: Ḡ is free, and must not
 /// be rounding noise.
 constexpr double regularisation = 1e-13;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parameters of diagnoser "observer_bank", and their problems.
+// The bank_parameters of diagnoser "observer_bank", and their problems.
 #include <algorithm>
 #include <cmath>
 
@@ -14,16 +14,16 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr std::int64_t most_steps = 100'000;
+constexpr std::int64_t most_bank_steps = 100'000;
 
-ParamSchema parameters() {
+ParamSchema bank_parameters() {
   ParamSchema schema = common_parameters();
   add_widening_limit(schema);
   schema
       .integer("waiting_time",
                "T: a mode lasts at least so many steps; decides between ambiguous and isolated, "
                "switch and unknown fault",
-               {}, 1, most_steps)
+               {}, 1, most_bank_steps)
       .required();
   add_gain_parameter(schema, "gain",
                      "L of all modes, a matrix with a row per state and a column per output, or a "
@@ -43,7 +43,7 @@ ParamSchema parameters() {
   schema.vector("iterations",
                 "steps for rpi and iterate: one number, or one per observer; 30 if absent");
   schema.integer("max_columns", "most generators of these sets after each step; 0: no limit", 0, 0,
-                 most_steps);
+                 most_bank_steps);
   schema.real("accuracy", "relative accuracy of the limits", 1e-9, 1e-14, 1);
   schema.choice("input_copies",
                 "the input in the error: one value for plant and observer (joint), or two "
@@ -173,7 +173,7 @@ void check_shapes(const ModeBank& bank, const Params& params, std::vector<Diagno
   }
   if (params.has("iterations")) {
     for (const double steps : params.vector("iterations")) {
-      if (steps >= 1 && steps <= static_cast<double>(most_steps) && steps == std::floor(steps))
+      if (steps >= 1 && steps <= static_cast<double>(most_bank_steps) && steps == std::floor(steps))
         continue;
       problems.push_back({"/iterations", "must hold whole numbers from 1 to 100000", ""});
       break;
@@ -189,7 +189,7 @@ void check_shapes(const ModeBank& bank, const Params& params, std::vector<Diagno
   }
 }
 
-std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& params) {
+std::vector<Diagnostic> check_observer_bank(const DiagnoserContext& context, const Params& params) {
   const ModeBank& bank = context.bank;
   std::vector<Diagnostic> problems;
   for (const Mode& mode : bank.modes) {
@@ -212,10 +212,10 @@ void register_observer_bank(Registrar& registrar) {
   registrar.diagnoser(
       {{"observer_bank",
         "a bank of Luenberger observers on sets, with conditions checked in advance",
-        "Xu2014; Xu2013", parameters()},
-       check,
+        "Xu2014; Xu2013", bank_parameters()},
+       check_observer_bank,
        [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
-         if (auto problems = check(context, params); !problems.empty()) {
+         if (auto problems = check_observer_bank(context, params); !problems.empty()) {
            throw InputError("diagnoser \"observer_bank\"", std::move(problems));
          }
          return std::make_unique<ObserverBank>(context.bank, context.backend,

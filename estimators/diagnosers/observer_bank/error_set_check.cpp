@@ -18,7 +18,6 @@ namespace {
 using linalg::product;
 using sets::Zonotope;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double box_margin = 1e-9;
 constexpr double facet_margin = 1e-12;  // of factors: normals of facets are rounded
 

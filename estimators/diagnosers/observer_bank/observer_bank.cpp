@@ -4,18 +4,17 @@
 #include <algorithm>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "cordon/solvers/set_questions.hpp"
 
 namespace cordon::estimators {
 
 namespace {
 
-constexpr double rounding_share = 1e-10;
-
 /// What is nearer to 0 than this may be rounding: a share of the numbers that a residual was made
 /// of, and of its own bounds.
 Vector rounding_slack(const Box& hull, const Vector& size) {
-  return rounding_share * (size + hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs()));
+  return tolerances::proof_margin * (size + hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs()));
 }
 
 /// How far 0 lies outside the hull of R: the coordinate and its direction, if any is beyond
@@ -129,7 +128,7 @@ void ObserverBank::judge(Index j, const Sample& now) {
     const Box own = m.evidence.residual, all = allowed->interval_hull();
     const double size = now.y.cwiseAbs().maxCoeff() +
                         std::max(own.lower.cwiseAbs().maxCoeff(), own.upper.cwiseAbs().maxCoeff());
-    const double slack = rounding_share * size;
+    const double slack = tolerances::proof_margin * size;
     m.bound_violated = (own.lower.array() < all.lower.array() - slack).any() ||
                        (own.upper.array() > all.upper.array() + slack).any();
     if (!m.bound_violated && own.dim() > 1)

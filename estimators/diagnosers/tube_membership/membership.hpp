@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cordon/core/answer.hpp"
-#include "designers/tube/output_tube.hpp"
+#include "tubes/output_tube.hpp"
 
 namespace cordon::diagnosers {
 

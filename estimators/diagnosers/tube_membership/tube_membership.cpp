@@ -100,7 +100,8 @@ class TubeMembership final : public Diagnoser {
   Index since_ = 0;
 };
 
-std::vector<Diagnostic> check(const DiagnoserContext& context, const Params& params) {
+std::vector<Diagnostic> check_tube_membership(const DiagnoserContext& context,
+                                              const Params& params) {
   std::vector<Diagnostic> problems =
       designers::check_tube_data({context.bank, context.backend}, params);
   for (const Mode& mode : context.bank.modes) {
@@ -130,7 +131,7 @@ void register_tube_membership(Registrar& registrar) {
         "when they are "
         "proven to lie outside",
         "Rego2025; Scott2014", schema},
-       check,
+       check_tube_membership,
        [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
          return std::make_unique<TubeMembership>(context, params);
        }});

@@ -8,6 +8,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/invariant/minimal.hpp"
 #include "cordon/invariant/schur.hpp"
+#include "raised.hpp"
 #include "weights.hpp"
 
 namespace cordon::invariant {
@@ -18,10 +19,7 @@ using linalg::product;
 
 constexpr int most_levels = 12;
 constexpr std::size_t terms_per_level = 16;
-constexpr double enough = 0.5;
-
-/// A nonnegative sum of n terms, each with a few roundings, made an upper bound.
-double raised(double value, Index n) { return value * (1 + 2 * rounding::gamma(n + 8)); }
+constexpr double enough_decay = 0.5;
 
 /// A matrix that is known up to an error.
 struct Bounded {
@@ -45,7 +43,7 @@ Vector decay_weights(MatrixIn A, VectorIn size) {
     power = product(power, A);
     weights += product(power.cwiseAbs(), size);
   }
-  double smallest = std::numeric_limits<double>::infinity();
+  double smallest = infinity;
   for (const double w : weights) smallest = w > 0 ? std::min(smallest, w) : smallest;
   if (!std::isfinite(smallest) || !weights.allFinite()) return Vector::Ones(n);
   return (weights.array() > 0).select(weights, smallest);
@@ -70,7 +68,7 @@ Decay::Decay(MatrixIn A, VectorIn size, const std::string& what) : A_(A) {
     for (std::size_t k = 1; k < terms_per_level; ++k) {
       const double norm =
           raised((product(powers[k].bound(), weights_).array() / weights_.array()).maxCoeff(), n);
-      if (norm <= enough) {
+      if (norm <= enough_decay) {
         sum_ = raised(sum_ * terms / (1 - norm), 64);
         return;
       }

@@ -201,8 +201,7 @@ class Series {
   Vector center_, radius_, magnitude_;
   double plus_ = 0, minus_ = 0, switched_magnitude_ = 0,
          start_magnitude_ = 0;  // Σ max_i; at most one start counts
-  double largest_plus_ = -std::numeric_limits<double>::infinity(),
-         largest_minus_ = -std::numeric_limits<double>::infinity();
+  double largest_plus_ = -infinity, largest_minus_ = -infinity;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/rounding.hpp"
 #include "cordon/invariant/schur.hpp"
+#include "raised.hpp"
 
 namespace cordon::invariant {
 
@@ -23,9 +24,6 @@ constexpr double log_error = 1e-12;  // of logarithms, relative to 1 or to the e
 constexpr double most_log = 1000;    // 2 to that is still a double
 constexpr double enough = 1e-9;      // bounds this near to each other need no powers
 constexpr double most_defect = 0.5;  // of I - T⁻¹ T as computed
-
-/// A nonnegative number after a few more than n roundings to nearest, made an upper bound.
-double raised(double value, Index n) { return value * (1 + 2 * rounding::gamma(n + 8)); }
 
 /// Xᵐ = 2^exponent Y with |Y - value| ≤ error, entries of at most 1.
 struct Power {
@@ -88,8 +86,7 @@ struct Power {
   /// (2^exponent x)^(1/m) times a factor for its roundings.
   double root(double x, double factor) const {
     const double log = (std::log2(x) + exponent) / m;
-    if (!(std::abs(log) < most_log))
-      return factor > 1 ? std::numeric_limits<double>::infinity() : 0;
+    if (!(std::abs(log) < most_log)) return factor > 1 ? infinity : 0;
     return std::exp2(log) * (1 + (factor - 1) * (1 + std::abs(log)));
   }
 };

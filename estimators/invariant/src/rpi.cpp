@@ -32,7 +32,7 @@ struct Block {
   double corner = 1;  // circumradius over inradius
 };
 
-struct RealBasis {
+struct PolygonBasis {
   Matrix T;
   std::vector<Block> blocks;
 };
@@ -45,10 +45,10 @@ void choose_polygon(Block& block) {
   block.corner = 1 / std::cos(std::numbers::pi / (2 * static_cast<double>(block.edges)));
 }
 
-RealBasis real_basis(const Matrix& A) {
+PolygonBasis polygon_basis(const Matrix& A) {
   const linalg::ComplexEigen eigen = linalg::complex_eigen(A);
   const Index n = A.rows();
-  RealBasis basis{Matrix(n, n), {}};
+  PolygonBasis basis{Matrix(n, n), {}};
   for (Index k = 0; k < n;) {
     Block block{k, eigen.values[k].imag() == 0 ? 1 : 2, std::abs(eigen.values[k])};
     basis.T.col(k) = eigen.vectors.col(k).real();
@@ -65,8 +65,7 @@ RealBasis real_basis(const Matrix& A) {
 void require_eigenvectors(const Matrix& T) {
   const Vector sigma = linalg::svd(T).sigma;
   const double smallest = sigma[sigma.size() - 1];
-  const double condition =
-      smallest > 0 ? sigma[0] / smallest : std::numeric_limits<double>::infinity();
+  const double condition = smallest > 0 ? sigma[0] / smallest : infinity;
   if (condition <= largest_condition) return;
   char text[32];
   std::snprintf(text, sizeof text, "%.2g", condition);
@@ -114,7 +113,7 @@ Vector block_radii(const std::vector<Block>& blocks, const Matrix& N, const Matr
 }
 
 /// Shape of the product of intervals and polygons.
-Matrix block_shape(const RealBasis& basis, const Vector& radii) {
+Matrix block_shape(const PolygonBasis& basis, const Vector& radii) {
   Index columns = 0;
   for (const Block& block : basis.blocks) columns += block.size == 1 ? 1 : block.edges;
   Matrix H(basis.T.rows(), columns);
@@ -162,7 +161,7 @@ Zonotope rpi_set(MatrixIn A, const Zonotope& D) {
   if (!solution) throw Error(Errc::invalid, "the matrix has an eigenvalue too near to 1");
   const Vector center = scale.cwiseProduct(solution->col(0));
   if (D.G.cols() == 0 || D.G.isZero(0)) return {center, Matrix(n, 0)};
-  const RealBasis basis = real_basis(scaled);
+  const PolygonBasis basis = polygon_basis(scaled);
   require_eigenvectors(basis.T);
   const std::optional<Matrix> W = linalg::solve(basis.T, Matrix::Identity(n, n));
   if (!W) throw Error(Errc::internal, "a well-conditioned basis of eigenvectors has no inverse");

@@ -17,17 +17,17 @@
 #include <doctest/doctest.h>
 
 #include "campaigns/files/mutate.hpp"
+#include "cordon/experiments/compare.hpp"
+#include "cordon/experiments/interchange.hpp"
+#include "cordon/experiments/report.hpp"
+#include "cordon/experiments/sweep.hpp"
 #include "cordon/registry/registry.hpp"
-#include "cordon/study/compare.hpp"
 #include "cordon/study/data.hpp"
-#include "cordon/study/interchange.hpp"
-#include "cordon/study/report.hpp"
 #include "cordon/study/run.hpp"
-#include "cordon/study/sweep.hpp"
 #include "cordon/study/verify.hpp"
+#include "experiments/sweep/journal.hpp"
 #include "run/scratch.hpp"
-#include "study/results/manifest.hpp"
-#include "study/sweep/journal.hpp"
+#include "study/text/manifest.hpp"
 
 using namespace cordon;
 

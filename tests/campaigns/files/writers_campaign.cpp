@@ -8,7 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "cordon/study/verify.hpp"
-#include "study/results/manifest.hpp"
+#include "study/text/manifest.hpp"
 #include "sweep/program.hpp"
 
 namespace fs = std::filesystem;

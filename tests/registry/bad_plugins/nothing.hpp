@@ -5,9 +5,8 @@
 
 /// A metric without values: something to register.
 class Nothing final : public cordon::Metric {
- public:
-  std::vector<cordon::MetricValue> step(const cordon::StepView&) override { return {}; }
-  std::vector<cordon::MetricValue> summary() const override { return {}; }
+  std::vector<cordon::MetricValue> do_step(const cordon::StepView&) override { return {}; }
+  std::vector<cordon::MetricValue> do_summary() const override { return {}; }
 };
 
 inline cordon::MetricEntry nothing(const char* name, cordon::ParamSchema schema = {},

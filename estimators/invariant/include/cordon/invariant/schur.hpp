@@ -16,7 +16,7 @@ double spectral_radius(MatrixIn A);
 
 /// lower ≤ ρ ≤ upper, proven
 struct RadiusBounds {
-  double lower = 0, upper = std::numeric_limits<double>::infinity();
+  double lower = 0, upper = infinity;
 };
 
 /// Bounds of ρ(X) for all X with |X - A| ≤ error, entry by entry (`error` empty: A itself), by

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "diagnosis_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace cordon::apps {
+
+namespace {
+
+using Kind = DiagnosisEvent::Kind;
+using Names = std::vector<std::string>;
+using Rows = std::vector<std::vector<std::string>>;
+
+constexpr std::size_t most_lines = 60;
+constexpr Index nominal = 0;  // in bank_of(study)
+
+std::string name_of(const Names& modes, Index mode) {
+  return mode < 0 ? "outside the bank" : modes[static_cast<std::size_t>(mode)];
+}
+
+/// How far 0 is outside, in the coordinate where it is farthest; not positive if it is inside.
+double distance_to_zero(const Box& box) {
+  if (box.dim() == 0 || box.is_empty()) return 0;
+  return std::max(box.lower.maxCoeff(), -box.upper.minCoeff());
+}
+
+std::string evidence_text(const ModeEvidence& evidence) {
+  std::string text;
+  const bool by_reset = distance_to_zero(evidence.reset_residual) > 0;
+  const Box& shown = by_reset ? evidence.reset_residual : evidence.residual;
+  if (evidence.why.kind == Certificate::Kind::farkas) {  // not by the distance of one residual
+    text = "no state explains the samples";
+  } else if (const double outside = distance_to_zero(shown); outside > 0) {
+    text =
+        fmt::format("{} {}, 0 is {:.3g} outside",
+                    by_reset ? "residual since the reset" : "residual", box_text(shown), outside);
+  }
+  if (evidence.why.kind != Certificate::Kind::none) {
+    text += fmt::format("{}proof {}", text.empty() ? "" : ", ", to_string(evidence.why.kind));
+    if (evidence.why.data.size() > 0) text += fmt::format(", margin {:.3g}", evidence.why.margin);
+  }
+  return text;
+}
+
+/// What makes the plant leave the bank at k, as the study calls it.
+std::string outside_name(const Study& study, Index k) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  if (!simulate) return "outside the bank";
+  for (const FaultSpec& fault : simulate->faults) {
+    if (fault.mode < 0 && fault.from <= k && k <= fault.to && !fault.name.empty())
+      return fault.name + ", outside the bank";
+  }
+  std::set<Index> additive;
+  for (const AdditiveFaultSpec& fault : simulate->additive_faults) {
+    if (fault.from <= k && k <= fault.to) additive.insert(fault.fault + 1);
+  }
+  if (additive.empty()) return "outside the bank";
+  return fmt::format("additive fault{} {}", additive.size() > 1 ? "s" : "",
+                     fmt::join(additive, ", "));
+}
+
+/// What a true mode of -1 is in this study.
+std::string outside_label(const Study& study) {
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  if (!simulate || simulate->additive_faults.empty()) return "outside the bank";
+  const bool others = std::any_of(simulate->faults.begin(), simulate->faults.end(),
+                                  [](const auto& f) { return f.mode < 0; });
+  return others ? "outside the bank" : "additive fault";
+}
+
+std::string event_name(const DiagnosisEvent& event, std::optional<Index> truth_before) {
+  if (event.what == Kind::truth) {
+    if (event.mode == nominal) return "fault ends";
+    return truth_before.value_or(nominal) == nominal ? "fault begins" : "fault changes";
+  }
+  return std::string(to_string(event.what));
+}
+
+/// One row per event; `left` counts those that are not shown.
+Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& left) {
+  Rows rows{{"k", "EVENT", "MODE", "EVIDENCE"}};
+  std::optional<Index> truth;
+  for (const DiagnosisEvent& event : found.events) {
+    const std::optional<Index> before = truth;
+    if (event.what == Kind::truth) {
+      truth = event.mode;
+      if (!before && event.mode == nominal) continue;
+    }
+    if (rows.size() > most_lines) {
+      ++left;
+      continue;
+    }
+    std::string mode = event.mode >= 0 ? name_of(found.modes, event.mode) : "";
+    if (event.what == Kind::starts && event.mode < 0) mode = "any";
+    if (event.what == Kind::truth && event.mode < 0) mode = outside_name(study, event.k);
+    rows.push_back({fmt::format("{}", event.k), event_name(event, before), mode,
+                    evidence_text(event.evidence)});
+  }
+  return rows;
+}
+
+std::string delay_text(const DelayStatistics& delays) {
+  if (delays.count == 0) return "-";
+  return fmt::format("{} / {} / {}", delays.min, delays.median, delays.max);
+}
+
+Rows statistics(const Study& study, const DiagnosisOutcome& found) {
+  const bool outside = std::any_of(found.statistics.begin(), found.statistics.end(),
+                                   [](const auto& m) { return m.mode < 0; });
+  Rows rows{{"TRUE MODE", "TIMES", "DETECTED", "ISOLATED", "MISSED", "WRONG MODE",
+             "DETECTION DELAY", "ISOLATION DELAY"}};
+  if (outside) rows[0].insert(rows[0].begin() + 6, "UNKNOWN FAULT");
+  std::vector<ModeStatistics> all = found.statistics;
+  std::stable_partition(all.begin(), all.end(),
+                        [](const ModeStatistics& counts) { return counts.mode >= 0; });
+  for (const ModeStatistics& counts : all) {
+    const bool inside = counts.mode >= 0;
+    rows.push_back({inside ? name_of(found.modes, counts.mode) : outside_label(study),
+                    fmt::format("{}", counts.segments), fmt::format("{}", counts.detected),
+                    inside ? fmt::format("{}", counts.isolated) : "-",
+                    inside ? fmt::format("{}", counts.missed) : "-",
+                    fmt::format("{}", counts.wrong), delay_text(counts.detection),
+                    delay_text(counts.isolation)});
+    if (outside)
+      rows.back().insert(rows.back().begin() + 6, fmt::format("{}", counts.unknown_fault));
+  }
+  return rows;
+}
+
+std::string runs_text(std::int64_t runs) {
+  return fmt::format("{} run{}", runs, runs == 1 ? "" : "s");
+}
+
+std::string score_text(const Study& study, const DiagnosisOutcome& found, const Paint& paint) {
+  if (!found.truth_known) return "The data do not tell the true mode: nothing is scored.\n";
+  std::string text;
+  if (!found.statistics.empty()) {
+    text = fmt::format("Over {} (delays in steps: smallest / median / largest)\n{}\n",
+                       runs_text(found.runs), table(statistics(study, found), paint));
+  }
+  text += found.false_alarms == 0
+              ? fmt::format("False alarms: none in {}\n", runs_text(found.runs))
+              : paint.yellow(fmt::format("False alarms: {} in {} of {}", found.false_alarms,
+                                         found.runs_with_false_alarm, runs_text(found.runs))) +
+                    "\n";
+  // With one mode only, it is monitored whenever no fault is proven, also while one acts that is
+  // too small to be.
+  if (found.runs_with_wrong_mode > 0 && found.modes.size() > 1) {
+    text += paint.yellow(fmt::format("A wrong mode: in {} of {}", found.runs_with_wrong_mode,
+                                     runs_text(found.runs))) +
+            "\n";
+  }
+  if (const auto& excluded = found.true_mode_excluded) {
+    text += paint.red(fmt::format(
+                "True mode excluded: {} at k = {}, although true since k = {} (run {} of {})",
+                name_of(found.modes, excluded->mode), excluded->k, excluded->since,
+                excluded->seed_offset + 1, found.runs)) +
+            "\n";
+  } else {
+    text += "True mode excluded: never\n";
+  }
+  return text;
+}
+
+/// Like the widths of observers: as many digits as it takes to compare.
+std::string number_text(double value) {
+  if (std::isnan(value)) return "-";
+  return std::isinf(value) ? "unbounded" : fmt::format("{:.6g}", value);
+}
+
+std::string faults_text(const DiagnosisOutcome& found, const Paint& paint) {
+  if (found.faults.empty()) return "";
+  Rows rows{{"FAULT", "DELAY", "BOUNDS", "WITHOUT 0", "OUTSIDE", "HALF WIDTH: LAST", "MEAN",
+             "RMS ERROR", "LARGEST SHARE"}};
+  for (const FaultStatistics& counts : found.faults) {
+    const bool any = counts.bounds > 0, checked = counts.checked > 0;
+    rows.push_back({fmt::format("{}", counts.fault + 1),
+                    any ? fmt::format("{}", counts.delay) : "-", fmt::format("{}", counts.bounds),
+                    fmt::format("{}", counts.excluded_0),
+                    checked ? fmt::format("{} of {}", counts.outside, counts.checked) : "-",
+                    any ? number_text(counts.last_half_width) : "-",
+                    any ? number_text(counts.mean_half_width) : "-",
+                    checked ? number_text(counts.rms_error) : "-",
+                    checked ? number_text(counts.largest_share) : "-"});
+  }
+  std::string text =
+      fmt::format("\nAdditive faults over {} (share: error of the estimate / half width)\n{}",
+                  runs_text(found.runs), table(rows, paint));
+  if (const auto& outside = found.fault_outside) {
+    text +=
+        paint.red(fmt::format(
+            "True fault outside its bounds: fault {} of k = {}, bounded at k = {} (run {} of {})",
+            outside->fault + 1, outside->at, outside->k, outside->seed_offset + 1, found.runs)) +
+        "\n";
+  }
+  return text;
+}
+
+std::string answer_text(Answer answer) {
+  return answer == Answer::unknown ? "not guaranteed" : std::string(to_string(answer));
+}
+
+std::string error_set_text(const ErrorSetCheck& check, const Names& modes) {
+  std::string steady;
+  if (check.mode >= 0 && check.observer >= 0) {
+    steady = fmt::format(
+        "; in steady state {:.4g}, attained in mode \"{}\" by the observer of \"{}\"",
+        check.steady_factor, name_of(modes, check.mode), name_of(modes, check.observer));
+  }
+  if (check.computed)
+    return fmt::format("Error set: computed; contains the errors by construction{}\n", steady);
+  return fmt::format("Error set: given; all errors lie in {:.4g} times the set{}: {}\n",
+                     check.factor, steady, check.factor <= 1 ? "large enough" : "too small");
+}
+
+std::string fault_guarantees_text(const Guarantees& guarantees, const Paint& paint) {
+  if (guarantees.faults.empty()) return "";
+  Rows rows{{"ADDITIVE FAULT", "DELAY", "HALF WIDTH IN STEADY STATE"}};
+  for (const FaultGuarantee& fault : guarantees.faults) {
+    const std::string width = std::isinf(fault.half_width)
+                                  ? "no bound is proven"
+                                  : fmt::format("{:.6g}", fault.half_width);
+    rows.push_back({fmt::format("{}", fault.fault + 1), fmt::format("{}", fault.delay), width});
+  }
+  return table(rows, paint);
+}
+
+}  // namespace
+
+std::string box_text(const Box& box, Digits digits) {
+  if (box.is_empty()) return "∅";
+  std::string text;
+  for (Index i = 0; i < box.dim(); ++i) {
+    const double lower = box.lower[i], upper = box.upper[i],
+                 largest = std::max(std::abs(lower), std::abs(upper));
+    const bool fixed = digits == Digits::decimals && largest >= 0.01 && largest < 1e4;
+    text += i == 0 ? "" : " × ";
+    text += fixed ? fmt::format("[{:.4f}, {:.4f}]", lower, upper)
+                  : fmt::format("[{:.4g}, {:.4g}]", lower, upper);
+  }
+  return text;
+}
+
+std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline,
+                           const Paint& paint) {
+  const DiagnosisOutcome& found = *pipeline.diagnosis;
+  std::string text = fmt::format("{}  {}, {}, {} mode{}, {:.1f} µs/step, at most {:.1f}\n\n",
+                                 paint.bold(pipeline.name), pipeline.backend, pipeline.diagnoser,
+                                 found.modes.size(), found.modes.size() == 1 ? "" : "s",
+                                 pipeline.median_step_us, pipeline.largest_step_us);
+  std::int64_t left = 0;
+  const Rows rows = timeline(study, found, left);
+  if (rows.size() > 1) text += table(rows, paint);
+  if (left > 0) text += fmt::format("… and {} more, in results.json\n", left);
+  text += "\n";
+  if (!pipeline.error.empty())
+    return text + paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
+  return text + score_text(study, found, paint) + faults_text(found, paint) +
+         assumption_text(study, pipeline, paint);
+}
+
+std::string assumption_text(const Study& study, const PipelineOutcome& pipeline,
+                            const Paint& paint) {
+  if (!pipeline.failed_assumption) return "";
+  using What = FailedAssumption::What;
+  const FailedAssumption& failed = *pipeline.failed_assumption;
+  Names modes;
+  for (const Mode& mode : bank_of(study).modes) modes.push_back(mode.name);
+  const char* suggestion = "widen the set";
+  if (failed.what == What::W || failed.what == What::V)
+    suggestion = "widen the set, or improve the model";
+  if (failed.what == What::modes) suggestion = "describe what acts there by a mode";
+  if (failed.what == What::U) suggestion = "widen the set, or choose smaller inputs";
+  const std::string seed =
+      failed.seed_offset > 0 ? fmt::format(" (seed offset {})", failed.seed_offset) : "";
+  return fmt::format("{}: {}{}. What is said from k = {} on rests on it and proves nothing: {}\n",
+                     paint.yellow("Assumption failed"), text_of(failed, modes), seed, failed.from,
+                     suggestion);
+}
+
+std::string diagnosis_violation(const PipelineOutcome& pipeline) {
+  if (const auto& outside = pipeline.diagnosis->fault_outside;
+      outside && outside->k == pipeline.violated_at) {
+    return fmt::format(
+        "pipeline \"{}\" violates its guarantee: at k = {} the true additive fault {} of k = {} "
+        "lies outside its bounds (seed "
+        "offset {}). This is a defect of its backend or diagnoser",
+        pipeline.name, outside->k, outside->fault + 1, outside->at, outside->seed_offset);
+  }
+  const TrueModeExcluded& excluded = *pipeline.diagnosis->true_mode_excluded;
+  return fmt::format(
+      "pipeline \"{}\" violates its guarantee: at k = {} it excludes the mode \"{}\", in which the "
+      "plant has been since k = {} "
+      "(seed offset {}). This is a defect of its backend or diagnoser",
+      pipeline.name, excluded.k, name_of(pipeline.diagnosis->modes, excluded.mode), excluded.since,
+      excluded.seed_offset);
+}
+
+std::string guarantees_text(const Guarantees& guarantees, const Names& modes, const Paint& paint) {
+  Rows rows{{"OBSERVER", "TRUE MODE", "RESIDUALS", "CONDITION", "HOLDS"}};
+  for (const PairGuarantee& pair : guarantees.pairs) {
+    rows.push_back({name_of(modes, pair.observer), name_of(modes, pair.mode),
+                    fmt::format("R̊{}{} = {}", pair.mode, pair.observer,
+                                box_text(pair.residual, Digits::decimals)),
+                    pair.mode == pair.observer ? "0 inside" : "0 outside",
+                    answer_text(pair.holds)});
+  }
+  std::string text =
+      fmt::format("Method: {}\n", guarantees.method) + fault_guarantees_text(guarantees, paint);
+  if (guarantees.pairs.empty() && !guarantees.faults.empty()) return text;
+  text += table(rows, paint);
+  if (guarantees.error_set) text += error_set_text(*guarantees.error_set, modes);
+  switch (guarantees.all) {
+    case Answer::yes:
+      return text +
+             paint.green(
+                 "Guaranteed in steady state: every mode is told from every other, where no "
+                 "reduction enlarges the sets") +
+             "\n";
+    case Answer::no:
+      return text + paint.yellow("The condition fails: some modes are proven not to meet it") +
+             "\n";
+    case Answer::unknown:
+      break;
+  }
+  return text +
+         paint.yellow(
+             "Not guaranteed: some conditions are not shown to hold, which does not show that they "
+             "fail") +
+         "\n";
+}
+
+}  // namespace cordon::apps

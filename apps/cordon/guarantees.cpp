@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "cordon/study/run.hpp"
+#include "diagnosis_report.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct GuaranteesArguments {
+  std::filesystem::path study;
+  std::string pipeline;
+  bool json = false;
+};
+
+/// What one pipeline promises before any experiment.
+struct Promise {
+  const PipelineSpec* pipeline;
+  std::optional<Guarantees> guarantees;
+};
+
+std::vector<Promise> promises(const Study& study, const Registry& registry,
+                              const std::string& name) {
+  std::vector<Promise> found;
+  std::vector<std::string> names;
+  for (const PipelineSpec& pipeline : study.pipelines) {
+    names.push_back(pipeline.name);
+    if (!name.empty() && pipeline.name != name) continue;
+    found.push_back({&pipeline, std::nullopt});
+    if (!pipeline.diagnoser) continue;
+    const auto backend = registry.make_backend(pipeline.backend.type, pipeline.backend.params);
+    found.back().guarantees = registry
+                                  .make_diagnoser(pipeline.diagnoser->type, bank_of(study), backend,
+                                                  pipeline.diagnoser->params)
+                                  ->guarantees();
+  }
+  if (found.empty() && !name.empty()) {
+    throw InputError(study.file.string(), {{"/pipelines", "there is no pipeline \"" + name + "\"",
+                                            suggest(name, names)}});
+  }
+  return found;
+}
+
+std::vector<std::string> mode_names(const Study& study) {
+  std::vector<std::string> names;
+  for (const Mode& mode : bank_of(study).modes) names.push_back(mode.name);
+  return names;
+}
+
+std::string report_text(const Study& study, const std::vector<Promise>& all) {
+  const Paint paint(stdout);
+  std::string text = study.title.empty() ? "" : paint.bold(study.title) + "\n";
+  for (const auto& [pipeline, guarantees] : all) {
+    if (!text.empty()) text += "\n";
+    if (!pipeline->diagnoser) {
+      text += fmt::format("{}  has no diagnoser\n", paint.bold(pipeline->name));
+      continue;
+    }
+    text += fmt::format("{}  {}, {}\n", paint.bold(pipeline->name), pipeline->backend.type,
+                        pipeline->diagnoser->type);
+    text += guarantees
+                ? guarantees_text(*guarantees, mode_names(study), paint)
+                : fmt::format("{} makes no statements in advance\n", pipeline->diagnoser->type);
+  }
+  return text;
+}
+
+std::string report_json(const Study& study, const std::vector<Promise>& all) {
+  const std::vector<std::string> modes = mode_names(study);
+  Json report{{"modes", modes}, {"pipelines", Json::array()}};
+  for (const auto& [pipeline, guarantees] : all) {
+    report["pipelines"].push_back(
+        {{"name", pipeline->name},
+         {"backend", pipeline->backend.type},
+         {"diagnoser", pipeline->diagnoser ? Json(pipeline->diagnoser->type) : Json(nullptr)},
+         {"guarantees", guarantees ? Json::parse(json_of(*guarantees, modes)) : Json(nullptr)}});
+  }
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Exit guarantees(const Program& program, const GuaranteesArguments& arguments) {
+  Registry registry;
+  registry.load({program.plugins});
+  const Study study =
+      read_study(arguments.study, registry, default_search_path(), program.study_plugins());
+  for (const std::string& warning : study.warnings) warn(warning);
+  const std::vector<Promise> all = promises(study, registry, arguments.pipeline);
+  print(arguments.json ? report_json(study, all) : report_text(study, all));
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_guarantees(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand(
+      "guarantees", "Say which faults of a study can be told apart, before any experiment");
+  const auto arguments = std::make_shared<GuaranteesArguments>();
+  command->add_option("STUDY", arguments->study, "Study file (JSON)")->required()->option_text(" ");
+  command->add_option("--pipeline", arguments->pipeline, "This pipeline only")->option_text("NAME");
+  command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
+  command->footer(
+      "For each observer of a bank and each true mode: the set that holds all residuals in steady "
+      "state, and whether the\n"
+      "observer of the true mode is consistent with it and the others are not. \"not guaranteed\" "
+      "means that this was not\n"
+      "shown, \"no\" that it is proven to fail. The exit code is 0 whatever the answer.");
+  command->callback([&program, arguments] { program.exit = guarantees(program, *arguments); });
+}
+
+}  // namespace cordon::apps

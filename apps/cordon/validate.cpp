@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "cordon/experiments/sweep.hpp"
+#include "cordon/study/data.hpp"
+#include "cordon/study/study.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ValidateArguments {
+  std::vector<std::string> studies;
+  bool json = false;
+};
+
+std::string count(Index number, const char* noun) {
+  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
+
+std::string describe_system(const LinearModel& model) {
+  const std::string faults =
+      model.faults() > 0 ? ", " + count(model.faults(), "additive fault") : "";
+  return fmt::format("{}{}, {}, {}, {}, {}, {}{}", model.is_uncertain() ? "uncertain " : "",
+                     model.is_descriptor() ? "descriptor" : "lti", count(model.states(), "state"),
+                     count(model.inputs(), "input"), count(model.outputs(), "output"),
+                     count(model.disturbances(), "disturbance"), count(model.noises(), "noise"),
+                     faults);
+}
+
+std::string describe_data(const Study& study) {
+  if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
+    const std::string by = simulate->plant ? " by " + simulate->plant->type : "";
+    const std::uint64_t first = simulate->seed,
+                        last = first + static_cast<std::uint64_t>(simulate->seeds) - 1;
+    const std::string seeds =
+        last == first ? fmt::format("seed {}", first) : fmt::format("seeds {} to {}", first, last);
+    const bool designed =
+        std::all_of(study.pipelines.begin(), study.pipelines.end(),
+                    [](const PipelineSpec& pipeline) { return pipeline.designer.has_value(); });
+    if (designed) return "experiments with every mode and the designed inputs, " + seeds;
+    return fmt::format("simulated{}, {}, {}", by, count(simulate->steps, "step"), seeds);
+  }
+  return "recorded, " + std::get<CsvSpec>(study.data).file.string();
+}
+
+/// "weak from k = 3 to 5"; the last one may have no end.
+std::string describe_fault(const FaultSpec& fault, std::int64_t steps) {
+  const std::string until = fault.to < steps ? fmt::format(" to {}", fault.to) : "";
+  return fmt::format("{} from k = {}{}{}", fault.name, fault.from, until,
+                     fault.mode < 0 ? " (not in the bank)" : "");
+}
+
+std::string describe_modes(const Study& study) {
+  std::string text;
+  if (!study.modes.empty()) {
+    std::vector<std::string> names{study.nominal};
+    for (const Mode& mode : study.modes) names.push_back(mode.name);
+    text += fmt::format("  modes     {}\n", fmt::join(names, ", "));
+  }
+  const auto* simulate = std::get_if<SimulateSpec>(&study.data);
+  if (!simulate) return text;
+  const char* label = "faults";
+  for (const FaultSpec& fault : simulate->faults) {
+    text += fmt::format("  {:<9} {}\n", label, describe_fault(fault, simulate->steps));
+    label = "";
+  }
+  label = "additive";
+  for (const AdditiveFaultSpec& fault : simulate->additive_faults) {
+    const std::string until = fault.to < simulate->steps ? fmt::format(" to {}", fault.to) : "";
+    text +=
+        fmt::format("  {:<9} fault {} from k = {}{}\n", label, fault.fault + 1, fault.from, until);
+    label = "";
+  }
+  return text;
+}
+
+std::vector<std::string> components_of(const PipelineSpec& pipeline) {
+  std::vector<std::string> names{pipeline.backend.type};
+  if (pipeline.designer) names.push_back(pipeline.designer->type);
+  if (pipeline.diagnoser) names.push_back(pipeline.diagnoser->type);
+  if (!pipeline.designer && !pipeline.diagnoser) names.push_back(pipeline.observer.type);
+  return names;
+}
+
+/// "generators: 3 values; seed: 50 values, repeated", and how many points that makes with the
+/// pipelines.
+std::string describe_sweep(const Study& study) {
+  std::vector<std::string> axes;
+  auto points = static_cast<std::int64_t>(study.pipelines.size());
+  for (const SweepAxis& axis : study.sweep) {
+    const auto size = static_cast<Index>(axis.values.size());
+    points *= size;
+    axes.push_back(
+        fmt::format("{}: {}{}", axis.name, count(size, "value"), axis.repeat ? ", repeated" : ""));
+  }
+  return axes.empty()
+             ? ""
+             : fmt::format("  sweep     {}\n  points    {}\n", fmt::join(axes, "; "), points);
+}
+
+std::string describe(const Study& study) {
+  const Paint paint(stdout);
+  std::string text = fmt::format("{}: {}\n  title     {}\n  system    {}\n  data      {}\n",
+                                 study.file.string(), paint.green("ok"), study.title,
+                                 describe_system(study.model.linear), describe_data(study));
+  text += describe_modes(study);
+  const char* label = "pipelines";
+  for (const PipelineSpec& pipeline : study.pipelines) {
+    text += fmt::format("  {:<9} {}: {}\n", label, pipeline.name,
+                        fmt::join(components_of(pipeline), ", "));
+    label = "";
+  }
+  std::vector<std::string> metrics;
+  for (const ComponentSpec& metric : study.metrics) metrics.push_back(metric.type);
+  if (!metrics.empty()) text += fmt::format("  metrics   {}\n", fmt::join(metrics, ", "));
+  return text + describe_sweep(study);
+}
+
+Json as_json(const Study& study) {
+  Json entry{{"file", study.file.string()},
+             {"valid", true},
+             {"warnings", study.warnings},
+             {"errors", Json::array()}};
+  entry["study"] = Json::parse(study.resolved);
+  return entry;
+}
+
+void add_errors(Json& errors, const Error& error) {
+  const auto* input = dynamic_cast<const InputError*>(&error);
+  if (!input) errors.push_back({{"message", error.what()}});
+  for (const Diagnostic& d : input ? input->diagnostics() : std::vector<Diagnostic>{}) {
+    errors.push_back({{"file", input->file()},
+                      {"pointer", d.pointer},
+                      {"line", d.line},
+                      {"message", d.message},
+                      {"suggestion", d.suggestion}});
+  }
+}
+
+/// What is wrong with the data, under every value of the axes that choose a file or its columns;
+/// the same error once.
+std::vector<std::exception_ptr> wrong_data(const Study& study, const Registry& registry) {
+  constexpr std::size_t most = 1000;  // of one axis
+  std::vector<std::exception_ptr> errors;
+  std::set<std::string> known;
+  const auto open = [&](const auto& made) {
+    try {
+      open_data(made());
+    } catch (const Error& error) {
+      if (known.insert(error.what()).second) errors.push_back(std::current_exception());
+    }
+  };
+  open([&] { return study; });
+  for (std::size_t axis = 0; axis < study.sweep.size(); ++axis) {
+    if (!study.sweep[axis].path.starts_with("/data/csv") && study.sweep[axis].path != "/data")
+      continue;
+    std::vector<std::size_t> at(study.sweep.size(), 0);
+    for (at[axis] = 1; at[axis] < std::min(most, study.sweep[axis].values.size()); ++at[axis])
+      open([&] { return study_at(study, at, registry); });
+  }
+  return errors;
+}
+
+/// Tells every error, as a text or in an entry for programs; the exit code is that of the first.
+Exit refuse(const std::string& file, const std::vector<std::exception_ptr>& wrong, Json* entries) {
+  std::optional<Exit> exit;
+  Json entry{
+      {"file", file}, {"valid", false}, {"warnings", Json::array()}, {"errors", Json::array()}};
+  for (const std::exception_ptr& one : wrong) {
+    try {
+      std::rethrow_exception(one);
+    } catch (const Error& error) {
+      if (!exit) entry["code"] = to_string(error.code());
+      add_errors(entry["errors"], error);
+      const Exit its = entries ? exit_for(error.code()) : report_current_exception();
+      if (!exit) exit = its;
+    }
+  }
+  if (entries) entries->push_back(std::move(entry));
+  return exit.value_or(Exit::done);
+}
+
+/// Reads one study and its data as `cordon run` would, but runs nothing, writes nothing, and opens
+/// no plugin that only the study names.
+Exit validate_one(const std::string& file, const Program& program, Json* entries) {
+  try {
+    Registry registry;
+    registry.load(SearchPath{program.plugins});
+    const StudyPlugins plugins = program.trust_plugins ? StudyPlugins::load : StudyPlugins::ignore;
+    const Study study = read_study(file, registry, default_search_path(), plugins);
+    if (const auto wrong = wrong_data(study, registry); !wrong.empty())
+      return refuse(file, wrong, entries);
+    if (entries) {
+      entries->push_back(as_json(study));
+    } else {
+      for (const std::string& warning : study.warnings) warn(warning);
+      print(describe(study));
+    }
+    return Exit::done;
+  } catch (const Error&) {
+    return refuse(file, {std::current_exception()}, entries);
+  }
+}
+
+/// The exit code is that of the first study that fails; the others are looked at all the same.
+Exit validate(const Program& program, const ValidateArguments& arguments) {
+  Exit exit = Exit::done;
+  Json entries = Json::array();
+  for (const std::string& file : arguments.studies) {
+    const Exit one = validate_one(file, program, arguments.json ? &entries : nullptr);
+    if (exit == Exit::done) exit = one;
+  }
+  if (arguments.json)
+    print(
+        Json{{"studies", std::move(entries)}}.dump(2, ' ', false, Json::error_handler_t::replace) +
+        "\n");
+  return exit;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app, Program& program) {
+  CLI::App* command = app.add_subcommand(
+      "validate", "Check study files and their data, and show every error at once");
+  const auto arguments = std::make_shared<ValidateArguments>();
+  command->add_option("STUDY", arguments->studies, "Study files (JSON)")->required();
+  command->add_flag("--json", arguments->json,
+                    "Print JSON for programs: errors, warnings, and the study with every default");
+  command->footer(
+      "Directories of plugins that only a study names are not opened: what needs their components "
+      "is reported as not checked,\n"
+      "with exit code 3. With --trust-plugins they are.");
+  command->callback([&program, arguments] { program.exit = validate(program, *arguments); });
+}
+
+}  // namespace cordon::apps

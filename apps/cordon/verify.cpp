@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/verify.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <memory>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "progress_bar.hpp"
+
+namespace cordon::apps {
+
+namespace {
+
+struct VerifyArguments {
+  std::filesystem::path directory;
+  VerifyOptions options;
+  bool json = false, quiet = false;
+};
+
+/// Observers have no proofs without steps.
+bool is_design(const VerifiedPipeline& p) { return p.steps == 0 && p.proofs + p.undecided > 0; }
+
+using Count = SecondOpinionFindings::Count;
+
+std::string second_opinion_text(const SecondOpinionFindings& found, const Paint& paint) {
+  std::vector<std::vector<std::string>> rows{
+      {found.engine, "agree", "too large", "unanswered", "disagree"}};
+  for (const auto& [what, count] : {std::pair<const char*, Count>{"conversions", found.conversions},
+                                    {"linear programs", found.programs}}) {
+    rows.push_back({what, std::to_string(count.agree), std::to_string(count.too_large),
+                    std::to_string(count.unanswered), std::to_string(count.disagree)});
+  }
+  return "\n" + table(rows, paint);
+}
+
+/// The sentence on the first question that both engines answer differently, or "".
+const std::string& disagreement(const VerifyOutcome& outcome) {
+  static const std::string none;
+  return outcome.second_opinion ? outcome.second_opinion->first_disagreement : none;
+}
+
+nlohmann::ordered_json second_opinion_json(const SecondOpinionFindings& found) {
+  using Object = nlohmann::ordered_json;
+  const auto count_json = [](const Count& count) {
+    return Object{{"agree", count.agree},
+                  {"too_large", count.too_large},
+                  {"unanswered", count.unanswered},
+                  {"disagree", count.disagree}};
+  };
+  return {{"engine", found.engine},
+          {"conversions", count_json(found.conversions)},
+          {"programs", count_json(found.programs)},
+          {"first_disagreement", found.first_disagreement},
+          {"first_unanswered", found.first_unanswered}};
+}
+
+std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
+  std::vector<std::vector<std::string>> rows{{"pipeline", "backend", "rounding", "steps",
+                                              "exact sets", "directions", "proofs", "exact claims",
+                                              "undecided"}};
+  std::string passed_over;
+  for (const VerifiedPipeline& p : outcome.pipelines) {
+    if (!p.failed_assumption.empty()) {
+      passed_over += fmt::format(
+          "{} of {}: {}. What is said from k = {} on rests on it and proves nothing{}\n",
+          paint.yellow("assumption failed"), p.name, p.failed_assumption, p.assumptions_until,
+          p.fails_again == Answer::yes ? " (proven again)" : "");
+    }
+    if (!p.checked) {
+      passed_over +=
+          fmt::format("not re-checked: {} (a diagnosis; its sets are not stored)\n", p.name);
+      continue;
+    }
+    if (is_design(p))
+      passed_over += fmt::format(
+          "not re-checked: the experiments of {} (of its design, the separation is)\n", p.name);
+    rows.push_back({p.name, p.backend, std::string(to_string(p.rounding)), std::to_string(p.steps),
+                    std::to_string(p.by_polytopes), std::to_string(p.by_supports),
+                    std::to_string(p.proofs), std::to_string(p.exact_claims),
+                    std::to_string(p.undecided)});
+  }
+  if (outcome.by_samples) {
+    passed_over +=
+        "matrices are known by intervals only: checked for some drawn from them, not for all; "
+        "claims of \"exact\" are not "
+        "checked\n";
+  }
+  return (rows.size() > 1 || passed_over.empty() ? table(rows, paint) : "") + passed_over +
+         (outcome.second_opinion ? second_opinion_text(*outcome.second_opinion, paint) : "");
+}
+
+nlohmann::ordered_json assumption_json(const VerifiedPipeline& p) {
+  if (p.failed_assumption.empty()) return nullptr;
+  return {{"text", p.failed_assumption},
+          {"assumptions_until", p.assumptions_until},
+          {"proven_again", to_string(p.fails_again)}};
+}
+
+std::string report_json(const VerifyOutcome& outcome) {
+  using Object = nlohmann::ordered_json;
+  Object report{{"verified", !outcome.violation && disagreement(outcome).empty()},
+                {"by_samples", outcome.by_samples},
+                {"pipelines", Object::array()},
+                {"violation", nullptr},
+                {"second_opinion", nullptr}};
+  for (const VerifiedPipeline& p : outcome.pipelines) {
+    report["pipelines"].push_back({{"name", p.name},
+                                   {"backend", p.backend},
+                                   {"rounding", to_string(p.rounding)},
+                                   {"checked", p.checked},
+                                   {"steps", p.steps},
+                                   {"by_polytopes", p.by_polytopes},
+                                   {"by_supports", p.by_supports},
+                                   {"proofs", p.proofs},
+                                   {"exact_claims", p.exact_claims},
+                                   {"undecided", p.undecided},
+                                   {"first_undecided", p.first_undecided},
+                                   {"failed_assumption", assumption_json(p)}});
+  }
+  if (const auto& v = outcome.violation) {
+    report["violation"] = {
+        {"pipeline", v->pipeline}, {"k", v->k}, {"what", v->what}, {"pointer", v->pointer}};
+  }
+  if (const auto& found = outcome.second_opinion)
+    report["second_opinion"] = second_opinion_json(*found);
+  return report.dump(2, ' ', false, Object::error_handler_t::replace) + "\n";
+}
+
+std::int64_t undecided(const VerifyOutcome& outcome) {
+  std::int64_t count = 0;
+  for (const VerifiedPipeline& p : outcome.pipelines) {
+    if (p.undecided > 0)
+      warn(fmt::format("pipeline \"{}\": undecided at {}", p.name, p.first_undecided));
+    count += p.undecided;
+  }
+  return count;
+}
+
+std::string final_text(const VerifyOutcome& outcome) {
+  const bool assumed =
+      std::none_of(outcome.pipelines.begin(), outcome.pipelines.end(),
+                   [](const VerifiedPipeline& p) { return !p.failed_assumption.empty(); });
+  return assumed ? "Every claim that was checked holds.\n"
+                 : "Every claim that was checked holds, as long as its assumptions do.\n";
+}
+
+Exit verify(VerifyArguments& arguments) {
+  VerifyOptions& options = arguments.options;
+  const bool visible = !arguments.quiet && isatty(STDERR_FILENO) == 1;
+  std::optional<ProgressBar> bar;
+  options.progress = [&](const std::vector<std::string>& names, std::size_t pipeline,
+                         std::int64_t done, std::int64_t total) {
+    if (!bar) bar.emplace(names, visible);
+    bar->show(pipeline, done, total);
+  };
+  options.stop = stop_on_signals();
+  const VerifyOutcome outcome = verify_run(arguments.directory, options);
+  if (bar) bar->clear();
+  if (outcome.interrupted) {
+    complain("interrupted: the run is not verified");
+    return interrupted;
+  }
+  if (!arguments.quiet)
+    print(arguments.json ? report_json(outcome) : report_text(outcome, Paint(stdout)));
+  if (const auto& v = outcome.violation) {
+    complain(fmt::format("violated at {}, pipeline \"{}\", k = {}: {}", v->pointer, v->pipeline,
+                         v->k, v->what));
+    return Exit::violated;
+  }
+  if (const std::string& differs = disagreement(outcome); !differs.empty()) {
+    complain(fmt::format("{} does not agree, {}", outcome.second_opinion->engine, differs));
+    return Exit::violated;
+  }
+  if (outcome.second_opinion && !outcome.second_opinion->first_unanswered.empty())
+    warn("no second opinion, " + outcome.second_opinion->first_unanswered);
+  if (const std::int64_t open = undecided(outcome); open > 0) {
+    complain(fmt::format("{} checks could not be decided; all others hold", open));
+    return Exit::unanswered;
+  }
+  const bool any = std::any_of(outcome.pipelines.begin(), outcome.pipelines.end(),
+                               [](const auto& p) { return p.checked; });
+  if (!arguments.quiet && !arguments.json && (any || outcome.pipelines.empty()))
+    print(final_text(outcome));
+  return Exit::done;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, Program& program) {
+  CLI::App* command =
+      app.add_subcommand("verify", "Check the results of a run again, in exact arithmetic");
+  const auto arguments = std::make_shared<VerifyArguments>();
+  command->add_option("DIR", arguments->directory, "Directory that \"cordon run\" wrote")
+      ->required()
+      ->check(CLI::Validator(path_problem, "", ""));
+  command->add_option("--every", arguments->options.every, "Check every M-th step")
+      ->option_text("M [1]")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
+  command
+      ->add_option("--directions", arguments->options.directions,
+                   "Random directions where exact polytopes are too large")
+      ->option_text("N [32]")
+      ->check(CLI::Range(0, 100000));
+  command->add_option("--seed", arguments->options.seed, "Seed of these directions")
+      ->option_text("N [1]");
+  command->add_flag("--second-opinion", arguments->options.second_opinion,
+                    "Repeat conversions of polyhedra and exact linear programs by cddlib");
+  command->add_flag("--json", arguments->json, "Print JSON for programs instead of the table");
+  command->add_flag("--quiet", arguments->quiet, "Print errors only");
+  command->footer(
+      "Checks for each step that the reported set and hull contain every state that model, data "
+      "and the pipeline's own\n"
+      "assumptions allow, that the stored proofs hold, and that claims of \"exact\" are true; of "
+      "designed inputs, what is said "
+      "of\n"
+      "pairs of modes and of empty tubes (their experiments are not re-checked). No plugin is "
+      "loaded.\n"
+      "Exit code 4 and the first violation if a claim is false, or the first question on which "
+      "cddlib does not agree; 5 if\n"
+      "a check could not be decided.");
+  command->callback([&program, arguments] { program.exit = verify(*arguments); });
+}
+
+}  // namespace cordon::apps

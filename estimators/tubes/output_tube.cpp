@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tubes/output_tube.hpp"
+
+#include "cordon/core/error.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/line_elimination.hpp"
+#include "cordon/interfaces/descriptor_matrix.hpp"
+
+namespace cordon::designers {
+
+namespace {
+
+/// An affine expression of the unknowns: offset + lines·δ + factors·ξ, with columns from `line` and
+/// `factor` on.
+struct Part {
+  Matrix M, G;
+  Vector c;
+  Index line = 0, factor = 0;
+};
+
+/// T·part
+Part mapped(MatrixIn T, const Part& part) {
+  return {linalg::denoised_product(T, part.M), linalg::denoised_product(T, part.G),
+          linalg::denoised_product(T, part.c), part.line, part.factor};
+}
+
+/// The tube while it is built: unknowns are counted first, so that every block has its place.
+class TubeBuilder {
+ public:
+  TubeBuilder(const Model& model, const SetBackend& backend, const TubeSpan& span)
+      : m_(with_exact_effectiveness_applied(model.linear)),
+        span_(span),
+        n_(m_.states()),
+        X0_(backend.import(model.X0)->line_form()),
+        W_(backend.import(model.W)->line_form()),
+        V_(backend.import(model.V)->line_form()) {
+    if (m_.is_descriptor()) E_.emplace(m_.E);
+    if (span.admissible_set && m_.is_descriptor())
+      XA_ = backend.import(*span.admissible_set)->line_form();
+  }
+
+  OutputTube build() {
+    const Index N = span_.horizon, inputs = m_.inputs() * (N + 1);
+    const Index first_output = span_.last_output_only ? N : 0, noises = N + 1 - first_output;
+    const Index equations = m_.is_descriptor()
+                                ? N + 1
+                                : N;  // without E the equation of k = N only tells the free x_{N+1}
+    const Index admissible = XA_ ? N : 0;
+    const LineForm none{};
+    const LineForm& XA = XA_ ? *XA_ : none;
+    const Index inner = E_ && !E_->as_written ? E_->rank : 0;  // z of core z = right x⁺
+    const Index lines = X0_.lines() + equations * (W_.lines() + n_ + inner) + noises * V_.lines() +
+                        admissible * (XA.lines() + determined().rows());
+    const Index factors = X0_.generators() + equations * W_.generators() +
+                          noises * V_.generators() + admissible * XA.generators();
+    const Index rows = X0_.constraints() + equations * (W_.constraints() + n_ + inner) +
+                       noises * V_.constraints() + admissible * (XA.constraints() + n_);
+    const Index outputs = m_.outputs() * noises;
+    tube_ = {Matrix::Zero(outputs, lines),  Matrix::Zero(outputs, factors),
+             Matrix::Zero(outputs, inputs), Vector::Zero(outputs),
+             Matrix::Zero(rows, lines),     Matrix::Zero(rows, factors),
+             Matrix::Zero(rows, inputs),    Vector::Zero(rows)};
+
+    std::vector<Part> x{take(X0_)};
+    for (Index k = 0; k < equations; ++k) {
+      const Part w = take(W_);
+      x.push_back(take_free(n_));
+      next_state(k, x[static_cast<std::size_t>(k)], w, x.back());
+    }
+    for (Index k = 1; k <= admissible; ++k) admit(x[static_cast<std::size_t>(k)], XA);
+    for (Index k = first_output; k <= N; ++k)
+      output(k, (k - first_output) * m_.outputs(), x[static_cast<std::size_t>(k)]);
+    return std::move(tube_);
+  }
+
+ private:
+  /// A point of the set, with unknowns and rows of its own.
+  Part take(const LineForm& X) {
+    const Part part{X.M, X.G, X.c, line_, factor_};
+    tube_.S.block(row_, line_, X.constraints(), X.lines()) = X.S;
+    tube_.A.block(row_, factor_, X.constraints(), X.generators()) = X.A;
+    tube_.b.segment(row_, X.constraints()) = X.b;
+    line_ += X.lines();
+    factor_ += X.generators();
+    row_ += X.constraints();
+    return part;
+  }
+
+  Part take_free(Index dim) {
+    const Part part{Matrix::Identity(dim, dim), Matrix(dim, 0), Vector::Zero(dim), line_, factor_};
+    line_ += dim;
+    return part;
+  }
+
+  /// Adds the expression to the rows from `row` on, whose right-hand side takes its offset.
+  void add(Index row, const Part& part) {
+    tube_.S.block(row, part.line, part.M.rows(), part.M.cols()) += part.M;
+    tube_.A.block(row, part.factor, part.G.rows(), part.G.cols()) += part.G;
+    tube_.b.segment(row, part.c.size()) -= part.c;
+  }
+
+  /// E x⁺ - A x - Bw w = B u_k
+  void next_state(Index k, const Part& x, const Part& w, const Part& next) {
+    if (E_ && !E_->as_written) {
+      const Part z = take_free(E_->rank);
+      add(row_, mapped(E_->core, z));
+      add(row_, mapped(-E_->right, next));
+      row_ += E_->rank;
+      add(row_, mapped(E_->left, z));
+    } else {
+      add(row_, E_ ? mapped(E_->left, next) : next);
+    }
+    add(row_, mapped(-m_.A, x));
+    add(row_, mapped(-m_.Bw, w));
+    tube_.Omega.block(row_, k * m_.inputs(), n_, m_.inputs()) = m_.B;
+    row_ += n_;
+  }
+
+  /// Rows that span the range of Eᵀ.
+  const Matrix& determined() const {
+    static const Matrix none;
+    return !E_ ? none : E_->as_written ? E_->left : E_->right;
+  }
+
+  /// x - x_A - Eᵀλ = 0: x and x_A agree in what E does not determine.
+  void admit(const Part& x, const LineForm& XA) {
+    const Part a = take(XA), lambda = take_free(determined().rows());
+    add(row_, x);
+    add(row_, mapped(-Matrix::Identity(n_, n_), a));
+    add(row_, mapped(-determined().transpose(), lambda));
+    row_ += n_;
+  }
+
+  void output(Index k, Index row, const Part& x) {
+    for (const Part& part : {mapped(m_.C, x), mapped(m_.Dv, take(V_))}) {
+      tube_.M.block(row, part.line, part.M.rows(), part.M.cols()) += part.M;
+      tube_.G.block(row, part.factor, part.G.rows(), part.G.cols()) += part.G;
+      tube_.c.segment(row, part.c.size()) += part.c;
+    }
+    tube_.H.block(row, k * m_.inputs(), m_.outputs(), m_.inputs()) = m_.D;
+  }
+
+  LinearModel m_;
+  const TubeSpan& span_;
+  Index n_;
+  LineForm X0_, W_, V_;
+  std::optional<LineForm> XA_;
+  std::optional<DescriptorMatrix> E_;
+  OutputTube tube_;
+  Index line_ = 0, factor_ = 0, row_ = 0;
+};
+
+}  // namespace
+
+LineForm OutputTube::at(VectorIn u) const {
+  return {M, G, c + linalg::product(H, u), S, A, b + linalg::product(Omega, u)};
+}
+
+OutputTube output_tube(const Model& model, const SetBackend& backend, const TubeSpan& span) {
+  if (span.horizon < 0) throw Error(Errc::invalid, "the horizon of a tube is negative");
+  return TubeBuilder(model, backend, span).build();
+}
+
+Vector TubeConditions::terms(VectorIn reach) const {
+  const Vector seen =
+      b.cwiseAbs() + A.cwiseAbs().rowwise().sum() + linalg::product(Omega.cwiseAbs(), reach);
+  if (Omega_magnitude.size() == 0) return seen.cwiseMax(magnitude);
+  return seen.cwiseMax(linalg::product(Omega_magnitude, reach) + magnitude);
+}
+
+TubeConditions conditions_of(const OutputTube& tube) {
+  Matrix columns(tube.b.size(), tube.A.cols() + tube.inputs());
+  columns << tube.A, -tube.Omega;
+  const Index all = columns.cols();
+  const LinesEliminated rest = eliminate_lines_traced(
+      {Matrix(0, tube.S.cols()), Matrix(0, all), Vector(0), tube.S, std::move(columns), tube.b},
+      Vector(0));
+  const Matrix shares = rest.rows.cwiseAbs();
+  return {rest.set.A.leftCols(tube.A.cols()),
+          -rest.set.A.rightCols(tube.inputs()),
+          rest.set.b,
+          linalg::product(shares, tube.b.cwiseAbs() + tube.A.cwiseAbs().rowwise().sum()),
+          linalg::product(shares, tube.Omega.cwiseAbs()),
+          rest.vanished};
+}
+
+}  // namespace cordon::designers

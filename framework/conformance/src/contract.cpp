@@ -1,0 +1,467 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What holds for every call: errors by code, operands that stay as they are, the same result every
+// time, from any thread.
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <thread>
+
+#include "cordon/core/error.hpp"
+#include "fingerprint.hpp"
+#include "operations.hpp"
+
+namespace cordon::conformance {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+using Call = std::pair<std::string, std::function<void()>>;
+
+/// Every call throws an Error of that code.
+Verdict all_throw(const std::vector<Call>& calls, Errc code) {
+  const std::string expected = "Errc::" + std::string(to_string(code));
+  for (const auto& [what, call] : calls) {
+    try {
+      call();
+    } catch (const Error& error) {
+      if (error.code() == code) continue;
+      return Verdict::fails(what + ": expected " + expected + ", found Errc::" +
+                            std::string(to_string(error.code())) + ": " + error.what());
+    }
+    return Verdict::fails(what + ": expected " + expected + ", but nothing was thrown");
+  }
+  return {};
+}
+
+Verdict check_dimension_errors(const Context& context, const TestCase& test) {
+  const SetBackend& b = *context.backend;
+  const Enclosure X = b.import(test.set(0).form);
+  const Index n = X->dim();
+  const Enclosure wider = b.point(Vector::Zero(n + 1));
+  const Matrix I = Matrix::Identity(n, n), wide = Matrix::Identity(n, n + 1);
+  const Vector zero = Vector::Zero(n), longer = Vector::Zero(n + 1);
+  LineForm broken = make_point(zero);
+  broken.b = Vector::Ones(1);
+  return all_throw(
+      {
+          {"contains of a longer point", [&] { X->contains(longer); }},
+          {"support in a longer direction", [&] { X->support(longer); }},
+          {"is_subset_of a set of another dimension", [&] { X->is_subset_of(*wider); }},
+          {"is_disjoint_from a set of another dimension", [&] { X->is_disjoint_from(*wider); }},
+          {"affine_map by a wider T", [&] { b.affine_map(X, wide, zero); }},
+          {"affine_map with a longer t", [&] { b.affine_map(X, I, longer); }},
+          {"sum of different dimensions", [&] { b.sum(X, wider); }},
+          {"intersection with a wider R", [&] { b.intersection(X, wide, X); }},
+          {"intersection with R that does not reach Y", [&] { b.intersection(X, I, wider); }},
+          {"correct with a wider C",
+           [&] {
+             b.correct(X, {wide, zero, {I, X}});
+           }},
+          {"correct with a longer z",
+           [&] {
+             b.correct(X, {I, longer, {I, X}});
+           }},
+          {"correct with a wider T",
+           [&] {
+             b.correct(X, {I, zero, {wide, X}});
+           }},
+          {"interval_map by a wider matrix", [&] { b.interval_map(X, IntervalMatrix(wide)); }},
+          {"interval_map with a radius of another size",
+           [&] { b.interval_map(X, IntervalMatrix(I, wide)); }},
+          {"convex_hull of different dimensions", [&] { b.convex_hull(X, wider); }},
+          {"import of blocks that do not fit", [&] { b.import(broken); }},
+      },
+      Errc::dimension);
+}
+
+Verdict check_not_finite_errors(const Context& context, const TestCase& test) {
+  const SetBackend& b = *context.backend;
+  const Enclosure X = b.import(test.set(0).form);
+  const Index n = X->dim();
+  const Matrix I = Matrix::Identity(n, n);
+  const Vector zero = Vector::Zero(n);
+  for (const double bad : {nan, infinity}) {
+    Matrix T = I;
+    T(0, n - 1) = bad;
+    Vector t = zero;
+    t[n - 1] = bad;
+    LineForm broken = make_zonotope(zero, T);
+    const Verdict verdict = all_throw(
+        {
+            {"contains", [&] { X->contains(t); }},
+            {"support", [&] { X->support(t); }},
+            {"affine_map, T", [&] { b.affine_map(X, T, zero); }},
+            {"affine_map, t", [&] { b.affine_map(X, I, t); }},
+            {"intersection, R", [&] { b.intersection(X, T, X); }},
+            {"correct, C",
+             [&] {
+               b.correct(X, {T, zero, {I, X}});
+             }},
+            {"correct, z",
+             [&] {
+               b.correct(X, {I, t, {I, X}});
+             }},
+            {"correct, T",
+             [&] {
+               b.correct(X, {I, zero, {T, X}});
+             }},
+            {"interval_map, centre", [&] { b.interval_map(X, IntervalMatrix(T, I)); }},
+            {"interval_map, radius", [&] { b.interval_map(X, IntervalMatrix(I, T)); }},
+            {"import", [&] { b.import(broken); }},
+        },
+        Errc::not_finite);
+    if (verdict.failed()) return verdict;
+  }
+  return {};
+}
+
+TestCase generate_program(const Setting& s) {
+  TestCase test = two_sets(s);
+  const Index p = s.random.between(1, 2);
+  test.matrices.push_back({"A", 'p', 'n', s.make().map(p, s.n)});
+  test.vectors.push_back({"f", 'p', s.make().vector(p)});
+  return test;
+}
+
+Verdict check_operands_unchanged(const Context& context, const TestCase& test) {
+  const SetBackend& b = *context.backend;
+  const Enclosure X = b.import(test.set(0).form), Y = b.import(test.set(1).form);
+  const std::string before_X = fingerprint(*X), before_Y = fingerprint(*Y);
+  for (const auto& [name, run] : program(b, X, Y, test)) {
+    attempt_operation(run);
+    if (fingerprint(*X) != before_X || fingerprint(*Y) != before_Y) {
+      const bool first = fingerprint(*X) != before_X;
+      Verdict verdict = Verdict::fails(name + " changes its operand " + (first ? "X" : "Y"));
+      verdict.derived.emplace_back("before", first ? before_X : before_Y);
+      verdict.derived.emplace_back("after", fingerprint(first ? *X : *Y));
+      return verdict;
+    }
+  }
+  return {};
+}
+
+/// Results of all operations as text.
+std::vector<std::string> outcomes(const SetBackend& b, const TestCase& test) {
+  const Enclosure X = b.import(test.set(0).form), Y = b.import(test.set(1).form);
+  std::vector<std::string> texts;
+  for (const auto& [name, run] : program(b, X, Y, test))
+    texts.push_back(name + ": " + fingerprint(attempt_operation(run)));
+  return texts;
+}
+
+Verdict compare(const std::vector<std::string>& expected, const std::vector<std::string>& found,
+                const std::string& when) {
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    if (expected[k] == found[k]) continue;
+    Verdict verdict = Verdict::fails("an operation gives another result " + when);
+    verdict.derived.emplace_back("first", expected[k]);
+    verdict.derived.emplace_back("then", found[k]);
+    return verdict;
+  }
+  return {};
+}
+
+Verdict check_determinism(const Context& context, const TestCase& test) {
+  const auto expected = outcomes(*context.backend, test);
+  Verdict verdict = compare(expected, outcomes(*context.backend, test), "when it is repeated");
+  if (verdict.failed()) return verdict;
+  return compare(expected, outcomes(*context.subject.make(context.subject.params), test),
+                 "on another backend with the same parameters");
+}
+
+/// Threads work on different operands at the same time, each on all of them in turn: what one
+/// leaves in a place that another uses shows as a difference.
+Verdict check_threads(const Context& context, const TestCase& test) {
+  constexpr int threads = 4, rounds = 12;
+  const SetBackend& b = *context.backend;
+  std::vector<TestCase> variants(threads, test);
+  for (int k = 0; k < threads; ++k) {
+    for (TestSet& X : variants[static_cast<std::size_t>(k)].sets) X.form.c.array() += 1.0 + 2.0 * k;
+    variants[static_cast<std::size_t>(k)].matrices[0].value *= k + 1;
+  }
+  std::vector<std::vector<std::string>> expected;
+  for (const TestCase& variant : variants) expected.push_back(outcomes(b, variant));
+  std::vector<Verdict> verdicts(threads);
+  std::atomic<int> ready = 0;
+  std::atomic<bool> failed = false;
+  std::vector<std::thread> workers;
+  for (int t = 0; t < threads; ++t) {
+    workers.emplace_back([&, t] {
+      ++ready;
+      while (ready < threads) std::this_thread::yield();
+      for (int round = 0; round < rounds && !failed; ++round) {
+        const auto k = static_cast<std::size_t>((t + round) % threads);
+        Verdict& verdict = verdicts[static_cast<std::size_t>(t)];
+        try {
+          verdict = compare(expected[k], outcomes(b, variants[k]),
+                            "when other threads work at the same time");
+        } catch (const std::exception& error) {
+          verdict = Verdict::fails(
+              std::string("an operation throws when other threads work at the same time: ") +
+              error.what());
+        } catch (...) {
+          verdict = Verdict::fails("an operation throws when other threads work at the same time");
+        }
+        if (verdict.failed()) failed = true;
+      }
+    });
+  }
+  for (std::thread& worker : workers) worker.join();
+  for (Verdict& verdict : verdicts) {
+    if (verdict.failed()) return verdict;
+  }
+  return {};
+}
+
+// ---- parameters ----
+
+std::optional<std::string> needs_schema(const Context& context) {
+  if (context.subject.schema) return std::nullopt;
+  return "the parameters' schema is not known";
+}
+
+/// A backend with this one parameter set works: it imports a box, adds it, and reduces.
+Verdict check_value(const Context& context, const TestCase& test, const std::string& name,
+                    const Params::Value& value) {
+  Params params = context.subject.params;
+  params.set(name, value);
+  const Context with{context.subject, context.subject.make(params), context.tally};
+  const Operand X = import_operand(with, test.set(0));
+  const Enclosure result =
+      with.backend->reduce(with.backend->sum(X.set, X.set), {test.set(0).form.dim(), 0});
+  Truth truth;
+  std::vector<Vector> points;
+  for (const Vector& x : X.points) points.push_back(x + X.points.front());
+  truth.add(minkowski_sum(X.form, X.form), points, 2 * X.size, 0);
+  Verdict verdict = encloses(with, result, truth, points, test.tame() && X.sure, test.seed);
+  if (verdict.failed())
+    verdict.message = "with another value of parameter \"" + name + "\": " + verdict.message;
+  return verdict;
+}
+
+TestCase one_box(const Setting& s) {
+  TestCase test;
+  test.sets.push_back(s.make().set("X", 'n', s.n, {false, 5, 0}));
+  return test;
+}
+
+Verdict check_parameters(const Context& context, const TestCase& test) {
+  const BackendInfo& info = context.info();
+  if (!context.subject.component.empty() && info.name != context.subject.component) {
+    return Verdict::fails("the backend is registered as \"" + context.subject.component +
+                          "\" and calls itself \"" + info.name + "\"");
+  }
+  if (info.summary.empty()) return Verdict::fails("BackendInfo::summary is empty");
+  for (const ParamSpec& spec : context.subject.schema->specs()) {
+    if (spec.doc.empty())
+      return Verdict::fails("parameter \"" + spec.name + "\" has no documentation");
+    std::vector<Params::Value> values;
+    if (spec.kind == ParamKind::choice) values.assign(spec.choices.begin(), spec.choices.end());
+    if (spec.kind == ParamKind::flag) values = {true, false};
+    constexpr double largest = 1e4;  // of a limit that is tried: beyond, it may stand for a size
+    for (const double limit : {spec.lowest, spec.highest}) {
+      if (!(std::abs(limit) <= largest)) continue;
+      if (spec.kind == ParamKind::integer) values.emplace_back(static_cast<std::int64_t>(limit));
+      if (spec.kind == ParamKind::real) values.emplace_back(limit);
+    }
+    for (const Params::Value& value : values) {
+      if (Verdict verdict = check_value(context, test, spec.name, value); verdict.failed())
+        return verdict;
+    }
+  }
+  return {};
+}
+
+// ---- hostile calls ----
+
+/// Calls at the edge of what is legal, and beyond. What they return is for other laws; what they
+/// throw is a cordon::Error.
+Verdict check_only_cordon_errors(const Context& context, const TestCase& test) {
+  const SetBackend& b = *context.backend;
+  const Index n = test.set(0).form.dim();
+  const Matrix I = Matrix::Identity(n, n), none(0, n), huge = 1e200 * I;
+  const Vector zero = Vector::Zero(n), nothing(0);
+  const Enclosure X = b.import(test.set(0).form), Y = b.import(test.set(1).form);
+  const Enclosure R0 = b.point(nothing), point = b.point(zero);
+  const std::vector<Call> calls{
+      {"no operand", [&] { b.sum(X, {}); }},
+      {"import of no set", [&] { b.import(Enclosure{}); }},
+      {"a negative budget",
+       [&] {
+         b.reduce(X, {-1, -1});
+       }},
+      {"a budget of nothing",
+       [&] {
+         b.reduce(X, {0, 0});
+       }},
+      {"a negative radius", [&] { b.interval_map(X, IntervalMatrix(I, -I)); }},
+      {"Rⁿ", [&] { b.space(n); }},
+      {"∅", [&] { b.empty(n); }},
+      {"a half-bounded box",
+       [&] {
+         b.box({zero, Vector::Constant(n, infinity)});
+       }},
+      {"a map to R⁰", [&] { b.affine_map(X, none, nothing); }},
+      {"a product with R⁰", [&] { b.product(X, R0); }},
+      {"a product of R⁰ and R⁰", [&] { b.product(R0, R0); }},
+      {"no measurement",
+       [&] {
+         b.correct(X, {none, nothing, {Matrix(0, 0), R0}});
+       }},
+      {"a measurement without noise",
+       [&] {
+         b.correct(X, {I, zero, {Matrix(n, 0), R0}});
+       }},
+      {"a measurement of nothing",
+       [&] {
+         b.correct(X, {Matrix::Zero(1, n), Vector::Zero(1), {Matrix::Zero(1, n), Y}});
+       }},
+      {"a measurement that cannot be",
+       [&] {
+         b.correct(X, {Matrix::Zero(1, n), Vector::Ones(1), {Matrix::Zero(1, n), Y}});
+       }},
+      {"an intersection with R⁰", [&] { b.intersection(X, none, R0); }},
+      {"an interval map to R⁰", [&] { b.interval_map(X, IntervalMatrix(none, none)); }},
+      {"a hull with a point", [&] { b.convex_hull(X, point); }},
+      {"a hull of a point and a set", [&] { b.convex_hull(point, X); }},
+      {"a hull of a point with itself", [&] { b.convex_hull(point, point); }},
+      {"questions about R⁰",
+       [&] {
+         R0->is_empty(), R0->contains(nothing), R0->support(nothing), R0->interval_hull(),
+             R0->volume();
+       }},
+      {"support in direction 0", [&] { X->support(zero); }},
+      {"an overflow of a map", [&] { b.affine_map(b.affine_map(X, huge, zero), huge, zero); }},
+      {"an overflow of a translation",
+       [&] {
+         b.affine_map(b.point(Vector::Constant(n, 1.7e308)), I, Vector::Constant(n, 1.7e308));
+       }},
+      {"an overflow of a sum",
+       [&] {
+         b.sum(b.point(Vector::Constant(n, 1.7e308)), b.point(Vector::Constant(n, 1.7e308)));
+       }},
+      {"tiny numbers", [&] { b.affine_map(b.affine_map(X, 1e-200 * I, zero), 1e-200 * I, zero); }},
+  };
+  for (const auto& [what, call] : calls) {
+    try {
+      call();
+    } catch (const Error&) {
+    } catch (const std::exception& error) {
+      return Verdict::fails(what +
+                            ": an exception that is no cordon::Error was thrown: " + error.what());
+    } catch (...) {
+      return Verdict::fails(what + ": an exception that is no std::exception was thrown");
+    }
+  }
+  return {};
+}
+
+bool has_nan(const Vector& x) { return x.array().isNaN().any(); }
+
+Verdict finite(const Set& X, const std::string& what, const std::vector<Vector>& along) {
+  const LineForm form = X.line_form();
+  for (const Matrix* block : {&form.M, &form.G, &form.S, &form.A}) {
+    if (!block->allFinite())
+      return Verdict::fails(what + ": the exchange form is not finite: " + describe(form));
+  }
+  if (!form.c.allFinite() || !form.b.allFinite())
+    return Verdict::fails(what + ": the exchange form is not finite: " + describe(form));
+  const Box hull = X.interval_hull();
+  if (has_nan(hull.lower) || has_nan(hull.upper)) {
+    return Verdict::fails(what + ": the interval hull holds a NaN: " + describe_vector(hull.lower) +
+                          " to " + describe_vector(hull.upper));
+  }
+  const double volume = X.volume().value;
+  if (!(volume >= 0)) return Verdict::fails(what + ": the volume is " + describe(volume));
+  for (const Vector& d : along) {
+    const double h = X.support(d);
+    if (std::isnan(h))
+      return Verdict::fails(what + ": the support function in direction d = " + describe_vector(d) +
+                            " is NaN");
+    // Set::support replaces a NaN by +inf; without constraints and lines there is no program that
+    // could stay unsolved
+    if (h == infinity && form.constraints() == 0 && form.lines() == 0 && hull.is_bounded()) {
+      return Verdict::fails(what + ": the support function in direction d = " + describe_vector(d) +
+                            " is NaN or +inf, although the set is bounded");
+    }
+  }
+  return {};
+}
+
+Verdict check_no_nan(const Context& context, const TestCase& test) {
+  const SetBackend& b = *context.backend;
+  const Enclosure X = b.import(test.set(0).form), Y = b.import(test.set(1).form);
+  const Index n = X->dim();
+  Random random(test.seed);
+  const auto along = directions({test.set(0).form}, n, random, 3);
+  Verdict verdict = finite(*X, "X", along);
+  if (verdict.failed()) return verdict;
+  const Enclosure point = b.point(test.set(0).form.c), empty = b.empty(n);
+  for (const auto& [name, set] : {std::pair{"a point", point}, std::pair{"the empty set", empty}}) {
+    verdict = finite(*set, name, along);
+    if (verdict.failed()) return verdict;
+  }
+  for (const auto& [name, run] : program(b, X, Y, test)) {
+    const auto result = attempt_operation(run);
+    if (!result) continue;
+    const Index m = (*result)->dim();
+    verdict = finite(**result, name, directions({}, m, random, 2));
+    if (verdict.failed()) return verdict;
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_contract(LawList& list) {
+  list.push_back({{"contract.dimension_errors", "operands that do not fit throw Errc::dimension"},
+                  two_sets,
+                  check_dimension_errors,
+                  {},
+                  0.2});
+  list.push_back(
+      {{"contract.not_finite_errors", "NaN and infinite operands throw Errc::not_finite"},
+       two_sets,
+       check_not_finite_errors,
+       {},
+       0.2});
+  list.push_back({{"contract.operands_unchanged", "no operation changes an operand"},
+                  generate_program,
+                  check_operands_unchanged,
+                  {},
+                  0.5});
+  list.push_back({{"contract.threads", "operations on different threads do not disturb each other"},
+                  generate_program,
+                  check_threads,
+                  {},
+                  0.1});
+  list.push_back(
+      {{"contract.determinism", "the same operation on the same operands gives the same bits"},
+       generate_program,
+       check_determinism,
+       {},
+       0.5});
+  list.push_back({{"contract.parameters_documented",
+                   "every parameter is documented, and every value that it allows works"},
+                  one_box,
+                  check_parameters,
+                  needs_schema,
+                  0.05});
+  list.push_back(
+      {{"contract.only_cordon_errors", "whatever the call, what is thrown is a cordon::Error"},
+       two_sets,
+       check_only_cordon_errors,
+       {},
+       0.5});
+  list.push_back(
+      {{"contract.no_nan",
+        "no NaN in exchange forms, hulls, volumes, and support functions of bounded sets"},
+       generate_program,
+       check_no_nan,
+       {},
+       0.5});
+}
+
+}  // namespace cordon::conformance

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "figures/figures.hpp"
+
+namespace cordon::report {
+
+namespace {
+
+using json::Cursor;
+using Kind = json::Value::Kind;
+
+std::optional<Cursor> object_of(const Cursor& at, const char* key) {
+  const auto found = at.find(key);
+  return found && found->is(Kind::object) ? found : std::nullopt;
+}
+
+/// "proven / unknown", or a dash.
+Table::Cell answers(const std::optional<Cursor>& all, const char* kind) {
+  const auto counts = all ? object_of(*all, kind) : std::nullopt;
+  if (!counts) return {"–", false, 0, true};
+  return {fmt::format("{} / {}", shown(value_of(*counts, "proven"), 15),
+                      shown(value_of(*counts, "unknown"), 15)),
+          false, 0, true};
+}
+
+std::string size_of(const Cursor& form) {
+  const auto count = [&](const char* key) { return shown(value_of(form, key), 15); };
+  return fmt::format("{} lines, {} generators, {} constraints", count("lines"), count("generators"),
+                     count("constraints"));
+}
+
+std::string assumptions_of(const Cursor& pipeline, const Cursor& summary) {
+  const auto assumptions = object_of(pipeline, "assumptions");
+  if (!assumptions) return "";
+  std::string text;
+  if (const auto initial = object_of(*assumptions, "initial_set"))
+    text = "initial set of " + size_of(*initial);
+  if (const auto admissible = object_of(*assumptions, "admissible_set"))
+    text += "; admissible set of " + size_of(*admissible);
+  const double until = value_of(summary, "assumptions_until");
+  return std::isnan(until) ? text : text + fmt::format("; left at k = {}", shown(until, 15));
+}
+
+void add_observers(const RunFiles& files, const Curves& curves, Report& report) {
+  Table table{
+      {"Pipeline", "Backend", "Observer", "Rounding", "Steps", "Proven non-empty", "Proven empty",
+       "Undecided", "Claimed exact", "Emptiness", "Truth inside", "Bounds", "Assumed"},
+      {}};
+  for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
+    const PipelineHead& head = files.pipelines()[p];
+    const Cursor tree = files.tree(p);
+    const auto summary = object_of(tree, "summary");
+    if (head.kind != PipelineHead::Kind::observer || !summary) continue;
+    const auto all = object_of(*summary, "answers");
+    std::vector<Table::Cell> row{text_cell(head.name), text_cell(head.backend),
+                                 text_cell(head.component), text_cell(head.rounding)};
+    for (const char* key : {"steps", "consistent", "inconsistent", "undecided"})
+      row.push_back(number_cell(value_of(*summary, key), 15));
+    row.push_back(number_cell(
+        static_cast<double>(p < curves.pipelines.size() ? curves.pipelines[p].exact : 0), 15));
+    for (const char* kind : {"emptiness", "containment", "bounds"})
+      row.push_back(answers(all, kind));
+    row.push_back(text_cell(assumptions_of(tree, *summary)));
+    table.rows.push_back(std::move(row));
+  }
+  if (table.rows.empty()) return;
+  report.figures.push_back({"answers", section::answers, "Answers",
+                            "Questions as proven / unknown: is the estimate empty, is the true "
+                            "state inside, is a bound finite or proven infinite.",
+                            std::move(table)});
+}
+
+void add_gains(const RunFiles& files, Report& report) {
+  Table table{{"Pipeline", "Gain", "Designed by", "Spectral radius at most", "Monotone", "Norm",
+               "Objective", "Optimum", "Bound of optimum"},
+              {}};
+  for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
+    for (const Cursor& gain : items_of(files.tree(p), "gains")) {
+      if (!gain.expect(Kind::object, "")) continue;
+      const auto norm = object_of(gain, "norm");
+      const auto monotone = gain.find("monotone");
+      table.rows.push_back({text_cell(files.pipelines()[p].name),
+                            text_cell(text_of(gain, "name")),
+                            text_cell(text_of(gain, "type")),
+                            number_cell(value_of(gain, "spectral_radius")),
+                            text_cell(monotone && monotone->is(Kind::boolean)
+                                          ? (monotone->value().flag ? "yes" : "no")
+                                          : "but for rounding"),
+                            {norm ? fmt::format("{} … {}", shown(value_of(*norm, "lower")),
+                                                shown(value_of(*norm, "upper")))
+                                  : "–",
+                             false, 0, true},
+                            text_cell(text_of(gain, "objective")),
+                            number_cell(value_of(gain, "optimum"), 6),
+                            number_cell(value_of(gain, "optimum_bound"), 6)});
+    }
+  }
+  if (table.rows.empty()) return;
+  report.figures.push_back({"gains", section::answers, "Gains of observers",
+                            "A spectral radius below 1: the error dies out. Monotone: no entry of "
+                            "A - L C is negative. The norm "
+                            "bounds the amplification from disturbances "
+                            "and noise to the error.",
+                            std::move(table)});
+}
+
+void add_guarantees(const RunFiles& files, Report& report) {
+  Table table{{"Pipeline", "Method", "Every pair told apart", "Error set holds all errors: factor"},
+              {}};
+  for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
+    const auto guarantees = object_of(files.tree(p), "guarantees");
+    if (!guarantees) continue;
+    const auto set = object_of(*guarantees, "error_set");
+    table.rows.push_back({text_cell(files.pipelines()[p].name),
+                          text_cell(text_of(*guarantees, "method")),
+                          text_cell(text_of(*guarantees, "all")),
+                          number_cell(set ? value_of(*set, "factor") : std::nan(""))});
+  }
+  if (table.rows.empty()) return;
+  report.figures.push_back(
+      {"guarantees", section::answers, "What diagnosers promise in advance",
+       "Whatever the disturbances are: in the steady state every residual contains 0 in its own "
+       "mode and in no other. "
+       "A factor of at most 1: the set that errors are reset to holds them all.",
+       std::move(table)});
+}
+
+}  // namespace
+
+void add_failures(const RunFiles& files, Report& report) {
+  for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
+    const std::string& name = files.pipelines()[p].name;
+    const auto summary = object_of(files.tree(p), "summary");
+    if (!summary) continue;
+    if (const double k = value_of(*summary, "violated_at"); !std::isnan(k)) {
+      report.notes.push_back(
+          fmt::format("A guarantee of \"{}\" was violated at k = {}: a defect, please report it.",
+                      name, shown(k, 15)));
+    }
+    for (const Cursor& claim : items_of(*summary, "refuted")) {
+      report.notes.push_back(fmt::format(
+          "What the designer of \"{}\" says is proven false: {}. A defect, please report it.", name,
+          json::read_text(claim, 10000).value_or("")));
+    }
+    if (const auto failed = object_of(*summary, "failed_assumption")) {
+      report.notes.push_back(fmt::format(
+          "An assumption of \"{}\" fails: {}. What is said from k = {} on rests on it and proves "
+          "nothing.",
+          name, text_of(*failed, "text"), shown(value_of(*summary, "assumptions_until"), 15)));
+    }
+    if (const double k = value_of(*summary, "inner_outside"); !std::isnan(k)) {
+      report.notes.push_back(fmt::format(
+          "The inner estimate of \"{}\" leaves its bounds at k = {}: a defect, please report it.",
+          name, shown(k, 15)));
+    }
+    if (const auto growth = object_of(*summary, "growth")) {
+      report.notes.push_back(fmt::format(
+          "The bounds of \"{}\" grow: the width of x{} is {} times that at k = {}. Cause and "
+          "remedy: {}.",
+          name, shown(value_of(*growth, "state"), 15), shown(value_of(*growth, "factor"), 4),
+          shown(value_of(*growth, "smallest_at"), 15), text_of(*growth, "advice")));
+    }
+    if (const double k = value_of(*summary, "inconsistent_from"); !std::isnan(k)) {
+      const double until = value_of(*summary, "assumptions_until");
+      report.notes.push_back(fmt::format(
+          "The estimate of \"{}\" is proven empty from k = {} on: model, bounds, assumptions and "
+          "data contradict "
+          "each other{}.",
+          name, shown(k, 15),
+          std::isnan(until) ? ""
+                            : fmt::format("; the true state has left what is assumed at k = {}",
+                                          shown(until, 15))));
+    }
+    if (const std::string error = text_of(*summary, "error"); !error.empty()) {
+      report.notes.push_back(fmt::format("\"{}\" stopped with an error: {}", name, error));
+    }
+  }
+}
+
+void add_answers(const RunFiles& files, const Curves& curves, Report& report) {
+  add_observers(files, curves, report);
+  add_gains(files, report);
+  add_guarantees(files, report);
+}
+
+}  // namespace cordon::report

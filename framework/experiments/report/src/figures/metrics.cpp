@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "figures/figures.hpp"
+
+namespace cordon::report {
+
+namespace {
+
+/// Values over several powers of ten, all of them positive, are read better so.
+constexpr double log_from = 100;
+
+struct Curve {
+  const Thinner* values = nullptr;
+  int pipeline = of_data;
+};
+
+Plot plot_of(const RunFiles& files, const std::vector<Curve>& curves, const std::string& y_label) {
+  Plot plot{"k", y_label, false, {}};
+  double smallest = infinity, largest = 0;
+  for (const auto& [values, pipeline] : curves) {
+    if (!values->has_values()) continue;
+    plot.series.push_back(
+        values->line(files.pipelines()[static_cast<std::size_t>(pipeline)].name, pipeline));
+    smallest = std::min(smallest, values->smallest());
+    largest = std::max(largest, values->largest());
+  }
+  plot.log_y = smallest > 0 && largest >= log_from * smallest;
+  return plot;
+}
+
+/// "radius_mean" as "Radius mean".
+std::string title_of(const std::string& column) {
+  std::string title = column;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  if (!title.empty() && title[0] >= 'a' && title[0] <= 'z')
+    title[0] = static_cast<char>(title[0] - 'a' + 'A');
+  return title;
+}
+
+void add(Report& report, std::string id, std::string title, std::string caption, Plot plot) {
+  if (plot.series.empty()) return;
+  report.figures.push_back(
+      {std::move(id), section::metrics, std::move(title), std::move(caption), std::move(plot)});
+}
+
+}  // namespace
+
+void add_metrics(const RunFiles& files, const Curves& curves, Report& report) {
+  for (std::size_t i = 0; i < curves.metrics.size(); ++i) {
+    std::vector<Curve> values;
+    for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
+      values.push_back({&curves.pipelines[p].metrics[i], static_cast<int>(p)});
+    }
+    Plot plot = plot_of(files, values, curves.metrics[i]);
+    for (const PlantEvent& event : curves.events)
+      plot.marks.push_back({static_cast<double>(event.k), event.text});
+    add(report, fmt::format("metric_{}", i + 1), title_of(curves.metrics[i]),
+        fmt::format("The metric {} over time.", curves.metrics[i]), std::move(plot));
+  }
+  std::vector<Curve> times;
+  for (std::size_t p = 0; p < files.step_times().size(); ++p)
+    times.push_back({&files.step_times()[p], static_cast<int>(p)});
+  add(report, "step_time", "Time of a step",
+      "Measured on the machine of this run: it differs from run to run.",
+      plot_of(files, times, "µs"));
+}
+
+}  // namespace cordon::report

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "page/svg_parts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "page/palette.hpp"
+
+namespace cordon::report {
+
+std::string at_end(std::string_view style) { return std::string(style) + " text-anchor=\"end\""; }
+
+std::string at_middle(std::string_view style) {
+  return std::string(style) + " text-anchor=\"middle\"";
+}
+
+std::string owner(int pipeline) {
+  return pipeline == of_data ? "" : fmt::format("data-pipeline=\"{}\" ", pipeline);
+}
+
+std::string colour_of(int pipeline, int shade) {
+  const std::string_view base =
+      pipeline == of_data ? "#1b2230"
+                          : on_white[static_cast<std::size_t>(pipeline) % on_white.size()];
+  const double share = std::min(0.6, 0.22 * shade);
+  std::string out = "#";
+  for (std::size_t i = 1; i < 7; i += 2) {
+    const double channel = std::stoi(std::string(base.substr(i, 2)), nullptr, 16);
+    out += fmt::format("{:02x}", static_cast<int>(std::round(channel + (255 - channel) * share)));
+  }
+  return out;
+}
+
+std::string stroke_of(int pipeline, int shade, double width) {
+  constexpr std::array<std::string_view, 5> dashes = {"", "7 4", "2 3", "9 3 2 3", "14 4"};
+  const int turn = shade + (pipeline == of_data ? 0 : pipeline / static_cast<int>(on_white.size()));
+  const std::string_view dash = dashes[static_cast<std::size_t>(turn) % dashes.size()];
+  std::string style =
+      fmt::format("stroke=\"{}\" stroke-width=\"{}\"", colour_of(pipeline, shade), width);
+  if (pipeline == of_data && shade == 0) style += " class=\"trace\"";
+  if (!dash.empty()) style += fmt::format(" stroke-dasharray=\"{}\"", dash);
+  return style;
+}
+
+std::string_view name_of(Timeline::State state) {
+  switch (state) {
+    case Timeline::State::candidate:
+      return "possible";
+    case Timeline::State::monitored:
+      return "monitored";
+    case Timeline::State::excluded:
+      return "excluded";
+    case Timeline::State::truth:
+      return "true mode";
+    case Timeline::State::outside:
+      break;
+  }
+  return "outside";
+}
+
+namespace {
+
+std::vector<double> ticks_of_y(const Axis& y) {
+  return y.ticks(static_cast<int>((y.begin - y.end) / 45));
+}
+
+}  // namespace
+
+double room_beside(const Axis& y) {
+  double widest = 27;
+  for (const double tick : ticks_of_y(y)) widest = std::max(widest, text_width(y.text(tick)));
+  return widest + 31;
+}
+
+void draw_frame(Drawing& drawing, const Frame& frame) {
+  const Axis &x = frame.x, &y = frame.y;
+  const double bottom = y.begin;
+  std::vector<double> x_ticks;
+  if (frame.x_names.empty()) {
+    const double widest = std::max(text_width(x.text(x.lower)), text_width(x.text(x.upper)));
+    x_ticks =
+        x.ticks(static_cast<int>((x.end - x.begin) / std::max(70.0, widest + 14)), frame.whole_x);
+  } else {
+    for (std::size_t i = 0; i < frame.x_names.size(); ++i)
+      x_ticks.push_back(static_cast<double>(i));
+  }
+  const double room =
+      (x.end - x.begin) / static_cast<double>(std::max<std::size_t>(1, frame.x_names.size())) - 6;
+  for (const double tick : x_ticks) {
+    const std::string text = frame.x_names.empty()
+                                 ? x.text(tick)
+                                 : shortened(frame.x_names[static_cast<std::size_t>(tick)], room);
+    drawing.line({x(tick), y.end}, {x(tick), bottom}, rule);
+    drawing.text({x(tick), bottom + 17}, text, at_middle(soft));
+  }
+  for (const double tick : ticks_of_y(y)) {
+    drawing.line({x.begin, y(tick)}, {x.end, y(tick)}, rule);
+    drawing.text({x.begin - 7, y(tick) + 4}, y.text(tick), at_end(soft));
+  }
+  drawing.rectangle({x.begin, y.end}, x.end - x.begin, bottom - y.end, outline);
+  drawing.text({(x.begin + x.end) / 2, bottom + 36}, frame.x_label, at_middle(ink));
+  const double middle = (y.begin + y.end) / 2;
+  const double beside = x.begin - room_beside(y) + 10;
+  drawing.text({beside, middle}, frame.y_label,
+               at_middle(ink) + fmt::format(" transform=\"rotate(-90 {} {})\"", beside, middle));
+}
+
+void draw_marks(Drawing& drawing, std::vector<Mark> marks, const Axis& x, double top,
+                double bottom) {
+  std::stable_sort(marks.begin(), marks.end(),
+                   [](const Mark& a, const Mark& b) { return a.x < b.x; });
+  std::array<double, 3> used = {-INFINITY, -INFINITY, -INFINITY};
+  for (const Mark& mark : marks) {
+    if (!(mark.x >= x.lower && mark.x <= x.upper)) continue;
+    const double half = text_width(mark.text) / 2 + 4;
+    const double centre =
+        std::clamp(x(mark.x), x.begin + half - 40, std::max(x.begin + half - 40, x.end - half + 8));
+    std::size_t row = 0;
+    while (row < used.size() && used[row] > centre - half) ++row;
+    const double above = row < used.size() ? 6 + 13 * static_cast<double>(row) : 0;
+    drawing.begin_group(owner(mark.pipeline) + "class=\"mark\"");
+    drawing.line(
+        {x(mark.x), top - above}, {x(mark.x), bottom},
+        fmt::format("class=\"axis\" stroke=\"{}\" stroke-opacity=\"0.6\" stroke-dasharray=\"3 3\"",
+                    colour_of(mark.pipeline)));
+    if (row < used.size()) {
+      used[row] = centre + half;
+      const std::string fill = mark.pipeline == of_data
+                                   ? std::string(soft)
+                                   : "fill=\"" + colour_of(mark.pipeline) + "\"";
+      drawing.text({centre, top - above - 2}, mark.text, at_middle(fill) + " font-size=\"11\"");
+    }
+    drawing.end_group();
+  }
+}
+
+double draw_legend(Drawing* drawing, const std::vector<LegendEntry>& entries, double left,
+                   double right, double top) {
+  double x = left, y = top;
+  for (const LegendEntry& entry : entries) {
+    const std::string text = shortened(entry.text, right - left - 40);
+    const double width = 32 + text_width(text) + 18;
+    if (x > left && x + width > right + 18) {
+      x = left;
+      y += 18;
+    }
+    if (drawing != nullptr) {
+      if (entry.kind == LegendEntry::Kind::line)
+        drawing->line({x, y - 4}, {x + 24, y - 4}, entry.style);
+      if (entry.kind == LegendEntry::Kind::points)
+        drawing->circle({x + 12, y - 4}, 3.5, entry.style);
+      if (entry.kind == LegendEntry::Kind::band || entry.kind == LegendEntry::Kind::fill) {
+        drawing->rectangle({x, y - 9}, 24, 10, entry.style);
+      }
+      drawing->text({x + 30, y}, text, ink);
+    }
+    x += width;
+  }
+  return entries.empty() ? 0 : y - top + 18;
+}
+
+}  // namespace cordon::report

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/report/ticks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace cordon::report {
+
+namespace {
+
+/// Without the noise of 3 · 0.1.
+double clean(double value) { return std::strtod(fmt::format("{:.14g}", value).c_str(), nullptr); }
+
+std::string superscript(int exponent) {
+  constexpr std::array<std::string_view, 10> digits = {"⁰", "¹", "²", "³", "⁴",
+                                                       "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string out;
+  for (const char c : std::to_string(exponent))
+    out += c == '-' ? "⁻" : digits[static_cast<std::size_t>(c - '0')];
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> nice_ticks(double lower, double upper, int count, bool whole) {
+  const double rough = (upper - lower) / std::max(1, count);
+  if (!(rough > 0) || !std::isfinite(rough)) return {lower};
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double factor : {5.0, 2.0, 1.0}) {
+    if (factor * power >= rough * (1 - 1e-9)) step = factor * power;
+  }
+  if (whole) step = std::max(1.0, step);
+  std::vector<double> ticks;
+  const double first = std::ceil(lower / step - 1e-9), last = std::floor(upper / step + 1e-9);
+  for (double i = first; i <= last && ticks.size() < 100; ++i)
+    ticks.push_back(clean(i * step) + 0.0);
+  return ticks;
+}
+
+std::vector<double> log_ticks(double lower, double upper) {
+  const int first = static_cast<int>(std::floor(std::log10(lower) + 1e-9)),
+            last = static_cast<int>(std::ceil(std::log10(upper) - 1e-9));
+  const int every = std::max(1, (last - first + 7) / 8);
+  std::vector<double> ticks;
+  for (int power = first; power <= last; power += every) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double tick = clean(factor * std::pow(10.0, power));
+      const bool wanted = factor == 1 || last - first <= 3;
+      if (wanted && tick >= lower * (1 - 1e-9) && tick <= upper * (1 + 1e-9)) ticks.push_back(tick);
+    }
+  }
+  return ticks;
+}
+
+std::string short_text(double value, int digits) {
+  if (std::isnan(value)) return "–";
+  if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
+  std::string text = fmt::format("{:.{}e}", value, digits - 1);
+  const std::size_t e = text.find('e');
+  const int exponent = std::atoi(text.c_str() + e + 1);
+  if (value != 0 && (exponent >= 6 || exponent < -4)) {
+    std::string mantissa = text.substr(0, e);
+    mantissa.erase(mantissa.find_last_not_of('0') + 1);
+    if (mantissa.back() == '.') mantissa.pop_back();
+    if (mantissa == "1" || mantissa == "-1") {
+      mantissa.pop_back();
+    } else {
+      mantissa += "·";
+    }
+    text = mantissa + "10" + superscript(exponent);
+  } else {
+    text = fmt::format("{:.{}g}", value == 0 ? 0.0 : value, digits);
+  }
+  return text[0] == '-' ? "−" + text.substr(1) : text;
+}
+
+int digits_within(double lower, double upper) {
+  const double size = std::max(std::abs(lower), std::abs(upper)) / (upper - lower);
+  return std::isfinite(size) && size > 0
+             ? std::clamp(static_cast<int>(std::ceil(std::log10(size))) + 4, 6, 15)
+             : 6;
+}
+
+std::string log_text(double value) {
+  const double power = std::round(std::log10(value));
+  if (std::abs(power) < 3 || std::abs(value / std::pow(10.0, power) - 1) > 1e-9)
+    return short_text(value);
+  return "10" + superscript(static_cast<int>(power));
+}
+
+double Axis::operator()(double value) const {
+  const double beyond = 20 * (end - begin);
+  if (std::isinf(value)) return value > 0 ? begin + beyond : begin - beyond;
+  if (log && !(value > 0)) return begin - beyond;
+  const double share =
+      log ? std::log(value / lower) / std::log(upper / lower) : (value - lower) / (upper - lower);
+  return begin + std::clamp(share, -20.0, 20.0) * (end - begin);
+}
+
+Axis axis_over(const std::vector<double>& values, bool log, double begin, double end) {
+  double lower = INFINITY, upper = -INFINITY;
+  for (const double value : values) {
+    if (!std::isfinite(value) || (log && value <= 0)) continue;
+    lower = std::min(lower, value);
+    upper = std::max(upper, value);
+  }
+  if (lower > upper) return {log ? 0.1 : 0.0, log ? 10.0 : 1.0, begin, end, log};
+  if (log) {
+    const double margin = lower == upper ? 2 : std::pow(upper / lower, 0.05);
+    return {lower / margin, upper * margin, begin, end, log};
+  }
+  const double margin =
+      lower == upper ? (lower != 0 ? 0.1 * std::abs(lower) : 1) : 0.05 * (upper - lower);
+  return {lower >= 0 && lower < 0.35 * upper ? 0.0 : lower - margin, upper + margin, begin, end,
+          log};
+}
+
+}  // namespace cordon::report

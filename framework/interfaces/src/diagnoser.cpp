@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/interfaces/diagnoser.hpp"
+
+#include <chrono>
+
+#include "sample_check.hpp"
+
+namespace cordon {
+
+std::string_view to_string(Decision decision) noexcept {
+  switch (decision) {
+    case Decision::monitoring:
+      return "monitoring";
+    case Decision::isolating:
+      return "isolating";
+    case Decision::ambiguous:
+      return "ambiguous";
+    case Decision::unknown_fault:
+      return "unknown_fault";
+  }
+  return "isolating";
+}
+
+void Diagnoser::start() {
+  before_.reset();
+  step_us_ = 0;
+  do_start();
+  started_ = true;
+}
+
+Diagnosis Diagnoser::step(const Sample& now) {
+  detail::check_sample(now, before_, bank_[bank_.nominal].model.linear);
+  if (!started_) start();
+  const auto begin = std::chrono::steady_clock::now();
+  Diagnosis diagnosis = do_step(before_ ? &*before_ : nullptr, now);
+  step_us_ =
+      std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+  before_ = now;
+  return diagnosis;
+}
+
+}  // namespace cordon

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/data/csv_source.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "core/text.hpp"
+#include "study/text/json_text.hpp"
+#include "study/text/numbers.hpp"
+
+namespace cordon::detail {
+
+namespace {
+
+constexpr std::size_t missing = static_cast<std::size_t>(-1);
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+void require_file(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  const auto fail = [&](const std::string& why) {
+    throw InputError(file.string(),
+                     {{"/data/csv/file", why, "the path is relative to the folder of the study"}});
+  };
+  if (status.type() == std::filesystem::file_type::not_found) fail("there is no such file");
+  if (status.type() == std::filesystem::file_type::directory)
+    fail("is a directory, not a CSV file");
+  if (status.type() != std::filesystem::file_type::regular)
+    fail("is not a regular file (it is read twice)");
+}
+
+}  // namespace
+
+CsvSource::CsvSource(const CsvSpec& spec, const LinearModel& model, std::vector<std::string> modes)
+    : file_(spec.file),
+      inputs_{spec.inputs, {}, "/data/csv/inputs"},
+      outputs_{spec.outputs, {}, "/data/csv/outputs"},
+      truth_{spec.truth, {}, "/data/csv/truth"},
+      mode_{{}, {}, "/data/csv/mode"},
+      modes_(std::move(modes)) {
+  if (!spec.mode.empty()) mode_.names.push_back(spec.mode);
+  check_sizes(spec, model);
+  require_file(file_);
+  validate();
+  if (!problems_.empty()) {
+    if (too_many())
+      problems_.back().suggestion +=
+          std::string(problems_.back().suggestion.empty() ? "" : "; ") + "reading stopped here";
+    throw InputError(file_.string(), std::move(problems_));
+  }
+  reader_.emplace(file_);
+  CsvRow header;
+  reader_->next(header);
+}
+
+void CsvSource::check_sizes(const CsvSpec& spec, const LinearModel& model) const {
+  std::vector<Diagnostic> problems;
+  const auto require = [&](std::size_t size, Index wanted, const char* pointer, const char* of) {
+    if (static_cast<Index>(size) == wanted) return;
+    problems.push_back({pointer,
+                        "names " + std::to_string(size) + " columns, must be " +
+                            std::to_string(wanted) + ", " + of,
+                        ""});
+  };
+  require(spec.inputs.size(), model.inputs(), "/data/csv/inputs", "one per column of /system/B");
+  require(spec.outputs.size(), model.outputs(), "/data/csv/outputs", "one per row of /system/C");
+  if (!spec.truth.empty())
+    require(spec.truth.size(), model.states(), "/data/csv/truth", "one per state");
+  if (!problems.empty()) throw InputError(file_.string(), std::move(problems));
+}
+
+void CsvSource::report(std::string pointer, std::int64_t line, std::string message,
+                       std::string suggestion) {
+  if (too_many()) return;
+  problems_.push_back({std::move(pointer), std::move(message), std::move(suggestion),
+                       static_cast<int>(std::min<std::int64_t>(line, 2147483647))});
+}
+
+void CsvSource::validate() {
+  CsvReader reader(file_);
+  CsvRow row;
+  if (!reader.next(row)) {
+    report("/data/csv/file", 0, "the file is empty",
+           "it needs a header row with the names of its columns, and rows of numbers");
+    return;
+  }
+  if (!row.problem.empty()) {
+    report("/data/csv/file", row.line, "header row: " + row.problem);
+    return;
+  }
+  locate(row);
+  while (!too_many() && reader.next(row)) {
+    check_row(row);
+    ++rows_;
+  }
+  if (rows_ == 0 && !too_many())
+    report("/data/csv/file", 0, "there is a header but no row of numbers");
+}
+
+void CsvSource::locate(const CsvRow& row) {
+  std::vector<std::string> header;
+  for (const std::string& field : row.fields) header.push_back(trimmed(field));
+  width_ = header.size();
+  const std::string& first = header.front();
+  if (first.starts_with("\xFF\xFE") || first.starts_with("\xFE\xFF")) {
+    report("/data/csv/file", row.line, "the file is UTF-16", "save it as UTF-8");
+    return;
+  }
+  if (header.size() == 1 && first.find_first_of(";\t") != std::string::npos) {
+    const bool semicolon = first.find(';') != std::string::npos;
+    report(
+        "/data/csv/file", row.line,
+        std::string("the header seems to be separated by ") + (semicolon ? "semicolons" : "tabs"),
+        "only commas separate columns, with a decimal point in numbers");
+  }
+  std::set<std::string> seen, told;
+  for (const std::string& name : header) {
+    if (name.empty() || seen.insert(name).second || !told.insert(name).second) continue;
+    report("/data/csv/file", row.line,
+           "the column " + json::in_quotes(name) + " appears more than once", "rename one of them");
+  }
+  for (Columns* columns : {&inputs_, &outputs_, &truth_, &mode_}) find_columns(*columns, header);
+}
+
+void CsvSource::find_columns(Columns& columns, const std::vector<std::string>& header) {
+  for (std::size_t i = 0; i < columns.names.size(); ++i) {
+    const auto place = std::find(header.begin(), header.end(), columns.names[i]);
+    columns.at.push_back(place == header.end() ? missing
+                                               : static_cast<std::size_t>(place - header.begin()));
+    if (place != header.end()) continue;
+    std::vector<std::string> candidates;
+    for (const std::string& name : header) {
+      if (candidates.size() < 30 && name.size() <= 60) candidates.push_back(name);
+    }
+    report(&columns == &mode_ ? columns.pointer : columns.pointer + "/" + std::to_string(i), 1,
+           "there is no column " + json::in_quotes(columns.names[i]) + " in the header",
+           suggest(columns.names[i], candidates));
+  }
+}
+
+void CsvSource::check_row(const CsvRow& row) {
+  if (!row.problem.empty()) {
+    report("/data/csv/file", row.line, row.problem);
+  } else if (row.fields.size() != width_) {
+    report("/data/csv/file", row.line,
+           "the row has " + std::to_string(row.fields.size()) +
+               (row.fields.size() == 1 ? " field" : " fields") + ", the header " +
+               std::to_string(width_));
+  } else {
+    for (const Columns* columns : {&inputs_, &outputs_, &truth_}) numbers(row, *columns);
+    mode(row);
+  }
+}
+
+/// The numbers of a group of columns; nothing after reporting what is wrong.
+std::optional<Vector> CsvSource::numbers(const CsvRow& row, const Columns& columns) {
+  Vector values(static_cast<Index>(columns.at.size()));
+  bool good = true;
+  for (std::size_t i = 0; i < columns.at.size(); ++i) {
+    if (columns.at[i] == missing) continue;
+    const ParsedNumber number = parse_number(row.fields[columns.at[i]]);
+    values[static_cast<Index>(i)] = number.value;
+    if (number.problem.empty()) continue;
+    good = false;
+    report("/data/csv/file", row.line,
+           "column " + json::in_quotes(columns.names[i]) + ": " + number.problem);
+  }
+  return good ? std::optional<Vector>(std::move(values)) : std::nullopt;
+}
+
+/// The mode of a row, -1 for an empty field: outside the bank; nothing if it is not recorded, or
+/// after reporting what is wrong.
+std::optional<Index> CsvSource::mode(const CsvRow& row) {
+  if (mode_.at.empty() || mode_.at.front() == missing) return std::nullopt;
+  const std::string& field = row.fields[mode_.at.front()];
+  const std::string name = trimmed(field);
+  if (name.empty()) return -1;
+  const auto found = std::find_if(modes_.begin(), modes_.end(), [&](const std::string& m) {
+    return m == field || m == name || no_formula(m) == field;
+  });
+  if (found != modes_.end()) return static_cast<Index>(found - modes_.begin());
+  report("/data/csv/file", row.line,
+         "column " + json::in_quotes(mode_.names.front()) + ": there is no mode " +
+             json::in_quotes(name),
+         suggest(name.substr(0, 200), modes_));
+  return std::nullopt;
+}
+
+std::optional<Record> CsvSource::next() {
+  CsvRow row;
+  if (!reader_->next(row)) return std::nullopt;
+  std::optional<Vector> u, y, truth;
+  std::optional<Index> true_mode;
+  if (row.problem.empty() && row.fields.size() == width_) {
+    u = numbers(row, inputs_);
+    y = numbers(row, outputs_);
+    truth = numbers(row, truth_);
+    true_mode = mode(row);
+  }
+  if (!u || !y || !truth || (!true_mode && !mode_.names.empty()))
+    throw Error(Errc::io, file_.string() + " was changed while it was read (line " +
+                              std::to_string(row.line) + ")");
+  Record record{
+      {static_cast<Index>(k_++), std::move(*u), std::move(*y)}, std::nullopt, std::nullopt};
+  if (!truth_.names.empty()) record.truth = std::move(truth);
+  record.mode = true_mode;
+  return record;
+}
+
+}  // namespace cordon::detail

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The sections of a study file. Each reader reports every problem of its section; what it returns
+// is meant for use only if the whole file had no problem, except where the result says which parts
+// are known.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cordon/core/interval_matrix.hpp"
+#include "cordon/registry/registry.hpp"
+#include "cordon/study/study.hpp"
+#include "study/reading/read_sweep.hpp"
+#include "study/text/json_cursor.hpp"
+
+namespace cordon::json {
+
+/// Sizes that are known; nothing for those whose matrices are wrong: what depends on them is not
+/// checked.
+struct Sizes {
+  std::optional<Index> states, inputs, outputs;
+  std::optional<Index> faults;  ///< columns of F
+};
+
+/// A matrix, which has a radius of size 0×0, or {"center", "radius"} or {"lower", "upper"}. Centre
+/// and radius enclose the bounds that were written, in exact arithmetic.
+std::optional<IntervalMatrix> read_interval_matrix(const Cursor& at);
+
+inline constexpr std::size_t max_name = 200;  ///< bytes of a name
+
+/// F f on the state and Fy f on the outputs, each with an f of its own in the set.
+struct Additive {
+  std::optional<Matrix> F, Fy;
+  LineForm f;
+};
+
+/// A mode, or a fault outside the bank, as it is written: what differs from the nominal model.
+struct WrittenMode {
+  std::string name;
+  std::optional<Box> actuator, sensor;
+  std::optional<Additive> additive;
+  std::optional<LineForm> W, V;
+  std::optional<Model> system;
+};
+
+/// The model that a mode stands for: `system` or the nominal one, W and V exchanged, the additive
+/// fault appended to w and v, the exact part of the effectiveness applied. F and U are the nominal
+/// ones.
+Model model_of(const WrittenMode& mode, const Model& nominal);
+
+struct SystemPart {
+  Model model;  ///< of the nominal mode
+  Sizes sizes;
+  bool good = false;  ///< of the nominal mode
+  std::string nominal = "healthy";
+  std::vector<Mode> modes;
+  std::vector<WrittenMode> written;  ///< of `modes`
+  bool modes_good = false;
+};
+const std::vector<std::string>& system_types();
+/// A system with its modes.
+SystemPart read_system(const Cursor& system, std::vector<std::string>& warnings);
+/// A model inside a mode: without modes, U and F; X0 is that of `nominal` where it is absent. It
+/// has the sizes of /system.
+SystemPart read_mode_system(const Cursor& system, const SystemPart& nominal,
+                            std::vector<std::string>& warnings);
+
+/// The keys that describe what is different in a mode.
+const std::vector<std::string>& mode_keys();
+/// What these keys say, nothing if anything is wrong with them. The name is left to the caller.
+/// `nominal` is good.
+std::optional<WrittenMode> read_mode(const Cursor& mode, const SystemPart& nominal,
+                                     std::vector<std::string>& warnings);
+/// Effectiveness: a number or [low, high] per actuator or sensor, all in [0,1].
+std::optional<Box> read_effectiveness(const Cursor& at, Index size, const std::string& like);
+/// Reads /system/modes and /system/nominal into `part`.
+void read_modes(const Cursor& system, SystemPart& part, std::vector<std::string>& warnings);
+/// Reports a list whose copies of the nominal model would not fit into memory.
+bool expect_moderate(const Cursor& list, const Model& nominal, std::size_t limit,
+                     const std::string& noun);
+
+/// A fault as it is written: in a mode of the bank (`mode`, of which only effectiveness may be
+/// given), or outside.
+struct WrittenFault {
+  std::string mode;  ///< empty: outside
+  WrittenMode own;
+};
+
+/// What is written in the study and is not part of the data.
+struct DataPart {
+  std::variant<SimulateSpec, CsvSpec> data;
+  std::string written_file;  ///< of recorded data
+  std::vector<WrittenFault> written_faults;
+};
+const std::vector<std::string>& signal_types();
+const std::vector<std::string>& noise_names();
+const std::vector<std::string>& parameter_draw_names();
+std::vector<std::string> signal_keys(
+    Signal::Type type);                               ///< without "type"; the required ones first
+std::size_t required_signal_keys(Signal::Type type);  ///< how many of them are required
+struct ComponentContext {
+  const Registry& registry;
+  std::vector<std::string>& warnings;
+  std::vector<Diagnostic>& refusals;  ///< components that plugins failed to provide: problems of
+                                      ///< the installation, not of the file
+};
+
+/// What the registry knows about one kind of component.
+struct Shelf {
+  const char* kind;
+  const ComponentInfo* (Registry::*info)(std::string_view) const;
+  std::vector<std::string> (Registry::*names)() const;
+};
+const Shelf* shelf_of(std::string_view kind);  ///< null if there is no such kind
+/// A component of a kind that there is: its name, or an object of "type" and parameters, components
+/// inside components included.
+std::optional<ComponentSpec> read_component(const Cursor& at, std::string_view kind,
+                                            const ComponentContext& context);
+
+/// Who takes the data of a study: pipelines without a designer. Those with one need seed, noise and
+/// start at most.
+struct DataUse {
+  bool designed = false;  ///< a pipeline has a designer
+  std::string by;         ///< the first pipeline without one
+  bool streamed() const { return !designed || !by.empty(); }
+  /// For suggestions, where some pipelines have a designer: "; /pipelines/1 has no designer".
+  std::string reason() const {
+    return designed && !by.empty() ? "; " + by + " has no designer" : "";
+  }
+};
+/// By the keys of the pipelines alone.
+DataUse data_use(const Cursor& root);
+DataPart read_data(const Cursor& data, const SystemPart& system, const DataUse& use,
+                   const std::filesystem::path& folder, const ComponentContext& context);
+/// Reads "from" and "to" of something that acts for k = from … to; warns where data of so many
+/// steps (0: not known) end before. False: reported.
+bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::int64_t& to,
+                std::vector<std::string>& warnings);
+/// Reads /data/simulate/faults.
+void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& spec,
+                 std::vector<WrittenFault>& written, std::vector<std::string>& warnings);
+/// Reads /data/simulate/plant and makes it.
+void read_plant(const Cursor& plant, const SystemPart& system, SimulateSpec& spec,
+                const ComponentContext& context);
+/// Asks the algorithms of the pipelines for which `asks` is true whether they can work with the
+/// model.
+std::vector<PipelineSpec> read_pipelines(const Cursor& pipelines, const SystemPart& system,
+                                         const ComponentContext& context,
+                                         const std::function<bool(std::size_t)>& asks);
+/// Asks the metrics whether they can work with the model.
+std::vector<ComponentSpec> read_metrics(const Cursor& metrics, const SystemPart& system,
+                                        const ComponentContext& context);
+
+/// Do simulations start where pipelines assume it, and can the experiments of designers be
+/// simulated? For studies that have no other problem. `only`: of this pipeline alone.
+void check_study(const Cursor& root, const Study& study, std::optional<std::size_t> only = {});
+
+/// What the resolved text needs besides the study itself: texts and models as they are written.
+struct Written {
+  Value tree;  ///< with the first value of every axis
+  std::vector<std::string> plugins;
+  std::string csv_file;
+  std::vector<WrittenMode> modes;
+  std::vector<WrittenFault> faults;
+};
+/// The study as JSON with every default: keys in a fixed order, sets in exchange form, doubles in
+/// the shortest form that reads back equal. With a sweep, what its paths lead into stays as it is
+/// written, so that they find their way in this text as well.
+std::string resolve(const Study& study, const Written& written,
+                    const std::vector<WrittenAxis>& sweep, const Registry& registry);
+
+}  // namespace cordon::json

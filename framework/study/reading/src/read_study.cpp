@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/study.hpp"
+#include "sweep_check.hpp"
+
+namespace cordon {
+
+namespace {
+
+using namespace json;
+
+/// Reads one file.
+class StudyReader {
+ public:
+  StudyReader(const std::filesystem::path& file, Registry& registry, const SearchPath& path,
+              StudyPlugins plugins)
+      : registry_(registry),
+        path_(path),
+        plugins_(plugins),
+        source_(std::make_shared<StudySource>()) {
+    source_->file = file;
+    std::error_code
+        failure;  // absolute, so that a later change of the working directory does not matter
+    const std::filesystem::path absolute = std::filesystem::absolute(file, failure);
+    source_->folder = (failure ? file : absolute).parent_path();
+  }
+
+  Study read();
+
+ private:
+  void load_plugins(const Cursor& root);
+  bool is_trusted(const std::filesystem::path& directory) const;
+  void pass_over(const Cursor& at, const std::filesystem::path& directory);
+  void add_plugin_warnings(Study& study) const;
+  void finish(const std::vector<Diagnostic>& refusals);
+
+  Registry& registry_;
+  const SearchPath& path_;
+  const StudyPlugins plugins_;
+  Problems problems_;
+  std::vector<Diagnostic> untrusted_;  ///< directories
+  std::shared_ptr<StudySource> source_;
+};
+
+bool StudyReader::is_trusted(const std::filesystem::path& directory) const {
+  const auto is_it = [&](const std::filesystem::path& known) {
+    std::error_code unknown;  // a directory that does not exist is equivalent to none
+    return std::filesystem::equivalent(known, directory, unknown);
+  };
+  return plugins_ == StudyPlugins::load ||
+         std::any_of(path_.directories.begin(), path_.directories.end(), is_it) ||
+         std::any_of(registry_.searched().begin(), registry_.searched().end(), is_it);
+}
+
+/// Opens no library of the directory, and says so.
+void StudyReader::pass_over(const Cursor& at, const std::filesystem::path& directory) {
+  const std::string trust =
+      "if you trust what is in " + in_quotes(directory.string(), 1000) +
+      ", give --trust-plugins, or that directory by --plugins or CORDON_PLUGIN_PATH";
+  registry_.refuse(
+      directory,
+      "it was not opened and nothing of it is checked, since only the study names its directory",
+      trust);
+  if (plugins_ == StudyPlugins::ignore) return;
+  untrusted_.push_back({at.pointer(),
+                        "plugins are programs, and only the study names this directory of them",
+                        trust, at.value().line});
+}
+
+void StudyReader::load_plugins(const Cursor& root) {
+  SearchPath path;
+  if (const auto at = root.find("plugins")) {
+    const std::vector<std::string> names =
+        read_names(*at, "directory").value_or(std::vector<std::string>{});
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::filesystem::path directory = source_->folder / names[i];
+      std::error_code failure;
+      if (!std::filesystem::is_directory(directory, failure)) {
+        at->item(i).error("no such directory: " + in_quotes(directory.string(), 1000),
+                          "the path is relative to the folder of the study");
+      } else if (is_trusted(directory)) {
+        path.directories.push_back(directory);
+      } else {
+        pass_over(at->item(i), directory.lexically_normal());
+      }
+    }
+  }
+  path.directories.insert(path.directories.end(), path_.directories.begin(),
+                          path_.directories.end());
+  registry_.load(path);
+}
+
+void StudyReader::add_plugin_warnings(Study& study) const {
+  for (const PluginReport& report : registry_.reports()) {
+    for (const std::string& component : report.left_out) {
+      study.warnings.push_back("plugin " + report.file.string() + ": " + component +
+                               "; rename it, or remove one of the two");
+    }
+    if (report.state != PluginReport::State::refused) continue;
+    study.warnings.push_back("plugin " + report.file.string() + " was refused: " + report.reason +
+                             "; " + report.fix);
+  }
+}
+
+/// Throws if there is any problem. Directories that are not trusted and components of refused
+/// plugins are a matter of the installation: they make the exit code only if the file itself is
+/// right, and are listed with its problems otherwise.
+void StudyReader::finish(const std::vector<Diagnostic>& refusals) {
+  if (!problems_.any() && refusals.empty()) return;
+  const bool file_is_right = !problems_.any();
+  for (const Diagnostic& d : refusals) problems_.add(d.pointer, d.line, d.message, d.suggestion);
+  const InputError all(source_->file.string(), problems_.sorted());
+  if (file_is_right) throw Error(Errc::plugin, all.what());
+  throw all;
+}
+
+Study StudyReader::read() {
+  source_->text = read_file(source_->file.string());
+  source_->tree = parse(source_->text, problems_);
+  const Cursor root(source_->tree, "", problems_);
+  if (root.is(Value::Kind::object)) load_plugins(root);
+  source_->sweep = read_sweep(root);
+  TreeReading reading = read_first_values(*source_, registry_, !problems_.any(), problems_);
+  reading.refusals.insert(reading.refusals.begin(), untrusted_.begin(), untrusted_.end());
+  finish(reading.refusals);
+  Study study = std::move(reading.study);
+  add_plugin_warnings(study);
+  for (const WrittenAxis& axis : source_->sweep) {
+    SweepAxis& made =
+        study.sweep.emplace_back(SweepAxis{axis.name, axis.path.text, {}, axis.repeat});
+    for (const Value& value : axis.values) made.values.push_back(canonical_text(value));
+  }
+  if (std::string warning = overlapping_seeds(study, source_->sweep); !warning.empty())
+    study.warnings.push_back(std::move(warning));
+  study.resolved = resolve(study, reading.written, source_->sweep, registry_);
+  if (source_->sweep.empty()) {
+    source_->tree = Value{};
+    source_->system = nullptr;
+  }
+  study.source = share(source_);
+  return study;
+}
+
+}  // namespace
+
+Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path,
+                 StudyPlugins plugins) {
+  return StudyReader(file, registry, path, plugins).read();
+}
+
+ModeBank bank_of(const Study& study) {
+  ModeBank bank;
+  bank.modes.push_back({study.nominal, study.model});
+  bank.modes.insert(bank.modes.end(), study.modes.begin(), study.modes.end());
+  return bank;
+}
+
+}  // namespace cordon

@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "study/reading/read_parts.hpp"
+#include "study/reading/read_sets.hpp"
+
+namespace cordon {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
+Json described(Json schema, const std::string& text) {
+  schema["description"] = text;
+  return schema;
+}
+Json integer(std::int64_t lowest, std::int64_t highest) {
+  return {{"type", "integer"}, {"minimum", lowest}, {"maximum", highest}};
+}
+Json text(int longest) { return {{"type", "string"}, {"minLength", 1}, {"maxLength", longest}}; }
+Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
+Json one_of(const std::vector<std::string>& words) { return {{"enum", words}}; }
+
+/// An object with these properties only; $comment and $schema are allowed everywhere.
+Json object(Json properties, const std::vector<std::string>& required) {
+  properties["$comment"] = true;
+  properties["$schema"] = {{"type", "string"}};
+  Json schema{
+      {"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+  if (!required.empty()) schema["required"] = required;
+  return schema;
+}
+
+Json typed(const std::string& type, Json properties, std::vector<std::string> required) {
+  Json all{{"type", {{"const", type}}}};
+  all.update(properties);
+  required.insert(required.begin(), "type");
+  return object(std::move(all), required);
+}
+
+Json sets() {
+  const Json vector = reference("vector"), matrix = reference("matrix"),
+             bounds = reference("bounds"), number{{"type", "number"}};
+  Json all = Json::array();
+  all.push_back(described(typed("box", {{"lower", bounds}, {"upper", bounds}}, {"lower", "upper"}),
+                          "{x : lower ≤ x ≤ upper}; a coordinate is bounded or free"));
+  all.push_back(
+      described(typed("zonotope", {{"center", vector}, {"generators", matrix}}, {"center"}),
+                "{c + Gξ : ‖ξ‖∞ ≤ 1}; one generator per column"));
+  all.push_back(described(
+      typed("constrained_zonotope",
+            {{"center", vector}, {"generators", matrix}, {"A", matrix}, {"b", vector}}, {"center"}),
+      "{c + Gξ : ‖ξ‖∞ ≤ 1, Aξ = b}"));
+  all.push_back(described(typed("line_zonotope",
+                                {{"center", vector},
+                                 {"lines", matrix},
+                                 {"generators", matrix},
+                                 {"S", matrix},
+                                 {"A", matrix},
+                                 {"b", vector}},
+                                {"center"}),
+                          "{c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Sδ + Aξ = b}; M holds the lines"));
+  all.push_back(described(
+      typed("strip",
+            {{"rho", vector}, {"d", number}, {"sigma", {{"type", "number"}, {"minimum", 0}}}},
+            {"rho", "d", "sigma"}),
+      "{x : |rhoᵀx - d| ≤ sigma}"));
+  all.push_back(described(typed("space", {{"dim", integer(0, json::max_dimension)}}, {"dim"}),
+                          "the whole space"));
+  all.push_back(described(typed("point", {{"center", vector}}, {"center"}), "a single point"));
+  Json polytope = typed(
+      "polytope", {{"lower", vector}, {"upper", vector}, {"H", matrix}, {"h", vector}}, {"H", "h"});
+  polytope["dependentRequired"] = {{"lower", {"upper"}}, {"upper", {"lower"}}};
+  all.push_back(described(
+      polytope, "{x : lower ≤ x ≤ upper, H x ≤ h}; without bounds they are found exactly"));
+  all.push_back(described(typed("polytope", {{"vertices", matrix}}, {"vertices"}),
+                          "convex hull; one vertex per row"));
+  return {{"oneOf", all}};
+}
+
+Json signals() {
+  const Json properties{
+      {"amplitude", {{"type", "number"}}},
+      {"omega", described({{"type", "number"}}, "radians per step")},
+      {"phase", described({{"type", "number"}, {"default", 0}}, "radians")},
+      {"offset", {{"type", "number"}}},
+      {"from", integer(0, static_cast<std::int64_t>(json::max_integer))},
+      {"period", integer(1, static_cast<std::int64_t>(json::max_integer))},
+      {"seed", integer(0, static_cast<std::int64_t>(json::max_integer))},
+      {"values", {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 1}}}};
+  Json all = Json::array();
+  for (std::size_t i = 0; i < json::signal_types().size(); ++i) {
+    const auto type = static_cast<Signal::Type>(i);
+    const std::vector<std::string> keys = json::signal_keys(type);
+    Json own = Json::object();
+    for (const std::string& key : keys) own[key] = properties[key];
+    const auto required = static_cast<std::ptrdiff_t>(json::required_signal_keys(type));
+    all.push_back(typed(json::signal_types()[i], own, {keys.begin(), keys.begin() + required}));
+  }
+  return {{"oneOf", all}};
+}
+
+Json sparse_matrix() {
+  const Json size = integer(0, json::max_entries), place = integer(1, json::max_entries);
+  const Json entry{{"type", "array"},
+                   {"prefixItems", {place, place, {{"type", "number"}}}},
+                   {"minItems", 3},
+                   {"maxItems", 3}};
+  return described(object({{"rows", size},
+                           {"cols", size},
+                           {"entries", described(list_of(entry), "[row, column, number]")}},
+                          {"rows", "cols", "entries"}),
+                   "sparse: the entries that are not 0, rows and columns counted from 1");
+}
+
+Json interval_matrix() {
+  const Json matrix = reference("matrix");
+  return {{"anyOf",
+           {matrix,
+            object({{"center", matrix}, {"radius", described(matrix, "at least 0")}},
+                   {"center", "radius"}),
+            object({{"lower", matrix}, {"upper", matrix}}, {"lower", "upper"})}}};
+}
+
+/// The matrices and sets of a model, without "type" and E; A, B and C are exact or `general`.
+Json model_properties(const std::string& general) {
+  const Json matrix = reference("matrix"), set = reference("set"), interval = reference(general);
+  Json properties;
+  properties["A"] = described(interval, "n × n");
+  properties["B"] = described(interval, "n × inputs; absent: no inputs");
+  properties["Bw"] = described(matrix, "n × disturbances; the identity by default");
+  properties["C"] = described(interval, "outputs × n");
+  properties["D"] = described(matrix, "outputs × inputs; zero by default");
+  properties["Dv"] = described(matrix, "outputs × noises; the identity by default");
+  properties["X0"] = described(
+      set, "contains the initial state; the whole space by default, in a mode the nominal one");
+  properties["W"] =
+      described(set, "contains every disturbance w; may be absent only if Bw has no columns");
+  properties["V"] =
+      described(set, "contains every measurement noise v; may be absent only if Dv has no columns");
+  return properties;
+}
+
+Json systems(const Json& more) {
+  Json exact = model_properties("matrix"), general = model_properties("interval_matrix");
+  exact.update(more);
+  general.update(more);
+  const Json lti = typed("lti", exact, {"A", "C"}),
+             interval_lti = typed("interval_lti", general, {"A", "C"});
+  general["E"] = described(reference("matrix"), "n × n, may be singular");
+  const Json descriptor = typed("descriptor", general, {"E", "A", "C"});
+  return {{"oneOf",
+           {described(lti, "x⁺ = A x + B u + Bw w, y = C x + D u + Dv v"),
+            described(interval_lti, "the same with A, B and C known by intervals"),
+            described(descriptor, "E x⁺ = A x + B u + Bw w, y = C x + D u + Dv v")}}};
+}
+
+Json effectiveness() {
+  const Json share{{"type", "number"}, {"minimum", 0}, {"maximum", 1}};
+  const Json range{{"type", "array"}, {"items", share}, {"minItems", 2}, {"maxItems", 2}};
+  return described(list_of({{"anyOf", {share, range}}}),
+                   "0: outage, 1: health; a number, or a range [low, high]");
+}
+
+/// What is different in a mode or a fault.
+Json mode_properties() {
+  const Json set = reference("set");
+  Json additive = object({{"F", described(reference("matrix"), "n × values of f")},
+                          {"Fy", described(reference("matrix"), "outputs × values of f")},
+                          {"f", described(set, "contains f at every step")}},
+                         {"f"});
+  additive["anyOf"] = {{{"required", {"F"}}}, {{"required", {"Fy"}}}};
+  Json properties;
+  properties["actuator"] = described(reference("effectiveness"), "one entry per column of B");
+  properties["sensor"] = described(reference("effectiveness"), "one entry per row of C");
+  properties["additive"] =
+      described(additive, "F f is added to the state's equation, Fy f to the outputs");
+  properties["W"] = described(set, "in place of the system's W");
+  properties["V"] = described(set, "in place of the system's V");
+  properties["system"] =
+      described(reference("mode_system"), "another model; in place of additive, W and V");
+  return properties;
+}
+
+Json modes() {
+  Json properties{{"name", text(200)}};
+  properties.update(mode_properties());
+  return object(properties, {"name"});
+}
+
+Json faults() {
+  const Json time = integer(0, static_cast<std::int64_t>(json::max_integer));
+  Json times;
+  times["from"] = described(time, "the first k whose y_k and x_{k+1} are made with the fault");
+  times["from"]["default"] = 0;
+  times["to"] = described(time, "the last such k; the end by default");
+  Json inside{{"mode", described(text(200), "name of a mode")}};
+  inside.update(times);
+  for (const char* key : {"actuator", "sensor"})
+    inside[key] =
+        described(reference("effectiveness"), "inside the range of the mode; its range by default");
+  Json outside{{"name", described(text(200), "for people")}};
+  outside.update(times);
+  outside.update(mode_properties());
+  return {{"oneOf",
+           {described(object(inside, {"mode"}), "a mode of the bank"),
+            described(object(outside, {}), "a fault outside the bank")}}};
+}
+
+Json additive_faults() {
+  const Json time = integer(0, static_cast<std::int64_t>(json::max_integer));
+  Json properties;
+  properties["fault"] =
+      described(integer(1, json::max_dimension), "number of a column of F, from 1 on");
+  properties["from"] = described(time, "the first k at which the fault acts");
+  properties["from"]["default"] = 0;
+  properties["to"] = described(time, "the last such k; the end by default");
+  properties["signal"] =
+      described(reference("signal"), "the value at k; entries of the same fault add up");
+  return list_of(object(properties, {"fault", "signal"}));
+}
+
+Json data() {
+  Json simulate;
+  simulate["steps"] = described(integer(1, 1'000'000'000), "samples k = 0 ... steps");
+  simulate["seed"] = integer(0, static_cast<std::int64_t>(json::max_integer));
+  simulate["seed"]["default"] = 1;
+  simulate["seeds"] =
+      described(integer(1, 100'000), "diagnosers are tried on so many seeds, from seed on");
+  simulate["seeds"]["default"] = 1;
+  simulate["noise"] = one_of(json::noise_names());
+  simulate["noise"]["default"] = "uniform";
+  simulate["parameters"] = described(one_of(json::parameter_draw_names()),
+                                     "whether uncertain matrices are drawn once or at every step");
+  simulate["parameters"]["default"] = "constant";
+  simulate["x0"] = described(
+      Json{{"anyOf", {reference("vector"), reference("set")}}},
+      "initial state, or a bounded set that it is drawn from; the centre of X0 by default");
+  simulate["input"] = described(list_of(reference("signal")), "one signal per column of B");
+  simulate["plant"] = described(reference("plant"), "makes the data in place of the system");
+  simulate["faults"] =
+      described(list_of(reference("fault")), "in the order of time, without overlap");
+  simulate["additive_faults"] =
+      described(additive_faults(), "values of the faults in the directions of F; 0 otherwise");
+  const Json names{{"type", "array"}, {"items", text(4096)}, {"uniqueItems", true}};
+  Json csv;
+  csv["file"] = described(text(4096), "relative to the folder of the study");
+  csv["inputs"] = described(names, "columns of u, one per column of B");
+  csv["outputs"] = described(names, "columns of y, one per row of C");
+  csv["truth"] = described(names, "columns of the true state, one per row of A");
+  csv["mode"] =
+      described(text(4096), "column with the name of the true mode, empty outside the bank");
+  return {{"oneOf",
+           {object({{"simulate", object(simulate, {})}}, {"simulate"}),
+            object({{"csv", object(csv, {"file", "outputs"})}}, {"csv"})}}};
+}
+
+void add_limits(Json& schema, const ParamSpec& spec) {
+  const bool whole = spec.kind == ParamKind::integer;
+  const auto limit = [&](double x) { return whole ? Json(static_cast<std::int64_t>(x)) : Json(x); };
+  if (spec.lowest > -infinity && std::abs(spec.lowest) <= json::max_integer)
+    schema["minimum"] = limit(spec.lowest);
+  if (spec.highest < infinity && std::abs(spec.highest) <= json::max_integer)
+    schema["maximum"] = limit(spec.highest);
+}
+
+Json parameter(const ParamSpec& spec) {
+  Json schema;
+  switch (spec.kind) {
+    case ParamKind::integer:
+      schema["type"] = "integer";
+      break;
+    case ParamKind::real:
+      schema["type"] = "number";
+      break;
+    case ParamKind::flag:
+      schema["type"] = "boolean";
+      break;
+    case ParamKind::choice:
+      schema = one_of(spec.choices);
+      break;
+    case ParamKind::text:
+      schema["type"] = "string";
+      break;
+    case ParamKind::vector:
+      schema = reference("vector");
+      break;
+    case ParamKind::matrix:
+      schema = reference("matrix");
+      break;
+    case ParamKind::set:
+      schema = reference("set");
+      break;
+    case ParamKind::matrices:
+      schema = list_of(reference("matrix"));
+      break;
+    case ParamKind::component:
+      schema = reference(spec.component_kind);
+      if (!spec.matrix_type.empty()) schema = {{"anyOf", {reference("matrix"), schema}}};
+      break;
+  }
+  if (spec.kind == ParamKind::integer || spec.kind == ParamKind::real) add_limits(schema, spec);
+  if (spec.fallback) {
+    if (const auto* value = std::get_if<std::int64_t>(&*spec.fallback)) schema["default"] = *value;
+    if (const auto* value = std::get_if<double>(&*spec.fallback)) schema["default"] = *value;
+    if (const auto* value = std::get_if<bool>(&*spec.fallback)) schema["default"] = *value;
+    if (const auto* value = std::get_if<std::string>(&*spec.fallback)) schema["default"] = *value;
+  }
+  return described(std::move(schema), spec.doc);
+}
+
+/// Components of one kind: the name alone where no parameter is required, or an object by "type".
+Json components(const Registry& registry, const char* kind) {
+  const json::Shelf& shelf = *json::shelf_of(kind);
+  Json all = Json::array();
+  std::vector<std::string> plain;
+  for (const std::string& name : (registry.*shelf.names)()) {
+    const ComponentInfo& component = *(registry.*shelf.info)(name);
+    Json properties = Json::object();
+    std::vector<std::string> required;
+    for (const ParamSpec& spec : component.schema.specs()) {
+      properties[spec.name] = parameter(spec);
+      if (spec.required) required.push_back(spec.name);
+    }
+    if (required.empty()) plain.push_back(name);
+    all.push_back(described(typed(name, properties, required), component.summary));
+  }
+  if (!plain.empty()) all.push_back(one_of(plain));
+  if (all.empty()) return false;  // nothing is valid: no plugin provides one
+  return {{"oneOf", all}};
+}
+
+Json definitions(const Registry& registry) {
+  Json defs;
+  defs["vector"] = list_of({{"type", "number"}});
+  defs["matrix"] = {{"anyOf",
+                     {described(list_of(reference("vector")), "a list of rows of equal length"),
+                      sparse_matrix()}}};
+  defs["interval_matrix"] = interval_matrix();
+  defs["bounds"] = list_of({{"anyOf", {{{"type", "number"}}, one_of({"inf", "-inf"})}}});
+  defs["set"] = sets();
+  defs["signal"] = signals();
+  defs["system"] = systems(
+      {{"F",
+        described(reference("matrix"), "n × faults: directions of additive faults, a column each")},
+       {"U", described(reference("set"), "contains every input u; the whole space by default")},
+       {"nominal", described(text(200), "name of the nominal mode; \"healthy\" by default")},
+       {"modes",
+        described(Json{{"type", "array"}, {"items", reference("mode")}, {"maxItems", 1000}},
+                  "the faults that diagnosers tell apart")}});
+  defs["mode_system"] = systems(Json::object());
+  defs["effectiveness"] = effectiveness();
+  defs["mode"] = modes();
+  defs["fault"] = faults();
+  defs["data"] = data();
+  for (const char* kind :
+       {"backend", "observer", "metric", "diagnoser", "plant", "gain", "designer"})
+    defs[kind] = components(registry, kind);
+  Json pipeline = object({{"name", described(text(200), "unique; the backend's name by default")},
+                          {"backend", reference("backend")},
+                          {"observer", reference("observer")},
+                          {"diagnoser", reference("diagnoser")},
+                          {"designer", reference("designer")}},
+                         {"backend"});
+  const Json bank_wide{{"anyOf", {{{"required", {"diagnoser"}}}, {{"required", {"designer"}}}}}};
+  pipeline["oneOf"] = {{{"required", {"observer"}}}, bank_wide};
+  defs["pipeline"] = pipeline;
+  return defs;
+}
+
+Json sweep() {
+  const Json whole = integer(-static_cast<std::int64_t>(json::max_integer),
+                             static_cast<std::int64_t>(json::max_integer));
+  Json properties;
+  properties["name"] = described(text(200), "unique; the name of its column in tables");
+  properties["path"] =
+      described(Json{{"type", "string"}, {"pattern", "^(/([^~]|~[01])*)+$"}, {"maxLength", 4096}},
+                "what is varied: a JSON pointer, with \"*\" for every element of a list: "
+                "/pipelines/*/observer/max_generators");
+  properties["values"] = described(
+      Json{{"type", "array"}, {"minItems", 1}, {"maxItems", 100'000}, {"uniqueItems", true}},
+      "they take the place of what stands there, one after another");
+  properties["range"] =
+      described(Json{{"type", "array"}, {"items", whole}, {"minItems", 2}, {"maxItems", 3}},
+                "[first, last] or [first, last, step]: integers, in place of values");
+  properties["repeat"] = described(
+      Json{{"type", "boolean"}},
+      "statistics are taken over these values; by default true where the path ends in /seed");
+  Json axis = object(properties, {"name", "path"});
+  axis["oneOf"] = {{{"required", {"values"}}}, {{"required", {"range"}}}};
+  return {{"type", "array"}, {"items", axis}, {"minItems", 1}, {"maxItems", 100}};
+}
+
+Json with_simulate(Json properties, const std::vector<std::string>& required) {
+  Json simulate{{"properties", std::move(properties)}};
+  if (!required.empty()) simulate["required"] = required;
+  return {{"properties", {{"data", {{"properties", {{"simulate", simulate}}}}}}}};
+}
+
+/// Data are for pipelines without a designer; beside one with a designer they are not recorded.
+Json conditions() {
+  const Json designer{{"required", {"designer"}}};
+  Json all_designed{{"properties", {{"pipelines", {{"items", designer}}}}}};
+  Json refused;
+  for (const char* key : {"steps", "input", "parameters", "plant", "faults", "additive_faults"})
+    refused[key] = false;
+  Json streamed = with_simulate(Json::object(), {"steps"});
+  streamed["required"] = {"data"};
+  Json one_designed{{"properties", {{"pipelines", {{"contains", designer}}}}}};
+  Json simulated{{"properties", {{"data", {{"properties", {{"csv", false}}}}}}}};
+  return {{{"if", all_designed}, {"then", with_simulate(refused, {})}, {"else", streamed}},
+          {{"if", one_designed}, {"then", simulated}}};
+}
+
+}  // namespace
+
+std::string study_json_schema(const Registry& registry) {
+  Json properties;
+  properties["cordon"] = described({{"const", 1}}, "version of the format");
+  properties["title"] = text(1000);
+  properties["plugins"] =
+      described({{"type", "array"}, {"items", text(4096)}, {"uniqueItems", true}},
+                "directories of plugins, relative to the folder of the study");
+  properties["system"] = reference("system");
+  properties["data"] = reference("data");
+  properties["pipelines"] = {
+      {"type", "array"}, {"items", reference("pipeline")}, {"minItems", 1}, {"maxItems", 1000}};
+  properties["metrics"] = list_of(reference("metric"));
+  properties["sweep"] = described(sweep(), "the study is run under all combinations of the values");
+  Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Cordon study"}};
+  root.update(object(properties, {"cordon", "system", "pipelines"}));
+  root["allOf"] = conditions();
+  root["$defs"] = definitions(registry);
+  return root.dump(2) + "\n";
+}
+
+}  // namespace cordon

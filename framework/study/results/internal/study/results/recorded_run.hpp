@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files of a finished run, read with every size and number checked.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cordon/study/design.hpp"
+#include "cordon/study/study.hpp"
+#include "study/results/recorded_assumption.hpp"
+#include "study/text/input_file.hpp"
+#include "study/text/json_cursor.hpp"
+#include "study/text/manifest.hpp"
+
+namespace cordon::verification {
+
+/// One entry of steps[] in results.json.
+struct RecordedStep {
+  Index k = 0;
+  Box hull;
+  Answer consistent = Answer::unknown;
+  Tightness tightness = Tightness::outer;
+};
+
+struct RecordedPipeline {
+  std::string name, backend;
+  std::optional<RecordedAssumption> failed;  ///< that the run found to fail
+  std::vector<std::string> refuted;  ///< what of a designer's answer the run found to be false
+  bool is_diagnosis = false;         ///< of a diagnoser: nothing else is read, no sets are stored
+  bool is_design = false;            ///< of a designer: only `design` is read
+  std::optional<DesignOutcome> design =
+      {};  ///< horizon, input, what is said of pairs and tubes; nothing: there is no input
+  /// What results say of the design: the designer, and what the host has proven of its pairs and
+  /// tubes.
+  Answer claimed_separation = Answer::unknown, proven_separation = Answer::unknown;
+  std::optional<InputDesign> proven = {};
+  Rounding rounding = Rounding::nominal;
+  /// Each set holds all successors of the one before that are consistent with the data. Observers
+  /// that know more than their last set, as a bound of their error for all times, may keep to less.
+  bool follows_its_sets = false;
+  LineForm initial_set;
+  std::optional<LineForm> admissible_set;
+  std::vector<RecordedStep> steps;
+};
+
+/// One line of sets.jsonl.
+struct RecordedSet {
+  std::string pipeline;
+  Index k = 0;
+  bool exact_exchange = true;
+  LineForm set;
+  Certificate proof;
+  std::vector<Certificate> hull_proofs;  ///< two per coordinate; none for an empty set
+  std::int64_t line = 0;
+};
+
+struct RecordedRun {
+  detail::RecordedFiles files;
+  Model model;
+  ModeBank bank;
+  CsvSpec data;  ///< data.csv
+  std::vector<RecordedPipeline> pipelines;
+};
+
+/// A set in exchange form, as results files write it.
+std::optional<LineForm> read_form(const json::Cursor& at, Index dim);
+
+/// All but the sets. Throws InputError.
+RecordedRun read_run(const std::filesystem::path& directory);
+
+/// Streams sets.jsonl.
+class SetReader {
+ public:
+  explicit SetReader(const detail::RecordedFiles& files);
+  /// The next line; nothing at the end, where `files` must be unchanged. Lines of times that are
+  /// not `wanted` are passed over unread. Throws InputError.
+  std::optional<RecordedSet> next(const std::function<bool(Index)>& wanted = {});
+
+ private:
+  const detail::RecordedFiles& files_;
+  detail::InputFile input_;
+};
+
+}  // namespace cordon::verification

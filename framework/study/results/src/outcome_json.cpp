@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "outcome_json.hpp"
+
+#include <cmath>
+
+#include "study/results/results_parts.hpp"
+
+namespace cordon::detail {
+
+using Layout = JsonWriter::Layout;
+
+void write(JsonWriter& json, const std::vector<Gain>& gains) {
+  json.key("gains").begin_array(gains.empty() ? Layout::line : Layout::lines);
+  for (const Gain& gain : gains) {
+    const GainCertificate& known = gain.certificate;
+    json.begin_object()
+        .member("name", gain.name)
+        .member("type", gain.type)
+        .key("matrix")
+        .matrix(gain.L);
+    json.member("spectral_radius", known.spectral_radius).key("monotone");
+    known.monotone == Answer::unknown ? json.null() : json.value(known.monotone == Answer::yes);
+    json.key("norm");
+    if (std::isnan(known.norm_lower) && std::isnan(known.norm_upper)) {
+      json.null();
+    } else {
+      json.begin_object()
+          .member("lower", known.norm_lower)
+          .member("upper", known.norm_upper)
+          .end_object();
+    }
+    if (!known.objective.empty()) {
+      json.member("objective", known.objective).member("optimum", known.optimum);
+      json.member("optimum_bound", known.optimum_bound).member("margin", known.margin);
+    }
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void write_last(JsonWriter& json, Index k, const Box& hull) {
+  json.key("last");
+  if (hull.dim() == 0) {
+    json.null();
+    return;
+  }
+  json.begin_object().member("k", k);
+  write_box(json, "hull", hull);
+  json.key("width");
+  hull.is_empty() ? json.null() : json.value(Vector(hull.upper - hull.lower));
+  json.end_object();
+}
+
+void write_inner(JsonWriter& json, const PipelineOutcome& outcome) {
+  json.member("inner_steps", outcome.inner_steps);
+  json.member("inner_share", outcome.inner_steps > 0 ? outcome.inner_share : std::nan(""));
+  write_time(json, "inner_outside", outcome.inner_outside);
+}
+
+void write_growth(JsonWriter& json, const PipelineOutcome& outcome) {
+  json.key("growth");
+  if (!outcome.growth) {
+    json.null();
+    return;
+  }
+  const WidthGrowth& growth = *outcome.growth;
+  json.begin_object().member("state", growth.state + 1).member("smallest", growth.smallest);
+  json.member("smallest_at", growth.smallest_at)
+      .member("last", growth.last)
+      .member("factor", growth.factor);
+  json.member("advice", advice_on(growth)).end_object();
+}
+
+}  // namespace cordon::detail

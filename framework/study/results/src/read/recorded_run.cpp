@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/results/recorded_run.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+#include "study/reading/read_parts.hpp"
+#include "study/text/input_file.hpp"
+
+namespace cordon::verification {
+
+namespace {
+
+using namespace json;
+using Kind = Value::Kind;
+
+/// A block of rows × cols; a matrix without rows or columns is written as [] or [[], …].
+std::optional<Matrix> read_block(const Cursor& set, const char* key, Index rows, Index cols) {
+  const auto at = set.need(key, not_as_written);
+  auto entries = at ? read_matrix(*at) : std::nullopt;
+  if (!entries) return std::nullopt;
+  if (entries->size() == 0 && rows * cols == 0) return Matrix(rows, cols);
+  if (entries->rows() == rows && entries->cols() == cols) return entries;
+  at->error("is " + shape(entries->rows(), entries->cols()) + ", must be " + shape(rows, cols),
+            not_as_written);
+  return std::nullopt;
+}
+
+std::optional<Vector> read_part(const Cursor& set, const char* key, Index size) {
+  const auto at = set.need(key, not_as_written);
+  auto entries = at ? read_vector(*at) : std::nullopt;
+  if (!entries || entries->size() == size) return entries;
+  at->error(
+      "has " + std::to_string(entries->size()) + " numbers, must have " + std::to_string(size),
+      not_as_written);
+  return std::nullopt;
+}
+
+std::optional<Index> read_size(const Cursor& set, const char* key) {
+  const auto at = set.need(key, not_as_written);
+  const auto size = at ? read_integer(*at, 0, max_entries) : std::nullopt;
+  return size ? std::optional<Index>(*size) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<LineForm> read_form(const Cursor& at, Index dim) {
+  if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
+  const auto n = read_size(at, "dim"), l = read_size(at, "lines"), g = read_size(at, "generators"),
+             m = read_size(at, "constraints");
+  if (!n || !l || !g || !m) return std::nullopt;
+  if (*n != dim) {
+    at.error("has dimension " + std::to_string(*n) + ", the state has " + std::to_string(dim),
+             not_as_written);
+    return std::nullopt;
+  }
+  auto M = read_block(at, "M", *n, *l), G = read_block(at, "G", *n, *g),
+       S = read_block(at, "S", *m, *l), A = read_block(at, "A", *m, *g);
+  auto c = read_part(at, "c", *n), b = read_part(at, "b", *m);
+  if (!M || !G || !S || !A || !c || !b) return std::nullopt;
+  return LineForm{std::move(*M), std::move(*G), std::move(*c),
+                  std::move(*S), std::move(*A), std::move(*b)};
+}
+
+namespace {
+
+template <class Enum>
+std::optional<Enum> read_word(const Cursor& object, const char* key,
+                              std::initializer_list<Enum> all) {
+  const auto at = object.need(key, not_as_written);
+  if (!at) return std::nullopt;
+  std::vector<std::string> words;
+  for (const Enum one : all) words.emplace_back(to_string(one));
+  const auto word = read_choice(*at, words);
+  if (!word) return std::nullopt;
+  return *(all.begin() + (std::find(words.begin(), words.end(), *word) - words.begin()));
+}
+
+std::optional<Certificate> read_certificate(const Cursor& at) {
+  if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
+  using Proof = Certificate::Kind;
+  const auto kind = read_word(
+      at, "kind",
+      {Proof::none, Proof::farkas, Proof::point, Proof::dual, Proof::direction, Proof::structure});
+  if (!kind) return std::nullopt;
+  Certificate why{*kind, Vector(0), 0};
+  if (const auto data = at.find("data")) {
+    auto numbers = read_vector(*data);
+    if (!numbers) return std::nullopt;
+    why.data = std::move(*numbers);
+  }
+  if (const auto margin = at.find("margin")) why.margin = read_number(*margin).value_or(0);
+  return why;
+}
+
+std::optional<RecordedStep> read_step(const Cursor& at, Index n) {
+  if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
+  RecordedStep step;
+  const auto k_at = at.need("k", not_as_written), hull = at.need("hull", not_as_written);
+  const auto k = k_at ? read_integer(*k_at, 0, max_integer) : std::nullopt;
+  const auto consistent = read_word(at, "consistent", {Answer::yes, Answer::no, Answer::unknown});
+  const auto tightness = read_word(at, "tightness", {Tightness::exact, Tightness::outer});
+  if (!hull || !hull->expect(Kind::object, not_as_written)) return std::nullopt;
+  const auto lower_at = hull->need("lower", not_as_written),
+             upper_at = hull->need("upper", not_as_written);
+  auto lower = lower_at ? read_bounds(*lower_at) : std::nullopt,
+       upper = upper_at ? read_bounds(*upper_at) : std::nullopt;
+  if (!k || !consistent || !tightness || !lower || !upper) return std::nullopt;
+  if (!expect_size(*lower_at, *lower, n, "the state") ||
+      !expect_size(*upper_at, *upper, n, "the state"))
+    return std::nullopt;
+  return RecordedStep{*k, {std::move(*lower), std::move(*upper)}, *consistent, *tightness};
+}
+
+std::optional<Rounding> read_rounding(const Cursor& pipeline) {
+  return read_word(pipeline, "rounding",
+                   {Rounding::nominal, Rounding::outward, Rounding::rational});
+}
+
+/// A bound of κ: a number or "inf".
+std::optional<double> read_kappa(const Cursor& at) {
+  if (at.is(Kind::text)) {
+    if (read_choice(at, {"inf"})) return infinity;
+    return std::nullopt;
+  }
+  return read_number(at);
+}
+
+/// "pairs" and "tubes" of a design, one after another.
+void read_claims(const Cursor& at, InputDesign& design, Index modes) {
+  const auto pairs = at.need("pairs", not_as_written), tubes = at.need("tubes", not_as_written);
+  if (!pairs || !tubes || !pairs->expect(Kind::array, not_as_written) ||
+      !tubes->expect(Kind::array, not_as_written))
+    return;
+  const auto count = static_cast<std::size_t>(modes);
+  if (pairs->size() != count * (count - 1) / 2)
+    pairs->error("does not hold every pair of modes", not_as_written);
+  if (tubes->size() != count) tubes->error("does not hold every mode", not_as_written);
+  for (std::size_t q = 0; q < pairs->size(); ++q) {
+    const Cursor item = pairs->item(q);
+    if (!item.expect(Kind::object, not_as_written)) continue;
+    PairSeparation& pair = design.pairs.emplace_back();
+    pair.disjoint = read_word(item, "disjoint", {Answer::yes, Answer::no, Answer::unknown})
+                        .value_or(Answer::unknown);
+    const auto kappa = item.need("kappa_lower", not_as_written);
+    if (kappa && pair.disjoint == Answer::yes) pair.kappa_lower = read_kappa(*kappa).value_or(0);
+  }
+  for (std::size_t i = 0; i < tubes->size(); ++i) {
+    const Cursor item = tubes->item(i);
+    if (!item.expect(Kind::object, not_as_written)) continue;
+    design.empty.push_back(read_word(item, "empty", {Answer::yes, Answer::no, Answer::unknown})
+                               .value_or(Answer::unknown));
+  }
+}
+
+std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& system) {
+  if (at.is(Kind::null) || !at.expect(Kind::object, not_as_written)) return std::nullopt;
+  const auto u = at.need("u", not_as_written), outputs = at.need("outputs", not_as_written),
+             admissible = at.need("admissible_set", not_as_written);
+  if (!u || !outputs || !admissible || u->is(Kind::null)) return std::nullopt;
+  const LinearModel& m = system.model.linear;
+  DesignOutcome outcome;
+  outcome.status = DesignStatus::given;
+  auto inputs = read_matrix(*u);
+  if (inputs && (inputs->rows() == 0 || inputs->cols() != m.inputs())) {
+    u->error("is " + shape(inputs->rows(), inputs->cols()) + ", must have " +
+                 counted(m.inputs(), "column"),
+             not_as_written);
+  }
+  const auto which = read_choice(*outputs, {"all", "last"});
+  outcome.last_output_only = which && *which == "last";
+  if (!admissible->is(Kind::null)) outcome.admissible_set = read_form(*admissible, m.states());
+  if (!inputs) return std::nullopt;
+  outcome.horizon = inputs->rows() - 1;
+  outcome.best.emplace().u = std::move(*inputs);
+  read_claims(at, *outcome.best, static_cast<Index>(system.modes.size()) + 1);
+  return outcome;
+}
+
+/// What beside the input stands in "design" and "exact".
+void read_separation(const Cursor& at, Index modes, RecordedPipeline& pipeline) {
+  const auto word = [](const Cursor& object) {
+    return read_word(object, "separates", {Answer::yes, Answer::no, Answer::unknown})
+        .value_or(Answer::unknown);
+  };
+  if (const auto design = at.find("design"); pipeline.design && design)
+    pipeline.claimed_separation = word(*design);
+  const auto exact = at.find("exact");
+  if (!exact || exact->is(Kind::null) || !exact->expect(Kind::object, not_as_written)) return;
+  pipeline.proven_separation = word(*exact);
+  read_claims(*exact, pipeline.proven.emplace(), modes);
+}
+
+std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart& system) {
+  if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
+  const Index n = system.model.linear.states();
+  RecordedPipeline pipeline;
+  const auto name = at.need("name", not_as_written), backend = at.need("backend", not_as_written);
+  if (!name || !backend) return std::nullopt;
+  pipeline.name = read_text(*name, 1000).value_or("");
+  pipeline.backend = read_text(*backend, 1000).value_or("");
+  if (at.find("designer")) {
+    pipeline.is_design = true;
+    if (const auto design = at.need("design", not_as_written))
+      pipeline.design = read_design(*design, system);
+    read_separation(at, static_cast<Index>(system.modes.size()) + 1, pipeline);
+  } else if (at.find("diagnoser")) {
+    pipeline.is_diagnosis = true;
+  }
+  if (const auto summary = at.find("summary"); summary && summary->is(Kind::object)) {
+    pipeline.failed = read_failed_assumption(*summary, system);
+    const auto refuted = summary->find("refuted");
+    for (std::size_t i = 0; refuted && refuted->is(Kind::array) && i < refuted->size(); ++i) {
+      pipeline.refuted.push_back(read_text(refuted->item(i), 10'000).value_or(""));
+    }
+  }
+  if (pipeline.is_design || pipeline.is_diagnosis) {
+    if (const auto rounding = at.find("rounding"); rounding && !rounding->is(Kind::null))
+      pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);
+    return pipeline;
+  }
+  const auto assumed = at.need("assumptions", not_as_written),
+             steps = at.need("steps", not_as_written);
+  if (!assumed || !steps || !steps->expect(Kind::array, not_as_written)) return std::nullopt;
+  if (assumed->is(Kind::null) && steps->size() == 0)
+    return pipeline;  // stopped before its first step
+  pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);
+  if (!assumed->expect(Kind::object, not_as_written)) return std::nullopt;
+  if (const auto initial = assumed->need("initial_set", not_as_written)) {
+    if (auto form = read_form(*initial, n)) pipeline.initial_set = std::move(*form);
+  }
+  if (const auto admissible = assumed->need("admissible_set", not_as_written);
+      admissible && !admissible->is(Kind::null)) {
+    pipeline.admissible_set = read_form(*admissible, n);
+  }
+  for (std::size_t i = 0; i < steps->size(); ++i) {
+    if (auto step = read_step(steps->item(i), n)) pipeline.steps.push_back(std::move(*step));
+  }
+  return pipeline;
+}
+
+/// `study`: the pipeline in the study of the results.
+bool follows_its_sets(const Cursor& study) {
+  const auto observer = study.is(Kind::object) ? study.find("observer") : std::nullopt;
+  const auto type = observer && observer->is(Kind::object) ? observer->find("type") : std::nullopt;
+  const std::string name = type ? read_text(*type, 1000).value_or("") : "";
+  if (name == "prediction_correction" || name == "descriptor") return true;
+  if (name != "luenberger" && name != "zonotope_uncertain") return false;
+  const auto limit = observer->find("widening_limit");
+  return limit && read_number(*limit).value_or(1) == 0;
+}
+
+int line_number(const detail::InputFile& file) {
+  return static_cast<int>(std::min<std::int64_t>(file.lines(), 1'000'000'000));
+}
+
+CsvSpec data_of(std::filesystem::path file, const LinearModel& model) {
+  CsvSpec spec;
+  spec.file = std::move(file);
+  for (Index i = 1; i <= model.inputs(); ++i) spec.inputs.push_back("u_" + std::to_string(i));
+  for (Index i = 1; i <= model.outputs(); ++i) spec.outputs.push_back("y_" + std::to_string(i));
+  return spec;
+}
+
+/// A line of a file whose lines all have their ends; false behind the last one.
+bool next_line(detail::InputFile& file, std::string& line) {
+  if (!file.line(line, max_bytes)) return false;
+  if (file.ended_line()) return true;
+  throw InputError(file.path().string(),
+                   {{"", "ends in the middle of a line", not_as_written, line_number(file)}});
+}
+
+/// The first column of data.csv counts the rows from 0: estimates are matched with samples by it.
+void check_times(const std::filesystem::path& path) {
+  detail::InputFile file(path, not_as_written);
+  std::string row;
+  next_line(file, row);
+  for (std::int64_t k = 0; next_line(file, row); ++k) {
+    if (row.substr(0, row.find(',')) == std::to_string(k)) continue;
+    throw InputError(path.string(),
+                     {{"", "must tell of k = " + std::to_string(k) + " in its first column",
+                       not_as_written, line_number(file)}});
+  }
+}
+
+/// `k` of a line of sets.jsonl, if it stands there as it was written. (A quote inside of a text is
+/// escaped, so that no name holds the key.)
+std::optional<Index> time_of(const std::string& text) {
+  static const std::string key = "\"k\": ";
+  const std::size_t at = text.find(key);
+  if (at == std::string::npos) return std::nullopt;
+  Index k = 0;
+  const char *first = text.data() + at + key.size(), *last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, k);
+  return error == std::errc{} && end != last && *end == ',' ? std::optional<Index>(k)
+                                                            : std::nullopt;
+}
+
+}  // namespace
+
+RecordedRun read_run(const std::filesystem::path& directory) {
+  RecordedRun run{detail::RecordedFiles(directory), {}, {}, {}, {}};
+  const std::filesystem::path file = run.files.file("results.json");
+  Problems problems;
+  const std::string text = read_file(file.string());
+  const Value tree = parse(text, problems);
+  const Cursor root(tree, "", problems);
+  if (root.expect(Kind::object, "a results file of \"cordon run\" is an object")) {
+    const auto version =
+        root.need("cordon_results", "this is not a results file of \"cordon run\"");
+    const auto number = version ? read_number(*version) : std::nullopt;
+    if (number && *number != 1)
+      version->error("this version of the format is not known", "this program reads 1");
+    if (root.find("points")) {
+      throw InputError(file.string(),
+                       {{"/points", "is a sweep, which keeps no sets",
+                         "\"cordon run STUDY --point INDEX\" runs one point with all files"}});
+    }
+    const auto study = root.need("study", not_as_written),
+               pipelines = root.need("pipelines", not_as_written);
+    const auto system = study && study->expect(Kind::object, not_as_written)
+                            ? study->need("system", not_as_written)
+                            : std::nullopt;
+    std::vector<std::string> warnings;
+    SystemPart part = system ? read_system(*system, warnings) : SystemPart{};
+    if (part.good && pipelines && pipelines->expect(Kind::array, not_as_written)) {
+      const auto studied = study->find("pipelines");
+      for (std::size_t i = 0; i < pipelines->size(); ++i) {
+        if (auto pipeline = read_pipeline(pipelines->item(i), part)) {
+          pipeline->follows_its_sets = studied && studied->is(Kind::array) && i < studied->size() &&
+                                       follows_its_sets(studied->item(i));
+          run.pipelines.push_back(std::move(*pipeline));
+        }
+      }
+    }
+    run.bank.modes.push_back({std::move(part.nominal), part.model});
+    run.bank.modes.insert(run.bank.modes.end(), part.modes.begin(), part.modes.end());
+    run.model = std::move(part.model);
+  }
+  if (problems.any()) throw InputError(file.string(), problems.sorted());
+  run.data = data_of(run.files.file("data.csv"), run.model.linear);
+  check_times(run.data.file);
+  return run;
+}
+
+SetReader::SetReader(const detail::RecordedFiles& files)
+    : files_(files),
+      input_(files.file("sets.jsonl"), "\"cordon run\" writes it beside results.json") {}
+
+std::optional<RecordedSet> SetReader::next(const std::function<bool(Index)>& wanted) {
+  std::string text;
+  for (bool passes = true; passes;) {
+    if (!next_line(input_, text)) {
+      files_.check_unchanged();
+      return std::nullopt;
+    }
+    const auto k = wanted ? time_of(text) : std::nullopt;
+    passes = k && !wanted(*k);
+  }
+  Problems problems;
+  RecordedSet row;
+  row.line = input_.lines();
+  const Value tree = parse(text, problems);
+  const Cursor root(tree, "", problems);
+  if (root.expect(Kind::object, not_as_written)) {
+    const auto name = root.need("pipeline", not_as_written), k_at = root.need("k", not_as_written),
+               proof = root.need("proof", not_as_written);
+    const auto exchange = read_word(root, "exchange", {Tightness::exact, Tightness::outer});
+    const auto dim = read_size(root, "dim");
+    if (name) row.pipeline = read_text(*name, 1000).value_or("");
+    if (k_at) row.k = read_integer(*k_at, 0, max_integer).value_or(0);
+    if (exchange) row.exact_exchange = *exchange == Tightness::exact;
+    if (auto form = dim ? read_form(root, *dim) : std::nullopt) row.set = std::move(*form);
+    if (proof) row.proof = read_certificate(*proof).value_or(Certificate{});
+    if (const auto proofs = root.find("hull_proofs");
+        proofs && proofs->expect(Kind::array, not_as_written)) {
+      for (std::size_t i = 0; i < proofs->size(); ++i) {
+        row.hull_proofs.push_back(read_certificate(proofs->item(i)).value_or(Certificate{}));
+      }
+    }
+  }
+  if (!problems.any()) return row;
+  std::vector<Diagnostic> found = problems.sorted();
+  for (Diagnostic& one : found) one.line = line_number(input_);
+  throw InputError(input_.path().string(), std::move(found));
+}
+
+}  // namespace cordon::verification

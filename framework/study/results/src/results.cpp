@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/results/results.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "outcome_json.hpp"
+#include "results_design.hpp"
+#include "results_diagnosis.hpp"
+#include "study/results/file_heads.hpp"
+#include "study/results/results_parts.hpp"
+#include "study/results/table_builder.hpp"
+#include "study/text/host.hpp"
+#include "study/text/numbers.hpp"
+
+namespace cordon::detail {
+
+namespace {
+
+using Layout = JsonWriter::Layout;
+
+void write(JsonWriter& json, const MetricValue& metric) {
+  json.key(metric.name);
+  std::visit([&](const auto& value) { json.value(value); }, metric.value);
+}
+
+std::string csv_value(const MetricValue& metric) {
+  if (const auto* number = std::get_if<double>(&metric.value)) return csv_number(*number);
+  if (const auto* integer = std::get_if<Index>(&metric.value)) return std::to_string(*integer);
+  return csv_field(std::get<std::string>(metric.value));
+}
+
+void write(JsonWriter& json, std::string_view name, const AnswerCount& count) {
+  json.key(name)
+      .begin_object()
+      .member("proven", count.proven)
+      .member("unknown", count.unknown)
+      .end_object();
+}
+
+void write_times(JsonWriter& json, const PhaseTimes& times, double hull_us) {
+  json.begin_object();
+  json.member("predict", times.predict)
+      .member("correct", times.correct)
+      .member("reduce", times.reduce);
+  json.member("question", times.question).member("hull", hull_us).end_object();
+}
+
+/// Of designs, the diagnoser's steps are not written.
+bool has_diagnosers(const Study& study) {
+  return std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                     [](const PipelineSpec& p) { return p.diagnoser && !p.designer; });
+}
+
+bool has_designers(const Study& study) {
+  return std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                     [](const PipelineSpec& p) { return p.designer.has_value(); });
+}
+
+}  // namespace
+
+Results::Results(const Study& study, const Registry& registry, const DirectoryLock& out)
+    : study_(study),
+      directory_(out),
+      data_file_(directory_.create("data.csv")),
+      sets_file_(directory_.create("sets.jsonl")),
+      steps_file_(directory_.create("steps.csv")),
+      summary_file_(directory_.create("summary.csv")),
+      diagnosis_file_(has_diagnosers(study) ? &directory_.create("diagnosis.csv") : nullptr),
+      inputs_file_(has_designers(study) ? &directory_.create("inputs.csv") : nullptr),
+      tables_(directory_),
+      run_file_(directory_.create("run.json")),
+      results_file_(directory_.create("results.json")),
+      results_(results_file_),
+      run_(run_file_) {
+  begin_results(registry);
+  begin_run(registry);
+  if (inputs_file_) write_inputs_header(*inputs_file_, study.model.linear.inputs());
+}
+
+void Results::begin_results(const Registry& registry) {
+  begin_results_file(results_, study_, registry);
+  results_.key("pipelines").begin_array(Layout::lines);
+}
+
+void Results::begin_run(const Registry& registry) {
+  begin_run_file(run_, study_, registry, utc_now());
+  run_.key("pipelines").begin_array(Layout::lines);
+}
+
+void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding,
+                             const std::optional<Assumptions>& assumptions,
+                             const std::vector<Gain>& gains) {
+  pipeline_ = csv_field(spec.name);
+  pipeline_json_ = json_string(spec.name);
+  rounding_ = rounding;
+  results_.begin_object(Layout::lines)
+      .member("name", spec.name)
+      .member("backend", spec.backend.type)
+      .member("observer", spec.observer.type);
+  results_.key("rounding");
+  rounding ? results_.value(to_string(*rounding)) : results_.null();
+  results_.key("assumptions");
+  if (assumptions) {
+    results_.begin_object(Layout::lines).key("initial_set");
+    write(results_, assumptions->initial_set);
+    results_.key("admissible_set");
+    assumptions->admissible_set ? write(results_, *assumptions->admissible_set)
+                                : void(results_.null());
+    results_.end_object();
+  } else {
+    results_.null();
+  }
+  write(results_, gains);
+  results_.key("steps").begin_array(Layout::lines);
+  run_.begin_object(Layout::lines)
+      .member("name", spec.name)
+      .key("steps")
+      .begin_array(Layout::lines);
+}
+
+void Results::data(const Record& record) {
+  if (last_sample_ && record.sample.k <= *last_sample_) return;
+  const std::pair<const char*, const Vector*> parts[]{
+      {"u_", &record.sample.u},
+      {"y_", &record.sample.y},
+      {"x_", record.truth ? &*record.truth : nullptr},
+      {"n_", record.fault ? &*record.fault : nullptr}};
+  if (!last_sample_) {
+    std::vector<std::string> names{"k"};
+    for (const auto& [name, part] : parts) {
+      for (Index i = 1; part && i <= part->size(); ++i) names.push_back(name + std::to_string(i));
+    }
+    with_mode_ = record.mode.has_value();
+    if (with_mode_) names.push_back("mode");
+    data_file_.write(joined(names));
+  }
+  std::vector<std::string> row{std::to_string(record.sample.k)};
+  for (const auto& [name, part] : parts) {
+    for (Index i = 0; part && i < part->size(); ++i) row.push_back(to_text((*part)[i]));
+  }
+  if (with_mode_) row.push_back(record.mode ? std::to_string(*record.mode) : "");
+  data_file_.write(joined(row));
+  last_sample_ = record.sample.k;
+}
+
+void Results::check_columns(const MetricValues& metrics) {
+  if (!columns_) {
+    columns_.emplace();
+    for (const MetricValue& metric : metrics.reproducible) columns_->push_back(metric.name);
+    return;
+  }
+  bool same = columns_->size() == metrics.reproducible.size();
+  for (std::size_t i = 0; same && i < columns_->size(); ++i)
+    same = (*columns_)[i] == metrics.reproducible[i].name;
+  if (!same)
+    throw Error(Errc::plugin,
+                "the metrics name their values otherwise than in an earlier pipeline");
+}
+
+void Results::step(const StepResult& result) {
+  const Estimate& estimate = result.estimate;
+  results_.begin_object().member("k", estimate.k);
+  write_box(results_, "hull", result.hull);
+  if (result.inner) write_box(results_, "inner", *result.inner);
+  results_.member("consistent", to_string(estimate.consistent))
+      .member("tightness", to_string(estimate.set.tightness));
+  for (const MetricValue& metric : result.metrics.reproducible) write(results_, metric);
+  results_.end_object();
+  run_.begin_object().member("k", estimate.k).key("time_us");
+  write_times(run_, result.times, result.hull_us);
+  for (const MetricValue& metric : result.metrics.measured) write(run_, metric);
+  run_.end_object();
+  write_row(result);
+  write_set(result);
+  last_estimate_ = estimate.k;
+}
+
+void Results::write_header(Index states) {
+  std::vector<std::string> names{"pipeline", "k", "consistent", "tightness"};
+  for (const char* bound : {"lower_", "upper_"}) {
+    for (Index i = 1; i <= states; ++i) names.push_back(bound + std::to_string(i));
+  }
+  if (columns_) {
+    for (const std::string& name : *columns_) names.push_back(csv_field(name));
+  }
+  for (const char* bound : {"inner_lower_", "inner_upper_"}) {
+    for (Index i = 1; i <= states; ++i) names.push_back(bound + std::to_string(i));
+  }
+  steps_file_.write(joined(names));
+  header_written_ = true;
+}
+
+void Results::write_row(const StepResult& result) {
+  if (!header_written_) write_header(result.hull.dim());
+  std::vector<std::string> row{pipeline_, std::to_string(result.estimate.k),
+                               std::string(to_string(result.estimate.consistent)),
+                               std::string(to_string(result.estimate.set.tightness))};
+  for (const Vector* bound : {&result.hull.lower, &result.hull.upper}) {
+    for (const double x : *bound) row.push_back(csv_number(x));
+  }
+  for (const MetricValue& metric : result.metrics.reproducible) row.push_back(csv_value(metric));
+  if (result.inner) {
+    for (const Vector* bound : {&result.inner->lower, &result.inner->upper}) {
+      for (const double x : *bound) row.push_back(csv_number(x));
+    }
+  } else {
+    row.resize(row.size() + static_cast<std::size_t>(2 * result.hull.dim()));
+  }
+  steps_file_.write(joined(row));
+}
+
+void Results::write_set(const StepResult& result) {
+  const Estimate& estimate = result.estimate;
+  const LineForm X = estimate.set->line_form();
+  const bool exact = estimate.set->backend().info().exact_exchange;
+  JsonWriter json(sets_file_);
+  json.begin_object().key("pipeline").raw(pipeline_json_).member("k", estimate.k);
+  json.member("tightness", to_string(estimate.set.tightness));
+  json.member("exchange", to_string(exact ? Tightness::exact : Tightness::outer));
+  write_blocks(json, X);
+  json.member("consistent", to_string(estimate.consistent));
+  json.key("proof");
+  write(json, estimate.why);
+  if (estimate.consistent != Answer::no) {
+    json.key("hull_proofs").begin_array();
+    for (const Certificate& proof : result.hull_proofs) write(json, proof);
+    json.end_array();
+  }
+  json.end_object();
+  sets_file_.write("\n");
+}
+
+void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& summary) {
+  results_.end_array();
+  write_last(results_, last_estimate_, outcome.last_hull);
+  results_.key("summary").begin_object(Layout::lines);
+  results_.member("steps", outcome.steps)
+      .member("consistent", outcome.consistent)
+      .member("inconsistent", outcome.inconsistent);
+  results_.member("undecided", outcome.undecided);
+  write_time(results_, "inconsistent_from", outcome.inconsistent_from);
+  std::vector<std::string> modes;
+  for (const Mode& mode : bank_of(study_).modes) modes.push_back(mode.name);
+  write_assumptions(results_, outcome, modes);
+  write_time(results_, "outside_from", outcome.outside_from);
+  write_time(results_, "violated_at", outcome.violated_at);
+  write_inner(results_, outcome);
+  write_growth(results_, outcome);
+  results_.key("answers").begin_object();
+  write(results_, "emptiness", outcome.emptiness);
+  write(results_, "containment", outcome.containment);
+  write(results_, "bounds", outcome.bounds);
+  results_.end_object();
+  results_.key("error");
+  outcome.error.empty() ? results_.null() : results_.value(outcome.error);
+  Summary row;
+  for (const MetricValue& metric : summary.reproducible) {
+    write(results_, metric);
+    row.metrics[metric.name] = csv_value(metric);
+    const bool known = std::find(summary_columns_.begin(), summary_columns_.end(), metric.name) !=
+                       summary_columns_.end();
+    if (!known) summary_columns_.push_back(metric.name);
+  }
+  const std::vector<ResultNumber> numbers = numbers_of(outcome);
+  results_.end_object();
+  write_numbers(results_, numbers, false);
+  results_.end_object();
+  row.fields = {
+      pipeline_,
+      csv_field(outcome.backend),
+      csv_field(outcome.observer),
+      rounding_ ? std::string(to_string(*rounding_)) : "",
+      std::to_string(outcome.steps),
+      std::to_string(outcome.consistent),
+      std::to_string(outcome.inconsistent),
+      std::to_string(outcome.undecided),
+      csv_time(outcome.inconsistent_from),
+      csv_time(outcome.assumptions_until),
+      csv_time(outcome.outside_from),
+      csv_time(outcome.violated_at),
+      std::to_string(outcome.emptiness.proven + outcome.containment.proven + outcome.bounds.proven),
+      std::to_string(outcome.emptiness.unknown + outcome.containment.unknown +
+                     outcome.bounds.unknown),
+      csv_field(outcome.error)};
+  summaries_.push_back(std::move(row));
+  run_.end_array().key("summary").begin_object(Layout::lines).key("median_time_us");
+  write_times(run_, outcome.median_us, outcome.median_hull_us);
+  run_.member("median_step_us", outcome.median_step_us)
+      .member("largest_step_us", outcome.largest_step_us)
+      .member("wall_s", outcome.wall_s);
+  for (const MetricValue& metric : summary.measured) write(run_, metric);
+  write_numbers(run_, numbers, true);
+  run_.end_object().end_object();
+}
+
+void Results::write_summaries() {
+  std::vector<std::string> names{
+      "pipeline",     "backend",      "observer",       "rounding",          "steps",
+      "consistent",   "inconsistent", "undecided",      "inconsistent_from", "assumptions_until",
+      "outside_from", "violated_at",  "answers_proven", "answers_unknown",   "error"};
+  const std::vector<std::string> none,
+      &diagnosis = diagnosis_file_ ? diagnosis_summary_columns() : none,
+      &design = inputs_file_ ? design_summary_columns() : none;
+  names.insert(names.end(), diagnosis.begin(), diagnosis.end());
+  names.insert(names.end(), design.begin(), design.end());
+  for (const std::string& name : summary_columns_) names.push_back(csv_field(name));
+  summary_file_.write(joined(names));
+  for (Summary& summary : summaries_) {
+    summary.diagnosis.resize(diagnosis.size());
+    summary.fields.insert(summary.fields.end(), summary.diagnosis.begin(), summary.diagnosis.end());
+    summary.design.resize(design.size());
+    summary.fields.insert(summary.fields.end(), summary.design.begin(), summary.design.end());
+    for (const std::string& name : summary_columns_)
+      summary.fields.push_back(summary.metrics[name]);
+    summary_file_.write(joined(summary.fields));
+  }
+}
+
+std::vector<std::filesystem::path> Results::commit(const RunOutcome& outcome) {
+  if (!header_written_) write_header(study_.model.linear.states());
+  if (diagnosis_file_ && !diagnosis_header_written_)
+    write_diagnosis_header(study_.modes.size() + 1);
+  write_summaries();
+  const ResultTable table = table_of(study_, outcome);
+  tables_.write(table, summarise(table));
+  results_.end_array().end_object();
+  results_file_.write("\n");
+  double wall = 0;
+  for (const PipelineOutcome& pipeline : outcome.pipelines) wall += pipeline.wall_s;
+  run_.end_array().member("wall_s", wall).member("finished", utc_now()).end_object();
+  run_file_.write("\n");
+  return directory_.commit();
+}
+
+}  // namespace cordon::detail

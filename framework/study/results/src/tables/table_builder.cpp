@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/results/table_builder.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "cordon/registry/build.hpp"
+#include "study/text/fingerprint.hpp"
+
+namespace cordon::detail {
+
+std::size_t TableBuilder::column(const ResultColumn& column) {
+  const auto [entry, is_new] = known_.emplace(column.name, table_.columns.size());
+  if (is_new) table_.columns.push_back(column);
+  return entry->second;
+}
+
+void TableBuilder::add(ResultRow row, const std::vector<ResultNumber>& numbers) {
+  table_.rows.push_back(std::move(row));
+  extend(table_.rows.size() - 1, numbers);
+}
+
+void TableBuilder::extend(std::size_t row, const std::vector<ResultNumber>& numbers) {
+  std::vector<double>& values = table_.rows[row].values;
+  for (const auto& [name, value] : numbers) {
+    if (std::isnan(value)) continue;
+    const std::size_t at = column(name);
+    if (values.size() <= at) values.resize(at + 1, std::numeric_limits<double>::quiet_NaN());
+    values[at] = value;
+  }
+}
+
+void TableBuilder::finish() {
+  for (ResultRow& row : table_.rows)
+    row.values.resize(table_.columns.size(), std::numeric_limits<double>::quiet_NaN());
+}
+
+ResultTable table_of(const Study& study, const RunOutcome& outcome) {
+  ResultTable table;
+  table.title = study.title;
+  table.study_hash = fingerprint(study.resolved);
+  table.version = build_info().version;
+  TableBuilder builder(table);
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    table.pipelines.push_back(pipeline.name);
+    builder.add({table.rows.size(), {}, {}, pipeline.error}, numbers_of(pipeline));
+  }
+  builder.finish();
+  return table;
+}
+
+}  // namespace cordon::detail

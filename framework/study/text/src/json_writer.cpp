@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/text/json_writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cordon/core/error.hpp"
+#include "study/text/numbers.hpp"
+
+namespace cordon::detail {
+
+namespace {
+
+std::string escaped(char c) {
+  switch (c) {
+    case '"':
+      return "\\\"";
+    case '\\':
+      return "\\\\";
+    case '\n':
+      return "\\n";
+    case '\r':
+      return "\\r";
+    case '\t':
+      return "\\t";
+    default:
+      break;
+  }
+  static constexpr char hex[] = "0123456789abcdef";
+  if (static_cast<unsigned char>(c) >= 0x20) return std::string(1, c);
+  return std::string("\\u00") + hex[c >> 4] + hex[c & 15];
+}
+
+}  // namespace
+
+// Table 3-7 of the Unicode standard.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const auto within = [&](std::size_t i, unsigned low, unsigned high) {
+    return byte(i) >= low && byte(i) <= high;
+  };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF) return within(1, 0x80, 0xBF) ? 2 : 0;
+  if (lead >= 0xE0 && lead <= 0xEF) {
+    const bool second = within(1, lead == 0xE0 ? 0xA0 : 0x80, lead == 0xED ? 0x9F : 0xBF);
+    return second && within(2, 0x80, 0xBF) ? 3 : 0;
+  }
+  if (lead >= 0xF0 && lead <= 0xF4) {
+    const bool second = within(1, lead == 0xF0 ? 0x90 : 0x80, lead == 0xF4 ? 0x8F : 0xBF);
+    return second && within(2, 0x80, 0xBF) && within(3, 0x80, 0xBF) ? 4 : 0;
+  }
+  return 0;
+}
+
+std::string json_string(std::string_view text) {
+  std::string out = "\"";
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 1) {
+      out += escaped(text[0]);
+    } else {
+      out += length == 0 ? std::string_view("\xEF\xBF\xBD") : text.substr(0, length);
+    }
+    text.remove_prefix(std::max<std::size_t>(1, length));
+  }
+  return out + '"';
+}
+
+void JsonWriter::new_line(std::size_t depth) {
+  sink_->write(std::string(1, '\n').append(2 * depth, ' '));
+}
+
+/// What stands between the previous value and the next one.
+void JsonWriter::separate() {
+  if (after_key_) {
+    after_key_ = false;
+    return;
+  }
+  if (levels_.empty()) return;
+  Level& level = levels_.back();
+  if (!level.empty) sink_->write(",");
+  if (level.layout == Layout::lines) {
+    new_line(levels_.size());
+  } else if (!level.empty) {
+    sink_->write(" ");
+  }
+  level.empty = false;
+}
+
+JsonWriter& JsonWriter::key(std::string_view name) {
+  if (levels_.empty() || levels_.back().closing != '}' || after_key_)
+    throw Error(Errc::internal, "JSON: a key outside an object");
+  separate();
+  sink_->write(json_string(name) + ": ");
+  after_key_ = true;
+  return *this;
+}
+
+JsonWriter& JsonWriter::raw(std::string_view json) {
+  if (!levels_.empty() && levels_.back().closing == '}' && !after_key_)
+    throw Error(Errc::internal, "JSON: a member without a key");
+  separate();
+  sink_->write(json);
+  return *this;
+}
+
+JsonWriter& JsonWriter::begin(char opening, Layout layout) {
+  raw(std::string_view(&opening, 1));
+  levels_.push_back({opening == '{' ? '}' : ']', layout});
+  return *this;
+}
+
+JsonWriter& JsonWriter::end(char closing) {
+  if (levels_.empty() || levels_.back().closing != closing || after_key_)
+    throw Error(Errc::internal, "JSON: unbalanced brackets");
+  const Level level = levels_.back();
+  levels_.pop_back();
+  if (level.layout == Layout::lines && !level.empty) new_line(levels_.size());
+  sink_->write(std::string_view(&closing, 1));
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(double x) {
+  if (std::isnan(x)) return null();
+  return std::isinf(x) ? value(std::string_view(x > 0 ? "inf" : "-inf")) : raw(to_text(x));
+}
+
+JsonWriter& JsonWriter::value(VectorIn numbers) {
+  begin_array();
+  for (Index i = 0; i < numbers.size(); ++i) value(numbers[i]);
+  return end_array();
+}
+
+JsonWriter& JsonWriter::matrix(MatrixIn numbers) {
+  begin_array();
+  for (Index i = 0; i < numbers.rows(); ++i) {
+    begin_array();
+    for (Index j = 0; j < numbers.cols(); ++j) value(numbers(i, j));
+    end_array();
+  }
+  return end_array();
+}
+
+}  // namespace cordon::detail

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cordon/study/verify.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "cddlib_listener.hpp"
+#include "cordon/core/column_elimination.hpp"
+#include "cordon/core/error.hpp"
+#include "cordon/core/exact_rank.hpp"
+#include "cordon/core/linalg.hpp"
+#include "cordon/study/data.hpp"
+#include "fails_again.hpp"
+#include "solvers/polytope_representation.hpp"
+#include "step_check.hpp"
+#include "study/checks/design_check.hpp"
+#include "study/checks/rounding_margin.hpp"
+#include "study/data/random.hpp"
+#include "study/results/recorded_run.hpp"
+#include "study/verification/enclosed_successors.hpp"
+#include "study/verification/feasible_set.hpp"
+
+namespace cordon {
+
+namespace {
+
+using namespace verification;
+using Clock = std::chrono::steady_clock;
+
+/// Are there directions that A takes to next to nothing, beside others or by entries that cancel,
+/// and not to nothing?
+bool hides_directions(const Matrix& A) {
+  constexpr double little = 1e-6;
+  const Index known =
+      std::min(ColumnElimination(A, A.cwiseAbs()).kept, linalg::range_basis(A, little).cols());
+  return known < A.cols() && known < rank_modulo_prime(A);
+}
+
+constexpr Index most_states_of_polytopes = 4;
+constexpr std::size_t most_kept_polytopes = 5000, most_kept_bits = std::size_t{1} << 31;
+constexpr std::size_t most_bits_in_all = std::size_t{1} << 25;  // of the exact sets of a run
+
+bool same(const Matrix& A, const Matrix& B) {
+  return A.rows() == B.rows() && A.cols() == B.cols() && A == B;
+}
+bool same(const LineForm& X, const LineForm& Y) {
+  return same(X.M, Y.M) && same(X.G, Y.G) && same(X.c, Y.c) && same(X.S, Y.S) && same(X.A, Y.A) &&
+         same(X.b, Y.b);
+}
+bool same_assumptions(const RecordedPipeline& a, const RecordedPipeline& b) {
+  if (!same(a.initial_set, b.initial_set) ||
+      a.admissible_set.has_value() != b.admissible_set.has_value())
+    return false;
+  return !a.admissible_set || same(*a.admissible_set, *b.admissible_set);
+}
+
+/// The step without its claim of `exact`.
+RecordedStep without_claim(RecordedStep step) {
+  step.tightness = Tightness::outer;
+  return step;
+}
+
+/// F_0, F_1, … of one set of assumptions, kept for later pipelines that share them.
+class FeasibleSequence {
+ public:
+  FeasibleSequence(const Model& model, const RecordedPipeline& pipeline)
+      : pipeline_(pipeline), uncertain_(model.linear.is_uncertain()) {
+    if (model.linear.states() > most_states_of_polytopes) return;
+    try {
+      sets_.emplace(model, pipeline.initial_set, pipeline.admissible_set);
+    } catch (const Error& error) {
+      if (error.code() != Errc::unsupported) throw;
+    }
+  }
+
+  bool serves(const RecordedPipeline& other) const { return same_assumptions(pipeline_, other); }
+
+  /// Samples come in order; nothing once the polytopes have grown too large.
+  std::optional<Polytope> at(std::size_t i, const Sample& sample) {
+    if (i < kept_.size()) return kept_[i];
+    std::optional<Polytope> F;
+    if (sets_) {
+      try {
+        F = sets_->step(sample);
+        bits_ += F->bits();
+        if (uncertain_ &&
+            F->is_empty()) {  // which says nothing about other matrices of the intervals
+          F.reset();
+          sets_.reset();
+        }
+      } catch (const Error& error) {
+        if (error.code() != Errc::unsupported) throw;
+        F.reset();
+        sets_.reset();
+      }
+    }
+    if (bits_ > most_bits_in_all) sets_.reset();  // a long run goes on by directions
+    keeps_ = keeps_ && kept_.size() < most_kept_polytopes && bits_ <= most_kept_bits;
+    if (keeps_) kept_.push_back(F);
+    return F;
+  }
+
+  /// Can the sequence be gone through once more?
+  bool complete(std::size_t steps) const { return keeps_ || steps <= kept_.size(); }
+
+ private:
+  const RecordedPipeline& pipeline_;
+  bool uncertain_;
+  std::optional<FeasibleSets> sets_;
+  std::vector<std::optional<Polytope>> kept_;
+  std::size_t bits_ = 0;
+  bool keeps_ = true;
+};
+
+/// ±e_i and random directions, as columns.
+Matrix directions_of(Index n, const VerifyOptions& options, Index k) {
+  Matrix D(n, 2 * n + options.directions);
+  D.leftCols(n).setIdentity();
+  D.middleCols(n, n) = -Matrix::Identity(n, n);
+  detail::RandomStream random(options.seed, detail::Purpose::direction,
+                              static_cast<std::uint64_t>(k));
+  for (Index j = 2 * n; j < D.cols(); ++j) {
+    for (Index i = 0; i < n; ++i) D(i, j) = random.symmetric();
+  }
+  return D;
+}
+
+/// False where F cannot be converted into vertices and inequalities, which is found out before
+/// anything is checked.
+bool against_polytope(StepCheck& check, const Polytope& F,
+                      const StepCheck::Successors& successors) {
+  try {
+    F.representation().generators();
+    F.representation().inequalities();
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported) throw;
+    return false;
+  }
+  check.against(F, successors);
+  return true;
+}
+
+/// Where the set before is not recorded: rounding is not taken to move anything.
+StepCheck::Successors unknown_successors(Index n) {
+  const auto none = [n] { return make_empty(n); };
+  return {none, none, [] { return std::nullopt; }};
+}
+
+class Verification {
+ public:
+  Verification(const std::filesystem::path& directory, const VerifyOptions& options)
+      : run_(read_run(directory)), options_(options), sets_(run_.files) {
+    if (options.second_opinion) cddlib_.emplace(options.stop);
+    for (const RecordedPipeline& pipeline : run_.pipelines) names_.push_back(pipeline.name);
+  }
+
+  VerifyOutcome run() {
+    check_pipelines();
+    if (cddlib_) outcome_.second_opinion = cddlib_->findings();
+    return std::move(outcome_);
+  }
+
+  void check_unchanged() const { run_.files.check_unchanged(); }
+
+ private:
+  void check_pipelines() {
+    outcome_.by_samples = run_.model.linear.is_uncertain();
+    std::optional<FeasibleSequence> feasible;
+    for (std::size_t p = 0; p < run_.pipelines.size(); ++p) {
+      const RecordedPipeline& pipeline = run_.pipelines[p];
+      outcome_.pipelines.push_back({});
+      outcome_.pipelines.back().name = pipeline.name;
+      outcome_.pipelines.back().backend = pipeline.backend;
+      outcome_.pipelines.back().rounding = pipeline.rounding;
+      outcome_.pipelines.back().checked = !pipeline.is_diagnosis;
+      if (cddlib_) cddlib_->asked_by(pipeline.name);
+      repeat(p);
+      if (outcome_.violation) return;
+      if (pipeline.is_diagnosis) continue;
+      if (pipeline.is_design) {
+        if (pipeline.design) check_input(p, pipeline);
+        if (outcome_.violation || outcome_.interrupted) return;
+        continue;
+      }
+      if (!feasible || !feasible->serves(pipeline) || !feasible->complete(pipeline.steps.size())) {
+        feasible.emplace(run_.model, pipeline);
+      }
+      check(p, *feasible);
+      if (outcome_.violation || outcome_.interrupted) return;
+    }
+    if (const auto extra = sets_.next())
+      refuse(extra->line, "has more lines than results.json has steps");
+  }
+
+  [[noreturn]] void refuse(std::int64_t line, const std::string& reason) const {
+    throw InputError(
+        (run_.files.directory() / "sets.jsonl").string(),
+        {{"", reason, "the file is not as \"cordon run\" wrote it; run the study again",
+          static_cast<int>(line)}});
+  }
+
+  RecordedSet set_of(const RecordedPipeline& pipeline, const RecordedStep& step) {
+    std::optional<RecordedSet> row = sets_.next();
+    if (!row) refuse(0, fmt::format("ends before pipeline \"{}\", k = {}", pipeline.name, step.k));
+    if (row->pipeline != pipeline.name || row->k != step.k ||
+        row->set.dim() != run_.model.linear.states()) {
+      refuse(row->line, fmt::format("does not hold the set of pipeline \"{}\", k = {}",
+                                    pipeline.name, step.k));
+    }
+    return std::move(*row);
+  }
+
+  /// What the run itself has found: an assumption that fails, claims of a designer that are false.
+  void repeat(std::size_t p) {
+    const RecordedPipeline& pipeline = run_.pipelines[p];
+    VerifiedPipeline& found = outcome_.pipelines.back();
+    if (!pipeline.refuted.empty()) {
+      const Index horizon = pipeline.design ? pipeline.design->horizon : 0;
+      outcome_.violation = {pipeline.name, horizon, pipeline.refuted[0],
+                            fmt::format("/pipelines/{}/summary/refuted/0", p)};
+    }
+    if (!pipeline.failed) return;
+    found.failed_assumption = pipeline.failed->text;
+    found.assumptions_until = pipeline.failed->failed.from;
+    found.fails_again = fails_again(run_, pipeline);
+    if (found.fails_again == Answer::no) {
+      ++found.undecided;
+      found.first_undecided =
+          fmt::format("k = {}: that an assumption fails is not proven again: {}",
+                      pipeline.failed->failed.k, found.failed_assumption);
+    }
+  }
+
+  /// A design claims nothing if there is no input.
+  void check_input(std::size_t p, const RecordedPipeline& pipeline) {
+    VerifiedPipeline& found = outcome_.pipelines.back();
+    DesignFindings claims =
+        compare_recorded(run_.bank, *pipeline.design,
+                         {pipeline.claimed_separation, pipeline.proven_separation, pipeline.proven},
+                         verify_design(run_.bank, *pipeline.design, options_.stop));
+    if (options_.stop && options_.stop->load()) {
+      outcome_.interrupted = true;
+      return;
+    }
+    found.proofs = claims.hold;
+    if (found.undecided == 0) found.first_undecided = std::move(claims.first_undecided);
+    found.undecided += claims.undecided;
+    if (!claims.refuted.empty()) {
+      outcome_.violation = {found.name, pipeline.design->horizon, claims.refuted[0].what,
+                            fmt::format("/pipelines/{}{}", p, claims.refuted[0].pointer)};
+    }
+  }
+
+  void check(std::size_t p, FeasibleSequence& feasible) {
+    const RecordedPipeline& pipeline = run_.pipelines[p];
+    Study study;
+    study.file = run_.files.directory() / "results.json";
+    study.model = run_.model;
+    study.data = run_.data;
+    const std::unique_ptr<DataSource> data = open_data(study);
+    std::optional<Sample> sample, before;
+    std::optional<RecordedSet> row, row_before;
+    detail::RoundingMargin rounding(run_.model, pipeline.initial_set, pipeline.rounding);
+    std::size_t read = 0;
+    Clock::time_point told = Clock::now();
+    for (std::size_t i = 0; i < pipeline.steps.size(); ++i) {
+      if (options_.stop && options_.stop->load()) {
+        outcome_.interrupted = true;
+        return;
+      }
+      const RecordedStep& step = pipeline.steps[i];
+      if (cddlib_) cddlib_->asked_by(pipeline.name, step.k);
+      std::optional<Polytope> F;
+      while (!sample || sample->k < step.k) {
+        std::optional<Record> record = data->next();
+        if (!record)
+          refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
+        if (record->sample.k < step.k) {
+          refuse(0, fmt::format("has no step k = {} of pipeline \"{}\", which data.csv has",
+                                record->sample.k, pipeline.name));
+        }
+        before = std::move(sample);
+        sample = std::move(record->sample);
+        F = feasible.at(read++, *sample);
+      }
+      row_before = std::move(row);
+      row = set_of(pipeline, step);
+      const bool follows =
+          row_before && before && row_before->k + 1 == step.k && before->k + 1 == step.k;
+      const Transition transition{follows ? &*before : nullptr, *sample};
+      const Vector outputs_before = rounding.of_outputs(),
+                   margin = rounding.next(row->set, transition.before, *sample);
+      const Vector outputs =
+          follows ? Vector(rounding.of_outputs().cwiseMax(outputs_before)) : rounding.of_outputs();
+      if (static_cast<std::int64_t>(i) % options_.every != 0) continue;
+      check_step(p, i, *row, {margin, outputs}, F, follows ? &*row_before : nullptr, transition);
+      if (outcome_.violation) return;
+      if (options_.progress && Clock::now() - told > std::chrono::milliseconds(50)) {
+        options_.progress(names_, p, static_cast<std::int64_t>(i),
+                          static_cast<std::int64_t>(pipeline.steps.size()));
+        told = Clock::now();
+      }
+    }
+    const auto total = static_cast<std::int64_t>(pipeline.steps.size());
+    if (options_.progress) options_.progress(names_, p, total, total);
+  }
+
+  struct Margins {
+    Vector states, outputs;
+  };
+
+  void check_step(std::size_t p, std::size_t i, const RecordedSet& row, const Margins& margins,
+                  const std::optional<Polytope>& F, const RecordedSet* row_before,
+                  const Transition& transition) {
+    const RecordedPipeline& pipeline = run_.pipelines[p];
+    VerifiedPipeline& found = outcome_.pipelines.back();
+    const bool uncertain = run_.model.linear.is_uncertain();
+    const RecordedStep step = uncertain ? without_claim(pipeline.steps[i]) : pipeline.steps[i];
+    StepCheck check(step, row, pipeline.rounding, margins.states);
+    const LineForm& start = row_before ? row_before->set : pipeline.initial_set;
+    if ((start.lines() > 0 || row.set.lines() > 0) && hides_directions(run_.model.linear.A))
+      check.lines_have_few_digits();
+    check.proofs();
+    if (uncertain && pipeline.steps[i].tightness == Tightness::exact) {
+      check.skipped(
+          "a claim of \"exact\" is not checked where matrices are known by intervals only");
+    }
+    const auto successors_in = [&](const Model& model) {
+      return StepCheck::Successors{
+          [&] { return successors(model, start, pipeline.admissible_set, transition); },
+          [&] {
+            return successors(widened(model, margins.outputs), widened(start),
+                              pipeline.admissible_set, transition);
+          },
+          [&] { return enclosed_successors(model, start, pipeline.admissible_set, transition); }};
+    };
+    const bool follows = i == 0 || row_before;
+    if (!check.violation()) {
+      if (F &&
+          against_polytope(
+              check, *F, follows ? successors_in(run_.model) : unknown_successors(row.set.dim()))) {
+        ++found.by_polytopes;
+      } else if (!follows) {
+        check.skipped("the step does not follow the one before: its successors are not checked");
+      } else {
+        const Matrix directions = directions_of(run_.model.linear.states(), options_, row.k);
+        Model model = run_.model;
+        for (int draw = 0; draw < (uncertain ? 2 : 1); ++draw) {
+          model.linear = drawn(run_.model.linear, row.k, draw);
+          check.against(successors_in(model), directions, pipeline.follows_its_sets, options_.stop);
+        }
+        ++found.by_supports;
+      }
+    }
+    ++found.steps;
+    found.proofs += check.proofs_that_hold();
+    found.exact_claims += check.exact_claim_holds() ? 1 : 0;
+    if (check.undecided() > 0 && found.undecided == 0) {
+      found.first_undecided = fmt::format("k = {}: {}", row.k, check.first_undecided());
+    }
+    found.undecided += check.undecided();
+    if (const auto& violation = check.violation()) {
+      outcome_.violation = {pipeline.name, row.k, violation->what,
+                            violation->in_sets_file
+                                ? fmt::format("sets.jsonl:{}", row.line)
+                                : fmt::format("/pipelines/{}/steps/{}/hull", p, i)};
+    }
+  }
+
+  RecordedRun run_;
+  const VerifyOptions& options_;
+  SetReader sets_;
+  std::vector<std::string> names_;
+  VerifyOutcome outcome_;
+  std::optional<CddlibListener> cddlib_;
+};
+
+}  // namespace
+
+VerifyOutcome verify_run(const std::filesystem::path& directory, const VerifyOptions& options) {
+  if (options.every < 1 || options.directions < 0)
+    throw Error(Errc::invalid, "verify: every and directions must be positive");
+  Verification verification(directory, options);
+  VerifyOutcome outcome = verification.run();
+  verification.check_unchanged();
+  return outcome;
+}
+
+}  // namespace cordon
