@@ -139,6 +139,35 @@ TEST_CASE("on the boundary is inside, whatever was rounded on the way") {
   CHECK(check_kept(Program(bent(.01, .02, vertices))).code == 0);
 }
 
+TEST_CASE("an additive fault hides no other one that acts at the same time") {
+  const Json study = Json::parse(R"({
+    "cordon": 1, "title": "two faults at once",
+    "system": {"type": "lti", "A": [[0.5, 0.5], [0, 0.9]], "C": [[1, 0]], "F": [[1], [0]],
+      "X0": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
+      "W": {"type": "box", "lower": [-0.01, -0.01], "upper": [0.01, 0.01]},
+      "V": {"type": "box", "lower": [-0.01], "upper": [0.01]}},
+    "data": {"simulate": {"steps": 12,
+      "faults": [{"from": 2, "to": 6,
+        "additive": {"F": [[0], [1]], "f": {"type": "box", "lower": [4], "upper": [5]}}}],
+      "additive_faults": [{"fault": 1, "from": 2, "to": 6,
+        "signal": {"type": "constant", "offset": 0.1}}]}},
+    "pipelines": [{"name": "ff", "backend": "zonotope", "diagnoser": "fault_estimation_filter"}]})");
+  const Program program(study);
+  const Outcome run = program.run();
+  CAPTURE(run.out);
+  CAPTURE(run.err);
+  CHECK(run.code == 0);
+  const Json summary = program.results()["pipelines"][0]["summary"];
+  CHECK(summary["failed_assumption"]["what"] == "modes");
+  CHECK(summary["assumptions_until"] == 2);
+  CHECK(summary["violated_at"].is_null());
+  Json alone = study;  // the filter knows this one
+  alone["data"]["simulate"].erase("faults");
+  const Program known(alone);
+  CHECK(known.run().code == 0);
+  CHECK(known.results()["pipelines"][0]["summary"]["failed_assumption"].is_null());
+}
+
 TEST_CASE("a plant that its model bounds says nothing") {
   CHECK(check_kept(Program(bent(.1, .1))).code == 0);
 }

@@ -301,6 +301,16 @@ TEST_CASE("products in place, in blocks of larger matrices") {
   }));
 }
 
+TEST_CASE("products of matrices without rows or columns") {
+  for (const Index n : {0, 1, 6, 7, 47, 48, 100}) {
+    CAPTURE(n);
+    CHECK(linalg::gram(Matrix(n, 0)) == Matrix::Zero(n, n));
+    CHECK(linalg::product(Matrix(n, 0), Matrix(0, n)) == Matrix::Zero(n, n));
+    CHECK(linalg::transposed_product(Matrix(0, n), Matrix(0, n)) == Matrix::Zero(n, n));
+    CHECK(sets::row_gram(sets::padded_rows(Matrix(n, 0))) == Matrix::Zero(n, n));
+  }
+}
+
 TEST_CASE("what cancels in a product is zero, and what overflows is refused") {
   for (const Index rows : {1, 6, 7}) {  // small maps have a way of their own
     CAPTURE(rows);

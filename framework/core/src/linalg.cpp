@@ -217,6 +217,7 @@ void gram(MatrixIn A, Matrix& K) {
     return;
   }
   K.setZero(A.rows(), A.rows());
+  if (A.cols() == 0) return;  // Eigen divides by it where there are 48 rows or more
   K.selfadjointView<Eigen::Lower>().rankUpdate(A);
   K.triangularView<Eigen::StrictlyUpper>() = K.transpose();
 }

@@ -171,6 +171,7 @@ bool AssumptionCheck::leaves_modes(const Record& record) const {
   using Modes = PipelineAssumptions::Modes;
   if (!record.mode || assumed_.modes == Modes::any) return false;
   if (assumed_.modes == Modes::of_the_bank) return *record.mode < 0;
+  if (record.mode_without_fault) return *record.mode_without_fault != bank_.nominal;
   const bool has_fault = record.fault && !record.fault->isZero(0);
   return *record.mode != bank_.nominal && !(*record.mode < 0 && has_fault);
 }

@@ -222,7 +222,10 @@ std::optional<Record> SimulatedSource::next() {
   record.sample.y = std::move(now.y);
   record.truth = std::move(now.x);
   if (modes_) record.mode = acting_ < 0 ? 0 : spec_.faults[static_cast<std::size_t>(acting_)].mode;
-  if (modes_ && !n.isZero(0)) record.mode = -1;
+  if (modes_ && !n.isZero(0)) {
+    record.mode_without_fault = record.mode;
+    record.mode = -1;
+  }
   if (n.size() > 0) record.fault = n;
   return record;
 }
