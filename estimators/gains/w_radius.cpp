@@ -70,9 +70,9 @@ WRadiusProgram w_radius_program(const ErrorDynamics& errors, double rho) {
   return design;
 }
 
-class WRadius final : public GainDesigner {
+class WRadiusGain final : public GainDesigner {
  public:
-  WRadius(std::optional<Matrix> theta, double rho) : theta_(std::move(theta)), rho_(rho) {}
+  WRadiusGain(std::optional<Matrix> theta, double rho) : theta_(std::move(theta)), rho_(rho) {}
 
  private:
   GainDesign do_design(const Model& model) const override {
@@ -129,7 +129,7 @@ void register_w_radius_gain(Registrar& registrar) {
                    "Pourasghar2021", std::move(schema), w_radius_details},
                   check_design,
                   [](const Params& params) {
-                    return std::make_unique<WRadius>(theta_from(params), params.real("rho"));
+                    return std::make_unique<WRadiusGain>(theta_from(params), params.real("rho"));
                   }});
 }
 

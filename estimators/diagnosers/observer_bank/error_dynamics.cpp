@@ -30,7 +30,7 @@ class Columns {
   Zonotope zonotope_;
 };
 
-Matrix stacked(const Matrix& top, const Matrix& bottom) {
+Matrix stacked_rows(const Matrix& top, const Matrix& bottom) {
   Matrix T(top.rows() + bottom.rows(), top.cols());
   T << top, bottom;
   return T;
@@ -75,9 +75,11 @@ void add_slack(Columns& to, const Matrix& T, const Vector& half_widths) {
 Zonotope joint_drive(const ModeDynamics& plant, const ModeDynamics& observer, bool separate,
                      const SensorSlack& slack) {
   const Index n = plant.A.rows();
-  const auto both = [](const Matrix& top, const Matrix& bottom) { return stacked(top, bottom); };
+  const auto both = [](const Matrix& top, const Matrix& bottom) {
+    return stacked_rows(top, bottom);
+  };
   const auto error_only = [n](const Matrix& bottom) {
-    return stacked(Matrix::Zero(n, bottom.cols()), bottom);
+    return stacked_rows(Matrix::Zero(n, bottom.cols()), bottom);
   };
   Columns columns(2 * n);
   add_inputs(columns, both(plant.B, plant.B - product(observer.L, plant.D)), plant,
