@@ -66,7 +66,7 @@ TEST_CASE("numbers are short") {
   CHECK(short_text(std::numeric_limits<double>::quiet_NaN()) == "–");
 }
 
-TEST_CASE("an axis maps its ends to its places, and cordon::infinity beyond them") {
+TEST_CASE("an axis maps its ends to its places, and infinity beyond them") {
   const Axis down{2, 6, 100, 20};
   CHECK(down(2) == 100);
   CHECK(down(6) == 20);

@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 
 using Header = ElfW(Ehdr);  // of the class (32 or 64 bits) that this program was compiled for
 
-constexpr std::uintmax_t largest_library = 256u << 20;  // bytes
 constexpr const char* copy_again = "copy or build the library again";
 constexpr const char* not_a_plugin =
     "move it out of the plugin directory, or build the plugin with cordon_add_plugin";

@@ -16,6 +16,9 @@
 
 namespace cordon::registry {
 
+/// Bytes; anything larger is no plugin that is worth reading for a name.
+inline constexpr std::uintmax_t largest_library = 256u << 20;
+
 /// The whole file in memory, and the tables by which the loader finds its way in it.
 class ElfFile {
  public:

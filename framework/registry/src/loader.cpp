@@ -22,9 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t largest_plugin =
-    256u << 20;  // bytes; anything larger is no plugin that is worth reading for a name
-
 std::optional<Refusal> register_into(Batch& batch, const PluginDescriptor& descriptor) {
   const std::string fix = fmt::format("report it to the plugin's author, {}", descriptor.author);
   try {
@@ -163,7 +160,7 @@ PluginReport load_plugin(const fs::path& file, LoadedPlugins& plugins, Catalogue
 bool file_holds_name(const fs::path& file, std::string_view name) {
   std::error_code error;
   if (name.empty() || !fs::is_regular_file(file, error) ||
-      fs::file_size(file, error) > largest_plugin)
+      fs::file_size(file, error) > largest_library)
     return false;
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "cordon/core/types.hpp"
+
 namespace cordon::detail {
 
 namespace {

@@ -11,6 +11,8 @@ namespace cordon::report {
 namespace {
 
 using json::Cursor;
+using Kind = json::Value::Kind;
+
 constexpr std::size_t most_residuals = 24;  ///< figures
 constexpr std::size_t most_marks = 100;
 
