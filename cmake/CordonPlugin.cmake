@@ -1,7 +1,10 @@
-# cordon_add_plugin(name SOURCES file... [LIBRARIES target...] [PROVIDES "kind component"...] [CONFORMANCE backend...] [DIRECTORY dir])
-#   A plugin: a module that exports one symbol, its descriptor. Serves Cordon itself and, after find_package(cordon), everybody else.
-#   It is built into <build>/lib/cordon/plugins-v1 and installed with `cmake --install`; with DIRECTORY it is built there and not installed.
-#   PROVIDES announces its components in a text file beside it, so that a missing or damaged library is named where one is needed.
+# cordon_add_plugin(name SOURCES file... [LIBRARIES target...] [PROVIDES "kind component"...]
+# [CONFORMANCE backend...] [DIRECTORY dir])
+#   A plugin: a module that exports one symbol, its descriptor. Serves Cordon itself and, after
+#   find_package(cordon), everybody else. It is built into <build>/lib/cordon/plugins-v1 and
+#   installed with `cmake --install`; with DIRECTORY it is built there and not installed.
+#   PROVIDES announces its components in a text file beside it, so that a missing or damaged library
+#   is named where one is needed.
 #   CONFORMANCE adds a test per backend that runs `cordon conform` on it (ctest -R conform).
 include(GNUInstallDirs)
 set(CORDON_PLUGIN_VERSION_SCRIPT "${CMAKE_CURRENT_LIST_DIR}/plugin.map")
@@ -17,17 +20,21 @@ endmacro()
 function(cordon_add_plugin_targets name)
   cmake_parse_arguments(arg "" "DIRECTORY" "SOURCES;LIBRARIES;PROVIDES;CONFORMANCE" ${ARGN})
   if(NOT arg_SOURCES OR arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "cordon_add_plugin(${name}): needs SOURCES, takes LIBRARIES, PROVIDES, CONFORMANCE and DIRECTORY besides")
+    message(FATAL_ERROR
+      "cordon_add_plugin(${name}): needs SOURCES, takes LIBRARIES, PROVIDES, CONFORMANCE and DIRECTORY besides")
   endif()
-  # Known where Cordon was installed. What another compiler makes has another ABI tag, and is refused when it is loaded.
+  # Known where Cordon was installed. What another compiler makes has another ABI tag, and is
+  # refused when it is loaded.
   if(CORDON_COMPILER AND NOT CORDON_COMPILER MATCHES "^${CMAKE_CXX_COMPILER_ID} ")
-    message(FATAL_ERROR "cordon_add_plugin(${name}): this Cordon was compiled by ${CORDON_COMPILER} and refuses plugins that "
+    message(FATAL_ERROR
+      "cordon_add_plugin(${name}): this Cordon was compiled by ${CORDON_COMPILER} and refuses plugins that "
       "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} has compiled. Configure a new build directory with the same compiler "
       "(-DCMAKE_CXX_COMPILER=...), or build Cordon with this one.")
   endif()
   add_library(${name}_plugin MODULE ${arg_SOURCES})
   target_link_libraries(${name}_plugin PRIVATE cordon::cordon ${arg_LIBRARIES})
-  # -fno-gnu-unique: a unique symbol would keep the library mapped for ever and hide lifetime defects (clang makes none).
+  # -fno-gnu-unique: a unique symbol would keep the library mapped for ever and hide lifetime
+  # defects (clang makes none).
   target_compile_options(${name}_plugin PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
   set(directory "${PROJECT_BINARY_DIR}/lib/cordon/plugins-v1")
   if(arg_DIRECTORY)
@@ -51,7 +58,8 @@ function(cordon_add_plugin_targets name)
     install(TARGETS ${name}_plugin DESTINATION "${CORDON_PLUGIN_DESTINATION}")
   endif()
   foreach(backend IN LISTS arg_CONFORMANCE)
-    add_test(NAME conform_${name}_${backend} COMMAND $<TARGET_FILE:cordon::app> conform "$<TARGET_FILE:${name}_plugin>" --backend ${backend})
+    add_test(NAME conform_${name}_${backend} COMMAND $<TARGET_FILE:cordon::app> conform
+      "$<TARGET_FILE:${name}_plugin>" --backend ${backend})
     set_tests_properties(conform_${name}_${backend} PROPERTIES LABELS conformance)
   endforeach()
 endfunction()

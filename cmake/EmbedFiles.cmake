@@ -1,9 +1,12 @@
 # Text files as constants of a library.
 #   cordon_embed_files(target NAMESPACE name HEADER header FILES name=file...)
-#     Defines `const Asset NAME = {text, sha256}` for each file, as `header` declares it; made anew when a file changes.
-#   cmake -DOUTPUT=… -DNAMESPACE=… -DHEADER=… -DFILES=… -P EmbedFiles.cmake does the work during the build.
+#     Defines `const Asset NAME = {text, sha256}` for each file, as `header` declares it; made anew
+#     when a file changes.
+#   cmake -DOUTPUT=… -DNAMESPACE=… -DHEADER=… -DFILES=… -P EmbedFiles.cmake does the work during the
+#   build.
 if(CMAKE_SCRIPT_MODE_FILE)
-  set(source "// Made from files by cmake/EmbedFiles.cmake.\n#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n")
+  set(source
+    "// Made from files by cmake/EmbedFiles.cmake.\n#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n")
   foreach(entry IN LISTS FILES)
     string(REGEX MATCH "^([^=]+)=(.*)$" matched "${entry}")
     set(name "${CMAKE_MATCH_1}")

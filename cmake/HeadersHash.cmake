@@ -1,5 +1,6 @@
-# A hash of what plugins are compiled with. The ABI tag holds it: a plugin that was built against other headers is refused instead
-# of crashing. Comments and blanks do not count, they change no layout.
+# A hash of what plugins are compiled with. The ABI tag holds it: a plugin that was built against
+# other headers is refused instead of crashing. Comments and blanks do not count, they change no
+# layout.
 #   cordon_headers_hash(variable header...)
 #   cmake "-DHEADERS=a.hpp;b.hpp" -P HeadersHash.cmake   prints it
 function(cordon_headers_hash variable)

@@ -4,13 +4,15 @@
 #   src/              everything else; no other room can include it
 #
 # cordon_room(path [KERNELS] [SEES room...] [LIBRARIES target...])
-#   Objects of the sources in the current folder's src/, as target cordon_room_PATH with "/" as "_", e.g. study/text. They can include
-#   their own headers, and the headers of the rooms that they see; those of rooms below these are named as well. KERNELS: optimised
-#   for speed; other rooms are compiled more often than they compute.
+#   Objects of the sources in the current folder's src/, as target cordon_room_PATH with "/" as "_",
+#   e.g. study/text. They can include their own headers, and the headers of the rooms that they see;
+#   those of rooms below these are named as well. KERNELS: optimised for speed; other rooms are
+#   compiled more often than they compute.
 #
 # cordon_unity(target [ALONE file...])
-#   Compiles several files of a target as one source, which takes less than half the time: headers are read and templates compiled
-#   once. So names in unnamed namespaces are unique in a room, but for files that are compiled alone.
+#   Compiles several files of a target as one source, which takes less than half the time: headers
+#   are read and templates compiled once. Two files of a unit that define one name in their unnamed
+#   namespaces do not compile: the name gets more precise, or a file is compiled alone.
 #
 # cordon_headers_of(name)
 #   The headers alone, as target cordon_see_NAME; cordon_room calls it.
@@ -21,11 +23,13 @@ function(cordon_headers_of path)
   add_library(cordon_see_${name} INTERFACE)
   foreach(folder include internal)
     if(IS_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/${folder}")
-      target_include_directories(cordon_see_${name} INTERFACE "${CMAKE_CURRENT_SOURCE_DIR}/${folder}")
+      target_include_directories(cordon_see_${name} INTERFACE
+        "${CMAKE_CURRENT_SOURCE_DIR}/${folder}")
     endif()
   endforeach()
   if(IS_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/internal")
-    set_property(GLOBAL APPEND PROPERTY CORDON_INTERNAL_FOLDERS "${CMAKE_CURRENT_SOURCE_DIR}/internal")
+    set_property(GLOBAL APPEND PROPERTY CORDON_INTERNAL_FOLDERS
+      "${CMAKE_CURRENT_SOURCE_DIR}/internal")
   endif()
 endfunction()
 
@@ -38,7 +42,8 @@ function(cordon_room path)
   target_include_directories(cordon_room_${name} PRIVATE src)
   list(TRANSFORM arg_SEES REPLACE "/" "_")
   list(TRANSFORM arg_SEES PREPEND cordon_see_)
-  target_link_libraries(cordon_room_${name} PRIVATE cordon_see_${name} ${arg_SEES} Eigen3::Eigen ${arg_LIBRARIES})
+  target_link_libraries(cordon_room_${name} PRIVATE cordon_see_${name} ${arg_SEES} Eigen3::Eigen
+    ${arg_LIBRARIES})
   if(NOT arg_KERNELS)
     target_compile_options(cordon_room_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
@@ -49,7 +54,8 @@ function(cordon_unity target)
   cmake_parse_arguments(arg "" "" "ALONE" ${ARGN})
   set_target_properties(${target} PROPERTIES UNITY_BUILD "${CORDON_UNITY}" UNITY_BUILD_BATCH_SIZE 8)
   foreach(file IN LISTS arg_ALONE)
-    set_source_files_properties("${CMAKE_CURRENT_SOURCE_DIR}/${file}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    set_source_files_properties("${CMAKE_CURRENT_SOURCE_DIR}/${file}" PROPERTIES
+      SKIP_UNITY_BUILD_INCLUSION ON)
   endforeach()
 endfunction()
 
@@ -59,5 +65,6 @@ function(cordon_sees target)
   foreach(room IN LISTS ARGN)
     target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/framework/${room}/include")
   endforeach()
-  target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
+  target_include_directories(${target} SYSTEM PRIVATE
+    $<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>)
 endfunction()

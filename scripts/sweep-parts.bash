@@ -1,6 +1,7 @@
-# Part of scripts/sweep-parallel and scripts/sweep-slurm: runs a sweep in parts, wherever each part runs.
-# A folder DIR.parts beside the results holds the results of every part, what it printed, and two programs: run-part, which is what
-# runs elsewhere, and merge-parts. All names are absolute: the folder is the same on all machines.
+# Part of scripts/sweep-parallel and scripts/sweep-slurm: runs a sweep in parts, wherever each part
+# runs. A folder DIR.parts beside the results holds the results of every part, what it printed, and
+# two programs: run-part, which is what runs elsewhere, and merge-parts. All names are absolute: the
+# folder is the same on all machines.
 
 fail() {
   printf '%s: %s\n' "${0##*/}" "$1" >&2
@@ -35,7 +36,8 @@ find_cordon() {
   fail "the program \"cordon\" was not found; put it into PATH, or its name into the variable CORDON"
 }
 
-# prepare STUDY DIR SHARDS JOBS: checks the study and writes the two programs. JOBS may be a text for the shell of run-part.
+# prepare STUDY DIR SHARDS JOBS: checks the study and writes the two programs. JOBS may be a text
+# for the shell of run-part.
 prepare() {
   local study=$1 shards=$3 jobs=$4
   find_cordon
