@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Diagnoser `tube_membership`: the true mode is never excluded, the others are as soon as the
 // samples contradict them.
+#include "diagnosis/tube_membership.hpp"
+
 #include <doctest/doctest.h>
 
 #include "cordon/core/error.hpp"
@@ -13,46 +15,9 @@ using namespace diagnosis_test;
 
 namespace {
 
-const Plugins& plugins() {
-  static const Plugins instance;
-  return instance;
-}
-
-Params horizon(std::int64_t N) {
-  Params params;
-  params.set("horizon", N);
-  return params;
-}
-
-std::shared_ptr<Diagnoser> make(const ModeBank& bank, const std::string& backend, Params params) {
-  return plugins().registry.make_diagnoser("tube_membership", bank, plugins().backend(backend),
-                                           std::move(params));
-}
-
-std::vector<Diagnostic> check(const ModeBank& bank, const std::string& backend,
-                              const Params& params) {
-  return plugins().registry.check_diagnoser("tube_membership", bank, plugins().backend(backend),
-                                            params);
-}
-
 Model reversed_actuators(Model model) {
   model.linear.B *= -1;
   return model;
-}
-
-/// Steps of one experiment; the first step at which one mode is left, or the number of samples.
-struct Run {
-  std::vector<Diagnosis> steps;
-  Index decided = 0;
-};
-Run run(Diagnoser& diagnoser, const std::vector<Sample>& samples) {
-  Run result;
-  diagnoser.start();
-  for (const Sample& now : samples) {
-    result.steps.push_back(diagnoser.step(now));
-    if (result.steps.back().decision == Decision::isolating) ++result.decided;
-  }
-  return result;
 }
 
 std::vector<Sample> samples_of(const std::vector<Simulated>& simulated) {
@@ -61,26 +26,9 @@ std::vector<Sample> samples_of(const std::vector<Simulated>& simulated) {
   return samples;
 }
 
-/// x⁺ = a x + u + w, y = x + v of the three scalar models, from an x_0 that nobody bounds.
-std::vector<Sample> scalar_samples(const Model& model, double x, const std::vector<double>& inputs,
-                                   std::uint64_t seed, bool vertex) {
-  sets::Random random(seed);
-  const auto noise = [&] {
-    const double xi = random.cube(1)[0];
-    return .1 * (vertex ? (xi < 0 ? -1.0 : 1.0) : xi);
-  };
-  std::vector<Sample> samples;
-  for (std::size_t k = 0; k < inputs.size(); ++k) {
-    samples.push_back({static_cast<Index>(k), Vector{{inputs[k]}}, Vector{{x + noise()}}});
-    x = model.linear.A(0, 0) * x + inputs[k] + noise();
-  }
-  return samples;
-}
-
-}  // namespace
-
 TEST_CASE("under the separating input the true model is left, on any backend that takes part") {
   Params admissible = horizon(3);
+
   admissible.set("admissible_set", make_box(cube(3, 50)));
   for (const std::string backend : {"line_zonotope", "constrained_zonotope"}) {
     CAPTURE(backend);
@@ -276,73 +224,6 @@ TEST_CASE("an unbounded start that the outputs see in part only") {
   CHECK(excluded > 20);
 }
 
-TEST_CASE("systems without E need neither lines nor intersections") {
-  ModeBank bank = examples::three_scalar_models();
-  for (Mode& mode : bank.modes) mode.model.X0 = make_box(cube(1, 5));
-  for (const std::string backend :
-       {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
-    CAPTURE(backend);
-    const auto diagnoser = make(bank, backend, horizon(3));
-    for (Index truth = 0; truth < 3; ++truth) {
-      const auto samples = scalar_samples(bank[truth].model, 2, {0, .99, 0, 0}, 5, false);
-      const Run found = run(*diagnoser, samples);
-      CHECK(found.steps.back().mode == truth);
-      CHECK(found.steps[0].modes[0].consistent == Answer::yes);
-    }
-  }
-}
-
-TEST_CASE("a tube that the backend widens tells no consistency, and excludes less") {
-  ModeBank bank = examples::three_scalar_models();
-  for (Mode& mode : bank.modes) {
-    mode.model.linear.Bw = Matrix{{1, -1}};
-    mode.model.W = make_zonotope(Vector::Zero(2), Matrix{{1}, {1}});  // both are equal: they cancel
-    mode.model.X0 = make_point(Vector{{0}});
-  }
-  const std::vector<Sample> samples{{0, Vector{{0}}, Vector{{0}}}, {1, Vector{{0}}, Vector{{1.5}}}};
-  const Run exact = run(*make(bank, "zonotope", horizon(3)), samples);
-  CHECK(exact.steps[0].modes[0].consistent == Answer::yes);
-  CHECK(exact.steps[1].decision == Decision::unknown_fault);
-  const Run outer = run(*make(bank, "interval", horizon(3)), samples);
-  CHECK(outer.steps[0].modes[0].consistent == Answer::unknown);
-  CHECK(outer.steps[1].decision == Decision::isolating);
-}
-
-namespace {
-
-/// Zonotopes whose exchange form is said to be larger than the set.
-class Loose final : public SetBackend {
- public:
-  Loose() : SetBackend({"loose", true, true, false, Rounding::nominal, "for a test", ""}) {}
-
- private:
-  class Held final : public Set {
-   public:
-    Held(const SetBackend& backend, LineForm form)
-        : Set(backend, form.dim()), form_(std::move(form)) {}
-
-   private:
-    Complexity do_complexity() const override { return {}; }
-    LineForm do_line_form() const override { return form_; }
-    LineForm form_;
-  };
-
-  Made do_import(const LineForm& X) const override {
-    return {std::make_unique<Held>(*this, X), Tightness::exact};
-  }
-};
-
-}  // namespace
-
-TEST_CASE("an exchange form that encloses tells no consistency") {
-  const ModeBank bank = examples::three_scalar_models();
-  const auto diagnoser = plugins().registry.make_diagnoser("tube_membership", bank,
-                                                           std::make_shared<Loose>(), horizon(1));
-  const Run found = run(*diagnoser, {{0, Vector{{2}}, Vector{{0}}}, {1, Vector{{0}}, Vector{{2}}}});
-  CHECK(found.steps[0].modes[0].candidate);
-  CHECK(found.steps[0].modes[0].consistent == Answer::unknown);
-}
-
 TEST_CASE("a step that ends with an error leaves the experiment as it was") {
   ModeBank bank = examples::three_scalar_models();
   for (Mode& mode : bank.modes) mode.model.linear.D(0, 0) = 4;
@@ -361,66 +242,6 @@ TEST_CASE("a step that ends with an error leaves the experiment as it was") {
   }
 }
 
-TEST_CASE("what cannot work is refused") {
-  const ModeBank bank = four_models();
-  CHECK(check(bank, "line_zonotope", horizon(3)).empty());
-
-  auto problems = check(bank, "zonotope", horizon(3));
-  REQUIRE(problems.size() == 1);
-  CHECK(problems[0].message.find("static rows") != std::string::npos);
-
-  problems = check(bank, "constrained_zonotope", horizon(3));
-  REQUIRE(problems.size() == 1);
-  CHECK(problems[0].pointer == "/admissible_set");
-
-  Params admissible = horizon(3);
-  admissible.set("admissible_set", make_space(3));
-  problems = check(bank, "constrained_zonotope", admissible);
-  REQUIRE(problems.size() == 1);
-  CHECK(problems[0].pointer == "/admissible_set");
-  CHECK(problems[0].message.find("unbounded") != std::string::npos);
-  CHECK(check(bank, "line_zonotope", admissible).empty());
-
-  admissible.set("admissible_set", make_box(cube(2, 1)));
-  problems = check(bank, "line_zonotope", admissible);
-  REQUIRE(problems.size() == 1);
-  CHECK(problems[0].message.find("dimension 2") != std::string::npos);
-
-  admissible.set("admissible_set", make_empty(3));
-  CHECK(check(bank, "line_zonotope", admissible).size() == 1);
-
-  ModeBank unbounded = examples::three_scalar_models();
-  CHECK(check(unbounded, "line_zonotope", horizon(3)).empty());
-  problems = check(unbounded, "zonotope", horizon(3));
-  REQUIRE(problems.size() == 3);
-  CHECK(problems[0].message.find("X0 of mode") != std::string::npos);
-
-  unbounded.modes[1].model.linear.actuator = {Vector{{.2}}, Vector{{.7}}};
-  problems = check(unbounded, "line_zonotope", horizon(3));
-  REQUIRE(problems.size() == 1);
-  CHECK(problems[0].message.find("ranges") != std::string::npos);
-  CHECK(problems[0].message.find("fast") != std::string::npos);
-}
-
-TEST_CASE("a horizon that the memory could not hold is refused") {
-  Model model;
-  const Index n = 60;
-  model.linear = {{},
-                  Matrix::Identity(n, n),
-                  Matrix::Ones(n, 1),
-                  Matrix::Identity(n, n),
-                  Matrix::Identity(n, n),
-                  Matrix::Zero(n, 1),
-                  Matrix::Identity(n, n)};
-  model.X0 = model.W = model.V = make_box(cube(n, 1));
-  ModeBank bank;
-  bank.modes = {{"one", model}, {"two", model}};
-  CHECK(check(bank, "line_zonotope", horizon(2)).empty());
-  const auto problems = check(bank, "line_zonotope", horizon(100));
-  REQUIRE(problems.size() == 1);
-  CHECK(problems[0].pointer == "/horizon");
-}
-
 TEST_CASE("exactly known effectiveness is part of the tube") {
   ModeBank bank = examples::three_scalar_models();
   bank.modes.resize(1);
@@ -434,3 +255,5 @@ TEST_CASE("exactly known effectiveness is part of the tube") {
   const Run lost = run(*diagnoser, {{0, Vector{{2}}, Vector{{7}}}, {1, Vector{{0}}, Vector{{7}}}});
   CHECK(lost.steps.back().mode == 1);
 }
+
+}  // namespace
