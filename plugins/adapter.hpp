@@ -8,13 +8,13 @@
 //     Index dim(const Value&); LineForm line_form(const Value&); Complexity complexity(const
 //     Value&); Answer is_empty(const Value&, Certificate*), contains(const Value&, VectorIn,
 //     Certificate*), is_bounded(const Value&); double support(const Value&, VectorIn,
-//     Certificate*);  Box interval_hull(const Value&, std::vector<Certificate>*);  double
-//     exact_volume(const Value&); Result import(const LineForm&); Result predict(const Value& X,
-//     MatrixIn A, VectorIn f, std::span<const Operand<Value>>); Result correct(const Value& X,
-//     MatrixIn C, VectorIn z, const Operand<Value>& noise); Result interval_map(const Value&, const
-//     IntervalMatrix&);  Result intersection(const Value&, MatrixIn R, const Value&); Result
-//     convex_hull(const Value&, const Value&);            std::optional<Result> reduce(const
-//     Value&, Budget);
+//     Certificate*);  Box interval_hull(const Value&, std::vector<Certificate>*);
+//     std::optional<Volume> volume(const Value&); Result import(const LineForm&); Result
+//     predict(const Value& X, MatrixIn A, VectorIn f, std::span<const Operand<Value>>); Result
+//     correct(const Value& X, MatrixIn C, VectorIn z, const Operand<Value>& noise); Result
+//     interval_map(const Value&, const IntervalMatrix&);  Result intersection(const Value&,
+//     MatrixIn R, const Value&); Result convex_hull(const Value&, const Value&);
+//     std::optional<Result> reduce(const Value&, Budget);
 //   };
 //
 // All are const member functions; preconditions are those of Set and SetBackend (shapes fit,
@@ -75,7 +75,7 @@ class ValueSet final : public Set {
   Box do_interval_hull(std::vector<Certificate>* why) const override {
     return representation_.interval_hull(value_, why);
   }
-  double do_exact_volume() const override { return representation_.exact_volume(value_); }
+  std::optional<Volume> do_volume() const override { return representation_.volume(value_); }
 
   const Representation& representation_;  // lives in the backend, which the set keeps alive
   Value value_;

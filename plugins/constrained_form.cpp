@@ -26,6 +26,18 @@ ConstrainedForm::Result made(sets::Reduced result) {
   return {std::move(result.set), result.exact ? Tightness::exact : Tightness::outer};
 }
 
+/// Polygons are exact to 1e-10 of their coordinates' widths: too little of one that is thin.
+Volume area_of(const sets::SupportOracle& oracle) {
+  constexpr double thin = 1e-9;
+  const Matrix vertices = sets::polygon(oracle);
+  if (vertices.cols() == 0) return {0, true};
+  const double area = sets::area(vertices);
+  const double hull = (vertices.rowwise().maxCoeff() - vertices.rowwise().minCoeff()).prod();
+  if (area > thin * hull) return {area, true};
+  const double upper = sets::turned_box_volume(oracle, 2);
+  return {upper, upper == 0};
+}
+
 }  // namespace
 
 Answer ConstrainedForm::is_empty(const Value& X, Certificate* why) const {
@@ -42,9 +54,9 @@ Box ConstrainedForm::interval_hull(const Value& X, std::vector<Certificate>* why
   return outward ? cordon::outward::interval_hull(X, why) : cordon::interval_hull(X, why);
 }
 
-double ConstrainedForm::exact_volume(const Value& X) const {
+std::optional<Volume> ConstrainedForm::volume(const Value& X) const {
   const LineForm Y = eliminate_lines(X);
-  if (Y.lines() > 0 || Y.dim() > 3) return -1;
+  if (Y.lines() > 0 || Y.dim() > 3) return std::nullopt;
   BoxedProgram program(Y.A, Y.b);  // one program, warm from direction to direction
   bool solved = true;
   const sets::SupportOracle oracle = [&](const Vector& d) -> sets::SupportPoint {
@@ -63,14 +75,15 @@ double ConstrainedForm::exact_volume(const Value& X) const {
     solved = solved && feasible && bound.upper - g.dot(*bound.xi) <= size;
     return {d.dot(Y.c) + bound.upper, Y.c + linalg::product(Y.G, *bound.xi)};
   };
-  double volume = -1;
-  if (Y.dim() == 1) volume = std::max(0.0, oracle(Vector{{1.0}}).h + oracle(Vector{{-1.0}}).h);
-  if (Y.dim() == 2) volume = sets::area(sets::polygon(oracle));
+  Volume volume{0, true};
+  if (Y.dim() == 1)
+    volume.value = std::max(0.0, oracle(Vector{{1.0}}).h + oracle(Vector{{-1.0}}).h);
+  if (Y.dim() == 2) volume = area_of(oracle);
   if (Y.dim() == 3) {
     const sets::VolumeBounds bounds = sets::volume(oracle);
-    volume = bounds.converged ? bounds.upper : -1;
+    volume = {bounds.upper, bounds.converged};
   }
-  return solved ? volume : -1;
+  return solved ? std::optional(volume) : std::nullopt;
 }
 
 ConstrainedForm::Result ConstrainedForm::import(const LineForm& X) const {

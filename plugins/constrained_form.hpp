@@ -29,7 +29,7 @@ struct ConstrainedForm {
   Answer is_bounded(const Value& X) const;
   double support(const Value& X, VectorIn d, Certificate* why) const;
   Box interval_hull(const Value& X, std::vector<Certificate>* why) const;
-  double exact_volume(const Value& X) const;
+  std::optional<Volume> volume(const Value& X) const;
 
   Result import(const LineForm& X) const;
   Result predict(const Value& X, MatrixIn A, VectorIn f,

@@ -125,7 +125,9 @@ struct Intervals {
                   {Certificate::Kind::structure, Vector(0), 0});
     return X;
   }
-  double exact_volume(const Box& X) const { return (X.upper - X.lower).prod(); }
+  std::optional<Volume> volume(const Box& X) const {
+    return Volume{(X.upper - X.lower).prod(), true};
+  }
 
   Result import(const LineForm& X) const {
     if (outward) {

@@ -67,7 +67,11 @@ struct Zonotopes {
       why->assign(static_cast<std::size_t>(2 * X.n), {Certificate::Kind::structure, Vector(0), 0});
     return X.Z ? sets::interval_hull(*X.Z) : Box::empty(X.n);
   }
-  double exact_volume(const Value& X) const { return X.Z ? sets::volume(*X.Z).value_or(-1) : 0; }
+  std::optional<Volume> volume(const Value& X) const {
+    if (!X.Z) return Volume{0, true};
+    const std::optional<double> exact = sets::volume(*X.Z);
+    return exact ? std::optional(Volume{*exact, true}) : std::nullopt;
+  }
 
   /// Constraints are eliminated one by one, each forgetting one factor's bound: an outer enclosure.
   Result import(const LineForm& X) const {

@@ -40,7 +40,9 @@ class EllipsoidSet final : public Set {
                   {Certificate::Kind::structure, Vector(0), 0});
     return ellipsoid::interval_hull(value_);
   }
-  double do_exact_volume() const override { return ellipsoid::volume(value_); }
+  std::optional<Volume> do_volume() const override {
+    return Volume{ellipsoid::volume(value_), true};
+  }
 
   Ellipsoid value_;
 };

@@ -266,10 +266,15 @@ bool agree(const VolumeBounds& bounds, double tolerance) {
 VolumeBounds volume(const SupportOracle& X, double relative_tolerance, Index max_queries) {
   ScaledSet set(X, 3, "volume");
   std::array<Point, 4> simplex;
-  if (set.is_empty() || set.is_flat() || !spanning_simplex(set, simplex)) return {0, 0, true};
+  if (set.is_empty()) return {0, 0, true};
+  const auto thin = [&X] {
+    const double upper = turned_box_volume(X, 3);
+    return VolumeBounds{0, upper, upper == 0};
+  };
+  if (set.is_flat() || !spanning_simplex(set, simplex)) return thin();
   Matrix B(3, 3);
   B << simplex[1] - simplex[0], simplex[2] - simplex[0], simplex[3] - simplex[0];
-  if (!set.transform(simplex[0], B)) return {0, 0, true};
+  if (!set.transform(simplex[0], B)) return thin();
   const double factor = set.volume_factor(), aim = relative_tolerance / 100;
   Hull hull;
   Index queries = 0;

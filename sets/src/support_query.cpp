@@ -65,6 +65,15 @@ SupportPoint ScaledSet::query(const Vector& d) const {
           linalg::product(inverse_, point)};
 }
 
+double ScaledSet::thickness(const Vector& d) const {
+  const Vector scaled = linalg::transposed_product(inverse_, d),
+               direction = scaled.cwiseQuotient(width_);
+  const double length = direction.stableNorm();
+  const double above = ask(direction / length).h, below = ask(-direction / length).h;
+  const double noise = std::numeric_limits<double>::epsilon() * (std::abs(above) + std::abs(below));
+  return std::max(0.0, above + below + noise) * length;
+}
+
 bool ScaledSet::transform(const Vector& shift, const Matrix& B) {
   const std::optional<Matrix> inverse = linalg::solve(B, Matrix::Identity(B.rows(), B.cols()));
   if (!inverse) return false;

@@ -149,9 +149,9 @@ class AnswersSwapped final : public LineSet {
 
 class VolumeOfHull final : public LineSet {
   using LineSet::LineSet;
-  double do_exact_volume() const override {
+  std::optional<Volume> do_volume() const override {
     const Box hull = do_interval_hull(nullptr);
-    return (hull.upper - hull.lower).prod();
+    return Volume{(hull.upper - hull.lower).prod(), true};
   }
 };
 

@@ -7,6 +7,7 @@
 
 #include "cordon/core/line_form.hpp"
 #include "cordon/solvers/polytope.hpp"
+#include "cordon/solvers/set_questions.hpp"
 #include "published/study_models.hpp"
 
 using namespace cordon;
@@ -51,6 +52,40 @@ TEST_CASE("volumes with constraints are those of the exact polytope") {
         CHECK(found.exact);
         CHECK(found.value >= truth.lower * (1 - 1e-12));
         CHECK(found.value <= truth.upper * (1 + 1e-7));
+      }
+    }
+  }
+}
+
+TEST_CASE("the volume of a set thinner than rounding shows is bounded and not called 0") {
+  const Plugins plugins;
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (const Index n : {2, 3}) {
+    for (const double thickness : {1e-11, 1e-12, 1e-13, 1e-14, 1e-15}) {
+      for (int trial = 0; trial < 10; ++trial) {
+        CAPTURE(n);
+        CAPTURE(thickness);
+        CAPTURE(trial);
+        // columns in a plane, or on a line, that lies anywhere, and one across it
+        Matrix T(n, n);
+        for (double& entry : T.reshaped()) entry = number(random);
+        Matrix flat = Matrix::Zero(n, 6);
+        for (double& entry : flat.topRows(n - 1).reshaped()) entry = number(random);
+        LineForm X{Matrix(n, 0), Matrix(n, 7), Vector::Zero(n),
+                   Matrix(1, 0), Matrix(1, 7), Vector{{.1}}};
+        X.G.leftCols(6) = T * flat;
+        X.G.col(6) = thickness * T.col(n - 1);
+        for (double& entry : X.A.reshaped()) entry = number(random);
+        X.A(0, 6) = 0;
+        const rounding::Range truth = Polytope::from(X).volume();
+        const double hull = (2 * cordon::interval_hull(X).radius()).prod();
+        for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
+          const Volume found = plugins.backend(name)->import(X)->volume();
+          CHECK(found.value >= truth.lower * (1 - 1e-12));
+          if (found.exact) CHECK(found.value <= truth.upper * (1 + 1e-6));
+          CHECK(found.value <= 20 * truth.upper + 1e-13 * hull);
+        }
       }
     }
   }

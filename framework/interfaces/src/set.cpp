@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/interfaces/set.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -87,9 +88,9 @@ Volume Set::volume() const {
   if (dim_ == 0) return {is_empty() == Answer::yes ? 0.0 : 1.0, true};
   const Box hull = interval_hull();
   if (hull.is_empty()) return {0.0, true};
-  if (hull.is_bounded()) {
-    if (const double exact = do_exact_volume(); exact >= 0) return {exact, true};
-  }
+  std::optional<Volume> own;
+  if (hull.is_bounded()) own = do_volume();
+  if (own && own->exact && own->value >= 0) return *own;
   double value = 1;
   for (Index i = 0; i < dim_; ++i) {
     const double edge = hull.upper[i] - hull.lower[i];
@@ -97,6 +98,7 @@ Volume Set::volume() const {
     if (edge < infinity) value *= edge;
   }
   // the product of tiny edges may be 0, and 0 · inf no number
+  if (own && own->value >= 0) value = std::min(value, own->value);
   return {hull.is_bounded() ? value : infinity, false};
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cordon/core/answer.hpp"
@@ -34,7 +35,7 @@ struct Complexity {
   Index generators = 0, lines = 0, constraints = 0;
 };
 
-/// Volume of a set: exact, or that of its interval hull (an upper bound).
+/// Volume of a set, or an upper bound of it.
 struct Volume {
   double value = 0;  ///< +inf for an unbounded set with interior, 0 for ∅ and for flat sets
   bool exact = false;
@@ -78,8 +79,8 @@ class Set {
   /// bound (direction e_i) and of the lower (-e_i).
   Box interval_hull(std::vector<Certificate>* why = nullptr) const;
 
-  /// Exact where the representation offers it (see the backend), else the volume of the interval
-  /// hull.
+  /// Exact where the representation offers it (see the backend), else an upper bound: the volume
+  /// of the interval hull, or a smaller one that the representation knows.
   Volume volume() const;
 
  protected:
@@ -94,8 +95,8 @@ class Set {
   virtual Answer do_is_bounded() const;
   virtual double do_support(VectorIn d, Certificate* why) const;
   virtual Box do_interval_hull(std::vector<Certificate>* why) const;
-  /// Exact volume of a bounded set, or a negative number: "not offered".
-  virtual double do_exact_volume() const { return -1; }
+  /// Volume of a bounded set, or an upper bound of it; none: "not offered".
+  virtual std::optional<Volume> do_volume() const { return std::nullopt; }
 
   bool exact_exchange() const;
 
