@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common.hpp"
+#include "cordon/study/statistics.hpp"
 #include "design_report.hpp"
 #include "diagnosis_report.hpp"
 #include "observer_report.hpp"
@@ -33,21 +34,27 @@ std::string text(const MetricValue* metric) {
   return std::isnan(number) ? "-" : fmt::format("{:.4g}", number);
 }
 
-/// Steps whose set is proven to contain the truth, of those where the question was asked; those
-/// that could not be decided are told, so that nobody takes them for a truth outside.
-std::string contained(const PipelineOutcome& pipeline) {
-  Index yes = 0, unknown = 0, all = 0;
-  for (const char* answer : {"yes", "no", "unknown"}) {
-    const MetricValue* count = find(pipeline, std::string("contains_truth_") + answer);
-    const Index* number = count ? std::get_if<Index>(&count->value) : nullptr;
-    if (!number) return "-";
-    all += *number;
-    if (answer == std::string_view("yes")) yes = *number;
-    if (answer == std::string_view("unknown")) unknown = *number;
-  }
-  if (all == 0) return "-";
-  return unknown == 0 ? fmt::format("{}/{}", yes, all)
-                      : fmt::format("{}/{}, {} unknown", yes, all, unknown);
+double number_of(const MetricValue* metric) {
+  if (!metric) return not_available;
+  if (const auto* count = std::get_if<Index>(&metric->value)) return static_cast<double>(*count);
+  const auto* number = std::get_if<double>(&metric->value);
+  return number ? *number : not_available;
+}
+
+/// "71/101": a count of the whole that its rest makes it.
+std::string part_text(const PipelineOutcome& pipeline, const Measure& measure) {
+  const double part = number_of(find(pipeline, measure.name));
+  double whole = part;
+  for (const std::string& name : measure.rest) whole += number_of(find(pipeline, name));
+  return whole > 0 ? fmt::format("{}/{}", part, whole) : "-";
+}
+
+std::string value_text(const PipelineOutcome& pipeline, const Measure& measure) {
+  if (!measure.rest.empty()) return part_text(pipeline, measure);
+  const MetricValue* metric = find(pipeline, measure.name);
+  const double number = number_of(metric);
+  return measure.share && !std::isnan(number) ? fmt::format("{:.4g} %", 100 * number)
+                                              : text(metric);
 }
 
 std::string consistency(const PipelineOutcome& pipeline) {
@@ -62,54 +69,60 @@ std::string consistency(const PipelineOutcome& pipeline) {
 
 struct Column {
   std::string header;
-  std::string metric;  ///< shown if a pipeline has it; "" : always
   std::function<std::string(const PipelineOutcome&)> cell;
 };
 
-Column metric_column(std::string header, const std::string& name) {
-  return {std::move(header), name,
-          [name](const PipelineOutcome& p) { return text(find(p, name)); }};
+/// What is told of a value of this name; its name alone if nothing is.
+Measure described(const RunOutcome& outcome, const std::string& name) {
+  const auto told = std::find_if(outcome.measures.begin(), outcome.measures.end(),
+                                 [&](const Measure& m) { return m.name == name; });
+  return told == outcome.measures.end() ? Measure{.name = name} : *told;
 }
 
-/// The usual columns, in the order of interest; metrics that are not among the usual ones follow
-/// under their own names.
-std::vector<Column> columns(const RunOutcome& outcome) {
-  std::vector<Column> found{
-      {"PIPELINE", "", [](const PipelineOutcome& p) { return p.name; }},
-      {"BACKEND", "", [](const PipelineOutcome& p) { return p.backend; }},
-      metric_column("MEAN RADIUS", "radius_mean"),
-      metric_column("MAX RADIUS", "radius_max"),
-      metric_column("MEAN VOLUME", "volume_mean"),
-      {"TRUTH INSIDE", "contains_truth_yes", contained},
-      {"CONSISTENCY", "", consistency},
-      metric_column("GEN", "generators_max"),
-      metric_column("LINES", "lines_max"),
-      metric_column("CONSTR", "constraints_max"),
-  };
-  static const std::vector<std::string> usual{
-      "radius_unbounded_steps", "volume_of_hull_steps", "contains_truth_no",
-      "contains_truth_unknown", "exact_share",          "step_time_us_mean",
-      "step_time_us_max"};
-  const auto has = [](const RunOutcome& o, const std::string& name) {
-    return std::any_of(o.pipelines.begin(), o.pipelines.end(),
-                       [&](const PipelineOutcome& p) { return find(p, name) != nullptr; });
-  };
-  std::erase_if(found, [&](const Column& column) {
-    return !column.metric.empty() && !has(outcome, column.metric);
-  });
+bool is_shown(const RunOutcome& outcome, const Measure& measure) {
+  if (measure.in_run == Measure::Shown::never) return false;
+  return std::any_of(
+      outcome.pipelines.begin(), outcome.pipelines.end(), [&](const PipelineOutcome& p) {
+        const MetricValue* metric = find(p, measure.name);
+        const double number = number_of(metric);
+        return metric &&
+               (measure.in_run == Measure::Shown::always || (number != 0 && number == number));
+      });
+}
+
+std::string upper(std::string header) {
+  for (char& letter : header) {
+    if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
+  }
+  return header;
+}
+
+/// One for every value of the metrics, in their order.
+std::vector<Column> metric_columns(const RunOutcome& outcome) {
+  std::vector<Column> found;
+  std::vector<std::string> known;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     for (const MetricValue& metric : pipeline.summary) {
-      const bool shown = std::any_of(found.begin(), found.end(), [&](const Column& column) {
-        return column.metric == metric.name;
-      });
-      if (!shown && std::find(usual.begin(), usual.end(), metric.name) == usual.end())
-        found.push_back(metric_column(metric.name, metric.name));
+      if (std::find(known.begin(), known.end(), metric.name) != known.end()) continue;
+      known.push_back(metric.name);
+      const Measure measure = described(outcome, metric.name);
+      if (!is_shown(outcome, measure)) continue;
+      found.push_back({upper(short_title_of(measure)),
+                       [measure](const PipelineOutcome& p) { return value_text(p, measure); }});
     }
   }
-  found.push_back({"µs/STEP", "", [](const PipelineOutcome& p) {
+  return found;
+}
+
+std::vector<Column> columns(const RunOutcome& outcome) {
+  std::vector<Column> found{{"PIPELINE", [](const PipelineOutcome& p) { return p.name; }},
+                            {"BACKEND", [](const PipelineOutcome& p) { return p.backend; }},
+                            {"CONSISTENCY", consistency}};
+  for (Column& column : metric_columns(outcome)) found.push_back(std::move(column));
+  found.push_back({"µs/STEP", [](const PipelineOutcome& p) {
                      return p.steps ? fmt::format("{:.1f}", p.median_step_us) : "-";
                    }});
-  found.push_back({"LARGEST", "", [](const PipelineOutcome& p) {
+  found.push_back({"LARGEST", [](const PipelineOutcome& p) {
                      return p.steps ? fmt::format("{:.1f}", p.largest_step_us) : "-";
                    }});
   return found;
@@ -240,8 +253,9 @@ ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& m
 
 std::string report_text(const Study& study, const RunOutcome& outcome,
                         const std::filesystem::path& out) {
-  RunOutcome observed;  // pipelines with a diagnoser or a designer have nothing to tell in the
-                        // columns of this table
+  RunOutcome observed;
+  observed.measures = outcome.measures;
+  // pipelines with a diagnoser or a designer have nothing to tell in the columns of this table
   std::string diagnoses;
   const Paint paint(stdout);
   for (const PipelineOutcome& pipeline : outcome.pipelines) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures of merit of an estimate.
+// Figures of merit of an estimate:
 //   radius          half the longest edge of the interval hull
-//   volume          exact where the representation offers it (up to dimension 3, zonotopes beyond),
-//   else of the interval hull contains_truth  certified containment of the true state complexity
-//   generators, lines and constraints tightness       share of steps whose set is claimed to be
-//   exact step_time       measured time of prediction, correction and reduction
+//   volume          of the set, or an upper bound of it
+//   contains_truth  certified containment of the true state
+//   complexity      generators, lines and constraints
+//   tightness       share of steps whose set is claimed to be exact
+//   step_time       measured time of prediction, correction and reduction
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +15,8 @@
 namespace cordon::estimators {
 
 namespace {
+
+using Shown = Measure::Shown;
 
 /// Mean over the finite values and the largest of them; how many were unbounded.
 class Average {
@@ -51,6 +54,19 @@ class Radius final : public Metric {
             {"radius_max", average_.largest()},
             {"radius_unbounded_steps", average_.unbounded()}};
   }
+  std::vector<Measure> do_measures() const override {
+    return {
+        {.name = "radius_mean", .title = "mean radius", .better = Preference::less, .ranked = true},
+        {.name = "radius_max",
+         .title = "max radius",
+         .better = Preference::less,
+         .in_comparison = Shown::never},
+        {.name = "radius_unbounded_steps",
+         .title = "unbounded steps",
+         .better = Preference::less,
+         .in_run = Shown::never,
+         .in_comparison = Shown::if_any}};
+  }
 
   Average average_;
 };
@@ -66,6 +82,14 @@ class VolumeOfSet final : public Metric {
   std::vector<MetricValue> do_summary() const override {
     return {{"volume_mean", average_.mean()}, {"volume_of_hull_steps", hulls_}};
   }
+  std::vector<Measure> do_measures() const override {
+    return {
+        {.name = "volume_mean", .title = "mean volume", .better = Preference::less, .ranked = true},
+        {.name = "volume_of_hull_steps",
+         .title = "volumes of hulls",
+         .in_run = Shown::never,
+         .in_comparison = Shown::never}};
+  }
 
   Average average_;
   Index hulls_ = 0;
@@ -80,9 +104,34 @@ class ContainsTruth final : public Metric {
     return {{"contains_truth", std::string(to_string(answer))}};
   }
   std::vector<MetricValue> do_summary() const override {
+    const Index asked = yes_ + no_ + unknown_;
     return {{"contains_truth_yes", yes_},
             {"contains_truth_no", no_},
-            {"contains_truth_unknown", unknown_}};
+            {"contains_truth_unknown", unknown_},
+            {"contains_truth_share",
+             asked ? static_cast<double>(yes_) / static_cast<double>(asked) : not_available}};
+  }
+  std::vector<Measure> do_measures() const override {
+    return {{.name = "contains_truth_yes",
+             .title = "truth inside",
+             .better = Preference::more,
+             .rest = {"contains_truth_no", "contains_truth_unknown"},
+             .in_comparison = Shown::never},
+            {.name = "contains_truth_no",
+             .title = "truth outside",
+             .better = Preference::less,
+             .in_run = Shown::if_any,
+             .in_comparison = Shown::never},
+            {.name = "contains_truth_unknown",
+             .title = "truth undecided",
+             .better = Preference::less,
+             .in_run = Shown::if_any,
+             .in_comparison = Shown::never},
+            {.name = "contains_truth_share",
+             .title = "truth inside",
+             .better = Preference::more,
+             .share = true,
+             .in_run = Shown::never}};
   }
 
   Index yes_ = 0, no_ = 0, unknown_ = 0;
@@ -100,6 +149,14 @@ class Size final : public Metric {
             {"lines_max", largest_.lines},
             {"constraints_max", largest_.constraints}};
   }
+  std::vector<Measure> do_measures() const override {
+    return {{.name = "generators_max", .title = "used generators", .short_title = "gen"},
+            {.name = "lines_max",
+             .title = "used lines",
+             .short_title = "lines",
+             .in_comparison = Shown::never},
+            {.name = "constraints_max", .title = "used constraints", .short_title = "constr"}};
+  }
 
   Complexity largest_;
 };
@@ -115,6 +172,14 @@ class ExactSteps final : public Metric {
     return {{"exact_share",
              steps_ ? static_cast<double>(exact_) / static_cast<double>(steps_) : not_available}};
   }
+  std::vector<Measure> do_measures() const override {
+    return {{.name = "exact_share",
+             .title = "exact",
+             .better = Preference::more,
+             .share = true,
+             .in_run = Shown::never,
+             .in_comparison = Shown::never}};
+  }
 
   Index steps_ = 0, exact_ = 0;
 };
@@ -127,6 +192,19 @@ class StepTime final : public Metric {
   }
   std::vector<MetricValue> do_summary() const override {
     return {{"step_time_us_mean", average_.mean()}, {"step_time_us_max", average_.largest()}};
+  }
+  std::vector<Measure> do_measures() const override {
+    return {time_of("step_time_us_mean", "mean step time"),
+            time_of("step_time_us_max", "largest step time")};
+  }
+  /// Tables hold the median of what the host has measured.
+  static Measure time_of(const char* name, const char* title) {
+    return {.name = name,
+            .title = title,
+            .unit = "µs",
+            .better = Preference::less,
+            .in_run = Shown::never,
+            .in_comparison = Shown::never};
   }
   bool do_reproducible() const override { return false; }
 

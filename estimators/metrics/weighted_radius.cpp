@@ -108,7 +108,7 @@ class Weighted {
 };
 
 /// Both metrics: a value per step, what it is the value of, and their mean and largest.
-template <class Measure>
+template <class Size>
 class WeightedRadius final : public Metric {
  public:
   explicit WeightedRadius(const Params& params) : weighted_(params) {}
@@ -117,21 +117,32 @@ class WeightedRadius final : public Metric {
   std::vector<MetricValue> do_step(const StepView& view) override {
     const auto seen = weighted_.see(view);
     if (!seen)
-      return {{Measure::name, not_available},
-              {std::string(Measure::name) + "_of", std::string("none")}};
-    const WRadius found = Measure::of(seen->R, weighted_.weight());
+      return {{Size::name, not_available}, {std::string(Size::name) + "_of", std::string("none")}};
+    const WRadius found = Size::of(seen->R, weighted_.weight());
     ++count_;
     sum_ += found.value;
     largest_ = std::max(largest_, found.value);
-    return {{Measure::name, found.value},
-            {std::string(Measure::name) + "_of", std::string(!seen->exact  ? "hull"
-                                                             : found.exact ? "set"
-                                                                           : "reduced set")}};
+    return {{Size::name, found.value},
+            {std::string(Size::name) + "_of", std::string(!seen->exact  ? "hull"
+                                                          : found.exact ? "set"
+                                                                        : "reduced set")}};
   }
   std::vector<MetricValue> do_summary() const override {
-    const std::string name = Measure::name;
+    const std::string name = Size::name;
     return {{name + "_mean", count_ ? sum_ / static_cast<double>(count_) : not_available},
             {name + "_max", count_ ? largest_ : not_available}};
+  }
+
+  std::vector<Measure> do_measures() const override {
+    const std::string name = Size::name, title = Size::title;
+    return {{.name = name + "_mean",
+             .title = "mean " + title,
+             .better = Preference::less,
+             .ranked = true},
+            {.name = name + "_max",
+             .title = "max " + title,
+             .better = Preference::less,
+             .in_comparison = Measure::Shown::never}};
   }
 
   Weighted weighted_;
@@ -141,22 +152,24 @@ class WeightedRadius final : public Metric {
 
 struct FWRadius {
   static constexpr const char* name = "f_w_radius";
+  static constexpr const char* title = "F-W-radius";
   static WRadius of(const Matrix& R, const Matrix& W) { return {f_w_radius(R, W), true}; }
 };
 struct SquaredRadius {
   static constexpr const char* name = "w_radius";
+  static constexpr const char* title = "W-radius";
   static WRadius of(const Matrix& R, const Matrix& W) { return w_radius(R, W); }
 };
 
-template <class Measure>
+template <class Size>
 void add(Registrar& registrar, const char* summary) {
   ParamSchema schema;
   schema.matrix(
       "weight",
       "W, symmetric and positive definite, a row and a column per state; the identity by default");
-  registrar.metric({{Measure::name, summary, "Pourasghar2021", std::move(schema)},
+  registrar.metric({{Size::name, summary, "Pourasghar2021", std::move(schema)},
                     [](const Params& params) -> std::unique_ptr<Metric> {
-                      return std::make_unique<WeightedRadius<Measure>>(params);
+                      return std::make_unique<WeightedRadius<Size>>(params);
                     },
                     check_weight});
 }

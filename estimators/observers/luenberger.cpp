@@ -29,6 +29,7 @@ class Luenberger final : public Observer {
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override { return {gain_.gain}; }
+  bool follows_its_sets() const override { return !limit_.is_set(); }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {

@@ -133,6 +133,7 @@ class PseudoInverseObserver final : public Observer {
   }
 
   LineForm initial_set() const override { return X0_; }
+  bool follows_its_sets() const override { return true; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {

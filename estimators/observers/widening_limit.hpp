@@ -43,6 +43,7 @@ class WideningLimit {
  public:
   /// `limit` ≥ 1, or 0: none.
   explicit WideningLimit(double limit) : limit_(limit) {}
+  bool is_set() const { return limit_ != 0; }
 
   /// X is the set that the recursion starts from.
   void start(const LuenbergerRecursion& recursion, const Enclosure& X);

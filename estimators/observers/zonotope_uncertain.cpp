@@ -29,6 +29,7 @@ class ZonotopeUncertain final : public Observer {
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override { return {gain_.gain}; }
+  bool follows_its_sets() const override { return !limit_.is_set(); }
   std::optional<Box> inner_estimate() const override { return inner_.hull(); }
 
  private:

@@ -48,7 +48,9 @@ class SweepFiles {
     files.write(
         "results.json",
         R"({"cordon_results": 1, "cordon": {"version": "1.2", "abi_tag": "x"}, "tools": {}, "plugins": [],
-  "title": "Sweep", "study_hash": "h", "study": {"sweep": [
+  "title": "Sweep", "study_hash": "h", "measures": [
+    {"name": "radius_mean", "title": "mean radius", "better": "less", "ranked": true},
+    {"name": "contains_truth_share", "title": "truth inside", "better": "more", "share": true}], "study": {"sweep": [
     {"name": "order", "path": "/pipelines/*/observer/order", "repeat": false, "values": [)" +
             orders + R"(]},
     {"name": "seed", "path": "/data/simulate/seed", "repeat": true, "values": [1, 2]}]},

@@ -41,6 +41,7 @@ ResultTable run_table(std::vector<ResultColumn> columns,
   ResultTable table;
   table.title = "Run";
   table.columns = std::move(columns);
+  table.measures = tables::told();
   for (std::size_t i = 0; i < values.size(); ++i) {
     table.pipelines.emplace_back(1, static_cast<char>('a' + i));
     table.rows.push_back({i, {}, values[i], ""});
@@ -98,6 +99,24 @@ TEST_CASE("a run: the important columns that have numbers, in order, the best ma
   CHECK(texts(table, 0) == Texts{"a", "2", "2", "100 % *", "30", "55.50", "13.9", "1"});
   CHECK(texts(table, 1) == Texts{"b", "1 *", "1", "50 %", "3", "4 *", "1", "1"});
   CHECK(table.notes.empty());
+}
+
+TEST_CASE("what a metric tells of a number decides how it is shown, whoever has made the metric") {
+  ResultTable table = run_table(
+      {{"wear", false}, {"odd", false}, {"slack", false}, {"hidden", false}, {"untold", false}},
+      {{4, 0, .5, 1, 7}, {2, 0, .25, 1, 8}});
+  table.measures = {
+      {.name = "slack", .title = "slack", .better = Preference::more, .share = true},
+      {.name = "wear", .title = "wear", .unit = "mm", .better = Preference::less, .ranked = true},
+      {.name = "odd", .in_comparison = Measure::Shown::if_any},
+      {.name = "hidden", .in_comparison = Measure::Shown::never},
+      {.name = "absent"}};
+  CHECK(titles(compared(table)) == Texts{"pipeline", "slack", "wear [mm]", "× best", "untold"});
+  CHECK(texts(compared(table), 0) == Texts{"a", "50 % *", "4", "2", "7"});
+  CHECK(texts(compared(table), 1) == Texts{"b", "25 %", "2 *", "1", "8"});
+  table.rows[0].values[1] = 1;
+  CHECK(titles(compared(table)).back() == "untold");
+  CHECK(titles(compared(table)).at(4) == "odd");
 }
 
 TEST_CASE("the time of a pipeline is of interest where it designs, the steps are where it runs") {

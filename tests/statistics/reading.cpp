@@ -48,6 +48,17 @@ SweepFiles sweep_files() {
            {"path", "/data/simulate/seed"},
            {"repeat", true},
            {"values", {1, 2}}}}}}},
+      {"measures",
+       {{{"name", "radius_mean"},
+         {"title", "mean radius"},
+         {"short_title", "radius"},
+         {"unit", "m"},
+         {"better", "less"},
+         {"ranked", true},
+         {"rest", {"x", "y"}},
+         {"in_run", "never"},
+         {"in_comparison", "if_any"}},
+        {{"name", "lower_bound"}, {"share", true}}}},
       {"pipelines", {{{"name", "a"}, {"backend", "x"}}, {{"name", "b"}, {"backend", "x"}}}},
       {"points", Json::array()}};
   files.run = {{"cordon_run", 1},
@@ -109,6 +120,7 @@ TEST_CASE("a run is read as it was written") {
   CHECK(found.version == expected.version);
   CHECK(found.axes.empty());
   CHECK(found.pipelines == expected.pipelines);
+  CHECK(found.measures == expected.measures);
   REQUIRE(found.rows.size() == expected.rows.size());
   CHECK(found.columns.size() == expected.columns.size());
   for (std::size_t i = 0; i < expected.rows.size(); ++i) {
@@ -154,6 +166,17 @@ TEST_CASE("a sweep is read as it was written, however it is laid out") {
     CHECK(table.axes[1].values == std::vector<std::string>{"1", "2"});
     CHECK(table.pipelines == std::vector<std::string>{"a", "b"});
     REQUIRE(table.columns.size() == 4);
+    REQUIRE(table.measures.size() == 2);
+    CHECK(table.measures[0] == Measure{.name = "radius_mean",
+                                       .title = "mean radius",
+                                       .short_title = "radius",
+                                       .unit = "m",
+                                       .better = Preference::less,
+                                       .ranked = true,
+                                       .rest = {"x", "y"},
+                                       .in_run = Measure::Shown::never,
+                                       .in_comparison = Measure::Shown::if_any});
+    CHECK(table.measures[1] == Measure{.name = "lower_bound", .share = true});
     CHECK(table.columns[0] == ResultColumn{"steps", false});
     CHECK(table.columns[1] == ResultColumn{"radius_mean", false});
     CHECK(table.columns[2] == ResultColumn{"lower_bound", false});

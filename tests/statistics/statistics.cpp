@@ -204,6 +204,7 @@ TEST_CASE("a summary: over the repetitions, by combination and then by pipeline"
 
 TEST_CASE("what ended early, or has no positive mean, is not compared") {
   ResultTable table;
+  table.measures = tables::told();
   table.pipelines = {"a", "b", "c"};
   table.columns = {
       {"radius_mean", false}, {"step_us", true}, {"inconsistent_from", false}, {"cost", false}};
@@ -238,46 +239,28 @@ TEST_CASE("a table without rows has no summary") {
   CHECK(summary.rows[0].columns[0].count == 0);
 }
 
-TEST_CASE("which way is better") {
-  for (const char* less : {"radius_mean",
-                           "radius_max",
-                           "radius_unbounded_steps",
-                           "volume_mean",
-                           "f_w_radius_mean",
-                           "w_radius_max",
-                           "undecided",
-                           "answers_unknown",
-                           "contains_truth_no",
-                           "contains_truth_unknown",
-                           "detection_delay_min",
-                           "isolation_delay_median",
-                           "false_alarms",
-                           "false_alarm_rate",
-                           "wrong_mode_rate",
-                           "missed",
-                           "missed_rate",
-                           "faults_outside",
-                           "fault_1_half_width",
-                           "fault_12_rms_error",
-                           "cost",
-                           "gap",
-                           "experiments_wrong",
-                           "step_us",
-                           "step_time_us_mean",
-                           "step_time_us_max",
-                           "hull_us",
-                           "wall_s"}) {
-    CHECK_MESSAGE(preference_of(less) == Preference::less, less);
+TEST_CASE("which way is better: of numbers of the host, and as metrics tell") {
+  ResultTable table;
+  table.measures = {{.name = "wear", .better = Preference::less},
+                    {.name = "life", .better = Preference::more},
+                    {.name = "cost", .better = Preference::none}};
+  const auto better = [&](const char* name) { return preference_of(table, name); };
+  for (const char* less :
+       {"wear", "undecided", "answers_unknown", "detection_delay_min", "isolation_delay_median",
+        "false_alarms", "false_alarm_rate", "wrong_mode_rate", "missed", "missed_rate",
+        "faults_outside", "fault_1_half_width", "fault_12_rms_error", "gap", "experiments_wrong",
+        "step_us", "hull_us", "wall_s"}) {
+    CHECK_MESSAGE(better(less) == Preference::less, less);
   }
-  for (const char* more :
-       {"contains_truth_yes", "contains_truth_share", "exact_share", "inner_share", "detected",
-        "isolated", "faults_proven", "separates", "kappa_min", "experiments_isolated"}) {
-    CHECK_MESSAGE(preference_of(more) == Preference::more, more);
+  for (const char* more : {"life", "inner_share", "detected", "isolated", "faults_proven",
+                           "separates", "kappa_min", "experiments_isolated"}) {
+    CHECK_MESSAGE(better(more) == Preference::more, more);
   }
   for (const char* neither :
-       {"steps", "consistent", "inconsistent", "inconsistent_from", "volume_of_hull_steps",
-        "generators_max", "constraints_max", "runs", "segments", "unknown_fault", "horizon",
-        "lower_bound", "nodes", "x", ""}) {
-    CHECK_MESSAGE(preference_of(neither) == Preference::none, neither);
+       {"cost", "steps", "consistent", "inconsistent", "inconsistent_from", "radius_mean", "runs",
+        "segments", "unknown_fault", "horizon", "lower_bound", "nodes", "x", ""}) {
+    CHECK_MESSAGE(better(neither) == Preference::none, neither);
   }
+  table.measures.clear();
+  CHECK(better("cost") == Preference::less);
 }

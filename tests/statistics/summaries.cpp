@@ -149,6 +149,7 @@ TEST_CASE("verdicts: what was claimed held, did not hold, or is not known") {
 TEST_CASE("shares are per cents, and marks are mathematics") {
   ResultTable table;
   table.title = "Marks";
+  table.measures = tables::told();
   table.pipelines = {"a", "b"};
   table.columns = {
       {"radius_mean", false}, {"contains_truth_share", false}, {"inconsistent_from", false}};

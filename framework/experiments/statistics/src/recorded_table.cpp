@@ -7,6 +7,7 @@
 
 #include "experiments/statistics/large_json.hpp"
 #include "study/reading/read_sweep.hpp"
+#include "study/results/measures.hpp"
 #include "study/results/table_builder.hpp"
 #include "study/text/input_file.hpp"
 #include "study/text/manifest.hpp"
@@ -112,10 +113,11 @@ class TableReader {
 void TableReader::read_results() {
   const std::filesystem::path file = files_.file("results.json");
   Problems problems;
-  Wanted wanted{{"/cordon_results", "/cordon", "/tools", "/title", "/study_hash", "/study/sweep",
-                 "/pipelines/*/name", "/pipelines/*/numbers", "/pipelines/*/summary/error"},
-                {"/points/*"},
-                [this](const Cursor& at, const std::vector<std::size_t>&) { read_point(at); }};
+  Wanted wanted{
+      {"/cordon_results", "/cordon", "/tools", "/title", "/study_hash", "/measures", "/study/sweep",
+       "/pipelines/*/name", "/pipelines/*/numbers", "/pipelines/*/summary/error"},
+      {"/points/*"},
+      [this](const Cursor& at, const std::vector<std::size_t>&) { read_point(at); }};
   const Value tree = read_large(file, wanted, problems);
   const Cursor root(tree, "", problems);
   if (root.expect(Kind::object, not_as_written)) {
@@ -124,6 +126,7 @@ void TableReader::read_results() {
     read_head(root);
     read_axes(root);
     read_pipelines(root);
+    read_.table.measures = read_measures(root);
     if (!problems.any()) check_rows(root);
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/sweep/sweep_files.hpp"
+#include "study/results/measures.hpp"
 #include "study/text/input_file.hpp"
 #include "study/text/json_writer.hpp"
 #include "study/text/manifest.hpp"
@@ -200,7 +201,10 @@ void read_head(SweepFiles& sweep, const fs::path& file) {
   json::Problems problems;
   const json::Value tree = json::parse(head, problems);
   const Cursor root(tree, "", problems);
-  if (root.expect(Kind::object, not_as_written)) read_names(root, sweep);
+  if (root.expect(Kind::object, not_as_written)) {
+    read_names(root, sweep);
+    sweep.measures = read_measures(root);
+  }
   if (problems.any()) throw InputError(file.string(), problems.sorted());
   // What was checked is read again, by a parser that can also write: values are texts, the same
   // whoever reads this head.

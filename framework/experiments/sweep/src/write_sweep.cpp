@@ -5,6 +5,7 @@
 #include "cordon/study/statistics.hpp"
 #include "experiments/sweep/sweep_files.hpp"
 #include "study/results/file_heads.hpp"
+#include "study/results/metric_board.hpp"
 #include "study/results/results_parts.hpp"
 #include "study/results/summaries.hpp"
 #include "study/results/table_text.hpp"
@@ -141,7 +142,7 @@ SweepHeads heads_of(const Study& study, const Registry& registry, const std::str
                     double limit_s) {
   StringSink results, run;
   JsonWriter json(results);
-  begin_results_file(json, study, registry);
+  begin_results_file(json, study, registry, measures_of(study.metrics, registry));
   json.key("pipelines").begin_array(Layout::lines);
   for (const PipelineSpec& spec : study.pipelines) {
     json.begin_object().member("name", spec.name).member("backend", spec.backend.type);
@@ -160,6 +161,7 @@ SweepHeads heads_of(const Study& study, const Registry& registry, const std::str
 
 ResultTable table_of(const SweepFiles& sweep) {
   ResultTable table = sweep.rows.table(sweep.study);
+  table.measures = sweep.measures;
   table.study_hash = sweep.study_hash;
   table.version = sweep.version;
   return table;

@@ -2,6 +2,7 @@
 #include "study/results/file_heads.hpp"
 
 #include "cordon/registry/build.hpp"
+#include "study/results/measures.hpp"
 #include "study/text/fingerprint.hpp"
 #include "study/text/host.hpp"
 
@@ -9,7 +10,8 @@ namespace cordon::detail {
 
 using Layout = JsonWriter::Layout;
 
-void begin_results_file(JsonWriter& json, const Study& study, const Registry& registry) {
+void begin_results_file(JsonWriter& json, const Study& study, const Registry& registry,
+                        const std::vector<Measure>& measures) {
   const BuildInfo build = build_info();
   json.begin_object(Layout::lines).member("cordon_results", 1);
   json.key("cordon")
@@ -29,6 +31,7 @@ void begin_results_file(JsonWriter& json, const Study& study, const Registry& re
   json.member("title", study.title).member("study_hash", fingerprint(study.resolved));
   json.key("study");
   study.resolved.empty() ? json.null() : json.raw(study.resolved);
+  write_measures(json, measures);
 }
 
 void begin_run_file(JsonWriter& json, const Study& study, const Registry& registry,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/results/metric_board.hpp"
 
+#include <map>
 #include <set>
 
 namespace cordon::detail {
@@ -47,7 +48,6 @@ class MetricNames {
                                "answers_proven",
                                "answers_unknown",
                                "numbers",
-                               "contains_truth_share",
                                "step_us",
                                "predict_us",
                                "correct_us",
@@ -92,6 +92,40 @@ MetricValues MetricBoard::summary() const {
     for (MetricValue& value : entry.metric->summary()) names.add(to, std::move(value), entry.type);
   }
   return values;
+}
+
+std::vector<Measure> MetricBoard::measures() const {
+  std::vector<Measure> found;
+  MetricNames names;
+  for (const Entry& entry : entries_) {
+    const std::vector<Measure> told = entry.metric->measures();
+    std::map<std::string, std::string> name_in_files;
+    for (const MetricValue& value : entry.metric->summary()) {
+      std::vector<MetricValue> named;
+      names.add(named, value, entry.type);
+      if (!named.empty()) name_in_files[value.name] = named.front().name;
+    }
+    for (Measure measure : told) {
+      const auto name = name_in_files.find(measure.name);
+      if (name == name_in_files.end()) continue;
+      measure.name = name->second;
+      for (std::string& part : measure.rest) {
+        if (const auto other = name_in_files.find(part); other != name_in_files.end())
+          part = other->second;
+      }
+      found.push_back(std::move(measure));
+    }
+  }
+  return found;
+}
+
+std::vector<Measure> measures_of(const std::vector<ComponentSpec>& metrics,
+                                 const Registry& registry) {
+  try {
+    return MetricBoard(metrics, registry).measures();
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 }  // namespace cordon::detail

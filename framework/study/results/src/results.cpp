@@ -79,7 +79,7 @@ Results::Results(const Study& study, const Registry& registry, const DirectoryLo
 }
 
 void Results::begin_results(const Registry& registry) {
-  begin_results_file(results_, study_, registry);
+  begin_results_file(results_, study_, registry, measures_of(study_.metrics, registry));
   results_.key("pipelines").begin_array(Layout::lines);
 }
 
@@ -107,7 +107,7 @@ void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> r
     results_.key("admissible_set");
     assumptions->admissible_set ? write(results_, *assumptions->admissible_set)
                                 : void(results_.null());
-    results_.end_object();
+    results_.member("follows_its_sets", assumptions->follows_its_sets).end_object();
   } else {
     results_.null();
   }

@@ -76,7 +76,7 @@ class Pipeline {
                                          spec.observer.params);
       board_.emplace(study_.metrics, registry);
       observer_->start();
-      assumptions_ = {observer_->initial_set(), std::nullopt};
+      assumptions_ = {observer_->initial_set(), std::nullopt, observer_->follows_its_sets()};
       if (const Set* admissible = observer_->admissible_set())
         assumptions_->admissible_set = admissible->line_form();
       detail::PipelineAssumptions assumed{
@@ -319,6 +319,7 @@ RunOutcome detail::run_on(const OpenData& open, const Study& study, const Regist
   if (!options.out.empty()) results.emplace(study, registry, lock.emplace(options.out));
   Results* const writer = results ? &*results : nullptr;
   RunOutcome outcome;
+  outcome.measures = detail::measures_of(study.metrics, registry);
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
     bool done = true;
     if (study.pipelines[i].designer || study.pipelines[i].diagnoser) {

@@ -32,7 +32,7 @@ std::vector<Measure> measures_of(const ResultTable& table, const ComparisonTable
   for (const ComparisonColumn& column : comparison.columns) {
     const std::size_t at = detail::column_of(table, column.name);
     const bool counts = column.number && at < table.columns.size() &&
-                        preference_of(column.name) != Preference::none;
+                        preference_of(table, column.name) != Preference::none;
     // A comparison shows some numbers twice: as they are, and relative to the best.
     const bool again = std::any_of(measures.begin(), measures.end(),
                                    [at](const Measure& one) { return one.column == at; });
@@ -86,8 +86,9 @@ double lead_of(const ResultTable& table, std::span<const SummaryRow> rows,
     if (!detail::is_comparable(table, rows[i], column)) continue;
     const double mean = rows[i].columns[column].mean;
     double& of = best[i] ? winner : next;
-    const bool better =
-        preference_of(table.columns[column].name) == Preference::less ? mean < of : mean > of;
+    const bool better = preference_of(table, table.columns[column].name) == Preference::less
+                            ? mean < of
+                            : mean > of;
     if (std::isnan(of) || better) of = mean;
   }
   return next == 0 ? not_available : std::abs(winner - next) / std::abs(next);

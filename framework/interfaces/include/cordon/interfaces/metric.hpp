@@ -19,6 +19,27 @@ struct StepView {
   const PhaseTimes& times;
 };
 
+/// Is less of a number better, more of it, or neither?
+enum class Preference { none, less, more };
+
+/// What tables, statistics and reports know of a value beside its name.
+struct Measure {
+  enum class Shown { always, if_any, never };  ///< `if_any`: where one of the numbers is not 0
+
+  std::string name;              ///< as in the summary of the metric
+  std::string title = {};        ///< of its column, "mean radius"; empty: the name
+  std::string short_title = {};  ///< where there is less room, "gen"; empty: the title
+  std::string unit = {};         ///< "µs"; empty: that of the states, or none
+  Preference better = Preference::none;
+  bool ranked = false;                  ///< its ratio to the best one stands beside it
+  bool share = false;                   ///< of 1, shown in percent
+  std::vector<std::string> rest = {};   ///< values that make a count up to the whole: "71/101"
+  Shown in_run = Shown::always;         ///< in the table of a run
+  Shown in_comparison = Shown::always;  ///< in tables that compare the pipelines of a run or sweep
+
+  friend bool operator==(const Measure&, const Measure&) = default;
+};
+
 /// A named number or word; a NaN number means "not available here" and is written as null.
 struct MetricValue {
   std::string name;
@@ -32,12 +53,16 @@ class Metric {
   virtual ~Metric() = default;
   std::vector<MetricValue> step(const StepView& view) { return do_step(view); }
   std::vector<MetricValue> summary() const { return do_summary(); }
+  /// What is to know of the values of `summary`, always the same. A value that is not described has
+  /// a column under its name, and none is better than another.
+  std::vector<Measure> measures() const { return do_measures(); }
   /// False for measured times: they are kept apart from the results that repeat byte for byte.
   bool reproducible() const { return do_reproducible(); }
 
  private:
   virtual std::vector<MetricValue> do_step(const StepView& view) = 0;
   virtual std::vector<MetricValue> do_summary() const = 0;
+  virtual std::vector<Measure> do_measures() const { return {}; }
   virtual bool do_reproducible() const { return true; }
 };
 

@@ -63,6 +63,11 @@ class Observer {
   /// observer states it here, and `cordon verify` compares the sets.
   virtual Tightness claim() const { return Tightness::outer; }
 
+  /// Does each estimate hold all successors of the one before that are consistent with the samples?
+  /// Then `cordon verify` holds every estimate against the one before. An observer that knows more
+  /// than its last set, as a bound of its error for all times, may keep to less, and says no.
+  virtual bool follows_its_sets() const { return false; }
+
   /// A box inside the hull of the last estimate, made of trajectories that the observer must
   /// enclose: what is left between the two is the price of the enclosure. Never an enclosure
   /// itself. Nothing: not offered.

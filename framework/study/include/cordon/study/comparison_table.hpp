@@ -30,8 +30,8 @@ struct ComparisonTable {
   std::vector<std::string> notes;                 ///< what the marks in the cells mean
 };
 
-/// Of all columns the important ones that have a number: sizes of sets, containment, delays and
-/// rates of diagnoses, cost, times.
+/// Of all columns those that are shown in comparisons (`Measure`) and have a number: what the
+/// metrics found, then the host's own numbers, as delays and rates of diagnoses, cost, times.
 ComparisonTable comparison_table(const ResultTable& table, const Summary& summary);
 
 /// A number with so many significant digits, as short as people write it: "0.00123", "1.20",

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cordon/interfaces/metric.hpp"
 #include "cordon/study/run.hpp"
 #include "cordon/study/study.hpp"
 
@@ -43,8 +44,9 @@ struct ResultTable {
   std::string version;  ///< of the program
   std::vector<SweepAxis> axes;
   std::vector<std::string> pipelines;
-  std::vector<ResultColumn> columns;  ///< those of any row, in the order of their first appearance
-  std::vector<ResultRow> rows;        ///< by point
+  std::vector<ResultColumn> columns;   ///< those of any row, in the order of their first appearance
+  std::vector<ResultRow> rows;         ///< by point
+  std::vector<Measure> measures = {};  ///< what the metrics tell of their columns
 };
 
 /// Reads a finished run (one row per pipeline, no axes) or a finished sweep. Throws InputError.

@@ -243,7 +243,8 @@ struct PipelineOutcome {
 struct RunOutcome {
   bool interrupted = false;
   std::vector<PipelineOutcome> pipelines;
-  std::vector<std::filesystem::path> files;
+  std::vector<Measure> measures = {};  ///< what the metrics tell of their values
+  std::vector<std::filesystem::path> files = {};
   std::string report_error = {};  ///< why there is no new report.html, though the results are
                                   ///< complete; empty: nothing went wrong
 };

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cordon/study/result_table.hpp"
@@ -39,9 +40,14 @@ struct Summary {
 };
 Summary summarise(const ResultTable& table);
 
-/// Is less of this number better (radius, volume, delays, false alarms, times, cost), more, or
-/// neither?
-enum class Preference { less, more, none };
-Preference preference_of(const std::string& column);
+/// What is known of a column: told by its metric, or of a number that the host finds itself; null
+/// if it is not described.
+const Measure* measure_of(const ResultTable& table, std::string_view column);
+/// "mean radius", "step time [µs]"; without a title the name of the value.
+std::string title_of(const Measure& measure);
+/// The same where there is less room.
+std::string short_title_of(const Measure& measure);
+/// Is less of this number better, more, or neither?
+Preference preference_of(const ResultTable& table, std::string_view column);
 
 }  // namespace cordon

@@ -34,18 +34,13 @@ bool ends_early(const ResultTable& table, const SummaryRow& row) {
          happened("violated_at") || happened("inner_outside");
 }
 
-/// Is the column a share of something, or a relative gap?
-bool is_share(const std::string& column) {
-  return column == "gap" || column == "optimal" || column == "separates" ||
-         column.ends_with("_share") || column.ends_with("_rate");
-}
-
 }  // namespace
 
-bool are_alike(const std::string& column, double a, double b) {
+bool are_alike(const ResultTable& table, std::size_t column, double a, double b) {
+  const Measure* measure = measure_of(table, table.columns[column].name);
   const double apart = std::abs(a - b);
   return apart <= tolerances::reported * std::max(std::abs(a), std::abs(b)) ||
-         (is_share(column) && apart <= tolerances::reported);
+         (measure && measure->share && apart <= tolerances::reported);
 }
 
 std::size_t column_of(const ResultTable& table, std::string_view name) {
@@ -68,8 +63,7 @@ std::vector<std::span<const SummaryRow>> combinations(const Summary& summary) {
 
 std::vector<bool> best_of(const ResultTable& table, std::span<const SummaryRow> rows,
                           std::size_t column) {
-  const std::string& name = table.columns[column].name;
-  const Preference preference = preference_of(name);
+  const Preference preference = preference_of(table, table.columns[column].name);
   std::vector<bool> best(rows.size());
   double smallest = infinity, largest = -infinity;
   for (const SummaryRow& row : rows) {
@@ -77,12 +71,13 @@ std::vector<bool> best_of(const ResultTable& table, std::span<const SummaryRow> 
     smallest = std::min(smallest, row.columns[column].mean);
     largest = std::max(largest, row.columns[column].mean);
   }
-  if (preference == Preference::none || !(smallest < largest) || are_alike(name, smallest, largest))
+  if (preference == Preference::none || !(smallest < largest) ||
+      are_alike(table, column, smallest, largest))
     return best;
   const double wanted = preference == Preference::less ? smallest : largest;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     best[i] = is_comparable(table, rows[i], column) &&
-              are_alike(name, rows[i].columns[column].mean, wanted);
+              are_alike(table, column, rows[i].columns[column].mean, wanted);
   }
   return best;
 }

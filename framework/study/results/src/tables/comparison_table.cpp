@@ -8,101 +8,46 @@
 #include <fmt/format.h>
 
 #include "study/results/comparable.hpp"
+#include "study/results/measures.hpp"
 #include "study/results/table_text.hpp"
 
 namespace cordon {
 
 namespace {
 
-struct Measure {
-  const char *name, *title;
-  bool relative = false;
-  bool percent = false;
-  bool only_if_any = false;  ///< shown if one of the means is not 0
-};
-
-/// In the order of the table.
-const std::vector<Measure>& measures() {
-  static const std::vector<Measure> all{
-      {"radius_mean", "mean radius", true},
-      {"volume_mean", "mean volume", true},
-      {"f_w_radius_mean", "mean F-W-radius", true},
-      {"w_radius_mean", "mean W-radius", true},
-      {"inner_share", "inner/outer width", false, true},
-      {"radius_unbounded_steps", "unbounded steps", false, false, true},
-      {"contains_truth_share", "truth inside", false, true},
-      {"inconsistent", "empty steps", false, false, true},
-      {"undecided", "undecided steps", false, false, true},
-      {"detection_delay_median", "detection delay"},
-      {"isolation_delay_median", "isolation delay"},
-      {"false_alarm_rate", "false alarms", false, true},
-      {"wrong_mode_rate", "wrong mode", false, true, true},
-      {"missed_rate", "missed", false, true},
-      {"faults_outside", "faults outside bounds", false, false, true},
-      {"horizon", "horizon"},
-      {"cost", "cost", true},
-      {"gap", "gap", false, true},
-      {"optimal", "optimal", false, true},
-      {"infeasible", "infeasible", false, true, true},
-      {"separates", "separates", false, true},
-      {"kappa_min", "least κ"},
-      {"experiments_isolated", "isolated"},
-      {"experiments_wrong", "wrong", false, false, true},
-      {"generators_max", "used generators"},
-      {"constraints_max", "used constraints"},
-      {"step_us", "µs/step", true},
-      {"wall_s", "time [s]"},
-  };
-  return all;
-}
-
 /// A column of the table that is made of a column of the results.
-struct Shown {
-  Measure measure;
+struct Column {
   std::size_t column;
+  const Measure* measure;  ///< null: not described
+  bool ranked = false, share = false;
 };
-
-bool is_half_width(const std::string& name) {
-  return name.starts_with("fault_") && name.ends_with("_half_width");
-}
 
 /// Has the column a number in some row, and one that is worth a column?
-bool is_worth(const Summary& summary, const Shown& shown) {
+bool is_worth(const Summary& summary, const Column& shown) {
+  const Measure::Shown when = shown.measure ? shown.measure->in_comparison : Measure::Shown::always;
+  if (when == Measure::Shown::never) return false;
   return std::any_of(summary.rows.begin(), summary.rows.end(), [&](const SummaryRow& row) {
     const Statistics& found = row.columns[shown.column];
     return found.infinite > 0 ||
-           (found.count > 0 && (!shown.measure.only_if_any || found.mean != 0));
+           (found.count > 0 && (when == Measure::Shown::always || found.mean != 0));
   });
 }
 
-std::vector<Shown> shown_columns(const ResultTable& table, const Summary& summary) {
-  std::vector<Shown> found;
-  const auto add = [&](const Measure& measure, std::size_t column) {
-    if (column < table.columns.size() && is_worth(summary, {measure, column}))
-      found.push_back({measure, column});
-  };
-  for (const Measure& measure : measures()) {
-    if (measure.name ==
-        std::string_view("cost")) {  // before designs: what was bounded of additive faults
-      for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        if (is_half_width(table.columns[i].name)) add({table.columns[i].name.c_str(), "", true}, i);
-      }
-    }
-    add(measure, detail::column_of(table, measure.name));
+/// Of pipelines that run, the time of a step is of interest; of those that design, of the whole.
+std::vector<Column> shown_columns(const ResultTable& table, const Summary& summary) {
+  std::vector<Column> found;
+  for (const std::size_t column : detail::compared_columns(table)) {
+    const Measure* measure = measure_of(table, table.columns[column].name);
+    const Column shown{column, measure, measure && measure->ranked, measure && measure->share};
+    if (is_worth(summary, shown)) found.push_back(shown);
   }
-  const bool steps = std::any_of(found.begin(), found.end(), [](const Shown& s) {
-    return s.measure.name == std::string_view("step_us");
-  });
-  const bool designs = detail::column_of(table, "cost") < table.columns.size();
-  if (steps && !designs)
-    std::erase_if(found,
-                  [](const Shown& s) { return s.measure.name == std::string_view("wall_s"); });
+  const std::size_t step = detail::column_of(table, "step_us"),
+                    whole = detail::column_of(table, "wall_s"), none = table.columns.size();
+  const bool steps =
+      std::any_of(found.begin(), found.end(), [&](const Column& s) { return s.column == step; });
+  if (steps && detail::column_of(table, "cost") == none)
+    std::erase_if(found, [&](const Column& s) { return s.column == whole; });
   return found;
-}
-
-std::string title_of(const Shown& shown, const std::string& name) {
-  if (*shown.measure.title) return shown.measure.title;
-  return "half width " + name.substr(6, name.size() - 6 - std::string_view("_half_width").size());
 }
 
 /// "1.689 ± 0.012 (∞: 2) [40]": mean and deviation of the finite numbers; how many were infinite;
@@ -119,26 +64,26 @@ std::string value_text(const SummaryRow& row, const Statistics& found, bool perc
   return text;
 }
 
-bool any_row(const Summary& summary, const std::vector<Shown>& shown, auto&& holds) {
+bool any_row(const Summary& summary, const std::vector<Column>& shown, auto&& holds) {
   return std::any_of(summary.rows.begin(), summary.rows.end(), [&](const SummaryRow& row) {
-    return std::any_of(shown.begin(), shown.end(), [&](const Shown& s) { return holds(row, s); });
+    return std::any_of(shown.begin(), shown.end(), [&](const Column& s) { return holds(row, s); });
   });
 }
 
 std::vector<std::string> notes_of(const ResultTable& table, const Summary& summary,
-                                  const std::vector<Shown>& shown) {
+                                  const std::vector<Column>& shown) {
   std::vector<std::string> notes;
   std::int64_t most = 0;
   for (const SummaryRow& row : summary.rows) most = std::max(most, row.points);
   if (most > 1)
     notes.push_back(fmt::format("Mean ± standard deviation over up to {} repetitions.", most));
-  const auto partial = [](const SummaryRow& row, const Shown& s) {
+  const auto partial = [](const SummaryRow& row, const Column& s) {
     const Statistics& found = row.columns[s.column];
     return found.count > 0 && found.count + found.infinite < row.points - row.failed;
   };
   if (any_row(summary, shown, partial))
     notes.emplace_back("[n]: only n points have such a number; the mean is over them.");
-  const auto ended = [&](const SummaryRow& row, const Shown& s) {
+  const auto ended = [&](const SummaryRow& row, const Column& s) {
     return row.columns[s.column].count == row.points &&
            !detail::is_comparable(table, row, s.column);
   };
@@ -163,13 +108,13 @@ ComparisonTable comparison_table(const ResultTable& table, const Summary& summar
     result.columns.push_back({table.axes[i].name, table.axes[i].name, false, false});
   }
   result.columns.push_back({"pipeline", "pipeline", false, false});
-  const std::vector<Shown> shown = shown_columns(table, summary);
+  const std::vector<Column> shown = shown_columns(table, summary);
   const bool failures = std::any_of(summary.rows.begin(), summary.rows.end(),
                                     [](const SummaryRow& row) { return row.failed > 0; });
-  for (const Shown& s : shown) {
+  for (const Column& s : shown) {
     const std::string& name = table.columns[s.column].name;
-    result.columns.push_back({title_of(s, name), name, true, false});
-    if (s.measure.relative && table.pipelines.size() > 1)
+    result.columns.push_back({detail::title_of(s.measure, name), name, true, false});
+    if (s.ranked && table.pipelines.size() > 1)
       result.columns.push_back({"× best", name, true, true});
   }
   if (failures) result.columns.push_back({"failed", "failed", true, false});
@@ -182,15 +127,15 @@ ComparisonTable comparison_table(const ResultTable& table, const Summary& summar
         cells.push_back({detail::axis_value(table, axis, row.at[axis]), false});
       cells.push_back({table.pipelines[row.pipeline], false});
     }
-    for (const Shown& s : shown) {
+    for (const Column& s : shown) {
       const std::vector<bool> best = detail::best_of(table, rows, s.column);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const Statistics& found = rows[i].columns[s.column];
-        std::string text = value_text(rows[i], found, s.measure.percent);
+        std::string text = value_text(rows[i], found, s.share);
         if (found.count == rows[i].points && !detail::is_comparable(table, rows[i], s.column))
           text += " †";
         result.rows[first + i].push_back({std::move(text), best[i]});
-        if (s.measure.relative && table.pipelines.size() > 1)
+        if (s.ranked && table.pipelines.size() > 1)
           result.rows[first + i].push_back({number_text(rows[i].relative[s.column], 3), false});
       }
     }

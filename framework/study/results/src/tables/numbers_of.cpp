@@ -53,18 +53,11 @@ std::optional<double> number_of(const MetricValue& metric) {
 }
 
 void add_metrics(Numbers& numbers, const PipelineOutcome& outcome) {
-  double yes = not_available, others = 0;
   for (std::size_t i = 0; i < outcome.summary.size(); ++i) {
     const MetricValue& metric = outcome.summary[i];
-    const std::optional<double> number = number_of(metric);
-    if (!number) continue;
-    numbers.add(metric.name, *number, i >= outcome.reproducible);
-    if (metric.name == "contains_truth_yes") yes = *number;
-    if (metric.name == "contains_truth_no" || metric.name == "contains_truth_unknown")
-      others += *number;
+    if (const auto number = number_of(metric))
+      numbers.add(metric.name, *number, i >= outcome.reproducible);
   }
-  if (!std::isnan(yes))
-    numbers.add("contains_truth_share", yes + others > 0 ? yes / (yes + others) : not_available);
 }
 
 void add_observer(Numbers& numbers, const PipelineOutcome& outcome) {

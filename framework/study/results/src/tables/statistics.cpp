@@ -2,7 +2,6 @@
 #include "cordon/study/statistics.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -37,24 +36,9 @@ void add_moments(Statistics& found, const std::vector<double>& sorted) {
   if (sorted.front() == sorted.back()) found.deviation = 0;
 }
 
-bool has(std::string_view text, std::initializer_list<std::string_view> words) {
-  return std::any_of(words.begin(), words.end(),
-                     [&](std::string_view word) { return text == word; });
-}
-
-bool is_of(std::string_view text, std::initializer_list<std::string_view> beginnings) {
-  return std::any_of(beginnings.begin(), beginnings.end(),
-                     [&](std::string_view word) { return text.starts_with(word); });
-}
-
-bool is_time(std::string_view column) {
-  return column.ends_with("_us") || column.ends_with("_us_mean") || column.ends_with("_us_max") ||
-         column == "wall_s";
-}
-
 /// `relative` of one column over the rows of one combination.
 void add_relative(const ResultTable& table, std::span<SummaryRow> rows, std::size_t column) {
-  if (preference_of(table.columns[column].name) != Preference::less) return;
+  if (preference_of(table, table.columns[column].name) != Preference::less) return;
   double smallest = infinity;
   for (const SummaryRow& row : rows) {
     if (detail::is_comparable(table, row, column))
@@ -92,24 +76,6 @@ Statistics statistics_of(std::span<const double> values) {
   found.q95 = quantile(sorted, .95);
   found.max = sorted.back();
   return found;
-}
-
-Preference preference_of(const std::string& column) {
-  if (has(column, {"contains_truth_yes", "contains_truth_share", "exact_share", "inner_share",
-                   "detected", "isolated", "faults_proven", "optimal", "separates", "kappa_min",
-                   "experiments_isolated"}))
-    return Preference::more;
-  if (has(column, {"volume_of_hull_steps"})) return Preference::none;
-  if (has(column, {"undecided", "answers_unknown", "contains_truth_no", "contains_truth_unknown",
-                   "wrong_mode_rate", "faults_outside", "cost", "gap", "experiments_wrong"}))
-    return Preference::less;
-  if (is_of(column, {"radius", "volume", "w_radius", "f_w_radius", "detection_delay",
-                     "isolation_delay", "false_alarm", "missed"}))
-    return Preference::less;
-  if (column.starts_with("fault_") &&
-      (column.ends_with("_half_width") || column.ends_with("_rms_error")))
-    return Preference::less;
-  return is_time(column) ? Preference::less : Preference::none;
 }
 
 Summary summarise(const ResultTable& table) {

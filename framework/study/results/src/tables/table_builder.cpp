@@ -38,6 +38,7 @@ void TableBuilder::finish() {
 ResultTable table_of(const Study& study, const RunOutcome& outcome) {
   ResultTable table;
   table.title = study.title;
+  table.measures = outcome.measures;
   table.study_hash = fingerprint(study.resolved);
   table.version = build_info().version;
   TableBuilder builder(table);

@@ -28,8 +28,9 @@ struct SweepFiles {
   SweepHeads heads;
   Study study;  ///< title, axes, and the names of the pipelines: as `heads.results` tells them
   std::string study_hash, version, abi_tag;
-  double limit_s = infinity;   ///< of a point
-  std::optional<Shard> shard;  ///< of a part
+  std::vector<Measure> measures = {};  ///< what the metrics tell of their numbers
+  double limit_s = infinity;           ///< of a point
+  std::optional<Shard> shard;          ///< of a part
   SweepRows rows;
   double wall_s = 0;
   std::string finished = {};

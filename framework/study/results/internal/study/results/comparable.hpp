@@ -25,7 +25,7 @@ std::vector<std::span<const SummaryRow>> combinations(const Summary& summary);
 
 /// Do two means of a column differ by no more than rounding may: by 1e-9 of the larger, or, of
 /// shares and gaps, by 1e-9?
-bool are_alike(const std::string& column, double a, double b);
+bool are_alike(const ResultTable& table, std::size_t column, double a, double b);
 
 /// Per row of one combination: has it the best mean of this column, or one alike? None is best if
 /// all that are comparable are alike.

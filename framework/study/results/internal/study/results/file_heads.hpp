@@ -10,7 +10,8 @@
 namespace cordon::detail {
 
 /// Opens the object, which stays open: versions, title, and the resolved study.
-void begin_results_file(JsonWriter& json, const Study& study, const Registry& registry);
+void begin_results_file(JsonWriter& json, const Study& study, const Registry& registry,
+                        const std::vector<Measure>& measures);
 /// The same: file of the study, host, files of the plugins, warnings.
 void begin_run_file(JsonWriter& json, const Study& study, const Registry& registry,
                     const std::string& started);

@@ -25,6 +25,8 @@ class MetricBoard {
 
   const MetricValues& step(const StepView& view);
   MetricValues summary() const;
+  /// What the metrics tell of their values, under the names in the files.
+  std::vector<Measure> measures() const;
 
  private:
   struct Entry {
@@ -36,5 +38,10 @@ class MetricBoard {
   std::vector<Entry> entries_;
   MetricValues values_;
 };
+
+/// What the metrics of a study tell of their values; nothing if one of them cannot be made, which
+/// its pipelines report.
+std::vector<Measure> measures_of(const std::vector<ComponentSpec>& metrics,
+                                 const Registry& registry);
 
 }  // namespace cordon::detail

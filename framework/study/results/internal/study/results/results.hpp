@@ -38,6 +38,7 @@ struct DiagnosisResult {
 struct Assumptions {
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
+  bool follows_its_sets = false;  ///< as the observer says
 };
 
 /// Writes into `out`:

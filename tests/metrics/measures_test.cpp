@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the metrics of the project tell of their values.
+#include <algorithm>
+#include <filesystem>
+
+#include <doctest/doctest.h>
+
+#include "cordon/core/line_form.hpp"
+#include "cordon/registry/registry.hpp"
+
+using namespace cordon;
+
+namespace {
+
+struct Scene {
+  Scene() { registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}}); }
+
+  /// After one step for each answer, in this order, about the truth.
+  std::shared_ptr<Metric> fed(const std::string& name, const std::vector<Vector>& truths) {
+    auto metric = registry.make_metric(name, {});
+    Estimate estimate;
+    estimate.set =
+        registry.make_backend("zonotope", {})->import(make_zonotope(Vector{{0}}, Matrix{{1}}));
+    const Box hull = estimate.set->interval_hull();
+    const PhaseTimes times;
+    for (const Vector& truth : truths) metric->step({estimate, hull, &truth, true, times});
+    return metric;
+  }
+
+  Registry registry;
+};
+
+const MetricValue& value_of(const std::vector<MetricValue>& values, const std::string& name) {
+  const auto found = std::find_if(values.begin(), values.end(),
+                                  [&](const MetricValue& v) { return v.name == name; });
+  REQUIRE_MESSAGE(found != values.end(), name);
+  return *found;
+}
+
+}  // namespace
+
+TEST_CASE("every number of a summary is described, and nothing else") {
+  Scene scene;
+  CHECK(scene.registry.metrics().size() >= 8);
+  for (const std::string& name : scene.registry.metrics()) {
+    CAPTURE(name);
+    const auto metric = scene.fed(name, {Vector{{0}}});
+    const std::vector<Measure> measures = metric->measures();
+    const std::vector<MetricValue> summary = metric->summary();
+    CHECK(measures.size() == summary.size());
+    for (const Measure& measure : measures) {
+      value_of(summary, measure.name);
+      CHECK_FALSE(measure.title.empty());
+      for (const std::string& part : measure.rest) value_of(summary, part);
+      if (measure.ranked) CHECK(measure.better == Preference::less);
+    }
+    CHECK(metric->measures() == scene.registry.make_metric(name, {})->measures());
+  }
+}
+
+TEST_CASE("the share of truths inside is of those that were asked for") {
+  Scene scene;
+  const auto share = [&](const std::vector<Vector>& truths) {
+    const auto summary = scene.fed("contains_truth", truths)->summary();
+    return std::get<double>(value_of(summary, "contains_truth_share").value);
+  };
+  CHECK(share({Vector{{0}}, Vector{{1}}, Vector{{-1}}, Vector{{2}}}) == .75);
+  CHECK(std::isnan(share({})));
+}
