@@ -259,4 +259,7 @@ TEST_CASE("the true modes may be recorded") {
   const Diagnostic absent = first_problem("u,y,health\n1,2,healthy\n");
   CHECK(absent.pointer == "/data/csv/mode");
   CHECK(absent.message == "there is no column \"state of health\" in the header");
+  const Diagnostic foreign = first_problem("u,y,\"mode\n\x1b[31m\"\n1,2,3\n");
+  CHECK(foreign.suggestion.find("\\u000a\\u001b") != std::string::npos);
+  CHECK(foreign.suggestion.find("\n") == std::string::npos);
 }

@@ -164,12 +164,15 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
     const auto nothing = run.with([](Json& p) {
       p[0]["design"]["pairs"][0]["disjoint"] = "unknown";
       p[0]["design"]["separates"] = "unknown";
-      p[1]["design"]["u"] = nullptr;
+      for (const char* key : {"u", "cost", "separates", "pairs", "tubes"})
+        p[1]["design"][key] = nullptr;
+      p[1]["exact"] = nullptr;
     });
     REQUIRE(nothing.pipelines.size() == 2);
     CHECK(nothing.pipelines[0].proofs == 2);
     CHECK(nothing.pipelines[1].proofs == 0);
-    CHECK(run.with([](Json& p) { p[1]["design"] = nullptr; }).pipelines[1].proofs == 0);
+    CHECK(run.with([](Json& p) { p[1]["design"] = p[1]["exact"] = nullptr; }).pipelines[1].proofs ==
+          0);
   }
   SUBCASE("files that are not as they were written") {
     CHECK(refused(run, [](Json& p) {
@@ -184,6 +187,27 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
     CHECK(refused(run, [](Json& p) { p[0]["design"].erase("outputs"); }) != "");
     CHECK(refused(run, [](Json& p) { p[0]["design"]["outputs"] = "some"; }) != "");
     CHECK(refused(run, [](Json& p) { p[0].erase("design"); }) != "");
+    const auto refuses = [&](const std::function<void(Json&)>& change, const std::string& place) {
+      const std::string message = refused(run, change);
+      CHECK_MESSAGE(message.find(place) != std::string::npos, message);
+    };
+    // a statement about other modes than those that are proven again
+    for (const char* part : {"design", "exact"}) {
+      const std::string at = std::string("/pipelines/0/") + part;
+      const auto set = [&](const char* list, const char* key, const Json& value) {
+        return [=](Json& p) { p[0][part][list][0][key] = value; };
+      };
+      refuses(set("pairs", "modes", {"fast", "nominal"}), at + "/pairs/0/modes/0");
+      refuses(set("pairs", "modes", {"nominal", "nominal"}), at + "/pairs/0/modes/1");
+      refuses(set("pairs", "modes", {"nominal"}), at + "/pairs/0/modes");
+      refuses(set("pairs", "modes", nullptr), at + "/pairs/0/modes");
+      refuses(set("tubes", "mode", "fast"), at + "/tubes/0/mode");
+    }
+    // an input that is not the one that is spoken of
+    refuses([](Json& p) { p[0]["design"]["horizon"] = 2; }, "/pipelines/0/design/horizon");
+    refuses([](Json& p) { p[0]["design"]["status"] = "infeasible"; }, "/pipelines/0/design/status");
+    refuses([](Json& p) { p[1]["design"]["u"] = nullptr; }, "/pipelines/1/design/pairs");
+    refuses([](Json& p) { p[1]["design"] = nullptr; }, "/pipelines/1/exact");
   }
 }
 

@@ -282,6 +282,31 @@ TEST_CASE("damaged files are refused with their place") {
           "k = 1");
 }
 
+TEST_CASE("what two files say of one set, or a summary of its steps, has to be the same") {
+  const auto refuses = [](const Outcome& outcome, const std::string& place) {
+    CAPTURE(outcome.out);
+    CHECK(outcome.code == refused);
+    CHECK(names(outcome, place));
+  };
+  const std::size_t zonotope = 2 * steps;
+  refuses(run().with_set(zonotope + 1, [](Json& set) { set["tightness"] = "exact"; }), "line 10");
+  refuses(run().with_set(zonotope + 1, [](Json& set) { set["consistent"] = "no"; }), "line 10");
+  refuses(run().with_set(zonotope + 1, [](Json& set) { set["tightness"] = "tight"; }), "line 10");
+  const auto with = [](const char* part, const char* key, const Json& value) {
+    return run().with_results([&](Json& results) { results["pipelines"][1][part][key] = value; });
+  };
+  for (const char* part : {"summary", "numbers"}) {
+    for (const char* key : {"steps", "consistent", "inconsistent", "undecided"})
+      refuses(with(part, key, 13), std::string("/pipelines/1/") + part + "/" + key);
+    refuses(with(part, "inconsistent_from", 0),
+            std::string("/pipelines/1/") + part + "/inconsistent_from");
+  }
+  refuses(with("last", "k", 2), "/pipelines/1/last");
+  refuses(run().with_results(
+              [](Json& results) { results["pipelines"][1]["last"]["hull"]["upper"][0] = 101; }),
+          "/pipelines/1/last");
+}
+
 TEST_CASE("numbers at the ends of the range end in a verdict, not in a crash") {
   for (const char* huge : {"1e308", "-1e308", "1e-320", "1e150"}) {
     CAPTURE(huge);

@@ -103,11 +103,11 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 
 std::string suggest(std::string_view word, const std::vector<std::string>& candidates) {
   if (const std::string near = nearest(word, candidates); !near.empty())
-    return "did you mean \"" + near + "\"?";
+    return "did you mean \"" + detail::printable(near) + "\"?";
   if (candidates.empty()) return "";
   std::string text = candidates.size() == 1 ? "there is only" : "there are";
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    text += (i == 0 ? " \"" : ", \"") + candidates[i] + "\"";
+    text += (i == 0 ? " \"" : ", \"") + detail::printable(candidates[i]) + "\"";
   return text;
 }
 

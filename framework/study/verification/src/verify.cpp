@@ -212,6 +212,16 @@ class Verification {
     return std::move(*row);
   }
 
+  /// Both files tell what is claimed of the set. What results.json says was checked.
+  void expect_same_claims(const RecordedStep& step, const RecordedSet& row) const {
+    if (row.tightness != step.tightness)
+      refuse(row.line, fmt::format("says tightness \"{}\", results.json \"{}\"",
+                                   to_string(row.tightness), to_string(step.tightness)));
+    if (row.consistent != step.consistent)
+      refuse(row.line, fmt::format("says consistent \"{}\", results.json \"{}\"",
+                                   to_string(row.consistent), to_string(step.consistent)));
+  }
+
   /// What the run itself has found: an assumption that fails, claims of a designer that are false.
   void repeat(std::size_t p) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
@@ -294,15 +304,20 @@ class Verification {
                    margin = rounding.next(row->set, transition.before, *sample);
       const Vector outputs =
           follows ? Vector(rounding.of_outputs().cwiseMax(outputs_before)) : rounding.of_outputs();
-      if (static_cast<std::int64_t>(i) % options_.every != 0) continue;
-      check_step(p, i, *row, {margin, outputs}, F, follows ? &*row_before : nullptr, transition);
+      const bool is_checked = static_cast<std::int64_t>(i) % options_.every == 0;
+      if (is_checked)
+        check_step(p, i, *row, {margin, outputs}, F, follows ? &*row_before : nullptr, transition);
       if (outcome_.violation) return;
+      expect_same_claims(step, *row);
+      if (!is_checked) continue;
       if (options_.progress && Clock::now() - told > std::chrono::milliseconds(50)) {
         options_.progress(names_, p, static_cast<std::int64_t>(i),
                           static_cast<std::int64_t>(pipeline.steps.size()));
         told = Clock::now();
       }
     }
+    if (!pipeline.contradictions.empty())
+      throw InputError((run_.files.directory() / "results.json").string(), pipeline.contradictions);
     const auto total = static_cast<std::int64_t>(pipeline.steps.size());
     if (options_.progress) options_.progress(names_, p, total, total);
   }

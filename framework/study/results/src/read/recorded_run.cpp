@@ -5,8 +5,7 @@
 #include <charconv>
 #include <limits>
 
-#include "study/reading/read_parts.hpp"
-#include "study/text/input_file.hpp"
+#include "read/recorded_parts.hpp"
 
 namespace cordon::verification {
 
@@ -65,18 +64,6 @@ std::optional<LineForm> read_form(const Cursor& at, Index dim) {
 
 namespace {
 
-template <class Enum>
-std::optional<Enum> read_word(const Cursor& object, const char* key,
-                              std::initializer_list<Enum> all) {
-  const auto at = object.need(key, not_as_written);
-  if (!at) return std::nullopt;
-  std::vector<std::string> words;
-  for (const Enum one : all) words.emplace_back(to_string(one));
-  const auto word = read_choice(*at, words);
-  if (!word) return std::nullopt;
-  return *(all.begin() + (std::find(words.begin(), words.end(), *word) - words.begin()));
-}
-
 std::optional<Certificate> read_certificate(const Cursor& at) {
   if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
   using Proof = Certificate::Kind;
@@ -118,80 +105,6 @@ std::optional<Rounding> read_rounding(const Cursor& pipeline) {
                    {Rounding::nominal, Rounding::outward, Rounding::rational});
 }
 
-/// A bound of κ: a number or "inf".
-std::optional<double> read_kappa(const Cursor& at) {
-  if (at.is(Kind::text)) {
-    if (read_choice(at, {"inf"})) return infinity;
-    return std::nullopt;
-  }
-  return read_number(at);
-}
-
-/// "pairs" and "tubes" of a design, one after another.
-void read_claims(const Cursor& at, InputDesign& design, Index modes) {
-  const auto pairs = at.need("pairs", not_as_written), tubes = at.need("tubes", not_as_written);
-  if (!pairs || !tubes || !pairs->expect(Kind::array, not_as_written) ||
-      !tubes->expect(Kind::array, not_as_written))
-    return;
-  const auto count = static_cast<std::size_t>(modes);
-  if (pairs->size() != count * (count - 1) / 2)
-    pairs->error("does not hold every pair of modes", not_as_written);
-  if (tubes->size() != count) tubes->error("does not hold every mode", not_as_written);
-  for (std::size_t q = 0; q < pairs->size(); ++q) {
-    const Cursor item = pairs->item(q);
-    if (!item.expect(Kind::object, not_as_written)) continue;
-    PairSeparation& pair = design.pairs.emplace_back();
-    pair.disjoint = read_word(item, "disjoint", {Answer::yes, Answer::no, Answer::unknown})
-                        .value_or(Answer::unknown);
-    const auto kappa = item.need("kappa_lower", not_as_written);
-    if (kappa && pair.disjoint == Answer::yes) pair.kappa_lower = read_kappa(*kappa).value_or(0);
-  }
-  for (std::size_t i = 0; i < tubes->size(); ++i) {
-    const Cursor item = tubes->item(i);
-    if (!item.expect(Kind::object, not_as_written)) continue;
-    design.empty.push_back(read_word(item, "empty", {Answer::yes, Answer::no, Answer::unknown})
-                               .value_or(Answer::unknown));
-  }
-}
-
-std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& system) {
-  if (at.is(Kind::null) || !at.expect(Kind::object, not_as_written)) return std::nullopt;
-  const auto u = at.need("u", not_as_written), outputs = at.need("outputs", not_as_written),
-             admissible = at.need("admissible_set", not_as_written);
-  if (!u || !outputs || !admissible || u->is(Kind::null)) return std::nullopt;
-  const LinearModel& m = system.model.linear;
-  DesignOutcome outcome;
-  outcome.status = DesignStatus::given;
-  auto inputs = read_matrix(*u);
-  if (inputs && (inputs->rows() == 0 || inputs->cols() != m.inputs())) {
-    u->error("is " + shape(inputs->rows(), inputs->cols()) + ", must have " +
-                 counted(m.inputs(), "column"),
-             not_as_written);
-  }
-  const auto which = read_choice(*outputs, {"all", "last"});
-  outcome.last_output_only = which && *which == "last";
-  if (!admissible->is(Kind::null)) outcome.admissible_set = read_form(*admissible, m.states());
-  if (!inputs) return std::nullopt;
-  outcome.horizon = inputs->rows() - 1;
-  outcome.best.emplace().u = std::move(*inputs);
-  read_claims(at, *outcome.best, static_cast<Index>(system.modes.size()) + 1);
-  return outcome;
-}
-
-/// What beside the input stands in "design" and "exact".
-void read_separation(const Cursor& at, Index modes, RecordedPipeline& pipeline) {
-  const auto word = [](const Cursor& object) {
-    return read_word(object, "separates", {Answer::yes, Answer::no, Answer::unknown})
-        .value_or(Answer::unknown);
-  };
-  if (const auto design = at.find("design"); pipeline.design && design)
-    pipeline.claimed_separation = word(*design);
-  const auto exact = at.find("exact");
-  if (!exact || exact->is(Kind::null) || !exact->expect(Kind::object, not_as_written)) return;
-  pipeline.proven_separation = word(*exact);
-  read_claims(*exact, pipeline.proven.emplace(), modes);
-}
-
 std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart& system) {
   if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
   const Index n = system.model.linear.states();
@@ -202,9 +115,7 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
   pipeline.backend = read_text(*backend, 1000).value_or("");
   if (at.find("designer")) {
     pipeline.is_design = true;
-    if (const auto design = at.need("design", not_as_written))
-      pipeline.design = read_design(*design, system);
-    read_separation(at, static_cast<Index>(system.modes.size()) + 1, pipeline);
+    read_designed(at, system, pipeline);
   } else if (at.find("diagnoser")) {
     pipeline.is_diagnosis = true;
   }
@@ -234,21 +145,13 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
       admissible && !admissible->is(Kind::null)) {
     pipeline.admissible_set = read_form(*admissible, n);
   }
+  if (const auto follows = assumed->find("follows_its_sets"))
+    pipeline.follows_its_sets = read_flag(*follows).value_or(false);
   for (std::size_t i = 0; i < steps->size(); ++i) {
     if (auto step = read_step(steps->item(i), n)) pipeline.steps.push_back(std::move(*step));
   }
+  pipeline.contradictions = contradictions_of(at, pipeline.steps);
   return pipeline;
-}
-
-/// `study`: the pipeline in the study of the results.
-bool follows_its_sets(const Cursor& study) {
-  const auto observer = study.is(Kind::object) ? study.find("observer") : std::nullopt;
-  const auto type = observer && observer->is(Kind::object) ? observer->find("type") : std::nullopt;
-  const std::string name = type ? read_text(*type, 1000).value_or("") : "";
-  if (name == "prediction_correction" || name == "descriptor") return true;
-  if (name != "luenberger" && name != "zonotope_uncertain") return false;
-  const auto limit = observer->find("widening_limit");
-  return limit && read_number(*limit).value_or(1) == 0;
 }
 
 int line_number(const detail::InputFile& file) {
@@ -325,11 +228,8 @@ RecordedRun read_run(const std::filesystem::path& directory) {
     std::vector<std::string> warnings;
     SystemPart part = system ? read_system(*system, warnings) : SystemPart{};
     if (part.good && pipelines && pipelines->expect(Kind::array, not_as_written)) {
-      const auto studied = study->find("pipelines");
       for (std::size_t i = 0; i < pipelines->size(); ++i) {
         if (auto pipeline = read_pipeline(pipelines->item(i), part)) {
-          pipeline->follows_its_sets = studied && studied->is(Kind::array) && i < studied->size() &&
-                                       follows_its_sets(studied->item(i));
           run.pipelines.push_back(std::move(*pipeline));
         }
       }
@@ -367,6 +267,10 @@ std::optional<RecordedSet> SetReader::next(const std::function<bool(Index)>& wan
     const auto name = root.need("pipeline", not_as_written), k_at = root.need("k", not_as_written),
                proof = root.need("proof", not_as_written);
     const auto exchange = read_word(root, "exchange", {Tightness::exact, Tightness::outer});
+    row.tightness = read_word(root, "tightness", {Tightness::exact, Tightness::outer})
+                        .value_or(Tightness::outer);
+    row.consistent = read_word(root, "consistent", {Answer::yes, Answer::no, Answer::unknown})
+                         .value_or(Answer::unknown);
     const auto dim = read_size(root, "dim");
     if (name) row.pipeline = read_text(*name, 1000).value_or("");
     if (k_at) row.k = read_integer(*k_at, 0, max_integer).value_or(0);

@@ -45,12 +45,15 @@ struct RecordedPipeline {
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
   std::vector<RecordedStep> steps;
+  std::vector<Diagnostic> contradictions = {};  ///< where the summary says what the steps do not
 };
 
 /// One line of sets.jsonl.
 struct RecordedSet {
   std::string pipeline;
   Index k = 0;
+  Tightness tightness = Tightness::outer;  ///< like `consistent`, as in the step
+  Answer consistent = Answer::unknown;
   bool exact_exchange = true;
   LineForm set;
   Certificate proof;
