@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The dual simplex method for boxed programs and what certifies its proposals, against rational
+// The dual simplex method for boxed programs and its certified proposals, against rational
 // arithmetic.
 #include "solvers/box_simplex.hpp"
 
@@ -10,95 +10,28 @@
 
 #include <doctest/doctest.h>
 
-#include "cordon/core/linalg.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/lp.hpp"
 #include "solvers/basis_guess.hpp"
 #include "solvers/box_solver.hpp"
 #include "solvers/exact_program.hpp"
+#include "solvers/random_programs.hpp"
 #include "solvers/row_certificates.hpp"
 #include "solvers/row_gram.hpp"
 
 using namespace cordon;
+using namespace solvers_test;
 
 namespace {
-
-struct Program {
-  Matrix A;
-  Vector b, g;
-};
-
-/// Dense, sparse, of small integers, badly scaled, with dependent rows, zero rows or repeated
-/// columns; some infeasible.
-class Programs {
- public:
-  explicit Programs(std::uint64_t seed) : engine_(seed) {}
-
-  Program next() {
-    const Index m = below(6) + 1, g = below(14) + 1;
-    const Index kind = below(6);
-    Program p{entries(m, g, kind), Vector(m), entries(g, 1, kind)};
-    if (m > 1 && one_in(4)) p.A.row(m - 1) = p.A.row(0) * static_cast<double>(below(5) - 2);
-    if (m > 2 && one_in(4)) p.A.row(m - 1) = p.A.row(0) - p.A.row(1);
-    if (g > 1 && one_in(4)) p.A.col(g - 1) = p.A.col(0);
-    const Matrix xi =
-        entries(g, 1, one_in(2) ? 1 : 0);  // integers put ξ onto its bounds: degenerate programs
-    p.b = p.A * xi.cwiseMax(-1).cwiseMin(1);
-    if (one_in(4)) p.b *= 1 + 3 * uniform();
-    if (one_in(8)) p.b = entries(m, 1, kind);
-    if (kind == 5) scale(p);
-    return p;
-  }
-
- private:
-  Index below(Index n) { return static_cast<Index>(engine_() % static_cast<std::uint64_t>(n)); }
-  bool one_in(Index n) { return below(n) == 0; }
-  /// Of six bits, so that sums and products of the data are exact: no program is infeasible by a
-  /// rounding error.
-  double uniform() { return static_cast<double>(below(129) - 64) / 64; }
-
-  Matrix entries(Index rows, Index cols, Index kind) {
-    Matrix A(rows, cols);
-    for (double& a : A.reshaped()) {
-      a = kind == 1   ? static_cast<double>(below(5) - 2)
-          : kind == 2 ? (one_in(2) ? 0 : uniform())
-          : kind == 3 ? std::ldexp(uniform(), static_cast<int>(below(11)) - 5)
-                      : uniform();
-    }
-    return A;
-  }
-
-  void scale(Program& p) {
-    for (Index i = 0; i < p.b.size(); ++i) {
-      const double factor = std::ldexp(1.0, static_cast<int>(below(81)) - 40);
-      p.A.row(i) *= factor;
-      p.b[i] *= factor;
-    }
-    p.g *= std::ldexp(1.0, static_cast<int>(below(81)) - 40);
-  }
-
-  std::mt19937_64 engine_;
-};
 
 ExactProgram::Result exact_maximum(const Program& p) {
   return ExactProgram{Matrix(p.b.size(), 0), p.A, rational::exact(p.b), {}, rational::exact(p.g)}
       .maximum();
 }
 
-/// What rounding in the coefficients may hide: the sum of all terms.
-double size_of(const Program& p, const Vector& y) {
-  return p.g.lpNorm<1>() + y.cwiseAbs().dot(p.b.cwiseAbs() + p.A.cwiseAbs().rowwise().sum());
-}
-
 int programs_asked() {
   const char* count = std::getenv("CORDON_PROGRAMS");
   return count ? std::atoi(count) : 4000;
-}
-
-Matrix random_matrix(std::mt19937_64& engine, Index rows, Index cols) {
-  Matrix A(rows, cols);
-  for (double& a : A.reshaped()) a = static_cast<double>(engine() >> 11) * 0x1p-52 - 1;
-  return A;
 }
 
 }  // namespace
@@ -261,60 +194,6 @@ TEST_CASE("an objective of one variable does not lead around in circles") {
     }
     CHECK(iterations <= 12 * 6 * m);
   }
-}
-
-TEST_CASE("multipliers of any kind prove no more than is true") {
-  Programs programs(7);
-  std::mt19937_64 engine(8);
-  for (int k = 0; k < 300; ++k) {
-    const Program p = programs.next();
-    const Vector y = random_matrix(engine, p.b.size(), 1),
-                 error = random_matrix(engine, p.b.size(), 1).cwiseAbs() * 1e-3;
-    const RowCertificates certificates(p.A, p.b, error);
-    rational::Rational gain = rational::dot(rational::exact(p.b), rational::exact(y)), plain = 0,
-                       shifted = 0, doubt = 0;
-    for (Index i = 0; i < y.size(); ++i)
-      doubt += rational::exact(error[i]) * abs(rational::exact(y[i]));
-    for (Index j = 0; j < p.g.size(); ++j) {
-      const rational::Rational column =
-          rational::dot(rational::exact(p.A.col(j)), rational::exact(y));
-      plain += abs(column);
-      shifted += abs(rational::exact(p.g[j]) - column);
-    }
-    const double margin = certificates.farkas_margin(y), upper = certificates.upper_bound(p.g, y);
-    const double size = size_of(p, y);
-    CHECK(rational::exact(margin) <= gain - plain - doubt);
-    CHECK(rational::exact(upper) >= gain + shifted + doubt);
-    CHECK(rational::Rational(gain - plain - doubt).get_d() - margin <= 1e-13 * size);
-    CHECK(upper - rational::Rational(gain + shifted + doubt).get_d() <= 1e-13 * size);
-  }
-}
-
-TEST_CASE("a solution of the rows lies as near as the factor says") {
-  std::mt19937_64 engine(9);
-  for (const auto& [m, g] : {std::pair<Index, Index>{1, 3}, {5, 30}, {20, 21}, {50, 200}}) {
-    const Matrix A = random_matrix(engine, m, g);
-    const Vector b = A * (.5 * random_matrix(engine, g, 1)), error = Vector::Zero(m);
-    const RowGram gram(A, b, error);
-    REQUIRE(gram.is_regular());
-    const RowGram::Point point = gram.least_squares();
-    CHECK((A.transpose() * point.y - point.xi).lpNorm<Eigen::Infinity>() < 1e-9);
-    CHECK(gram.distance(point.xi) < 1e-5);
-    // moved off the rows, the nearest solution is the orthogonal one: no claim may be smaller than
-    // its distance
-    const Vector moved = point.xi + 1e-3 * random_matrix(engine, g, 1);
-    const Vector back = A.transpose() * *linalg::solve_spd(A * A.transpose(), b - A * moved);
-    CHECK(gram.distance(moved) >= back.lpNorm<Eigen::Infinity>());
-    CHECK(RowGram(A, b, Vector::Constant(m, 1e-3)).distance(point.xi) >
-          1e-3 / A.rowwise().norm().maxCoeff());
-  }
-  CHECK_FALSE(RowGram(Matrix{{1, 2}, {2, 4}}, Vector{{1, 2}}, Vector::Zero(2)).is_regular());
-  CHECK_FALSE(RowGram(Matrix{{0, 0}}, Vector{{1}}, Vector::Zero(1)).is_regular());
-  CHECK_FALSE(RowGram(Matrix{{0, 0}}, Vector{{0}}, Vector{{1e-9}}).is_regular());
-  const RowGram idle(Matrix{{0, 0}}, Vector{{0}}, Vector::Zero(1));
-  REQUIRE(idle.is_regular());
-  CHECK(idle.least_squares().xi == Vector::Zero(2));
-  CHECK(idle.distance(Vector{{.5, .5}}) == 0);
 }
 
 TEST_CASE("hostile programs end in a proof or in none, never in a wrong one") {
