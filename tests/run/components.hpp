@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Components for tests of runs, registered in the process: a box backend that rests on the exchange
-// form, a recursive observer, observers that misbehave, and metrics.
+// form, a recursive observer, observers that misbehave, a diagnoser that says what it is told, and
+// metrics.
 #pragma once
 
 #include <limits>
@@ -11,6 +12,7 @@
 #include "cordon/solvers/set_questions.hpp"
 #include "cordon/study/run.hpp"
 #include "run/design_components.hpp"
+#include "run/fault_components.hpp"
 
 namespace fakes {
 
@@ -108,109 +110,6 @@ class Offering final : public Recursive {
   bool cut_;
   Index k_ = 0;
   Enclosure X_;
-};
-
-/// The additive faults of the tests' data.
-inline Vector additive_faults(Index k) {
-  return Vector{{k % 20 >= 9 && k % 20 < 14 ? 1. : 0., -.5}};
-}
-
-/// Data that tell neither additive faults nor modes.
-class WithoutFaults final : public DataSource {
- public:
-  explicit WithoutFaults(std::unique_ptr<DataSource> data) : data_(std::move(data)) {}
-  std::optional<Record> next() override {
-    std::optional<Record> record = data_->next();
-    if (!record) return record;
-    record->fault.reset();
-    record->mode.reset();
-    return record;
-  }
-  std::optional<std::int64_t> size() const override { return data_->size(); }
-
- private:
-  std::unique_ptr<DataSource> data_;
-};
-
-/// The study's own data with the additive faults that the fake diagnoser knows of.
-class WithFaults final : public DataSource {
- public:
-  /// Faults in the nominal mode are what a diagnoser would never meet: excluding it is then false.
-  explicit WithFaults(std::unique_ptr<DataSource> data, bool nominal = false)
-      : data_(std::move(data)), nominal_(nominal) {}
-  std::optional<Record> next() override {
-    std::optional<Record> record = data_->next();
-    if (!record) return record;
-    record->fault = additive_faults(record->sample.k);
-    record->mode = nominal_ || (*record->fault)[0] == 0
-                       ? 0
-                       : -1;  // as if fault 2 were part of the nominal mode
-    return record;
-  }
-  std::optional<std::int64_t> size() const override { return data_->size(); }
-
- private:
-  std::unique_ptr<DataSource> data_;
-  bool nominal_;
-};
-
-/// Monitors the nominal mode as long as its bounds hold 0: fault 1 at k - 1 and fault 2 at k - 3, ±
-/// .25, with an estimate that is off by .125. From k = 12 of run number `crooked` on the bounds of
-/// fault 2 are off by `off`. `broken` bounds are none.
-class Bounding final : public Diagnoser {
- public:
-  Bounding(const DiagnoserContext& context, const Params& p)
-      : Diagnoser(context.bank, context.backend),
-        crooked_(p.integer("crooked")),
-        off_(p.real("off")),
-        broken_(p.text("broken")) {}
-
- private:
-  void do_start() override { ++runs_; }
-  Diagnosis do_step(const Sample*, const Sample& now) override {
-    Diagnosis says;
-    says.k = now.k;
-    says.since = now.k;  // of the bounds it is their own time
-    says.mode = bank().nominal;
-    says.modes.resize(static_cast<std::size_t>(bank().size()));
-    for (ModeEvidence& evidence : says.modes) evidence.candidate = true;
-    if (now.k >= 1) says.faults.push_back(bound(0, now.k - 1, 0));
-    if (now.k >= 3)
-      says.faults.push_back(bound(1, now.k - 3, runs_ == crooked_ && now.k >= 12 ? off_ : 0));
-    if (now.k == 4) spoil(says);
-    // fault 2 is there at all times: only fault 1 decides
-    if (now.k >= 1 && says.faults[0].lower > 0) {
-      says.decision = Decision::unknown_fault;
-      says.mode = -1;
-      says.modes[0].candidate = false;
-      says.modes[0].consistent = Answer::no;
-    }
-    return says;
-  }
-  static FaultBound bound(Index fault, Index at, double off) {
-    const double middle = additive_faults(at)[fault] + off;
-    return {fault, at, middle - .25, middle + .25, middle + .125};
-  }
-  void spoil(Diagnosis& says) const {
-    FaultBound& first = says.faults[0];
-    if (broken_ == "order") std::swap(first.lower, first.upper);
-    if (broken_ == "estimate") first.estimate = first.upper + 1;
-    if (broken_ == "nan") first.lower = std::nan("");
-    if (broken_ == "future") first.at = says.k + 1;
-    if (broken_ == "before") first.at = -1;
-    if (broken_ == "twice") first.fault = 1;
-    if (broken_ == "index") first.fault = 2;
-  }
-  std::optional<Guarantees> do_guarantees() const override {
-    Guarantees found;
-    found.method = "by hand";
-    found.faults = {{0, 1, .25}, {1, 3, std::numeric_limits<double>::infinity()}};
-    return found;
-  }
-
-  Index crooked_, runs_ = 0;
-  double off_;
-  std::string broken_;
 };
 
 /// Breaks down at k = 5, in one of several ways.
@@ -404,18 +303,7 @@ inline void register_all(Registrar& registrar) {
                        [](const DiagnoserContext& c, const Params& p) {
                          return std::make_unique<Scripted>(c, p);
                        }});
-  ParamSchema bounds;
-  bounds.integer("crooked", "number of the run with false bounds; 0: none", 0, 0, 1000);
-  bounds.real("off", "by how much they are off", .5, -10, 10);
-  bounds.choice("broken", "what is wrong with a bound",
-                {"nothing", "order", "estimate", "nan", "future", "before", "twice", "index"},
-                "nothing");
-  registrar.diagnoser(
-      {{"bounding", "bounds additive faults", "", bounds},
-       no_diagnoser_problem,
-       [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Bounding>(c, p); },
-       true,
-       false});
+  register_bounding(registrar);
   register_designing(registrar);
   registrar.metric({{"radius", "half the longest edge", "", {}},
                     [](const Params&) { return std::make_unique<Radius>(); }});
