@@ -8,6 +8,7 @@
 
 #include "cordon/registry/registry.hpp"
 #include "cordon/study/study.hpp"
+#include "study/study_texts.hpp"
 
 namespace study_test {
 
@@ -20,21 +21,6 @@ namespace study_test {
 /// designers `search` and `given`. All observers but `descriptor`, and `fault_filter`, take
 /// uncertain models.
 void register_fakes(cordon::Registrar& registrar);
-
-/// A valid study, one member per line, in which the tests exchange pieces.
-extern const char* const valid_study;
-
-/// The same for a study with modes, faults and diagnosers.
-extern const char* const diagnosis_study;
-
-/// The same with interval matrices, additive faults and a gain.
-extern const char* const uncertain_study;
-
-/// The same with designers, a diagnoser for experiments and an x0 that is drawn from a set.
-extern const char* const design_study;
-
-/// The same with a sweep over generators (of two of three pipelines), a bound of W, and seeds.
-extern const char* const sweep_study;
 
 /// `text` with its only occurrence of `from` exchanged. Throws std::logic_error if there is none or
 /// more than one.

@@ -11,6 +11,7 @@
 #include "study/fakes.hpp"
 #include "study/reading/point_study.hpp"
 #include "study/same_study.hpp"
+#include "study/sweep_points.hpp"
 
 using namespace cordon;
 using namespace study_test;
@@ -19,26 +20,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Values = std::vector<std::string>;
-using Combination = std::vector<std::size_t>;
-
-/// A study with its registry.
-struct Read {
-  explicit Read(const std::string& text) {
-    registry.add(register_fakes);
-    study = read_study(scratch.write("study.json", text), registry, SearchPath{});
-  }
-  Study at(const Combination& combination) const { return study_at(study, combination, registry); }
-
-  Scratch scratch;
-  Registry registry;
-  Study study;
-};
-
-/// The sweep study with another third axis.
-std::string with_axis(const std::string& path, const std::string& values) {
-  return exchanged(sweep_study, "\"path\": \"/data/simulate/seed\", \"range\": [1, 9, 4]",
-                   "\"path\": \"" + path + "\", \"values\": " + values);
-}
 
 /// A study without its sweep, and with values written by hand.
 std::string by_hand(const std::string& text,
@@ -50,27 +31,8 @@ std::string by_hand(const std::string& text,
   return study.dump();
 }
 
-void expect_same(const Study& a, const Study& b) {
-  CHECK(a.resolved == b.resolved);
-  CHECK(same(a, b));
-}
-
 std::int64_t generators(const Study& study, std::size_t pipeline) {
   return study.pipelines[pipeline].observer.params.integer("max_generators");
-}
-
-/// Every point of the study, and of the study that its resolved text is, reads the same.
-void expect_points_round_trip(const Read& read) {
-  const Read again(read.study.resolved);
-  CHECK(same(read.study, again.study));
-  CHECK(read.study.resolved == again.study.resolved);
-  Combination at(read.study.sweep.size(), 0);
-  for (std::size_t axis = 0; axis < at.size();) {
-    CAPTURE(at);
-    expect_same(read.at(at), again.at(at));
-    for (axis = 0; axis < at.size() && ++at[axis] == read.study.sweep[axis].values.size(); ++axis)
-      at[axis] = 0;
-  }
 }
 
 }  // namespace
@@ -174,108 +136,6 @@ TEST_CASE("any number anywhere: a point is the study with its values written by 
     RC_ASSERT(read.at({0, 0, 1}).resolved == read_text(text).resolved);
     RC_ASSERT(read_text(read.study.resolved).resolved == read.study.resolved);
   }));
-}
-
-TEST_CASE("what paths lead into") {
-  const auto third = [](const std::string& path, const std::string& values, std::size_t value) {
-    const Read read(with_axis(path, values));
-    expect_points_round_trip(read);
-    return read.at({0, 0, value});
-  };
-  SUBCASE("a key that is absent") {
-    CHECK(std::get<SimulateSpec>(third("/data/simulate/seeds", "[4, 7]", 1).data).seeds == 7);
-  }
-  SUBCASE("a whole section") {
-    const Study study =
-        third("/data/simulate",
-              "[{\"steps\": 9, \"input\": [{\"type\": \"constant\", \"offset\": 1}]}]", 0);
-    CHECK(std::get<SimulateSpec>(study.data).steps == 9);
-  }
-  SUBCASE("a set of another kind") {
-    const std::string value =
-        "[{\"type\": \"box\", \"lower\": [0, 0], \"upper\": [1, 1]}, {\"type\": \"space\", "
-        "\"dim\": 2}]";
-    CHECK(third("/system/X0", value, 1).model.X0.lines() == 2);
-  }
-  SUBCASE("inside a set among the parameters of a component that is its name alone") {
-    const std::string value = "[{\"type\": \"box\", \"lower\": [-1, -1], \"upper\": [1, 1]}]";
-    CHECK(third("/pipelines/1/observer/initial_set", value, 0)
-              .pipelines[1]
-              .observer.params.has("initial_set"));
-  }
-  SUBCASE("a component that may be a matrix") {
-    CHECK(third("/pipelines/2/observer/gain/1/0", "[0.5, 0.125]", 1)
-              .pipelines[2]
-              .observer.params.component("gain")
-              .params.matrix("matrix")(1, 0) == 0.125);
-    CHECK(third("/pipelines/2/observer/gain/matrix", "[[[0.5], [0]], [[0.25], [0]]]", 1)
-              .pipelines[2]
-              .observer.params.component("gain")
-              .params.matrix("matrix")(0, 0) == 0.25);
-    CHECK(third("/pipelines/*/observer/gain",
-                "[\"optimal\", {\"type\": \"optimal\", \"weight\": 1}]", 1)
-              .pipelines[2]
-              .observer.params.component("gain")
-              .params.real("weight") == 1);
-  }
-  SUBCASE("the type of a component, whose other parameters are those of the first") {
-    CHECK(third("/pipelines/1/backend/type", "[\"interval\", \"zonotope\"]", 1)
-              .pipelines[1]
-              .backend.type == "zonotope");
-    CHECK(third("/pipelines/1/backend/type", "[\"zonotope\", \"interval\"]", 1).pipelines[1].name ==
-          "zonotope");
-  }
-  SUBCASE("metrics") {
-    CHECK(third("/metrics/*/level", "[0.25, 0.5]", 1).metrics[1].params.real("level") == 0.5);
-    CHECK(third("/metrics", "[[], [\"volume\"]]", 1).metrics[0].type == "volume");
-  }
-  SUBCASE("a backend for all") {
-    const Study study = third("/pipelines/*/backend/reduction", "[\"girard\", \"pca\"]", 1);
-    CHECK(study.pipelines[0].backend.params.text("reduction") == "pca");
-    CHECK_FALSE(study.pipelines[1].backend.params.has("reduction"));
-    CHECK(study.pipelines[2].backend.params.text("reduction") == "pca");
-  }
-  SUBCASE("a signal, a matrix, a flag") {
-    CHECK(std::get<SimulateSpec>(third("/data/simulate/input/*/amplitude", "[1, 3]", 1).data)
-              .input[0]
-              .amplitude == 3);
-    CHECK(third("/system/A", "[[[0, 1], [0, 0]], [[0.5, 0], [0, 1]]]", 1).model.linear.A(1, 1) ==
-          1);
-    CHECK(third("/title", "[\"a\", \"b\"]", 1).title == "b");
-  }
-}
-
-TEST_CASE("the type of a component is exchanged before its parameters are looked for") {
-  std::string text = with_axis("/pipelines/1/backend/type", "[\"interval\", \"zonotope\"]");
-  text =
-      exchanged(text, "\"path\": \"/system/W/upper/0\", \"values\": [1, 2.5]",
-                "\"path\": \"/pipelines/*/backend/reduction\", \"values\": [\"girard\", \"pca\"]");
-  const Read read(text);
-  CHECK_FALSE(read.at({0, 1, 0}).pipelines[1].backend.params.has("reduction"));
-  CHECK(read.at({0, 1, 1}).pipelines[1].backend.params.text("reduction") == "pca");
-  expect_points_round_trip(read);
-}
-
-TEST_CASE("paths into modes, faults and components inside components") {
-  const auto study_with = [](const char* base, const std::string& path, const std::string& values) {
-    const std::string text = base;
-    return text.substr(0, text.rfind('}')) + ", \"sweep\": [{\"name\": \"a\", \"path\": \"" + path +
-           "\", \"values\": " + values + "}]}";
-  };
-  const Read modes(study_with(diagnosis_study, "/system/modes/1/sensor/0", "[0.5, 0.25]"));
-  CHECK(modes.at({1}).modes[1].model.linear.C(0, 0) == 0.25);
-  expect_points_round_trip(modes);
-  const Read inner(
-      study_with(diagnosis_study, "/pipelines/*/diagnoser/observer/max_generators", "[3, 4]"));
-  CHECK(inner.at({1})
-            .pipelines[0]
-            .diagnoser->params.component("observer")
-            .params.integer("max_generators") == 4);
-  expect_points_round_trip(inner);
-  const Read fault(
-      study_with(diagnosis_study, "/data/simulate/faults/0/actuator/1/1", "[0.5, 0.2]"));
-  CHECK(std::get<SimulateSpec>(fault.at({1}).data).faults[0].actuator.upper[1] == 0.2);
-  expect_points_round_trip(fault);
 }
 
 TEST_CASE("a combination that is wrong though each value is right") {
