@@ -10,33 +10,19 @@
 #include <limits>
 #include <numbers>
 
+#include "bounds.hpp"
+
 namespace ellipsoid {
 
 namespace {
 
 namespace linalg = cordon::linalg;
-namespace rounding = cordon::rounding;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double unit = rounding::unit;
 /// A set is called empty, a point outside, if this share of the terms cannot explain it.
 constexpr double proof_margin = 1e-10;
 /// A rounding box that has grown to this share of the ellipsoid is taken into it.
 const double fold_share = std::ldexp(1.0, -36);
-/// Sums of bounds that are computed in a handful of operations are enlarged by this.
-constexpr double enlarge = 1 + 64 * unit;
-
-Vector row_sums(const Matrix& A) {
-  return A.cwiseAbs().rowwise().sum() * (1 + rounding::gamma(A.cols() + 1));
-}
-/// Upper bound of ‖x‖₂.
-double norm_bound(VectorIn x) {
-  return x.size() ? rounding::up(x.stableNorm() * (1 + rounding::gamma(2 * x.size() + 8))) : 0;
-}
-/// Upper bound of |a|ᵀ r for r ≥ 0.
-double weighted(VectorIn a, VectorIn r) {
-  return a.size() ? rounding::dot(a.cwiseAbs(), r).upper : 0;
-}
 
 bool is_finite(const Ellipsoid& X) { return X.c.allFinite() && X.L.allFinite() && X.r.allFinite(); }
 
