@@ -17,8 +17,6 @@ namespace cordon {
 
 namespace {
 
-/// A violation smaller than this share of its terms may stem from rounding errors of nominal
-/// operations.
 /// Candidates for facets that `is_subset` tries before it answers `unknown`.
 constexpr Index max_facets = 20'000;
 
