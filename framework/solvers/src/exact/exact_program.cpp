@@ -218,13 +218,9 @@ int weight(Index j) {
   return 1 + static_cast<int>((static_cast<std::uint64_t>(j + 1) * 6364136223846793005ULL) >> 49);
 }
 
-ExactProgram::Result dual_simplex(const ExactProgram& p) {
-  using Status = ExactProgram::Status;
-  Tableau tableau(p);
-  tableau.eliminate_lines();
-  Vector xi;
-  const std::vector<Index> order = proposed_order(p, xi);
-  if (!tableau.fill_basis(order)) return {Status::infeasible, 0};
+/// Factors that are not in the basis at the bounds on the side of their costs, or else of ξ; 0 for
+/// basic ones.
+std::vector<int> first_bounds(const Tableau& tableau, const Vector& xi) {
   const Index count = tableau.factors();
   std::vector<int> at(static_cast<std::size_t>(count));
   for (Index j = 0; j < count; ++j) {
@@ -232,62 +228,88 @@ ExactProgram::Result dual_simplex(const ExactProgram& p) {
     at[static_cast<std::size_t>(j)] = sign != 0 ? sign : xi[j] < 0 ? -1 : 1;
   }
   for (const Index j : tableau.basis()) at[static_cast<std::size_t>(j)] = 0;
-  // Where costs are 0, as in every question of feasibility, ties would leave the method without a
-  // sense of progress: it wanders through thousands of bases. Costs of second rank, all different
-  // and at first on the side of the bounds, break them.
+  return at;
+}
+
+/// Where costs are 0, as in every question of feasibility, ties would leave the method without a
+/// sense of progress: it wanders through thousands of bases. Costs of second rank, all different
+/// and at first on the side of the bounds, break them.
+std::vector<int> second_costs(const std::vector<int>& at) {
   std::vector<int> second = at;
-  for (Index j = 0; j < count; ++j) second[static_cast<std::size_t>(j)] *= weight(j);
-  tableau.add_second_costs(second);
+  for (std::size_t j = 0; j < second.size(); ++j) second[j] *= weight(static_cast<Index>(j));
+  return second;
+}
+
+/// A basic factor beyond a bound: the upper one (side 1) or the lower one (-1); side 0: there is
+/// none.
+struct Leaving {
+  std::size_t row = 0;
+  int side = 0;
+};
+
+/// The largest violation, or the one of the factor with the smallest number.
+Leaving leaving_row(const Tableau& tableau, const std::vector<int>& at, bool by_violation) {
+  Leaving leaving;
+  mpz_class violation = 0;
+  for (std::size_t i = 0; i < tableau.basis().size(); ++i) {
+    const mpz_class value = tableau.basic_value(i, at), excess = abs(value) - tableau.scale();
+    if (excess <= 0) continue;
+    const bool first = leaving.side == 0;  // there is no leaving row yet to compare with
+    const bool better = first || (by_violation ? excess > violation
+                                               : tableau.basis()[i] < tableau.basis()[leaving.row]);
+    if (better) leaving = {i, sgn(value)}, violation = excess;
+  }
+  return leaving;
+}
+
+/// One that can move the leaving factor back; the smallest ratio keeps all costs on the right side.
+/// -1: there is none.
+Index entering_factor(const Tableau& tableau, const std::vector<int>& at, const Leaving& leaving) {
+  Index entering = -1;
+  for (Index j = 0; j < tableau.factors(); ++j) {
+    const int bound = at[static_cast<std::size_t>(j)];
+    const mpz_class& entry = tableau.entry(leaving.row, j);
+    if (bound == 0 || sgn(entry) * bound * leaving.side >= 0) continue;
+    if (entering >= 0) {
+      const mpz_class& other = tableau.entry(leaving.row, entering);
+      const int other_bound = at[static_cast<std::size_t>(entering)];
+      int smaller = compare_ratios(abs(tableau.cost(j)), entry, abs(tableau.cost(entering)), other);
+      if (smaller == 0)
+        smaller = compare_ratios(bound * tableau.second_cost(j), entry,
+                                 other_bound * tableau.second_cost(entering), other);
+      if (smaller >= 0) continue;
+    }
+    entering = j;
+  }
+  return entering;
+}
+
+ExactProgram::Result dual_simplex(const ExactProgram& p) {
+  using Status = ExactProgram::Status;
+  Tableau tableau(p);
+  tableau.eliminate_lines();
+  Vector xi;
+  const std::vector<Index> order = proposed_order(p, xi);
+  if (!tableau.fill_basis(order)) return {Status::infeasible, 0};
+  std::vector<int> at = first_bounds(tableau, xi);
+  tableau.add_second_costs(second_costs(at));
 
   constexpr int fast_pivots = 1000, most_pivots = 100'000;
   for (int pivots = 0; pivots < most_pivots; ++pivots) {
-    // Leaving row: the largest violation while things go well, then the smallest index (Bland),
-    // which cannot cycle.
-    std::size_t leaving = tableau.basis().size();
-    mpz_class violation = 0;
-    int side = 0;
-    for (std::size_t i = 0; i < tableau.basis().size(); ++i) {
-      const mpz_class value = tableau.basic_value(i, at), excess = abs(value) - tableau.scale();
-      if (excess <= 0) continue;
-      const bool first = side == 0;  // there is no leaving row yet to compare with
-      const bool better =
-          first || (pivots < fast_pivots ? excess > violation
-                                         : tableau.basis()[i] < tableau.basis()[leaving]);
-      if (better) leaving = i, violation = excess, side = sgn(value);
-    }
-    if (side == 0) {
+    // The largest violation while things go well, then the smallest index (Bland), which cannot
+    // cycle.
+    const Leaving leaving = leaving_row(tableau, at, pivots < fast_pivots);
+    if (leaving.side == 0) {
       if (tableau.objective_has_lines()) return {Status::unbounded, 0, {}, {}, pivots};
       return {Status::optimal, tableau.objective(at), tableau.solution(at), tableau.basis(),
               pivots};
     }
-    // Entering factor: one that can move the leaving one back; the smallest ratio keeps all costs
-    // on the right side.
-    Index entering = -1;
-    for (Index j = 0; j < count; ++j) {
-      const int bound = at[static_cast<std::size_t>(j)];
-      const mpz_class& entry = tableau.entry(leaving, j);
-      if (bound == 0 || sgn(entry) * bound * side >= 0) continue;
-      if (entering >= 0) {
-        const mpz_class& other = tableau.entry(leaving, entering);
-        const int other_bound = at[static_cast<std::size_t>(entering)];
-        int smaller =
-            compare_ratios(abs(tableau.cost(j)), entry, abs(tableau.cost(entering)), other);
-        if (smaller == 0)
-          smaller = compare_ratios(bound * tableau.second_cost(j), entry,
-                                   other_bound * tableau.second_cost(entering), other);
-        if (smaller >= 0) continue;
-      }
-      entering = j;
-    }
-    if (entering < 0)
-      return {Status::infeasible,
-              0,
-              {},
-              {},
-              pivots};  // the leaving factor is as near to its bound as the others let it
-    at[static_cast<std::size_t>(tableau.basis()[leaving])] = side;
+    const Index entering = entering_factor(tableau, at, leaving);
+    // the leaving factor is as near to its bound as the others let it
+    if (entering < 0) return {Status::infeasible, 0, {}, {}, pivots};
+    at[static_cast<std::size_t>(tableau.basis()[leaving.row])] = leaving.side;
     at[static_cast<std::size_t>(entering)] = 0;
-    tableau.enter(leaving, entering);
+    tableau.enter(leaving.row, entering);
   }
   throw Error(Errc::solver,
               "exact linear program: no end after " + std::to_string(most_pivots) + " pivots");

@@ -205,6 +205,35 @@ Lineality lineality(const Description& generators) {
   return out;
 }
 
+/// {x ∈ X : pivot coordinates zero} in the other coordinates, `rest`. It is bounded, and X is its
+/// sum with the lines.
+struct Section {
+  Description points, rows;
+};
+
+Section section_across(const Lineality& lines, const std::vector<Index>& rest,
+                       const Description& generators, const Description& inequalities) {
+  const Index k = static_cast<Index>(rest.size()), l = generators.dim - k;
+  Section section{{k, {}, {}}, {k, {}, {}}};
+  for (const RationalVector& row : generators.rows) {
+    if (sgn(row[0]) == 0) continue;
+    RationalVector point{row[0]};
+    for (const Index i : rest) {
+      Rational value = row[as_size(i + 1)];
+      for (Index j = 0; j < l; ++j)
+        value -= row[as_size(lines.pivots[as_size(j)] + 1)] * lines.basis(j, i);
+      point.push_back(std::move(value));
+    }
+    section.points.add(std::move(point), false);
+  }
+  for (std::size_t i = 0; i < inequalities.rows.size(); ++i) {
+    RationalVector row{inequalities.rows[i][0]};
+    for (const Index j : rest) row.push_back(inequalities.rows[i][as_size(j + 1)]);
+    section.rows.add(std::move(row), inequalities.linear[i]);
+  }
+  return section;
+}
+
 }  // namespace
 
 namespace polytope {
@@ -222,30 +251,13 @@ Polytope::Export enclose(const Description& generators, const Description& inequ
   const Lineality lines = lineality(generators);
   if (lines.basis.rows() == 0) return enclose_bounded(generators, inequalities);
 
-  // X = {lines} ⊕ {x ∈ X : pivot coordinates zero}, and that section is bounded
   std::vector<Index> rest;
   for (Index i = 0; i < n; ++i) {
     if (!std::binary_search(lines.pivots.begin(), lines.pivots.end(), i)) rest.push_back(i);
   }
   const Index k = static_cast<Index>(rest.size()), l = n - k;
-  Description points{k, {}, {}}, rows{k, {}, {}};
-  for (const RationalVector& row : generators.rows) {
-    if (sgn(row[0]) == 0) continue;
-    RationalVector point{row[0]};
-    for (const Index i : rest) {
-      Rational value = row[as_size(i + 1)];
-      for (Index j = 0; j < l; ++j)
-        value -= row[as_size(lines.pivots[as_size(j)] + 1)] * lines.basis(j, i);
-      point.push_back(std::move(value));
-    }
-    points.add(std::move(point), false);
-  }
-  for (std::size_t i = 0; i < inequalities.rows.size(); ++i) {
-    RationalVector row{inequalities.rows[i][0]};
-    for (const Index j : rest) row.push_back(inequalities.rows[i][as_size(j + 1)]);
-    rows.add(std::move(row), inequalities.linear[i]);
-  }
-  Polytope::Export section = enclose_bounded(points, rows);
+  const Section across = section_across(lines, rest, generators, inequalities);
+  Polytope::Export section = enclose_bounded(across.points, across.rows);
   LineForm X = section.form;
   X.c = Vector::Zero(n);
   X.G = Matrix::Zero(n, section.form.G.cols());
