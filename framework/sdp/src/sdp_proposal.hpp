@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What sdp.cpp asks of the solver: a point, and nothing that it would have to believe.
+// What is asked of the solver: a point, and nothing that it would have to believe.
 #pragma once
 
 #include <optional>
@@ -14,6 +14,9 @@ struct SdpTuning {
   double centring;  ///< β*, of feasible points; β̄ is twice that
   double step;      ///< γ*, share of the way to the boundary
 };
+
+/// Runs of the solver, one after the other until one serves.
+inline constexpr SdpTuning tunings[] = {{1e4, .1, .9}, {1e2, .1, .9}, {1e6, .2, .7}};
 
 struct SdpProposal {
   std::string phase;        ///< SDPA's own word: "pdOPT", "pdINF", …; or that it gave up
