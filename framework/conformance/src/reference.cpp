@@ -164,6 +164,12 @@ bool Truth::robust() {
   return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->robust(); });
 }
 
+Truth truth_of(const LineForm& X, double terms) {
+  Truth truth;
+  truth.add(X, {}, terms, 0);
+  return truth;
+}
+
 std::vector<Vector> directions(const std::vector<LineForm>& forms, Index n, Random& random,
                                int count) {
   std::vector<Vector> found;

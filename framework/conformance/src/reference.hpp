@@ -85,6 +85,9 @@ class Truth {
   std::vector<LineForm> forms_;
 };
 
+/// The truth that is one set, of which no points are known.
+Truth truth_of(const LineForm& X, double terms);
+
 /// Directions that tell sets apart: ± coordinates, random ones, and normals to generators of the
 /// forms.
 std::vector<Vector> directions(const std::vector<LineForm>& forms, Index n, Random& random,

@@ -149,8 +149,10 @@ const LawList& law_list() {
     add_soundness(all);
     add_measurements(all);
     add_tightness(all);
+    add_empty_set(all);
     add_algebra(all);
     add_questions(all);
+    add_agreement(all);
     add_contract(all);
     return all;
   }();
