@@ -19,6 +19,9 @@ namespace cordon::registry {
 /// Bytes; anything larger is no plugin that is worth reading for a name.
 inline constexpr std::uintmax_t largest_library = 256u << 20;
 
+/// offset + count * size ≤ limit, without overflow.
+bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t size, std::uint64_t limit);
+
 /// The whole file in memory, and the tables by which the loader finds its way in it.
 class ElfFile {
  public:
