@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "conform_discovery.hpp"
 #include "conform_worker.hpp"
 #include "progress_bar.hpp"
 

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "conform_worker.hpp"
 
-#include <cerrno>
 #include <chrono>
-#include <csignal>
-#include <cstring>
-#include <optional>
-#include <poll.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "common.hpp"
+#include "conform_backend.hpp"
+#include "conform_child.hpp"
 
 namespace cordon::apps {
 
@@ -24,245 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using conformance::Result;
 using Clock = std::chrono::steady_clock;
-
-/// One line of JSON per message.
-void send(int fd, const Json& message) {
-  const std::string text = message.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  for (std::size_t sent = 0; sent < text.size();) {
-    const ssize_t count = write(fd, text.data() + sent, text.size() - sent);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) _exit(1);  // the parent has gone
-    sent += static_cast<std::size_t>(count);
-  }
-}
-
-/// A child process that sends messages. Destroying it ends the process.
-class Child {
- public:
-  explicit Child(const std::function<void(int fd)>& body) {
-    int ends[2];
-    if (pipe(ends) != 0)
-      throw Error(Errc::io, fmt::format("cannot make a pipe: {}", std::strerror(errno)));
-    std::fflush(nullptr);
-    const pid_t parent = getpid();
-    pid_ = fork();
-    if (pid_ < 0)
-      throw Error(Errc::io, fmt::format("cannot start a process: {}", std::strerror(errno)));
-    if (pid_ == 0) {
-      close(ends[0]);
-      prctl(PR_SET_PDEATHSIG, SIGKILL);
-      if (getppid() != parent) _exit(1);
-      const rlimit none{0, 0};
-      setrlimit(RLIMIT_CORE, &none);
-      dup2(STDERR_FILENO, STDOUT_FILENO);  // what a plugin prints is no part of the report
-      body(ends[1]);
-      std::fflush(nullptr);
-      _exit(0);
-    }
-    close(ends[1]);
-    fd_ = ends[0];
-  }
-  ~Child() {
-    close(fd_);
-    if (pid_ > 0) finish();
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  enum class Event { message, ended, timeout };
-  Event wait(double timeout_s, Json& message) {
-    const Clock::time_point end =
-        Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(1000 * timeout_s));
-    for (;;) {
-      if (const std::size_t line = buffer_.find('\n'); line != std::string::npos) {
-        message = Json::parse(buffer_.substr(0, line));
-        buffer_.erase(0, line + 1);
-        return Event::message;
-      }
-      const auto left =
-          std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
-      if (left <= 0) return Event::timeout;
-      pollfd watched{fd_, POLLIN, 0};
-      if (poll(&watched, 1, static_cast<int>(left)) <= 0) continue;
-      char chunk[4096];
-      const ssize_t count = read(fd_, chunk, sizeof chunk);
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) return Event::ended;
-      buffer_.append(chunk, static_cast<std::size_t>(count));
-    }
-  }
-
-  /// Ends the process and says how it ended; "" if it ended by itself with code 0.
-  std::string finish() {
-    int status = 0;
-    if (waitpid(pid_, &status, WNOHANG) == 0) {
-      // its end of the pipe is closed, so it is ending; a hanging one is killed
-      for (int i = 0; i < 200 && waitpid(pid_, &status, WNOHANG) == 0; ++i) usleep(5000);
-      if (kill(pid_, 0) == 0) {
-        kill(pid_, SIGKILL);
-        waitpid(pid_, &status, 0);
-      }
-    }
-    pid_ = -1;
-    if (WIFSIGNALED(status))
-      return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
-    if (WIFEXITED(status) && WEXITSTATUS(status) != 0)
-      return fmt::format("exit code {}", WEXITSTATUS(status));
-    return "";
-  }
-  void kill_now() {
-    kill(pid_, SIGKILL);
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    pid_ = -1;
-  }
-
- private:
-  pid_t pid_ = -1;
-  int fd_ = -1;
-  std::string buffer_;
-};
-
-/// The text of an exception; call in a catch block.
-std::string current_text() {
-  try {
-    throw;
-  } catch (const std::exception& error) {
-    return error.what();
-  } catch (...) {
-    return "an exception that is no std::exception";
-  }
-}
-
-[[noreturn]] void wrong_param(const std::string& name, const std::string& expected) {
-  throw Error(Errc::invalid, fmt::format("--params: \"{}\" must be {}", name, expected));
-}
-
-Vector vector_from(const Json& json, const std::string& name) {
-  if (!json.is_array()) wrong_param(name, "an array of numbers");
-  Vector x(static_cast<Index>(json.size()));
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    if (!json[i].is_number()) wrong_param(name, "an array of numbers");
-    x[static_cast<Index>(i)] = json[i].get<double>();
-  }
-  return x;
-}
-
-Params::Value value_from(const Json& json, const ParamSpec& spec) {
-  switch (spec.kind) {
-    case ParamKind::integer:
-      if (!json.is_number_integer()) wrong_param(spec.name, "an integer");
-      return json.get<std::int64_t>();
-    case ParamKind::real:
-      if (!json.is_number()) wrong_param(spec.name, "a number");
-      return json.get<double>();
-    case ParamKind::flag:
-      if (!json.is_boolean()) wrong_param(spec.name, "true or false");
-      return json.get<bool>();
-    case ParamKind::choice:
-    case ParamKind::text:
-      if (!json.is_string()) wrong_param(spec.name, "a text");
-      return json.get<std::string>();
-    case ParamKind::vector:
-      return vector_from(json, spec.name);
-    case ParamKind::matrix: {
-      if (!json.is_array() || json.empty()) wrong_param(spec.name, "an array of rows");
-      const Vector first = vector_from(json[0], spec.name);
-      Matrix A(static_cast<Index>(json.size()), first.size());
-      for (std::size_t i = 0; i < json.size(); ++i) {
-        const Vector row = vector_from(json[i], spec.name);
-        if (row.size() != first.size())
-          wrong_param(spec.name, "an array of rows of the same length");
-        A.row(static_cast<Index>(i)) = row.transpose();
-      }
-      return A;
-    }
-    case ParamKind::set:
-    case ParamKind::matrices:
-    case ParamKind::component:
-      break;
-  }
-  throw Error(Errc::invalid, fmt::format("--params: \"{}\" is a {}, which cannot be given here",
-                                         spec.name, to_string(spec.kind)));
-}
-
-/// Throws InputError or Errc::invalid for parameters that do not fit the schema.
-Params params_from(const std::string& text, const ParamSchema& schema) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::exception& error) {
-    throw Error(Errc::invalid, fmt::format("--params is no JSON: {}", error.what()));
-  }
-  if (!json.is_object())
-    throw Error(Errc::invalid,
-                "--params must be a JSON object, such as '{\"rounding\": \"outward\"}'");
-  Params params;
-  for (const auto& [name, value] : json.items()) {
-    const ParamSpec* spec = schema.find(name);
-    if (!spec) {
-      throw Error(Errc::invalid, fmt::format("--params: the backend has no parameter \"{}\"; {}",
-                                             name, suggest(name, schema.names())));
-    }
-    params.set(name, value_from(value, *spec));
-  }
-  if (const auto problems = schema.complete(params); !problems.empty())
-    throw InputError("--params", problems);
-  return params;
-}
-
-/// Loads the one library; throws Errc::plugin with the reason if it is refused.
-void load_only(Registry& registry, const std::filesystem::path& library) {
-  const PluginReport& report = registry.load_file(library);
-  if (report.state == PluginReport::State::loaded) return;
-  throw Error(Errc::plugin,
-              fmt::format("{} was refused: {}; {}", library.string(), report.reason, report.fix));
-}
-
-/// The ways of rounding that a backend offers, unless the parameters choose one.
-std::vector<std::string> roundings(const ParamSchema& schema, const Json& params) {
-  const ParamSpec* spec = schema.find("rounding");
-  if (!spec || spec->kind != ParamKind::choice || params.contains("rounding")) return {};
-  return spec->choices;
-}
-
-void discover_in_child(int fd, const std::filesystem::path& library, const std::string& backend,
-                       const std::string& params) {
-  try {
-    Registry registry;
-    load_only(registry, library);
-    const PluginReport& report = registry.reports().back();
-    Json message{
-        {"plugin", report.name}, {"version", report.version}, {"candidates", Json::array()}};
-    std::vector<std::string> names = registry.backends();
-    if (!backend.empty()) {
-      if (!registry.backend_info(backend)) {
-        const std::string suggestion = names.empty() ? "it has none" : suggest(backend, names);
-        throw Error(Errc::invalid, fmt::format("{} has no backend \"{}\"; {}", library.string(),
-                                               backend, suggestion));
-      }
-      names = {backend};
-    }
-    for (const std::string& name : names) {
-      const ParamSchema& schema = registry.backend_info(name)->schema;
-      params_from(params, schema);
-      const Json given = Json::parse(params);
-      const auto choices = roundings(schema, given);
-      if (choices.empty())
-        message["candidates"].push_back({{"backend", name}, {"params", given.dump()}});
-      for (const std::string& choice : choices) {
-        Json chosen = given;
-        chosen["rounding"] = choice;
-        message["candidates"].push_back({{"backend", name}, {"params", chosen.dump()}});
-      }
-    }
-    send(fd, message);
-  } catch (const Error& error) {
-    send(fd, {{"problem", error.what()}, {"invalid", error.code() != Errc::plugin}});
-  } catch (...) {
-    send(fd, {{"problem", current_text()}, {"invalid", false}});
-  }
-}
 
 Json as_json(const Result& r) {
   return {{"law", r.law},
@@ -355,86 +109,6 @@ LawReport lost(const ConformRequest& request, const std::string& law, Index numb
   return report;
 }
 
-}  // namespace
-
-std::string_view to_string(LawReport::State state) noexcept {
-  switch (state) {
-    case LawReport::State::passed:
-      return "passed";
-    case LawReport::State::failed:
-      return "failed";
-    case LawReport::State::skipped:
-      return "skipped";
-    case LawReport::State::crashed:
-      return "crashed";
-    case LawReport::State::timed_out:
-      return "timed_out";
-  }
-  return "";
-}
-
-Discovery discover(const std::filesystem::path& library, const std::string& backend,
-                   const std::string& params) {
-  Child child([&](int fd) { discover_in_child(fd, library, backend, params); });
-  Discovery found;
-  Json message;
-  switch (child.wait(60, message)) {
-    case Child::Event::timeout:
-      child.kill_now();
-      found.problem =
-          fmt::format("{} does not come back from being loaded within 60 s", library.string());
-      return found;
-    case Child::Event::ended: {
-      const std::string how = child.finish();
-      found.problem = fmt::format("{} ends the process while it is loaded: {}", library.string(),
-                                  how.empty() ? "exit code 0" : how);
-      return found;
-    }
-    case Child::Event::message:
-      break;
-  }
-  if (message.contains("problem")) {
-    found.problem = message.at("problem");
-    found.invalid = message.at("invalid");
-    return found;
-  }
-  found.plugin = message.at("plugin");
-  found.version = message.at("version");
-  for (const Json& entry : message.at("candidates"))
-    found.candidates.push_back({entry.at("backend"), entry.at("params")});
-  return found;
-}
-
-std::string problem_of_making(const std::filesystem::path& library, const Candidate& candidate) {
-  Child child([&](int fd) {
-    std::string problem;
-    try {
-      Registry registry;
-      load_only(registry, library);
-      registry.make_backend(
-          candidate.backend,
-          params_from(candidate.params, registry.backend_info(candidate.backend)->schema));
-    } catch (...) {
-      problem = current_text();
-    }
-    send(fd, {{"problem", problem}});
-  });
-  Json message;
-  switch (child.wait(60, message)) {
-    case Child::Event::message:
-      return message.at("problem");
-    case Child::Event::timeout:
-      child.kill_now();
-      return "making it does not end within 60 s";
-    case Child::Event::ended:
-      break;
-  }
-  const std::string how = child.finish();
-  return "making it ends the process: " + (how.empty() ? "exit code 0" : how);
-}
-
-namespace {
-
 std::vector<std::string> wanted_laws(const ConformRequest& request) {
   std::vector<std::string> laws;
   for (const conformance::Law& law : conformance::laws()) {
@@ -491,6 +165,22 @@ class Reports {
 };
 
 }  // namespace
+
+std::string_view to_string(LawReport::State state) noexcept {
+  switch (state) {
+    case LawReport::State::passed:
+      return "passed";
+    case LawReport::State::failed:
+      return "failed";
+    case LawReport::State::skipped:
+      return "skipped";
+    case LawReport::State::crashed:
+      return "crashed";
+    case LawReport::State::timed_out:
+      return "timed_out";
+  }
+  return "";
+}
 
 std::vector<LawReport> check_in_child(const ConformRequest& request, const LawProgress& progress) {
   Reports reports(request, progress);

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view placeholder = "\"NAME\"";  // the title
-constexpr std::size_t longest_name = 200;
+constexpr std::size_t longest_study_name = 200;
 
 /// The name without ".json"; it becomes the title and a file in this or another directory.
 std::string title_of(const fs::path& wanted) {
@@ -33,7 +33,8 @@ std::string title_of(const fs::path& wanted) {
   const std::string title = (file.extension() == ".json" ? file.stem() : file).string();
   const bool control = std::any_of(title.begin(), title.end(),
                                    [](unsigned char c) { return c < 0x20 || c == 0x7F; });
-  if (title.empty() || title == "." || title == ".." || title.size() > longest_name || control) {
+  if (title.empty() || title == "." || title == ".." || title.size() > longest_study_name ||
+      control) {
     throw Error(
         Errc::invalid,
         "a study's name is a name of a file, of at most 200 bytes and without control characters");
