@@ -15,6 +15,9 @@
 
 namespace cordon::verification {
 
+inline constexpr double almost_all_of_margin =
+    0.999;  ///< of a margin: what is left covers the rounding of a vertex or a facet
+
 /// x as messages name it: (1, 2.5).
 std::string text(VectorIn x);
 
