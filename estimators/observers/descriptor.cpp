@@ -18,42 +18,31 @@ namespace {
 
 bool in_semi_explicit_form(const SetBackend& backend) { return backend.info().intersections; }
 
-std::vector<Diagnostic> check_descriptor(const ObserverContext& context, const Params& params) {
-  std::vector<Diagnostic> problems = check_common(context, params);
+void check_semi_explicit(const ObserverContext& context, const Params& params,
+                         std::vector<Diagnostic>& problems) {
   const LinearModel& m = context.model.linear;
   const BackendInfo& info = context.backend->info();
-  const Vector sigma =
-      m.is_descriptor() ? linalg::svd(linalg::row_scales(m.E).asDiagonal() * m.E).sigma : Vector();
-  for (Index i = 0; i < sigma.size(); ++i) {
-    const double share = sigma[0] > 0 ? sigma[i] / sigma[0] : 0;
-    if (share > 1e-13 && share < 1e-7) {
-      problems.push_back(
-          {"",
-           "E is nearly singular (its singular values differ by a factor of " +
-               std::to_string(1 / share) +
-               "), so that it is not clear which of its rows are static",
-           "set entries of E that stand for zero to zero, or choose other units of the states"});
-      break;
-    }
+  try {
+    StaticRows{m};
+  } catch (const Error& error) {
+    problems.push_back({"", error.what(), "write the equations in other units"});
   }
-  if (in_semi_explicit_form(*context.backend)) {
-    try {
-      StaticRows{m};
-    } catch (const Error& error) {
-      problems.push_back({"", error.what(), "write the equations in other units"});
-    }
-    if (params.has("admissible_set")) {
-      check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
-    } else if (!info.unbounded && m.is_descriptor() && descriptor_rank(m.E) < m.states()) {
-      problems.push_back(
-          {"/admissible_set",
-           "is missing: the backend \"" + info.name +
-               "\" holds bounded sets only, so the part of the state that E does not determine "
-               "needs a bound",
-           "give a set that contains the state at all times, or use \"line_zonotope\""});
-    }
-    return problems;
+  if (params.has("admissible_set")) {
+    check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
+  } else if (!info.unbounded && m.is_descriptor() && descriptor_rank(m.E) < m.states()) {
+    problems.push_back(
+        {"/admissible_set",
+         "is missing: the backend \"" + info.name +
+             "\" holds bounded sets only, so the part of the state that E does not determine "
+             "needs a bound",
+         "give a set that contains the state at all times, or use \"line_zonotope\""});
   }
+}
+
+void check_pseudo_inverse(const ObserverContext& context, const Params& params,
+                          std::vector<Diagnostic>& problems) {
+  const LinearModel& m = context.model.linear;
+  const BackendInfo& info = context.backend->info();
   if (params.has("admissible_set"))
     problems.push_back(
         {"/admissible_set", "has no use with the backend \"" + info.name + "\"", "leave it out"});
@@ -77,6 +66,30 @@ std::vector<Diagnostic> check_descriptor(const ObserverContext& context, const P
              (m.sensor.dim() ? " without the outputs whose sensors can fail altogether" : "") +
              ", so that no T, N with T E + N C = I exist",
          "measure more, or use \"line_zonotope\""});
+  }
+}
+
+std::vector<Diagnostic> check_descriptor(const ObserverContext& context, const Params& params) {
+  std::vector<Diagnostic> problems = check_common(context, params);
+  const LinearModel& m = context.model.linear;
+  const Vector sigma =
+      m.is_descriptor() ? linalg::svd(linalg::row_scales(m.E).asDiagonal() * m.E).sigma : Vector();
+  for (Index i = 0; i < sigma.size(); ++i) {
+    const double share = sigma[0] > 0 ? sigma[i] / sigma[0] : 0;
+    if (share > 1e-13 && share < 1e-7) {
+      problems.push_back(
+          {"",
+           "E is nearly singular (its singular values differ by a factor of " +
+               std::to_string(1 / share) +
+               "), so that it is not clear which of its rows are static",
+           "set entries of E that stand for zero to zero, or choose other units of the states"});
+      break;
+    }
+  }
+  if (in_semi_explicit_form(*context.backend)) {
+    check_semi_explicit(context, params, problems);
+  } else {
+    check_pseudo_inverse(context, params, problems);
   }
   return problems;
 }

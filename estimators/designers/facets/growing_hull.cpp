@@ -46,6 +46,22 @@ bool is_closed_polygon(const std::vector<GrowingHull::Facet>& facets) {
   return by_angle.size() >= 3;
 }
 
+/// Removes the facets with these numbers, which increase, and appends others.
+void replace(std::vector<GrowingHull::Facet>& facets, const std::vector<std::size_t>& removed,
+             std::vector<GrowingHull::Facet> made) {
+  std::size_t kept = 0, gone = 0;
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    if (gone < removed.size() && removed[gone] == f) {
+      ++gone;
+    } else if (kept++ != f) {
+      facets[kept - 1] = std::move(facets[f]);
+    }
+  }
+  facets.resize(kept);
+  facets.insert(facets.end(), std::make_move_iterator(made.begin()),
+                std::make_move_iterator(made.end()));
+}
+
 }  // namespace
 
 GrowingHull::GrowingHull(const Matrix& simplex, double accuracy)
@@ -118,17 +134,7 @@ bool GrowingHull::add(VectorIn x, const std::function<bool()>& over) {
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (std::abs(excess[f]) <= tolerance(facets_[f])) facets_[f].on.push_back(number);
   }
-  std::size_t kept = 0, gone = 0;
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (gone < visible.size() && visible[gone] == f) {
-      ++gone;
-    } else if (kept++ != f) {
-      facets_[kept - 1] = std::move(facets_[f]);
-    }
-  }
-  facets_.resize(kept);
-  facets_.insert(facets_.end(), std::make_move_iterator(made.begin()),
-                 std::make_move_iterator(made.end()));
+  replace(facets_, visible, std::move(made));
   return true;
 }
 

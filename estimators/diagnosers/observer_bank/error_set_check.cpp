@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "cordon/core/error.hpp"
@@ -94,6 +95,12 @@ Matrix facet_normals(Matrix& shape) {
 }
 
 }  // namespace
+
+std::string four_digits(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
 
 Vector drive_size(const std::vector<Zonotope>& drives, Index n) {
   Vector size = Vector::Zero(n);
@@ -264,6 +271,19 @@ void compare(const ErrorBounds::Supports& h, const Vector& centers, const Vector
   }
 }
 
+std::string box_text(const LineForm& box) {
+  std::string lower, upper;
+  for (Index k = 0; k < box.dim(); ++k) {
+    const double radius = box.G.row(k).cwiseAbs().sum();
+    const std::string separator = k > 0 ? ", " : "";
+    // three digits, rounded outward
+    const double unit = radius > 0 ? std::pow(10.0, std::floor(std::log10(radius)) - 2) : 1.0;
+    lower += separator + four_digits(std::floor((box.c[k] - radius) / unit) * unit);
+    upper += separator + four_digits(std::ceil((box.c[k] + radius) / unit) * unit);
+  }
+  return R"({"type": "box", "lower": [)" + lower + R"(], "upper": [)" + upper + "]}";
+}
+
 }  // namespace
 
 ErrorSetCheck compare_error_set(const ErrorBounds& bounds, const LineForm& set) {
@@ -291,6 +311,37 @@ ErrorSetCheck compute_error_set(const ErrorBounds& bounds, Index n) {
   check.computed = true;
   compare(h, center, radius, check);
   return check;
+}
+
+void check_given_error_set(const ModeBank& bank, const std::vector<ModeDynamics>& modes,
+                           const OfflineOptions& options, std::vector<Diagnostic>& problems) {
+  if (options.error_set &&
+      (options.error_set->lines() > 0 || options.error_set->constraints() > 0)) {
+    problems.push_back({"/error_set", "must be a zonotope or a box: bounded, without constraints",
+                        "leave it out to have one computed"});
+    return;
+  }
+  const ErrorBounds bounds(bank, modes, options);
+  if (!options.error_set) return;
+  const ErrorSetCheck check = compare_error_set(bounds, *options.error_set);
+  if (check.factor <= 1) return;
+  std::string text = "does not contain x - x̂ for all observers: ";
+  if (std::isinf(check.factor)) {
+    text += "it is flat";
+  } else {
+    text += "it would have to be larger by the factor " + four_digits(check.factor);
+    if (check.steady_factor > 1) {
+      text += ", by " + four_digits(check.steady_factor) +
+              " already for the invariant set of mode \"" + bank[check.mode].name +
+              "\" with the observer of mode \"" + bank[check.observer].name + "\"";
+    } else {
+      text += " (" + four_digits(check.steady_factor) +
+              " for the invariant sets alone): initial errors and switching modes go beyond it";
+    }
+  }
+  problems.push_back({"/error_set", text,
+                      "use " + box_text(compute_error_set(bounds, modes.front().A.rows()).set) +
+                          ", or leave it out to have a box computed"});
 }
 
 }  // namespace cordon::estimators

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bounds of the errors of all observers, and whether a set holds them.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "diagnosers/observer_bank/fdi_conditions.hpp"
@@ -53,5 +55,13 @@ ErrorSetCheck compare_error_set(const ErrorBounds& bounds, const LineForm& set);
 
 /// A box around all errors in n dimensions, the smallest but for a share of 1e-9.
 ErrorSetCheck compute_error_set(const ErrorBounds& bounds, Index n);
+
+/// What is wrong with the error set that the options give: no zonotope, or too small. Throws as
+/// ErrorBounds does.
+void check_given_error_set(const ModeBank& bank, const std::vector<ModeDynamics>& modes,
+                           const OfflineOptions& options, std::vector<Diagnostic>& problems);
+
+/// As messages name it.
+std::string four_digits(double x);
 
 }  // namespace cordon::estimators

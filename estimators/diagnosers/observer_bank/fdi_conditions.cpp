@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "cordon/core/linalg.hpp"
@@ -210,16 +209,10 @@ PairGuarantee judge(const Pair& pair, const OfflineOptions& options) {
           pair.mode == pair.observer ? inside : negate(inside)};
 }
 
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", x);
-  return text;
-}
-
 std::string describe(const OfflineOptions& options, Index fallbacks) {
   if (options.invariant == Invariant::mrpi) {
     return "minimal invariant sets by their support functions, relative accuracy " +
-           number(options.accuracy);
+           four_digits(options.accuracy);
   }
   std::string steps;
   for (const Index count : options.iterations)
@@ -291,50 +284,6 @@ std::vector<Diagnostic> check_options(const ModeBank& bank, const std::vector<Mo
   return problems;
 }
 
-std::string box_text(const LineForm& box) {
-  std::string lower, upper;
-  for (Index k = 0; k < box.dim(); ++k) {
-    const double radius = box.G.row(k).cwiseAbs().sum();
-    const std::string separator = k > 0 ? ", " : "";
-    // three digits, rounded outward
-    const double unit = radius > 0 ? std::pow(10.0, std::floor(std::log10(radius)) - 2) : 1.0;
-    lower += separator + number(std::floor((box.c[k] - radius) / unit) * unit);
-    upper += separator + number(std::ceil((box.c[k] + radius) / unit) * unit);
-  }
-  return R"({"type": "box", "lower": [)" + lower + R"(], "upper": [)" + upper + "]}";
-}
-
-void check_errors(const ModeBank& bank, const std::vector<ModeDynamics>& modes,
-                  const OfflineOptions& options, std::vector<Diagnostic>& problems) {
-  if (options.error_set &&
-      (options.error_set->lines() > 0 || options.error_set->constraints() > 0)) {
-    problems.push_back({"/error_set", "must be a zonotope or a box: bounded, without constraints",
-                        "leave it out to have one computed"});
-    return;
-  }
-  const ErrorBounds bounds(bank, modes, options);
-  if (!options.error_set) return;
-  const ErrorSetCheck check = compare_error_set(bounds, *options.error_set);
-  if (check.factor <= 1) return;
-  std::string text = "does not contain x - x̂ for all observers: ";
-  if (std::isinf(check.factor)) {
-    text += "it is flat";
-  } else {
-    text += "it would have to be larger by the factor " + number(check.factor);
-    if (check.steady_factor > 1) {
-      text += ", by " + number(check.steady_factor) + " already for the invariant set of mode \"" +
-              bank[check.mode].name + "\" with the observer of mode \"" +
-              bank[check.observer].name + "\"";
-    } else {
-      text += " (" + number(check.steady_factor) +
-              " for the invariant sets alone): initial errors and switching modes go beyond it";
-    }
-  }
-  problems.push_back({"/error_set", text,
-                      "use " + box_text(compute_error_set(bounds, modes.front().A.rows()).set) +
-                          ", or leave it out to have a box computed"});
-}
-
 }  // namespace
 
 Box input_bounds(const ModeBank& bank) {
@@ -399,7 +348,7 @@ std::vector<Diagnostic> check_offline(const ModeBank& bank, const std::vector<Ma
     const std::vector<ModeDynamics> modes = dynamics_of(bank, gains);
     problems = check_options(bank, modes, options);
     if (!problems.empty()) return problems;
-    check_errors(bank, modes, options, problems);
+    check_given_error_set(bank, modes, options, problems);
     if (problems.empty() && options.invariant == Invariant::rpi) {
       for (const ModeDynamics& mode : modes)
         invariant::rpi_set(mode.Ao, error_drive(mode, mode, options.separate_inputs, {}));
