@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Parameters from JSON, by the schema of the backend; the plugin's library alone.
 #include "conform_backend.hpp"
 
 #include <cstdint>

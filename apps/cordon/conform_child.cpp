@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pipes and signals of a child process that sends messages.
 #include "conform_child.hpp"
 
 #include <cerrno>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Plugins tried in a child process: what they offer, and whether a backend can be made.
 #include "conform_discovery.hpp"
 
 #include <fmt/format.h>

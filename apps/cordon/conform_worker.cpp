@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Laws run in a child process, whose messages become reports.
 #include "conform_worker.hpp"
 
 #include <chrono>

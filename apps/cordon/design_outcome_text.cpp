@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Words, tables and numbers of one designed input.
 #include "design_outcome_text.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reports of `cordon design` and of runs with designed inputs, and their exit codes.
 #include "design_report.hpp"
 
 #include <algorithm>

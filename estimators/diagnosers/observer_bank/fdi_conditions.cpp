@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Residual sets of all pairs of modes and observers, and what follows from them.
 #include "diagnosers/observer_bank/fdi_conditions.hpp"
 
 #include <algorithm>

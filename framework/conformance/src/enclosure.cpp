@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The inclusions that laws rest on, asked along directions and of points.
 #include "enclosure.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One case of every operation: its operands, and its exact result.
 #include "operations.hpp"
 
 #include <cmath>

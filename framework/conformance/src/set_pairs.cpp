@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pairs of sets, as drawn, moved and held.
 #include "set_pairs.hpp"
 
 namespace cordon::conformance {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lists of wrong and of strange calls.
 #include "thrown_errors.hpp"
 
 #include <functional>

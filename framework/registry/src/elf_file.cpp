@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A library's file as a whole: its kind, header and segments.
 #include "elf_file.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The search for dual matrices that prove infeasibility, and the check of them.
 #include "sdp_infeasibility.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sums over the inequalities of a program.
 #include "sdp_products.hpp"
 
 namespace cordon {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// An equilibration in powers of two, and the way back.
 #include "sdp_scaling.hpp"
 
 #include <algorithm>

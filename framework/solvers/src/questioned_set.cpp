@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Supports and emptiness of a set without its lines, with proofs about the set as it was given.
 #include "questioned_set.hpp"
 
 #include <cmath>

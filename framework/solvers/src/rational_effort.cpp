@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Operations that rational arithmetic needs, by the size of the rows and of their numbers.
 #include "rational_effort.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Findings about a step, and the proofs that were stored with it.
 #include "step_check.hpp"
 
 #include <algorithm>
