@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -13,26 +14,14 @@ namespace {
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-/// The character at the front of a text that is not empty, and its bytes; 0 bytes if they are no
-/// UTF-8.
-struct Character {
-  std::uint32_t code = 0;
-  std::size_t bytes = 0;
-};
-Character first_of(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  if (byte(0) < 0x80) return {byte(0), 1};
-  const std::size_t bytes = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : 2;
-  if (byte(0) < 0xC2 || byte(0) > 0xF4 || text.size() < bytes) return {};
-  std::uint32_t code = byte(0) & (0xFFu >> (bytes + 1));
-  for (std::size_t i = 1; i < bytes; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return {};
-    code = code << 6 | (byte(i) & 0x3Fu);
-  }
-  constexpr std::array<std::uint32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
-  const bool is_character =
-      code >= least[bytes] && code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
-  return is_character ? Character{code, bytes} : Character{};
+/// The character of a well-formed UTF-8 sequence.
+std::uint32_t code_of(std::string_view sequence) {
+  const auto lead = static_cast<unsigned char>(sequence[0]);
+  if (sequence.size() == 1) return lead;
+  std::uint32_t code = lead & (0xFFu >> (sequence.size() + 1));
+  for (const char c : sequence.substr(1))
+    code = code << 6 | (static_cast<unsigned char>(c) & 0x3Fu);
+  return code;
 }
 
 bool is_unprintable(std::uint32_t c) {
@@ -44,18 +33,19 @@ std::string escaped(std::string_view text, bool keeps_lines) {
   std::string out;
   std::array<char, 8> code{};
   while (!text.empty()) {
-    const Character c = first_of(text);
-    if (c.bytes == 0) {
+    const std::size_t length = utf8_length(text);
+    const std::uint32_t c = code_of(text.substr(0, std::max<std::size_t>(1, length)));
+    if (length == 0) {
       std::snprintf(code.data(), code.size(), "\\x%02x",
                     static_cast<unsigned>(static_cast<unsigned char>(text[0])));
       out += code.data();
-    } else if (is_unprintable(c.code) && !(keeps_lines && c.code == '\n')) {
-      std::snprintf(code.data(), code.size(), "\\u%04x", static_cast<unsigned>(c.code));
+    } else if (is_unprintable(c) && !(keeps_lines && c == '\n')) {
+      std::snprintf(code.data(), code.size(), "\\u%04x", static_cast<unsigned>(c));
       out += code.data();
     } else {
-      out += text.substr(0, c.bytes);
+      out += text.substr(0, length);
     }
-    text.remove_prefix(c.bytes == 0 ? 1 : c.bytes);
+    text.remove_prefix(std::max<std::size_t>(1, length));
   }
   return out;
 }
@@ -68,6 +58,28 @@ bool is_number(std::string_view text) {
 }
 
 }  // namespace
+
+// Table 3-7 of the Unicode standard.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const auto within = [&](std::size_t i, unsigned low, unsigned high) {
+    return byte(i) >= low && byte(i) <= high;
+  };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF) return within(1, 0x80, 0xBF) ? 2 : 0;
+  if (lead >= 0xE0 && lead <= 0xEF) {
+    const bool second = within(1, lead == 0xE0 ? 0xA0 : 0x80, lead == 0xED ? 0x9F : 0xBF);
+    return second && within(2, 0x80, 0xBF) ? 3 : 0;
+  }
+  if (lead >= 0xF0 && lead <= 0xF4) {
+    const bool second = within(1, lead == 0xF0 ? 0x90 : 0x80, lead == 0xF4 ? 0x8F : 0xBF);
+    return second && within(2, 0x80, 0xBF) && within(3, 0x80, 0xBF) ? 4 : 0;
+  }
+  return 0;
+}
 
 std::string printable(std::string_view text) { return escaped(text, false); }
 std::string printable_lines(std::string_view text) { return escaped(text, true); }

@@ -2,10 +2,14 @@
 // Texts of others, shown to people and written into tables.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace cordon::detail {
+
+/// Length of the well-formed UTF-8 sequence (RFC 3629) at the front of `text`, 0 if there is none.
+std::size_t utf8_length(std::string_view text);
 
 /// A text that does to a terminal or a page what it looks like: control characters (C0, DEL, C1)
 /// and those that change the direction of writing (U+061C, U+200E, U+200F, U+202A … U+202E, U+2066

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "study/text/json_writer.hpp"
+#include "core/text.hpp"
 
 namespace cordon::mat {
 

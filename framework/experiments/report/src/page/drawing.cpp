@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "study/text/json_writer.hpp"
+#include "core/text.hpp"
 
 namespace cordon::report {
 

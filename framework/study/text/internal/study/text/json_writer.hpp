@@ -14,9 +14,6 @@
 
 namespace cordon::detail {
 
-/// Length of the well-formed UTF-8 sequence at the front of `text`, 0 if there is none.
-std::size_t utf8_length(std::string_view text);
-
 /// Text as a JSON string with its quotes: `"`, `\` and control characters escaped, bytes that are
 /// no UTF-8 replaced by U+FFFD.
 std::string json_string(std::string_view text);
