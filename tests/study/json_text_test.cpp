@@ -2,6 +2,7 @@
 #include "study/text/json_text.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
 
@@ -90,6 +91,119 @@ TEST_CASE("after random damage, what is accepted and what it means agree with an
   CHECK(refused > 1000);
 }
 
+TEST_CASE("numbers are the doubles next to their text, whatever their length") {
+  std::mt19937_64 random(7);
+  const auto digits = [&](std::size_t most) {
+    std::string text;
+    for (std::size_t i = 1 + random() % most; i > 0; --i)
+      text += static_cast<char>('0' + random() % 10);
+    return text;
+  };
+  for (int trial = 0; trial < 20000; ++trial) {
+    std::string text = random() % 2 ? "-" : "";
+    text += random() % 4 ? std::to_string(1 + random() % 9) + digits(random() % 8 ? 3 : 40) : "0";
+    if (random() % 4) text += "." + digits(random() % 8 ? 20 : 60);
+    if (random() % 2) text += (random() % 2 ? "e-" : "E+0") + digits(2);
+    CAPTURE(text);
+    Problems problems;
+    const Value list = parse("[" + text + "," + text + "]", problems);
+    REQUIRE_FALSE(problems.any());
+    const double expected = std::strtod(text.c_str(), nullptr);  // in the locale "C"
+    for (const Value& item : list.items()) {
+      REQUIRE(item.number == expected);
+      REQUIRE(std::signbit(item.number) == std::signbit(expected));
+    }
+  }
+  Problems problems;
+  const Value integers = parse(
+      "[9223372036854775807, -9223372036854775809, 18446744073709551616, 9007199254740993, -0]",
+      problems);
+  REQUIRE_FALSE(problems.any());
+  CHECK(integers.items()[0].number == 9223372036854775808.0);
+  CHECK(integers.items()[1].number == -9223372036854775808.0);
+  CHECK(integers.items()[2].number == 18446744073709551616.0);
+  CHECK(integers.items()[3].number == 9007199254740992.0);
+  CHECK(std::signbit(integers.items()[4].number));
+}
+
+TEST_CASE("a wrong number does not end the reading") {
+  Problems problems;
+  const Value root =
+      parse("{\"a\": [1e999, -1e-999, NaN, -Infinity, null, -7],\n\"b\" :nan\n}", problems);
+  REQUIRE(problems.count() == 5);
+  const auto told = problems.sorted();
+  CHECK(told[0].message == "\"1e999\" is beyond the range of double numbers");
+  CHECK(told[1].message == "\"-1e-999\" is beyond the range of double numbers");
+  CHECK(told[2].message == "NaN is not a number");
+  CHECK(told[3].message == "Infinity is not a number");
+  CHECK(told[3].pointer == "/a/3");
+  CHECK(told[4].pointer == "/b");
+  CHECK(told[4].line == 2);
+  const auto& items = root.find("a")->items();
+  for (std::size_t i = 0; i < 4; ++i) CHECK(items[i].kind == Value::Kind::broken);
+  CHECK(items[4].kind == Value::Kind::null);
+  CHECK(items[5].number == -7);
+}
+
+TEST_CASE("every refusal says where and why") {
+  struct Refusal {
+    std::string text, pointer;
+    int line;
+    std::string message;
+  };
+  const std::vector<Refusal> refusals = {
+      {"", "", 1, "column 1: a value is missing: the file ends here"},
+      {std::string("{}\0{}", 5), "", 1,
+       "column 3: more text after the end of the document, found \"\\u0000\""},
+      {"{} // x", "", 1, "column 4: comments are not part of JSON"},
+      {"[\n# x\n]", "", 2, "column 1: comments are not part of JSON"},
+      {"{\"a\": 1,\n \"b\": 2,\n}", "/b", 3, "column 1: a key is missing, found \"}\""},
+      {"[1, 2, ]", "/2", 1, "column 8: a value is missing, found \"]\""},
+      {"[1, 2", "/1", 1, "column 6: \",\" or \"]\" is missing, the file ends here"},
+      {"[1 2]", "/0", 1, "column 4: \",\" or \"]\" is missing, found \"2\""},
+      {"{\"a\": {\"b\" 1}}", "/a/b", 1,
+       "column 12: a colon is missing after the key \"b\", found \"1\""},
+      {"{a: 1}", "/", 1, "column 2: a key in double quotes is missing, found \"a\""},
+      {"{\"a\": 'b'}", "/a", 1, "column 7: texts are written in double quotes"},
+      {"[.5]", "/0", 1, "column 2: a number cannot begin with \".\""},
+      {"[7, -07]", "/1", 1, "column 6: a number begins with a superfluous 0"},
+      {"[1.]", "/0", 1, "column 4: a digit is missing after the decimal point, found \"]\""},
+      {"[1e+]", "/0", 1, "column 5: a digit is missing in the exponent, found \"]\""},
+      {"[True]", "/0", 1, "column 2: unknown word \"True\""},
+      {"[nullify]", "/0", 1, "column 2: unknown word \"nullify\""},
+      {"[\"é\", \"a\nb\"]", "/1", 1, "column 7: a text without its closing quote on the line"},
+      {"[\"a\tb\"]", "/0", 1, "column 4: a control character in a text"},
+      {"[\"a\\x\"]", "/0", 1, "column 4: unknown escape sequence in a text"},
+      {"[\"\\u12G4\"]", "/0", 1, "column 5: \\u needs four hexadecimal digits"},
+      {"[\"\\ud83dx\"]", "/0", 1, "column 3: half of a surrogate pair in a text"},
+  };
+  for (const Refusal& r : refusals) {
+    CAPTURE(r.text);
+    Problems problems;
+    CHECK(parse(r.text, problems).kind == Value::Kind::broken);
+    REQUIRE(problems.count() == 1);
+    CHECK(problems.sorted()[0].pointer == r.pointer);
+    CHECK(problems.sorted()[0].line == r.line);
+    CHECK(problems.sorted()[0].message == r.message);
+  }
+}
+
+TEST_CASE("a repeated key is named with both lines, among few keys and many") {
+  for (const int keys : {3, 100'000}) {
+    std::string text = "{";
+    for (int i = 0; i < 2 * keys; ++i)
+      text += (i > 0 ? ",\n\"" : "\"") + std::to_string(i % keys) + "\": " + std::to_string(i);
+    Problems problems;
+    const Value root = parse(text + "}", problems);
+    CHECK(problems.count() == static_cast<std::size_t>(keys));
+    CHECK(root.items().size() == static_cast<std::size_t>(keys));
+    CHECK(root.items().back().number == keys - 1);
+    CHECK(problems.found()[2].pointer == "/2");
+    CHECK(problems.found()[2].line == keys + 3);
+    CHECK(problems.found()[2].message == "the key is repeated (first on line 3)");
+  }
+}
+
 TEST_CASE("every value knows its line, for every line break") {
   for (const std::string end : {"\n", "\r\n"}) {
     Problems problems;
@@ -102,6 +216,11 @@ TEST_CASE("every value knows its line, for every line break") {
     CHECK(root.find("b")->items()[1].line == 5);
     CHECK(root.find("c") == nullptr);
   }
+  Problems problems;
+  const Value root = parse("[\n1\n,[\n],\n\n{}\n,\"x\"\n, NaN\n,true\n]\n", problems);
+  std::vector<int> lines;
+  for (const Value& item : root.items()) lines.push_back(item.line);
+  CHECK(lines == std::vector<int>{2, 3, 6, 7, 8, 9});
 }
 
 TEST_CASE("a byte order mark is skipped, a second one is not") {

@@ -1,382 +1,282 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <charconv>
-#include <unordered_set>
+#include <unordered_map>
 
+#include <nlohmann/json.hpp>
+
+#include "core/text.hpp"
+#include "json_fault.hpp"
+#include "json_source.hpp"
 #include "study/text/json_text.hpp"
 
 namespace cordon::json {
 
 namespace {
 
-/// Position of the first byte that is not part of valid UTF-8 (RFC 3629), or npos.
-std::size_t first_invalid_utf8(std::string_view text) {
-  std::size_t i = 0;
-  while (i < text.size()) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    std::size_t length = 0;
-    unsigned low = 0x80, high = 0xBF;  // range of the second byte: refuses overlong forms,
-                                       // surrogates and values over 10FFFF
-    if (lead < 0x80) {
-      length = 1;
-    } else if (lead >= 0xC2 && lead <= 0xDF) {
-      length = 2;
-    } else if (lead >= 0xE0 && lead <= 0xEF) {
-      length = 3;
-      low = lead == 0xE0 ? 0xA0u : low;
-      high = lead == 0xED ? 0x9Fu : high;
-    } else if (lead >= 0xF0 && lead <= 0xF4) {
-      length = 4;
-      low = lead == 0xF0 ? 0x90u : low;
-      high = lead == 0xF4 ? 0x8Fu : high;
-    }
-    if (length == 0 || i + length > text.size()) return i;
-    for (std::size_t j = 1; j < length; ++j) {
-      const auto byte = static_cast<unsigned char>(text[i + j]);
-      if (byte < (j == 1 ? low : 0x80u) || byte > (j == 1 ? high : 0xBFu)) return i;
-    }
-    i += length;
-  }
-  return std::string_view::npos;
-}
+using Kind = Value::Kind;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-
-struct SyntaxError {
-  std::size_t position;
-  std::string message, suggestion;
-};
-
-class Parser {
+/// Builds the tree of what the library's parser finds in a text.
+class Builder {
  public:
-  Parser(std::string_view text, Problems& problems) : text_(text), problems_(problems) {}
+  Builder(std::string_view text, Source& source, Problems& problems)
+      : text_(text), source_(source), problems_(problems) {}
 
-  Value document();
+  Value take() { return std::move(root_); }
+
+  bool null() {
+    const std::string_view word = source_.take_infinite();
+    return leaf(word.empty() ? Kind::null : Kind::broken, [&](Value&) {
+      if (word.empty()) return;
+      problems_.add(
+          pointer(), line_, std::string(word) + " is not a number",
+          "numbers are finite; only bounds of a box may be free: \"-inf\" and \"inf\" in quotes");
+    });
+  }
+  bool boolean(bool flag) {
+    return leaf(Kind::boolean, [&](Value& value) { value.flag = flag; });
+  }
+  // The library was shown no more than their shape.
+  bool number_integer(std::int64_t) { return number(); }
+  bool number_unsigned(std::uint64_t) { return number(); }
+  bool number_float(double, const std::string&) { return number(); }
+  bool string(std::string& text) {
+    return leaf(Kind::text, [&](Value& value) {
+      const auto parts = std::make_shared<Parts>();
+      parts->text = text;  // as large as needed; the library keeps its own
+      value.parts = parts;
+    });
+  }
+  bool binary(const std::vector<std::uint8_t>&) { return false; }  // not part of JSON text
+  bool start_object(std::size_t) { return open(Kind::object, Last::opened_object); }
+  bool start_array(std::size_t) { return open(Kind::array, Last::opened_array); }
+  bool end_object() { return close(); }
+  bool end_array() { return close(); }
+  bool key(std::string& text) {
+    go_to_token();
+    forget_repeated();
+    keys_.push_back(text);
+    open_.back().key_line = line_;
+    pass(source_.position(), Last::key);
+    return true;
+  }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) {
+    return refuse(fault_of(text_, at_, last_, keys_.empty() ? std::string_view() : keys_.back()));
+  }
+  /// Reports what ends the reading.
+  bool refuse(Fault fault);
 
  private:
-  struct Step {
-    std::string key;
-    std::size_t index = 0;
-    bool in_array = false;
+  /// A list or an object that is not complete. Its items and keys are the last ones of `items_` and
+  /// `keys_`.
+  struct Level {
+    Value value;
+    std::size_t items, keys;  ///< where its own begin
+    int key_line = 0;
+    std::unordered_map<std::string, int> lines = {};  ///< of the items by their keys; once many
   };
+  static constexpr std::size_t few_keys = 16;
 
-  Value value();
-  Value object();
-  Value array();
-  Value number();
-  Value word();
-  std::string string();
-  unsigned hex4();
-  void escape(std::string& out);
-  Value broken_number(std::string message, std::string suggestion);
-  Value of_kind(Value::Kind kind) const;
-
-  void skip_space();
-  char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
-  bool at_end() const { return at_ >= text_.size(); }
-  bool next_is(char c) const { return !at_end() && text_[at_] == c; }
-  bool take(char c) { return next_is(c) && ++at_ > 0; }
-  [[noreturn]] void fail(std::string message, std::string suggestion = "") const {
-    fail_at(at_, std::move(message), std::move(suggestion));
+  void go_to_token();
+  void pass(std::size_t end, Last last) {
+    at_ = end;
+    last_ = last;
   }
-  [[noreturn]] static void fail_at(std::size_t position, std::string message,
-                                   std::string suggestion = "") {
-    throw SyntaxError{position, std::move(message), std::move(suggestion)};
-  }
-  std::string found() const;
-  std::string pointer() const;
-  void report_syntax(std::size_t position, std::string message, std::string suggestion);
+  bool number();
+  template <class Fill>
+  bool leaf(Kind kind, Fill&& fill);
+  bool open(Kind kind, Last last);
+  bool close();
+  bool begin(Kind kind, Value& value);
+  bool put(Value value, std::size_t end);
+  int line_of_same_key(const Value& value);
+  void forget_repeated() { keys_.resize(open_.back().keys + items_.size() - open_.back().items); }
+  /// Of the value that is read, an element of the innermost list being the next one.
+  std::string pointer(Fault::Of of = Fault::Of::next) const;
 
   std::string_view text_;
+  Source& source_;
   Problems& problems_;
-  std::size_t at_ = 0;
-  int line_ = 1;
+  std::vector<Level> open_;
+  std::vector<Value> items_;
+  std::vector<std::string> keys_;  ///< one more than items in an object while its value is read
+  std::size_t at_ = 0;             ///< the beginning of a token, or the end of the last one
+  int line_ = 1;                   ///< where that is
+  Last last_ = Last::nothing;
   std::size_t values_ = 0;
-  std::vector<Step> path_;
+  Value root_;
 };
 
-std::string Parser::pointer() const {
+std::string Builder::pointer(Fault::Of of) const {
   std::string text;
-  for (const Step& step : path_)
-    text = step.in_array ? child(text, step.index) : child(text, step.key);
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    const Level& level = open_[i];
+    const bool innermost = i + 1 == open_.size();
+    if (innermost && of == Fault::Of::container) break;
+    if (level.value.kind == Kind::array) {
+      const std::size_t items = (innermost ? items_.size() : open_[i + 1].items) - level.items;
+      const bool latest = innermost && of == Fault::Of::latest && items > 0;
+      text = child(text, latest ? items - 1 : items);
+    } else {
+      const std::size_t keys = innermost ? keys_.size() : open_[i + 1].keys;
+      text = child(text, keys > level.keys ? std::string_view(keys_[keys - 1]) : "");
+    }
+  }
   return text;
 }
 
-std::string Parser::found() const {
-  if (at_end()) return "the file ends here";
-  std::size_t end = at_ + 1;
-  while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0u) == 0x80u)
-    ++end;  // a whole character
-  if (is_word(peek()))
-    end = static_cast<std::size_t>(
-        std::find_if_not(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), is_word) -
-        text_.begin());
-  return "found " +
-         (peek() == '"' ? std::string("a text") : in_quotes(text_.substr(at_, end - at_)));
-}
-
-void Parser::report_syntax(std::size_t position, std::string message, std::string suggestion) {
-  const std::string_view before = text_.substr(0, position);
+bool Builder::refuse(Fault fault) {
+  const std::string_view before = text_.substr(0, fault.position);
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::string_view row =
-      before.substr(before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1);
+  const std::string_view row = before.substr(before.rfind('\n') + 1);
   const auto column = 1 + std::count_if(row.begin(), row.end(), [](char c) {
                         return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
                       });
-  problems_.add(pointer(), static_cast<int>(line),
-                "column " + std::to_string(column) + ": " + std::move(message),
-                std::move(suggestion));
+  problems_.add(pointer(fault.of), static_cast<int>(line),
+                "column " + std::to_string(column) + ": " + std::move(fault.message),
+                std::move(fault.suggestion));
+  return false;
 }
 
-Value Parser::document() {
-  if (text_.substr(0, 3) == "\xEF\xBB\xBF") text_.remove_prefix(3);
-  if (const std::size_t bad = first_invalid_utf8(text_); bad != std::string_view::npos) {
-    report_syntax(bad, "not valid UTF-8", "save the file with the encoding UTF-8");
-    return of_kind(Value::Kind::broken);
-  }
-  try {
-    skip_space();
-    Value root = value();
-    skip_space();
-    if (!at_end())
-      fail("more text after the end of the document, " + found(),
-           "a file holds one JSON value; is there a brace too many?");
-    return root;
-  } catch (SyntaxError& error) {
-    report_syntax(error.position, std::move(error.message), std::move(error.suggestion));
-    return of_kind(Value::Kind::broken);
-  }
+/// From the end of the last token to the beginning of the one that the library has found.
+void Builder::go_to_token() {
+  for (; is_space(text_[at_]) || text_[at_] == ',' || text_[at_] == ':'; ++at_)
+    line_ += text_[at_] == '\n' ? 1 : 0;
 }
 
-void Parser::skip_space() {
-  for (; !at_end(); ++at_) {
-    const char c = text_[at_];
-    if (c == '\n') {
-      ++line_;
-    } else if (c == '/' || c == '#') {
-      fail("comments are not part of JSON", "use the key \"$comment\"");
-    } else if (c != ' ' && c != '\t' && c != '\r') {
-      return;
-    }
-  }
+bool Builder::begin(Kind kind, Value& value) {
+  go_to_token();
+  value.kind = kind;
+  value.line = line_;
+  if (++values_ <= max_values) return true;
+  return refuse({at_, "the file holds more than 10 million values",
+                 "recorded data belong into a CSV file", Fault::Of::next});
 }
 
-Value Parser::of_kind(Value::Kind kind) const {
-  Value result;
-  result.kind = kind;
-  result.line = line_;
-  return result;
-}
-
-Value Parser::value() {
-  if (++values_ > max_values)
-    fail("the file holds more than 10 million values", "recorded data belong into a CSV file");
-  if (at_end()) fail("a value is missing: the file ends here", "is the file complete?");
-  const char c = peek();
-  if (c == '{' || c == '[') {
-    if (path_.size() >= static_cast<std::size_t>(max_depth))
-      fail("nested deeper than 64 levels", "a study needs less than ten");
-    return c == '{' ? object() : array();
-  }
-  if (c == '"') {
-    Value result = of_kind(Value::Kind::text);
-    const auto parts = std::make_shared<Parts>();
-    result.parts = parts;
-    parts->text = string();
-    return result;
-  }
-  if (c == '-' || is_digit(c)) return number();
-  if (is_word(c)) return word();
-  if (c == '\'') fail("texts are written in double quotes");
-  if (c == '+' || c == '.')
-    fail("a number cannot begin with " + in_quotes(std::string_view(&c, 1)),
-         "write 0.5, not .5 or +0.5");
-  fail("a value is missing, " + found(), c == ']' || c == '}' ? "is there a comma too many?" : "");
-}
-
-Value Parser::object() {
-  Value result = of_kind(Value::Kind::object);
-  const auto parts = std::make_shared<Parts>();
-  result.parts = parts;
-  std::unordered_set<std::string> seen;
-  ++at_;
-  skip_space();
-  if (take('}')) return result;
-  path_.emplace_back();
-  for (;;) {
-    if (next_is('}')) fail("a key is missing, found \"}\"", "remove the comma before it");
-    if (!next_is('"'))
-      fail("a key in double quotes is missing, " + found(), "keys are texts: \"key\": value");
-    const int key_line = line_;
-    std::string key = string();
-    path_.back().key = key;
-    skip_space();
-    if (!take(':')) fail("a colon is missing after the key " + in_quotes(key) + ", " + found());
-    skip_space();
-    Value member = value();
-    if (seen.insert(key).second) {
-      parts->keys.push_back(std::move(key));
-      parts->items.push_back(std::move(member));
-    } else {
-      problems_.add(
-          pointer(), key_line,
-          "the key is repeated (first on line " + std::to_string(result.find(key)->line) + ")",
-          "remove one of the two");
-    }
-    skip_space();
-    if (take('}')) break;
-    if (!take(','))
-      fail("\",\" or \"}\" is missing, " + found(), at_end() ? "is the file complete?" : "");
-    skip_space();
-  }
-  path_.pop_back();
-  return result;
-}
-
-Value Parser::array() {
-  Value result = of_kind(Value::Kind::array);
-  const auto parts = std::make_shared<Parts>();
-  result.parts = parts;
-  ++at_;
-  skip_space();
-  if (take(']')) return result;
-  path_.emplace_back().in_array = true;
-  for (;;) {
-    path_.back().index = parts->items.size();
-    if (next_is(']')) fail("a value is missing, found \"]\"", "remove the comma before it");
-    parts->items.push_back(value());
-    skip_space();
-    if (take(']')) break;
-    if (!take(','))
-      fail("\",\" or \"]\" is missing, " + found(), at_end() ? "is the file complete?" : "");
-    skip_space();
-  }
-  path_.pop_back();
-  return result;
-}
-
-Value Parser::broken_number(std::string message, std::string suggestion) {
-  problems_.add(pointer(), line_, std::move(message), std::move(suggestion));
-  return of_kind(Value::Kind::broken);
-}
-
-Value Parser::word() {
-  const std::size_t begin = at_;
-  while (is_word(peek())) ++at_;
-  const std::string_view name = text_.substr(begin, at_ - begin);
-  if (name == "true" || name == "false") {
-    Value result = of_kind(Value::Kind::boolean);
-    result.flag = name == "true";
-    return result;
-  }
-  if (name == "null") return of_kind(Value::Kind::null);
-  for (const std::string_view infinite :
-       {"NaN", "nan", "NAN", "Infinity", "infinity", "inf", "Inf", "INF"}) {
-    if (name != infinite) continue;
-    return broken_number(
-        std::string(name) + " is not a number",
-        "numbers are finite; only bounds of a box may be free: \"-inf\" and \"inf\" in quotes");
-  }
-  fail_at(begin, "unknown word " + in_quotes(name),
-          "texts are written in double quotes; the words of JSON are true, false and null");
-}
-
-Value Parser::number() {
-  const std::size_t begin = at_;
-  const auto digits = [&](const char* where) {
-    if (!is_digit(peek())) fail(std::string("a digit is missing ") + where + ", " + found());
-    while (is_digit(peek())) ++at_;
-  };
-  if (take('-') && is_word(peek())) {
-    Value infinite = word();
-    if (infinite.kind != Value::Kind::broken) fail_at(begin, "a digit is missing after the sign");
-    return infinite;
-  }
-  const std::size_t first = at_;
-  digits("in a number");
-  if (text_[first] == '0' && at_ > first + 1)
-    fail_at(first, "a number begins with a superfluous 0", "write 7, not 07");
-  if (take('.')) digits("after the decimal point");
-  if (take('e') || take('E')) {
-    if (!take('+')) take('-');
-    digits("in the exponent");
-  }
-  Value result = of_kind(Value::Kind::number);
-  const auto [end, code] = std::from_chars(text_.data() + begin, text_.data() + at_, result.number);
-  if (code != std::errc() || end != text_.data() + at_) {
-    return broken_number(
-        in_quotes(text_.substr(begin, at_ - begin)) + " is beyond the range of double numbers",
-        "about 1e-308 to 1.8e308, or 0");
-  }
-  return result;
-}
-
-unsigned Parser::hex4() {
-  unsigned code = 0;
+bool Builder::number() {
+  Value value;
+  if (!begin(Kind::number, value)) return false;
   const char* begin = text_.data() + at_;
-  const char* end = text_.data() + std::min(at_ + 4, text_.size());
-  if (std::from_chars(begin, end, code, 16).ptr - begin != 4)
-    fail("\\u needs four hexadecimal digits");
-  at_ += 4;
-  return code;
+  const char* end = text_.data() + text_.size();
+  const char* digits = begin + (*begin == '-' ? 1 : 0);
+  if (*digits == '0' && end - digits > 1 && is_digit(digits[1])) {  // 0 and 7 to the library
+    return refuse({static_cast<std::size_t>(digits - text_.data()),
+                   "a number begins with a superfluous 0", "write 7, not 07", Fault::Of::next});
+  }
+  const auto [stop, code] = std::from_chars(begin, end, value.number);
+  if (code != std::errc()) {
+    value.kind = Kind::broken;
+    problems_.add(pointer(), line_,
+                  in_quotes({begin, stop}) + " is beyond the range of double numbers",
+                  "about 1e-308 to 1.8e308, or 0");
+  }
+  return put(std::move(value), static_cast<std::size_t>(stop - text_.data()));
 }
 
-void Parser::escape(std::string& out) {
-  static constexpr std::string_view names = "\"\\/bfnrt", bytes = "\"\\/\b\f\n\r\t";
-  const std::size_t begin = at_ - 1;
-  if (const std::size_t i = at_end() ? std::string_view::npos : names.find(peek());
-      i != std::string_view::npos) {
-    ++at_;
-    out += bytes[i];
-    return;
-  }
-  if (!take('u')) fail_at(begin, "unknown escape sequence in a text", "write \\\\ for a backslash");
-  unsigned code = hex4();
-  if (code >= 0xD800 && code <= 0xDFFF) {
-    const bool pair = code <= 0xDBFF && text_.substr(at_, 2) == "\\u";
-    if (pair) at_ += 2;
-    const unsigned low = pair ? hex4() : 0;
-    if (low < 0xDC00 || low > 0xDFFF)
-      fail_at(begin, "half of a surrogate pair in a text", "write the character itself");
-    code = 0x10000 + ((code - 0xD800) << 10) + (low - 0xDC00);
-  }
-  const auto tail = [&](int shift) { out += static_cast<char>(0x80 | ((code >> shift) & 0x3F)); };
-  if (code < 0x80) {
-    out += static_cast<char>(code);
-  } else if (code < 0x800) {
-    out += static_cast<char>(0xC0 | (code >> 6));
-    tail(0);
-  } else if (code < 0x10000) {
-    out += static_cast<char>(0xE0 | (code >> 12));
-    tail(6), tail(0);
-  } else {
-    out += static_cast<char>(0xF0 | (code >> 18));
-    tail(12), tail(6), tail(0);
-  }
+template <class Fill>
+bool Builder::leaf(Kind kind, Fill&& fill) {
+  Value value;
+  if (!begin(kind, value)) return false;
+  fill(value);
+  return put(std::move(value), source_.position());
 }
 
-std::string Parser::string() {
-  const std::size_t begin = at_++;
-  std::string result;
-  for (;;) {
-    if (at_end()) fail_at(begin, "a text without its closing quote");
-    const char c = text_[at_++];
-    if (c == '"') return result;
-    if (c == '\n')
-      fail_at(begin, "a text without its closing quote on the line", "write a line break as \\n");
-    if (static_cast<unsigned char>(c) < 0x20)
-      fail_at(at_ - 1, "a control character in a text", "write it as \\u00..");
-    if (c == '\\') {
-      escape(result);
-    } else {
-      result += c;
-    }
+bool Builder::open(Kind kind, Last last) {
+  Value value;
+  if (!begin(kind, value)) return false;
+  if (open_.size() >= static_cast<std::size_t>(max_depth)) {
+    return refuse(
+        {at_, "nested deeper than 64 levels", "a study needs less than ten", Fault::Of::next});
+  }
+  open_.push_back({std::move(value), items_.size(), keys_.size()});
+  pass(at_ + 1, last);
+  return true;
+}
+
+bool Builder::close() {
+  go_to_token();
+  Level& level = open_.back();
+  if (level.value.kind == Kind::object) forget_repeated();
+  const auto parts = std::make_shared<Parts>();
+  const auto items = items_.begin() + static_cast<std::ptrdiff_t>(level.items);
+  const auto keys = keys_.begin() + static_cast<std::ptrdiff_t>(level.keys);
+  parts->items.assign(std::make_move_iterator(items), std::make_move_iterator(items_.end()));
+  parts->keys.assign(std::make_move_iterator(keys), std::make_move_iterator(keys_.end()));
+  items_.erase(items, items_.end());
+  keys_.erase(keys, keys_.end());
+  Value value = std::move(level.value);
+  value.parts = parts;
+  open_.pop_back();
+  return put(std::move(value), at_ + 1);
+}
+
+/// A complete value, which ends at `end`, goes into the one around it.
+bool Builder::put(Value value, std::size_t end) {
+  if (open_.empty()) {
+    pass(end, Last::root);
+    root_ = std::move(value);
+    return true;
+  }
+  const bool is_member = open_.back().value.kind == Kind::object;
+  pass(end, is_member ? Last::member : Last::element);
+  const int first = is_member ? line_of_same_key(value) : 0;
+  if (first > 0) {
+    problems_.add(pointer(), open_.back().key_line,
+                  "the key is repeated (first on line " + std::to_string(first) + ")",
+                  "remove one of the two");
+    return true;
+  }
+  items_.push_back(std::move(value));
+  return true;
+}
+
+/// The line of the value in the innermost object that has the key of `value` already; 0: none.
+int Builder::line_of_same_key(const Value& value) {
+  Level& level = open_.back();
+  const auto begin = keys_.begin() + static_cast<std::ptrdiff_t>(level.keys);
+  const Value* items = items_.data() + level.items;
+  const std::size_t known = items_.size() - level.items;
+  if (known < few_keys) {
+    const auto same = std::find(begin, keys_.end() - 1, keys_.back());
+    return same == keys_.end() - 1 ? 0 : items[same - begin].line;
+  }
+  if (level.lines.empty()) {
+    for (std::size_t i = 0; i < known; ++i)
+      level.lines.emplace(begin[static_cast<std::ptrdiff_t>(i)], items[i].line);
+  }
+  const auto [same, is_new] = level.lines.emplace(keys_.back(), value.line);
+  return is_new ? 0 : same->second;
+}
+
+/// Where the text stops being UTF-8; npos: nowhere.
+std::size_t first_foreign_byte(std::string_view text) {
+  for (std::size_t at = 0;; ++at) {
+    while (at < text.size() && static_cast<unsigned char>(text[at]) < 0x80) ++at;
+    if (at == text.size()) return std::string_view::npos;
+    const std::size_t length = detail::utf8_length(text.substr(at));
+    if (length == 0) return at;
+    at += length - 1;
   }
 }
 
 }  // namespace
 
-Value parse(std::string_view text, Problems& problems) { return Parser(text, problems).document(); }
+Value parse(std::string_view text, Problems& problems) {
+  static constexpr std::string_view mark = "\xEF\xBB\xBF";
+  if (text.starts_with(mark)) text.remove_prefix(mark.size());
+  Source source(text);
+  Builder builder(text, source, problems);
+  if (const std::size_t at = first_foreign_byte(text); at != std::string_view::npos) {
+    builder.refuse({at, "not valid UTF-8", "save the file with the encoding UTF-8"});
+  } else if (text.starts_with(mark)) {  // the library would skip it
+    builder.refuse(fault_of(text, 0, Last::nothing, ""));
+  } else if (nlohmann::json::sax_parse(SourceIterator(&source), SourceIterator(nullptr),
+                                       &builder)) {
+    return builder.take();
+  }
+  Value broken;
+  broken.kind = Kind::broken;
+  return broken;
+}
 
 }  // namespace cordon::json
