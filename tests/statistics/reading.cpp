@@ -354,13 +354,16 @@ TEST_CASE("what is wanted of a large file") {
     const auto tree = cordon::json::read_large(scratch / "x.json", wanted, problems);
     for (const Diagnostic& problem : problems.sorted())
       seen += "!" + problem.pointer + "@" + std::to_string(problem.line);
-    if (const auto* a = tree.find("a")) seen += "a@" + std::to_string(a->line) + " ";
+    if (const auto* a = tree.find("a"))
+      seen += (std::signbit(a->number) ? "-a@" : "a@") + std::to_string(a->line) + " ";
     if (const auto* l = tree.find("l")) {
       for (const auto& item : l->items()) seen += std::to_string(item.items().size());
     }
     return seen;
   };
   CHECK(read("{\"a\": 1}") == "a@1 ");
+  CHECK(read("{\"a\": -0}") == "-a@1 ");
+  CHECK(read("{\"a\": 0}") == "a@1 ");
   CHECK(read("{\n\"b\": [[{\"a\": 1}]],\n\"a\":\n{\"x\": [1]}}") == "a@4 ");
   CHECK(read("{\"b\": 7\n,\n\"a\": 5\n}") == "a@3 ");
   CHECK(read("{\"l\": [{\"x\": 1, \"y\": 2}, {\"y\": 2}, 3, {\"x\": {\"y\": 1}}]}") == "1001");
@@ -370,6 +373,7 @@ TEST_CASE("what is wanted of a large file") {
   CHECK(read("{\"b\": 1, \"b\": 2, \"a\": 2}") == "a@1 ");
   CHECK(read("{\"a\":\n 1e999}").find("!/a@2") == 0);
   CHECK(read("{\"a\": 1} x").find("!") == 0);
+  CHECK(read(std::string("{\"a\": 1}\0x", 10)).find("!") == 0);
   CHECK(read("{\"a\": \"\xff\"}").find("!/a@1") == 0);
   CHECK(read("").find("!") == 0);
   std::string deep = "{\"a\": ", deeper = "{\"b\": ";

@@ -56,7 +56,8 @@ class Reader {
   using reference = char;
 
   explicit Reader(Bytes* bytes) : bytes_(bytes) {}
-  char operator*() const { return bytes_->now(); }
+  /// U+0001, which is JSON nowhere, in place of NUL, which the parser takes for the end.
+  char operator*() const { return bytes_->now() == '\0' ? '\x01' : bytes_->now(); }
   Reader& operator++() {
     bytes_->advance();
     return *this;
@@ -98,7 +99,10 @@ class Builder {
   bool boolean(bool flag) {
     return leaf(Kind::boolean, [&](Value& value) { value.flag = flag; });
   }
-  bool number_integer(std::int64_t number) { return number_float(static_cast<double>(number), {}); }
+  /// A negative integer, or -0.
+  bool number_integer(std::int64_t number) {
+    return number_float(number == 0 ? -0.0 : static_cast<double>(number), {});
+  }
   bool number_unsigned(std::uint64_t number) {
     return number_float(static_cast<double>(number), {});
   }
