@@ -54,6 +54,22 @@ TEST_CASE("layout, numbers and nesting") {
   CHECK_NOTHROW(nlohmann::json::parse(out.text));
 }
 
+TEST_CASE("an object without its end goes on, and an empty list may keep its lines") {
+  Text out;
+  JsonWriter(out).begin_object(JsonWriter::Layout::lines).member("a", 1);
+  JsonWriter json = JsonWriter::going_on(out);
+  json.key("none").begin_array(JsonWriter::Layout::open_lines).end_array();
+  json.key("one").begin_array(JsonWriter::Layout::open_lines).value(1).end_array().end_object();
+  CHECK(out.text == R"({
+  "a": 1,
+  "none": [
+  ],
+  "one": [
+    1
+  ]
+})");
+}
+
 TEST_CASE("strings: escapes, control characters, UTF-8, and bytes that are none") {
   CHECK(json_string("a\"b\\c\n\t\r\x01\x1f/") == R"("a\"b\\c\n\t\r\u0001\u001f/")");
   CHECK(json_string("Zürich ξ 😀 \x7f") == "\"Zürich ξ 😀 \x7f\"");

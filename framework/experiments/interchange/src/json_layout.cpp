@@ -4,29 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/text/json_writer.hpp"
+#include "study/text/string_sink.hpp"
+
 namespace cordon::json {
 
 namespace {
 
+using detail::JsonWriter;
 constexpr std::size_t width = 120;
+enum class Form { any, line, lines };  ///< what is flat stands on one line anyway
 
 bool is_flat(const Json& value) {
   return !value.is_structured() || value.empty() ||
          (value.is_array() && std::none_of(value.begin(), value.end(),
                                            [](const Json& v) { return v.is_structured(); }));
-}
-
-std::string in_one_line(const Json& value) {
-  if (!value.is_structured()) return value.dump();
-  std::string out(1, value.is_array() ? '[' : '{');
-  const char* comma = "";
-  for (const auto& [key, member] : value.items()) {
-    out += comma;
-    if (value.is_object()) out += Json(key).dump() + ": ";
-    out += in_one_line(member);
-    comma = ", ";
-  }
-  return out + (value.is_array() ? ']' : '}');
 }
 
 /// Is the compact text shorter than `most`? Ends early for large values.
@@ -44,31 +36,30 @@ bool fits(const Json& value, std::size_t& most) {
   return true;
 }
 
-void print(const Json& value, const std::string& indent, bool top, std::string& out) {
-  std::size_t most = indent.size() < width ? width - indent.size() : 0;
-  if (is_flat(value) || (!top && fits(value, most))) {
-    out += in_one_line(value);
+void print(const Json& value, std::size_t indent, Form form, JsonWriter& json) {
+  if (!value.is_structured()) {
+    json.raw(value.dump());
     return;
   }
-  const std::string inner = indent + "  ";
-  out += value.is_array() ? '[' : '{';
-  const char* comma = "\n";
+  std::size_t most = indent < width ? width - indent : 0;
+  if (form == Form::any && fits(value, most)) form = Form::line;
+  const bool in_line = form == Form::line || is_flat(value);
+  const auto layout = in_line ? JsonWriter::Layout::line : JsonWriter::Layout::lines;
+  value.is_array() ? json.begin_array(layout) : json.begin_object(layout);
   for (const auto& [key, member] : value.items()) {
-    out += comma + inner;
-    if (value.is_object()) out += Json(key).dump() + ": ";
-    print(member, inner, false, out);
-    comma = ",\n";
+    if (value.is_object()) json.key(key);
+    print(member, indent + 2, in_line ? Form::line : Form::any, json);
   }
-  out += '\n' + indent;
-  out += value.is_array() ? ']' : '}';
+  value.is_array() ? json.end_array() : json.end_object();
 }
 
 }  // namespace
 
 std::string pretty(const Json& value) {
-  std::string text;
-  print(value, "", true, text);
-  return text + "\n";
+  detail::StringSink text;
+  JsonWriter json(text);
+  print(value, 0, Form::lines, json);
+  return text.text + "\n";
 }
 
 Json to_json(double x) {

@@ -37,33 +37,29 @@ void write_numbers_of(JsonWriter& json, const ResultTable& table, const ResultRo
   json.end_object();
 }
 
-/// The points as elements of an open array, one per line.
+/// The points as elements of an array, one per line: they are read again line by line.
 template <class WriteMembers>
-void write_points(Sink& file, const ResultTable& table, WriteMembers write_members) {
-  file.write(",\n  \"points\": [");
-  bool first = true;
+void write_points(JsonWriter& json, const ResultTable& table, WriteMembers write_members) {
+  json.key("points").begin_array(Layout::open_lines);
   for (const ResultRow& row : table.rows) {
-    file.write(first ? "\n    " : ",\n    ");
-    first = false;
-    JsonWriter json(file);
     json.begin_object().member("point", index_of(table, row));
-    write_members(json, row);
+    write_members(row);
     json.end_object();
   }
-  file.write("\n  ]");
+  json.end_array();
 }
 
 void write_results(Sink& file, const SweepFiles& sweep, const ResultTable& table) {
   file.write(sweep.heads.results);
+  JsonWriter json = JsonWriter::going_on(file);
   if (sweep.shard) {
-    file.write(",\n  \"shard\": ");
-    JsonWriter(file)
+    json.key("shard")
         .begin_object()
         .member("part", sweep.shard->part)
         .member("of", sweep.shard->of)
         .end_object();
   }
-  write_points(file, table, [&](JsonWriter& json, const ResultRow& row) {
+  write_points(json, table, [&](const ResultRow& row) {
     json.member("pipeline", static_cast<std::int64_t>(row.pipeline)).key("at").begin_array();
     for (const std::size_t value : row.at) json.value(static_cast<std::int64_t>(value));
     json.end_array();
@@ -73,18 +69,19 @@ void write_results(Sink& file, const SweepFiles& sweep, const ResultTable& table
     if (const auto code = sweep.rows.code(index_of(table, row)))
       json.member("error_code", to_string(*code));
   });
-  file.write("\n}\n");
+  json.end_object();
+  file.write("\n");
 }
 
 void write_run(Sink& file, const SweepFiles& sweep, const ResultTable& table) {
   file.write(sweep.heads.run);
-  write_points(file, table, [&](JsonWriter& json, const ResultRow& row) {
-    write_numbers_of(json, table, row, true);
-  });
-  file.write(",\n  \"wall_s\": ");
-  JsonWriter(file).value(sweep.wall_s);
-  file.write(",\n  \"finished\": " +
-             json_string(sweep.finished.empty() ? utc_now() : sweep.finished) + "\n}\n");
+  JsonWriter json = JsonWriter::going_on(file);
+  write_points(json, table,
+               [&](const ResultRow& row) { write_numbers_of(json, table, row, true); });
+  json.member("wall_s", sweep.wall_s)
+      .member("finished", sweep.finished.empty() ? utc_now() : sweep.finished)
+      .end_object();
+  file.write("\n");
 }
 
 /// A JSON text as a field: texts without their quotes.

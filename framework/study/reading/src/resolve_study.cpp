@@ -5,6 +5,8 @@
 
 #include "resolve_sweep.hpp"
 #include "study/reading/read_parts.hpp"
+#include "study/text/json_writer.hpp"
+#include "study/text/string_sink.hpp"
 
 namespace cordon::json {
 
@@ -221,25 +223,22 @@ Json to_json(const CsvSpec& spec, const std::string& written_file) {
 }
 
 /// Like dump(2), but a list of plain values stays on one line: a matrix takes a line per row.
-void print(const Json& value, const std::string& indent, std::string& out) {
+void print(const Json& value, detail::JsonWriter& json) {
   const bool flat = value.is_array() && std::none_of(value.begin(), value.end(), [](const Json& v) {
                       return v.is_structured();
                     });
   if (!value.is_structured() || value.empty() || flat) {
-    out += value.dump();
+    json.raw(value.dump());
     return;
   }
-  const std::string inner = indent + "  ";
-  out += value.is_array() ? '[' : '{';
-  const char* comma = "\n";
+  using detail::JsonWriter;
+  value.is_array() ? json.begin_array(JsonWriter::Layout::lines)
+                   : json.begin_object(JsonWriter::Layout::lines);
   for (const auto& [key, member] : value.items()) {
-    out += comma + inner;
-    if (value.is_object()) out += Json(key).dump() + ": ";
-    print(member, inner, out);
-    comma = ",\n";
+    if (value.is_object()) json.key(key);
+    print(member, json);
   }
-  out += '\n' + indent;
-  out += value.is_array() ? ']' : '}';
+  value.is_array() ? json.end_array() : json.end_object();
 }
 
 }  // namespace
@@ -274,9 +273,10 @@ std::string resolve(const Study& study, const Written& written,
   for (const ComponentSpec& spec : study.metrics)
     root["metrics"].push_back(to_json(spec, "metric", registry));
   if (!sweep.empty()) add_sweep(root, written.tree, sweep);
-  std::string text;
-  print(root, "", text);
-  return text + "\n";
+  detail::StringSink text;
+  detail::JsonWriter json(text);
+  print(root, json);
+  return text.text + "\n";
 }
 
 }  // namespace cordon::json

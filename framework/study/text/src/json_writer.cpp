@@ -61,7 +61,7 @@ void JsonWriter::separate() {
   if (levels_.empty()) return;
   Level& level = levels_.back();
   if (!level.empty) sink_->write(",");
-  if (level.layout == Layout::lines) {
+  if (level.layout != Layout::line) {
     new_line(levels_.size());
   } else if (!level.empty) {
     sink_->write(" ");
@@ -97,7 +97,8 @@ JsonWriter& JsonWriter::end(char closing) {
     throw Error(Errc::internal, "JSON: unbalanced brackets");
   const Level level = levels_.back();
   levels_.pop_back();
-  if (level.layout == Layout::lines && !level.empty) new_line(levels_.size());
+  if (level.layout == Layout::open_lines || (level.layout == Layout::lines && !level.empty))
+    new_line(levels_.size());
   sink_->write(std::string_view(&closing, 1));
   return *this;
 }

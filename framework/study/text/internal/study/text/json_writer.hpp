@@ -23,10 +23,17 @@ std::string json_string(std::string_view text);
 /// calls (a key outside an object, …) throws Errc::internal.
 class JsonWriter {
  public:
-  /// How a container is laid out: its elements on one line, or one per line.
-  enum class Layout { line, lines };
+  /// How a container is laid out: its elements on one line, or one per line; `open_lines` closes on
+  /// a line of its own even if there are none.
+  enum class Layout { line, lines, open_lines };
 
   explicit JsonWriter(Sink& sink) : sink_(&sink) {}
+  /// Goes on with an object that was written with `Layout::lines` and has members, but no end.
+  static JsonWriter going_on(Sink& sink) {
+    JsonWriter writer(sink);
+    writer.levels_.push_back({'}', Layout::lines, false});
+    return writer;
+  }
 
   JsonWriter& begin_object(Layout layout = Layout::line) { return begin('{', layout); }
   JsonWriter& end_object() { return end('}'); }
