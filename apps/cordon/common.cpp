@@ -165,6 +165,16 @@ std::size_t width(const std::string& text) {
 
 }  // namespace
 
+std::string heading(std::string title) {
+  const std::size_t micro = title.find("µs"), unit = std::min(title.find(" ["), title.size());
+  for (std::size_t i = 0; i < unit; ++i) {
+    const bool small = title[i] >= 'a' && title[i] <= 'z' &&
+                       (micro == std::string::npos || i != micro + std::string_view("µ").size());
+    if (small) title[i] = static_cast<char>(title[i] - 'a' + 'A');
+  }
+  return title;
+}
+
 std::string table(const std::vector<std::vector<std::string>>& cells, const Paint& paint) {
   std::vector<std::vector<std::string>> rows = cells;
   for (auto& row : rows) std::transform(row.begin(), row.end(), row.begin(), detail::printable);

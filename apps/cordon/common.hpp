@@ -63,6 +63,9 @@ class Paint {
   bool on_;
 };
 
+/// A title in capitals, but for its unit: µs, or what stands in brackets.
+std::string heading(std::string title);
+
 /// Columns aligned by two spaces, first row bold; cells are UTF-8. The last column is not padded.
 std::string table(const std::vector<std::vector<std::string>>& rows, const Paint& paint);
 

@@ -90,13 +90,6 @@ bool is_shown(const RunOutcome& outcome, const Measure& measure) {
       });
 }
 
-std::string upper(std::string header) {
-  for (char& letter : header) {
-    if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
-  }
-  return header;
-}
-
 /// One for every value of the metrics, in their order.
 std::vector<Column> metric_columns(const RunOutcome& outcome) {
   std::vector<Column> found;
@@ -107,7 +100,7 @@ std::vector<Column> metric_columns(const RunOutcome& outcome) {
       known.push_back(metric.name);
       const Measure measure = described(outcome, metric.name);
       if (!is_shown(outcome, measure)) continue;
-      found.push_back({upper(short_title_of(measure)),
+      found.push_back({heading(short_title_of(measure)),
                        [measure](const PipelineOutcome& p) { return value_text(p, measure); }});
     }
   }

@@ -17,17 +17,6 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t most_rows = 120, most_failures = 5;
 
-/// In capitals, but for the unit µs.
-std::string upper(std::string text) {
-  const std::size_t unit = text.find("µs");
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool small = text[i] >= 'a' && text[i] <= 'z' &&
-                       (unit == std::string::npos || i != unit + std::string_view("µ").size());
-    if (small) text[i] = static_cast<char>(text[i] - 'a' + 'A');
-  }
-  return text;
-}
-
 /// "second, budget = 20, seed = 3".
 std::string place_of(const ResultTable& table, const ResultRow& row) {
   std::string text = table.pipelines[row.pipeline];
@@ -82,7 +71,7 @@ ordered_json values_json(const ResultTable& table, const std::vector<std::size_t
 
 std::string comparison_text(const ComparisonTable& table, std::size_t limit) {
   std::vector<std::vector<std::string>> rows(1);
-  for (const ComparisonColumn& column : table.columns) rows[0].push_back(upper(column.title));
+  for (const ComparisonColumn& column : table.columns) rows[0].push_back(heading(column.title));
   bool any_best = false;
   const std::size_t shown = std::min(limit, table.rows.size());
   for (std::size_t i = 0; i < shown; ++i) {
