@@ -3,6 +3,9 @@
 #include <charconv>
 #include <unordered_map>
 
+// The library expects the decimal point of the locale to be one byte, which it is not everywhere;
+// its own values of numbers are not used here.
+#define JSON_ASSERT(condition) static_cast<void>(0)
 #include <nlohmann/json.hpp>
 
 #include "core/text.hpp"
