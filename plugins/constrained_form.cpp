@@ -26,16 +26,27 @@ ConstrainedForm::Result made(sets::Reduced result) {
   return {std::move(result.set), result.exact ? Tightness::exact : Tightness::outer};
 }
 
-/// Polygons are exact to 1e-10 of their coordinates' widths: too little of one that is thin.
+/// Polygons are exact to 1e-10 of their coordinates' widths: a thin one is asked for along its own
+/// directions, and one thinner than 1e-8 of its length, of which rounding leaves too few digits, is
+/// bounded only.
 Volume area_of(const sets::SupportOracle& oracle) {
-  constexpr double thin = 1e-9;
+  constexpr double thin = 4e-3, too_thin = 1e-8;
   const Matrix vertices = sets::polygon(oracle);
   if (vertices.cols() == 0) return {0, true};
   const double area = sets::area(vertices);
   const double hull = (vertices.rowwise().maxCoeff() - vertices.rowwise().minCoeff()).prod();
   if (area > thin * hull) return {area, true};
-  const double upper = sets::turned_box_volume(oracle, 2);
-  return {upper, upper == 0};
+  const sets::TurnedBox box = sets::turned_box(oracle, 2);
+  if (!(box.widths.minCoeff() > too_thin * box.widths.maxCoeff()))
+    return {box.volume, box.volume == 0};
+  const Matrix& D = box.directions;
+  const sets::SupportOracle turned = [&](const Vector& d) -> sets::SupportPoint {
+    sets::SupportPoint answer = oracle(D * d);
+    if (answer.h != -infinity) answer.x = (D.transpose() * answer.x).eval();
+    return answer;
+  };
+  const double det = std::abs(D(0, 0) * D(1, 1) - D(0, 1) * D(1, 0));
+  return {sets::area(sets::polygon(turned)) / det, true};
 }
 
 }  // namespace

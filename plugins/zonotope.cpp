@@ -69,8 +69,10 @@ struct Zonotopes {
   }
   std::optional<Volume> volume(const Value& X) const {
     if (!X.Z) return Volume{0, true};
-    const std::optional<double> exact = sets::volume(*X.Z);
-    return exact ? std::optional(Volume{*exact, true}) : std::nullopt;
+    const auto found = sets::volume_with_error(*X.Z);
+    if (!found) return std::nullopt;
+    const bool exact = found->upper <= found->lower * (1 + 1e-7);
+    return exact || found->upper == 0 ? Volume{found->value, true} : Volume{found->upper, false};
   }
 
   /// Constraints are eliminated one by one, each forgetting one factor's bound: an outer enclosure.

@@ -23,7 +23,7 @@ using Node =
 __extension__ typedef __int128 Wide;
 
 constexpr double flat_tolerance =
-    1e-12;  ///< thickness, relative to the interval hull, that counts as none
+    1e-8;  ///< thickness, relative to the interval hull, of which rounding leaves too few digits
 constexpr double grid_step = 0x1p-36;  ///< of the grid
 constexpr double moved =
     0.8661 * grid_step;  ///< how far a point is moved to the grid at most: √3/2 steps
@@ -268,7 +268,7 @@ VolumeBounds volume(const SupportOracle& X, double relative_tolerance, Index max
   std::array<Point, 4> simplex;
   if (set.is_empty()) return {0, 0, true};
   const auto thin = [&X] {
-    const double upper = turned_box_volume(X, 3);
+    const double upper = turned_box(X, 3).volume;
     return VolumeBounds{0, upper, upper == 0};
   };
   if (set.is_flat() || !spanning_simplex(set, simplex)) return thin();

@@ -65,13 +65,20 @@ SupportPoint ScaledSet::query(const Vector& d) const {
           linalg::product(inverse_, point)};
 }
 
+Vector ScaledSet::direction(const Vector& d) const {
+  return linalg::transposed_product(inverse_, d).cwiseQuotient(width_);
+}
+
 double ScaledSet::thickness(const Vector& d) const {
-  const Vector scaled = linalg::transposed_product(inverse_, d),
-               direction = scaled.cwiseQuotient(width_);
-  const double length = direction.stableNorm();
-  const double above = ask(direction / length).h, below = ask(-direction / length).h;
-  const double noise = std::numeric_limits<double>::epsilon() * (std::abs(above) + std::abs(below));
-  return std::max(0.0, above + below + noise) * length;
+  const Vector across = direction(d);
+  const double length = across.stableNorm();
+  const double above = ask(across / length).h, below = ask(-across / length).h;
+  // a support value is off by a few units in the last place of its terms, which may cancel: of the
+  // centre's, and of generators as long as the hull
+  const double terms = across.cwiseAbs().dot(center_.cwiseAbs() + width_);
+  const double noise = 64 * std::numeric_limits<double>::epsilon() * terms;
+  const bool point = above + below == 0 && width_.cwiseAbs().dot(across.cwiseAbs()) == 0;
+  return point ? 0 : std::max(0.0, (above + below) * length) + noise;
 }
 
 bool ScaledSet::transform(const Vector& shift, const Matrix& B) {

@@ -19,6 +19,8 @@ class ScaledSet {
   bool is_flat() const { return flat_; }
   /// Support value and point in the new coordinates.
   SupportPoint query(const Vector& d) const;
+  /// The direction of the original coordinates that d is.
+  Vector direction(const Vector& d) const;
   /// Upper bound of the width along d, h(d) + h(-d), with room for the rounding of both.
   double thickness(const Vector& d) const;
   /// Sets B and the shift. Nothing happens and the answer is false if B is numerically singular.

@@ -34,17 +34,20 @@ Vector longest_beside(const ScaledSet& set, const Matrix& Q, Index k) {
 
 }  // namespace
 
-double turned_box_volume(const SupportOracle& X, Index n) {
+TurnedBox turned_box(const SupportOracle& X, Index n) {
   const ScaledSet set(X, n, "volume");
-  if (set.is_empty()) return 0;
+  TurnedBox box{Matrix::Identity(n, n), Vector::Zero(n), 0};
+  if (set.is_empty()) return box;
   constexpr double skew = 1e-12;  // above what the directions' angles lack of right ones
-  double volume = set.volume_factor() * (1 + skew);
+  box.volume = set.volume_factor() * (1 + skew);
   Matrix Q(n, n);
   for (Index k = 0; k < n; ++k) {
     Q.col(k) = longest_beside(set, Q, k);
-    volume *= set.thickness(Q.col(k));
+    box.directions.col(k) = set.direction(Q.col(k));
+    box.widths[k] = set.thickness(Q.col(k));
+    box.volume *= box.widths[k];
   }
-  return volume;
+  return box;
 }
 
 }  // namespace cordon::sets

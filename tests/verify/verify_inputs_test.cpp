@@ -140,6 +140,15 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
             Json& kappa = p[0]["exact"]["pairs"][0]["kappa_lower"];
             kappa = kappa.get<double>() * (1 + 1e-12);
           }) == "/pipelines/0/exact/pairs/0");
+    // a positive bound says that the pair is apart, whatever word stands beside it
+    for (const char* word : {"no", "unknown"}) {
+      for (const char* part : {"design", "exact"}) {
+        CHECK(refuted([&](Json& p) {
+                p[1][part]["pairs"][0]["disjoint"] = word;
+                p[1][part]["pairs"][0]["kappa_lower"] = .5;
+              }) == std::string("/pipelines/1/") + part + "/pairs/0");
+      }
+    }
     CHECK(refuted([](Json& p) { p[0]["exact"]["tubes"][1]["empty"] = "yes"; }) ==
           "/pipelines/0/exact/tubes/1");
     CHECK(refuted([](Json& p) { p[0]["exact"] = nullptr; }) == "");
@@ -163,6 +172,7 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
   SUBCASE("what claims nothing is passed over") {
     const auto nothing = run.with([](Json& p) {
       p[0]["design"]["pairs"][0]["disjoint"] = "unknown";
+      p[0]["design"]["pairs"][0]["kappa_lower"] = nullptr;
       p[0]["design"]["separates"] = "unknown";
       for (const char* key : {"u", "cost", "separates", "pairs", "tubes"})
         p[1]["design"][key] = nullptr;

@@ -302,6 +302,7 @@ TEST_CASE("what two files say of one set, or a summary of its steps, has to be t
             std::string("/pipelines/1/") + part + "/inconsistent_from");
   }
   refuses(with("last", "k", 2), "/pipelines/1/last");
+  refuses(with("last", "width", {1e-9, 1e-9}), "/pipelines/1/last");
   refuses(run().with_results(
               [](Json& results) { results["pipelines"][1]["last"]["hull"]["upper"][0] = 101; }),
           "/pipelines/1/last");

@@ -30,6 +30,9 @@ class DesignCheck {
     }
     if (apart && exact.kappa_lower > tolerances::reported)
       return refute(tubes + " are said to meet, and are disjoint", "/design/pairs/", q);
+    if (claim.kappa_lower > tolerances::reported)
+      return refute(fmt::format("κ ≥ {} is said of {}, which meet", claim.kappa_lower, tubes),
+                    "/design/pairs/", q);
     holds();
   }
 
@@ -48,6 +51,10 @@ class DesignCheck {
       const PairSeparation& claim = recorded.pairs.at(q);
       const std::string what = fmt::format("what is called proven of pair {}", q + 1);
       if (!same(claim.disjoint, exact.pairs[q].disjoint, what, "/exact/pairs/", q)) continue;
+      const bool positive = claim.kappa_lower > tolerances::reported;
+      if (claim.disjoint == Answer::no && positive)
+        refute(fmt::format("κ ≥ {} is called proven of a pair that meets", claim.kappa_lower),
+               "/exact/pairs/", q);
       if (claim.disjoint == Answer::yes && claim.kappa_lower > exact.pairs[q].kappa_lower) {
         refute(fmt::format("κ ≥ {} is called proven, and κ ≥ {} is", claim.kappa_lower,
                            exact.pairs[q].kappa_lower),

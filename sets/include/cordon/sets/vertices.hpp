@@ -48,17 +48,24 @@ struct VolumeBounds {
 /// to rounding errors of the support function. Asking goes on until they agree to a hundredth of
 /// the tolerance; the rest leaves room for an inexact support function. For curved sets, and where
 /// rounding hides the thickness of a set, the bounds at the limit of queries or of resolution are
-/// returned; those of a set thinner than 1e-12 of its interval hull are 0 and `turned_box_volume`.
-/// ∅ has the volume 0. Errors: Errc::unsupported for an unbounded set. O(V²) for V vertices, one
-/// query per facet tried.
+/// returned; those of a set thinner than 1e-8 of its interval hull are 0 and the volume of its
+/// `turned_box`. ∅ has the volume 0. Errors: Errc::unsupported for an unbounded set. O(V²) for V
+/// vertices, one query per facet tried.
 VolumeBounds volume(const SupportOracle& X, double relative_tolerance = 1e-7,
                     Index max_queries = 20000);
 
-/// Upper bound of the volume of a bounded set X ⊂ Rⁿ, n ≤ 3: that of a box along directions of its
-/// own, the longest difference of two known points, the longest one beside it, and so on. Near the
-/// volume of the interval hull at worst, and narrow for a thin set however it lies; 0 only for ∅
-/// and for sets without a width. It holds up to rounding errors of the support function. Errors:
-/// Errc::unsupported for an unbounded set. At most 8 n queries.
-double turned_box_volume(const SupportOracle& X, Index n);
+/// A box around a set along directions of the set's own.
+struct TurnedBox {
+  Matrix directions;  ///< columns; orthogonal where each coordinate is scaled by its width
+  Vector widths;      ///< along the directions, with room for rounding
+  double volume = 0;
+};
+
+/// Of a bounded set X ⊂ Rⁿ, n ≤ 3: the longest difference of two known points, the longest one
+/// beside it, and so on. Its volume is near that of the interval hull at worst, and small for a
+/// thin set however it lies. Room is left for support values that are off by some units in the last
+/// place of their terms, so that no set but ∅ has the volume 0. Errors: Errc::unsupported for an
+/// unbounded set. At most 8 n queries.
+TurnedBox turned_box(const SupportOracle& X, Index n);
 
 }  // namespace cordon::sets

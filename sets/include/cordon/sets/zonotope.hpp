@@ -71,6 +71,12 @@ double f_radius(const Zonotope& Z);
 /// `max_subsets`. 0 for g < n, 1 for n = 0. O(n³ C(g, n)). [Gover2010]
 std::optional<double> volume(const Zonotope& Z, Index max_subsets = 200000);
 
+/// The same with a bound of its rounding errors: between `lower` and `upper`. Nothing as above.
+struct ZonotopeVolume {
+  double value = 0, lower = 0, upper = 0;
+};
+std::optional<ZonotopeVolume> volume_with_error(const Zonotope& Z, Index max_subsets = 200000);
+
 /// An upper bound of the volume: the smaller of those of the interval hull and of enclosing
 /// parallelotopes. O(n² g²).
 double volume_bound(const Zonotope& Z);

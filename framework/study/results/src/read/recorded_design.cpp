@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "core/text.hpp"
 #include "read/recorded_parts.hpp"
 
@@ -76,7 +77,10 @@ void read_claims(const Cursor& at, InputDesign& design, const std::vector<std::s
     pair.disjoint = read_word(item, "disjoint", {Answer::yes, Answer::no, Answer::unknown})
                         .value_or(Answer::unknown);
     const auto kappa = item.need("kappa_lower", not_as_written);
-    if (kappa && pair.disjoint == Answer::yes) pair.kappa_lower = read_kappa(*kappa).value_or(0);
+    const auto bound = kappa && !kappa->is(Kind::null) ? read_kappa(*kappa) : std::nullopt;
+    if (bound && *bound > tolerances::reported && pair.disjoint == Answer::unknown)
+      pair.disjoint = Answer::yes;  // says the same
+    if (bound) pair.kappa_lower = *bound;
   }
   for (std::size_t i = 0; i < tubes->size(); ++i) {
     const Cursor item = tubes->item(i);

@@ -47,6 +47,10 @@ bool is_bound(const Cursor& box, const char* key, const Vector& bound) {
 
 bool is_last(const Cursor& at, const RecordedStep& step) {
   const auto k = at.find("k"), hull = at.find("hull");
+  const auto width = at.find("width");
+  const bool none = step.hull.is_empty();
+  if (width && none != width->is(Kind::null)) return false;
+  if (width && !none && !is_bound(at, "width", step.hull.upper - step.hull.lower)) return false;
   return k && k->is(Kind::number) && k->value().number == static_cast<double>(step.k) && hull &&
          hull->is(Kind::object) && is_bound(*hull, "lower", step.hull.lower) &&
          is_bound(*hull, "upper", step.hull.upper);
