@@ -104,8 +104,7 @@ Matrix normals(const Matrix& G) {
     for (Index i = 0; i < n; ++i) {
       for (Index k = 0; k < n - 1; ++k) {
         const Index j = J[static_cast<std::size_t>(k)];
-        minor.col(k).head(i) = G.col(j).head(i);
-        minor.col(k).tail(n - 1 - i) = G.col(j).tail(n - 1 - i);
+        for (Index row = 0; row < n - 1; ++row) minor(row, k) = G(row < i ? row : row + 1, j);
       }
       W(i, column) = ((i + n - 1) % 2 == 0 ? 1.0 : -1.0) * determinant(minor);
     }
