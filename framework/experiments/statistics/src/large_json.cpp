@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "study/text/byte_iterator.hpp"
 #include "study/text/input_file.hpp"
 
 namespace cordon::json {
@@ -22,8 +23,9 @@ class Bytes {
     fill();
   }
 
-  bool at_end() const { return at_ == size_; }
-  char now() const { return chunk_[at_]; }
+  bool ended() const { return at_ == size_; }
+  /// U+0001, which is JSON nowhere, in place of NUL, which the parser takes for the end.
+  char now() const { return chunk_[at_] == '\0' ? '\x01' : chunk_[at_]; }
   void advance() {
     line_ += after_line_;
     after_line_ = chunk_[at_] == '\n';
@@ -44,30 +46,6 @@ class Bytes {
   std::size_t size_ = 0, at_ = 0;
   int line_ = 1;
   bool after_line_ = false;
-};
-
-/// What the parser of the library reads from.
-class Reader {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = char;
-
-  explicit Reader(Bytes* bytes) : bytes_(bytes) {}
-  /// U+0001, which is JSON nowhere, in place of NUL, which the parser takes for the end.
-  char operator*() const { return bytes_->now() == '\0' ? '\x01' : bytes_->now(); }
-  Reader& operator++() {
-    bytes_->advance();
-    return *this;
-  }
-  friend bool operator==(const Reader& a, const Reader& b) { return a.ended() == b.ended(); }
-  friend bool operator!=(const Reader& a, const Reader& b) { return !(a == b); }
-
- private:
-  bool ended() const { return !bytes_ || bytes_->at_end(); }
-  Bytes* bytes_;
 };
 
 using Pattern = std::vector<std::string>;
@@ -269,7 +247,9 @@ class Builder {
 Value read_large(const std::filesystem::path& file, const Wanted& wanted, Problems& problems) {
   Bytes bytes(file);
   Builder builder(wanted, bytes, problems);
-  if (nlohmann::json::sax_parse(Reader(&bytes), Reader(nullptr), &builder)) return builder.take();
+  if (nlohmann::json::sax_parse(json::ByteIterator<Bytes>(&bytes),
+                                json::ByteIterator<Bytes>(nullptr), &builder))
+    return builder.take();
   Value broken;
   broken.kind = Kind::broken;
   return broken;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Components with their parameters, components inside them included.
 #include <algorithm>
 #include <map>
 
+#include "reported_problems.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/reading/read_sets.hpp"
 
@@ -11,7 +13,6 @@ namespace {
 
 using Kind = Value::Kind;
 constexpr std::size_t max_text = 65536;
-constexpr std::size_t max_pipelines = 1000;
 constexpr int max_nesting = 8;  // of components
 
 const char* article(std::string_view kind) { return kind == "observer" ? "an " : "a "; }
@@ -125,12 +126,6 @@ const Value& target(const Cursor& at, std::string& relative) {
   return *value;
 }
 
-void report(const Cursor& at, const Diagnostic& relative) {
-  std::string pointer = relative.pointer;
-  const int line = target(at, pointer).line;
-  at.problems().add(at.pointer() + pointer, line, relative.message, relative.suggestion);
-}
-
 void read_params(const Cursor& at, const ParamSchema& schema, const std::string& component,
                  const ComponentContext& context, int depth, Params& params) {
   std::vector<std::string> names = schema.names();
@@ -220,111 +215,13 @@ std::optional<ComponentSpec> read_nested(const Cursor& at, const Shelf& shelf,
                                        : std::nullopt;
 }
 
-/// What making or asking a component threw becomes a problem of its place: of the installation if
-/// the plugin is at fault.
-void report_failure(const Cursor& at, const Error& error, const ComponentContext& context) {
-  if (error.code() == Errc::plugin) {
-    context.refusals.push_back(
-        {at.pointer(), error.what(), "report this to the author of the plugin", at.value().line});
-  } else {
-    at.error(error.what(), "");
-  }
-}
-
-/// Asks a component what it says to its pipeline, and reports it at its place.
-template <class Ask>
-void ask(const Cursor& at, const ComponentContext& context, Ask&& check) {
-  try {
-    for (const Diagnostic& problem : check()) report(at, problem);
-  } catch (const InputError& error) {  // of a nested component
-    for (const Diagnostic& problem : error.diagnostics()) report(at, problem);
-  } catch (const Error& error) {
-    report_failure(at, error, context);
-  }
-}
-
-/// Makes the backend and asks the algorithms whether they can work with it on this model, or on
-/// these modes.
-void check_together(const Cursor& pipeline, const PipelineSpec& spec, const SystemPart& system,
-                    const ModeBank& bank, const ComponentContext& context) {
-  const Registry& registry = context.registry;
-  std::shared_ptr<const SetBackend> backend;
-  try {
-    backend = registry.make_backend(spec.backend.type, spec.backend.params);
-  } catch (const Error& error) {
-    return report_failure(*pipeline.find("backend"), error, context);
-  }
-  if (spec.designer) {
-    ask(*pipeline.find("designer"), context, [&] {
-      return registry.check_designer(spec.designer->type, bank, backend, spec.designer->params);
-    });
-  }
-  if (spec.diagnoser) {
-    ask(*pipeline.find("diagnoser"), context, [&] {
-      return registry.check_diagnoser(spec.diagnoser->type, bank, backend, spec.diagnoser->params);
-    });
-  }
-  if (!spec.designer && !spec.diagnoser) {
-    ask(*pipeline.find("observer"), context, [&] {
-      return registry.check_observer(spec.observer.type, {system.model, backend},
-                                     spec.observer.params);
-    });
-  }
-}
-
-/// The observer, or the designer and the diagnoser of a pipeline; false if they are not right.
-bool read_algorithm(const Cursor& at, const ComponentContext& context, PipelineSpec& spec) {
-  const auto observer_at = at.find("observer"), diagnoser_at = at.find("diagnoser"),
-             designer_at = at.find("designer");
-  if (observer_at && (diagnoser_at || designer_at)) {
-    at.error(std::string("holds both \"observer\" and ") +
-                 (designer_at ? "\"designer\"" : "\"diagnoser\""),
-             "remove one of the two, or make two pipelines");
-    return false;
-  }
-  if (observer_at) {
-    auto observer = read_component(*observer_at, "observer", context);
-    if (observer) spec.observer = std::move(*observer);
-    return observer.has_value();
-  }
-  if (!diagnoser_at && !designer_at) {
-    at.error("holds neither \"observer\" nor \"diagnoser\" nor \"designer\"",
-             "name the algorithm: \"observer\" estimates the state, \"diagnoser\" finds out the "
-             "mode, \"designer\" designs an input "
-             "that shows it");
-    return false;
-  }
-  if (designer_at) spec.designer = read_component(*designer_at, "designer", context);
-  if (diagnoser_at) spec.diagnoser = read_component(*diagnoser_at, "diagnoser", context);
-  return spec.designer.has_value() == designer_at.has_value() &&
-         spec.diagnoser.has_value() == diagnoser_at.has_value();
-}
-
-PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const ModeBank& bank,
-                           const ComponentContext& context, bool asks) {
-  PipelineSpec spec;
-  const std::string form =
-      "{\"name\": ..., \"backend\": {\"type\": ...}, \"observer\": {\"type\": ...}}";
-  if (!at.expect_keys({"name", "backend", "observer", "diagnoser", "designer"}, "key of a pipeline",
-                      form))
-    return spec;
-  const auto backend_at = at.need("backend", "the set representation: {\"type\": ...}");
-  const auto backend = backend_at ? read_component(*backend_at, "backend", context) : std::nullopt;
-  const bool algorithm = read_algorithm(at, context, spec);
-  if (const auto name_at = at.find("name")) {
-    spec.name = read_line(*name_at, max_name).value_or("");
-  } else if (backend) {
-    spec.name = backend->type;
-  }
-  if (!backend || !algorithm) return spec;
-  spec.backend = *backend;
-  const bool bank_wide = spec.diagnoser || spec.designer;
-  if (asks && (bank_wide ? system.modes_good : system.good))
-    check_together(at, spec, system, bank, context);
-  return spec;
-}
-
 }  // namespace
+
+void report(const Cursor& at, const Diagnostic& relative) {
+  std::string pointer = relative.pointer;
+  const int line = target(at, pointer).line;
+  at.problems().add(at.pointer() + pointer, line, relative.message, relative.suggestion);
+}
 
 const Shelf* shelf_of(std::string_view kind) {
   static constexpr Shelf shelves[] = {
@@ -343,80 +240,6 @@ const Shelf* shelf_of(std::string_view kind) {
 std::optional<ComponentSpec> read_component(const Cursor& at, std::string_view kind,
                                             const ComponentContext& context) {
   return read_nested(at, *shelf_of(kind), context, 1);
-}
-
-void read_plant(const Cursor& at, const SystemPart& system, SimulateSpec& spec,
-                const ComponentContext& context) {
-  spec.plant = read_component(at, "plant", context);
-  if (!spec.plant) return;
-  try {
-    spec.made_plant = context.registry.make_plant(spec.plant->type, spec.plant->params);
-    const Plant& plant = *spec.made_plant;
-    const auto compare = [&](Index size, std::optional<Index> wanted, const char* noun) {
-      if (!wanted || size == *wanted) return;
-      at.error("has " + counted(size, noun) + ", /system has " + std::to_string(*wanted),
-               "the linear model is one of this plant: the same states, inputs and outputs");
-    };
-    compare(plant.states(), system.sizes.states, "state");
-    compare(plant.inputs(), system.sizes.inputs, "input");
-    compare(plant.outputs(), system.sizes.outputs, "output");
-  } catch (const Error& error) {
-    report_failure(at, error, context);
-  }
-}
-
-std::vector<PipelineSpec> read_pipelines(const Cursor& at, const SystemPart& system,
-                                         const ComponentContext& context,
-                                         const std::function<bool(std::size_t)>& asks) {
-  std::vector<PipelineSpec> specs;
-  if (!at.expect(Kind::array, "a list of pipelines: [{\"backend\": ..., \"observer\": ...}]"))
-    return specs;
-  if (at.size() == 0) at.error("is an empty list", "give at least one pipeline");
-  if (at.size() > max_pipelines) {
-    at.error("holds more than " + std::to_string(max_pipelines) + " pipelines");
-    return specs;
-  }
-  ModeBank bank;
-  if (system.modes_good) bank.modes.push_back({system.nominal, system.model});
-  bank.modes.insert(bank.modes.end(), system.modes.begin(), system.modes.end());
-  std::map<std::string, std::size_t> seen;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const Cursor item = at.item(i);
-    specs.push_back(read_pipeline(item, system, bank, context, asks(i)));
-    const std::string& name = specs.back().name;
-    if (name.empty()) continue;
-    const auto [first, fresh] = seen.emplace(name, i);
-    if (fresh) continue;
-    const std::string other = child(at.pointer(), first->second);
-    if (const auto name_at = item.find("name")) {
-      name_at->error("repeats the name of " + other, "names of pipelines are unique");
-    } else {
-      item.error("has the same name as " + other + ": " + in_quotes(name) +
-                     ", by default that of its backend",
-                 "give it a \"name\"");
-    }
-  }
-  return specs;
-}
-
-std::vector<ComponentSpec> read_metrics(const Cursor& at, const SystemPart& system,
-                                        const ComponentContext& context) {
-  std::vector<ComponentSpec> specs;
-  if (!at.expect(Kind::array, "a list of metrics: [\"radius\", ...]")) return specs;
-  std::map<std::string, std::size_t> seen;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    auto spec = read_component(at.item(i), "metric", context);
-    if (!spec) continue;
-    const auto [first, fresh] = seen.emplace(spec->type, i);
-    if (!fresh)
-      at.item(i).error("repeats " + child(at.pointer(), first->second), "remove one of the two");
-    if (system.good) {
-      ask(at.item(i), context,
-          [&] { return context.registry.check_metric(spec->type, {system.model}, spec->params); });
-    }
-    specs.push_back(std::move(*spec));
-  }
-  return specs;
 }
 
 }  // namespace cordon::json

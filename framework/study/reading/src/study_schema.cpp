@@ -2,8 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include <nlohmann/json.hpp>
-
+#include "schema_parts.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/reading/read_sets.hpp"
 
@@ -11,36 +10,7 @@ namespace cordon {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
-Json described(Json schema, const std::string& text) {
-  schema["description"] = text;
-  return schema;
-}
-Json integer(std::int64_t lowest, std::int64_t highest) {
-  return {{"type", "integer"}, {"minimum", lowest}, {"maximum", highest}};
-}
-Json text(int longest) { return {{"type", "string"}, {"minLength", 1}, {"maxLength", longest}}; }
-Json list_of(Json items) { return {{"type", "array"}, {"items", std::move(items)}}; }
-Json one_of(const std::vector<std::string>& words) { return {{"enum", words}}; }
-
-/// An object with these properties only; $comment and $schema are allowed everywhere.
-Json object(Json properties, const std::vector<std::string>& required) {
-  properties["$comment"] = true;
-  properties["$schema"] = {{"type", "string"}};
-  Json schema{
-      {"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
-  if (!required.empty()) schema["required"] = required;
-  return schema;
-}
-
-Json typed(const std::string& type, Json properties, std::vector<std::string> required) {
-  Json all{{"type", {{"const", type}}}};
-  all.update(properties);
-  required.insert(required.begin(), "type");
-  return object(std::move(all), required);
-}
+using namespace schema_parts;
 
 Json sets() {
   const Json vector = reference("vector"), matrix = reference("matrix"),
@@ -257,81 +227,6 @@ Json data() {
   return {{"oneOf",
            {object({{"simulate", object(simulate, {})}}, {"simulate"}),
             object({{"csv", object(csv, {"file", "outputs"})}}, {"csv"})}}};
-}
-
-void add_limits(Json& schema, const ParamSpec& spec) {
-  const bool whole = spec.kind == ParamKind::integer;
-  const auto limit = [&](double x) { return whole ? Json(static_cast<std::int64_t>(x)) : Json(x); };
-  if (spec.lowest > -infinity && std::abs(spec.lowest) <= json::max_integer)
-    schema["minimum"] = limit(spec.lowest);
-  if (spec.highest < infinity && std::abs(spec.highest) <= json::max_integer)
-    schema["maximum"] = limit(spec.highest);
-}
-
-Json parameter(const ParamSpec& spec) {
-  Json schema;
-  switch (spec.kind) {
-    case ParamKind::integer:
-      schema["type"] = "integer";
-      break;
-    case ParamKind::real:
-      schema["type"] = "number";
-      break;
-    case ParamKind::flag:
-      schema["type"] = "boolean";
-      break;
-    case ParamKind::choice:
-      schema = one_of(spec.choices);
-      break;
-    case ParamKind::text:
-      schema["type"] = "string";
-      break;
-    case ParamKind::vector:
-      schema = reference("vector");
-      break;
-    case ParamKind::matrix:
-      schema = reference("matrix");
-      break;
-    case ParamKind::set:
-      schema = reference("set");
-      break;
-    case ParamKind::matrices:
-      schema = list_of(reference("matrix"));
-      break;
-    case ParamKind::component:
-      schema = reference(spec.component_kind);
-      if (!spec.matrix_type.empty()) schema = {{"anyOf", {reference("matrix"), schema}}};
-      break;
-  }
-  if (spec.kind == ParamKind::integer || spec.kind == ParamKind::real) add_limits(schema, spec);
-  if (spec.fallback) {
-    if (const auto* value = std::get_if<std::int64_t>(&*spec.fallback)) schema["default"] = *value;
-    if (const auto* value = std::get_if<double>(&*spec.fallback)) schema["default"] = *value;
-    if (const auto* value = std::get_if<bool>(&*spec.fallback)) schema["default"] = *value;
-    if (const auto* value = std::get_if<std::string>(&*spec.fallback)) schema["default"] = *value;
-  }
-  return described(std::move(schema), spec.doc);
-}
-
-/// Components of one kind: the name alone where no parameter is required, or an object by "type".
-Json components(const Registry& registry, const char* kind) {
-  const json::Shelf& shelf = *json::shelf_of(kind);
-  Json all = Json::array();
-  std::vector<std::string> plain;
-  for (const std::string& name : (registry.*shelf.names)()) {
-    const ComponentInfo& component = *(registry.*shelf.info)(name);
-    Json properties = Json::object();
-    std::vector<std::string> required;
-    for (const ParamSpec& spec : component.schema.specs()) {
-      properties[spec.name] = parameter(spec);
-      if (spec.required) required.push_back(spec.name);
-    }
-    if (required.empty()) plain.push_back(name);
-    all.push_back(described(typed(name, properties, required), component.summary));
-  }
-  if (!plain.empty()) all.push_back(one_of(plain));
-  if (all.empty()) return false;  // nothing is valid: no plugin provides one
-  return {{"oneOf", all}};
 }
 
 Json definitions(const Registry& registry) {

@@ -57,6 +57,28 @@ bool has_designers(const Study& study) {
                      [](const PipelineSpec& p) { return p.designer.has_value(); });
 }
 
+/// What every pipeline with an observer has in summary.csv.
+std::vector<std::string> summary_fields(const PipelineOutcome& outcome, const std::string& pipeline,
+                                        const std::optional<Rounding>& rounding) {
+  return {
+      pipeline,
+      csv_field(outcome.backend),
+      csv_field(outcome.observer),
+      rounding ? std::string(to_string(*rounding)) : "",
+      std::to_string(outcome.steps),
+      std::to_string(outcome.consistent),
+      std::to_string(outcome.inconsistent),
+      std::to_string(outcome.undecided),
+      csv_time(outcome.inconsistent_from),
+      csv_time(outcome.assumptions_until),
+      csv_time(outcome.outside_from),
+      csv_time(outcome.violated_at),
+      std::to_string(outcome.emptiness.proven + outcome.containment.proven + outcome.bounds.proven),
+      std::to_string(outcome.emptiness.unknown + outcome.containment.unknown +
+                     outcome.bounds.unknown),
+      csv_field(outcome.error)};
+}
+
 }  // namespace
 
 Results::Results(const Study& study, const Registry& registry, const DirectoryLock& out)
@@ -266,23 +288,7 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
   results_.end_object();
   write_numbers(results_, numbers, false);
   results_.end_object();
-  row.fields = {
-      pipeline_,
-      csv_field(outcome.backend),
-      csv_field(outcome.observer),
-      rounding_ ? std::string(to_string(*rounding_)) : "",
-      std::to_string(outcome.steps),
-      std::to_string(outcome.consistent),
-      std::to_string(outcome.inconsistent),
-      std::to_string(outcome.undecided),
-      csv_time(outcome.inconsistent_from),
-      csv_time(outcome.assumptions_until),
-      csv_time(outcome.outside_from),
-      csv_time(outcome.violated_at),
-      std::to_string(outcome.emptiness.proven + outcome.containment.proven + outcome.bounds.proven),
-      std::to_string(outcome.emptiness.unknown + outcome.containment.unknown +
-                     outcome.bounds.unknown),
-      csv_field(outcome.error)};
+  row.fields = summary_fields(outcome, pipeline_, rounding_);
   summaries_.push_back(std::move(row));
   run_.end_array().key("summary").begin_object(Layout::lines).key("median_time_us");
   write_times(run_, outcome.median_us, outcome.median_hull_us);

@@ -11,6 +11,7 @@
 #include "core/text.hpp"
 #include "json_fault.hpp"
 #include "json_source.hpp"
+#include "study/text/byte_iterator.hpp"
 #include "study/text/json_text.hpp"
 
 namespace cordon::json {
@@ -273,7 +274,7 @@ Value parse(std::string_view text, Problems& problems) {
     builder.refuse({at, "not valid UTF-8", "save the file with the encoding UTF-8"});
   } else if (text.starts_with(mark)) {  // the library would skip it
     builder.refuse(fault_of(text, 0, Last::nothing, ""));
-  } else if (nlohmann::json::sax_parse(SourceIterator(&source), SourceIterator(nullptr),
+  } else if (nlohmann::json::sax_parse(ByteIterator<Source>(&source), ByteIterator<Source>(nullptr),
                                        &builder)) {
     return builder.take();
   }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <iterator>
 #include <string_view>
 
 #include "json_fault.hpp"
@@ -107,33 +106,5 @@ inline void Source::replace_infinite() {
   at_ = null.data();
   stop_ = at_ + null.size();
 }
-
-/// What the library's parser iterates over.
-class SourceIterator {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = char;
-
-  /// nullptr: the end of any text.
-  explicit SourceIterator(Source* source) : source_(source) {}
-  char operator*() const { return source_->now(); }
-  SourceIterator& operator++() {
-    source_->advance();
-    return *this;
-  }
-  /// Is a position the end?
-  friend bool operator==(const SourceIterator& at, const SourceIterator& /*end*/) {
-    return at.source_->ended();
-  }
-  friend bool operator!=(const SourceIterator& at, const SourceIterator& end) {
-    return !(at == end);
-  }
-
- private:
-  Source* source_;
-};
 
 }  // namespace cordon::json
