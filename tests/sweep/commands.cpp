@@ -180,6 +180,12 @@ TEST_CASE_FIXTURE(Fixture, "resumed after its end, it says so and runs nothing")
   CHECK_FALSE(std::filesystem::exists(scratch / "out/report.html"));
   CHECK(run({"--out", scratch / "out", "--resume"}).exit == 0);
   CHECK(std::filesystem::exists(scratch / "out/report.html"));
+  // a process that died when its results were in place leaves its lock and an empty folder
+  std::ofstream(scratch / "out/.cordon-lock") << "12345";
+  std::filesystem::create_directory(scratch / "out/.sweep");
+  CHECK(holds(run({"--out", scratch / "out", "--resume"}), "finished before"));
+  CHECK_FALSE(std::filesystem::exists(scratch / "out/.cordon-lock"));
+  CHECK_FALSE(std::filesystem::exists(scratch / "out/.sweep"));
 }
 
 TEST_CASE_FIXTURE(Fixture, "results leave no file of those before them") {

@@ -127,6 +127,10 @@ bool Journal::is_in(const fs::path& out) {
   return fs::exists(fs::symlink_status(out / journal_folder / "journal", ignored));
 }
 
+void Journal::remove_empty_folder(const DirectoryLock& out) noexcept {
+  ::rmdir((out.directory() / journal_folder).c_str());
+}
+
 Journal::Journal(const fs::path& out, const JournalHead& head, Start start,
                  const std::function<void(PointResult)>& earlier)
     : lock_(out),

@@ -235,17 +235,25 @@ class SweepRun {
     outcome.table = table_of(*files);
     outcome.violated = violations(outcome.table);
     outcome.first_error = files->rows.first_error();
-    std::error_code ignored;
-    if (options_.report && !std::filesystem::exists(options_.out / "report.html", ignored)) {
-      std::vector<std::filesystem::path>
-          added;  // ended between the results and their report, or had none
-      try {
-        outcome.report_error = add_report(DirectoryLock(options_.out).directory(), added);
-      } catch (const Error& error) {
-        outcome.report_error = error.what();
-      }
-    }
+    complete(outcome);
     return outcome;
+  }
+
+  /// What a process left undone that died when its results were in place: the report, and its lock
+  /// and empty folder, which go. In a directory that another process holds, or nobody may write
+  /// into, things stay as they are.
+  void complete(SweepOutcome& outcome) const {
+    std::error_code ignored;
+    const bool report =
+        options_.report && !std::filesystem::exists(options_.out / "report.html", ignored);
+    try {
+      const DirectoryLock lock(options_.out);
+      Journal::remove_empty_folder(lock);
+      std::vector<std::filesystem::path> added;
+      if (report) outcome.report_error = add_report(lock.directory(), added);
+    } catch (const Error& error) {
+      if (report) outcome.report_error = error.what();
+    }
   }
 
   SweepProgress progress() {

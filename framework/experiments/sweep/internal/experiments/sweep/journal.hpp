@@ -47,6 +47,9 @@ class Journal {
 
   /// Is there one in `out`?
   static bool is_in(const std::filesystem::path& out);
+  /// Removes the folder of one that was removed itself: all that is left of a process that died
+  /// between the two.
+  static void remove_empty_folder(const DirectoryLock& out) noexcept;
 
   const DirectoryLock& lock() const { return lock_; }  ///< of OUT
   const JournalHead& head() const { return head_; }    ///< `started` is that of the first process
