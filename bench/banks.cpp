@@ -57,8 +57,9 @@ void steps(benchmark::State& state, const ModeBank& bank, std::int64_t threads, 
   parameters.set("waiting_time", std::int64_t{20})
       .set("max_generators", std::int64_t{20})
       .set("threads", threads);
-  const auto backend = registry().make_backend("zonotope", zonotopes);
-  const auto diagnoser = registry().make_diagnoser("observer_bank", bank, backend, parameters);
+  const auto backend = registry().make<BackendEntry>("zonotope", zonotopes);
+  const auto diagnoser =
+      registry().make<DiagnoserEntry>("observer_bank", {bank, backend}, parameters);
   const LinearModel& m = bank[0].model.linear;
   Vector x = Vector::Zero(m.states());
   Index k = 0;

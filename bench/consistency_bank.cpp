@@ -35,8 +35,9 @@ void steps(benchmark::State& state, const std::string& backend_name, bool separa
   Params parameters = pipeline->diagnoser->params;
   parameters.set("threads", threads);
   const ModeBank bank = bank_of(study());
-  const auto backend = registry().make_backend(backend_name, {});
-  const auto diagnoser = registry().make_diagnoser("consistency_bank", bank, backend, parameters);
+  const auto backend = registry().make<BackendEntry>(backend_name, {});
+  const auto diagnoser =
+      registry().make<DiagnoserEntry>("consistency_bank", {bank, backend}, parameters);
   const std::array<Vector, 4> inputs =
       separating ? std::array<Vector, 4>{Vector{{.5, -1}}, Vector{{-3.4399, -1}},
                                          Vector{{1.0854, -7.0632}}, Vector{{.5, -1}}}

@@ -78,9 +78,10 @@ void direct_steps(benchmark::State& state, const char* name, const LineForm& sta
       CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
   const auto pipeline = std::find_if(study.pipelines.begin(), study.pipelines.end(),
                                      [&](const auto& p) { return p.name == name; });
-  const auto backend = registry.make_backend(pipeline->backend.type, pipeline->backend.params);
-  const auto observer = registry.make_observer(pipeline->observer.type, {study.model, backend},
-                                               pipeline->observer.params);
+  const auto backend =
+      registry.make<BackendEntry>(pipeline->backend.type, pipeline->backend.params);
+  const auto observer = registry.make<ObserverEntry>(
+      pipeline->observer.type, {study.model, backend}, pipeline->observer.params);
   std::vector<Sample> samples;
   for (const auto source = open_data(study); samples.size() <= 20;)
     samples.push_back(source->next()->sample);

@@ -19,8 +19,8 @@ void steps(benchmark::State& state, const char* coupling) {
       .set("max_columns", std::int64_t{20})
       .set("free_matrix", faults::published_S());
   const ModeBank bank{{{"healthy", faults::published()}}};
-  const auto diagnoser = registry().make_diagnoser(
-      "fault_estimation_filter", bank, registry().make_backend("zonotope", {}), parameters);
+  const auto diagnoser = registry().make<DiagnoserEntry>(
+      "fault_estimation_filter", {bank, registry().make<BackendEntry>("zonotope", {})}, parameters);
   Index k = 0;
   const auto next = [&] {
     Sample sample{k, Vector::Zero(2), Vector(3)};

@@ -49,7 +49,7 @@ const int registered = [] {
                                    [type, model = model](benchmark::State& state) {
                                      Params params;
                                      if (std::string(type) == "w_radius") params.set("rho", .98);
-                                     const auto designer = registry().make_gain(type, params);
+                                     const auto designer = registry().make<GainEntry>(type, params);
                                      for (auto _ : state) {
                                        if (designer->design(*model).feasible != Answer::yes)
                                          state.SkipWithError("no gain");

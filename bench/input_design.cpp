@@ -20,9 +20,10 @@ void design(benchmark::State& state, std::int64_t horizon, const std::string& co
                             .set("reference", reference)
                             .set("first_input", Vector(reference.transpose()))
                             .set("epsilon", 1e-4);
-  const auto designer =
-      registry().make_designer("facets", examples::four_descriptor_models(),
-                               registry().make_backend("line_zonotope", {}), params);
+  const auto designer = registry().make<DesignerEntry>(
+      "facets",
+      {examples::four_descriptor_models(), registry().make<BackendEntry>("line_zonotope", {})},
+      params);
   DesignControl control;
   DesignOutcome outcome;
   for (auto _ : state) benchmark::DoNotOptimize(outcome = designer->design(control));

@@ -33,8 +33,8 @@ void step(benchmark::State& state, const std::string& name, const std::string& b
       ComponentSpec{"given", Params().set("matrix", Matrix{{.3}, {.2}, {.8}})});
   Params sets;
   if (backend == "zonotope") sets.set("reduction", std::string("combastel"));
-  const auto observer = registry().make_observer(
-      name, {plant(), registry().make_backend(backend, sets)}, params.set("gain", gain));
+  const auto observer = registry().make<ObserverEntry>(
+      name, {plant(), registry().make<BackendEntry>(backend, sets)}, params.set("gain", gain));
   Sample now{0, Vector::Constant(1, .5), Vector::Constant(1, .7)};
   for (auto _ : state) {
     benchmark::DoNotOptimize(observer->step(now));

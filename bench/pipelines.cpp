@@ -36,9 +36,9 @@ const Fixture& fixture() {
 template <class Work>
 void steps(benchmark::State& state, const Study& study, const PipelineSpec& pipeline, Work work) {
   const Registry& registry = fixture().registry;
-  const auto backend = registry.make_backend(pipeline.backend.type, pipeline.backend.params);
-  const auto observer = registry.make_observer(pipeline.observer.type, {study.model, backend},
-                                               pipeline.observer.params);
+  const auto backend = registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params);
+  const auto observer = registry.make<ObserverEntry>(pipeline.observer.type, {study.model, backend},
+                                                     pipeline.observer.params);
   std::vector<Sample> samples;
   for (const auto source = open_data(study); samples.size() <= 20;)
     samples.push_back(source->next()->sample);

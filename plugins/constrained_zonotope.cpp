@@ -20,10 +20,11 @@ std::unique_ptr<SetBackend> create(const Params& params) {
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"constrained_zonotope",
-                      "zonotopes with linear constraints: convex polytopes, exact intersections",
-                      "Scott2016", plugins::constrained_schema()},
-                     create});
+  registrar.add(
+      BackendEntry{{"constrained_zonotope",
+                    "zonotopes with linear constraints: convex polytopes, exact intersections",
+                    "Scott2016", plugins::constrained_schema()},
+                   create});
 }
 
 }  // namespace

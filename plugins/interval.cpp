@@ -201,9 +201,9 @@ std::unique_ptr<SetBackend> create(const Params& params) {
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend(
-      {{"interval", "axis-aligned boxes; a coordinate is bounded or free", "Moore2009", schema()},
-       create});
+  registrar.add(BackendEntry{
+      {"interval", "axis-aligned boxes; a coordinate is bounded or free", "Moore2009", schema()},
+      create});
 }
 
 }  // namespace

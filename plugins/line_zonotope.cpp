@@ -22,11 +22,12 @@ std::unique_ptr<SetBackend> create(const Params& params) {
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"line_zonotope",
-                      "zonotopes with lines and linear constraints: polytopes and sets unbounded "
-                      "along subspaces, exact intersections",
-                      "Rego2025", plugins::constrained_schema()},
-                     create});
+  registrar.add(
+      BackendEntry{{"line_zonotope",
+                    "zonotopes with lines and linear constraints: polytopes and sets unbounded "
+                    "along subspaces, exact intersections",
+                    "Rego2025", plugins::constrained_schema()},
+                   create});
 }
 
 }  // namespace

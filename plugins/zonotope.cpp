@@ -195,9 +195,9 @@ std::unique_ptr<SetBackend> create(const Params& params) {
 }
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"zonotope", "centrally symmetric polytopes given by generators",
-                      "Combastel2003; Alamo2005", schema()},
-                     create});
+  registrar.add(BackendEntry{{"zonotope", "centrally symmetric polytopes given by generators",
+                              "Combastel2003; Alamo2005", schema()},
+                             create});
 }
 
 }  // namespace

@@ -220,18 +220,10 @@ void warn_refused(const Registry& registry) {
 
 std::vector<Component> components(const Registry& registry) {
   std::vector<Component> found;
-  const auto add = [&](const char* kind, const std::vector<std::string>& names,
-                       const ComponentInfo* (Registry::*info)(std::string_view) const) {
-    for (const std::string& name : names)
-      found.push_back({kind, (registry.*info)(name), registry.plugin_of(kind, name)});
-  };
-  add("backend", registry.backends(), &Registry::backend_info);
-  add("observer", registry.observers(), &Registry::observer_info);
-  add("diagnoser", registry.diagnosers(), &Registry::diagnoser_info);
-  add("metric", registry.metrics(), &Registry::metric_info);
-  add("plant", registry.plants(), &Registry::plant_info);
-  add("gain", registry.gains(), &Registry::gain_info);
-  add("designer", registry.designers(), &Registry::designer_info);
+  for (const std::string& kind : Registry::kinds()) {
+    for (const std::string& name : registry.names(kind))
+      found.push_back({kind, registry.info(kind, name), registry.plugin_of(kind, name)});
+  }
   return found;
 }
 

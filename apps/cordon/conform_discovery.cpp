@@ -30,9 +30,9 @@ void discover_in_child(int fd, const std::filesystem::path& library, const std::
     const PluginReport& report = registry.reports().back();
     Json message{
         {"plugin", report.name}, {"version", report.version}, {"candidates", Json::array()}};
-    std::vector<std::string> names = registry.backends();
+    std::vector<std::string> names = registry.names("backend");
     if (!backend.empty()) {
-      if (!registry.backend_info(backend)) {
+      if (!registry.info("backend", backend)) {
         const std::string suggestion = names.empty() ? "it has none" : suggest(backend, names);
         throw Error(Errc::invalid, fmt::format("{} has no backend \"{}\"; {}", library.string(),
                                                backend, suggestion));
@@ -40,7 +40,7 @@ void discover_in_child(int fd, const std::filesystem::path& library, const std::
       names = {backend};
     }
     for (const std::string& name : names) {
-      const ParamSchema& schema = registry.backend_info(name)->schema;
+      const ParamSchema& schema = registry.info("backend", name)->schema;
       params_from(params, schema);
       const Json given = Json::parse(params);
       const auto choices = roundings(schema, given);
@@ -100,9 +100,9 @@ std::string problem_of_making(const std::filesystem::path& library, const Candid
     try {
       Registry registry;
       load_only(registry, library);
-      registry.make_backend(
+      registry.make<BackendEntry>(
           candidate.backend,
-          params_from(candidate.params, registry.backend_info(candidate.backend)->schema));
+          params_from(candidate.params, registry.info("backend", candidate.backend)->schema));
     } catch (...) {
       problem = current_text();
     }

@@ -58,9 +58,9 @@ void check_laws(const Tell& tell, const ConformRequest& request,
   try {
     Registry registry;
     load_only(registry, request.library);
-    schema = registry.backend_info(backend)->schema;
+    schema = registry.info("backend", backend)->schema;
     subject.params = params_from(request.candidate.params, schema);
-    tell({{"unbounded", registry.make_backend(backend, subject.params)->info().unbounded}});
+    tell({{"unbounded", registry.make<BackendEntry>(backend, subject.params)->info().unbounded}});
   } catch (...) {
     tell({{"broken", current_text()}});
     return;
@@ -73,7 +73,7 @@ void check_laws(const Tell& tell, const ConformRequest& request,
   subject.make = [&](const Params& params) {
     Registry registry;
     load_only(registry, request.library);
-    return registry.make_backend(backend, params);
+    return registry.make<BackendEntry>(backend, params);
   };
   const auto progress = [&](const conformance::Law&, Index number, Index) {
     tell({{"case", number}});

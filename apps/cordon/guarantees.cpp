@@ -37,11 +37,13 @@ std::vector<Promise> promises(const Study& study, const Registry& registry,
     if (!name.empty() && pipeline.name != name) continue;
     found.push_back({&pipeline, std::nullopt});
     if (!pipeline.diagnoser) continue;
-    const auto backend = registry.make_backend(pipeline.backend.type, pipeline.backend.params);
-    found.back().guarantees = registry
-                                  .make_diagnoser(pipeline.diagnoser->type, bank_of(study), backend,
-                                                  pipeline.diagnoser->params)
-                                  ->guarantees();
+    const auto backend =
+        registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params);
+    found.back().guarantees =
+        registry
+            .make<DiagnoserEntry>(pipeline.diagnoser->type, {bank_of(study), backend},
+                                  pipeline.diagnoser->params)
+            ->guarantees();
   }
   if (found.empty() && !name.empty()) {
     throw InputError(study.file.string(), {{"/pipelines", "there is no pipeline \"" + name + "\"",

@@ -66,7 +66,7 @@ bool write(const std::string& path, const std::string* text) {
 
 /// Plugins that are missing or were built against other headers would fail every case.
 void require_components() {
-  for (const std::string& backend : all_backends()) registry().make_backend(backend, {});
+  for (const std::string& backend : all_backends()) registry().make<BackendEntry>(backend, {});
 }
 
 }  // namespace

@@ -40,9 +40,9 @@ class Pipeline {
   Pipeline(const Registry& registry, const std::string& backend, Size budget)
       : model_(random_system(budget.n, system_seed)),
         simulation_(model_.linear, data_seed),
-        backend_(registry.make_backend(backend, {})),
-        observer_(
-            registry.make_observer("prediction_correction", {model_, backend_}, params(budget))) {
+        backend_(registry.make<BackendEntry>(backend, {})),
+        observer_(registry.make<ObserverEntry>("prediction_correction", {model_, backend_},
+                                               params(budget))) {
     observer_->start();
   }
 

@@ -83,12 +83,12 @@ void register_given_designer(Registrar& registrar) {
   ParamSchema schema;
   schema.matrix("input", "the sequence, a row per time k = 0 … N").required();
   designers::add_statement_parameters(schema);
-  registrar.designer(
-      {{"given", "a given input sequence, judged like a designed one", "", std::move(schema)},
-       check,
-       [](const DesignerContext& context, const Params& params) {
-         return std::make_unique<Given>(context, params);
-       }});
+  registrar.add(DesignerEntry{
+      {"given", "a given input sequence, judged like a designed one", "", std::move(schema)},
+      check,
+      [](const DesignerContext& context, const Params& params) {
+        return std::make_unique<Given>(context, params);
+      }});
 }
 
 }  // namespace cordon::estimators

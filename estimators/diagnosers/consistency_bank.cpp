@@ -42,7 +42,7 @@ class ConsistencyBank final : public Diagnoser {
         workers_(params.integer("threads")) {
     for (const Mode& mode : bank().modes) {
       observers_.push_back(
-          context.make.make_observer(params.component("observer"), {mode.model, context.backend}));
+          context.make->make_observer(params.component("observer"), {mode.model, context.backend}));
     }
     restart_ = restart_set(context, params, *observers_.front());
   }
@@ -154,8 +154,8 @@ std::vector<Diagnostic> observer_problems(const DiagnoserContext& context, const
   std::vector<Diagnostic> problems;
   std::vector<std::vector<std::string>> modes;  // by problem
   for (const Mode& mode : context.bank.modes) {
-    for (Diagnostic& p :
-         context.make.check_observer(params.component("observer"), {mode.model, context.backend})) {
+    for (Diagnostic& p : context.make->check_observer(params.component("observer"),
+                                                      {mode.model, context.backend})) {
       p.pointer = "/observer" + p.pointer;
       const auto same =
           std::find_if(problems.begin(), problems.end(), [&](const Diagnostic& other) {
@@ -193,7 +193,7 @@ std::vector<Diagnostic> check_consistency_bank(const DiagnoserContext& context,
                           "give a set that holds the state at all times, or leave it out"});
     }
   } else if (problems.empty() && params.text("start") == "nominal") {
-    const auto observer = context.make.make_observer(
+    const auto observer = context.make->make_observer(
         params.component("observer"), {context.bank[context.bank.nominal].model, context.backend});
     if (!ConsistencyBank::restart_set(context, params, *observer)) {
       problems.push_back({"/restart_set",
@@ -229,14 +229,14 @@ void register_consistency_bank(Registrar& registrar) {
              "modes stay excluded");
   schema.integer("threads", "threads for the modes; 0: one per core; decisions do not depend on it",
                  1, 0, 1024);
-  registrar.diagnoser(
-      {{"consistency_bank",
-        "one observer per mode; a mode is excluded when its estimate is proven empty",
-        "Rego2025; Rego2020b", schema},
-       check_consistency_bank,
-       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
-         return std::make_unique<ConsistencyBank>(context, params);
-       }});
+  registrar.add(DiagnoserEntry{
+      {"consistency_bank",
+       "one observer per mode; a mode is excluded when its estimate is proven empty",
+       "Rego2025; Rego2020b", schema},
+      check_consistency_bank,
+      [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
+        return std::make_unique<ConsistencyBank>(context, params);
+      }});
 }
 
 }  // namespace cordon::estimators

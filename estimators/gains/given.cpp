@@ -53,12 +53,12 @@ void register_given_gain(Registrar& registrar) {
   ParamSchema schema;
   schema.matrix("matrix", "L, a row per state and a column per output, with A - L C stable")
       .required();
-  registrar.gain(
-      {{"given",
-        "a matrix that is given; where a gain is asked for, the matrix alone may stand as well", "",
-        std::move(schema)},
-       check_given_gain,
-       [](const Params& params) { return std::make_unique<Given>(params.matrix("matrix")); }});
+  registrar.add(GainEntry{
+      {"given",
+       "a matrix that is given; where a gain is asked for, the matrix alone may stand as well", "",
+       std::move(schema)},
+      check_given_gain,
+      [](const Params& params) { return std::make_unique<Given>(params.matrix("matrix")); }});
 }
 
 }  // namespace cordon::estimators

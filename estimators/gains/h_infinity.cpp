@@ -50,12 +50,11 @@ class HInfinity final : public GainDesigner {
 void register_h_infinity_gain(Registrar& registrar) {
   ParamSchema schema;
   add_theta_parameter(schema);
-  registrar.gain(
-      {{"h_infinity",
-        "the least H∞ norm from disturbances to errors, by a linear matrix inequality",
-        "Pourasghar2021", std::move(schema), h_infinity_details},
-       check_design,
-       [](const Params& params) { return std::make_unique<HInfinity>(theta_from(params)); }});
+  registrar.add(GainEntry{
+      {"h_infinity", "the least H∞ norm from disturbances to errors, by a linear matrix inequality",
+       "Pourasghar2021", std::move(schema), h_infinity_details},
+      check_design,
+      [](const Params& params) { return std::make_unique<HInfinity>(theta_from(params)); }});
 }
 
 }  // namespace cordon::estimators

@@ -52,13 +52,14 @@ class HInfinityMonotone final : public GainDesigner {
 void register_h_infinity_monotone_gain(Registrar& registrar) {
   ParamSchema schema;
   add_theta_parameter(schema);
-  registrar.gain({{"h_infinity_monotone",
-                   "the least bound of the H∞ norm by a diagonal P, among gains with A - L C ≥ 0",
-                   "Pourasghar2021", std::move(schema), h_infinity_monotone_details},
-                  check_design,
-                  [](const Params& params) {
-                    return std::make_unique<HInfinityMonotone>(theta_from(params));
-                  }});
+  registrar.add(
+      GainEntry{{"h_infinity_monotone",
+                 "the least bound of the H∞ norm by a diagonal P, among gains with A - L C ≥ 0",
+                 "Pourasghar2021", std::move(schema), h_infinity_monotone_details},
+                check_design,
+                [](const Params& params) {
+                  return std::make_unique<HInfinityMonotone>(theta_from(params));
+                }});
 }
 
 }  // namespace cordon::estimators

@@ -62,11 +62,11 @@ void register_kalman_gain(Registrar& registrar) {
   schema.flag("steady",
               "the gain of the steady state at all times, in place of one that follows the set",
               false);
-  registrar.gain(
-      {{"kalman", "the zonotopic Kalman gain, of least F-radius at every step", "Combastel2015",
-        std::move(schema), kalman_details},
-       {},
-       [](const Params& params) { return std::make_unique<Kalman>(params.flag("steady")); }});
+  registrar.add(GainEntry{
+      {"kalman", "the zonotopic Kalman gain, of least F-radius at every step", "Combastel2015",
+       std::move(schema), kalman_details},
+      {},
+      [](const Params& params) { return std::make_unique<Kalman>(params.flag("steady")); }});
 }
 
 }  // namespace cordon::estimators

@@ -150,11 +150,11 @@ std::vector<Diagnostic> check_peak(const GainContext& context, const Params& par
 void register_peak_gain(Registrar& registrar) {
   ParamSchema schema;
   add_theta_parameter(schema);
-  registrar.gain(
-      {{"peak", "least sum of steady widths with A - L C ≥ 0 in every entry; a linear program", "",
-        std::move(schema), peak_details},
-       check_peak,
-       [](const Params& params) { return std::make_unique<Peak>(theta_from(params)); }});
+  registrar.add(GainEntry{
+      {"peak", "least sum of steady widths with A - L C ≥ 0 in every entry; a linear program", "",
+       std::move(schema), peak_details},
+      check_peak,
+      [](const Params& params) { return std::make_unique<Peak>(theta_from(params)); }});
 }
 
 }  // namespace cordon::estimators

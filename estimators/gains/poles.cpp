@@ -163,18 +163,18 @@ void register_poles_gain(Registrar& registrar) {
               "eigenvalues of A - L C inside the unit circle, their real parts, one per state")
       .required();
   schema.vector("poles_imaginary", "their imaginary parts, in pairs of opposite sign; absent: 0");
-  registrar.gain({{"poles", "puts the eigenvalues of A - L C where they are asked for",
-                   "Kautsky1985", std::move(schema), poles_details},
-                  check_poles,
-                  [](const Params& params) -> std::unique_ptr<GainDesigner> {
-                    const bool same_size =
-                        !params.has("poles_imaginary") ||
-                        params.vector("poles_imaginary").size() == params.vector("poles").size();
-                    if (!same_size)
-                      throw Error(Errc::invalid,
-                                  "poles and poles_imaginary must have the same size");
-                    return std::make_unique<Poles>(poles_from(params));
-                  }});
+  registrar.add(GainEntry{{"poles", "puts the eigenvalues of A - L C where they are asked for",
+                           "Kautsky1985", std::move(schema), poles_details},
+                          check_poles,
+                          [](const Params& params) -> std::unique_ptr<GainDesigner> {
+                            const bool same_size = !params.has("poles_imaginary") ||
+                                                   params.vector("poles_imaginary").size() ==
+                                                       params.vector("poles").size();
+                            if (!same_size)
+                              throw Error(Errc::invalid,
+                                          "poles and poles_imaginary must have the same size");
+                            return std::make_unique<Poles>(poles_from(params));
+                          }});
 }
 
 }  // namespace cordon::estimators

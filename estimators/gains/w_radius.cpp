@@ -123,14 +123,15 @@ void register_w_radius_gain(Registrar& registrar) {
               "ρ, factor by which the W-radius of the errors shrinks in a step at least, but for "
               "what the disturbances add",
               .9, 1e-6, 1 - 1e-6);
-  registrar.gain({{"w_radius",
-                   "the smallest ellipsoid that holds the errors for a given contraction, by a "
-                   "linear matrix inequality",
-                   "Pourasghar2021", std::move(schema), w_radius_details},
-                  check_design,
-                  [](const Params& params) {
-                    return std::make_unique<WRadiusGain>(theta_from(params), params.real("rho"));
-                  }});
+  registrar.add(
+      GainEntry{{"w_radius",
+                 "the smallest ellipsoid that holds the errors for a given contraction, by a "
+                 "linear matrix inequality",
+                 "Pourasghar2021", std::move(schema), w_radius_details},
+                check_design,
+                [](const Params& params) {
+                  return std::make_unique<WRadiusGain>(theta_from(params), params.real("rho"));
+                }});
 }
 
 }  // namespace cordon::estimators

@@ -213,9 +213,9 @@ class StepTime final : public Metric {
 
 template <class M>
 void add(Registrar& registrar, const char* name, const char* summary) {
-  registrar.metric({{name, summary, "", {}}, [](const Params&) -> std::unique_ptr<Metric> {
-                      return std::make_unique<M>();
-                    }});
+  registrar.add(MetricEntry{{name, summary, "", {}}, [](const Params&) -> std::unique_ptr<Metric> {
+                              return std::make_unique<M>();
+                            }});
 }
 
 }  // namespace

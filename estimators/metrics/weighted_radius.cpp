@@ -167,11 +167,11 @@ void add(Registrar& registrar, const char* summary) {
   schema.matrix(
       "weight",
       "W, symmetric and positive definite, a row and a column per state; the identity by default");
-  registrar.metric({{Size::name, summary, "Pourasghar2021", std::move(schema)},
-                    [](const Params& params) -> std::unique_ptr<Metric> {
-                      return std::make_unique<WeightedRadius<Size>>(params);
-                    },
-                    check_weight});
+  registrar.add(MetricEntry{{Size::name, summary, "Pourasghar2021", std::move(schema)},
+                            [](const Params& params) -> std::unique_ptr<Metric> {
+                              return std::make_unique<WeightedRadius<Size>>(params);
+                            },
+                            check_weight});
 }
 
 }  // namespace

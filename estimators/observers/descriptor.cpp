@@ -102,17 +102,16 @@ void register_descriptor(Registrar& registrar) {
              "set that holds the state at all times; needed by bounded representations with exact "
              "intersections");
   schema.flag("static_at_start", "let the static rows of k = 0 cut the initial set", false);
-  registrar.observer(
-      {{"descriptor", "descriptor systems with singular E, any backend",
-        "Rego2025; Rego2020b; Wang2018a", schema},
-       check_descriptor,
-       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
-         if (in_semi_explicit_form(*context.backend))
-           return semi_explicit_observer(context, params);
-         return pseudo_inverse_observer(context, params);
-       },
-       true,
-       true});
+  registrar.add(ObserverEntry{
+      {"descriptor", "descriptor systems with singular E, any backend",
+       "Rego2025; Rego2020b; Wang2018a", schema},
+      check_descriptor,
+      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+        if (in_semi_explicit_form(*context.backend)) return semi_explicit_observer(context, params);
+        return pseudo_inverse_observer(context, params);
+      },
+      true,
+      true});
 }
 
 }  // namespace cordon::estimators

@@ -71,17 +71,17 @@ void register_integrated(Registrar& registrar) {
   add_gain_parameter(schema, "gain",
                      "gain with A - L C ≥ 0 in every entry; absent: \"h_infinity_monotone\"");
   add_interval_parameters(schema);
-  registrar.observer(
-      {{"integrated",
-        "interval observer with a monotone gain; standard linear systems with interval matrices",
-        "Pourasghar2021", std::move(schema), integrated_details},
-       check_integrated,
-       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
-         return std::make_unique<IntervalObserver>(
-             context, params, observer_gain(context, params, "gain", absent()).gain);
-       },
-       true,
-       true});
+  registrar.add(ObserverEntry{
+      {"integrated",
+       "interval observer with a monotone gain; standard linear systems with interval matrices",
+       "Pourasghar2021", std::move(schema), integrated_details},
+      check_integrated,
+      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+        return std::make_unique<IntervalObserver>(
+            context, params, observer_gain(context, params, "gain", absent()).gain);
+      },
+      true,
+      true});
 }
 
 }  // namespace cordon::estimators

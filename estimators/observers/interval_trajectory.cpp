@@ -66,14 +66,15 @@ void register_interval_trajectory(Registrar& registrar) {
   add_gain_parameter(schema, "upper_gain", "gain of the upper bound, together with lower_gain");
   add_gain_parameter(schema, "lower_gain", "gain of the lower bound");
   add_interval_parameters(schema);
-  registrar.observer({{"interval_trajectory",
-                       "upper and lower trajectories around the state; standard linear systems "
-                       "with interval matrices",
-                       "Pourasghar2021", std::move(schema), interval_trajectory_details},
-                      check_interval_trajectory,
-                      create,
-                      true,
-                      true});
+  registrar.add(
+      ObserverEntry{{"interval_trajectory",
+                     "upper and lower trajectories around the state; standard linear systems "
+                     "with interval matrices",
+                     "Pourasghar2021", std::move(schema), interval_trajectory_details},
+                    check_interval_trajectory,
+                    create,
+                    true,
+                    true});
 }
 
 }  // namespace cordon::estimators

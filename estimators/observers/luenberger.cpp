@@ -85,15 +85,15 @@ void register_luenberger(Registrar& registrar) {
                      "L, a matrix with a row per state and a column per output that makes A - L C "
                      "stable, or a designer of one; "
                      "absent: \"kalman\" with \"steady\"");
-  registrar.observer(
-      {{"luenberger", "set recursion with an output gain; standard linear systems, any backend",
-        "Xu2014", std::move(schema)},
-       check_luenberger,
-       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
-         return std::make_unique<Luenberger>(context, params);
-       },
-       true,
-       true});
+  registrar.add(ObserverEntry{
+      {"luenberger", "set recursion with an output gain; standard linear systems, any backend",
+       "Xu2014", std::move(schema)},
+      check_luenberger,
+      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+        return std::make_unique<Luenberger>(context, params);
+      },
+      true,
+      true});
 }
 
 }  // namespace cordon::estimators

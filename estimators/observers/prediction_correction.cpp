@@ -101,17 +101,17 @@ std::vector<Diagnostic> check_prediction_correction(const ObserverContext& conte
 }  // namespace
 
 void register_prediction_correction(Registrar& registrar) {
-  registrar.observer(
-      {{"prediction_correction",
-        "prediction by the model, correction by the measurement; standard linear systems, any "
-        "backend",
-        "Combastel2003; Scott2016", common_parameters()},
-       check_prediction_correction,
-       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
-         return std::make_unique<PredictionCorrection>(context, params);
-       },
-       true,
-       true});
+  registrar.add(ObserverEntry{
+      {"prediction_correction",
+       "prediction by the model, correction by the measurement; standard linear systems, any "
+       "backend",
+       "Combastel2003; Scott2016", common_parameters()},
+      check_prediction_correction,
+      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+        return std::make_unique<PredictionCorrection>(context, params);
+      },
+      true,
+      true});
 }
 
 }  // namespace cordon::estimators

@@ -117,17 +117,17 @@ void register_zonotope_uncertain(Registrar& registrar) {
   add_gain_parameter(schema, "gain",
                      "output gain, with A - L C stable; absent: the steady gain \"kalman\"");
   InnerEnvelope::add_parameters(schema);
-  registrar.observer(
-      {{"zonotope_uncertain",
-        "set recursion with an output gain; standard linear systems with interval matrices",
-        "Pourasghar2021", std::move(schema), zonotope_uncertain_details},
-       check_zonotope_uncertain,
-       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
-         return std::make_unique<ZonotopeUncertain>(
-             context, params, observer_gain(context, params, "gain", steady_kalman()));
-       },
-       true,
-       true});
+  registrar.add(ObserverEntry{
+      {"zonotope_uncertain",
+       "set recursion with an output gain; standard linear systems with interval matrices",
+       "Pourasghar2021", std::move(schema), zonotope_uncertain_details},
+      check_zonotope_uncertain,
+      [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
+        return std::make_unique<ZonotopeUncertain>(
+            context, params, observer_gain(context, params, "gain", steady_kalman()));
+      },
+      true,
+      true});
 }
 
 }  // namespace cordon::estimators

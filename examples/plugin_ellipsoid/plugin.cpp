@@ -119,12 +119,12 @@ void register_components(Registrar& registrar) {
   schema.choice("criterion",
                 "what a measurement makes smallest: the sum of squared half axes, or the volume",
                 {"trace", "volume"}, "trace");
-  registrar.backend({{"ellipsoid", "ellipsoids, possibly flat", "Kurzhanski1997", schema},
-                     [](const Params& params) {
-                       const bool volume = params.text("criterion") == "volume";
-                       return std::make_unique<EllipsoidBackend>(volume ? Criterion::volume
-                                                                        : Criterion::trace);
-                     }});
+  registrar.add(BackendEntry{{"ellipsoid", "ellipsoids, possibly flat", "Kurzhanski1997", schema},
+                             [](const Params& params) {
+                               const bool volume = params.text("criterion") == "volume";
+                               return std::make_unique<EllipsoidBackend>(volume ? Criterion::volume
+                                                                                : Criterion::trace);
+                             }});
 }
 
 }  // namespace

@@ -58,8 +58,8 @@ class BoxBackend final : public SetBackend {
 };
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"my_box", "axis-aligned boxes", "", {}},
-                     [](const Params&) { return std::make_unique<BoxBackend>(); }});
+  registrar.add(BackendEntry{{"my_box", "axis-aligned boxes", "", {}},
+                             [](const Params&) { return std::make_unique<BoxBackend>(); }});
 }
 
 }  // namespace

@@ -94,26 +94,26 @@ std::unique_ptr<Plant> create(const Field<Parameters> (&fields)[count], const Pa
 }
 
 void register_components(Registrar& registrar) {
-  registrar.plant(
-      {{"stirred_tank",
-        "cooled tank with an exothermic reaction: states concentration and temperature, input "
-        "coolant flow, output "
-        "concentration, as deviations from the operating point",
-        "Xu2014",
-        schema(stirred_tank_fields,
-               "Runge-Kutta steps per sampling time; the error falls with their fourth power")},
-       [](const Params& params) {
-         return create<plants::StirredTank>(stirred_tank_fields, params);
-       }});
-  registrar.plant(
-      {{"coupled_tanks",
-        "two tanks, one draining into the other: states upper and lower level, input voltage of "
-        "the pump, output "
-        "lower level, as deviations from the operating point",
-        "Pourasghar2021", schema(coupled_tanks_fields, "Euler steps per sampling time")},
-       [](const Params& params) {
-         return create<plants::CoupledTanks>(coupled_tanks_fields, params);
-       }});
+  registrar.add(PlantEntry{
+      {"stirred_tank",
+       "cooled tank with an exothermic reaction: states concentration and temperature, input "
+       "coolant flow, output "
+       "concentration, as deviations from the operating point",
+       "Xu2014",
+       schema(stirred_tank_fields,
+              "Runge-Kutta steps per sampling time; the error falls with their fourth power")},
+      [](const Params& params) {
+        return create<plants::StirredTank>(stirred_tank_fields, params);
+      }});
+  registrar.add(PlantEntry{
+      {"coupled_tanks",
+       "two tanks, one draining into the other: states upper and lower level, input voltage of "
+       "the pump, output "
+       "lower level, as deviations from the operating point",
+       "Pourasghar2021", schema(coupled_tanks_fields, "Euler steps per sampling time")},
+      [](const Params& params) {
+        return create<plants::CoupledTanks>(coupled_tanks_fields, params);
+      }});
 }
 
 }  // namespace

@@ -101,20 +101,20 @@ void register_components(Registrar& registrar) {
   lie.set("input_set", "the set of every input").vector("first_input", "u_0, if it is decided");
   lie.choice("outputs", "what is compared", {"all", "last"}, "all")
       .real("epsilon", "of κ", .1, 0, 1);
-  registrar.designer(
-      {{"lying", "says what it is told", "", lie},
-       [](const DesignerContext&, const Params&) { return std::vector<Diagnostic>{}; },
-       [](const DesignerContext& c, const Params& p) { return std::make_unique<Lying>(c, p); }});
+  registrar.add(DesignerEntry{
+      {"lying", "says what it is told", "", lie},
+      [](const DesignerContext&, const Params&) { return std::vector<Diagnostic>{}; },
+      [](const DesignerContext& c, const Params& p) { return std::make_unique<Lying>(c, p); }});
   ParamSchema boast;
   boast.flag("boast", "claims exact estimates", false);
-  registrar.observer(
-      {{"blind", "prediction without measurements", "", boast},
-       [](const ObserverContext&, const Params&) { return std::vector<Diagnostic>{}; },
-       [](const ObserverContext& c, const Params& p) {
-         return std::make_unique<OpenLoop>(c, p.flag("boast"));
-       }});
-  registrar.plant(
-      {{"bent", "a scalar plant", "", {}}, [](const Params&) { return std::make_unique<Bent>(); }});
+  registrar.add(
+      ObserverEntry{{"blind", "prediction without measurements", "", boast},
+                    [](const ObserverContext&, const Params&) { return std::vector<Diagnostic>{}; },
+                    [](const ObserverContext& c, const Params& p) {
+                      return std::make_unique<OpenLoop>(c, p.flag("boast"));
+                    }});
+  registrar.add(PlantEntry{{"bent", "a scalar plant", "", {}},
+                           [](const Params&) { return std::make_unique<Bent>(); }});
 }
 
 }  // namespace

@@ -60,12 +60,12 @@ class Crooked final : public SetBackend {
 
 template <Defect defect>
 void add(Registrar& registrar, const std::string& name) {
-  registrar.backend({{name, "a backend with a defect", "", {}}, [name](const Params&) {
-                       BackendInfo info;
-                       info.name = name;
-                       info.summary = "a backend with a defect";
-                       return std::make_unique<Crooked>(info, defect);
-                     }});
+  registrar.add(BackendEntry{{name, "a backend with a defect", "", {}}, [name](const Params&) {
+                               BackendInfo info;
+                               info.name = name;
+                               info.summary = "a backend with a defect";
+                               return std::make_unique<Crooked>(info, defect);
+                             }});
 }
 
 /// Backends that cannot be made.
@@ -75,8 +75,8 @@ std::unique_ptr<SetBackend> not_made(const Params&) {
 std::unique_ptr<SetBackend> not_survived(const Params&) { std::_Exit(7); }
 
 void register_components(Registrar& registrar) {
-  registrar.backend({{"unmade", "a backend with a defect", "", {}}, not_made});
-  registrar.backend({{"unsurvived", "a backend with a defect", "", {}}, not_survived});
+  registrar.add(BackendEntry{{"unmade", "a backend with a defect", "", {}}, not_made});
+  registrar.add(BackendEntry{{"unsurvived", "a backend with a defect", "", {}}, not_survived});
   add<Defect::lossy>(registrar, "lossy");
   add<Defect::crashing>(registrar, "crashing");
   add<Defect::hanging>(registrar, "hanging");

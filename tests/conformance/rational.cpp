@@ -100,14 +100,14 @@ class Polyhedra final : public SetBackend {
 
 template <class Backend>
 void add(Registrar& registrar, const std::string& name, const std::string& summary) {
-  registrar.backend({{name, summary, "", {}}, [name, summary](const Params&) {
-                       BackendInfo info;
-                       info.name = name;
-                       info.summary = summary;
-                       info.unbounded = true;
-                       info.intersections = true;
-                       return std::make_unique<Backend>(std::move(info));
-                     }});
+  registrar.add(BackendEntry{{name, summary, "", {}}, [name, summary](const Params&) {
+                               BackendInfo info;
+                               info.name = name;
+                               info.summary = summary;
+                               info.unbounded = true;
+                               info.intersections = true;
+                               return std::make_unique<Backend>(std::move(info));
+                             }});
 }
 
 void register_components(Registrar& registrar) {

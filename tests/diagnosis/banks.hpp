@@ -37,7 +37,7 @@ inline Params reactor_parameters() {
 inline std::shared_ptr<const SetBackend> backend(const std::string& name) {
   Params p;
   if (name == "zonotope") p.set("reduction", std::string("combastel"));
-  return registry().make_backend(name, p);
+  return registry().make<BackendEntry>(name, p);
 }
 
 }  // namespace banks

@@ -23,8 +23,8 @@ std::shared_ptr<Diagnoser> make_bank(const Plugins& plugins, const std::string& 
   params.set("observer",
              std::make_shared<const ComponentSpec>(ComponentSpec{"descriptor", observer}));
   params.set("waiting_time", std::int64_t{4});
-  return plugins.registry.make_diagnoser("consistency_bank", four_models(),
-                                         plugins.backend(backend), params);
+  return plugins.registry.make<DiagnoserEntry>("consistency_bank",
+                                               {four_models(), plugins.backend(backend)}, params);
 }
 
 struct Counts {

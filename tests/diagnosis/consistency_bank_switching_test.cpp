@@ -88,8 +88,8 @@ TEST_CASE("a plant that switches: the true mode is found each time and never exc
   const ModeBank bank = switching_bank();
   for (const std::string name : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
     CAPTURE(name);
-    const auto diagnoser = plugins.registry.make_diagnoser(
-        "consistency_bank", bank, plugins.backend(name), switching_parameters(name));
+    const auto diagnoser = plugins.registry.make<DiagnoserEntry>(
+        "consistency_bank", {bank, plugins.backend(name)}, switching_parameters(name));
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       CAPTURE(seed);
       SwitchingPlant plant(seed, seed % 2 == 0);
@@ -118,8 +118,8 @@ TEST_CASE("a fault outside the bank: detected, never taken for a mode of the ban
   outside.linear.B *= -1;
   for (const std::string name : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
     CAPTURE(name);
-    const auto diagnoser = plugins.registry.make_diagnoser(
-        "consistency_bank", bank, plugins.backend(name), switching_parameters(name));
+    const auto diagnoser = plugins.registry.make<DiagnoserEntry>(
+        "consistency_bank", {bank, plugins.backend(name)}, switching_parameters(name));
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       CAPTURE(seed);
       SwitchingPlant plant(seed, seed % 2 == 0);
@@ -174,8 +174,8 @@ TEST_CASE("decisions do not depend on the number of threads, bit by bit") {
     std::vector<std::string> reference;
     for (const std::int64_t threads : {1, 2, 0, 7}) {
       CAPTURE(threads);
-      const auto diagnoser = plugins.registry.make_diagnoser(
-          "consistency_bank", bank, plugins.backend(name), switching_parameters(name, threads));
+      const auto diagnoser = plugins.registry.make<DiagnoserEntry>(
+          "consistency_bank", {bank, plugins.backend(name)}, switching_parameters(name, threads));
       SwitchingPlant plant(3, false);
       diagnoser->start();
       std::vector<std::string> all;
@@ -191,7 +191,7 @@ TEST_CASE("a problem of several modes is told once, with the names of the modes"
   const Plugins plugins;
   const auto backend = plugins.backend("zonotope");
   const auto problems_of = [&](const ModeBank& bank, const Params& params) {
-    return plugins.registry.check_diagnoser("consistency_bank", bank, backend, params);
+    return plugins.registry.check<DiagnoserEntry>("consistency_bank", {bank, backend}, params);
   };
   ModeBank bank = switching_bank();
   CHECK(problems_of(bank, with_observer("prediction_correction", {}, 5)).empty());
@@ -224,7 +224,7 @@ TEST_CASE("parameters that cannot be are refused") {
   const auto pointers = [&](const Params& params) {
     std::vector<std::string> all;
     for (const auto& p :
-         plugins.registry.check_diagnoser("consistency_bank", bank, backend, params))
+         plugins.registry.check<DiagnoserEntry>("consistency_bank", {bank, backend}, params))
       all.push_back(p.pointer);
     return all;
   };
@@ -246,14 +246,15 @@ TEST_CASE("parameters that cannot be are refused") {
   nominal.set("start", std::string("nominal"));
   CHECK(pointers(nominal) == Pointers{"/restart_set"});  // the other modes could never begin
   CHECK(plugins.registry
-            .check_diagnoser("consistency_bank", bank, plugins.backend("line_zonotope"), nominal)
+            .check<DiagnoserEntry>("consistency_bank", {bank, plugins.backend("line_zonotope")},
+                                   nominal)
             .empty());
 }
 
 TEST_CASE("nothing is said in advance") {
   const Plugins plugins;
-  const auto diagnoser = plugins.registry.make_diagnoser("consistency_bank", switching_bank(),
-                                                         plugins.backend("zonotope"),
-                                                         switching_parameters("zonotope"));
+  const auto diagnoser = plugins.registry.make<DiagnoserEntry>(
+      "consistency_bank", {switching_bank(), plugins.backend("zonotope")},
+      switching_parameters("zonotope"));
   CHECK(!diagnoser->guarantees());
 }

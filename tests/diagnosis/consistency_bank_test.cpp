@@ -47,11 +47,11 @@ class Puppet final : public Observer {
 };
 
 void register_puppet(Registrar& registrar) {
-  registrar.observer({{"puppet", "does what the sample says", "", {}},
-                      {},
-                      [](const ObserverContext& context, const Params&) {
-                        return std::make_unique<Puppet>(context);
-                      }});
+  registrar.add(ObserverEntry{{"puppet", "does what the sample says", "", {}},
+                              {},
+                              [](const ObserverContext& context, const Params&) {
+                                return std::make_unique<Puppet>(context);
+                              }});
 }
 
 ModeBank puppets() {
@@ -76,8 +76,8 @@ ModeBank puppets() {
 class Feed {
  public:
   Feed(const Plugins& plugins, const std::string& backend, Params params)
-      : diagnoser_(plugins.registry.make_diagnoser("consistency_bank", puppets(),
-                                                   plugins.backend(backend), params)) {
+      : diagnoser_(plugins.registry.make<DiagnoserEntry>(
+            "consistency_bank", {puppets(), plugins.backend(backend)}, params)) {
     trace = {};
     diagnoser_->start();
   }

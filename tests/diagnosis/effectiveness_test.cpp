@@ -138,7 +138,8 @@ TEST_CASE("the truth is never proven outside") {
         if (is_descriptor && backend->info().intersections) {
           params.set("admissible_set", make_box(cube(plant.model.linear.states(), 1000)));
         }
-        if (!plugins.registry.check_observer(type, {plant.model, backend}, params).empty()) return;
+        if (!plugins.registry.check<ObserverEntry>(type, {plant.model, backend}, params).empty())
+          return;
         ++tried;
         const auto observer = plugins.observer(type, plant.model, backend, params);
         observer->start();
@@ -259,9 +260,9 @@ TEST_CASE("without the outputs that can fail altogether there may be no T, N wit
   model.linear.A = Matrix{{1.0}};
   model.linear.sensor = {Vector{{0}}, Vector{{1}}};
   const auto backend = plugins.backend("zonotope");
-  const auto problems = plugins.registry.check_observer("descriptor", {model, backend}, {});
+  const auto problems = plugins.registry.check<ObserverEntry>("descriptor", {model, backend}, {});
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].message.find("sensors can fail altogether") != std::string::npos);
   model.linear.sensor.lower[0] = .1;
-  CHECK(plugins.registry.check_observer("descriptor", {model, backend}, {}).empty());
+  CHECK(plugins.registry.check<ObserverEntry>("descriptor", {model, backend}, {}).empty());
 }

@@ -54,7 +54,7 @@ Model random_model(bool actuators, bool sensors) {
 }
 
 void expect_truth_inside(const std::string& name, const Model& model) {
-  const auto observer = registry().make_observer("luenberger", {model, backend(name)}, {});
+  const auto observer = registry().make<ObserverEntry>("luenberger", {model, backend(name)}, {});
   Draw draw{std::mt19937_64(static_cast<std::uint64_t>(*rc::gen::inRange(1, 1'000'000))),
             *rc::gen::arbitrary<bool>()};
   Vector x = draw.from(model.X0);
@@ -87,7 +87,7 @@ TEST_CASE("the recursion of the published reactor, one step by hand") {
   const auto zonotopes = backend("zonotope");
   Params p;
   p.set("gain", Matrix{{.1582}, {11.6106}});
-  const auto observer = registry().make_observer("luenberger", {model, zonotopes}, p);
+  const auto observer = registry().make<ObserverEntry>("luenberger", {model, zonotopes}, p);
   observer->step({0, Vector::Constant(1, 10), Vector::Constant(1, .02)});
   const Estimate next = observer->step({1, Vector::Constant(1, 0), Vector::Constant(1, 0)});
   // A - L C = [.7394 -.0002; -12.1 .7606], B mid(F) u = (0, .0048), L y = (.003164, .232212), ωc =
@@ -106,12 +106,12 @@ TEST_CASE("a gain that does not stabilise is refused, with the eigenvalue") {
   Model model = reactor()[0].model;
   Params p;
   p.set("gain", Matrix{{2.5}, {0}});
-  auto problems = registry().check_observer("luenberger", {model, backend("zonotope")}, p);
+  auto problems = registry().check<ObserverEntry>("luenberger", {model, backend("zonotope")}, p);
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].pointer == "/gain");
   CHECK(problems[0].message.find("eigenvalue") != std::string::npos);
   p.set("gain", Matrix{{.1582, 11.6106}});
-  problems = registry().check_observer("luenberger", {model, backend("zonotope")}, p);
+  problems = registry().check<ObserverEntry>("luenberger", {model, backend("zonotope")}, p);
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].message.find("is 1 × 2, must be 2 × 1") != std::string::npos);
 }
@@ -119,7 +119,8 @@ TEST_CASE("a gain that does not stabilise is refused, with the eigenvalue") {
 TEST_CASE("a designed gain stabilises an unstable plant, and is refused where none can") {
   Model model = reactor()[0].model;
   model.linear.A(0, 0) = 1.3;
-  const auto observer = registry().make_observer("luenberger", {model, backend("zonotope")}, {});
+  const auto observer =
+      registry().make<ObserverEntry>("luenberger", {model, backend("zonotope")}, {});
   double radius = 0;
   for (Index k = 0; k < 200; ++k)
     radius = observer->step({k, Vector::Zero(1), Vector::Zero(1)})
@@ -127,7 +128,8 @@ TEST_CASE("a designed gain stabilises an unstable plant, and is refused where no
                  .longest_half_edge();
   CHECK(radius < 1);
   model.linear.A = Matrix{{.5, 0}, {0, 1.2}};  // the unstable state is not seen
-  const auto problems = registry().check_observer("luenberger", {model, backend("zonotope")}, {});
+  const auto problems =
+      registry().check<ObserverEntry>("luenberger", {model, backend("zonotope")}, {});
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].message.find("detectable") != std::string::npos);
 }
@@ -145,7 +147,7 @@ TEST_CASE("a stable plant always has a designed gain, however ill-conditioned it
     m.C += Matrix{{.1 * draw(), .1 * draw()}, {.1 * draw(), .1 * draw()}};
     m.Dv = Matrix{{draw()}, {draw()}};
     model.V = box_around(Vector::Zero(1), Vector::Constant(1, std::pow(10, draw())));
-    CHECK(registry().check_observer("luenberger", {model, backend("zonotope")}, {}).empty());
+    CHECK(registry().check<ObserverEntry>("luenberger", {model, backend("zonotope")}, {}).empty());
   }
 }
 
@@ -163,7 +165,8 @@ TEST_CASE("the designed gain is the steady zonotopic Kalman gain") {
   // P = .81 P R / (P + R) + Q with Q = .25, R = .04 (1e-6 of .25 larger): L = .9 P / (P + R)
   const double Q = .25 + .25e-6, R = .04 + .25e-6, half = (Q - R + .81 * R) / 2;
   const double P = half + std::sqrt(half * half + Q * R), L = .9 * P / (P + R);
-  const auto observer = registry().make_observer("luenberger", {model, backend("zonotope")}, {});
+  const auto observer =
+      registry().make<ObserverEntry>("luenberger", {model, backend("zonotope")}, {});
   observer->step({0, Vector(0), Vector::Constant(1, 1)});
   const LineForm X = observer->step({1, Vector(0), Vector::Constant(1, 0)}).set->line_form();
   CHECK(X.c[0] == doctest::Approx(L).epsilon(1e-9));
@@ -172,7 +175,8 @@ TEST_CASE("the designed gain is the steady zonotopic Kalman gain") {
 TEST_CASE("descriptor systems and ranges are refused by those who do not take them") {
   Model model = reactor()[0].model;
   model.linear.E = Matrix::Identity(2, 2);
-  const auto problems = registry().check_observer("luenberger", {model, backend("zonotope")}, {});
+  const auto problems =
+      registry().check<ObserverEntry>("luenberger", {model, backend("zonotope")}, {});
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].suggestion.find("descriptor") != std::string::npos);
 }
@@ -183,14 +187,15 @@ TEST_CASE("a range of a sensor needs a bounded start, an exact sensor does not")
   for (const char* type : {"luenberger", "zonotope_uncertain"}) {
     CAPTURE(type);
     const auto problems = [&] {
-      return registry().check_observer(type, {model, backend("line_zonotope")}, {});
+      return registry().check<ObserverEntry>(type, {model, backend("line_zonotope")}, {});
     };
     model.linear.sensor = Box{Vector{{.5}}, Vector{{1}}};
     REQUIRE(problems().size() == 1);
     CHECK(problems()[0].message.find("unbounded") != std::string::npos);
     model.linear.sensor = Box{Vector{{1}}, Vector{{1}}};
     CHECK(problems().empty());
-    const auto observer = registry().make_observer(type, {model, backend("line_zonotope")}, {});
+    const auto observer =
+        registry().make<ObserverEntry>(type, {model, backend("line_zonotope")}, {});
     for (Index k = 0; k < 3; ++k)
       CHECK(observer->step({k, Vector::Zero(1), Vector::Zero(1)}).consistent != Answer::no);
   }

@@ -71,7 +71,7 @@ std::vector<Event> reactor_events(Diagnoser& diagnoser, Index fault, double F, I
 
 std::shared_ptr<Diagnoser> reactor_bank(const std::string& name,
                                         Params parameters = reactor_parameters()) {
-  return registry().make_diagnoser("observer_bank", reactor(), backend(name), parameters);
+  return registry().make<DiagnoserEntry>("observer_bank", {reactor(), backend(name)}, parameters);
 }
 
 std::vector<Event> published(Index fault, Index shift) {
@@ -261,7 +261,7 @@ namespace {
 
 std::vector<Diagnostic> problems(const Params& parameters, const ModeBank& bank = reactor(),
                                  const std::string& name = "zonotope") {
-  return registry().check_diagnoser("observer_bank", bank, backend(name), parameters);
+  return registry().check<DiagnoserEntry>("observer_bank", {bank, backend(name)}, parameters);
 }
 
 bool has(const std::vector<Diagnostic>& all, const std::string& pointer, const std::string& text) {
@@ -309,8 +309,8 @@ TEST_CASE("an input has to lie in the U of every mode") {
   for (const std::size_t narrow : {0, 2}) {
     ModeBank modes = reactor();
     modes.modes[narrow].model.U = box_around(Vector::Zero(1), Vector::Constant(1, 10));
-    const auto bank = registry().make_diagnoser("observer_bank", modes, backend("zonotope"),
-                                                reactor_parameters());
+    const auto bank = registry().make<DiagnoserEntry>("observer_bank", {modes, backend("zonotope")},
+                                                      reactor_parameters());
     for (const double u : {-15.0, 15.0})
       CHECK_THROWS_AS(bank->step({0, Vector::Constant(1, u), Vector::Zero(1)}), Error);
     CHECK(bank->step({0, Vector::Constant(1, 10), Vector::Zero(1)}).mode == 0);

@@ -80,9 +80,10 @@ TEST_CASE("reactor: the literal reading of the disturbance fails the FDI conditi
   Params params = study.pipelines[0].diagnoser->params;
   params.set("error_set", make_zonotope(Vector::Zero(2), Matrix{{1, 0}, {0, 80}}));
   const auto backend = banks::backend("zonotope");
-  const auto guarantees = banks::registry()
-                              .make_diagnoser("observer_bank", bank_of(study), backend, params)
-                              ->guarantees();
+  const auto guarantees =
+      banks::registry()
+          .make<DiagnoserEntry>("observer_bank", {bank_of(study), backend}, params)
+          ->guarantees();
   REQUIRE(guarantees.has_value());
   CHECK(guarantees->all == Answer::no);
 }

@@ -166,7 +166,7 @@ void run(Diagnoser& diagnoser, const ModeBank& bank, const SetBackend& sets, std
 std::shared_ptr<const SetBackend> backend_of(const std::string& name, bool outward) {
   Params p;
   if (outward) p.set("rounding", std::string("outward"));
-  return registry().make_backend(name, p);
+  return registry().make<BackendEntry>(name, p);
 }
 
 Params consistency_parameters(std::uint64_t seed, const std::string& observer, ModeBank& bank) {
@@ -210,12 +210,13 @@ void check_banks(Differ what, const std::string& observer = "") {
         random.parameters = consistency_parameters(seed, observer, random.bank);
       const auto sets = backend_of(name, seed % 3 == 0);
       if (const auto problems =
-              registry().check_diagnoser(type, random.bank, sets, random.parameters);
+              registry().check<DiagnoserEntry>(type, {random.bank, sets}, random.parameters);
           !problems.empty()) {
         ++tally.refused;
         continue;
       }
-      const auto diagnoser = registry().make_diagnoser(type, random.bank, sets, random.parameters);
+      const auto diagnoser =
+          registry().make<DiagnoserEntry>(type, {random.bank, sets}, random.parameters);
       for (std::uint64_t k = 0; k < 2; ++k) run(*diagnoser, plant, *sets, 2 * seed + k, tally);
     }
     CHECK(tally.runs > tally.refused);
@@ -248,11 +249,11 @@ TEST_CASE("without reductions, residual sets end in those that were promised in 
       random.parameters.set("max_generators", std::int64_t{100'000});
       const auto sets = backend("zonotope");
       if (!registry()
-               .check_diagnoser("observer_bank", random.bank, sets, random.parameters)
+               .check<DiagnoserEntry>("observer_bank", {random.bank, sets}, random.parameters)
                .empty())
         continue;
       const auto diagnoser =
-          registry().make_diagnoser("observer_bank", random.bank, sets, random.parameters);
+          registry().make<DiagnoserEntry>("observer_bank", {random.bank, sets}, random.parameters);
       const auto promised = diagnoser->guarantees();
       REQUIRE(promised.has_value());
       Draw draw{std::mt19937_64(seed), seed % 2 == 0};
@@ -313,7 +314,7 @@ TEST_CASE("numbers that cancel leave rounding errors, which exclude nothing") {
          {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
       CAPTURE(name);
       const auto diagnoser =
-          registry().make_diagnoser("observer_bank", bank, backend(name), params);
+          registry().make<DiagnoserEntry>("observer_bank", {bank, backend(name)}, params);
       Draw draw{std::mt19937_64(1)};
       Vector x = model.X0.c;
       for (Index k = 0; k < 100; ++k) {

@@ -28,8 +28,8 @@ inline Params horizon(std::int64_t N) {
 
 inline std::shared_ptr<Diagnoser> make(const ModeBank& bank, const std::string& backend,
                                        Params params) {
-  return plugins().registry.make_diagnoser("tube_membership", bank, plugins().backend(backend),
-                                           std::move(params));
+  return plugins().registry.make<DiagnoserEntry>(
+      "tube_membership", {bank, plugins().backend(backend)}, std::move(params));
 }
 
 /// Steps of one experiment; the first step at which one mode is left, or the number of samples.

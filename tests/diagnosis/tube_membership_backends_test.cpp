@@ -13,8 +13,8 @@ namespace {
 
 std::vector<Diagnostic> check(const ModeBank& bank, const std::string& backend,
                               const Params& params) {
-  return plugins().registry.check_diagnoser("tube_membership", bank, plugins().backend(backend),
-                                            params);
+  return plugins().registry.check<DiagnoserEntry>("tube_membership",
+                                                  {bank, plugins().backend(backend)}, params);
 }
 
 /// Zonotopes whose exchange form is said to be larger than the set.
@@ -75,8 +75,8 @@ TEST_CASE("a tube that the backend widens tells no consistency, and excludes les
 
 TEST_CASE("an exchange form that encloses tells no consistency") {
   const ModeBank bank = examples::three_scalar_models();
-  const auto diagnoser = plugins().registry.make_diagnoser("tube_membership", bank,
-                                                           std::make_shared<Loose>(), horizon(1));
+  const auto diagnoser = plugins().registry.make<DiagnoserEntry>(
+      "tube_membership", {bank, std::make_shared<Loose>()}, horizon(1));
   const Run found = run(*diagnoser, {{0, Vector{{2}}, Vector{{0}}}, {1, Vector{{0}}, Vector{{2}}}});
   CHECK(found.steps[0].modes[0].candidate);
   CHECK(found.steps[0].modes[0].consistent == Answer::unknown);

@@ -222,7 +222,7 @@ TEST_CASE("as a plugin it meets the claims") {
   REQUIRE_MESSAGE(report.state == cordon::PluginReport::State::loaded, report.reason);
   cordon::Params params;
   params.set("criterion", std::string("trace"));
-  const auto backend = registry.make_backend("ellipsoid", params);
+  const auto backend = registry.make<cordon::BackendEntry>("ellipsoid", params);
   const Box square{Vector{{-1, -1}}, Vector{{1, 1}}};
   const cordon::Enclosure X = backend->box(square), none = backend->empty(2);
   const Matrix I = Matrix::Identity(2, 2);

@@ -174,8 +174,8 @@ TEST_CASE(
   bank.modes.push_back({"other", published()});
   bank.modes[0].model.linear.F.resize(4, 0);
   bank.nominal = 1;
-  const auto diagnoser = banks::registry().make_diagnoser(
-      "fault_estimation_filter", bank, zonotopes(), published_parameters("shared"));
+  const auto diagnoser = banks::registry().make<DiagnoserEntry>(
+      "fault_estimation_filter", {bank, zonotopes()}, published_parameters("shared"));
   const Signal step = [](Index k) { return Vector{{k >= 5 ? -3.0 : 0.0, 0.0}}; };
   run(*diagnoser, plant(published(), step, 3, Noise::uniform), step, 20, [&](const Diagnosis& now) {
     CAPTURE(now.k);

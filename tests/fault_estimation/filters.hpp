@@ -24,8 +24,8 @@ inline Params parameters(const std::string& coupling, std::int64_t max_columns =
 }
 
 inline std::shared_ptr<Diagnoser> filter(const Model& model, const Params& params) {
-  return banks::registry().make_diagnoser("fault_estimation_filter", alone(model), zonotopes(),
-                                          params);
+  return banks::registry().make<cordon::DiagnoserEntry>("fault_estimation_filter",
+                                                        {alone(model), zonotopes()}, params);
 }
 
 /// Runs both to `steps`; bounds that do not hold the true fault fail. Returns the number of bounds.

@@ -114,8 +114,8 @@ TEST_CASE("random systems") {
     const std::int64_t columns = draw.below(2) == 0 ? 0 : 12;
     Params params = parameters(draw.below(2) == 0 ? "shared" : "independent", columns);
     params.set("free_matrix", system.S);
-    const auto problems = banks::registry().check_diagnoser(
-        "fault_estimation_filter", alone(system.model), zonotopes(), params);
+    const auto problems = banks::registry().check<DiagnoserEntry>(
+        "fault_estimation_filter", {alone(system.model), zonotopes()}, params);
     RC_PRE(problems.empty());
     const Signal fault = random_faults(draw, system.model.linear.faults());
     const Noise noise = draw.below(2) == 0 ? Noise::uniform : Noise::vertex;

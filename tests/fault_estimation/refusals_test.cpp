@@ -12,10 +12,11 @@ namespace {
 
 std::vector<Diagnostic> problems(const ModeBank& bank, const Params& params,
                                  const std::shared_ptr<const SetBackend>& backend = zonotopes()) {
-  auto found = banks::registry().check_diagnoser("fault_estimation_filter", bank, backend, params);
+  auto found =
+      banks::registry().check<DiagnoserEntry>("fault_estimation_filter", {bank, backend}, params);
   if (!found.empty()) {
     CHECK_THROWS_AS(
-        banks::registry().make_diagnoser("fault_estimation_filter", bank, backend, params),
+        banks::registry().make<DiagnoserEntry>("fault_estimation_filter", {bank, backend}, params),
         InputError);
   }
   return found;
@@ -78,7 +79,7 @@ TEST_CASE("outward rounding") {
   Params outward;
   outward.set("rounding", std::string("outward"));
   const auto all =
-      problems(alone(published()), {}, banks::registry().make_backend("zonotope", outward));
+      problems(alone(published()), {}, banks::registry().make<BackendEntry>("zonotope", outward));
   CHECK(all.size() == 1);
   CHECK(tells(all, "/type", "promises outward rounding"));
 }

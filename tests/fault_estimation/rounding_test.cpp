@@ -116,8 +116,8 @@ TEST_CASE("whether a fault shows does not depend on units") {
   small.linear.B *= 1e-9;
   small.linear.F *= 1e-9;
   small.linear.Bw *= 1e-9;
-  const auto problems = banks::registry().check_diagnoser("fault_estimation_filter", alone(small),
-                                                          zonotopes(), parameters("shared"));
+  const auto problems = banks::registry().check<cordon::DiagnoserEntry>(
+      "fault_estimation_filter", {alone(small), zonotopes()}, parameters("shared"));
   for (const Diagnostic& problem : problems)
     CHECK(problem.message.find("not show") == std::string::npos);
 }
@@ -126,8 +126,8 @@ TEST_CASE("among several modes the filter does not come back to one of them") {
   Model model = published();
   ModeBank bank = alone(model);
   bank.modes.push_back({"other", model});
-  const auto diagnoser = banks::registry().make_diagnoser("fault_estimation_filter", bank,
-                                                          zonotopes(), parameters("shared"));
+  const auto diagnoser = banks::registry().make<cordon::DiagnoserEntry>(
+      "fault_estimation_filter", {bank, zonotopes()}, parameters("shared"));
   const Signal pulse = [](Index k) { return Vector(Vector{{k >= 20 && k < 30 ? 1.0 : 0.0, 0.0}}); };
   const FaultyRun plant(
       model, [](Index) { return Vector(Vector::Zero(2)); }, pulse,

@@ -31,7 +31,7 @@ Params matrix(const Matrix& L) { return Params().set("matrix", L); }
 TEST_CASE("a given gain is told with what it is worth") {
   const Plugins plugins;
   Model made = model();
-  const auto designer = plugins.registry.make_gain("given", matrix(Matrix{{.5}, {0}}));
+  const auto designer = plugins.registry.make<GainEntry>("given", matrix(Matrix{{.5}, {0}}));
   CHECK_FALSE(designer->is_time_varying());
   const GainDesign design = designer->design(made);
   REQUIRE(design.feasible == Answer::yes);
@@ -60,11 +60,12 @@ TEST_CASE("effectiveness of sensors known by ranges enters by its middle") {
   const Plugins plugins;
   Model made = model();
   made.linear.sensor = Box{Vector{{.2}}, Vector{{1}}};  // mid .6: A - L C̄ has 1 - .3
-  const GainCertificate c =
-      plugins.registry.make_gain("given", matrix(Matrix{{.5}, {0}}))->design(made).gain.certificate;
+  const GainCertificate c = plugins.registry.make<GainEntry>("given", matrix(Matrix{{.5}, {0}}))
+                                ->design(made)
+                                .gain.certificate;
   CHECK(c.spectral_radius == doctest::Approx(.8));
   made.linear.A(1, 1) = .1;
-  CHECK(plugins.registry.make_gain("given", matrix(Matrix{{.5}, {0}}))
+  CHECK(plugins.registry.make<GainEntry>("given", matrix(Matrix{{.5}, {0}}))
             ->design(made)
             .gain.certificate.spectral_radius == doctest::Approx(.7));
 }
@@ -75,15 +76,15 @@ TEST_CASE("a gain of another shape and one that does not stabilise are refused")
   for (const auto& [L, words] :
        {std::pair<Matrix, const char*>{Matrix{{.5, 0}}, "is 1 × 2, must be 2 × 1"},
         {Matrix{{-.1}, {0}}, "not Schur: it has the eigenvalue 1.1"}}) {
-    const auto problems = plugins.registry.check_gain("given", {made}, matrix(L));
+    const auto problems = plugins.registry.check<GainEntry>("given", {made}, matrix(L));
     REQUIRE(problems.size() == 1);
     CHECK(problems[0].pointer == "/matrix");
     CHECK(problems[0].message.find(words) != std::string::npos);
-    const GainDesign design = plugins.registry.make_gain("given", matrix(L))->design(made);
+    const GainDesign design = plugins.registry.make<GainEntry>("given", matrix(L))->design(made);
     CHECK(design.feasible == Answer::no);
     CHECK(design.reason.find(words) != std::string::npos);
   }
-  CHECK_THROWS_AS(plugins.registry.make_gain("given", {}), InputError);
+  CHECK_THROWS_AS(plugins.registry.make<GainEntry>("given", {}), InputError);
 }
 
 TEST_CASE("where A - L C cancels, the norm is that of the numbers as they are written") {
@@ -99,7 +100,9 @@ TEST_CASE("where A - L C cancels, the norm is that of the numbers as they are wr
   made.W = make_box(cube(1, .01));
   made.V = make_box(cube(1, .1));
   const auto certificate = [&](double L) {
-    return plugins.registry.make_gain("given", matrix(Matrix{{L}}))->design(made).gain.certificate;
+    return plugins.registry.make<GainEntry>("given", matrix(Matrix{{L}}))
+        ->design(made)
+        .gain.certificate;
   };
   const double exact = 45352157.0321;  // √(.01² + (.1 L)²) / (1 - |A - L C|) in rational
                                        // arithmetic; of doubles .9 less
@@ -138,7 +141,9 @@ TEST_CASE("a loop far from normal: what doubles call stable and is not, and the 
     m.Bw = Matrix::Identity(12, 1);
     m.C = Matrix::Identity(1, 12);
     made.X0 = make_box(cube(12, 1));
-    return plugins.registry.make_gain("given", matrix(Matrix::Zero(12, 1)))->design(made).feasible;
+    return plugins.registry.make<GainEntry>("given", matrix(Matrix::Zero(12, 1)))
+        ->design(made)
+        .feasible;
   };
   CHECK(feasible(1.25) != Answer::yes);
   CHECK(feasible(.5) == Answer::yes);

@@ -21,14 +21,14 @@ const Plugins& plugins() {
 GainDesign design(const char* type, const Model& model, const std::optional<Matrix>& theta = {}) {
   Params params;
   if (theta) params.set("theta", *theta);
-  return plugins().registry.make_gain(type, params)->design(model);
+  return plugins().registry.make<GainEntry>(type, params)->design(model);
 }
 
 /// The norms of a gain, by the component that takes gains as they are; theta follows from A's
 /// radius.
 GainCertificate certificate_of(const Model& model, const Matrix& L) {
   return plugins()
-      .registry.make_gain("given", Params().set("matrix", L))
+      .registry.make<GainEntry>("given", Params().set("matrix", L))
       ->design(model)
       .gain.certificate;
 }
@@ -188,18 +188,18 @@ TEST_CASE(
 TEST_CASE("parameters and sets are checked beforehand") {
   for (const char* type : {"h_infinity", "h_infinity_monotone", "w_radius"}) {
     Model model = interval_plants::two_tanks();
-    CHECK(plugins().registry.check_gain(type, {model}, {}).empty());
-    const auto theta = plugins().registry.check_gain(
+    CHECK(plugins().registry.check<GainEntry>(type, {model}, {}).empty());
+    const auto theta = plugins().registry.check<GainEntry>(
         type, {model}, Params().set("theta", Matrix(Matrix::Identity(3, 3))));
     REQUIRE(theta.size() == 1);
     CHECK(theta[0].pointer == "/theta");
     model.W = make_space(2);
     model.V = make_space(1);
-    const auto sets = plugins().registry.check_gain(type, {model}, {});
+    const auto sets = plugins().registry.check<GainEntry>(type, {model}, {});
     REQUIRE(sets.size() == 2);
     CHECK(sets[0].message.find('W') != std::string::npos);
     CHECK(sets[1].message.find('V') != std::string::npos);
-    const ComponentInfo* info = plugins().registry.gain_info(type);
+    const ComponentInfo* info = plugins().registry.info("gain", type);
     REQUIRE(info != nullptr);
     CHECK(info->citation == "Pourasghar2021");
     CHECK(info->details.find(type == std::string("w_radius") ? "WA - YC" : "PA - MC") !=

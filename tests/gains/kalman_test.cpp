@@ -100,7 +100,7 @@ TEST_CASE("the gain of the next step has the least F-radius of all") {
     if (*rc::gen::arbitrary<bool>())
       model.linear.sensor = Box{Vector::Constant(p, .2), Vector::Constant(p, .8)};
     const Matrix R = random(n, n + 2, 2), P = R * R.transpose();
-    const auto designer = plugins().registry.make_gain("kalman", {});
+    const auto designer = plugins().registry.make<GainEntry>("kalman", {});
     RC_ASSERT(designer->is_time_varying());
     const Matrix L = designer->update(model, P);
     const double least = f_radius(model, L, P);
@@ -113,7 +113,7 @@ TEST_CASE("the gain of the next step has the least F-radius of all") {
 TEST_CASE("without noise on an output the gain is still one") {
   Model model = interval_plants::with_unit_boxes(Matrix{{.5, .1}, {0, .9}}, Matrix(2, 0),
                                                  Matrix{{1, 0}, {1, 0}}, .1, 0);
-  const auto designer = plugins().registry.make_gain("kalman", {});
+  const auto designer = plugins().registry.make<GainEntry>("kalman", {});
   const Matrix P{{1, .5}, {.5, 1}};
   const Matrix L = designer->update(model, P);
   CHECK(f_radius(model, L, P) ==
@@ -129,7 +129,8 @@ TEST_CASE("the steady gain in closed form, with what it is worth") {
   const double Q = .25 + .25e-6, R = .04 + .25e-6, half = (Q - R + .81 * R) / 2;
   const double P = half + std::sqrt(half * half + Q * R), L = .9 * P / (P + R);
   for (const bool steady : {true, false}) {
-    const auto designer = plugins().registry.make_gain("kalman", Params().set("steady", steady));
+    const auto designer =
+        plugins().registry.make<GainEntry>("kalman", Params().set("steady", steady));
     CHECK(designer->is_time_varying() == !steady);
     const GainDesign design = designer->design(model);
     REQUIRE(design.feasible == Answer::yes);
@@ -145,7 +146,7 @@ TEST_CASE("the steady gain in closed form, with what it is worth") {
 TEST_CASE("an undetectable pair has no gain, and the mode is named") {
   Model model = interval_plants::with_unit_boxes(Matrix{{.5, 0}, {0, 1.2}}, Matrix(2, 0),
                                                  Matrix{{1, 0}}, .1, .1);
-  const GainDesign design = plugins().registry.make_gain("kalman", {})->design(model);
+  const GainDesign design = plugins().registry.make<GainEntry>("kalman", {})->design(model);
   CHECK(design.feasible == Answer::no);
   CHECK(design.reason.find("the mode 1.2 of A, along (0, 1)") != std::string::npos);
   CHECK_FALSE(design.suggestion.empty());

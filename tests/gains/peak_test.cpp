@@ -22,8 +22,8 @@ const Plugins& plugins() {
 GainDesign design(const Model& model, const std::optional<Matrix>& theta) {
   Params params;
   if (theta) params.set("theta", *theta);
-  CHECK(plugins().registry.check_gain("peak", {model}, params).empty());
-  return plugins().registry.make_gain("peak", params)->design(model);
+  CHECK(plugins().registry.check<GainEntry>("peak", {model}, params).empty());
+  return plugins().registry.make<GainEntry>("peak", params)->design(model);
 }
 
 /// h = (I - (A - L C))⁻¹ (r + |L Ev| 1) for unit boxes W and V.
@@ -60,14 +60,14 @@ TEST_CASE("the gains of least steady widths of the published plants") {
 TEST_CASE("the norms of published gains") {
   const auto norm = [](const Model& model, const Matrix& theta, const Matrix& L) {
     const GainDesign given =
-        plugins().registry.make_gain("given", Params().set("matrix", L))->design(model);
+        plugins().registry.make<GainEntry>("given", Params().set("matrix", L))->design(model);
     REQUIRE(given.feasible == Answer::yes);
     Model with = model;  // Eθ as further disturbances: "given" takes it from the radii of A only
     with.linear.Bw = Matrix(model.linear.states(), model.linear.Bw.cols() + theta.cols());
     with.linear.Bw << model.linear.Bw, theta;
     with.W = make_box(cube(with.linear.Bw.cols(), 1));
     return plugins()
-        .registry.make_gain("given", Params().set("matrix", L))
+        .registry.make<GainEntry>("given", Params().set("matrix", L))
         ->design(with)
         .gain.certificate;
   };
@@ -116,7 +116,7 @@ TEST_CASE("the uncertainty of A is used where theta is not given") {
 TEST_CASE("a theta of another height is refused, an unbounded W too") {
   const Model model = three_states();
   const auto problems =
-      plugins().registry.check_gain("peak", {model}, Params().set("theta", Matrix{{1}}));
+      plugins().registry.check<GainEntry>("peak", {model}, Params().set("theta", Matrix{{1}}));
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].pointer == "/theta");
   Model open = model;
@@ -205,7 +205,7 @@ TEST_CASE("a system without outputs has a gain without columns") {
   model.V = make_point(Vector(0));
   for (const char* type : {"h_infinity", "h_infinity_monotone", "w_radius", "peak", "kalman"}) {
     CAPTURE(type);
-    const GainDesign found = plugins().registry.make_gain(type, {})->design(model);
+    const GainDesign found = plugins().registry.make<GainEntry>(type, {})->design(model);
     CHECK(found.feasible == Answer::yes);
     CHECK(found.gain.L.rows() == 3);
     CHECK(found.gain.L.cols() == 0);

@@ -29,8 +29,8 @@ Params poles(const Vector& real, const Vector& imaginary = {}) {
 }
 
 GainDesign design(const Model& model, const Params& params) {
-  CHECK(plugins().registry.check_gain("poles", {model}, params).empty());
-  return plugins().registry.make_gain("poles", params)->design(model);
+  CHECK(plugins().registry.check<GainEntry>("poles", {model}, params).empty());
+  return plugins().registry.make<GainEntry>("poles", params)->design(model);
 }
 
 /// Coefficients of det(zI - A), from the traces of its powers.
@@ -143,7 +143,7 @@ TEST_CASE("random observable pairs get their poles, by the characteristic polyno
       imaginary[1] = -imaginary[0];
     }
     const GainDesign found =
-        plugins().registry.make_gain("poles", poles(real, imaginary))->design(model);
+        plugins().registry.make<GainEntry>("poles", poles(real, imaginary))->design(model);
     if (found.feasible != Answer::yes) return;  // nearly unobservable pairs
     ++done;
     const Matrix closed = model.linear.A - found.gain.L * model.linear.C;
@@ -183,7 +183,7 @@ TEST_CASE("what cannot be placed is refused with the reason") {
 TEST_CASE("numbers that make no sense are refused, each with its place") {
   const Model model = plant(Matrix{{1, 1}, {0, 1}}, Matrix{{1, 0}});
   const auto has = [&](const Params& params, const std::string& pointer, const std::string& words) {
-    const auto problems = plugins().registry.check_gain("poles", {model}, params);
+    const auto problems = plugins().registry.check<GainEntry>("poles", {model}, params);
     return std::any_of(problems.begin(), problems.end(), [&](const Diagnostic& d) {
       return d.pointer == pointer && d.message.find(words) != std::string::npos;
     });
@@ -199,11 +199,11 @@ TEST_CASE("numbers that make no sense are refused, each with its place") {
             "0.2 - 0.2i has no conjugate"));
   CHECK(plugins()
             .registry
-            .check_gain("poles", {plant(Matrix::Identity(3, 3), Matrix::Identity(3, 3))},
-                        poles(Vector{{.1, .1, .1}}, Vector{{.2, .2, -.2}}))
+            .check<GainEntry>("poles", {plant(Matrix::Identity(3, 3), Matrix::Identity(3, 3))},
+                              poles(Vector{{.1, .1, .1}}, Vector{{.2, .2, -.2}}))
             .size() == 2);  // neither has as many conjugates
-  CHECK(plugins().registry.make_gain("poles", poles(Vector{{.1}}))->design(model).feasible ==
+  CHECK(plugins().registry.make<GainEntry>("poles", poles(Vector{{.1}}))->design(model).feasible ==
         Answer::no);
-  CHECK_THROWS_AS(plugins().registry.make_gain("poles", poles(Vector{{.1, .2}}, Vector{{.1}})),
-                  Error);
+  CHECK_THROWS_AS(
+      plugins().registry.make<GainEntry>("poles", poles(Vector{{.1, .2}}, Vector{{.1}})), Error);
 }

@@ -56,7 +56,7 @@ TEST_CASE("the printed gains: how stable and how good they are, and which are mo
     model.linear.Bw = Bw;
     model.W = make_box(cube(Bw.cols(), 1));
     const auto designer =
-        plugins.registry.make_gain("given", Params().set("matrix", Matrix(gain.L)));
+        plugins.registry.make<GainEntry>("given", Params().set("matrix", Matrix(gain.L)));
     const GainDesign design = designer->design(model);
     REQUIRE(design.feasible == Answer::yes);
     const GainCertificate& certificate = design.gain.certificate;
@@ -74,11 +74,11 @@ TEST_CASE(
     "negative is not") {
   const Plugins plugins;
   const Matrix L{{-1.1376}, {-1.9167}, {-1.2604}};
-  const GainDesign design =
-      plugins.registry.make_gain("given", Params().set("matrix", L))->design(three_states(-.1));
+  const GainDesign design = plugins.registry.make<GainEntry>("given", Params().set("matrix", L))
+                                ->design(three_states(-.1));
   CHECK(design.feasible == Answer::no);
   CHECK(design.reason.find("2.07") != std::string::npos);
-  CHECK(plugins.registry.make_gain("given", Params().set("matrix", Matrix(-L)))
+  CHECK(plugins.registry.make<GainEntry>("given", Params().set("matrix", Matrix(-L)))
             ->design(three_states(-.1))
             .feasible == Answer::yes);
 }

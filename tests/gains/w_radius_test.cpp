@@ -18,7 +18,7 @@ GainDesign design(const Model& model, double rho, const std::optional<Matrix>& t
   Params params;
   params.set("rho", rho);
   if (theta) params.set("theta", *theta);
-  return plugins.registry.make_gain("w_radius", params)->design(model);
+  return plugins.registry.make<GainEntry>("w_radius", params)->design(model);
 }
 
 }  // namespace

@@ -19,14 +19,16 @@ Matrix by_time(const Vector& u, Index inputs) {
 }
 
 DesignOutcome judged(const ModeBank& bank, const char* backend_name, const Params& params) {
-  REQUIRE(registry().check_designer("given", bank, backend(backend_name), params).empty());
+  REQUIRE(registry().check<DesignerEntry>("given", {bank, backend(backend_name)}, params).empty());
   DesignControl control;
-  return registry().make_designer("given", bank, backend(backend_name), params)->design(control);
+  return registry()
+      .make<DesignerEntry>("given", {bank, backend(backend_name)}, params)
+      ->design(control);
 }
 
 std::vector<Diagnostic> problems(const char* designer, const ModeBank& bank,
                                  const char* backend_name, const Params& params) {
-  return registry().check_designer(designer, bank, backend(backend_name), params);
+  return registry().check<DesignerEntry>(designer, {bank, backend(backend_name)}, params);
 }
 
 bool mentions(const std::vector<Diagnostic>& problems, const std::string& pointer,
@@ -97,7 +99,8 @@ TEST_CASE("The judgement of a given input can be stopped between tubes, pairs an
   };
   const ModeBank bank = examples::four_descriptor_models();
   const Params params = Params().set("input", by_time(examples::published_line_input(), 2));
-  const auto designer = registry().make_designer("given", bank, backend("line_zonotope"), params);
+  const auto designer =
+      registry().make<DesignerEntry>("given", {bank, backend("line_zonotope")}, params);
   const int all = 4 + 6 + 6 + 4;
   for (int most = 0; most < all; ++most) {
     Counted control(most);

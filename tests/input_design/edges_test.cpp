@@ -39,10 +39,11 @@ Model static_scalar(double b) {
 }
 
 DesignOutcome designed(const ModeBank& bank, const Params& params) {
-  REQUIRE(registry().check_designer("facets", bank, backend("line_zonotope"), params).empty());
+  REQUIRE(
+      registry().check<DesignerEntry>("facets", {bank, backend("line_zonotope")}, params).empty());
   DesignControl control;
   return registry()
-      .make_designer("facets", bank, backend("line_zonotope"), params)
+      .make<DesignerEntry>("facets", {bank, backend("line_zonotope")}, params)
       ->design(control);
 }
 
@@ -119,8 +120,8 @@ TEST_CASE("A tube that a longer horizon empties does not refuse a shorter one") 
   const DesignOutcome outcome = designed(bank, params);
   CHECK(outcome.status == DesignStatus::optimal);
   CHECK(outcome.horizon == 1);
-  const auto problems = registry().check_designer("facets", bank, backend("line_zonotope"),
-                                                  Params(params).set("horizon", std::int64_t{6}));
+  const auto problems = registry().check<DesignerEntry>(
+      "facets", {bank, backend("line_zonotope")}, Params(params).set("horizon", std::int64_t{6}));
   REQUIRE(problems.size() == 2);
   for (const auto& problem : problems)
     CHECK(problem.message.find("is empty for every input") != std::string::npos);

@@ -17,10 +17,11 @@ using examples::registry;
 namespace {
 
 DesignOutcome designed(const ModeBank& bank, const Params& params) {
-  REQUIRE(registry().check_designer("facets", bank, backend("line_zonotope"), params).empty());
+  REQUIRE(
+      registry().check<DesignerEntry>("facets", {bank, backend("line_zonotope")}, params).empty());
   DesignControl control;
   return registry()
-      .make_designer("facets", bank, backend("line_zonotope"), params)
+      .make<DesignerEntry>("facets", {bank, backend("line_zonotope")}, params)
       ->design(control);
 }
 
@@ -77,7 +78,9 @@ TEST_CASE("The time limit and a stop from outside hold before and after the sear
     const Params params = published_parameters().set("horizon", std::int64_t{3});
     const auto designed_under = [&](const Params& all, DesignControl& control) {
       const ModeBank bank = examples::four_descriptor_models();
-      return registry().make_designer(type, bank, backend("line_zonotope"), all)->design(control);
+      return registry()
+          .make<DesignerEntry>(type, {bank, backend("line_zonotope")}, all)
+          ->design(control);
     };
     Slow late;
     late.delay = std::chrono::milliseconds(3);
@@ -104,7 +107,8 @@ TEST_CASE("The time limit and a stop from outside hold before and after the sear
   Slow whole;
   const ModeBank bank = examples::four_descriptor_models();
   const Params params = published_parameters().set("horizon", std::int64_t{3});
-  const auto designer = registry().make_designer("facets", bank, backend("line_zonotope"), params);
+  const auto designer =
+      registry().make<DesignerEntry>("facets", {bank, backend("line_zonotope")}, params);
   REQUIRE(designer->design(whole).best);
   for (int before_end = 1; before_end <= 10; ++before_end) {  // six pairs and four hulls
     Slow ended;

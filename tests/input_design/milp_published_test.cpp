@@ -23,10 +23,13 @@ TEST_CASE("Descriptor models with 7 and 8 generators per pair") {
                               .set("reference", Matrix(numbers({.5, -1}).transpose()))
                               .set("max_generators", generators)
                               .set("time_limit", 600.0);
-    REQUIRE(registry().check_designer("milp", bank, backend("line_zonotope"), params).empty());
+    REQUIRE(
+        registry().check<DesignerEntry>("milp", {bank, backend("line_zonotope")}, params).empty());
     DesignControl control;
     const DesignOutcome outcome =
-        registry().make_designer("milp", bank, backend("line_zonotope"), params)->design(control);
+        registry()
+            .make<DesignerEntry>("milp", {bank, backend("line_zonotope")}, params)
+            ->design(control);
     CHECK(outcome.status == DesignStatus::feasible);
     CHECK(outcome.horizon == 3);
     CHECK_FALSE(outcome.stopped);
@@ -50,7 +53,9 @@ TEST_CASE("The smallest horizon that works is found") {
   const Params params = Params().set("max_horizon", Index{4}).set("max_generators", Index{3});
   DesignControl control;
   const DesignOutcome outcome =
-      registry().make_designer("milp", bank, backend("line_zonotope"), params)->design(control);
+      registry()
+          .make<DesignerEntry>("milp", {bank, backend("line_zonotope")}, params)
+          ->design(control);
   CHECK(outcome.status == DesignStatus::feasible);
   REQUIRE(outcome.best);
   CHECK(outcome.best->separates() == Answer::yes);

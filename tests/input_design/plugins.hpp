@@ -20,7 +20,7 @@ inline const Registry& registry() {
 }
 
 inline std::shared_ptr<const SetBackend> backend(const std::string& name) {
-  return registry().make_backend(name, {});
+  return registry().make<BackendEntry>(name, {});
 }
 
 }  // namespace cordon::examples

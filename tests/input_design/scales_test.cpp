@@ -28,7 +28,7 @@ ModeBank bounded_scalar_models(double b, double size = 1) {
 DesignOutcome designed(const ModeBank& bank, const char* designer, Params params) {
   DesignControl control;
   return registry()
-      .make_designer(designer, bank, backend("line_zonotope"), params.set("epsilon", .1))
+      .make<DesignerEntry>(designer, {bank, backend("line_zonotope")}, params.set("epsilon", .1))
       ->design(control);
 }
 

@@ -44,7 +44,8 @@ void expect_inclusion(const std::string& observer_name, const PublishedWidths& p
                       const Params& params) {
   const Model model = plant(published.plant);
   const char* sets = observer_name == "zonotope_uncertain" ? "zonotope" : "interval";
-  const auto observer = registry().make_observer(observer_name, {model, backend(sets)}, params);
+  const auto observer =
+      registry().make<cordon::ObserverEntry>(observer_name, {model, backend(sets)}, params);
   CAPTURE(observer_name);
   CAPTURE(published.plant);
   CAPTURE(published.L.transpose());

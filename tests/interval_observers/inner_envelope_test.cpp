@@ -53,8 +53,8 @@ Box reach(const Model& model, const Matrix& A, const Matrix& L, const std::vecto
 void expect_inside(const std::string& observer_name, const std::string& sets) {
   const Model model = random_model(true);
   const Matrix L = random_gain(model.linear);
-  const auto observer = registry().make_observer(observer_name, {model, backend(sets)},
-                                                 with_samples(with_gain(L), 20));
+  const auto observer = registry().make<cordon::ObserverEntry>(
+      observer_name, {model, backend(sets)}, with_samples(with_gain(L), 20));
   InnerEnvelope inner(model, L, samples(20));
   Truth truth(model, random_draw(), *rc::gen::arbitrary<bool>());
   inner.start(model.X0);
@@ -91,9 +91,9 @@ TEST_CASE("exact matrices and a monotone gain: the inner estimate is the estimat
       continue;
     CAPTURE(published.plant);
     for (const char* name : {"interval_trajectory", "integrated", "zonotope_uncertain"}) {
-      const auto observer =
-          registry().make_observer(name, {model, backend(name[0] == 'z' ? "zonotope" : "interval")},
-                                   with_samples(with_gain(published.L), 1));
+      const auto observer = registry().make<cordon::ObserverEntry>(
+          name, {model, backend(name[0] == 'z' ? "zonotope" : "interval")},
+          with_samples(with_gain(published.L), 1));
       comparison::Truth truth(published.plant, {std::mt19937_64(3), false});
       for (Index k = 0; k <= 200; ++k) {
         const Vector u = comparison::input(published.plant, k);
@@ -188,11 +188,12 @@ TEST_CASE(
   for (const char* name : {"interval_trajectory", "integrated", "zonotope_uncertain"}) {
     CAPTURE(name);
     const auto sets = backend("constrained_zonotope");
-    const auto off = registry().make_observer(name, {model, sets}, params);
+    const auto off = registry().make<cordon::ObserverEntry>(name, {model, sets}, params);
     off->step(first);
     CHECK_FALSE(off->inner_estimate().has_value());
 
-    const auto observer = registry().make_observer(name, {model, sets}, with_samples(params, 3));
+    const auto observer =
+        registry().make<cordon::ObserverEntry>(name, {model, sets}, with_samples(params, 3));
     CHECK_FALSE(observer->inner_estimate().has_value());
     observer->step(first);
     CHECK(observer->inner_estimate().has_value());
@@ -217,9 +218,10 @@ TEST_CASE(
     observer->step(first);
     CHECK_FALSE(observer->inner_estimate().has_value());
 
-    const auto outward =
-        registry().make_backend("interval", Params().set("rounding", std::string("outward")));
-    const auto rounded = registry().make_observer(name, {model, outward}, with_samples(params, 3));
+    const auto outward = registry().make<cordon::BackendEntry>(
+        "interval", Params().set("rounding", std::string("outward")));
+    const auto rounded =
+        registry().make<cordon::ObserverEntry>(name, {model, outward}, with_samples(params, 3));
     rounded->step(first);
     CHECK(rounded->inner_estimate().has_value());
     rounded->start(outward->box(
@@ -230,9 +232,10 @@ TEST_CASE(
     Model cut = model;
     cut.X0.A = Matrix{{1, 1, 0}};
     cut.X0.b = Vector::Zero(1);
-    auto problems = registry().check_observer(name, {cut, sets}, with_samples(params, 3));
+    auto problems =
+        registry().check<cordon::ObserverEntry>(name, {cut, sets}, with_samples(params, 3));
     REQUIRE(problems.size() == 1);
     CHECK(problems[0].pointer == "/inner_samples");
-    CHECK(registry().check_observer(name, {cut, sets}, params).empty());
+    CHECK(registry().check<cordon::ObserverEntry>(name, {cut, sets}, params).empty());
   }
 }

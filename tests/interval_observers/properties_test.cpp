@@ -13,7 +13,8 @@ namespace {
 
 std::shared_ptr<const SetBackend> backend_of(const std::string& name) {
   return name == "outward interval"
-             ? registry().make_backend("interval", Params().set("rounding", std::string("outward")))
+             ? registry().make<cordon::BackendEntry>(
+                   "interval", Params().set("rounding", std::string("outward")))
              : backend(name);
 }
 
@@ -22,7 +23,8 @@ void expect_truth_inside(const std::string& observer_name, const std::string& se
   const Model model = random_model(true);
   Params params = with_gain(random_gain(model.linear), two_gains ? "upper_gain" : "gain");
   if (two_gains) params.set("lower_gain", with_gain(random_gain(model.linear)).values().at("gain"));
-  const auto observer = registry().make_observer(observer_name, {model, backend_of(sets)}, params);
+  const auto observer =
+      registry().make<cordon::ObserverEntry>(observer_name, {model, backend_of(sets)}, params);
   RC_ASSERT(observer->gains().size() == (two_gains ? 2U : 1U));
   Truth truth(model, random_draw(), *rc::gen::arbitrary<bool>());
   for (Index k = 0; k < 12; ++k) {
@@ -72,9 +74,12 @@ TEST_CASE("monotone gain, generators of one sign: three observers, the same hull
     const auto [model, L] = monotone_model();
     const auto interval = backend("interval"), zonotope = backend("zonotope");
     const Params params = with_gain(L);
-    const auto bounds = registry().make_observer("interval_trajectory", {model, interval}, params),
-               centred = registry().make_observer("integrated", {model, interval}, params),
-               sets = registry().make_observer("zonotope_uncertain", {model, zonotope}, params);
+    const auto bounds = registry().make<cordon::ObserverEntry>("interval_trajectory",
+                                                               {model, interval}, params),
+               centred =
+                   registry().make<cordon::ObserverEntry>("integrated", {model, interval}, params),
+               sets = registry().make<cordon::ObserverEntry>("zonotope_uncertain",
+                                                             {model, zonotope}, params);
     Truth truth(model, random_draw(), true);
     for (Index k = 0; k < 12; ++k) {
       const Vector u = random_matrix(model.linear.inputs(), 1, 3).col(0);
@@ -95,9 +100,10 @@ TEST_CASE("a generator with two signs: the interval observer is strictly wider")
   Model model = comparison::plant("68");
   model.X0 = make_zonotope(Vector::Zero(3), Matrix{{1}, {-1}, {0}});
   const Params params = with_gain(Matrix{{.3}, {.2}, {.8}});
-  const auto bounds = registry().make_observer("integrated", {model, backend("interval")}, params),
-             sets = registry().make_observer("zonotope_uncertain", {model, backend("zonotope")},
-                                             params);
+  const auto bounds = registry().make<cordon::ObserverEntry>("integrated",
+                                                             {model, backend("interval")}, params),
+             sets = registry().make<cordon::ObserverEntry>("zonotope_uncertain",
+                                                           {model, backend("zonotope")}, params);
   for (Index k = 0; k < 20; ++k) {
     const Sample now{k, Vector::Zero(1), Vector::Zero(1)};
     const Box a = bounds->step(now).set->interval_hull(), b = sets->step(now).set->interval_hull();
@@ -117,8 +123,8 @@ TEST_CASE("centre and radius are the split recursion of both bounds") {
     const Matrix upper = random_gain(m), lower = random_gain(m);
     Params params = with_gain(upper, "upper_gain");
     params.set("lower_gain", with_gain(lower).values().at("gain"));
-    const auto observer =
-        registry().make_observer("interval_trajectory", {model, backend("interval")}, params);
+    const auto observer = registry().make<cordon::ObserverEntry>(
+        "interval_trajectory", {model, backend("interval")}, params);
     Truth truth(model, random_draw(), true);
     const Vector radius = model.X0.G.cwiseAbs().rowwise().sum();
     Vector lo = model.X0.c - radius, hi = model.X0.c + radius;
@@ -160,7 +166,7 @@ TEST_CASE("ranges of sensors and actuators, one step by hand") {
   m.sensor = range(.25, .75);  // .5 ± .25
   model.X0 = box_around(Vector{{1, 2}}, Vector{{.5, 1}});
   model.W = model.V = make_point(Vector(0));
-  const auto observer = registry().make_observer(
+  const auto observer = registry().make<cordon::ObserverEntry>(
       "interval_trajectory", {model, backend("interval")}, with_gain(Matrix{{.5}, {-.5}}));
   observer->step({0, Vector::Constant(1, 2), Vector::Constant(1, 3)});
   const Box next = observer->step({1, Vector::Zero(1), Vector::Zero(1)}).set->interval_hull();
@@ -187,8 +193,8 @@ TEST_CASE("rounding errors are inside the bounds") {
     model.W = model.V = make_point(Vector::Zero(2));
     model.X0 = make_point(model.X0.c);
     const auto observer =
-        registry().make_observer("interval_trajectory", {model, backend("interval")},
-                                 with_gain(Matrix::Zero(n, m.outputs())));
+        registry().make<cordon::ObserverEntry>("interval_trajectory", {model, backend("interval")},
+                                               with_gain(Matrix::Zero(n, m.outputs())));
     Long x = model.X0.c.cast<long double>();
     for (Index k = 0; k < 60; ++k) {
       const Vector u = random_matrix(m.inputs(), 1, 1e-3).col(0);
@@ -234,8 +240,8 @@ TEST_CASE("a set that replaces the estimate is where the observer goes on from")
   for (const char* name : {"interval_trajectory", "integrated", "zonotope_uncertain"}) {
     CAPTURE(name);
     const auto sets = backend("zonotope");
-    const auto replaced = registry().make_observer(name, {model, sets}, params),
-               begun = registry().make_observer(name, {model, sets}, params);
+    const auto replaced = registry().make<cordon::ObserverEntry>(name, {model, sets}, params),
+               begun = registry().make<cordon::ObserverEntry>(name, {model, sets}, params);
     const Enclosure X = sets->box({Vector{{2, 3, 4}}, Vector{{3, 5, 4.5}}});
     const auto sample = [](Index k) {
       return Sample{k, Vector::Constant(1, .5), Vector::Constant(1, 4.2)};

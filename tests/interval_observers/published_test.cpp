@@ -16,7 +16,7 @@ std::vector<Box> hulls(const std::string& name, const std::string& observer_name
                        const Params& params, const std::string& backend_name, Index steps = 200) {
   const Model model = plant(name);
   const auto observer =
-      registry().make_observer(observer_name, {model, backend(backend_name)}, params);
+      registry().make<cordon::ObserverEntry>(observer_name, {model, backend(backend_name)}, params);
   Vector x = Vector::Zero(model.linear.states());
   std::vector<Box> found;
   for (Index k = 0; k <= steps; ++k) {

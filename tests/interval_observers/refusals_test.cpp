@@ -15,7 +15,7 @@ const char* const observers[] = {"zonotope_uncertain", "interval_trajectory", "i
 
 std::vector<Diagnostic> check(const std::string& name, const Model& model, const Params& params,
                               const std::string& sets = "line_zonotope") {
-  return registry().check_observer(name, {model, backend(sets)}, params);
+  return registry().check<cordon::ObserverEntry>(name, {model, backend(sets)}, params);
 }
 
 void expect_one(const std::vector<Diagnostic>& problems, const std::string& pointer,
@@ -79,8 +79,8 @@ TEST_CASE("a model with exact A and C may start anywhere, with sets") {
   model.X0 = make_space(3);
   CHECK(check("zonotope_uncertain", model, monotone()).empty());
   CHECK(check("zonotope_uncertain", model, monotone(), "zonotope").size() == 1);
-  const auto observer =
-      registry().make_observer("zonotope_uncertain", {model, backend("line_zonotope")}, monotone());
+  const auto observer = registry().make<cordon::ObserverEntry>(
+      "zonotope_uncertain", {model, backend("line_zonotope")}, monotone());
   observer->step(sample(0, 1));
   CHECK(observer->step(sample(1, 1)).set->is_bounded() == Answer::no);
 }
@@ -112,8 +112,8 @@ TEST_CASE("gains of the bounds: both, or one for both") {
   expect_one(
       check("interval_trajectory", model, Params(both).set("inner_samples", std::int64_t{2})),
       "/inner_samples", "one gain");
-  const auto observer =
-      registry().make_observer("interval_trajectory", {model, backend("interval")}, both);
+  const auto observer = registry().make<cordon::ObserverEntry>("interval_trajectory",
+                                                               {model, backend("interval")}, both);
   REQUIRE(observer->gains().size() == 2);
   CHECK(observer->gains()[0].name == "upper_gain");
   CHECK(observer->gains()[1].name == "lower_gain");
@@ -147,12 +147,13 @@ TEST_CASE("integrated: every negative entry of A - L C is named") {
 TEST_CASE("an unbounded set that is handed over at run time") {
   const auto sets = backend("line_zonotope");
   for (const char* name : {"interval_trajectory", "integrated"}) {
-    const auto observer = registry().make_observer(name, {plant("68"), sets}, monotone());
+    const auto observer =
+        registry().make<cordon::ObserverEntry>(name, {plant("68"), sets}, monotone());
     observer->start(sets->space(3));
     CHECK_THROWS_AS(observer->step(sample(0, 0)), Error);
   }
   const auto observer =
-      registry().make_observer("zonotope_uncertain", {plant("68"), sets}, monotone());
+      registry().make<cordon::ObserverEntry>("zonotope_uncertain", {plant("68"), sets}, monotone());
   observer->start(sets->space(3));
   observer->step(sample(0, 0));
   CHECK_THROWS_AS(observer->step(sample(1, 0)), Error);
@@ -161,8 +162,8 @@ TEST_CASE("an unbounded set that is handed over at run time") {
 TEST_CASE("bounds that grow without limit end in an error, not in numbers that are none") {
   Model model = plant("68");
   model.linear.A_radius.setConstant(3);
-  const auto observer =
-      registry().make_observer("interval_trajectory", {model, backend("interval")}, monotone());
+  const auto observer = registry().make<cordon::ObserverEntry>(
+      "interval_trajectory", {model, backend("interval")}, monotone());
   std::string words;
   try {
     for (Index k = 0; k < 2000; ++k) observer->step(sample(k, 0));
@@ -176,7 +177,8 @@ TEST_CASE("where no gain is given") {
   const Model model = plant("68");
   for (const char* name : {"zonotope_uncertain", "interval_trajectory"}) {
     CHECK(check(name, model, {}).empty());
-    const auto observer = registry().make_observer(name, {model, backend("zonotope")}, {});
+    const auto observer =
+        registry().make<cordon::ObserverEntry>(name, {model, backend("zonotope")}, {});
     REQUIRE(observer->gains().size() == 1);
     CHECK(observer->gains()[0].type == "kalman");
     CHECK(observer->gains()[0].name == "gain");
@@ -187,7 +189,8 @@ TEST_CASE("integrated designs a monotone gain, or tells why there is none") {
   for (const char* name : {"68", "72"}) {
     const Model model = plant(name);
     CHECK(check("integrated", model, {}).empty());
-    const auto observer = registry().make_observer("integrated", {model, backend("interval")}, {});
+    const auto observer =
+        registry().make<cordon::ObserverEntry>("integrated", {model, backend("interval")}, {});
     CHECK(observer->gains()[0].type == "h_infinity_monotone");
     CHECK((model.linear.A - observer->gains()[0].L * model.linear.C).minCoeff() >= -1e-9);
   }
@@ -204,16 +207,17 @@ TEST_CASE("a gain that varies in time is the one for the carried set") {
   const auto kalman = std::make_shared<const ComponentSpec>(ComponentSpec{"kalman", {}});
   const Params params = Params().set("gain", kalman).set("max_generators", std::int64_t{3});
   const auto zonotopes = backend("zonotope");
-  const auto observer = registry().make_observer("zonotope_uncertain", {model, zonotopes}, params);
-  const auto designer = registry().make_gain("kalman", {});
+  const auto observer =
+      registry().make<cordon::ObserverEntry>("zonotope_uncertain", {model, zonotopes}, params);
+  const auto designer = registry().make<cordon::GainEntry>("kalman", {});
   observer->step(sample(0, .3));
   Enclosure X = observer->step(sample(1, .5)).set;
   for (Index k = 1; k < 6; ++k) {
     const LineForm carried = zonotopes->reduce(X, {3, 5})->line_form();
     const Matrix L = designer->update(model, carried.G * carried.G.transpose());
     const auto fixed =
-        registry().make_observer("zonotope_uncertain", {model, zonotopes},
-                                 with_gain(L).set("max_generators", std::int64_t{3}));
+        registry().make<cordon::ObserverEntry>("zonotope_uncertain", {model, zonotopes},
+                                               with_gain(L).set("max_generators", std::int64_t{3}));
     fixed->start(X);
     fixed->step(sample(k, .5));
     const Box expected = fixed->step(sample(k + 1, .5)).set->interval_hull();
@@ -225,9 +229,10 @@ TEST_CASE("a gain that varies in time is the one for the carried set") {
       check("zonotope_uncertain", model, Params(params).set("inner_samples", std::int64_t{2})),
       "/inner_samples", "vary in time");
   // trajectories take the steady gain
-  const auto steady = registry().make_observer("interval_trajectory", {model, zonotopes}, {});
-  const auto trajectories = registry().make_observer("interval_trajectory", {model, zonotopes},
-                                                     Params().set("gain", kalman));
+  const auto steady =
+      registry().make<cordon::ObserverEntry>("interval_trajectory", {model, zonotopes}, {});
+  const auto trajectories = registry().make<cordon::ObserverEntry>(
+      "interval_trajectory", {model, zonotopes}, Params().set("gain", kalman));
   CHECK(trajectories->gains()[0].L == steady->gains()[0].L);
 }
 
@@ -240,7 +245,7 @@ TEST_CASE("two gains: bounds that cross prove that the data contradict the model
   for (const char* sets : {"interval", "zonotope", "constrained_zonotope"}) {
     CAPTURE(sets);
     const auto observer =
-        registry().make_observer("interval_trajectory", {model, backend(sets)}, both);
+        registry().make<cordon::ObserverEntry>("interval_trajectory", {model, backend(sets)}, both);
     observer->step(sample(0, 0));
     observer->step(sample(1, -100));  // lower by .8 · 100, but only .3 · 100
     const Estimate estimate = observer->step(sample(2, 0));
@@ -254,8 +259,8 @@ TEST_CASE("two gains: bounds that cross prove that the data contradict the model
   model.W = make_point(Vector::Zero(3));
   model.V = make_point(Vector::Zero(1));
   model.X0 = make_point(Vector{{.1, .7, -.3}});
-  const auto observer =
-      registry().make_observer("interval_trajectory", {model, backend("interval")}, both);
+  const auto observer = registry().make<cordon::ObserverEntry>("interval_trajectory",
+                                                               {model, backend("interval")}, both);
   Vector x = model.X0.c;
   for (Index k = 0; k < 300; ++k) {
     const Vector u = input("68", k);
@@ -276,8 +281,8 @@ TEST_CASE("measurements off by less than the margin of a proof are not called a 
   both.set("upper_gain", component(Matrix{{.3}, {.2}, {.8}}))
       .set("lower_gain", component(Matrix{{.1}, {.1}, {.3}}));
   const auto consistent = [&](double off) {
-    const auto observer =
-        registry().make_observer("interval_trajectory", {model, backend("interval")}, both);
+    const auto observer = registry().make<cordon::ObserverEntry>(
+        "interval_trajectory", {model, backend("interval")}, both);
     observer->step({0, Vector::Constant(1, 1), Vector::Zero(1)});
     observer->step({1, Vector::Constant(1, 1), Vector::Constant(1, 1 + off)});
     return observer->step({2, Vector::Constant(1, 1), Vector::Constant(1, 1.8)});

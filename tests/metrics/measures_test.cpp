@@ -17,10 +17,10 @@ struct Scene {
 
   /// After one step for each answer, in this order, about the truth.
   std::shared_ptr<Metric> fed(const std::string& name, const std::vector<Vector>& truths) {
-    auto metric = registry.make_metric(name, {});
+    auto metric = registry.make<MetricEntry>(name, {});
     Estimate estimate;
-    estimate.set =
-        registry.make_backend("zonotope", {})->import(make_zonotope(Vector{{0}}, Matrix{{1}}));
+    estimate.set = registry.make<BackendEntry>("zonotope", {})
+                       ->import(make_zonotope(Vector{{0}}, Matrix{{1}}));
     const Box hull = estimate.set->interval_hull();
     const PhaseTimes times;
     for (const Vector& truth : truths) metric->step({estimate, hull, &truth, true, times});
@@ -41,8 +41,8 @@ const MetricValue& value_of(const std::vector<MetricValue>& values, const std::s
 
 TEST_CASE("every number of a summary is described, and nothing else") {
   Scene scene;
-  CHECK(scene.registry.metrics().size() >= 8);
-  for (const std::string& name : scene.registry.metrics()) {
+  CHECK(scene.registry.names("metric").size() >= 8);
+  for (const std::string& name : scene.registry.names("metric")) {
     CAPTURE(name);
     const auto metric = scene.fed(name, {Vector{{0}}});
     const std::vector<Measure> measures = metric->measures();
@@ -54,7 +54,7 @@ TEST_CASE("every number of a summary is described, and nothing else") {
       for (const std::string& part : measure.rest) value_of(summary, part);
       if (measure.ranked) CHECK(measure.better == Preference::less);
     }
-    CHECK(metric->measures() == scene.registry.make_metric(name, {})->measures());
+    CHECK(metric->measures() == scene.registry.make<MetricEntry>(name, {})->measures());
   }
 }
 

@@ -90,9 +90,9 @@ TEST_CASE("the metrics say what they measured") {
   registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
   const auto see = [&](const char* metric, const char* backend, const LineForm& X,
                        const Params& params) -> Seen {
-    const auto made = registry.make_metric(metric, params);
+    const auto made = registry.make<MetricEntry>(metric, params);
     Estimate estimate;
-    estimate.set = registry.make_backend(backend, {})->import(X);
+    estimate.set = registry.make<BackendEntry>(backend, {})->import(X);
     const Box hull = estimate.set->interval_hull();
     const PhaseTimes times;
     Seen seen;
@@ -131,17 +131,20 @@ TEST_CASE("the metrics say what they measured") {
   Model model;
   model.linear.A = Matrix::Identity(2, 2);
   const auto told = [&](const Matrix& W) {
-    const auto problems = registry.check_metric("w_radius", {model}, Params().set("weight", W));
+    const auto problems =
+        registry.check<MetricEntry>("w_radius", {model}, Params().set("weight", W));
     return problems.empty() ? "" : problems.at(0).pointer + " " + problems.at(0).message;
   };
-  CHECK(registry.check_metric("w_radius", {model}, {}).empty());
+  CHECK(registry.check<MetricEntry>("w_radius", {model}, {}).empty());
   CHECK(told(Matrix{{2, 1}, {1, 2}}) == "");
   CHECK(told(Matrix{{1}}) == "/weight is 1 × 1, the state has 2 entries");
   CHECK(told(Matrix{{1, 2}, {2, 1}}) == "/weight is not symmetric and positive definite");
-  CHECK_THROWS_AS(registry.make_metric("w_radius", Params().set("weight", Matrix{{1, 2}, {2, 1}})),
-                  Error);
-  CHECK_THROWS_AS(registry.make_metric("w_radius", Params().set("weight", Matrix{{1, .5}, {0, 1}})),
-                  Error);
+  CHECK_THROWS_AS(
+      registry.make<MetricEntry>("w_radius", Params().set("weight", Matrix{{1, 2}, {2, 1}})),
+      Error);
+  CHECK_THROWS_AS(
+      registry.make<MetricEntry>("w_radius", Params().set("weight", Matrix{{1, .5}, {0, 1}})),
+      Error);
   CHECK_THROWS_AS(see("w_radius", "zonotope", square, Params().set("weight", Matrix{{1}})), Error);
 }
 

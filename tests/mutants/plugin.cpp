@@ -19,9 +19,9 @@ void add(Registrar& registrar, const Mutant& mutant) {
   info.unbounded = true;
   info.intersections = true;
   info.summary = std::string(mutant.verdict) + " " + mutant.laws + ": " + mutant.defect;
-  registrar.backend(
-      {{info.name, info.summary, "", mutant.schema},
-       [info, create = mutant.create](const Params& params) { return create(info, params); }});
+  registrar.add(BackendEntry{
+      {info.name, info.summary, "", mutant.schema},
+      [info, create = mutant.create](const Params& params) { return create(info, params); }});
 }
 
 void register_components(Registrar& registrar) {

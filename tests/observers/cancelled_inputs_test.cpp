@@ -48,8 +48,8 @@ void check_kept(const Model& model, double w, const std::function<Vector(Index)>
   const LinearModel& m = model.linear;
   for (const char* backend : backends) {
     CAPTURE(backend);
-    const auto observer = registry().make_observer(
-        "prediction_correction", {model, registry().make_backend(backend, {})}, {});
+    const auto observer = registry().make<ObserverEntry>(
+        "prediction_correction", {model, registry().make<BackendEntry>(backend, {})}, {});
     long double x = 0;
     for (Index k = 0; k < 20; ++k) {
       CAPTURE(k);

@@ -127,7 +127,7 @@ struct Tally {
 
 void follow(const Run& run, const std::string& observer,
             const std::shared_ptr<const SetBackend>& backend, int constraints, Tally& tally) {
-  const auto made = registry().make_observer(
+  const auto made = registry().make<ObserverEntry>(
       observer, {run.model, backend}, Params().set("max_constraints", std::int64_t{constraints}));
   ++tally.runs;
   for (std::size_t k = 0; k < run.samples.size(); ++k) {
@@ -144,7 +144,7 @@ void follow(const Run& run, const std::string& observer,
 }
 
 std::shared_ptr<const SetBackend> backend(const std::string& name, const std::string& rounding) {
-  return registry().make_backend(name, Params().set("rounding", rounding));
+  return registry().make<BackendEntry>(name, Params().set("rounding", rounding));
 }
 
 /// The observer keeps to the truth of `count` plants.
@@ -192,9 +192,9 @@ TEST_CASE("exact data of a plant with two outputs are consistent") {
         CAPTURE(name);
         CAPTURE(rounding);
         CAPTURE(constraints);
-        const auto observer =
-            registry().make_observer("prediction_correction", {model, backend(name, rounding)},
-                                     Params().set("max_constraints", std::int64_t{constraints}));
+        const auto observer = registry().make<ObserverEntry>(
+            "prediction_correction", {model, backend(name, rounding)},
+            Params().set("max_constraints", std::int64_t{constraints}));
         for (Index k = 0; k < outputs.rows(); ++k) {
           CAPTURE(k);
           CHECK(observer->step({k, Vector(0), outputs.row(k).transpose()}).consistent !=

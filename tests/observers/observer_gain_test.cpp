@@ -25,9 +25,9 @@ GainDesign matrix(const Matrix& L) { return {Answer::yes, {.name = "x", .type = 
 
 void register_odd(Registrar& registrar) {
   const auto add = [&](const char* name, const GainDesign& answer) {
-    registrar.gain({{name, "a test", "", {}}, {}, [=](const Params&) {
-                      return std::make_unique<Fixed>(answer);
-                    }});
+    registrar.add(GainEntry{{name, "a test", "", {}}, {}, [=](const Params&) {
+                              return std::make_unique<Fixed>(answer);
+                            }});
   };
   add("fixed", matrix(Matrix{{0}, {.9}}));
   add("of_wrong_shape", matrix(Matrix{{1}}));
@@ -54,14 +54,14 @@ Params designer(const std::string& type, Params params = {}) {
 
 std::vector<Diagnostic> problems(const Params& params,
                                  const Model& model = interval_plants::two_tanks()) {
-  return registry().check_observer("luenberger", {model, registry().make_backend("zonotope", {})},
-                                   params);
+  return registry().check<ObserverEntry>(
+      "luenberger", {model, registry().make<BackendEntry>("zonotope", {})}, params);
 }
 
 std::shared_ptr<Observer> observer(const Params& params,
                                    const Model& model = interval_plants::two_tanks()) {
-  return registry().make_observer("luenberger", {model, registry().make_backend("zonotope", {})},
-                                  params);
+  return registry().make<ObserverEntry>(
+      "luenberger", {model, registry().make<BackendEntry>("zonotope", {})}, params);
 }
 
 }  // namespace
@@ -143,14 +143,14 @@ TEST_CASE("a bank designs its gains for each mode, by default those of the stead
   }
   std::vector<Matrix> gains;
   for (const Mode& mode : modes.modes)
-    gains.push_back(registry().make_gain("kalman", {})->design(mode.model).gain.L);
+    gains.push_back(registry().make<GainEntry>("kalman", {})->design(mode.model).gain.L);
   listed.set("gains", gains);
   designed.set("gain", std::make_shared<const ComponentSpec>(
                            ComponentSpec{"kalman", Params().set("steady", true)}));
   std::vector<std::shared_ptr<Diagnoser>> all;
   for (const Params& params : {listed, without, designed}) {
-    all.push_back(
-        registry().make_diagnoser("observer_bank", modes, banks::backend("zonotope"), params));
+    all.push_back(registry().make<DiagnoserEntry>("observer_bank",
+                                                  {modes, banks::backend("zonotope")}, params));
   }
   for (Index k = 0; k < 3; ++k) {
     const Sample sample{k, Vector{{10}}, Vector{{.01}}};
@@ -171,8 +171,8 @@ TEST_CASE("a bank names the modes whose gains do not serve") {
   modes.modes[2].model.linear.A(0, 0) = 1.5;
   modes.modes[2].model.linear.A(0, 1) = 0;
   const auto check = [&](Params params) {
-    return registry().check_diagnoser("observer_bank", modes, banks::backend("zonotope"),
-                                      params.set("waiting_time", std::int64_t{20}));
+    return registry().check<DiagnoserEntry>("observer_bank", {modes, banks::backend("zonotope")},
+                                            params.set("waiting_time", std::int64_t{20}));
   };
   auto found = check({});
   REQUIRE(found.size() == 1);

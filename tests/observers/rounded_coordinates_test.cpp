@@ -77,15 +77,16 @@ struct Count {
 Count followed(const Sequence& sequence, const std::string& representation, bool bounded,
                Index constraints) {
   const Index n = sequence.model.linear.states();
-  const auto outward =
-      registry().make_backend(representation, Params().set("rounding", std::string("outward")));
+  const auto outward = registry().make<BackendEntry>(
+      representation, Params().set("rounding", std::string("outward")));
   Params params;
   params.set("max_constraints", static_cast<std::int64_t>(constraints))
       .set("max_generators", std::int64_t{20});
   if (bounded) params.set("admissible_set", box(Vector::Zero(n), Vector::Constant(n, 8)));
-  if (!registry().check_observer("descriptor", {sequence.model, outward}, params).empty())
+  if (!registry().check<ObserverEntry>("descriptor", {sequence.model, outward}, params).empty())
     return {};
-  const auto observer = registry().make_observer("descriptor", {sequence.model, outward}, params);
+  const auto observer =
+      registry().make<ObserverEntry>("descriptor", {sequence.model, outward}, params);
   Count count;
   for (std::size_t k = 0; k < sequence.samples.size(); ++k) {
     const LineForm X = observer->step(sequence.samples[k]).set->line_form();

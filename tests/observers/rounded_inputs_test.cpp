@@ -47,10 +47,10 @@ void expect_product_inside(const std::string& observer_name, const std::string& 
     const double u = std::sin(k);
     CAPTURE(u);
     rounded += std::fma(gain, u, -(gain * u)) != 0 ? 1 : 0;
-    const auto outward =
-        registry().make_backend(representation, Params().set("rounding", std::string("outward")));
+    const auto outward = registry().make<BackendEntry>(
+        representation, Params().set("rounding", std::string("outward")));
     const auto observer =
-        registry().make_observer(observer_name, {driven(descriptor), outward}, {});
+        registry().make<ObserverEntry>(observer_name, {driven(descriptor), outward}, {});
     observer->step({0, Vector{{u}}, Vector(0)});
     const LineForm X = observer->step({1, Vector{{u}}, Vector(0)}).set->line_form();
     const Rational product = rational::exact(gain) * rational::exact(u);

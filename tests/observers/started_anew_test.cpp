@@ -43,9 +43,10 @@ TEST_CASE("an observer that is started anew, after other data too, gives the set
   for (const PipelineSpec& pipeline : study.pipelines) {
     CAPTURE(pipeline.name);
     const auto make = [&] {
-      return registry.make_observer(
+      return registry.make<ObserverEntry>(
           pipeline.observer.type,
-          {study.model, registry.make_backend(pipeline.backend.type, pipeline.backend.params)},
+          {study.model,
+           registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params)},
           pipeline.observer.params);
     };
     const auto observer = make(), fresh = make();
@@ -72,9 +73,9 @@ TEST_CASE("a gain is not kept while the smallest state still changes, whatever t
   registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
   for (const char* backend : {"interval", "zonotope"}) {
     CAPTURE(backend);
-    const auto observer =
-        registry.make_observer("descriptor", {model, registry.make_backend(backend, {})},
-                               Params().set("max_generators", Index{20}));
+    const auto observer = registry.make<ObserverEntry>(
+        "descriptor", {model, registry.make<BackendEntry>(backend, {})},
+        Params().set("max_generators", Index{20}));
     observer->start();
     double widest = 0;
     for (Index k = 0; k < 200; ++k) {

@@ -35,8 +35,8 @@ Model motor() {
 /// The mean over the steps of the half widths, each as a share of that of X0, which is a box.
 double mean_radius(const Model& model, const std::string& backend, const Params& params,
                    const Params& budget, int steps, unsigned seed) {
-  const auto observer = registry().make_observer(
-      "prediction_correction", {model, registry().make_backend(backend, params)}, budget);
+  const auto observer = registry().make<ObserverEntry>(
+      "prediction_correction", {model, registry().make<BackendEntry>(backend, params)}, budget);
   const LinearModel& m = model.linear;
   const auto radius = [](const LineForm& box) { return Vector(box.G.cwiseAbs().rowwise().sum()); };
   const Vector start = radius(model.X0), w = radius(model.W), v = radius(model.V);

@@ -61,7 +61,8 @@ void expect_truth_inside(const std::string& name, bool uncertain_outputs, bool a
   model.X0 = make_box(Box{Vector::Constant(n, -40), Vector::Constant(n, 40)});
   Params params;
   if (admissible) params.set("admissible_set", model.X0);
-  const auto observer = registry().make_observer("descriptor", {model, backend(name)}, params);
+  const auto observer =
+      registry().make<ObserverEntry>("descriptor", {model, backend(name)}, params);
   Vector dynamic = random_matrix(r, 1, 1).col(0);  // the upper rows of E x
   for (Index k = 0; k < 8; ++k) {
     const Matrix A = drawn(m.A, m.A_radius, draw), B = drawn(m.B, m.B_radius, draw),
@@ -119,7 +120,7 @@ TEST_CASE("a static row of an interval matrix by hand") {
   LinearModel& m = model.linear;
   const auto hull_at_1 = [&] {
     const auto observer =
-        registry().make_observer("descriptor", {model, backend("line_zonotope")}, {});
+        registry().make<ObserverEntry>("descriptor", {model, backend("line_zonotope")}, {});
     observer->step({0, Vector(0), Vector{{0}}});
     return observer->step({1, Vector(0), Vector{{0}}}).set->interval_hull();
   };
@@ -138,10 +139,11 @@ TEST_CASE("an interval matrix C needs exact intersections in a descriptor system
   Model model = by_hand();
   model.linear.C_radius = Matrix{{.1, 0}};
   for (const char* name : {"zonotope", "interval"}) {
-    const auto problems = registry().check_observer("descriptor", {model, backend(name)}, {});
+    const auto problems = registry().check<ObserverEntry>("descriptor", {model, backend(name)}, {});
     REQUIRE(problems.size() == 1);
     CHECK(problems[0].pointer == "/type");
     CHECK(problems[0].message.find("interval matrix C") != std::string::npos);
   }
-  CHECK(registry().check_observer("descriptor", {model, backend("line_zonotope")}, {}).empty());
+  CHECK(
+      registry().check<ObserverEntry>("descriptor", {model, backend("line_zonotope")}, {}).empty());
 }

@@ -13,7 +13,8 @@ namespace {
 
 void expect_truth_inside(const std::string& observer_name, const std::string& name,
                          const Model& model, const Params& params) {
-  const auto observer = registry().make_observer(observer_name, {model, backend(name)}, params);
+  const auto observer =
+      registry().make<ObserverEntry>(observer_name, {model, backend(name)}, params);
   Truth truth(model, random_draw(), *rc::gen::arbitrary<bool>());
   for (Index k = 0; k < 8; ++k) {
     const Vector x = truth.x, u = random_matrix(model.linear.inputs(), 1, 3).col(0);
@@ -43,7 +44,7 @@ Model scalar() {
 /// The hull at k = 1 for y_0, y_1 and u_0 = -2, u_1 = 0.
 Box second_hull(const Model& model, double y0, double y1, const std::string& name = "interval") {
   const auto observer =
-      registry().make_observer("prediction_correction", {model, backend(name)}, {});
+      registry().make<ObserverEntry>("prediction_correction", {model, backend(name)}, {});
   observer->step({0, Vector::Constant(1, -2), Vector::Constant(1, y0)});
   return observer->step({1, Vector::Constant(1, 0), Vector::Constant(1, y1)}).set->interval_hull();
 }
@@ -133,8 +134,8 @@ TEST_CASE("what nothing bounds is left open, what is exact is used") {
   m.Dv = Matrix{{1}, {1}, {0}};
   model.X0 = make_space(2);
   model.V = make_box({Vector{{-.5}}, Vector{{.5}}});
-  const auto observer =
-      registry().make_observer("prediction_correction", {model, backend("line_zonotope")}, {});
+  const auto observer = registry().make<ObserverEntry>("prediction_correction",
+                                                       {model, backend("line_zonotope")}, {});
   Box hull = observer->step({0, Vector(0), Vector{{1, 2, 3}}}).set->interval_hull();
   // y_2 gives x_2 ∈ 2 ± .5, y_3 exactly x_1 + x_2 = 3; y_1 says nothing while x_1 is unbounded
   check_interval(hull, .5, 1.5);
@@ -143,8 +144,8 @@ TEST_CASE("what nothing bounds is left open, what is exact is used") {
   CHECK(hull.is_bounded());
 
   model.linear.C = Matrix{{1, 0}, {0, 1}, {0, 1}};
-  const auto blind =
-      registry().make_observer("prediction_correction", {model, backend("line_zonotope")}, {});
+  const auto blind = registry().make<ObserverEntry>("prediction_correction",
+                                                    {model, backend("line_zonotope")}, {});
   for (Index k = 0; k < 3; ++k)
     hull = blind->step({k, Vector(0), Vector{{1, 2, 2}}}).set->interval_hull();
   CHECK(hull.lower[0] == -infinity);  // only ever seen through the interval
@@ -154,8 +155,8 @@ TEST_CASE("what nothing bounds is left open, what is exact is used") {
 
 TEST_CASE("only exact matrices make exact sets") {
   const auto claim = [](const Model& model) {
-    const auto observer = registry().make_observer("prediction_correction",
-                                                   {model, backend("constrained_zonotope")}, {});
+    const auto observer = registry().make<ObserverEntry>(
+        "prediction_correction", {model, backend("constrained_zonotope")}, {});
     observer->step({0, Vector::Constant(1, 0), Vector::Constant(1, 4)});
     return observer->step({1, Vector::Constant(1, 0), Vector::Constant(1, 2)}).set.tightness;
   };
@@ -173,20 +174,22 @@ TEST_CASE("only exact matrices make exact sets") {
 TEST_CASE("a Luenberger observer says in advance that interval matrices need a bounded start") {
   Model model = scalar();
   model.X0 = make_space(1);
-  CHECK(registry().check_observer("luenberger", {model, backend("line_zonotope")}, {}).empty());
+  CHECK(
+      registry().check<ObserverEntry>("luenberger", {model, backend("line_zonotope")}, {}).empty());
   model.linear.B_radius = Matrix{{.1}};
-  CHECK(registry().check_observer("luenberger", {model, backend("line_zonotope")}, {}).empty());
+  CHECK(
+      registry().check<ObserverEntry>("luenberger", {model, backend("line_zonotope")}, {}).empty());
   for (Matrix* radius : {&model.linear.A_radius, &model.linear.C_radius}) {
     *radius = Matrix{{.1}};
     const auto problems =
-        registry().check_observer("luenberger", {model, backend("line_zonotope")}, {});
+        registry().check<ObserverEntry>("luenberger", {model, backend("line_zonotope")}, {});
     REQUIRE(problems.size() == 1);
     CHECK(problems[0].message.find("X0 is unbounded") != std::string::npos);
     *radius = Matrix{};
   }
   model.linear.A_radius = Matrix{{.1}};
   CHECK(registry()
-            .check_observer("luenberger", {model, backend("line_zonotope")},
-                            Params().set("initial_set", make_point(Vector{{1}})))
+            .check<ObserverEntry>("luenberger", {model, backend("line_zonotope")},
+                                  Params().set("initial_set", make_point(Vector{{1}})))
             .empty());
 }

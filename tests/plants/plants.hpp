@@ -15,10 +15,10 @@ struct Plugins {
     registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
   }
   std::shared_ptr<Plant> stirred_tank(const Params& params = {}) const {
-    return registry.make_plant("stirred_tank", params);
+    return registry.make<PlantEntry>("stirred_tank", params);
   }
   std::shared_ptr<Plant> coupled_tanks(const Params& params = {}) const {
-    return registry.make_plant("coupled_tanks", params);
+    return registry.make<PlantEntry>("coupled_tanks", params);
   }
   Registry registry;
 };

@@ -311,8 +311,8 @@ TEST_CASE("an E that is singular up to a hair is refused with its singular value
   Model model = descriptor_example();
   model.linear.E = Matrix{{1, 1, 0}, {1, 1 + 1e-9, 0}, {0, 0, 0}};
   Params params = budget(30, 5);
-  REQUIRE(plugins.registry.observer_info("descriptor")->schema.complete(params).empty());
-  const auto problems = plugins.registry.check_observer(
+  REQUIRE(plugins.registry.info("observer", "descriptor")->schema.complete(params).empty());
+  const auto problems = plugins.registry.check<ObserverEntry>(
       "descriptor", {model, plugins.backend("line_zonotope")}, params);
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].message.find("nearly singular") != std::string::npos);

@@ -22,9 +22,9 @@ struct Figures {
 /// admissible set.
 void run(const Study& study, const PipelineSpec& pipeline, const Registry& registry,
          Figures& figures) {
-  const auto backend = registry.make_backend(pipeline.backend.type, pipeline.backend.params);
-  const auto observer = registry.make_observer(pipeline.observer.type, {study.model, backend},
-                                               pipeline.observer.params);
+  const auto backend = registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params);
+  const auto observer = registry.make<ObserverEntry>(pipeline.observer.type, {study.model, backend},
+                                                     pipeline.observer.params);
   observer->start();
   const auto source = open_data(study);
   bool admissible = true;

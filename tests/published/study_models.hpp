@@ -41,13 +41,15 @@ class Plugins {
 
   std::shared_ptr<const cordon::SetBackend> backend(const std::string& name,
                                                     cordon::Params params = {}) const {
-    return registry.make_backend(name, complete(registry.backend_info(name), std::move(params)));
+    return registry.make<cordon::BackendEntry>(
+        name, complete(registry.info("backend", name), std::move(params)));
   }
   std::shared_ptr<cordon::Observer> observer(const std::string& name, const cordon::Model& model,
                                              std::shared_ptr<const cordon::SetBackend> backend,
                                              cordon::Params params = {}) const {
-    return registry.make_observer(name, {model, std::move(backend)},
-                                  complete(registry.observer_info(name), std::move(params)));
+    return registry.make<cordon::ObserverEntry>(
+        name, {model, std::move(backend)},
+        complete(registry.info("observer", name), std::move(params)));
   }
 
   cordon::Registry registry;

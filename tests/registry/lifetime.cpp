@@ -35,7 +35,7 @@ TEST_CASE("the library goes with the registry when nothing was made") {
 TEST_CASE("a set outlives the pointer to its backend, and even the registry") {
   Loaded loaded;
   std::optional<Enclosure> X =
-      loaded.registry->make_backend("test_box", {})->import(make_box({-one, one}));
+      loaded.registry->make<BackendEntry>("test_box", {})->import(make_box({-one, one}));
   loaded.registry.reset();
   REQUIRE(is_mapped(loaded.file));
   CHECK((*X)->line_form().G.cwiseAbs().sum() == doctest::Approx(1));
@@ -52,7 +52,8 @@ TEST_CASE("a weak pointer keeps nothing alive and harms nothing") {
   Loaded loaded;
   std::weak_ptr<const Set> weak;
   {
-    const Enclosure X = loaded.registry->make_backend("test_box", {})->import(make_point(one));
+    const Enclosure X =
+        loaded.registry->make<BackendEntry>("test_box", {})->import(make_point(one));
     weak = X.set;
     loaded.registry.reset();
     CHECK(weak.lock());
@@ -65,8 +66,8 @@ TEST_CASE("a weak pointer keeps nothing alive and harms nothing") {
 TEST_CASE("unload refuses while something lives, naming the number, and really unmaps afterwards") {
   Loaded loaded;
   Registry& registry = *loaded.registry;
-  std::optional<Enclosure> X = registry.make_backend("test_box", {})->import(make_point(one));
-  auto metric = registry.make_metric("step_count", {});
+  std::optional<Enclosure> X = registry.make<BackendEntry>("test_box", {})->import(make_point(one));
+  auto metric = registry.make<MetricEntry>("step_count", {});
   CHECK_THROWS_WITH_AS(registry.unload("test_box"),
                        "plugin \"test_box\" cannot be unloaded while 2 of its backends, observers "
                        "or metrics live; let go of them and of "
@@ -74,18 +75,18 @@ TEST_CASE("unload refuses while something lives, naming the number, and really u
                        Error);
   metric.reset();
   CHECK_THROWS_AS(registry.unload("test_box"), Error);
-  CHECK(registry.backend_info("test_box"));
+  CHECK(registry.info("backend", "test_box"));
   CHECK(is_mapped(loaded.file));
   X.reset();
   registry.unload("test_box");
   CHECK_FALSE(is_mapped(loaded.file));
-  CHECK(registry.backends().empty());
-  CHECK(registry.observers().empty());
-  CHECK(registry.metrics().empty());
+  CHECK(registry.names("backend").empty());
+  CHECK(registry.names("observer").empty());
+  CHECK(registry.names("metric").empty());
   CHECK(registry.reports().empty());
   CHECK_THROWS_AS(registry.unload("test_box"), Error);
   CHECK(registry.load_file(loaded.file).state == PluginReport::State::loaded);
-  CHECK(registry.make_backend("test_box", {})->info().name == "test_box");
+  CHECK(registry.make<BackendEntry>("test_box", {})->info().name == "test_box");
 }
 
 TEST_CASE("an observer keeps its backend, both keep the library") {
@@ -94,8 +95,8 @@ TEST_CASE("an observer keeps its backend, both keep the library") {
   Model model;
   model.linear = {{}, I, I, I, I, I, I};
   model.X0 = model.W = model.V = make_point(one);
-  auto observer = loaded.registry->make_observer(
-      "open_loop", {model, loaded.registry->make_backend("test_box", {})}, {});
+  auto observer = loaded.registry->make<ObserverEntry>(
+      "open_loop", {model, loaded.registry->make<BackendEntry>("test_box", {})}, {});
   CHECK_THROWS_AS(loaded.registry->unload("test_box"), Error);
   loaded.registry.reset();
   observer->start();
@@ -110,7 +111,7 @@ TEST_CASE("rolling back leaves no component and no mapping") {
   Registry registry;
   const PluginReport report = registry.load_file(file);
   CHECK(report.components == std::vector<std::string>{"metric before_the_throw"});
-  CHECK(registry.metrics().empty());
+  CHECK(registry.names("metric").empty());
   CHECK_FALSE(is_mapped(file));
   CHECK(report.reason ==
         "it threw while registering: no licence server");  // a text of ours, not of the library's
@@ -118,7 +119,7 @@ TEST_CASE("rolling back leaves no component and no mapping") {
 
 TEST_CASE("sets are used and let go of in another thread") {
   Loaded loaded;
-  Enclosure X = loaded.registry->make_backend("test_box", {})->import(make_box({-one, one}));
+  Enclosure X = loaded.registry->make<BackendEntry>("test_box", {})->import(make_box({-one, one}));
   double sum = 0;
   std::thread other([&sum, X = std::move(X)]() mutable {
     for (int i = 0; i < 100; ++i) X = X->backend().sum(X, X->backend().point(Vector::Ones(1)));
@@ -138,7 +139,7 @@ TEST_CASE("components are made from several threads at once") {
   for (Enclosure& set : sets) {
     threads.emplace_back([&registry = *loaded.registry, &set] {
       for (int i = 0; i < 50; ++i)
-        set = registry.make_backend("test_box", {})->import(make_point(Vector::Ones(2)));
+        set = registry.make<BackendEntry>("test_box", {})->import(make_point(Vector::Ones(2)));
     });
   }
   for (std::thread& thread : threads) thread.join();

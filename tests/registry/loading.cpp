@@ -31,12 +31,12 @@ std::string message_of(Errc code, Call&& call) {
 }
 
 void register_host_metric(Registrar& registrar) {
-  registrar.metric({{"host_metric", "of the host", "", {}},
-                    [](const Params&) -> std::unique_ptr<Metric> { return nullptr; }});
+  registrar.add(MetricEntry{{"host_metric", "of the host", "", {}},
+                            [](const Params&) -> std::unique_ptr<Metric> { return nullptr; }});
 }
 void register_then_throw(Registrar& registrar) {
-  registrar.metric({{"never_seen", "of the host", "", {}},
-                    [](const Params&) -> std::unique_ptr<Metric> { return nullptr; }});
+  registrar.add(MetricEntry{{"never_seen", "of the host", "", {}},
+                            [](const Params&) -> std::unique_ptr<Metric> { return nullptr; }});
   throw std::runtime_error("stop");
 }
 
@@ -62,24 +62,24 @@ TEST_CASE("a good plugin tells what it is, and its components are known") {
   CHECK(report.abi_tag == CORDON_ABI_TAG);
   CHECK(report.components ==
         std::vector<std::string>{"backend test_box", "observer open_loop", "metric step_count"});
-  CHECK(registry.backends() == std::vector<std::string>{"test_box"});
-  CHECK(registry.observers() == std::vector<std::string>{"open_loop"});
-  CHECK(registry.metrics() == std::vector<std::string>{"step_count"});
+  CHECK(registry.names("backend") == std::vector<std::string>{"test_box"});
+  CHECK(registry.names("observer") == std::vector<std::string>{"open_loop"});
+  CHECK(registry.names("metric") == std::vector<std::string>{"step_count"});
   CHECK(registry.plugin_of("backend", "test_box") == "test_box");
-  REQUIRE(registry.backend_info("test_box"));
-  CHECK(registry.backend_info("test_box")->schema.names() == std::vector<std::string>{"growth"});
-  CHECK(registry.backend_info("test_bo") == nullptr);
-  CHECK(registry.observer_info("test_box") == nullptr);
-  CHECK(registry.metric_info("step_count")->summary == "number of steps");
+  REQUIRE(registry.info("backend", "test_box"));
+  CHECK(registry.info("backend", "test_box")->schema.names() == std::vector<std::string>{"growth"});
+  CHECK(registry.info("backend", "test_bo") == nullptr);
+  CHECK(registry.info("observer", "test_box") == nullptr);
+  CHECK(registry.info("metric", "step_count")->summary == "number of steps");
 }
 
 TEST_CASE("what is made works: an observer over a backend of a plugin") {
   Registry registry;
   registry.load_file(good("test_box"));
   const Model model = scalar_model();
-  const ObserverContext context{model, registry.make_backend("test_box", {})};
-  CHECK(registry.check_observer("open_loop", context, {}).empty());
-  const auto observer = registry.make_observer("open_loop", context, {});
+  const ObserverContext context{model, registry.make<BackendEntry>("test_box", {})};
+  CHECK(registry.check<ObserverEntry>("open_loop", context, {}).empty());
+  const auto observer = registry.make<ObserverEntry>("open_loop", context, {});
   observer->start();
   // start and X⁺ = 0.5 [-1,1] + 2 + [-0.1,0.1] through the private functions, without a question to
   // a solver
@@ -96,12 +96,13 @@ TEST_CASE("what is made works: an observer over a backend of a plugin") {
 TEST_CASE("parameters are checked again when something is made") {
   Registry registry;
   registry.load_file(good("test_box"));
-  const auto backend = registry.make_backend("test_box", Params().set("growth", 1));  // promoted
+  const auto backend =
+      registry.make<BackendEntry>("test_box", Params().set("growth", 1));  // promoted
   const Enclosure X = backend->import(make_box({Vector::Constant(1, -1), Vector::Constant(1, 1)}));
   CHECK(X->line_form().G.cwiseAbs().sum() == doctest::Approx(2));
   CHECK(X.tightness == Tightness::outer);
   const std::string message = message_of(Errc::invalid, [&] {
-    registry.make_backend("test_box", Params().set("growth", 2.0).set("grwth", 1.0));
+    registry.make<BackendEntry>("test_box", Params().set("growth", 2.0).set("grwth", 1.0));
   });
   CHECK(message.find("backend \"test_box\": 2 errors") != std::string::npos);
   CHECK(message.find("/growth: is 2, must lie in [0, 1]") != std::string::npos);
@@ -112,19 +113,20 @@ TEST_CASE("check_observer reports parameters and combinations") {
   Registry registry;
   registry.load_file(good("test_box"));
   Model model = scalar_model();
-  const ObserverContext context{model, registry.make_backend("test_box", {})};
-  CHECK(registry.check_observer("open_loop", context, Params().set("x", 1)).at(0).pointer == "/x");
+  const ObserverContext context{model, registry.make<BackendEntry>("test_box", {})};
+  CHECK(registry.check<ObserverEntry>("open_loop", context, Params().set("x", 1)).at(0).pointer ==
+        "/x");
   model.linear.E = Matrix::Zero(1, 1);
-  CHECK(registry.check_observer("open_loop", context, {}).at(0).message ==
+  CHECK(registry.check<ObserverEntry>("open_loop", context, {}).at(0).message ==
         "needs a standard model");
 }
 
 TEST_CASE("unknown components are invalid input with a suggestion") {
   Registry registry;
-  CHECK(message_of(Errc::invalid, [&] { registry.make_backend("test_box", {}); }) ==
+  CHECK(message_of(Errc::invalid, [&] { registry.make<BackendEntry>("test_box", {}); }) ==
         "no backend \"test_box\"; no plugin provides one");
   registry.load_file(good("test_box"));
-  CHECK(message_of(Errc::invalid, [&] { registry.make_backend("tset_box", {}); }) ==
+  CHECK(message_of(Errc::invalid, [&] { registry.make<BackendEntry>("tset_box", {}); }) ==
         "no backend \"tset_box\"; did you mean \"test_box\"?");
   CHECK(message_of(Errc::invalid, [&] {
           registry.plugin_of("backends", "test_box");
@@ -157,14 +159,14 @@ TEST_CASE("a refused file is tried again when it is loaded again") {
 TEST_CASE("the host registers components of its own: all or none") {
   Registry registry;
   registry.add(register_host_metric);
-  CHECK(registry.metrics() == std::vector<std::string>{"host_metric"});
+  CHECK(registry.names("metric") == std::vector<std::string>{"host_metric"});
   CHECK(registry.plugin_of("metric", "host_metric").empty());
   CHECK_THROWS_WITH_AS(registry.add(register_then_throw), "stop", std::runtime_error);
-  CHECK_FALSE(has(registry.metrics(), "never_seen"));
+  CHECK_FALSE(has(registry.names("metric"), "never_seen"));
   CHECK(message_of(Errc::invalid, [&] { registry.add(register_host_metric); }) ==
         "metric \"host_metric\" is there already, from this program itself");
   CHECK(message_of(Errc::plugin, [&] {
-          registry.make_metric("host_metric", {});
+          registry.make<MetricEntry>("host_metric", {});
         }).find("returned nothing") != std::string::npos);
 }
 
@@ -172,7 +174,7 @@ TEST_CASE("exceptions of a plugin arrive as errors that name it, and outlive it"
   const auto made = [](const char* metric) {
     Registry registry;
     registry.load_file(good("test_faults"));
-    registry.make_metric(metric, {});
+    registry.make<MetricEntry>(metric, {});
   };  // the registry, and with it the library, is gone before the message is read
   CHECK(message_of(Errc::plugin, [&] { made("throws_own"); }) ==
         "metric \"throws_own\" of plugin \"test_faults\" threw an exception of the plugin's own");
@@ -186,4 +188,15 @@ TEST_CASE("exceptions of a plugin arrive as errors that name it, and outlive it"
         "metric \"returns_nothing\" of plugin \"test_faults\" was not made: its function returned "
         "nothing");
   CHECK_FALSE(is_mapped(good("test_faults")));
+}
+
+TEST_CASE("the kinds of components, and kinds that there are not") {
+  CHECK(Registry::kinds() == std::vector<std::string>{"backend", "observer", "diagnoser", "metric",
+                                                      "plant", "gain", "designer"});
+  Registry registry;
+  registry.load_file(good("test_box"));
+  CHECK(registry.entry<BackendEntry>("test_box") != nullptr);
+  CHECK(registry.entry<ObserverEntry>("test_box") == nullptr);
+  CHECK(registry.names("backends").empty());
+  CHECK(registry.info("backends", "test_box") == nullptr);
 }

@@ -26,10 +26,10 @@ const PluginReport& refused(Registry& registry, const fs::path& file, const std:
 
 /// Only the good plugin's components are there, and they work.
 void check_unharmed(const Registry& registry) {
-  CHECK(registry.backends() == std::vector<std::string>{"test_box"});
-  CHECK(registry.observers() == std::vector<std::string>{"open_loop"});
-  CHECK(registry.metrics() == std::vector<std::string>{"step_count"});
-  const auto backend = registry.make_backend("test_box", {});
+  CHECK(registry.names("backend") == std::vector<std::string>{"test_box"});
+  CHECK(registry.names("observer") == std::vector<std::string>{"open_loop"});
+  CHECK(registry.names("metric") == std::vector<std::string>{"step_count"});
+  const auto backend = registry.make<BackendEntry>("test_box", {});
   CHECK(backend->import(make_point(Vector::Ones(2)))->dim() == 2);
 }
 
@@ -131,7 +131,7 @@ TEST_CASE("a component whose name is taken is left out, and the rest of its plug
                                "metric \"step_count\" is there already, from plugin \"test_box\""});
   CHECK(registry.plugin_of("metric", "step_count") == "test_box");
   CHECK(registry.plugin_of("metric", "new_in_repeats_component") == "repeats_component");
-  CHECK(registry.make_metric("new_in_repeats_component", {}));
+  CHECK(registry.make<MetricEntry>("new_in_repeats_component", {}));
   registry.unload("repeats_component");
   check_unharmed(registry);
 }
@@ -239,7 +239,7 @@ TEST_CASE("the refused plugin that held a component is found") {
   CHECK(file_of("tube") == fs::path());
   CHECK(file_of("descriptor") == fs::path());
   try {
-    registry.make_backend("zonotope", {});
+    registry.make<BackendEntry>("zonotope", {});
     FAIL("made a backend of a refused plugin");
   } catch (const Error& error) {
     CHECK(error.code() == Errc::plugin);

@@ -102,7 +102,7 @@ TEST_CASE("a refused plugin shadows nothing") {
   registry.load({{first.path(), second.path()}});
   CHECK(report_of(registry, broken)->state == PluginReport::State::refused);
   CHECK(report_of(registry, whole)->state == PluginReport::State::loaded);
-  CHECK(registry.make_backend("test_box", {})->info().name == "test_box");
+  CHECK(registry.make<BackendEntry>("test_box", {})->info().name == "test_box");
 }
 
 TEST_CASE("what is on the path but no directory is reported") {

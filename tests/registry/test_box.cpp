@@ -74,21 +74,21 @@ class StepCount final : public Metric {
 void register_components(Registrar& registrar) {
   ParamSchema box;
   box.real("growth", "relative growth of every imported box, dimensionless", 0.0, 0.0, 1.0);
-  registrar.backend(
-      {{"test_box", "axis-aligned boxes for tests", "", box},
-       [](const Params& params) { return std::make_unique<TestBackend>(params.real("growth")); }});
-  registrar.observer({{"open_loop", "prediction without measurements", "", {}},
-                      [](const ObserverContext& context, const Params&) {
-                        std::vector<Diagnostic> problems;
-                        if (context.model.linear.is_descriptor())
-                          problems.push_back({"", "needs a standard model", "leave out E"});
-                        return problems;
-                      },
-                      [](const ObserverContext& context, const Params&) {
-                        return std::make_unique<OpenLoop>(context);
-                      }});
-  registrar.metric({{"step_count", "number of steps", "", {}},
-                    [](const Params&) { return std::make_unique<StepCount>(); }});
+  registrar.add(BackendEntry{
+      {"test_box", "axis-aligned boxes for tests", "", box},
+      [](const Params& params) { return std::make_unique<TestBackend>(params.real("growth")); }});
+  registrar.add(ObserverEntry{{"open_loop", "prediction without measurements", "", {}},
+                              [](const ObserverContext& context, const Params&) {
+                                std::vector<Diagnostic> problems;
+                                if (context.model.linear.is_descriptor())
+                                  problems.push_back({"", "needs a standard model", "leave out E"});
+                                return problems;
+                              },
+                              [](const ObserverContext& context, const Params&) {
+                                return std::make_unique<OpenLoop>(context);
+                              }});
+  registrar.add(MetricEntry{{"step_count", "number of steps", "", {}},
+                            [](const Params&) { return std::make_unique<StepCount>(); }});
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ using Make = std::unique_ptr<Metric> (*)(const Params&);
 
 void register_components(Registrar& registrar) {
   const auto metric = [&](const char* name, Make make) {
-    registrar.metric({{name, "never works", "", {}}, make});
+    registrar.add(MetricEntry{{name, "never works", "", {}}, make});
   };
   metric("throws_own", [](const Params&) -> std::unique_ptr<Metric> { throw OwnException(); });
   metric("throws_int", [](const Params&) -> std::unique_ptr<Metric> { throw 7; });

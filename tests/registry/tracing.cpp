@@ -9,7 +9,7 @@
 namespace {
 
 void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("tracing"));
+  registrar.add(nothing("tracing"));
   if (std::getenv("CORDON_TEST_ROUND_UP")) std::fesetround(FE_UPWARD);
 }
 

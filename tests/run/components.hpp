@@ -253,39 +253,39 @@ class Scripted final : public Diagnoser {
 };
 
 inline void register_all(Registrar& registrar) {
-  registrar.backend(
-      {{"box", "boxes", "", {}}, [](const Params&) { return std::make_unique<BoxBackend>(); }});
+  registrar.add(BackendEntry{{"box", "boxes", "", {}},
+                             [](const Params&) { return std::make_unique<BoxBackend>(); }});
   const auto no_problem = [](const ObserverContext&, const Params&) {
     return std::vector<Diagnostic>{};
   };
-  registrar.observer(
-      {{"recursive", "predicts and corrects", "", {}},
-       no_problem,
-       [](const ObserverContext& c, const Params&) { return std::make_unique<Recursive>(c); }});
+  registrar.add(ObserverEntry{
+      {"recursive", "predicts and corrects", "", {}},
+      no_problem,
+      [](const ObserverContext& c, const Params&) { return std::make_unique<Recursive>(c); }});
   ParamSchema how;
   how.choice("how", "way to break down", {"error", "exception", "int"}, "error");
-  registrar.observer({{"breaking", "breaks down", "", how},
-                      no_problem,
-                      [](const ObserverContext& c, const Params& p) {
-                        return std::make_unique<Breaking>(c, p.text("how"));
-                      }});
+  registrar.add(ObserverEntry{{"breaking", "breaks down", "", how},
+                              no_problem,
+                              [](const ObserverContext& c, const Params& p) {
+                                return std::make_unique<Breaking>(c, p.text("how"));
+                              }});
   ParamSchema offer;
   offer.real("scale", "of the inner estimate", .5, 0, 10);
   offer.real("later", "the same from k = 7 on", .5, 0, 10);
   offer.flag("cut", "leaves out a state", false);
-  registrar.observer(
-      {{"offering", "offers gains and an inner estimate", "", offer},
-       no_problem,
-       [](const ObserverContext& c, const Params& p) { return std::make_unique<Offering>(c, p); }});
+  registrar.add(ObserverEntry{
+      {"offering", "offers gains and an inner estimate", "", offer},
+      no_problem,
+      [](const ObserverContext& c, const Params& p) { return std::make_unique<Offering>(c, p); }});
   ParamSchema claim;
   claim.real("radius", "of the claimed box", 1e-3, -1, 1e9);
   claim.real("admissible", "radius of the admissible set; 0: none", 0, 0, 1e9);
-  registrar.observer({{"claiming", "claims a box", "", claim},
-                      no_problem,
-                      [](const ObserverContext& c, const Params& p) {
-                        return std::make_unique<Claiming>(c, p.real("radius"),
-                                                          p.real("admissible"));
-                      }});
+  registrar.add(ObserverEntry{{"claiming", "claims a box", "", claim},
+                              no_problem,
+                              [](const ObserverContext& c, const Params& p) {
+                                return std::make_unique<Claiming>(c, p.real("radius"),
+                                                                  p.real("admissible"));
+                              }});
   ParamSchema script;
   script.integer("at", "first k of the exclusion; -1: never", 10, -1, 1000000);
   script.integer("mode", "that is isolated", 1, 0, 100);
@@ -298,19 +298,18 @@ inline void register_all(Registrar& registrar) {
   const auto no_diagnoser_problem = [](const DiagnoserContext&, const Params&) {
     return std::vector<Diagnostic>{};
   };
-  registrar.diagnoser({{"scripted", "says what it is told", "", script},
-                       no_diagnoser_problem,
-                       [](const DiagnoserContext& c, const Params& p) {
-                         return std::make_unique<Scripted>(c, p);
-                       }});
+  registrar.add(DiagnoserEntry{
+      {"scripted", "says what it is told", "", script},
+      no_diagnoser_problem,
+      [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Scripted>(c, p); }});
   register_bounding(registrar);
   register_designing(registrar);
-  registrar.metric({{"radius", "half the longest edge", "", {}},
-                    [](const Params&) { return std::make_unique<Radius>(); }});
-  registrar.metric(
-      {{"time", "of a step", "", {}}, [](const Params&) { return std::make_unique<Time>(); }});
-  registrar.metric({{"fickle", "changes its names", "", {}},
-                    [](const Params&) { return std::make_unique<Fickle>(); }});
+  registrar.add(MetricEntry{{"radius", "half the longest edge", "", {}},
+                            [](const Params&) { return std::make_unique<Radius>(); }});
+  registrar.add(MetricEntry{{"time", "of a step", "", {}},
+                            [](const Params&) { return std::make_unique<Time>(); }});
+  registrar.add(MetricEntry{{"fickle", "changes its names", "", {}},
+                            [](const Params&) { return std::make_unique<Fickle>(); }});
 }
 
 inline PipelineSpec pipeline(std::string name, std::string observer = "recursive",

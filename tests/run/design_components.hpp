@@ -124,20 +124,18 @@ inline void register_designing(Registrar& registrar) {
   outcome.choice("says", "what becomes of the search",
                  {"found", "empty", "bounded", "infeasible", "unknown", "throws", "waits"},
                  "found");
-  registrar.designer(
-      {{"designing", "designs what it is told", "", outcome},
-       [](const DesignerContext&, const Params&) { return std::vector<Diagnostic>{}; },
-       [](const DesignerContext& c, const Params& p) {
-         return std::make_unique<Designing>(c, p);
-       }});
+  registrar.add(DesignerEntry{
+      {"designing", "designs what it is told", "", outcome},
+      [](const DesignerContext&, const Params&) { return std::vector<Diagnostic>{}; },
+      [](const DesignerContext& c, const Params& p) { return std::make_unique<Designing>(c, p); }});
   ParamSchema tells;
   tells.choice("tells", "how it ends", {"truth", "open", "none", "lies", "throws", "wavers"},
                "truth");
   tells.set("admissible_set", "an assumption");
-  registrar.diagnoser(
-      {{"telling", "knows the order of experiments", "", tells},
-       [](const DiagnoserContext&, const Params&) { return std::vector<Diagnostic>{}; },
-       [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Telling>(c, p); }});
+  registrar.add(DiagnoserEntry{
+      {"telling", "knows the order of experiments", "", tells},
+      [](const DiagnoserContext&, const Params&) { return std::vector<Diagnostic>{}; },
+      [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Telling>(c, p); }});
 }
 
 inline PipelineSpec design(std::string name, std::string says = "found", std::string tells = {}) {

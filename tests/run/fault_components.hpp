@@ -128,12 +128,12 @@ inline void register_bounding(Registrar& registrar) {
   bounds.choice("broken", "what is wrong with a bound",
                 {"nothing", "order", "estimate", "nan", "future", "before", "twice", "index"},
                 "nothing");
-  registrar.diagnoser(
-      {{"bounding", "bounds additive faults", "", bounds},
-       [](const DiagnoserContext&, const Params&) { return std::vector<Diagnostic>{}; },
-       [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Bounding>(c, p); },
-       true,
-       false});
+  registrar.add(DiagnoserEntry{
+      {"bounding", "bounds additive faults", "", bounds},
+      [](const DiagnoserContext&, const Params&) { return std::vector<Diagnostic>{}; },
+      [](const DiagnoserContext& c, const Params& p) { return std::make_unique<Bounding>(c, p); },
+      true,
+      false});
 }
 
 }  // namespace fakes

@@ -103,13 +103,13 @@ void add_backend(Registrar& registrar, const std::string& name, bool unbounded,
                   "yang_scott");
   if (name == "zonotope")
     schema.choice("strip", "how a strip is intersected", {"segments", "volume"}, "segments");
-  registrar.backend({{name, "a fake", "", schema}, [=](const Params&) {
-                       BackendInfo info;
-                       info.name = name;
-                       info.unbounded = unbounded;
-                       info.intersections = intersections;
-                       return std::make_unique<FakeBackend>(info);
-                     }});
+  registrar.add(BackendEntry{{name, "a fake", "", schema}, [=](const Params&) {
+                               BackendInfo info;
+                               info.name = name;
+                               info.unbounded = unbounded;
+                               info.intersections = intersections;
+                               return std::make_unique<FakeBackend>(info);
+                             }});
 }
 
 std::vector<Diagnostic> check_sets(const ObserverContext& context, const Params& params) {
@@ -137,13 +137,13 @@ ParamSchema observer_schema() {
 
 /// All but `descriptor` take models with ranges and interval matrices.
 void add_observer(Registrar& registrar, const std::string& name, const ParamSchema& schema) {
-  registrar.observer({{name, "a fake", "", schema},
-                      check_sets,
-                      [](const ObserverContext& context, const Params&) {
-                        return std::make_unique<FakeObserver>(context);
-                      },
-                      name != "descriptor",
-                      name != "descriptor"});
+  registrar.add(ObserverEntry{{name, "a fake", "", schema},
+                              check_sets,
+                              [](const ObserverContext& context, const Params&) {
+                                return std::make_unique<FakeObserver>(context);
+                              },
+                              name != "descriptor",
+                              name != "descriptor"});
 }
 
 /// The gain inside is asked about the model.
@@ -156,13 +156,13 @@ void add_luenberger(Registrar& registrar) {
     for (Diagnostic& d : problems) d.pointer = "/gain" + d.pointer;
     return problems;
   };
-  registrar.observer({{"luenberger", "a fake", "", schema},
-                      check,
-                      [](const ObserverContext& context, const Params&) {
-                        return std::make_unique<FakeObserver>(context);
-                      },
-                      true,
-                      true});
+  registrar.add(ObserverEntry{{"luenberger", "a fake", "", schema},
+                              check,
+                              [](const ObserverContext& context, const Params&) {
+                                return std::make_unique<FakeObserver>(context);
+                              },
+                              true,
+                              true});
 }
 
 void add_gains(Registrar& registrar) {
@@ -177,17 +177,17 @@ void add_gains(Registrar& registrar) {
     if (L.size() > 0 && L(0, 0) < 0) problems.push_back({"/matrix/0/0", "is negative", ""});
     return problems;
   };
-  registrar.gain({{"given", "a fake", "", given}, check, create});
+  registrar.add(GainEntry{{"given", "a fake", "", given}, check, create});
   ParamSchema optimal;
   optimal.real("weight", "of the noise", 0.5, 0, 1).matrix("theta", "directions");
-  registrar.gain({{"optimal", "a fake", "", optimal}, nullptr, create});
+  registrar.add(GainEntry{{"optimal", "a fake", "", optimal}, nullptr, create});
 }
 
 /// The observer inside is asked about every mode.
 std::vector<Diagnostic> check_bank(const DiagnoserContext& context, const Params& params) {
   for (const Mode& mode : context.bank.modes) {
     auto problems =
-        context.make.check_observer(params.component("observer"), {mode.model, context.backend});
+        context.make->check_observer(params.component("observer"), {mode.model, context.backend});
     for (Diagnostic& d : problems) d.pointer = "/observer" + d.pointer;
     if (!problems.empty()) return problems;
   }
@@ -196,11 +196,11 @@ std::vector<Diagnostic> check_bank(const DiagnoserContext& context, const Params
 
 void add_diagnoser(Registrar& registrar, const std::string& name, const ParamSchema& schema,
                    decltype(DiagnoserEntry::check) check) {
-  registrar.diagnoser({{name, "a fake", "", schema},
-                       std::move(check),
-                       [](const DiagnoserContext& context, const Params&) {
-                         return std::make_unique<FakeDiagnoser>(context);
-                       }});
+  registrar.add(DiagnoserEntry{{name, "a fake", "", schema},
+                               std::move(check),
+                               [](const DiagnoserContext& context, const Params&) {
+                                 return std::make_unique<FakeDiagnoser>(context);
+                               }});
 }
 
 /// The sequence fits the inputs of the bank, and an input set holds one of them.
@@ -225,10 +225,10 @@ void add_designers(Registrar& registrar) {
       .real("epsilon", "separation", 1e-4, 0, 1)
       .set("input_set", "of each time");
   search.matrix("weights", "a row per time").choice("outputs", "which", {"all", "last"}, "all");
-  registrar.designer({{"search", "a fake", "", search}, check_input, create});
+  registrar.add(DesignerEntry{{"search", "a fake", "", search}, check_input, create});
   ParamSchema given;
   given.matrix("u", "a row per time").required();
-  registrar.designer({{"given", "a fake", "", given}, check_input, create});
+  registrar.add(DesignerEntry{{"given", "a fake", "", given}, check_input, create});
 }
 
 void add_metric(Registrar& registrar, const std::string& name, const ParamSchema& schema = {}) {
@@ -240,9 +240,9 @@ void add_metric(Registrar& registrar, const std::string& name, const ParamSchema
           {"/level", "is not known of " + std::to_string(states) + " states", "give another one"});
     return problems;
   };
-  registrar.metric({{name, "a fake", "", schema},
-                    [](const Params&) { return std::make_unique<FakeMetric>(); },
-                    check});
+  registrar.add(MetricEntry{{name, "a fake", "", schema},
+                            [](const Params&) { return std::make_unique<FakeMetric>(); },
+                            check});
 }
 
 }  // namespace
@@ -281,19 +281,19 @@ void register_fakes(Registrar& registrar) {
   ParamSchema committee;
   committee.component("member", "the one that is asked", "diagnoser");
   add_diagnoser(registrar, "committee", committee, nullptr);
-  registrar.diagnoser({{"fault_filter", "a fake", "", {}},
-                       nullptr,
-                       [](const DiagnoserContext& context, const Params&) {
-                         return std::make_unique<FakeDiagnoser>(context);
-                       },
-                       true,
-                       false});
+  registrar.add(DiagnoserEntry{{"fault_filter", "a fake", "", {}},
+                               nullptr,
+                               [](const DiagnoserContext& context, const Params&) {
+                                 return std::make_unique<FakeDiagnoser>(context);
+                               },
+                               true,
+                               false});
   add_designers(registrar);
   ParamSchema reactor;
   reactor.real("tempo", "of the reaction", 0.25, 0, 1);
-  registrar.plant({{"reactor", "a fake", "", reactor}, [](const Params& params) {
-                     return std::make_unique<FakePlant>(params.real("tempo"));
-                   }});
+  registrar.add(PlantEntry{{"reactor", "a fake", "", reactor}, [](const Params& params) {
+                             return std::make_unique<FakePlant>(params.real("tempo"));
+                           }});
   ParamSchema quantile;
   quantile.real("level", "between 0 and 1", {}, 0, 1).required();
   add_metric(registrar, "quantile", quantile);

@@ -98,11 +98,11 @@ TEST_CASE("a matrix stands for a component that may be missing") {
   const Scratch scratch;
   Registry registry;
   registry.add([](Registrar& registrar) {
-    registrar.observer(
-        {{"luenberger", "a fake", "",
-          ParamSchema().component("gain", "a gain", "gain").or_matrix("given")},
-         nullptr,
-         [](const ObserverContext&, const Params&) { return std::unique_ptr<Observer>(); }});
+    registrar.add(ObserverEntry{
+        {"luenberger", "a fake", "",
+         ParamSchema().component("gain", "a gain", "gain").or_matrix("given")},
+        nullptr,
+        [](const ObserverContext&, const Params&) { return std::unique_ptr<Observer>(); }});
   });
   try {
     read_study(scratch.write("s.json", uncertain_study), registry, SearchPath{});

@@ -27,8 +27,8 @@ class Place final : public Metric {
 
 inline void register_all(Registrar& registrar) {
   fakes::register_all(registrar);
-  registrar.metric({{"place", "of the last estimate", "", {}},
-                    [](const Params&) { return std::make_unique<Place>(); }});
+  registrar.add(MetricEntry{{"place", "of the last estimate", "", {}},
+                            [](const Params&) { return std::make_unique<Place>(); }});
 }
 
 /// A study with the axes `noise` and `seed`, the seeds 1 to `seeds`.

@@ -114,7 +114,7 @@ TEST_CASE("the same answers as those of a designer") {
     params.set("input", u);
     DesignControl control;
     return examples::registry()
-        .make_designer("given", bank, examples::backend("line_zonotope"), params)
+        .make<DesignerEntry>("given", {bank, examples::backend("line_zonotope")}, params)
         ->design(control);
   };
   std::vector<std::pair<ModeBank, Matrix>> cases{

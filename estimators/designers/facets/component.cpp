@@ -32,20 +32,21 @@ void register_facets_designer(Registrar& registrar) {
                "largest number of facets of the inputs that do not separate a pair; one with more "
                "does not bound the cost",
                10000, 2, 1000000);
-  registrar.designer({{"facets", "cheapest separating input, by exact search over facets",
-                       "Rego2025", std::move(schema),
-                       "For each pair of modes the inputs that do not separate it form a polytope, "
-                       "seen through the few combinations of\n"
-                       "inputs that tell the two apart. An input separates the pair if it lies "
-                       "beyond a facet. The search solves linear\n"
-                       "programs over the input set with facets chosen so far, best first, and "
-                       "branches on the facets of a pair that is\n"
-                       "still violated. Lower bounds are proven by multipliers; \"optimal\" and "
-                       "\"infeasible\" are never a solver's word."},
-                      designers::check_search,
-                      [](const DesignerContext& context, const Params& params) {
-                        return std::make_unique<Facets>(context, params);
-                      }});
+  registrar.add(
+      DesignerEntry{{"facets", "cheapest separating input, by exact search over facets", "Rego2025",
+                     std::move(schema),
+                     "For each pair of modes the inputs that do not separate it form a polytope, "
+                     "seen through the few combinations of\n"
+                     "inputs that tell the two apart. An input separates the pair if it lies "
+                     "beyond a facet. The search solves linear\n"
+                     "programs over the input set with facets chosen so far, best first, and "
+                     "branches on the facets of a pair that is\n"
+                     "still violated. Lower bounds are proven by multipliers; \"optimal\" and "
+                     "\"infeasible\" are never a solver's word."},
+                    designers::check_search,
+                    [](const DesignerContext& context, const Params& params) {
+                      return std::make_unique<Facets>(context, params);
+                    }});
 }
 
 }  // namespace cordon::estimators

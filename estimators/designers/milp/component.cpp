@@ -34,20 +34,20 @@ void register_milp_designer(Registrar& registrar) {
       .integer("max_constraints",
                "rows that a pair is reduced to, beyond the rank of what the inputs enter", 2, 0,
                1000);
-  registrar.designer(
-      {{"milp", "separating input by the mixed-integer program of the literature, with GLPK",
-        "Rego2025", std::move(schema),
-        "Pairs of modes are enclosed by simpler ones, then being outside of all of them is one "
-        "mixed-integer linear\n"
-        "program. Its optimum costs more than that of the problem itself, and how much is not "
-        "known: no lower bound is\n"
-        "given, and that of the program, as GLPK has it, stands in `restriction`. The input that "
-        "is found is proven to separate "
-        "the pairs themselves."},
-       designers::check_search,
-       [](const DesignerContext& context, const Params& params) {
-         return std::make_unique<Milp>(context, params);
-       }});
+  registrar.add(DesignerEntry{
+      {"milp", "separating input by the mixed-integer program of the literature, with GLPK",
+       "Rego2025", std::move(schema),
+       "Pairs of modes are enclosed by simpler ones, then being outside of all of them is one "
+       "mixed-integer linear\n"
+       "program. Its optimum costs more than that of the problem itself, and how much is not "
+       "known: no lower bound is\n"
+       "given, and that of the program, as GLPK has it, stands in `restriction`. The input that "
+       "is found is proven to separate "
+       "the pairs themselves."},
+      designers::check_search,
+      [](const DesignerContext& context, const Params& params) {
+        return std::make_unique<Milp>(context, params);
+      }});
 }
 
 }  // namespace cordon::estimators

@@ -323,19 +323,19 @@ constexpr const char* filter_details =
 }  // namespace
 
 void register_fault_estimation_filter(Registrar& registrar) {
-  registrar.diagnoser(
-      {{"fault_estimation_filter",
-        "bounds of additive faults in systems with and without E, a few steps later", "Wang2017",
-        filter_parameters(), filter_details},
-       check_filter,
-       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
-         if (auto problems = check_filter(context, params); !problems.empty()) {
-           throw InputError("diagnoser \"fault_estimation_filter\"", std::move(problems));
-         }
-         return std::make_unique<FaultEstimationFilter>(context, params);
-       },
-       false,
-       false});
+  registrar.add(DiagnoserEntry{
+      {"fault_estimation_filter",
+       "bounds of additive faults in systems with and without E, a few steps later", "Wang2017",
+       filter_parameters(), filter_details},
+      check_filter,
+      [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
+        if (auto problems = check_filter(context, params); !problems.empty()) {
+          throw InputError("diagnoser \"fault_estimation_filter\"", std::move(problems));
+        }
+        return std::make_unique<FaultEstimationFilter>(context, params);
+      },
+      false,
+      false});
 }
 
 }  // namespace cordon::estimators

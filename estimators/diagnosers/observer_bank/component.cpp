@@ -62,7 +62,7 @@ ParamSchema bank_parameters() {
 ComponentSpec default_gain() { return {"kalman", {}}; }
 
 ObserverContext context_of(const DiagnoserContext& context, const Mode& mode) {
-  return {mode.model, context.backend, &context.make};
+  return {mode.model, context.backend, context.make};
 }
 
 /// One per mode, as given or designed.
@@ -209,18 +209,18 @@ std::vector<Diagnostic> check_observer_bank(const DiagnoserContext& context, con
 }  // namespace
 
 void register_observer_bank(Registrar& registrar) {
-  registrar.diagnoser(
-      {{"observer_bank",
-        "a bank of Luenberger observers on sets, with conditions checked in advance",
-        "Xu2014; Xu2013", bank_parameters()},
-       check_observer_bank,
-       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
-         if (auto problems = check_observer_bank(context, params); !problems.empty()) {
-           throw InputError("diagnoser \"observer_bank\"", std::move(problems));
-         }
-         return std::make_unique<ObserverBank>(context.bank, context.backend,
-                                               options_of(context, params));
-       }});
+  registrar.add(DiagnoserEntry{
+      {"observer_bank",
+       "a bank of Luenberger observers on sets, with conditions checked in advance",
+       "Xu2014; Xu2013", bank_parameters()},
+      check_observer_bank,
+      [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
+        if (auto problems = check_observer_bank(context, params); !problems.empty()) {
+          throw InputError("diagnoser \"observer_bank\"", std::move(problems));
+        }
+        return std::make_unique<ObserverBank>(context.bank, context.backend,
+                                              options_of(context, params));
+      }});
 }
 
 }  // namespace cordon::estimators

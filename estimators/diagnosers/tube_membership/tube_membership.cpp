@@ -125,16 +125,16 @@ void register_tube_membership(Registrar& registrar) {
       "a set that holds the state of descriptor systems at all times, as far as E does not "
       "determine it; exclusions rest "
       "on it. Needed with \"constrained_zonotope\"; the one that the input was designed with");
-  registrar.diagnoser(
-      {{"tube_membership",
-        "all samples of an experiment against the output tube of every mode; a mode is excluded "
-        "when they are "
-        "proven to lie outside",
-        "Rego2025; Scott2014", schema},
-       check_tube_membership,
-       [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
-         return std::make_unique<TubeMembership>(context, params);
-       }});
+  registrar.add(DiagnoserEntry{
+      {"tube_membership",
+       "all samples of an experiment against the output tube of every mode; a mode is excluded "
+       "when they are "
+       "proven to lie outside",
+       "Rego2025; Scott2014", schema},
+      check_tube_membership,
+      [](const DiagnoserContext& context, const Params& params) -> std::unique_ptr<Diagnoser> {
+        return std::make_unique<TubeMembership>(context, params);
+      }});
 }
 
 }  // namespace cordon::estimators

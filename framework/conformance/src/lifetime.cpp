@@ -85,7 +85,8 @@ Verdict check_unload(const Context& context, const TestCase& test) {
       return Verdict::fails("the plugin was refused: " + report.reason);
     Enclosure last;
     {
-      const auto backend = registry.make_backend(context.subject.component, context.subject.params);
+      const auto backend =
+          registry.make<BackendEntry>(context.subject.component, context.subject.params);
       const Enclosure X = backend->import(test.set(0).form), Y = backend->import(test.set(1).form);
       for (const auto& [name, run] : program(*backend, X, Y, test)) {
         if (const auto result = attempt_operation(run)) last = *result;

@@ -1,13 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "catalogue.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "descriptor.hpp"
 
+namespace cordon {
+
+std::string described(const ComponentEntry& entry) {
+  return std::visit([](const auto& e) { return fmt::format("{} \"{}\"", e.kind, e.info.name); },
+                    entry);
+}
+
+const ComponentInfo& info_of(const ComponentEntry& entry) {
+  return std::visit([](const auto& e) -> const ComponentInfo& { return e.info; }, entry);
+}
+
+Params complete_params(const ComponentEntry& entry, Params params) {
+  std::vector<Diagnostic> problems = info_of(entry).schema.complete(params);
+  if (!problems.empty()) throw InputError(described(entry), std::move(problems));
+  return params;
+}
+
+}  // namespace cordon
+
 namespace cordon::registry {
 
 namespace {
+
+template <std::size_t... index>
+std::vector<std::string> names_of_kinds(std::index_sequence<index...>) {
+  return {std::string(std::variant_alternative_t<index, ComponentEntry>::kind)...};
+}
 
 void check_schema(const std::string& component, const ParamSchema& schema,
                   std::vector<std::string>& problems) {
@@ -21,69 +47,56 @@ void check_schema(const std::string& component, const ParamSchema& schema,
   }
 }
 
-template <class Entry>
-void remove_from(Shelf<Entry>& shelf, std::string_view plugin) {
-  std::erase_if(shelf, [&](const auto& item) { return item.second.plugin == plugin; });
-}
-
 }  // namespace
 
-void Catalogue::remove(std::string_view plugin) {
-  remove_from(backends, plugin);
-  remove_from(observers, plugin);
-  remove_from(metrics, plugin);
-  remove_from(diagnosers, plugin);
-  remove_from(plants, plugin);
-  remove_from(gains, plugin);
-  remove_from(designers, plugin);
+const std::vector<std::string>& Catalogue::kinds() {
+  static const std::vector<std::string> all =
+      names_of_kinds(std::make_index_sequence<std::variant_size_v<ComponentEntry>>());
+  return all;
 }
 
-template <class Entry>
-void Batch::add(Shelf<Entry>& mine, const Shelf<Entry>& known, const std::string& kind,
-                Entry entry) {
-  const std::string component = kind + " \"" + entry.info.name + "\"";
-  if (!is_snake_case(entry.info.name)) problems_.push_back(component + " is not in snake_case");
-  if (entry.info.summary.empty()) problems_.push_back(component + " has no summary");
-  check_schema(component, entry.info.schema, problems_);
-  if (!entry.create) problems_.push_back(component + " has no function that makes it");
-  if (mine.count(entry.info.name)) problems_.push_back(component + " is registered twice");
-  if (const auto other = known.find(entry.info.name); other != known.end()) {
+const Shelf* Catalogue::shelf(std::string_view kind) const {
+  const auto found = std::find(kinds().begin(), kinds().end(), kind);
+  return found == kinds().end() ? nullptr
+                                : &shelves_[static_cast<std::size_t>(found - kinds().begin())];
+}
+
+const Provided* Catalogue::find(std::string_view kind, std::string_view name) const {
+  const Shelf* all = shelf(kind);
+  const auto found = all ? all->find(name) : Shelf::const_iterator();
+  return all && found != all->end() ? &found->second : nullptr;
+}
+
+void Catalogue::take(Catalogue&& other) {
+  for (std::size_t i = 0; i < shelves_.size(); ++i) shelves_[i].merge(other.shelves_[i]);
+}
+
+void Catalogue::remove(std::string_view plugin) {
+  for (Shelf& all : shelves_)
+    std::erase_if(all, [&](const auto& item) { return item.second.plugin == plugin; });
+}
+
+void Batch::add(ComponentEntry entry) {
+  const std::string component = described(entry);
+  const ComponentInfo& info = info_of(entry);
+  const bool can_be_made =
+      std::visit([](const auto& e) { return static_cast<bool>(e.create); }, entry);
+  if (!is_snake_case(info.name)) problems_.push_back(component + " is not in snake_case");
+  if (info.summary.empty()) problems_.push_back(component + " has no summary");
+  check_schema(component, info.schema, problems_);
+  if (!can_be_made) problems_.push_back(component + " has no function that makes it");
+  Shelf& mine = mine_.shelf(entry);
+  if (mine.count(info.name)) problems_.push_back(component + " is registered twice");
+  const Shelf& known = known_.shelf(entry);
+  if (const auto other = known.find(info.name); other != known.end()) {
     left_out_.push_back(component + " is there already, from " +
                         (other->second.plugin.empty() ? "this program itself"
                                                       : "plugin \"" + other->second.plugin + "\""));
     return;
   }
-  components_.push_back(kind + " " + entry.info.name);
-  std::string name = entry.info.name;
-  mine.emplace(std::move(name), Provided<Entry>{std::move(entry), plugin_});
-}
-
-void Batch::backend(BackendEntry entry) {
-  add(mine_.backends, known_.backends, "backend", std::move(entry));
-}
-void Batch::observer(ObserverEntry entry) {
-  add(mine_.observers, known_.observers, "observer", std::move(entry));
-}
-void Batch::metric(MetricEntry entry) {
-  add(mine_.metrics, known_.metrics, "metric", std::move(entry));
-}
-void Batch::diagnoser(DiagnoserEntry entry) {
-  add(mine_.diagnosers, known_.diagnosers, "diagnoser", std::move(entry));
-}
-void Batch::plant(PlantEntry entry) { add(mine_.plants, known_.plants, "plant", std::move(entry)); }
-void Batch::gain(GainEntry entry) { add(mine_.gains, known_.gains, "gain", std::move(entry)); }
-void Batch::designer(DesignerEntry entry) {
-  add(mine_.designers, known_.designers, "designer", std::move(entry));
-}
-
-void Batch::commit(Catalogue& catalogue) {
-  catalogue.backends.merge(mine_.backends);
-  catalogue.observers.merge(mine_.observers);
-  catalogue.metrics.merge(mine_.metrics);
-  catalogue.diagnosers.merge(mine_.diagnosers);
-  catalogue.plants.merge(mine_.plants);
-  catalogue.gains.merge(mine_.gains);
-  catalogue.designers.merge(mine_.designers);
+  components_.push_back(Catalogue::kinds()[entry.index()] + " " + info.name);
+  std::string name = info.name;
+  mine.emplace(std::move(name), Provided{std::move(entry), plugin_});
 }
 
 }  // namespace cordon::registry

@@ -2,33 +2,33 @@
 // The components that are known, by kind and name, and the registrar that adds them all or none.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "cordon/registry/plugin.hpp"
+#include "cordon/registry/registry.hpp"
 
 namespace cordon::registry {
 
-template <class Entry>
-struct Provided {
-  Entry entry;
-  std::string plugin;  ///< "" for components of the host
-};
-template <class Entry>
-using Shelf = std::map<std::string, Provided<Entry>, std::less<>>;
+using Provided = ProvidedComponent;
+using Shelf = std::map<std::string, Provided, std::less<>>;
 
 /// Entries hold code of their plugins: a catalogue dies before the libraries are closed.
-struct Catalogue {
-  Shelf<BackendEntry> backends;
-  Shelf<ObserverEntry> observers;
-  Shelf<MetricEntry> metrics;
-  Shelf<DiagnoserEntry> diagnosers;
-  Shelf<PlantEntry> plants;
-  Shelf<GainEntry> gains;
-  Shelf<DesignerEntry> designers;
+class Catalogue {
+ public:
+  static const std::vector<std::string>& kinds();
 
+  Shelf& shelf(const ComponentEntry& entry) { return shelves_[entry.index()]; }
+  const Shelf& shelf(const ComponentEntry& entry) const { return shelves_[entry.index()]; }
+  const Shelf* shelf(std::string_view kind) const;  ///< null: no such kind
+  const Provided* find(std::string_view kind, std::string_view name) const;
+
+  void take(Catalogue&& other);
   void remove(std::string_view plugin);
+
+ private:
+  std::array<Shelf, std::variant_size_v<ComponentEntry>> shelves_;  ///< as in the list of kinds
 };
 
 /// Collects what one plugin registers. Nothing reaches the catalogue before `commit`, so rolling
@@ -37,13 +37,7 @@ class Batch final : public Registrar {
  public:
   Batch(const Catalogue& known, std::string plugin) : known_(known), plugin_(std::move(plugin)) {}
 
-  void backend(BackendEntry entry) override;
-  void observer(ObserverEntry entry) override;
-  void metric(MetricEntry entry) override;
-  void diagnoser(DiagnoserEntry entry) override;
-  void plant(PlantEntry entry) override;
-  void gain(GainEntry entry) override;
-  void designer(DesignerEntry entry) override;
+  void add(ComponentEntry entry) override;
 
   const std::vector<std::string>& problems() const {
     return problems_;
@@ -54,12 +48,9 @@ class Batch final : public Registrar {
   /// Components whose names somebody else has, with the reason: they are no part of what is
   /// committed.
   const std::vector<std::string>& left_out() const { return left_out_; }
-  void commit(Catalogue& catalogue);
+  void commit(Catalogue& catalogue) { catalogue.take(std::move(mine_)); }
 
  private:
-  template <class Entry>
-  void add(Shelf<Entry>& mine, const Shelf<Entry>& known, const std::string& kind, Entry entry);
-
   const Catalogue& known_;
   std::string plugin_;
   Catalogue mine_;

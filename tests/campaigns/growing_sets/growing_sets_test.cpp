@@ -119,8 +119,8 @@ double widest(const Registry& registry, const Model& model, const Choice& choice
   Params backend, params;
   if (!choice.reduction.empty()) backend.set("reduction", choice.reduction);
   params.set("max_generators", static_cast<std::int64_t>(budget));
-  const auto observer = registry.make_observer(
-      "luenberger", {model, registry.make_backend(choice.backend, backend)}, params);
+  const auto observer = registry.make<ObserverEntry>(
+      "luenberger", {model, registry.make<BackendEntry>(choice.backend, backend)}, params);
   const Vector limit = unreduced_limit(model, observer->gains().front().L);
   const Vector nothing(0), y = Vector::Zero(model.linear.outputs());
   double most = 0;

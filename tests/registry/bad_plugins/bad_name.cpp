@@ -3,7 +3,7 @@
 #include "nothing.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("CamelCase"));
+  registrar.add(nothing("CamelCase"));
 }
 
 CORDON_PLUGIN("bad_name", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused",

@@ -6,7 +6,7 @@
 static const int ended = []() -> int { std::_Exit(0); }();
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("after_the_end"));
+  registrar.add(nothing("after_the_end"));
 }
 
 CORDON_PLUGIN("ends_the_process", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

@@ -2,9 +2,7 @@
 #include "nothing.hpp"
 #include "trace.hpp"
 
-static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("nearly"));
-}
+static void register_components(cordon::Registrar& registrar) { registrar.add(nothing("nearly")); }
 
 CORDON_PLUGIN("fast_math", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "a plugin that must be refused",
               register_components)

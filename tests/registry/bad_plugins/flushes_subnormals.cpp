@@ -2,7 +2,7 @@
 #include "nothing.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("without_subnormals"));
+  registrar.add(nothing("without_subnormals"));
 }
 
 CORDON_PLUGIN("flushes_subnormals", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

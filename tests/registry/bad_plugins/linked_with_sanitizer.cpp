@@ -2,7 +2,7 @@
 #include "nothing.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("half_sanitized"));
+  registrar.add(nothing("half_sanitized"));
 }
 
 CORDON_PLUGIN("linked_with_sanitizer", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

@@ -8,7 +8,7 @@ static const int never = [] {
 }();
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("after_never"));
+  registrar.add(nothing("after_never"));
 }
 
 CORDON_PLUGIN("never_ends", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

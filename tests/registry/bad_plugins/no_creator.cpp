@@ -3,7 +3,7 @@
 #include "nothing.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric({{"without_creator", "cannot be made", "", {}}, {}});
+  registrar.add(cordon::MetricEntry{{"without_creator", "cannot be made", "", {}}, {}});
 }
 
 CORDON_PLUGIN("no_creator", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

@@ -3,7 +3,7 @@
 #include "nothing.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("without_summary", {}, ""));
+  registrar.add(nothing("without_summary", {}, ""));
 }
 
 CORDON_PLUGIN("no_summary", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

@@ -3,8 +3,8 @@
 #include "nothing.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("new_in_repeats_component"));
-  registrar.metric(nothing("step_count"));  // of test_box
+  registrar.add(nothing("new_in_repeats_component"));
+  registrar.add(nothing("step_count"));  // of test_box
 }
 
 CORDON_PLUGIN("repeats_component", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

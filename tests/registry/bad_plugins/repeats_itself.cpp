@@ -3,8 +3,8 @@
 #include "nothing.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("twice"));
-  registrar.metric(nothing("twice"));
+  registrar.add(nothing("twice"));
+  registrar.add(nothing("twice"));
 }
 
 CORDON_PLUGIN("repeats_itself", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

@@ -4,7 +4,7 @@
 #include "nothing.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("rounded_down"));
+  registrar.add(nothing("rounded_down"));
   std::fesetround(FE_DOWNWARD);
 }
 

@@ -6,7 +6,7 @@
 static const int thrown = []() -> int { throw std::runtime_error("no room for static objects"); }();
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("after_the_throw"));
+  registrar.add(nothing("after_the_throw"));
 }
 
 CORDON_PLUGIN("throws_at_once", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

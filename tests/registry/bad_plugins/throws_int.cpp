@@ -3,7 +3,7 @@
 #include "nothing.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("before_the_int"));
+  registrar.add(nothing("before_the_int"));
   throw 7;
 }
 

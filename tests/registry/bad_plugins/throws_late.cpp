@@ -4,7 +4,7 @@
 #include "nothing.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("before_the_throw"));
+  registrar.add(nothing("before_the_throw"));
   throw std::runtime_error("no licence server");
 }
 

@@ -5,7 +5,7 @@
 static void register_components(cordon::Registrar& registrar) {
   cordon::ParamSchema schema;
   schema.flag("quiet", "", false);
-  registrar.metric(nothing("with_undocumented_parameter", schema));
+  registrar.add(nothing("with_undocumented_parameter", schema));
 }
 
 CORDON_PLUGIN("undocumented", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

@@ -3,7 +3,7 @@
 #include "trace.hpp"
 
 static void register_components(cordon::Registrar& registrar) {
-  registrar.metric(nothing("sanitized"));
+  registrar.add(nothing("sanitized"));
 }
 
 CORDON_PLUGIN("with_sanitizer", "1.0.0", "GPL-3.0-or-later", "A. Uthor",

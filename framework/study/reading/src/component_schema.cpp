@@ -67,11 +67,10 @@ Json parameter(const ParamSpec& spec) {
 }  // namespace
 
 Json components(const Registry& registry, const char* kind) {
-  const json::Shelf& shelf = *json::shelf_of(kind);
   Json all = Json::array();
   std::vector<std::string> plain;
-  for (const std::string& name : (registry.*shelf.names)()) {
-    const ComponentInfo& component = *(registry.*shelf.info)(name);
+  for (const std::string& name : registry.names(kind)) {
+    const ComponentInfo& component = *registry.info(kind, name);
     Json properties = Json::object();
     std::vector<std::string> required;
     for (const ParamSpec& spec : component.schema.specs()) {

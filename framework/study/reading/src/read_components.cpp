@@ -33,17 +33,17 @@ std::optional<std::vector<Matrix>> read_matrices(const Cursor& at) {
   return good ? std::optional<std::vector<Matrix>>(std::move(all)) : std::nullopt;
 }
 
-std::optional<ComponentSpec> read_nested(const Cursor& at, const Shelf& shelf,
+std::optional<ComponentSpec> read_nested(const Cursor& at, const std::string& kind,
                                          const ComponentContext& context, int depth);
 std::optional<ComponentSpec> read_as_matrix(const Cursor& at, const std::string& type,
-                                            const Shelf& shelf, const ComponentContext& context);
+                                            const std::string& kind,
+                                            const ComponentContext& context);
 
 /// A component inside another one, as the parameter `param`.
 std::optional<Params::Value> read_inner(const Cursor& at, const ParamSpec& param,
                                         const ComponentContext& context, int depth) {
   const std::string& kind = param.component_kind;
-  const Shelf* shelf = shelf_of(kind);
-  if (!shelf) {
+  if (!is_kind(kind)) {
     context.refusals.push_back(
         {at.pointer(),
          "asks for a component of the kind " + in_quotes(kind) + ", which does not exist",
@@ -63,8 +63,8 @@ std::optional<Params::Value> read_inner(const Cursor& at, const ParamSpec& param
             ", or {\"type\": name, ...parameters}");
     return std::nullopt;
   }
-  auto spec = matrix ? read_as_matrix(at, param.matrix_type, *shelf, context)
-                     : read_nested(at, *shelf, context, depth + 1);
+  auto spec = matrix ? read_as_matrix(at, param.matrix_type, kind, context)
+                     : read_nested(at, kind, context, depth + 1);
   if (!spec) return std::nullopt;
   return Params::Value(std::make_shared<const ComponentSpec>(std::move(*spec)));
 }
@@ -146,16 +146,16 @@ void read_params(const Cursor& at, const ParamSchema& schema, const std::string&
   }
 }
 
-void report_unknown(const Cursor& type_at, const Shelf& shelf, const std::string& type,
+void report_unknown(const Cursor& type_at, const std::string& kind, const std::string& type,
                     const ComponentContext& context) {
-  const std::string what = std::string("no ") + shelf.kind + " " + in_quotes(type);
+  const std::string what = "no " + kind + " " + in_quotes(type);
   if (const PluginReport* refused = context.registry.refused_provider(type)) {
     const std::string reason =
         what + ": its plugin " + refused->file.string() + " was refused: " + refused->reason;
     context.refusals.push_back({type_at.pointer(), reason, refused->fix, type_at.value().line});
     return;
   }
-  const std::vector<std::string> names = (context.registry.*shelf.names)();
+  const std::vector<std::string> names = context.registry.names(kind);
   const std::string near = nearest(type, names),
                     doctor = "`cordon doctor` tells which plugins were found where";
   if (!names.empty()) {
@@ -164,7 +164,7 @@ void report_unknown(const Cursor& type_at, const Shelf& shelf, const std::string
     return;
   }
   const std::string none =
-      what + ": no plugin of any " + shelf.kind + " was found";  // one cause, told once
+      what + ": no plugin of any " + kind + " was found";  // one cause, told once
   const auto told = [&](const Diagnostic& d) {
     return d.message.ends_with(none.substr(what.size()));
   };
@@ -175,12 +175,13 @@ void report_unknown(const Cursor& type_at, const Shelf& shelf, const std::string
 
 /// The component `type`, of which only its matrix is written.
 std::optional<ComponentSpec> read_as_matrix(const Cursor& at, const std::string& type,
-                                            const Shelf& shelf, const ComponentContext& context) {
+                                            const std::string& kind,
+                                            const ComponentContext& context) {
   auto A = read_matrix(at);
   if (!A) return std::nullopt;
-  const ComponentInfo* info = (context.registry.*shelf.info)(type);
+  const ComponentInfo* info = context.registry.info(kind, type);
   if (!info) {
-    report_unknown(at, shelf, type, context);
+    report_unknown(at, kind, type, context);
     return std::nullopt;
   }
   ComponentSpec spec{type, Params().set("matrix", std::move(*A))};
@@ -189,9 +190,9 @@ std::optional<ComponentSpec> read_as_matrix(const Cursor& at, const std::string&
   return problems.empty() ? std::optional<ComponentSpec>(std::move(spec)) : std::nullopt;
 }
 
-std::optional<ComponentSpec> read_nested(const Cursor& at, const Shelf& shelf,
+std::optional<ComponentSpec> read_nested(const Cursor& at, const std::string& kind,
                                          const ComponentContext& context, int depth) {
-  const std::string form = std::string("write the name of ") + article(shelf.kind) + shelf.kind +
+  const std::string form = std::string("write the name of ") + article(kind) + kind +
                            ", or {\"type\": name, ...parameters}";
   if (at.is(Kind::broken)) return std::nullopt;
   if (!at.is(Kind::object) && !at.is(Kind::text)) {
@@ -202,15 +203,14 @@ std::optional<ComponentSpec> read_nested(const Cursor& at, const Shelf& shelf,
   const auto type_at = at.is(Kind::text) ? std::optional<Cursor>(at) : at.need("type", form);
   const auto type = type_at ? read_text(*type_at, max_name) : std::nullopt;
   if (!type) return std::nullopt;
-  const ComponentInfo* info = (context.registry.*shelf.info)(*type);
+  const ComponentInfo* info = context.registry.info(kind, *type);
   if (!info) {
-    report_unknown(*type_at, shelf, *type, context);
+    report_unknown(*type_at, kind, *type, context);
     return std::nullopt;
   }
   const std::size_t before = at.problems().met();
   ComponentSpec spec{*type, {}};
-  read_params(at, info->schema, std::string(shelf.kind) + " " + in_quotes(*type), context, depth,
-              spec.params);
+  read_params(at, info->schema, kind + " " + in_quotes(*type), context, depth, spec.params);
   return at.problems().met() == before ? std::optional<ComponentSpec>(std::move(spec))
                                        : std::nullopt;
 }
@@ -223,23 +223,14 @@ void report(const Cursor& at, const Diagnostic& relative) {
   at.problems().add(at.pointer() + pointer, line, relative.message, relative.suggestion);
 }
 
-const Shelf* shelf_of(std::string_view kind) {
-  static constexpr Shelf shelves[] = {
-      {"backend", &Registry::backend_info, &Registry::backends},
-      {"observer", &Registry::observer_info, &Registry::observers},
-      {"metric", &Registry::metric_info, &Registry::metrics},
-      {"diagnoser", &Registry::diagnoser_info, &Registry::diagnosers},
-      {"plant", &Registry::plant_info, &Registry::plants},
-      {"gain", &Registry::gain_info, &Registry::gains},
-      {"designer", &Registry::designer_info, &Registry::designers}};
-  const auto found = std::find_if(std::begin(shelves), std::end(shelves),
-                                  [&](const Shelf& shelf) { return kind == shelf.kind; });
-  return found == std::end(shelves) ? nullptr : found;
+bool is_kind(const std::string& kind) {
+  const std::vector<std::string>& kinds = Registry::kinds();
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
-std::optional<ComponentSpec> read_component(const Cursor& at, std::string_view kind,
+std::optional<ComponentSpec> read_component(const Cursor& at, const std::string& kind,
                                             const ComponentContext& context) {
-  return read_nested(at, *shelf_of(kind), context, 1);
+  return read_nested(at, kind, context, 1);
 }
 
 }  // namespace cordon::json

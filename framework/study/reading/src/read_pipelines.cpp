@@ -20,24 +20,26 @@ void check_together(const Cursor& pipeline, const PipelineSpec& spec, const Syst
   const Registry& registry = context.registry;
   std::shared_ptr<const SetBackend> backend;
   try {
-    backend = registry.make_backend(spec.backend.type, spec.backend.params);
+    backend = registry.make<BackendEntry>(spec.backend.type, spec.backend.params);
   } catch (const Error& error) {
     return report_failure(*pipeline.find("backend"), error, context);
   }
   if (spec.designer) {
     ask(*pipeline.find("designer"), context, [&] {
-      return registry.check_designer(spec.designer->type, bank, backend, spec.designer->params);
+      return registry.check<DesignerEntry>(spec.designer->type, {bank, backend},
+                                           spec.designer->params);
     });
   }
   if (spec.diagnoser) {
     ask(*pipeline.find("diagnoser"), context, [&] {
-      return registry.check_diagnoser(spec.diagnoser->type, bank, backend, spec.diagnoser->params);
+      return registry.check<DiagnoserEntry>(spec.diagnoser->type, {bank, backend},
+                                            spec.diagnoser->params);
     });
   }
   if (!spec.designer && !spec.diagnoser) {
     ask(*pipeline.find("observer"), context, [&] {
-      return registry.check_observer(spec.observer.type, {system.model, backend},
-                                     spec.observer.params);
+      return registry.check<ObserverEntry>(spec.observer.type, {system.model, backend},
+                                           spec.observer.params);
     });
   }
 }
@@ -101,7 +103,7 @@ void read_plant(const Cursor& at, const SystemPart& system, SimulateSpec& spec,
   spec.plant = read_component(at, "plant", context);
   if (!spec.plant) return;
   try {
-    spec.made_plant = context.registry.make_plant(spec.plant->type, spec.plant->params);
+    spec.made_plant = context.registry.make<PlantEntry>(spec.plant->type, spec.plant->params);
     const Plant& plant = *spec.made_plant;
     const auto compare = [&](Index size, std::optional<Index> wanted, const char* noun) {
       if (!wanted || size == *wanted) return;
@@ -162,8 +164,9 @@ std::vector<ComponentSpec> read_metrics(const Cursor& at, const SystemPart& syst
     if (!fresh)
       at.item(i).error("repeats " + child(at.pointer(), first->second), "remove one of the two");
     if (system.good) {
-      ask(at.item(i), context,
-          [&] { return context.registry.check_metric(spec->type, {system.model}, spec->params); });
+      ask(at.item(i), context, [&] {
+        return context.registry.check<MetricEntry>(spec->type, {system.model}, spec->params);
+      });
     }
     specs.push_back(std::move(*spec));
   }

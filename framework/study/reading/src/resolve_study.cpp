@@ -87,7 +87,7 @@ struct ToJson {
 Json to_json(const ComponentSpec& spec, const std::string& kind, const Registry& registry) {
   Json object;
   object["type"] = spec.type;
-  for (const ParamSpec& param : (registry.*shelf_of(kind)->info)(spec.type)->schema.specs()) {
+  for (const ParamSpec& param : registry.info(kind, spec.type)->schema.specs()) {
     const auto found = spec.params.values().find(param.name);
     if (found != spec.params.values().end())
       object[param.name] = std::visit(ToJson{param, registry}, found->second);

@@ -219,16 +219,15 @@ class Placer {
     Role inner;
     if (key != "type") {
       const Value* type = component.find("type");
-      const ComponentInfo* info = type && type->kind == Kind::text
-                                      ? (registry_.*shelf_of(role.kind)->info)(type->text())
-                                      : nullptr;
+      const ComponentInfo* info =
+          type && type->kind == Kind::text ? registry_.info(role.kind, type->text()) : nullptr;
       const ParamSpec* spec = info ? info->schema.find(key) : nullptr;
       if (!info) reported_ = true;
       if (info && !spec && starred) {
         for (const std::string& name : info->schema.names()) lacking_.push_back(name);
         return std::nullopt;
       }
-      if (spec && shelf_of(spec->component_kind)) inner = {spec->component_kind, spec->matrix_type};
+      if (spec && is_kind(spec->component_kind)) inner = {spec->component_kind, spec->matrix_type};
     }
     return put_into_object(component, depth, inner, starred);
   }

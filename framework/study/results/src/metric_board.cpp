@@ -61,7 +61,7 @@ class MetricNames {
 
 MetricBoard::MetricBoard(const std::vector<ComponentSpec>& metrics, const Registry& registry) {
   for (const ComponentSpec& spec : metrics)
-    entries_.push_back({spec.type, registry.make_metric(spec.type, spec.params), {}});
+    entries_.push_back({spec.type, registry.make<MetricEntry>(spec.type, spec.params), {}});
 }
 
 const MetricValues& MetricBoard::step(const StepView& view) {

@@ -35,9 +35,9 @@ PipelineDesign design_one(const Study& study, std::size_t index, const Registry&
   made.designer = spec.designer->type;
   const detail::Clock::time_point begin = detail::Clock::now();
   detail::guarded(made, [&] {
-    const auto backend = registry.make_backend(spec.backend.type, spec.backend.params);
+    const auto backend = registry.make<BackendEntry>(spec.backend.type, spec.backend.params);
     const auto designer =
-        registry.make_designer(spec.designer->type, bank, backend, spec.designer->params);
+        registry.make<DesignerEntry>(spec.designer->type, {bank, backend}, spec.designer->params);
     detail::WatchedDesign::Tell tell;
     if (options.progress) {
       tell = [&](Index horizon, double best, double bound) {

@@ -31,15 +31,16 @@ class DesignPipeline {
 
   void design(const PipelineSpec& spec, const Registry& registry, WatchedDesign& control) {
     guarded(outcome_, [&] {
-      backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
+      backend_ = registry.make<BackendEntry>(spec.backend.type, spec.backend.params);
       outcome_.design =
-          registry.make_designer(spec.designer->type, bank_, backend_, spec.designer->params)
+          registry
+              .make<DesignerEntry>(spec.designer->type, {bank_, backend_}, spec.designer->params)
               ->design(control);
       if (control.stopped()) limit_.check(0);
       prove(spec);
       if (outcome_.design->best && spec.diagnoser) {
-        diagnoser_ =
-            registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
+        diagnoser_ = registry.make<DiagnoserEntry>(spec.diagnoser->type, {bank_, backend_},
+                                                   spec.diagnoser->params);
         PipelineAssumptions assumed = assumptions_of(*spec.diagnoser, rounding());
         assumed.inputs = false;  // the input of an experiment is known beforehand
         if (const auto& admissible = outcome_.design->admissible_set)

@@ -42,12 +42,12 @@ class DiagnosisPipeline {
 
   void make(const PipelineSpec& spec, const Registry& registry) {
     guarded(outcome_, [&] {
-      backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
-      diagnoser_ =
-          registry.make_diagnoser(spec.diagnoser->type, bank_, backend_, spec.diagnoser->params);
+      backend_ = registry.make<BackendEntry>(spec.backend.type, spec.backend.params);
+      diagnoser_ = registry.make<DiagnoserEntry>(spec.diagnoser->type, {bank_, backend_},
+                                                 spec.diagnoser->params);
       found_.guarantees = diagnoser_->guarantees();
       PipelineAssumptions assumed = assumptions_of(*spec.diagnoser, rounding());
-      const DiagnoserEntry* const entry = registry.diagnoser_entry(spec.diagnoser->type);
+      const DiagnoserEntry* const entry = registry.entry<DiagnoserEntry>(spec.diagnoser->type);
       using Modes = PipelineAssumptions::Modes;
       assumed.modes = entry && !entry->needs_modes ? Modes::nominal_and_faults : Modes::of_the_bank;
       check_.emplace(study_, std::move(assumed));

@@ -71,9 +71,9 @@ class Pipeline {
 
   void make(const PipelineSpec& spec, const Registry& registry) {
     guarded([&] {
-      backend_ = registry.make_backend(spec.backend.type, spec.backend.params);
-      observer_ = registry.make_observer(spec.observer.type, {study_.model, backend_},
-                                         spec.observer.params);
+      backend_ = registry.make<BackendEntry>(spec.backend.type, spec.backend.params);
+      observer_ = registry.make<ObserverEntry>(spec.observer.type, {study_.model, backend_},
+                                               spec.observer.params);
       board_.emplace(study_.metrics, registry);
       observer_->start();
       assumptions_ = {observer_->initial_set(), std::nullopt, observer_->follows_its_sets()};

@@ -3,7 +3,7 @@
 // file. The descriptor is read from the file before the library is opened. Keep static objects
 // trivial all the same: what their constructors throw ends the process, and the plugin is refused.
 //
-//   void register_components(cordon::Registrar& registrar) { registrar.backend({...}); }
+//   void register_components(cordon::Registrar& registrar) { registrar.add(BackendEntry{...}); }
 //   CORDON_PLUGIN("my_box", "1.0.0", "GPL-3.0-or-later", "A. Uthor", "axis-aligned boxes",
 //   register_components)
 #pragma once
@@ -12,6 +12,8 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "cordon/interfaces/backend.hpp"
@@ -70,7 +72,8 @@ class Factory {
 struct DiagnoserContext {
   const ModeBank& bank;
   std::shared_ptr<const SetBackend> backend;
-  const Factory& make;
+  const Factory* make =
+      nullptr;  ///< never null in `check` and `create`: the registry puts itself there
 };
 
 /// What an input is designed for.
@@ -79,14 +82,37 @@ struct DesignerContext {
   std::shared_ptr<const SetBackend> backend;
 };
 
+/// What a metric measures the estimates of.
+struct MetricContext {
+  const Model& model;
+};
+
+/// Of components that are made from their parameters alone.
+struct NoContext {};
+
+class Registry;
+
+// An entry for each kind of component: what the kind is called, what its components are, and how
+// one is made. A kind may have
+//   check     problems of this combination of context and parameters (pointers relative to the
+//             component's object, "/name"), so that they are reported with all others; empty:
+//             `create` will succeed. May be left out
+//   refusals  what the host asks of every component of the kind before `check` and `create`
+
 struct BackendEntry {
+  static constexpr std::string_view kind = "backend";
+  using Made = const SetBackend;
+  using Context = NoContext;
+
   ComponentInfo info;
   std::function<std::unique_ptr<SetBackend>(const Params&)> create;
 };
 struct ObserverEntry {
+  static constexpr std::string_view kind = "observer";
+  using Made = Observer;
+  using Context = ObserverContext;
+
   ComponentInfo info;
-  /// Problems of this combination of model, backend and parameters (pointers relative to the
-  /// observer's object, "/name"); empty: `create` will succeed.
   std::function<std::vector<Diagnostic>(const ObserverContext&, const Params&)> check;
   std::function<std::unique_ptr<Observer>(const ObserverContext&, const Params&)> create;
   /// It encloses the states of models whose effectiveness is known by ranges only. Otherwise such
@@ -94,10 +120,16 @@ struct ObserverEntry {
   bool takes_ranges = false;
   /// The same of models with parametric uncertainty.
   bool takes_uncertainty = false;
+
+  std::vector<Diagnostic> refusals(const ObserverContext& context, const Registry& registry) const;
 };
 struct DiagnoserEntry {
+  static constexpr std::string_view kind = "diagnoser";
+  using Made = Diagnoser;
+  using Context = DiagnoserContext;
+
   ComponentInfo info;
-  /// As for observers. May take its time: what a diagnoser promises in advance is checked here.
+  /// May take its time: what a diagnoser promises in advance is checked here.
   std::function<std::vector<Diagnostic>(const DiagnoserContext&, const Params&)> check;
   std::function<std::unique_ptr<Diagnoser>(const DiagnoserContext&, const Params&)> create;
   /// Its exclusions hold for models with parametric uncertainty. Otherwise such banks are refused
@@ -106,35 +138,56 @@ struct DiagnoserEntry {
   /// It tells modes apart, and is of no use for one alone. False: it finds additive faults, and is
   /// refused where there is no F.
   bool needs_modes = true;
+
+  std::vector<Diagnostic> refusals(const DiagnoserContext& context, const Registry& registry) const;
 };
-struct GainEntry {
+struct MetricEntry {
+  static constexpr std::string_view kind = "metric";
+  using Made = Metric;
+  using Context = MetricContext;
+
   ComponentInfo info;
-  /// Problems of this combination of model and parameters, as for observers; models with E are
-  /// refused before. What the design itself finds out is told by `design`.
-  std::function<std::vector<Diagnostic>(const GainContext&, const Params&)> check;
-  std::function<std::unique_ptr<GainDesigner>(const Params&)> create;
-};
-struct DesignerEntry {
-  ComponentInfo info;
-  /// As for observers. Banks with fewer than two modes, ranges of effectiveness or interval
-  /// matrices are refused before.
-  std::function<std::vector<Diagnostic>(const DesignerContext&, const Params&)> check;
-  std::function<std::unique_ptr<InputDesigner>(const DesignerContext&, const Params&)> create;
+  std::function<std::unique_ptr<Metric>(const Params&)> create;
+  std::function<std::vector<Diagnostic>(const MetricContext&, const Params&)> check = {};
 };
 struct PlantEntry {
+  static constexpr std::string_view kind = "plant";
+  using Made = Plant;
+  using Context = NoContext;
+
   ComponentInfo info;
   std::function<std::unique_ptr<Plant>(const Params&)> create;
 };
-/// What a metric measures the estimates of.
-struct MetricContext {
-  const Model& model;
-};
-struct MetricEntry {
+struct GainEntry {
+  static constexpr std::string_view kind = "gain";
+  using Made = const GainDesigner;
+  using Context = GainContext;
+
   ComponentInfo info;
-  std::function<std::unique_ptr<Metric>(const Params&)> create;
-  /// Problems of this combination of model and parameters, as for observers; may be left out.
-  std::function<std::vector<Diagnostic>(const MetricContext&, const Params&)> check = {};
+  /// What the design itself finds out is told by `design`.
+  std::function<std::vector<Diagnostic>(const GainContext&, const Params&)> check;
+  std::function<std::unique_ptr<GainDesigner>(const Params&)> create;
+
+  /// Models with E.
+  std::vector<Diagnostic> refusals(const GainContext& context, const Registry& registry) const;
 };
+struct DesignerEntry {
+  static constexpr std::string_view kind = "designer";
+  using Made = const InputDesigner;
+  using Context = DesignerContext;
+
+  ComponentInfo info;
+  std::function<std::vector<Diagnostic>(const DesignerContext&, const Params&)> check;
+  std::function<std::unique_ptr<InputDesigner>(const DesignerContext&, const Params&)> create;
+
+  /// Banks with fewer than two modes, ranges of effectiveness or interval matrices.
+  std::vector<Diagnostic> refusals(const DesignerContext& context, const Registry& registry) const;
+};
+
+/// The kinds of components: the one list of them. Catalogue, names, `cordon list` and `info`, the
+/// schema of studies and all messages are made from it.
+using ComponentEntry = std::variant<BackendEntry, ObserverEntry, DiagnoserEntry, MetricEntry,
+                                    PlantEntry, GainEntry, DesignerEntry>;
 
 /// Handed to a plugin's register function; what was added is rolled back if that function throws or
 /// breaks a rule. Names of components and parameters are in snake_case, components have a summary,
@@ -142,13 +195,7 @@ struct MetricEntry {
 class Registrar {
  public:
   virtual ~Registrar() = default;
-  virtual void backend(BackendEntry entry) = 0;
-  virtual void observer(ObserverEntry entry) = 0;
-  virtual void metric(MetricEntry entry) = 0;
-  virtual void diagnoser(DiagnoserEntry entry) = 0;
-  virtual void plant(PlantEntry entry) = 0;
-  virtual void gain(GainEntry entry) = 0;
-  virtual void designer(DesignerEntry entry) = 0;
+  virtual void add(ComponentEntry entry) = 0;
 };
 
 /// Plain data, read from the plugin's file before any code of the plugin runs: texts stand in it

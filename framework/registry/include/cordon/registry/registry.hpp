@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,6 +13,12 @@
 #include "cordon/registry/plugin.hpp"
 
 namespace cordon {
+
+/// A component and where it came from.
+struct ProvidedComponent {
+  ComponentEntry entry;
+  std::string plugin;  ///< "" for components of the host
+};
 
 /// One plugin library that was found, and what became of it.
 struct PluginReport {
@@ -71,22 +78,13 @@ class Registry {
 
   const std::vector<PluginReport>& reports() const;
 
-  std::vector<std::string> backends() const;  ///< names, sorted
-  std::vector<std::string> observers() const;
-  std::vector<std::string> metrics() const;
-  std::vector<std::string> diagnosers() const;
-  std::vector<std::string> plants() const;
-  std::vector<std::string> gains() const;
-  std::vector<std::string> designers() const;
-  const ComponentInfo* backend_info(std::string_view name) const;  ///< null if there is none
-  const ComponentInfo* observer_info(std::string_view name) const;
-  const ComponentInfo* metric_info(std::string_view name) const;
-  const ComponentInfo* diagnoser_info(std::string_view name) const;
-  const ComponentInfo* plant_info(std::string_view name) const;
-  const ComponentInfo* gain_info(std::string_view name) const;
-  const ComponentInfo* designer_info(std::string_view name) const;
+  /// "backend", "observer", …
+  static const std::vector<std::string>& kinds();
+  std::vector<std::string> names(std::string_view kind) const;  ///< sorted; none of an unknown kind
   /// Null if there is none.
-  const DiagnoserEntry* diagnoser_entry(std::string_view name) const;
+  const ComponentInfo* info(std::string_view kind, std::string_view name) const;
+  template <class Entry>
+  const Entry* entry(std::string_view name) const;
   /// The plugin that a component came from; "" if registered directly.
   std::string plugin_of(std::string_view kind, std::string_view name) const;
   /// If a refused plugin probably held the component, that report: it was about to register it, is
@@ -94,33 +92,22 @@ class Registry {
   const PluginReport* refused_provider(std::string_view component) const;
 
   /// Makes components; every object pins its library. Parameters are completed and checked against
-  /// the schema again: an InputError names every problem. An unknown name is Errc::invalid, or
-  /// Errc::plugin if a refused plugin probably held it. Exceptions of a plugin arrive as
-  /// Errc::plugin with the plugin's name, a cordon::Error with its own code and text.
-  std::shared_ptr<const SetBackend> make_backend(std::string_view name, const Params& params) const;
-  std::vector<Diagnostic> check_observer(std::string_view name, const ObserverContext& context,
-                                         const Params& params) const;
-  std::shared_ptr<Observer> make_observer(std::string_view name, const ObserverContext& context,
-                                          const Params& params) const;
-  std::vector<Diagnostic> check_metric(std::string_view name, const MetricContext& context,
-                                       const Params& params) const;
-  std::shared_ptr<Metric> make_metric(std::string_view name, const Params& params) const;
-  std::vector<Diagnostic> check_diagnoser(std::string_view name, const ModeBank& bank,
-                                          std::shared_ptr<const SetBackend> backend,
-                                          const Params& params) const;
-  std::shared_ptr<Diagnoser> make_diagnoser(std::string_view name, const ModeBank& bank,
-                                            std::shared_ptr<const SetBackend> backend,
-                                            const Params& params) const;
-  std::shared_ptr<Plant> make_plant(std::string_view name, const Params& params) const;
-  std::vector<Diagnostic> check_gain(std::string_view name, const GainContext& context,
-                                     const Params& params) const;
-  std::shared_ptr<const GainDesigner> make_gain(std::string_view name, const Params& params) const;
-  std::vector<Diagnostic> check_designer(std::string_view name, const ModeBank& bank,
-                                         std::shared_ptr<const SetBackend> backend,
-                                         const Params& params) const;
-  std::shared_ptr<const InputDesigner> make_designer(std::string_view name, const ModeBank& bank,
-                                                     std::shared_ptr<const SetBackend> backend,
-                                                     const Params& params) const;
+  /// the schema again: an InputError names every problem, also what is refused of the context. An
+  /// unknown name is Errc::invalid, or Errc::plugin if a refused plugin probably held it.
+  /// Exceptions of a plugin arrive as Errc::plugin with the plugin's name, a cordon::Error with its
+  /// own code and text.
+  ///   registry.make<BackendEntry>("zonotope", params)
+  ///   registry.make<ObserverEntry>("luenberger", {model, backend}, params)
+  template <class Entry>
+  std::shared_ptr<typename Entry::Made> make(std::string_view name,
+                                             const typename Entry::Context& context,
+                                             const Params& params) const;
+  template <class Entry>
+  std::shared_ptr<typename Entry::Made> make(std::string_view name, const Params& params) const;
+  /// Problems of the parameters, else of the context, else those that the component finds.
+  template <class Entry>
+  std::vector<Diagnostic> check(std::string_view name, const typename Entry::Context& context,
+                                const Params& params) const;
 
   /// Registers components of the host itself (tests, programs that embed the framework): not from a
   /// library. All or none; throws Errc::invalid where a plugin would be refused, and passes on what
@@ -129,7 +116,99 @@ class Registry {
 
  private:
   struct State;
+  using Provided = ProvidedComponent;
+
+  const Provided* find(std::string_view kind, std::string_view name) const;
+  const Provided& required(std::string_view kind, std::string_view name) const;  ///< or throws
+  const Factory& factory() const;
+  std::shared_ptr<const void> library_of(const Provided& provided) const;
+  /// Runs code of a plugin: what it throws is thrown as an error that is made here, since its own
+  /// may not outlive its library.
+  static void guarded(const Provided& provided, const std::function<void()>& call);
+  [[noreturn]] static void refuse_empty(const Provided& provided);
+
+  /// The context with the registry as its factory, where it has one.
+  template <class Context>
+  Context completed(Context context) const {
+    if constexpr (requires { context.make; }) context.make = &factory();
+    return context;
+  }
+  template <class Entry, class Create>
+  std::shared_ptr<typename Entry::Made> make_by(const Provided& provided, const Params& params,
+                                                Create&& create) const;
+
   std::unique_ptr<State> state_;
 };
+
+/// "observer \"luenberger\"".
+std::string described(const ComponentEntry& entry);
+const ComponentInfo& info_of(const ComponentEntry& entry);
+/// The parameters with their defaults; throws an InputError that names the component.
+Params complete_params(const ComponentEntry& entry, Params params);
+
+template <class Entry>
+const Entry* Registry::entry(std::string_view name) const {
+  const Provided* provided = find(Entry::kind, name);
+  return provided ? &std::get<Entry>(provided->entry) : nullptr;
+}
+
+template <class Entry, class Create>
+std::shared_ptr<typename Entry::Made> Registry::make_by(const Provided& provided,
+                                                        const Params& params,
+                                                        Create&& create) const {
+  const Params complete = complete_params(provided.entry, params);
+  std::unique_ptr<typename Entry::Made> made;
+  guarded(provided, [&] { made = create(complete); });
+  if (!made) refuse_empty(provided);
+  // The control block is made here and pins the library: the last code of a plugin that runs is the
+  // object's destructor.
+  typename Entry::Made* raw = made.release();
+  return std::shared_ptr<typename Entry::Made>(
+      raw, [library = library_of(provided)](typename Entry::Made* dying) { delete dying; });
+}
+
+template <class Entry>
+std::shared_ptr<typename Entry::Made> Registry::make(std::string_view name,
+                                                     const typename Entry::Context& context,
+                                                     const Params& params) const {
+  const Provided& provided = required(Entry::kind, name);
+  const auto& entry = std::get<Entry>(provided.entry);
+  if constexpr (requires { entry.refusals(context, *this); }) {
+    std::vector<Diagnostic> problems = entry.refusals(context, *this);
+    if (!problems.empty()) throw InputError(described(provided.entry), std::move(problems));
+  }
+  return make_by<Entry>(provided, params, [&](const Params& complete) {
+    if constexpr (requires { entry.create(context, complete); }) {
+      return entry.create(completed(context), complete);
+    } else {
+      return entry.create(complete);
+    }
+  });
+}
+
+template <class Entry>
+std::shared_ptr<typename Entry::Made> Registry::make(std::string_view name,
+                                                     const Params& params) const {
+  const Provided& provided = required(Entry::kind, name);
+  return make_by<Entry>(provided, params, [&](const Params& complete) {
+    return std::get<Entry>(provided.entry).create(complete);
+  });
+}
+
+template <class Entry>
+std::vector<Diagnostic> Registry::check(std::string_view name,
+                                        const typename Entry::Context& context,
+                                        const Params& params) const {
+  const Provided& provided = required(Entry::kind, name);
+  const auto& entry = std::get<Entry>(provided.entry);
+  Params complete = params;
+  std::vector<Diagnostic> problems = entry.info.schema.complete(complete);
+  if constexpr (requires { entry.refusals(context, *this); }) {
+    if (problems.empty()) problems = entry.refusals(context, *this);
+  }
+  if (problems.empty() && entry.check)
+    guarded(provided, [&] { problems = entry.check(completed(context), complete); });
+  return problems;
+}
 
 }  // namespace cordon

@@ -108,16 +108,10 @@ struct ComponentContext {
                                       ///< the installation, not of the file
 };
 
-/// What the registry knows about one kind of component.
-struct Shelf {
-  const char* kind;
-  const ComponentInfo* (Registry::*info)(std::string_view) const;
-  std::vector<std::string> (Registry::*names)() const;
-};
-const Shelf* shelf_of(std::string_view kind);  ///< null if there is no such kind
+bool is_kind(const std::string& kind);
 /// A component of a kind that there is: its name, or an object of "type" and parameters, components
 /// inside components included.
-std::optional<ComponentSpec> read_component(const Cursor& at, std::string_view kind,
+std::optional<ComponentSpec> read_component(const Cursor& at, const std::string& kind,
                                             const ComponentContext& context);
 
 /// Who takes the data of a study: pipelines without a designer. Those with one need seed, noise and
