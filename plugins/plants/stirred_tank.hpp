@@ -35,7 +35,7 @@ struct StirredTankParameters {
 /// first step; in deviations from the equilibrium, x = 0 with u = 0 stays where it is.) Degenerate:
 /// q_c = 0 is a tank without cooling, the limit of the formula. A negative flow gives NaN, which
 /// ends a simulation. Accuracy: classical Runge-Kutta method of fourth order with `substeps` steps.
-/// Near the operating point twice as many steps change x⁺ by less than 1e-9. Errors: Errc::invalid
+/// Near the operating point twice as many steps change x⁺ by less than 10⁻⁹. Errors: Errc::invalid
 /// if no equilibrium is found, or if the substeps are too long to stay in it. Cost: 8 exponentials
 /// per substep. Source: [Xu2014, section 6].
 class StirredTank final : public Plant {

@@ -49,14 +49,14 @@ class BasisReduction {
     return assemble(absorb_cheapest(max_generators - slacks));
   }
 
-  /// Every row without a pivot is given a unit vector, so that the frame is square.
+  /// Every row without a pivot is given a unit vector, so that the basis is one of ℝⁿ.
   ReductionSplit split(Index max_generators) {
     const Index n = G_.rows(), g = G_.cols(), last = absorb_cheapest(max_generators - (n - rank_));
     ReductionSplit parts{columns(rank_, last), Matrix(n, rank_ + g - last), Matrix::Zero(n, n),
                          true};
     parts.replaced << columns(0, rank_), columns(last, g);
-    parts.frame.leftCols(rank_) = columns(0, rank_);
-    for (Index i = rank_; i < n; ++i) parts.frame(at(row_, i), i) = 1;
+    parts.basis.leftCols(rank_) = columns(0, rank_);
+    for (Index i = rank_; i < n; ++i) parts.basis(at(row_, i), i) = 1;
     return parts;
   }
 

@@ -9,6 +9,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "cordon/core/vectors.hpp"
 #include "elimination_plan.hpp"
 #include "false_row.hpp"
@@ -51,8 +52,8 @@ void keep_rows(LineZonotope& X, Terms& terms, const std::vector<Index>& kept) {
 /// Does this row say nothing that could be told from rounding? One that misses the set by less than
 /// proofs need is such a row.
 bool is_vague(double terms, double reach, double b) {
-  return reach + std::abs(b) <= nominal_noise * terms ||
-         (std::abs(b) > reach && std::abs(b) <= nominal_margin * terms);
+  return reach + std::abs(b) <= tolerances::product_noise * terms ||
+         (std::abs(b) > reach && std::abs(b) <= tolerances::proof_margin * terms);
 }
 
 }  // namespace
@@ -152,7 +153,7 @@ LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, M
     subtract(T, V.c, of_V);
     subtract(C, X.c, of_X);
     // z - T c_V - C c_X cancels where the sets touch: a residue is no statement
-    Y.b[old + k] = std::abs(right) <= nominal_noise * center_terms ? 0 : right;
+    Y.b[old + k] = std::abs(right) <= tolerances::product_noise * center_terms ? 0 : right;
     terms.rows[old + k] = all_terms;
     if (!(Y.lines() > 0 && !Y.S.row(old + k).isZero(0)) &&
         is_vague(all_terms, Y.A.row(old + k).lpNorm<1>(), Y.b[old + k]))

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "cordon/sets/interval.hpp"
 #include "error_free.hpp"
 #include "require.hpp"
@@ -12,11 +13,6 @@
 namespace cordon::sets::outward {
 
 namespace {
-
-/// A right-hand side that cancels to this share of its terms may owe the rest to the rounding of
-/// the caller's data. It must not become a statement, such as 0 = 1e-17: it goes to the radius of
-/// its row.
-constexpr double data_noise = 1e-14;
 
 bool is_exact(const Vector& radius) { return radius.size() == 0 || (radius.array() == 0).all(); }
 
@@ -129,7 +125,9 @@ Reduced strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, Matrix
     };
     for (Index k = 0; k < C.cols(); ++k) subtract(C(i, k), x.X.c[k]);
     for (Index k = 0; k < T.cols(); ++k) subtract(T(i, k), v.X.c[k]);
-    if (std::abs(right.value) <= data_noise * terms) {
+    // What cancels to this share may owe the rest to the rounding of the caller's data. It must not
+    // become a statement, such as 0 = 1e-17: it goes to the radius of its row.
+    if (std::abs(right.value) <= tolerances::product_noise * terms) {
       right.widen(std::abs(right.value));
       right.value = 0;
     }

@@ -24,24 +24,24 @@ namespace {
 /// errors.
 constexpr double rounding_share = 1e-9;
 
-/// H, square, with {Wξ} ⊆ {Hη}: the frame's columns, scaled. With R ≈ H⁻¹, E = I - R H and V = Σ_j
-/// |R w_j| it holds Y = Σ_j |H⁻¹ w_j| ≤ V + |E| Y, so that V + |E| 1 ≤ 1, |E| 1 < 1 proves Y ≤ 1.
-/// Nothing without a proof.
-std::optional<Matrix> enclosing_frame(const Matrix& W, const Matrix& directions) {
+/// H, n×n, with {Wξ} ⊆ {Hη}: the columns of the basis, scaled. With R ≈ H⁻¹, E = I - R H and V =
+/// Σ_j |R w_j| it holds Y = Σ_j |H⁻¹ w_j| ≤ V + |E| Y, so that V + |E| 1 ≤ 1, |E| 1 < 1 proves Y
+/// ≤ 1. Nothing without a proof.
+std::optional<Matrix> enclosing_basis(const Matrix& W, const Matrix& directions) {
   constexpr double flattest = 1e-13;  ///< a column below this share of the largest could not cover
                                       ///< the others' rounding errors
   const Index n = W.rows();
   const Vector scale = row_scales(W);
   const Matrix scaled = scale.asDiagonal() * W;
-  Matrix frame = scale.asDiagonal() * directions;
-  frame = frame * linalg::row_scales(frame.transpose()).asDiagonal();
-  const std::optional<Matrix> inverse = linalg::solve(frame, Matrix::Identity(n, n));
+  Matrix basis = scale.asDiagonal() * directions;
+  basis = basis * linalg::row_scales(basis.transpose()).asDiagonal();
+  const std::optional<Matrix> inverse = linalg::solve(basis, Matrix::Identity(n, n));
   if (!inverse || !inverse->allFinite()) return std::nullopt;
   Vector size = linalg::product(*inverse, scaled).cwiseAbs().rowwise().sum();
   size = size.cwiseMax(flattest * size.maxCoeff());
   if (!(size.minCoeff() > 0)) return std::nullopt;
   for (int pass = 0; pass < 6; ++pass) {
-    const Matrix H = frame * size.asDiagonal();
+    const Matrix H = basis * size.asDiagonal();
     const Matrix R = size.cwiseInverse().asDiagonal() * *inverse;
     const Matrix E =
         (Matrix::Identity(n, n) - linalg::product(R, H)).cwiseAbs() + rounding::product_error(R, H);
@@ -157,15 +157,15 @@ void reduce_rows(TrackedForm& form, Index most, const ConstraintElimination& opt
   }
 }
 
-/// Kept columns, and a frame around those replaced and the radii.
+/// Kept columns, and a parallelotope around those replaced and the radii.
 Matrix reduce_columns(const Columns& columns, Index max_generators, GeneratorReduction method) {
   const ReductionSplit split = split_generators(columns.others, max_generators, method);
   const Matrix replaced = columns.beside(split.replaced);
   const bool box = method == GeneratorReduction::girard || method == GeneratorReduction::combastel;
-  const std::optional<Matrix> frame = box ? std::nullopt : enclosing_frame(replaced, split.frame);
-  const Matrix replacement = frame ? *frame : Matrix(enclosing_radii(replaced).asDiagonal());
+  const std::optional<Matrix> basis = box ? std::nullopt : enclosing_basis(replaced, split.basis);
+  const Matrix replacement = basis ? *basis : Matrix(enclosing_radii(replaced).asDiagonal());
   Matrix reduced(replaced.rows(), split.kept.cols() + replacement.cols());
-  if (split.frame_first) {
+  if (split.basis_first) {
     reduced << replacement, split.kept;
   } else {
     reduced << split.kept, replacement;

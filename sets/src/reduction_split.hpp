@@ -9,11 +9,11 @@ namespace cordon::sets {
 struct ReductionSplit {
   Matrix kept;               ///< stay as they are
   Matrix replaced;           ///< the others
-  Matrix frame;              ///< n×n: directions of the parallelotope that replaces them
-  bool frame_first = false;  ///< its place in the result: later choices among equals depend on it
+  Matrix basis;              ///< n×n: directions of the parallelotope that replaces them
+  bool basis_first = false;  ///< its place in the result: later choices among equals depend on it
 };
 
-/// The split of `reduce_generators` for max_generators ≥ n: kept and frame have at most
+/// The split of `reduce_generators` for max_generators ≥ n: kept and basis have at most
 /// max_generators columns together.
 ReductionSplit split_generators(const Matrix& G, Index max_generators, GeneratorReduction method);
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "cordon/core/tolerances.hpp"
 #include "rows.hpp"
 #include "tracked_form.hpp"
 
@@ -27,15 +28,15 @@ bool is_positive_definite(Matrix& K) {
   return true;
 }
 
-/// Rows of [G; A] with noise in units of `noise` / `nominal_margin`, and of them only every
-/// `stride`-th factor.
+/// Rows of [G; A] with noise in units of `noise` / `tolerances::proof_margin`, and of them only
+/// every `stride`-th factor.
 Rows noisy_rows(const LineForm& X, const Vector& noise, Index count, Index stride) {
   const Index n = X.dim(), taken = (X.generators() + stride - 1) / stride;
   Rows rows = Rows::Zero(count, vectors::padded(taken));
   Index next = 0;
   for (Index i = 0; i < noise.size(); ++i) {
     if (!(noise[i] > 0)) continue;
-    const double scale = nominal_margin / noise[i];
+    const double scale = tolerances::proof_margin / noise[i];
     const double* const from = i < n ? &X.G(i, 0) : &X.A(i - n, 0);
     const Index step = stride * (i < n ? n : X.constraints());
     double* const to = &rows(next++, 0);
@@ -73,7 +74,8 @@ bool have_own_factors(const LineForm& X, const Terms& terms) {
     if (entries != 1 || covered[static_cast<std::size_t>(place)]) continue;
     const double size = place < n ? X.G(place, j) : X.A(place - n, j);
     const double computed_from = place < n ? terms.state[place] : terms.rows[place - n];
-    if (!(computed_from > 0) || !(nominal_noise * computed_from <= nominal_margin * std::abs(size)))
+    if (!(computed_from > 0) ||
+        !(tolerances::product_noise * computed_from <= tolerances::proof_margin * std::abs(size)))
       continue;
     covered[static_cast<std::size_t>(place)] = true;
     --open;
@@ -81,9 +83,9 @@ bool have_own_factors(const LineForm& X, const Terms& terms) {
   return open == 0;
 }
 
-/// Does {[G; A]ξ : ‖ξ‖₂ ≤ 1} hold the ellipsoid with the half axes `noise` / `nominal_margin`? Rows
-/// without noise do not count. With a part of the factors it is smaller, so that what holds for
-/// some, as it does nearly always, holds for all.
+/// Does {[G; A]ξ : ‖ξ‖₂ ≤ 1} hold the ellipsoid with the half axes `noise` /
+/// `tolerances::proof_margin`? Rows without noise do not count. With a part of the factors it is
+/// smaller, so that what holds for some, as it does nearly always, holds for all.
 bool is_wide(const LineForm& X, const Vector& noise) {
   const Index g = X.generators(), count = (noise.array() > 0).count();
   if (count == 0 || g == 0) return count == 0;
@@ -113,9 +115,10 @@ LineForm with_residue(LineForm X, const Terms& terms) {
     if (X.lines() > 0 && !X.S.row(i).isZero(0))
       noise[n + i] = terms.rows[i];  // lines satisfy such a row
   }
-  noise *= nominal_noise;
+  noise *= tolerances::product_noise;
   if (is_wide(X, noise)) return X;
-  return with_radii(X, nominal_noise * terms.rows, nominal_noise * terms.state);
+  return with_radii(X, tolerances::product_noise * terms.rows,
+                    tolerances::product_noise * terms.state);
 }
 
 Zonotope with_residue(Zonotope Z, const Vector& state) {

@@ -9,11 +9,6 @@
 
 namespace cordon::sets {
 
-/// Below this share of its terms, a value may stem from the rounding of nominal operations.
-constexpr double nominal_noise = 1e-14;
-/// No proof rests on less than this share of its terms.
-constexpr double nominal_margin = 1e-10;
-
 /// Sizes of the terms that the rows [A b] and the coordinates [G c] of a set were computed from; 0:
 /// not computed, hence exact.
 struct Terms {
@@ -27,8 +22,8 @@ inline Terms no_terms(const LineForm& X) {
 void take_reach(const Vector& c, const Matrix& G, Vector& sizes);
 
 /// X, computed from such terms. Where the lifted zonotope [G; A] is so flat that the margin of
-/// proofs does not cover 1e-14 of the terms, these get factors of their own: the set becomes larger
-/// by them.
+/// proofs does not cover `tolerances::product_noise` (1e-14) of the terms, these get factors of
+/// their own: the set becomes larger by them.
 LineForm with_residue(LineForm X, const Terms& terms);
 /// Likewise of a zonotope whose coordinates were computed from terms of the sizes `state`.
 Zonotope with_residue(Zonotope Z, const Vector& state);

@@ -83,7 +83,7 @@ bool intersect(Computed& X, VectorIn rho, Strip strip, StripMethod method) {
   sigma += rounding::gamma(Z.dim() + 1) * seen + rho.cwiseAbs().dot(X.noise);
   const Vector lambda = strip_gain(Z.G, rho, sigma, method);
   if (lambda.isZero(0) || !lambda.allFinite()) return true;
-  X.noise += nominal_noise * (sizes + lambda.cwiseAbs() * (std::abs(shift) + seen));
+  X.noise += tolerances::product_noise * (sizes + lambda.cwiseAbs() * (std::abs(shift) + seen));
   X.Z = member_of_family(Z, rho, shift, sigma, lambda);
   return true;
 }
@@ -130,7 +130,7 @@ std::optional<Zonotope> correct(const Zonotope& Z, MatrixIn C, VectorIn z, Matri
     const double terms = std::abs(z[i]) + row.cwiseAbs().dot(V.c.cwiseAbs()) + sigma;
     if (!intersect(X, C.row(i).transpose(), {d, sigma, terms}, method)) return std::nullopt;
   }
-  return with_residue(std::move(X.Z), X.noise / nominal_noise);
+  return with_residue(std::move(X.Z), X.noise / tolerances::product_noise);
 }
 
 }  // namespace cordon::sets

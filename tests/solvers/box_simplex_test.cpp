@@ -86,7 +86,7 @@ TEST_CASE("whole questions about random programs agree with rational arithmetic"
     REQUIRE(std::isfinite(bound.upper));
     CHECK(rational::exact(bound.upper) >= exact.value);
     const double low =
-        bound.xi ? program.attained(p.g, *bound.xi) : -std::numeric_limits<double>::infinity();
+        bound.xi ? program.lower_support(p.g, *bound.xi) : -std::numeric_limits<double>::infinity();
     if (std::isfinite(low)) CHECK(rational::exact(low) <= exact.value);
   }
   MESSAGE("unknown: ", unknown, " of ", programs_asked() / 4);

@@ -103,7 +103,7 @@ TEST_CASE("bounds hold for any multipliers, and are attained") {
     const auto bound = program.maximum(objective);
     RC_ASSERT(bound.upper >= objective.dot(xi) - 1e-9 * (1 + objective.lpNorm<1>()));
     if (bound.xi) {
-      const double low = program.attained(objective, *bound.xi);
+      const double low = program.lower_support(objective, *bound.xi);
       RC_ASSERT(low <= bound.upper);
       if (std::isfinite(low)) RC_ASSERT(bound.upper - low <= 1e-6 * (1 + objective.lpNorm<1>()));
     }

@@ -171,7 +171,7 @@ TEST_CASE("operations that overflow throw") {
 TEST_CASE("a support beyond the range of doubles is infinite") {
   const LineForm X = make_zonotope(Vector{{0.0}}, Matrix{{1e200, -1e200}});
   CHECK(support(X, Vector{{1e200}}) == infinity);
-  CHECK(attained(X, Vector{{1e200}}) < infinity);
+  CHECK(lower_support(X, Vector{{1e200}}) < infinity);
 }
 
 TEST_CASE("a singleton contains its point, and nothing is said within rounding errors") {
@@ -229,7 +229,7 @@ TEST_CASE("sets hold the point they were built around") {
     for (Index i = 0; i < n; ++i) d[i] = static_cast<double>(*rc::gen::inRange(-10, 11));
     const double h = support(X, d);
     RC_ASSERT(h >= d.dot(x) - 1e-8 * scale * (1 + d.lpNorm<1>()));
-    RC_ASSERT(attained(X, d) <= h);
+    RC_ASSERT(lower_support(X, d) <= h);
   }));
 }
 
@@ -285,11 +285,11 @@ TEST_CASE("through lines, points and inclusions are proven for the numbers as st
   // anything
   const LineForm none{Matrix{{1}},      Matrix(1, 0), Vector::Zero(1),
                       Matrix{{1}, {1}}, Matrix(2, 0), Vector{{1, 1 + 0x1p-52}}};
-  CHECK(attained(none, Vector{{1}}) == -infinity);
+  CHECK(lower_support(none, Vector{{1}}) == -infinity);
   const LineForm line{Matrix{{1}, {1}}, Matrix(2, 0), Vector::Zero(2),
                       Matrix(0, 1),     Matrix(0, 0), Vector(0)};
-  CHECK(attained(line, Vector{{1, -1}}) == 0);
-  CHECK(attained(line, Vector{{1, 0}}) == infinity);
+  CHECK(lower_support(line, Vector{{1, -1}}) == 0);
+  CHECK(lower_support(line, Vector{{1, 0}}) == infinity);
   // almost parallel lines
   const LineForm strip{Matrix{{1}, {1 + 0x1p-52}},
                        Matrix{{1}, {0}},
@@ -323,9 +323,9 @@ TEST_CASE("a hull is empty only on a proof for the numbers as stored") {
     for (double& x : X.b) x = tenth();
     if (exact::is_empty(X) == Answer::no) {
       RC_ASSERT(!interval_hull(X).is_empty());
-      RC_ASSERT(attained(X, Vector{{1}}) <= exact::support(X, Vector{{1}}).upper);
+      RC_ASSERT(lower_support(X, Vector{{1}}) <= exact::support(X, Vector{{1}}).upper);
     } else {
-      RC_ASSERT(attained(X, Vector{{1}}) == -infinity);
+      RC_ASSERT(lower_support(X, Vector{{1}}) == -infinity);
     }
   }));
 }

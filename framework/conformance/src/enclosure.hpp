@@ -25,8 +25,8 @@ struct Operand {
 /// Imports a set of the case.
 Operand import_operand(const Context& context, const TestSet& X);
 
-/// An enclosure that was computed with rounding has lost points of its boundary by some 1e-16; seen
-/// from a set that is hardly larger itself, that is far outside.
+/// An enclosure that was computed with rounding has lost points of its boundary by some roundoff;
+/// seen from a set that is hardly larger itself, that is far outside.
 bool is_fat(const Set& X);
 
 /// The result's support function is no smaller than the truth's. If the points are `sure`, the

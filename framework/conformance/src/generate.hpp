@@ -12,7 +12,7 @@ namespace cordon::conformance {
 enum class Style {
   tame,   ///< multiples of 1/8 up to 4: small sums and products are exact
   full,   ///< 53 random binary digits: everything rounds
-  scaled  ///< coordinates and generators from 1e-8 to 1e8
+  scaled  ///< coordinates and generators from 10⁻⁸ to 10⁸
 };
 
 /// What the sets of a case may be.

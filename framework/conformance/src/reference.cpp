@@ -80,7 +80,7 @@ double Reference::lower(VectorIn d) {
   if (line == Along::unclear) return value;
   double reached = -infinity;
   if (const BoxedProgram::Bound bound = solve(d); bound.xi) {
-    reached = program_.attained(linalg::product(X_.G.transpose(), d), *bound.xi);
+    reached = program_.lower_support(linalg::product(X_.G.transpose(), d), *bound.xi);
   }
   if (reached > -infinity) return std::max(value, d.dot(X_.c) + reached);
   // dependent rows, or a set without interior: floating point proves nothing, rational arithmetic

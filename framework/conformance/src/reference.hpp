@@ -31,8 +31,8 @@ class Reference {
   double upper(VectorIn d);
   /// Rounding errors that nominal arithmetic may make in h(d), with room: 1e-9 of the terms dᵀ(|c|
   /// + |G|1) and yᵀ(|b| + |A|1), y being the multipliers of h(d), which say how an error of a row
-  /// reaches the value. An operation and a certified bound lose some hundred units of 1e-16 each; a
-  /// wrong number of these sets is off by 1e-3 or more.
+  /// reaches the value. An operation and a certified bound lose some hundred units of roundoff
+  /// each; a wrong number of these sets is off by a thousandth or more.
   double tolerance(VectorIn d);
 
   bool bounded() const { return X_.lines() == 0; }

@@ -12,7 +12,7 @@ namespace cordon {
 /// The same program in other units: row and column r of inequality j times row_scale[j][r], x_i =
 /// variable_scale[i] x̃_i, cost times cost_scale; all powers of two, so that nothing is rounded.
 /// Variables that appear nowhere are left out. The largest cost is made about 1000, since SDPA
-/// stops when its two objective values have come within 1e-6.
+/// stops when its two objective values have come within its own accuracy.
 struct ScaledProgram {
   SemidefiniteProgram program;
   std::vector<Vector> row_scale;

@@ -234,7 +234,7 @@ std::optional<Vector> BoxedProgram::central_point(double beyond) {
   return xi;
 }
 
-double BoxedProgram::attained(VectorIn g, VectorIn xi) {
+double BoxedProgram::lower_support(VectorIn g, VectorIn xi) {
   const State& s = *state_;
   if (xi.size() && !(xi.cwiseAbs().maxCoeff() <= 1 + 1e-6)) return -infinity;
   const Vector inside = xi.cwiseMax(-1.0).cwiseMin(1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bounds of sets: support values, values that are attained, interval hulls.
+// Bounds of sets: support values from above and from below, interval hulls.
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -34,8 +34,8 @@ double value_at(const LineForm& X, VectorIn d, const rational::RationalVector& b
 
 /// No bound of rounding errors covers the elimination of lines: the proposed points are moved onto
 /// the rows exactly.
-double attained_through_lines(const LineForm& X, VectorIn d) {
-  check(X, "attained");
+double lower_support_through_lines(const LineForm& X, VectorIn d) {
+  check(X, "lower_support");
   if (!is_small(X.S, X.A)) return -infinity;
   if (!proven_support(X, d, Vector::Zero(X.constraints())))
     return is_empty(X) == Answer::no ? infinity : -infinity;
@@ -79,19 +79,19 @@ double support(const LineForm& X, VectorIn d, Certificate* why) {
   return Questioned(X).support(X, d, why);
 }
 
-double attained(const LineForm& X, VectorIn d) {
-  if (X.lines() > 0) return attained_through_lines(X, d);
+double lower_support(const LineForm& X, VectorIn d) {
+  if (X.lines() > 0) return lower_support_through_lines(X, d);
   if (is_zonotope(X)) return support_of_zonotope(X, d).lower;
   Questioned q(X);
   const Vector g = linalg::transposed_product(q.X.G, d);
   if (!g.allFinite()) return -infinity;  // an overflow
   const BoxedProgram::Bound bound = q.program.maximum(g);
   if (!bound.xi) return -infinity;
-  double value = q.program.attained(g, *bound.xi);
+  double value = q.program.lower_support(g, *bound.xi);
   if (value ==
       -infinity) {  // a degenerate vertex: a step towards the middle has slack in every coordinate
     if (const auto center = q.program.central_point()) {
-      value = q.program.attained(g, (1 - step_inward) * *bound.xi + step_inward * *center);
+      value = q.program.lower_support(g, (1 - step_inward) * *bound.xi + step_inward * *center);
     }
   }
   if (value == -infinity) return value;

@@ -77,7 +77,7 @@ std::optional<std::vector<Vector>> facet_normals(const Matrix& L) {
 
 /// X ⊆ Y refuted along ±d? Fills `why`.
 bool refuted(const LineForm& X, const LineForm& Y, VectorIn d, Certificate* why) {
-  const double inside = attained(X, d), bound = support(Y, d);
+  const double inside = lower_support(X, d), bound = support(Y, d);
   const double scale =
       d.cwiseAbs().dot(X.c.cwiseAbs() + Y.c.cwiseAbs()) + std::abs(inside) + std::abs(bound);
   if (!(inside > -infinity) || !(bound < infinity)) return false;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
 
 namespace cordon::detail {
 
@@ -15,7 +16,7 @@ bool leaves(const Box& inner, const Box& hull) {
     for (const double bound : {inner.lower[i], inner.upper[i], hull.lower[i], hull.upper[i]}) {
       if (std::isfinite(bound)) size = std::max(size, std::abs(bound));
     }
-    const double margin = 1e-9 * size;
+    const double margin = tolerances::reported * size;
     if (inner.lower[i] < hull.lower[i] - margin || inner.upper[i] > hull.upper[i] + margin)
       return true;
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "solvers/rational_questions.hpp"
 
@@ -11,8 +12,7 @@ namespace cordon::detail {
 
 namespace {
 
-constexpr double last_digits = 1e-14;
-constexpr double of_size = 1e-9, barely = 1e-6;
+constexpr double barely = 1e-6;
 
 double largest(VectorIn x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
 
@@ -30,13 +30,16 @@ bool clearly_outside(const LineForm& X, VectorIn x, double margin) {
 bool clearly_outside(const LineForm& X, VectorIn x) {
   if (X.dim() != x.size()) return false;
   const Vector sizes = x.cwiseAbs().cwiseMax(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
-  return clearly_outside(X, x, Vector(of_size * sizes.array() + last_digits * largest(sizes)));
+  return clearly_outside(
+      X, x,
+      Vector(tolerances::reported * sizes.array() + tolerances::product_noise * largest(sizes)));
 }
 
 bool outside_by_its_size(const LineForm& X, VectorIn x, VectorIn rounding) {
   if (X.dim() != x.size() || rounding.size() != x.size()) return false;
   const double size = largest(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
-  return clearly_outside(X, x, Vector(rounding.cwiseMax(of_size * std::max(size, largest(x)))));
+  return clearly_outside(
+      X, x, Vector(rounding.cwiseMax(tolerances::reported * std::max(size, largest(x)))));
 }
 
 bool barely_outside(const LineForm& X, VectorIn x) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
 
 namespace cordon::detail {
 
@@ -13,8 +14,8 @@ namespace {
 constexpr std::size_t most_remembered = 1000;
 
 bool is_outside(double truth, const FaultBound& bound) {
-  const double margin =
-      1e-9 * std::max({std::abs(truth), std::abs(bound.lower), std::abs(bound.upper)});
+  const double margin = tolerances::reported *
+                        std::max({std::abs(truth), std::abs(bound.lower), std::abs(bound.upper)});
   return truth < bound.lower - margin || truth > bound.upper + margin;
 }
 

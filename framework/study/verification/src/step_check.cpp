@@ -144,7 +144,7 @@ void StepCheck::bound_proof(Index i, bool upper) {
     ++proofs_;
     return;
   }
-  const double reached = attained(row_.set, d);
+  const double reached = lower_support(row_.set, d);
   const std::string name = fmt::format("the {} bound of coordinate {}, {:.17g},",
                                        upper ? "upper" : "lower", i + 1, upper ? bound : -bound);
   if (reached > bound + slack) {

@@ -99,7 +99,7 @@ void StepCheck::along(const Vector& d, Along& by) {
                       : d[i] > 0  ? d[i] * step_.hull.upper[i]
                                   : d[i] * step_.hull.lower[i];
   const double set = reported_empty() ? -infinity : support(row_.set, d);
-  double reached = reported_empty() ? -infinity : attained(row_.set, d);
+  double reached = reported_empty() ? -infinity : lower_support(row_.set, d);
   const auto settled = [&](const Bound& bound) {
     return bound.shown && bound.value + share_of_proof * slack <= std::min(hull, reached) + slack;
   };

@@ -22,19 +22,20 @@ struct Summand {
 };
 
 /// A X ⊕ {f} ⊕ Σ Tᵢ Sᵢ; exact, assembled without temporaries. A is m×n, Tᵢ is m×dim Sᵢ. A sum that
-/// is flat gets a generator of 1e-14 of the terms per coordinate: errors of its plane would
-/// otherwise contradict exact measurements later. Where the images of lines are dependent but for
-/// rounding (entries below 1e-4 of the terms they cancelled from) and exact arithmetic tells that
-/// they are not, every coordinate that they may still reach becomes unbounded: the sum then holds
-/// the exact one and is larger.
+/// is flat gets a generator of `tolerances::product_noise` (1e-14) of the terms per coordinate:
+/// errors of its plane would otherwise contradict exact measurements later. Where the images of
+/// lines are dependent but for rounding (entries below `vague_column` (1e-4) of the terms they
+/// cancelled from) and exact arithmetic tells that they are not, every coordinate that they may
+/// still reach becomes unbounded: the sum then holds the exact one and is larger.
 Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f,
                    std::span<const Summand> summands);
 
 /// {x ∈ X : z - C x ∈ T V}; exact. Rows: those of X, those of V, then C M δ + C G ξ + T(M_V δ_V +
 /// G_V ξ_V) = z - C c - T c_V. Of these last rows, those without lines are left out where they say
-/// nothing beyond rounding (all of the row below 1e-14 of its terms, or a violation below 1e-10),
-/// and where all rows together are so nearly dependent that rounding matters, each gets a slack of
-/// 1e-14 of its terms.
+/// nothing beyond rounding (all of the row below `tolerances::product_noise` (1e-14) of its terms,
+/// or a violation below `tolerances::proof_margin` (1e-10)), and where all rows together are so
+/// nearly dependent that rounding matters, each gets a slack of `tolerances::product_noise` (1e-14)
+/// of its terms.
 LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T,
                                 const LineZonotope& V);
 

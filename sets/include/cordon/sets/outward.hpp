@@ -56,8 +56,8 @@ Reduced eliminate_constraints(const LineZonotope& X, Index max_constraints,
                               const ConstraintElimination& options = {});
 
 /// H with at most `max_generators` columns and {Gξ} ⊆ {Hη}. Columns that the nominal method leaves
-/// stay as they are; those W that it replaces are enclosed by a square frame F with |F⁻¹ W| 1 ≤ 1,
-/// proven by an approximate inverse of F; if the proof fails, by a box.
+/// stay as they are; those W that it replaces are enclosed by a parallelotope of basis F with |F⁻¹
+/// W| 1 ≤ 1, proven by an approximate inverse of F; if the proof fails, by a box.
 Matrix reduce_generators(MatrixIn G, Index max_generators,
                          GeneratorReduction method = GeneratorReduction::adaptive);
 

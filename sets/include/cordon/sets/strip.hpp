@@ -8,11 +8,12 @@
 // encloses it [Alamo2005]; the methods differ in λ.
 // Degenerate cases: Z inside S: Z itself. ρ = 0: Z if |d| ≤ σ, else ∅. σ = 0: a hyperplane. g = 0:
 // the point c or ∅. An intersection that is proven empty is no zonotope: nothing is returned. The
-// gap must exceed the rounding errors of the test and 1e-12 of the sizes involved, for a zonotope
-// carries the rounding errors of the operations that made it. A flat Z stays flat: λ is chosen in
-// the range of G, where the volume of its own dimension counts. A strip that cuts Z on one side
-// only is first narrowed to what Z meets of it. Directions of which ρ sees less than 1e-6, in the
-// coordinates of Z, are not used for λ: what is left of them may be rounding.
+// gap must exceed the rounding errors of the test and `tolerances::proof_margin` (1e-10) of the
+// sizes involved, for a zonotope carries the rounding errors of the operations that made it. A flat
+// Z stays flat: λ is chosen in the range of G, where the volume of its own dimension counts. A
+// strip that cuts Z on one side only is first narrowed to what Z meets of it. Directions of which ρ
+// sees less than `smallest_part` (1e-6), in the coordinates of Z, are not used for λ: what is left
+// of them may be rounding.
 // Units: λ follows a change of the coordinates' units in all methods, up to ties.
 // Rounding: nominal. The rounding errors of ρᵀx are multiplied by λ, whatever its size; they widen
 // the strip. Errors: Errc::invalid for σ < 0, Errc::dimension, Errc::not_finite.

@@ -44,13 +44,13 @@ struct VolumeBounds {
 /// Volume of a bounded set X ⊂ R³. Known points of X, moved to a fine grid of coordinates in which
 /// X is about as thick as it is long, have a hull that is exact in integers; it grows until the
 /// support function confirms each of its facets. Bounds follow from what the points are moved,
-/// 1e-11 of the set's size, and from the largest gap between a facet and its support; they hold up
-/// to rounding errors of the support function. Asking goes on until they agree to a hundredth of
-/// the tolerance; the rest leaves room for an inexact support function. For curved sets, and where
-/// rounding hides the thickness of a set, the bounds at the limit of queries or of resolution are
-/// returned; those of a set thinner than 1e-8 of its interval hull are 0 and the volume of its
-/// `turned_box`. ∅ has the volume 0. Errors: Errc::unsupported for an unbounded set. O(V²) for V
-/// vertices, one query per facet tried.
+/// √3/2 steps of a grid of 2⁻³⁶ of the set's size, and from the largest gap between a facet and its
+/// support; they hold up to rounding errors of the support function. Asking goes on until they
+/// agree to a hundredth of the tolerance; the rest leaves room for an inexact support function. For
+/// curved sets, and where rounding hides the thickness of a set, the bounds at the limit of queries
+/// or of resolution are returned; those of a set thinner than 1e-8 of its interval hull are 0 and
+/// the volume of its `turned_box`. ∅ has the volume 0. Errors: Errc::unsupported for an unbounded
+/// set. O(V²) for V vertices, one query per facet tried.
 VolumeBounds volume(const SupportOracle& X, double relative_tolerance = 1e-7,
                     Index max_queries = 20000);
 

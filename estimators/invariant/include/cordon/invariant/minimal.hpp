@@ -20,8 +20,8 @@ class Decay {
  public:
   /// `size` ≥ 0 (n) is what disturbances have in each coordinate; it decides about p only. Errors:
   /// Errc::invalid if A is not Schur, with the eigenvalue, named `what`; Errc::unsupported if no
-  /// power is found (an eigenvalue within about 1e-12 of the unit circle); Errc::dimension,
-  /// Errc::not_finite. O(n³ log m).
+  /// power is found (an eigenvalue so near to the unit circle that rounding hides it);
+  /// Errc::dimension, Errc::not_finite. O(n³ log m).
   Decay(MatrixIn A, VectorIn size, const std::string& what = "the matrix");
 
   const Matrix& matrix() const { return A_; }

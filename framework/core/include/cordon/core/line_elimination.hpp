@@ -17,9 +17,9 @@ namespace cordon {
 LineForm eliminate_lines(const LineForm& X);
 
 /// The same, with the sizes of the terms that were added up: what is left of them after
-/// cancellation is known up to a share only. Lines of which that leaves no digits (1e-4) while
-/// exact arithmetic tells that they are there are held by lines along every coordinate that they
-/// may reach: the set is larger then.
+/// cancellation is known up to a share only. Lines of which that leaves no digits, `vague_column`
+/// (1e-4), while exact arithmetic tells that they are there are held by lines along every
+/// coordinate that they may reach: the set is larger then.
 struct LinesSolved {
   LineForm set;
   Vector row_magnitude;    ///< of every row of `set`, the largest over its entries

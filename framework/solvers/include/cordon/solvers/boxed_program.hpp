@@ -57,7 +57,7 @@ class BoxedProgram {
 
   /// h with gᵀξ ≥ h for some point ξ proven to lie in P near `xi`; -inf when no such proof
   /// succeeds.
-  double attained(VectorIn g, VectorIn xi);
+  double lower_support(VectorIn g, VectorIn xi);
 
  private:
   struct State;

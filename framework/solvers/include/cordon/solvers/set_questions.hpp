@@ -24,7 +24,7 @@ double support(const LineForm& X, VectorIn d, Certificate* why = nullptr);
 
 /// A value that dᵀx attains or exceeds for some x proven to lie in X; -inf without a proof. Never
 /// above h_X(d).
-double attained(const LineForm& X, VectorIn d);
+double lower_support(const LineForm& X, VectorIn d);
 
 /// Smallest box that contains X, each bound a certified support value; ±inf in unbounded
 /// coordinates; Box::empty if X is proven empty (n = 0: see `is_empty`). `why` receives two proofs

@@ -107,7 +107,7 @@ struct FaultStatistics {
   std::int64_t bounds = 0;   ///< times that it was bounded
   std::int64_t checked = 0;  ///< of these, with the true value known
   std::int64_t outside =
-      0;  ///< of these, with the true value outside by more than rounding (1e-9 relative)
+      0;  ///< of these, with the true value outside by more than `tolerances::reported` (1e-9)
   std::int64_t excluded_0 = 0;  ///< bounds that do not hold 0: the fault is proven
   double mean_half_width = 0, last_half_width = 0;  ///< the last one of the first seed
   double rms_error = 0;                             ///< of the estimate, where checked
@@ -210,7 +210,7 @@ struct PipelineOutcome {
       -1;  ///< from this k on nothing is promised: `failed_assumption->from`
   std::optional<FailedAssumption> failed_assumption;  ///< the earliest
   std::int64_t outside_from = -1;  ///< first k with the truth proven outside the estimate, by more
-                                   ///< than rounding (1e-9 relative)
+                                   ///< than `tolerances::reported` (1e-9)
   std::int64_t violated_at = -1;  ///< a defect: `outside_from` where all assumptions hold, which is
                                   ///< known of simulated data only (in the nominal mode so far, and
                                   ///< not of a Plant); or the true mode excluded
@@ -224,9 +224,9 @@ struct PipelineOutcome {
   Box last_hull;            ///< of the last estimate; dimension 0: there is none
   std::optional<WidthGrowth>
       growth;  ///< of the state that has grown most; none: the sets stay as they are
-  std::int64_t inner_steps = 0;  ///< steps with an inner estimate
-  std::int64_t inner_outside =
-      -1;  ///< first k at which it leaves the hull by more than rounding (1e-9 relative): a defect
+  std::int64_t inner_steps = 0;     ///< steps with an inner estimate
+  std::int64_t inner_outside = -1;  ///< first k at which it leaves the hull by more than
+                                    ///< `tolerances::reported` (1e-9): a defect
   double inner_share =
       0;  ///< mean width of the inner estimate / width of the hull over steps and states
   std::vector<MetricValue> summary;  ///< of the metrics

@@ -14,8 +14,8 @@ struct PlanePoint {
   double x = 0, y = 0;
 };
 
-/// The projection of a set to two coordinates. What it stands for lies inside, up to 1e-6 of its
-/// size.
+/// The projection of a set to two coordinates. What it stands for lies inside, up to
+/// `display_precision` (1e-7) of its size.
 struct PlaneSet {
   enum class Kind {
     empty,    ///< proven

@@ -36,9 +36,9 @@ PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser,
                                    std::optional<Rounding> rounding);
 
 /// Follows the runs of one pipeline. Where the truth is known:
-///   x_0 ∈ X0, x_k in the sets of the pipeline, u_k ∈ U: outside by more than 1e-9 of their size;
-///   of a `Plant`, which is no linear model, w and v are what is missing in the model of the true
-///   mode,
+///   x_0 ∈ X0, x_k in the sets of the pipeline, u_k ∈ U: outside by more than
+///   `tolerances::reported` (1e-9) of their size; of a `Plant`, which is no linear model, w and v
+///   are what is missing in the model of the true mode,
 ///     E x_{k+1} - A x_k - B diag(f) u_k ∈ Bw W,   y_k - diag(g) (C x_k + D diag(f) u_k) ∈ Dv V
 ///   with intervals of A, B, C and ranges of f and g as boxes: outside by more than 1e-12 of the
 ///   terms of a row, which the operations of the plant may have rounded. What linear models

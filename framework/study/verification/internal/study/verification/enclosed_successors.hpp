@@ -9,8 +9,8 @@
 namespace cordon::verification {
 
 /// A set whose operations were rounded: c and b are known up to `center` and `rows`, entry by
-/// entry. `widened` has factors for these errors and holds the true set; the columns of 1e-16 that
-/// this takes are nothing for a solver, so that it bounds `set`.
+/// entry. `widened` has factors for these errors and holds the true set; the columns of one
+/// roundoff that this takes are nothing for a solver, so that it bounds `set`.
 struct Enclosure {
   LineForm set;
   Vector center, rows;
