@@ -209,7 +209,7 @@ TEST_CASE("files that are not as they were written are refused with file, place 
   refused("results.json", "\"name\": \"b\"", "\"name\": \"a\"", "repeats the name");
   refused("results.json", "\"name\": \"b\"", "\"nam\": \"b\"", "/pipelines/1/name");
   refused("results.json", "\"plugins\": [", "\"plugins\": [3, ", "/plugins/0");
-  refused("run.json", "{\"k\": 0", "{\"k\": \"x\"", "/pipelines/0/steps/k");
+  refused("run.json", "{\"k\": 0", "{\"k\": \"x\"", "/pipelines/0/steps/0/k (line 2)");
   refused("steps.csv", "a,1,", "c,1,", "names the pipeline \"c\"");
   refused("steps.csv", "a,1,", "a,1.5,", "is no integer");
   refused("steps.csv", "a,1,", "a,1,1,", "16 fields");

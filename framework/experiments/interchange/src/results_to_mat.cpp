@@ -9,6 +9,7 @@
 #include "experiments/interchange/model_to_mat.hpp"
 #include "experiments/interchange/steps_to_mat.hpp"
 #include "study/reading/read_parts.hpp"
+#include "study/results/recorded_head.hpp"
 #include "study/results/recorded_run.hpp"
 #include "study/text/csv_reader.hpp"
 #include "study/text/input_file.hpp"
@@ -193,8 +194,7 @@ void results_to_mat(const fs::path& directory, const Target& target, bool with_s
   const Cursor root(tree, "", problems);
   mat::Variables all;
   std::vector<std::string> warnings;
-  if (root.expect(Kind::object, "a results file of \"cordon run\" is an object") &&
-      root.need("cordon_results", not_as_written)) {
+  if (json::expect_results(root)) {
     const auto title = root.need("title", not_as_written),
                study = root.need("study", not_as_written),
                pipelines = root.need("pipelines", not_as_written);

@@ -5,11 +5,12 @@
 #include <limits>
 #include <optional>
 
-#include "experiments/statistics/large_json.hpp"
 #include "study/reading/read_sweep.hpp"
 #include "study/results/measures.hpp"
+#include "study/results/recorded_head.hpp"
 #include "study/results/table_builder.hpp"
 #include "study/text/input_file.hpp"
+#include "study/text/large_json.hpp"
 #include "study/text/manifest.hpp"
 
 namespace cordon::detail {
@@ -118,9 +119,9 @@ void TableReader::read_results() {
        "/pipelines/*/name", "/pipelines/*/numbers", "/pipelines/*/summary/error"},
       {"/points/*"},
       [this](const Cursor& at, const std::vector<std::size_t>&) { read_point(at); }};
-  const Value tree = read_large(file, wanted, problems);
+  const Value tree = read_large(file, wanted, problems).tree;
   const Cursor root(tree, "", problems);
-  if (root.expect(Kind::object, not_as_written)) {
+  if (expect_results(root)) {
     if (const auto points = root.find("points"))
       is_sweep_ = points->expect(Kind::array, not_as_written);
     read_head(root);
@@ -133,8 +134,6 @@ void TableReader::read_results() {
 }
 
 void TableReader::read_head(const Cursor& root) {
-  if (const auto version = root.need("cordon_results", not_as_written))
-    read_integer(*version, 1, 1);
   read_.table.title = text_of(root, "title");
   read_.table.study_hash = text_of(root, "study_hash");
   if (const auto cordon = root.need("cordon", not_as_written);
@@ -232,7 +231,7 @@ void TableReader::read_times() {
                           read_times_of_step(at, steps[place[0]]);
                         }
                       }};
-  const Value tree = read_large(file, wanted, problems);
+  const Value tree = read_large(file, wanted, problems).tree;
   const Cursor root(tree, "", problems);
   if (root.expect(Kind::object, not_as_written)) {
     read_host(root);

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "core/text.hpp"
-#include "experiments/report/outline.hpp"
-#include "study/text/input_file.hpp"
+#include "study/results/recorded_head.hpp"
+#include "study/text/large_json.hpp"
 
 namespace cordon::report {
 
@@ -88,20 +88,22 @@ std::vector<Cursor> items_of(const Cursor& object, std::string_view key) {
 
 RunFiles::RunFiles(std::filesystem::path directory, Detail detail)
     : files_(std::move(directory)), detail_(detail) {
-  const Outline outline = outline_of(files_.file("results.json"));
-  tree_ = parse(outline.text, problems_);
-  study_ = detail::printable_lines(outline.study);
+  LargeJson results =
+      read_large(files_.file("results.json"),
+                 {.kept = {"/cordon_results", "/title", "/cordon", "/tools", "/plugins",
+                           "/study_hash", "/study/system", "/pipelines"},
+                  .streamed = {"/pipelines/*/steps/*", "/points/*"},
+                  .copied = "/study"},
+                 problems_);
+  tree_ = std::move(results.tree);
+  study_ = detail::printable_lines(results.copy);
   const Cursor root(tree_, "", problems_);
-  if (root.expect(Kind::object, "a results file of \"cordon run\" is an object")) read_head(root);
+  if (expect_results(root)) read_head(root);
   check();
   read_times();
 }
 
 void RunFiles::read_head(const Cursor& root) {
-  const auto version = root.need("cordon_results", "this is not a results file of \"cordon run\"");
-  const auto number = version ? read_number(*version) : std::nullopt;
-  if (number && *number != 1)
-    version->error("this version of the format is not known", "this program reads 1");
   is_sweep_ = root.find("points").has_value();
   title_ = text_of(root, "title");
   const auto pipelines = root.need("pipelines", not_as_written);
@@ -148,20 +150,22 @@ void RunFiles::read_times() {
       points_per_series(detail_, 10 * std::max<std::size_t>(pipelines_.size(), 1));
   step_times_.assign(pipelines_.size(), Thinner(points));
   Problems problems;
-  const Outline outline =
-      outline_of(files_.file("run.json"), [&](std::size_t pipeline, const std::string& item) {
-        if (is_sweep_ || pipeline >= step_times_.size()) return;
-        const Value step = parse(item, problems);
-        const Cursor at(step, "/pipelines/" + std::to_string(pipeline) + "/steps", problems);
-        if (!at.expect(Kind::object, not_as_written)) return;
-        const auto times = at.find("time_us");
-        const double time = times && times->is(Kind::object)
-                                ? value_of(*times, "predict") + value_of(*times, "correct") +
-                                      value_of(*times, "reduce")
-                                : value_of(at, "step_us");
-        step_times_[pipeline].add(value_of(at, "k"), time);
-      });
-  const Value tree = parse(outline.text, problems);
+  const auto take_step = [&](const Cursor& at, const std::vector<std::size_t>& place) {
+    if (is_sweep_ || place[0] >= step_times_.size() || !at.expect(Kind::object, not_as_written))
+      return;
+    const auto times = at.find("time_us");
+    const double time =
+        times && times->is(Kind::object)
+            ? value_of(*times, "predict") + value_of(*times, "correct") + value_of(*times, "reduce")
+            : value_of(at, "step_us");
+    step_times_[place[0]].add(value_of(at, "k"), time);
+  };
+  const Value tree =
+      read_large(
+          files_.file("run.json"),
+          {.kept = {"/host", "/started"}, .streamed = {"/pipelines/*/steps/*"}, .take = take_step},
+          problems)
+          .tree;
   const Cursor root(tree, "", problems);
   if (root.expect(Kind::object, not_as_written)) {
     if (const auto host = root.find("host")) add_texts(*host, "host ", versions_);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "read/recorded_parts.hpp"
+#include "study/results/recorded_head.hpp"
 
 namespace cordon::verification {
 
@@ -209,12 +210,7 @@ RecordedRun read_run(const std::filesystem::path& directory) {
   const std::string text = read_file(file.string());
   const Value tree = parse(text, problems);
   const Cursor root(tree, "", problems);
-  if (root.expect(Kind::object, "a results file of \"cordon run\" is an object")) {
-    const auto version =
-        root.need("cordon_results", "this is not a results file of \"cordon run\"");
-    const auto number = version ? read_number(*version) : std::nullopt;
-    if (number && *number != 1)
-      version->error("this version of the format is not known", "this program reads 1");
+  if (expect_results(root)) {
     if (root.find("points")) {
       throw InputError(file.string(),
                        {{"/points", "is a sweep, which keeps no sets",

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/statistics/large_json.hpp"
+#include "study/text/large_json.hpp"
 
 #include <memory>
 #include <unordered_set>
 
 #include <nlohmann/json.hpp>
 
+#include "cordon/core/error.hpp"
 #include "study/text/byte_iterator.hpp"
 #include "study/text/input_file.hpp"
 
@@ -27,6 +28,10 @@ class Bytes {
   /// U+0001, which is JSON nowhere, in place of NUL, which the parser takes for the end.
   char now() const { return chunk_[at_] == '\0' ? '\x01' : chunk_[at_]; }
   void advance() {
+    if (++since_event_ > max_bytes)
+      throw InputError(file_.path().string(), {{"", "is larger than any that \"cordon run\" writes",
+                                                "run the study again", line_}});
+    if (copy_ && copy_->size() <= max_bytes) *copy_ += chunk_[at_];
     line_ += after_line_;
     after_line_ = chunk_[at_] == '\n';
     if (++at_ == size_) fill();
@@ -34,6 +39,10 @@ class Bytes {
   /// Of the byte before `now`, a line end being part of its line: the parser reads one byte beyond
   /// a number.
   int line() const { return line_; }
+  /// The parser has understood what there was so far.
+  void event() { since_event_ = 0; }
+  /// What comes from now on is added to `copy`; null: no more.
+  void copy_to(std::string* copy) { copy_ = copy; }
 
  private:
   void fill() {
@@ -46,6 +55,8 @@ class Bytes {
   std::size_t size_ = 0, at_ = 0;
   int line_ = 1;
   bool after_line_ = false;
+  std::size_t since_event_ = 0;
+  std::string* copy_ = nullptr;
 };
 
 using Pattern = std::vector<std::string>;
@@ -63,13 +74,13 @@ Pattern split(const std::string& pointer) {
 /// Receives the events of the library's parser, and keeps what is wanted.
 class Builder {
  public:
-  Builder(const Wanted& wanted, const Bytes& bytes, Problems& problems)
-      : wanted_(wanted), bytes_(bytes), problems_(problems) {
+  Builder(const Wanted& wanted, Bytes& bytes, Problems& problems)
+      : wanted_(wanted), bytes_(bytes), problems_(problems), copied_(split(wanted.copied)) {
     for (const std::string& pointer : wanted.kept) patterns_.push_back({split(pointer), false});
     for (const std::string& pointer : wanted.streamed) patterns_.push_back({split(pointer), true});
   }
 
-  Value take() { return std::move(root_); }
+  LargeJson take() { return {std::move(root_), std::move(copy_)}; }
 
   bool null() {
     return leaf(Kind::null, [](Value&) {});
@@ -100,6 +111,7 @@ class Builder {
   bool end_object() { return close(); }
   bool end_array() { return close(); }
   bool key(std::string& text) {
+    bytes_.event();
     if (skipped_ == 0) open_.back().key = std::move(text);
     return true;
   }
@@ -144,9 +156,11 @@ class Builder {
   Wish wish() const {
     if (open_.empty()) return Wish::way;
     const Wish parent = open_.back().wish;
-    if (parent == Wish::keep || parent == Wish::stream) return Wish::keep;
-    Wish found = Wish::none;
+    if (parent == Wish::stream) return Wish::keep;
+    const bool kept = parent == Wish::keep;
+    Wish found = kept ? Wish::keep : Wish::none;
     for (const auto& [steps, streamed] : patterns_) {
+      if (kept && (!streamed || steps.size() != open_.size())) continue;
       if (steps.size() < open_.size() || !matches(steps)) continue;
       if (steps.size() == open_.size()) return streamed ? Wish::stream : Wish::keep;
       found = Wish::way;
@@ -164,6 +178,7 @@ class Builder {
 
   template <class Fill>
   bool leaf(Kind kind, Fill&& fill) {
+    bytes_.event();
     if (skipped_ > 0) return true;
     const Wish wished = wish();
     Value value = begun(kind);
@@ -172,6 +187,8 @@ class Builder {
   }
 
   bool open(Kind kind) {
+    bytes_.event();
+    begin_copy(kind);
     const Wish wished = skipped_ > 0 ? Wish::none : wish();
     if (wished == Wish::none) {
       ++skipped_;
@@ -185,10 +202,27 @@ class Builder {
     return true;
   }
 
+  /// The bracket of a value that is copied has been read.
+  void begin_copy(Kind kind) {
+    if (copied_.empty() || skipped_ > 0 || copied_.size() != open_.size() || !matches(copied_))
+      return;
+    copy_ = kind == Kind::object ? "{" : "[";
+    bytes_.copy_to(&copy_);
+  }
+  void end_copy() {
+    if (open_.size() + skipped_ == copied_.size()) bytes_.copy_to(nullptr);
+  }
+
   bool close() {
-    if (skipped_ > 0) return --skipped_ > 0 || put({}, Wish::none);
+    bytes_.event();
+    if (skipped_ > 0) {
+      --skipped_;
+      end_copy();
+      return skipped_ > 0 || put({}, Wish::none);
+    }
     Level level = std::move(open_.back());
     open_.pop_back();
+    end_copy();
     level.value.parts = level.parts;
     return put(std::move(level.value), level.wish);
   }
@@ -222,7 +256,7 @@ class Builder {
       for (const Level& level : open_) {
         if (level.in_array()) at.push_back(level.index);
       }
-      wanted_.take(Cursor(value, pointer(), problems_), at);
+      if (wanted_.take) wanted_.take(Cursor(value, pointer(), problems_), at);
       values_ = 0;
     } else if (wished != Wish::none) {
       if (!parent.in_array()) parent.parts->keys.push_back(parent.key);
@@ -233,8 +267,10 @@ class Builder {
   }
 
   const Wanted& wanted_;
-  const Bytes& bytes_;
+  Bytes& bytes_;
   Problems& problems_;
+  Pattern copied_;
+  std::string copy_ = {};
   std::vector<Place> patterns_;
   std::vector<Level> open_;
   std::size_t skipped_ = 0;  ///< how deep inside of a value that is not wanted
@@ -244,14 +280,14 @@ class Builder {
 
 }  // namespace
 
-Value read_large(const std::filesystem::path& file, const Wanted& wanted, Problems& problems) {
+LargeJson read_large(const std::filesystem::path& file, const Wanted& wanted, Problems& problems) {
   Bytes bytes(file);
   Builder builder(wanted, bytes, problems);
   if (nlohmann::json::sax_parse(json::ByteIterator<Bytes>(&bytes),
                                 json::ByteIterator<Bytes>(nullptr), &builder))
     return builder.take();
-  Value broken;
-  broken.kind = Kind::broken;
+  LargeJson broken;
+  broken.tree.kind = Kind::broken;
   return broken;
 }
 
