@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tables read from the files of runs and sweeps: nothing is lost, and wrong files are refused with
 // their place.
-#include <cmath>
-#include <limits>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
