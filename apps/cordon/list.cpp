@@ -2,6 +2,7 @@
 #include <memory>
 
 #include <CLI/CLI.hpp>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -45,9 +46,9 @@ Exit list(const Program& program, bool json) {
 }  // namespace
 
 void add_list(CLI::App& app, Program& program) {
-  CLI::App* command = app.add_subcommand("list",
-                                         "List backends, observers, diagnosers, metrics, plants, "
-                                         "gains and designers with their plugins");
+  CLI::App* command =
+      app.add_subcommand("list", fmt::format("List components with their plugins, by kind: {}",
+                                             fmt::join(Registry::kinds(), ", ")));
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON for programs");
   command->callback([&program, json] { program.exit = list(program, *json); });

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Of a large JSON file what is wanted is kept, handed over or copied, and nothing else.
+#include "study/text/large_json.hpp"
+
 #include <cmath>
 #include <fstream>
 
@@ -8,7 +10,6 @@
 #include "cordon/core/error.hpp"
 #include "run/scratch.hpp"
 #include "study/reading/read_sweep.hpp"
-#include "study/text/large_json.hpp"
 
 using namespace cordon;
 
@@ -26,13 +27,13 @@ TEST_CASE("what is wanted of a large file") {
     write_bytes(scratch / "x.json", text);
     json::Problems problems;
     std::string seen;
-    const json::Wanted wanted{
-        {"/a", "/l/*/x"},
-        {"/s/*/t/*"},
-        [&](const json::Cursor& at, const std::vector<std::size_t>& place) {
-          seen += at.pointer() + "@" + std::to_string(at.value().line) + ":" +
-                  std::to_string(place.at(0)) + "," + std::to_string(place.at(1)) + " ";
-        }};
+    const json::Wanted wanted{{"/a", "/l/*/x"},
+                              {"/s/*/t/*"},
+                              [&](const json::Cursor& at, const std::vector<std::size_t>& place) {
+                                seen += at.pointer() + "@" + std::to_string(at.value().line) + ":" +
+                                        std::to_string(place.at(0)) + "," +
+                                        std::to_string(place.at(1)) + " ";
+                              }};
     const auto tree = json::read_large(scratch / "x.json", wanted, problems).tree;
     for (const Diagnostic& problem : problems.sorted())
       seen += "!" + problem.pointer + "@" + std::to_string(problem.line);

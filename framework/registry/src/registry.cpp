@@ -18,36 +18,36 @@ namespace {
 namespace fs = std::filesystem;
 using namespace registry;
 
-/// The registry as components see it.
-class RegistryFactory final : public Factory {
- public:
-  explicit RegistryFactory(const Registry& registry) : registry_(registry) {}
-  std::vector<Diagnostic> check_gain(const ComponentSpec& spec,
-                                     const GainContext& context) const override {
-    return registry_.check<GainEntry>(spec.type, context, spec.params);
-  }
-  std::shared_ptr<const GainDesigner> make_gain(const ComponentSpec& spec) const override {
-    return registry_.make<GainEntry>(spec.type, spec.params);
-  }
-  std::vector<Diagnostic> check_observer(const ComponentSpec& spec,
-                                         const ObserverContext& context) const override {
-    return registry_.check<ObserverEntry>(spec.type, context, spec.params);
-  }
-  std::shared_ptr<Observer> make_observer(const ComponentSpec& spec,
-                                          const ObserverContext& context) const override {
-    return registry_.make<ObserverEntry>(spec.type, context, spec.params);
-  }
-
- private:
-  const Registry& registry_;
-};
-
 }  // namespace
 
 struct Registry::State {
+  /// The registry as components see it.
+  class ComponentFactory final : public Factory {
+   public:
+    explicit ComponentFactory(const Registry& registry) : registry_(registry) {}
+    std::vector<Diagnostic> check_gain(const ComponentSpec& spec,
+                                       const GainContext& context) const override {
+      return registry_.check<GainEntry>(spec.type, context, spec.params);
+    }
+    std::shared_ptr<const GainDesigner> make_gain(const ComponentSpec& spec) const override {
+      return registry_.make<GainEntry>(spec.type, spec.params);
+    }
+    std::vector<Diagnostic> check_observer(const ComponentSpec& spec,
+                                           const ObserverContext& context) const override {
+      return registry_.check<ObserverEntry>(spec.type, context, spec.params);
+    }
+    std::shared_ptr<Observer> make_observer(const ComponentSpec& spec,
+                                            const ObserverContext& context) const override {
+      return registry_.make<ObserverEntry>(spec.type, context, spec.params);
+    }
+
+   private:
+    const Registry& registry_;
+  };
+
   explicit State(const Registry& registry) : factory(registry) {}
 
-  RegistryFactory factory;
+  ComponentFactory factory;
   // The order matters: entries hold code of the plugins and die first.
   std::map<std::string, LoadedPlugin, std::less<>> plugins;
   Catalogue catalogue;

@@ -66,7 +66,7 @@ Json parameter(const ParamSpec& spec) {
 
 }  // namespace
 
-Json components(const Registry& registry, const char* kind) {
+Json components(const Registry& registry, const std::string& kind) {
   Json all = Json::array();
   std::vector<std::string> plain;
   for (const std::string& name : registry.names(kind)) {

@@ -42,6 +42,6 @@ inline Json typed(const std::string& type, Json properties, std::vector<std::str
 }
 
 /// Components of one kind: the name alone where no parameter is required, or an object by "type".
-Json components(const Registry& registry, const char* kind);
+Json components(const Registry& registry, const std::string& kind);
 
 }  // namespace cordon::schema_parts

@@ -252,9 +252,7 @@ Json definitions(const Registry& registry) {
   defs["mode"] = modes();
   defs["fault"] = faults();
   defs["data"] = data();
-  for (const char* kind :
-       {"backend", "observer", "metric", "diagnoser", "plant", "gain", "designer"})
-    defs[kind] = components(registry, kind);
+  for (const std::string& kind : Registry::kinds()) defs[kind] = components(registry, kind);
   Json pipeline = object({{"name", described(text(200), "unique; the backend's name by default")},
                           {"backend", reference("backend")},
                           {"observer", reference("observer")},

@@ -96,7 +96,8 @@ class Registry;
 // one is made. A kind may have
 //   check     problems of this combination of context and parameters (pointers relative to the
 //             component's object, "/name"), so that they are reported with all others; empty:
-//             `create` will succeed. May be left out
+//             `create` will succeed. The function may be left out; kinds without a context have
+//             none
 //   refusals  what the host asks of every component of the kind before `check` and `create`
 
 struct BackendEntry {
