@@ -146,6 +146,7 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
         CHECK(refuted([&](Json& p) {
                 p[1][part]["pairs"][0]["disjoint"] = word;
                 p[1][part]["pairs"][0]["kappa_lower"] = .5;
+                if (p[1][part]["pairs"][0].contains("kappa")) p[1][part]["pairs"][0]["kappa"] = .5;
               }) == std::string("/pipelines/1/") + part + "/pairs/0");
       }
     }
@@ -156,13 +157,16 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
   SUBCASE("a bound of κ that is too large stays open") {
     const VerifyOutcome larger = run.with([](Json& p) {
       Json& pair = p[0]["design"]["pairs"][0];
-      pair["kappa_lower"] = pair["kappa_lower"].get<double>() + .01;
+      pair["kappa_lower"] = pair["kappa"] = pair["kappa_lower"].get<double>() + .01;
     });
     CHECK_FALSE(larger.violation);
     CHECK(larger.pipelines[0].undecided == 1);
     CHECK(larger.pipelines[0].proofs == 2);
     CHECK(larger.pipelines[0].first_undecided.find("in place of") != std::string::npos);
-    CHECK(run.with([](Json& p) { p[0]["design"]["pairs"][0]["kappa_lower"] = "inf"; })
+    CHECK(run.with([](Json& p) {
+               Json& pair = p[0]["design"]["pairs"][0];
+               pair["kappa_lower"] = pair["kappa"] = "inf";
+             })
               .pipelines[0]
               .undecided == 1);
     CHECK(run.with([](Json& p) { p[0]["design"]["pairs"][0]["kappa_lower"] = 0; })
@@ -216,8 +220,38 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
     // an input that is not the one that is spoken of
     refuses([](Json& p) { p[0]["design"]["horizon"] = 2; }, "/pipelines/0/design/horizon");
     refuses([](Json& p) { p[0]["design"]["status"] = "infeasible"; }, "/pipelines/0/design/status");
+    refuses([](Json& p) { p[0]["design"]["status"] = "best"; }, "/pipelines/0/design/status");
+    refuses(
+        [](Json& p) {
+          for (const char* key : {"u", "cost", "separates", "pairs", "tubes"})
+            p[1]["design"][key] = nullptr;
+          p[1]["exact"] = nullptr;
+          p[1]["design"]["status"] = "optimal";
+        },
+        "/pipelines/1/design/status");
+    // numbers that contradict each other
+    refuses([](Json& p) { p[0]["design"]["pairs"][0]["kappa"] = -5; },
+            "/pipelines/0/design/pairs/0/kappa");
+    refuses(
+        [](Json& p) {
+          p[0]["design"]["status"] = "feasible";
+          p[0]["design"]["lower_bound"] = p[0]["design"]["cost"].get<double>() + 1;
+        },
+        "/pipelines/0/design/lower_bound");
     refuses([](Json& p) { p[1]["design"]["u"] = nullptr; }, "/pipelines/1/design/pairs");
     refuses([](Json& p) { p[1]["design"] = nullptr; }, "/pipelines/1/exact");
+  }
+}
+
+TEST_CASE("an input that is called found, and does not separate") {
+  const Run run(descriptor_study());
+  for (const char* status : {"feasible", "optimal"}) {
+    const auto altered = [&](Json& p) {
+      for (Json& pipeline : p) pipeline["design"]["status"] = status;
+    };
+    const VerifyOutcome outcome = run.with(altered);
+    REQUIRE(outcome.violation);
+    CHECK(outcome.violation->pointer.find("/design/status") != std::string::npos);
   }
 }
 

@@ -74,6 +74,14 @@ class DesignCheck {
                              pointer});
   }
 
+  /// An input that was found separates the modes; that none is cheaper is not compared.
+  void status(DesignStatus claim, Answer exact) {
+    if ((claim == DesignStatus::optimal || claim == DesignStatus::feasible) && exact == Answer::no)
+      found.refuted.push_back(
+          {fmt::format("the input is called {}, and does not separate the modes", to_string(claim)),
+           "/design/status"});
+  }
+
   DesignFindings found;
 
  private:
@@ -121,6 +129,7 @@ DesignFindings compare_recorded(const ModeBank& bank, const DesignOutcome& outco
   DesignCheck check;
   compare_claims(check, bank, outcome, exact);
   check.summary(recorded.claimed, outcome.best->separates(), "/design/separates");
+  check.status(outcome.status, exact.separates());
   if (recorded.proven) {
     check.proven(*recorded.proven, exact);
     check.summary(recorded.proven_separation, exact.separates(), "/exact/separates");

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
 #include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "core/text.hpp"
@@ -48,13 +51,35 @@ std::vector<std::string> names_of_modes(const SystemPart& system) {
   return names;
 }
 
+std::optional<DesignStatus> status_of(const Cursor& design) {
+  using Status = DesignStatus;
+  return read_word(
+      design, "status",
+      {Status::optimal, Status::feasible, Status::infeasible, Status::unknown, Status::given});
+}
+bool is_found(std::optional<DesignStatus> status) {
+  return status == DesignStatus::optimal || status == DesignStatus::feasible;
+}
+
 /// Nothing is said of an input that is not there.
 void expect_nothing_said(const Cursor& design) {
+  if (is_found(status_of(design)))
+    design.find("status")->error("says that there is an input, beside none", not_as_written);
   for (const char* key : {"cost", "separates", "pairs", "tubes"}) {
     const auto at = design.find(key);
     if (at && !at->is(Kind::null))
       at->error("says something of an input that is not there", not_as_written);
   }
+}
+
+/// The input that was found costs no less than every one that separates.
+void expect_cost_above_bound(const Cursor& design, DesignStatus status) {
+  const auto cost = design.find("cost"), bound = design.find("lower_bound");
+  if (!is_found(status) || !cost || !bound || !cost->is(Kind::number) || !bound->is(Kind::number))
+    return;
+  const double least = bound->value().number, paid = cost->value().number;
+  if (least > paid + tolerances::reported * std::max(1.0, std::abs(paid)))
+    bound->error("is above \"cost\"", not_as_written);
 }
 
 /// "pairs" and "tubes" of a design, one after another.
@@ -81,6 +106,10 @@ void read_claims(const Cursor& at, InputDesign& design, const std::vector<std::s
     if (bound && *bound > tolerances::reported && pair.disjoint == Answer::unknown)
       pair.disjoint = Answer::yes;  // says the same
     if (bound) pair.kappa_lower = *bound;
+    const auto computed = item.find("kappa");
+    const auto value = computed && !computed->is(Kind::null) ? read_kappa(*computed) : std::nullopt;
+    if (bound && value && *value < *bound - tolerances::reported * (1 + std::abs(*bound)))
+      computed->error("is below \"kappa_lower\"", not_as_written);
   }
   for (std::size_t i = 0; i < tubes->size(); ++i) {
     const Cursor item = tubes->item(i);
@@ -102,7 +131,6 @@ std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& sys
   }
   const LinearModel& m = system.model.linear;
   DesignOutcome outcome;
-  outcome.status = DesignStatus::given;
   auto inputs = read_matrix(*u);
   if (inputs && (inputs->rows() == 0 || inputs->cols() != m.inputs())) {
     u->error("is " + shape(inputs->rows(), inputs->cols()) + ", must have " +
@@ -119,10 +147,11 @@ std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& sys
   if (length && *length != outcome.horizon)
     horizon->error("does not fit \"u\", which has a row for every time from 0 to the horizon",
                    not_as_written);
-  const auto status = at.find("status");
-  if (status && status->is(Kind::text) &&
-      status->value().text() == to_string(DesignStatus::infeasible))
-    status->error("says that there is no input, beside one", not_as_written);
+  const auto status = status_of(at);
+  if (status == DesignStatus::infeasible)
+    at.find("status")->error("says that there is no input, beside one", not_as_written);
+  outcome.status = status.value_or(DesignStatus::given);
+  expect_cost_above_bound(at, outcome.status);
   outcome.best.emplace().u = std::move(*inputs);
   read_claims(at, *outcome.best, names_of_modes(system));
   return outcome;
