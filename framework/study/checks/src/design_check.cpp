@@ -2,6 +2,7 @@
 #include "study/checks/design_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -17,6 +18,12 @@ class DesignCheck {
  public:
   void pair(std::size_t q, const PairSeparation& claim, const ExactPair& exact,
             const std::string& names) {
+    const bool positive = claim.kappa_lower > tolerances::reported;
+    if (positive &&
+        claim.kappa < claim.kappa_lower - tolerances::reported * (1 + claim.kappa_lower))
+      return refute(
+          fmt::format("κ of {} is {}, below its bound {}", names, claim.kappa, claim.kappa_lower),
+          "/design/pairs/", q);
     if (claim.disjoint == Answer::unknown) return;
     const std::string tubes = "the output tubes of " + names;
     if (exact.disjoint == Answer::unknown) return open(tubes + ": " + exact.reason);
@@ -74,12 +81,20 @@ class DesignCheck {
                              pointer});
   }
 
-  /// An input that was found separates the modes; that none is cheaper is not compared.
-  void status(DesignStatus claim, Answer exact) {
-    if ((claim == DesignStatus::optimal || claim == DesignStatus::feasible) && exact == Answer::no)
+  /// An input that was found separates the modes, and costs no less than every one that does; that
+  /// none is cheaper is not compared.
+  void status(const DesignOutcome& claim, Answer exact) {
+    if (claim.status != DesignStatus::optimal && claim.status != DesignStatus::feasible) return;
+    const double cost = claim.best->cost;
+    if (exact == Answer::no)
       found.refuted.push_back(
-          {fmt::format("the input is called {}, and does not separate the modes", to_string(claim)),
+          {fmt::format("the input is called {}, and does not separate the modes",
+                       to_string(claim.status)),
            "/design/status"});
+    if (claim.lower_bound > cost + tolerances::reported * std::max(1.0, std::abs(cost)))
+      found.refuted.push_back(
+          {fmt::format("the input costs {}, less than the lower bound {}", cost, claim.lower_bound),
+           "/design/lower_bound"});
   }
 
   DesignFindings found;
@@ -129,7 +144,7 @@ DesignFindings compare_recorded(const ModeBank& bank, const DesignOutcome& outco
   DesignCheck check;
   compare_claims(check, bank, outcome, exact);
   check.summary(recorded.claimed, outcome.best->separates(), "/design/separates");
-  check.status(outcome.status, exact.separates());
+  check.status(outcome, exact.separates());
   if (recorded.proven) {
     check.proven(*recorded.proven, exact);
     check.summary(recorded.proven_separation, exact.separates(), "/exact/separates");
