@@ -303,6 +303,7 @@ TEST_CASE("a line that was torn by a full disk stays the last one") {
   small.rlim_cur = 1000;
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   std::int64_t written = 0;
+  std::string reason;
   {
     Journal journal(scratch.path(), head(), Start::fresh, {});
     ::setrlimit(RLIMIT_FSIZE, &small);
@@ -310,9 +311,11 @@ TEST_CASE("a line that was torn by a full disk stays the last one") {
       for (;; ++written) journal.add(line_of(point(written)));
     } catch (const Error& error) {
       CHECK(error.code() == Errc::io);
+      reason = error.what();
     }
     ::setrlimit(RLIMIT_FSIZE, &before);
-    CHECK_THROWS_WITH_AS(journal.add(line_of(point(99))), doctest::Contains("any more"), Error);
+    // other jobs, whose error may be the one that is shown, tell the same
+    CHECK_THROWS_WITH_AS(journal.add(line_of(point(99))), reason.c_str(), Error);
   }
   std::signal(SIGXFSZ, old_handler);
   CHECK(written > 0);

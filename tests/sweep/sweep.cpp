@@ -372,7 +372,7 @@ TEST_CASE("a full disk is an error, and what is finished is kept") {
   }
   ::setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, old_handler);
-  CHECK(message.find("points that were finished are kept") != std::string::npos);
+  CHECK_MESSAGE(message.find("points that were finished are kept") != std::string::npos, message);
   SweepOptions options = into(scratch / "out", 2);
   options.resume = true;
   const SweepOutcome outcome = sweeps::run(study, options);

@@ -25,11 +25,15 @@ constexpr std::size_t longest_line = json::max_bytes;
 const std::string discard =
     "\"--restart\" throws the unfinished sweep away; another \"--out\" keeps it";
 
-[[noreturn]] void fail_to_write(const fs::path& path, int reason) {
+std::string why_not_written(const fs::path& path, int reason) {
   const std::string suggestion =
       reason == ENOSPC || reason == EDQUOT ? "; free some space, then go on with --resume" : "";
-  throw Error(Errc::io, "cannot write " + path.string() + ": " + std::strerror(reason) +
-                            suggestion + "; points that were finished are kept");
+  return "cannot write " + path.string() + ": " + std::strerror(reason) + suggestion +
+         "; points that were finished are kept";
+}
+
+[[noreturn]] void fail_to_write(const fs::path& path, int reason) {
+  throw Error(Errc::io, why_not_written(path, reason));
 }
 
 [[noreturn]] void refuse_journal(const fs::path& file, const std::string& reason,
@@ -212,15 +216,14 @@ void Journal::add(const std::string& line) {
 }
 
 void Journal::write(std::string_view bytes) {
-  if (broken_)
-    throw Error(Errc::io, "cannot write " + file_.string() +
-                              " any more");  // a torn line must stay the last one
+  // A torn line must stay the last one; other jobs that come here tell the same reason.
+  if (!broken_.empty()) throw Error(Errc::io, broken_);
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
-      broken_ = true;
-      fail_to_write(file_, errno);
+      broken_ = why_not_written(file_, errno);
+      throw Error(Errc::io, broken_);
     }
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }

@@ -67,7 +67,7 @@ class Journal {
   std::filesystem::path directory_, file_;
   JournalHead head_;
   int descriptor_ = -1;
-  bool broken_ = false;
+  std::string broken_ = {};  ///< why nothing can be written any more
   std::mutex writing_;
 };
 
