@@ -50,6 +50,9 @@ TEST_CASE("every number of a summary is described, and nothing else") {
     CHECK(measures.size() == summary.size());
     for (const Measure& measure : measures) {
       value_of(summary, measure.name);
+      // a share of proven answers is shown beside what was answered otherwise, or not at all
+      if (measure.name == "contains_truth_no" || measure.name == "contains_truth_unknown")
+        CHECK(measure.in_comparison == Measure::Shown::if_any);
       CHECK_FALSE(measure.title.empty());
       for (const std::string& part : measure.rest) value_of(summary, part);
       if (measure.ranked) CHECK(measure.better == Preference::less);
