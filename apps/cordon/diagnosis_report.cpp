@@ -278,7 +278,7 @@ std::string assumption_text(const Study& study, const PipelineOutcome& pipeline,
   const std::string seed =
       failed.seed_offset > 0 ? fmt::format(" (seed offset {})", failed.seed_offset) : "";
   return fmt::format("{}: {}{}. What is said from k = {} on rests on it and proves nothing: {}\n",
-                     paint.yellow("Assumption failed"), text_of(failed, modes), seed, failed.from,
+                     paint.yellow("Assumption failed"), text_of(failed, modes), seed, failed.from(),
                      suggestion);
 }
 

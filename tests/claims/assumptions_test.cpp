@@ -2,6 +2,7 @@
 // An assumption that the simulated truth does not keep is named, with its step, and not put down to
 // the program.
 #include <cmath>
+#include <functional>
 
 #include <doctest/doctest.h>
 
@@ -79,6 +80,21 @@ Outcome check_failed(const Program& program, const std::string& what, Index k, I
   CHECK(verified.says("assumption failed"));
   CHECK(verified.says(text));
   CHECK_FALSE(verified.says("Every claim that was checked holds.\n"));
+  // what follows from the assumption and its step cannot be told otherwise
+  const auto refuses = [&](const std::function<void(Json&)>& change, const std::string& place) {
+    Json altered = program.results();
+    change(altered["pipelines"][0]["summary"]);
+    const std::string before = program.file("results.json");
+    program.write_results(altered);
+    const Outcome outcome = program.verify();
+    CAPTURE(outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.complains("/pipelines/0/summary/" + place));
+    program.write_results(Json::parse(before));
+  };
+  refuses([&](Json& s) { s["assumptions_until"] = from + 1; }, "assumptions_until");
+  refuses([](Json& s) { s["failed_assumption"]["text"] = "x_7 is blue"; },
+          "failed_assumption/text");
   return run;
 }
 
@@ -224,7 +240,7 @@ TEST_CASE("what an assumption does not hold is not excused before it fails") {
     check.step(record(0, 0));
     check.step(record(1, 9.5));
     CHECK(check.failed()->what == FailedAssumption::What::admissible_set);
-    CHECK(check.failed()->from == 1);
+    CHECK(check.failed()->from() == 1);
     CHECK_FALSE(check.excuses(0));
     check.begin_run(1);
     CHECK_FALSE(check.excuses(5));
@@ -369,7 +385,7 @@ TEST_CASE("exact data excuse nothing") {
   CHECK(check.excuses_by_rounding(1));
   CHECK(check.failed()->what ==
         FailedAssumption::What::W_exactly);  // earlier than that of the other run
-  CHECK(check.failed()->from == 1);
+  CHECK(check.failed()->from() == 1);
   check.begin_run(2);
   check.step(record(0, 1, 1.5));
   check.step(record(1, 3, 3.5));

@@ -31,8 +31,10 @@ class Program {
   std::string file(const std::string& name) const {
     return bytes_of(scratch_ / ("results/" + name));
   }
+  /// Without the manifest, which tells of other bytes.
   void write_results(const Json& results) const {
     scratch_.write("results/results.json", results.dump());
+    std::filesystem::remove(scratch_ / "results/manifest.json");
   }
 
  private:

@@ -243,14 +243,14 @@ TEST_CASE("a design in a run, with its experiments") {
 
   using What = FailedAssumption::What;
   outcome.pipelines[0].assumptions_until = 2;
-  outcome.pipelines[0].failed_assumption = FailedAssumption{What::admissible_set, 2, 2, -1, 0};
+  outcome.pipelines[0].failed_assumption = FailedAssumption{What::admissible_set, 2, -1, 0};
   CHECK(apps::exit_of(outcome) == apps::Exit::done);
   CHECK(has(apps::report_text(study(), outcome, "out"),
             "Assumption failed: x_2 lies outside an admissible set"));
   const json told = json::parse(apps::report_json(study(), outcome))["pipelines"][0];
   CHECK(told["assumptions_until"] == 2);
   CHECK(told["failed_assumption"]["what"] == "admissible_set");
-  outcome.pipelines[0].failed_assumption = FailedAssumption{What::initial_set, 0, 0, 1, 0};
+  outcome.pipelines[0].failed_assumption = FailedAssumption{What::initial_set, 0, 1, 0};
   CHECK(has(apps::report_text(study(), outcome, "out"),
             "Assumption failed: x_0 lies outside X0 of mode \"leak\""));
   outcome.pipelines[0] = p;

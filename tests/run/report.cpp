@@ -157,7 +157,7 @@ TEST_CASE("an assumption that failed is told") {
   PipelineOutcome p = diagnosis();
   CHECK_FALSE(has(apps::diagnosis_text(study(), p, apps::Paint(stdout)), "Assumption"));
   p.assumptions_until = 3;
-  p.failed_assumption = FailedAssumption{FailedAssumption::What::restart_set, 2, 3, -1, 0};
+  p.failed_assumption = FailedAssumption{FailedAssumption::What::restart_set, 2, -1, 0};
   CHECK(has(apps::diagnosis_text(study(), p, apps::Paint(stdout)),
             "Assumption failed: x_2 lies outside the restart set, from which all modes begin anew "
             "at k = 2. What is said from k = 3"));

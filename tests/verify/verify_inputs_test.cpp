@@ -247,6 +247,10 @@ TEST_CASE("numbers of a design that contradict each other") {
     p[0]["design"]["lower_bound"] = p[0]["design"]["cost"].get<double>() + 1;
   };
   CHECK(refuted(above) == "/pipelines/0/design/lower_bound");
+  CHECK(refuted([](Json& p) {
+          p[0]["design"]["status"] = "optimal";
+          p[0]["design"]["lower_bound"] = "inf";
+        }) == "/pipelines/0/design/lower_bound");
   CHECK(refuted([](Json& p) { p[0]["design"]["status"] = "feasible"; }) == "");
 }
 

@@ -273,6 +273,18 @@ TEST_CASE("damaged files are refused with their place") {
     write(copy / "sets.jsonl", text.substr(0, first) + text.substr(second));
   }),
           "has no step k = 1");
+  refuses(run().verify([](const fs::path& copy) {  // nor the last one
+    Json results = Json::parse(bytes_of(copy / "results.json"));
+    results["pipelines"][0]["steps"].erase(steps - 1);
+    write(copy / "results.json", results.dump());
+    std::istringstream lines(bytes_of(copy / "sets.jsonl"));
+    std::string text, kept;
+    for (int line = 0; std::getline(lines, text); ++line) {
+      if (line != steps - 1) kept += text + "\n";
+    }
+    write(copy / "sets.jsonl", kept);
+  }),
+          "has no step k = " + std::to_string(steps - 1));
   refuses(run().with_text("data.csv", "y_1", "w_1"), "y_1");
   refuses(run().with_text("data.csv", "\n1,", "\n7,"), "k = 1");
   refuses(run().verify([](const fs::path& copy) {

@@ -84,7 +84,7 @@ bool leaves_V(const Model& model, const Record& now) {
 }
 
 bool earlier(const FailedAssumption& a, const std::optional<FailedAssumption>& b) {
-  return !b || a.from < b->from;
+  return !b || a.from() < b->from();
 }
 
 }  // namespace
@@ -115,7 +115,7 @@ void AssumptionCheck::begin_run(std::int64_t seed_offset) {
 
 void AssumptionCheck::step(const Record& record) {
   if (!last_) check_start(record);
-  if (!other_ && leaves_modes(record)) fail(What::modes, record.sample.k, record.sample.k);
+  if (!other_ && leaves_modes(record)) fail(What::modes, record.sample.k);
   if (!other_) {
     check_sets(record);
     if (by_plant_) check_plant(record);
@@ -130,11 +130,11 @@ void AssumptionCheck::step(const Record& record) {
 void AssumptionCheck::restarted() {
   if (other_ || !assumed_.restart_set || !last_ || !last_->truth) return;
   const Index k = last_->sample.k;
-  if (clearly_outside(*assumed_.restart_set, *last_->truth)) fail(What::restart_set, k, k + 1);
+  if (clearly_outside(*assumed_.restart_set, *last_->truth)) fail(What::restart_set, k);
 }
 
 bool AssumptionCheck::excuses(Index k, Index since) const {
-  return (start_ && since <= start_->k && start_->from <= k) || (other_ && other_->from <= k);
+  return (start_ && since <= start_->k && start_->from() <= k) || (other_ && other_->from() <= k);
 }
 
 bool AssumptionCheck::excuses_by_rounding(Index k, bool barely) {
@@ -146,14 +146,14 @@ bool AssumptionCheck::excuses_by_rounding(Index k, bool barely) {
     const Index from = before ? mode_of(*before) : -1, shown = mode_of(now);
     if (from >= 0 && contradicts_dynamics(bank_[from].model, *before, now)) {
       if (leaves_W(bank_[from].model, *before, now)) return false;  // that is no rounding
-      fail(What::W_exactly, time - 1, time, from);
+      fail(What::W_exactly, time - 1, from);
     } else if (shown >= 0 && contradicts_outputs(bank_[shown].model, now)) {
       if (leaves_V(bank_[shown].model, now)) return false;
-      fail(What::V_exactly, time, time, shown);
+      fail(What::V_exactly, time, shown);
     }
     before = &now;
   }
-  return other_ && other_->from <= k;
+  return other_ && other_->from() <= k;
 }
 
 /// X0 is that of the mode that makes the first sample; outside the bank nothing is assumed.
@@ -161,9 +161,9 @@ void AssumptionCheck::check_start(const Record& record) {
   if (!record.truth) return;
   const Index k = record.sample.k, mode = record.mode.value_or(bank_.nominal);
   if (assumed_.initial_set) {
-    if (clearly_outside(*assumed_.initial_set, *record.truth)) fail(What::initial_set, k, k);
+    if (clearly_outside(*assumed_.initial_set, *record.truth)) fail(What::initial_set, k);
   } else if (mode >= 0 && k == 0 && clearly_outside(bank_[mode].model.X0, *record.truth)) {
-    fail(What::initial_set, k, k, mode);
+    fail(What::initial_set, k, mode);
   }
 }
 
@@ -180,10 +180,10 @@ void AssumptionCheck::check_sets(const Record& record) {
   const Index k = record.sample.k;
   for (const LineForm& set : assumed_.admissible_sets) {
     if (other_ || !record.truth || k < assumed_.admissible_from) break;
-    if (clearly_outside(set, *record.truth)) fail(What::admissible_set, k, k);
+    if (clearly_outside(set, *record.truth)) fail(What::admissible_set, k);
   }
   if (!other_ && assumed_.inputs && clearly_outside(study_.model.U, record.sample.u))
-    fail(What::U, k, k);
+    fail(What::U, k);
 }
 
 void AssumptionCheck::check_plant(const Record& now) {
@@ -191,21 +191,21 @@ void AssumptionCheck::check_plant(const Record& now) {
   const Index k = now.sample.k;
   if (const Index mode = last_ ? mode_of(*last_) : -1;
       !other_ && mode >= 0 && last_->sample.k + 1 == k) {
-    if (leaves_W(bank_[mode].model, *last_, now)) fail(What::W, k - 1, k, mode);
+    if (leaves_W(bank_[mode].model, *last_, now)) fail(What::W, k - 1, mode);
   }
   if (const Index mode = mode_of(now); !other_ && mode >= 0 && leaves_V(bank_[mode].model, now))
-    fail(What::V, k, k, mode);
+    fail(What::V, k, mode);
 }
 
-void AssumptionCheck::fail(What what, Index k, Index from, Index mode) {
-  const FailedAssumption failed{what, k, from, mode, seed_offset_};
+void AssumptionCheck::fail(What what, Index k, Index mode) {
+  const FailedAssumption failed{what, k, mode, seed_offset_};
   (what == What::initial_set ? start_ : other_) = failed;
   if (earlier(failed, earliest_)) earliest_ = failed;
 }
 
 void tell(const std::optional<FailedAssumption>& failed, PipelineOutcome& outcome) {
   outcome.failed_assumption = failed;
-  outcome.assumptions_until = failed ? failed->from : -1;
+  outcome.assumptions_until = failed ? failed->from() : -1;
 }
 
 }  // namespace cordon::detail

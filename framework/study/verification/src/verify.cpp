@@ -132,6 +132,11 @@ class Verification {
           static_cast<int>(line)}});
   }
 
+  [[noreturn]] void refuse_missing(Index k, const RecordedPipeline& pipeline) const {
+    refuse(0, fmt::format("has no step k = {} of pipeline \"{}\", which data.csv has", k,
+                          pipeline.name));
+  }
+
   RecordedSet set_of(const RecordedPipeline& pipeline, const RecordedStep& step) {
     std::optional<RecordedSet> row = sets_.next();
     if (!row) refuse(0, fmt::format("ends before pipeline \"{}\", k = {}", pipeline.name, step.k));
@@ -164,7 +169,7 @@ class Verification {
     }
     if (!pipeline.failed) return;
     found.failed_assumption = pipeline.failed->text;
-    found.assumptions_until = pipeline.failed->failed.from;
+    found.assumptions_until = pipeline.failed->failed.from();
     found.fails_again = fails_again(run_, pipeline);
     if (found.fails_again == Answer::no) {
       ++found.undecided;
@@ -218,10 +223,7 @@ class Verification {
         std::optional<Record> record = data->next();
         if (!record)
           refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
-        if (record->sample.k < step.k) {
-          refuse(0, fmt::format("has no step k = {} of pipeline \"{}\", which data.csv has",
-                                record->sample.k, pipeline.name));
-        }
+        if (record->sample.k < step.k) refuse_missing(record->sample.k, pipeline);
         before = std::move(sample);
         sample = std::move(record->sample);
         F = feasible.at(read++, *sample);
@@ -247,6 +249,8 @@ class Verification {
         told = Clock::now();
       }
     }
+    const std::optional<Record> behind = pipeline.stopped ? std::nullopt : data->next();
+    if (behind) refuse_missing(behind->sample.k, pipeline);
     if (!pipeline.contradictions.empty())
       throw InputError((run_.files.directory() / "results.json").string(), pipeline.contradictions);
     const auto total = static_cast<std::int64_t>(pipeline.steps.size());

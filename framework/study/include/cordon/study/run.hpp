@@ -184,9 +184,13 @@ struct FailedAssumption {
   };
   What what = What::initial_set;
   Index k = 0;                   ///< of the x, u, w or v that lies outside
-  Index from = 0;                ///< the first time that statements rest on it
   Index mode = -1;               ///< whose X0, W or V it is; -1: the pipeline's or the study's own
   std::int64_t seed_offset = 0;  ///< of the run
+
+  /// The first time that statements rest on it.
+  Index from() const {
+    return what == What::restart_set || what == What::W || what == What::W_exactly ? k + 1 : k;
+  }
 };
 std::string_view to_string(FailedAssumption::What what) noexcept;
 /// "W of mode \"healthy\" does not hold what leads from x_4 to x_5": for people.
@@ -207,7 +211,7 @@ struct PipelineOutcome {
                undecided = 0;           ///< answers to "is the estimate non-empty?"
   std::int64_t inconsistent_from = -1;  ///< first k with an estimate proven empty
   std::int64_t assumptions_until =
-      -1;  ///< from this k on nothing is promised: `failed_assumption->from`
+      -1;  ///< from this k on nothing is promised: `failed_assumption->from()`
   std::optional<FailedAssumption> failed_assumption;  ///< the earliest
   std::int64_t outside_from = -1;  ///< first k with the truth proven outside the estimate, by more
                                    ///< than `tolerances::reported` (1e-9)

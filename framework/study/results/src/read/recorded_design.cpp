@@ -22,6 +22,16 @@ std::optional<double> read_kappa(const Cursor& at) {
   return read_number(at);
 }
 
+/// A number of the designer's, also "inf" or "-inf"; `missing` where it says none.
+double read_claim(const Cursor& object, const char* key, double missing) {
+  const auto at = object.find(key);
+  if (!at || at->is(Kind::null)) return missing;
+  if (!at->is(Kind::text)) return read_number(*at).value_or(missing);
+  const auto word = read_choice(*at, {"inf", "-inf"});
+  if (!word) return missing;
+  return *word == "inf" ? infinity : -infinity;
+}
+
 void refuse_name(const Cursor& at, const std::string& name) {
   at.error("must be " + in_quotes(name) + ": pairs and tubes are in the order of the modes",
            not_as_written);
@@ -95,10 +105,7 @@ void read_claims(const Cursor& at, InputDesign& design, const std::vector<std::s
     if (bound && *bound > tolerances::reported && pair.disjoint == Answer::unknown)
       pair.disjoint = Answer::yes;  // says the same
     if (bound) pair.kappa_lower = *bound;
-    const auto computed = item.find("kappa");
-    pair.kappa = infinity;
-    if (computed && !computed->is(Kind::null))
-      pair.kappa = read_kappa(*computed).value_or(infinity);
+    pair.kappa = read_claim(item, "kappa", infinity);
   }
   for (std::size_t i = 0; i < tubes->size(); ++i) {
     const Cursor item = tubes->item(i);
@@ -141,9 +148,8 @@ std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& sys
     at.find("status")->error("says that there is no input, beside one", not_as_written);
   outcome.status = status.value_or(DesignStatus::given);
   outcome.best.emplace().u = std::move(*inputs);
-  const auto cost = at.find("cost"), bound = at.find("lower_bound");
-  outcome.best->cost = cost && cost->is(Kind::number) ? cost->value().number : infinity;
-  outcome.lower_bound = bound && bound->is(Kind::number) ? bound->value().number : -infinity;
+  outcome.best->cost = read_claim(at, "cost", infinity);
+  outcome.lower_bound = read_claim(at, "lower_bound", -infinity);
   read_claims(at, *outcome.best, names_of_modes(system));
   return outcome;
 }

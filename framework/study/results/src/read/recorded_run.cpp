@@ -122,6 +122,8 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
   }
   if (const auto summary = at.find("summary"); summary && summary->is(Kind::object)) {
     pipeline.failed = read_failed_assumption(*summary, system);
+    const auto error = summary->find("error");
+    pipeline.stopped = error && !error->is(Kind::null);
     const auto refuted = summary->find("refuted");
     for (std::size_t i = 0; refuted && refuted->is(Kind::array) && i < refuted->size(); ++i) {
       pipeline.refuted.push_back(read_text(refuted->item(i), 10'000).value_or(""));

@@ -73,7 +73,7 @@ class AssumptionCheck {
   void check_plant(const Record& record);
   bool leaves_modes(const Record& record) const;
   Index mode_of(const Record& record) const { return record.mode.value_or(bank_.nominal); }
-  void fail(FailedAssumption::What what, Index k, Index from, Index mode = -1);
+  void fail(FailedAssumption::What what, Index k, Index mode = -1);
 
   const Study& study_;
   ModeBank bank_;

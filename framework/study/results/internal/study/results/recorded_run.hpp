@@ -45,6 +45,7 @@ struct RecordedPipeline {
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
   std::vector<RecordedStep> steps;
+  bool stopped = false;                         ///< by an error, perhaps before the end of the data
   std::vector<Diagnostic> contradictions = {};  ///< where the summary says what the steps do not
 };
 
