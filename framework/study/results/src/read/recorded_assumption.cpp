@@ -39,7 +39,7 @@ std::optional<RecordedAssumption> read_failed_assumption(const Cursor& summary,
              from = summary.need("assumptions_until", not_as_written);
   if (!what || !k || !mode || !seed || !text || !from) return std::nullopt;
   std::vector<std::string> words, names{system.nominal};
-  for (const Mode& mode : system.modes) names.push_back(mode.name);
+  for (const Mode& each : system.modes) names.push_back(each.name);
   for (const What one : all_assumptions) words.emplace_back(to_string(one));
   const auto word = read_choice(*what, words);
   const auto time = read_integer(*k, 0, max_integer), since = read_integer(*from, 0, max_integer),
