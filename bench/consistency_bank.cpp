@@ -32,7 +32,7 @@ void steps(benchmark::State& state, const std::string& backend_name, bool separa
   const auto pipeline =
       std::find_if(study().pipelines.begin(), study().pipelines.end(),
                    [&](const PipelineSpec& p) { return p.backend.type == backend_name; });
-  Params parameters = pipeline->diagnoser->params;
+  Params parameters = pipeline->diagnosis()->diagnoser.params;
   parameters.set("threads", threads);
   const ModeBank bank = bank_of(study());
   const auto backend = registry().make<BackendEntry>(backend_name, {});

@@ -80,8 +80,9 @@ void direct_steps(benchmark::State& state, const char* name, const LineForm& sta
                                      [&](const auto& p) { return p.name == name; });
   const auto backend =
       registry.make<BackendEntry>(pipeline->backend.type, pipeline->backend.params);
-  const auto observer = registry.make<ObserverEntry>(
-      pipeline->observer.type, {study.model, backend}, pipeline->observer.params);
+  const auto observer =
+      registry.make<ObserverEntry>(pipeline->estimation()->observer.type, {study.model, backend},
+                                   pipeline->estimation()->observer.params);
   std::vector<Sample> samples;
   for (const auto source = open_data(study); samples.size() <= 20;)
     samples.push_back(source->next()->sample);

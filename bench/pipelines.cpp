@@ -37,8 +37,9 @@ template <class Work>
 void steps(benchmark::State& state, const Study& study, const PipelineSpec& pipeline, Work work) {
   const Registry& registry = fixture().registry;
   const auto backend = registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params);
-  const auto observer = registry.make<ObserverEntry>(pipeline.observer.type, {study.model, backend},
-                                                     pipeline.observer.params);
+  const ComponentSpec& spec = pipeline.estimation()->observer;
+  const auto observer =
+      registry.make<ObserverEntry>(spec.type, {study.model, backend}, spec.params);
   std::vector<Sample> samples;
   for (const auto source = open_data(study); samples.size() <= 20;)
     samples.push_back(source->next()->sample);

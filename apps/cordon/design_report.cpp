@@ -59,12 +59,13 @@ std::string unused_samples_text(const Study& study, const PipelineOutcome& pipel
   const auto spec =
       std::find_if(study.pipelines.begin(), study.pipelines.end(),
                    [&](const PipelineSpec& candidate) { return candidate.name == pipeline.name; });
-  const bool undecided = std::any_of(pipeline.experiments.begin(), pipeline.experiments.end(),
+  const DesignedOutcome& found = *pipeline.design();
+  const bool undecided = std::any_of(found.experiments.begin(), found.experiments.end(),
                                      [](const ExperimentRow& row) { return row.undecided > 0; });
-  if (!undecided || spec == study.pipelines.end() || !spec->diagnoser ||
-      spec->diagnoser->type != "tube_membership")
-    return "";
-  const Index last = spec->diagnoser->params.integer("horizon"), needed = pipeline.design->horizon;
+  if (!undecided || spec == study.pipelines.end() || !spec->design()) return "";
+  const std::optional<ComponentSpec>& diagnoser = spec->design()->diagnoser;
+  if (!diagnoser || diagnoser->type != "tube_membership") return "";
+  const Index last = diagnoser->params.integer("horizon"), needed = found.design->horizon;
   if (last >= needed) return "";
   return fmt::format(
       "Undecided: the diagnoser takes no sample after k = {}, the input goes on to k = {}. To try: "
@@ -176,26 +177,26 @@ Exit exit_of(const std::vector<PipelineDesign>& designs, bool all_proven) {
 }
 
 std::vector<std::string> empty_tubes(const Study& study, const PipelineOutcome& pipeline) {
-  const auto& design = pipeline.design;
-  if (!design || !design->best) return {};
-  return empty_modes(mode_names(study), design->best->empty,
-                     pipeline.exact ? &*pipeline.exact : nullptr);
+  const DesignedOutcome& found = *pipeline.design();
+  if (!found.design || !found.design->best) return {};
+  return empty_modes(mode_names(study), found.design->best->empty,
+                     found.exact ? &*found.exact : nullptr);
 }
 
 std::string design_text(const Study& study, const PipelineOutcome& pipeline, const Paint& paint) {
   const Names modes = mode_names(study);
-  const std::string diagnoser =
-      pipeline.diagnoser.empty() ? "" : fmt::format(", {}", pipeline.diagnoser);
+  const DesignedOutcome& found = *pipeline.design();
+  const std::string diagnoser = found.diagnoser.empty() ? "" : fmt::format(", {}", found.diagnoser);
   std::string text = fmt::format("{}  {}, {}{}\n", paint.bold(pipeline.name), pipeline.backend,
-                                 pipeline.designer, diagnoser);
-  if (pipeline.design) {
-    const DesignOutcome& outcome = *pipeline.design;
-    const ExactSeparation* exact = pipeline.exact ? &*pipeline.exact : nullptr;
-    text += status_text(outcome, pipeline.designer, exact, paint) + "\n" +
-            restriction_text(outcome) + horizon_text(outcome) + reason_text(outcome);
+                                 found.designer, diagnoser);
+  if (found.design) {
+    const DesignOutcome& outcome = *found.design;
+    const ExactSeparation* exact = found.exact ? &*found.exact : nullptr;
+    text += status_text(outcome, found.designer, exact, paint) + "\n" + restriction_text(outcome) +
+            horizon_text(outcome) + reason_text(outcome);
     if (outcome.best) {
       text += input_text(modes, *outcome.best, exact, paint);
-      if (pipeline.diagnoser.empty())
+      if (found.diagnoser.empty())
         text +=
             "\nNo experiments: name a \"diagnoser\" beside the designer to try the input on every "
             "mode\n";
@@ -203,9 +204,9 @@ std::string design_text(const Study& study, const PipelineOutcome& pipeline, con
       text += "No experiments: there is no input to try\n";
     }
   }
-  if (!pipeline.experiments.empty())
-    text += fmt::format("\n{}", experiments_text(modes, pipeline.experiments, paint));
-  text += refuted_text(pipeline.refuted, paint) + unused_samples_text(study, pipeline) +
+  if (!found.experiments.empty())
+    text += fmt::format("\n{}", experiments_text(modes, found.experiments, paint));
+  text += refuted_text(found.refuted, paint) + unused_samples_text(study, pipeline) +
           assumption_text(study, pipeline, paint);
   if (!pipeline.error.empty()) text += paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
   return text;

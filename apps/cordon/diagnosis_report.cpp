@@ -247,9 +247,9 @@ std::string box_text(const Box& box, Digits digits) {
 
 std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline,
                            const Paint& paint) {
-  const DiagnosisOutcome& found = *pipeline.diagnosis;
+  const DiagnosisOutcome& found = *pipeline.diagnosis();
   std::string text = fmt::format("{}  {}, {}, {} mode{}, {:.1f} µs/step, at most {:.1f}\n\n",
-                                 paint.bold(pipeline.name), pipeline.backend, pipeline.diagnoser,
+                                 paint.bold(pipeline.name), pipeline.backend, found.diagnoser,
                                  found.modes.size(), found.modes.size() == 1 ? "" : "s",
                                  pipeline.median_step_us, pipeline.largest_step_us);
   std::int64_t left = 0;
@@ -283,7 +283,7 @@ std::string assumption_text(const Study& study, const PipelineOutcome& pipeline,
 }
 
 std::string diagnosis_violation(const PipelineOutcome& pipeline) {
-  if (const auto& outside = pipeline.diagnosis->fault_outside;
+  if (const auto& outside = pipeline.diagnosis()->fault_outside;
       outside && outside->k == pipeline.violated_at) {
     return fmt::format(
         "pipeline \"{}\" violates its guarantee: at k = {} the true additive fault {} of k = {} "
@@ -291,13 +291,13 @@ std::string diagnosis_violation(const PipelineOutcome& pipeline) {
         "offset {}). This is a defect of its backend or diagnoser",
         pipeline.name, outside->k, outside->fault + 1, outside->at, outside->seed_offset);
   }
-  const TrueModeExcluded& excluded = *pipeline.diagnosis->true_mode_excluded;
+  const TrueModeExcluded& excluded = *pipeline.diagnosis()->true_mode_excluded;
   return fmt::format(
       "pipeline \"{}\" violates its guarantee: at k = {} it excludes the mode \"{}\", in which the "
       "plant has been since k = {} "
       "(seed offset {}). This is a defect of its backend or diagnoser",
-      pipeline.name, excluded.k, name_of(pipeline.diagnosis->modes, excluded.mode), excluded.since,
-      excluded.seed_offset);
+      pipeline.name, excluded.k, name_of(pipeline.diagnosis()->modes, excluded.mode),
+      excluded.since, excluded.seed_offset);
 }
 
 std::string guarantees_text(const Guarantees& guarantees, const Names& modes, const Paint& paint) {

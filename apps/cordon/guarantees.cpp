@@ -25,8 +25,16 @@ struct GuaranteesArguments {
 /// What one pipeline promises before any experiment.
 struct Promise {
   const PipelineSpec* pipeline;
-  std::optional<Guarantees> guarantees;
+  const ComponentSpec* diagnoser;  ///< also that of experiments; null: there is none
+  std::optional<Guarantees> guarantees = {};
 };
+
+const ComponentSpec* diagnoser_of(const PipelineSpec& pipeline) {
+  for (const auto& [kind, component] : algorithms_of(pipeline)) {
+    if (kind == "diagnoser") return component;
+  }
+  return nullptr;
+}
 
 std::vector<Promise> promises(const Study& study, const Registry& registry,
                               const std::string& name) {
@@ -35,14 +43,14 @@ std::vector<Promise> promises(const Study& study, const Registry& registry,
   for (const PipelineSpec& pipeline : study.pipelines) {
     names.push_back(pipeline.name);
     if (!name.empty() && pipeline.name != name) continue;
-    found.push_back({&pipeline, std::nullopt});
-    if (!pipeline.diagnoser) continue;
+    const ComponentSpec* const diagnoser = diagnoser_of(pipeline);
+    found.push_back({&pipeline, diagnoser});
+    if (!diagnoser) continue;
     const auto backend =
         registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params);
     found.back().guarantees =
         registry
-            .make<DiagnoserEntry>(pipeline.diagnoser->type, {bank_of(study), backend},
-                                  pipeline.diagnoser->params)
+            .make<DiagnoserEntry>(diagnoser->type, {bank_of(study), backend}, diagnoser->params)
             ->guarantees();
   }
   if (found.empty() && !name.empty()) {
@@ -61,17 +69,16 @@ std::vector<std::string> mode_names(const Study& study) {
 std::string report_text(const Study& study, const std::vector<Promise>& all) {
   const Paint paint(stdout);
   std::string text = study.title.empty() ? "" : paint.bold(study.title) + "\n";
-  for (const auto& [pipeline, guarantees] : all) {
+  for (const auto& [pipeline, diagnoser, guarantees] : all) {
     if (!text.empty()) text += "\n";
-    if (!pipeline->diagnoser) {
+    if (!diagnoser) {
       text += fmt::format("{}  has no diagnoser\n", paint.bold(pipeline->name));
       continue;
     }
     text += fmt::format("{}  {}, {}\n", paint.bold(pipeline->name), pipeline->backend.type,
-                        pipeline->diagnoser->type);
-    text += guarantees
-                ? guarantees_text(*guarantees, mode_names(study), paint)
-                : fmt::format("{} makes no statements in advance\n", pipeline->diagnoser->type);
+                        diagnoser->type);
+    text += guarantees ? guarantees_text(*guarantees, mode_names(study), paint)
+                       : fmt::format("{} makes no statements in advance\n", diagnoser->type);
   }
   return text;
 }
@@ -79,11 +86,11 @@ std::string report_text(const Study& study, const std::vector<Promise>& all) {
 std::string report_json(const Study& study, const std::vector<Promise>& all) {
   const std::vector<std::string> modes = mode_names(study);
   Json report{{"modes", modes}, {"pipelines", Json::array()}};
-  for (const auto& [pipeline, guarantees] : all) {
+  for (const auto& [pipeline, diagnoser, guarantees] : all) {
     report["pipelines"].push_back(
         {{"name", pipeline->name},
          {"backend", pipeline->backend.type},
-         {"diagnoser", pipeline->diagnoser ? Json(pipeline->diagnoser->type) : Json(nullptr)},
+         {"diagnoser", diagnoser ? Json(diagnoser->type) : Json(nullptr)},
          {"guarantees", guarantees ? Json::parse(json_of(*guarantees, modes)) : Json(nullptr)}});
   }
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

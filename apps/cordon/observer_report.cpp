@@ -66,7 +66,7 @@ std::string gains_text(const RunOutcome& outcome, const Paint& paint) {
   Rows rows{
       {"PIPELINE", "PARAMETER", "GAIN", "L", "SPECTRAL RADIUS ≤", "MONOTONE", "‖G‖∞", "OPTIMUM"}};
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    for (const Gain& gain : pipeline.gains) {
+    for (const Gain& gain : pipeline.estimation()->gains) {
       const GainCertificate& known = gain.certificate;
       rows.push_back({pipeline.name, gain.name, gain.type, matrix_text(gain.L),
                       number_text(known.spectral_radius),
@@ -81,7 +81,7 @@ std::string gains_text(const RunOutcome& outcome, const Paint& paint) {
 std::string widths_text(const RunOutcome& outcome, const Paint& paint) {
   Rows rows{{"PIPELINE"}};
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    const Box& hull = pipeline.last_hull;
+    const Box& hull = pipeline.estimation()->last_hull;
     if (hull.dim() == 0 || hull.dim() > most_states) continue;
     for (Index i = static_cast<Index>(rows[0].size()); i <= hull.dim(); ++i)
       rows[0].push_back(fmt::format("x{}", i));
@@ -96,11 +96,12 @@ std::string widths_text(const RunOutcome& outcome, const Paint& paint) {
 std::string inner_text(const RunOutcome& outcome, const Paint& paint) {
   Rows rows{{"PIPELINE", "STEPS", "MEAN SHARE OF THE WIDTH", "INSIDE THE HULL"}};
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    if (pipeline.inner_steps == 0) continue;
-    const bool inside = pipeline.inner_outside < 0;
-    rows.push_back({pipeline.name, fmt::format("{}", pipeline.inner_steps),
-                    number_text(pipeline.inner_share),
-                    inside ? "always" : fmt::format("NOT at k = {}", pipeline.inner_outside)});
+    const EstimationOutcome& found = *pipeline.estimation();
+    if (found.inner_steps == 0) continue;
+    const bool inside = found.inner_outside < 0;
+    rows.push_back({pipeline.name, fmt::format("{}", found.inner_steps),
+                    number_text(found.inner_share),
+                    inside ? "always" : fmt::format("NOT at k = {}", found.inner_outside)});
   }
   return titled("Inner estimates", rows, paint);
 }
@@ -109,8 +110,8 @@ std::string growth_text(const RunOutcome& outcome, const Paint& paint) {
   Rows rows{{"PIPELINE", "STATE", "SMALLEST WIDTH", "AT k", "LAST WIDTH", "FACTOR"}};
   std::string advice;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    if (!pipeline.growth) continue;
-    const WidthGrowth& growth = *pipeline.growth;
+    if (!pipeline.estimation()->growth) continue;
+    const WidthGrowth& growth = *pipeline.estimation()->growth;
     rows.push_back({pipeline.name, fmt::format("x{}", growth.state + 1),
                     width_text(growth.smallest), fmt::format("{}", growth.smallest_at),
                     width_text(growth.last), fmt::format("{:.4g}", growth.factor)});
@@ -121,9 +122,9 @@ std::string growth_text(const RunOutcome& outcome, const Paint& paint) {
                       : text.substr(0, text.size() - 1) + "Cause and remedy: " + advice + "\n\n";
 }
 
-ordered_json growth_json(const PipelineOutcome& pipeline) {
-  if (!pipeline.growth) return nullptr;
-  const WidthGrowth& growth = *pipeline.growth;
+ordered_json growth_json(const EstimationOutcome& found) {
+  if (!found.growth) return nullptr;
+  const WidthGrowth& growth = *found.growth;
   return {{"state", growth.state + 1},
           {"smallest", json_number(growth.smallest)},
           {"smallest_at", growth.smallest_at},
@@ -138,9 +139,9 @@ ordered_json json_number(double value) {
   return value;
 }
 
-ordered_json gains_json(const PipelineOutcome& pipeline) {
+ordered_json gains_json(const EstimationOutcome& found) {
   ordered_json all = ordered_json::array();
-  for (const Gain& gain : pipeline.gains) {
+  for (const Gain& gain : found.gains) {
     const GainCertificate& known = gain.certificate;
     ordered_json matrix = ordered_json::array();
     for (Index i = 0; i < gain.L.rows(); ++i) matrix.push_back(numbers(gain.L.row(i).transpose()));
@@ -166,8 +167,8 @@ ordered_json gains_json(const PipelineOutcome& pipeline) {
   return all;
 }
 
-ordered_json last_json(const PipelineOutcome& pipeline) {
-  const Box& hull = pipeline.last_hull;
+ordered_json last_json(const EstimationOutcome& found) {
+  const Box& hull = found.last_hull;
   if (hull.dim() == 0) return nullptr;
   return {{"hull", {{"lower", numbers(hull.lower)}, {"upper", numbers(hull.upper)}}},
           {"width", hull.is_empty() ? ordered_json(nullptr) : numbers(hull.upper - hull.lower)}};

@@ -12,7 +12,8 @@
 
 namespace cordon::apps {
 
-// Tables with a title and an empty line behind; "" where no pipeline has anything to tell.
+// Tables with a title and an empty line behind; "" where no pipeline has anything to tell. All
+// pipelines of the outcome estimate.
 
 /// One row per gain.
 std::string gains_text(const RunOutcome& outcome, const Paint& paint);
@@ -26,10 +27,10 @@ std::string growth_text(const RunOutcome& outcome, const Paint& paint);
 /// The number, null for NaN, "inf" and "-inf".
 nlohmann::ordered_json json_number(double value);
 /// The same as in results.json.
-nlohmann::ordered_json gains_json(const PipelineOutcome& pipeline);
+nlohmann::ordered_json gains_json(const EstimationOutcome& found);
 /// The same as in results.json; null if nothing grows.
-nlohmann::ordered_json growth_json(const PipelineOutcome& pipeline);
+nlohmann::ordered_json growth_json(const EstimationOutcome& found);
 /// {hull, width}; null if there was no step.
-nlohmann::ordered_json last_json(const PipelineOutcome& pipeline);
+nlohmann::ordered_json last_json(const EstimationOutcome& found);
 
 }  // namespace cordon::apps

@@ -21,9 +21,10 @@ namespace {
 using nlohmann::ordered_json;
 
 const MetricValue* find(const PipelineOutcome& pipeline, std::string_view name) {
-  const auto found = std::find_if(pipeline.summary.begin(), pipeline.summary.end(),
+  const std::vector<MetricValue>& summary = pipeline.estimation()->summary;
+  const auto found = std::find_if(summary.begin(), summary.end(),
                                   [&](const MetricValue& m) { return m.name == name; });
-  return found == pipeline.summary.end() ? nullptr : &*found;
+  return found == summary.end() ? nullptr : &*found;
 }
 
 std::string text(const MetricValue* metric) {
@@ -60,10 +61,11 @@ std::string value_text(const PipelineOutcome& pipeline, const Measure& measure) 
 std::string consistency(const PipelineOutcome& pipeline) {
   if (!pipeline.error.empty()) return fmt::format("error after {} steps", pipeline.steps);
   if (pipeline.violated_at >= 0) return fmt::format("VIOLATED at k = {}", pipeline.violated_at);
-  if (pipeline.inner_outside >= 0) return fmt::format("VIOLATED at k = {}", pipeline.inner_outside);
-  if (pipeline.inconsistent_from >= 0)
-    return fmt::format("empty from k = {}", pipeline.inconsistent_from);
-  if (pipeline.undecided > 0) return fmt::format("undecided at {} steps", pipeline.undecided);
+  const EstimationOutcome& found = *pipeline.estimation();
+  if (found.inner_outside >= 0) return fmt::format("VIOLATED at k = {}", found.inner_outside);
+  if (found.inconsistent_from >= 0)
+    return fmt::format("empty from k = {}", found.inconsistent_from);
+  if (found.undecided > 0) return fmt::format("undecided at {} steps", found.undecided);
   return "consistent";
 }
 
@@ -95,7 +97,7 @@ std::vector<Column> metric_columns(const RunOutcome& outcome) {
   std::vector<Column> found;
   std::vector<std::string> known;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    for (const MetricValue& metric : pipeline.summary) {
+    for (const MetricValue& metric : pipeline.estimation()->summary) {
       if (std::find(known.begin(), known.end(), metric.name) != known.end()) continue;
       known.push_back(metric.name);
       const Measure measure = described(outcome, metric.name);
@@ -152,28 +154,28 @@ ordered_json assumption_json(const PipelineOutcome& p, const std::vector<std::st
           {"text", text_of(failed, modes)}};
 }
 
-ordered_json json_of_diagnosis(const PipelineOutcome& p) {
-  const auto& guarantees = p.diagnosis->guarantees;
+ordered_json json_of(const PipelineOutcome& p, const DiagnosisOutcome& found) {
+  const auto& guarantees = found.guarantees;
   return {{"name", p.name},
           {"backend", p.backend},
-          {"diagnoser", p.diagnoser},
-          {"modes", p.diagnosis->modes},
+          {"diagnoser", found.diagnoser},
+          {"modes", found.modes},
           {"steps", p.steps},
           {"assumptions_until", time_or_null(p.assumptions_until)},
-          {"failed_assumption", assumption_json(p, p.diagnosis->modes)},
+          {"failed_assumption", assumption_json(p, found.modes)},
           {"violated_at", time_or_null(p.violated_at)},
           {"error", error_of(p)},
-          {"guarantees", guarantees
-                             ? ordered_json::parse(cordon::json_of(*guarantees, p.diagnosis->modes))
-                             : ordered_json(nullptr)},
-          {"diagnosis", ordered_json::parse(cordon::json_of(*p.diagnosis))},
+          {"guarantees", guarantees ? ordered_json::parse(cordon::json_of(*guarantees, found.modes))
+                                    : ordered_json(nullptr)},
+          {"diagnosis", ordered_json::parse(cordon::json_of(found))},
           {"median_step_us", p.median_step_us},
           {"largest_step_us", p.largest_step_us}};
 }
 
-ordered_json json_of_design(const PipelineOutcome& p, const std::vector<std::string>& modes) {
+ordered_json json_of(const PipelineOutcome& p, const DesignedOutcome& found,
+                     const std::vector<std::string>& modes) {
   ordered_json experiments = ordered_json::array();
-  for (const ExperimentRow& row : p.experiments) {
+  for (const ExperimentRow& row : found.experiments) {
     const DelayStatistics& k = row.isolation;
     experiments.push_back(
         {{"mode", modes[static_cast<std::size_t>(row.mode)]},
@@ -189,28 +191,28 @@ ordered_json json_of_design(const PipelineOutcome& p, const std::vector<std::str
   }
   return {{"name", p.name},
           {"backend", p.backend},
-          {"designer", p.designer},
-          {"diagnoser", p.diagnoser.empty() ? ordered_json(nullptr) : ordered_json(p.diagnoser)},
+          {"designer", found.designer},
+          {"diagnoser",
+           found.diagnoser.empty() ? ordered_json(nullptr) : ordered_json(found.diagnoser)},
           {"modes", modes},
           {"assumptions_until", time_or_null(p.assumptions_until)},
           {"failed_assumption", assumption_json(p, modes)},
           {"violated_at", time_or_null(p.violated_at)},
-          {"refuted", p.refuted},
+          {"refuted", found.refuted},
           {"error", error_of(p)},
-          {"design", p.design ? ordered_json::parse(cordon::json_of(*p.design, modes))
-                              : ordered_json(nullptr)},
-          {"exact",
-           p.exact ? ordered_json::parse(cordon::json_of(*p.exact, modes)) : ordered_json(nullptr)},
+          {"design", found.design ? ordered_json::parse(cordon::json_of(*found.design, modes))
+                                  : ordered_json(nullptr)},
+          {"exact", found.exact ? ordered_json::parse(cordon::json_of(*found.exact, modes))
+                                : ordered_json(nullptr)},
           {"experiments", std::move(experiments)},
           {"median_step_us", p.median_step_us},
           {"largest_step_us", p.largest_step_us}};
 }
 
-ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& modes) {
-  if (!p.designer.empty()) return json_of_design(p, modes);
-  if (p.diagnosis) return json_of_diagnosis(p);
+ordered_json json_of(const PipelineOutcome& p, const EstimationOutcome& found,
+                     const std::vector<std::string>& modes) {
   ordered_json metrics = ordered_json::object();
-  for (const MetricValue& metric : p.summary) {
+  for (const MetricValue& metric : found.summary) {
     if (const auto* value = std::get_if<double>(&metric.value)) {
       metrics[metric.name] = json_number(*value);
     } else {
@@ -219,27 +221,65 @@ ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& m
   }
   return {{"name", p.name},
           {"backend", p.backend},
-          {"observer", p.observer},
+          {"observer", found.observer},
           {"steps", p.steps},
-          {"consistent", p.consistent},
-          {"inconsistent", p.inconsistent},
-          {"undecided", p.undecided},
-          {"inconsistent_from", time_or_null(p.inconsistent_from)},
+          {"consistent", found.consistent},
+          {"inconsistent", found.inconsistent},
+          {"undecided", found.undecided},
+          {"inconsistent_from", time_or_null(found.inconsistent_from)},
           {"assumptions_until", time_or_null(p.assumptions_until)},
           {"failed_assumption", assumption_json(p, modes)},
-          {"outside_from", time_or_null(p.outside_from)},
+          {"outside_from", time_or_null(found.outside_from)},
           {"violated_at", time_or_null(p.violated_at)},
-          {"inner_steps", p.inner_steps},
-          {"inner_share", p.inner_steps > 0 ? json_number(p.inner_share) : ordered_json(nullptr)},
-          {"inner_outside", time_or_null(p.inner_outside)},
-          {"growth", growth_json(p)},
-          {"gains", gains_json(p)},
-          {"last", last_json(p)},
+          {"inner_steps", found.inner_steps},
+          {"inner_share",
+           found.inner_steps > 0 ? json_number(found.inner_share) : ordered_json(nullptr)},
+          {"inner_outside", time_or_null(found.inner_outside)},
+          {"growth", growth_json(found)},
+          {"gains", gains_json(found)},
+          {"last", last_json(found)},
           {"error", error_of(p)},
           {"metrics", std::move(metrics)},
           {"median_step_us", p.median_step_us},
           {"largest_step_us", p.largest_step_us},
-          {"median_hull_us", p.median_hull_us}};
+          {"median_hull_us", found.median_hull_us}};
+}
+
+ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& modes) {
+  if (p.design()) return json_of(p, *p.design(), modes);
+  if (p.diagnosis()) return json_of(p, *p.diagnosis());
+  return json_of(p, *p.estimation(), modes);
+}
+
+/// A guarantee that was violated at `violated_at`.
+std::string violation(const PipelineOutcome& pipeline) {
+  if (pipeline.diagnosis()) return diagnosis_violation(pipeline);
+  if (pipeline.design()) {
+    return fmt::format(
+        "pipeline \"{}\" violates its guarantee: at k = {} of an experiment its diagnoser excludes "
+        "the true mode. This is a defect of its backend or diagnoser",
+        pipeline.name, pipeline.violated_at);
+  }
+  return fmt::format(
+      "pipeline \"{}\" violates its guarantee: at k = {} the true state is proven outside the "
+      "estimate. This is a defect of its backend or observer",
+      pipeline.name, pipeline.violated_at);
+}
+
+void add_complaints(const Study& study, const PipelineOutcome& pipeline,
+                    const DesignedOutcome& found, std::vector<std::string>& complaints) {
+  if (!found.design) return;
+  for (std::string& claim : refutations(pipeline.name, found.refuted))
+    complaints.push_back(std::move(claim));
+  for (const std::string& mode : empty_tubes(study, pipeline)) {
+    complaints.push_back(fmt::format(
+        "pipeline \"{}\": no output of mode \"{}\" fits its input: the model contradicts itself",
+        pipeline.name, mode));
+  }
+  if (found.design->status == DesignStatus::unknown) {
+    complaints.push_back(fmt::format("pipeline \"{}\": no input was found{}", pipeline.name,
+                                     found.design->stopped ? " within the limit" : ""));
+  }
 }
 
 }  // namespace
@@ -252,9 +292,9 @@ std::string report_text(const Study& study, const RunOutcome& outcome,
   std::string diagnoses;
   const Paint paint(stdout);
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    if (!pipeline.designer.empty()) {
+    if (pipeline.design()) {
       diagnoses += design_text(study, pipeline, paint) + "\n";
-    } else if (pipeline.diagnosis) {
+    } else if (pipeline.diagnosis()) {
       diagnoses += diagnosis_text(study, pipeline, paint) + "\n";
     } else {
       observed.pipelines.push_back(pipeline);
@@ -294,41 +334,16 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
       found.push_back(fmt::format("pipeline \"{}\" stopped after {} steps: {}", pipeline.name,
                                   pipeline.steps, pipeline.error));
     }
-    if (pipeline.design) {
-      for (std::string& claim : refutations(pipeline.name, pipeline.refuted))
-        found.push_back(std::move(claim));
-      for (const std::string& mode : empty_tubes(study, pipeline)) {
-        found.push_back(
-            fmt::format("pipeline \"{}\": no output of mode \"{}\" fits its input: the model "
-                        "contradicts itself",
-                        pipeline.name, mode));
-      }
-      if (pipeline.design->status == DesignStatus::unknown) {
-        found.push_back(fmt::format("pipeline \"{}\": no input was found{}", pipeline.name,
-                                    pipeline.design->stopped ? " within the limit" : ""));
-      }
-    }
-    if (pipeline.violated_at >= 0 && !pipeline.designer.empty()) {
-      found.push_back(
-          fmt::format("pipeline \"{}\" violates its guarantee: at k = {} of an experiment its "
-                      "diagnoser excludes the true mode. "
-                      "This is a defect of its backend or diagnoser",
-                      pipeline.name, pipeline.violated_at));
-    } else if (pipeline.violated_at >= 0 && pipeline.diagnosis) {
-      found.push_back(diagnosis_violation(pipeline));
-    } else if (pipeline.violated_at >= 0) {
-      found.push_back(
-          fmt::format("pipeline \"{}\" violates its guarantee: at k = {} the true state is proven "
-                      "outside the estimate. This is a "
-                      "defect of its backend or observer",
-                      pipeline.name, pipeline.violated_at));
-    }
-    if (pipeline.inner_outside >= 0) {
+    if (const DesignedOutcome* const designed = pipeline.design())
+      add_complaints(study, pipeline, *designed, found);
+    if (pipeline.violated_at >= 0) found.push_back(violation(pipeline));
+    const EstimationOutcome* const estimated = pipeline.estimation();
+    if (estimated && estimated->inner_outside >= 0) {
       found.push_back(fmt::format(
           "pipeline \"{}\" violates its guarantee: at k = {} its inner estimate, of trajectories "
           "that it must enclose, "
           "leaves the hull of its estimate. This is a defect of its backend or observer",
-          pipeline.name, pipeline.inner_outside));
+          pipeline.name, estimated->inner_outside));
     }
   }
   return found;
@@ -336,12 +351,20 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
 
 namespace {
 
-bool has_empty_tube(const PipelineOutcome& pipeline) {
+bool has_empty_tube(const DesignedOutcome& found) {
   const auto any = [](const std::vector<Answer>& empty) {
     return std::find(empty.begin(), empty.end(), Answer::yes) != empty.end();
   };
-  return (pipeline.design->best && any(pipeline.design->best->empty)) ||
-         (pipeline.exact && any(pipeline.exact->empty));
+  return (found.design->best && any(found.design->best->empty)) ||
+         (found.exact && any(found.exact->empty));
+}
+
+/// Something that must hold is proven not to.
+bool is_violated(const PipelineOutcome& pipeline) {
+  const EstimationOutcome* const estimated = pipeline.estimation();
+  const DesignedOutcome* const designed = pipeline.design();
+  return pipeline.violated_at >= 0 || pipeline.error_code == Errc::violated ||
+         (estimated && estimated->inner_outside >= 0) || (designed && !designed->refuted.empty());
 }
 
 }  // namespace
@@ -349,14 +372,14 @@ bool has_empty_tube(const PipelineOutcome& pipeline) {
 Exit exit_of(const RunOutcome& outcome) {
   Exit exit = Exit::done;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    const bool refuted = !pipeline.refuted.empty() || pipeline.error_code == Errc::violated;
-    if (pipeline.violated_at >= 0 || pipeline.inner_outside >= 0 || refuted) return Exit::violated;
+    if (is_violated(pipeline)) return Exit::violated;
     const bool answered = exit != Exit::done && exit != Exit::unanswered;
     if (!answered && !pipeline.error.empty())
       exit = exit_for(pipeline.error_code.value_or(Errc::internal));
-    if (!pipeline.design || answered) continue;
-    if (has_empty_tube(pipeline)) exit = Exit::invalid;
-    if (pipeline.design->status == DesignStatus::unknown && exit == Exit::done)
+    const DesignedOutcome* const found = pipeline.design();
+    if (!found || !found->design || answered) continue;
+    if (has_empty_tube(*found)) exit = Exit::invalid;
+    if (found->design->status == DesignStatus::unknown && exit == Exit::done)
       exit = Exit::unanswered;
   }
   return exit;

@@ -48,7 +48,7 @@ std::string describe_data(const Study& study) {
         last == first ? fmt::format("seed {}", first) : fmt::format("seeds {} to {}", first, last);
     const bool designed =
         std::all_of(study.pipelines.begin(), study.pipelines.end(),
-                    [](const PipelineSpec& pipeline) { return pipeline.designer.has_value(); });
+                    [](const PipelineSpec& pipeline) { return pipeline.design() != nullptr; });
     if (designed) return "experiments with every mode and the designed inputs, " + seeds;
     return fmt::format("simulated{}, {}, {}", by, count(simulate->steps, "step"), seeds);
   }
@@ -88,9 +88,7 @@ std::string describe_modes(const Study& study) {
 
 std::vector<std::string> components_of(const PipelineSpec& pipeline) {
   std::vector<std::string> names{pipeline.backend.type};
-  if (pipeline.designer) names.push_back(pipeline.designer->type);
-  if (pipeline.diagnoser) names.push_back(pipeline.diagnoser->type);
-  if (!pipeline.designer && !pipeline.diagnoser) names.push_back(pipeline.observer.type);
+  for (const auto& [kind, component] : algorithms_of(pipeline)) names.push_back(component->type);
   return names;
 }
 

@@ -24,8 +24,7 @@ struct VerifyArguments {
   bool json = false, quiet = false;
 };
 
-/// Observers have no proofs without steps.
-bool is_design(const VerifiedPipeline& p) { return p.steps == 0 && p.proofs + p.undecided > 0; }
+bool is_checked(const VerifiedPipeline& p) { return p.kind != PipelineKind::diagnosis; }
 
 using Count = SecondOpinionFindings::Count;
 
@@ -73,12 +72,12 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
           paint.yellow("assumption failed"), p.name, p.failed_assumption, p.assumptions_until,
           p.fails_again == Answer::yes ? " (proven again)" : "");
     }
-    if (!p.checked) {
+    if (!is_checked(p)) {
       passed_over +=
           fmt::format("not re-checked: {} (a diagnosis; its sets are not stored)\n", p.name);
       continue;
     }
-    if (is_design(p))
+    if (p.kind == PipelineKind::design && p.proofs + p.undecided > 0)
       passed_over += fmt::format(
           "not re-checked: the experiments of {} (of its design, the separation is)\n", p.name);
     rows.push_back({p.name, p.backend, std::string(to_string(p.rounding)), std::to_string(p.steps),
@@ -114,7 +113,7 @@ std::string report_json(const VerifyOutcome& outcome) {
     report["pipelines"].push_back({{"name", p.name},
                                    {"backend", p.backend},
                                    {"rounding", to_string(p.rounding)},
-                                   {"checked", p.checked},
+                                   {"checked", is_checked(p)},
                                    {"steps", p.steps},
                                    {"by_polytopes", p.by_polytopes},
                                    {"by_supports", p.by_supports},
@@ -184,8 +183,7 @@ Exit verify(VerifyArguments& arguments) {
     complain(fmt::format("{} checks could not be decided; all others hold", open));
     return Exit::unanswered;
   }
-  const bool any = std::any_of(outcome.pipelines.begin(), outcome.pipelines.end(),
-                               [](const auto& p) { return p.checked; });
+  const bool any = std::any_of(outcome.pipelines.begin(), outcome.pipelines.end(), is_checked);
   if (!arguments.quiet && !arguments.json && (any || outcome.pipelines.empty()))
     print(final_text(outcome));
   return Exit::done;

@@ -59,8 +59,9 @@ void steps_of_main_study() {
       CORDON_SOURCE_DIR "/examples/studies/descriptor_four_representations.json", registry);
   const PipelineSpec& pipeline = study.pipelines.front();
   const auto backend = registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params);
-  const auto observer = registry.make<ObserverEntry>(pipeline.observer.type, {study.model, backend},
-                                                     pipeline.observer.params);
+  const ComponentSpec& spec = pipeline.estimation()->observer;
+  const auto observer =
+      registry.make<ObserverEntry>(spec.type, {study.model, backend}, spec.params);
   std::vector<Sample> samples;
   for (const auto source = open_data(study); samples.size() <= 20;)
     samples.push_back(source->next()->sample);

@@ -24,8 +24,8 @@ DiagnosisOutcome run_first_pipeline(Study study) {
   const RunOutcome outcome = run_study(study, banks::registry(), {});
   REQUIRE(outcome.pipelines.size() == 1);
   REQUIRE(outcome.pipelines[0].error.empty());
-  REQUIRE(outcome.pipelines[0].diagnosis.has_value());
-  return *outcome.pipelines[0].diagnosis;
+  REQUIRE(outcome.pipelines[0].diagnosis() != nullptr);
+  return *outcome.pipelines[0].diagnosis();
 }
 
 std::map<std::pair<Index, Index>, Box> table(const DiagnosisOutcome& outcome) {
@@ -77,7 +77,7 @@ TEST_CASE("reactor: the literal reading of the disturbance fails the FDI conditi
     study.modes[i].model.W =
         banks::box_around(Vector::Constant(2, centers[i + 1]), Vector::Constant(2, radii[i + 1]));
   }
-  Params params = study.pipelines[0].diagnoser->params;
+  Params params = study.pipelines[0].diagnosis()->diagnoser.params;
   params.set("error_set", make_zonotope(Vector::Zero(2), Matrix{{1, 0}, {0, 80}}));
   const auto backend = banks::backend("zonotope");
   const auto guarantees =

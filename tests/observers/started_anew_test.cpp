@@ -44,10 +44,10 @@ TEST_CASE("an observer that is started anew, after other data too, gives the set
     CAPTURE(pipeline.name);
     const auto make = [&] {
       return registry.make<ObserverEntry>(
-          pipeline.observer.type,
+          pipeline.estimation()->observer.type,
           {study.model,
            registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params)},
-          pipeline.observer.params);
+          pipeline.estimation()->observer.params);
     };
     const auto observer = make(), fresh = make();
     run(*observer, other);

@@ -50,9 +50,10 @@ void judge(Diagnoser& diagnoser, DataSource& data, Outcome& outcome) {
 Outcome over_seeds(const Study& study, const PipelineSpec& pipeline, const Registry& registry,
                    std::uint64_t seeds) {
   const auto backend = registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params);
-  REQUIRE(pipeline.diagnoser);
-  const auto diagnoser = registry.make<DiagnoserEntry>(
-      pipeline.diagnoser->type, {bank_of(study), backend}, pipeline.diagnoser->params);
+  REQUIRE(pipeline.diagnosis());
+  const auto diagnoser =
+      registry.make<DiagnoserEntry>(pipeline.diagnosis()->diagnoser.type, {bank_of(study), backend},
+                                    pipeline.diagnosis()->diagnoser.params);
   Outcome outcome;
   for (std::uint64_t seed = 0; seed < seeds; ++seed)
     judge(*diagnoser, *open_data(study, seed), outcome);

@@ -51,7 +51,7 @@ struct Loaded {
     REQUIRE(outcome.pipelines.size() == 1);
     CHECK(outcome.pipelines[0].error.empty());
     CHECK(outcome.pipelines[0].violated_at == -1);
-    return outcome.pipelines[0].experiments;
+    return outcome.pipelines[0].design()->experiments;
   }
 };
 

@@ -40,13 +40,13 @@ void expect_widths(const Ran& ran, const std::map<std::string, Vector>& widths) 
     CAPTURE(pipeline.name);
     CHECK(pipeline.error.empty());
     CHECK(pipeline.violated_at == -1);
-    CHECK(pipeline.outside_from == -1);
-    CHECK(pipeline.inner_outside == -1);
-    CHECK(pipeline.gains.size() == 1);
+    CHECK(pipeline.estimation()->outside_from == -1);
+    CHECK(pipeline.estimation()->inner_outside == -1);
+    CHECK(pipeline.estimation()->gains.size() == 1);
   }
   for (const auto& [name, expected] : widths) {
     CAPTURE(name);
-    const Vector found = 2 * ran[name].last_hull.radius();
+    const Vector found = 2 * ran[name].estimation()->last_hull.radius();
     CAPTURE(found.transpose());
     CHECK((found - expected).cwiseAbs().maxCoeff() <= 1e-6);
   }
@@ -62,9 +62,11 @@ TEST_CASE("the monotone system: widths after 200 steps") {
                       {"interval, monotone gain", monotone},
                       {"integrated, monotone gain", monotone}});
   // the linear program finds the published monotone gain
-  CHECK((ran["interval, peak"].gains[0].L - Vector{{.3, .2, .8}}).cwiseAbs().maxCoeff() < 1e-9);
-  CHECK(ran["interval, monotone gain"].inner_share > .85);
-  CHECK(ran["interval, monotone gain"].inner_share < 1);
+  CHECK((ran["interval, peak"].estimation()->gains[0].L - Vector{{.3, .2, .8}})
+            .cwiseAbs()
+            .maxCoeff() < 1e-9);
+  CHECK(ran["interval, monotone gain"].estimation()->inner_share > .85);
+  CHECK(ran["interval, monotone gain"].estimation()->inner_share < 1);
 }
 
 TEST_CASE("the non-monotone system: widths after 200 steps") {
@@ -77,7 +79,7 @@ TEST_CASE("the non-monotone system: widths after 200 steps") {
                  {"zonotope, published trajectory gain", Vector{{5.487982, 5.443569, .790134}}},
                  {"interval, published trajectory gain", Vector{{7.854504, 8.736167, .873526}}}});
   for (const PipelineOutcome& pipeline : ran.outcome.pipelines)
-    CHECK_FALSE(pipeline.gains[0].certificate.monotone);
+    CHECK_FALSE(pipeline.estimation()->gains[0].certificate.monotone);
 }
 
 TEST_CASE("the two tanks: widths after 200 steps, whatever the plant does") {
@@ -91,7 +93,8 @@ TEST_CASE("the two tanks: widths after 200 steps, whatever the plant does") {
                       {"the same gain, no reduction", Vector{{8.449280, 1.146565}}},
                       {"interval, published trajectory gain", Vector{{283.885256, 5.877372}}},
                       {"interval, published monotone gain", Vector{{11.831888, 1.138394}}}});
-  CHECK(ran["interval, monotone gain"].inner_share == doctest::Approx(1).epsilon(1e-12));
+  CHECK(ran["interval, monotone gain"].estimation()->inner_share ==
+        doctest::Approx(1).epsilon(1e-12));
 }
 
 TEST_CASE("W of the two tanks bounds the error of linearisation for every input in U") {
@@ -150,8 +153,8 @@ TEST_CASE("the fault-estimation filter: half widths, delays, and no true fault o
       {"shared, 20 columns", Vector{{.07590599, .06691382}}}};
   for (const PipelineOutcome& pipeline : ran.outcome.pipelines) {
     CAPTURE(pipeline.name);
-    REQUIRE(pipeline.diagnosis);
-    const DiagnosisOutcome& found = *pipeline.diagnosis;
+    REQUIRE(pipeline.diagnosis());
+    const DiagnosisOutcome& found = *pipeline.diagnosis();
     CHECK(pipeline.error.empty());
     CHECK(pipeline.violated_at == -1);
     CHECK(found.runs == 20);
@@ -170,5 +173,5 @@ TEST_CASE("the fault-estimation filter: half widths, delays, and no true fault o
     CHECK(std::abs(found.faults[0].last_half_width - numbers->second[0]) < 1e-7);
     CHECK(std::abs(found.faults[1].last_half_width - numbers->second[1]) < 1e-7);
   }
-  CHECK(ran["shared, 20 columns, S = 0"].diagnosis->faults[0].last_half_width < .06);
+  CHECK(ran["shared, 20 columns, S = 0"].diagnosis()->faults[0].last_half_width < .06);
 }

@@ -23,8 +23,9 @@ struct Figures {
 void run(const Study& study, const PipelineSpec& pipeline, const Registry& registry,
          Figures& figures) {
   const auto backend = registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params);
-  const auto observer = registry.make<ObserverEntry>(pipeline.observer.type, {study.model, backend},
-                                                     pipeline.observer.params);
+  const auto observer =
+      registry.make<ObserverEntry>(pipeline.estimation()->observer.type, {study.model, backend},
+                                   pipeline.estimation()->observer.params);
   observer->start();
   const auto source = open_data(study);
   bool admissible = true;

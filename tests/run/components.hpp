@@ -314,11 +314,11 @@ inline void register_all(Registrar& registrar) {
 
 inline PipelineSpec pipeline(std::string name, std::string observer = "recursive",
                              Params params = {}) {
-  return {std::move(name), {"box", {}}, {std::move(observer), std::move(params)}};
+  return {{EstimationSpec{{std::move(observer), std::move(params)}}}, std::move(name), {"box", {}}};
 }
 
 inline PipelineSpec diagnosis(std::string name, Params params = {}) {
-  return {std::move(name), {"box", {}}, {}, ComponentSpec{"scripted", std::move(params)}};
+  return {{DiagnosisSpec{{"scripted", std::move(params)}}}, std::move(name), {"box", {}}};
 }
 
 /// A stable system of two states; its input drives the state away from the origin.
@@ -348,8 +348,8 @@ inline Study study(std::vector<PipelineSpec> pipelines, std::int64_t steps = 20)
 
 /// The same with two additive faults and the diagnoser that knows of them.
 inline Study study_with_faults(Params params, std::int64_t steps = 20) {
-  Study s =
-      study({{"filter", {"box", {}}, {}, ComponentSpec{"bounding", std::move(params)}}}, steps);
+  PipelineSpec filter{{DiagnosisSpec{{"bounding", std::move(params)}}}, "filter", {"box", {}}};
+  Study s = study({std::move(filter)}, steps);
   s.model.linear.F = Matrix::Identity(2, 2);
   return s;
 }

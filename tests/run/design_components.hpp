@@ -139,13 +139,13 @@ inline void register_designing(Registrar& registrar) {
 }
 
 inline PipelineSpec design(std::string name, std::string says = "found", std::string tells = {}) {
-  PipelineSpec spec{std::move(name), {"box", {}}, {}};
-  spec.designer.emplace().type = "designing";
-  spec.designer->params.set("says", std::move(says));
-  if (tells.empty()) return spec;
-  spec.diagnoser.emplace().type = "telling";
-  spec.diagnoser->params.set("tells", std::move(tells));
-  return spec;
+  DesignSpec design{{"designing", {}}};
+  design.designer.params.set("says", std::move(says));
+  if (!tells.empty()) {
+    design.diagnoser = {"telling", {}};
+    design.diagnoser->params.set("tells", std::move(tells));
+  }
+  return {{std::move(design)}, std::move(name), {"box", {}}};
 }
 
 }  // namespace fakes

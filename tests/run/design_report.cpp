@@ -214,14 +214,15 @@ TEST_CASE("a design in a run, with its experiments") {
   PipelineOutcome p;
   p.name = "AFD";
   p.backend = "line_zonotope";
-  p.designer = "facets";
-  p.design = design().outcome;
+  DesignedOutcome& found = p.task.emplace<DesignedOutcome>();
+  found.designer = "facets";
+  found.design = design().outcome;
   RunOutcome outcome;
   outcome.pipelines = {p};
   CHECK(has(apps::report_text(study(), outcome, "out"), "No experiments: name a \"diagnoser\""));
-  p.diagnoser = "tube_membership";
-  p.experiments = {{0, 500, {500, 12}, 488, 0, 0, 12, {488, 1, 2, 1.5}},
-                   {1, 500, {0, 500}, 499, 1, 0, 0, {}}};
+  found.diagnoser = "tube_membership";
+  found.experiments = {{0, 500, {500, 12}, 488, 0, 0, 12, {488, 1, 2, 1.5}},
+                       {1, 500, {0, 500}, 499, 1, 0, 0, {}}};
   outcome.pipelines = {p};
   const std::string shown = apps::report_text(study(), outcome, "out");
   CHECK(has(shown, "AFD  line_zonotope, facets, tube_membership\n"));
@@ -254,7 +255,7 @@ TEST_CASE("a design in a run, with its experiments") {
   CHECK(has(apps::report_text(study(), outcome, "out"),
             "Assumption failed: x_0 lies outside X0 of mode \"leak\""));
   outcome.pipelines[0] = p;
-  outcome.pipelines[0].refuted = {"u_k is outside"};
+  outcome.pipelines[0].design()->refuted = {"u_k is outside"};
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);
   CHECK(has(apps::complaints(study(), outcome).at(0), "violates its guarantee: u_k is outside"));
   outcome.pipelines[0] = p;
@@ -262,14 +263,14 @@ TEST_CASE("a design in a run, with its experiments") {
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);
   CHECK(has(apps::complaints(study(), outcome).at(0), "at k = 2 of an experiment"));
   outcome.pipelines[0] = p;
-  outcome.pipelines[0].design->best->empty[1] = Answer::yes;
+  outcome.pipelines[0].design()->design->best->empty[1] = Answer::yes;
   CHECK(apps::exit_of(outcome) == apps::Exit::invalid);
   CHECK(has(apps::complaints(study(), outcome).at(0), "no output of mode \"leak\""));
-  outcome.pipelines[0].design = without(DesignStatus::unknown).outcome;
+  outcome.pipelines[0].design()->design = without(DesignStatus::unknown).outcome;
   CHECK(apps::exit_of(outcome) == apps::Exit::unanswered);
   CHECK(has(apps::complaints(study(), outcome).at(0), "no input was found"));
   CHECK_FALSE(has(apps::complaints(study(), outcome).at(0), "limit"));
-  outcome.pipelines[0].design->stopped = true;
+  outcome.pipelines[0].design()->design->stopped = true;
   CHECK(has(apps::complaints(study(), outcome).at(0), "no input was found within the limit"));
   CHECK(has(apps::report_text(study(), outcome, "out"),
             "No experiments: there is no input to try\n"));
@@ -278,27 +279,29 @@ TEST_CASE("a design in a run, with its experiments") {
 TEST_CASE("experiments that stay open because the diagnoser stops before the input does") {
   Study s = study();
   s.pipelines = {fakes::design("AFD", "found", "truth")};
-  s.pipelines[0].diagnoser->type = "tube_membership";
+  ComponentSpec& diagnoser = *s.pipelines[0].design()->diagnoser;
+  diagnoser.type = "tube_membership";
   RunOutcome outcome;
   outcome.pipelines.resize(1);
   PipelineOutcome& p = outcome.pipelines[0];
   p.name = "AFD";
-  p.designer = "facets";
-  p.diagnoser = "tube_membership";
-  p.design = design().outcome;  // N = 1
-  p.experiments = {{0, 5, {5, 0}, 5, 0, 0, 0, {}}, {1, 5, {0, 5}, 4, 0, 0, 1, {}}};
+  DesignedOutcome& found = p.task.emplace<DesignedOutcome>();
+  found.designer = "facets";
+  found.diagnoser = "tube_membership";
+  found.design = design().outcome;  // N = 1
+  found.experiments = {{0, 5, {5, 0}, 5, 0, 0, 0, {}}, {1, 5, {0, 5}, 4, 0, 0, 1, {}}};
   const auto hint = [&](std::int64_t horizon) {
-    s.pipelines[0].diagnoser->params.set("horizon", horizon);
+    diagnoser.params.set("horizon", horizon);
     const std::string shown = apps::report_text(s, outcome, "out");
     CHECK(has(shown, "To try: a \"horizon\" of 1\n") == has(shown, "takes no sample after k = 0"));
     return has(shown, "takes no sample after k");
   };
   CHECK(hint(0));
   CHECK_FALSE(hint(1));
-  p.experiments[1].undecided = 0;
+  found.experiments[1].undecided = 0;
   CHECK_FALSE(hint(0));
-  p.experiments[1].undecided = 1;
-  s.pipelines[0].diagnoser->type = "other";  // whose horizon is something else
+  found.experiments[1].undecided = 1;
+  diagnoser.type = "other";  // whose horizon is something else
   CHECK_FALSE(hint(0));
 }
 

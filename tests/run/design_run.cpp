@@ -45,17 +45,17 @@ PipelineOutcome run_one(const std::string& tells, const std::string& says = "fou
 TEST_CASE("every mode is tried with every seed, and the confusion table counts the ends") {
   const PipelineOutcome found = run_one("truth");
   CHECK(found.error.empty());
-  CHECK(found.designer == "designing");
-  CHECK(found.diagnoser == "telling");
-  CHECK(found.observer.empty());
-  CHECK_FALSE(found.diagnosis);
-  REQUIRE(found.design);
-  CHECK(found.design->best->cost == 5);
+  CHECK(found.kind() == PipelineKind::design);
+  REQUIRE(found.design());
+  CHECK(found.design()->designer == "designing");
+  CHECK(found.design()->diagnoser == "telling");
+  REQUIRE(found.design()->design);
+  CHECK(found.design()->design->best->cost == 5);
   CHECK(found.steps == 3 * 2 * 3);
   CHECK(found.violated_at == -1);
-  REQUIRE(found.experiments.size() == 3);
+  REQUIRE(found.design()->experiments.size() == 3);
   for (Index i = 0; i < 3; ++i) {
-    const ExperimentRow& row = found.experiments[static_cast<std::size_t>(i)];
+    const ExperimentRow& row = found.design()->experiments[static_cast<std::size_t>(i)];
     CHECK(row.mode == i);
     CHECK(row.runs == 2);
     for (Index j = 0; j < 3; ++j)
@@ -80,22 +80,22 @@ TEST_CASE("seeds are different, and the same for every mode") {
 
 TEST_CASE("ends that are open") {
   const PipelineOutcome found = run_one("open");
-  REQUIRE(found.experiments.size() == 3);
-  CHECK(found.experiments[0].undecided == 2);
-  CHECK(found.experiments[0].possible == std::vector<std::int64_t>{2, 2, 0});
-  CHECK(found.experiments[0].isolation.count == 0);
+  REQUIRE(found.design()->experiments.size() == 3);
+  CHECK(found.design()->experiments[0].undecided == 2);
+  CHECK(found.design()->experiments[0].possible == std::vector<std::int64_t>{2, 2, 0});
+  CHECK(found.design()->experiments[0].isolation.count == 0);
   CHECK(found.violated_at == 1);  // mode 3 is excluded in its own experiments, too
 }
 
 TEST_CASE("a true mode that is excluded violates the guarantee") {
   PipelineOutcome found = run_one("none");
-  CHECK(found.experiments[1].unknown_fault == 2);
-  CHECK(found.experiments[1].possible == std::vector<std::int64_t>{0, 0, 0});
+  CHECK(found.design()->experiments[1].unknown_fault == 2);
+  CHECK(found.design()->experiments[1].possible == std::vector<std::int64_t>{0, 0, 0});
   CHECK(found.violated_at == 1);
   found = run_one("lies");
-  CHECK(found.experiments[0].wrong == 1);
-  CHECK(found.experiments[0].isolated == 1);
-  CHECK(found.experiments[2].wrong == 2);
+  CHECK(found.design()->experiments[0].wrong == 1);
+  CHECK(found.design()->experiments[0].isolated == 1);
+  CHECK(found.design()->experiments[2].wrong == 2);
   CHECK(found.violated_at == 1);
   SUBCASE("not where x_0 is outside X0, or the state outside the admissible set") {
     Study study = study_of({fakes::design("AFD", "found", "none")});
@@ -103,7 +103,7 @@ TEST_CASE("a true mode that is excluded violates the guarantee") {
     CHECK(run(study).pipelines[0].violated_at == -1);
     std::get<SimulateSpec>(study.data).x0 = Vector{{1., 1.}};
     CHECK(run(study).pipelines[0].violated_at == 1);
-    study.pipelines[0].designer->params.set("says", std::string("bounded"));
+    study.pipelines[0].design()->designer.params.set("says", std::string("bounded"));
     CHECK(run(study).pipelines[0].violated_at == -1);
   }
 }
@@ -113,7 +113,7 @@ TEST_CASE(
   Study study = study_of({fakes::design("AFD", "found", "none")});
   auto& simulate = std::get<SimulateSpec>(study.data);
   const auto with_set = [&](double radius) {
-    study.pipelines[0].diagnoser->params.set(
+    study.pipelines[0].design()->diagnoser->params.set(
         "admissible_set", make_box({-Vector::Constant(2, radius), Vector::Constant(2, radius)}));
     return run(study).pipelines[0];
   };
@@ -136,7 +136,7 @@ TEST_CASE(
 
 TEST_CASE("isolated at k: from then on until the end") {
   const PipelineOutcome found = run_one("wavers");
-  for (const ExperimentRow& row : found.experiments) {
+  for (const ExperimentRow& row : found.design()->experiments) {
     CHECK(row.isolated == 1);
     CHECK(row.isolation.count == 1);
     CHECK(row.isolation.min == 2);
@@ -148,13 +148,13 @@ TEST_CASE("without an input there are no experiments, and the other pipelines go
     const RunOutcome outcome = run(study_of({fakes::design("first", says, "truth"),
                                              fakes::pipeline("observer"), fakes::design("alone")}));
     REQUIRE(outcome.pipelines.size() == 3);
-    CHECK(outcome.pipelines[0].experiments.empty());
+    CHECK(outcome.pipelines[0].design()->experiments.empty());
     CHECK(outcome.pipelines[0].error == (says == "throws" ? "out of ideas" : ""));
-    CHECK(outcome.pipelines[0].design.has_value() == (says != "throws"));
+    CHECK(outcome.pipelines[0].design()->design.has_value() == (says != "throws"));
     CHECK(outcome.pipelines[1].steps == 21);
-    CHECK(outcome.pipelines[2].design);
-    CHECK(outcome.pipelines[2].experiments.empty());
-    CHECK(outcome.pipelines[2].diagnoser.empty());
+    CHECK(outcome.pipelines[2].design()->design);
+    CHECK(outcome.pipelines[2].design()->experiments.empty());
+    CHECK(outcome.pipelines[2].design()->diagnoser.empty());
   }
 }
 
@@ -163,14 +163,14 @@ TEST_CASE("a diagnoser that breaks down, and a mode that cannot be simulated") {
   CHECK(found.error.find("out of order") != std::string::npos);
   CHECK(found.error.find("mode \"leak\", seed 1") != std::string::npos);
   CHECK(found.error_code == Errc::unsupported);
-  REQUIRE(found.experiments.size() == 2);
-  CHECK(found.experiments[0].runs == 2);
-  CHECK(found.experiments[1].runs == 0);
+  REQUIRE(found.design()->experiments.size() == 2);
+  CHECK(found.design()->experiments[0].runs == 2);
+  CHECK(found.design()->experiments[1].runs == 0);
   Study study = study_of({fakes::design("AFD", "found", "truth"), fakes::pipeline("observer")});
   study.modes[1].model.W = make_space(2);
   const RunOutcome outcome = run(study);
   CHECK(outcome.pipelines[0].error.find("unbounded") != std::string::npos);
-  CHECK(outcome.pipelines[0].experiments.size() == 3);
+  CHECK(outcome.pipelines[0].design()->experiments.size() == 3);
   CHECK(outcome.pipelines[1].error.empty());
 }
 

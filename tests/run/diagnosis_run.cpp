@@ -85,12 +85,12 @@ TEST_CASE("every seed is scored, the first is told in full") {
   const PipelineOutcome outcome =
       run(study_of({fakes::diagnosis("bank")}, 5), fault_at_9, {}, options).pipelines[0];
   CHECK(outcome.error.empty());
-  CHECK(outcome.diagnoser == "scripted");
-  CHECK(outcome.observer.empty());
+  CHECK(outcome.kind() == PipelineKind::diagnosis);
   CHECK(outcome.steps == 21);
   CHECK(outcome.violated_at == -1);
-  REQUIRE(outcome.diagnosis);
-  const DiagnosisOutcome& found = *outcome.diagnosis;
+  REQUIRE(outcome.diagnosis());
+  CHECK(outcome.diagnosis()->diagnoser == "scripted");
+  const DiagnosisOutcome& found = *outcome.diagnosis();
   CHECK(found.runs == 5);
   CHECK(found.steps == 5 * 21);
   CHECK(found.truth_known);
@@ -128,7 +128,7 @@ TEST_CASE(
   for (const bool own : {true, false}) {
     outcome = own ? outcome_of(.5, 1e3) : outcome_of(1e3, .5);
     CHECK(outcome.violated_at == -1);
-    CHECK(outcome.diagnosis->true_mode_excluded);
+    CHECK(outcome.diagnosis()->true_mode_excluded);
     CHECK(outcome.assumptions_until == 1);
   }
   outcome = outcome_of(1e3, 4.1);  // x_2 tends to 5 ± .5
@@ -141,7 +141,7 @@ TEST_CASE(
   std::get<SimulateSpec>(study.data).x0 = Vector::Ones(2);
   outcome = run(study, {{0, 0}}).pipelines[0];
   CHECK(outcome.assumptions_until == 1);
-  CHECK(outcome.diagnosis->true_mode_excluded->k == 1);
+  CHECK(outcome.diagnosis()->true_mode_excluded->k == 1);
   CHECK(outcome.violated_at == -1);
 
   // each run for itself: the first one leaves the set at k = 11, the second one later than its
@@ -162,31 +162,31 @@ TEST_CASE("excluding the true mode violates the guarantee of simulated data of a
   Study study = study_of({fakes::diagnosis("bank", with({{"at", std::int64_t{7}}}))}, 3);
   PipelineOutcome outcome = run(study, {{0, 0}, {9, 1}}).pipelines[0];
   CHECK(outcome.violated_at == 7);
-  REQUIRE(outcome.diagnosis->true_mode_excluded);
-  CHECK(outcome.diagnosis->true_mode_excluded->mode == 0);
-  CHECK(outcome.diagnosis->false_alarms == 2);  // at 7 and 8; the third run is late enough
-  CHECK(outcome.diagnosis->runs_with_false_alarm == 2);
+  REQUIRE(outcome.diagnosis()->true_mode_excluded);
+  CHECK(outcome.diagnosis()->true_mode_excluded->mode == 0);
+  CHECK(outcome.diagnosis()->false_alarms == 2);  // at 7 and 8; the third run is late enough
+  CHECK(outcome.diagnosis()->runs_with_false_alarm == 2);
 
   SUBCASE("in a later seed") {
     // the second run resets at 11 and drops mode 0, true from 11 on, at 12
-    study.pipelines[0].diagnoser->params.set("at", std::int64_t{10});
+    study.pipelines[0].diagnosis()->diagnoser.params.set("at", std::int64_t{10});
     outcome = run(study, {{0, 1}, {10, 2}, {11, 0}}).pipelines[0];
     CHECK(outcome.violated_at == 12);
-    CHECK(outcome.diagnosis->true_mode_excluded->seed_offset == 1);
-    CHECK(outcome.diagnosis->true_mode_excluded->since == 11);
+    CHECK(outcome.diagnosis()->true_mode_excluded->seed_offset == 1);
+    CHECK(outcome.diagnosis()->true_mode_excluded->since == 11);
   }
   SUBCASE("not of a plant of its own, where it is reported all the same") {
     std::get<SimulateSpec>(study.data).plant = ComponentSpec{"reactor", {}};
     outcome = run(study, {{0, 0}, {9, 1}}).pipelines[0];
     CHECK(outcome.violated_at == -1);
-    CHECK(outcome.diagnosis->true_mode_excluded);
+    CHECK(outcome.diagnosis()->true_mode_excluded);
   }
   SUBCASE("not where the true mode is not known") {
     outcome = run(study, {}).pipelines[0];
     CHECK(outcome.violated_at == -1);
-    CHECK_FALSE(outcome.diagnosis->truth_known);
-    CHECK_FALSE(outcome.diagnosis->true_mode_excluded);
-    CHECK(outcome.diagnosis->events.size() == 5);  // starts, detected, two excluded, isolated
+    CHECK_FALSE(outcome.diagnosis()->truth_known);
+    CHECK_FALSE(outcome.diagnosis()->true_mode_excluded);
+    CHECK(outcome.diagnosis()->events.size() == 5);  // starts, detected, two excluded, isolated
   }
 }
 
@@ -196,7 +196,7 @@ TEST_CASE("an exclusion since the start rests on the mode's own X0") {
   study.modes[0].model.X0 = make_box({5 * Vector::Ones(2), 6 * Vector::Ones(2)});
   const PipelineOutcome outcome = run(study, {{0, 1}}).pipelines[0];
   CHECK(outcome.violated_at == -1);
-  CHECK(outcome.diagnosis->true_mode_excluded);
+  CHECK(outcome.diagnosis()->true_mode_excluded);
   // mode 2 is dropped at k = 11, for the time since k = 10: whatever its X0 is
   study.modes[1].model.X0 = make_box({5 * Vector::Ones(2), 6 * Vector::Ones(2)});
   CHECK(run(study, {{0, 2}}).pipelines[0].violated_at == 11);
@@ -212,8 +212,8 @@ TEST_CASE("a run that breaks down ends its pipeline, and says in which seed") {
   CHECK(broken.error == "out of order (seed 2 of 3)");
   CHECK(broken.error_code == Errc::unsupported);
   CHECK(broken.steps == 21);
-  CHECK(broken.diagnosis->runs == 1);
-  CHECK(broken.diagnosis->statistics.at(0).isolated == 1);
+  CHECK(broken.diagnosis()->runs == 1);
+  CHECK(broken.diagnosis()->statistics.at(0).isolated == 1);
   CHECK(outcome.pipelines[1].error.empty());
   CHECK(outcome.pipelines[1].steps == 21);
 }
@@ -336,13 +336,13 @@ TEST_CASE(
   Study study = study_of({fakes::pipeline("wrong", "claiming")});
   CHECK(run(study, {{0, 0}}).pipelines[0].violated_at >= 3);
   PipelineOutcome outcome = run(study, {{0, 0}, {3, 1}}).pipelines[0];
-  CHECK(outcome.outside_from >= 3);
+  CHECK(outcome.estimation()->outside_from >= 3);
   CHECK(outcome.violated_at == -1);
   outcome = run(study, {{0, 0}, {1, -1}, {2, 0}}).pipelines[0];
   CHECK(outcome.violated_at == -1);
   std::get<SimulateSpec>(study.data).plant = ComponentSpec{"reactor", {}};
   outcome = run(study, {{0, 0}}).pipelines[0];
-  CHECK(outcome.outside_from >= 3);
+  CHECK(outcome.estimation()->outside_from >= 3);
   CHECK(outcome.violated_at == -1);
 }
 

@@ -51,7 +51,7 @@ TEST_CASE("bounds of additive faults are counted over all seeds") {
   const PipelineOutcome outcome = run(study_of({}, 3));
   CHECK(outcome.error.empty());
   CHECK(outcome.violated_at == -1);
-  const DiagnosisOutcome& found = *outcome.diagnosis;
+  const DiagnosisOutcome& found = *outcome.diagnosis();
   CHECK_FALSE(found.fault_outside);
   CHECK_FALSE(found.true_mode_excluded);
   CHECK(found.false_alarms == 0);
@@ -77,19 +77,19 @@ TEST_CASE(
     "model") {
   PipelineOutcome outcome = run(study_of(crooked(1), 2));
   CHECK(outcome.violated_at == 12);
-  REQUIRE(outcome.diagnosis->fault_outside);
-  CHECK(outcome.diagnosis->fault_outside->k == 12);
-  CHECK(outcome.diagnosis->fault_outside->at == 9);
-  CHECK(outcome.diagnosis->fault_outside->fault == 1);
-  CHECK(outcome.diagnosis->fault_outside->seed_offset == 0);
-  CHECK(outcome.diagnosis->faults[1].outside == 9);
-  CHECK(outcome.diagnosis->faults[0].outside == 0);
+  REQUIRE(outcome.diagnosis()->fault_outside);
+  CHECK(outcome.diagnosis()->fault_outside->k == 12);
+  CHECK(outcome.diagnosis()->fault_outside->at == 9);
+  CHECK(outcome.diagnosis()->fault_outside->fault == 1);
+  CHECK(outcome.diagnosis()->fault_outside->seed_offset == 0);
+  CHECK(outcome.diagnosis()->faults[1].outside == 9);
+  CHECK(outcome.diagnosis()->faults[0].outside == 0);
 
   SUBCASE("in a later seed, and on the other side") {
     outcome = run(study_of(crooked(2, -.5), 2));
     CHECK(outcome.violated_at == 12);
-    CHECK(outcome.diagnosis->fault_outside->seed_offset == 1);
-    CHECK(outcome.diagnosis->faults[1].last_half_width == .25);
+    CHECK(outcome.diagnosis()->fault_outside->seed_offset == 1);
+    CHECK(outcome.diagnosis()->faults[1].last_half_width == .25);
   }
   SUBCASE("not where the truth stays inside") {
     CHECK(run(study_of(crooked(1, .25))).violated_at == -1);
@@ -99,14 +99,14 @@ TEST_CASE(
     std::get<SimulateSpec>(study.data).plant = ComponentSpec{"reactor", {}};
     outcome = run(study);
     CHECK(outcome.violated_at == -1);
-    CHECK(outcome.diagnosis->fault_outside);
+    CHECK(outcome.diagnosis()->fault_outside);
   }
   SUBCASE("not where the data do not tell it") {
     outcome = run(study_of(crooked(1)), {}, false);
     CHECK(outcome.violated_at == -1);
-    CHECK_FALSE(outcome.diagnosis->fault_outside);
-    CHECK(outcome.diagnosis->faults[1].checked == 0);
-    CHECK(outcome.diagnosis->faults[1].bounds == 18);
+    CHECK_FALSE(outcome.diagnosis()->fault_outside);
+    CHECK(outcome.diagnosis()->faults[1].checked == 0);
+    CHECK(outcome.diagnosis()->faults[1].bounds == 18);
   }
   SUBCASE("not of what comes after another fault, of which the bounds do not speak") {
     Study study = study_of(crooked(1));
@@ -116,7 +116,7 @@ TEST_CASE(
     std::get<SimulateSpec>(study.data).faults = {other};
     outcome = run(study);
     CHECK(outcome.violated_at == -1);
-    CHECK(outcome.diagnosis->faults[0].checked == 8);  // k = 0 … 7: the bound of 8 uses y_9
+    CHECK(outcome.diagnosis()->faults[0].checked == 8);  // k = 0 … 7: the bound of 8 uses y_9
     std::get<SimulateSpec>(study.data).faults[0].from = 13;
     CHECK(run(study).violated_at == 12);
   }
@@ -130,11 +130,11 @@ TEST_CASE("the first violation of a run counts, whichever it is") {
     return std::make_unique<fakes::WithFaults>(open_data(study, offset), true);
   };
   const PipelineOutcome outcome = detail::run_on(open, study, registry, {}).pipelines.at(0);
-  REQUIRE(outcome.diagnosis->true_mode_excluded);
-  CHECK(outcome.diagnosis->true_mode_excluded->k == 10);
-  CHECK(outcome.diagnosis->true_mode_excluded->since ==
+  REQUIRE(outcome.diagnosis()->true_mode_excluded);
+  CHECK(outcome.diagnosis()->true_mode_excluded->k == 10);
+  CHECK(outcome.diagnosis()->true_mode_excluded->since ==
         7);  // that of fault 2, the earliest bound without 0
-  CHECK(outcome.diagnosis->fault_outside->k == 12);
+  CHECK(outcome.diagnosis()->fault_outside->k == 12);
   CHECK(outcome.violated_at == 10);
 }
 
@@ -220,7 +220,7 @@ TEST_CASE("a bound that is never given has no figures") {
   Study study = study_of();
   std::get<SimulateSpec>(study.data).steps = 1;  // fault 2 is bounded from k = 3 on
   const Scratch scratch;
-  CHECK(run(study, scratch.path()).diagnosis->faults.size() == 2);
+  CHECK(run(study, scratch.path()).diagnosis()->faults.size() == 2);
   const json faults =
       json::parse(bytes_of(scratch / "results.json"))["pipelines"][0]["summary"]["faults"];
   CHECK(faults[0]["bounds"] == 1);

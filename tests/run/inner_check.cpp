@@ -92,7 +92,8 @@ TEST_CASE("gains, the last hull and inner estimates of a run") {
   const RunOutcome outcome =
       run(fakes::study({fakes::pipeline("plain"), fakes::pipeline("offers", "offering")}),
           scratch / "one");
-  const PipelineOutcome &plain = outcome.pipelines[0], &offers = outcome.pipelines[1];
+  const EstimationOutcome &plain = *outcome.pipelines[0].estimation(),
+                          &offers = *outcome.pipelines[1].estimation();
   CHECK(plain.gains.empty());
   CHECK(plain.inner_steps == 0);
   CHECK(plain.inner_outside == -1);
@@ -101,7 +102,7 @@ TEST_CASE("gains, the last hull and inner estimates of a run") {
   CHECK(offers.inner_steps == 19);  // k = 2 … 20
   CHECK(offers.inner_outside == -1);
   CHECK(offers.inner_share == doctest::Approx(.5));
-  CHECK(offers.violated_at == -1);
+  CHECK(outcome.pipelines[1].violated_at == -1);
 
   const json results = json::parse(bytes_of(scratch / "one/results.json"));
   const json &first = results["pipelines"][0], &second = results["pipelines"][1];
@@ -171,7 +172,7 @@ TEST_CASE("an inner estimate that leaves the hull is told with its time") {
   const Scratch scratch;
   const RunOutcome outcome = run(
       fakes::study({fakes::pipeline("crooked", "offering", scaled(.5, 1.001))}), scratch.path());
-  CHECK(outcome.pipelines[0].inner_outside == 7);
+  CHECK(outcome.pipelines[0].estimation()->inner_outside == 7);
   CHECK(outcome.pipelines[0].violated_at == -1);
   CHECK(outcome.pipelines[0].error.empty());
   CHECK(outcome.pipelines[0].steps == 21);
@@ -179,7 +180,8 @@ TEST_CASE("an inner estimate that leaves the hull is told with its time") {
   CHECK(summary["inner_outside"] == 7);
   CHECK(run(fakes::study({fakes::pipeline("touching", "offering", scaled(1, 1))}))
             .pipelines[0]
-            .inner_outside == -1);
+            .estimation()
+            ->inner_outside == -1);
 }
 
 TEST_CASE("an inner estimate of another size stops its pipeline") {
@@ -187,8 +189,8 @@ TEST_CASE("an inner estimate of another size stops its pipeline") {
       run(fakes::study({fakes::pipeline("cut", "offering", scaled(.5, .5, true))})).pipelines[0];
   CHECK(outcome.error_code == Errc::plugin);
   CHECK(outcome.steps == 2);
-  CHECK(outcome.inner_steps == 0);
-  CHECK(outcome.last_hull.dim() == 2);  // of k = 1
+  CHECK(outcome.estimation()->inner_steps == 0);
+  CHECK(outcome.estimation()->last_hull.dim() == 2);  // of k = 1
 }
 
 TEST_CASE("the last hull where there is none, is empty or unbounded") {
@@ -200,9 +202,9 @@ TEST_CASE("the last hull where there is none, is empty or unbounded") {
                                                fakes::pipeline("e", "claiming", empty),
                                                fakes::pipeline("b", "breaking", broken)}),
                                  scratch.path());
-  CHECK(outcome.pipelines[0].last_hull.dim() == 0);
-  CHECK(outcome.pipelines[1].last_hull.is_empty());
-  CHECK_FALSE(outcome.pipelines[2].last_hull.is_bounded());
+  CHECK(outcome.pipelines[0].estimation()->last_hull.dim() == 0);
+  CHECK(outcome.pipelines[1].estimation()->last_hull.is_empty());
+  CHECK_FALSE(outcome.pipelines[2].estimation()->last_hull.is_bounded());
   const json results = json::parse(bytes_of(scratch / "results.json"));
   CHECK(results["pipelines"][0]["last"].is_null());
   CHECK(results["pipelines"][1]["last"]["k"] == 20);

@@ -57,7 +57,8 @@ TEST_CASE("one pipeline alone gives what it gives beside others") {
   REQUIRE(all.pipelines.size() == 3);
   REQUIRE(one.pipelines.size() == 1);
   CHECK(one.pipelines[0].name == "c");
-  CHECK(one.pipelines[0].last_hull.upper == all.pipelines[2].last_hull.upper);
+  CHECK(one.pipelines[0].estimation()->last_hull.upper ==
+        all.pipelines[2].estimation()->last_hull.upper);
   REQUIRE_FALSE(told.empty());
   CHECK(told.back() == 2);  // its place in the study
   const auto results = nlohmann::json::parse(bytes_of(scratch / "results.json"));
@@ -109,9 +110,9 @@ TEST_CASE("diagnosers count the steps of all seeds, and name the seed") {
   std::get<SimulateSpec>(study.data).seeds = 1'000'000;
   const PipelineOutcome outcome = run(study, until(50)).pipelines.at(0);
   CHECK(outcome.error_code == Errc::time_limit);
-  REQUIRE(outcome.diagnosis);
+  REQUIRE(outcome.diagnosis());
   CHECK(contains(outcome.error,
-                 "reached after " + std::to_string(outcome.diagnosis->steps) + " steps (seed "));
+                 "reached after " + std::to_string(outcome.diagnosis()->steps) + " steps (seed "));
 }
 
 TEST_CASE("a design ends with its time, and keeps what it has found") {
@@ -119,7 +120,7 @@ TEST_CASE("a design ends with its time, and keeps what it has found") {
       run(study_of(fakes::design("waits", "waits")), until(20)).pipelines.at(0);
   CHECK(outcome.error_code == Errc::time_limit);
   CHECK(contains(outcome.error, "time limit of 0.0"));
-  CHECK(outcome.design);
+  CHECK(outcome.design()->design);
   const PipelineOutcome found = run(study_of(fakes::design("found")), until(-1)).pipelines.at(0);
   CHECK(found.error.empty());  // it never asked
 }

@@ -28,11 +28,11 @@ PipelineOutcome diagnosis() {
   PipelineOutcome p;
   p.name = "Bank of zonotopes";
   p.backend = "zonotope";
-  p.diagnoser = "observer_bank";
   p.steps = 161;
   p.median_step_us = 12.34;
   p.largest_step_us = 98.76;
   DiagnosisOutcome d;
+  d.diagnoser = "observer_bank";
   d.modes = {"healthy", "fault 1", "fault 2"};
   d.truth_known = true;
   d.runs = 60;
@@ -50,7 +50,7 @@ PipelineOutcome diagnosis() {
   d.statistics = {outside, one};
   d.false_alarms = 3;
   d.runs_with_false_alarm = 2;
-  p.diagnosis = std::move(d);
+  p.task = std::move(d);
   return p;
 }
 
@@ -123,9 +123,9 @@ TEST_CASE("steps at which it is not known whether the truth is inside are no los
       {.name = "contains_truth_no", .in_run = Shown::never},
       {.name = "contains_truth_unknown", .title = "undecided", .in_run = Shown::if_any}};
   const auto counted = [&](Index yes, Index no, Index unknown) {
-    outcome.pipelines[0].summary = {{"contains_truth_yes", yes},
-                                    {"contains_truth_no", no},
-                                    {"contains_truth_unknown", unknown}};
+    outcome.pipelines[0].estimation()->summary = {{"contains_truth_yes", yes},
+                                                  {"contains_truth_no", no},
+                                                  {"contains_truth_unknown", unknown}};
     return apps::report_text(study(), outcome, "out");
   };
   CHECK(has(counted(21, 0, 0), "21/21 "));
@@ -138,15 +138,15 @@ TEST_CASE("steps at which it is not known whether the truth is inside are no los
 
 TEST_CASE("an excluded true mode, data without modes, and a pipeline that stopped are said") {
   PipelineOutcome p = diagnosis();
-  p.diagnosis->true_mode_excluded = TrueModeExcluded{77, 52, 1, 4};
+  p.diagnosis()->true_mode_excluded = TrueModeExcluded{77, 52, 1, 4};
   const apps::Paint paint(stdout);
   CHECK(has(apps::diagnosis_text(study(), p, paint),
             "True mode excluded: fault 1 at k = 77, although true since k = 52 (run 5 of 60)"));
   CHECK(has(apps::diagnosis_violation(p), "\"fault 1\""));
   CHECK(has(apps::diagnosis_violation(p), "k = 77"));
-  p.diagnosis->runs_with_wrong_mode = 4;
+  p.diagnosis()->runs_with_wrong_mode = 4;
   CHECK(has(apps::diagnosis_text(study(), p, paint), "A wrong mode: in 4 of 60 runs"));
-  p.diagnosis->truth_known = false;
+  p.diagnosis()->truth_known = false;
   CHECK(has(apps::diagnosis_text(study(), p, paint), "nothing is scored"));
   CHECK_FALSE(has(apps::diagnosis_text(study(), p, paint), "False alarms"));
   p.error = "out of order";
@@ -168,7 +168,7 @@ TEST_CASE("an assumption that failed is told") {
 
 TEST_CASE("a long timeline is cut, and says so") {
   PipelineOutcome p = diagnosis();
-  for (Index k = 200; k < 300; ++k) p.diagnosis->events.push_back({k, Kind::ambiguous, -1, {}});
+  for (Index k = 200; k < 300; ++k) p.diagnosis()->events.push_back({k, Kind::ambiguous, -1, {}});
   const std::string text = apps::diagnosis_text(study(), p, apps::Paint(stdout));
   CHECK(has(text, "… and 48 more, in results.json"));
 }
@@ -236,9 +236,10 @@ TEST_CASE(
     "any") {
   RunOutcome outcome;
   outcome.pipelines.resize(2);
-  PipelineOutcome &plain = outcome.pipelines[0], &offers = outcome.pipelines[1];
-  plain.name = "plain";
-  offers.name = "offers";
+  outcome.pipelines[0].name = "plain";
+  outcome.pipelines[1].name = "offers";
+  EstimationOutcome &plain = *outcome.pipelines[0].estimation(),
+                    &offers = *outcome.pipelines[1].estimation();
   std::string text = apps::report_text(study(), outcome, "out");
   for (const char* title : {"Gains", "Widths", "Inner"}) CHECK_FALSE(has(text, title));
 
@@ -307,8 +308,8 @@ TEST_CASE("an inner estimate outside the hull is a violated guarantee") {
   CHECK(apps::exit_of(outcome) == apps::Exit::unanswered);
   PipelineOutcome& crooked = outcome.pipelines[1];
   crooked.name = "crooked";
-  crooked.inner_steps = 3;
-  crooked.inner_outside = 0;
+  crooked.estimation()->inner_steps = 3;
+  crooked.estimation()->inner_outside = 0;
   CHECK(apps::exit_of(outcome) == apps::Exit::violated);
   REQUIRE(apps::complaints({}, outcome).size() == 2);
   CHECK(has(apps::complaints({}, outcome)[1],
@@ -323,18 +324,18 @@ TEST_CASE("an inner estimate outside the hull is a violated guarantee") {
 
 TEST_CASE("additive faults: names in the timeline, a table, and what is outside its bounds") {
   PipelineOutcome p = diagnosis();
-  p.diagnosis->modes = {"healthy"};
-  p.diagnosis->statistics = {p.diagnosis->statistics[0]};
-  p.diagnosis->events = {{0, Kind::truth, 0, {}},
-                         {0, Kind::starts, 0, {}},
-                         {7, Kind::truth, -1, {}},
-                         {30, Kind::truth, -1, {}}};
+  p.diagnosis()->modes = {"healthy"};
+  p.diagnosis()->statistics = {p.diagnosis()->statistics[0]};
+  p.diagnosis()->events = {{0, Kind::truth, 0, {}},
+                           {0, Kind::starts, 0, {}},
+                           {7, Kind::truth, -1, {}},
+                           {30, Kind::truth, -1, {}}};
   Study s = fakes::study({});
   auto& simulate = std::get<SimulateSpec>(s.data);
   simulate.additive_faults = {{1, 5, 29, {}}, {0, 6, 8, {}}, {1, 7, 9, {}}, {0, 30, 40, {}}};
   FaultStatistics first{0, 2, 100, 90, 3, 40, .25, .125, .0625, 1.5}, second;
   second.fault = 1;
-  p.diagnosis->faults = {first, second};
+  p.diagnosis()->faults = {first, second};
   const apps::Paint paint(stdout);
   std::string text = apps::diagnosis_text(s, p, paint);
   CHECK(has(text, "zonotope, observer_bank, 1 mode, 12.3"));
@@ -348,14 +349,14 @@ TEST_CASE("additive faults: names in the timeline, a table, and what is outside 
       "1      2      100     40         3 of 90  0.125             0.25  0.0625     1.5\n"
       "2      -      0       0          -        -                 -     -          -\n"));
   CHECK_FALSE(has(text, "True fault"));
-  p.diagnosis->fault_outside = FaultOutside{12, 9, 1, 4};
+  p.diagnosis()->fault_outside = FaultOutside{12, 9, 1, 4};
   p.violated_at = 12;
   CHECK(has(apps::diagnosis_text(s, p, paint),
             "True fault outside its bounds: fault 2 of k = 9, bounded at k = 12 (run 5 of 60)"));
   CHECK(
       has(apps::diagnosis_violation(p),
           "at k = 12 the true additive fault 2 of k = 9 lies outside its bounds (seed offset 4)"));
-  p.diagnosis->true_mode_excluded = TrueModeExcluded{11, 10, 0, 0};
+  p.diagnosis()->true_mode_excluded = TrueModeExcluded{11, 10, 0, 0};
   p.violated_at = 11;
   CHECK(has(apps::diagnosis_violation(p), "it excludes the mode \"healthy\""));
   simulate.faults = {{120, 130, "leak", -1, {}, {}, {}}};

@@ -241,11 +241,11 @@ TEST_CASE("an estimate proven empty: inconsistent from there, with its proof; th
       run(fakes::study(
               {fakes::pipeline("e", "claiming", with({{"radius", -1.}})), fakes::pipeline("p")}),
           scratch.path());
-  CHECK(outcome.pipelines[0].inconsistent_from == 3);
-  CHECK(outcome.pipelines[0].inconsistent == 18);
-  CHECK(outcome.pipelines[0].consistent == 3);
+  CHECK(outcome.pipelines[0].estimation()->inconsistent_from == 3);
+  CHECK(outcome.pipelines[0].estimation()->inconsistent == 18);
+  CHECK(outcome.pipelines[0].estimation()->consistent == 3);
   CHECK(outcome.pipelines[0].violated_at == 3);  // the truth exists: ∅ is a false claim
-  CHECK(outcome.pipelines[1].inconsistent_from == -1);
+  CHECK(outcome.pipelines[1].estimation()->inconsistent_from == -1);
   CHECK(outcome.pipelines[1].median_step_us > 0);
   const json results = json::parse(bytes_of(scratch / "results.json"));
   for (std::size_t k = 3; k <= 20; ++k) {
@@ -266,13 +266,13 @@ TEST_CASE("a false claim is a violation; without its assumptions it is none") {
   };
   const PipelineOutcome liar = outcome_of(1e-3, 0);
   CHECK(liar.violated_at == 3);
-  CHECK(liar.outside_from == 3);
+  CHECK(liar.estimation()->outside_from == 3);
   CHECK(outcome_of(1e8, 0).violated_at == -1);
   // x2 exceeds 0.5 early: the observer's own assumption fails first
   const PipelineOutcome excused = outcome_of(1e-3, 0.5);
   CHECK(excused.assumptions_until >= 0);
   CHECK(excused.assumptions_until < 3);
-  CHECK(excused.outside_from == 3);
+  CHECK(excused.estimation()->outside_from == 3);
   CHECK(excused.violated_at == -1);
   // an assumption that fails later excuses nothing
   const PipelineOutcome late = outcome_of(1e-3, 3.0);
@@ -299,7 +299,7 @@ TEST_CASE("recorded data prove no defect: the bounds themselves may be wrong") {
   study.data = CsvSpec{scratch / "data.csv", {"u"}, {"y"}, {"a", "b"}};
   const PipelineOutcome outcome = run(study).pipelines[0];
   CHECK(outcome.steps == 5);
-  CHECK(outcome.outside_from == 3);
+  CHECK(outcome.estimation()->outside_from == 3);
   CHECK(outcome.violated_at == -1);
 }
 

@@ -48,27 +48,28 @@ ModeStatistics mode(Index index, std::int64_t segments, std::int64_t detected,
 TEST_CASE(
     "an observer: counts, times that happened, metrics that are numbers, and times of steps") {
   PipelineOutcome outcome;
-  outcome.observer = "o";
+  EstimationOutcome& estimation = *outcome.estimation();
+  estimation.observer = "o";
   outcome.steps = 10;
-  outcome.consistent = 6;
-  outcome.inconsistent = 3;
-  outcome.undecided = 1;
-  outcome.inconsistent_from = 7;
-  outcome.outside_from = 0;
-  outcome.emptiness = {9, 1};
-  outcome.containment = {7, 2};
-  outcome.bounds = {20, 4};
-  outcome.summary = {{"radius_mean", 1.5},
-                     {"radius_max", infinity},
-                     {"kind", std::string("hull")},
-                     {"contains_truth_yes", Index{6}},
-                     {"contains_truth_no", Index{1}},
-                     {"contains_truth_unknown", Index{1}},
-                     {"contains_truth_later", Index{100}},
-                     {"step_time_us_mean", 33.5}};
-  outcome.reproducible = 7;
-  outcome.median_us = {1, 2, 3, 4};
-  outcome.median_hull_us = 5;
+  estimation.consistent = 6;
+  estimation.inconsistent = 3;
+  estimation.undecided = 1;
+  estimation.inconsistent_from = 7;
+  estimation.outside_from = 0;
+  estimation.emptiness = {9, 1};
+  estimation.containment = {7, 2};
+  estimation.bounds = {20, 4};
+  estimation.summary = {{"radius_mean", 1.5},
+                        {"radius_max", infinity},
+                        {"kind", std::string("hull")},
+                        {"contains_truth_yes", Index{6}},
+                        {"contains_truth_no", Index{1}},
+                        {"contains_truth_unknown", Index{1}},
+                        {"contains_truth_later", Index{100}},
+                        {"step_time_us_mean", 33.5}};
+  estimation.reproducible = 7;
+  estimation.median_us = {1, 2, 3, 4};
+  estimation.median_hull_us = 5;
   outcome.median_step_us = 6;
   outcome.wall_s = .5;
   const auto [repeat, measured] = found(outcome);
@@ -99,11 +100,11 @@ TEST_CASE(
   CHECK(!repeat.contains("runs"));
   CHECK(!repeat.contains("cost"));
 
-  outcome.inner_steps = 3;
-  outcome.inner_share = .25;
-  outcome.inner_outside = 2;
-  outcome.summary = {};
-  outcome.reproducible = 0;
+  estimation.inner_steps = 3;
+  estimation.inner_share = .25;
+  estimation.inner_outside = 2;
+  estimation.summary = {};
+  estimation.reproducible = 0;
   const auto again = found(outcome).repeat;
   CHECK(again.at("inner_share") == .25);
   CHECK(again.at("inner_outside") == 2);
@@ -111,7 +112,7 @@ TEST_CASE(
 
 TEST_CASE("an observer without a step has no times of steps") {
   PipelineOutcome outcome;
-  outcome.observer = "o";
+  outcome.estimation()->observer = "o";
   outcome.error = "broken";
   outcome.wall_s = 2;
   const auto [repeat, measured] = found(outcome);
@@ -123,10 +124,11 @@ TEST_CASE("an observer without a step has no times of steps") {
 
 TEST_CASE("a metric that takes the name of a number of the run does not displace it") {
   PipelineOutcome outcome;
-  outcome.observer = "o";
+  EstimationOutcome& estimation = *outcome.estimation();
+  estimation.observer = "o";
   outcome.steps = 10;
-  outcome.summary = {{"steps", 99.}, {"consistent", Index{99}}};
-  outcome.reproducible = 2;
+  estimation.summary = {{"steps", 99.}, {"consistent", Index{99}}};
+  estimation.reproducible = 2;
   const auto repeat = found(outcome).repeat;
   CHECK(repeat.at("steps") == 10);
   CHECK(repeat.at("consistent") == 0);
@@ -134,11 +136,11 @@ TEST_CASE("a metric that takes the name of a number of the run does not displace
 
 TEST_CASE("a diagnoser: rates, and delays over all modes") {
   PipelineOutcome outcome;
-  outcome.diagnoser = "d";
   outcome.steps = 20;
   outcome.violated_at = 4;
   outcome.median_step_us = 7;
-  DiagnosisOutcome& diagnosis = outcome.diagnosis.emplace();
+  DiagnosisOutcome& diagnosis = outcome.task.emplace<DiagnosisOutcome>();
+  diagnosis.diagnoser = "d";
   diagnosis.runs = 8;
   diagnosis.false_alarms = 3;
   diagnosis.runs_with_false_alarm = 2;
@@ -191,8 +193,8 @@ TEST_CASE("a diagnoser: rates, and delays over all modes") {
 
 TEST_CASE("bounds of additive faults") {
   PipelineOutcome outcome;
-  outcome.diagnoser = "d";
-  DiagnosisOutcome& diagnosis = outcome.diagnosis.emplace();
+  DiagnosisOutcome& diagnosis = outcome.task.emplace<DiagnosisOutcome>();
+  diagnosis.diagnoser = "d";
   FaultStatistics first;
   first.bounds = 10;
   first.checked = 8;
@@ -220,9 +222,10 @@ TEST_CASE("bounds of additive faults") {
 
 TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   PipelineOutcome outcome;
-  outcome.designer = "d";
   outcome.steps = 12;
-  DesignOutcome& design = outcome.design.emplace();
+  DesignedOutcome& designed = outcome.task.emplace<DesignedOutcome>();
+  designed.designer = "d";
+  DesignOutcome& design = designed.design.emplace();
   design.horizon = 3;
   design.nodes = 11;
   auto repeat = found(outcome).repeat;  // nothing was found
@@ -240,11 +243,11 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   design.best->pairs = {
       {0, 1, .5, .375, Answer::yes}, {0, 2, .5, .125, Answer::yes}, {1, 2, .5, .25, Answer::yes}};
   design.best->empty = {Answer::no, Answer::no, Answer::no};
-  outcome.exact.emplace();  // what is proven counts, not what the designer says
-  outcome.exact->pairs = {
+  designed.exact.emplace();  // what is proven counts, not what the designer says
+  designed.exact->pairs = {
       {0, 1, Answer::yes, .375}, {0, 2, Answer::yes, .125}, {1, 2, Answer::yes, .25}};
-  outcome.exact->empty = {Answer::no, Answer::no, Answer::no};
-  outcome.experiments = {{0, 5, {}, 4, 1, 0, 0, {}}, {1, 6, {}, 3, 0, 1, 2, {}}};
+  designed.exact->empty = {Answer::no, Answer::no, Answer::no};
+  designed.experiments = {{0, 5, {}, 4, 1, 0, 0, {}}, {1, 6, {}, 3, 0, 1, 2, {}}};
   repeat = found(outcome).repeat;
   design.status = DesignStatus::optimal;
   repeat = found(outcome).repeat;
@@ -258,9 +261,9 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   CHECK(repeat.at("experiments") == 11);
   CHECK(repeat.at("experiments_isolated") == 7);
   CHECK(repeat.at("experiments_wrong") == 1);
-  outcome.exact->pairs[1].disjoint = Answer::no;
+  designed.exact->pairs[1].disjoint = Answer::no;
   CHECK(found(outcome).repeat.at("separates") == 0);
-  outcome.exact->pairs[1].disjoint = Answer::unknown;
+  designed.exact->pairs[1].disjoint = Answer::unknown;
   CHECK(is_none(found(outcome).repeat, "separates"));
   design.best->pairs.clear();
   CHECK(is_none(found(outcome).repeat, "kappa_min"));
@@ -275,6 +278,6 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   CHECK(repeat.at("lower_bound") == 8);
   CHECK(is_none(repeat, "optimal"));
   CHECK(is_none(repeat, "infeasible"));
-  outcome.design.reset();  // the designer broke down
+  designed.design.reset();  // the designer broke down
   CHECK(!found(outcome).repeat.contains("cost"));
 }

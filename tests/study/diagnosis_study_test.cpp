@@ -92,11 +92,12 @@ TEST_CASE("x0 lies in the X0 of a fault that acts from the beginning") {
 TEST_CASE("a diagnoser needs modes, and its observer every default") {
   const Study study = read_text(diagnosis_study);
   const PipelineSpec& pipeline = study.pipelines[0];
-  REQUIRE(pipeline.diagnoser);
-  CHECK(pipeline.observer.type.empty());
+  REQUIRE(pipeline.diagnosis());
   CHECK(pipeline.name == "zonotope");
-  CHECK(pipeline.diagnoser->params.component("observer").params.integer("max_constraints") == 20);
-  CHECK_FALSE(study.pipelines[1].diagnoser);
+  CHECK(pipeline.diagnosis()
+            ->diagnoser.params.component("observer")
+            .params.integer("max_constraints") == 20);
+  CHECK_FALSE(study.pipelines[1].diagnosis());
 
   const std::string with_diagnoser =
       exchanged(valid_study, "\"observer\": {\"type\": \"descriptor\", \"max_generators\": 30}",

@@ -39,7 +39,8 @@ TEST_CASE("a gain that is written as a matrix is the component that holds it") {
       read_text(with_gain("{\"matrix\": " + matrix + ", \"type\": \"given\"}"));
   CHECK(same(as_matrix, as_component));
   CHECK(as_matrix.resolved == as_component.resolved);
-  const ComponentSpec& gain = as_matrix.pipelines[0].observer.params.component("gain");
+  const ComponentSpec& gain =
+      as_matrix.pipelines[0].estimation()->observer.params.component("gain");
   CHECK(gain.type == "given");
   CHECK(gain.params.matrix("matrix") == Matrix{{0.5, 0.}, {0., 0.25}});
   CHECK(as_matrix.resolved.find("\"type\": \"given\"") != std::string::npos);
@@ -48,12 +49,12 @@ TEST_CASE("a gain that is written as a matrix is the component that holds it") {
 
 TEST_CASE("a gain by its name has every default, and one that is left out stays out") {
   const Study named = read_text(with_gain("\"optimal\""));
-  const ComponentSpec& gain = named.pipelines[0].observer.params.component("gain");
+  const ComponentSpec& gain = named.pipelines[0].estimation()->observer.params.component("gain");
   CHECK(gain.params.real("weight") == 0.5);
   CHECK_FALSE(gain.params.has("theta"));
   CHECK(same(named, read_text(with_gain("{\"type\": \"optimal\"}"))));
   expect_round_trip(named);
-  CHECK_FALSE(read_text(with_gain("")).pipelines[0].observer.params.has("gain"));
+  CHECK_FALSE(read_text(with_gain("")).pipelines[0].estimation()->observer.params.has("gain"));
 }
 
 TEST_CASE("mistakes in gains have their places in the file") {

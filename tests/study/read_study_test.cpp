@@ -49,12 +49,12 @@ TEST_CASE("a study arrives as it was written, with every default") {
   CHECK(study.pipelines[0].name == "first");
   CHECK(study.pipelines[0].backend.params.text("strip") == "volume");
   CHECK(study.pipelines[0].backend.params.text("reduction") == "yang_scott");
-  CHECK(study.pipelines[0].observer.params.integer("max_generators") == 30);
-  CHECK(study.pipelines[0].observer.params.integer("max_constraints") == 20);
-  CHECK(study.pipelines[0].observer.params.flag("static_at_start"));
-  CHECK_FALSE(study.pipelines[0].observer.params.has("initial_set"));
+  CHECK(study.pipelines[0].estimation()->observer.params.integer("max_generators") == 30);
+  CHECK(study.pipelines[0].estimation()->observer.params.integer("max_constraints") == 20);
+  CHECK(study.pipelines[0].estimation()->observer.params.flag("static_at_start"));
+  CHECK_FALSE(study.pipelines[0].estimation()->observer.params.has("initial_set"));
   CHECK(study.pipelines[1].name == "line_zonotope");
-  CHECK(study.pipelines[1].observer.params.set_form("initial_set").lines() == 2);
+  CHECK(study.pipelines[1].estimation()->observer.params.set_form("initial_set").lines() == 2);
   REQUIRE(study.metrics.size() == 2);
   CHECK(study.metrics[0].type == "radius");
   CHECK(study.metrics[1].params.real("level") == 0.5);

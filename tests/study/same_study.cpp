@@ -119,8 +119,11 @@ bool same(const Study& a, const Study& b) {
       return false;
   }
   const auto pipelines = [](const PipelineSpec& p, const PipelineSpec& q) {
-    return p.name == q.name && same(p.backend, q.backend) && same(p.observer, q.observer) &&
-           same(p.diagnoser, q.diagnoser) && same(p.designer, q.designer);
+    const auto a = algorithms_of(p), b = algorithms_of(q);
+    return p.name == q.name && same(p.backend, q.backend) &&
+           std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+             return x.first == y.first && same(*x.second, *y.second);
+           });
   };
   return std::equal(a.pipelines.begin(), a.pipelines.end(), b.pipelines.begin(), b.pipelines.end(),
                     pipelines) &&

@@ -35,21 +35,25 @@ TEST_CASE("what paths lead into") {
     const std::string value = "[{\"type\": \"box\", \"lower\": [-1, -1], \"upper\": [1, 1]}]";
     CHECK(third("/pipelines/1/observer/initial_set", value, 0)
               .pipelines[1]
-              .observer.params.has("initial_set"));
+              .estimation()
+              ->observer.params.has("initial_set"));
   }
   SUBCASE("a component that may be a matrix") {
     CHECK(third("/pipelines/2/observer/gain/1/0", "[0.5, 0.125]", 1)
               .pipelines[2]
-              .observer.params.component("gain")
+              .estimation()
+              ->observer.params.component("gain")
               .params.matrix("matrix")(1, 0) == 0.125);
     CHECK(third("/pipelines/2/observer/gain/matrix", "[[[0.5], [0]], [[0.25], [0]]]", 1)
               .pipelines[2]
-              .observer.params.component("gain")
+              .estimation()
+              ->observer.params.component("gain")
               .params.matrix("matrix")(0, 0) == 0.25);
     CHECK(third("/pipelines/*/observer/gain",
                 "[\"optimal\", {\"type\": \"optimal\", \"weight\": 1}]", 1)
               .pipelines[2]
-              .observer.params.component("gain")
+              .estimation()
+              ->observer.params.component("gain")
               .params.real("weight") == 1);
   }
   SUBCASE("the type of a component, whose other parameters are those of the first") {
@@ -103,7 +107,8 @@ TEST_CASE("paths into modes, faults and components inside components") {
       study_with(diagnosis_study, "/pipelines/*/diagnoser/observer/max_generators", "[3, 4]"));
   CHECK(inner.at({1})
             .pipelines[0]
-            .diagnoser->params.component("observer")
+            .diagnosis()
+            ->diagnoser.params.component("observer")
             .params.integer("max_generators") == 4);
   expect_points_round_trip(inner);
   const Read fault(

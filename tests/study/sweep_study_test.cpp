@@ -32,7 +32,7 @@ std::string by_hand(const std::string& text,
 }
 
 std::int64_t generators(const Study& study, std::size_t pipeline) {
-  return study.pipelines[pipeline].observer.params.integer("max_generators");
+  return study.pipelines[pipeline].estimation()->observer.params.integer("max_generators");
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ TEST_CASE("axes and first values") {
   CHECK(*study.source == sweep_study);
   CHECK(generators(study, 0) == 10);
   CHECK(generators(study, 1) == 10);
-  CHECK_FALSE(study.pipelines[2].observer.params.has("max_generators"));
+  CHECK_FALSE(study.pipelines[2].estimation()->observer.params.has("max_generators"));
   CHECK(study.pipelines[1].name == "interval");
   CHECK(std::get<SimulateSpec>(study.data).seed == 1);
   expect_points_round_trip(read);

@@ -127,7 +127,7 @@ TEST_CASE("descriptor systems and systems of modes may be uncertain, F is the no
 TEST_CASE("without F there are no additive faults, neither to simulate nor to find") {
   const Study study = read_text(uncertain_study);
   CHECK(study.modes.empty());
-  CHECK(study.pipelines[1].diagnoser->type == "fault_filter");
+  CHECK(study.pipelines[1].diagnosis()->diagnoser.type == "fault_filter");
   for (const char* none : {"\"$comment\": 0", "\"F\": [[], []]"}) {
     const std::string text = exchanged(uncertain_study, F, none);
     const auto problems = problems_of(text);

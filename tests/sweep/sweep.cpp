@@ -53,7 +53,7 @@ TEST_CASE("every point is in the table, with the numbers that a run of its own g
     RunOptions options;
     options.pipeline = outcome.table.pipelines[row.pipeline];
     const RunOutcome one = run_study(sweeps::at(study)(row.at), registry, options);
-    const auto& summary = one.pipelines[0].summary;
+    const auto& summary = one.pipelines[0].estimation()->summary;
     const auto metric = std::find_if(summary.begin(), summary.end(),
                                      [](const MetricValue& m) { return m.name == "place_last"; });
     REQUIRE(metric != summary.end());

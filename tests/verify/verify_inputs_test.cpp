@@ -100,7 +100,7 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
   CHECK_FALSE(fine.violation);
   REQUIRE(fine.pipelines.size() == 2);
   for (const VerifiedPipeline& pipeline : fine.pipelines) {
-    CHECK(pipeline.checked);
+    CHECK(pipeline.kind == PipelineKind::design);
     CHECK(pipeline.proofs == 3);  // one pair, two tubes
     CHECK(pipeline.undecided == 0);
     CHECK(pipeline.steps == 0);

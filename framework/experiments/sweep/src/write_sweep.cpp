@@ -143,9 +143,7 @@ SweepHeads heads_of(const Study& study, const Registry& registry, const std::str
   json.key("pipelines").begin_array(Layout::lines);
   for (const PipelineSpec& spec : study.pipelines) {
     json.begin_object().member("name", spec.name).member("backend", spec.backend.type);
-    if (!spec.observer.type.empty()) json.member("observer", spec.observer.type);
-    if (spec.designer) json.member("designer", spec.designer->type);
-    if (spec.diagnoser) json.member("diagnoser", spec.diagnoser->type);
+    for (const auto& [kind, component] : algorithms_of(spec)) json.member(kind, component->type);
     json.end_object();
   }
   json.end_array();

@@ -21,7 +21,7 @@ class NoData final : public DataSource {
 bool all_designed(const Study& study) {
   return !study.pipelines.empty() &&
          std::all_of(study.pipelines.begin(), study.pipelines.end(),
-                     [](const PipelineSpec& pipeline) { return pipeline.designer.has_value(); });
+                     [](const PipelineSpec& pipeline) { return pipeline.design() != nullptr; });
 }
 
 }  // namespace

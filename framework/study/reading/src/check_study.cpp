@@ -20,8 +20,10 @@ const Params* starting_params(const ComponentSpec& spec) {
 }
 
 const Params* starting_params(const PipelineSpec& pipeline) {
-  if (pipeline.diagnoser) return starting_params(*pipeline.diagnoser);
-  return pipeline.designer ? nullptr : starting_params(pipeline.observer);
+  for (const auto& [kind, component] : algorithms_of(pipeline)) {
+    if (kind != "designer") return starting_params(*component);
+  }
+  return nullptr;
 }
 
 bool same_blocks(const LineForm& X, const LineForm& Y) {
@@ -82,8 +84,8 @@ void check_start(const Cursor& root, const Study& study, std::optional<std::size
     if (only && *only != i) continue;
     const PipelineSpec& pipeline = study.pipelines[i];
     const Params* params = starting_params(pipeline);
-    designed = designed || pipeline.designer;
-    own = own || !params || pipeline.designer;
+    designed = designed || pipeline.design();
+    own = own || !params || pipeline.design();
     if (params) {
       start.expect_inside(params->set_form("initial_set"),
                           "the initial_set of pipeline " + in_quotes(pipeline.name),
@@ -118,7 +120,8 @@ void check_experiments(const Cursor& root, const Study& study, std::optional<std
   const Cursor pipelines = *root.find("pipelines");
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
     if (only && *only != i) continue;
-    if (!study.pipelines[i].designer || !study.pipelines[i].diagnoser) continue;
+    const DesignSpec* const design = study.pipelines[i].design();
+    if (!design || !design->diagnoser) continue;
     const Cursor at = *pipelines.item(i).find("diagnoser");
     for (const Mode& mode : bank_of(study).modes) {
       if (const std::string reason = obstacle(mode, study.file.string()); !reason.empty())

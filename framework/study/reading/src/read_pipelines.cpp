@@ -24,22 +24,15 @@ void check_together(const Cursor& pipeline, const PipelineSpec& spec, const Syst
   } catch (const Error& error) {
     return report_failure(*pipeline.find("backend"), error, context);
   }
-  if (spec.designer) {
-    ask(*pipeline.find("designer"), context, [&] {
-      return registry.check<DesignerEntry>(spec.designer->type, {bank, backend},
-                                           spec.designer->params);
-    });
-  }
-  if (spec.diagnoser) {
-    ask(*pipeline.find("diagnoser"), context, [&] {
-      return registry.check<DiagnoserEntry>(spec.diagnoser->type, {bank, backend},
-                                            spec.diagnoser->params);
-    });
-  }
-  if (!spec.designer && !spec.diagnoser) {
-    ask(*pipeline.find("observer"), context, [&] {
-      return registry.check<ObserverEntry>(spec.observer.type, {system.model, backend},
-                                           spec.observer.params);
+  for (const auto& [kind, component] : algorithms_of(spec)) {
+    const ComponentSpec& algorithm = *component;
+    ask(*pipeline.find(kind), context, [&] {
+      if (kind == "designer")
+        return registry.check<DesignerEntry>(algorithm.type, {bank, backend}, algorithm.params);
+      if (kind == "diagnoser")
+        return registry.check<DiagnoserEntry>(algorithm.type, {bank, backend}, algorithm.params);
+      return registry.check<ObserverEntry>(algorithm.type, {system.model, backend},
+                                           algorithm.params);
     });
   }
 }
@@ -56,7 +49,7 @@ bool read_algorithm(const Cursor& at, const ComponentContext& context, PipelineS
   }
   if (observer_at) {
     auto observer = read_component(*observer_at, "observer", context);
-    if (observer) spec.observer = std::move(*observer);
+    if (observer) spec.task = EstimationSpec{std::move(*observer)};
     return observer.has_value();
   }
   if (!diagnoser_at && !designer_at) {
@@ -66,10 +59,17 @@ bool read_algorithm(const Cursor& at, const ComponentContext& context, PipelineS
              "that shows it");
     return false;
   }
-  if (designer_at) spec.designer = read_component(*designer_at, "designer", context);
-  if (diagnoser_at) spec.diagnoser = read_component(*diagnoser_at, "diagnoser", context);
-  return spec.designer.has_value() == designer_at.has_value() &&
-         spec.diagnoser.has_value() == diagnoser_at.has_value();
+  std::optional<ComponentSpec> designer, diagnoser;
+  if (designer_at) designer = read_component(*designer_at, "designer", context);
+  if (diagnoser_at) diagnoser = read_component(*diagnoser_at, "diagnoser", context);
+  const bool good = designer.has_value() == designer_at.has_value() &&
+                    diagnoser.has_value() == diagnoser_at.has_value();
+  if (designer) {
+    spec.task = DesignSpec{std::move(*designer), std::move(diagnoser)};
+  } else if (diagnoser && !designer_at) {
+    spec.task = DiagnosisSpec{std::move(*diagnoser)};
+  }
+  return good;
 }
 
 PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const ModeBank& bank,
@@ -90,8 +90,7 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   }
   if (!backend || !algorithm) return spec;
   spec.backend = *backend;
-  const bool bank_wide = spec.diagnoser || spec.designer;
-  if (asks && (bank_wide ? system.modes_good : system.good))
+  if (asks && (spec.estimation() ? system.good : system.modes_good))
     check_together(at, spec, system, bank, context);
   return spec;
 }

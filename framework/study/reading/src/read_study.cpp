@@ -147,6 +147,16 @@ Study read_study(const std::filesystem::path& file, Registry& registry, const Se
   return StudyReader(file, registry, path, plugins).read();
 }
 
+std::vector<std::pair<std::string, const ComponentSpec*>> algorithms_of(const PipelineSpec& spec) {
+  if (const EstimationSpec* const estimation = spec.estimation())
+    return {{"observer", &estimation->observer}};
+  if (const DiagnosisSpec* const diagnosis = spec.diagnosis())
+    return {{"diagnoser", &diagnosis->diagnoser}};
+  const DesignSpec& design = *spec.design();
+  if (!design.diagnoser) return {{"designer", &design.designer}};
+  return {{"designer", &design.designer}, {"diagnoser", &*design.diagnoser}};
+}
+
 ModeBank bank_of(const Study& study) {
   ModeBank bank;
   bank.modes.push_back({study.nominal, study.model});

@@ -253,7 +253,7 @@ std::string resolve(const Study& study, const Written& written,
   add_modes(root["system"], study, written);
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
     const bool streamed = std::any_of(study.pipelines.begin(), study.pipelines.end(),
-                                      [](const PipelineSpec& p) { return !p.designer; });
+                                      [](const PipelineSpec& p) { return !p.design(); });
     root["data"]["simulate"] = to_json(*simulate, study.model.linear, streamed, written, registry);
   } else {
     root["data"]["csv"] = to_json(std::get<CsvSpec>(study.data), written.csv_file);
@@ -263,10 +263,8 @@ std::string resolve(const Study& study, const Written& written,
     Json pipeline;
     pipeline["name"] = spec.name;
     pipeline["backend"] = to_json(spec.backend, "backend", registry);
-    if (spec.designer) pipeline["designer"] = to_json(*spec.designer, "designer", registry);
-    if (spec.diagnoser) pipeline["diagnoser"] = to_json(*spec.diagnoser, "diagnoser", registry);
-    if (!spec.designer && !spec.diagnoser)
-      pipeline["observer"] = to_json(spec.observer, "observer", registry);
+    for (const auto& [kind, component] : algorithms_of(spec))
+      pipeline[kind] = to_json(*component, kind, registry);
     root["pipelines"].push_back(std::move(pipeline));
   }
   root["metrics"] = Json::array();

@@ -184,9 +184,8 @@ TreeReading read_first_values(StudySource& source, const Registry& registry, boo
 
 std::string overlapping_seeds(const Study& study, const std::vector<WrittenAxis>& axes) {
   const auto* simulate = std::get_if<SimulateSpec>(&study.data);
-  const bool all_seeds =
-      std::any_of(study.pipelines.begin(), study.pipelines.end(),
-                  [](const PipelineSpec& spec) { return spec.diagnoser || spec.designer; });
+  const bool all_seeds = std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                                     [](const PipelineSpec& spec) { return !spec.estimation(); });
   if (!simulate || simulate->seeds < 2 || !all_seeds) return "";
   for (const WrittenAxis& axis : axes) {
     if (!axis.repeat || axis.path.text != "/data/simulate/seed") continue;

@@ -51,13 +51,13 @@ void write_last(JsonWriter& json, Index k, const Box& hull) {
   json.end_object();
 }
 
-void write_inner(JsonWriter& json, const PipelineOutcome& outcome) {
+void write_inner(JsonWriter& json, const EstimationOutcome& outcome) {
   json.member("inner_steps", outcome.inner_steps);
   json.member("inner_share", outcome.inner_steps > 0 ? outcome.inner_share : std::nan(""));
   write_time(json, "inner_outside", outcome.inner_outside);
 }
 
-void write_growth(JsonWriter& json, const PipelineOutcome& outcome) {
+void write_growth(JsonWriter& json, const EstimationOutcome& outcome) {
   json.key("growth");
   if (!outcome.growth) {
     json.null();

@@ -18,7 +18,7 @@ void write(JsonWriter& json, const std::vector<Gain>& gains);
 void write_last(JsonWriter& json, Index k, const Box& hull);
 
 /// "inner_steps", "inner_share", "inner_outside".
-void write_inner(JsonWriter& json, const PipelineOutcome& outcome);
-void write_growth(JsonWriter& json, const PipelineOutcome& outcome);
+void write_inner(JsonWriter& json, const EstimationOutcome& outcome);
+void write_growth(JsonWriter& json, const EstimationOutcome& outcome);
 
 }  // namespace cordon::detail

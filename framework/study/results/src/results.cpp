@@ -46,37 +46,51 @@ void write_times(JsonWriter& json, const PhaseTimes& times, double hull_us) {
   json.member("question", times.question).member("hull", hull_us).end_object();
 }
 
-/// Of designs, the diagnoser's steps are not written.
 bool has_diagnosers(const Study& study) {
   return std::any_of(study.pipelines.begin(), study.pipelines.end(),
-                     [](const PipelineSpec& p) { return p.diagnoser && !p.designer; });
+                     [](const PipelineSpec& spec) { return spec.diagnosis() != nullptr; });
 }
 
 bool has_designers(const Study& study) {
   return std::any_of(study.pipelines.begin(), study.pipelines.end(),
-                     [](const PipelineSpec& p) { return p.designer.has_value(); });
+                     [](const PipelineSpec& spec) { return spec.design() != nullptr; });
 }
 
-/// What every pipeline with an observer has in summary.csv.
+/// What every pipeline has in summary.csv; what only observers tell is empty in others.
 std::vector<std::string> summary_fields(const PipelineOutcome& outcome, const std::string& pipeline,
                                         const std::optional<Rounding>& rounding) {
-  return {
-      pipeline,
-      csv_field(outcome.backend),
-      csv_field(outcome.observer),
-      rounding ? std::string(to_string(*rounding)) : "",
-      std::to_string(outcome.steps),
-      std::to_string(outcome.consistent),
-      std::to_string(outcome.inconsistent),
-      std::to_string(outcome.undecided),
-      csv_time(outcome.inconsistent_from),
-      csv_time(outcome.assumptions_until),
-      csv_time(outcome.outside_from),
-      csv_time(outcome.violated_at),
-      std::to_string(outcome.emptiness.proven + outcome.containment.proven + outcome.bounds.proven),
-      std::to_string(outcome.emptiness.unknown + outcome.containment.unknown +
-                     outcome.bounds.unknown),
-      csv_field(outcome.error)};
+  const EstimationOutcome* const found = outcome.estimation();
+  const auto count = [&](std::int64_t EstimationOutcome::*member) {
+    return found ? std::to_string(found->*member) : "";
+  };
+  const auto time = [&](std::int64_t EstimationOutcome::*member) {
+    return found ? csv_time(found->*member) : "";
+  };
+  const auto answers = [&](std::int64_t AnswerCount::*kind) {
+    return found ? std::to_string(found->emptiness.*kind + found->containment.*kind +
+                                  found->bounds.*kind)
+                 : "";
+  };
+  return {pipeline,
+          csv_field(outcome.backend),
+          found ? csv_field(found->observer) : "",
+          rounding ? std::string(to_string(*rounding)) : "",
+          std::to_string(outcome.steps),
+          count(&EstimationOutcome::consistent),
+          count(&EstimationOutcome::inconsistent),
+          count(&EstimationOutcome::undecided),
+          time(&EstimationOutcome::inconsistent_from),
+          csv_time(outcome.assumptions_until),
+          time(&EstimationOutcome::outside_from),
+          csv_time(outcome.violated_at),
+          answers(&AnswerCount::proven),
+          answers(&AnswerCount::unknown),
+          csv_field(outcome.error)};
+}
+
+void write_algorithms(JsonWriter& json, const PipelineSpec& spec) {
+  for (const auto& [kind, component] : algorithms_of(spec)) json.member(kind, component->type);
+  if (spec.design() && !spec.design()->diagnoser) json.key("diagnoser").null();
 }
 
 }  // namespace
@@ -110,18 +124,47 @@ void Results::begin_run(const Registry& registry) {
   run_.key("pipelines").begin_array(Layout::lines);
 }
 
-void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding,
-                             const std::optional<Assumptions>& assumptions,
-                             const std::vector<Gain>& gains) {
+void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding) {
   pipeline_ = csv_field(spec.name);
   pipeline_json_ = json_string(spec.name);
   rounding_ = rounding;
   results_.begin_object(Layout::lines)
       .member("name", spec.name)
-      .member("backend", spec.backend.type)
-      .member("observer", spec.observer.type);
+      .member("backend", spec.backend.type);
+  write_algorithms(results_, spec);
   results_.key("rounding");
   rounding ? results_.value(to_string(*rounding)) : results_.null();
+  run_.begin_object(Layout::lines)
+      .member("name", spec.name)
+      .key("steps")
+      .begin_array(Layout::lines);
+}
+
+void Results::end_pipeline(const PipelineOutcome& outcome, Summary row,
+                           const std::vector<MetricValue>& measured) {
+  const std::vector<ResultNumber> numbers = numbers_of(outcome);
+  results_.end_object();
+  write_numbers(results_, numbers, false);
+  results_.end_object();
+  row.fields = summary_fields(outcome, pipeline_, rounding_);
+  summaries_.push_back(std::move(row));
+  run_.end_array().key("summary").begin_object(Layout::lines);
+  if (const EstimationOutcome* const found = outcome.estimation()) {
+    run_.key("median_time_us");
+    write_times(run_, found->median_us, found->median_hull_us);
+  }
+  run_.member("median_step_us", outcome.median_step_us)
+      .member("largest_step_us", outcome.largest_step_us)
+      .member("wall_s", outcome.wall_s);
+  for (const MetricValue& metric : measured) write(run_, metric);
+  write_numbers(run_, numbers, true);
+  run_.end_object().end_object();
+}
+
+void Results::begin_estimation(const PipelineSpec& spec, std::optional<Rounding> rounding,
+                               const std::optional<Assumptions>& assumptions,
+                               const std::vector<Gain>& gains) {
+  begin_pipeline(spec, rounding);
   results_.key("assumptions");
   if (assumptions) {
     results_.begin_object(Layout::lines).key("initial_set");
@@ -135,10 +178,6 @@ void Results::begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> r
   }
   write(results_, gains);
   results_.key("steps").begin_array(Layout::lines);
-  run_.begin_object(Layout::lines)
-      .member("name", spec.name)
-      .key("steps")
-      .begin_array(Layout::lines);
 }
 
 void Results::data(const Record& record) {
@@ -180,7 +219,7 @@ void Results::check_columns(const MetricValues& metrics) {
                 "the metrics name their values otherwise than in an earlier pipeline");
 }
 
-void Results::step(const StepResult& result) {
+void Results::estimate(const StepResult& result) {
   const Estimate& estimate = result.estimate;
   results_.begin_object().member("k", estimate.k);
   write_box(results_, "hull", result.hull);
@@ -253,29 +292,27 @@ void Results::write_set(const StepResult& result) {
   sets_file_.write("\n");
 }
 
-void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& summary) {
+void Results::end_estimation(const PipelineOutcome& outcome, const MetricValues& summary) {
+  const EstimationOutcome& found = *outcome.estimation();
   results_.end_array();
-  write_last(results_, last_estimate_, outcome.last_hull);
+  write_last(results_, last_estimate_, found.last_hull);
   results_.key("summary").begin_object(Layout::lines);
   results_.member("steps", outcome.steps)
-      .member("consistent", outcome.consistent)
-      .member("inconsistent", outcome.inconsistent);
-  results_.member("undecided", outcome.undecided);
-  write_time(results_, "inconsistent_from", outcome.inconsistent_from);
-  std::vector<std::string> modes;
-  for (const Mode& mode : bank_of(study_).modes) modes.push_back(mode.name);
-  write_assumptions(results_, outcome, modes);
-  write_time(results_, "outside_from", outcome.outside_from);
+      .member("consistent", found.consistent)
+      .member("inconsistent", found.inconsistent);
+  results_.member("undecided", found.undecided);
+  write_time(results_, "inconsistent_from", found.inconsistent_from);
+  write_assumptions(results_, outcome, mode_names(study_));
+  write_time(results_, "outside_from", found.outside_from);
   write_time(results_, "violated_at", outcome.violated_at);
-  write_inner(results_, outcome);
-  write_growth(results_, outcome);
+  write_inner(results_, found);
+  write_growth(results_, found);
   results_.key("answers").begin_object();
-  write(results_, "emptiness", outcome.emptiness);
-  write(results_, "containment", outcome.containment);
-  write(results_, "bounds", outcome.bounds);
+  write(results_, "emptiness", found.emptiness);
+  write(results_, "containment", found.containment);
+  write(results_, "bounds", found.bounds);
   results_.end_object();
-  results_.key("error");
-  outcome.error.empty() ? results_.null() : results_.value(outcome.error);
+  write_error(results_, outcome);
   Summary row;
   for (const MetricValue& metric : summary.reproducible) {
     write(results_, metric);
@@ -284,20 +321,7 @@ void Results::end_pipeline(const PipelineOutcome& outcome, const MetricValues& s
                        summary_columns_.end();
     if (!known) summary_columns_.push_back(metric.name);
   }
-  const std::vector<ResultNumber> numbers = numbers_of(outcome);
-  results_.end_object();
-  write_numbers(results_, numbers, false);
-  results_.end_object();
-  row.fields = summary_fields(outcome, pipeline_, rounding_);
-  summaries_.push_back(std::move(row));
-  run_.end_array().key("summary").begin_object(Layout::lines).key("median_time_us");
-  write_times(run_, outcome.median_us, outcome.median_hull_us);
-  run_.member("median_step_us", outcome.median_step_us)
-      .member("largest_step_us", outcome.largest_step_us)
-      .member("wall_s", outcome.wall_s);
-  for (const MetricValue& metric : summary.measured) write(run_, metric);
-  write_numbers(run_, numbers, true);
-  run_.end_object().end_object();
+  end_pipeline(outcome, std::move(row), summary.measured);
 }
 
 void Results::write_summaries() {

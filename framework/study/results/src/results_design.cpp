@@ -21,19 +21,19 @@ void write_inputs(Sink& file, const std::string& pipeline, const Matrix& u) {
   }
 }
 
-std::vector<std::string> design_fields(const PipelineOutcome& outcome) {
-  std::vector<std::string> fields{csv_field(outcome.designer), csv_field(outcome.diagnoser)};
-  if (const auto& design = outcome.design) {
+std::vector<std::string> design_fields(const DesignedOutcome& found) {
+  std::vector<std::string> fields{csv_field(found.designer), csv_field(found.diagnoser)};
+  if (const auto& design = found.design) {
     const auto& best = design->best;
     fields.emplace_back(to_string(design->status));
     fields.push_back(std::to_string(design->horizon));
     fields.push_back(best ? csv_number(best->cost) : "");
     fields.push_back(csv_number(design->lower_bound));
-    fields.push_back(outcome.exact ? std::string(to_string(outcome.exact->separates())) : "");
+    fields.push_back(found.exact ? std::string(to_string(found.exact->separates())) : "");
   }
-  if (outcome.experiments.empty()) return fields;
+  if (found.experiments.empty()) return fields;
   std::int64_t runs = 0, isolated = 0, wrong = 0;
-  for (const ExperimentRow& row : outcome.experiments) {
+  for (const ExperimentRow& row : found.experiments) {
     runs += row.runs;
     isolated += row.isolated;
     wrong += row.wrong;
@@ -66,59 +66,27 @@ void write_inputs_header(Sink& file, Index inputs) {
 
 void Results::design(const PipelineSpec& spec, std::optional<Rounding> rounding,
                      const PipelineOutcome& outcome) {
-  ModeNames modes;
-  for (const Mode& mode : bank_of(study_).modes) modes.push_back(mode.name);
-  const std::string name = csv_field(spec.name),
-                    used = rounding ? std::string(to_string(*rounding)) : "";
-  results_.begin_object(Layout::lines)
-      .member("name", spec.name)
-      .member("backend", spec.backend.type)
-      .member("designer", spec.designer->type);
-  results_.key("diagnoser");
-  spec.diagnoser ? results_.value(spec.diagnoser->type) : results_.null();
-  results_.key("rounding");
-  rounding ? results_.value(used) : results_.null();
+  const DesignedOutcome& found = *outcome.design();
+  const ModeNames modes = mode_names(study_);
+  begin_pipeline(spec, rounding);
   results_.key("modes").begin_array();
   for (const std::string& mode : modes) results_.value(mode);
   results_.end_array().key("design");
-  outcome.design ? write(results_, *outcome.design, modes) : void(results_.null());
+  found.design ? write(results_, *found.design, modes) : void(results_.null());
   results_.key("exact");
-  outcome.exact ? write(results_, *outcome.exact, modes) : void(results_.null());
+  found.exact ? write(results_, *found.exact, modes) : void(results_.null());
   results_.key("experiments");
-  write(results_, outcome.experiments, modes);
+  write(results_, found.experiments, modes);
   results_.key("summary").begin_object(Layout::lines);
   write_assumptions(results_, outcome, modes);
-  results_.key("refuted").begin_array(outcome.refuted.empty() ? Layout::line : Layout::lines);
-  for (const std::string& claim : outcome.refuted) results_.value(claim);
+  results_.key("refuted").begin_array(found.refuted.empty() ? Layout::line : Layout::lines);
+  for (const std::string& claim : found.refuted) results_.value(claim);
   results_.end_array();
   write_time(results_, "violated_at", outcome.violated_at);
-  results_.key("error");
-  outcome.error.empty() ? results_.null() : results_.value(outcome.error);
-  const std::vector<ResultNumber> numbers = numbers_of(outcome);
-  results_.end_object();
-  write_numbers(results_, numbers, false);
-  results_.end_object();
-  if (outcome.design && outcome.design->best)
-    write_inputs(*inputs_file_, name, outcome.design->best->u);
-  Summary row;
-  row.fields.assign(15, "");
-  row.fields[0] = name;
-  row.fields[1] = csv_field(outcome.backend);
-  row.fields[3] = used;
-  row.fields[4] = std::to_string(outcome.steps);
-  row.fields[9] = csv_time(outcome.assumptions_until);
-  row.fields[11] = csv_time(outcome.violated_at);
-  row.fields[14] = csv_field(outcome.error);
-  row.design = design_fields(outcome);
-  summaries_.push_back(std::move(row));
-  run_.begin_object(Layout::lines).member("name", spec.name).key("steps").begin_array().end_array();
-  run_.key("summary")
-      .begin_object(Layout::lines)
-      .member("median_step_us", outcome.median_step_us)
-      .member("largest_step_us", outcome.largest_step_us);
-  run_.member("wall_s", outcome.wall_s);
-  write_numbers(run_, numbers, true);
-  run_.end_object().end_object();
+  write_error(results_, outcome);
+  if (found.design && found.design->best)
+    write_inputs(*inputs_file_, pipeline_, found.design->best->u);
+  end_pipeline(outcome, {.design = design_fields(found)});
 }
 
 }  // namespace cordon::detail

@@ -19,8 +19,8 @@ std::string mode_field(Index mode) { return csv_time(mode); }
 
 /// Sums over all true modes, in the order of the columns.
 std::vector<std::string> diagnosis_fields(const PipelineOutcome& outcome) {
-  const DiagnosisOutcome& found = *outcome.diagnosis;
-  std::vector<std::string> fields{csv_field(outcome.diagnoser), std::to_string(found.runs)};
+  const DiagnosisOutcome& found = *outcome.diagnosis();
+  std::vector<std::string> fields{csv_field(found.diagnoser), std::to_string(found.runs)};
   if (!found.truth_known) return fields;
   std::int64_t segments = 0, isolated = 0, missed = 0, outside = 0, unknown = 0;
   for (const ModeStatistics& counts : found.statistics) {
@@ -69,15 +69,8 @@ const std::vector<std::string>& diagnosis_summary_columns() {
 
 void Results::begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> rounding,
                               const DiagnosisOutcome& outcome) {
-  pipeline_ = csv_field(spec.name);
-  rounding_ = rounding;
+  begin_pipeline(spec, rounding);
   modes_ = outcome.modes;
-  results_.begin_object(Layout::lines)
-      .member("name", spec.name)
-      .member("backend", spec.backend.type)
-      .member("diagnoser", spec.diagnoser->type);
-  results_.key("rounding");
-  rounding ? results_.value(to_string(*rounding)) : results_.null();
   results_.key("modes").begin_array();
   for (const std::string& name : outcome.modes) results_.value(name);
   results_.end_array().key("guarantees");
@@ -87,10 +80,6 @@ void Results::begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> 
     results_.null();
   }
   results_.key("steps").begin_array(Layout::lines);
-  run_.begin_object(Layout::lines)
-      .member("name", spec.name)
-      .key("steps")
-      .begin_array(Layout::lines);
 }
 
 void Results::write_diagnosis_header(std::size_t modes) {
@@ -145,32 +134,11 @@ void Results::diagnosis(const DiagnosisResult& result) {
 
 void Results::end_diagnosis(const PipelineOutcome& outcome) {
   results_.end_array().key("summary").begin_object(Layout::lines).member("steps", outcome.steps);
-  write_members(results_, *outcome.diagnosis);
+  write_members(results_, *outcome.diagnosis());
   write_assumptions(results_, outcome, modes_);
   write_time(results_, "violated_at", outcome.violated_at);
-  results_.key("error");
-  outcome.error.empty() ? results_.null() : results_.value(outcome.error);
-  const std::vector<ResultNumber> numbers = numbers_of(outcome);
-  results_.end_object();
-  write_numbers(results_, numbers, false);
-  results_.end_object();
-  Summary row;
-  row.fields.assign(15, "");
-  row.fields[0] = pipeline_;
-  row.fields[1] = csv_field(outcome.backend);
-  row.fields[3] = rounding_ ? std::string(to_string(*rounding_)) : "";
-  row.fields[4] = std::to_string(outcome.steps);
-  row.fields[9] = csv_time(outcome.assumptions_until);
-  row.fields[11] = csv_time(outcome.violated_at);
-  row.fields[14] = csv_field(outcome.error);
-  row.diagnosis = diagnosis_fields(outcome);
-  summaries_.push_back(std::move(row));
-  run_.end_array().key("summary").begin_object(Layout::lines);
-  run_.member("median_step_us", outcome.median_step_us)
-      .member("largest_step_us", outcome.largest_step_us)
-      .member("wall_s", outcome.wall_s);
-  write_numbers(run_, numbers, true);
-  run_.end_object().end_object();
+  write_error(results_, outcome);
+  end_pipeline(outcome, {.diagnosis = diagnosis_fields(outcome)});
 }
 
 }  // namespace cordon::detail

@@ -65,6 +65,17 @@ void write_assumptions(JsonWriter& json, const PipelineOutcome& outcome,
       .end_object();
 }
 
+void write_error(JsonWriter& json, const PipelineOutcome& outcome) {
+  json.key("error");
+  outcome.error.empty() ? json.null() : json.value(outcome.error);
+}
+
+std::vector<std::string> mode_names(const Study& study) {
+  std::vector<std::string> names;
+  for (const Mode& mode : bank_of(study).modes) names.push_back(mode.name);
+  return names;
+}
+
 void write(JsonWriter& json, const LineForm& X) {
   json.begin_object();
   write_blocks(json, X);

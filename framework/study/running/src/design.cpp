@@ -13,9 +13,9 @@ void check_name(const Study& study, const std::string& name) {
   std::vector<std::string> designing;
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
     const PipelineSpec& spec = study.pipelines[i];
-    if (spec.designer) designing.push_back(spec.name);
+    if (spec.design()) designing.push_back(spec.name);
     if (spec.name != name) continue;
-    if (spec.designer) return;
+    if (spec.design()) return;
     throw InputError(study.file.string(), {{"/pipelines/" + std::to_string(i),
                                             "pipeline \"" + name + "\" has no designer",
                                             "add \"designer\" to it, or name another one"}});
@@ -27,17 +27,18 @@ void check_name(const Study& study, const std::string& name) {
 PipelineDesign design_one(const Study& study, std::size_t index, const Registry& registry,
                           const DesignOptions& options) {
   const PipelineSpec& spec = study.pipelines[index];
+  const ComponentSpec& designer_spec = spec.design()->designer;
   const ModeBank bank = bank_of(study);
   PipelineDesign made;
   made.index = index;
   made.name = spec.name;
   made.backend = spec.backend.type;
-  made.designer = spec.designer->type;
+  made.designer = designer_spec.type;
   const detail::Clock::time_point begin = detail::Clock::now();
   detail::guarded(made, [&] {
     const auto backend = registry.make<BackendEntry>(spec.backend.type, spec.backend.params);
     const auto designer =
-        registry.make<DesignerEntry>(spec.designer->type, {bank, backend}, spec.designer->params);
+        registry.make<DesignerEntry>(designer_spec.type, {bank, backend}, designer_spec.params);
     detail::WatchedDesign::Tell tell;
     if (options.progress) {
       tell = [&](Index horizon, double best, double bound) {
@@ -52,7 +53,7 @@ PipelineDesign design_one(const Study& study, std::size_t index, const Registry&
     if (!made.outcome) return;
     if (made.outcome->best) made.exact = verify_design(bank, *made.outcome, options.stop);
     made.refuted =
-        refuted_claims(bank, *spec.designer, *made.outcome, made.exact ? &*made.exact : nullptr);
+        refuted_claims(bank, designer_spec, *made.outcome, made.exact ? &*made.exact : nullptr);
   });
   return made;
 }
@@ -65,7 +66,7 @@ std::vector<PipelineDesign> design_study(const Study& study, const Registry& reg
   std::vector<PipelineDesign> designs;
   for (std::size_t i = 0; i < study.pipelines.size(); ++i) {
     const PipelineSpec& spec = study.pipelines[i];
-    if (!spec.designer || (!options.pipeline.empty() && spec.name != options.pipeline)) continue;
+    if (!spec.design() || (!options.pipeline.empty() && spec.name != options.pipeline)) continue;
     if (options.stop && options.stop->load()) break;
     designs.push_back(design_one(study, i, registry, options));
   }

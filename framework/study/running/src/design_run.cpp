@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "design_run.hpp"
-
-#include <chrono>
 #include <map>
 
 #include "design.hpp"
-#include "diagnosis_run.hpp"
-#include "pipeline_guard.hpp"
+#include "pipeline_run.hpp"
 #include "study/checks/assumption_check.hpp"
 #include "study/checks/common_runs.hpp"
 #include "study/data/experiment.hpp"
@@ -17,134 +13,150 @@ namespace cordon::detail {
 
 namespace {
 
-/// A designer and a diagnoser with what they have found so far.
-class DesignPipeline {
+/// A designer, and the experiments that a diagnoser is tried in.
+class DesignRun final : public PipelineRun {
  public:
-  DesignPipeline(const Study& study, const PipelineSpec& spec, const TimeLimit& limit,
-                 const std::atomic<bool>* stop)
-      : study_(study), bank_(bank_of(study)), limit_(limit), stop_(stop) {
-    outcome_.name = spec.name;
-    outcome_.backend = spec.backend.type;
-    outcome_.designer = spec.designer->type;
-    if (spec.diagnoser) outcome_.diagnoser = spec.diagnoser->type;
+  DesignRun(const RunContext& context, std::size_t index)
+      : PipelineRun(context, index),
+        spec_of_design_(*spec_.design()),
+        bank_(bank_of(context.study)),
+        seeds_(seeds_of(context.study)) {
+    found_.designer = spec_of_design_.designer.type;
+    if (spec_of_design_.diagnoser) found_.diagnoser = spec_of_design_.diagnoser->type;
   }
 
-  void design(const PipelineSpec& spec, const Registry& registry, WatchedDesign& control) {
-    guarded(outcome_, [&] {
-      backend_ = registry.make<BackendEntry>(spec.backend.type, spec.backend.params);
-      outcome_.design =
-          registry
-              .make<DesignerEntry>(spec.designer->type, {bank_, backend_}, spec.designer->params)
-              ->design(control);
-      if (control.stopped()) limit_.check(0);
-      prove(spec);
-      if (outcome_.design->best && spec.diagnoser) {
-        diagnoser_ = registry.make<DiagnoserEntry>(spec.diagnoser->type, {bank_, backend_},
-                                                   spec.diagnoser->params);
-        PipelineAssumptions assumed = assumptions_of(*spec.diagnoser, rounding());
-        assumed.inputs = false;  // the input of an experiment is known beforehand
-        if (const auto& admissible = outcome_.design->admissible_set)
-          assumed.admissible_sets.push_back(*admissible);
-        check_.emplace(study_, std::move(assumed));
-      }
+  /// Experiments; before the first one nobody knows whether there will be any.
+  std::int64_t done() const override { return mode_ * seeds_ + seed_offset_; }
+  std::int64_t total() const override { return diagnoser_ ? seeds_ * bank_.size() : 0; }
+
+ private:
+  void make() override {
+    designer_ = context_.registry.make<DesignerEntry>(
+        spec_of_design_.designer.type, {bank_, backend()}, spec_of_design_.designer.params);
+  }
+
+  /// The search, then an experiment each.
+  bool work() override {
+    if (!found_.design) {
+      search();
+      return diagnoser_ != nullptr;
+    }
+    if (seed_offset_ == 0) begin_mode();
+    experiment();
+    ++seed_offset_;
+    if (seed_offset_ == seeds_ || failed()) end_mode();
+    return mode_ < bank_.size();
+  }
+
+  void search() {
+    WatchedDesign control([&] { return context_.stopped() || context_.limit.reached(); },
+                          [&](Index, double, double) {
+                            if (context_.options.progress) context_.options.progress(index_, 0, 0);
+                          });
+    guarded([&] {
+      found_.design = designer_->design(control);
+      if (control.stopped()) context_.limit.check(0);
+      prove();
+      if (found_.design->best && spec_of_design_.diagnoser) make_diagnoser();
     });
   }
 
   /// What the designer says of its input is proven anew, or refuted.
-  void prove(const PipelineSpec& spec) {
-    const DesignOutcome& design = *outcome_.design;
-    if (design.best) outcome_.exact = verify_design(bank_, design, stop_);
-    outcome_.refuted =
-        refuted_claims(bank_, *spec.designer, design, outcome_.exact ? &*outcome_.exact : nullptr);
+  void prove() {
+    if (design().best) found_.exact = verify_design(bank_, design(), context_.options.stop);
+    found_.refuted = refuted_claims(bank_, spec_of_design_.designer, design(),
+                                    found_.exact ? &*found_.exact : nullptr);
   }
 
-  std::optional<Rounding> rounding() const {
-    return backend_ ? std::optional(backend_->info().rounding) : std::nullopt;
+  void make_diagnoser() {
+    const ComponentSpec& spec = *spec_of_design_.diagnoser;
+    PipelineAssumptions assumed = assumptions_of(spec, rounding());
+    assumed.inputs = false;  // the input of an experiment is known beforehand
+    if (const auto& admissible = design().admissible_set)
+      assumed.admissible_sets.push_back(*admissible);
+    auto diagnoser =
+        context_.registry.make<DiagnoserEntry>(spec.type, {bank_, backend()}, spec.params);
+    check_.emplace(context_.study, std::move(assumed));
+    diagnoser_ = std::move(diagnoser);
   }
-  bool experiments_follow() const { return diagnoser_ && outcome_.error.empty(); }
-  Index modes() const { return bank_.size(); }
 
-  void begin_mode(Index mode) {
-    outcome_.experiments.push_back(
-        {mode,
-         0,
-         std::vector<std::int64_t>(static_cast<std::size_t>(bank_.size())),
-         0,
-         0,
-         0,
-         0,
-         {}});
+  void begin_mode() {
+    const auto modes = static_cast<std::size_t>(bank_.size());
+    found_.experiments.push_back({.mode = mode_, .possible = std::vector<std::int64_t>(modes)});
     isolated_at_.clear();
   }
 
-  /// One experiment; false if the pipeline has stopped.
-  bool run(Index mode, std::int64_t seed_offset) {
+  void end_mode() {
+    found_.experiments.back().isolation = summary(isolated_at_);
+    ++mode_;
+    seed_offset_ = 0;
+  }
+
+  void conclude() override {
+    outcome_.median_step_us = median_.value();
+    outcome_.largest_step_us = median_.largest();
+    if (check_) tell(check_->failed(), outcome_);
+    outcome_.task = std::move(found_);
+    if (context_.results) context_.results->design(spec_, rounding(), outcome_);
+  }
+
+  /// The next experiment, with `mode_`.
+  void experiment() {
     std::optional<Diagnosis> last;
     Index isolated_at = -1;
-    Matrix shown(outcome_.design->best->u.rows(), bank_[mode].model.linear.outputs());
+    Matrix shown(design().best->u.rows(), bank_[mode_].model.linear.outputs());
     DiagnosisScore score([](const DiagnosisSegment&) {});
-    guarded(outcome_, [&] {
-      const auto data = open_experiment(study_, bank_, mode, outcome_.design->best->u,
-                                        static_cast<std::uint64_t>(seed_offset));
+    guarded([&] {
+      const auto data = open_experiment(context_.study, bank_, mode_, design().best->u,
+                                        static_cast<std::uint64_t>(seed_offset_));
       diagnoser_->start();
-      check_->begin_run(seed_offset);
+      check_->begin_run(seed_offset_);
       while (const std::optional<Record> record = data->next()) {
-        limit_.check(outcome_.steps);
+        context_.limit.check(outcome_.steps);
         check_->step(*record);
         last = diagnoser_->step(record->sample);
-        check_fits(*last, bank_, outcome_.diagnoser);
+        check_fits(*last, bank_, found_.diagnoser);
         if (last->reset) check_->restarted();
         shown.row(record->sample.k) = record->sample.y.transpose();
-        score.step(mode, *last);
+        score.step(mode_, *last);
         median_.add(diagnoser_->step_us());
         ++outcome_.steps;
-        if (!isolates(*last, mode)) {
+        if (!isolates(*last, mode_)) {
           isolated_at = -1;
         } else if (isolated_at < 0) {
           isolated_at = last->k;
         }
       }
     });
-    if (!outcome_.error.empty()) {
-      outcome_.error += " (experiment with mode \"" + bank_[mode].name + "\", seed " +
-                        std::to_string(seed_offset + 1) + ")";
-      return false;
+    if (failed()) {
+      outcome_.error += " (experiment with mode \"" + bank_[mode_].name + "\", seed " +
+                        std::to_string(seed_offset_ + 1) + ")";
+      return;
     }
     const auto& excluded = score.true_mode_excluded();
     if (excluded && outcome_.violated_at < 0 && !check_->excuses(excluded->k, excluded->since) &&
         !check_->excuses_by_rounding(excluded->k)) {
       outcome_.violated_at = excluded->k;
     }
-    if (last && !check_->excuses(last->k)) compare_with_claims(mode, seed_offset, *last, shown);
+    if (last && !check_->excuses(last->k)) compare_with_claims(*last, shown);
     if (isolated_at >= 0) ++isolated_at_[isolated_at];
     if (last) count(*last);
-    return true;
   }
 
-  void end_mode() { outcome_.experiments.back().isolation = summary(isolated_at_); }
+  const DesignOutcome& design() const { return *found_.design; }
 
-  PipelineOutcome finish(double wall_s) {
-    outcome_.median_step_us = median_.value();
-    outcome_.largest_step_us = median_.largest();
-    outcome_.wall_s = wall_s;
-    if (check_) tell(check_->failed(), outcome_);
-    return std::move(outcome_);
-  }
-
- private:
   static bool isolates(const Diagnosis& diagnosis, Index mode) {
     return diagnosis.decision == Decision::monitoring && diagnosis.mode == mode;
   }
 
   /// Outputs of the true mode that lie in the tube of another one refute that both are disjoint.
   /// Asked where that is not decided yet and the diagnoser leaves both modes.
-  void compare_with_claims(Index mode, std::int64_t seed_offset, const Diagnosis& last,
-                           const Matrix& shown) {
-    const DesignOutcome& design = *outcome_.design;
+  void compare_with_claims(const Diagnosis& last, const Matrix& shown) {
+    const DesignOutcome& design = *found_.design;
     for (std::size_t q = 0; q < design.best->pairs.size(); ++q) {
       const PairSeparation& claim = design.best->pairs[q];
-      const Index other = claim.i == mode ? claim.j : claim.j == mode ? claim.i : -1;
-      const bool open = !outcome_.exact || outcome_.exact->pairs[q].disjoint == Answer::unknown;
+      const Index other = claim.i == mode_ ? claim.j : claim.j == mode_ ? claim.i : -1;
+      const bool open = !found_.exact || found_.exact->pairs[q].disjoint == Answer::unknown;
       if (other < 0 || claim.disjoint != Answer::yes || !open || contradicted_[{claim.i, claim.j}])
         continue;
       if (!last.modes[static_cast<std::size_t>(other)].candidate) continue;
@@ -155,17 +167,17 @@ class DesignPipeline {
                                          make_point(counted.transpose().reshaped()));
       if (verification::exact_emptiness(runs).empty != Answer::no) continue;
       contradicted_[{claim.i, claim.j}] = true;
-      outcome_.refuted.push_back(
+      found_.refuted.push_back(
           "the output tubes of " + bank_[claim.i].name + " and " + bank_[claim.j].name +
-          " are called disjoint, and in the experiment with mode \"" + bank_[mode].name +
-          "\" and seed " + std::to_string(seed_offset + 1) + " of " +
-          std::to_string(seeds_of(study_)) + " the outputs are those of both");
+          " are called disjoint, and in the experiment with mode \"" + bank_[mode_].name +
+          "\" and seed " + std::to_string(seed_offset_ + 1) + " of " + std::to_string(seeds_) +
+          " the outputs are those of both");
     }
   }
 
   /// The end of an experiment.
   void count(const Diagnosis& last) {
-    ExperimentRow& row = outcome_.experiments.back();
+    ExperimentRow& row = found_.experiments.back();
     ++row.runs;
     for (std::size_t j = 0; j < last.modes.size(); ++j) row.possible[j] += last.modes[j].candidate;
     switch (last.decision) {
@@ -182,56 +194,24 @@ class DesignPipeline {
     }
   }
 
-  const Study& study_;
+  const DesignSpec& spec_of_design_;
   ModeBank bank_;
-  const TimeLimit& limit_;
-  const std::atomic<bool>* stop_;
-  std::shared_ptr<const SetBackend> backend_;
-  std::shared_ptr<Diagnoser> diagnoser_;
+  std::int64_t seeds_;
+  std::shared_ptr<const InputDesigner> designer_;
+  std::shared_ptr<Diagnoser> diagnoser_;  ///< if there are experiments
   std::optional<AssumptionCheck> check_;
   std::map<std::pair<Index, Index>, bool> contradicted_;  ///< pairs of modes, by experiments
+  Index mode_ = 0;                                        ///< of the next experiment, with
+  std::int64_t seed_offset_ = 0;                          ///< this seed
   Delays isolated_at_;
   Median median_;
-  PipelineOutcome outcome_;
+  DesignedOutcome found_;
 };
 
 }  // namespace
 
-std::optional<PipelineOutcome> run_design(const Study& study, std::size_t index,
-                                          const Registry& registry, const RunOptions& options,
-                                          const TimeLimit& limit, Results* results) {
-  const PipelineSpec& spec = study.pipelines[index];
-  const auto stopped = [&] { return options.stop && options.stop->load(); };
-  const Clock::time_point begin = Clock::now();
-  DesignPipeline pipeline(study, spec, limit, options.stop);
-  WatchedDesign control([&] { return stopped() || limit.reached(); },
-                        [&](Index, double, double) {
-                          if (options.progress) options.progress(index, 0, 0);
-                        });
-  pipeline.design(spec, registry, control);
-  if (stopped()) return std::nullopt;
-  if (pipeline.experiments_follow()) {
-    const std::int64_t seeds = seeds_of(study), total = seeds * pipeline.modes();
-    Clock::time_point told = begin;
-    for (Index mode = 0; mode < pipeline.modes(); ++mode) {
-      pipeline.begin_mode(mode);
-      bool good = true;
-      for (std::int64_t offset = 0; offset < seeds && good; ++offset) {
-        if (stopped()) return std::nullopt;
-        good = pipeline.run(mode, offset);
-        if (options.progress && seconds_since(told) > 0.05) {
-          options.progress(index, mode * seeds + offset + 1, total);
-          told = Clock::now();
-        }
-      }
-      pipeline.end_mode();
-      if (!good) break;
-    }
-    if (options.progress) options.progress(index, total, total);
-  }
-  PipelineOutcome outcome = pipeline.finish(seconds_since(begin));
-  if (results) results->design(spec, pipeline.rounding(), outcome);
-  return outcome;
+std::unique_ptr<PipelineRun> design_run(const RunContext& context, std::size_t index) {
+  return std::make_unique<DesignRun>(context, index);
 }
 
 }  // namespace cordon::detail

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "diagnosis_run.hpp"
-
-#include <chrono>
 #include <limits>
 
-#include "pipeline_guard.hpp"
+#include "pipeline_run.hpp"
 #include "study/checks/assumption_check.hpp"
 #include "study/results/median.hpp"
 #include "study/running/diagnosis_score.hpp"
@@ -16,7 +13,6 @@ namespace {
 
 constexpr std::size_t most_kept = 10'000;
 
-/// Simulated by a linear model, so that a proven exclusion of the true mode is a defect.
 /// The first k at which simulated data leave the nominal model otherwise than by additive faults.
 Index first_other_fault(const Study& study) {
   const auto* simulate = std::get_if<SimulateSpec>(&study.data);
@@ -25,66 +21,72 @@ Index first_other_fault(const Study& study) {
 }
 
 /// A diagnoser with what it has found so far.
-class DiagnosisPipeline {
+class DiagnosisRun final : public PipelineRun {
  public:
-  DiagnosisPipeline(const Study& study, const PipelineSpec& spec)
-      : study_(study),
-        bank_(bank_of(study)),
-        own_model_(is_own_model(study)),
-        first_other_fault_(first_other_fault(study)),
-        seeds_(seeds_of(study)),
-        fault_score_(study.model.linear.faults()) {
-    outcome_.name = spec.name;
-    outcome_.backend = spec.backend.type;
-    outcome_.diagnoser = spec.diagnoser->type;
+  DiagnosisRun(const RunContext& context, std::size_t index)
+      : PipelineRun(context, index),
+        diagnoser_spec_(spec_.diagnosis()->diagnoser),
+        bank_(bank_of(context.study)),
+        own_model_(is_own_model(context.study)),
+        first_other_fault_(first_other_fault(context.study)),
+        seeds_(seeds_of(context.study)),
+        fault_score_(context.study.model.linear.faults()) {
+    found_.diagnoser = diagnoser_spec_.type;
     for (const Mode& mode : bank_.modes) found_.modes.push_back(mode.name);
   }
 
-  void make(const PipelineSpec& spec, const Registry& registry) {
-    guarded(outcome_, [&] {
-      backend_ = registry.make<BackendEntry>(spec.backend.type, spec.backend.params);
-      diagnoser_ = registry.make<DiagnoserEntry>(spec.diagnoser->type, {bank_, backend_},
-                                                 spec.diagnoser->params);
-      found_.guarantees = diagnoser_->guarantees();
-      PipelineAssumptions assumed = assumptions_of(*spec.diagnoser, rounding());
-      const DiagnoserEntry* const entry = registry.entry<DiagnoserEntry>(spec.diagnoser->type);
-      using Modes = PipelineAssumptions::Modes;
-      assumed.modes = entry && !entry->needs_modes ? Modes::nominal_and_faults : Modes::of_the_bank;
-      check_.emplace(study_, std::move(assumed));
-    });
+  std::int64_t done() const override { return found_.steps; }
+  std::int64_t total() const override { return total_; }
+
+ private:
+  void make() override {
+    diagnoser_ = context_.registry.make<DiagnoserEntry>(diagnoser_spec_.type, {bank_, backend()},
+                                                        diagnoser_spec_.params);
+    found_.guarantees = diagnoser_->guarantees();
+    PipelineAssumptions assumed = assumptions_of(diagnoser_spec_, rounding());
+    const auto* const entry = context_.registry.entry<DiagnoserEntry>(diagnoser_spec_.type);
+    using Modes = PipelineAssumptions::Modes;
+    assumed.modes = entry && !entry->needs_modes ? Modes::nominal_and_faults : Modes::of_the_bank;
+    check_.emplace(context_.study, std::move(assumed));
   }
 
-  std::optional<Rounding> rounding() const {
-    return backend_ ? std::optional(backend_->info().rounding) : std::nullopt;
-  }
-  const DiagnosisOutcome& found() const { return found_; }
-  bool failed() const { return !outcome_.error.empty(); }
-
-  /// The time is over: the pipeline has stopped with an error.
-  bool gives_up(const TimeLimit& limit) {
-    guarded(outcome_, [&] { limit.check(found_.steps); });
-    return failed();
+  void written_begin() override {
+    if (context_.results) context_.results->begin_diagnosis(spec_, rounding(), found_);
   }
 
-  void begin_run(std::int64_t seed_offset) {
-    seed_offset_ = seed_offset;
-    check_->begin_run(seed_offset);
-    fault_score_.begin_run(seed_offset);
+  /// A sample, or the end of a run.
+  bool work() override {
+    if (!data_) begin_run();
+    const std::optional<Record> record = failed() ? std::nullopt : data_->next();
+    if (record && !gives_up(found_.steps)) {
+      if (Results* const results = writer()) results->data(*record);
+      diagnose(*record);
+      if (!failed()) return true;
+    }
+    end_run();
+    return seed_offset_ < seeds_;
+  }
+
+  void begin_run() {
+    data_ = context_.open(static_cast<std::uint64_t>(seed_offset_));
+    total_ = seeds_ * data_->size().value_or(0);
+    check_->begin_run(seed_offset_);
+    fault_score_.begin_run(seed_offset_);
     timeline_.emplace();
     score_.emplace([this](const DiagnosisSegment& segment) {
       tally_.add(segment);
       if (seed_offset_ == 0) keep(found_.segments, segment);
     });
-    guarded(outcome_, [&] { diagnoser_->start(); });
+    guarded([&] { diagnoser_->start(); });
   }
 
-  void step(const Record& record, Results* results) {
+  void diagnose(const Record& record) {
     std::optional<Diagnosis> diagnosis;
     std::vector<JudgedBound> faults;
-    guarded(outcome_, [&] {
+    guarded([&] {
       check_->step(record);
       diagnosis = diagnoser_->step(record.sample);
-      check_fits(*diagnosis, bank_, outcome_.diagnoser);
+      check_fits(*diagnosis, bank_, found_.diagnoser);
       faults = fault_score_.step(record.fault, *diagnosis, record.sample.k < first_other_fault_);
     });
     if (failed()) return;
@@ -98,7 +100,8 @@ class DiagnosisPipeline {
     }
     median_.add(diagnoser_->step_us());
     score_->step(record.mode, *diagnosis);
-    if (results) results->diagnosis({*diagnosis, record.mode, faults, diagnoser_->step_us()});
+    if (Results* const results = writer())
+      results->diagnosis({*diagnosis, record.mode, faults, diagnoser_->step_us()});
   }
 
   void end_run() {
@@ -111,22 +114,25 @@ class DiagnosisPipeline {
     if (failed() && seeds_ > 1)
       outcome_.error +=
           " (seed " + std::to_string(seed_offset_ + 1) + " of " + std::to_string(seeds_) + ")";
+    data_.reset();
+    ++seed_offset_;
   }
 
-  PipelineOutcome finish(double wall_s) {
+  void conclude() override {
     outcome_.median_step_us = median_.value();
     outcome_.largest_step_us = median_.largest();
-    outcome_.wall_s = wall_s;
     if (check_) tell(check_->failed(), outcome_);
     found_.statistics = tally_.statistics();
     found_.detection = tally_.detection();
     found_.isolation = tally_.isolation();
     found_.faults = fault_score_.statistics();
-    outcome_.diagnosis = std::move(found_);
-    return std::move(outcome_);
+    outcome_.task = std::move(found_);
+    if (context_.results) context_.results->end_diagnosis(outcome_);
   }
 
- private:
+  /// The first seed's run is written.
+  Results* writer() const { return seed_offset_ == 0 ? context_.results : nullptr; }
+
   /// The first exclusion of a true mode, and the first bounds without the true fault; where no
   /// failed assumption excuses one, that.
   void judge_run() {
@@ -163,13 +169,14 @@ class DiagnosisPipeline {
     }
   }
 
-  const Study& study_;
+  const ComponentSpec& diagnoser_spec_;
   ModeBank bank_;
   bool own_model_;
   Index first_other_fault_;
   std::optional<AssumptionCheck> check_;
   std::int64_t seeds_, seed_offset_ = 0;
-  std::shared_ptr<const SetBackend> backend_;
+  std::unique_ptr<DataSource> data_;  ///< of the run that is under way
+  std::int64_t total_ = 0;
   std::shared_ptr<Diagnoser> diagnoser_;
   std::optional<DiagnosisTimeline> timeline_;
   std::optional<DiagnosisScore> score_;
@@ -179,7 +186,6 @@ class DiagnosisPipeline {
   std::optional<Index> violated_in_run_;
   Median median_;
   DiagnosisOutcome found_;
-  PipelineOutcome outcome_;
 };
 
 }  // namespace
@@ -199,40 +205,8 @@ void check_fits(const Diagnosis& diagnosis, const ModeBank& bank, const std::str
                                 std::to_string(diagnosis.k));
 }
 
-std::optional<PipelineOutcome> run_diagnosis(const OpenData& open, const Study& study,
-                                             std::size_t index, const Registry& registry,
-                                             const RunOptions& options, const TimeLimit& limit,
-                                             Results* results) {
-  const PipelineSpec& spec = study.pipelines[index];
-  const Clock::time_point begin = Clock::now();
-  DiagnosisPipeline pipeline(study, spec);
-  pipeline.make(spec, registry);
-  if (results) results->begin_diagnosis(spec, pipeline.rounding(), pipeline.found());
-  const std::int64_t seeds = seeds_of(study);
-  std::int64_t total = 0;
-  Clock::time_point told = begin;
-  for (std::int64_t offset = 0; offset < seeds && !pipeline.failed(); ++offset) {
-    const std::unique_ptr<DataSource> data = open(static_cast<std::uint64_t>(offset));
-    total = seeds * data->size().value_or(0);
-    Results* const writer = offset == 0 ? results : nullptr;
-    pipeline.begin_run(offset);
-    while (!pipeline.failed()) {
-      if (options.stop && options.stop->load()) return std::nullopt;
-      const std::optional<Record> record = data->next();
-      if (!record || pipeline.gives_up(limit)) break;
-      if (writer) writer->data(*record);
-      pipeline.step(*record, writer);
-      if (options.progress && seconds_since(told) > 0.05) {
-        options.progress(index, pipeline.found().steps, total);
-        told = Clock::now();
-      }
-    }
-    pipeline.end_run();
-  }
-  if (options.progress) options.progress(index, pipeline.found().steps, total);
-  PipelineOutcome outcome = pipeline.finish(seconds_since(begin));
-  if (results) results->end_diagnosis(outcome);
-  return outcome;
+std::unique_ptr<PipelineRun> diagnosis_run(const RunContext& context, std::size_t index) {
+  return std::make_unique<DiagnosisRun>(context, index);
 }
 
 }  // namespace cordon::detail

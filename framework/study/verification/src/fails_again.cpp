@@ -9,11 +9,11 @@ using What = FailedAssumption::What;
 
 Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   const FailedAssumption& failed = pipeline.failed->failed;
-  const bool of_diagnoser = pipeline.is_diagnosis || pipeline.is_design;
-  if (failed.seed_offset != 0 || pipeline.is_design || failed.what == What::restart_set ||
+  const RecordedEstimation* const estimation = pipeline.estimation();
+  if (failed.seed_offset != 0 || pipeline.design() || failed.what == What::restart_set ||
       failed.what == What::modes)
     return Answer::unknown;
-  if (failed.what == What::admissible_set && of_diagnoser) return Answer::unknown;
+  if (failed.what == What::admissible_set && !estimation) return Answer::unknown;
   Study study;
   study.file = run.files.directory() / "results.json";
   study.model = run.model;
@@ -21,8 +21,9 @@ Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   const bool by_rounding = failed.what == What::W_exactly || failed.what == What::V_exactly;
   detail::PipelineAssumptions assumed{.inputs = failed.what == What::U, .exact_data = by_rounding};
   const bool from_start = failed.what == What::initial_set || failed.k == 0;
-  if (!of_diagnoser && from_start) assumed.initial_set = pipeline.initial_set;
-  if (pipeline.admissible_set) assumed.admissible_sets.push_back(*pipeline.admissible_set);
+  if (estimation && from_start) assumed.initial_set = estimation->initial_set;
+  if (estimation && estimation->admissible_set)
+    assumed.admissible_sets.push_back(*estimation->admissible_set);
   CsvSpec with_truth = run.data;
   for (Index i = 1; i <= run.model.linear.states(); ++i)
     with_truth.truth.push_back("x_" + std::to_string(i));

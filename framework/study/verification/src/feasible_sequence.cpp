@@ -18,7 +18,7 @@ bool same(const LineForm& X, const LineForm& Y) {
   return same(X.M, Y.M) && same(X.G, Y.G) && same(X.c, Y.c) && same(X.S, Y.S) && same(X.A, Y.A) &&
          same(X.b, Y.b);
 }
-bool same_assumptions(const RecordedPipeline& a, const RecordedPipeline& b) {
+bool same_assumptions(const RecordedEstimation& a, const RecordedEstimation& b) {
   if (!same(a.initial_set, b.initial_set) ||
       a.admissible_set.has_value() != b.admissible_set.has_value())
     return false;
@@ -27,18 +27,18 @@ bool same_assumptions(const RecordedPipeline& a, const RecordedPipeline& b) {
 
 }  // namespace
 
-FeasibleSequence::FeasibleSequence(const Model& model, const RecordedPipeline& pipeline)
-    : pipeline_(pipeline), uncertain_(model.linear.is_uncertain()) {
+FeasibleSequence::FeasibleSequence(const Model& model, const RecordedEstimation& estimation)
+    : estimation_(estimation), uncertain_(model.linear.is_uncertain()) {
   if (model.linear.states() > most_states_of_polytopes) return;
   try {
-    sets_.emplace(model, pipeline.initial_set, pipeline.admissible_set);
+    sets_.emplace(model, estimation.initial_set, estimation.admissible_set);
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported) throw;
   }
 }
 
-bool FeasibleSequence::serves(const RecordedPipeline& other) const {
-  return same_assumptions(pipeline_, other);
+bool FeasibleSequence::serves(const RecordedEstimation& other) const {
+  return same_assumptions(estimation_, other);
 }
 
 std::optional<Polytope> FeasibleSequence::at(std::size_t i, const Sample& sample) {

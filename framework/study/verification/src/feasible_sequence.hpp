@@ -12,16 +12,16 @@ namespace cordon::verification {
 /// F_0, F_1, … of one set of assumptions, kept for later pipelines that share them.
 class FeasibleSequence {
  public:
-  FeasibleSequence(const Model& model, const RecordedPipeline& pipeline);
+  FeasibleSequence(const Model& model, const RecordedEstimation& estimation);
 
-  bool serves(const RecordedPipeline& other) const;
+  bool serves(const RecordedEstimation& other) const;
   /// Samples come in order; nothing once the polytopes have grown too large.
   std::optional<Polytope> at(std::size_t i, const Sample& sample);
   /// Can the sequence be gone through once more?
   bool complete(std::size_t steps) const { return keeps_ || steps <= kept_.size(); }
 
  private:
-  const RecordedPipeline& pipeline_;
+  const RecordedEstimation& estimation_;
   bool uncertain_;
   std::optional<FeasibleSets> sets_;
   std::vector<std::optional<Polytope>> kept_;

@@ -105,20 +105,18 @@ class Verification {
       outcome_.pipelines.back().name = pipeline.name;
       outcome_.pipelines.back().backend = pipeline.backend;
       outcome_.pipelines.back().rounding = pipeline.rounding;
-      outcome_.pipelines.back().checked = !pipeline.is_diagnosis;
+      outcome_.pipelines.back().kind = pipeline.kind();
       if (cddlib_) cddlib_->asked_by(pipeline.name);
       repeat(p);
       if (outcome_.violation) return;
-      if (pipeline.is_diagnosis) continue;
-      if (pipeline.is_design) {
-        if (pipeline.design) check_input(p, pipeline);
-        if (outcome_.violation || outcome_.interrupted) return;
-        continue;
+      if (const RecordedDesign* const design = pipeline.design(); design && design->design)
+        check_input(p, *design);
+      if (const RecordedEstimation* const estimation = pipeline.estimation()) {
+        const bool serves = feasible && feasible->serves(*estimation) &&
+                            feasible->complete(estimation->steps.size());
+        if (!serves) feasible.emplace(run_.model, *estimation);
+        check(p, *estimation, *feasible);
       }
-      if (!feasible || !feasible->serves(pipeline) || !feasible->complete(pipeline.steps.size())) {
-        feasible.emplace(run_.model, pipeline);
-      }
-      check(p, *feasible);
       if (outcome_.violation || outcome_.interrupted) return;
     }
     if (const auto extra = sets_.next())
@@ -162,9 +160,10 @@ class Verification {
   void repeat(std::size_t p) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
     VerifiedPipeline& found = outcome_.pipelines.back();
-    if (!pipeline.refuted.empty()) {
-      const Index horizon = pipeline.design ? pipeline.design->horizon : 0;
-      outcome_.violation = {pipeline.name, horizon, pipeline.refuted[0],
+    if (const RecordedDesign* const design = pipeline.design();
+        design && !design->refuted.empty()) {
+      const Index horizon = design->design ? design->design->horizon : 0;
+      outcome_.violation = {pipeline.name, horizon, design->refuted[0],
                             fmt::format("/pipelines/{}/summary/refuted/0", p)};
     }
     if (!pipeline.failed) return;
@@ -180,12 +179,12 @@ class Verification {
   }
 
   /// A design claims nothing if there is no input.
-  void check_input(std::size_t p, const RecordedPipeline& pipeline) {
+  void check_input(std::size_t p, const RecordedDesign& recorded) {
     VerifiedPipeline& found = outcome_.pipelines.back();
     DesignFindings claims =
-        compare_recorded(run_.bank, *pipeline.design,
-                         {pipeline.claimed_separation, pipeline.proven_separation, pipeline.proven},
-                         verify_design(run_.bank, *pipeline.design, options_.stop));
+        compare_recorded(run_.bank, *recorded.design,
+                         {recorded.claimed_separation, recorded.proven_separation, recorded.proven},
+                         verify_design(run_.bank, *recorded.design, options_.stop));
     if (options_.stop && options_.stop->load()) {
       outcome_.interrupted = true;
       return;
@@ -194,12 +193,12 @@ class Verification {
     if (found.undecided == 0) found.first_undecided = std::move(claims.first_undecided);
     found.undecided += claims.undecided;
     if (!claims.refuted.empty()) {
-      outcome_.violation = {found.name, pipeline.design->horizon, claims.refuted[0].what,
+      outcome_.violation = {found.name, recorded.design->horizon, claims.refuted[0].what,
                             fmt::format("/pipelines/{}{}", p, claims.refuted[0].pointer)};
     }
   }
 
-  void check(std::size_t p, FeasibleSequence& feasible) {
+  void check(std::size_t p, const RecordedEstimation& estimation, FeasibleSequence& feasible) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
     Study study;
     study.file = run_.files.directory() / "results.json";
@@ -208,15 +207,15 @@ class Verification {
     const std::unique_ptr<DataSource> data = open_data(study);
     std::optional<Sample> sample, before;
     std::optional<RecordedSet> row, row_before;
-    detail::RoundingMargin rounding(run_.model, pipeline.initial_set, pipeline.rounding);
+    detail::RoundingMargin rounding(run_.model, estimation.initial_set, pipeline.rounding);
     std::size_t read = 0;
     Clock::time_point told = Clock::now();
-    for (std::size_t i = 0; i < pipeline.steps.size(); ++i) {
+    for (std::size_t i = 0; i < estimation.steps.size(); ++i) {
       if (options_.stop && options_.stop->load()) {
         outcome_.interrupted = true;
         return;
       }
-      const RecordedStep& step = pipeline.steps[i];
+      const RecordedStep& step = estimation.steps[i];
       if (cddlib_) cddlib_->asked_by(pipeline.name, step.k);
       std::optional<Polytope> F;
       while (!sample || sample->k < step.k) {
@@ -245,15 +244,16 @@ class Verification {
       if (!is_checked) continue;
       if (options_.progress && Clock::now() - told > std::chrono::milliseconds(50)) {
         options_.progress(names_, p, static_cast<std::int64_t>(i),
-                          static_cast<std::int64_t>(pipeline.steps.size()));
+                          static_cast<std::int64_t>(estimation.steps.size()));
         told = Clock::now();
       }
     }
     const std::optional<Record> behind = pipeline.stopped ? std::nullopt : data->next();
     if (behind) refuse_missing(behind->sample.k, pipeline);
-    if (!pipeline.contradictions.empty())
-      throw InputError((run_.files.directory() / "results.json").string(), pipeline.contradictions);
-    const auto total = static_cast<std::int64_t>(pipeline.steps.size());
+    if (!estimation.contradictions.empty())
+      throw InputError((run_.files.directory() / "results.json").string(),
+                       estimation.contradictions);
+    const auto total = static_cast<std::int64_t>(estimation.steps.size());
     if (options_.progress) options_.progress(names_, p, total, total);
   }
 
@@ -265,26 +265,27 @@ class Verification {
                   const std::optional<Polytope>& F, const RecordedSet* row_before,
                   const Transition& transition) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
+    const RecordedEstimation& estimation = *pipeline.estimation();
     VerifiedPipeline& found = outcome_.pipelines.back();
     const bool uncertain = run_.model.linear.is_uncertain();
-    const RecordedStep step = uncertain ? without_claim(pipeline.steps[i]) : pipeline.steps[i];
+    const RecordedStep step = uncertain ? without_claim(estimation.steps[i]) : estimation.steps[i];
     StepCheck check(step, row, pipeline.rounding, margins.states);
-    const LineForm& start = row_before ? row_before->set : pipeline.initial_set;
+    const LineForm& start = row_before ? row_before->set : estimation.initial_set;
     if ((start.lines() > 0 || row.set.lines() > 0) && hides_directions(run_.model.linear.A))
       check.lines_have_few_digits();
     check.proofs();
-    if (uncertain && pipeline.steps[i].tightness == Tightness::exact) {
+    if (uncertain && estimation.steps[i].tightness == Tightness::exact) {
       check.skipped(
           "a claim of \"exact\" is not checked where matrices are known by intervals only");
     }
     const auto successors_in = [&](const Model& model) {
       return StepCheck::Successors{
-          [&] { return successors(model, start, pipeline.admissible_set, transition); },
+          [&] { return successors(model, start, estimation.admissible_set, transition); },
           [&] {
             return successors(widened(model, margins.outputs), widened(start),
-                              pipeline.admissible_set, transition);
+                              estimation.admissible_set, transition);
           },
-          [&] { return enclosed_successors(model, start, pipeline.admissible_set, transition); }};
+          [&] { return enclosed_successors(model, start, estimation.admissible_set, transition); }};
     };
     const bool follows = i == 0 || row_before;
     if (!check.violation()) {
@@ -299,7 +300,8 @@ class Verification {
         Model model = run_.model;
         for (int draw = 0; draw < (uncertain ? 2 : 1); ++draw) {
           model.linear = drawn(run_.model.linear, row.k, draw);
-          check.against(successors_in(model), directions, pipeline.follows_its_sets, options_.stop);
+          check.against(successors_in(model), directions, estimation.follows_its_sets,
+                        options_.stop);
         }
         ++found.by_supports;
       }

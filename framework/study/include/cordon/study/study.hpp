@@ -9,11 +9,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "cordon/interfaces/model.hpp"
 #include "cordon/registry/registry.hpp"
+#include "cordon/study/pipeline_task.hpp"
 
 namespace cordon {
 
@@ -97,15 +99,28 @@ struct CsvSpec {
   std::string mode = {};  ///< column with the names of the true modes; empty: not known
 };
 
-/// A backend with an observer, with a diagnoser, or with an input designer and perhaps a diagnoser
-/// for its experiment.
-struct PipelineSpec {
-  std::string name;
-  ComponentSpec backend, observer;
-  std::optional<ComponentSpec> diagnoser = {};  ///< if there is one, `observer` is empty
-  std::optional<ComponentSpec> designer =
-      {};  ///< likewise; the pipeline has an input of its own then
+struct EstimationSpec {
+  ComponentSpec observer;
 };
+
+struct DiagnosisSpec {
+  ComponentSpec diagnoser;
+};
+
+/// The pipeline has an input of its own: the designed one.
+struct DesignSpec {
+  ComponentSpec designer;
+  std::optional<ComponentSpec> diagnoser = {};  ///< tried in experiments with that input
+};
+
+struct PipelineSpec : PipelineTask<EstimationSpec, DiagnosisSpec, DesignSpec> {
+  std::string name = {};
+  ComponentSpec backend = {};
+};
+
+/// The components of a pipeline beside its backend, under the keys that studies give them:
+/// observer, diagnoser, or designer and perhaps diagnoser.
+std::vector<std::pair<std::string, const ComponentSpec*>> algorithms_of(const PipelineSpec& spec);
 
 /// One axis of a sweep: each of its values takes the place of what stands at `path`, in every place
 /// that the path matches.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cordon/core/answer.hpp"
+#include "cordon/study/pipeline_task.hpp"
 
 namespace cordon {
 
@@ -40,9 +41,9 @@ struct Violation {
 struct VerifiedPipeline {
   std::string name, backend;
   Rounding rounding = Rounding::nominal;
-  bool checked = true;            ///< false: a diagnosis, of which no sets are stored
-  std::int64_t steps = 0;         ///< checked
-  std::int64_t by_polytopes = 0;  ///< of them against the exact feasible set
+  PipelineKind kind = PipelineKind::estimation;  ///< of a diagnosis no sets are stored
+  std::int64_t steps = 0;                        ///< checked
+  std::int64_t by_polytopes = 0;                 ///< of them against the exact feasible set
   std::int64_t by_supports =
       0;                    ///< of them against the successors of the set before, in directions
   std::int64_t proofs = 0;  ///< proofs of (non-)emptiness and of bounds that hold

@@ -156,27 +156,28 @@ std::optional<DesignOutcome> read_design(const Cursor& at, const SystemPart& sys
 
 /// What beside the input stands in "design" and "exact".
 void read_separation(const Cursor& at, const std::vector<std::string>& modes,
-                     RecordedPipeline& pipeline) {
+                     RecordedDesign& found) {
   const auto word = [](const Cursor& object) {
     return read_word(object, "separates", {Answer::yes, Answer::no, Answer::unknown})
         .value_or(Answer::unknown);
   };
-  if (const auto design = at.find("design"); pipeline.design && design)
-    pipeline.claimed_separation = word(*design);
+  if (const auto design = at.find("design"); found.design && design)
+    found.claimed_separation = word(*design);
   const auto exact = at.find("exact");
   if (!exact || exact->is(Kind::null) || !exact->expect(Kind::object, not_as_written)) return;
-  if (!pipeline.design)
-    exact->error("says something of an input that is not there", not_as_written);
-  pipeline.proven_separation = word(*exact);
-  read_claims(*exact, pipeline.proven.emplace(), modes);
+  if (!found.design) exact->error("says something of an input that is not there", not_as_written);
+  found.proven_separation = word(*exact);
+  read_claims(*exact, found.proven.emplace(), modes);
 }
 
 }  // namespace
 
-void read_designed(const Cursor& at, const SystemPart& system, RecordedPipeline& pipeline) {
+RecordedDesign read_designed(const Cursor& at, const SystemPart& system) {
+  RecordedDesign found;
   if (const auto design = at.need("design", not_as_written))
-    pipeline.design = read_design(*design, system);
-  read_separation(at, names_of_modes(system), pipeline);
+    found.design = read_design(*design, system);
+  read_separation(at, names_of_modes(system), found);
+  return found;
 }
 
 }  // namespace cordon::verification

@@ -28,8 +28,7 @@ std::optional<Enum> read_word(const json::Cursor& object, const char* key,
 
 /// "design" and "exact" of a pipeline with a designer. Pairs and tubes have the names of their
 /// modes, in the order of the bank; what is said of an input that is not there is refused.
-void read_designed(const json::Cursor& pipeline, const json::SystemPart& system,
-                   RecordedPipeline& into);
+RecordedDesign read_designed(const json::Cursor& pipeline, const json::SystemPart& system);
 
 /// Where "last", "summary" and "numbers" say what the steps do not.
 std::vector<Diagnostic> contradictions_of(const json::Cursor& pipeline,

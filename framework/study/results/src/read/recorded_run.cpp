@@ -106,54 +106,61 @@ std::optional<Rounding> read_rounding(const Cursor& pipeline) {
                    {Rounding::nominal, Rounding::outward, Rounding::rational});
 }
 
+/// What the pipeline assumes and its steps; nothing if they are not right.
+std::optional<RecordedEstimation> read_estimation(const Cursor& at, Index n) {
+  RecordedEstimation estimation;
+  const auto assumed = at.need("assumptions", not_as_written),
+             steps = at.need("steps", not_as_written);
+  if (!assumed || !steps || !steps->expect(Kind::array, not_as_written)) return std::nullopt;
+  if (assumed->is(Kind::null) && steps->size() == 0)
+    return estimation;  // stopped before its first step
+  if (!read_rounding(at) || !assumed->expect(Kind::object, not_as_written)) return std::nullopt;
+  if (const auto initial = assumed->need("initial_set", not_as_written)) {
+    if (auto form = read_form(*initial, n)) estimation.initial_set = std::move(*form);
+  }
+  if (const auto admissible = assumed->need("admissible_set", not_as_written);
+      admissible && !admissible->is(Kind::null)) {
+    estimation.admissible_set = read_form(*admissible, n);
+  }
+  if (const auto follows = assumed->find("follows_its_sets"))
+    estimation.follows_its_sets = read_flag(*follows).value_or(false);
+  for (std::size_t i = 0; i < steps->size(); ++i) {
+    if (auto step = read_step(steps->item(i), n)) estimation.steps.push_back(std::move(*step));
+  }
+  estimation.contradictions = contradictions_of(at, estimation.steps);
+  return estimation;
+}
+
+/// What the run itself has found.
+void read_summary(const Cursor& at, const SystemPart& system, RecordedPipeline& pipeline) {
+  const auto summary = at.find("summary");
+  if (!summary || !summary->is(Kind::object)) return;
+  pipeline.failed = read_failed_assumption(*summary, system);
+  const auto error = summary->find("error");
+  pipeline.stopped = error && !error->is(Kind::null);
+  const auto refuted = summary->find("refuted");
+  if (!pipeline.design() || !refuted || !refuted->is(Kind::array)) return;
+  for (std::size_t i = 0; i < refuted->size(); ++i)
+    pipeline.design()->refuted.push_back(read_text(refuted->item(i), 10'000).value_or(""));
+}
+
 std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart& system) {
   if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
-  const Index n = system.model.linear.states();
   RecordedPipeline pipeline;
   const auto name = at.need("name", not_as_written), backend = at.need("backend", not_as_written);
   if (!name || !backend) return std::nullopt;
   pipeline.name = read_text(*name, 1000).value_or("");
   pipeline.backend = read_text(*backend, 1000).value_or("");
   if (at.find("designer")) {
-    pipeline.is_design = true;
-    read_designed(at, system, pipeline);
+    pipeline.task = read_designed(at, system);
   } else if (at.find("diagnoser")) {
-    pipeline.is_diagnosis = true;
-  }
-  if (const auto summary = at.find("summary"); summary && summary->is(Kind::object)) {
-    pipeline.failed = read_failed_assumption(*summary, system);
-    const auto error = summary->find("error");
-    pipeline.stopped = error && !error->is(Kind::null);
-    const auto refuted = summary->find("refuted");
-    for (std::size_t i = 0; refuted && refuted->is(Kind::array) && i < refuted->size(); ++i) {
-      pipeline.refuted.push_back(read_text(refuted->item(i), 10'000).value_or(""));
-    }
-  }
-  if (pipeline.is_design || pipeline.is_diagnosis) {
-    if (const auto rounding = at.find("rounding"); rounding && !rounding->is(Kind::null))
-      pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);
-    return pipeline;
-  }
-  const auto assumed = at.need("assumptions", not_as_written),
-             steps = at.need("steps", not_as_written);
-  if (!assumed || !steps || !steps->expect(Kind::array, not_as_written)) return std::nullopt;
-  if (assumed->is(Kind::null) && steps->size() == 0)
-    return pipeline;  // stopped before its first step
-  pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);
-  if (!assumed->expect(Kind::object, not_as_written)) return std::nullopt;
-  if (const auto initial = assumed->need("initial_set", not_as_written)) {
-    if (auto form = read_form(*initial, n)) pipeline.initial_set = std::move(*form);
-  }
-  if (const auto admissible = assumed->need("admissible_set", not_as_written);
-      admissible && !admissible->is(Kind::null)) {
-    pipeline.admissible_set = read_form(*admissible, n);
-  }
-  if (const auto follows = assumed->find("follows_its_sets"))
-    pipeline.follows_its_sets = read_flag(*follows).value_or(false);
-  for (std::size_t i = 0; i < steps->size(); ++i) {
-    if (auto step = read_step(steps->item(i), n)) pipeline.steps.push_back(std::move(*step));
-  }
-  pipeline.contradictions = contradictions_of(at, pipeline.steps);
+    pipeline.task = RecordedDiagnosis{};
+  } else if (auto estimation = read_estimation(at, system.model.linear.states())) {
+    pipeline.task = std::move(*estimation);
+  }  // else the run is refused
+  read_summary(at, system, pipeline);
+  if (const auto rounding = at.find("rounding"); rounding && !rounding->is(Kind::null))
+    pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);
   return pipeline;
 }
 

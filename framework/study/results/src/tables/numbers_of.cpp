@@ -52,7 +52,7 @@ std::optional<double> number_of(const MetricValue& metric) {
   return std::nullopt;
 }
 
-void add_metrics(Numbers& numbers, const PipelineOutcome& outcome) {
+void add_metrics(Numbers& numbers, const EstimationOutcome& outcome) {
   for (std::size_t i = 0; i < outcome.summary.size(); ++i) {
     const MetricValue& metric = outcome.summary[i];
     if (const auto number = number_of(metric))
@@ -60,21 +60,22 @@ void add_metrics(Numbers& numbers, const PipelineOutcome& outcome) {
   }
 }
 
-void add_observer(Numbers& numbers, const PipelineOutcome& outcome) {
-  numbers.count("consistent", outcome.consistent);
-  numbers.count("inconsistent", outcome.inconsistent);
-  numbers.count("undecided", outcome.undecided);
-  numbers.time("inconsistent_from", outcome.inconsistent_from);
+void add_estimation(Numbers& numbers, const PipelineOutcome& outcome) {
+  const EstimationOutcome& found = *outcome.estimation();
+  numbers.count("consistent", found.consistent);
+  numbers.count("inconsistent", found.inconsistent);
+  numbers.count("undecided", found.undecided);
+  numbers.time("inconsistent_from", found.inconsistent_from);
   numbers.time("assumptions_until", outcome.assumptions_until);
-  numbers.time("outside_from", outcome.outside_from);
+  numbers.time("outside_from", found.outside_from);
   numbers.time("violated_at", outcome.violated_at);
   numbers.count("answers_proven",
-                outcome.emptiness.proven + outcome.containment.proven + outcome.bounds.proven);
+                found.emptiness.proven + found.containment.proven + found.bounds.proven);
   numbers.count("answers_unknown",
-                outcome.emptiness.unknown + outcome.containment.unknown + outcome.bounds.unknown);
-  numbers.add("inner_share", outcome.inner_steps > 0 ? outcome.inner_share : not_available);
-  numbers.time("inner_outside", outcome.inner_outside);
-  add_metrics(numbers, outcome);
+                found.emptiness.unknown + found.containment.unknown + found.bounds.unknown);
+  numbers.add("inner_share", found.inner_steps > 0 ? found.inner_share : not_available);
+  numbers.time("inner_outside", found.inner_outside);
+  add_metrics(numbers, found);
 }
 
 void add_faults(Numbers& numbers, const std::vector<FaultStatistics>& faults) {
@@ -97,7 +98,7 @@ void add_faults(Numbers& numbers, const std::vector<FaultStatistics>& faults) {
 }
 
 void add_diagnosis(Numbers& numbers, const PipelineOutcome& outcome) {
-  const DiagnosisOutcome& found = *outcome.diagnosis;
+  const DiagnosisOutcome& found = *outcome.diagnosis();
   numbers.time("assumptions_until", outcome.assumptions_until);
   numbers.time("violated_at", outcome.violated_at);
   numbers.count("runs", found.runs);
@@ -135,7 +136,7 @@ double bound_of(const DesignOutcome& design) {
 }
 
 /// What is proven of the κ of every pair: 0 or less where it is not proven to be apart.
-double smallest_kappa(const PipelineOutcome& outcome) {
+double smallest_kappa(const DesignedOutcome& outcome) {
   if (!outcome.design->best || outcome.design->best->pairs.empty()) return not_available;
   double kappa = infinity;
   for (std::size_t q = 0; q < outcome.design->best->pairs.size(); ++q) {
@@ -149,7 +150,8 @@ double smallest_kappa(const PipelineOutcome& outcome) {
 void add_design(Numbers& numbers, const PipelineOutcome& outcome) {
   numbers.time("assumptions_until", outcome.assumptions_until);
   numbers.time("violated_at", outcome.violated_at);
-  if (const auto& design = outcome.design) {
+  const DesignedOutcome& found = *outcome.design();
+  if (const auto& design = found.design) {
     const auto& best = design->best;
     numbers.count("horizon", design->horizon);
     numbers.add("cost", best ? best->cost : not_available);
@@ -161,14 +163,14 @@ void add_design(Numbers& numbers, const PipelineOutcome& outcome) {
     numbers.add("infeasible", searched
                                   ? static_cast<double>(design->status == DesignStatus::infeasible)
                                   : not_available);
-    numbers.answer("separates", outcome.exact ? outcome.exact->separates() : Answer::unknown);
-    numbers.add("kappa_min", smallest_kappa(outcome));
-    numbers.count("refuted_claims", static_cast<std::int64_t>(outcome.refuted.size()));
+    numbers.answer("separates", found.exact ? found.exact->separates() : Answer::unknown);
+    numbers.add("kappa_min", smallest_kappa(found));
+    numbers.count("refuted_claims", static_cast<std::int64_t>(found.refuted.size()));
     numbers.count("nodes", design->nodes);
   }
-  if (outcome.experiments.empty()) return;
+  if (found.experiments.empty()) return;
   std::int64_t runs = 0, isolated = 0, wrong = 0;
-  for (const ExperimentRow& row : outcome.experiments) {
+  for (const ExperimentRow& row : found.experiments) {
     runs += row.runs;
     isolated += row.isolated;
     wrong += row.wrong;
@@ -182,23 +184,23 @@ void add_design(Numbers& numbers, const PipelineOutcome& outcome) {
 
 std::vector<ResultNumber> numbers_of(const PipelineOutcome& outcome) {
   Numbers numbers;
-  const bool observes = outcome.designer.empty() && !outcome.diagnosis;
+  const EstimationOutcome* const found = outcome.estimation();
   numbers.count("steps", outcome.steps);
-  if (!outcome.designer.empty()) {
+  if (outcome.design()) {
     add_design(numbers, outcome);
-  } else if (outcome.diagnosis) {
+  } else if (outcome.diagnosis()) {
     add_diagnosis(numbers, outcome);
   } else {
-    add_observer(numbers, outcome);
+    add_estimation(numbers, outcome);
   }
   const double step = outcome.steps > 0 ? outcome.median_step_us : not_available;
   numbers.measured("step_us", step);
-  if (observes && outcome.steps > 0) {
-    numbers.measured("predict_us", outcome.median_us.predict);
-    numbers.measured("correct_us", outcome.median_us.correct);
-    numbers.measured("reduce_us", outcome.median_us.reduce);
-    numbers.measured("question_us", outcome.median_us.question);
-    numbers.measured("hull_us", outcome.median_hull_us);
+  if (found && outcome.steps > 0) {
+    numbers.measured("predict_us", found->median_us.predict);
+    numbers.measured("correct_us", found->median_us.correct);
+    numbers.measured("reduce_us", found->median_us.reduce);
+    numbers.measured("question_us", found->median_us.question);
+    numbers.measured("hull_us", found->median_hull_us);
   }
   numbers.measured("wall_s", outcome.wall_s);
   return numbers.take();

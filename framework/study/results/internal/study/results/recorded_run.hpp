@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cordon/study/design.hpp"
+#include "cordon/study/pipeline_task.hpp"
 #include "cordon/study/study.hpp"
 #include "study/results/recorded_assumption.hpp"
 #include "study/text/input_file.hpp"
@@ -26,27 +27,34 @@ struct RecordedStep {
   Tightness tightness = Tightness::outer;
 };
 
-struct RecordedPipeline {
-  std::string name, backend;
-  std::optional<RecordedAssumption> failed;  ///< that the run found to fail
-  std::vector<std::string> refuted;  ///< what of a designer's answer the run found to be false
-  bool is_diagnosis = false;         ///< of a diagnoser: nothing else is read, no sets are stored
-  bool is_design = false;            ///< of a designer: only `design` is read
-  std::optional<DesignOutcome> design =
-      {};  ///< horizon, input, what is said of pairs and tubes; nothing: there is no input
-  /// What results say of the design: the designer, and what the host has proven of its pairs and
-  /// tubes.
-  Answer claimed_separation = Answer::unknown, proven_separation = Answer::unknown;
-  std::optional<InputDesign> proven = {};
-  Rounding rounding = Rounding::nominal;
+struct RecordedEstimation {
   /// Each set holds all successors of the one before that are consistent with the data. Observers
   /// that know more than their last set, as a bound of their error for all times, may keep to less.
   bool follows_its_sets = false;
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
   std::vector<RecordedStep> steps;
-  bool stopped = false;                         ///< by an error, perhaps before the end of the data
-  std::vector<Diagnostic> contradictions = {};  ///< where the summary says what the steps do not
+  std::vector<Diagnostic> contradictions;  ///< where the summary says what the steps do not
+};
+
+/// Nothing is read: no sets are stored.
+struct RecordedDiagnosis {};
+
+struct RecordedDesign {
+  /// Horizon, input, what is said of pairs and tubes; nothing: there is no input.
+  std::optional<DesignOutcome> design;
+  /// What results say of the design: the designer, and what the host has proven of its pairs and
+  /// tubes.
+  Answer claimed_separation = Answer::unknown, proven_separation = Answer::unknown;
+  std::optional<InputDesign> proven;
+  std::vector<std::string> refuted;  ///< what of the answer the run found to be false
+};
+
+struct RecordedPipeline : PipelineTask<RecordedEstimation, RecordedDiagnosis, RecordedDesign> {
+  std::string name = {}, backend = {};
+  std::optional<RecordedAssumption> failed = {};  ///< that the run found to fail
+  Rounding rounding = Rounding::nominal;
+  bool stopped = false;  ///< by an error, perhaps before the end of the data
 };
 
 /// One line of sets.jsonl.

@@ -61,16 +61,16 @@ class Results {
   /// Into the directory of `out`, which lives longer.
   Results(const Study& study, const Registry& registry, const DirectoryLock& out);
 
-  void begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding,
-                      const std::optional<Assumptions>& assumptions,
-                      const std::vector<Gain>& gains);
+  void begin_estimation(const PipelineSpec& spec, std::optional<Rounding> rounding,
+                        const std::optional<Assumptions>& assumptions,
+                        const std::vector<Gain>& gains);
   /// Every pipeline hands over its records; each is written once.
   void data(const Record& record);
   /// Throws Errc::plugin, before anything is written, if the metrics have names that they had not
   /// in an earlier pipeline.
   void check_columns(const MetricValues& metrics);
-  void step(const StepResult& result);
-  void end_pipeline(const PipelineOutcome& outcome, const MetricValues& summary);
+  void estimate(const StepResult& result);
+  void end_estimation(const PipelineOutcome& outcome, const MetricValues& summary);
 
   /// The same of a pipeline with a diagnoser.
   void begin_diagnosis(const PipelineSpec& spec, std::optional<Rounding> rounding,
@@ -87,6 +87,8 @@ class Results {
  private:
   void begin_results(const Registry& registry);
   void begin_run(const Registry& registry);
+  /// Heads of the pipeline in results.json and run.json: what it is made of.
+  void begin_pipeline(const PipelineSpec& spec, std::optional<Rounding> rounding);
   void write_set(const StepResult& result);
   void write_row(const StepResult& result);
   void write_header(Index states);
@@ -114,11 +116,14 @@ class Results {
   std::optional<Index> last_sample_;  ///< the last k in data.csv
   Index last_estimate_ = 0;           ///< k of the last step
   struct Summary {
-    std::vector<std::string> fields;  ///< what every pipeline has
+    std::vector<std::string> fields;  ///< of the columns that every pipeline has
     std::map<std::string, std::string> metrics;
     std::vector<std::string> diagnosis;  ///< none of pipelines without a diagnoser
     std::vector<std::string> design;     ///< none of pipelines without a designer
   };
+  /// Ends the summary of results.json, and the pipeline in all files.
+  void end_pipeline(const PipelineOutcome& outcome, Summary row,
+                    const std::vector<MetricValue>& measured = {});
   std::vector<Summary> summaries_;
   std::vector<std::string> summary_columns_;
   std::optional<Rounding> rounding_;

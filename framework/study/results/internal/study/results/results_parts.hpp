@@ -29,6 +29,8 @@ void write_numbers(JsonWriter& json, const std::vector<ResultNumber>& numbers, b
 /// "assumptions_until" and "failed_assumption".
 void write_assumptions(JsonWriter& json, const PipelineOutcome& outcome,
                        const std::vector<std::string>& modes);
+void write_error(JsonWriter& json, const PipelineOutcome& outcome);  ///< "error"; none: null
+std::vector<std::string> mode_names(const Study& study);             ///< in the order of the bank
 void write(JsonWriter& json, const LineForm& X);
 void write(JsonWriter& json, const Certificate& why);
 

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "pipeline_run.hpp"
+#include "study/checks/assumption_check.hpp"
+#include "study/checks/growth.hpp"
+#include "study/checks/inner_check.hpp"
+#include "study/checks/outside.hpp"
+#include "study/checks/rounding_margin.hpp"
+#include "study/results/median.hpp"
+
+namespace cordon::detail {
+
+namespace {
+
+struct Medians {
+  Median predict, correct, reduce, question, hull, step;
+
+  void add(const PhaseTimes& times, double hull_us) {
+    predict.add(times.predict);
+    correct.add(times.correct);
+    reduce.add(times.reduce);
+    question.add(times.question);
+    hull.add(hull_us);
+    step.add(times.step());
+  }
+};
+
+constexpr Index nominal_mode = 0;  // in bank_of(study)
+
+/// An observer over its own stream of the data, and what became of it so far.
+class EstimationRun final : public PipelineRun {
+ public:
+  EstimationRun(const RunContext& context, std::size_t index)
+      : PipelineRun(context, index),
+        observer_spec_(spec_.estimation()->observer),
+        own_model_(is_own_model(context.study)),
+        data_(context.open(0)),
+        total_(data_->size().value_or(0)) {
+    found_.observer = observer_spec_.type;
+  }
+
+  std::int64_t done() const override { return outcome_.steps; }
+  std::int64_t total() const override { return total_; }
+
+ private:
+  void make() override {
+    observer_ = context_.registry.make<ObserverEntry>(
+        observer_spec_.type, {context_.study.model, backend()}, observer_spec_.params);
+    board_.emplace(context_.study.metrics, context_.registry);
+    observer_->start();
+    assumptions_ = {observer_->initial_set(), std::nullopt, observer_->follows_its_sets()};
+    if (const Set* admissible = observer_->admissible_set())
+      assumptions_->admissible_set = admissible->line_form();
+    PipelineAssumptions assumed{.initial_set = assumptions_->initial_set,
+                                .exact_data = rounding() != Rounding::nominal};
+    if (assumptions_->admissible_set)
+      assumed.admissible_sets.push_back(*assumptions_->admissible_set);
+    check_.emplace(context_.study, std::move(assumed));
+    rounding_.emplace(context_.study.model, assumptions_->initial_set, *rounding());
+    found_.gains = observer_->gains();
+  }
+
+  void written_begin() override {
+    if (context_.results)
+      context_.results->begin_estimation(spec_, rounding(), assumptions_, found_.gains);
+  }
+
+  bool work() override {
+    const std::optional<Record> record = data_->next();
+    if (!record || gives_up(outcome_.steps)) return false;
+    if (context_.results) context_.results->data(*record);
+    estimate(*record);
+    return true;
+  }
+
+  void estimate(const Record& record) {
+    Results* const results = context_.results;
+    std::optional<Estimate> estimate;
+    Box hull;
+    std::optional<Box> inner;
+    const MetricValues* values = nullptr;
+    double hull_us = 0;
+    nominal_ = nominal_ && record.mode.value_or(nominal_mode) == nominal_mode;
+    guarded([&] {
+      estimate = observer_->step(record.sample);
+      const Clock::time_point begin = Clock::now();
+      hull = estimate->consistent == Answer::no
+                 ? Box::empty(estimate->set->dim())
+                 : estimate->set->interval_hull(results ? &hull_proofs_ : nullptr);
+      hull_us = seconds_since(begin) * 1e6;
+      inner = observer_->inner_estimate();
+      if (inner) inner_.step(estimate->k, *inner, hull);
+      const Vector* truth = judge(record, *estimate);
+      const bool assumptions_hold = nominal_ && !check_->excuses(record.sample.k);
+      values = &board_->step({*estimate, hull, truth, assumptions_hold, observer_->times()});
+      if (results) results->check_columns(*values);
+    });
+    if (failed()) return;
+    if (found_.inconsistent_from < 0)
+      medians_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
+    count(*estimate, hull);
+    if (results)
+      results->estimate(
+          {*estimate, hull, hull_proofs_, inner, *values, observer_->times(), hull_us});
+    growth_.step(estimate->k, hull);
+    found_.last_hull = std::move(hull);
+  }
+
+  void conclude() override {
+    MetricValues summary;
+    if (board_) guarded([&] { summary = board_->summary(); });
+    found_.summary = summary.reproducible;
+    found_.reproducible = summary.reproducible.size();
+    found_.summary.insert(found_.summary.end(), summary.measured.begin(), summary.measured.end());
+    found_.median_us = {medians_.predict.value(), medians_.correct.value(),
+                        medians_.reduce.value(), medians_.question.value()};
+    found_.median_hull_us = medians_.hull.value();
+    outcome_.median_step_us = medians_.step.value();
+    outcome_.largest_step_us = medians_.step.largest();
+    found_.growth = growth_.growth();
+    if (check_) tell(check_->failed(), outcome_);
+    found_.inner_steps = inner_.steps();
+    found_.inner_outside = inner_.outside();
+    if (inner_.steps() > 0) found_.inner_share = inner_.share();
+    outcome_.task = std::move(found_);
+    if (context_.results) context_.results->end_estimation(outcome_, summary);
+  }
+
+  /// Looks at assumptions and containment; returns the truth at the estimate's time, if the data
+  /// have it.
+  const Vector* judge(const Record& record, const Estimate& estimate) {
+    check_->step(record);
+    if (!record.truth) return nullptr;
+    passed_.push_back({record.sample, *record.truth});
+    while (!passed_.empty() &&
+           passed_.front().sample.k < estimate.k) {  // estimates may lag behind the samples
+      before_ = std::move(passed_.front().sample);
+      passed_.pop_front();
+    }
+    if (passed_.empty() || passed_.front().sample.k != estimate.k) return nullptr;
+    const Vector& truth = passed_.front().truth;
+    if (found_.outside_from < 0 && is_outside(estimate, truth)) {
+      found_.outside_from = estimate.k;
+      const Index k = record.sample.k;
+      if (own_model_ && nominal_ && !check_->excuses(k) &&
+          !check_->excuses_by_rounding(k, barely_outside(estimate.set->line_form(), truth)))
+        outcome_.violated_at = estimate.k;
+    }
+    return &truth;
+  }
+
+  /// By more than rounding errors may amount to.
+  bool is_outside(const Estimate& estimate, const Vector& truth) {
+    if (estimate.consistent == Answer::no) return true;
+    const LineForm X = estimate.set->line_form();
+    const bool follows = before_ && before_->k + 1 == estimate.k;
+    const Vector margin = rounding_->next(X, follows ? &*before_ : nullptr, passed_.front().sample);
+    return holds(*estimate.set, truth) == Answer::no &&
+           outside_by_its_size(X, truth, margin);
+  }
+
+  Answer holds(const Set& X, const Vector& x) {
+    const Answer answer = X.contains(x);
+    found_.containment.add(answer != Answer::unknown);
+    return answer;
+  }
+
+  void count(const Estimate& estimate, const Box& hull) {
+    ++outcome_.steps;
+    found_.emptiness.add(estimate.consistent != Answer::unknown);
+    if (estimate.consistent != Answer::no) {
+      const bool all = hull.is_bounded() || estimate.set->is_bounded() == Answer::no;
+      for (Index i = 0; i < hull.dim(); ++i) {
+        found_.bounds.add(all || std::isfinite(hull.upper[i]));
+        found_.bounds.add(all || std::isfinite(hull.lower[i]));
+      }
+    }
+    switch (estimate.consistent) {
+      case Answer::yes:
+        ++found_.consistent;
+        break;
+      case Answer::unknown:
+        ++found_.undecided;
+        break;
+      case Answer::no:
+        ++found_.inconsistent;
+        if (found_.inconsistent_from < 0) found_.inconsistent_from = estimate.k;
+        break;
+    }
+  }
+
+  const ComponentSpec& observer_spec_;
+  bool own_model_;
+  bool nominal_ = true;  ///< the plant has had no fault so far, as far as the data tell
+  std::unique_ptr<DataSource> data_;
+  std::int64_t total_;
+  std::shared_ptr<Observer> observer_;
+  std::optional<Assumptions> assumptions_;
+  std::optional<AssumptionCheck> check_;
+  std::optional<MetricBoard> board_;
+  struct Passed {
+    Sample sample;
+    Vector truth;
+  };
+  std::deque<Passed> passed_;     ///< whose estimate is still to come, or has just come
+  std::optional<Sample> before_;  ///< the sample before these
+  std::optional<RoundingMargin> rounding_;
+  std::vector<Certificate> hull_proofs_;
+  Medians medians_;
+  InnerCheck inner_;
+  GrowthWatch growth_;
+  EstimationOutcome found_;
+};
+
+}  // namespace
+
+std::unique_ptr<PipelineRun> estimation_run(const RunContext& context, std::size_t index) {
+  return std::make_unique<EstimationRun>(context, index);
+}
+
+}  // namespace cordon::detail
