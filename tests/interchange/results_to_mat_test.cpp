@@ -45,7 +45,7 @@ TEST_CASE("steps become rows") {
            "tightness": "outer", "radius": null, "what": "b"}])",
       problems);
   mat::Struct out;
-  mat::add_steps(out, observer);
+  mat::add_steps(out, observer.items());
   const Value steps = std::move(out).value();
   CHECK(steps.field("k")->numbers == Matrix{{0, 1}});
   CHECK(steps.field("lower")->numbers == Matrix{{1, 3}, {-infinity, 4}});
@@ -65,7 +65,7 @@ TEST_CASE("steps become rows") {
       problems);
   REQUIRE_FALSE(problems.any());
   mat::Struct more;
-  mat::add_steps(more, diagnoser);
+  mat::add_steps(more, diagnoser.items());
   const Value found = std::move(more).value();
   CHECK(found.field("decision")->items[1].text == "monitoring");
   CHECK(found.field("mode")->items[0].text == "");

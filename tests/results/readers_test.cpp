@@ -15,6 +15,7 @@
 #include "cordon/study/verify.hpp"
 #include "run/scratch.hpp"
 #include "study/text/input_file.hpp"
+#include "study/text/json_text.hpp"
 
 using namespace cordon;
 
@@ -222,4 +223,22 @@ TEST_CASE("a line that never ends, and one that is cut off") {
   CHECK(holds(refusal(readers().front(), run, results), "data.csv"));
   put(run / "data.csv", data);
   CHECK(refusal(readers().front(), run, results).empty());
+}
+
+TEST_CASE("results of a long run, beyond the 64 MB that a text read as a whole may have") {
+  const Results results;
+  const fs::path run = results / "run 1", file = run / "results.json";
+  fs::remove(run / "manifest.json");
+  const std::string blanks(6'000'000, ' '), step = "{\"k\": ";
+  std::string bytes = bytes_of(file);
+  for (std::size_t at = bytes.find(step); at != std::string::npos;
+       at = bytes.find(step, at + blanks.size()))
+    bytes.insert(at + 1, blanks);
+  REQUIRE(bytes.size() > json::max_bytes);
+  std::ofstream(file, std::ios::binary) << bytes;
+  for (const Reader& reader : readers()) {
+    if (reader.of != "run 1") continue;
+    CAPTURE(reader.name);
+    CHECK(refusal(reader, run, results) == "");
+  }
 }

@@ -13,6 +13,7 @@
 #include "study/results/recorded_run.hpp"
 #include "study/text/csv_reader.hpp"
 #include "study/text/input_file.hpp"
+#include "study/text/large_json.hpp"
 #include "study/text/numbers.hpp"
 #include "write_files.hpp"
 
@@ -84,12 +85,32 @@ std::map<std::string, std::vector<Value>> sets_of(const detail::RecordedFiles& f
   return sets;
 }
 
-Value pipeline_to_mat(const Cursor& at, std::vector<Value>* sets) {
+std::int64_t numbers_in(const json::Value& value) {
+  std::int64_t count = 1;
+  for (const json::Value& item : value.items()) count += numbers_in(item);
+  return count;
+}
+
+/// The steps of all pipelines, by the index of the pipeline.
+struct Steps {
+  std::map<std::size_t, std::vector<json::Value>> of;
+  std::int64_t budget = mat::max_numbers;
+
+  void take(const Cursor& at, std::size_t pipeline, const fs::path& file) {
+    budget -= numbers_in(at.value());
+    if (budget < 0)
+      refuse(file, "holds more steps than one MAT-file takes", "use steps.csv itself");
+    of[pipeline].push_back(at.value());
+  }
+};
+
+Value pipeline_to_mat(const Cursor& at, const std::vector<json::Value>& steps,
+                      std::vector<Value>* sets) {
   const std::vector<std::string> names = mat::valid_names(at.value().keys());
   mat::Struct pipeline;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i] == "steps") {
-      mat::add_steps(pipeline, at.item(i).value());
+      mat::add_steps(pipeline, steps);
     } else {
       pipeline.set(names[i], mat::to_mat(at.item(i).value()));
     }
@@ -98,7 +119,7 @@ Value pipeline_to_mat(const Cursor& at, std::vector<Value>* sets) {
   return std::move(pipeline).value();
 }
 
-Value pipelines_to_mat(const Cursor& pipelines, const detail::RecordedFiles& files,
+Value pipelines_to_mat(const Cursor& pipelines, Steps& steps, const detail::RecordedFiles& files,
                        bool with_sets) {
   std::map<std::string, std::vector<Value>> sets;
   if (with_sets) sets = sets_of(files);
@@ -111,8 +132,8 @@ Value pipelines_to_mat(const Cursor& pipelines, const detail::RecordedFiles& fil
   mat::Struct results;
   for (std::size_t p = 0; p < pipelines.size(); ++p) {
     const auto found = sets.find(names[p]);
-    results.set(valid[p],
-                pipeline_to_mat(pipelines.item(p), found == sets.end() ? nullptr : &found->second));
+    results.set(valid[p], pipeline_to_mat(pipelines.item(p), steps.of[p],
+                                          found == sets.end() ? nullptr : &found->second));
   }
   return std::move(results).value();
 }
@@ -190,7 +211,18 @@ void results_to_mat(const fs::path& directory, const Target& target, bool with_s
   const detail::RecordedFiles files(directory);
   const fs::path file = files.file("results.json");
   json::Problems problems;
-  const json::Value tree = json::parse(json::read_file(file.string()), problems);
+  Steps steps;
+  const json::Value tree =
+      json::read_large(
+          file,
+          {.kept = {"/cordon_results", "/title", "/study/system", "/points", "/pipelines"},
+           .streamed = {"/pipelines/*/steps/*", "/points/*"},
+           .take =
+               [&](const Cursor& at, const std::vector<std::size_t>& place) {
+                 if (place.size() == 2) steps.take(at, place[0], file);
+               }},
+          problems)
+          .tree;
   const Cursor root(tree, "", problems);
   mat::Variables all;
   std::vector<std::string> warnings;
@@ -215,7 +247,7 @@ void results_to_mat(const fs::path& directory, const Target& target, bool with_s
       all.push_back({"sweep", mat::to_mat(read_result_table(directory))});
     if (!problems.any() && !sweep && pipelines && pipelines->expect(Kind::array, not_as_written)) {
       all.push_back({"data", data_of(files.file("data.csv"))});
-      all.push_back({"results", pipelines_to_mat(*pipelines, files, with_sets)});
+      all.push_back({"results", pipelines_to_mat(*pipelines, steps, files, with_sets)});
     }
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());

@@ -145,9 +145,9 @@ std::vector<std::string> keys_of(const Steps& steps) {
 
 }  // namespace
 
-void add_steps(Struct& pipeline, const json::Value& list) {
+void add_steps(Struct& pipeline, const std::vector<json::Value>& list) {
   Steps steps;
-  for (const json::Value& step : list.items()) {
+  for (const json::Value& step : list) {
     if (step.kind == JsonKind::object) steps.push_back(&step);
   }
   Struct metrics;

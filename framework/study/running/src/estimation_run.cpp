@@ -115,8 +115,8 @@ class EstimationRun final : public PipelineRun {
     found_.summary = summary.reproducible;
     found_.reproducible = summary.reproducible.size();
     found_.summary.insert(found_.summary.end(), summary.measured.begin(), summary.measured.end());
-    found_.median_us = {medians_.predict.value(), medians_.correct.value(),
-                        medians_.reduce.value(), medians_.question.value()};
+    found_.median_us = {medians_.predict.value(), medians_.correct.value(), medians_.reduce.value(),
+                        medians_.question.value()};
     found_.median_hull_us = medians_.hull.value();
     outcome_.median_step_us = medians_.step.value();
     outcome_.largest_step_us = medians_.step.largest();
@@ -158,8 +158,7 @@ class EstimationRun final : public PipelineRun {
     const LineForm X = estimate.set->line_form();
     const bool follows = before_ && before_->k + 1 == estimate.k;
     const Vector margin = rounding_->next(X, follows ? &*before_ : nullptr, passed_.front().sample);
-    return holds(*estimate.set, truth) == Answer::no &&
-           outside_by_its_size(X, truth, margin);
+    return holds(*estimate.set, truth) == Answer::no && outside_by_its_size(X, truth, margin);
   }
 
   Answer holds(const Set& X, const Vector& x) {

@@ -40,14 +40,13 @@ class PipelineRun {
   /// Makes the components.
   void begin() {
     guarded([&] {
-      backend_ =
-          context_.registry.make<BackendEntry>(spec_.backend.type, spec_.backend.params);
+      backend_ = context_.registry.make<BackendEntry>(spec_.backend.type, spec_.backend.params);
       make();
     });
     written_begin();
   }
-  /// The next piece of work: a sample, a search, an experiment. False: nothing is left to do, or the
-  /// pipeline has ended with an error.
+  /// The next piece of work: a sample, a search, an experiment. False: nothing is left to do, or
+  /// the pipeline has ended with an error.
   bool step() { return !failed() && work() && !failed(); }
   PipelineOutcome finish(double wall_s) {
     outcome_.wall_s = wall_s;

@@ -53,7 +53,7 @@ void add_observers(const RunFiles& files, const Curves& curves, Report& report) 
     const PipelineHead& head = files.pipelines()[p];
     const Cursor tree = files.tree(p);
     const auto summary = object_of(tree, "summary");
-    if (head.kind != PipelineHead::Kind::observer || !summary) continue;
+    if (head.kind != PipelineKind::estimation || !summary) continue;
     const auto all = object_of(*summary, "answers");
     std::vector<Table::Cell> row{text_cell(head.name), text_cell(head.backend),
                                  text_cell(head.component), text_cell(head.rounding)};

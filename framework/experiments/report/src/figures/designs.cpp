@@ -338,7 +338,7 @@ void add_designs(const RunFiles& files, Report& report) {
   if (at && at->is(Kind::object)) system = json::read_system(*at, warnings);
   std::vector<Design> designs;
   for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
-    if (files.pipelines()[p].kind != PipelineHead::Kind::designer) continue;
+    if (files.pipelines()[p].kind != PipelineKind::design) continue;
     if (auto design = design_of(files, p, system.model.linear.states()))
       designs.push_back(std::move(*design));
   }
@@ -352,8 +352,7 @@ void add_designs(const RunFiles& files, Report& report) {
     add_tubes(files, design, report);
   }
   for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
-    if (files.pipelines()[p].kind == PipelineHead::Kind::designer)
-      add_experiments(files, p, report);
+    if (files.pipelines()[p].kind == PipelineKind::design) add_experiments(files, p, report);
   }
 }
 

@@ -20,7 +20,7 @@ constexpr std::size_t most_marks = 100;
 std::vector<std::string> modes_of(const RunFiles& files, std::size_t count) {
   std::vector<std::string> names;
   for (std::size_t p = 0; p < files.pipelines().size() && names.size() < count; ++p) {
-    if (files.pipelines()[p].kind != PipelineHead::Kind::diagnoser) continue;
+    if (files.pipelines()[p].kind != PipelineKind::diagnosis) continue;
     names.clear();
     for (const Cursor& name : items_of(files.tree(p), "modes"))
       names.push_back(json::read_text(name, 1000).value_or(""));
@@ -188,7 +188,7 @@ void add_rows(const std::string& name, const Cursor& summary, Tables& out) {
 void add_scores(const RunFiles& files, Report& report) {
   Tables tables;
   for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
-    if (files.pipelines()[p].kind != PipelineHead::Kind::diagnoser) continue;
+    if (files.pipelines()[p].kind != PipelineKind::diagnosis) continue;
     if (const auto summary = summary_of(files, p))
       add_rows(files.pipelines()[p].name, *summary, tables);
   }

@@ -23,8 +23,8 @@ void add_run(const RunFiles& files, Report& report) {
   if (has_numbers(files)) add_comparisons(files, report);
   add_bounds(files, curves, report);
   add_projections(files, curves, report);
-  if (files.any(PipelineHead::Kind::diagnoser)) add_diagnosis(files, curves, report);
-  if (files.any(PipelineHead::Kind::designer)) add_designs(files, report);
+  if (files.any(PipelineKind::diagnosis)) add_diagnosis(files, curves, report);
+  if (files.any(PipelineKind::design)) add_designs(files, report);
   add_metrics(files, curves, report);
   add_answers(files, curves, report);
 }

@@ -35,10 +35,10 @@ PipelineHead read_pipeline(const Cursor& at) {
   head.backend = name_of(at, "backend");
   head.rounding = text_of(at, "rounding");
   if (at.find("designer")) {
-    head.kind = PipelineHead::Kind::designer;
+    head.kind = PipelineKind::design;
     head.component = name_of(at, "designer");
   } else if (at.find("diagnoser")) {
-    head.kind = PipelineHead::Kind::diagnoser;
+    head.kind = PipelineKind::diagnosis;
     head.component = name_of(at, "diagnoser");
   } else {
     head.component = name_of(at, "observer");
@@ -175,7 +175,7 @@ void RunFiles::read_times() {
   if (problems.any()) throw InputError((directory() / "run.json").string(), problems.sorted());
 }
 
-bool RunFiles::any(PipelineHead::Kind kind) const {
+bool RunFiles::any(PipelineKind kind) const {
   return std::any_of(pipelines_.begin(), pipelines_.end(),
                      [&](const PipelineHead& head) { return head.kind == kind; });
 }

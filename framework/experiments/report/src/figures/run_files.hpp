@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cordon/study/pipeline_task.hpp"
 #include "experiments/report/figure.hpp"
 #include "experiments/report/read_report.hpp"
 #include "experiments/report/thinning.hpp"
@@ -18,8 +19,7 @@
 namespace cordon::report {
 
 struct PipelineHead {
-  enum class Kind { observer, diagnoser, designer };
-  Kind kind = Kind::observer;
+  PipelineKind kind = PipelineKind::estimation;
   std::string name, backend, component, rounding;
 };
 
@@ -42,7 +42,7 @@ class RunFiles {
   const std::string& title() const { return title_; }
   const std::string& study() const { return study_; }
   const std::vector<PipelineHead>& pipelines() const { return pipelines_; }
-  bool any(PipelineHead::Kind kind) const;
+  bool any(PipelineKind kind) const;
   /// The index of a pipeline by its name; throws InputError about `file`.
   int pipeline(const std::string& name, const std::string& file) const;
   const std::vector<std::string>& modes() const {

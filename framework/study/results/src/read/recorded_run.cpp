@@ -7,6 +7,7 @@
 
 #include "read/recorded_parts.hpp"
 #include "study/results/recorded_head.hpp"
+#include "study/text/large_json.hpp"
 
 namespace cordon::verification {
 
@@ -82,9 +83,9 @@ std::optional<Certificate> read_certificate(const Cursor& at) {
   return why;
 }
 
-std::optional<RecordedStep> read_step(const Cursor& at, Index n) {
+/// A step whose hull may still be of another size than the state.
+std::optional<RecordedStep> read_step(const Cursor& at) {
   if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
-  RecordedStep step;
   const auto k_at = at.need("k", not_as_written), hull = at.need("hull", not_as_written);
   const auto k = k_at ? read_integer(*k_at, 0, max_integer) : std::nullopt;
   const auto consistent = read_word(at, "consistent", {Answer::yes, Answer::no, Answer::unknown});
@@ -95,11 +96,51 @@ std::optional<RecordedStep> read_step(const Cursor& at, Index n) {
   auto lower = lower_at ? read_bounds(*lower_at) : std::nullopt,
        upper = upper_at ? read_bounds(*upper_at) : std::nullopt;
   if (!k || !consistent || !tightness || !lower || !upper) return std::nullopt;
-  if (!expect_size(*lower_at, *lower, n, "the state") ||
-      !expect_size(*upper_at, *upper, n, "the state"))
-    return std::nullopt;
-  return RecordedStep{*k, {std::move(*lower), std::move(*upper)}, *consistent, *tightness};
+  return RecordedStep{
+      *k, {std::move(*lower), std::move(*upper)}, *consistent, *tightness, at.value().line};
 }
+
+/// The steps of all pipelines, read one after another before it is known of which kind a pipeline
+/// is: what is wrong with them matters where it has an observer.
+class StepReader {
+ public:
+  void take(const Cursor& at, std::size_t pipeline) {
+    if (pipeline >= max_pipelines) return;
+    steps_.resize(std::max(steps_.size(), pipeline + 1));
+    Steps& own = steps_[pipeline];
+    if (own.wrong.size() >= most_wrong) return;
+    Problems problems;
+    auto step = read_step(Cursor(at.value(), at.pointer(), problems));
+    own.wrong.insert(own.wrong.end(), problems.found().begin(), problems.found().end());
+    if (step) own.read.push_back(std::move(*step));
+  }
+
+  /// Those of one pipeline with an observer, whose hulls must be boxes of the state.
+  std::vector<RecordedStep> of(const Cursor& pipeline, std::size_t index, Index n) {
+    if (index >= steps_.size()) return {};
+    Steps& own = steps_[index];
+    Problems& problems = pipeline.problems();
+    for (const Diagnostic& one : own.wrong)
+      problems.add(one.pointer, one.line, one.message, one.suggestion);
+    for (std::size_t i = 0; i < own.read.size(); ++i) {
+      const Box& hull = own.read[i].hull;
+      if (hull.lower.size() == n && hull.upper.size() == n) continue;
+      problems.add(child(child(pipeline.pointer(), "steps"), i) + "/hull", own.read[i].line,
+                   "is no box of the state, which has dimension " + std::to_string(n),
+                   not_as_written);
+    }
+    return std::move(own.read);
+  }
+
+ private:
+  static constexpr std::size_t max_pipelines = 1000, most_wrong = 1000;
+
+  struct Steps {
+    std::vector<RecordedStep> read;
+    std::vector<Diagnostic> wrong;
+  };
+  std::vector<Steps> steps_;
+};
 
 std::optional<Rounding> read_rounding(const Cursor& pipeline) {
   return read_word(pipeline, "rounding",
@@ -107,12 +148,14 @@ std::optional<Rounding> read_rounding(const Cursor& pipeline) {
 }
 
 /// What the pipeline assumes and its steps; nothing if they are not right.
-std::optional<RecordedEstimation> read_estimation(const Cursor& at, Index n) {
+std::optional<RecordedEstimation> read_estimation(const Cursor& at, Index n,
+                                                  std::vector<RecordedStep> read) {
   RecordedEstimation estimation;
+  estimation.steps = std::move(read);
   const auto assumed = at.need("assumptions", not_as_written),
              steps = at.need("steps", not_as_written);
   if (!assumed || !steps || !steps->expect(Kind::array, not_as_written)) return std::nullopt;
-  if (assumed->is(Kind::null) && steps->size() == 0)
+  if (assumed->is(Kind::null) && estimation.steps.empty())
     return estimation;  // stopped before its first step
   if (!read_rounding(at) || !assumed->expect(Kind::object, not_as_written)) return std::nullopt;
   if (const auto initial = assumed->need("initial_set", not_as_written)) {
@@ -124,9 +167,6 @@ std::optional<RecordedEstimation> read_estimation(const Cursor& at, Index n) {
   }
   if (const auto follows = assumed->find("follows_its_sets"))
     estimation.follows_its_sets = read_flag(*follows).value_or(false);
-  for (std::size_t i = 0; i < steps->size(); ++i) {
-    if (auto step = read_step(steps->item(i), n)) estimation.steps.push_back(std::move(*step));
-  }
   estimation.contradictions = contradictions_of(at, estimation.steps);
   return estimation;
 }
@@ -144,7 +184,8 @@ void read_summary(const Cursor& at, const SystemPart& system, RecordedPipeline& 
     pipeline.design()->refuted.push_back(read_text(refuted->item(i), 10'000).value_or(""));
 }
 
-std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart& system) {
+std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart& system,
+                                              std::size_t index, StepReader& steps) {
   if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
   RecordedPipeline pipeline;
   const auto name = at.need("name", not_as_written), backend = at.need("backend", not_as_written);
@@ -155,9 +196,11 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
     pipeline.task = read_designed(at, system);
   } else if (at.find("diagnoser")) {
     pipeline.task = RecordedDiagnosis{};
-  } else if (auto estimation = read_estimation(at, system.model.linear.states())) {
-    pipeline.task = std::move(*estimation);
-  }  // else the run is refused
+  } else {
+    const Index n = system.model.linear.states();
+    auto estimation = read_estimation(at, n, steps.of(at, index, n));
+    if (estimation) pipeline.task = std::move(*estimation);  // else the run is refused
+  }
   read_summary(at, system, pipeline);
   if (const auto rounding = at.find("rounding"); rounding && !rounding->is(Kind::null))
     pipeline.rounding = read_rounding(at).value_or(Rounding::nominal);
@@ -216,8 +259,17 @@ RecordedRun read_run(const std::filesystem::path& directory) {
   RecordedRun run{detail::RecordedFiles(directory), {}, {}, {}, {}};
   const std::filesystem::path file = run.files.file("results.json");
   Problems problems;
-  const std::string text = read_file(file.string());
-  const Value tree = parse(text, problems);
+  StepReader steps;
+  const Value tree =
+      read_large(file,
+                 {.kept = {"/cordon_results", "/study/system", "/points", "/pipelines"},
+                  .streamed = {"/pipelines/*/steps/*", "/points/*"},
+                  .take =
+                      [&](const Cursor& at, const std::vector<std::size_t>& place) {
+                        if (place.size() == 2) steps.take(at, place[0]);
+                      }},
+                 problems)
+          .tree;
   const Cursor root(tree, "", problems);
   if (expect_results(root)) {
     if (root.find("points")) {
@@ -234,7 +286,7 @@ RecordedRun read_run(const std::filesystem::path& directory) {
     SystemPart part = system ? read_system(*system, warnings) : SystemPart{};
     if (part.good && pipelines && pipelines->expect(Kind::array, not_as_written)) {
       for (std::size_t i = 0; i < pipelines->size(); ++i) {
-        if (auto pipeline = read_pipeline(pipelines->item(i), part)) {
+        if (auto pipeline = read_pipeline(pipelines->item(i), part, i, steps)) {
           run.pipelines.push_back(std::move(*pipeline));
         }
       }

@@ -10,7 +10,7 @@ namespace cordon::mat {
 /// The steps of a pipeline in results.json, a list of objects, as fields with a column per step: k,
 /// lower, upper, consistent, exact and metrics of observers; decision, mode, modes, faults and
 /// others of diagnosers.
-void add_steps(Struct& pipeline, const json::Value& steps);
+void add_steps(Struct& pipeline, const std::vector<json::Value>& steps);
 
 /// The points of a sweep as columns.
 Value to_mat(const ResultTable& table);

@@ -25,6 +25,7 @@ struct RecordedStep {
   Box hull;
   Answer consistent = Answer::unknown;
   Tightness tightness = Tightness::outer;
+  int line = 0;  ///< of the file
 };
 
 struct RecordedEstimation {
