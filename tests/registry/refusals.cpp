@@ -44,6 +44,8 @@ const BadPlugin bad_plugins[] = {
     {"control_characters", "the text \"summary\" of its descriptor is damaged", "rebuild"},
     {"crashes",
      "it ends the process when it is opened: ", "it is tried again when the file changes"},
+    {"damaged_text", "a metric has a summary of 1152921504606846976 bytes",
+     "repair what the plugin registers"},
     {"empty_string", "its descriptor lacks author", "fill in every field"},
     {"ends_the_process", "it ends the process when it is opened: exit code 0",
      "repair or remove it"},

@@ -2,6 +2,7 @@
 #include "catalogue.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -33,6 +34,36 @@ namespace {
 template <std::size_t... index>
 std::vector<std::string> names_of_kinds(std::index_sequence<index...>) {
   return {std::string(std::variant_alternative_t<index, ComponentEntry>::kind)...};
+}
+
+/// Of one text that a component tells of itself: longer ones are damage.
+constexpr std::size_t longest_text = 1'000'000;
+
+/// The texts of a component, by what they are.
+std::vector<std::pair<std::string_view, const std::string*>> texts_of(const ComponentInfo& info) {
+  std::vector<std::pair<std::string_view, const std::string*>> texts{
+      {"name", &info.name},
+      {"summary", &info.summary},
+      {"citation", &info.citation},
+      {"text of details", &info.details}};
+  for (const ParamSpec& spec : info.schema.specs()) {
+    texts.emplace_back("name of a parameter", &spec.name);
+    texts.emplace_back("documentation of a parameter", &spec.doc);
+    for (const std::string& choice : spec.choices) texts.emplace_back("choice", &choice);
+    texts.emplace_back("kind of a parameter", &spec.component_kind);
+    texts.emplace_back("type of a parameter", &spec.matrix_type);
+  }
+  return texts;
+}
+
+/// What is wrong with the lengths of its texts; "" if nothing is.
+std::string too_long(const ComponentEntry& entry) {
+  for (const auto& [what, text] : texts_of(info_of(entry))) {
+    if (text->size() > longest_text)
+      return fmt::format("a {} has a {} of {} bytes", Catalogue::kinds()[entry.index()], what,
+                         text->size());
+  }
+  return "";
 }
 
 void check_schema(const std::string& component, const ParamSchema& schema,
@@ -76,7 +107,22 @@ void Catalogue::remove(std::string_view plugin) {
     std::erase_if(all, [&](const auto& item) { return item.second.plugin == plugin; });
 }
 
+void Batch::read_all() const {
+  for (const Shelf& shelf : mine_.shelves()) {
+    for (const auto& item : shelf) {
+      const ComponentInfo copy = info_of(item.second.entry);
+      for (const auto& [what, text] : texts_of(copy)) {
+        if (text->size() > longest_text) throw std::length_error("a damaged text");
+      }
+    }
+  }
+}
+
 void Batch::add(ComponentEntry entry) {
+  if (std::string problem = too_long(entry); !problem.empty()) {
+    problems_.push_back(std::move(problem));
+    return;
+  }
   const std::string component = described(entry);
   const ComponentInfo& info = info_of(entry);
   const bool can_be_made =

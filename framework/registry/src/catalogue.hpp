@@ -24,6 +24,8 @@ class Catalogue {
   const Shelf* shelf(std::string_view kind) const;  ///< null: no such kind
   const Provided* find(std::string_view kind, std::string_view name) const;
 
+  const std::array<Shelf, std::variant_size_v<ComponentEntry>>& shelves() const { return shelves_; }
+
   void take(Catalogue&& other);
   void remove(std::string_view plugin);
 
@@ -48,6 +50,9 @@ class Batch final : public Registrar {
   /// Components whose names somebody else has, with the reason: they are no part of what is
   /// committed.
   const std::vector<std::string>& left_out() const { return left_out_; }
+  /// Copies what was registered: a process in which a text is damaged ends here, not where somebody
+  /// lists it.
+  void read_all() const;
   void commit(Catalogue& catalogue) { catalogue.take(std::move(mine_)); }
 
  private:
