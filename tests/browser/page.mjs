@@ -37,6 +37,32 @@ test('every figure is there, in order, under its section', async () => {
   await close(page);
 });
 
+test('axes have the ticks and texts of the exported figures', async () => {
+  const page = await open(browser, file('every_kind'));
+  const axes = JSON.parse(readFileSync(join(scratch, 'axes.json'), 'utf8'));
+  assert.ok(axes.length > 50);
+  const own = await page.evaluate((all) => all.map(({ lower, upper, ticks, texts, log_ticks: logs, log_texts: logTexts }) => ({
+    lower, upper,
+    ...(ticks && { digits: digitsWithin(lower, upper) }),
+    ...(ticks && { ticks: ticks.map(([count]) => [count, niceTicks(lower, upper, count), niceTicks(lower, upper, count, true)]) }),
+    ...(texts && { texts: texts.map(([tick]) => [tick, short(tick, digitsWithin(lower, upper)), short(tick / 3)]) }),
+    ...(logs && { log_ticks: logTicks(lower, upper) }),
+    ...(logTexts && { log_texts: logTexts.map(([tick]) => [tick, logText(tick)]) }),
+  })), axes);
+  for (const [i, axis] of axes.entries()) assert.deepEqual(own[i], axis);
+  await close(page);
+  for (const name of ['every_kind', 'far']) {
+    const report = await open(browser, file(name));
+    for (const { id } of (await dataOf(report)).figures.filter(({ kind }) => kind === 'plot')) {
+      await show(report, id);
+      const shown = await report.evaluate((one) => Chart.getChart(document.querySelector(`#figure_${one} canvas`)).scales.y.ticks.map(({ label }) => label), id);
+      const drawn = readFileSync(join(scratch, `${id}.svg`), 'utf8').matchAll(/<text[^>]*class="soft"[^>]*text-anchor="end"[^>]*>([^<]*)<\/text>/g);
+      assert.deepEqual(shown, [...drawn].map(([, text]) => text), `${name}: ${id}`);
+    }
+    await close(report);
+  }
+});
+
 test('a figure is drawn when it is seen, and not before', async () => {
   const page = await open(browser, file('large'));
   const count = () => page.evaluate(() => [...document.querySelectorAll('canvas')].filter((canvas) => Chart.getChart(canvas)).length);

@@ -168,7 +168,7 @@ inline Report with_names(const std::string& name) {
 
 /// A state near a million that moves by thousandths.
 inline Report far_from_origin() {
-  Report report{"Far from the origin", {}, {"first"}, {}, {{"cordon", "0.1.0"}}, "{}"};
+  Report report{"Far from the origin", {"first"}, {}, {}, {{"cordon", "0.1.0"}}, "{}"};
   Series series{Series::Kind::band, "hull", 0, {}, {}, {}};
   Projection sets{"x1", "x2", {}};
   for (int k = 0; k < 20; ++k) {

@@ -63,7 +63,11 @@ function niceTicks(lower, upper, count = 6, whole = false) {
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = Math.max(whole ? 1 : 0, power * ([1, 2, 5].find((m) => m * power >= rough * (1 - 1e-9)) ?? 10));
   const ticks = [];
-  for (let i = Math.ceil(lower / step - 1e-9); i <= upper / step + 1e-9; ++i) ticks.push(Number((i * step).toPrecision(14)));
+  const first = Math.ceil(lower / step - 1e-9), last = Math.floor(upper / step + 1e-9);
+  for (let i = 0; first + i <= last && i < 100; ++i) {  // far from the origin, ticks may not be told apart
+    const tick = Number(((first + i) * step).toPrecision(14));
+    if (tick !== ticks.at(-1)) ticks.push(tick);
+  }
   return ticks;
 }
 /** Powers of ten within [lower, upper]; with 2 and 5 between them where they are few. */

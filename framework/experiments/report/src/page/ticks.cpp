@@ -38,8 +38,11 @@ std::vector<double> nice_ticks(double lower, double upper, int count, bool whole
   if (whole) step = std::max(1.0, step);
   std::vector<double> ticks;
   const double first = std::ceil(lower / step - 1e-9), last = std::floor(upper / step + 1e-9);
-  for (double i = first; i <= last && ticks.size() < 100; ++i)
-    ticks.push_back(clean(i * step) + 0.0);
+  for (int i = 0; first + i <= last && i < 100; ++i) {
+    const double tick = clean((first + i) * step) + 0.0;
+    // far from the origin, ticks may not be told apart
+    if (ticks.empty() || tick != ticks.back()) ticks.push_back(tick);
+  }
   return ticks;
 }
 
