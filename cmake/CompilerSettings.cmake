@@ -46,5 +46,7 @@ endif()
 
 find_program(CORDON_CCACHE ccache)
 if(CORDON_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CORDON_CCACHE}")
+  # ccache serves units with a precompiled header only where it may ignore when that was made.
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env
+    CCACHE_SLOPPINESS=pch_defines,time_macros "${CORDON_CCACHE}")
 endif()
