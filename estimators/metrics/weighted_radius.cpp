@@ -18,7 +18,12 @@
 namespace cordon::estimators {
 
 double f_w_radius(MatrixIn R, MatrixIn W) {
-  return R.cols() == 0 ? 0 : std::sqrt(std::max(0.0, linalg::product(W, R).cwiseProduct(R).sum()));
+  const double size = R.size() == 0 ? 0 : R.cwiseAbs().maxCoeff();
+  if (size == 0) return 0;
+  // In a unit of the generators' size, a power of two: their squares may be no double numbers.
+  const double unit = std::exp2(std::clamp(std::floor(std::log2(size)), -1000.0, 1000.0));
+  const Matrix scaled = R / unit;
+  return unit * std::sqrt(std::max(0.0, linalg::product(W, scaled).cwiseProduct(scaled).sum()));
 }
 
 WRadius w_radius(MatrixIn R, MatrixIn W) {

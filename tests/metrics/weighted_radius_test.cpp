@@ -54,6 +54,12 @@ TEST_CASE("both radii of zonotopes that can be seen") {
   CHECK(f_w_radius(Matrix(2, 0), I) == 0);
 }
 
+TEST_CASE("generators whose squares are no double numbers") {
+  const Matrix I = Matrix::Identity(2, 2), square{{3, 0}, {0, 4}};
+  for (const double size : {1e-300, 1e-281, 1e-170, 1e170, 1e300})
+    CHECK(f_w_radius(size * square, I) / size == doctest::Approx(5));
+}
+
 TEST_CASE("the W-radius is the largest over all vertices, or above it") {
   CHECK(rc::check([] {
     const Index n = *rc::gen::inRange(1, 5), g = *rc::gen::inRange(1, 12);
