@@ -53,19 +53,12 @@ std::string experiments_text(const Names& modes, const std::vector<ExperimentRow
       table(rows, paint));
 }
 
-/// Why experiments may have stayed open: samples after the horizon of `tube_membership` decide
-/// nothing.
-std::string unused_samples_text(const Study& study, const PipelineOutcome& pipeline) {
-  const auto spec =
-      std::find_if(study.pipelines.begin(), study.pipelines.end(),
-                   [&](const PipelineSpec& candidate) { return candidate.name == pipeline.name; });
-  const DesignedOutcome& found = *pipeline.design();
+/// Why experiments may have stayed open: samples of the input's end that decide nothing.
+std::string unused_samples_text(const DesignedOutcome& found) {
   const bool undecided = std::any_of(found.experiments.begin(), found.experiments.end(),
                                      [](const ExperimentRow& row) { return row.undecided > 0; });
-  if (!undecided || spec == study.pipelines.end() || !spec->design()) return "";
-  const std::optional<ComponentSpec>& diagnoser = spec->design()->diagnoser;
-  if (!diagnoser || diagnoser->type != "tube_membership") return "";
-  const Index last = diagnoser->params.integer("horizon"), needed = found.design->horizon;
+  if (!undecided || !found.last_used_sample) return "";
+  const Index last = *found.last_used_sample, needed = found.design->horizon;
   if (last >= needed) return "";
   return fmt::format(
       "Undecided: the diagnoser takes no sample after k = {}, the input goes on to k = {}. To try: "
@@ -206,7 +199,7 @@ std::string design_text(const Study& study, const PipelineOutcome& pipeline, con
   }
   if (!found.experiments.empty())
     text += fmt::format("\n{}", experiments_text(modes, found.experiments, paint));
-  text += refuted_text(found.refuted, paint) + unused_samples_text(study, pipeline) +
+  text += refuted_text(found.refuted, paint) + unused_samples_text(found) +
           assumption_text(study, pipeline, paint);
   if (!pipeline.error.empty()) text += paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
   return text;

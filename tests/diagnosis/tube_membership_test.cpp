@@ -34,6 +34,7 @@ TEST_CASE("under the separating input the true model is left, on any backend tha
     CAPTURE(backend);
     const bool lines = backend == "line_zonotope";
     const auto diagnoser = make(four_models(), backend, lines ? horizon(3) : admissible);
+    CHECK(diagnoser->last_used_sample() == 3);
     const ModeBank& bank = diagnoser->bank();
     for (Index truth = 0; truth < 4; ++truth) {
       for (std::uint64_t seed = 1; seed <= 40; ++seed) {

@@ -49,6 +49,7 @@ TEST_CASE("every mode is tried with every seed, and the confusion table counts t
   REQUIRE(found.design());
   CHECK(found.design()->designer == "designing");
   CHECK(found.design()->diagnoser == "telling");
+  CHECK(found.design()->last_used_sample == 7);
   REQUIRE(found.design()->design);
   CHECK(found.design()->design->best->cost == 5);
   CHECK(found.steps == 3 * 2 * 3);

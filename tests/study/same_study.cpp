@@ -119,11 +119,12 @@ bool same(const Study& a, const Study& b) {
       return false;
   }
   const auto pipelines = [](const PipelineSpec& p, const PipelineSpec& q) {
-    const auto a = algorithms_of(p), b = algorithms_of(q);
+    const auto mine = algorithms_of(p), others = algorithms_of(q);
     return p.name == q.name && same(p.backend, q.backend) &&
-           std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-             return x.first == y.first && same(*x.second, *y.second);
-           });
+           std::equal(mine.begin(), mine.end(), others.begin(), others.end(),
+                      [](const auto& x, const auto& y) {
+                        return x.first == y.first && same(*x.second, *y.second);
+                      });
   };
   return std::equal(a.pipelines.begin(), a.pipelines.end(), b.pipelines.begin(), b.pipelines.end(),
                     pipelines) &&

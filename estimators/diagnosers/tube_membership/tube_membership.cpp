@@ -66,6 +66,8 @@ class TubeMembership final : public Diagnoser {
     return result;
   }
 
+  std::optional<Index> do_last_used_sample() const override { return horizon_; }
+
   /// Asks for every candidate whether all samples so far can be its own.
   void examine(const Sample& now, std::vector<ModeEvidence>& modes) {
     const Vector u = joined(u_, now.u), y = joined(y_, now.y);

@@ -78,6 +78,7 @@ class DesignRun final : public PipelineRun {
         context_.registry.make<DiagnoserEntry>(spec.type, {bank_, backend()}, spec.params);
     check_.emplace(context_.study, std::move(assumed));
     diagnoser_ = std::move(diagnoser);
+    found_.last_used_sample = diagnoser_->last_used_sample();
   }
 
   void begin_mode() {

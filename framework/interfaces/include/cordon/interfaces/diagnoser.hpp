@@ -111,6 +111,10 @@ class Diagnoser {
   /// What can be said before any experiment; nothing if the method has no such statements.
   std::optional<Guarantees> guarantees() const { return do_guarantees(); }
 
+  /// How many steps after `start` the last sample is that it makes use of; nothing: there is no
+  /// last one.
+  std::optional<Index> last_used_sample() const { return do_last_used_sample(); }
+
   const ModeBank& bank() const { return bank_; }
   /// Wall-clock time of the last step in microseconds.
   double step_us() const { return step_us_; }
@@ -126,6 +130,7 @@ class Diagnoser {
   /// `before` is null at the first sample.
   virtual Diagnosis do_step(const Sample* before, const Sample& now) = 0;
   virtual std::optional<Guarantees> do_guarantees() const { return std::nullopt; }
+  virtual std::optional<Index> do_last_used_sample() const { return std::nullopt; }
 
   ModeBank bank_;
   std::shared_ptr<const SetBackend> backend_;

@@ -208,7 +208,9 @@ struct EstimationOutcome {
 /// What a designer has designed, and how experiments with its input went.
 struct DesignedOutcome {
   std::string designer;
-  std::string diagnoser;                 ///< of the experiments; empty: there are none
+  std::string diagnoser;  ///< of the experiments; empty: there are none
+  /// Of the diagnoser, counted from the start of an experiment on.
+  std::optional<Index> last_used_sample = {};
   std::optional<DesignOutcome> design;   ///< nothing: the designer ended with an error
   std::optional<ExactSeparation> exact;  ///< what is proven of the input, if there is one
   std::vector<std::string> refuted;  ///< what of the designer's answer is proven false: a defect

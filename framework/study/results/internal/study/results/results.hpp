@@ -116,10 +116,10 @@ class Results {
   std::optional<Index> last_sample_;  ///< the last k in data.csv
   Index last_estimate_ = 0;           ///< k of the last step
   struct Summary {
-    std::vector<std::string> fields;  ///< of the columns that every pipeline has
-    std::map<std::string, std::string> metrics;
-    std::vector<std::string> diagnosis;  ///< none of pipelines without a diagnoser
-    std::vector<std::string> design;     ///< none of pipelines without a designer
+    std::vector<std::string> fields = {};  ///< of the columns that every pipeline has
+    std::map<std::string, std::string> metrics = {};
+    std::vector<std::string> diagnosis = {};  ///< none of pipelines without a diagnoser
+    std::vector<std::string> design = {};     ///< none of pipelines without a designer
   };
   /// Ends the summary of results.json, and the pipeline in all files.
   void end_pipeline(const PipelineOutcome& outcome, Summary row,
