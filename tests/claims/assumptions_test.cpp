@@ -188,7 +188,10 @@ TEST_CASE("a plant that its model bounds says nothing") {
   CHECK(check_kept(Program(bent(.1, .1))).code == 0);
 }
 
-TEST_CASE("what an assumption does not hold is not excused before it fails") {
+namespace {
+
+/// x_{k+1} = x_k / 2 + u_k + w_k, y_k = x_k + v_k; every set is [-1, 1].
+Study scalar_system() {
   Study study;
   study.model.linear.A = Matrix{{.5}};
   study.model.linear.B = study.model.linear.C = study.model.linear.Bw = study.model.linear.Dv =
@@ -197,6 +200,13 @@ TEST_CASE("what an assumption does not hold is not excused before it fails") {
   study.model.X0 = study.model.W = study.model.V = make_box({-Vector::Ones(1), Vector::Ones(1)});
   study.model.U = make_box({-Vector::Ones(1), Vector::Ones(1)});
   study.data = SimulateSpec{};
+  return study;
+}
+
+}  // namespace
+
+TEST_CASE("what an assumption does not hold is not excused before it fails") {
+  const Study study = scalar_system();
   const auto record = [](Index k, double x, double u = 0) {
     return Record{{k, Vector{{u}}, Vector{{x}}}, Vector{{x}}, 0, {}};
   };

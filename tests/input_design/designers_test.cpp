@@ -218,6 +218,11 @@ TEST_CASE("What makes no sense is refused, all of it at once") {
         problems("given", bank, "line_zonotope", Params().set("input", input).set("epsilon", -.1)),
         "/epsilon", ""));
   }
+}
+
+TEST_CASE("What designers cannot work with is refused: sizes, backends, modes") {
+  const ModeBank bank = examples::four_descriptor_models();
+  const Matrix input = by_time(examples::reference_input(), 2);
   SUBCASE("sizes") {
     // 4 equations and outputs and 8 columns or fewer per time and mode: the columns are the more,
     // then the rows.

@@ -195,6 +195,11 @@ TEST_CASE("Forbidden sets that are no polytope with an interior") {
     CHECK(forbidden(pair_of(0, 1, G, numbers({0, 1.5}), N), U, .6).kind ==
           ForbiddenSet::Kind::facets);
   }
+}
+
+TEST_CASE(
+    "Forbidden sets without noise in some direction, of simple shapes, and beyond the limits") {
+  const InputSequences U = boxed_inputs(2, 1);
   SUBCASE("no noise in one of two directions") {
     const Matrix G = (Matrix(2, 1) << 0, .5).finished();
     const ForbiddenSet set =

@@ -217,7 +217,16 @@ TEST_CASE(
                         sets->box({Vector::Constant(1, -.5), Vector::Constant(1, .5)})}}));
     observer->step(first);
     CHECK_FALSE(observer->inner_estimate().has_value());
+  }
+}
 
+TEST_CASE("an inner estimate is offered of sets that are known exactly only") {
+  Model model = comparison::plant("68");
+  const Params params = with_gain(Matrix{{.3}, {.2}, {.8}});
+  const Sample first{0, Vector::Zero(1), Vector::Zero(1)};
+  for (const char* name : {"interval_trajectory", "integrated", "zonotope_uncertain"}) {
+    CAPTURE(name);
+    const auto sets = backend("constrained_zonotope");
     const auto outward = registry().make<cordon::BackendEntry>(
         "interval", Params().set("rounding", std::string("outward")));
     const auto rounded =

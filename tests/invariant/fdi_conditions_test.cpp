@@ -92,18 +92,24 @@ TEST_CASE("one iteration from 0 is no promise: the box holds residuals for long"
   }
 }
 
+namespace {
+
+Diagnostic problem(const ModeBank& bank, const std::vector<Matrix>& gains,
+                   const OfflineOptions& options) {
+  const std::vector<Diagnostic> found = check_offline(bank, gains, options);
+  REQUIRE(found.size() >= 1);
+  return found[0];
+}
+
+void says(const Diagnostic& found, const char* pointer, const char* text) {
+  CHECK(found.pointer == pointer);
+  CHECK(found.message.find(text) != std::string::npos);
+  if (found.message.find(text) == std::string::npos) MESSAGE(found.message);
+}
+
+}  // namespace
+
 TEST_CASE("problems of models and options") {
-  const auto problem = [](const ModeBank& bank, const std::vector<Matrix>& gains,
-                          const OfflineOptions& options) {
-    const std::vector<Diagnostic> found = check_offline(bank, gains, options);
-    REQUIRE(found.size() >= 1);
-    return found[0];
-  };
-  const auto says = [](const Diagnostic& found, const char* pointer, const char* text) {
-    CHECK(found.pointer == pointer);
-    CHECK(found.message.find(text) != std::string::npos);
-    if (found.message.find(text) == std::string::npos) MESSAGE(found.message);
-  };
   OfflineOptions options;
   CHECK(check_offline(reactor(), reactor_gains(), options).empty());
   options.invariant = Invariant::rpi;

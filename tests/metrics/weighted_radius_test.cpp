@@ -91,49 +91,63 @@ struct Seen {
   std::vector<MetricValue> step, summary;
 };
 
-TEST_CASE("the metrics say what they measured") {
+struct Loaded {
+  Loaded() {
+    registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
+  }
   Registry registry;
-  registry.load({{std::filesystem::path(CORDON_BINARY_DIR) / "lib/cordon/plugins-v1"}});
-  const auto see = [&](const char* metric, const char* backend, const LineForm& X,
-                       const Params& params) -> Seen {
-    const auto made = registry.make<MetricEntry>(metric, params);
-    Estimate estimate;
-    estimate.set = registry.make<BackendEntry>(backend, {})->import(X);
-    const Box hull = estimate.set->interval_hull();
-    const PhaseTimes times;
-    Seen seen;
-    seen.step = made->step({estimate, hull, nullptr, true, times});
-    seen.summary = made->summary();
-    return seen;
-  };
+};
+
+Seen see(const Registry& registry, const char* metric, const char* backend, const LineForm& X,
+         const Params& params) {
+  const auto made = registry.make<MetricEntry>(metric, params);
+  Estimate estimate;
+  estimate.set = registry.make<BackendEntry>(backend, {})->import(X);
+  const Box hull = estimate.set->interval_hull();
+  const PhaseTimes times;
+  Seen seen;
+  seen.step = made->step({estimate, hull, nullptr, true, times});
+  seen.summary = made->summary();
+  return seen;
+}
+
+TEST_CASE("the metrics say what they measured") {
+  const Loaded plugins;
+  const Registry& registry = plugins.registry;
   const auto number = [](const MetricValue& value) { return std::get<double>(value.value); };
   const auto word = [](const MetricValue& value) { return std::get<std::string>(value.value); };
   const LineForm square = make_zonotope(Vector{{7, -7}}, Matrix{{3, 0}, {0, 4}});
   const Params weight = Params().set("weight", Matrix{{4, 0}, {0, 1}});
 
-  Seen seen = see("f_w_radius", "zonotope", square, {});
+  Seen seen = see(registry, "f_w_radius", "zonotope", square, {});
   CHECK(seen.step[0].name == "f_w_radius");
   CHECK(number(seen.step[0]) == doctest::Approx(5));
   CHECK(word(seen.step[1]) == "set");
   CHECK(seen.summary[0].name == "f_w_radius_mean");
   CHECK(number(seen.summary[1]) == doctest::Approx(5));
-  CHECK(number(see("w_radius", "zonotope", square, weight).step[0]) == doctest::Approx(52));
+  CHECK(number(see(registry, "w_radius", "zonotope", square, weight).step[0]) ==
+        doctest::Approx(52));
 
   LineForm cut = square;  // ξ₁ = ξ₂: a diagonal of the square, whose hull is the square
   cut.A = Matrix{{1, -1}};
   cut.b = Vector{{0}};
   cut.S = Matrix(1, 0);
-  seen = see("w_radius", "constrained_zonotope", cut, {});
+  seen = see(registry, "w_radius", "constrained_zonotope", cut, {});
   CHECK(number(seen.step[0]) == doctest::Approx(25));
   CHECK(word(seen.step[1]) == "hull");
-  CHECK(word(see("w_radius", "zonotope", make_zonotope(Vector{{0, 0}}, Matrix::Random(2, 20)), {})
+  CHECK(word(see(registry, "w_radius", "zonotope",
+                 make_zonotope(Vector{{0, 0}}, Matrix::Random(2, 20)), {})
                  .step[1]) == "reduced set");
-  seen = see("w_radius", "line_zonotope", make_space(2), {});
+  seen = see(registry, "w_radius", "line_zonotope", make_space(2), {});
   CHECK(word(seen.step[1]) == "none");
   CHECK(std::isnan(number(seen.step[0])));
   CHECK(std::isnan(number(seen.summary[0])));
+}
 
-  // what a run would find out is told of the model before
+TEST_CASE("what a run would find out of a weight is told before") {
+  const Loaded plugins;
+  const Registry& registry = plugins.registry;
+  const LineForm square = make_zonotope(Vector{{7, -7}}, Matrix{{3, 0}, {0, 4}});
   Model model;
   model.linear.A = Matrix::Identity(2, 2);
   const auto told = [&](const Matrix& W) {
@@ -151,7 +165,8 @@ TEST_CASE("the metrics say what they measured") {
   CHECK_THROWS_AS(
       registry.make<MetricEntry>("w_radius", Params().set("weight", Matrix{{1, .5}, {0, 1}})),
       Error);
-  CHECK_THROWS_AS(see("w_radius", "zonotope", square, Params().set("weight", Matrix{{1}})), Error);
+  CHECK_THROWS_AS(
+      see(registry, "w_radius", "zonotope", square, Params().set("weight", Matrix{{1}})), Error);
 }
 
 }  // namespace

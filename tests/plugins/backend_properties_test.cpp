@@ -128,6 +128,65 @@ void assert_claim(const Enclosure& X, const LineForm& exact, double scale) {
   }
 }
 
+/// One property: every operation on random sets.
+void check_operations(const Case& c, const SetBackend& backend) {
+  const Index n = *rc::gen::inRange<Index>(1, 4), p = *rc::gen::inRange<Index>(1, 4);
+  const Sampled X = random_set(n, c.lines, c.constraints),
+                Y = random_set(p, c.lines, c.constraints);
+  const double scale = X.scale + Y.scale;
+  const Enclosure EX = backend.import(X.form), EY = backend.import(Y.form);
+  for (const Vector& x : X.points) assert_contains(EX, x, scale, "import");
+  assert_claim(EX, X.form, scale);
+
+  // A X ⊕ {f} ⊕ T Y
+  const Matrix A = random_matrix(p, n), T = random_matrix(p, p);
+  const Vector f = random_vector(p);
+  const Term term{T, EY};
+  const Enclosure predicted = backend.predict(EX, {A, f, {&term, 1}});
+  for (const Vector& x : X.points) {
+    for (const Vector& y : Y.points)
+      assert_contains(predicted, A * x + f + T * y, 10 * scale, "predict");
+  }
+  assert_claim(predicted,
+               minkowski_sum(affine_map(X.form, A, f), affine_map(Y.form, T, Vector::Zero(p))),
+               100 * scale);
+
+  // {x ∈ X : z - C x ∈ T Y} with z chosen so that a known x stays
+  const Vector& kept = X.points.front();
+  const Vector z = A * kept + T * Y.points.back();
+  const Enclosure corrected = backend.correct(EX, {A, z, {T, EY}});
+  assert_contains(corrected, kept, 10 * scale, "correct");
+
+  assert_contains(backend.product(EX, EY), (Vector(n + p) << kept, Y.points.front()).finished(),
+                  scale, "product");
+  const Enclosure both = backend.intersection(
+      EX, Matrix::Identity(n, n),
+      backend.import(make_box({kept - Vector::Constant(n, .5), kept + Vector::Constant(n, .5)})));
+  assert_contains(both, kept, scale, "intersection");
+
+  const Matrix radius = random_matrix(p, n).cwiseAbs();
+  const IntervalMatrix interval(A, radius);
+  assert_contains(backend.interval_map(EX, interval), (A + radius * number()) * kept, 10 * scale,
+                  "interval map");
+
+  const Sampled Z = random_set(n, c.lines, c.constraints);
+  const Enclosure EZ = backend.import(Z.form);
+  const double mix = (number() + 1) / 2;
+  assert_contains(backend.convex_hull(EX, EZ), mix * kept + (1 - mix) * Z.points.front(),
+                  scale + Z.scale, "convex hull");
+
+  const Budget budget{n + 2, *rc::gen::inRange<Index>(0, 3)};
+  const Enclosure reduced = backend.reduce(predicted, {p + 2, budget.constraints});
+  for (const Vector& x : X.points)
+    assert_contains(reduced, A * x + f + T * Y.points.front(), 10 * scale, "reduce");
+  const Complexity size = reduced->complexity();
+  RC_ASSERT(size.generators <= p + 2);
+  RC_ASSERT(size.constraints <= budget.constraints);
+  assert_claim(reduced,
+               minkowski_sum(affine_map(X.form, A, f), affine_map(Y.form, T, Vector::Zero(p))),
+               100 * scale);
+}
+
 }  // namespace
 
 TEST_CASE("operations enclose and keep their claims") {
@@ -136,64 +195,7 @@ TEST_CASE("operations enclose and keep their claims") {
     CAPTURE(c.name);
     CAPTURE(c.rounding);
     const auto backend = c.backend(plugins);
-    CHECK(rc::check(c.name, [&] {
-      const Index n = *rc::gen::inRange<Index>(1, 4), p = *rc::gen::inRange<Index>(1, 4);
-      const Sampled X = random_set(n, c.lines, c.constraints),
-                    Y = random_set(p, c.lines, c.constraints);
-      const double scale = X.scale + Y.scale;
-      const Enclosure EX = backend->import(X.form), EY = backend->import(Y.form);
-      for (const Vector& x : X.points) assert_contains(EX, x, scale, "import");
-      assert_claim(EX, X.form, scale);
-
-      // A X ⊕ {f} ⊕ T Y
-      const Matrix A = random_matrix(p, n), T = random_matrix(p, p);
-      const Vector f = random_vector(p);
-      const Term term{T, EY};
-      const Enclosure predicted = backend->predict(EX, {A, f, {&term, 1}});
-      for (const Vector& x : X.points) {
-        for (const Vector& y : Y.points)
-          assert_contains(predicted, A * x + f + T * y, 10 * scale, "predict");
-      }
-      assert_claim(predicted,
-                   minkowski_sum(affine_map(X.form, A, f), affine_map(Y.form, T, Vector::Zero(p))),
-                   100 * scale);
-
-      // {x ∈ X : z - C x ∈ T Y} with z chosen so that a known x stays
-      const Vector& kept = X.points.front();
-      const Vector z = A * kept + T * Y.points.back();
-      const Enclosure corrected = backend->correct(EX, {A, z, {T, EY}});
-      assert_contains(corrected, kept, 10 * scale, "correct");
-
-      assert_contains(backend->product(EX, EY),
-                      (Vector(n + p) << kept, Y.points.front()).finished(), scale, "product");
-      const Enclosure both = backend->intersection(
-          EX, Matrix::Identity(n, n),
-          backend->import(
-              make_box({kept - Vector::Constant(n, .5), kept + Vector::Constant(n, .5)})));
-      assert_contains(both, kept, scale, "intersection");
-
-      const Matrix radius = random_matrix(p, n).cwiseAbs();
-      const IntervalMatrix interval(A, radius);
-      assert_contains(backend->interval_map(EX, interval), (A + radius * number()) * kept,
-                      10 * scale, "interval map");
-
-      const Sampled Z = random_set(n, c.lines, c.constraints);
-      const Enclosure EZ = backend->import(Z.form);
-      const double mix = (number() + 1) / 2;
-      assert_contains(backend->convex_hull(EX, EZ), mix * kept + (1 - mix) * Z.points.front(),
-                      scale + Z.scale, "convex hull");
-
-      const Budget budget{n + 2, *rc::gen::inRange<Index>(0, 3)};
-      const Enclosure reduced = backend->reduce(predicted, {p + 2, budget.constraints});
-      for (const Vector& x : X.points)
-        assert_contains(reduced, A * x + f + T * Y.points.front(), 10 * scale, "reduce");
-      const Complexity size = reduced->complexity();
-      RC_ASSERT(size.generators <= p + 2);
-      RC_ASSERT(size.constraints <= budget.constraints);
-      assert_claim(reduced,
-                   minkowski_sum(affine_map(X.form, A, f), affine_map(Y.form, T, Vector::Zero(p))),
-                   100 * scale);
-    }));
+    CHECK(rc::check(c.name, [&] { check_operations(c, *backend); }));
   }
 }
 

@@ -128,6 +128,16 @@ Enclosure fresh(Enclosure X) {
   return X;
 }
 
+/// The ends of the intervals that are doubles, else their middles.
+Matrix end_of(const Matrix& A, const Matrix& radius) {
+  Matrix member = A;
+  for (Index k = 0; k < member.size(); ++k) {
+    const double a = A.data()[k] + radius.data()[k];
+    if (mpq_class(a) - mpq_class(A.data()[k]) <= mpq_class(radius.data()[k])) member.data()[k] = a;
+  }
+  return member;
+}
+
 Tally run(const SetBackend& backend, const Bench& bench, int first, int seeds) {
   Tally tally;
   for (int seed = first; seed < first + seeds; ++seed) {
@@ -169,14 +179,7 @@ Tally run(const SetBackend& backend, const Bench& bench, int first, int seeds) {
     const Enclosure reduced = backend.reduce(mapped, {n + 1 + source.upto(1), source.upto(1)});
     tally.compare(source, exact(*mapped), reduced);
 
-    const Matrix radius = source.matrix(p, n).cwiseAbs();
-    Matrix member = A;
-    for (Index k = 0; k < member.size();
-         ++k) {  // the ends of the interval that are doubles, else the middle
-      const double a = A.data()[k] + radius.data()[k];
-      if (mpq_class(a) - mpq_class(A.data()[k]) <= mpq_class(radius.data()[k]))
-        member.data()[k] = a;
-    }
+    const Matrix radius = source.matrix(p, n).cwiseAbs(), member = end_of(A, radius);
     Enclosure image = backend.interval_map(X, {A, radius});
     image.tightness = Tightness::outer;  // compared with one of its members
     tally.compare(

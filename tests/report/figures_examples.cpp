@@ -141,67 +141,76 @@ void check_sets(const Report& report, const Json& pipeline, int p, bool with_all
   }
 }
 
-void check_diagnosis(const Report& report, const Json& pipeline, int p) {
+void check_timeline(const Report& report, const Json& pipeline, int p) {
   const std::size_t modes = pipeline["modes"].size();
-  const Json& steps = pipeline["steps"];
-  if (modes > 1) {
-    const Timeline timeline = content<Timeline>(report, "modes_" + std::to_string(p + 1));
-    REQUIRE(timeline.rows.size() >= modes);
-    for (std::size_t m = 0; m < modes; ++m) CHECK(timeline.rows[m] == pipeline["modes"][m]);
-    std::map<std::pair<std::size_t, double>, Timeline::State> told;  // by row and k
-    std::map<double, std::string> truth;
-    for (const Timeline::Span& span : timeline.spans) {
-      for (double k = span.from; k <= span.to; ++k) {
-        if (span.state == Timeline::State::truth || span.state == Timeline::State::outside) {
-          truth[k] = timeline.rows.at(span.row);
-        } else {
-          CHECK(told.emplace(std::make_pair(span.row, k), span.state).second);
-        }
+  const Timeline timeline = content<Timeline>(report, "modes_" + std::to_string(p + 1));
+  REQUIRE(timeline.rows.size() >= modes);
+  for (std::size_t m = 0; m < modes; ++m) CHECK(timeline.rows[m] == pipeline["modes"][m]);
+  std::map<std::pair<std::size_t, double>, Timeline::State> told;  // by row and k
+  std::map<double, std::string> truth;
+  for (const Timeline::Span& span : timeline.spans) {
+    for (double k = span.from; k <= span.to; ++k) {
+      if (span.state == Timeline::State::truth || span.state == Timeline::State::outside) {
+        truth[k] = timeline.rows.at(span.row);
+      } else {
+        CHECK(told.emplace(std::make_pair(span.row, k), span.state).second);
       }
-    }
-    for (const Json& step : steps) {
-      const double k = step["k"];
-      for (std::size_t m = 0; m < modes; ++m) {
-        const auto expected = step["mode"] == pipeline["modes"][m]    ? Timeline::State::monitored
-                              : step["modes"][m]["candidate"] == true ? Timeline::State::candidate
-                                                                      : Timeline::State::excluded;
-        CHECK(told.at({m, k}) == expected);
-      }
-      if (!step.contains("true_mode")) continue;
-      CHECK(truth.at(k) == (step["true_mode"].is_null() ? "outside the bank"
-                                                        : step["true_mode"].get<std::string>()));
     }
   }
-  for (const Json& step : steps) {
+  for (const Json& step : pipeline["steps"]) {
+    const double k = step["k"];
     for (std::size_t m = 0; m < modes; ++m) {
-      if (!step["modes"][m].contains("residual")) continue;
-      const Json& residual = step["modes"][m]["residual"];
-      for (std::size_t i = 0; i < residual["lower"].size(); ++i) {
-        const Plot plot = content<Plot>(
-            report, "residual_" + std::to_string(m + 1) + "_" + std::to_string(i + 1));
-        const Series& band = series_of(plot, p, pipeline["name"]);
-        const auto at = static_cast<std::size_t>(
-            std::find(band.x.begin(), band.x.end(), step["k"].get<double>()) - band.x.begin());
-        REQUIRE(at < band.x.size());
-        CHECK(same(band.y[at], number(residual["lower"][i])));
-        CHECK(same(band.upper[at], number(residual["upper"][i])));
-        CHECK(plot.thresholds.at(0).second == 0);
-      }
+      const auto expected = step["mode"] == pipeline["modes"][m]    ? Timeline::State::monitored
+                            : step["modes"][m]["candidate"] == true ? Timeline::State::candidate
+                                                                    : Timeline::State::excluded;
+      CHECK(told.at({m, k}) == expected);
     }
-    for (const Json& fault : step.value("faults", Json::array())) {
-      const Plot plot = content<Plot>(report, "fault_" + std::to_string(fault["fault"].get<int>()));
+    if (!step.contains("true_mode")) continue;
+    CHECK(truth.at(k) == (step["true_mode"].is_null() ? "outside the bank"
+                                                      : step["true_mode"].get<std::string>()));
+  }
+}
+
+void check_residuals(const Report& report, const Json& pipeline, const Json& step, int p) {
+  for (std::size_t m = 0; m < pipeline["modes"].size(); ++m) {
+    if (!step["modes"][m].contains("residual")) continue;
+    const Json& residual = step["modes"][m]["residual"];
+    for (std::size_t i = 0; i < residual["lower"].size(); ++i) {
+      const Plot plot =
+          content<Plot>(report, "residual_" + std::to_string(m + 1) + "_" + std::to_string(i + 1));
       const Series& band = series_of(plot, p, pipeline["name"]);
       const auto at = static_cast<std::size_t>(
-          std::find(band.x.begin(), band.x.end(), fault["at"].get<double>()) - band.x.begin());
+          std::find(band.x.begin(), band.x.end(), step["k"].get<double>()) - band.x.begin());
       REQUIRE(at < band.x.size());
-      CHECK(same(band.y[at], number(fault["lower"])));
-      CHECK(same(band.upper[at], number(fault["upper"])));
-      if (!fault.contains("truth")) continue;
-      const Series truth = series_of(plot, of_data, "true fault");
-      CHECK(truth.y.at(static_cast<std::size_t>(
-                std::find(truth.x.begin(), truth.x.end(), band.x[at]) - truth.x.begin())) ==
-            number(fault["truth"]));
+      CHECK(same(band.y[at], number(residual["lower"][i])));
+      CHECK(same(band.upper[at], number(residual["upper"][i])));
+      CHECK(plot.thresholds.at(0).second == 0);
     }
+  }
+}
+
+void check_faults(const Report& report, const Json& pipeline, const Json& step, int p) {
+  for (const Json& fault : step.value("faults", Json::array())) {
+    const Plot plot = content<Plot>(report, "fault_" + std::to_string(fault["fault"].get<int>()));
+    const Series& band = series_of(plot, p, pipeline["name"]);
+    const auto at = static_cast<std::size_t>(
+        std::find(band.x.begin(), band.x.end(), fault["at"].get<double>()) - band.x.begin());
+    REQUIRE(at < band.x.size());
+    CHECK(same(band.y[at], number(fault["lower"])));
+    CHECK(same(band.upper[at], number(fault["upper"])));
+    if (!fault.contains("truth")) continue;
+    const Series truth = series_of(plot, of_data, "true fault");
+    CHECK(truth.y.at(static_cast<std::size_t>(
+              std::find(truth.x.begin(), truth.x.end(), band.x[at]) - truth.x.begin())) ==
+          number(fault["truth"]));
+  }
+}
+
+void check_diagnosis(const Report& report, const Json& pipeline, int p) {
+  if (pipeline["modes"].size() > 1) check_timeline(report, pipeline, p);
+  for (const Json& step : pipeline["steps"]) {
+    check_residuals(report, pipeline, step, p);
+    check_faults(report, pipeline, step, p);
   }
   if (!pipeline["summary"]["scores"].is_null()) {
     const Table scores = content<Table>(report, "scores");

@@ -210,20 +210,32 @@ TEST_CASE("designs for programs") {
   CHECK(open["pipelines"][0]["exact"]["pairs"][0]["reason"] == "too large");
 }
 
-TEST_CASE("a design in a run, with its experiments") {
+namespace {
+
+/// A run with a design, with experiments or without.
+RunOutcome designed_run(bool experiments) {
   PipelineOutcome p;
   p.name = "AFD";
   p.backend = "line_zonotope";
   DesignedOutcome& found = p.task.emplace<DesignedOutcome>();
   found.designer = "facets";
   found.design = design().outcome;
+  if (experiments) {
+    found.diagnoser = "tube_membership";
+    found.experiments = {{0, 500, {500, 12}, 488, 0, 0, 12, {488, 1, 2, 1.5}},
+                         {1, 500, {0, 500}, 499, 1, 0, 0, {}}};
+  }
   RunOutcome outcome;
-  outcome.pipelines = {p};
-  CHECK(has(apps::report_text(study(), outcome, "out"), "No experiments: name a \"diagnoser\""));
-  found.diagnoser = "tube_membership";
-  found.experiments = {{0, 500, {500, 12}, 488, 0, 0, 12, {488, 1, 2, 1.5}},
-                       {1, 500, {0, 500}, 499, 1, 0, 0, {}}};
-  outcome.pipelines = {p};
+  outcome.pipelines = {std::move(p)};
+  return outcome;
+}
+
+}  // namespace
+
+TEST_CASE("a design in a run, with its experiments") {
+  CHECK(has(apps::report_text(study(), designed_run(false), "out"),
+            "No experiments: name a \"diagnoser\""));
+  const RunOutcome outcome = designed_run(true);
   const std::string shown = apps::report_text(study(), outcome, "out");
   CHECK(has(shown, "AFD  line_zonotope, facets, tube_membership\n"));
   CHECK(has(shown, "Optimal (claimed by facets): cost 9.25"));
@@ -241,7 +253,11 @@ TEST_CASE("a design in a run, with its experiments") {
 
   CHECK(report["assumptions_until"].is_null());
   CHECK_FALSE(has(shown, "Assumption"));
+}
 
+TEST_CASE("a design in a run: failed assumptions, refuted claims, no input") {
+  RunOutcome outcome = designed_run(true);
+  const PipelineOutcome p = outcome.pipelines[0];
   using What = FailedAssumption::What;
   outcome.pipelines[0].assumptions_until = 2;
   outcome.pipelines[0].failed_assumption = FailedAssumption{What::admissible_set, 2, -1, 0};

@@ -224,6 +224,14 @@ TEST_CASE("what the files hold") {
   CHECK(found["experiments"][1]["isolation"]["median"] == 1.5);
   CHECK(found["summary"]["violated_at"].is_null());
   CHECK(found["summary"]["assumptions_until"].is_null());
+}
+
+TEST_CASE("what the files hold of a design without an input, and the tables") {
+  const Scratch scratch;
+  run(study_of({fakes::pipeline("observer"), fakes::design("a, b", "found", "truth"),
+                fakes::design("none", "unknown")}),
+      scratch / "one");
+  const json results = json::parse(bytes_of(scratch / "one/results.json"));
   const json& none = results["pipelines"][2]["design"];
   CHECK(none["status"] == "unknown");
   CHECK(none["u"].is_null());

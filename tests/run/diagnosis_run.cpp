@@ -262,7 +262,12 @@ TEST_CASE("the files of a diagnosis") {
   CHECK(summary["scores"]["false_alarm_rate"] == 0);
   CHECK(summary["scores"]["modes"][1]["isolation_delay"]["median"] == 2.5);
   CHECK(summary["scores"]["true_mode_excluded"].is_null());
+}
 
+TEST_CASE("the tables of a diagnosis, and its times") {
+  const Scratch scratch;
+  const Study study = study_of({fakes::pipeline("observer"), fakes::diagnosis("a, b")}, 2);
+  run(study, {{0, 0}, {9, 1}, {15, -1}}, scratch / "one");
   const std::vector<std::string> rows = lines(bytes_of(scratch / "one" / "diagnosis.csv"));
   REQUIRE(rows.size() == 22);
   CHECK(rows[0] ==

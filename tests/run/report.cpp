@@ -231,6 +231,22 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
   CHECK(data["error_set"]["set"]["generators"] == 1);
 }
 
+namespace {
+
+/// One that was designed, with its optimum, and a large one that was given.
+std::vector<Gain> two_gains() {
+  Gain designed{"upper_gain", "h_infinity", Matrix{{.5, 1. / 3}, {-.25, 0}}, {}},
+      given{"gain", "given", Matrix::Ones(6, 6) / 3, {}};
+  designed.certificate = {.75, Answer::yes, 2.49999999, 2.5, "γ", 2.5, 2.4375, .001};
+  given.certificate.spectral_radius = .5;
+  given.certificate.monotone = Answer::no;
+  given.certificate.norm_lower = 1;
+  given.certificate.norm_upper = std::numeric_limits<double>::infinity();
+  return {designed, given};
+}
+
+}  // namespace
+
 TEST_CASE(
     "gains, widths at the end and inner estimates have a table each, and only where there are "
     "any") {
@@ -246,14 +262,7 @@ TEST_CASE(
   plain.last_hull = {Vector{{-1., -std::numeric_limits<double>::infinity()}},
                      Vector{{1 + 6e-7, 3.}}};
   offers.last_hull = {Vector{{.25, 0.}}, Vector{{.25, 1.5e-5}}};
-  Gain designed{"upper_gain", "h_infinity", Matrix{{.5, 1. / 3}, {-.25, 0}}, {}},
-      given{"gain", "given", Matrix::Ones(6, 6) / 3, {}};
-  designed.certificate = {.75, Answer::yes, 2.49999999, 2.5, "γ", 2.5, 2.4375, .001};
-  given.certificate.spectral_radius = .5;
-  given.certificate.monotone = Answer::no;
-  given.certificate.norm_lower = 1;
-  given.certificate.norm_upper = std::numeric_limits<double>::infinity();
-  offers.gains = {designed, given};
+  offers.gains = two_gains();
   offers.inner_steps = 19;
   offers.inner_share = .875;
   text = apps::report_text(study(), outcome, "out");

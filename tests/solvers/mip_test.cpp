@@ -256,15 +256,20 @@ TEST_CASE("the gap ends the search") {
   CHECK(near.objective - near.bound <= .06 * std::abs(near.objective));
 }
 
+namespace {
+
+bool refused(const MixedIntegerProgram& p, Errc code, const MipOptions& options = {}) {
+  try {
+    solve(p, options);
+  } catch (const Error& error) {
+    return error.code() == code;
+  }
+  return false;
+}
+
+}  // namespace
+
 TEST_CASE("broken programs are refused") {
-  const auto refused = [](const MixedIntegerProgram& p, Errc code, const MipOptions& options = {}) {
-    try {
-      solve(p, options);
-    } catch (const Error& error) {
-      return error.code() == code;
-    }
-    return false;
-  };
   const MixedIntegerProgram good = knapsack(3, 1).as_program();
   MixedIntegerProgram p;
   CHECK(refused(p, Errc::dimension));
@@ -301,6 +306,10 @@ TEST_CASE("broken programs are refused") {
   p = good;
   p.integer.pop_back();
   CHECK(refused(p, Errc::dimension));
+}
+
+TEST_CASE("broken options are refused") {
+  const MixedIntegerProgram good = knapsack(3, 1).as_program();
   MipOptions options;
   options.start = all(2, 0);
   CHECK(refused(good, Errc::dimension, options));
@@ -312,7 +321,7 @@ TEST_CASE("broken programs are refused") {
   CHECK(refused(good, Errc::invalid, options));
   options.branching = {-1};
   CHECK(refused(good, Errc::invalid, options));
-  p = good;
+  MixedIntegerProgram p = good;
   p.integer[0] = false;
   options.branching = {0};
   CHECK(refused(p, Errc::invalid, options));

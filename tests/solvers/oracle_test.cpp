@@ -134,6 +134,18 @@ std::uint64_t sets_to_try() {
   return text ? std::strtoull(text, nullptr, 10) : 2000;
 }
 
+/// On the boundary as often as inside, where X has no constraints.
+Vector point_for(const LineForm& X, Draw& draw, Draw::Manner manner) {
+  Vector x = draw.vector(X.dim(), manner);
+  if (draw.upto(1) == 0 && X.constraints() == 0) {
+    x = X.c + X.M * draw.vector(X.lines(), manner) +
+        X.G * (draw.upto(1) == 0
+                   ? Vector(draw.vector(X.generators(), Draw::Manner::continuous).array().sign())
+                   : draw.vector(X.generators(), Draw::Manner::continuous));
+  }
+  return x;
+}
+
 }  // namespace
 
 TEST_CASE("answers agree with rational arithmetic") {
@@ -148,13 +160,7 @@ TEST_CASE("answers agree with rational arithmetic") {
     const Answer truth = exact::is_empty(X);
     empty.count(is_empty(X), truth, is_near_boundary(X, truth == Answer::yes), i, "is_empty");
 
-    Vector x = draw.vector(n, manner);
-    if (draw.upto(1) == 0 && X.constraints() == 0) {  // on the boundary as often as inside
-      x = X.c + X.M * draw.vector(X.lines(), manner) +
-          X.G * (draw.upto(1) == 0
-                     ? Vector(draw.vector(X.generators(), Draw::Manner::continuous).array().sign())
-                     : draw.vector(X.generators(), Draw::Manner::continuous));
-    }
+    const Vector x = point_for(X, draw, manner);
     const Answer inside = exact::contains(X, x);
     member.count(
         contains(X, x), inside,

@@ -99,12 +99,15 @@ TEST_CASE(
                                                   {"wall_s", .5}});
   CHECK(!repeat.contains("runs"));
   CHECK(!repeat.contains("cost"));
+}
 
+TEST_CASE("an observer with inner estimates") {
+  PipelineOutcome outcome;
+  outcome.steps = 10;
+  EstimationOutcome& estimation = *outcome.estimation();
   estimation.inner_steps = 3;
   estimation.inner_share = .25;
   estimation.inner_outside = 2;
-  estimation.summary = {};
-  estimation.reproducible = 0;
   const auto again = found(outcome).repeat;
   CHECK(again.at("inner_share") == .25);
   CHECK(again.at("inner_outside") == 2);
@@ -220,7 +223,7 @@ TEST_CASE("bounds of additive faults") {
   CHECK(is_none(repeat, "fault_1_rms_error"));
 }
 
-TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
+TEST_CASE("a designer that has found nothing") {
   PipelineOutcome outcome;
   outcome.steps = 12;
   DesignedOutcome& designed = outcome.task.emplace<DesignedOutcome>();
@@ -228,7 +231,7 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   DesignOutcome& design = designed.design.emplace();
   design.horizon = 3;
   design.nodes = 11;
-  auto repeat = found(outcome).repeat;  // nothing was found
+  const auto repeat = found(outcome).repeat;  // nothing was found
   CHECK(repeat.at("horizon") == 3);
   CHECK(repeat.at("nodes") == 11);
   CHECK(repeat.at("optimal") == 0);
@@ -236,7 +239,15 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   for (const char* name : {"cost", "lower_bound", "gap", "separates", "kappa_min"})
     CHECK_MESSAGE(is_none(repeat, name), name);
   CHECK(!repeat.contains("experiments"));
+}
 
+TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
+  PipelineOutcome outcome;
+  outcome.steps = 12;
+  DesignedOutcome& designed = outcome.task.emplace<DesignedOutcome>();
+  designed.designer = "d";
+  DesignOutcome& design = designed.design.emplace();
+  design.horizon = 3;
   design.best.emplace();
   design.best->cost = 10;
   design.lower_bound = 8;
@@ -248,9 +259,8 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
       {0, 1, Answer::yes, .375}, {0, 2, Answer::yes, .125}, {1, 2, Answer::yes, .25}};
   designed.exact->empty = {Answer::no, Answer::no, Answer::no};
   designed.experiments = {{0, 5, {}, 4, 1, 0, 0, {}}, {1, 6, {}, 3, 0, 1, 2, {}}};
-  repeat = found(outcome).repeat;
   design.status = DesignStatus::optimal;
-  repeat = found(outcome).repeat;
+  auto repeat = found(outcome).repeat;
   CHECK(repeat.at("optimal") == 1);
   CHECK(repeat.at("infeasible") == 0);
   CHECK(repeat.at("lower_bound") == 8);

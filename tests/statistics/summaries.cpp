@@ -81,6 +81,10 @@ TEST_CASE("the files of a sweep") {
         "Budgets,\"second budget=20,seed=1\",1,0.25\n"
         "Budgets,\"first budget=20,seed=2\",1,\n"
         "Budgets,\"second budget=20,seed=2\",,0.25\n");
+}
+
+TEST_CASE("the tables of a sweep as they are printed") {
+  const auto files = written(two_budgets());
   CHECK(
       files.at("summary.md") ==
       "## Budgets\n\n"

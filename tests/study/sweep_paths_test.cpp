@@ -10,12 +10,18 @@
 using namespace cordon;
 using namespace study_test;
 
+namespace {
+
+/// The study of a value of a third axis.
+Study third(const std::string& path, const std::string& values, std::size_t value) {
+  const Read read(with_axis(path, values));
+  expect_points_round_trip(read);
+  return read.at({0, 0, value});
+}
+
+}  // namespace
+
 TEST_CASE("what paths lead into") {
-  const auto third = [](const std::string& path, const std::string& values, std::size_t value) {
-    const Read read(with_axis(path, values));
-    expect_points_round_trip(read);
-    return read.at({0, 0, value});
-  };
   SUBCASE("a key that is absent") {
     CHECK(std::get<SimulateSpec>(third("/data/simulate/seeds", "[4, 7]", 1).data).seeds == 7);
   }
@@ -56,6 +62,9 @@ TEST_CASE("what paths lead into") {
               ->observer.params.component("gain")
               .params.real("weight") == 1);
   }
+}
+
+TEST_CASE("what paths lead into: types, lists, several places, values of all kinds") {
   SUBCASE("the type of a component, whose other parameters are those of the first") {
     CHECK(third("/pipelines/1/backend/type", "[\"interval\", \"zonotope\"]", 1)
               .pipelines[1]

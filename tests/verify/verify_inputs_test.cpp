@@ -120,118 +120,124 @@ TEST_CASE("recorded designs are proven again, and false ones are found") {
       run.with([](Json& p) { p[0]["design"]["tubes"][1]["empty"] = "yes"; });
   REQUIRE(called_empty.violation);
   CHECK(called_empty.violation->pointer == "/pipelines/0/design/tubes/1");
+}
 
-  SUBCASE("what the host has proven is proven again") {
-    const auto refuted = [&](const std::function<void(Json&)>& change) {
-      const VerifyOutcome outcome = run.with(change);
-      return outcome.violation ? outcome.violation->pointer : "";
-    };
-    CHECK(refuted([](Json& p) { p[1]["exact"]["separates"] = "yes"; }) ==
-          "/pipelines/1/exact/separates");
-    CHECK(refuted([](Json& p) { p[1]["design"]["separates"] = "yes"; }) ==
-          "/pipelines/1/design/separates");
-    CHECK(refuted([](Json& p) {
-            p[1]["exact"]["pairs"][0]["disjoint"] = "yes";
-            p[1]["exact"]["pairs"][0]["kappa_lower"] = 1;
-          }) == "/pipelines/1/exact/pairs/0");
-    CHECK(refuted([](Json& p) { p[0]["exact"]["pairs"][0]["disjoint"] = "no"; }) ==
-          "/pipelines/0/exact/pairs/0");
-    CHECK(refuted([](Json& p) {
-            Json& kappa = p[0]["exact"]["pairs"][0]["kappa_lower"];
-            kappa = kappa.get<double>() * (1 + 1e-12);
-          }) == "/pipelines/0/exact/pairs/0");
-    // a positive bound says that the pair is apart, whatever word stands beside it
-    for (const char* word : {"no", "unknown"}) {
-      for (const char* part : {"design", "exact"}) {
-        CHECK(refuted([&](Json& p) {
-                p[1][part]["pairs"][0]["disjoint"] = word;
-                p[1][part]["pairs"][0]["kappa_lower"] = .5;
-                if (p[1][part]["pairs"][0].contains("kappa")) p[1][part]["pairs"][0]["kappa"] = .5;
-              }) == std::string("/pipelines/1/") + part + "/pairs/0");
-      }
-    }
-    CHECK(refuted([](Json& p) { p[0]["exact"]["tubes"][1]["empty"] = "yes"; }) ==
-          "/pipelines/0/exact/tubes/1");
-    CHECK(refuted([](Json& p) { p[0]["exact"] = nullptr; }) == "");
-  }
-  SUBCASE("a bound of κ that is too large stays open") {
-    const VerifyOutcome larger = run.with([](Json& p) {
-      Json& pair = p[0]["design"]["pairs"][0];
-      pair["kappa_lower"] = pair["kappa"] = pair["kappa_lower"].get<double>() + .01;
-    });
-    CHECK_FALSE(larger.violation);
-    CHECK(larger.pipelines[0].undecided == 1);
-    CHECK(larger.pipelines[0].proofs == 2);
-    CHECK(larger.pipelines[0].first_undecided.find("in place of") != std::string::npos);
-    CHECK(run.with([](Json& p) {
-               Json& pair = p[0]["design"]["pairs"][0];
-               pair["kappa_lower"] = pair["kappa"] = "inf";
-             })
-              .pipelines[0]
-              .undecided == 1);
-    CHECK(run.with([](Json& p) { p[0]["design"]["pairs"][0]["kappa_lower"] = 0; })
-              .pipelines[0]
-              .proofs == 3);
-  }
-  SUBCASE("what claims nothing is passed over") {
-    const auto nothing = run.with([](Json& p) {
-      p[0]["design"]["pairs"][0]["disjoint"] = "unknown";
-      p[0]["design"]["pairs"][0]["kappa_lower"] = nullptr;
-      p[0]["design"]["separates"] = "unknown";
-      for (const char* key : {"u", "cost", "separates", "pairs", "tubes"})
-        p[1]["design"][key] = nullptr;
-      p[1]["exact"] = nullptr;
-    });
-    REQUIRE(nothing.pipelines.size() == 2);
-    CHECK(nothing.pipelines[0].proofs == 2);
-    CHECK(nothing.pipelines[1].proofs == 0);
-    CHECK(run.with([](Json& p) { p[1]["design"] = p[1]["exact"] = nullptr; }).pipelines[1].proofs ==
-          0);
-  }
-  SUBCASE("files that are not as they were written") {
-    CHECK(refused(run, [](Json& p) {
-            p[0]["design"]["u"] = Json::array();
-          }).find("/pipelines/0/design/u") != std::string::npos);
-    CHECK(refused(run, [](Json& p) { p[0]["design"]["u"][1] = {1, 2}; }) != "");
-    CHECK(refused(run, [](Json& p) {
-            p[0]["design"]["pairs"] = Json::array();
-          }).find("every pair") != std::string::npos);
-    CHECK(refused(run, [](Json& p) { p[0]["design"]["tubes"].erase(0); }).find("every mode") !=
-          std::string::npos);
-    CHECK(refused(run, [](Json& p) { p[0]["design"].erase("outputs"); }) != "");
-    CHECK(refused(run, [](Json& p) { p[0]["design"]["outputs"] = "some"; }) != "");
-    CHECK(refused(run, [](Json& p) { p[0].erase("design"); }) != "");
-    const auto refuses = [&](const std::function<void(Json&)>& change, const std::string& place) {
-      const std::string message = refused(run, change);
-      CHECK_MESSAGE(message.find(place) != std::string::npos, message);
-    };
-    // a statement about other modes than those that are proven again
+TEST_CASE("what the host has proven of a design is proven again") {
+  const Run run(scalar_study());
+  const auto refuted = [&](const std::function<void(Json&)>& change) {
+    const VerifyOutcome outcome = run.with(change);
+    return outcome.violation ? outcome.violation->pointer : "";
+  };
+  CHECK(refuted([](Json& p) { p[1]["exact"]["separates"] = "yes"; }) ==
+        "/pipelines/1/exact/separates");
+  CHECK(refuted([](Json& p) { p[1]["design"]["separates"] = "yes"; }) ==
+        "/pipelines/1/design/separates");
+  CHECK(refuted([](Json& p) {
+          p[1]["exact"]["pairs"][0]["disjoint"] = "yes";
+          p[1]["exact"]["pairs"][0]["kappa_lower"] = 1;
+        }) == "/pipelines/1/exact/pairs/0");
+  CHECK(refuted([](Json& p) { p[0]["exact"]["pairs"][0]["disjoint"] = "no"; }) ==
+        "/pipelines/0/exact/pairs/0");
+  CHECK(refuted([](Json& p) {
+          Json& kappa = p[0]["exact"]["pairs"][0]["kappa_lower"];
+          kappa = kappa.get<double>() * (1 + 1e-12);
+        }) == "/pipelines/0/exact/pairs/0");
+  // a positive bound says that the pair is apart, whatever word stands beside it
+  for (const char* word : {"no", "unknown"}) {
     for (const char* part : {"design", "exact"}) {
-      const std::string at = std::string("/pipelines/0/") + part;
-      const auto set = [&](const char* list, const char* key, const Json& value) {
-        return [=](Json& p) { p[0][part][list][0][key] = value; };
-      };
-      refuses(set("pairs", "modes", {"fast", "nominal"}), at + "/pairs/0/modes/0");
-      refuses(set("pairs", "modes", {"nominal", "nominal"}), at + "/pairs/0/modes/1");
-      refuses(set("pairs", "modes", {"nominal"}), at + "/pairs/0/modes");
-      refuses(set("pairs", "modes", nullptr), at + "/pairs/0/modes");
-      refuses(set("tubes", "mode", "fast"), at + "/tubes/0/mode");
+      CHECK(refuted([&](Json& p) {
+              p[1][part]["pairs"][0]["disjoint"] = word;
+              p[1][part]["pairs"][0]["kappa_lower"] = .5;
+              if (p[1][part]["pairs"][0].contains("kappa")) p[1][part]["pairs"][0]["kappa"] = .5;
+            }) == std::string("/pipelines/1/") + part + "/pairs/0");
     }
-    // an input that is not the one that is spoken of
-    refuses([](Json& p) { p[0]["design"]["horizon"] = 2; }, "/pipelines/0/design/horizon");
-    refuses([](Json& p) { p[0]["design"]["status"] = "infeasible"; }, "/pipelines/0/design/status");
-    refuses([](Json& p) { p[0]["design"]["status"] = "best"; }, "/pipelines/0/design/status");
-    refuses(
-        [](Json& p) {
-          for (const char* key : {"u", "cost", "separates", "pairs", "tubes"})
-            p[1]["design"][key] = nullptr;
-          p[1]["exact"] = nullptr;
-          p[1]["design"]["status"] = "optimal";
-        },
-        "/pipelines/1/design/status");
-    refuses([](Json& p) { p[1]["design"]["u"] = nullptr; }, "/pipelines/1/design/pairs");
-    refuses([](Json& p) { p[1]["design"] = nullptr; }, "/pipelines/1/exact");
   }
+  CHECK(refuted([](Json& p) { p[0]["exact"]["tubes"][1]["empty"] = "yes"; }) ==
+        "/pipelines/0/exact/tubes/1");
+  CHECK(refuted([](Json& p) { p[0]["exact"] = nullptr; }) == "");
+}
+
+TEST_CASE("a bound of κ that is too large stays open") {
+  const Run run(scalar_study());
+  const VerifyOutcome larger = run.with([](Json& p) {
+    Json& pair = p[0]["design"]["pairs"][0];
+    pair["kappa_lower"] = pair["kappa"] = pair["kappa_lower"].get<double>() + .01;
+  });
+  CHECK_FALSE(larger.violation);
+  CHECK(larger.pipelines[0].undecided == 1);
+  CHECK(larger.pipelines[0].proofs == 2);
+  CHECK(larger.pipelines[0].first_undecided.find("in place of") != std::string::npos);
+  CHECK(run.with([](Json& p) {
+             Json& pair = p[0]["design"]["pairs"][0];
+             pair["kappa_lower"] = pair["kappa"] = "inf";
+           })
+            .pipelines[0]
+            .undecided == 1);
+  CHECK(run.with([](Json& p) { p[0]["design"]["pairs"][0]["kappa_lower"] = 0; })
+            .pipelines[0]
+            .proofs == 3);
+}
+
+TEST_CASE("a design that claims nothing is passed over") {
+  const Run run(scalar_study());
+  const auto nothing = run.with([](Json& p) {
+    p[0]["design"]["pairs"][0]["disjoint"] = "unknown";
+    p[0]["design"]["pairs"][0]["kappa_lower"] = nullptr;
+    p[0]["design"]["separates"] = "unknown";
+    for (const char* key : {"u", "cost", "separates", "pairs", "tubes"})
+      p[1]["design"][key] = nullptr;
+    p[1]["exact"] = nullptr;
+  });
+  REQUIRE(nothing.pipelines.size() == 2);
+  CHECK(nothing.pipelines[0].proofs == 2);
+  CHECK(nothing.pipelines[1].proofs == 0);
+  CHECK(run.with([](Json& p) { p[1]["design"] = p[1]["exact"] = nullptr; }).pipelines[1].proofs ==
+        0);
+}
+
+TEST_CASE("files of designs that are not as they were written") {
+  const Run run(scalar_study());
+  CHECK(refused(run, [](Json& p) {
+          p[0]["design"]["u"] = Json::array();
+        }).find("/pipelines/0/design/u") != std::string::npos);
+  CHECK(refused(run, [](Json& p) { p[0]["design"]["u"][1] = {1, 2}; }) != "");
+  CHECK(refused(run, [](Json& p) { p[0]["design"]["pairs"] = Json::array(); }).find("every pair") !=
+        std::string::npos);
+  CHECK(refused(run, [](Json& p) { p[0]["design"]["tubes"].erase(0); }).find("every mode") !=
+        std::string::npos);
+  CHECK(refused(run, [](Json& p) { p[0]["design"].erase("outputs"); }) != "");
+  CHECK(refused(run, [](Json& p) { p[0]["design"]["outputs"] = "some"; }) != "");
+  CHECK(refused(run, [](Json& p) { p[0].erase("design"); }) != "");
+  const auto refuses = [&](const std::function<void(Json&)>& change, const std::string& place) {
+    const std::string message = refused(run, change);
+    CHECK_MESSAGE(message.find(place) != std::string::npos, message);
+  };
+  // a statement about other modes than those that are proven again
+  for (const char* part : {"design", "exact"}) {
+    const std::string at = std::string("/pipelines/0/") + part;
+    const auto set = [&](const char* list, const char* key, const Json& value) {
+      return [=](Json& p) { p[0][part][list][0][key] = value; };
+    };
+    refuses(set("pairs", "modes", {"fast", "nominal"}), at + "/pairs/0/modes/0");
+    refuses(set("pairs", "modes", {"nominal", "nominal"}), at + "/pairs/0/modes/1");
+    refuses(set("pairs", "modes", {"nominal"}), at + "/pairs/0/modes");
+    refuses(set("pairs", "modes", nullptr), at + "/pairs/0/modes");
+    refuses(set("tubes", "mode", "fast"), at + "/tubes/0/mode");
+  }
+  // an input that is not the one that is spoken of
+  refuses([](Json& p) { p[0]["design"]["horizon"] = 2; }, "/pipelines/0/design/horizon");
+  refuses([](Json& p) { p[0]["design"]["status"] = "infeasible"; }, "/pipelines/0/design/status");
+  refuses([](Json& p) { p[0]["design"]["status"] = "best"; }, "/pipelines/0/design/status");
+  refuses(
+      [](Json& p) {
+        for (const char* key : {"u", "cost", "separates", "pairs", "tubes"})
+          p[1]["design"][key] = nullptr;
+        p[1]["exact"] = nullptr;
+        p[1]["design"]["status"] = "optimal";
+      },
+      "/pipelines/1/design/status");
+  refuses([](Json& p) { p[1]["design"]["u"] = nullptr; }, "/pipelines/1/design/pairs");
+  refuses([](Json& p) { p[1]["design"] = nullptr; }, "/pipelines/1/exact");
 }
 
 TEST_CASE("numbers of a design that contradict each other") {
