@@ -2,7 +2,7 @@
 #include "catalogue.hpp"
 
 #include <algorithm>
-#include <stdexcept>
+#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -107,12 +107,12 @@ void Catalogue::remove(std::string_view plugin) {
     std::erase_if(all, [&](const auto& item) { return item.second.plugin == plugin; });
 }
 
-void Batch::read_all() const {
+void Batch::read_all() const noexcept {
   for (const Shelf& shelf : mine_.shelves()) {
     for (const auto& item : shelf) {
       const ComponentInfo copy = info_of(item.second.entry);
       for (const auto& [what, text] : texts_of(copy)) {
-        if (text->size() > longest_text) throw std::length_error("a damaged text");
+        if (text->size() > longest_text) std::abort();
       }
     }
   }

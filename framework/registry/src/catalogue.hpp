@@ -52,7 +52,7 @@ class Batch final : public Registrar {
   const std::vector<std::string>& left_out() const { return left_out_; }
   /// Copies what was registered: a process in which a text is damaged ends here, not where somebody
   /// lists it.
-  void read_all() const;
+  void read_all() const noexcept;
   void commit(Catalogue& catalogue) { catalogue.take(std::move(mine_)); }
 
  private:

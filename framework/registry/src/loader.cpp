@@ -107,9 +107,12 @@ std::optional<Refusal> try_out(const fs::path& file, const ElfFile& elf,
     Opened opened;
     std::optional<Refusal> refusal = open(file, announced, opened);
     if (refusal) return refusal;
-    Batch batch(empty, announced.name);
-    register_into(batch, *opened.descriptor);  // what breaks a rule is found again, with its place
-    batch.read_all();
+    at_several_depths([&] {
+      Batch batch(empty, announced.name);
+      register_into(batch,
+                    *opened.descriptor);  // what breaks a rule is found again, with its place
+      batch.read_all();
+    });
     return refusal;
   });
   // A damaged library may do well at some addresses and crash at others: what a child of this

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trial.hpp"
 
+#include <alloca.h>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -9,6 +10,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <limits>
+#include <malloc.h>
 #include <map>
 #include <new>
 #include <stdexcept>
@@ -130,6 +132,9 @@ void limit(decltype(RLIMIT_CPU) what, rlim_t soft, rlim_t hard) {
   _exit(1);
 }
 
+/// Neither null nor an address.
+constexpr unsigned char poison = 0xa5;
+
 /// Uses what damaged code likes to write over: the environment, the heap, the stack, the tables for
 /// exceptions. Whoever finds it damaged crashes here.
 void use_everything() {
@@ -160,6 +165,7 @@ void use_everything() {
   dup2(shared.output(), STDOUT_FILENO);
   dup2(shared.output(), STDERR_FILENO);
   std::set_new_handler(out_of_memory);
+  mallopt(M_PERTURB, poison);  // new memory is filled with its complement, freed one with it
   const Arithmetic before = arithmetic();
   const std::optional<Refusal> refusal = body();
   use_everything();
@@ -216,7 +222,27 @@ std::optional<Refusal> judge(const Message& message) {
           : "compile and link it without -ffast-math, -Ofast and -funsafe-math-optimizations"};
 }
 
+[[gnu::noinline]] void poison_stack() {
+  volatile unsigned char below[std::size_t{1} << 17];
+  for (volatile unsigned char& byte : below) byte = poison;
+}
+
+[[gnu::noinline]] void at_depth(std::size_t bytes, const std::function<void()>& work) {
+  volatile unsigned char* const taken = static_cast<unsigned char*>(alloca(bytes));
+  taken[0] = poison;
+  poison_stack();
+  work();
+}
+
 }  // namespace
+
+void at_several_depths(const std::function<void()>& work) {
+  std::vector<std::vector<char>> taken;
+  for (const std::size_t bytes : {16u, 96u, 400u, 1'232u, 5'024u, 20'496u, 70'000u, 200'000u}) {
+    at_depth(bytes, work);
+    taken.emplace_back(bytes, 'x');
+  }
+}
 
 Trial try_in_child(const TrialBody& body) {
   const Shared shared;

@@ -25,6 +25,11 @@ using TrialBody = std::function<std::optional<Refusal>()>;
 /// prints is part of the reason at most. Not a sandbox: files and the network are within its reach.
 Trial try_in_child(const TrialBody& body);
 
+/// Calls `work` at several depths of the stack, and with more and more memory taken; what lies
+/// below on the stack is no address. What damaged code does may depend on all that, and this
+/// process does not stand where its child stood: what crashes at one of them is found out.
+void at_several_depths(const std::function<void()>& work);
+
 /// Puts the floating-point environment back at its end, whatever a library has done to it.
 class KeptFloatingPoint {
  public:
