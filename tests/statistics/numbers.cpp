@@ -259,6 +259,7 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
       {0, 1, Answer::yes, .375}, {0, 2, Answer::yes, .125}, {1, 2, Answer::yes, .25}};
   designed.exact->empty = {Answer::no, Answer::no, Answer::no};
   designed.experiments = {{0, 5, {}, 4, 1, 0, 0, {}}, {1, 6, {}, 3, 0, 1, 2, {}}};
+  found(outcome);  // names are unique
   design.status = DesignStatus::optimal;
   auto repeat = found(outcome).repeat;
   CHECK(repeat.at("optimal") == 1);
