@@ -322,7 +322,11 @@ std::string guarantees_text(const Guarantees& guarantees, const Names& modes, co
                  "reduction enlarges the sets") +
              "\n";
     case Answer::no:
-      return text + paint.yellow("The condition fails: some modes are proven not to meet it") +
+      return text +
+             paint.yellow(
+                 "The condition fails for some modes, whatever the accuracy: 0 lies in the limit "
+                 "of "
+                 "these sets, which may be larger than those of the residuals") +
              "\n";
     case Answer::unknown:
       break;

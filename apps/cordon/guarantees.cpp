@@ -121,7 +121,8 @@ void add_guarantees(CLI::App& app, Program& program) {
       "state, and whether the\n"
       "observer of the true mode is consistent with it and the others are not. \"not guaranteed\" "
       "means that this was not\n"
-      "shown, \"no\" that it is proven to fail. The exit code is 0 whatever the answer.");
+      "shown, \"no\" that 0 is proven to lie in the limit of that set, which may be larger than\n"
+      "what residuals can be. The exit code is 0 whatever the answer.");
   command->callback([&program, arguments] { program.exit = guarantees(program, *arguments); });
 }
 

@@ -205,7 +205,8 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
         "healthy   fault 1    R̊10 = [-0.8325, -0.2937]  0 outside  yes\n"
         "fault 1   healthy    R̊01 = [-0.0100, 0.8000]   0 outside  not guaranteed\n"
         "fault 1   fault 1    R̊11 = [1.0000, 2.0000]    0 inside   no\n"
-        "The condition fails: some modes are proven not to meet it\n");
+        "The condition fails for some modes, whatever the accuracy: 0 lies in the limit of "
+        "these sets, which may be larger than those of the residuals\n");
   g.all = Answer::yes;
   g.error_set = ErrorSetCheck{make_box(interval(-1, 1)), false, .86, .5, 1, 0};
   text = apps::guarantees_text(g, modes, paint);
