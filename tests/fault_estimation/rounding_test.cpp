@@ -2,6 +2,8 @@
 // What rounding can do to the filter: systems in which it grows, cancels or decides.
 #include <cmath>
 
+#include <rapidcheck.h>
+
 #include "fault_estimation/filters.hpp"
 
 using namespace faults;
@@ -81,6 +83,87 @@ TEST_CASE("outputs that repeat each other give no gain made of rounding") {
     CHECK(widest < .5);
     CHECK(promised(model) <= widest * (1 + 1e-6));
     CHECK(promised(model) > .01);
+  }
+}
+
+TEST_CASE("large signals beside outputs that are exact, and that repeat each other") {
+  Model model = lti(Matrix{{0, 0}, {.3, .7}}, Matrix{{0, 1}, {1, 0}, {0, 1}}, Matrix{{1}, {0}});
+  model.linear.B = model.linear.F;
+  model.linear.Bw = Matrix{{0}, {.02}};
+  model.linear.Dv = Matrix{{0}, {0}, {.2}};
+  model.X0 = make_zonotope(Vector::Zero(2), Matrix::Identity(2, 2));
+  model.W = model.V = make_zonotope(Vector::Zero(1), Matrix::Identity(1, 1));
+  const Signal none = [](Index) { return Vector(Vector::Zero(1)); };
+  const Signal pulses = [](Index k) { return Vector(Vector::Constant(1, k % 4 == 0 ? 1e9 : 0)); };
+  for (const char* coupling : {"shared", "independent"}) {
+    run(*filter(model, parameters(coupling)),
+        FaultyRun(model, pulses, none, Draw{std::mt19937_64(1)}), none, 60,
+        [](const Diagnosis& now) { CHECK(now.modes[0].candidate); });
+    run(*filter(model, parameters(coupling)),
+        FaultyRun(model, none, pulses, Draw{std::mt19937_64(1)}), pulses, 60);
+  }
+}
+
+/// Dense, or with zeros and entries in tenths; outputs that repeat each other; noise in a part.
+Model random_model(Draw& draw) {
+  const Index n = 2 + draw.below(4), q = 1 + draw.below(2), p = 3 + draw.below(2);
+  const bool dense = draw.below(2) == 0;
+  const auto entries = [&](Index rows, Index cols) {
+    return Matrix(draw.matrix(rows, cols).unaryExpr([&](double x) {
+      return dense ? x : draw.below(3) == 0 ? std::round(10 * x) / 10 : 0;
+    }));
+  };
+  Matrix A = entries(n, n), C = entries(p, n);
+  A *= .9 / std::max(1e-3, A.cwiseAbs().rowwise().sum().maxCoeff());
+  C.row(p - 1) = (dense ? .3 : 1) * C.row(0);
+  Model model = lti(A, C, entries(n, q));
+  model.linear.B = entries(n, 1);
+  model.linear.Bw = Matrix::Identity(n, n);
+  model.linear.Dv = Matrix::Identity(p, p);
+  const auto partly_exact = [&](Index rows) {
+    Vector radii = .2 * draw.matrix(rows, 1).cwiseAbs();
+    for (double& radius : radii) radius *= static_cast<double>(draw.below(2));
+    return make_zonotope(Vector::Zero(rows), radii.asDiagonal().toDenseMatrix());
+  };
+  model.X0 = partly_exact(n);
+  model.W = partly_exact(n);
+  model.V = partly_exact(p);
+  return model;
+}
+
+TEST_CASE("large signals in random systems with exact and repeated outputs") {
+  Index bounds = 0;
+  CHECK(rc::check([&](std::uint64_t seed) {
+    Draw draw{std::mt19937_64(seed)};
+    const Model model = random_model(draw);
+    const Params params = parameters(draw.below(2) == 0 ? "shared" : "independent", 12);
+    RC_PRE(
+        banks::registry()
+            .check<DiagnoserEntry>("fault_estimation_filter", {alone(model), zonotopes()}, params)
+            .empty());
+    const Signal pulses = [](Index k) { return Vector(Vector::Constant(1, k % 4 == 0 ? 1e9 : 0)); };
+    const bool in_fault = draw.below(3) == 0;
+    const Signal fault = [&](Index k) {
+      return Vector(Vector::Constant(model.linear.faults(), in_fault && k % 7 == 3 ? 1e7 : 0));
+    };
+    bounds += run(*filter(model, params),
+                  FaultyRun(model, pulses, fault, Draw{std::mt19937_64(seed + 1), Noise::uniform}),
+                  fault, 40);
+  }));
+  CHECK(bounds > 3000);
+}
+
+TEST_CASE("faults that nearly the same outputs tell apart, in other units") {
+  const Matrix I = Matrix::Identity(2, 2);
+  const Signal none = [](Index) { return Vector(Vector::Zero(1)); };
+  const Signal first = [](Index k) { return Vector{{k % 3 == 0 ? 1e7 : 0, 0}}; };
+  for (const double unit : {1., 3e3, 3e6, 7e8}) {
+    for (const double turn : {.1, .7, 1.3}) {
+      const Matrix turned{{std::cos(turn), std::sin(turn)}, {-std::sin(turn), std::cos(turn)}};
+      const Model model = lti(.5 * turned, Matrix{{unit, unit}, {0, 1}}, I);
+      run(*filter(model, parameters("shared")),
+          FaultyRun(model, none, first, Draw{std::mt19937_64(1)}), first, 40);
+    }
   }
 }
 

@@ -78,7 +78,7 @@ const BadPlugin bad_plugins[] = {
      "parameter \"quiet\" of metric \"with_undocumented_parameter\" is not documented",
      "repair what the plugin registers"},
     {"unresolved", "cordon_test_function_that_is_nowhere", "with every library it needs"},
-    {"uses_leftovers", "it ends the process when it is opened: signal ", "repair or remove it"},
+    {"uses_leftovers", "it ends the process when it is opened: ", "repair or remove it"},
     {"wrong_size", "its descriptor has 1096 bytes, must have 1104",
      "rebuild the plugin with this installation's headers and flags"},
     {"wrong_tag", "simd: avx2 in the plugin, absent here",

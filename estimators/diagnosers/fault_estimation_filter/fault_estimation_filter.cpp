@@ -5,34 +5,27 @@
 //   x̂_{k+1} = TA x̂_k + T (B u_k + Bw w̄) + G_k (ỹ_k - C x̂_k) + N ỹ_{k+1},   r_k = M (ỹ_k - C x̂_k)
 //   n_i(k - ρ_i) ∈ r_{k,i} ± h_{k,i}
 // G_k and h_k are those of filter_recursion.hpp and do not depend on the data. The bounds are
-// widened by the project's share of rounding, 1e-10 of the numbers that r is made of, and by what
-// the rounding of earlier steps can have grown to. They hold for any faults, past ones included;
-// bounds that exclude 0 prove that the plant has not been in the nominal mode, where n = 0, at the
-// time k - ρ_i. `ModeEvidence::why` is then the direction, a unit vector with its sign in the space
-// of faults, that separates 0 from the box of these bounds, and the margin its distance. A step
-// that excludes is a reset: the next one is judged anew, on its own bounds. In a bank of several
-// modes the filter cannot tell which of them the plant is in after that: the decision is
-// "ambiguous" as long as the bounds hold 0.
+// widened by what rounding can have done to them (filter_rounding.hpp). They hold for any faults,
+// past ones included; bounds that exclude 0 prove that the plant has not been in the nominal mode,
+// where n = 0, at the time k - ρ_i. `ModeEvidence::why` is then the direction, a unit vector with
+// its sign in the space of faults, that separates 0 from the box of these bounds, and the margin
+// its distance. A step that excludes is a reset: the next one is judged anew, on its own bounds. In
+// a bank of several modes the filter cannot tell which of them the plant is in after that: the
+// decision is "ambiguous" as long as the bounds hold 0.
 #include <limits>
 #include <string>
 
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
-#include "cordon/core/tolerances.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
-#include "cordon/sets/generator_reduction.hpp"
-#include "diagnosers/fault_estimation_filter/filter_recursion.hpp"
+#include "diagnosers/fault_estimation_filter/filter_rounding.hpp"
 
 namespace cordon::estimators {
 
 using linalg::product;
 
 namespace {
-
-constexpr double rounding_of_step =
-    1e-14;  // of those of any step; what it leaves in x̂ goes on by TA - G C
-constexpr Index rounding_columns_per_state = 4;
 
 /// A model with zonotopes around its sets.
 struct FilterModel {
@@ -69,19 +62,15 @@ class FaultEstimationFilter final : public Diagnoser {
         design_(design_of(model_.linear, params)),
         recursion_(design_, model_.linear, noise_of(model_), params.integer("max_columns"),
                    params.text("noise_coupling") == "shared" ? NoiseCoupling::shared
-                                                             : NoiseCoupling::independent) {
+                                                             : NoiseCoupling::independent),
+        rounding_(design_, model_.linear, noise_of(model_)) {
     const LinearModel& m = model_.linear;
     TA_ = product(design_.T, m.A);
     TB_ = product(design_.T, m.B);
     Tw_ = product(design_.T, product(m.Bw, model_.W.c));
     v_ = product(m.Dv, model_.V.c);
-    TA_size_ = TA_.cwiseAbs();
-    TB_size_ = TB_.cwiseAbs();
-    C_size_ = m.C.cwiseAbs();
     D_size_ = m.D.cwiseAbs();
-    N_size_ = design_.N.cwiseAbs();
-    M_size_ = design_.M.cwiseAbs();
-    MC_ = product(design_.M, m.C);
+    constant_size_ = product(m.Bw.cwiseAbs(), model_.W.c.cwiseAbs());
   }
 
  private:
@@ -102,12 +91,17 @@ class FaultEstimationFilter final : public Diagnoser {
       advance(*before, y);
     } else {
       x_ = model_.X0.c;
-      size_ = x_.cwiseAbs();
-      rounding_ = Matrix(x_.size(), 0);
       recursion_.start(model_.X0.G);
       first_ = since_ = now.k;
     }
     y_ = std::move(y);
+    r_ = product(design_.M, y_.value - product(model_.linear.C, x_));
+    const FilterRounding::Input input{x_, y_.size, r_.cwiseAbs() + recursion_.half_widths()};
+    if (before)
+      rounding_.advance(input, recursion_, before->u.cwiseAbs(), constant_size_);
+    else
+      rounding_.start(input, recursion_);
+    half_width_ = recursion_.half_widths() + rounding_.slack();
     Diagnosis result = diagnosis(now.k);
     unfinished_ = false;
     return result;
@@ -122,38 +116,19 @@ class FaultEstimationFilter final : public Diagnoser {
   /// From x̂ of the sample before to that of ỹ = y.
   void advance(const Sample& before, const Output& y) {
     recursion_.advance();
-    const Matrix& G = recursion_.gain();
     const Vector residual = y_.value - product(model_.linear.C, x_);
-    const Vector residual_size = y_.size + product(C_size_, x_.cwiseAbs());
-    size_ = product(TA_size_, x_.cwiseAbs()) + product(TB_size_, before.u.cwiseAbs()) +
-            Tw_.cwiseAbs() + product(G.cwiseAbs(), residual_size) + product(N_size_, y.size);
-    keep_rounding();
-    x_ = product(TA_, x_) + product(TB_, before.u) + Tw_ + product(G, residual) +
+    x_ = product(TA_, x_) + product(TB_, before.u) + Tw_ + product(recursion_.gain(), residual) +
          product(design_.N, y.value);
   }
 
-  /// The rounding errors of all steps so far, as generators.
-  void keep_rounding() {
-    const Index n = x_.size(), old = rounding_.cols();
-    Matrix next(n, old + n);
-    next << product(recursion_.error_map(), rounding_),
-        (rounding_of_step * size_).asDiagonal().toDenseMatrix();
-    rounding_ = sets::reduce_generators(next, rounding_columns_per_state * n,
-                                        sets::GeneratorReduction::combastel);
-  }
-
   std::vector<FaultBound> bounds(Index k) const {
-    const Vector r = product(design_.M, y_.value - product(model_.linear.C, x_));
-    const Vector slack =
-        tolerances::proof_margin * product(M_size_, y_.size + product(C_size_, size_)) +
-        product(MC_, rounding_).cwiseAbs().rowwise().sum();
-    const Vector half = recursion_.half_widths() + slack;
-    if (!(r + half).allFinite())
+    if (!(r_ + half_width_).allFinite())
       throw Error(Errc::not_finite, "the estimate of a fault has outgrown the numbers");
     std::vector<FaultBound> all;
-    for (Index i = 0; i < r.size(); ++i) {
+    for (Index i = 0; i < r_.size(); ++i) {
       const Index at = k - design_.delays[static_cast<std::size_t>(i)];
-      if (at >= first_) all.push_back({i, at, r[i] - half[i], r[i] + half[i], r[i]});
+      if (at >= first_)
+        all.push_back({i, at, r_[i] - half_width_[i], r_[i] + half_width_[i], r_[i]});
     }
     return all;
   }
@@ -210,12 +185,11 @@ class FaultEstimationFilter final : public Diagnoser {
   FilterModel model_;
   FilterDesign design_;
   FilterRecursion recursion_;
-  Matrix TA_, TB_;
-  Vector Tw_, v_;                                                 ///< T Bw w̄, Dv v̄
-  Matrix TA_size_, TB_size_, C_size_, D_size_, N_size_, M_size_;  ///< entries by magnitude
-  Matrix MC_, rounding_;  ///< M C; generators of what rounding has left in x̂
-  Vector x_, size_;       ///< x̂, and the size of the numbers that it is made of
-  Output y_;              ///< of the last sample
+  FilterRounding rounding_;
+  Matrix TA_, TB_, D_size_;
+  Vector Tw_, v_, constant_size_;  ///< T Bw w̄, Dv v̄, sizes of Bw w̄
+  Vector x_, r_, half_width_;      ///< x̂; estimates of the faults
+  Output y_;                       ///< of the last sample
   Index first_ = 0, since_ = 0;
   bool excluded_ = false;    ///< the nominal mode has been, once
   bool unfinished_ = false;  ///< a step ended with an error half way

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/tolerances.hpp"
 
 namespace cordon::estimators {
 
@@ -73,6 +74,23 @@ std::optional<Response> first_response(const Matrix& T, const Matrix& TA, const 
   return {};
 }
 
+/// A without the entries where `shares` are rounding: 1e-14 of the largest of their column.
+Matrix without_rounding(const Matrix& A, const Matrix& shares) {
+  const Eigen::RowVectorXd noise = tolerances::product_noise * shares.colwise().maxCoeff();
+  return (shares.array() <= noise.replicate(A.rows(), 1).array()).select(0.0, A);
+}
+
+/// Θ⁺. Singular values leave rounding in entries that are 0, and a fault must not show by it. What
+/// an entry counts is its product with its row of Θ, beside the largest for the same state.
+Matrix inverse_without_rounding(const Matrix& theta) {
+  const Matrix inverse = linalg::pseudo_inverse(theta);
+  Matrix shares = inverse.cwiseAbs() * theta.rowwise().norm().asDiagonal();
+  for (Index i = 0; i < shares.rows(); ++i) {
+    if (const double largest = shares.row(i).maxCoeff(); largest > 0) shares.row(i) /= largest;
+  }
+  return without_rounding(inverse, shares);
+}
+
 /// T and N of the design.
 bool find_T_and_N(const Matrix& E, const Matrix& C, const Matrix& S, FilterDesign& design,
                   std::vector<Diagnostic>& problems) {
@@ -87,9 +105,9 @@ bool find_T_and_N(const Matrix& E, const Matrix& C, const Matrix& S, FilterDesig
                         "measure it, or describe its dynamics in E"});
     return false;
   }
-  const Matrix inverse = linalg::pseudo_inverse(theta);
-  const Matrix both =
-      inverse + product(S, Matrix::Identity(n + m, n + m) - product(theta, inverse));
+  const Matrix inverse = inverse_without_rounding(theta);
+  const Matrix rest = Matrix::Identity(n + m, n + m) - product(theta, inverse);
+  const Matrix both = inverse + product(S, without_rounding(rest, rest.cwiseAbs()));
   design.T = both.leftCols(n);
   design.N = both.rightCols(m);
   if (is_identity(product(design.T, E) + product(design.N, C))) return true;
