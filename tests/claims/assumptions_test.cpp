@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An assumption that the simulated truth does not keep is named, with its step, and not put down to
 // the program.
-#include <cmath>
 #include <functional>
 
 #include <doctest/doctest.h>
 
 #include "claims/program.hpp"
-#include "cordon/solvers/set_questions.hpp"
 #include "study/checks/assumption_check.hpp"
-#include "study/checks/outside.hpp"
 
 using namespace claims;
 using namespace cordon;
 
 namespace {
-
-Json box(std::initializer_list<double> radii) {
-  Json lower = Json::array(), upper = Json::array();
-  for (const double radius : radii) {
-    lower.push_back(-radius);
-    upper.push_back(radius);
-  }
-  return {{"type", "box"}, {"lower", lower}, {"upper", upper}};
-}
 
 /// Two tanks with a pump each; modes without their set to begin anew.
 Json tanks(const Json& restart_set) {
@@ -95,17 +83,6 @@ Outcome check_failed(const Program& program, const std::string& what, Index k, I
   refuses([&](Json& s) { s["assumptions_until"] = from + 1; }, "assumptions_until");
   refuses([](Json& s) { s["failed_assumption"]["text"] = "x_7 is blue"; },
           "failed_assumption/text");
-  return run;
-}
-
-/// The run, which speaks of no assumption.
-Outcome check_kept(const Program& program) {
-  const Outcome run = program.run();
-  CAPTURE(run.out);
-  CHECK(run.code == 0);
-  CHECK_FALSE(run.says("Assumption failed"));
-  CHECK(program.results()["pipelines"][0]["summary"]["failed_assumption"].is_null());
-  CHECK(program.verify().code == 0);
   return run;
 }
 
@@ -260,79 +237,6 @@ TEST_CASE("what an assumption does not hold is not excused before it fails") {
   }
 }
 
-namespace {
-
-/// A state that forgets itself, and a sensor that sees the input alone: its noise is drawn on the
-/// boundary, and then rounded.
-Json on_the_boundary(const std::string& noise, const std::string& rounding) {
-  Json made = Json::parse(R"({
-    "cordon": 1, "title": "three sensors",
-    "system": {"type": "lti", "A": [[0]], "B": [[1.51]], "Bw": [[-1.03]], "C": [[-1.5], [-1.13], [0]],
-      "D": [[0.98], [0.58], [-1.46]]},
-    "data": {"simulate": {"steps": 10, "seed": 13, "input": [{"type": "sine", "amplitude": 1, "omega": 0.3}]}},
-    "pipelines": [{"name": "P", "backend": {"type": "constrained_zonotope", "precondition": "gauss_jordan", "rescale": true},
-      "observer": "prediction_correction"}],
-    "metrics": ["radius"]})");
-  made["system"]["X0"] = box({1});
-  made["system"]["W"] = box({.1});
-  made["system"]["V"] = box({1, 1, 1});
-  made["data"]["simulate"]["noise"] = noise;
-  made["pipelines"][0]["backend"]["rounding"] = rounding;
-  return made;
-}
-
-}  // namespace
-
-TEST_CASE(
-    "data that the simulation has rounded out of the model are no defect of a pipeline that takes "
-    "them as they are") {
-  const Program program(on_the_boundary("vertex", "outward"));
-  const Outcome run = program.run();
-  CAPTURE(run.out);
-  CAPTURE(run.err);
-  CHECK(run.code == 0);
-  CHECK(run.says("which the simulation has rounded"));
-  const Json summary = program.results()["pipelines"][0]["summary"],
-             failed = summary["failed_assumption"];
-  REQUIRE(failed.is_object());
-  CHECK((failed["what"] == "V_exactly" || failed["what"] == "W_exactly"));
-  CHECK(summary["violated_at"].is_null());
-  CHECK(summary["outside_from"] >= summary["assumptions_until"]);
-  const Outcome verified = program.verify();
-  CAPTURE(verified.out);
-  CHECK(verified.code != 4);
-  CHECK(verified.says("which the simulation has rounded"));
-  CHECK(check_kept(Program(on_the_boundary("uniform", "outward"))).code == 0);
-  CHECK(check_kept(Program(on_the_boundary("vertex", "nominal"))).code == 0);
-}
-
-TEST_CASE(
-    "rounding that later steps amplify is no defect of a nominal pipeline, and a loss beyond it is "
-    "one") {
-  Study study;
-  study.model.linear.A = study.model.linear.C = Matrix{{.5}};
-  study.model.linear.B = study.model.linear.D = study.model.linear.Bw = study.model.linear.Dv =
-      Matrix(1, 0);
-  study.model.X0 = make_box({-Vector::Ones(1), Vector::Ones(1)});
-  study.model.W = study.model.V = make_box({Vector(0), Vector(0)});
-  study.data = SimulateSpec{};
-  detail::AssumptionCheck check(study, {});
-  check.begin_run(0);
-  check.step({{0, Vector(0), Vector{{std::nextafter(.25, 0)}}}, Vector{{.5}}, 0, {}});
-  CHECK_FALSE(check.excuses_by_rounding(0));
-  CHECK(check.excuses_by_rounding(0, true));
-  const LineForm X = make_box({Vector{{.5}}, Vector{{.75}}});
-  CHECK(detail::barely_outside(X, Vector{{.75 + 1e-7}}));
-  CHECK_FALSE(detail::barely_outside(X, Vector{{.75 + 1e-5}}));
-  LineForm empty = make_zonotope(Vector{{.5}}, Matrix{{.25}});  // ξ = 1 + 1e-7
-  empty.S = Matrix(1, 0);
-  empty.A = Matrix{{1.}};
-  empty.b = Vector{{1 + 1e-7}};
-  CHECK(detail::barely_outside(empty, Vector{{.75}}));
-  empty.b[0] = 1 + 1e-4;
-  CHECK_FALSE(detail::barely_outside(empty, Vector{{.75}}));
-}
-
 /// The leak has spoilt the states from which the bank's bound of errors starts; the filter's output
 /// of k = 10 is spoilt already.
 TEST_CASE(
@@ -366,58 +270,4 @@ TEST_CASE(
   }
   bank["data"]["simulate"]["faults"] = Json::parse(R"([{"mode": "weak", "from": 10, "to": 20}])");
   CHECK_FALSE(Program(bank).run().says("Assumption failed"));
-}
-
-TEST_CASE("exact data excuse nothing") {
-  Study study;
-  study.model.linear.A = study.model.linear.C = Matrix{{.5}};
-  study.model.linear.B = study.model.linear.D = Matrix(1, 0);
-  study.model.linear.Bw = study.model.linear.Dv = Matrix{{1.}};
-  study.model.X0 = study.model.W = study.model.V = make_box({Vector::Zero(1), Vector::Ones(1)});
-  study.data = SimulateSpec{};
-  const auto record = [](Index k, double x, double y) {
-    return Record{{k, Vector(0), Vector{{y}}}, Vector{{x}}, 0, {}};
-  };
-  detail::AssumptionCheck check(study, {.exact_data = true});
-  check.begin_run(0);
-  check.step(record(0, 1, 1.5));
-  check.step(record(1, 1.5, 1.75));
-  CHECK_FALSE(check.excuses_by_rounding(1));
-  check.step(record(2, 1.75, 1.875));
-  check.step(record(3, 1.75, std::nextafter(.875, 0)));
-  CHECK_FALSE(check.excuses_by_rounding(2));
-  CHECK(check.excuses_by_rounding(3));
-  CHECK(check.failed()->what == FailedAssumption::What::V_exactly);
-  CHECK(check.failed()->k == 3);
-  check.begin_run(1);
-  check.step(record(0, 1, 1.5));
-  check.step(record(1, std::nextafter(1.5, 2), 1.75));
-  CHECK(check.excuses_by_rounding(1));
-  CHECK(check.failed()->what ==
-        FailedAssumption::What::W_exactly);  // earlier than that of the other run
-  CHECK(check.failed()->from() == 1);
-  check.begin_run(2);
-  check.step(record(0, 1, 1.5));
-  check.step(record(1, 3, 3.5));
-  CHECK_FALSE(check.excuses_by_rounding(1));  // no rounding is that large
-}
-
-TEST_CASE("outside by more than rounding") {
-  const LineForm X = make_box({-Vector::Ones(2), Vector::Ones(2)});
-  CHECK_FALSE(detail::clearly_outside(X, Vector{{1., 1.}}));
-  CHECK_FALSE(detail::clearly_outside(X, Vector{{1 + 1e-10, 0.}}));
-  CHECK(detail::clearly_outside(X, Vector{{1 + 1e-8, 0.}}));
-  CHECK_FALSE(
-      detail::clearly_outside(X, Vector{{2., 2., 2.}}));  // of another dimension: nothing is said
-  const LineForm small = make_box({-Vector::Constant(1, 1e-12), Vector::Constant(1, 1e-12)});
-  CHECK(detail::clearly_outside(small, Vector{{1.1e-12}}));
-  CHECK_FALSE(detail::clearly_outside(make_space(1), Vector{{1e300}}));
-}
-
-TEST_CASE("each state leaves a set in its own units") {
-  const LineForm X =
-      make_box({Vector{{-1e7, -0.04}}, Vector{{1e7, 0.04}}});  // 1e-9 of 1e7 are a quarter of .04
-  CHECK(detail::clearly_outside(X, Vector{{1e6, 0.045}}));
-  CHECK_FALSE(detail::clearly_outside(X, Vector{{1e6, 0.04 * (1 + 1e-10)}}));
-  CHECK_FALSE(detail::outside_by_its_size(X, Vector{{1e6, 0.045}}, Vector::Zero(2)));
 }

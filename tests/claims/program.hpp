@@ -2,8 +2,10 @@
 // The program on studies that use the lying plugin, as a user meets it.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 
+#include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include "run/program.hpp"
@@ -40,5 +42,25 @@ class Program {
  private:
   Scratch scratch_;
 };
+
+inline Json box(std::initializer_list<double> radii) {
+  Json lower = Json::array(), upper = Json::array();
+  for (const double radius : radii) {
+    lower.push_back(-radius);
+    upper.push_back(radius);
+  }
+  return {{"type", "box"}, {"lower", lower}, {"upper", upper}};
+}
+
+/// The run, which speaks of no assumption.
+inline Outcome check_kept(const Program& program) {
+  const Outcome run = program.run();
+  CAPTURE(run.out);
+  CHECK(run.code == 0);
+  CHECK_FALSE(run.says("Assumption failed"));
+  CHECK(program.results()["pipelines"][0]["summary"]["failed_assumption"].is_null());
+  CHECK(program.verify().code == 0);
+  return run;
+}
 
 }  // namespace claims

@@ -47,9 +47,9 @@ FilterRounding::FilterRounding(const FilterDesign& design, const LinearModel& mo
       Upsilon_(design.Upsilon) {
   const Index n = model.states();
   const Matrix I = Matrix::Identity(n, n), E = model.is_descriptor() ? model.E : I;
-  defect_ = (I - product(design.T, E) - product(design.N, model.C)).cwiseAbs() +
-            tolerances::product_noise *
-                (product(T_size_, E.cwiseAbs()) + product(N_size_, C_size_));
+  defect_ =
+      (I - product(design.T, E) - product(design.N, model.C)).cwiseAbs() +
+      tolerances::product_noise * (product(T_size_, E.cwiseAbs()) + product(N_size_, C_size_));
   const Index q = model.faults();
   mixing_ = (Matrix::Identity(q, q) - product(design.M, Upsilon_)).cwiseAbs();
 }
@@ -81,15 +81,15 @@ void FilterRounding::advance(const Input& next, const FilterRecursion& recursion
                 product(fault_state_, next.fault_size);
   kept.rightCols(n) =
       (left + product(defect_, next.x.cwiseAbs() + error_size_)).asDiagonal().toDenseMatrix();
-  generators_ = sets::reduce_generators(kept, columns_per_state * n,
-                                        sets::GeneratorReduction::combastel);
+  generators_ =
+      sets::reduce_generators(kept, columns_per_state * n, sets::GeneratorReduction::combastel);
   now_ = next;
 }
 
 Vector FilterRounding::slack() const {
   const Vector terms = now_.output + Dv_size_ + product(C_size_, size_);
-  return tolerances::proof_margin * product(M_size_, terms) +
-         product(mixing_, now_.fault_size) + row_sums(product(MC_, generators_));
+  return tolerances::proof_margin * product(M_size_, terms) + product(mixing_, now_.fault_size) +
+         row_sums(product(MC_, generators_));
 }
 
 }  // namespace cordon::estimators

@@ -9,9 +9,10 @@ namespace cordon::estimators {
 /// The filter of doubles is not the one of the paper: T E + N C = I and (TA - G C) Ψ = 0 hold up to
 /// rounding only, and every step rounds. With the numbers that it has, its error x - x̂ follows
 ///   e⁺ = (TA - G C) e + T F n + … + (I - T E - N C) x⁺ + δ,
-/// where δ is at most 1e-14 of the terms of the step, and r holds M Υ n for n. What the last two add is kept as generators,
-/// which go on by the same TA - G C. The sizes of x⁺ and e are those of x̂, of the error sets and
-/// of the faults that have been seen; a fault that shows later counts from then on.
+/// where δ is at most 1e-14 of the terms of the step, and r holds M Υ n for n. What the last two
+/// add is kept as generators, which go on by the same TA - G C. The sizes of x⁺ and e are those of
+/// x̂, of the error sets and of the faults that have been seen; a fault that shows later counts from
+/// then on.
 class FilterRounding {
  public:
   /// One sample as the filter takes it.

@@ -100,9 +100,17 @@ Vector LinearPlant::state(VectorIn u, VectorIn w) const {
   return x;
 }
 
+void LinearPlant::keep_in_bounds(Vector& x) const {
+  const Vector inside = x.cwiseMax(first_in_->lower).cwiseMin(first_in_->upper);
+  const double rounding = tolerances::elimination_noise * x.cwiseAbs().maxCoeff();
+  x = ((inside - x).array().abs() <= rounding).select(inside, x);
+}
+
 LinearPlant::Output LinearPlant::step(VectorIn u, VectorIn w, VectorIn v, VectorIn sensor) {
   Output now;
   now.x = state(u, w);
+  if (first_in_ && solve_.size() > 0) keep_in_bounds(now.x);
+  first_in_.reset();
   const Vector shown = linalg::product(model_.C, now.x) + linalg::product(model_.D, u);
   now.y = shown.cwiseProduct(sensor) + linalg::product(model_.Dv, v);
   z_ = linalg::product(dynamic_A_, now.x) + linalg::product(dynamic_B_, u) +

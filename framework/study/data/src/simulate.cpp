@@ -15,6 +15,15 @@ constexpr double consistency_tolerance =
     1e-9;                                 // relative to the largest summand of the static rows
 constexpr std::int64_t most_draws = 100;  // of x0
 
+/// Infinite along lines; constraints are left out.
+Box bounds_without_constraints(const LineForm& X) {
+  Vector radius = X.G.cwiseAbs().rowwise().sum();
+  for (Index i = 0; i < radius.size(); ++i) {
+    if (!X.M.row(i).isZero(0)) radius[i] = infinity;
+  }
+  return {X.c - radius, X.c + radius};
+}
+
 double largest(const Matrix& A) { return A.size() == 0 ? 0.0 : A.cwiseAbs().maxCoeff(); }
 
 }  // namespace
@@ -101,6 +110,7 @@ Vector SimulatedSource::pushed(const Draw& draw, const Vector& u, const Vector& 
 
 void SimulatedSource::start(const Model& model) {
   const Vector u0 = pushed(first_, inputs_.at(0), additive_.at(0));
+  plant().keep_first_in(bounds_without_constraints(model.X0));
   if (spec_.x0_set) return start_from_draws(model, u0);
   if (!spec_.x0) return start_from_center(model, u0);
   plant().start(*spec_.x0);

@@ -2,8 +2,11 @@
 // The linear plant of a simulation, step by step, with disturbances given from outside.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 
+#include "cordon/core/box.hpp"
 #include "cordon/interfaces/model.hpp"
 #include "cordon/interfaces/semi_explicit.hpp"
 
@@ -28,6 +31,9 @@ class LinearPlant {
 
   /// Sets z̃_0 from a state; its static part is found by the first step.
   void start(VectorIn x0);
+  /// x_0 is found from static rows, which may round it out of its set: coordinates that are outside
+  /// these bounds by 1e-13 of the largest are put on them, and the static rows hold to rounding.
+  void keep_first_in(Box bounds) { first_in_ = std::move(bounds); }
   /// Exchanges A, B and C; z̃ keeps its meaning, which depends on E only. Throws as the constructor
   /// does.
   void exchange(const Matrix& A, const Matrix& B, const Matrix& C);
@@ -54,6 +60,7 @@ class LinearPlant {
 
  private:
   void split_rows();
+  void keep_in_bounds(Vector& x) const;
 
   LinearModel model_;  ///< with [B F] and [D 0]
   std::string file_, pointer_;
@@ -62,6 +69,7 @@ class LinearPlant {
   Matrix static_A_, static_B_, static_Bw_;     ///< Σ (A, B, Bw), scaled by powers of two
   Matrix solve_;                               ///< -(Σ A Ť)⁻¹
   Vector z_;                                   ///< z̃_k
+  std::optional<Box> first_in_;
 };
 
 /// Have both models the same E? Then the state of one can be carried over to the other.
