@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gains/h_infinity_lmi.hpp"
 
+#include <algorithm>
+
 #include "cordon/core/linalg.hpp"
 #include "gains/gain_certificate.hpp"
 #include "gains/monotone.hpp"
@@ -102,6 +104,7 @@ GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics
     return no_gain(Answer::unknown,
                    "the bound of the matrix inequality is none: its gain has a smaller norm");
   }
+  if (!monotone) c.optimum_bound = std::min(c.optimum_bound, c.norm_upper);
   if (!(c.norm_lower <= c.optimum * (1 + 1e-4))) {
     return no_gain(Answer::unknown,
                    "the gain of the matrix inequality does not keep what the inequality promises: "

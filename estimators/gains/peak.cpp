@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The gain of least steady widths among those that make A - L C̄ monotone: a linear program.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -29,6 +30,21 @@ constexpr const char* peak_details =
     "which is feasible if and only if some gain makes A - L C monotone and stable: λᵀ is then a "
     "bound of 1ᵀ(I - (A - L C))⁻¹.\n"
     "That there is none is said on a proof only.";
+
+/// In units in which rows of C and the objective are near 1: solvers take what is below 1e-7 for
+/// nothing.
+struct Units {
+  Vector outputs;
+  double objective;
+};
+
+Units units_of(const Matrix& C, const Vector& r, const Matrix& Ev) {
+  const Vector outputs = linalg::row_scales(C);
+  Vector sizes(2);
+  sizes << (r.size() > 0 ? r.maxCoeff() : 0.0),
+      Ev.size() > 0 ? (outputs.asDiagonal() * Ev).cwiseAbs().maxCoeff() : 0.0;
+  return {outputs, linalg::row_scales(sizes.transpose())[0]};
+}
 
 /// Variables: λ (n), Z (n×p by rows), S (n×q by rows), and a slack per inequality.
 struct Program {
@@ -83,6 +99,47 @@ double dual_bound(const Program& program, const Vector& y) {
   return -program.b.dot(y);
 }
 
+struct Optimum {
+  Matrix L;
+  double value, bound;
+};
+
+/// The optimum is a sum of half widths: where it is small beside the largest disturbance, the
+/// objective is scaled by it, and solved again.
+std::optional<Optimum> optimum_of(const Matrix& A, const Matrix& C, const Vector& r,
+                                  const Matrix& Ev) {
+  constexpr double small = 1e-2;
+  constexpr int rounds = 3;
+  const Index n = A.rows(), p = C.rows();
+  Units units = units_of(C, r, Ev);
+  for (int round = 0;; ++round) {
+    const Program made = program(A, units.outputs.asDiagonal() * C, units.objective * r,
+                                 units.objective * (units.outputs.asDiagonal() * Ev));
+    const LinearProgram::Solution solution =
+        LinearProgram(made.M, made.b, made.lower, made.upper).maximize(made.objective);
+    if (solution.status != LinearProgram::Status::optimal) return std::nullopt;
+    const double value = -solution.objective;
+    if (value > 0 && value < small && round < rounds) {
+      units.objective *= std::exp2(-std::ilogb(value));
+      continue;
+    }
+    Matrix L(n, p);
+    for (Index i = 0; i < n; ++i)
+      L.row(i) = solution.x.segment(n + i * p, p).transpose() / solution.x[i];
+    return Optimum{L * units.outputs.asDiagonal(), value / units.objective,
+                   dual_bound(made, solution.y) / units.objective};
+  }
+}
+
+/// Σ h of a gain with A - L C ≥ 0.
+double sum_of_widths(const Matrix& A, const Matrix& C, const Vector& r, const Matrix& Ev,
+                     const Matrix& L) {
+  const Index n = A.rows();
+  const auto h = linalg::solve(Matrix::Identity(n, n) - (A - linalg::product(L, C)),
+                               r + Vector(linalg::product(L, Ev).cwiseAbs().rowwise().sum()));
+  return h ? h->sum() : infinity;
+}
+
 class Peak final : public GainDesigner {
  public:
   explicit Peak(std::optional<Matrix> theta) : theta_(std::move(theta)) {}
@@ -104,17 +161,9 @@ class Peak final : public GainDesigner {
       return {why->gain_exists, {}, std::move(why->reason), otherwise};
     }
     const Vector r = Ew.cwiseAbs().rowwise().sum() + theta.cwiseAbs().rowwise().sum();
-    const Program made = program(m.A, C, r, Ev);
-    const LinearProgram::Solution solution =
-        LinearProgram(made.M, made.b, made.lower, made.upper).maximize(made.objective);
-    if (solution.status != LinearProgram::Status::optimal) {
-      return {Answer::unknown, {}, "the linear program was not solved", otherwise};
-    }
-    const Index n = m.states(), p = m.outputs();
-    Matrix L(n, p);
-    for (Index i = 0; i < n; ++i)
-      L.row(i) = solution.x.segment(n + i * p, p).transpose() / solution.x[i];
-    L = made_monotone(m.A, C, std::move(L));
+    const std::optional<Optimum> optimum = optimum_of(m.A, C, r, Ev);
+    if (!optimum) return {Answer::unknown, {}, "the linear program was not solved", otherwise};
+    Matrix L = made_monotone(m.A, C, optimum->L);
     if (!is_monotone(m.A, C, L)) {
       return {Answer::unknown,
               {},
@@ -130,8 +179,8 @@ class Peak final : public GainDesigner {
     Gain gain;
     gain.certificate = certify(model, L, theta);
     gain.certificate.objective = "sum of half widths";
-    gain.certificate.optimum = -solution.objective;
-    gain.certificate.optimum_bound = dual_bound(made, solution.y);
+    gain.certificate.optimum = optimum->value;
+    gain.certificate.optimum_bound = std::min(optimum->bound, sum_of_widths(m.A, C, r, Ev, L));
     gain.L = std::move(L);
     return {Answer::yes, std::move(gain)};
   }

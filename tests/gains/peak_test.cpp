@@ -97,6 +97,26 @@ TEST_CASE("the norms of published gains") {
   }
 }
 
+TEST_CASE("the least widths of disturbances of any size") {
+  for (const double w : {1., std::exp2(-30), std::exp2(-300), std::exp2(200)}) {
+    for (const double unit : {1., std::exp2(40), std::exp2(-40)}) {
+      // h(L) = (w + 8 w |L|) / (1/4 + L) for -1/4 < L ≤ 3/4: least at 0
+      Model model = with_unit_boxes(Matrix{{.75}}, Matrix(1, 0), Matrix{{unit}}, w, 8 * w * unit);
+      const GainDesign far = design(model, {});
+      REQUIRE(far.feasible == Answer::yes);
+      CHECK(std::abs(far.gain.L(0, 0) * unit) < 1e-9);
+      CHECK(far.gain.certificate.optimum / w == doctest::Approx(4).epsilon(1e-9));
+      CHECK(far.gain.certificate.optimum_bound / w == doctest::Approx(4).epsilon(1e-9));
+      // the output is next to useless, and w small beside its noise
+      model.linear.Dv = Matrix{{1e9 * w * unit}};
+      const GainDesign useless = design(model, {});
+      REQUIRE(useless.feasible == Answer::yes);
+      CHECK(std::abs(useless.gain.L(0, 0) * unit) < 1e-12);
+      CHECK(useless.gain.certificate.optimum / w == doctest::Approx(4).epsilon(1e-6));
+    }
+  }
+}
+
 TEST_CASE("no monotone gain: proven, and why") {
   const GainDesign found = design(three_states(-.1), Matrix(Matrix::Identity(3, 3)));
   CHECK(found.feasible == Answer::no);

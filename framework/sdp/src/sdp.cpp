@@ -96,10 +96,11 @@ SdpSolution assess(const SemidefiniteProgram& program, const ScaledProgram& scal
   }
   const Vector residual = inner_products(program, Y) - program.cost;
   s.value = program.cost.dot(x);
-  s.bound = -inner_constant(program, Y);
   s.dual_residual = residual.cwiseAbs().maxCoeff();
-  // costᵀx' ≥ bound - |residual|ᵀ|x'| for every feasible x'.
-  const double gap = std::abs(s.value - s.bound) + residual.cwiseAbs().dot(x.cwiseAbs());
+  // costᵀx' ≥ dual - |residual|ᵀ|x'| for every feasible x'.
+  const double dual = -inner_constant(program, Y), unsure = residual.cwiseAbs().dot(x.cwiseAbs());
+  s.bound = dual - unsure;
+  const double gap = std::abs(s.value - dual) + unsure;
   const double taken = 100 * options.accuracy;
   const bool inside = x.cwiseAbs().maxCoeff() <= options.largest_x;
   feasible = inside && violation <= taken;

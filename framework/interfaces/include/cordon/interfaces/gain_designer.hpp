@@ -28,7 +28,7 @@ struct GainCertificate {
   std::string objective =
       {};  ///< what was optimised, for people: "γ", "τ", "sum of half widths"; empty: nothing was
   double optimum = none;        ///< its optimal value, as the solver found it
-  double optimum_bound = none;  ///< the bound of the optimum from the dual side
+  double optimum_bound = none;  ///< a bound of the optimum from the dual side, in doubles
   double margin = none;         ///< smallest eigenvalue of the matrix inequality at the solution,
                                 ///< recomputed; negative: violated by that
 };

@@ -35,7 +35,8 @@ struct SdpSolution {
   SdpStatus status = SdpStatus::unknown;
   Vector x;          ///< solved
   double value = 0;  ///< costᵀ x
-  double bound = 0;  ///< value of the dual matrices: no x does better, up to `dual_residual`
+  double bound = 0;  ///< value of the dual matrices, less the dual residual times |x|: no x whose
+                     ///< entries are no larger than those of the solution does better
   std::vector<double> least_eigenvalue;  ///< of each F(x)
   double dual_residual = 0;              ///< largest |Σ ⟨F_i, Y⟩ - cost_i|
   std::vector<Matrix>
