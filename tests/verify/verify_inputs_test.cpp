@@ -74,6 +74,8 @@ class Run {
     return verify_run(scratch_ / "out");
   }
 
+  const Json& results() const { return results_; }
+
  private:
   void write(const char* name, const Json& value) const {
     std::ofstream(scratch_ / name) << value.dump(1);
@@ -258,6 +260,27 @@ TEST_CASE("numbers of a design that contradict each other") {
           p[0]["design"]["lower_bound"] = "inf";
         }) == "/pipelines/0/design/lower_bound");
   CHECK(refuted([](Json& p) { p[0]["design"]["status"] = "feasible"; }) == "");
+}
+
+TEST_CASE("a bound of κ of a pair that meets is proven too") {
+  Json study = scalar_study();
+  study["pipelines"][1]["designer"]["input"] = {{0}, {.3}, {0}, {0}};
+  const Run run(study);
+  const double kappa = run.results()["pipelines"][1]["design"]["pairs"][0]["kappa"].get<double>();
+  REQUIRE(kappa > -1);
+  REQUIRE(kappa < -.01);
+  const auto pointer = [&](double bound, double computed) {
+    const VerifyOutcome outcome = run.with([&](Json& p) {
+      p[1]["design"]["pairs"][0]["kappa_lower"] = bound;
+      p[1]["design"]["pairs"][0]["kappa"] = computed;
+    });
+    return outcome.violation ? outcome.violation->pointer : "";
+  };
+  for (const double true_bound : {-1., kappa - .01, kappa - 1e-7, kappa})
+    CHECK(pointer(true_bound, kappa) == "");
+  for (const double false_bound : {kappa + 1e-7, kappa / 2, -1e-6, 0.})
+    CHECK(pointer(false_bound, 0) == "/pipelines/1/design/pairs/0");
+  CHECK(pointer(kappa / 2, kappa) == "/pipelines/1/design/pairs/0");  // beside the file's own κ
 }
 
 TEST_CASE("an input that is called found, and does not separate") {

@@ -198,4 +198,19 @@ ExactEmptiness exact_emptiness(const LineForm& X) {
   return disjoint(proven_kappa(system, found.data).value_or(0));
 }
 
+LineForm with_reach(const LineForm& X, double reach) {
+  if (!(reach > 0)) throw Error(Errc::invalid, "with_reach: the reach must be positive");
+  const Index m = X.constraints(), l = X.lines(), g = X.generators();
+  LineForm wide = X;  // S δ + A ξ - b t = 0, reach t = 1
+  wide.M.conservativeResize(Eigen::NoChange, l + 1);
+  wide.M.col(l).setZero();
+  wide.S = Matrix::Zero(m + 1, l + 1);
+  wide.S.topLeftCorner(m, l) = X.S;
+  wide.S.col(l) << -X.b, reach;
+  wide.A = Matrix::Zero(m + 1, g);
+  wide.A.topRows(m) = X.A;
+  wide.b = Vector::Unit(m + 1, m);
+  return wide;
+}
+
 }  // namespace cordon::verification

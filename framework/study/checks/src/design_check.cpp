@@ -18,9 +18,7 @@ class DesignCheck {
  public:
   void pair(std::size_t q, const PairSeparation& claim, const ExactPair& exact,
             const std::string& names) {
-    const bool positive = claim.kappa_lower > tolerances::reported;
-    if (positive &&
-        claim.kappa < claim.kappa_lower - tolerances::reported * (1 + claim.kappa_lower))
+    if (claim.kappa < claim.kappa_lower - tolerances::reported * (1 + std::abs(claim.kappa_lower)))
       return refute(
           fmt::format("κ of {} is {}, below its bound {}", names, claim.kappa, claim.kappa_lower),
           "/design/pairs/", q);
@@ -37,9 +35,12 @@ class DesignCheck {
     }
     if (apart && exact.kappa_lower > tolerances::reported)
       return refute(tubes + " are said to meet, and are disjoint", "/design/pairs/", q);
-    if (claim.kappa_lower > tolerances::reported)
-      return refute(fmt::format("κ ≥ {} is said of {}, which meet", claim.kappa_lower, tubes),
+    if (claim.kappa_lower > tolerances::reported || exact.within == Answer::yes)
+      return refute(fmt::format("κ ≥ {} is said of {}, which meet{}", claim.kappa_lower, tubes,
+                                exact.within == Answer::yes ? " for a smaller κ" : ""),
                     "/design/pairs/", q);
+    if (exact.within == Answer::unknown)
+      return open(fmt::format("κ ≥ {} of {}, which meet", claim.kappa_lower, tubes));
     holds();
   }
 

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "cordon/study/design.hpp"
 #include "study/checks/common_runs.hpp"
 
@@ -52,13 +54,14 @@ Answer ExactSeparation::separates() const {
 }
 
 ExactSeparation verify_design(const ModeBank& bank, const DesignOutcome& outcome,
-                              const std::atomic<bool>* stop) {
+                              const std::atomic<bool>* stop, bool bounds) {
   check(bank, outcome);
   const Clock::time_point begin = Clock::now();
   const Experiment experiment{outcome.best->u, outcome.last_output_only, outcome.admissible_set};
-  const auto answer = [&](std::span<const Model* const> models) {
+  const auto answer = [&](std::span<const Model* const> models, double reach = 1) {
     if (stop && stop->load()) return ExactEmptiness{Answer::unknown, 0, "interrupted"};
-    return verification::exact_emptiness(verification::common_runs(models, experiment));
+    const LineForm rows = verification::common_runs(models, experiment);
+    return verification::exact_emptiness(reach == 1 ? rows : verification::with_reach(rows, reach));
   };
   ExactSeparation found;
   for (Index i = 0; i < bank.size(); ++i) {
@@ -70,6 +73,15 @@ ExactSeparation verify_design(const ModeBank& bank, const DesignOutcome& outcome
       const std::array<const Model*, 2> both{&bank[i].model, &bank[j].model};
       ExactEmptiness pair = answer(both);
       found.pairs.push_back({i, j, pair.empty, pair.kappa_lower, std::move(pair.reason)});
+      if (!bounds || pair.empty != Answer::no || found.pairs.size() > outcome.best->pairs.size())
+        continue;
+      const double claimed = outcome.best->pairs[found.pairs.size() - 1].kappa_lower,
+                   reach = 1 + claimed - tolerances::reported * (2 + std::abs(claimed));
+      std::optional<Answer>& within = found.pairs.back().within;
+      if (!(reach > 0))
+        within = Answer::no;
+      else if (reach < 1)
+        within = negate(answer(both, reach).empty);
     }
   }
   found.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();

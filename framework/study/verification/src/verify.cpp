@@ -184,7 +184,7 @@ class Verification {
     DesignFindings claims =
         compare_recorded(run_.bank, *recorded.design,
                          {recorded.claimed_separation, recorded.proven_separation, recorded.proven},
-                         verify_design(run_.bank, *recorded.design, options_.stop));
+                         verify_design(run_.bank, *recorded.design, options_.stop, true));
     if (options_.stop && options_.stop->load()) {
       outcome_.interrupted = true;
       return;

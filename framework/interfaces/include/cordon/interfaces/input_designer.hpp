@@ -22,7 +22,7 @@ namespace cordon {
 struct PairSeparation {
   Index i = 0, j = 0;  ///< i < j, indices in the bank
   double kappa = 0;    ///< as computed; +inf: the tubes do not meet however far the box is widened
-  double kappa_lower = 0;             ///< κ is at least this, by `why`
+  double kappa_lower = -1;            ///< κ is at least this, by `why`; -1 of any pair
   Answer disjoint = Answer::unknown;  ///< `yes`: by a Farkas vector; `no`: they meet. A claim until
                                       ///< the host has proven it
   Certificate why = {};  ///< about rows of the designer's own making: the host rests nothing on it

@@ -21,6 +21,9 @@ struct ExactPair {
   double kappa_lower =
       0;  ///< proven: κ is at least this (rounded down); meaningful if `disjoint` is yes
   std::string reason = {};  ///< if unknown
+  /// Of a pair that meets: does it meet for a κ that is smaller than the `kappa_lower` of the
+  /// designer, by more than 1e-9? Asked on demand.
+  std::optional<Answer> within = {};
 };
 
 /// What is proven of an input sequence without any rounding.
@@ -35,9 +38,9 @@ struct ExactSeparation {
 /// Is the input of this outcome separating the modes of the bank? Doubles are taken as the numbers
 /// they are, no line is eliminated in floating point, and the designer is not asked.
 /// Errc::dimension if the outcome has no input or does not fit. `stop` (may be null) ends it early:
-/// what is open then is `unknown`.
+/// what is open then is `unknown`. With `bounds` `within` is answered too.
 ExactSeparation verify_design(const ModeBank& bank, const DesignOutcome& outcome,
-                              const std::atomic<bool>* stop = nullptr);
+                              const std::atomic<bool>* stop = nullptr, bool bounds = false);
 
 /// What of a designer's answer is proven false: by the exact separation of its input, and by what
 /// the study asks for in the parameters of these names, where the designer has them: `horizon`,

@@ -45,4 +45,8 @@ struct ExactEmptiness {
 };
 ExactEmptiness exact_emptiness(const LineForm& rows);
 
+/// The same rows with ‖ξ‖∞ ≤ reach in place of 1: a factor of b on a line of its own, so that no
+/// entry is rounded. Errc::invalid unless reach > 0.
+LineForm with_reach(const LineForm& rows, double reach);
+
 }  // namespace cordon::verification
