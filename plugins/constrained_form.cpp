@@ -66,31 +66,39 @@ Box ConstrainedForm::interval_hull(const Value& X, std::vector<Certificate>* why
 }
 
 std::optional<Volume> ConstrainedForm::volume(const Value& X) const {
+  constexpr double resolved = 1e-8;
   const LineForm Y = eliminate_lines(X);
-  if (Y.lines() > 0 || Y.dim() > 3) return std::nullopt;
+  const Index n = Y.dim();
+  if (Y.lines() > 0 || n > 3) return std::nullopt;
   BoxedProgram program(Y.A, Y.b);  // one program, warm from direction to direction
   bool solved = true;
+  // moved to the origin, so that no digits go to the centre
   const sets::SupportOracle oracle = [&](const Vector& d) -> sets::SupportPoint {
     const Vector g = linalg::transposed_product(Y.G, d);
     const BoxedProgram::Bound bound = program.maximum(g);
     if (!bound.xi) {
       solved = solved && bound.upper == -infinity;
-      return {-infinity, Y.c};
+      return {-infinity, Vector::Zero(n)};
     }
     // the solver's point must be one of the set, and the certified bound its value
-    const double size = 1e-9 * (g.lpNorm<1>() + d.cwiseAbs().dot(Y.c.cwiseAbs()));
+    const double size = 1e-9 * g.lpNorm<1>();
     const Vector gap = linalg::product(Y.A, *bound.xi) - Y.b;
     const bool feasible =
         (gap.array().abs() <= 1e-7 * (Y.b.cwiseAbs() + Y.A.cwiseAbs().rowwise().sum()).array())
             .all();
     solved = solved && feasible && bound.upper - g.dot(*bound.xi) <= size;
-    return {d.dot(Y.c) + bound.upper, Y.c + linalg::product(Y.G, *bound.xi)};
+    return {bound.upper, linalg::product(Y.G, *bound.xi)};
   };
+  // where constraints leave so little of the terms, the digits of its widths are theirs
+  const Vector terms = Y.G.cwiseAbs().rowwise().sum();
+  for (Index i = 0; i < n; ++i) {
+    const double width = oracle(Vector::Unit(n, i)).h + oracle(-Vector::Unit(n, i)).h;
+    if (width > 0 && width < resolved * terms[i]) return std::nullopt;
+  }
   Volume volume{0, true};
-  if (Y.dim() == 1)
-    volume.value = std::max(0.0, oracle(Vector{{1.0}}).h + oracle(Vector{{-1.0}}).h);
-  if (Y.dim() == 2) volume = area_of(oracle);
-  if (Y.dim() == 3) {
+  if (n == 1) volume.value = std::max(0.0, oracle(Vector{{1.0}}).h + oracle(Vector{{-1.0}}).h);
+  if (n == 2) volume = area_of(oracle);
+  if (n == 3) {
     const sets::VolumeBounds bounds = sets::volume(oracle);
     volume = {bounds.upper, bounds.converged};
   }

@@ -37,7 +37,7 @@ std::string separation(Answer claimed, const ExactPair* exact) {
 
 /// What is said of the cost of every separating input.
 std::string bound_text(const DesignOutcome& outcome) {
-  if (std::isinf(outcome.lower_bound)) return "no lower bound is known";
+  if (outcome.lower_bound == -infinity) return "no lower bound is known";
   return fmt::format("claimed lower bound {}", six_digits(outcome.lower_bound));
 }
 

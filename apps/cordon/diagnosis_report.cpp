@@ -219,7 +219,7 @@ std::string error_set_text(const ErrorSetCheck& check, const Names& modes) {
 
 std::string fault_guarantees_text(const Guarantees& guarantees, const Paint& paint) {
   if (guarantees.faults.empty()) return "";
-  Rows rows{{"ADDITIVE FAULT", "DELAY", "HALF WIDTH IN STEADY STATE"}};
+  Rows rows{{"ADDITIVE FAULT", "DELAY", "HALF WIDTH IN STEADY STATE, BUT FOR ROUNDING"}};
   for (const FaultGuarantee& fault : guarantees.faults) {
     const std::string width = std::isinf(fault.half_width)
                                   ? "no bound is proven"

@@ -57,6 +57,36 @@ TEST_CASE("volumes with constraints are those of the exact polytope") {
   }
 }
 
+TEST_CASE("the volume of what constraints leave of a set, and of one far from the origin") {
+  const Plugins plugins;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (const Index n : {1, 2, 3}) {
+    for (const double part : {.1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15}) {
+      for (const double far : {0., 1e9}) {
+        CAPTURE(n);
+        CAPTURE(part);
+        CAPTURE(far);
+        // ξ_i + part ξ_{n+i} = b_i, so that ξ_i is b_i ± part
+        Matrix T(n, n);
+        for (double& entry : T.reshaped()) entry = number(random);
+        LineForm X{Matrix(n, 0), Matrix::Zero(n, 2 * n), Vector::Constant(n, far),
+                   Matrix(n, 0), Matrix(n, 2 * n),       Vector(n)};
+        X.G.leftCols(n) = T;
+        X.A << Matrix::Identity(n, n), part * Matrix::Identity(n, n);
+        for (double& entry : X.b) entry = .7 * number(random);
+        const rounding::Range truth = Polytope::from(X).volume();
+        for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
+          const Volume found = plugins.backend(name)->import(X)->volume();
+          CHECK(found.value >= truth.lower * (1 - (found.exact ? 1e-7 : 1e-12)));
+          if (found.exact) CHECK(found.value <= truth.upper * (1 + 1e-7));
+          if (part >= 1e-5) CHECK(found.exact);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("the volume of a set thinner than rounding shows is bounded and not called 0") {
   const Plugins plugins;
   std::mt19937 random(2);

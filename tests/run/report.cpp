@@ -380,7 +380,7 @@ TEST_CASE("statements in advance about additive faults") {
   const apps::Paint paint(stdout);
   const std::string table =
       "Method: recursion of the error sets\n"
-      "ADDITIVE FAULT  DELAY  HALF WIDTH IN STEADY STATE\n"
+      "ADDITIVE FAULT  DELAY  HALF WIDTH IN STEADY STATE, BUT FOR ROUNDING\n"
       "1               1      0.123457\n"
       "2               4      no bound is proven\n";
   CHECK(apps::guarantees_text(g, {"healthy"}, paint) == table);

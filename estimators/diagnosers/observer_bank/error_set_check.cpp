@@ -325,7 +325,9 @@ void check_given_error_set(const ModeBank& bank, const std::vector<ModeDynamics>
   if (!options.error_set) return;
   const ErrorSetCheck check = compare_error_set(bounds, *options.error_set);
   if (check.factor <= 1) return;
-  std::string text = "does not contain x - x̂ for all observers: ";
+  std::string text =
+      "does not contain x - x̂ for every point x̂ of the sets of all observers, whose disturbances "
+      "count beside those of the plant: ";
   if (std::isinf(check.factor)) {
     text += "it is flat";
   } else {

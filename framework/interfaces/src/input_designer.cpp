@@ -99,6 +99,7 @@ DesignOutcome InputDesigner::design(DesignControl& control) const {
                        (found ? "without an input" : "and gives an input"));
   require_contract(outcome.horizon >= 0, "its horizon is negative");
   require_contract(is_number(outcome.lower_bound), "its lower bound is not a number");
+  if (outcome.status == DesignStatus::infeasible) outcome.lower_bound = infinity;
   if (outcome.admissible_set) {
     const Index states = bank_[0].model.linear.states(), dim = outcome.admissible_set->dim();
     require_contract(dim == states, "its admissible set is of dimension " + std::to_string(dim) +

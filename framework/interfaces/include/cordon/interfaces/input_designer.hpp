@@ -74,7 +74,7 @@ struct DesignOutcome {
   DesignStatus status = DesignStatus::unknown;
   Index horizon = 0;                ///< N: inputs u_0 … u_N, outputs y_0 … y_N
   std::optional<InputDesign> best;  ///< `optimal`, `feasible`, `given`
-  double lower_bound = -infinity;   ///< of the cost of every separating input
+  double lower_bound = -infinity;   ///< of the cost of every separating input; +inf if infeasible
   std::optional<RestrictedProblem> restriction = {};  ///< the search looked at this one only
   bool stopped = false;     ///< the search ended early: time limit, or from outside
   std::string reason = {};  ///< why there is no better answer, for people; empty if `optimal`

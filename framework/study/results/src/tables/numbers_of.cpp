@@ -128,10 +128,8 @@ void add_diagnosis(Numbers& numbers, const PipelineOutcome& outcome) {
   add_faults(numbers, found.faults);
 }
 
-/// What every separating input costs at least, infinite if there is none; a search that
-/// proved nothing has no bound.
+/// A search that proved nothing has no bound.
 double bound_of(const DesignOutcome& design) {
-  if (design.status == DesignStatus::infeasible) return infinity;
   return design.lower_bound == -infinity ? not_available : design.lower_bound;
 }
 
