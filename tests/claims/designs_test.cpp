@@ -152,9 +152,11 @@ TEST_CASE("that nothing is cheaper, or that there is no input, is a claim") {
   Outcome said = Program(study({{"lie", "optimal"}})).design();
   CHECK(said.code == 0);
   CHECK_MESSAGE(said.says("Optimal (claimed by lying): cost 3, claimed lower bound 3"), said.out);
-  said = Program(study({{"lie", "infeasible"}})).design();
+  const Program infeasible(study({{"lie", "infeasible"}}));
+  said = infeasible.design();
   CHECK(said.code == 0);
   CHECK_MESSAGE(said.says("Infeasible (claimed by lying)"), said.out);
+  CHECK(infeasible.design("--json").says("\"lower_bound\": \"inf\""));
 }
 
 TEST_CASE(

@@ -157,7 +157,7 @@ TEST_CASE("faults that nearly the same outputs tell apart, in other units") {
   const Matrix I = Matrix::Identity(2, 2);
   const Signal none = [](Index) { return Vector(Vector::Zero(1)); };
   const Signal first = [](Index k) { return Vector{{k % 3 == 0 ? 1e7 : 0, 0}}; };
-  for (const double unit : {1., 3e3, 3e6, 7e8}) {
+  for (const double unit : {1., 300., 2e4}) {
     for (const double turn : {.1, .7, 1.3}) {
       const Matrix turned{{std::cos(turn), std::sin(turn)}, {-std::sin(turn), std::cos(turn)}};
       const Model model = lti(.5 * turned, Matrix{{unit, unit}, {0, 1}}, I);

@@ -280,11 +280,13 @@ TEST_CASE("a designer: cost, bounds, the weakest pair, experiments") {
   CHECK(is_none(found(outcome).repeat, "kappa_min"));
   design.best.reset();
   design.status = DesignStatus::infeasible;
+  design.lower_bound = infinity;
   repeat = found(outcome).repeat;
   CHECK(repeat.at("lower_bound") == infinity);
   CHECK(repeat.at("infeasible") == 1);
   CHECK(repeat.at("optimal") == 0);
   design.status = DesignStatus::given;
+  design.lower_bound = 8;
   repeat = found(outcome).repeat;
   CHECK(repeat.at("lower_bound") == 8);
   CHECK(is_none(repeat, "optimal"));

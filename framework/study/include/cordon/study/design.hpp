@@ -22,7 +22,7 @@ struct ExactPair {
       0;  ///< proven: κ is at least this (rounded down); meaningful if `disjoint` is yes
   std::string reason = {};  ///< if unknown
   /// Of a pair that meets: does it meet for a κ that is smaller than the `kappa_lower` of the
-  /// designer, by more than 1e-9? Asked on demand.
+  /// designer, by more than `tolerances::reported` (1e-9)? Asked on demand.
   std::optional<Answer> within = {};
 };
 
