@@ -10,6 +10,7 @@
 #include "common.hpp"
 #include "cordon/study/comparison_table.hpp"
 #include "core/text.hpp"
+#include "json_text.hpp"
 #include "observer_report.hpp"
 
 namespace cordon::apps {
@@ -304,7 +305,7 @@ std::string compare_json(const Comparison& comparison) {
   const ordered_json report{{"runs", std::move(runs)},
                             {"measures", std::move(measures)},
                             {"warnings", comparison.warnings}};
-  return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_text(report);
 }
 
 }  // namespace cordon::apps

@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "conform_discovery.hpp"
 #include "conform_worker.hpp"
+#include "json_text.hpp"
 #include "progress_bar.hpp"
 
 namespace cordon::apps {
@@ -180,7 +181,7 @@ Exit list_laws(const ConformArguments& arguments) {
     rows.push_back({law.name, law.statement});
     entries.push_back({{"law", law.name}, {"statement", law.statement}});
   }
-  print(arguments.json ? Json{{"laws", entries}}.dump(2) + "\n" : table(rows, Paint(stdout)));
+  print(arguments.json ? json_text(Json{{"laws", entries}}) : table(rows, Paint(stdout)));
   return Exit::done;
 }
 
@@ -245,7 +246,7 @@ Exit conform(const Program& program, const ConformArguments& arguments) {
                       {"file", library.string()},       {"seed", arguments.seed},
                       {"cases", arguments.cases},       {"conforms", exit == Exit::done},
                       {"backends", std::move(backends)}};
-    text = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    text = json_text(report);
   }
   print(text);
   return exit;

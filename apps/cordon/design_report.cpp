@@ -10,6 +10,7 @@
 
 #include "design_outcome_text.hpp"
 #include "diagnosis_report.hpp"
+#include "json_text.hpp"
 
 namespace cordon::apps {
 
@@ -110,7 +111,7 @@ std::string designs_json(const Study& study, const std::vector<PipelineDesign>& 
          {"design_s", design.design_s},
          {"error", design.error.empty() ? ordered_json(nullptr) : ordered_json(design.error)}});
   }
-  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(report);
 }
 
 std::vector<std::string> refutations(const std::string& pipeline,

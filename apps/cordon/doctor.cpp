@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "cordon/registry/build.hpp"
 #include "cordon/study/verify.hpp"
+#include "json_text.hpp"
 
 namespace cordon::apps {
 
@@ -58,7 +59,7 @@ std::string as_json(const BuildInfo& build, const SearchPath& path, const Regist
     if (!r.left_out.empty()) entry["left_out"] = r.left_out;
     json["plugins"].push_back(std::move(entry));
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string describe(const PluginReport& r, const Paint& paint) {

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "cordon/study/run.hpp"
 #include "diagnosis_report.hpp"
+#include "json_text.hpp"
 
 namespace cordon::apps {
 
@@ -93,7 +94,7 @@ std::string report_json(const Study& study, const std::vector<Promise>& all) {
          {"diagnoser", diagnoser ? Json(diagnoser->type) : Json(nullptr)},
          {"guarantees", guarantees ? Json::parse(json_of(*guarantees, modes)) : Json(nullptr)}});
   }
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(report);
 }
 
 Exit guarantees(const Program& program, const GuaranteesArguments& arguments) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "json_text.hpp"
 
 namespace cordon::apps {
 
@@ -96,9 +97,7 @@ Exit info(const Program& program, const std::string& name, bool json) {
   if (json) {
     Json entries = Json::array();
     for (const Component& component : matches) entries.push_back(as_json(component));
-    print(Json{{"components", std::move(entries)}}.dump(2, ' ', false,
-                                                        Json::error_handler_t::replace) +
-          "\n");
+    print(json_text(Json{{"components", std::move(entries)}}));
     return Exit::done;
   }
   const Paint paint(stdout);

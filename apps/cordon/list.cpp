@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "json_text.hpp"
 
 namespace cordon::apps {
 
@@ -20,9 +21,7 @@ std::string as_json(const std::vector<Component>& found) {
                        {"summary", c.info->summary},
                        {"citation", c.info->citation}});
   }
-  return nlohmann::ordered_json{{"components", std::move(entries)}}.dump(
-             2, ' ', false, nlohmann::json::error_handler_t::replace) +
-         "\n";
+  return json_text(nlohmann::ordered_json{{"components", std::move(entries)}});
 }
 
 std::string as_table(const std::vector<Component>& found) {

@@ -12,6 +12,7 @@
 #include "cordon/study/statistics.hpp"
 #include "design_report.hpp"
 #include "diagnosis_report.hpp"
+#include "json_text.hpp"
 #include "observer_report.hpp"
 
 namespace cordon::apps {
@@ -324,7 +325,7 @@ std::string report_json(const Study& study, const RunOutcome& outcome) {
     pipelines.push_back(json_of(pipeline, modes));
   for (const std::filesystem::path& file : outcome.files) files.push_back(file.string());
   const ordered_json report{{"pipelines", std::move(pipelines)}, {"files", std::move(files)}};
-  return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_text(report);
 }
 
 std::vector<std::string> complaints(const Study& study, const RunOutcome& outcome) {

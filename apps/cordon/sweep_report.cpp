@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common.hpp"
+#include "json_text.hpp"
 #include "observer_report.hpp"
 
 namespace cordon::apps {
@@ -128,7 +129,7 @@ std::string sweep_report_json(const SweepOutcome& outcome) {
                             {"violated", outcome.violated},
                             {"summary", std::move(rows)},
                             {"files", std::move(files)}};
-  return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_text(report);
 }
 
 }  // namespace cordon::apps

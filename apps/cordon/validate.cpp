@@ -13,6 +13,7 @@
 #include "cordon/experiments/sweep.hpp"
 #include "cordon/study/data.hpp"
 #include "cordon/study/study.hpp"
+#include "json_text.hpp"
 
 namespace cordon::apps {
 
@@ -220,10 +221,7 @@ Exit validate(const Program& program, const ValidateArguments& arguments) {
     const Exit one = validate_one(file, program, arguments.json ? &entries : nullptr);
     if (exit == Exit::done) exit = one;
   }
-  if (arguments.json)
-    print(
-        Json{{"studies", std::move(entries)}}.dump(2, ' ', false, Json::error_handler_t::replace) +
-        "\n");
+  if (arguments.json) print(json_text(Json{{"studies", std::move(entries)}}));
   return exit;
 }
 

@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "json_text.hpp"
 #include "progress_bar.hpp"
 
 namespace cordon::apps {
@@ -129,7 +130,7 @@ std::string report_json(const VerifyOutcome& outcome) {
   }
   if (const auto& found = outcome.second_opinion)
     report["second_opinion"] = second_opinion_json(*found);
-  return report.dump(2, ' ', false, Object::error_handler_t::replace) + "\n";
+  return json_text(report);
 }
 
 std::int64_t undecided(const VerifyOutcome& outcome) {
