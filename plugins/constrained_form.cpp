@@ -26,27 +26,52 @@ ConstrainedForm::Result made(sets::Reduced result) {
   return {std::move(result.set), result.exact ? Tightness::exact : Tightness::outer};
 }
 
+/// Vertices are points that the solver proposes: do they lie on the support lines of the edges
+/// between them, so closely that the area is right to 1e-7?
+bool is_confirmed(const sets::SupportOracle& oracle, const Matrix& vertices, double area) {
+  constexpr double accuracy = 1e-7;
+  double open = 0;
+  const Index count = vertices.cols();
+  for (Index i = 0; i < count; ++i) {
+    const Vector p = vertices.col(i), edge = vertices.col((i + 1) % count) - p;
+    const Vector normal{{edge[1], -edge[0]}};  // as long as the edge
+    open += std::abs(oracle(normal).h - normal.dot(p));
+  }
+  return open <= accuracy * area;
+}
+
 /// Polygons are exact to 1e-10 of their coordinates' widths: a thin one is asked for along its own
-/// directions, and one thinner than 1e-8 of its length, of which rounding leaves too few digits, is
-/// bounded only.
+/// directions. One thinner than 1e-8 of its length, of which rounding leaves too few digits, is
+/// bounded only, as is one whose vertices are not confirmed.
 Volume area_of(const sets::SupportOracle& oracle) {
   constexpr double thin = 4e-3, too_thin = 1e-8;
   const Matrix vertices = sets::polygon(oracle);
   if (vertices.cols() == 0) return {0, true};
   const double area = sets::area(vertices);
   const double hull = (vertices.rowwise().maxCoeff() - vertices.rowwise().minCoeff()).prod();
-  if (area > thin * hull) return {area, true};
+  if (area > thin * hull && is_confirmed(oracle, vertices, area)) return {area, true};
   const sets::TurnedBox box = sets::turned_box(oracle, 2);
-  if (!(box.widths.minCoeff() > too_thin * box.widths.maxCoeff()))
-    return {box.volume, box.volume == 0};
+  const Volume bound{box.volume, box.volume == 0};
+  if (!(box.widths.minCoeff() > too_thin * box.widths.maxCoeff())) return bound;
   const Matrix& D = box.directions;
   const sets::SupportOracle turned = [&](const Vector& d) -> sets::SupportPoint {
     sets::SupportPoint answer = oracle(D * d);
     if (answer.h != -infinity) answer.x = (D.transpose() * answer.x).eval();
     return answer;
   };
-  const double det = std::abs(D(0, 0) * D(1, 1) - D(0, 1) * D(1, 0));
-  return {sets::area(sets::polygon(turned)) / det, true};
+  const Matrix turned_vertices = sets::polygon(turned);
+  const double turned_area = sets::area(turned_vertices);
+  if (!is_confirmed(turned, turned_vertices, turned_area)) return bound;
+  return {turned_area / std::abs(D(0, 0) * D(1, 1) - D(0, 1) * D(1, 0)), true};
+}
+
+/// Of the interval between two support points.
+Volume length_of(const sets::SupportOracle& oracle) {
+  constexpr double accuracy = 1e-7;
+  const sets::SupportPoint up = oracle(Vector{{1.0}}), down = oracle(Vector{{-1.0}});
+  if (up.h == -infinity || down.h == -infinity) return {0, true};
+  const double width = std::max(0.0, up.h + down.h), reached = up.x[0] - down.x[0];
+  return {width, std::abs(width - reached) <= accuracy * width};
 }
 
 }  // namespace
@@ -96,7 +121,7 @@ std::optional<Volume> ConstrainedForm::volume(const Value& X) const {
     if (width > 0 && width < resolved * terms[i]) return std::nullopt;
   }
   Volume volume{0, true};
-  if (n == 1) volume.value = std::max(0.0, oracle(Vector{{1.0}}).h + oracle(Vector{{-1.0}}).h);
+  if (n == 1) volume = length_of(oracle);
   if (n == 2) volume = area_of(oracle);
   if (n == 3) {
     const sets::VolumeBounds bounds = sets::volume(oracle);

@@ -19,9 +19,9 @@ class Text final : public detail::Sink {
 };
 
 JsonWriter::Layout layout_of(const Json& value) {
-  const bool flat = value.is_array() && std::none_of(value.begin(), value.end(), [](const Json& one) {
-    return one.is_structured();
-  });
+  const bool flat =
+      value.is_array() &&
+      std::none_of(value.begin(), value.end(), [](const Json& one) { return one.is_structured(); });
   return flat ? JsonWriter::Layout::line : JsonWriter::Layout::lines;
 }
 

@@ -10,6 +10,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/tolerances.hpp"
+#include "left_inverse.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
 #include "observers/interval_spread.hpp"
@@ -62,25 +63,6 @@ Matrix stacked_E_C(const LinearModel& m) {
   Matrix stacked(m.states() + m.outputs(), m.states());
   stacked << (m.is_descriptor() ? m.E : Matrix(Matrix::Identity(m.states(), m.states()))), m.C;
   return stacked;
-}
-
-/// The pseudo-inverse [T N] of K, with T E + N C = I to the last digits, in units in which the
-/// largest entries of K's columns are 1: where states or outputs have unlike units, a decomposition
-/// knows small entries by few digits or none, and states of 1e17 ask for them. Newton's iteration
-/// doubles the digits; it is left out where they are there.
-Matrix left_inverse(const Matrix& K) {
-  constexpr double enough = 1e-13;
-  Vector units = K.cwiseAbs().colwise().maxCoeff();
-  units = (units.array() > 0).select(units, 1.0);
-  Matrix inverse = linalg::pseudo_inverse(K);
-  for (int i = 0; i < 3; ++i) {
-    const Matrix rest = Matrix::Identity(K.cols(), K.cols()) - linalg::product(inverse, K);
-    if ((units.asDiagonal() * rest.cwiseAbs() * units.cwiseInverse().asDiagonal()).maxCoeff() <=
-        enough)
-      break;
-    inverse += linalg::product(rest, inverse);
-  }
-  return inverse;
 }
 
 class PseudoInverseObserver final : public Observer {

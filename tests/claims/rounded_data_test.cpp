@@ -162,3 +162,19 @@ TEST_CASE("a start that static rows determine stays in a set that is flat") {
     CHECK(first.substr(first.rfind(',') + 1) == "0");  // x_2 at k = 0
   }
 }
+
+TEST_CASE("a large state does not move a small one that it has nothing to do with") {
+  Json study = Json::parse(R"({
+    "cordon": 1, "title": "a small state beside a large one",
+    "system": {"type": "descriptor", "E": [[1, 0], [0, 1]], "A": [[0.5, 0], [0, 0.8]], "B": [[0], [-0.9]], "C": [[0, 1]],
+      "X0": {"type": "box", "lower": [0, -1], "upper": [1e-8, 1]}, "W": {"type": "box", "lower": [0, -1], "upper": [1e-9, 1]}},
+    "data": {"simulate": {"steps": 20, "input": [{"type": "constant", "offset": 1e8}]}},
+    "pipelines": [{"name": "interval", "backend": "interval", "observer": "descriptor"},
+      {"name": "zonotope", "backend": "zonotope", "observer": "descriptor"}], "metrics": ["contains_truth"]})");
+  study["system"]["V"] = box({.1});
+  const Program program(study);
+  CHECK(program.run().code == 0);
+  CHECK(program.verify().code == 0);
+  for (const Json& pipeline : program.results()["pipelines"])
+    CHECK(pipeline["summary"]["contains_truth_share"] == 1);
+}

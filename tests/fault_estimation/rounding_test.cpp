@@ -153,6 +153,32 @@ TEST_CASE("large signals in random systems with exact and repeated outputs") {
   CHECK(bounds > 3000);
 }
 
+TEST_CASE("a large fault that shows by the smallest entries") {
+  // T = I - N C has the entry -c₁ c₂ / (1 + CCᵀ): it is far below the others, and F₂ large
+  const Signal none = [](Index) { return Vector(Vector::Zero(1)); };
+  Index given = 0;
+  for (const double c1 : {1., 30., 100., 300.}) {
+    for (const double c2 : {1e-10, 1e-12, -1e-13, 1e-15}) {
+      for (const double f1 : {1e-7, -1e-8, 1e-9, 0.}) {
+        for (const double f2 : {1e3, 1e6}) {
+          Model model = lti(Matrix::Zero(2, 2), Matrix{{c1, c2}}, Matrix{{f1}, {f2}});
+          model.linear.Dv = Matrix{{1e-9}};
+          model.V = make_zonotope(Vector::Zero(1), Matrix::Identity(1, 1));
+          if (!banks::registry()
+                   .check<DiagnoserEntry>("fault_estimation_filter", {alone(model), zonotopes()},
+                                          {})
+                   .empty())
+            continue;
+          ++given;
+          const Signal step = [](Index k) { return Vector(Vector::Constant(1, k < 3 ? 0 : 1000)); };
+          run(*filter(model, {}), FaultyRun(model, none, step, Draw{std::mt19937_64(1)}), step, 10);
+        }
+      }
+    }
+  }
+  CHECK(given > 50);
+}
+
 TEST_CASE("faults that nearly the same outputs tell apart, in other units") {
   const Matrix I = Matrix::Identity(2, 2);
   const Signal none = [](Index) { return Vector(Vector::Zero(1)); };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes of sets with constraints against those of exact polytopes, with details that are hardly
 // larger than rounding.
+#include <cmath>
 #include <random>
 
 #include <doctest/doctest.h>
@@ -14,11 +15,11 @@ using namespace cordon;
 
 namespace {
 
-/// A set of dimension 3 around a point, with one column of G and A for each entry of `sizes`.
-LineForm random_set(const Vector& sizes, Index constraints, std::mt19937& random) {
+/// A set of dimension n around a point, with one column of G and A for each entry of `sizes`.
+LineForm random_set(const Vector& sizes, Index constraints, std::mt19937& random, Index n = 3) {
   std::uniform_real_distribution<double> number(-1, 1);
   const Index g = sizes.size();
-  LineForm X{Matrix(3, 0),           Matrix(3, g),           Vector(3),
+  LineForm X{Matrix(n, 0),           Matrix(n, g),           Vector(n),
              Matrix(constraints, 0), Matrix(constraints, g), Vector(constraints)};
   Vector xi(g);
   for (auto* part : {&X.G, &X.A}) {
@@ -55,6 +56,30 @@ TEST_CASE("volumes with constraints are those of the exact polytope") {
       }
     }
   }
+}
+
+TEST_CASE("areas and lengths of thin and small sets are exact, or said to be bounds") {
+  const Plugins plugins;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> power(-8, 0);
+  Index exact = 0, all = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    CAPTURE(trial);
+    const Index n = 1 + trial % 2;
+    Vector sizes(8);
+    for (double& size : sizes) size = std::pow(10, power(random));
+    LineForm X = random_set(sizes, 1 + trial % 3, random, n);
+    X.G.row(n - 1) *= std::pow(10, power(random));
+    const rounding::Range truth = Polytope::from(X).volume();
+    for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
+      const Volume found = plugins.backend(name)->import(X)->volume();
+      CHECK(found.value >= truth.lower * (1 - 1e-7));
+      if (found.exact) CHECK(found.value <= truth.upper * (1 + 1e-7));
+      exact += found.exact;
+      ++all;
+    }
+  }
+  CHECK(exact > all / 2);
 }
 
 TEST_CASE("the volume of what constraints leave of a set, and of one far from the origin") {

@@ -157,6 +157,9 @@ TEST_CASE("what the host has proven of a design is proven again") {
   CHECK(refuted([](Json& p) { p[0]["exact"]["tubes"][1]["empty"] = "yes"; }) ==
         "/pipelines/0/exact/tubes/1");
   CHECK(refuted([](Json& p) { p[0]["exact"] = nullptr; }) == "");
+  for (const double bound : {-.5, -1e-6, 0.})  // of a pair that meets nothing is proven
+    CHECK(refuted([&](Json& p) { p[1]["exact"]["pairs"][0]["kappa_lower"] = bound; }) ==
+          "/pipelines/1/exact/pairs/0");
 }
 
 TEST_CASE("a bound of κ that is too large stays open") {
@@ -260,6 +263,10 @@ TEST_CASE("numbers of a design that contradict each other") {
           p[0]["design"]["lower_bound"] = "inf";
         }) == "/pipelines/0/design/lower_bound");
   CHECK(refuted([](Json& p) { p[0]["design"]["status"] = "feasible"; }) == "");
+  CHECK(refuted([&](Json& p) {  // a given input that separates the modes costs less
+          above(p);
+          p[0]["design"]["status"] = "given";
+        }) == "/pipelines/0/design/lower_bound");
 }
 
 TEST_CASE("a bound of κ of a pair that meets is proven too") {

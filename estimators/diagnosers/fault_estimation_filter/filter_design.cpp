@@ -7,6 +7,7 @@
 
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/tolerances.hpp"
+#include "left_inverse.hpp"
 
 namespace cordon::estimators {
 
@@ -59,8 +60,9 @@ struct Response {
 };
 
 /// After n steps of silence there is never a response.
-std::optional<Response> first_response(const Matrix& T, const Matrix& TA, const Matrix& C,
+std::optional<Response> first_response(const Matrix& T, const Matrix& A, const Matrix& C,
                                        VectorIn f) {
+  const Matrix TA = product(T, A), TA_size = product(T.cwiseAbs(), A.cwiseAbs());
   Vector state = product(T, f);
   Vector size = product(T.cwiseAbs(), f.cwiseAbs());
   for (Index delay = 1; delay <= state.size(); ++delay) {
@@ -69,26 +71,9 @@ std::optional<Response> first_response(const Matrix& T, const Matrix& TA, const 
             .any())
       return Response{delay, state};
     state = product(TA, state);
-    size = product(TA.cwiseAbs(), size);
+    size = product(TA_size, size);
   }
   return {};
-}
-
-/// A without the entries where `shares` are rounding: 1e-14 of the largest of their column.
-Matrix without_rounding(const Matrix& A, const Matrix& shares) {
-  const Eigen::RowVectorXd noise = tolerances::product_noise * shares.colwise().maxCoeff();
-  return (shares.array() <= noise.replicate(A.rows(), 1).array()).select(0.0, A);
-}
-
-/// Θ⁺. Singular values leave rounding in entries that are 0, and a fault must not show by it. What
-/// an entry counts is its product with its row of Θ, beside the largest for the same state.
-Matrix inverse_without_rounding(const Matrix& theta) {
-  const Matrix inverse = linalg::pseudo_inverse(theta);
-  Matrix shares = inverse.cwiseAbs() * theta.rowwise().norm().asDiagonal();
-  for (Index i = 0; i < shares.rows(); ++i) {
-    if (const double largest = shares.row(i).maxCoeff(); largest > 0) shares.row(i) /= largest;
-  }
-  return without_rounding(inverse, shares);
 }
 
 /// T and N of the design.
@@ -105,9 +90,9 @@ bool find_T_and_N(const Matrix& E, const Matrix& C, const Matrix& S, FilterDesig
                         "measure it, or describe its dynamics in E"});
     return false;
   }
-  const Matrix inverse = inverse_without_rounding(theta);
-  const Matrix rest = Matrix::Identity(n + m, n + m) - product(theta, inverse);
-  const Matrix both = inverse + product(S, without_rounding(rest, rest.cwiseAbs()));
+  Matrix rest;
+  const Matrix inverse = left_inverse(theta, &rest);
+  const Matrix both = inverse + product(S, rest);
   design.T = both.leftCols(n);
   design.N = both.rightCols(m);
   if (is_identity(product(design.T, E) + product(design.N, C))) return true;
@@ -125,7 +110,7 @@ bool find_responses(const LinearModel& model, FilterDesign& design,
   design.Psi = Matrix(model.states(), q);
   std::vector<Index> silent;
   for (Index i = 0; i < q; ++i) {
-    const auto response = first_response(design.T, TA, model.C, model.F.col(i));
+    const auto response = first_response(design.T, model.A, model.C, model.F.col(i));
     if (!response) {
       silent.push_back(i);
       continue;
@@ -177,7 +162,10 @@ bool find_M_and_Omega(FilterDesign& design, std::vector<Diagnostic>& problems) {
     return false;
   }
   design.M = scale.asDiagonal() * linalg::pseudo_inverse(normalised);
-  design.Omega = linalg::null_space(normalised.transpose()).transpose();
+  const Matrix Omega = linalg::null_space(normalised.transpose()).transpose();
+  // entries that are rounding, and times the noise of their outputs all there is of it
+  const Vector least = tolerances::product_noise * Omega.cwiseAbs().rowwise().maxCoeff();
+  design.Omega = (Omega.array().abs() <= least.replicate(1, m).array()).select(0.0, Omega);
   return true;
 }
 

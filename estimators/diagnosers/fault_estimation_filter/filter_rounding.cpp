@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "diagnosers/fault_estimation_filter/filter_rounding.hpp"
 
+#include <algorithm>
+#include <utility>
+
+#include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "cordon/sets/generator_reduction.hpp"
@@ -29,6 +33,21 @@ Matrix fault_states(const FilterDesign& design, const LinearModel& model) {
   return sizes;
 }
 
+/// A bound of every n with n ≤ b + K n, for K ≥ 0 and b ≥ 0: where x' = b + 4 K x is at most 2 x, K
+/// x' ≤ 2 K x ≤ x' / 2, so that powers of K die out, and x' ≥ b + K x'. Infinite if there is none.
+Vector fixed_point(const Matrix& K, const Vector& b) {
+  constexpr int rounds = 100;
+  constexpr double positive = 1e-300;
+  const Vector least = (b.array() + positive).matrix();
+  Vector x = least;
+  for (int round = 0; round < rounds; ++round) {
+    const Vector next = least + 4 * product(K, x);
+    if ((next.array() <= 2 * x.array()).all()) return next;
+    x = next;
+  }
+  return Vector::Constant(b.size(), infinity);
+}
+
 }  // namespace
 
 FilterRounding::FilterRounding(const FilterDesign& design, const LinearModel& model,
@@ -51,14 +70,14 @@ FilterRounding::FilterRounding(const FilterDesign& design, const LinearModel& mo
       (I - product(design.T, E) - product(design.N, model.C)).cwiseAbs() +
       tolerances::product_noise * (product(T_size_, E.cwiseAbs()) + product(N_size_, C_size_));
   const Index q = model.faults();
-  mixing_ = (Matrix::Identity(q, q) - product(design.M, Upsilon_)).cwiseAbs();
+  mixing_ = (Matrix::Identity(q, q) - product(design.M, Upsilon_)).cwiseAbs() +
+            tolerances::product_noise * product(M_size_, Upsilon_.cwiseAbs());
+  by_faults_ = mixing_ + product(MC_.cwiseAbs(), product(defect_, fault_state_));
 }
 
 void FilterRounding::start(const Input& first, const FilterRecursion& recursion) {
-  now_ = first;
   size_ = first.x.cwiseAbs();
-  generators_ = Matrix(size_.size(), 0);
-  error_size_ = row_sums(recursion.errors()) + product(fault_state_, first.fault_size);
+  settle(first, recursion, Matrix(size_.size(), 0), Vector::Zero(size_.size()));
 }
 
 Vector FilterRounding::step_size(const FilterRecursion& recursion, VectorIn u_size,
@@ -71,25 +90,35 @@ Vector FilterRounding::step_size(const FilterRecursion& recursion, VectorIn u_si
 
 void FilterRounding::advance(const Input& next, const FilterRecursion& recursion, VectorIn u_size,
                              VectorIn constant) {
-  const Index n = size_.size(), old = generators_.cols();
   size_ = step_size(recursion, u_size, constant) + product(N_size_, next.output + Dv_size_);
   const Matrix faults = (TA_Psi_ - product(recursion.gain(), Upsilon_)).cwiseAbs();
   const Vector left = tolerances::product_noise * size_ + product(faults, now_.fault_size);
-  Matrix kept(n, old + n);
-  kept.leftCols(old) = product(recursion.error_map(), generators_);
-  error_size_ = row_sums(recursion.errors()) + row_sums(kept.leftCols(old)) + left +
-                product(fault_state_, next.fault_size);
-  kept.rightCols(n) =
-      (left + product(defect_, next.x.cwiseAbs() + error_size_)).asDiagonal().toDenseMatrix();
-  generators_ =
-      sets::reduce_generators(kept, columns_per_state * n, sets::GeneratorReduction::combastel);
-  now_ = next;
+  settle(next, recursion, product(recursion.error_map(), generators_), left);
 }
 
-Vector FilterRounding::slack() const {
-  const Vector terms = now_.output + Dv_size_ + product(C_size_, size_);
-  return tolerances::proof_margin * product(M_size_, terms) + product(mixing_, now_.fault_size) +
-         row_sums(product(MC_, generators_));
+/// The faults that are seen now, and with them the errors of this step.
+void FilterRounding::settle(Input input, const FilterRecursion& recursion, const Matrix& old,
+                            const Vector& left) {
+  const Index n = size_.size();
+  const Vector known = row_sums(recursion.errors()) + row_sums(old) + left;
+  const Vector of_step = left + product(defect_, input.x.cwiseAbs() + known);
+  const Vector terms = input.output + Dv_size_ + product(C_size_, size_);
+  const Vector own = tolerances::proof_margin * product(M_size_, terms) +
+                     row_sums(product(MC_, old)) + product(MC_.cwiseAbs(), of_step);
+  input.fault_size = fixed_point(by_faults_, input.fault_size + own);
+  slack_ = own + product(by_faults_, input.fault_size);
+  if (own.allFinite() && !slack_.allFinite()) {
+    throw Error(Errc::not_finite,
+                "rounding decides how large a fault is, whose response is small beside other "
+                "faults or states: scale states, outputs and faults to like sizes");
+  }
+  error_size_ = known + product(fault_state_, input.fault_size);
+  Matrix kept(n, old.cols() + n);
+  kept << old,
+      (left + product(defect_, input.x.cwiseAbs() + error_size_)).asDiagonal().toDenseMatrix();
+  generators_ =
+      sets::reduce_generators(kept, columns_per_state * n, sets::GeneratorReduction::combastel);
+  now_ = std::move(input);
 }
 
 }  // namespace cordon::estimators

@@ -19,7 +19,7 @@ class FilterRounding {
   struct Input {
     Vector x;           ///< x̂
     Vector output;      ///< sizes of the terms of ỹ
-    Vector fault_size;  ///< |r| and the half widths of the faults
+    Vector fault_size;  ///< |r| and the half widths of the faults, without what rounding adds
   };
 
   FilterRounding(const FilterDesign& design, const LinearModel& model, const FilterNoise& noise);
@@ -29,10 +29,14 @@ class FilterRounding {
   void advance(const Input& next, const FilterRecursion& recursion, VectorIn u_size,
                VectorIn constant);
   /// What the bounds of the faults must be widened by for it: row sums of |M C generators|, and
-  /// 1e-10 of the terms of r.
-  Vector slack() const;
+  /// 1e-10 of the terms of r. It depends on the faults themselves, n ≤ |r| + h + slack(n): the
+  /// least n that keeps to that. `settle` throws Errc::not_finite where rounding has a quarter of a
+  /// fault's response or more.
+  const Vector& slack() const { return slack_; }
 
  private:
+  void settle(Input input, const FilterRecursion& recursion, const Matrix& kept,
+              const Vector& left);
   Vector step_size(const FilterRecursion& recursion, VectorIn u_size, VectorIn constant) const;
 
   Matrix T_size_, A_size_, B_size_, C_size_, N_size_, M_size_, MC_;
@@ -43,7 +47,8 @@ class FilterRounding {
   Matrix mixing_;  ///< of M Υ = I
   Matrix generators_;
   Input now_;
-  Vector error_size_, size_;
+  Vector error_size_, size_, slack_;
+  Matrix by_faults_;  ///< how the slack depends on n
 };
 
 }  // namespace cordon::estimators

@@ -59,8 +59,7 @@ class DesignCheck {
       const PairSeparation& claim = recorded.pairs.at(q);
       const std::string what = fmt::format("what is called proven of pair {}", q + 1);
       if (!same(claim.disjoint, exact.pairs[q].disjoint, what, "/exact/pairs/", q)) continue;
-      const bool positive = claim.kappa_lower > tolerances::reported;
-      if (claim.disjoint == Answer::no && positive)
+      if (claim.disjoint == Answer::no && claim.kappa_lower > -1)
         refute(fmt::format("κ ≥ {} is called proven of a pair that meets", claim.kappa_lower),
                "/exact/pairs/", q);
       if (claim.disjoint == Answer::yes && claim.kappa_lower > exact.pairs[q].kappa_lower) {
@@ -85,7 +84,9 @@ class DesignCheck {
   /// An input that was found separates the modes, and costs no less than every one that does; that
   /// none is cheaper is not compared.
   void status(const DesignOutcome& claim, Answer exact) {
-    if (claim.status != DesignStatus::optimal && claim.status != DesignStatus::feasible) return;
+    const bool found_one =
+        claim.status == DesignStatus::optimal || claim.status == DesignStatus::feasible;
+    if (!found_one && exact != Answer::yes) return;
     const double cost = claim.best->cost;
     if (exact == Answer::no)
       found.refuted.push_back(
