@@ -114,10 +114,7 @@ void add_info(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("info", "Explain a component and its parameters");
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  command
-      ->add_option("COMPONENT", *name,
-                   "Name of a backend, observer, diagnoser, metric, plant, gain or designer (see "
-                   "`cordon list`)")
+  command->add_option("COMPONENT", *name, "Name of a component of any kind (see `cordon list`)")
       ->required();
   command->add_flag("--json", *json, "Print JSON for programs");
   command->callback([&program, name, json] { program.exit = info(program, *name, *json); });

@@ -69,9 +69,8 @@ TEST_CASE("unload refuses while something lives, naming the number, and really u
   std::optional<Enclosure> X = registry.make<BackendEntry>("test_box", {})->import(make_point(one));
   auto metric = registry.make<MetricEntry>("step_count", {});
   CHECK_THROWS_WITH_AS(registry.unload("test_box"),
-                       "plugin \"test_box\" cannot be unloaded while 2 of its backends, observers "
-                       "or metrics live; let go of them and of "
-                       "their sets first",
+                       "plugin \"test_box\" cannot be unloaded while 2 of its components live; let "
+                       "go of them and of their sets first",
                        Error);
   metric.reset();
   CHECK_THROWS_AS(registry.unload("test_box"), Error);

@@ -121,12 +121,10 @@ void Registry::unload(std::string_view plugin) {
                 fmt::format("no plugin \"{}\" is loaded; {}", plugin, suggest(plugin, loaded)));
   }
   if (const long live = found->second.library.use_count() - 1; live > 0) {
-    throw Error(
-        Errc::plugin,
-        fmt::format(
-            "plugin \"{}\" cannot be unloaded while {} of its backends, observers or metrics live; "
-            "let go of them and of their sets first",
-            plugin, live));
+    throw Error(Errc::plugin,
+                fmt::format("plugin \"{}\" cannot be unloaded while {} of its components live; "
+                            "let go of them and of their sets first",
+                            plugin, live));
   }
   std::erase_if(state_->reports, [&](const PluginReport& r) {
     return r.state == PluginReport::State::loaded && r.name == plugin;

@@ -72,7 +72,7 @@ class Registry {
   /// cache.
   const PluginReport& load_file(const std::filesystem::path& file);
   /// Closes a plugin's library and forgets its report. Throws Errc::plugin, naming the number,
-  /// while backends, observers or metrics of it live (a set keeps its backend alive); Errc::invalid
+  /// while components of it live (a set keeps its backend alive); Errc::invalid
   /// if no such plugin is loaded.
   void unload(std::string_view plugin);
 
