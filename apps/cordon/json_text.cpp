@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "study/text/json_writer.hpp"
+#include "study/text/string_sink.hpp"
 
 namespace cordon::apps {
 
@@ -11,12 +12,6 @@ namespace {
 
 using detail::JsonWriter;
 using Json = nlohmann::ordered_json;
-
-class Text final : public detail::Sink {
- public:
-  void write(std::string_view bytes) override { all.append(bytes); }
-  std::string all;
-};
 
 JsonWriter::Layout layout_of(const Json& value) {
   const bool flat =
@@ -58,10 +53,10 @@ void write(JsonWriter& to, const Json& value) {
 }  // namespace
 
 std::string json_text(const Json& value) {
-  Text text;
+  detail::StringSink text;
   JsonWriter writer(text);
   write(writer, value);
-  return text.all + "\n";
+  return text.text + "\n";
 }
 
 }  // namespace cordon::apps

@@ -4,6 +4,7 @@
 
 #include <rapidcheck.h>
 
+#include "diagnosers/fault_estimation_filter/filter_rounding.hpp"
 #include "fault_estimation/filters.hpp"
 
 using namespace faults;
@@ -177,6 +178,29 @@ TEST_CASE("a large fault that shows by the smallest entries") {
     }
   }
   CHECK(given > 50);
+}
+
+TEST_CASE("a design whose rounding decides how large a fault is gives no bounds") {
+  const Model model = lti(Matrix::Zero(2, 2), Matrix{{100, 1e-12}}, Matrix{{1e-8}, {1e6}});
+  std::vector<Diagnostic> problems;
+  auto design = estimators::design_filter(model.linear, Matrix::Zero(2, 3), problems);
+  REQUIRE(design);
+  const estimators::FilterNoise none{Matrix(2, 0), Matrix(1, 0)};
+  const auto slack_of = [&](const estimators::FilterDesign& of) {
+    estimators::FilterRecursion recursion(of, model.linear, none, 4,
+                                          estimators::NoiseCoupling::shared);
+    recursion.start(Matrix(2, 0));
+    estimators::FilterRounding rounding(of, model.linear, none);
+    rounding.start({Vector::Zero(2), Vector::Zero(1), Vector::Ones(1)}, recursion);
+    return rounding.slack()[0];
+  };
+  CHECK(slack_of(*design) < .1);
+  design->T(0, 1) = 0;  // 1e-14 of the largest entry, and most of what the fault shows
+  design->Psi = design->T * model.linear.F;
+  design->Upsilon = model.linear.C * design->Psi;
+  design->M = design->Upsilon.cwiseInverse();
+  CHECK_THROWS_WITH_AS(slack_of(*design),
+                       doctest::Contains("rounding decides how large a fault is"), Error);
 }
 
 TEST_CASE("faults that nearly the same outputs tell apart, in other units") {

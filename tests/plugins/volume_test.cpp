@@ -3,6 +3,7 @@
 // larger than rounding.
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -80,6 +81,60 @@ TEST_CASE("areas and lengths of thin and small sets are exact, or said to be bou
     }
   }
   CHECK(exact > all / 2);
+}
+
+namespace {
+
+LineForm with_constraints(const Vector& c, const Matrix& G, const Matrix& A, const Vector& b) {
+  return {Matrix(c.size(), 0), G, c, Matrix(b.size(), 0), A, b};
+}
+
+/// Two are a millionth as thick as long; of one the constraints leave a millionth.
+std::vector<LineForm> with_hidden_vertices() {
+  return {
+      with_constraints(
+          Vector{{-0.0777584645943552, 0.19160714219145003}},
+          Matrix{
+              {-0.03438417624818078, 0.7305315880858705, -0.2082623129953735, -0.7495386805959816},
+              {-0.014194057401216778, 0.30157149575676545, -0.08597339872303536,
+               -0.309417460171123}},
+          Matrix{{-0.6907127727707041, 0.0, -0.38473352321336884, 0.7763652521133038},
+                 {0.5378660193382079, 0.465548773420823, -0.9612340988108561, 0.4694330075740587}},
+          Vector{{0.17736885355832066, 0.2661416358134784}}),
+      with_constraints(Vector{{-0.9619035573340462, -0.6395466192294978}},
+                       Matrix{{0.6198430011773227, 0.42907919129979266, -0.38281031086314177,
+                               0.5333442673170048, 0.42466523781849885, 0.48966350407180226},
+                              {0.5840875657460961, 0.4043273599105776, -0.3607283685492084,
+                               0.5025788293283567, 0.40016898058814915, 0.4614181542239586}},
+                       Matrix{{0.28764570736866624, -0.3151498114317244, 0.6759065216119804,
+                               0.9705978174431924, -0.36781950459402113, -0.9275888219288633},
+                              {-0.26645543426339136, -0.7289699541301806, -0.362327103849041,
+                               0.13434595867604315, 0.0, 0.7807915029482191}},
+                       Vector{{-0.5186260314133839, 0.10944179387551854}}),
+      with_constraints(Vector{{-0.9008091060040093, 0.7185100669860982}},
+                       Matrix{{0.3632165247111132, -0.20970668731650632, -0.08880423849542063,
+                               0.9373448354790224, 0.5810727117876855, 0.764686842214316},
+                              {-0.03759100598132403, -0.028989239539643163, -0.6897531200429898,
+                               -0.8131820395256912, 0.9499713283711393, 0.3076759535914937}},
+                       Matrix{{0.68790724173759, -0.20409226771853994, -0.6440485600522929,
+                               -0.2563411179813535, 0.8793051568069392, -0.8629220447610131},
+                              {0.8379746380072839, -0.5453573645691694, 0.542402565141185,
+                               -0.13015293229115898, -0.635732643003325, 0.6257853223626182}},
+                       Vector{{3.5346161275044095, -0.29043559563604193}})};
+}
+
+}  // namespace
+
+TEST_CASE("a vertex that the solver takes for another is missed by no area that is called exact") {
+  const Plugins plugins;
+  for (const LineForm& X : with_hidden_vertices()) {
+    const rounding::Range truth = Polytope::from(X).volume();
+    for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
+      const Volume found = plugins.backend(name)->import(X)->volume();
+      CHECK(found.value >= truth.lower * (1 - 1e-7));
+      if (found.exact) CHECK(found.value <= truth.upper * (1 + 1e-7));
+    }
+  }
 }
 
 TEST_CASE("the volume of what constraints leave of a set, and of one far from the origin") {
