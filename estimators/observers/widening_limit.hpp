@@ -14,8 +14,8 @@ namespace cordon::estimators {
 /// nothing were ever reduced:
 ///   hₖ = |Fᵏ| h₀ + Σ_{j<k} |Fʲ N| 1 + (Σ_{j<k} |Fʲ|) max_{i<k} bᵢ,
 /// exact but for b, which may differ from step to step. Bounded for stable F, whatever |F| is. Once
-/// Fᵏ is below 1e-13 of what has been added up the sums are left as they are. O(n² (n + m)) per
-/// step until then. [Kofman2007]
+/// all later powers together add less than 2e-10 of the sums, this is added and they are left as
+/// they are. O(n² (n + m)) per step until then. [Kofman2007]
 class ErrorHull {
  public:
   /// F is n×n, N n×m, h₀ ≥ 0.
@@ -27,9 +27,12 @@ class ErrorHull {
   Vector half_widths() const;
 
  private:
-  Matrix F_, power_, noise_;  ///< F, Fᵏ, Fᵏ N
-  Matrix powers_;             ///< Σ_{j<k} |Fʲ|
-  Vector start_, sum_, b_;    ///< h₀, Σ_{j<k} |Fʲ N| 1, max b
+  void settle();
+
+  Matrix F_, power_, N_, noise_;  ///< F, Fᵏ, N, Fᵏ N
+  Matrix powers_;                 ///< Σ_{j<k} |Fʲ|
+  Vector start_, sum_, b_;        ///< h₀, Σ_{j<k} |Fʲ N| 1, max b
+  Index steps_ = 0;
   bool settled_ = false;
 };
 
