@@ -65,9 +65,8 @@ std::string open_question(const ModeBank& bank, const InputDesign& design, doubl
     if (pair.disjoint == Answer::yes) continue;
     const std::string who = name_of(bank, pair.i) + " and " + name_of(bank, pair.j);
     if (pair.kappa > -touching && pair.kappa < touching) {
-      return fmt::format(
-          "the tubes of {} touch: an input that separates them costs more, by however little{}",
-          who, epsilon == 0 ? "; ε > 0 keeps them apart" : "");
+      return fmt::format("the tubes of {} touch up to rounding, |κ| is below 1e-7{}", who,
+                         epsilon == 0 ? "; ε > 0 asks for a distance" : "");
     }
     if (pair.disjoint == Answer::no) return fmt::format("the outputs of {} can be the same", who);
     return fmt::format("whether the outputs of {} can be the same is not decided", who);

@@ -79,8 +79,9 @@ class Support {
   /// rounding?
   bool is_met_within(const Vector& effect) {
     ++programs;
+    const Matrix shares = L_.cwiseAbs().transpose();
     const Vector error = effect + row_noise * pair_.terms;
-    return BoxedProgram(rows_, right_, {pair_.terms, product(L_.cwiseAbs().transpose(), error)})
+    return BoxedProgram(rows_, right_, {product(shares, pair_.terms), product(shares, error)})
                .is_empty() == cordon::Answer::no;
   }
   double terms_along(const Vector& d) const {
@@ -295,7 +296,13 @@ ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, dou
   if (empty == Answer::yes) {
     set = of_kind(ForbiddenSet::Kind::separated);
   } else if (r > 0) {
-    set = Builder(scaled, support, r, max_facets, watch).build();
+    const Matrix seen = parts.U.leftCols(r) * parts.sigma.head(r).asDiagonal();
+    const Matrix unseen = product(scaled.N, Z) - product(seen, parts.V.leftCols(r).transpose());
+    set = pair.vanished == 0 && support.is_met_within(unseen.cwiseAbs().rowwise().sum())
+              ? Builder(scaled, support, r, max_facets, watch).build()
+              : of_kind(ForbiddenSet::Kind::unknown,
+                        "whether outputs on which the inputs have no effect tell them apart is a "
+                        "matter of rounding");
   } else if (pair.vanished == 0 &&
              support.is_met_within(product(scaled.N, Z).cwiseAbs().rowwise().sum())) {
     set = of_kind(ForbiddenSet::Kind::never,

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pairs that outputs tell apart on which inputs have no effect, by exactly as much as is asked for,
+// or up to rounding: no input is called useless, and none the cheapest, that rests on the contrary.
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "input_design/facets_answers.hpp"
+
+using namespace cordon;
+using namespace cordon::designers;
+using namespace cordon::examples;
+
+namespace {
+
+SearchResult search(const SeparationProblem& problem) {
+  DesignControl control;
+  return search_facets(problem, {}, control);
+}
+
+/// u moves the first row, noise both; the second row is `offset` apart.
+SeparationProblem apart_by(double offset, double epsilon, double most_input) {
+  const Matrix G{{.25, .25, .25, .25, 0, 0, 0, 0}, {0, 0, 0, 0, .25, .25, .25, .25}};
+  const PairProgram pair = pair_of(0, 1, G, Vector{{0, -offset}}, Matrix{{1}, {0}});
+  return problem_of({pair}, boxed_inputs(1, most_input), Cost::Kind::norm_1, epsilon);
+}
+
+/// x⁺ = B u + w in the first state alone, y = x with noise in the first output alone.
+Model half_noisy(const Matrix& B) {
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = Matrix::Zero(2, 2);
+  m.B = B;
+  m.Bw = m.Dv = Matrix{{1}, {0}};
+  m.C = Matrix::Identity(2, 2);
+  m.D = Matrix::Zero(2, 1);
+  model.X0 = make_point(Vector::Zero(2));
+  model.W = model.V = make_box({Vector{{-.25}}, Vector{{.25}}});
+  model.U = make_box({Vector{{-.5}}, Vector{{.5}}});
+  return model;
+}
+
+SeparationProblem of_models(const Model& one, const Model& other) {
+  std::vector<OutputTube> tubes;
+  for (const Model* model : {&one, &other})
+    tubes.push_back(output_tube(*model, *backend("line_zonotope"), {1}));
+  return problem_of(pair_programs(tubes), boxed_inputs(2, .5), Cost::Kind::norm_1, 0);
+}
+
+}  // namespace
+
+TEST_CASE("a margin without inputs that is met exactly is not denied") {
+  for (const double epsilon : {.25, .5, 0.}) {
+    for (const double beyond : {0., 1e-13, 1e-12, 1e-11, 5e-11, 1e-9}) {
+      CAPTURE(epsilon);
+      CAPTURE(beyond);
+      const double margin = 1 + epsilon;
+      SearchResult found = search(apart_by(margin + beyond, epsilon, .5));
+      CHECK(found.status != DesignStatus::infeasible);
+      found = search(apart_by(margin + beyond, epsilon, 4));
+      CHECK(found.status != DesignStatus::infeasible);
+      CHECK(found.lower_bound <= 1e-9);  // u = 0 separates
+    }
+  }
+}
+
+TEST_CASE("a margin without inputs that is missed is told as such, and inputs take its place") {
+  for (const double missing : {1e-6, 1e-3, .5}) {
+    CAPTURE(missing);
+    CHECK(search(apart_by(1.25 - missing, .25, .5)).status == DesignStatus::infeasible);
+    check_optimal(apart_by(1.25 - missing, .25, 4), search(apart_by(1.25 - missing, .25, 4)), 1.25);
+  }
+}
+
+TEST_CASE("outputs without noise that differ in their last digits are not taken for the same") {
+  const Model one = half_noisy(Matrix{{1}, {1}});
+  for (const double more : {std::ldexp(1., -52), std::ldexp(1., -44), 1e-13}) {
+    CAPTURE(more);
+    const SearchResult found = search(of_models(one, half_noisy(Matrix{{2}, {1 + more}})));
+    CHECK(found.status != DesignStatus::infeasible);
+    CHECK(found.status != DesignStatus::optimal);
+  }
+}
+
+TEST_CASE("outputs without noise that are the same are known to be") {
+  const Model one = half_noisy(Matrix{{1}, {1}});
+  const SearchResult found = search(of_models(one, half_noisy(Matrix{{2}, {1}})));
+  CHECK(found.status == DesignStatus::infeasible);
+}
