@@ -367,3 +367,36 @@ TEST_CASE(
   CHECK_THROWS_AS(bank->step({3, u, y}), Error);
   CHECK(bank->step({1, u, y}).decision == Decision::monitoring);
 }
+
+TEST_CASE("a plant that starts in the X0 of another mode is of that mode") {
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = Matrix{{.5}};
+  m.B = m.D = Matrix::Zero(1, 1);
+  m.Bw = m.C = m.Dv = Matrix{{1}};
+  model.X0 = box_around(Vector{{0}}, Vector{{1}});
+  model.W = model.V = box_around(Vector{{0}}, Vector{{.1}});
+  model.U = box_around(Vector{{0}}, Vector{{1}});
+  ModeBank modes;
+  modes.modes.push_back({"healthy", model});
+  model.X0 = box_around(Vector{{650}}, Vector{{250}});
+  model.W = box_around(Vector{{3}}, Vector{{.1}});
+  modes.modes.push_back({"other", model});
+  for (const char* name : {"zonotope", "interval", "line_zonotope"}) {
+    CAPTURE(name);
+    Params p;
+    p.set("gain", Matrix{{.25}}).set("waiting_time", std::int64_t{5});
+    const auto bank = registry().make<DiagnoserEntry>("observer_bank", {modes, backend(name)}, p);
+    CHECK(bank->guarantees()->error_set->set.G.cwiseAbs().sum() > 400);
+    for (const double x0 : {400., 650., 900.}) {
+      double x = x0;
+      bank->start();
+      for (Index k = 0; k < 30; ++k) {
+        const Diagnosis now = bank->step({k, Vector{{0}}, Vector{{x}}});
+        CHECK(now.modes[1].candidate + now.reset >= (k == 0 ? 0 : 1));
+        CHECK(now.modes[1].consistent != Answer::no);
+        x = .5 * x + 3;
+      }
+    }
+  }
+}

@@ -82,7 +82,7 @@ std::optional<LineForm> set_or_none(const Params& params, const char* name) {
   return params.has(name) ? std::optional(params.set_form(name)) : std::nullopt;
 }
 
-OfflineOptions offline_options(const ModeBank& bank, const Params& params) {
+OfflineOptions offline_options(const Params& params) {
   OfflineOptions options;
   const std::string& invariant = params.text("invariant");
   options.invariant = invariant == "rpi"       ? OfflineOptions::Invariant::rpi
@@ -100,7 +100,7 @@ OfflineOptions offline_options(const ModeBank& bank, const Params& params) {
   options.start_set = set_or_none(params, "start_set");
   options.error_set = set_or_none(params, "error_set");
   options.state_set = set_or_none(params, "state_set");
-  options.initial_set = initial_set_from(bank[bank.nominal].model, params);
+  options.initial_set = set_or_none(params, "initial_set");
   return options;
 }
 
@@ -110,10 +110,11 @@ ObserverBankOptions options_of(const DiagnoserContext& context, const Params& pa
   options.gains = gains_of(context, params);
   options.budget = budget_from(params);
   options.widening_limit = params.real("widening_limit");
-  options.initial_set = initial_set_from(bank[bank.nominal].model, params);
+  for (const Mode& mode : bank.modes)
+    options.initial_sets.push_back(initial_set_from(mode.model, params));
   options.waiting_time = params.integer("waiting_time");
   if (params.has("strip_gain")) options.strip_gain = params.matrix("strip_gain");
-  options.offline = offline_options(bank, params);
+  options.offline = offline_options(params);
   options.threads = params.integer("threads");
   return options;
 }
@@ -189,6 +190,18 @@ void check_shapes(const ModeBank& bank, const Params& params, std::vector<Diagno
   }
 }
 
+/// Modes with an X0 of their own.
+void check_own_starts(const DiagnoserContext& context, const Params& params,
+                      std::vector<Diagnostic>& problems) {
+  if (params.has("initial_set") || !problems.empty()) return;
+  for (const Mode& mode : context.bank.modes) {
+    for (Diagnostic& problem : check_common({mode.model, context.backend}, params)) {
+      problem.message += of_mode(mode);
+      problems.push_back(std::move(problem));
+    }
+  }
+}
+
 std::vector<Diagnostic> check_observer_bank(const DiagnoserContext& context, const Params& params) {
   const ModeBank& bank = context.bank;
   std::vector<Diagnostic> problems;
@@ -200,10 +213,11 @@ std::vector<Diagnostic> check_observer_bank(const DiagnoserContext& context, con
     return problems;
   }
   problems = check_common({bank[bank.nominal].model, context.backend}, params);
+  check_own_starts(context, params, problems);
   check_gains(context, params, problems);
   check_shapes(bank, params, problems);
   if (!problems.empty()) return problems;
-  return check_offline(bank, gains_of(context, params), offline_options(bank, params));
+  return check_offline(bank, gains_of(context, params), offline_options(params));
 }
 
 }  // namespace

@@ -158,9 +158,10 @@ Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
   if (!before) {
     elimination_.start(now.k);
     for (Index j = 0; j < modes; ++j) {
-      member(j).X = member(j).recursion.reduced(backend().import(options_.initial_set));
+      const LineForm& start = options_.initial_sets[static_cast<std::size_t>(j)];
+      member(j).X = member(j).recursion.reduced(backend().import(start));
       member(j).X_limit.start(member(j).recursion, member(j).X);
-      member(j).center = invariant::enclosing_zonotope(options_.initial_set).c;
+      member(j).center = invariant::enclosing_zonotope(start).c;
       member(j).size = member(j).center.cwiseAbs();
     }
   }

@@ -19,7 +19,7 @@ namespace cordon::estimators {
 struct ObserverBankOptions {
   std::vector<Matrix> gains;  ///< one per mode
   Budget budget;
-  LineForm initial_set;
+  std::vector<LineForm> initial_sets;  ///< one per mode
   double widening_limit = 0;
   Index waiting_time = 0;
   std::optional<Matrix> strip_gain;
@@ -27,8 +27,9 @@ struct ObserverBankOptions {
   Index threads = 1;
 };
 
-/// Every observer j runs from the start; its residual set R_j contains 0 as long as the plant is in
-/// mode j and always was. What is excluded is excluded by resets alone:
+/// Every observer j runs from the start, from the initial set of mode j; its residual set R_j
+/// contains 0 as long as the plant is in mode j and always was. What is excluded is excluded by
+/// resets alone:
 ///   reset at k   X̂'_j := {x̂_j} ⊕ {e ∈ X̃ : y_k - C_j (x̂_j + e) is explained by the noise}   for
 ///   every mode j, afterwards   the same recursion; 0 ∉ R'_j proves that the plant has not been in
 ///   mode j throughout from k on.
