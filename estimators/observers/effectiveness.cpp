@@ -177,7 +177,7 @@ Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& n
   for (Index i = 0; i < m.outputs(); ++i) {
     if (std::isfinite(zeta[i]) && std::isfinite(open[i])) used.push_back(i);
   }
-  if (used.empty()) return X;
+  if (used.empty()) return {X.set, Tightness::outer};  // what the outputs say is left out
   Matrix T(m.outputs(), noise_->dim());
   T << m.Dv, g_.asDiagonal() * input_spread(m.D, now.u), output_spread(zeta),
       interval_columns(open);

@@ -193,3 +193,18 @@ TEST_CASE("a Luenberger observer says in advance that interval matrices need a b
                                   Params().set("initial_set", make_point(Vector{{1}})))
             .empty());
 }
+
+TEST_CASE("an estimate that leaves an output out is not exact") {
+  Model model = scalar();
+  model.linear.C_radius = Matrix{{.25}};
+  model.X0 = make_space(1);
+  model.V = make_box({Vector{{-.125}}, Vector{{.125}}});
+  for (const char* name : {"line_zonotope", "interval"}) {
+    CAPTURE(name);
+    const auto observer =
+        registry().make<ObserverEntry>("prediction_correction", {model, backend(name)}, {});
+    const Estimate first = observer->step({0, Vector{{0}}, Vector{{1}}});
+    CHECK(first.set->is_bounded() != Answer::yes);
+    CHECK(first.set.tightness == Tightness::outer);
+  }
+}
