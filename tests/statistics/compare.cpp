@@ -249,6 +249,10 @@ TEST_CASE("other studies, machines, programs, pipelines, and fewer seeds") {
   CHECK(row.runs[1].common == 7);
   CHECK(row.runs[1].different == 0);
   CHECK_FALSE(measure(fewer, "radius_mean").is_equal());
+  CHECK(warns(fewer, "b lacks 12 points of a"));
+  const Comparison more = compared(other, {});
+  CHECK_FALSE(measure(more, "radius_mean").is_equal());
+  CHECK(warns(more, "b has 12 points that are not in a"));
   CHECK(apps::verdict_of({"radius_mean", false}, row.runs[0], row.runs[1]) ==
         "equal at 7 common points");
   other.seeds = 1;

@@ -225,6 +225,17 @@ void add_tests(const std::vector<Run>& runs, ComparedMeasure& measure) {
   }
 }
 
+/// Points of pipelines that both runs have, at which only `one` has been.
+std::size_t points_beyond(const Run& one, const Run& other, const std::vector<Key>& keys) {
+  std::size_t beyond = 0;
+  for (const Key& key : keys) {
+    const auto theirs = other.points(key);
+    if (theirs.empty()) continue;
+    for (const auto& [point, row] : one.points(key)) beyond += theirs.contains(point) ? 0 : 1;
+  }
+  return beyond;
+}
+
 std::vector<std::string> warnings_of(const std::vector<Run>& runs, const std::vector<Key>& keys,
                                      const std::vector<std::string>& names) {
   std::vector<std::string> warnings;
@@ -264,6 +275,15 @@ std::vector<std::string> warnings_of(const std::vector<Run>& runs, const std::ve
           names[i], failed, rows.size()));
     }
   }
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    const std::size_t beyond = points_beyond(runs[i], runs[0], keys),
+                      lacking = points_beyond(runs[0], runs[i], keys);
+    if (beyond > 0)
+      warnings.push_back(
+          fmt::format("{} has {} points that are not in {}", names[i], beyond, names[0]));
+    if (lacking > 0)
+      warnings.push_back(fmt::format("{} lacks {} points of {}", names[i], lacking, names[0]));
+  }
   for (const Key& key : keys) {
     std::string missing;
     for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -281,7 +301,7 @@ bool ComparedMeasure::is_equal() const {
   return std::all_of(rows.begin(), rows.end(), [](const ComparedRow& row) {
     return std::all_of(row.runs.begin(), row.runs.end(), [&](const ComparedNumber& number) {
       return number.different == 0 && number.common > 0 &&
-             number.common == row.runs.front().common &&
+             number.common == row.runs.front().common && number.points == row.runs.front().points &&
              number.finished == row.runs.front().finished &&
              number.failed == row.runs.front().failed;
     });
