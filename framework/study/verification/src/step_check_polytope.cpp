@@ -267,9 +267,11 @@ void StepCheck::against(const Polytope& F, const Successors& successors) {
   if (violation_ || step_.tightness != Tightness::exact || reported_empty()) return;
   const std::int64_t before = undecided_;
   if (F.is_empty()) {
-    // data are rounded: with nominal operations as well, there is nothing to compare with
+    // data are rounded: where nominal operations have room for that, there is nothing to compare
+    // with
+    const bool by_rounding = nominal_ && !is_proven_empty(successors.relaxed());
     exact_holds_ = claim_margin_.isZero(0) && is_proven_empty(row_.set);
-    if (claim_margin_.isZero(0) && !exact_holds_)
+    if (!exact_holds_ && !by_rounding)
       open(
           "the estimate is claimed exact and is not called empty, but no state is consistent with "
           "model and data");
