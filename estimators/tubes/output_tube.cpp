@@ -15,13 +15,18 @@ namespace {
 struct Part {
   Matrix M, G;
   Vector c;
+  Vector size;  ///< of the terms of c and G ξ
   Index line = 0, factor = 0;
 };
 
 /// T·part
 Part mapped(MatrixIn T, const Part& part) {
-  return {linalg::denoised_product(T, part.M), linalg::denoised_product(T, part.G),
-          linalg::denoised_product(T, part.c), part.line, part.factor};
+  return {linalg::denoised_product(T, part.M),
+          linalg::denoised_product(T, part.G),
+          linalg::denoised_product(T, part.c),
+          linalg::product(T.cwiseAbs(), part.size),
+          part.line,
+          part.factor};
 }
 
 /// The tube while it is built: unknowns are counted first, so that every block has its place.
@@ -60,6 +65,8 @@ class TubeBuilder {
              Matrix::Zero(outputs, inputs), Vector::Zero(outputs),
              Matrix::Zero(rows, lines),     Matrix::Zero(rows, factors),
              Matrix::Zero(rows, inputs),    Vector::Zero(rows)};
+    tube_.c_size = Vector::Zero(outputs);
+    tube_.b_size = Vector::Zero(rows);
 
     std::vector<Part> x{take(X0_)};
     for (Index k = 0; k < equations; ++k) {
@@ -76,10 +83,12 @@ class TubeBuilder {
  private:
   /// A point of the set, with unknowns and rows of its own.
   Part take(const LineForm& X) {
-    const Part part{X.M, X.G, X.c, line_, factor_};
+    const Vector size = X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum();
+    const Part part{X.M, X.G, X.c, size, line_, factor_};
     tube_.S.block(row_, line_, X.constraints(), X.lines()) = X.S;
     tube_.A.block(row_, factor_, X.constraints(), X.generators()) = X.A;
     tube_.b.segment(row_, X.constraints()) = X.b;
+    tube_.b_size.segment(row_, X.constraints()) = X.b.cwiseAbs() + X.A.cwiseAbs().rowwise().sum();
     line_ += X.lines();
     factor_ += X.generators();
     row_ += X.constraints();
@@ -87,7 +96,8 @@ class TubeBuilder {
   }
 
   Part take_free(Index dim) {
-    const Part part{Matrix::Identity(dim, dim), Matrix(dim, 0), Vector::Zero(dim), line_, factor_};
+    const Vector zero = Vector::Zero(dim);
+    const Part part{Matrix::Identity(dim, dim), Matrix(dim, 0), zero, zero, line_, factor_};
     line_ += dim;
     return part;
   }
@@ -97,6 +107,7 @@ class TubeBuilder {
     tube_.S.block(row, part.line, part.M.rows(), part.M.cols()) += part.M;
     tube_.A.block(row, part.factor, part.G.rows(), part.G.cols()) += part.G;
     tube_.b.segment(row, part.c.size()) -= part.c;
+    tube_.b_size.segment(row, part.c.size()) += part.size;
   }
 
   /// E x⁺ - A x - Bw w = B u_k
@@ -136,6 +147,7 @@ class TubeBuilder {
       tube_.M.block(row, part.line, part.M.rows(), part.M.cols()) += part.M;
       tube_.G.block(row, part.factor, part.G.rows(), part.G.cols()) += part.G;
       tube_.c.segment(row, part.c.size()) += part.c;
+      tube_.c_size.segment(row, part.c.size()) += part.size;
     }
     tube_.H.block(row, k * m_.inputs(), m_.outputs(), m_.inputs()) = m_.D;
   }

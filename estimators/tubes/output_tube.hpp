@@ -26,13 +26,15 @@ struct TubeSpan {
 ///   + D u_k + Dv v_k
 /// with the states x_1 … x_{N+1} among the free δ, so that x_{N+1} leaves of the last equation what
 /// does not hold E x_{N+1}: the static rows of k = N [Rego2025, sec. 5]. Exact; every coefficient
-/// is a number of the model or a product of two. Shapes: c, H, M, G have n_y (N+1) rows by time
-/// (n_y if only the last output counts), H and Ω have n_u (N+1) columns.
+/// is a number of the model, a product of two, or a row of A or C times X0. Shapes: c, H, M, G have
+/// n_y (N+1) rows by time (n_y if only the last output counts), H and Ω have n_u (N+1) columns.
 struct OutputTube {
   Matrix M, G, H;
   Vector c;
   Matrix S, A, Omega;
   Vector b;
+  Vector c_size = {}, b_size = {};  ///< of the terms that c, G and b, A were added up from: where
+                                    ///< X0 lies far away in unlike coordinates, A x₀ cancels
 
   Index outputs() const { return c.size(); }
   Index inputs() const { return H.cols(); }

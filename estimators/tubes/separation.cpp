@@ -77,8 +77,8 @@ PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTub
   A.rightCols(inputs) << Yi.H - Yj.H, -Yi.Omega, -Yj.Omega;
   Vector b(S.rows());
   b << Yj.c - Yi.c, Yi.b, Yj.b;
-  Vector magnitude = b.cwiseAbs();
-  magnitude.head(outputs) = Yi.c.cwiseAbs() + Yj.c.cwiseAbs();
+  Vector magnitude(b.size());
+  magnitude << Yi.c_size + Yj.c_size, Yi.b_size, Yj.b_size;
   const Index lines = S.cols(), columns = A.cols();
   const Vector factor_terms = A.leftCols(g_i + g_j).cwiseAbs().rowwise().sum();
   Matrix input_terms = A.rightCols(inputs).cwiseAbs();

@@ -286,9 +286,10 @@ class Elimination {
                                                                  A_terms_.data() + i * width();
       const Index count = width();
       for (Index j = 0; j < count; ++j) {
-        const double entry = to[j] - factor * from[j], passed = size * from_terms[j];
-        const double terms = to_terms[j] < passed ? passed : to_terms[j];
-        to_terms[j] = terms;
+        // of its own two terms: those that are inherited grow by a factor with every pivot
+        const double left = std::abs(to[j]), right = size * std::abs(from[j]);
+        const double entry = to[j] - factor * from[j], terms = left < right ? right : left;
+        to_terms[j] = std::max(to_terms[j], size * from_terms[j]);
         to[j] = std::abs(entry) <= tolerances::elimination_noise * terms ? 0 : entry;
       }
       b_[i] -= factor * b_[row];

@@ -167,6 +167,8 @@ LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, M
 
 namespace {
 
+constexpr double exact_room = 1e-9;  ///< of its size: a coordinate widened by less counts as exact
+
 struct Computed {
   LineZonotope set;
   Terms terms;
@@ -182,8 +184,13 @@ Computed without_lines(const LineZonotope& X) {
       kept.push_back(i);
   }
   Terms terms{std::move(made.row_magnitude), std::move(made.state_magnitude)};
+  Vector reach;
+  take_reach(made.set.c, made.set.G, reach);
+  const bool is_whole =
+      made.is_whole &&
+      (tolerances::product_noise * terms.state.array() <= exact_room * reach.array()).all();
   keep_rows(made.set, terms, kept);
-  return {std::move(made.set), std::move(terms), made.is_whole};
+  return {std::move(made.set), std::move(terms), is_whole};
 }
 
 /// Zero columns carry nothing, except in a set proven wrong by its rows alone, which keeps its

@@ -4,7 +4,9 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
+#include "cordon/core/rounding.hpp"
 #include "cordon/solvers/boxed_program.hpp"
+#include "cordon/solvers/certificate.hpp"
 
 namespace cordon::diagnosers {
 
@@ -22,6 +24,27 @@ Certificate traced(const LinesEliminated& rest, const Certificate& own) {
   return {Certificate::Kind::point, std::move(both), own.margin};
 }
 
+/// Do multipliers that were led back over the lines prove that the rows have no solution, for
+/// every b within rounding? By rational arithmetic where that is affordable. Else with Sᵀy = r ≠ 0
+/// by rounding, for lines of the length that the solved rows give them:
+///   bᵀy - ‖Aᵀy‖₁ > 2 |r|ᵀ|δ|.
+bool stands(const LineForm& rows, const LinesEliminated& rest, const Vector& terms,
+            const Certificate& proof) {
+  const Vector& y = proof.data;
+  if (y.size() != rows.constraints() || !y.allFinite()) return false;
+  const double margin = farkas_margin(rows.A, rows.b, y, designers::row_noise * terms);
+  if (!(margin > 0)) return false;
+  if (is_quickly_proven_empty(rows)) return proves_empty(rows, proof);
+  const Vector open = linalg::transposed_product(rows.S, y).cwiseAbs() +
+                      rounding::product_error(rows.S.transpose(), y);
+  for (const Index j : rest.free_lines) {
+    if (!rows.S.col(j).isZero(0)) return false;
+  }
+  const Vector reach =
+      rest.lines_offset.cwiseAbs() + rest.lines_by_factors.cwiseAbs().rowwise().sum();
+  return margin > 2 * open.dot(reach);
+}
+
 }  // namespace
 
 Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y, Certificate* why) {
@@ -33,22 +56,27 @@ Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y, Cer
   Vector b(m + p), magnitude(m + p);
   b << Y.b, y - Y.c;
   const Matrix size = u.cwiseAbs();
-  magnitude << tube.b.cwiseAbs() + linalg::product(tube.Omega.cwiseAbs(), size),
-      y.cwiseAbs() + tube.c.cwiseAbs() + linalg::product(tube.H.cwiseAbs(), size);
+  magnitude << tube.b_size + linalg::product(tube.Omega.cwiseAbs(), size),
+      y.cwiseAbs() + tube.c_size + linalg::product(tube.H.cwiseAbs(), size);
   if (!magnitude.allFinite())
     throw Error(Errc::not_finite, "inputs and outputs overflow; scale the problem");
   const Index lines = S.cols(), factors = A.cols();
   const Vector terms = magnitude + A.cwiseAbs().rowwise().sum();
-  const LinesEliminated rest = eliminate_lines_traced(
-      {Matrix(0, lines), Matrix(0, factors), Vector(0), std::move(S), std::move(A), std::move(b)},
-      magnitude);
+  const LineForm rows{Matrix(0, lines), Matrix(0, factors), Vector(0),
+                      std::move(S),     std::move(A),       std::move(b)};
+  const LinesEliminated rest = eliminate_lines_traced(rows, magnitude);
   Certificate proof;
   const Vector row_terms = linalg::product(rest.rows.cwiseAbs(), terms);
   Answer empty = BoxedProgram(rest.set.A, rest.set.b, {row_terms, designers::row_noise * row_terms})
                      .is_empty(&proof);
   if (empty == Answer::no && rest.vanished > 0)
     empty = Answer::unknown;  // what vanished is not shown to hold
-  if (why) *why = empty == Answer::unknown ? Certificate{} : traced(rest, proof);
+  Certificate whole = empty == Answer::unknown ? Certificate{} : traced(rest, proof);
+  if (empty == Answer::yes && !stands(rows, rest, terms, whole)) {
+    empty = Answer::unknown;  // what the elimination has lost is as large as the proof
+    whole = {};
+  }
+  if (why) *why = std::move(whole);
   return negate(empty);
 }
 

@@ -6,6 +6,7 @@
 
 #include "cordon/core/error.hpp"
 #include "question_rows.hpp"
+#include "rational_effort.hpp"
 #include "solvers/rational_system.hpp"
 
 namespace cordon {
@@ -53,6 +54,8 @@ bool proves_empty(const LineForm& X, const Certificate& why) {
   check(X, "certificate");
   return proves_empty(rows_of(X), why);
 }
+
+bool is_quickly_proven_empty(const LineForm& X) { return has_few_lines(X.S, X.A); }
 
 bool proves_not_empty(const LineForm& X, const Certificate& why) {
   check(X, "certificate");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "cordon/core/line_form.hpp"
 
 namespace cordon {
@@ -8,11 +10,15 @@ namespace cordon {
 /// X with as many lines eliminated as its constraints allow: {c + Mδ + Gξ : ‖ξ‖∞ ≤ 1, Aξ = b} with
 /// independent columns of M, which span the lineality space, and no S. The same set: a line is
 /// unbounded, so that solving a row for it loses nothing. Pivots are chosen over the whole of S,
-/// largest in its equilibrated row first. A coefficient that cancelled to less than 1e-13 of the
-/// terms it was computed from counts as zero; one that is small but was not cancelled is used, and
-/// so is whatever is left of b and c. Rows that become 0 = 0, up to as much, are dropped, a row 0 =
+/// largest in its equilibrated row first. A coefficient that cancelled to less than 1e-13 of its
+/// terms counts as zero, those of lines also of terms that cancelled before; one that is small but
+/// was not cancelled is used, and so is whatever is left of b and c. Where S has more independent
+/// rows than pivots were found, in exact arithmetic, rows in which lines were taken for zero are
+/// dropped. Rows that become 0 = 0, up to as much, are dropped, a row 0 =
 /// b ≠ 0 stays (X is ∅). An entry that cancelled to less than 1e-6 of its terms is known with few
-/// digits and is no pivot; rows in which no other is left are dropped, and the set becomes larger.
+/// digits and is no pivot; rows in which no other is left are dropped, and so are rows whose
+/// coefficients of factors have all cancelled so far (not in `eliminate_lines_traced`): the set
+/// becomes larger.
 /// O((n + m)(l + g) min(l, m)). [Rego2025, Alg. 1]
 LineForm eliminate_lines(const LineForm& X);
 
@@ -25,7 +31,7 @@ struct LinesSolved {
   Vector row_magnitude;    ///< of every row of `set`, the largest over its entries
   Vector state_magnitude;  ///< of every coordinate, summed over its entries
   bool is_whole = true;    ///< no row with lines was dropped or left without them by rounding only,
-                           ///< and no line added
+                           ///< none that does not follow from the others, and no line added
 };
 LinesSolved solve_for_lines(const LineForm& X);
 
@@ -40,8 +46,10 @@ struct LinesEliminated {
   Matrix lines_by_factors;  ///< l×g and
   Vector lines_offset;  ///< l: δ = lines_offset + lines_by_factors ξ is a choice of lines that
                         ///< satisfies the rows used up
-  Index vanished =
-      0;  ///< rows that became 0 = 0, up to rounding: what they said beyond that is lost
+  std::vector<Index> free_lines;  ///< no row was solved for them
+  Index vanished = 0;  ///< rows that are left out, as they became 0 = 0 up to rounding, or hold
+                       ///< lines that rounding hides: what they said beyond that is lost. 0 if all
+                       ///< of them follow from the rows used up, in exact arithmetic
 };
 /// `b_magnitude` (empty: none) is the size of what cancelled in b before.
 LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude);

@@ -15,6 +15,8 @@ namespace cordon {
 
 /// X = ∅, by y with Sᵀy = 0 and bᵀy > ‖Aᵀy‖₁ (kind `farkas`).
 bool proves_empty(const LineForm& X, const Certificate& why);
+/// Does that check take no more than about a second?
+bool is_quickly_proven_empty(const LineForm& X);
 /// X ≠ ∅, by a solution (δ, ξ) of Sδ + Aξ = b with ‖ξ‖∞ ≤ 1 (kind `point`; `structure` for a set
 /// without constraints).
 bool proves_not_empty(const LineForm& X, const Certificate& why);
