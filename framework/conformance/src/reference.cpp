@@ -75,9 +75,11 @@ double Reference::lower(VectorIn d) {
   for (const Vector& x : known_) value = std::max(value, d.dot(x));
   const Along line = along(d);
   if (line == Along::line) {
-    return !known_.empty() || program_.is_empty() == Answer::no ? infinity : -infinity;
+    const bool has_point = !known_.empty() || (vanished_ == 0 && program_.is_empty() == Answer::no);
+    return has_point ? infinity : -infinity;
   }
-  if (line == Along::unclear) return value;
+  // rows that are left out may say more than the others: what these reach proves nothing
+  if (line == Along::unclear || vanished_ > 0) return value;
   double reached = -infinity;
   if (const BoxedProgram::Bound bound = solve(d); bound.xi) {
     reached = program_.lower_support(linalg::product(X_.G.transpose(), d), *bound.xi);

@@ -15,11 +15,10 @@ namespace cordon {
 /// was not cancelled is used, and so is whatever is left of b and c. Where S has more independent
 /// rows than pivots were found, in exact arithmetic, rows in which lines were taken for zero are
 /// dropped. Rows that become 0 = 0, up to as much, are dropped, a row 0 =
-/// b ≠ 0 stays (X is ∅). An entry that cancelled to less than 1e-6 of its terms is known with few
-/// digits and is no pivot; rows in which no other is left are dropped, and so are rows whose
-/// coefficients of factors have all cancelled so far (not in `eliminate_lines_traced`): the set
-/// becomes larger.
-/// O((n + m)(l + g) min(l, m)). [Rego2025, Alg. 1]
+/// b ≠ 0 stays (X is ∅). An entry that cancelled to less than a millionth of its terms is known
+/// with few digits and is no pivot; rows in which no other is left are dropped, and so are rows
+/// whose coefficients of factors have all cancelled so far (not in `eliminate_lines_traced`): the
+/// set becomes larger. O((n + m)(l + g) min(l, m)). [Rego2025, Alg. 1]
 LineForm eliminate_lines(const LineForm& X);
 
 /// The same, with the sizes of the terms that were added up: what is left of them after
