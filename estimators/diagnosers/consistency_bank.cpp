@@ -61,6 +61,11 @@ class ConsistencyBank final : public Diagnoser {
  private:
   using Estimates = std::vector<std::optional<Estimate>>;  ///< by mode; none: not at work
 
+  bool do_takes_missing_outputs() const override {
+    return std::all_of(observers_.begin(), observers_.end(),
+                       [](const auto& observer) { return observer->takes_missing_outputs(); });
+  }
+
   void do_start() override {
     for (const auto& observer : observers_) observer->start();
     ended_ = unfinished_ = false;

@@ -44,8 +44,7 @@ void check_pseudo_inverse(const ObserverContext& context, const Params& params,
   const LinearModel& m = context.model.linear;
   const BackendInfo& info = context.backend->info();
   if (params.has("admissible_set"))
-    problems.push_back(
-        {"/admissible_set", "has no use with the backend \"" + info.name + "\"", "leave it out"});
+    check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
   if (params.flag("static_at_start")) {
     problems.push_back(
         {"/static_at_start",
@@ -100,7 +99,8 @@ void register_descriptor(Registrar& registrar) {
   ParamSchema schema = common_parameters();
   schema.set("admissible_set",
              "set that holds the state at all times; needed by bounded representations with exact "
-             "intersections");
+             "intersections, and by others where outputs are missing without which the state is "
+             "not determined");
   schema.flag("static_at_start", "let the static rows of k = 0 cut the initial set", false);
   registrar.add(ObserverEntry{
       {"descriptor", "descriptor systems with singular E, any backend",

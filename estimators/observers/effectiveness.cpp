@@ -148,6 +148,11 @@ Matrix Effectiveness::interval_columns(const Vector& open) const {
 Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& now) const {
   const LinearModel& m = model_.linear;
   if (m.outputs() == 0) return X;
+  if (!now.is_complete()) {
+    const std::vector<Index> present = present_outputs(now);
+    const Model others = with_outputs(model_, present);
+    return Effectiveness(others, backend_).correct(X, C(present, Eigen::all), without_missing(now));
+  }
   if (plain_outputs_ && inputs_enter_as_sets() && !m.D.isZero(0)) {
     Matrix T(m.outputs(), m.noises() + m.inputs());
     T << m.Dv, m.D;

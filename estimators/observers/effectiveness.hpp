@@ -64,6 +64,7 @@ class Effectiveness {
 
   /// The part of X ∋ x that the measurement allows; C is the model's in the coordinates of X, which
   /// are the model's own where C is an interval matrix. Outer if sensors have ranges, or C is one.
+  /// Missing outputs say nothing.
   Enclosure correct(const Enclosure& X, MatrixIn C, const Sample& now) const;
 
   /// The claim of a recursion in which inputs enter by these matrices at the same time or one step

@@ -89,6 +89,7 @@ void InnerEnvelope::start(const LineForm& X0) {
 }
 
 void InnerEnvelope::step(const Sample& before) {
+  if (!before.is_complete()) end();  // the gain's columns would have to vary
   if (!running_) return;
   const Vector measured = product(L_, before.y) + drift_;
   for (Copy& copy : copies_) {

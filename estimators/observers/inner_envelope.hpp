@@ -35,7 +35,7 @@ class InnerEnvelope {
   /// Begins with this set; ends if it has lines or constraints.
   void start(const LineForm& X0);
   void end() { running_ = false; }
-  /// Moves on by the sample of the time that it stands at.
+  /// Moves on by the sample of the time that it stands at; ends if that lacks an output.
   void step(const Sample& before);
   /// The hull of all x̂_k, which exceeds that of the estimate by rounding only; nothing if it has
   /// ended.

@@ -6,17 +6,15 @@
 
 namespace cordon::estimators {
 
-namespace {}
-
 IntervalObserver::IntervalObserver(const ObserverContext& context, const Params& params, Gain upper,
                                    std::optional<Gain> lower)
     : Observer(context.model, context.backend),
       X0_(initial_set_from(model(), params)),
       upper_gain_(std::move(upper)),
       lower_gain_(std::move(lower)),
-      upper_(model(), upper_gain_.L),
+      complete_(std::make_shared<Recursions>(Recursions{{model(), upper_gain_.L}, {}})),
       inner_(model(), upper_gain_.L, params) {
-  if (lower_gain_) lower_.emplace(model(), lower_gain_->L);
+  if (lower_gain_) complete_->lower.emplace(model(), lower_gain_->L);
   const Index n = model().linear.states();
   for (Vector* v : {&c_, &r_, &c_next_, &r_next_, &c_low_, &r_low_, &hull_.lower, &hull_.upper})
     v->resize(n);
@@ -57,20 +55,44 @@ void IntervalObserver::do_replace(const Enclosure& X) {
   inner_.end();
 }
 
+IntervalObserver::Recursions IntervalObserver::recursions_for(
+    const std::vector<Index>& present) const {
+  const Model others = with_outputs(model(), present);
+  const auto with = [&](const Gain& gain) {
+    return IntervalRecursion(others, gain.L(Eigen::all, present));
+  };
+  return {with(upper_gain_), lower_gain_ ? std::optional(with(*lower_gain_)) : std::nullopt};
+}
+
+std::shared_ptr<IntervalObserver::Recursions> IntervalObserver::advance(const Sample& before) {
+  const auto step = [&](Recursions& by, const Sample& sample) {
+    by.upper.next(c_, r_, sample, c_next_, r_next_);
+    if (by.lower) by.lower->next(c_, r_, sample, c_low_, r_low_);
+  };
+  if (before.is_complete()) {
+    step(*complete_, before);
+    return complete_;
+  }
+  const auto others = others_.at(before, [&](const auto& present) {
+    return std::make_shared<Recursions>(recursions_for(present));
+  });
+  step(*others, without_missing(before));
+  return others;
+}
+
 Enclosure IntervalObserver::do_step(const Sample& before, const Sample&) {
   Enclosure result = timed(Phase::predict, [&] {
-    upper_.next(c_, r_, before, c_next_, r_next_);
-    if (lower_) lower_->next(c_, r_, before, c_low_, r_low_);
-    const Vector& c_low = lower_ ? c_low_ : c_next_;
-    const Vector& r_low = lower_ ? r_low_ : r_next_;
+    const std::shared_ptr<Recursions> by = advance(before);
+    const Vector& c_low = by->lower ? c_low_ : c_next_;
+    const Vector& r_low = by->lower ? r_low_ : r_next_;
     hull_.upper = c_next_ + r_next_;
     hull_.lower = c_low - r_low;
-    if (!lower_) {
+    if (!by->lower) {
       c_.swap(c_next_);
       r_.swap(r_next_);
       return estimate(hull_);
     }
-    const bool empty = settle_crossing();
+    const bool empty = settle_crossing(by->upper.size() + by->lower->size());
     std::tie(c_, r_) = around(hull_);
     return empty ? backend().empty(c_.size()) : estimate(hull_);
   });
@@ -78,12 +100,12 @@ Enclosure IntervalObserver::do_step(const Sample& before, const Sample&) {
   return result;
 }
 
-bool IntervalObserver::settle_crossing() {
+bool IntervalObserver::settle_crossing(const Vector& size) {
   bool proven = false;
   for (Index i = 0; i < c_.size(); ++i) {
     const double by = hull_.lower[i] - hull_.upper[i];
     if (by <= 0) continue;
-    proven = proven || by > tolerances::proof_margin * (upper_.size()[i] + lower_->size()[i]);
+    proven = proven || by > tolerances::proof_margin * size[i];
     std::swap(hull_.lower[i], hull_.upper[i]);
   }
   return proven;

@@ -7,6 +7,7 @@
 #include "observers/inner_envelope.hpp"
 #include "observers/interval_recursion.hpp"
 #include "observers/observer_gain.hpp"
+#include "observers/present_outputs.hpp"
 
 namespace cordon::estimators {
 
@@ -20,6 +21,7 @@ class IntervalObserver final : public Observer {
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override;
+  bool takes_missing_outputs() const override { return true; }
   std::optional<Box> inner_estimate() const override { return inner_.hull(); }
 
  private:
@@ -27,16 +29,26 @@ class IntervalObserver final : public Observer {
   Enclosure do_step(const Sample& before, const Sample& now) override;
   void do_replace(const Enclosure& X) override;
 
+  struct Recursions {
+    IntervalRecursion upper;
+    std::optional<IntervalRecursion> lower;
+  };
+
   void set(const Box& hull);
+  /// By these outputs, with the columns of the gains that belong to them.
+  Recursions recursions_for(const std::vector<Index>& present) const;
+  /// c⁺ and r⁺ of both gains by the outputs that the sample has; whose recursions these are.
+  std::shared_ptr<Recursions> advance(const Sample& before);
   /// Brings crossing bounds into order; true if they prove that there is nothing between them.
-  bool settle_crossing();
+  /// `size`: of the numbers that both were made of.
+  bool settle_crossing(const Vector& size);
   Enclosure estimate(const Box& box) const;
 
   LineForm X0_;
   Gain upper_gain_;
   std::optional<Gain> lower_gain_;
-  IntervalRecursion upper_;
-  std::optional<IntervalRecursion> lower_;
+  std::shared_ptr<Recursions> complete_;
+  PerOutputs<Recursions> others_;
   InnerEnvelope inner_;
   Vector c_, r_, c_next_, r_next_, c_low_, r_low_;
   Box hull_;

@@ -6,16 +6,12 @@
 // "observer_bank" watches.
 #include "components.hpp"
 #include "observer_parameters.hpp"
+#include "observers/gained_recursion.hpp"
 #include "observers/interval_spread.hpp"
-#include "observers/luenberger_recursion.hpp"
-#include "observers/observer_gain.hpp"
-#include "observers/widening_limit.hpp"
 
 namespace cordon::estimators {
 
 namespace {
-
-ComponentSpec steady_kalman() { return {"kalman", Params().set("steady", true)}; }
 
 /// Claims no exact estimate: a measurement enters by a gain, one step late.
 class Luenberger final : public Observer {
@@ -23,40 +19,36 @@ class Luenberger final : public Observer {
   Luenberger(const ObserverContext& context, const Params& params)
       : Observer(context.model, context.backend),
         X0_(initial_set_from(model(), params)),
-        gain_(observer_gain(context, params, "gain", steady_kalman())),
-        recursion_(model(), gain_.gain.L, context.backend, budget_from(params)),
-        limit_(gain_.designer->is_time_varying() ? 0 : params.real("widening_limit")) {}
+        recursion_(model(), observer_gain(context, params, "gain", steady_kalman()),
+                   context.backend, budget_from(params)),
+        limit_(recursion_.is_time_varying() ? 0 : params.real("widening_limit")) {}
 
   LineForm initial_set() const override { return X0_; }
-  std::vector<Gain> gains() const override { return {gain_.gain}; }
+  std::vector<Gain> gains() const override { return {recursion_.gain().gain}; }
   bool follows_its_sets() const override { return !limit_.is_set(); }
+  bool takes_missing_outputs() const override { return true; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
     const Enclosure start = X0 ? *X0 : backend().import(X0_);
-    limit_.start(recursion_, start);
+    limit_.start(recursion_.complete(), start);
     return X_ = timed(Phase::reduce, [&] { return recursion_.reduced(start); });
   }
   Enclosure do_step(const Sample& before, const Sample&) override {
-    Vector open;
-    const Enclosure next = timed(Phase::predict, [&] {
-      if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_for(gain_, model(), X_));
-      return recursion_.next(X_, before, &open);
-    });
+    const Enclosure next = timed(Phase::predict, [&] { return recursion_.next(X_, before); });
     X_ = timed(Phase::reduce, [&] {
-      limit_.step(recursion_, before, open);
+      recursion_.tell(limit_, before);
       return limit_.apply(backend(), recursion_.reduced(next));
     });
     return X_;
   }
   void do_replace(const Enclosure& X) override {
     X_ = X;
-    limit_.start(recursion_, X);
+    limit_.start(recursion_.complete(), X);
   }
 
   LineForm X0_;
-  ObserverGain gain_;
-  LuenbergerRecursion recursion_;
+  GainedRecursion recursion_;
   WideningLimit limit_;
   Enclosure X_;
 };

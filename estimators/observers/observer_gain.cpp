@@ -63,14 +63,15 @@ ObserverGain observer_gain(const ObserverContext& context, const Params& params,
   return made;
 }
 
-Matrix gain_for(const ObserverGain& gain, const Model& model, const Enclosure& X) {
-  if (!gain.designer->is_time_varying()) return gain.gain.L;
+Matrix gain_for(const ObserverGain& gain, const Model& model, const Enclosure& X,
+                const Matrix& steady) {
+  if (model.linear.outputs() == 0) return steady;
   try {
     const Matrix R = invariant::enclosing_zonotope(X->line_form(), "the estimate").G;
     return gain.designer->update(model, linalg::product(R, R.transpose()));
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported && error.code() != Errc::invalid) throw;
-    return gain.gain.L;
+    return steady;
   }
 }
 

@@ -27,9 +27,10 @@ ComponentSpec steady_kalman();
 ObserverGain observer_gain(const ObserverContext& context, const Params& params,
                            const std::string& name, const ComponentSpec& absent);
 
-/// Of a gain that varies in time the one for the states in X; the steady one where no zonotope
-/// contains X.
-Matrix gain_for(const ObserverGain& gain, const Model& model, const Enclosure& X);
+/// The gain that varies in time for the states in X, by the outputs of `model`; `steady` where no
+/// zonotope contains X.
+Matrix gain_for(const ObserverGain& gain, const Model& model, const Enclosure& X,
+                const Matrix& steady);
 
 /// Adds the problems of that gain: at "/name" or, of its own parameters, below it; at "" if the
 /// parameter is not given.

@@ -34,6 +34,7 @@ class PredictionCorrection final : public Observer {
   LineForm initial_set() const override { return X0_; }
   Tightness claim() const override { return recursion_; }
   bool follows_its_sets() const override { return true; }
+  bool takes_missing_outputs() const override { return true; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {

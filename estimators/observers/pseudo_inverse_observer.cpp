@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/pseudo_inverse_observer.hpp"
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include <boost/container/small_vector.hpp>
 
+#include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
-#include "cordon/core/tolerances.hpp"
-#include "left_inverse.hpp"
 #include "observer_parameters.hpp"
 #include "observers/effectiveness.hpp"
 #include "observers/interval_spread.hpp"
+#include "observers/present_outputs.hpp"
+#include "observers/pseudo_inverse_outputs.hpp"
 #include "observers/rounding_room.hpp"
 
 namespace cordon::estimators {
@@ -22,28 +22,6 @@ namespace {
 
 constexpr double steady = 1e-12;  ///< changes of entries of P, relative to their states' sizes,
                                   ///< that leave the gain as it is
-
-/// Outputs that the measurement itself bounds, weighted by the middle of their effectiveness; the
-/// others have rows of zeros.
-LinearModel with_bounded_outputs(LinearModel m) {
-  const Vector g = m.sensor_center();
-  for (Index i = 0; i < m.outputs(); ++i) {
-    if (Effectiveness::is_bounded_by_measurement(m, i)) {
-      m.C.row(i) *= g[i];
-      m.D.row(i) *= g[i];
-    } else {
-      m.C.row(i).setZero();
-      m.D.row(i).setZero();
-      m.Dv.row(i).setZero();
-    }
-  }
-  return m;
-}
-
-/// The largest sum of magnitudes of a row.
-double row_norm(const Matrix& A) {
-  return A.size() ? A.cwiseAbs().rowwise().sum().maxCoeff() : 0.0;
-}
 
 double largest(VectorIn x) { return x.size() ? x.lpNorm<Eigen::Infinity>() : 0.0; }
 
@@ -58,12 +36,7 @@ Vector amplified(const Matrix& A, const Vector& x) {
   return sum;
 }
 
-/// [E; C].
-Matrix stacked_E_C(const LinearModel& m) {
-  Matrix stacked(m.states() + m.outputs(), m.states());
-  stacked << (m.is_descriptor() ? m.E : Matrix(Matrix::Identity(m.states(), m.states()))), m.C;
-  return stacked;
-}
+double largest_entry(const Matrix& M) { return M.size() == 0 ? 0.0 : M.cwiseAbs().maxCoeff(); }
 
 class PseudoInverseObserver final : public Observer {
  public:
@@ -74,37 +47,15 @@ class PseudoInverseObserver final : public Observer {
         W_(backend().import(model().W)),
         V_(backend().import(model().V)),
         effectiveness_(model(), backend()),
-        used_(with_bounded_outputs(model().linear)),
-        is_used_(used_.outputs()),
-        rounds_outward_(backend().info().rounding == Rounding::outward) {
-    const Index n = used_.states();
-    for (Index i = 0; i < is_used_.size(); ++i)
-      is_used_[i] = Effectiveness::is_bounded_by_measurement(model().linear, i);
-    const Matrix inverse = left_inverse(stacked_E_C(used_));
-    T_ = inverse.leftCols(n);
-    N_ = inverse.rightCols(used_.outputs());
-    TA_ = linalg::product(T_, used_.A);
-    TB_ = linalg::product(T_, used_.B);
-    TBw_ = linalg::product(T_, used_.Bw);
-    minus_ND_ = -linalg::product(N_, used_.D);
-    minus_NDv_ = -linalg::product(N_, used_.Dv);
-    if (rounds_outward_) {
-      const Matrix E_C = stacked_E_C(used_);
-      inverse_error_ = (linalg::product(inverse, E_C) - Matrix::Identity(n, n)).cwiseAbs() +
-                       accumulated(used_) * linalg::product(inverse.cwiseAbs(), E_C.cwiseAbs());
-      identity_ = Matrix::Identity(n, n);
-      zero_ = Vector::Zero(n);
-    }
-    disturbance_ = linalg::product(TBw_, model().W.c) + linalg::product(minus_NDv_, model().V.c);
-    disturbance_widths_ = half_widths(model().W, TBw_) + half_widths(model().V, minus_NDv_);
-    least_width_ = disturbance_widths_.size() ? disturbance_widths_.minCoeff() : 0;
-    const Vector f = model().linear.actuator_center();
-    input_norms_ = {row_norm(TB_ * f.asDiagonal()), row_norm(used_.D * f.asDiagonal())};
-    noise_generators_ = linalg::product(used_.Dv, model().V.G);
-    C_transposed_ = used_.C.transpose();
-    TA_transposed_ = TA_.transpose();
-    const Index p = used_.outputs();
-    minus_LDv_.resize(n, used_.Dv.cols());
+        rounds_outward_(backend().info().rounding == Rounding::outward),
+        complete_(std::make_shared<PseudoInverseOutputs>(model(), all_outputs(model().linear),
+                                                         rounds_outward_)) {
+    if (params.has("admissible_set"))
+      admissible_ = backend().import(params.set_form("admissible_set"));
+    const Index n = model().linear.states(), p = model().linear.outputs();
+    identity_ = Matrix::Identity(n, n);
+    zero_ = Vector::Zero(n);
+    minus_LDv_.resize(n, model().linear.noises());
     map_.resize(n, n);
     CP_.resize(p, n);
     S_.resize(p, p);
@@ -115,7 +66,9 @@ class PseudoInverseObserver final : public Observer {
   }
 
   LineForm initial_set() const override { return X0_; }
+  const Set* admissible_set() const override { return admissible_.set.get(); }
   bool follows_its_sets() const override { return true; }
+  bool takes_missing_outputs() const override { return true; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
@@ -123,33 +76,38 @@ class PseudoInverseObserver final : public Observer {
     return X_ = X0 ? *X0 : backend().import(X0_);
   }
 
-  Enclosure do_step(const Sample& before, const Sample& now) override {
+  Enclosure do_step(const Sample& last, const Sample& next) override {
+    Sample filled_last, filled_next;
+    const Sample &before = with_zeros(last, filled_last), &now = with_zeros(next, filled_next);
     const Enclosure predicted = timed(Phase::predict, [&] {
-      const Matrix spread_before = output_spread(before, true);
+      before_ = outputs_of(last);
+      now_ = outputs_of(next);
+      const Matrix spread_before = output_spread(*before_, before, true);
       find_gain(spread_before);
       boost::container::small_vector<Term, 8> terms;  // without memory of its own
-      terms.push_back({TBw_, W_});
+      terms.push_back({now_->TBw, W_});
       terms.push_back({minus_LDv_, V_});
-      terms.push_back({minus_NDv_, V_});
+      terms.push_back({now_->minus_NDv, V_});
       Matrix inputs_before, inputs_now, outputs_before, outputs_now;
       if (effectiveness_.has_input_ranges()) {
-        inputs_before = effectiveness_.input_spread(TB_ - linalg::product(L_, used_.D), before.u);
-        inputs_now = effectiveness_.input_spread(minus_ND_, now.u);
+        inputs_before =
+            effectiveness_.input_spread(now_->TB - linalg::product(L_, before_->used.D), before.u);
+        inputs_now = effectiveness_.input_spread(now_->minus_ND, now.u);
         terms.push_back({inputs_before, effectiveness_.input_factors()});
         terms.push_back({inputs_now, effectiveness_.input_factors()});
       }
       if (effectiveness_.has_output_ranges()) {
         outputs_before = linalg::product(L_, spread_before);
-        outputs_now = linalg::product(N_, output_spread(now, false));
+        outputs_now = linalg::product(now_->N, output_spread(*now_, now, false));
         terms.push_back({outputs_before, effectiveness_.output_factors()});
         terms.push_back({outputs_now, effectiveness_.output_factors()});
       }
       const Enclosure open =
           effectiveness_.has_open_states() ? effectiveness_.open_states(X_, before.u) : Enclosure{};
-      if (effectiveness_.has_open_states()) terms.push_back({T_, open});
-      effectiveness_.input(TB_, before.u, shift_);
-      add_output(L_, before);
-      add_output(N_, now);
+      if (effectiveness_.has_open_states()) terms.push_back({now_->T, open});
+      effectiveness_.input(now_->TB, before.u, shift_);
+      add_output(L_, *before_, before);
+      add_output(now_->N, *now_, now);
       const std::optional<RoundingRoom> room = room_of(before, now);
       if (room && room->is_needed()) terms.push_back(room->term());
       Enclosure own;
@@ -160,6 +118,8 @@ class PseudoInverseObserver final : public Observer {
         own = backend().box({-errors, errors});
         terms.push_back({identity_, own});
       }
+      const Enclosure rest = rest_of(now.k);
+      if (rest.set) terms.push_back({identity_, rest});
       return backend().predict(X_, {map_, shift_, {terms.data(), terms.size()}});
     });
     return X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
@@ -167,23 +127,56 @@ class PseudoInverseObserver final : public Observer {
 
   void do_replace(const Enclosure& X) override { X_ = X; }
 
+  std::shared_ptr<PseudoInverseOutputs> outputs_of(const Sample& sample) {
+    if (sample.is_complete()) return complete_;
+    return others_.at(sample, [&](const std::vector<Index>& present) {
+      return std::make_shared<PseudoInverseOutputs>(model(), present, rounds_outward_);
+    });
+  }
+
+  /// R x_k, what E x_k and the outputs of time k leave open: bounded by the admissible set alone.
+  Enclosure rest_of(Index k) const {
+    if (now_->determines_state) return {};
+    if (!admissible_.set) {
+      throw Error(Errc::unsupported,
+                  "outputs are missing at k = " + std::to_string(k) +
+                      " without which the state is not determined ([E; C] has not full column "
+                      "rank without them); give \"admissible_set\", a set that holds the state at "
+                      "all times, or use \"line_zonotope\"");
+    }
+    const Box hull = admissible_->interval_hull();
+    const Vector largest = hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs());
+    const Vector rounding = amplified(now_->open_error, largest);
+    return backend().sum(
+        backend().affine_map(admissible_, now_->open, Vector::Zero(rounding.size())),
+        backend().box({-rounding, rounding}));
+  }
+
+  /// A value for what is not used.
+  static const Sample& with_zeros(const Sample& sample, Sample& filled) {
+    if (sample.is_complete()) return sample;
+    filled = sample;
+    for (const Index i : sample.missing) filled.y[i] = 0;
+    return filled;
+  }
+
   /// What ranges of sensors add to y; X_ holds the state of that sample, or not.
-  Matrix output_spread(const Sample& sample, bool state_is_known) const {
-    if (!effectiveness_.has_output_ranges()) return Matrix::Zero(used_.outputs(), 0);
+  Matrix output_spread(const PseudoInverseOutputs& of, const Sample& sample,
+                       bool state_is_known) const {
+    const Index p = model().linear.outputs();
+    if (!effectiveness_.has_output_ranges()) return Matrix::Zero(p, 0);
     std::optional<Box> reach;
     if (state_is_known) {
-      reach = backend()
-                  .affine_map(X_, model().linear.C, Vector::Zero(used_.outputs()))
-                  ->interval_hull();
+      reach = backend().affine_map(X_, model().linear.C, Vector::Zero(p))->interval_hull();
     }
-    return is_used_.asDiagonal() * effectiveness_.output_spread(effectiveness_.output_bound(
-                                       sample, reach ? &*reach : nullptr));
+    return of.is_used.asDiagonal() * effectiveness_.output_spread(effectiveness_.output_bound(
+                                         sample, reach ? &*reach : nullptr));
   }
 
   /// shift += M (y - D u), of the outputs that are used.
-  void add_output(const Matrix& M, const Sample& sample) {
-    effectiveness_.input(used_.D, sample.u, output_);
-    output_ = is_used_.cwiseProduct(sample.y) - output_;
+  void add_output(const Matrix& M, const PseudoInverseOutputs& of, const Sample& sample) {
+    effectiveness_.input(of.used.D, sample.u, output_);
+    output_ = of.is_used.cwiseProduct(sample.y) - output_;
     linalg::product(M, output_, part_);
     shift_ += part_;
   }
@@ -191,18 +184,19 @@ class PseudoInverseObserver final : public Observer {
   /// For what has been added up in shift_.
   std::optional<RoundingRoom> room_of(const Sample& before, const Sample& now) const {
     const double u = std::max(largest(before.u), largest(now.u));
-    const double y = std::max(largest(before.y), largest(now.y)) + input_norms_[1] * u;
-    const double centers = largest(disturbance_) + row_norm(minus_LDv_) * largest(model().V.c);
-    const double most = input_norms_[0] * u + (row_norm(L_) + row_norm(N_)) * y + centers;
-    if (!RoundingRoom::may_be_needed(most, least_width_)) return std::nullopt;
-    const auto seen = [&](const Sample& sample) {
-      return Vector(sample.y.cwiseAbs() + effectiveness_.input_terms(used_.D, sample.u));
+    const double y =
+        std::max(largest(before.y), largest(now.y)) + std::max(before_->D_norm, now_->D_norm) * u;
+    const double centers = largest(now_->disturbance) + row_norm(minus_LDv_) * largest(model().V.c);
+    const double most = now_->TB_norm * u + (row_norm(L_) + row_norm(now_->N)) * y + centers;
+    if (!RoundingRoom::may_be_needed(most, now_->least_width)) return std::nullopt;
+    const auto seen = [&](const PseudoInverseOutputs& of, const Sample& sample) {
+      return Vector(sample.y.cwiseAbs() + effectiveness_.input_terms(of.used.D, sample.u));
     };
-    const Vector center = disturbance_ + linalg::product(minus_LDv_, model().V.c);
-    const Vector terms = effectiveness_.input_terms(TB_, before.u) +
-                         linalg::product(L_.cwiseAbs(), seen(before)) +
-                         linalg::product(N_.cwiseAbs(), seen(now)) + center.cwiseAbs();
-    const Vector widths = disturbance_widths_ + half_widths(model().V, minus_LDv_);
+    const Vector center = now_->disturbance + linalg::product(minus_LDv_, model().V.c);
+    const Vector terms = effectiveness_.input_terms(now_->TB, before.u) +
+                         linalg::product(L_.cwiseAbs(), seen(*before_, before)) +
+                         linalg::product(now_->N.cwiseAbs(), seen(*now_, now)) + center.cwiseAbs();
+    const Vector widths = now_->disturbance_widths + half_widths(model().V, minus_LDv_);
     return std::optional<RoundingRoom>(std::in_place, backend(), shift_ + center, terms, widths);
   }
 
@@ -215,53 +209,49 @@ class PseudoInverseObserver final : public Observer {
     const auto reach = [](const LineForm& X) {
       return Vector(X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());
     };
-    const Vector x = magnitude(X_->interval_hull()), v = amplified(used_.Dv, reach(model().V));
-    const auto seen = [&](const Sample& sample) {
-      return Vector(is_used_.cwiseProduct(sample.y.cwiseAbs()) +
-                    amplified(used_.D, sample.u.cwiseAbs()) + v);
+    const Vector x = magnitude(X_->interval_hull()), noise = reach(model().V);
+    const auto seen = [&](const PseudoInverseOutputs& of, const Sample& sample) {
+      return Vector(of.is_used.cwiseProduct(sample.y.cwiseAbs()) +
+                    amplified(of.used.D, sample.u.cwiseAbs()) + amplified(of.used.Dv, noise));
     };
-    const Vector forces = amplified(used_.A, x) + amplified(used_.B, before.u.cwiseAbs()) +
-                          amplified(used_.Bw, reach(model().W));
-    const Vector outputs_before = amplified(used_.C, x) + seen(before), outputs_now = seen(now);
-    const Vector terms = amplified(T_, forces + magnitude(open)) + amplified(L_, outputs_before) +
-                         amplified(N_, outputs_now);
+    const LinearModel& m = model().linear;
+    const Vector forces =
+        amplified(m.A, x) + amplified(m.B, before.u.cwiseAbs()) + amplified(m.Bw, reach(model().W));
+    const Vector outputs_before = amplified(before_->used.C, x) + seen(*before_, before);
+    const Vector terms = amplified(now_->T, forces + magnitude(open)) +
+                         amplified(L_, outputs_before) + amplified(now_->N, seen(*now_, now));
     // |x_k| ≤ b + |R||x_k| for b, the magnitudes of its terms, gives |x_k| ≤ 2 b where |R| b ≤ b /
     // 2
-    Vector next = terms, lacking = amplified(inverse_error_, next);
+    Vector next = terms, lacking = amplified(now_->inverse_error, next);
     next += 2 * lacking;
-    lacking = amplified(inverse_error_, next);
+    lacking = amplified(now_->inverse_error, next);
     if ((lacking.array() > 0.5 * next.array()).any()) lacking.setConstant(infinity);
-    return 1.01 * (accumulated(used_) * terms + 2 * lacking);
-  }
-
-  /// Relative error of sums of as many terms as a step has.
-  static double accumulated(const LinearModel& m) {
-    const Index terms =
-        3 * m.states() + m.inputs() + 2 * m.outputs() + m.disturbances() + m.noises() + 8;
-    return static_cast<double>(terms) * std::numeric_limits<double>::epsilon();
+    return 1.01 * (accumulated_rounding(m) * terms + 2 * lacking);
   }
 
   /// L minimises the F-radius of the next estimate, as far as the last measurement decides it.
   void find_gain(const Matrix& spread) {
     const LineForm X = X_->line_form();
     // squares of sets that shrink to a point underflow: L does not depend on the unit
-    const double largest =
-        std::max({largest_entry(noise_generators_), largest_entry(X.G), largest_entry(spread)});
+    const double largest = std::max(
+        {largest_entry(before_->noise_generators), largest_entry(X.G), largest_entry(spread)});
     const double unit =
         largest < std::numeric_limits<double>::min() ? 0.0 : std::ldexp(1.0, -std::ilogb(largest));
     scaled_ = X.G * unit;
     linalg::gram(scaled_, P_);
-    if (unit > 0 && unit == unit_ && spread.size() == 0 && is_steady()) return;
+    if (unit > 0 && unit == unit_ && spread.size() == 0 && is_complete() && is_steady()) return;
     unit_ = 0;  // until all that follows from P is there
     solved_P_ = P_;
-    L_.setZero(TA_.rows(), used_.outputs());
+    L_.setZero(now_->TA.rows(), model().linear.outputs());
     if (unit > 0) solve_for_gain(spread, unit);
-    linalg::product(L_, used_.Dv, minus_LDv_);
+    linalg::product(L_, before_->used.Dv, minus_LDv_);
     minus_LDv_ = -minus_LDv_;
-    linalg::product(L_, used_.C, map_);
-    map_ = TA_ - map_;
-    unit_ = unit;
+    linalg::product(L_, before_->used.C, map_);
+    map_ = now_->TA - map_;
+    if (is_complete()) unit_ = unit;
   }
+
+  bool is_complete() const { return before_ == complete_ && now_ == complete_; }
 
   /// Any gain makes an enclosure: the last one is kept where P is the same to nearly all digits.
   bool is_steady() const {
@@ -276,13 +266,13 @@ class PseudoInverseObserver final : public Observer {
   }
 
   void solve_for_gain(const Matrix& spread, double unit) {
-    linalg::product(used_.C, P_, CP_);
-    linalg::product(CP_, C_transposed_, S_);
-    scaled_ = noise_generators_ * unit;
+    linalg::product(before_->used.C, P_, CP_);
+    linalg::product(CP_, before_->C_transposed, S_);
+    scaled_ = before_->noise_generators * unit;
     linalg::gram(scaled_, noise_gram_);
     S_ += noise_gram_;
     if (spread.size() > 0) S_ += linalg::gram(spread * unit);
-    linalg::product(CP_, TA_transposed_, cross_);  // C P (T A)ᵀ
+    linalg::product(CP_, now_->TA_transposed, cross_);  // C P (T A)ᵀ
     if (const auto solved = linalg::solve_spd(S_, cross_)) {
       L_ = solved->transpose();
     } else {
@@ -290,30 +280,21 @@ class PseudoInverseObserver final : public Observer {
     }
   }
 
-  static double largest_entry(const Matrix& M) {
-    return M.size() == 0 ? 0.0 : M.cwiseAbs().maxCoeff();
-  }
-
   Budget budget_;
   LineForm X0_;
-  Enclosure W_, V_, X_;
+  Enclosure W_, V_, X_, admissible_;
   Effectiveness effectiveness_;
-  LinearModel used_;  ///< weighted by the sensors' effectiveness
-  Vector is_used_;    ///< per output: 1 or 0
   bool rounds_outward_;
-  Matrix inverse_error_, identity_;  ///< |T E + N C - I|, where the backend rounds outward
+  std::shared_ptr<PseudoInverseOutputs> complete_;
+  PerOutputs<PseudoInverseOutputs> others_;
+  std::shared_ptr<PseudoInverseOutputs> before_, now_;  ///< of the samples of this step
+  Matrix identity_;
   Vector zero_;
-  Matrix T_, N_, TA_, TB_, TBw_, minus_ND_, minus_NDv_;
-  Matrix noise_generators_;  ///< Dv Gv
-  Matrix C_transposed_, TA_transposed_;
   Matrix L_, minus_LDv_, map_;  ///< the last gain, -L Dv, T A - L C
   Matrix solved_P_;             ///< that L_ was computed from
   double unit_ = 0;             ///< of solved_P_; 0: none
   // Kept from step to step, so that no step takes memory for them.
   Matrix scaled_, P_, CP_, S_, cross_, noise_gram_;
-  Vector disturbance_, disturbance_widths_;  ///< center and half widths of T Bw W ⊕ (-N Dv V)
-  double least_width_ = 0;
-  std::array<double, 2> input_norms_{};  ///< of T B and D
   Vector shift_, output_, part_;
 };
 
@@ -325,7 +306,7 @@ std::unique_ptr<Observer> pseudo_inverse_observer(const ObserverContext& context
 }
 
 bool has_pseudo_inverse(const LinearModel& model) {
-  return linalg::rank(stacked_E_C(with_bounded_outputs(model)), tolerances::rank) >= model.states();
+  return determine_state(model, all_outputs(model));
 }
 
 }  // namespace cordon::estimators

@@ -89,6 +89,7 @@ class SemiExplicitObserver final : public Observer {
   const Set* admissible_set() const override { return admissible_.set.get(); }
   Tightness claim() const override { return recursion_; }
   bool follows_its_sets() const override { return true; }
+  bool takes_missing_outputs() const override { return true; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample& first) override {

@@ -72,6 +72,17 @@ void WideningLimit::step(const LuenbergerRecursion& recursion, const Sample& bef
   errors_->step(open);
 }
 
+void WideningLimit::step_with_gap(const LuenbergerRecursion& recursion,
+                                  const LuenbergerRecursion& others, const Sample& before,
+                                  const Vector& open) {
+  if (!errors_) return;
+  center_ = others.next(center_, before);
+  Vector h = others.error_map().cwiseAbs() * errors_->half_widths() +
+             absolute_row_sums(others.error_noise());
+  if (open.size() > 0) h += open;
+  errors_.emplace(recursion.error_map(), recursion.error_noise(), h * (1 + rounding_share));
+}
+
 Enclosure WideningLimit::apply(const SetBackend& backend, const Enclosure& X) const {
   if (!errors_) return X;
   const Complexity size = X->complexity();

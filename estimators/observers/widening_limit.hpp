@@ -14,7 +14,7 @@ namespace cordon::estimators {
 /// nothing were ever reduced:
 ///   hₖ = |Fᵏ| h₀ + Σ_{j<k} |Fʲ N| 1 + (Σ_{j<k} |Fʲ|) max_{i<k} bᵢ,
 /// exact but for b, which may differ from step to step. Bounded for stable F, whatever |F| is. Once
-/// all later powers together add less than 2e-10 of the sums, this is added and they are left as
+/// what all later powers add is a negligible share of the sums, this is added and they are left as
 /// they are. O(n² (n + m)) per step until then. [Kofman2007]
 class ErrorHull {
  public:
@@ -53,6 +53,10 @@ class WideningLimit {
   /// The recursion has taken the sample; `open`: the half widths that it added for ranges and
   /// interval matrices.
   void step(const LuenbergerRecursion& recursion, const Sample& before, const Vector& open);
+  /// The same of a step by another recursion, that of the outputs which the sample had: hₖ is begun
+  /// anew, with the box around its errors.
+  void step_with_gap(const LuenbergerRecursion& recursion, const LuenbergerRecursion& others,
+                     const Sample& before, const Vector& open);
   void stop() { errors_.reset(); }
 
   /// X, reduced, or the box in its place.

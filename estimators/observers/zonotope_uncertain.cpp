@@ -7,11 +7,9 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
 #include "observer_parameters.hpp"
+#include "observers/gained_recursion.hpp"
 #include "observers/inner_envelope.hpp"
 #include "observers/interval_spread.hpp"
-#include "observers/luenberger_recursion.hpp"
-#include "observers/observer_gain.hpp"
-#include "observers/widening_limit.hpp"
 
 namespace cordon::estimators {
 
@@ -22,20 +20,20 @@ class ZonotopeUncertain final : public Observer {
   ZonotopeUncertain(const ObserverContext& context, const Params& params, ObserverGain gain)
       : Observer(context.model, context.backend),
         X0_(initial_set_from(model(), params)),
-        gain_(std::move(gain)),
-        recursion_(model(), gain_.gain.L, context.backend, budget_from(params)),
-        limit_(gain_.designer->is_time_varying() ? 0 : params.real("widening_limit")),
-        inner_(model(), gain_.gain.L, params) {}
+        recursion_(model(), std::move(gain), context.backend, budget_from(params)),
+        limit_(recursion_.is_time_varying() ? 0 : params.real("widening_limit")),
+        inner_(model(), recursion_.gain().gain.L, params) {}
 
   LineForm initial_set() const override { return X0_; }
-  std::vector<Gain> gains() const override { return {gain_.gain}; }
+  std::vector<Gain> gains() const override { return {recursion_.gain().gain}; }
   bool follows_its_sets() const override { return !limit_.is_set(); }
+  bool takes_missing_outputs() const override { return true; }
   std::optional<Box> inner_estimate() const override { return inner_.hull(); }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {
     X_ = X0 ? *X0 : backend().import(X0_);
-    limit_.start(recursion_, X_);
+    limit_.start(recursion_.complete(), X_);
     if (!X0) {
       inner_.start(X0_);
     } else if (backend().info().exact_exchange) {
@@ -48,26 +46,21 @@ class ZonotopeUncertain final : public Observer {
   Enclosure do_step(const Sample& before, const Sample&) override {
     const Enclosure carried =
         timed(Phase::reduce, [&] { return limit_.apply(backend(), recursion_.reduced(X_)); });
-    Vector open;
-    X_ = timed(Phase::predict, [&] {
-      if (gain_.designer->is_time_varying()) recursion_.use_gain(gain_for(gain_, model(), carried));
-      return recursion_.next(carried, before, &open);
-    });
-    limit_.step(recursion_, before, open);
+    X_ = timed(Phase::predict, [&] { return recursion_.next(carried, before); });
+    recursion_.tell(limit_, before);
     inner_.step(before);
     return estimate();
   }
   void do_replace(const Enclosure& X) override {
     X_ = X;
-    limit_.start(recursion_, X);
+    limit_.start(recursion_.complete(), X);
     inner_.end();
   }
   /// Claimed outer: what the measurement of the same time says is left out.
   Enclosure estimate() const { return {X_.set, Tightness::outer}; }
 
   LineForm X0_;
-  ObserverGain gain_;
-  LuenbergerRecursion recursion_;
+  GainedRecursion recursion_;
   WideningLimit limit_;
   InnerEnvelope inner_;
   Enclosure X_;

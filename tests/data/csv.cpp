@@ -263,3 +263,28 @@ TEST_CASE("the true modes may be recorded") {
   CHECK(foreign.suggestion.find("\\u000a\\u001b") != std::string::npos);
   CHECK(foreign.suggestion.find("\n") == std::string::npos);
 }
+
+TEST_CASE("outputs without a value are refused with the way out, or missing in their samples") {
+  const std::string bytes = "u,y\n1,2\n1,\n1, nan\n1,NaN \n1,3\n";
+  const auto refused = problems(bytes);
+  REQUIRE(refused.size() == 3);
+  CHECK(refused[0].line == 3);
+  for (const Diagnostic& problem : refused) CHECK(mentions(problem, "\"missing\": \"skip\""));
+  const File file(bytes);
+  Study study = study_of(file.path());
+  std::get<CsvSpec>(study.data).missing = MissingValue::skip;
+  const auto data = open_data(study);
+  std::vector<std::vector<Index>> missing;
+  while (const auto record = data->next()) {
+    missing.push_back(record->sample.missing);
+    CHECK(std::isnan(record->sample.y[0]) == !record->sample.is_complete());
+  }
+  CHECK(missing == std::vector<std::vector<Index>>{{}, {0}, {0}, {0}, {}});
+  // inputs have a value, and outputs are numbers
+  for (const char* wrong : {"u,y\n,2\n", "u,y\nnan,2\n", "u,y\n1,x\n", "u,y\n1,inf\n"}) {
+    const File other(wrong);
+    Study with_gaps = study_of(other.path());
+    std::get<CsvSpec>(with_gaps.data).missing = MissingValue::skip;
+    CHECK_THROWS_AS(open_data(with_gaps), InputError);
+  }
+}

@@ -95,6 +95,30 @@ const Mistake faults[] = {
      "/data/simulate/additive_faults", "is a number, must be a list", "a list of additive faults"},
 };
 
+const std::string varying = "\"varying\"";
+const auto with_dropouts = [](const std::string& dropouts) {
+  return varying + ", \"dropouts\": " + dropouts;
+};
+const std::string dropout = "/data/simulate/dropouts/0";
+
+const Mistake dropouts[] = {
+    {varying, with_dropouts("3"), "/data/simulate/dropouts", "is a number, must be a list",
+     "\"probability\""},
+    {varying, with_dropouts("[{\"outputs\": [7]}]"), dropout + "/outputs/0", "there is no output 7",
+     "counted from 1"},
+    {varying, with_dropouts("[{\"outputs\": []}]"), dropout + "/outputs", "is an empty list",
+     "leave it out"},
+    {varying, with_dropouts("[{\"outputs\": [1, 1]}]"), dropout + "/outputs/1", "a second time",
+     ""},
+    {varying, with_dropouts("[{\"probability\": 1.5}]"), dropout + "/probability",
+     "is no probability", "from 0 to 1"},
+    {varying, with_dropouts("[{\"every\": 0}]"), dropout + "/every", "is too small", "between 1"},
+    {varying, with_dropouts("[{\"from\": 5, \"to\": 4}]"), dropout + "/to", "is below \"from\"",
+     "k = from ... to"},
+    {varying, with_dropouts("[{\"output\": [1]}]"), dropout + "/output", "unknown key of a dropout",
+     "did you mean \"outputs\"?"},
+};
+
 }  // namespace
 
 TEST_CASE("the study that the mistakes are made in is valid") {
@@ -189,4 +213,8 @@ TEST_CASE("too many additive faults, and too many columns of F") {
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].pointer == "/system/F");
   CHECK(problems[0].message == "is 2 × 1001, must have at most 1000 columns");
+}
+
+TEST_CASE("mistakes in dropouts") {
+  for (const Mistake& mistake : dropouts) expect_reported(uncertain_study, mistake);
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "diagnosers/tube_membership/membership.hpp"
 
+#include <cmath>
+#include <vector>
+
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
@@ -45,19 +48,40 @@ bool stands(const LineForm& rows, const LinesEliminated& rest, const Vector& ter
   return margin > 2 * open.dot(reach);
 }
 
+/// The entries of y that are no NaN.
+std::vector<Index> values_of(VectorIn y) {
+  std::vector<Index> present;
+  for (Index i = 0; i < y.size(); ++i) {
+    if (!std::isnan(y[i])) present.push_back(i);
+  }
+  return present;
+}
+
+/// Multipliers of all rows: 0 for those of missing outputs, below m others.
+Vector with_rows_of_missing(const Vector& multipliers, Index m, const std::vector<Index>& present,
+                            Index outputs) {
+  Vector all = Vector::Zero(m + outputs);
+  all.head(m) = multipliers.head(m);
+  for (std::size_t i = 0; i < present.size(); ++i)
+    all[m + present[i]] = multipliers[m + static_cast<Index>(i)];
+  return all;
+}
+
 }  // namespace
 
 Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y, Certificate* why) {
   const LineForm Y = tube.at(u);
-  const Index m = Y.constraints(), p = Y.dim();
+  const std::vector<Index> present = values_of(y);
+  const Index m = Y.constraints(), p = static_cast<Index>(present.size());
   Matrix S(m + p, Y.lines()), A(m + p, Y.generators());
-  S << Y.S, Y.M;
-  A << Y.A, Y.G;
+  S << Y.S, Y.M(present, Eigen::all);
+  A << Y.A, Y.G(present, Eigen::all);
   Vector b(m + p), magnitude(m + p);
-  b << Y.b, y - Y.c;
+  const Vector left = y - Y.c;
+  b << Y.b, left(present);
   const Matrix size = u.cwiseAbs();
-  magnitude << tube.b_size + linalg::product(tube.Omega.cwiseAbs(), size),
-      y.cwiseAbs() + tube.c_size + linalg::product(tube.H.cwiseAbs(), size);
+  const Vector outputs = y.cwiseAbs() + tube.c_size + linalg::product(tube.H.cwiseAbs(), size);
+  magnitude << tube.b_size + linalg::product(tube.Omega.cwiseAbs(), size), outputs(present);
   if (!magnitude.allFinite())
     throw Error(Errc::not_finite, "inputs and outputs overflow; scale the problem");
   const Index lines = S.cols(), factors = A.cols();
@@ -76,6 +100,8 @@ Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y, Cer
     empty = Answer::unknown;  // what the elimination has lost is as large as the proof
     whole = {};
   }
+  if (whole.kind == Certificate::Kind::farkas)
+    whole.data = with_rows_of_missing(whole.data, m, present, y.size());
   if (why) *why = std::move(whole);
   return negate(empty);
 }

@@ -9,7 +9,8 @@ namespace cordon::diagnosers {
 
 /// y ∈ Y(u)? The question is whether
 ///   [S; M] δ + [A; G] ξ = [b + Ω u; y - c - H u],   ‖ξ‖∞ ≤ 1
-/// has a solution. The lines, which hold the states, are eliminated, and a linear program in ξ is
+/// has a solution. Entries of y that are NaN are missing: their rows are left out, and multipliers
+/// of them are 0. The lines, which hold the states, are eliminated, and a linear program in ξ is
 /// left: `no` by a Farkas vector of it, `yes` by a solution of it. `why` is that proof for the rows
 /// above, as `contains` gives it: multipliers of rows, or (δ, ξ).
 Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y,

@@ -67,6 +67,7 @@ class TubeMembership final : public Diagnoser {
   }
 
   std::optional<Index> do_last_used_sample() const override { return horizon_; }
+  bool do_takes_missing_outputs() const override { return true; }
 
   /// Asks for every candidate whether all samples so far can be its own.
   void examine(const Sample& now, std::vector<ModeEvidence>& modes) {

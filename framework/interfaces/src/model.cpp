@@ -92,4 +92,39 @@ LinearModel with_exact_effectiveness_applied(LinearModel model) {
   return model;
 }
 
+std::vector<Index> present_outputs(const Sample& sample) {
+  std::vector<Index> present;
+  auto absent = sample.missing.begin();
+  for (Index i = 0; i < sample.y.size(); ++i) {
+    if (absent != sample.missing.end() && *absent == i) {
+      ++absent;
+    } else {
+      present.push_back(i);
+    }
+  }
+  return present;
+}
+
+Sample without_missing(const Sample& sample) {
+  return {sample.k, sample.u, sample.y(present_outputs(sample))};
+}
+
+LinearModel with_outputs(const LinearModel& model, const std::vector<Index>& outputs) {
+  LinearModel m = model;
+  const auto keep = [&](Matrix& M) { M = Matrix(M(outputs, Eigen::all)); };
+  for (Matrix* M : {&m.C, &m.D, &m.Dv}) keep(*M);
+  if (m.C_radius.size() != 0) keep(m.C_radius);
+  if (m.sensor.dim() != 0) m.sensor = {m.sensor.lower(outputs), m.sensor.upper(outputs)};
+  if (!model.unscaled) return m;
+  LinearModel::Unscaled unscaled = *model.unscaled;
+  for (Matrix* M : {&unscaled.C, &unscaled.D}) keep(*M);
+  unscaled.sensor = Vector(unscaled.sensor(outputs));
+  m.unscaled = std::make_shared<LinearModel::Unscaled>(std::move(unscaled));
+  return m;
+}
+
+Model with_outputs(const Model& model, const std::vector<Index>& outputs) {
+  return {with_outputs(model.linear, outputs), model.X0, model.W, model.V, model.U};
+}
+
 }  // namespace cordon

@@ -35,6 +35,7 @@ void Observer::start(std::optional<Enclosure> X0) {
 
 Estimate Observer::step(const Sample& now) {
   detail::check_sample(now, before_, model_.linear);
+  if (!now.is_complete() && !takes_missing_outputs()) detail::refuse_missing(now, "observer");
   times_ = {};
   Estimate estimate{now.k, {}, Answer::unknown, {}};
   if (inconsistent_) {

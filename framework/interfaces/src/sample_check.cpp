@@ -1,9 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sample_check.hpp"
 
+#include <cmath>
+
 #include "cordon/core/error.hpp"
 
 namespace cordon::detail {
+
+namespace {
+
+void check_missing(const Sample& sample) {
+  Index last = -1;
+  for (const Index i : sample.missing) {
+    const bool fits = i > last && i < sample.y.size();
+    if (!fits || !std::isnan(sample.y[i])) {
+      throw Error(Errc::invalid, "sample " + std::to_string(sample.k) +
+                                     ": missing outputs are told in ascending order, and have NaN "
+                                     "for a value");
+    }
+    last = i;
+  }
+}
+
+}  // namespace
 
 void check_sample(const Sample& sample, const std::optional<Sample>& before,
                   const LinearModel& model) {
@@ -13,7 +32,10 @@ void check_sample(const Sample& sample, const std::optional<Sample>& before,
                     " inputs and " + std::to_string(sample.y.size()) + " outputs, the model has " +
                     std::to_string(model.inputs()) + " and " + std::to_string(model.outputs()));
   }
-  if (!sample.u.allFinite() || !sample.y.allFinite()) {
+  if (!sample.is_complete()) check_missing(sample);
+  const bool finite =
+      sample.is_complete() ? sample.y.allFinite() : sample.y(present_outputs(sample)).allFinite();
+  if (!sample.u.allFinite() || !finite) {
     throw Error(Errc::not_finite,
                 "sample " + std::to_string(sample.k) + " has a NaN or infinite value");
   }
@@ -22,6 +44,13 @@ void check_sample(const Sample& sample, const std::optional<Sample>& before,
                                    std::to_string(before->k) +
                                    "; samples come one time after another");
   }
+}
+
+void refuse_missing(const Sample& sample, const char* kind) {
+  throw Error(Errc::unsupported,
+              "output " + std::to_string(sample.missing.front() + 1) +
+                  " is missing at k = " + std::to_string(sample.k) + ", and this " + kind +
+                  " takes complete samples only; use another one, or fill the gaps");
 }
 
 }  // namespace cordon::detail

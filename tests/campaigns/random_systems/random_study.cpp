@@ -208,6 +208,7 @@ class StudyMaker {
       spec["steps"] = 3;
       spec["x0"] = box(x0_, std::pow(10.0, static_cast<double>(draw_.below(8))) * X0_);
     }
+    if (start_ == Start::bounded_with_gaps) spec["dropouts"] = {{{"probability", 0.3}}};
     for (Index i = 0; i < B_.cols(); ++i) {
       spec["input"].push_back(
           {{"type", "sine"}, {"amplitude", 1.0}, {"omega", 0.3 + 0.2 * static_cast<double>(i)}});
@@ -258,7 +259,7 @@ class StudyMaker {
     if (descriptor_) {
       Json observer{{"type", "descriptor"}, {"max_generators", generators}};
       if (constrained) observer["max_constraints"] = constraints;
-      if (backend == "constrained_zonotope")
+      if (backend == "constrained_zonotope" || (!constrained && start_ == Start::bounded_with_gaps))
         observer["admissible_set"] = box(Vector::Zero(n_), 1e4 * X0_.cwiseMax(1e-6));
       list.push_back(std::move(observer));
       return list;

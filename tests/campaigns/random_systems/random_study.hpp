@@ -9,8 +9,9 @@
 namespace cordon::campaigns {
 
 enum class Start {
-  bounded,  ///< in X0
-  unknown,  ///< anywhere, up to 1e7 times as far from the origin; line zonotopes only
+  bounded,           ///< in X0
+  unknown,           ///< anywhere, up to 1e7 times as far from the origin; line zonotopes only
+  bounded_with_gaps  ///< in X0, and every output is missing in three samples of ten
 };
 
 /// The study of this number: the same on every machine. Up to six states and three outputs; stable,

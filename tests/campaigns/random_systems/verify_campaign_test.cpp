@@ -158,6 +158,12 @@ TEST_CASE("nor of one that starts nobody knows where") {
   CHECK(most_are_decided(count));
 }
 
+TEST_CASE("nor of one whose samples lack outputs") {
+  const Counts count = ran_and_verified(cordon::campaigns::Start::bounded_with_gaps, numbers(40));
+  CHECK(count.false_statements == 0);
+  CHECK(most_are_decided(count));
+}
+
 // An admissible set that is left by a small state beside a large one; descriptor systems in unlike
 // units; a rounded pseudo-inverse beside an outward zonotope; exact outputs that hardly differ; B u
 // of a descriptor system that no double holds; a set that shrinks from 1e-4 to 1e-15; states of

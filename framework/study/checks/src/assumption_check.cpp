@@ -66,20 +66,20 @@ bool leaves_W(const Model& model, const Record& before, const Record& now) {
   return is_missing(model.W, m.Bw, w, radius, terms);
 }
 
-/// The same of v.
+/// The same of v, by the outputs that there are.
 bool leaves_V(const Model& model, const Record& now) {
-  const LinearModel& m = model.linear;
-  const Vector &x = *now.truth, &u = now.sample.u, g = m.sensor_center(),
-               ranges = m.sensor_radius();
+  const LinearModel m = with_outputs(model.linear, present_outputs(now.sample));
+  const Vector &x = *now.truth, &u = now.sample.u, y = without_missing(now.sample).y,
+               g = m.sensor_center(), ranges = m.sensor_radius();
   const Vector pushed = m.actuator_center().cwiseProduct(u);
   const Vector shown = linalg::product(m.C, x) + linalg::product(m.D, pushed);
   const Vector shown_radius = spread(m.C_radius, x, m.outputs()) +
                               product_of_sizes(m.D, m.actuator_radius().cwiseProduct(u));
-  const Vector v = now.sample.y - g.cwiseProduct(shown);
+  const Vector v = y - g.cwiseProduct(shown);
   const Vector radius =
       (g + ranges).cwiseProduct(shown_radius) + ranges.cwiseProduct(shown.cwiseAbs());
-  const Vector terms = now.sample.y.cwiseAbs() +
-                       g.cwiseProduct(product_of_sizes(m.C, x) + product_of_sizes(m.D, pushed));
+  const Vector terms =
+      y.cwiseAbs() + g.cwiseProduct(product_of_sizes(m.C, x) + product_of_sizes(m.D, pushed));
   return is_missing(model.V, m.Dv, v, radius, terms);
 }
 

@@ -42,12 +42,13 @@ bool contradicts_dynamics(const Model& model, const Record& before, const Record
 }
 
 bool contradicts_outputs(const Model& model, const Record& now) {
-  const LinearModel& m = model.linear;
+  const Sample sample = without_missing(now.sample);
+  const LinearModel m = with_outputs(model.linear, present_outputs(now.sample));
   if (has_ranges(m)) return false;
   const Index p = m.outputs();
   Equations rows;
-  const Equations::Line u = pushed(rows, m, now.sample), x = rows.constant(*now.truth),
-                        y = rows.constant(now.sample.y), v = rows.element(model.V),
+  const Equations::Line u = pushed(rows, m, sample), x = rows.constant(*now.truth),
+                        y = rows.constant(sample.y), v = rows.element(model.V),
                         shown = rows.line(p);
   rows.add(p, {{shown, identity(p)}, {x, -m.C}, {u, -m.D}});
   rows.add(p, {{y, identity(p)}, {shown, -Matrix(m.sensor_center().asDiagonal())}, {v, -m.Dv}});

@@ -62,8 +62,10 @@ Vector RoundingMargin::forces(VectorIn u) const {
 
 /// What the outputs leave of the lines of the set before, one step on: y_k = C A M t + … is solved
 /// for their lengths t, in units of its largest entries.
-Vector RoundingMargin::cut_lines(const Vector& data) const {
-  const Matrix moved = model_.A * lines_, shown = model_.C * moved;
+Vector RoundingMargin::cut_lines(const Vector& data, const Sample& now) const {
+  const Matrix moved = model_.A * lines_;
+  Matrix shown = model_.C * moved;
+  shown(now.missing, Eigen::all).setZero();
   const Vector rows = linalg::row_scales(shown), cols = linalg::row_scales(shown.transpose());
   const Matrix solved =
       linalg::pseudo_inverse(rows.asDiagonal() * shown * cols.asDiagonal(), shown_at_all);
@@ -84,8 +86,9 @@ Vector RoundingMargin::next(const LineForm& X, const Sample* before, const Sampl
     terms = terms.cwiseMax(initial_);
   }
   terms = mixed_ * terms;
-  const Vector data = now.y.cwiseAbs() + model_.D.cwiseAbs() * now.u.cwiseAbs() + noise_;
-  if (before && lines_.cols() > 0) terms += cut_lines(data);
+  Vector data = now.y.cwiseAbs() + model_.D.cwiseAbs() * now.u.cwiseAbs() + noise_;
+  data(now.missing).setZero();
+  if (before && lines_.cols() > 0) terms += cut_lines(data, now);
   lines_ = X.M;
   reach_ = reach_of(X);
   largest_ = largest_.cwiseMax(terms);

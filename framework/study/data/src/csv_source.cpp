@@ -2,6 +2,9 @@
 #include "study/data/csv_source.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "core/text.hpp"
@@ -12,12 +15,20 @@ namespace cordon::detail {
 
 namespace {
 
-constexpr std::size_t missing = static_cast<std::size_t>(-1);
+constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string::npos) return "";
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// An empty field, or NaN in any case of letters.
+bool is_missing(const std::string& field) {
+  std::string text = trimmed(field);
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(c < 128 ? std::tolower(c) : c); });
+  return text.empty() || text == "nan";
 }
 
 void require_file(const std::filesystem::path& file) {
@@ -42,6 +53,7 @@ CsvSource::CsvSource(const CsvSpec& spec, const LinearModel& model, std::vector<
       outputs_{spec.outputs, {}, "/data/csv/outputs"},
       truth_{spec.truth, {}, "/data/csv/truth"},
       mode_{{}, {}, "/data/csv/mode"},
+      skips_missing_(spec.missing == MissingValue::skip),
       modes_(std::move(modes)) {
   if (!spec.mode.empty()) mode_.names.push_back(spec.mode);
   check_sizes(spec, model);
@@ -130,7 +142,7 @@ void CsvSource::locate(const CsvRow& row) {
 void CsvSource::find_columns(Columns& columns, const std::vector<std::string>& header) {
   for (std::size_t i = 0; i < columns.names.size(); ++i) {
     const auto place = std::find(header.begin(), header.end(), columns.names[i]);
-    columns.at.push_back(place == header.end() ? missing
+    columns.at.push_back(place == header.end() ? nowhere
                                                : static_cast<std::size_t>(place - header.begin()));
     if (place != header.end()) continue;
     std::vector<std::string> candidates;
@@ -162,13 +174,22 @@ std::optional<Vector> CsvSource::numbers(const CsvRow& row, const Columns& colum
   Vector values(static_cast<Index>(columns.at.size()));
   bool good = true;
   for (std::size_t i = 0; i < columns.at.size(); ++i) {
-    if (columns.at[i] == missing) continue;
-    const ParsedNumber number = parse_number(row.fields[columns.at[i]]);
+    if (columns.at[i] == nowhere) continue;
+    const std::string& field = row.fields[columns.at[i]];
+    const bool is_output = &columns == &outputs_, is_gap = is_output && is_missing(field);
+    if (is_gap && skips_missing_) {
+      values[static_cast<Index>(i)] = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    const ParsedNumber number = parse_number(field);
     values[static_cast<Index>(i)] = number.value;
     if (number.problem.empty()) continue;
     good = false;
     report("/data/csv/file", row.line,
-           "column " + json::in_quotes(columns.names[i]) + ": " + number.problem);
+           "column " + json::in_quotes(columns.names[i]) + ": " + number.problem,
+           is_gap ? "with \"missing\": \"skip\" in /data/csv, observers use the other outputs of "
+                    "such samples"
+                  : "");
   }
   return good ? std::optional<Vector>(std::move(values)) : std::nullopt;
 }
@@ -176,7 +197,7 @@ std::optional<Vector> CsvSource::numbers(const CsvRow& row, const Columns& colum
 /// The mode of a row, -1 for an empty field: outside the bank; nothing if it is not recorded, or
 /// after reporting what is wrong.
 std::optional<Index> CsvSource::mode(const CsvRow& row) {
-  if (mode_.at.empty() || mode_.at.front() == missing) return std::nullopt;
+  if (mode_.at.empty() || mode_.at.front() == nowhere) return std::nullopt;
   const std::string& field = row.fields[mode_.at.front()];
   const std::string name = trimmed(field);
   if (name.empty()) return -1;
@@ -207,6 +228,10 @@ std::optional<Record> CsvSource::next() {
                               std::to_string(row.line) + ")");
   Record record{
       {static_cast<Index>(k_++), std::move(*u), std::move(*y)}, std::nullopt, std::nullopt};
+  Sample& sample = record.sample;
+  for (Index i = 0; i < sample.y.size(); ++i) {
+    if (std::isnan(sample.y[i])) sample.missing.push_back(i);
+  }
   if (!truth_.names.empty()) record.truth = std::move(truth);
   record.mode = true_mode;
   return record;

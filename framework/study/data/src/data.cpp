@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "study/data/csv_source.hpp"
+#include "study/data/dropouts.hpp"
 #include "study/data/plant_source.hpp"
 #include "study/data/simulate.hpp"
 
@@ -24,6 +25,14 @@ bool all_designed(const Study& study) {
                      [](const PipelineSpec& pipeline) { return pipeline.design() != nullptr; });
 }
 
+std::unique_ptr<DataSource> simulated(const Study& study, const SimulateSpec& spec, bool modes) {
+  if (spec.made_plant)
+    return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string(), modes);
+  const bool additive = study.model.linear.faults() > 0;
+  return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string(),
+                                                   modes || additive);
+}
+
 }  // namespace
 
 std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_offset) {
@@ -33,11 +42,9 @@ std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_off
     spec.seed += seed_offset;
     const bool modes =
         !study.modes.empty() || !spec.faults.empty();  // with one mode there is nothing to tell
-    if (spec.made_plant)
-      return std::make_unique<detail::PlantSource>(study.model, spec, study.file.string(), modes);
-    const bool additive = study.model.linear.faults() > 0;
-    return std::make_unique<detail::SimulatedSource>(study.model, spec, study.file.string(),
-                                                     modes || additive);
+    std::unique_ptr<DataSource> source = simulated(study, spec, modes);
+    if (spec.dropouts.empty()) return source;
+    return std::make_unique<detail::DropoutData>(std::move(source), spec.dropouts, spec.seed);
   }
   std::vector<std::string> modes{study.nominal};
   for (const Mode& mode : study.modes) modes.push_back(mode.name);

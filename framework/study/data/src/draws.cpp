@@ -44,6 +44,22 @@ void check_additive_faults(const SimulateSpec& spec, Index faults,
   }
 }
 
+void check_dropouts(const SimulateSpec& spec, Index outputs, std::vector<Diagnostic>& problems) {
+  for (std::size_t i = 0; i < spec.dropouts.size(); ++i) {
+    const DropoutSpec& dropout = spec.dropouts[i];
+    const std::string place = "/data/simulate/dropouts/" + std::to_string(i);
+    for (const Index output : dropout.outputs) {
+      if (output < 0 || output >= outputs)
+        problems.push_back({place + "/outputs", "has a number that is no row of /system/C", ""});
+    }
+    if (dropout.from < 0 || dropout.to < dropout.from)
+      problems.push_back({place, "ends before it begins, or begins before k = 0", ""});
+    if (!(dropout.probability >= 0 && dropout.probability <= 1))
+      problems.push_back({place + "/probability", "does not lie in [0, 1]", ""});
+    if (dropout.every < 0) problems.push_back({place + "/every", "is negative", ""});
+  }
+}
+
 }  // namespace
 
 void check_simulation(const Model& model, const SimulateSpec& spec, const std::string& file) {
@@ -80,6 +96,7 @@ void check_simulation(const Model& model, const SimulateSpec& spec, const std::s
   if (linear.faults() > 0)
     require(linear.F.rows(), linear.states(), "/system/F", "the rows of /system/A");
   check_additive_faults(spec, linear.faults(), problems);
+  check_dropouts(spec, linear.outputs(), problems);
   if (spec.made_plant && !spec.additive_faults.empty()) {
     problems.push_back({"/data/simulate/additive_faults",
                         "cannot be simulated with a plant: they are about the linear model", ""});

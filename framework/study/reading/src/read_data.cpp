@@ -184,6 +184,8 @@ void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use,
     read_faults(*faults, system, spec, written_faults, context.warnings);
   if (const auto additive = at.find("additive_faults"))
     AdditiveFaultReader(spec, system.sizes.faults, context.warnings).read(*additive);
+  if (const auto dropouts = at.find("dropouts"))
+    read_dropouts(*dropouts, system.sizes.outputs, spec, context.warnings);
 }
 
 /// All pipelines have a designer.
@@ -193,7 +195,7 @@ void refuse_stream(const Cursor& at) {
       found->error("belongs to the designer, which every pipeline has",
                    "remove it: horizon and inputs are parameters of designers");
   }
-  for (const char* key : {"parameters", "plant", "faults", "additive_faults"}) {
+  for (const char* key : {"parameters", "plant", "faults", "additive_faults", "dropouts"}) {
     if (const auto found = at.find(key)) {
       found->error(
           "has no meaning where every pipeline has a designer",
@@ -207,7 +209,7 @@ SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const Dat
                            std::vector<WrittenFault>& written_faults) {
   SimulateSpec spec;
   if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults",
-                       "additive_faults", "parameters"},
+                       "additive_faults", "parameters", "dropouts"},
                       "key of simulated data", "{\"steps\": 100, \"input\": [...]}"))
     return spec;
   if (const auto seed = at.find("seed"))
@@ -246,8 +248,8 @@ std::vector<std::string> read_columns(const Cursor& csv, const char* key, std::o
 DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::path& folder) {
   DataPart part;
   CsvSpec spec;
-  if (!at.expect_keys({"file", "inputs", "outputs", "truth", "mode"}, "key of recorded data",
-                      "{\"file\": \"data.csv\", \"outputs\": [\"y\"]}"))
+  if (!at.expect_keys({"file", "inputs", "outputs", "truth", "mode", "missing"},
+                      "key of recorded data", "{\"file\": \"data.csv\", \"outputs\": [\"y\"]}"))
     return part;
   const auto file_at = at.need("file", "the CSV file, relative to the folder of the study");
   if (const auto file = file_at ? read_text(*file_at, 4096) : std::nullopt) {
@@ -267,6 +269,10 @@ DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::p
   spec.outputs = read_columns(at, "outputs", sizes.outputs, "the rows of /system/C", true);
   spec.truth = read_columns(at, "truth", sizes.states, "the rows of /system/A", false);
   if (const auto mode = at.find("mode")) spec.mode = read_text(*mode, 4096).value_or("");
+  if (const auto missing = at.find("missing")) {
+    const auto name = read_choice(*missing, missing_value_names());
+    spec.missing = name == "skip" ? MissingValue::skip : MissingValue::error;
+  }
   part.data = std::move(spec);
   return part;
 }
@@ -286,6 +292,11 @@ const std::vector<std::string>& noise_names() {
 
 const std::vector<std::string>& parameter_draw_names() {
   static const std::vector<std::string> names{"constant", "varying"};
+  return names;
+}
+
+const std::vector<std::string>& missing_value_names() {
+  static const std::vector<std::string> names{"error", "skip"};
   return names;
 }
 

@@ -189,6 +189,17 @@ Json to_json(const AdditiveFaultSpec& fault) {
   return object;
 }
 
+Json to_json(const DropoutSpec& dropout) {
+  Json object;
+  object["outputs"] = Json::array();
+  for (const Index output : dropout.outputs) object["outputs"].push_back(output + 1);
+  object["from"] = dropout.from;
+  if (dropout.to != DropoutSpec{}.to) object["to"] = dropout.to;
+  object["probability"] = dropout.probability;
+  if (dropout.every > 0) object["every"] = dropout.every;
+  return object;
+}
+
 /// What pipelines without a designer need is left out where all have one: `streamed` is false.
 Json to_json(const SimulateSpec& spec, const LinearModel& model, bool streamed,
              const Written& written, const Registry& registry) {
@@ -209,6 +220,7 @@ Json to_json(const SimulateSpec& spec, const LinearModel& model, bool streamed,
     object["faults"].push_back(to_json(spec.faults[i], written.faults[i]));
   for (const AdditiveFaultSpec& fault : spec.additive_faults)
     object["additive_faults"].push_back(to_json(fault));
+  for (const DropoutSpec& dropout : spec.dropouts) object["dropouts"].push_back(to_json(dropout));
   return object;
 }
 
@@ -219,6 +231,8 @@ Json to_json(const CsvSpec& spec, const std::string& written_file) {
   object["outputs"] = spec.outputs;
   if (!spec.truth.empty()) object["truth"] = spec.truth;
   if (!spec.mode.empty()) object["mode"] = spec.mode;
+  if (spec.missing != MissingValue::error)
+    object["missing"] = missing_value_names()[static_cast<std::size_t>(spec.missing)];
   return object;
 }
 

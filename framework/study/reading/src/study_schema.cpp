@@ -194,6 +194,23 @@ Json additive_faults() {
   return list_of(object(properties, {"fault", "signal"}));
 }
 
+Json dropouts() {
+  const Json time = integer(0, static_cast<std::int64_t>(json::max_integer));
+  Json properties;
+  properties["outputs"] = described(
+      Json{{"type", "array"}, {"items", integer(1, json::max_dimension)}, {"minItems", 1}},
+      "numbers of rows of C, from 1 on; all by default");
+  properties["from"] = described(time, "the first k that the dropout is about");
+  properties["from"]["default"] = 0;
+  properties["to"] = described(time, "the last such k; the end by default");
+  properties["probability"] =
+      described(Json{{"type", "number"}, {"minimum", 0}, {"maximum", 1}, {"default", 1}},
+                "of every output at every step, each by itself");
+  properties["every"] = described(integer(1, static_cast<std::int64_t>(json::max_integer)),
+                                  "the outputs are there at every so many steps from `from` on");
+  return list_of(object(properties, {}));
+}
+
 Json data() {
   Json simulate;
   simulate["steps"] = described(integer(1, 1'000'000'000), "samples k = 0 ... steps");
@@ -216,6 +233,7 @@ Json data() {
       described(list_of(reference("fault")), "in the order of time, without overlap");
   simulate["additive_faults"] =
       described(additive_faults(), "values of the faults in the directions of F; 0 otherwise");
+  simulate["dropouts"] = described(dropouts(), "outputs that are missing in samples");
   const Json names{{"type", "array"}, {"items", text(4096)}, {"uniqueItems", true}};
   Json csv;
   csv["file"] = described(text(4096), "relative to the folder of the study");
@@ -224,6 +242,10 @@ Json data() {
   csv["truth"] = described(names, "columns of the true state, one per row of A");
   csv["mode"] =
       described(text(4096), "column with the name of the true mode, empty outside the bank");
+  csv["missing"] = described(one_of(json::missing_value_names()),
+                             "what outputs without a value, empty fields or NaN, are: an error, or "
+                             "missing in the sample");
+  csv["missing"]["default"] = "error";
   return {{"oneOf",
            {object({{"simulate", object(simulate, {})}}, {"simulate"}),
             object({{"csv", object(csv, {"file", "outputs"})}}, {"csv"})}}};
@@ -299,7 +321,8 @@ Json conditions() {
   const Json designer{{"required", {"designer"}}};
   Json all_designed{{"properties", {{"pipelines", {{"items", designer}}}}}};
   Json refused;
-  for (const char* key : {"steps", "input", "parameters", "plant", "faults", "additive_faults"})
+  for (const char* key :
+       {"steps", "input", "parameters", "plant", "faults", "additive_faults", "dropouts"})
     refused[key] = false;
   Json streamed = with_simulate(Json::object(), {"steps"});
   streamed["required"] = {"data"};

@@ -198,7 +198,8 @@ void Results::data(const Record& record) {
   }
   std::vector<std::string> row{std::to_string(record.sample.k)};
   for (const auto& [name, part] : parts) {
-    for (Index i = 0; part && i < part->size(); ++i) row.push_back(to_text((*part)[i]));
+    for (Index i = 0; part && i < part->size(); ++i)
+      row.push_back(std::isnan((*part)[i]) ? "" : to_text((*part)[i]));
   }
   if (with_mode_) row.push_back(record.mode ? std::to_string(*record.mode) : "");
   data_file_.write(joined(row));

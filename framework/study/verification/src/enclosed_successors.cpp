@@ -61,10 +61,14 @@ Rounded enclosed(const Model& model, const LineForm& X,
                  const std::optional<LineForm>& admissible_set, const Transition& transition) {
   const LinearModel& m = model.linear;
   const Index n = m.states();
-  const Rounded noise = image(-m.Dv, exactly(model.V)), disturbance = image(m.Bw, exactly(model.W));
+  const Rounded disturbance = image(m.Bw, exactly(model.W));
   const auto measured = [&](const Rounded& x, const Sample& sample) {
-    const Rounded y = exactly(make_point(sample.y)), u = exactly(make_point(sample.u));
-    return m.outputs() > 0 ? restricted(x, m.C, sum(sum(y, image(-m.D, u)), noise)) : x;
+    const std::vector<Index> present = present_outputs(sample);
+    if (present.empty()) return x;
+    const LinearModel seen = with_outputs(m, present);
+    const Rounded y = exactly(make_point(sample.y(present))), u = exactly(make_point(sample.u)),
+                  noise = image(-seen.Dv, exactly(model.V));
+    return restricted(x, seen.C, sum(sum(y, image(-seen.D, u)), noise));
   };
   const auto driven = [&](const Sample& sample) {
     return sum(image(m.B, exactly(make_point(sample.u))), disturbance);

@@ -40,10 +40,20 @@ FeasibleSets::FeasibleSets(const Model& model, const LineForm& initial_set,
 
 /// C x ∈ {y} ⊕ {-D u} ⊕ (-Dv V).
 Polytope FeasibleSets::measured(const LinearModel& m, const Polytope& X, const Sample& now) const {
-  if (m.outputs() == 0) return X;
-  const Polytope target = minus_noise_.minkowski_sum(Polytope::from_generators(now.y))
-                              .minkowski_sum(image(-m.D, now.u));
-  return X.intersection(m.C, target);
+  const std::vector<Index> present = present_outputs(now);
+  if (present.empty()) return X;
+  if (now.is_complete()) {
+    const Polytope target = minus_noise_.minkowski_sum(Polytope::from_generators(now.y))
+                                .minkowski_sum(image(-m.D, now.u));
+    return X.intersection(m.C, target);
+  }
+  const LinearModel others = with_outputs(m, present);
+  const Index p = others.outputs();
+  const Polytope minus_noise =
+      minus_noise_.affine_map(identity(m.outputs())(present, Eigen::all), zero_vector(p));
+  const Polytope target = minus_noise.minkowski_sum(Polytope::from_generators(now.y(present)))
+                              .minkowski_sum(image(-others.D, now.u));
+  return X.intersection(others.C, target);
 }
 
 /// {x : E x ∈ A P_{k-1} ⊕ {B u_{k-1}} ⊕ Bw W}.
@@ -103,13 +113,16 @@ LinearModel drawn(const LinearModel& model, Index k, int draw) {
 LineForm successors(const Model& model, const LineForm& X,
                     const std::optional<LineForm>& admissible_set, const Transition& transition) {
   const LinearModel& m = model.linear;
-  const Index n = m.states(), p = m.outputs();
+  const Index n = m.states();
   const DescriptorMatrix E(m.is_descriptor() ? m.E : identity(n));
   Equations rows;
   const auto measured = [&](const Equations::Line& x, const Sample& sample) {
-    const Equations::Line u = rows.constant(sample.u), y = rows.constant(sample.y),
-                          v = rows.element(model.V);
-    rows.add(p, {{y, identity(p)}, {x, -m.C}, {u, -m.D}, {v, -m.Dv}});
+    const Equations::Line u = rows.constant(sample.u);
+    const std::vector<Index> present = present_outputs(sample);
+    const LinearModel seen = with_outputs(m, present);
+    const Equations::Line y = rows.constant(sample.y(present)), v = rows.element(model.V);
+    rows.add(seen.outputs(),
+             {{y, identity(seen.outputs())}, {x, -seen.C}, {u, -seen.D}, {v, -seen.Dv}});
     return u;
   };
   const auto follows = [&](const Equations::Line& next, const Equations::Line& x,

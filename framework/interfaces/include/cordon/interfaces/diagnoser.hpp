@@ -106,10 +106,15 @@ class Diagnoser {
   /// Begins anew, in the nominal mode.
   void start();
   /// Takes the sample of the next time; samples come in order. Sizes and finiteness are checked.
+  /// Throws Errc::unsupported for missing outputs that the diagnoser does not take.
   Diagnosis step(const Sample& now);
 
   /// What can be said before any experiment; nothing if the method has no such statements.
   std::optional<Guarantees> guarantees() const { return do_guarantees(); }
+
+  /// Does it take samples with missing outputs, and exclude only what the outputs that are there
+  /// contradict? Otherwise `step` refuses such samples.
+  bool takes_missing_outputs() const { return do_takes_missing_outputs(); }
 
   /// How many steps after `start` the last sample is that it makes use of; nothing: there is no
   /// last one.
@@ -131,6 +136,7 @@ class Diagnoser {
   virtual Diagnosis do_step(const Sample* before, const Sample& now) = 0;
   virtual std::optional<Guarantees> do_guarantees() const { return std::nullopt; }
   virtual std::optional<Index> do_last_used_sample() const { return std::nullopt; }
+  virtual bool do_takes_missing_outputs() const { return false; }
 
   ModeBank bank_;
   std::shared_ptr<const SetBackend> backend_;

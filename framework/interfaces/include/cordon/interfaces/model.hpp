@@ -113,6 +113,22 @@ struct ModeBank {
 struct Sample {
   Index k = 0;
   Vector u, y;
+  /// Outputs without a value at this time, in ascending order; their entries of y are NaN.
+  std::vector<Index> missing = {};
+
+  bool is_complete() const { return missing.empty(); }
 };
+
+/// The outputs that the sample has, in ascending order.
+std::vector<Index> present_outputs(const Sample& sample);
+
+/// The complete sample of these outputs alone.
+Sample without_missing(const Sample& sample);
+
+/// The model with these outputs alone: the other rows of C, D, Dv, the radius of C and the sensors
+/// are left out. A sample with missing outputs says of the state what the complete sample of the
+/// others says in this model.
+LinearModel with_outputs(const LinearModel& model, const std::vector<Index>& outputs);
+Model with_outputs(const Model& model, const std::vector<Index>& outputs);
 
 }  // namespace cordon

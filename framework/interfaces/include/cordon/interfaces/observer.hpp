@@ -36,7 +36,8 @@ class Observer {
 
   /// Begins anew; X0 overrides the model's initial set.
   void start(std::optional<Enclosure> X0 = {});
-  /// Takes the sample of the next time; samples come in order. Sizes are checked.
+  /// Takes the sample of the next time; samples come in order. Sizes are checked. Throws
+  /// Errc::unsupported for missing outputs that the observer does not take.
   Estimate step(const Sample& now);
   /// Replaces the current set and keeps the time.
   void replace(Enclosure X);
@@ -67,6 +68,10 @@ class Observer {
   /// Then `cordon verify` holds every estimate against the one before. An observer that knows more
   /// than its last set, as a bound of its error for all times, may keep to less, and says no.
   virtual bool follows_its_sets() const { return false; }
+
+  /// Does it take samples with missing outputs, and enclose every state that is consistent with the
+  /// outputs that are there? Otherwise `step` refuses such samples.
+  virtual bool takes_missing_outputs() const { return false; }
 
   /// A box inside the hull of the last estimate, made of trajectories that the observer must
   /// enclose: what is left between the two is the price of the enclosure. Never an enclosure

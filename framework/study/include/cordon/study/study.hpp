@@ -64,6 +64,18 @@ struct AdditiveFaultSpec {
   Signal signal = {};
 };
 
+/// Samples of simulated data that lack outputs: for k = from … to the outputs are missing at each
+/// step with this probability, each by itself; but for every `every`-th step from `from` on, where
+/// they are there (0: none is). An output that several dropouts take is missing where one of them
+/// says so.
+struct DropoutSpec {
+  std::vector<Index> outputs;  ///< rows of C; in studies counted from 1
+  std::int64_t from = 0;
+  std::int64_t to = std::numeric_limits<std::int64_t>::max();
+  double probability = 1;
+  std::int64_t every = 0;
+};
+
 /// What the matrices of an uncertain model are in a simulation; drawn by the kind of its noise:
 /// uniform in their intervals, at vertices, or in the middle (zero, sine).
 enum class ParameterDraw {
@@ -90,6 +102,13 @@ struct SimulateSpec {
   std::vector<AdditiveFaultSpec> additive_faults = {};
   ParameterDraw parameters = ParameterDraw::constant;
   std::int64_t seeds = 1;  ///< diagnosers are tried on the seeds seed … seed + seeds - 1
+  std::vector<DropoutSpec> dropouts = {};
+};
+
+/// What an output without a value, an empty field or NaN, is in recorded data.
+enum class MissingValue {
+  error,  ///< the file is refused
+  skip    ///< missing in this sample
 };
 
 /// Recorded data: a CSV file with a header row and named columns.
@@ -97,6 +116,7 @@ struct CsvSpec {
   std::filesystem::path file;  ///< absolute, or relative to the study's folder (resolved when read)
   std::vector<std::string> inputs, outputs, truth;  ///< column names; truth may be empty
   std::string mode = {};  ///< column with the names of the true modes; empty: not known
+  MissingValue missing = MissingValue::error;
 };
 
 struct EstimationSpec {

@@ -211,8 +211,17 @@ int line_number(const detail::InputFile& file) {
   return static_cast<int>(std::min<std::int64_t>(file.lines(), 1'000'000'000));
 }
 
-CsvSpec data_of(std::filesystem::path file, const LinearModel& model) {
+/// May samples of this study lack outputs?
+bool may_have_gaps(const Cursor& study) {
+  const auto data = study.find("data");
+  const auto simulate = data ? data->find("simulate") : std::nullopt,
+             csv = data ? data->find("csv") : std::nullopt;
+  return (simulate && simulate->find("dropouts")) || (csv && csv->find("missing"));
+}
+
+CsvSpec data_of(std::filesystem::path file, const LinearModel& model, MissingValue missing) {
   CsvSpec spec;
+  spec.missing = missing;
   spec.file = std::move(file);
   for (Index i = 1; i <= model.inputs(); ++i) spec.inputs.push_back("u_" + std::to_string(i));
   for (Index i = 1; i <= model.outputs(); ++i) spec.outputs.push_back("y_" + std::to_string(i));
@@ -262,7 +271,8 @@ RecordedRun read_run(const std::filesystem::path& directory) {
   StepReader steps;
   const Value tree =
       read_large(file,
-                 {.kept = {"/cordon_results", "/study/system", "/points", "/pipelines"},
+                 {.kept = {"/cordon_results", "/study/system", "/study/data/simulate/dropouts",
+                           "/study/data/csv/missing", "/points", "/pipelines"},
                   .streamed = {"/pipelines/*/steps/*", "/points/*"},
                   .take =
                       [&](const Cursor& at, const std::vector<std::size_t>& place) {
@@ -282,6 +292,7 @@ RecordedRun read_run(const std::filesystem::path& directory) {
     const auto system = study && study->expect(Kind::object, not_as_written)
                             ? study->need("system", not_as_written)
                             : std::nullopt;
+    if (study && may_have_gaps(*study)) run.data.missing = MissingValue::skip;
     std::vector<std::string> warnings;
     SystemPart part = system ? read_system(*system, warnings) : SystemPart{};
     if (part.good && pipelines && pipelines->expect(Kind::array, not_as_written)) {
@@ -296,7 +307,7 @@ RecordedRun read_run(const std::filesystem::path& directory) {
     run.model = std::move(part.model);
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());
-  run.data = data_of(run.files.file("data.csv"), run.model.linear);
+  run.data = data_of(run.files.file("data.csv"), run.model.linear, run.data.missing);
   check_times(run.data.file);
   return run;
 }

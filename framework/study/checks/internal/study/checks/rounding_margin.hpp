@@ -31,12 +31,12 @@ class RoundingMargin {
   Vector next(const LineForm& X, const Sample* before, const Sample& now);
 
   /// Per output, 1e-13 of the terms of y_k = C x_k + D u_k + Dv v_k for the last step; x_k as far
-  /// out along lines as without them.
+  /// out along lines as without them. Of outputs that are missing, nothing is said.
   const Vector& of_outputs() const { return of_outputs_; }
 
  private:
   Vector forces(VectorIn u) const;
-  Vector cut_lines(const Vector& data) const;
+  Vector cut_lines(const Vector& data, const Sample& now) const;
 
   const LinearModel& model_;
   double of_a_step_, of_the_data_;  ///< ε, ε_t

@@ -12,9 +12,9 @@ namespace cordon::detail {
 
 /// Samples in the order of rows, k = row index from 0. The constructor reads the whole file once
 /// and throws InputError (file: the CSV file) with up to 20 problems and their lines: missing or
-/// repeated columns, ragged rows, text or non-finite values in a number of a column that is used, a
-/// mode that there is not, no header, no rows. Afterwards rows are read again one by one; memory is
-/// constant.
+/// repeated columns, ragged rows, text or non-finite values in a number of a column that is used
+/// (but for outputs without a value, where the study skips them), a mode that there is not, no
+/// header, no rows. Afterwards rows are read again one by one; memory is constant.
 class CsvSource final : public DataSource {
  public:
   /// `modes`: the names that the column of modes may hold, in the order of the bank.
@@ -44,6 +44,7 @@ class CsvSource final : public DataSource {
 
   std::filesystem::path file_;
   Columns inputs_, outputs_, truth_, mode_;
+  bool skips_missing_;  ///< outputs without a value are missing, no problem
   std::vector<std::string> modes_;
   std::size_t width_ = 0;
   std::int64_t rows_ = 0;

@@ -19,7 +19,8 @@ enum class Purpose : std::uint64_t {
   effectiveness = 5,
   parameters = 6,
   additive_fault = 7,
-  start = 8
+  start = 8,
+  dropout = 9
 };
 
 class RandomStream {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observers/gained_recursion.hpp"
+
+namespace cordon::estimators {
+
+GainedRecursion::GainedRecursion(const Model& model, ObserverGain gain,
+                                 std::shared_ptr<const SetBackend> backend, Budget budget)
+    : model_(model),
+      gain_(std::move(gain)),
+      backend_(std::move(backend)),
+      budget_(budget),
+      complete_(model_, gain_.gain.L, backend_, budget_) {}
+
+std::shared_ptr<GainedRecursion::Others> GainedRecursion::with(
+    const std::vector<Index>& present) const {
+  Model model = with_outputs(model_, present);
+  Matrix L = gain_.gain.L(Eigen::all, present);
+  LuenbergerRecursion recursion(model, L, backend_, budget_);
+  return std::make_shared<Others>(Others{std::move(model), std::move(L), std::move(recursion)});
+}
+
+Enclosure GainedRecursion::next(const Enclosure& X, const Sample& before) {
+  if (before.is_complete()) {
+    last_.reset();
+    if (is_time_varying()) complete_.use_gain(gain_for(gain_, model_, X, gain_.gain.L));
+    return complete_.next(X, before, &open_);
+  }
+  last_ = others_.at(before, [&](const auto& present) { return with(present); });
+  if (is_time_varying()) last_->recursion.use_gain(gain_for(gain_, last_->model, X, last_->L));
+  return last_->recursion.next(X, without_missing(before), &open_);
+}
+
+void GainedRecursion::tell(WideningLimit& limit, const Sample& before) const {
+  if (last_) {
+    limit.step_with_gap(complete_, last_->recursion, without_missing(before), open_);
+  } else {
+    limit.step(complete_, before, open_);
+  }
+}
+
+}  // namespace cordon::estimators
