@@ -391,11 +391,9 @@ TEST_CASE("a plant that starts in the X0 of another mode is of that mode") {
     for (const double x0 : {400., 650., 900.}) {
       double x = x0;
       bank->start();
-      for (Index k = 0; k < 30; ++k) {
+      for (Index k = 0; k < 30; ++k, x = .5 * x + 3) {
         const Diagnosis now = bank->step({k, Vector{{0}}, Vector{{x}}});
-        CHECK(now.modes[1].candidate + now.reset >= (k == 0 ? 0 : 1));
         CHECK(now.modes[1].consistent != Answer::no);
-        x = .5 * x + 3;
       }
     }
   }
