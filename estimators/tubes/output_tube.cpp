@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tubes/output_tube.hpp"
 
+#include <cmath>
+
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
@@ -19,6 +21,26 @@ struct Part {
   Index line = 0, factor = 0;
 };
 
+/// Are all sums of A B free of rounding, as they are added up? In doubt no.
+bool is_exact_product(MatrixIn A, MatrixIn B) {
+  constexpr double smallest = 1e-290;  // below, the error itself may be no double
+  for (Index i = 0; i < A.rows(); ++i) {
+    for (Index j = 0; j < B.cols(); ++j) {
+      double sum = 0;
+      for (Index k = 0; k < A.cols(); ++k) {
+        const double product = A(i, k) * B(k, j);
+        if (A(i, k) == 0 || B(k, j) == 0) continue;
+        const double next = sum + product, added = next - sum;
+        const double lost = (sum - (next - added)) + (product - added);
+        if (!(std::abs(product) >= smallest) || lost != 0) return false;
+        if (std::fma(A(i, k), B(k, j), -product) != 0) return false;
+        sum = next;
+      }
+    }
+  }
+  return true;
+}
+
 /// T·part
 Part mapped(MatrixIn T, const Part& part) {
   return {linalg::denoised_product(T, part.M),
@@ -36,12 +58,12 @@ class TubeBuilder {
       : m_(with_exact_effectiveness_applied(model.linear)),
         span_(span),
         n_(m_.states()),
-        X0_(backend.import(model.X0)->line_form()),
-        W_(backend.import(model.W)->line_form()),
-        V_(backend.import(model.V)->line_form()) {
+        is_exact_(!m_.unscaled),
+        X0_(imported(backend, model.X0)),
+        W_(imported(backend, model.W)),
+        V_(imported(backend, model.V)) {
     if (m_.is_descriptor()) E_.emplace(m_.E);
-    if (span.admissible_set && m_.is_descriptor())
-      XA_ = backend.import(*span.admissible_set)->line_form();
+    if (span.admissible_set && m_.is_descriptor()) XA_ = imported(backend, *span.admissible_set);
   }
 
   OutputTube build() {
@@ -65,6 +87,7 @@ class TubeBuilder {
              Matrix::Zero(outputs, inputs), Vector::Zero(outputs),
              Matrix::Zero(rows, lines),     Matrix::Zero(rows, factors),
              Matrix::Zero(rows, inputs),    Vector::Zero(rows)};
+    tube_.is_exact = is_exact_;
     tube_.c_size = Vector::Zero(outputs);
     tube_.b_size = Vector::Zero(rows);
 
@@ -81,6 +104,12 @@ class TubeBuilder {
   }
 
  private:
+  LineForm imported(const SetBackend& backend, const LineForm& X) {
+    const Enclosure set = backend.import(X);
+    is_exact_ = is_exact_ && set.tightness == Tightness::exact && backend.info().exact_exchange;
+    return set->line_form();
+  }
+
   /// A point of the set, with unknowns and rows of its own.
   Part take(const LineForm& X) {
     const Vector size = X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum();
@@ -102,11 +131,21 @@ class TubeBuilder {
     return part;
   }
 
+  /// T·part; remembers whether it was rounded.
+  Part image(MatrixIn T, const Part& part) {
+    for (const Matrix& columns : {part.M, part.G, Matrix(part.c)})
+      tube_.is_exact = tube_.is_exact && is_exact_product(T, columns);
+    return mapped(T, part);
+  }
+
   /// Adds the expression to the rows from `row` on, whose right-hand side takes its offset.
   void add(Index row, const Part& part) {
     tube_.S.block(row, part.line, part.M.rows(), part.M.cols()) += part.M;
     tube_.A.block(row, part.factor, part.G.rows(), part.G.cols()) += part.G;
-    tube_.b.segment(row, part.c.size()) -= part.c;
+    auto right = tube_.b.segment(row, part.c.size());
+    const bool is_sum = !right.isZero(0) && !part.c.isZero(0);
+    tube_.is_exact = tube_.is_exact && !is_sum;
+    right -= part.c;
     tube_.b_size.segment(row, part.c.size()) += part.size;
   }
 
@@ -114,15 +153,15 @@ class TubeBuilder {
   void next_state(Index k, const Part& x, const Part& w, const Part& next) {
     if (E_ && !E_->as_written) {
       const Part z = take_free(E_->rank);
-      add(row_, mapped(E_->core, z));
-      add(row_, mapped(-E_->right, next));
+      add(row_, image(E_->core, z));
+      add(row_, image(-E_->right, next));
       row_ += E_->rank;
-      add(row_, mapped(E_->left, z));
+      add(row_, image(E_->left, z));
     } else {
-      add(row_, E_ ? mapped(E_->left, next) : next);
+      add(row_, E_ ? image(E_->left, next) : next);
     }
-    add(row_, mapped(-m_.A, x));
-    add(row_, mapped(-m_.Bw, w));
+    add(row_, image(-m_.A, x));
+    add(row_, image(-m_.Bw, w));
     tube_.Omega.block(row_, k * m_.inputs(), n_, m_.inputs()) = m_.B;
     row_ += n_;
   }
@@ -137,16 +176,18 @@ class TubeBuilder {
   void admit(const Part& x, const LineForm& XA) {
     const Part a = take(XA), lambda = take_free(determined().rows());
     add(row_, x);
-    add(row_, mapped(-Matrix::Identity(n_, n_), a));
-    add(row_, mapped(-determined().transpose(), lambda));
+    add(row_, image(-Matrix::Identity(n_, n_), a));
+    add(row_, image(-determined().transpose(), lambda));
     row_ += n_;
   }
 
   void output(Index k, Index row, const Part& x) {
-    for (const Part& part : {mapped(m_.C, x), mapped(m_.Dv, take(V_))}) {
+    for (const Part& part : {image(m_.C, x), image(m_.Dv, take(V_))}) {
       tube_.M.block(row, part.line, part.M.rows(), part.M.cols()) += part.M;
       tube_.G.block(row, part.factor, part.G.rows(), part.G.cols()) += part.G;
-      tube_.c.segment(row, part.c.size()) += part.c;
+      auto offset = tube_.c.segment(row, part.c.size());
+      tube_.is_exact = tube_.is_exact && (offset.isZero(0) || part.c.isZero(0));
+      offset += part.c;
       tube_.c_size.segment(row, part.c.size()) += part.size;
     }
     tube_.H.block(row, k * m_.inputs(), m_.outputs(), m_.inputs()) = m_.D;
@@ -155,6 +196,7 @@ class TubeBuilder {
   LinearModel m_;
   const TubeSpan& span_;
   Index n_;
+  bool is_exact_;  ///< sets and matrices are those of the model
   LineForm X0_, W_, V_;
   std::optional<LineForm> XA_;
   std::optional<DescriptorMatrix> E_;
@@ -191,9 +233,9 @@ TubeConditions conditions_of(const OutputTube& tube) {
   return {rest.set.A.leftCols(tube.A.cols()),
           -rest.set.A.rightCols(tube.inputs()),
           rest.set.b,
-          linalg::product(shares, tube.b.cwiseAbs() + tube.A.cwiseAbs().rowwise().sum()),
+          linalg::product(shares, tube.b_size + tube.A.cwiseAbs().rowwise().sum()),
           linalg::product(shares, tube.Omega.cwiseAbs()),
-          rest.vanished};
+          rest.follow && tube.is_exact ? 0 : rest.vanished};
 }
 
 }  // namespace cordon::designers

@@ -33,6 +33,7 @@ struct OutputTube {
   Vector c;
   Matrix S, A, Omega;
   Vector b;
+  bool is_exact = true;             ///< no product or sum was rounded
   Vector c_size = {}, b_size = {};  ///< of the terms that c, G and b, A were added up from: where
                                     ///< X0 lies far away in unlike coordinates, A x₀ cancels
 
@@ -58,7 +59,8 @@ struct TubeConditions {
   Vector b;
   Vector magnitude;  ///< size of the terms that A ξ - b was computed from, ‖ξ‖∞ ≤ 1
   Matrix Omega_magnitude = {};  ///< likewise of Ω
-  Index vanished = 0;           ///< rows that became 0 = 0 up to rounding, and are left out
+  Index vanished = 0;           ///< rows that became 0 = 0 up to rounding, and are left out; 0 if
+                                ///< all of them are shown to follow from the others
 
   /// Size of the terms of A ξ - b - Ω u for |u| ≤ `reach`.
   Vector terms(VectorIn reach) const;

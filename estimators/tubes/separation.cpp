@@ -65,6 +65,17 @@ double proven_kappa(const Matrix& G, const Vector& d, const Vector& error, const
   return std::max(-1.0, margin > 0 ? margin / (norm * slack) : margin / norm * slack);
 }
 
+/// Are all differences of entries free of rounding?
+bool is_exact_difference(MatrixIn A, MatrixIn B) {
+  for (Index j = 0; j < A.cols(); ++j) {
+    for (Index i = 0; i < A.rows(); ++i) {
+      const double a = A(i, j), b = -B(i, j), sum = a + b, added = sum - a;
+      if ((a - (sum - added)) + (b - added) != 0) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTube& Yj) {
@@ -79,6 +90,8 @@ PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTub
   b << Yj.c - Yi.c, Yi.b, Yj.b;
   Vector magnitude(b.size());
   magnitude << Yi.c_size + Yj.c_size, Yi.b_size, Yj.b_size;
+  const bool is_exact = Yi.is_exact && Yj.is_exact && is_exact_difference(Yi.H, Yj.H) &&
+                        is_exact_difference(Yj.c, Yi.c);
   const Index lines = S.cols(), columns = A.cols();
   const Vector factor_terms = A.leftCols(g_i + g_j).cwiseAbs().rowwise().sum();
   Matrix input_terms = A.rightCols(inputs).cwiseAbs();
@@ -94,7 +107,7 @@ PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTub
           -rest.set.A.rightCols(inputs),
           linalg::product(shares, magnitude + factor_terms),
           linalg::product(shares, input_terms),
-          rest.vanished};
+          rest.follow && is_exact ? 0 : rest.vanished};
 }
 
 Vector PairProgram::terms(VectorIn reach) const {

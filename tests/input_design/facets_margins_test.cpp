@@ -87,3 +87,27 @@ TEST_CASE("outputs without noise that are the same are known to be") {
   const SearchResult found = search(of_models(one, half_noisy(Matrix{{2}, {1}})));
   CHECK(found.status == DesignStatus::infeasible);
 }
+
+// x_3 at k = 1 is a product of A and X0 that no double holds, and the nearest one is the same.
+TEST_CASE(
+    "outputs without noise whose numbers are equal as doubles only are not taken for the same") {
+  const auto model = [](double a, double start, double b) {
+    Model made;
+    LinearModel& m = made.linear;
+    m.A = Matrix{{0, 0, 0}, {0, 0, 0}, {0, a, 0}};
+    m.B = Matrix{{b}, {0}, {0}};
+    m.Bw = Matrix{{1}, {0}, {0}};
+    m.C = Matrix{{1, 0, 0}, {0, 0, 1}};
+    m.D = Matrix::Zero(2, 1);
+    m.Dv = Matrix{{1}, {0}};
+    made.X0 = make_point(Vector{{0, start, 0}});
+    made.W = made.V = make_box({Vector{{-.25}}, Vector{{.25}}});
+    made.U = make_box({Vector{{-.5}}, Vector{{.5}}});
+    return made;
+  };
+  const double rounded = .1 * 3;
+  REQUIRE(std::fma(.1, 3., -rounded) != 0);
+  const SearchResult found = search(of_models(model(.1, 3, 1), model(1, rounded, 2)));
+  CHECK(found.status != DesignStatus::infeasible);
+  CHECK(found.status != DesignStatus::optimal);
+}

@@ -240,8 +240,8 @@ LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) 
   Matrix rows(static_cast<Index>(kept.size()), all);
   for (Index k = 0; k < rows.rows(); ++k)
     rows.row(k) = tableau.trace.row(kept[static_cast<std::size_t>(k)]);
-  Index vanished = all - static_cast<Index>(pivots.size()) - set.constraints();
-  if (vanished > 0 && vanish_exactly(X, pivots, kept)) vanished = 0;
+  const Index vanished = all - static_cast<Index>(pivots.size()) - set.constraints();
+  const bool follow = vanished == 0 || vanish_exactly(X, pivots, kept);
   return {std::move(set),
           largest(tableau, kept),
           std::move(rows),
@@ -249,7 +249,8 @@ LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude) 
           std::move(lines_by_factors),
           std::move(lines_offset),
           free_lines(X, pivots),
-          vanished};
+          vanished,
+          follow};
 }
 
 }  // namespace cordon

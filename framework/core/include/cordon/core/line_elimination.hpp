@@ -47,8 +47,8 @@ struct LinesEliminated {
                         ///< satisfies the rows used up
   std::vector<Index> free_lines;  ///< no row was solved for them
   Index vanished = 0;  ///< rows that are left out, as they became 0 = 0 up to rounding, or hold
-                       ///< lines that rounding hides: what they said beyond that is lost. 0 if all
-                       ///< of them follow from the rows used up, in exact arithmetic
+                       ///< lines that rounding hides: what they said beyond that is lost
+  bool follow = true;  ///< all of them follow from the rows used up, in exact arithmetic
 };
 /// `b_magnitude` (empty: none) is the size of what cancelled in b before.
 LinesEliminated eliminate_lines_traced(const LineForm& X, VectorIn b_magnitude);
