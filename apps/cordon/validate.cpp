@@ -63,6 +63,18 @@ std::string describe_fault(const FaultSpec& fault, std::int64_t steps) {
                      fault.mode < 0 ? " (not in the bank)" : "");
 }
 
+/// "outputs 1, 2 from k = 3 to 5, with probability 0.3, there every 5 steps".
+std::string describe_dropout(const DropoutSpec& dropout, std::int64_t steps) {
+  std::vector<Index> numbers;
+  for (const Index output : dropout.outputs) numbers.push_back(output + 1);
+  std::string text = fmt::format("{} {} from k = {}", numbers.size() == 1 ? "output" : "outputs",
+                                 fmt::join(numbers, ", "), dropout.from);
+  if (dropout.to < steps) text += fmt::format(" to {}", dropout.to);
+  if (dropout.probability < 1) text += fmt::format(", with probability {}", dropout.probability);
+  if (dropout.every > 0) text += fmt::format(", there every {}", count(dropout.every, "step"));
+  return text;
+}
+
 std::string describe_modes(const Study& study) {
   std::string text;
   if (!study.modes.empty()) {
@@ -82,6 +94,11 @@ std::string describe_modes(const Study& study) {
     const std::string until = fault.to < simulate->steps ? fmt::format(" to {}", fault.to) : "";
     text +=
         fmt::format("  {:<9} fault {} from k = {}{}\n", label, fault.fault + 1, fault.from, until);
+    label = "";
+  }
+  label = "dropouts";
+  for (const DropoutSpec& dropout : simulate->dropouts) {
+    text += fmt::format("  {:<9} {}\n", label, describe_dropout(dropout, simulate->steps));
     label = "";
   }
   return text;

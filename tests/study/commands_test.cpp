@@ -206,3 +206,27 @@ TEST_CASE("info shows a component as text without colours, and as JSON with its 
   CHECK(json["components"][0]["kind"] == "observer");
   CHECK(json["components"][0]["details"].is_string());
 }
+
+TEST_CASE("samples that lack outputs are told of, run and verified") {
+  const Scratch scratch;
+  const std::string study = R"({"cordon": 1, "title": "gaps", "system": {"type": "lti",
+    "A": [[0.9, 0.1], [0, 0.8]], "C": [[1, 0], [0, 1]],
+    "X0": {"type": "box", "lower": [-1, -1], "upper": [1, 1]},
+    "W": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
+    "V": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]}},
+    "data": {"simulate": {"steps": 20, "dropouts": [
+      {"outputs": [1], "probability": 0.5}, {"outputs": [2], "from": 1, "every": 5}, {"from": 7, "to": 9}]}},
+    "pipelines": [{"backend": "constrained_zonotope", "observer": "prediction_correction"}]})";
+  const std::string file = scratch.write("gaps.json", study).string(),
+                    out = (scratch.path() / "out").string();
+  const Outcome valid = run("validate " + file, "2>&1");
+  CAPTURE(valid.out);
+  CHECK(valid.out.find("  dropouts  output 1 from k = 0, with probability 0.5\n"
+                       "            output 2 from k = 1, there every 5 steps\n"
+                       "            outputs 1, 2 from k = 7 to 9\n") != std::string::npos);
+  expect_resolved_again(scratch, file);
+  CHECK(run("run --quiet --no-report --out " + out + " " + file, "2>&1").code == 0);
+  const Outcome verified = run("verify " + out, "2>&1");
+  CAPTURE(verified.out);
+  CHECK(verified.code == 0);
+}
