@@ -73,8 +73,8 @@ class Elimination {
       const double terms =
           std::max(b_terms_[i],
                    vectors::largest_product(width(), free_.data(), A_terms_.data() + i * width()));
+      if (std::abs(b_[i]) > unreliable * terms || scale(i) > unreliable * terms) continue;
       const double left = std::max(scale(i), std::abs(b_[i]));
-      if (left > unreliable * terms) continue;
       in_row_[as_size(i)] = 0;
       steps_.push_back({EliminationStep::drop, i, 0});
       exact_ = exact_ && left <= tolerances::elimination_noise * terms;
@@ -286,11 +286,11 @@ class Elimination {
                                                                  A_terms_.data() + i * width();
       const Index count = width();
       for (Index j = 0; j < count; ++j) {
-        // of its own two terms: those that are inherited grow by a factor with every pivot
-        const double left = std::abs(to[j]), right = size * std::abs(from[j]);
-        const double entry = to[j] - factor * from[j], terms = left < right ? right : left;
-        to_terms[j] = std::max(to_terms[j], size * from_terms[j]);
-        to[j] = std::abs(entry) <= tolerances::elimination_noise * terms ? 0 : entry;
+        // noise of its own two terms, which are equal then: those that are inherited grow by a
+        // factor with every pivot
+        const double right = factor * from[j], entry = to[j] - right, passed = size * from_terms[j];
+        to_terms[j] = to_terms[j] < passed ? passed : to_terms[j];
+        to[j] = std::abs(entry) <= tolerances::elimination_noise * std::abs(right) ? 0 : entry;
       }
       b_[i] -= factor * b_[row];
       b_terms_[i] = std::max(b_terms_[i], size * b_terms_[row]);

@@ -184,13 +184,15 @@ Computed without_lines(const LineZonotope& X) {
       kept.push_back(i);
   }
   Terms terms{std::move(made.row_magnitude), std::move(made.state_magnitude)};
-  Vector reach;
-  take_reach(made.set.c, made.set.G, reach);
-  const bool is_whole =
-      made.is_whole &&
-      (tolerances::product_noise * terms.state.array() <= exact_room * reach.array()).all();
   keep_rows(made.set, terms, kept);
-  return {std::move(made.set), std::move(terms), is_whole};
+  return {std::move(made.set), std::move(terms), made.is_whole};
+}
+
+/// Is what rounding adds to every coordinate next to nothing beside its size?
+bool widens_little(const LineZonotope& X, const Terms& terms) {
+  Vector reach;
+  take_reach(X.c, X.G, reach);
+  return (tolerances::product_noise * terms.state.array() <= exact_room * reach.array()).all();
 }
 
 /// Zero columns carry nothing, except in a set proven wrong by its rows alone, which keeps its
@@ -225,7 +227,7 @@ Reduced reduce(const LineZonotope& X, Index max_generators, Index max_constraint
   if (X.lines() > 0) {
     const auto [set, terms, is_whole] = without_lines(X);
     reduced = eliminate_constraints(set, terms, max_constraints, how.constraints);
-    reduced.exact = reduced.exact && is_whole;
+    reduced.exact = reduced.exact && is_whole && widens_little(set, terms);
   } else {
     reduced = eliminate_constraints(X, max_constraints, how.constraints);
   }

@@ -131,10 +131,10 @@ LineForm remainder(const Tableau& tableau, const LineForm& X, std::vector<Index>
                    const Dropped& dropped) {
   const Index n = X.dim(), g = X.generators();
   for (Index i = 0; i < tableau.rows; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    const bool is_free = !tableau.holds_lines(i) && !(dropped.rank_lost && tableau.is_cut(i)),
+    if (tableau.used[static_cast<std::size_t>(i)] || tableau.holds_lines(i)) continue;
+    const bool is_free = !(dropped.rank_lost && tableau.is_cut(i)),
                is_vague = dropped.vague_rows && tableau.is_vague(i);
-    if (!tableau.used[row] && is_free && !is_vague && !tableau.vanished(i)) kept.push_back(i);
+    if (is_free && !is_vague && !tableau.vanished(i)) kept.push_back(i);
   }
   const Index m = static_cast<Index>(kept.size());
   LineForm Y{Matrix(n, 0),

@@ -172,10 +172,9 @@ struct LineTableau {
       entries[j] = is_rounding ? 0 : entry;
     }
     for (Index j = std::max(run.first, lines); j < run.last; ++j) {
-      const double left = entries[j], right = factor * pivot[j], entry = left - right;
-      const double terms = std::max(std::abs(left), std::abs(right));
+      const double right = factor * pivot[j], entry = entries[j] - right;
       sizes[j] = std::max(sizes[j], passed_on(j));
-      entries[j] = std::abs(entry) <= tolerances::elimination_noise * terms ? 0 : entry;
+      entries[j] = std::abs(entry) <= tolerances::elimination_noise * std::abs(right) ? 0 : entry;
     }
     if (cuts) cut[static_cast<std::size_t>(row)] = true;
   }
@@ -183,18 +182,24 @@ struct LineTableau {
   /// The factors' coefficients have cancelled so far that they are known with few digits, and have
   /// not vanished. Dropping the row makes the set larger.
   bool is_vague(Index row) const {
-    const auto factors = T.row(row).segment(lines, width - 1 - lines);
-    const double left = factors.size() ? factors.cwiseAbs().maxCoeff() : 0;
-    return left > 0 &&
-           left <= vague * magnitude.row(row).segment(lines, width - 1 - lines).maxCoeff();
+    const Index factors = width - 1 - lines;
+    if (factors == 0) return false;
+    const double share = vague * magnitude.row(row).segment(lines, factors).maxCoeff();
+    bool is_zero = true;
+    for (Index j = lines; j < width - 1; ++j) {
+      if (std::abs(T(row, j)) > share) return false;
+      is_zero = is_zero && T(row, j) == 0;
+    }
+    return !is_zero;
   }
 
   /// 0 = 0 up to rounding: every coefficient and the right-hand side cancelled. Dropping a row
   /// never shrinks the set.
   bool vanished(Index row) const {
-    return (T.row(row).tail(width - lines).array().abs() <=
-            tolerances::elimination_noise * magnitude.row(row).tail(width - lines).array())
-        .all();
+    for (Index j = lines; j < width; ++j) {
+      if (!(std::abs(T(row, j)) <= tolerances::elimination_noise * magnitude(row, j))) return false;
+    }
+    return true;
   }
 };
 
