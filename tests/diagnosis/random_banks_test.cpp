@@ -3,6 +3,7 @@
 // plant has been in throughout is not excluded, on any backend.
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -128,10 +129,21 @@ struct Tally {
   int runs = 0, refused = 0, resets = 0, isolated = 0;
 };
 
+/// Every third output is missing at random, and sometimes all of them.
+Sample with_gaps(Sample sample, Draw& draw) {
+  const bool none = below(draw, 20) == 0;
+  for (Index i = 0; i < sample.y.size(); ++i) {
+    if (!none && below(draw, 3) != 0) continue;
+    sample.y[i] = std::numeric_limits<double>::quiet_NaN();
+    sample.missing.push_back(i);
+  }
+  return sample;
+}
+
 /// One run with changes of mode at random times; the truth is never excluded, and a set of the
 /// truth holds the state.
 void run(Diagnoser& diagnoser, const ModeBank& bank, const SetBackend& sets, std::uint64_t seed,
-         Tally& tally) {
+         bool gaps, Tally& tally) {
   Draw draw{std::mt19937_64(seed), seed % 2 == 0};
   Index truth = bank.nominal, truth_since = 0;
   const Index pause = 1 + below(draw, 40);
@@ -145,7 +157,8 @@ void run(Diagnoser& diagnoser, const ModeBank& bank, const SetBackend& sets, std
     }
     const Vector u = draw.from(bank[0].model.U), now = x;
     const Vector y = simulate(at_this_step(bank[truth], draw), x, u, draw);
-    const Diagnosis diagnosis = diagnoser.step({k, u, y});
+    const Sample sample{k, u, y};
+    const Diagnosis diagnosis = diagnoser.step(gaps ? with_gaps(sample, draw) : sample);
     const ModeEvidence& evidence = diagnosis.modes[static_cast<std::size_t>(truth)];
     CAPTURE(k);
     CAPTURE(truth);
@@ -196,7 +209,7 @@ std::uint64_t seeds() {
   return wanted ? std::stoull(wanted) : 4;
 }
 
-void check_banks(Differ what, const std::string& observer = "") {
+void check_banks(Differ what, const std::string& observer = "", bool gaps = false) {
   const std::string type = observer.empty() ? "observer_bank" : "consistency_bank";
   const std::uint64_t count = observer.empty() ? seeds() : (seeds() + 2) / 3;
   for (const std::string name : {"interval", "zonotope", "constrained_zonotope", "line_zonotope"}) {
@@ -217,7 +230,8 @@ void check_banks(Differ what, const std::string& observer = "") {
       }
       const auto diagnoser =
           registry().make<DiagnoserEntry>(type, {random.bank, sets}, random.parameters);
-      for (std::uint64_t k = 0; k < 2; ++k) run(*diagnoser, plant, *sets, 2 * seed + k, tally);
+      for (std::uint64_t k = 0; k < 2; ++k)
+        run(*diagnoser, plant, *sets, 2 * seed + k, gaps, tally);
     }
     CHECK(tally.runs > tally.refused);
     const bool never_empty = observer == "descriptor" && (name == "interval" || name == "zonotope");
@@ -231,6 +245,10 @@ void check_banks(Differ what, const std::string& observer = "") {
 TEST_CASE("modes that differ in actuators") { check_banks(Differ::actuators); }
 TEST_CASE("modes that differ in sensors") { check_banks(Differ::sensors); }
 TEST_CASE("modes that differ in everything") { check_banks(Differ::models); }
+TEST_CASE("banks of samples that lack outputs") {
+  for (const Differ what : {Differ::actuators, Differ::sensors, Differ::models})
+    check_banks(what, "", true);
+}
 TEST_CASE("estimates in place of residuals") {
   for (const std::string observer : {"prediction_correction", "descriptor"}) {
     CAPTURE(observer);

@@ -97,19 +97,6 @@ Zonotope rows_of(const Zonotope& Z, Index first, Index count) {
   return sets::drop_zero_generators({Z.c.segment(first, count), Z.G.middleRows(first, count)});
 }
 
-/// What enters the residual directly.
-Zonotope direct_part(const ModeDynamics& plant, const ModeDynamics& observer, bool separate,
-                     const SensorSlack& slack) {
-  const Index q = plant.C.rows();
-  Columns columns(q);
-  add_inputs(columns, plant.D, plant, observer.D, observer, separate);
-  add_noise(columns, plant.Dv, plant.V);
-  add_noise(columns, -observer.Dv, observer.V);
-  add_slack(columns, Matrix::Identity(q, q), slack.plant);
-  add_slack(columns, Matrix::Identity(q, q), slack.observer);
-  return columns.take();
-}
-
 ModeDynamics dynamics_of(const Mode& mode, const Matrix& gain) {
   const LinearModel& m = mode.model.linear;
   const std::string of = " of mode \"" + mode.name + "\"";
@@ -179,6 +166,18 @@ Zonotope error_drive(const ModeDynamics& plant, const ModeDynamics& observer, bo
                      const SensorSlack& slack) {
   const Index n = plant.A.rows();
   return rows_of(joint_drive(plant, observer, separate, slack), n, n);
+}
+
+Zonotope direct_part(const ModeDynamics& plant, const ModeDynamics& observer, bool separate,
+                     const SensorSlack& slack) {
+  const Index q = plant.C.rows();
+  Columns columns(q);
+  add_inputs(columns, plant.D, plant, observer.D, observer, separate);
+  add_noise(columns, plant.Dv, plant.V);
+  add_noise(columns, -observer.Dv, observer.V);
+  add_slack(columns, Matrix::Identity(q, q), slack.plant);
+  add_slack(columns, Matrix::Identity(q, q), slack.observer);
+  return columns.take();
 }
 
 Zonotope plant_drive(const ModeDynamics& plant) {

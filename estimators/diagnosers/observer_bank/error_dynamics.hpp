@@ -53,6 +53,10 @@ bool is_coupled(const ModeDynamics& plant, const ModeDynamics& observer);
 PairDynamics pair_dynamics(const ModeDynamics& plant, const ModeDynamics& observer, bool separate,
                            const SensorSlack& slack);
 
+/// What enters the residual beside C̄ e, without the share of x.
+sets::Zonotope direct_part(const ModeDynamics& plant, const ModeDynamics& observer, bool separate,
+                           const SensorSlack& slack);
+
 /// The disturbance of e alone without the share of x.
 sets::Zonotope error_drive(const ModeDynamics& plant, const ModeDynamics& observer, bool separate,
                            const SensorSlack& slack);

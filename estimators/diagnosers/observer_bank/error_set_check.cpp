@@ -158,16 +158,18 @@ ErrorBounds::ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& 
   if (needs_state) state.emplace(bank, modes, options);
   const std::vector<Zonotope> plant = plant_starts(bank, options);
   for (const ModeDynamics& observer : modes) {
-    std::vector<Zonotope> drives, starts;
+    std::vector<Zonotope> drives, starts, direct;
     for (const ModeDynamics& mode : modes) {
       SensorSlack slack;
       if (has_ranges(mode))
         slack.plant = mode.g_rad.cwiseProduct(mode.feedthrough + state->magnitude(mode.C_raw)) *
                       (1 + facet_margin);
       Zonotope drive = error_drive(mode, observer, options.separate_inputs, slack);
+      direct.push_back(direct_part(mode, observer, options.separate_inputs, slack));
       if (is_coupled(mode, observer)) {
+        const Zonotope outputs = state->image(mode.C - observer.C);
+        direct.back() = sum(direct.back(), outputs);
         if (mode.A == observer.A) {
-          const Zonotope outputs = state->image(mode.C - observer.C);
           drive = sum(drive, sets::affine_map(outputs, -observer.L, Vector::Zero(n)));
         } else {
           drive = sum(drive, state->image(state_to_error(mode, observer)));
@@ -196,7 +198,10 @@ ErrorBounds::ErrorBounds(const ModeBank& bank, const std::vector<ModeDynamics>& 
           observer, decays_.back(), state->magnitude(observer.C_raw), error, options.accuracy);
       const Zonotope open{Vector::Zero(n), observer.L * slack.asDiagonal()};
       for (Zonotope& drive : drives) drive = sum(drive, open);
+      const Zonotope shown{Vector::Zero(slack.size()), slack.asDiagonal().toDenseMatrix()};
+      for (Zonotope& part : direct) part = sum(part, shown);
     }
+    direct_.push_back(std::move(direct));
     drives_.push_back(std::move(drives));
     starts_.push_back(std::move(starts));
   }
@@ -242,6 +247,28 @@ ErrorBounds::Supports ErrorBounds::along(const Matrix& directions) const {
     }
   }
   return result;
+}
+
+Box ErrorBounds::residuals(Index j) const {
+  const auto o = static_cast<std::size_t>(j);
+  const Matrix& C = modes_[o].C;
+  Vector plus(C.rows()), minus(C.rows());
+  for (Index a = 0; a < C.rows(); ++a) {
+    const auto h = invariant::switched_supports(decays_[o], drives_[o], starts_[o],
+                                                C.row(a).transpose(), options_.accuracy);
+    double upper = -infinity, lower = infinity;
+    for (const Zonotope& part : direct_[o]) {
+      const double radius = part.G.row(a).cwiseAbs().sum() * (1 + box_margin);
+      upper = std::max(upper, part.c[a] + radius);
+      lower = std::min(lower, part.c[a] - radius);
+    }
+    plus[a] = h.plus + upper;
+    minus[a] = h.minus - lower;
+  }
+  const Vector center = 0.5 * (plus - minus),
+               radius = (plus - center).cwiseMax(minus + center) * (1 + box_margin) +
+                        box_margin * center.cwiseAbs();
+  return {center - radius, center + radius};
 }
 
 namespace {

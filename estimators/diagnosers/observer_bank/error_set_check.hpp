@@ -38,13 +38,15 @@ class ErrorBounds {
     std::vector<Matrix> steady_plus, steady_minus;
   };
   Supports along(const Matrix& directions) const;
+  /// Holds the residuals of observer j at all times.
+  Box residuals(Index j) const;
 
  private:
   const std::vector<ModeDynamics>& modes_;
   OfflineOptions options_;
   std::vector<invariant::Decay> decays_;  // of Ao
-  std::vector<std::vector<sets::Zonotope>> drives_,
-      starts_;  // per observer: of the error in each mode, and at the start
+  std::vector<std::vector<sets::Zonotope>> drives_, starts_,
+      direct_;  // per observer: of the error in each mode, and at the start; what enters residuals
 };
 
 /// How far the errors exceed `set` about its centre, by bounds along its facets: upper bounds,

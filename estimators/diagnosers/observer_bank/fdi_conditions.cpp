@@ -336,6 +336,15 @@ ErrorSetCheck check_error_set(const ModeBank& bank, const std::vector<Matrix>& g
   return check_error_set(bank, dynamics_of(bank, gains), options);
 }
 
+std::vector<Box> residual_bounds(const ModeBank& bank, const std::vector<Matrix>& gains,
+                                 const OfflineOptions& options) {
+  const std::vector<ModeDynamics> modes = dynamics_of(bank, gains);
+  const ErrorBounds bounds(bank, modes, options);
+  std::vector<Box> all;
+  for (Index j = 0; j < bank.size(); ++j) all.push_back(bounds.residuals(j));
+  return all;
+}
+
 std::vector<Diagnostic> check_offline(const ModeBank& bank, const std::vector<Matrix>& gains,
                                       const OfflineOptions& options) {
   for (const Mode& mode : bank.modes) {

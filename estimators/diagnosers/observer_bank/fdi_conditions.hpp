@@ -67,6 +67,11 @@ Guarantees fdi_guarantees(const ModeBank& bank, const std::vector<Matrix>& gains
 ErrorSetCheck check_error_set(const ModeBank& bank, const std::vector<Matrix>& gains,
                               const OfflineOptions& options);
 
+/// Per observer, a box that holds the residuals of the same point observers at all times, whatever
+/// modes the plant goes through.
+std::vector<Box> residual_bounds(const ModeBank& bank, const std::vector<Matrix>& gains,
+                                 const OfflineOptions& options);
+
 /// Problems of the options and the models, with pointers relative to the diagnoser's object; an
 /// error set that is too small among them. Empty: `fdi_guarantees` will succeed.
 std::vector<Diagnostic> check_offline(const ModeBank& bank, const std::vector<Matrix>& gains,

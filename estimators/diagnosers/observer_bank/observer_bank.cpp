@@ -58,6 +58,19 @@ void ask(const SetBackend& backend, const Enclosure& R, const Box& hull, const V
   }
 }
 
+/// Entries of the outputs that are there among those of all; others are 0, or free.
+Vector among(const Vector& values, const std::vector<Index>& present, Index outputs) {
+  Vector all = Vector::Zero(outputs);
+  all(present) = values;
+  return all;
+}
+Box among(const Box& box, const std::vector<Index>& present, Index outputs) {
+  Box all = Box::space(outputs);
+  all.lower(present) = box.lower;
+  all.upper(present) = box.upper;
+  return all;
+}
+
 }  // namespace
 
 ObserverBank::ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> backend,
@@ -81,6 +94,7 @@ void ObserverBank::do_start() {
   for (Member& m : members_) {
     m.copy.reset();
     m.bound.reset();
+    m.drift.start();
     m.evidence = {};
   }
 }
@@ -93,59 +107,105 @@ void ObserverBank::expect_input(const Sample& now) const {
                                  "bank's error set rests; widen /system/U");
 }
 
+ObserverBank::Seen ObserverBank::seen(Index j, const Sample& sample) {
+  Member& m = member(j);
+  if (sample.is_complete()) return {{std::shared_ptr<void>(), &m.recursion}, sample};
+  const auto make = [&](const std::vector<Index>& present) {
+    const Matrix L = options_.gains[static_cast<std::size_t>(j)](Eigen::all, present);
+    return std::make_shared<LuenbergerRecursion>(with_outputs(bank()[j].model, present), L,
+                                                 shared_backend(), options_.budget);
+  };
+  return {m.others.at(sample, make), without_missing(sample)};
+}
+
 void ObserverBank::advance(Index j, const Sample& before) {
   Member& m = member(j);
-  if (m.bound) m.bound = m.recursion.reduced(m.recursion.next_bound(*m.bound, m.X, before));
-  const auto advanced = [&](const Enclosure& X, WideningLimit& limit) {
+  const auto [recursion, sample] = seen(j, before);
+  if (m.bound) m.bound = m.recursion.reduced(recursion->next_bound(*m.bound, m.X, sample));
+  const auto advanced = [&, &by = recursion, &of = sample](const Enclosure& X,
+                                                           WideningLimit& limit) {
     Vector open;
-    const Enclosure next = m.recursion.next(X, before, &open);
-    limit.step(m.recursion, before, open);
+    const Enclosure next = by->next(X, of, &open);
+    if (before.is_complete()) {
+      limit.step(m.recursion, before, open);
+    } else {
+      limit.step_with_gap(m.recursion, *by, of, open);
+    }
     return limit.apply(backend(), m.recursion.reduced(next));
   };
   if (m.copy) m.copy = advanced(*m.copy, m.copy_limit);
   m.X = advanced(m.X, m.X_limit);
-  m.size = m.recursion.next_size(m.center, before);
-  m.center = m.recursion.next(m.center, before);
+  m.size = recursion->next_size(m.center, sample);
+  m.center = recursion->next(m.center, sample);
+  if (residuals_.empty()) return;
+  const auto at = static_cast<std::size_t>(j);
+  m.drift.step(before, recursion->error_map(), options_.gains[at], residuals_[at]);
 }
 
 /// Residual sets at k, and what those of candidates prove.
 void ObserverBank::judge(Index j, const Sample& now) {
   Member& m = member(j);
-  m.residual = m.recursion.residual(m.X, now);
-  m.residual_size = m.recursion.residual_size(m.size, now);
   m.evidence = {};
-  m.evidence.residual = m.residual->interval_hull();
-  if (m.copy) {
-    const Enclosure copy = m.recursion.residual(*m.copy, now);
-    m.evidence.reset_residual = copy->interval_hull();
-    ask(backend(), copy, m.evidence.reset_residual, m.residual_size, m.evidence);
-    if (m.evidence.reset_residual.is_empty()) m.evidence.reset_residual = {};
-  } else if (!was_reset_ && elimination_.is_candidate(j)) {
-    ask(backend(), m.residual, m.evidence.residual, m.residual_size, m.evidence);
+  m.bound_violated = false;
+  const auto [recursion, sample] = seen(j, now);
+  const Index outputs = now.y.size();
+  m.hull = Box::space(0);
+  m.residual_size = Vector(0);
+  if (sample.y.size() == 0) {
+    m.evidence.residual = Box::space(outputs);
+    return;
   }
+  const std::vector<Index> present = present_outputs(now);
+  m.residual = recursion->residual(m.X, sample);
+  m.residual_size = recursion->residual_size(m.size, sample);
+  m.hull = m.residual->interval_hull();
+  m.evidence.residual = among(m.hull, present, outputs);
+  if (m.copy) {
+    const Enclosure copy = recursion->residual(*m.copy, sample);
+    const Box hull = copy->interval_hull();
+    ask(backend(), copy, hull, m.residual_size, m.evidence);
+    if (!hull.is_empty()) m.evidence.reset_residual = among(hull, present, outputs);
+  } else if (!was_reset_ && elimination_.is_candidate(j)) {
+    ask(backend(), m.residual, m.hull, m.residual_size, m.evidence);
+  }
+  if (m.evidence.why.kind == Certificate::Kind::direction)
+    m.evidence.why.data = among(m.evidence.why.data, present, outputs);
   if (m.bound) {
-    const Enclosure allowed = m.recursion.residual_bound(*m.bound, m.X, now);
-    const Box own = m.evidence.residual, all = allowed->interval_hull();
-    const double size = now.y.cwiseAbs().maxCoeff() +
-                        std::max(own.lower.cwiseAbs().maxCoeff(), own.upper.cwiseAbs().maxCoeff());
+    const Enclosure allowed = recursion->residual_bound(*m.bound, m.X, sample);
+    const Box all = allowed->interval_hull();
+    const double size =
+        sample.y.cwiseAbs().maxCoeff() +
+        std::max(m.hull.lower.cwiseAbs().maxCoeff(), m.hull.upper.cwiseAbs().maxCoeff());
     const double slack = tolerances::proof_margin * size;
-    m.bound_violated = (own.lower.array() < all.lower.array() - slack).any() ||
-                       (own.upper.array() > all.upper.array() + slack).any();
-    if (!m.bound_violated && own.dim() > 1)
+    m.bound_violated = (m.hull.lower.array() < all.lower.array() - slack).any() ||
+                       (m.hull.upper.array() > all.upper.array() + slack).any();
+    if (!m.bound_violated && m.hull.dim() > 1)
       m.bound_violated = m.residual->is_subset_of(*allowed) == Answer::no;
   }
 }
 
 void ObserverBank::reset(Index j, const Sample& now) {
   Member& m = member(j);
-  const Matrix* gain = options_.strip_gain ? &*options_.strip_gain : nullptr;
+  const auto [recursion, sample] = seen(j, now);
   const Index n = m.center.size();
-  const Enclosure errors = m.recursion.errors_within(
-      error_set_, m.recursion.explained_outputs(error_set_, m.center, now), gain);
-  m.copy = m.recursion.reduced(backend().affine_map(errors, Matrix::Identity(n, n), m.center));
+  const Matrix unit = Matrix::Identity(n, n);
+  Enclosure E = error_set_;
+  if (!m.drift.is_none()) {
+    const sets::Zonotope& drift = m.drift.set();
+    const LineForm moved = make_zonotope(-drift.c, drift.G);
+    E = m.recursion.reduced(backend().sum(E, backend().import(moved)));
+  }
+  Enclosure errors = E, start = E;
+  if (sample.y.size() > 0) {
+    std::optional<Matrix> gain;
+    if (options_.strip_gain) gain = (*options_.strip_gain)(Eigen::all, present_outputs(now));
+    const Matrix* const by = gain ? &*gain : nullptr;
+    errors = recursion->errors_within(E, recursion->explained_outputs(E, m.center, sample), by);
+    start = recursion->errors_within(E, backend().box(m.hull), by);
+  }
+  m.copy = m.recursion.reduced(backend().affine_map(errors, unit, m.center));
   m.copy_limit.start(m.recursion, *m.copy);
-  const Enclosure strips = backend().box(m.residual->interval_hull());
-  m.bound = m.recursion.reduced(m.recursion.errors_within(error_set_, strips, gain));
+  m.bound = m.recursion.reduced(start);
 }
 
 Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
@@ -153,6 +213,8 @@ Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
     throw Error(Errc::invalid,
                 "the last step ended with an error, and left sets of different times; start anew");
   expect_input(now);
+  if (!now.is_complete() && residuals_.empty())
+    residuals_ = residual_bounds(bank(), options_.gains, options_.offline);
   unfinished_ = true;
   const Index modes = bank().size();
   if (!before) {
@@ -204,7 +266,7 @@ void ObserverBank::suggest(const Sample& now) {
   for (Index j = 0; j < bank().size(); ++j) {
     Member& m = member(j);
     if (!m.bound) continue;
-    if (m.bound_violated || (waited && separated_axis(m.evidence.residual, m.residual_size))) {
+    if (m.bound_violated || (waited && separated_axis(m.hull, m.residual_size))) {
       m.bound.reset();
     } else {
       ++left;

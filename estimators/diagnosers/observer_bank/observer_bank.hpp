@@ -11,7 +11,9 @@
 #include "diagnosers/mode_elimination.hpp"
 #include "diagnosers/mode_workers.hpp"
 #include "diagnosers/observer_bank/fdi_conditions.hpp"
+#include "diagnosers/observer_bank/point_drift.hpp"
 #include "observers/luenberger_recursion.hpp"
+#include "observers/present_outputs.hpp"
 #include "observers/widening_limit.hpp"
 
 namespace cordon::estimators {
@@ -41,6 +43,10 @@ struct ObserverBankOptions {
 /// starts from X̌_j, the part of X̃ in the strips of R_j; a mode goes when R_j ⊄ Ř_j is certified,
 /// and after the waiting time when 0 ∉ R_j. It names the one that is left. Not a proof: R_j carries
 /// errors of the earlier mode, and loses containment by its reductions.
+///
+/// Samples may lack outputs: recursions and residuals take those that are there, and x - x̂_j ∈ X̃
+/// ⊕ (-Δ_j) with the drift Δ_j of the point observer. What is promised in advance is about complete
+/// samples.
 class ObserverBank final : public Diagnoser {
  public:
   ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> backend,
@@ -52,9 +58,12 @@ class ObserverBank final : public Diagnoser {
     Member(const Model& model, const Matrix& L, const std::shared_ptr<const SetBackend>& backend,
            Budget budget, double widening)
         : recursion(model, L, backend, budget), X_limit(widening), copy_limit(widening) {}
-    LuenbergerRecursion recursion;
+    LuenbergerRecursion recursion;  ///< for all outputs
+    PerOutputs<LuenbergerRecursion> others;
     WideningLimit X_limit, copy_limit;
-    Enclosure X, residual;          ///< X̂, R
+    PointDrift drift;               ///< Δ
+    Enclosure X, residual;          ///< X̂, R; of the outputs that are there
+    Box hull;                       ///< of R
     Vector center;                  ///< x̂
     Vector size, residual_size;     ///< of the numbers that x̂ and its residual are made of
     std::optional<Enclosure> copy;  ///< X̂', while the mode is a candidate
@@ -64,11 +73,18 @@ class ObserverBank final : public Diagnoser {
     ModeEvidence evidence;
   };
 
+  bool do_takes_missing_outputs() const override { return true; }
   void do_start() override;
   Diagnosis do_step(const Sample* before, const Sample& now) override;
   std::optional<Guarantees> do_guarantees() const override;
 
   void expect_input(const Sample& now) const;
+  /// A sample's outputs, and the recursion of one mode for them.
+  struct Seen {
+    std::shared_ptr<const LuenbergerRecursion> recursion;
+    Sample sample;
+  };
+  Seen seen(Index j, const Sample& sample);
   void advance(Index j, const Sample& before);
   void judge(Index j, const Sample& now);
   void reset(Index j, const Sample& now);
@@ -82,6 +98,7 @@ class ObserverBank final : public Diagnoser {
   Box inputs_;
   std::vector<Member> members_;
   Enclosure error_set_;
+  std::vector<Box> residuals_;  ///< of the point observers at all times; made at the first gap
   ModeElimination elimination_;
   ModeWorkers workers_;
   bool was_reset_ = false;
