@@ -29,12 +29,15 @@ inline std::shared_ptr<Diagnoser> filter(const Model& model, const Params& param
 }
 
 /// Runs both to `steps`; bounds that do not hold the true fault fail. Returns the number of bounds.
+/// `seen`: what the filter sees of a sample.
 inline Index run(Diagnoser& diagnoser, FaultyRun plant, const Signal& fault, Index steps,
-                 const std::function<void(const Diagnosis&)>& look = {}) {
+                 const std::function<void(const Diagnosis&)>& look = {},
+                 const std::function<Sample(Sample)>& seen = {}) {
   Index bounds = 0;
   diagnoser.start();
   for (Index k = 0; k <= steps; ++k) {
-    const Diagnosis now = diagnoser.step(plant.step());
+    const Sample sample = plant.step();
+    const Diagnosis now = diagnoser.step(seen ? seen(sample) : sample);
     for (const FaultBound& b : now.faults) {
       const double truth = fault(b.at)[b.fault];
       const bool holds = b.lower <= truth && truth <= b.upper;

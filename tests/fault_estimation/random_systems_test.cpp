@@ -3,6 +3,7 @@
 // their bounds.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <rapidcheck.h>
 
@@ -101,6 +102,16 @@ Model with_start(Model model, const Vector& x) {
   return model;
 }
 
+/// A box around the states of a run.
+LineForm states_of(FaultyRun plant) {
+  Box box{plant.state(), plant.state()};
+  for (Index k = 0; k <= steps; ++k) {
+    box = {box.lower.cwiseMin(plant.state()), box.upper.cwiseMax(plant.state())};
+    plant.step();
+  }
+  return make_box(box);
+}
+
 Vector wave(Index k) { return Vector{{std::sin(.3 * static_cast<double>(k)), 1}}; }
 
 }  // namespace
@@ -149,4 +160,54 @@ TEST_CASE("random systems") {
   for (Index delay = 1; delay <= 3; ++delay) CHECK(found[delay] > 500);
   CHECK(descriptors > 50);
   CHECK(fine > 50);
+}
+
+TEST_CASE("random systems whose samples lack outputs now and then") {
+  Index told = 0, after_gaps = 0;
+  CHECK(rc::check([&](std::uint64_t seed) {
+    Draw draw{std::mt19937_64(seed)};
+    System system = random_system(draw);
+    RC_PRE(is_causal(system.model.linear));
+    Params params = parameters(draw.below(2) == 0 ? "shared" : "independent");
+    params.set("free_matrix", system.S);
+    RC_PRE(banks::registry()
+               .check<DiagnoserEntry>("fault_estimation_filter", {alone(system.model), zonotopes()},
+                                      params)
+               .empty());
+    const Signal fault = random_faults(draw, system.model.linear.faults());
+    const FaultyRun plant(system.model, wave, fault,
+                          Draw{std::mt19937_64(seed + 1), Noise::vertex});
+    system.model.X0 = make_point(plant.state());
+    params.set("admissible_set", states_of(plant));
+    Index last_gap = -1;
+    const auto lose = [&](Sample sample) {
+      if (draw.below(6) != 0) return sample;
+      sample.missing = {draw.below(sample.y.size())};
+      sample.y[sample.missing[0]] = std::numeric_limits<double>::quiet_NaN();
+      last_gap = sample.k;
+      return sample;
+    };
+    told += run(
+        *filter(system.model, params), plant, fault, steps,
+        [&](const Diagnosis& now) {
+          for (const FaultBound& b : now.faults) CHECK(b.at > last_gap);
+          after_gaps += last_gap >= 0 && !now.faults.empty();
+        },
+        lose);
+  }));
+  CHECK(after_gaps > 500);
+  CHECK(told > after_gaps);
+}
+
+TEST_CASE("a gap without a set to begin anew from is an error that says so") {
+  const Model model = published();
+  const auto diagnoser = filter(model, {});
+  diagnoser->start();
+  Sample sample{0, Vector::Zero(model.linear.inputs()), Vector::Zero(model.linear.outputs())};
+  sample.y[1] = std::numeric_limits<double>::quiet_NaN();
+  sample.missing = {1};
+  CHECK_THROWS_WITH_AS(diagnoser->step(sample),
+                       doctest::Contains("output 2 is missing at k = 0, and a fault in a gap may "
+                                         "put the state anywhere: give an admissible_set"),
+                       Error);
 }

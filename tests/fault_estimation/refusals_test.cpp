@@ -43,6 +43,10 @@ TEST_CASE("sizes") {
   CHECK(tells(all, "/max_columns", "is 3, fewer than the 4 states"));
   CHECK(tells(all, "/free_matrix", "is 7 × 4, must be 4 × 7"));
   CHECK(problems(alone(published()), parameters("shared", 4)).empty());
+  CHECK(tells(problems(alone(published()), Params().set("admissible_set", make_space(3))),
+              "/admissible_set", "has 3 coordinates, the system has 4 states"));
+  CHECK(tells(problems(alone(published()), Params().set("admissible_set", make_space(4))),
+              "/admissible_set", "admissible_set is unbounded"));
   CHECK(problems(alone(published()), parameters("shared", 0)).empty());
   CHECK(tells(problems(alone(published()), Params().set("free_matrix", Matrix(Matrix::Zero(4, 6)))),
               "/free_matrix", "is 4 × 6"));

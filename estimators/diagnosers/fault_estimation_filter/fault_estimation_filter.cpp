@@ -9,10 +9,12 @@
 // past ones included; bounds that exclude 0 prove that the plant has not been in the nominal mode,
 // where n = 0, at the time k - ρ_i. `ModeEvidence::why` is then the direction, a unit vector with
 // its sign in the space of faults, that separates 0 from the box of these bounds, and the margin
-// its distance. A step that excludes is a reset: the next one is judged anew, on its own bounds. In
-// a bank of several modes the filter cannot tell which of them the plant is in after that: the
+// its distance. A step that excludes is a reset: the next one is judged anew, on its own bounds. A
+// fault in a gap may put the state anywhere: no bounds are told while outputs are missing, and the
+// filter begins anew with the next complete sample, from the admissible set in place of X0. In a
+// bank of several modes the filter cannot tell which of them the plant is in after that: the
 // decision is "ambiguous" as long as the bounds hold 0.
-#include <limits>
+#include <optional>
 #include <string>
 
 #include "components.hpp"
@@ -71,6 +73,8 @@ class FaultEstimationFilter final : public Diagnoser {
     v_ = product(m.Dv, model_.V.c);
     D_size_ = m.D.cwiseAbs();
     constant_size_ = product(m.Bw.cwiseAbs(), model_.W.c.cwiseAbs());
+    if (params.has("admissible_set"))
+      admissible_ = invariant::enclosing_zonotope(params.set_form("admissible_set"));
   }
 
  private:
@@ -79,32 +83,51 @@ class FaultEstimationFilter final : public Diagnoser {
     Vector value, size;
   };
 
-  void do_start() override { unfinished_ = excluded_ = false; }
+  bool do_takes_missing_outputs() const override { return true; }
+  void do_start() override { unfinished_ = excluded_ = was_gap_ = false; }
 
   Diagnosis do_step(const Sample* before, const Sample& now) override {
     if (unfinished_)
       throw Error(Errc::invalid,
                   "the last step ended with an error, and left the filter half way; start anew");
+    if (!now.is_complete()) return in_gap(before, now);
     unfinished_ = true;
     Output y = output(now);
-    if (before) {
-      advance(*before, y);
+    const bool begins = !before || was_gap_;
+    if (begins) {
+      const sets::Zonotope& start = was_gap_ ? *admissible_ : model_.X0;
+      x_ = start.c;
+      recursion_.start(start.G);
+      first_ = now.k;
+      if (!before) since_ = now.k;
+      was_gap_ = false;
     } else {
-      x_ = model_.X0.c;
-      recursion_.start(model_.X0.G);
-      first_ = since_ = now.k;
+      advance(*before, y);
     }
     y_ = std::move(y);
     r_ = product(design_.M, y_.value - product(model_.linear.C, x_));
     const FilterRounding::Input input{x_, y_.size, r_.cwiseAbs() + recursion_.half_widths()};
-    if (before)
-      rounding_.advance(input, recursion_, before->u.cwiseAbs(), constant_size_);
-    else
+    if (begins)
       rounding_.start(input, recursion_);
+    else
+      rounding_.advance(input, recursion_, before->u.cwiseAbs(), constant_size_);
     half_width_ = recursion_.half_widths() + rounding_.slack();
     Diagnosis result = diagnosis(now.k);
     unfinished_ = false;
     return result;
+  }
+
+  Diagnosis in_gap(const Sample* before, const Sample& now) {
+    if (!admissible_) {
+      throw Error(Errc::unsupported,
+                  "output " + std::to_string(now.missing.front() + 1) +
+                      " is missing at k = " + std::to_string(now.k) +
+                      ", and a fault in a gap may put the state anywhere: give an admissible_set, "
+                      "from which the filter begins anew, or fill the gaps");
+    }
+    if (!before) since_ = now.k;
+    was_gap_ = true;
+    return diagnosis(now.k);
   }
 
   Output output(const Sample& now) const {
@@ -122,6 +145,7 @@ class FaultEstimationFilter final : public Diagnoser {
   }
 
   std::vector<FaultBound> bounds(Index k) const {
+    if (was_gap_) return {};
     if (!(r_ + half_width_).allFinite())
       throw Error(Errc::not_finite, "the estimate of a fault has outgrown the numbers");
     std::vector<FaultBound> all;
@@ -183,6 +207,7 @@ class FaultEstimationFilter final : public Diagnoser {
   }
 
   FilterModel model_;
+  std::optional<sets::Zonotope> admissible_;  ///< holds the state at all times
   FilterDesign design_;
   FilterRecursion recursion_;
   FilterRounding rounding_;
@@ -192,15 +217,18 @@ class FaultEstimationFilter final : public Diagnoser {
   Output y_;                       ///< of the last sample
   Index first_ = 0, since_ = 0;
   bool excluded_ = false;    ///< the nominal mode has been, once
+  bool was_gap_ = false;     ///< the last sample lacked outputs
   bool unfinished_ = false;  ///< a step ended with an error half way
 };
 
 /// Why X has no zonotope around it, if so.
-void check_bounded(const LineForm& X, const std::string& name, std::vector<Diagnostic>& problems) {
+void check_bounded(const LineForm& X, const std::string& where, const std::string& name,
+                   std::vector<Diagnostic>& problems) {
   try {
-    invariant::enclosing_zonotope(X, "the system's " + name);
+    invariant::enclosing_zonotope(X, (where.empty() ? "the system's " : "") + name);
   } catch (const Error& error) {
-    problems.push_back({"", error.what(), "give a bounded " + name + " in the system"});
+    problems.push_back(
+        {where, error.what(), "give a bounded " + name + (where.empty() ? " in the system" : "")});
   }
 }
 
@@ -212,6 +240,12 @@ void check_parameters(const LinearModel& m, const Params& params,
         {"/max_columns",
          "is " + std::to_string(columns) + ", fewer than the " + std::to_string(n) + " states",
          "give at least " + std::to_string(n) + ", or 0 for no limit"});
+  }
+  if (params.has("admissible_set") && params.set_form("admissible_set").dim() != n) {
+    problems.push_back({"/admissible_set",
+                        "has " + std::to_string(params.set_form("admissible_set").dim()) +
+                            " coordinates, the system has " + std::to_string(n) + " states",
+                        "give a set of states"});
   }
   const Matrix S = free_matrix(m, params);
   if (S.rows() != n || S.cols() != n + m.outputs()) {
@@ -237,10 +271,12 @@ std::vector<Diagnostic> check_filter(const DiagnoserContext& context, const Para
                         "does not take a nominal mode whose effectiveness is known by ranges",
                         "describe changes of actuators by columns of F"});
   }
-  check_bounded(model.X0, "X0", problems);
-  check_bounded(model.W, "W", problems);
-  check_bounded(model.V, "V", problems);
+  check_bounded(model.X0, "", "X0", problems);
+  check_bounded(model.W, "", "W", problems);
+  check_bounded(model.V, "", "V", problems);
   check_parameters(model.linear, params, problems);
+  if (params.has("admissible_set"))
+    check_bounded(params.set_form("admissible_set"), "/admissible_set", "admissible_set", problems);
   if (problems.empty()) design_filter(model.linear, free_matrix(model.linear, params), problems);
   return problems;
 }
@@ -258,6 +294,9 @@ ParamSchema filter_parameters() {
   schema.matrix("free_matrix",
                 "S in [T N] = [E;C]⁺ + S (I - [E;C][E;C]⁺), a row per state, a column per state "
                 "and output; absent: 0");
+  schema.set("admissible_set",
+             "holds the state at all times: the filter begins anew from it after samples that lack "
+             "outputs; without it they are an error");
   return schema;
 }
 
@@ -288,6 +327,12 @@ constexpr const char* filter_details =
     "\"ambiguous\" later; of one,\n"
     "\"unknown_fault\", and \"monitoring\" again where no bound excludes 0.\n"
     "The filter's sets are its own: of the pipeline's backend it uses nothing.\n"
+    "\n"
+    "Samples that lack outputs: a fault that acts in the gap may put the state anywhere, so that "
+    "no\n"
+    "bounds are told until the next complete sample, where the filter begins anew from the\n"
+    "admissible_set. Give one that is not much wider than the states are: it is all that is "
+    "known.\n"
     "\n"
     "As printed, the paper omits a row of its T (row 3 is (0 0 .5 0)) and the square root of "
     "‖·‖_F, and\n"
