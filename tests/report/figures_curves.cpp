@@ -31,6 +31,31 @@ bool has(const Report& report, const std::string& id) {
 
 }  // namespace
 
+TEST_CASE("data: outputs and inputs, gaps as they are") {
+  const ResultsFiles files;
+  files.write("data.csv",
+              "k,u_1,y_1,y_2,x_1,x_2,mode\n0,1,0,5,0.25,0.5,0\n1,-1,,6,0.75,-0.5,0\n"
+              "2,1,0,7,1,2,-1\n");
+  const Report report = read_report(files.path());
+  const Plot &lost = plot(report, "output_1"), &whole = plot(report, "output_2"),
+             &input = plot(report, "input_1");
+  CHECK(lost.series[0].kind == Series::Kind::points);
+  CHECK(lost.series[0].x == std::vector<double>{0, 1, 2});
+  CHECK(std::isnan(lost.series[0].y[1]));
+  CHECK(lost.y_label == "y_1");
+  CHECK(whole.series[0].kind == Series::Kind::line);
+  CHECK(whole.series[0].y == std::vector<double>{5, 6, 7});
+  CHECK(input.series[0].kind == Series::Kind::steps);
+  CHECK(input.series[0].y == std::vector<double>{1, -1, 1});
+  REQUIRE(lost.marks.size() == 1);
+  CHECK(lost.marks[0].text == "outside the bank");
+  CHECK_FALSE(has(report, "input_2"));
+  for (const Figure& figure : report.figures) {
+    if (figure.id != "output_1") continue;
+    CHECK(figure.caption.find("missing in 1 of 3 samples") != std::string::npos);
+  }
+}
+
 TEST_CASE("bounds: bands of pipelines, inner bands, truth, gaps and marks") {
   const ResultsFiles files;
   const Report report = read_report(files.path());

@@ -38,14 +38,6 @@ void add_bounds(const ColumnReader& table, const BoundColumns& columns, bool emp
   }
 }
 
-/// Nothing for a run whose pipelines all have inputs of their own: no data were read then.
-std::optional<ColumnReader> open_data_table(const RunFiles& files) {
-  const std::filesystem::path file = files.files().file("data.csv");
-  char first = 0;
-  if (detail::InputFile(file).read(&first, 1) == 0) return std::nullopt;
-  return ColumnReader(file);
-}
-
 /// The true states at one time after another. Times of data.csv increase, so that it is read along
 /// with the steps of a pipeline.
 class TruthReader {
@@ -234,6 +226,13 @@ void read_data(const RunFiles& files, Curves& curves) {
 }
 
 }  // namespace
+
+std::optional<ColumnReader> open_data_table(const RunFiles& files) {
+  const std::filesystem::path file = files.files().file("data.csv");
+  char first = 0;
+  if (detail::InputFile(file).read(&first, 1) == 0) return std::nullopt;
+  return ColumnReader(file);
+}
 
 Curves read_curves(const RunFiles& files) {
   Curves curves;

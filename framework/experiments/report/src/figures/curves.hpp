@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "experiments/report/thinning.hpp"
+#include "figures/columns.hpp"
 #include "figures/run_files.hpp"
 
 namespace cordon::report {
@@ -38,6 +40,10 @@ struct Curves {
 inline constexpr std::size_t page_states = 12;
 
 Curves read_curves(const RunFiles& files);
+
+/// data.csv; nothing for a run whose pipelines all have inputs of their own: no data were read
+/// then.
+std::optional<ColumnReader> open_data_table(const RunFiles& files);
 
 /// The true states at these times, as far as data.csv tells them.
 std::vector<std::pair<std::int64_t, std::vector<double>>> truth_at(

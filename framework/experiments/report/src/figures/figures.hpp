@@ -10,7 +10,7 @@ namespace cordon::report {
 
 /// Where a figure stands: the headings of a page.
 namespace section {
-inline const std::string bounds = "Bounds", sets = "Sets", metrics = "Metrics",
+inline const std::string bounds = "Bounds", sets = "Sets", data = "Data", metrics = "Metrics",
                          diagnosis = "Diagnosis", designs = "Designed inputs",
                          answers = "Answers and proofs", comparison = "Comparison", sweep = "Sweep";
 }
@@ -26,6 +26,8 @@ void add_projections(const RunFiles& files, const Curves& curves, Report& report
 void add_diagnosis(const RunFiles& files, const Curves& curves, Report& report);
 /// Designed inputs, tubes of outputs, what keeps pairs of modes apart, experiments.
 void add_designs(const RunFiles& files, Report& report);
+/// Outputs and inputs over time.
+void add_data(const RunFiles& files, const Curves& curves, Report& report);
 /// Errors and violations, as notes.
 void add_failures(const RunFiles& files, Report& report);
 /// What was proven, assumed and promised.

@@ -25,6 +25,7 @@ void add_run(const RunFiles& files, Report& report) {
   add_projections(files, curves, report);
   if (files.any(PipelineKind::diagnosis)) add_diagnosis(files, curves, report);
   if (files.any(PipelineKind::design)) add_designs(files, report);
+  add_data(files, curves, report);
   add_metrics(files, curves, report);
   add_answers(files, curves, report);
 }
