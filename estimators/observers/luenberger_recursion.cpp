@@ -55,6 +55,8 @@ LuenbergerRecursion::LuenbergerRecursion(const Model& model, Matrix L,
   const Vector &w = around_W.c, &v = around_V.c;
   W_generators_ = around_W.G;
   V_generators_ = around_V.G;
+  W_size_ = w.cwiseAbs() + W_generators_.cwiseAbs().rowwise().sum();
+  V_size_ = v.cwiseAbs() + V_generators_.cwiseAbs().rowwise().sum();
   state_drift_ = product(Bw_, w);
   v_ = product(Dv_, v);
   W_ = backend_->import(model.W);
@@ -86,6 +88,41 @@ void LuenbergerRecursion::use_gain(Matrix L) {
   minus_LDv_ = -product(L_, Dv_);
   minus_L_ = -L_;
   w_ = state_drift_ - product(L_, v_);
+  take_sizes();
+}
+
+/// Magnitudes of what A - L C̄, L Dv and the sums of X̂⁺ are made of, and their largest.
+void LuenbergerRecursion::take_sizes() {
+  const auto norm = [](const Matrix& M) {
+    return M.size() ? M.cwiseAbs().rowwise().sum().maxCoeff() : 0.0;
+  };
+  y_terms_ = L_.cwiseAbs();
+  x_terms_ = A_.cwiseAbs() + y_terms_ * C_.cwiseAbs();
+  u_terms_ = (B_.cwiseAbs() + y_terms_ * D_.cwiseAbs()) * f_.cwiseAbs().asDiagonal();
+  constant_terms_ = Bw_.cwiseAbs() * W_size_ + y_terms_ * (Dv_.cwiseAbs() * V_size_);
+  widths_ = error_noise().cwiseAbs().rowwise().sum();
+  x_norm_ = norm(x_terms_);
+  y_norm_ = norm(y_terms_);
+  u_norm_ = norm(u_terms_);
+  constant_norm_ = norm(constant_terms_);
+  least_width_ = widths_.size() ? widths_.minCoeff() : 0.0;
+}
+
+std::optional<RoundingRoom> LuenbergerRecursion::room_of(const Enclosure& X, VectorIn shift,
+                                                         const Sample& now) const {
+  const bool outward = backend_->info().rounding == Rounding::outward;
+  const Box reach = reach_of(*X);
+  if (reach.is_empty() || !reach.is_bounded()) return std::nullopt;
+  const Vector x = largest_entries(reach);
+  const auto largest = [](VectorIn v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0.0; };
+  const double most =
+      x_norm_ * largest(x) + y_norm_ * largest(now.y) + u_norm_ * largest(now.u) + constant_norm_;
+  if (!outward && !RoundingRoom::may_be_needed(most, least_width_)) return std::nullopt;
+  const Vector terms =
+      x_terms_ * x + y_terms_ * now.y.cwiseAbs() + u_terms_ * now.u.cwiseAbs() + constant_terms_;
+  if (outward) return std::optional<RoundingRoom>(std::in_place, *backend_, terms);
+  const Vector sum = shift + w_ + product(Ao_, reach.center());
+  return std::optional<RoundingRoom>(std::in_place, *backend_, sum, terms, widths_);
 }
 
 Matrix LuenbergerRecursion::error_noise() const {
@@ -146,12 +183,19 @@ void LuenbergerRecursion::add_open(Summands& to, Target target, const Enclosure&
 
 Enclosure LuenbergerRecursion::next(const Enclosure& X, const Sample& now, Vector* open) const {
   Summands summands;
-  summands.terms.reserve(5);
+  summands.terms.reserve(6);
   summands.terms.push_back({minus_LDv_, V_});
   summands.terms.push_back({Bw_, W_});
   add_open(summands, Target::state, X, now.u, false);
+  const Vector shift = product(L_, now.y) + product(input_, now.u);
+  const std::optional<RoundingRoom> room = room_of(X, shift, now);
+  if (room && room->is_needed()) {
+    summands.terms.push_back(room->term());
+    if (summands.half_widths.size() == 0) summands.half_widths = Vector::Zero(shift.size());
+    summands.half_widths += room->half_widths();
+  }
   if (open) *open = std::move(summands.half_widths);
-  return backend_->predict(X, {Ao_, product(L_, now.y) + product(input_, now.u), summands.terms});
+  return backend_->predict(X, {Ao_, shift, summands.terms});
 }
 
 Enclosure LuenbergerRecursion::residual(const Enclosure& X, const Sample& now) const {
@@ -171,8 +215,8 @@ Vector LuenbergerRecursion::residual(VectorIn x, const Sample& now) const {
 }
 
 Vector LuenbergerRecursion::next_size(VectorIn x, const Sample& now) const {
-  return Ao_.cwiseAbs() * x.cwiseAbs() + L_.cwiseAbs() * now.y.cwiseAbs() +
-         input_.cwiseAbs() * now.u.cwiseAbs() + w_.cwiseAbs();
+  return x_terms_ * x.cwiseAbs() + y_terms_ * now.y.cwiseAbs() + u_terms_ * now.u.cwiseAbs() +
+         w_.cwiseAbs();
 }
 
 Vector LuenbergerRecursion::residual_size(VectorIn s, const Sample& now) const {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cordon/interfaces/backend.hpp"
 #include "cordon/interfaces/model.hpp"
+#include "observers/rounding_room.hpp"
 
 namespace cordon::estimators {
 
@@ -19,7 +21,9 @@ namespace cordon::estimators {
 /// Π and Δ are boxes with the half widths rad(A) |x| + rad(B) |max f u| and rad(g) |C x + D f u| +
 /// max g rad(C) |x|, x ∈ X̂; they are {0} for exact matrices and exactly known sensors. x ∈ X̂
 /// implies x⁺ ∈ X̂⁺ and 0 ∈ R. A diag per input: a single column rad(f) u would tie the inputs to
-/// each other. Models with E are not taken. Constant functions may be used from several threads.
+/// each other. Where terms cancel, or the backend rounds outward, P has room for what A - L C̄, L Dv
+/// and the sums have been rounded by (rounding_room.hpp). Models with E are not taken. Constant
+/// functions may be used from several threads.
 class LuenbergerRecursion {
  public:
   /// L is n×n_y. Throws Errc::dimension.
@@ -32,7 +36,8 @@ class LuenbergerRecursion {
   const SetBackend& backend() const { return *backend_; }
 
   /// X̂⁺ before reduction, from X̂ and the sample of the same time. `open`, if asked for: the half
-  /// widths of the part of P that is not W or V, of no entries where there is none.
+  /// widths of the part of P that is not W or V, of no entries where there is none. The room for
+  /// rounding is part of it.
   Enclosure next(const Enclosure& X, const Sample& now, Vector* open = nullptr) const;
   Enclosure reduced(const Enclosure& X) const { return backend_->reduce(X, budget_); }
   /// R, in the space of outputs.
@@ -47,7 +52,7 @@ class LuenbergerRecursion {
   Vector next(VectorIn x, const Sample& now) const;
   Vector residual(VectorIn x, const Sample& now) const;
 
-  /// Sizes of the numbers that x̂⁺ and r are made of, before they cancel: |Ao| |x̂| + |L| |y| + …,
+  /// Sizes of the numbers that x̂⁺ and r are made of, before they cancel: (|A| + |L||C̄|) |x̂| + …,
   /// and |y| + … + |C̄| s for x̂ of size s. What rounding leaves in X̂⁺ and R is a share of them,
   /// however small these come out.
   Vector next_size(VectorIn x, const Sample& now) const;
@@ -78,6 +83,9 @@ class LuenbergerRecursion {
   /// Adds what ranges and interval matrices leave open in X̂⁺ or in R.
   void add_open(Summands& to, Target target, const Enclosure& X, VectorIn u, bool twice) const;
   Vector output_widths(const Enclosure& X, const Vector& largest, VectorIn u) const;
+  /// For X̂⁺, whose shift has been added up already.
+  std::optional<RoundingRoom> room_of(const Enclosure& X, VectorIn shift, const Sample& now) const;
+  void take_sizes();
   Enclosure bounded_box(const Vector& widths, const std::string& cause) const;
 
   std::shared_ptr<const SetBackend> backend_;
@@ -90,10 +98,14 @@ class LuenbergerRecursion {
   Matrix ranges_, output_ranges_;  ///< their columns of (B - L D̄) rad(f) and D̄ rad(f)
   Matrix Bw_, minus_Bw_, Dv_, minus_Dv_, minus_LDv_;
   Matrix state_unit_, output_unit_;
-  Enclosure W_, V_, W0_, V0_;              ///< W0, V0: moved by -w̄, -v̄
-  Matrix W_generators_, V_generators_;     ///< of zonotopes around W and V
-  Enclosure unit_;                         ///< [-1,1] to the power of `ranged_`
-  Vector state_drift_, w_, v_;             ///< Bw w̄, Bw w̄ - L Dv v̄, Dv v̄
+  Enclosure W_, V_, W0_, V0_;           ///< W0, V0: moved by -w̄, -v̄
+  Matrix W_generators_, V_generators_;  ///< of zonotopes around W and V
+  Enclosure unit_;                      ///< [-1,1] to the power of `ranged_`
+  Vector state_drift_, w_, v_;          ///< Bw w̄, Bw w̄ - L Dv v̄, Dv v̄
+  Matrix x_terms_, y_terms_, u_terms_;  ///< |A| + |L||C̄|, |L|, (|B| + |L||D̄|) f̄
+  Vector W_size_, V_size_;              ///< of the entries of w and v
+  Vector constant_terms_, widths_;      ///< sizes of Bw W and L Dv V; half widths of their sum
+  double x_norm_ = 0, y_norm_ = 0, u_norm_ = 0, constant_norm_ = 0, least_width_ = 0;
   Matrix raw_C_, raw_D_;                   ///< C and |D| max f, for Δ
   Vector sensor_radius_;                   ///< no entries: exact sensors
   Matrix A_radius_, B_radius_, C_radius_;  ///< 0×0: exact; of C: max g rad(C)

@@ -120,7 +120,8 @@ class PseudoInverseObserver final : public Observer {
       }
       const Enclosure rest = rest_of(now.k);
       if (rest.set) terms.push_back({identity_, rest});
-      return backend().predict(X_, {map_, shift_, {terms.data(), terms.size()}});
+      return with_inverse_error(
+          backend().predict(X_, {map_, shift_, {terms.data(), terms.size()}}));
     });
     return X_ = timed(Phase::reduce, [&] { return backend().reduce(predicted, budget_); });
   }
@@ -181,13 +182,33 @@ class PseudoInverseObserver final : public Observer {
     shift_ += part_;
   }
 
-  /// For what has been added up in shift_.
+  /// What T E + N C lacks of the identity, times x_k: for b, the magnitudes of the predicted set,
+  /// and any n ≥ b with |R| n ≤ n / 2, |x_k| ≤ b + |R||x_k| gives |x_k| ≤ 2 n. With outward
+  /// rounding it is among `own_errors`.
+  Enclosure with_inverse_error(const Enclosure& X) const {
+    if (rounds_outward_ || now_->inverse_error.size() == 0) return X;
+    const Box hull = X->interval_hull();
+    const Vector b = hull.lower.cwiseAbs().cwiseMax(hull.upper.cwiseAbs());
+    const Vector next = b + 2 * amplified(now_->inverse_error, b),
+                 lacking = amplified(now_->inverse_error, next), error = 2 * lacking;
+    if (!(lacking.array() <= 0.5 * next.array()).all()) {
+      throw Error(Errc::unsupported,
+                  "[E; C] is so near to a singular matrix that rounding decides about the state; "
+                  "use other units, a backend with exact intersections, or outward rounding");
+    }
+    return backend().sum(X, backend().box({-error, error}));
+  }
+
+  /// For what has been added up in shift_, and for T A - L C.
   std::optional<RoundingRoom> room_of(const Sample& before, const Sample& now) const {
     const double u = std::max(largest(before.u), largest(now.u));
     const double y =
         std::max(largest(before.y), largest(now.y)) + std::max(before_->D_norm, now_->D_norm) * u;
     const double centers = largest(now_->disturbance) + row_norm(minus_LDv_) * largest(model().V.c);
-    const double most = now_->TB_norm * u + (row_norm(L_) + row_norm(now_->N)) * y + centers;
+    const double of_state = (now_->TA_norm + row_norm(L_) * before_->C_norm) *
+                            largest(x_center_.cwiseAbs() + x_radius_);
+    const double most =
+        now_->TB_norm * u + (row_norm(L_) + row_norm(now_->N)) * y + centers + of_state;
     if (!RoundingRoom::may_be_needed(most, now_->least_width)) return std::nullopt;
     const auto seen = [&](const PseudoInverseOutputs& of, const Sample& sample) {
       return Vector(sample.y.cwiseAbs() + effectiveness_.input_terms(of.used.D, sample.u));
@@ -195,9 +216,19 @@ class PseudoInverseObserver final : public Observer {
     const Vector center = now_->disturbance + linalg::product(minus_LDv_, model().V.c);
     const Vector terms = effectiveness_.input_terms(now_->TB, before.u) +
                          linalg::product(L_.cwiseAbs(), seen(*before_, before)) +
-                         linalg::product(now_->N.cwiseAbs(), seen(*now_, now)) + center.cwiseAbs();
+                         linalg::product(now_->N.cwiseAbs(), seen(*now_, now)) + center.cwiseAbs() +
+                         state_terms();
     const Vector widths = now_->disturbance_widths + half_widths(model().V, minus_LDv_);
-    return std::optional<RoundingRoom>(std::in_place, backend(), shift_ + center, terms, widths);
+    return std::optional<RoundingRoom>(std::in_place, backend(),
+                                       shift_ + center + linalg::product(map_, x_center_), terms,
+                                       widths);
+  }
+
+  /// (|T| |A| + |L| |C|) |x|.
+  Vector state_terms() const {
+    const Vector x = x_center_.cwiseAbs() + x_radius_;
+    return linalg::product(now_->TA_terms, x) +
+           linalg::product(L_.cwiseAbs(), linalg::product(before_->used.C.cwiseAbs(), x));
   }
 
   /// Bound of what the products and sums of this recursion, all but the backend's, have lost:
@@ -232,6 +263,8 @@ class PseudoInverseObserver final : public Observer {
   /// L minimises the F-radius of the next estimate, as far as the last measurement decides it.
   void find_gain(const Matrix& spread) {
     const LineForm X = X_->line_form();
+    x_center_ = X.c;
+    x_radius_ = X.G.cwiseAbs().rowwise().sum();
     // squares of sets that shrink to a point underflow: L does not depend on the unit
     const double largest = std::max(
         {largest_entry(before_->noise_generators), largest_entry(X.G), largest_entry(spread)});
@@ -296,6 +329,7 @@ class PseudoInverseObserver final : public Observer {
   // Kept from step to step, so that no step takes memory for them.
   Matrix scaled_, P_, CP_, S_, cross_, noise_gram_;
   Vector shift_, output_, part_;
+  Vector x_center_, x_radius_;  ///< of X_
 };
 
 }  // namespace

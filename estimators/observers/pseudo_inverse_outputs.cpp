@@ -13,6 +13,9 @@ namespace cordon::estimators {
 
 namespace {
 
+constexpr double negligible_share_of_state =
+    1e-12;  ///< of the state, as a rounding error of nominal backends
+
 /// 1 for outputs that are there, and that the measurement itself bounds; 0 for the others.
 Vector used_outputs(const LinearModel& m, const std::vector<Index>& present) {
   Vector used = Vector::Zero(m.outputs());
@@ -44,8 +47,11 @@ Matrix stacked_E_C(const LinearModel& m) {
   return stacked;
 }
 
+/// Whatever the units of equations and outputs are.
 bool has_full_rank(const LinearModel& used) {
-  return linalg::rank(stacked_E_C(used), tolerances::rank) >= used.states();
+  const Matrix E_C = stacked_E_C(used);
+  return linalg::rank(linalg::row_scales(E_C).asDiagonal() * E_C, tolerances::rank) >=
+         used.states();
 }
 
 }  // namespace
@@ -87,6 +93,9 @@ PseudoInverseOutputs::PseudoInverseOutputs(const Model& full, const std::vector<
   N = inverse.rightCols(used.outputs());
   TA = linalg::product(T, used.A);
   TA_transposed = TA.transpose();
+  TA_terms = linalg::product(T.cwiseAbs(), used.A.cwiseAbs());
+  TA_norm = row_norm(TA_terms);
+  C_norm = row_norm(used.C);
   TB = linalg::product(T, used.B);
   TBw = linalg::product(T, used.Bw);
   minus_ND = -linalg::product(N, used.D);
@@ -99,8 +108,10 @@ PseudoInverseOutputs::PseudoInverseOutputs(const Model& full, const std::vector<
     open = rest;
     open_error = rounding + accumulated_rounding(used) * unit;
   }
-  if (rounds_outward)
-    inverse_error = determines_state ? Matrix(rest.cwiseAbs() + rounding) : Matrix::Zero(n, n);
+  if (determines_state && (rounds_outward || row_norm(rounding) > negligible_share_of_state))
+    inverse_error = rest.cwiseAbs() + rounding;
+  else if (rounds_outward)
+    inverse_error = Matrix::Zero(n, n);
   disturbance = linalg::product(TBw, full.W.c) + linalg::product(minus_NDv, full.V.c);
   disturbance_widths = half_widths(full.W, TBw) + half_widths(full.V, minus_NDv);
   if (disturbance_widths.size()) least_width = disturbance_widths.minCoeff();

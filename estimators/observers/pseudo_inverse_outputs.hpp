@@ -24,14 +24,16 @@ struct PseudoInverseOutputs {
   Matrix T, N, TA, TA_transposed, TB, TBw, minus_ND, minus_NDv;
   Matrix open;           ///< R; 0×0: 0
   Matrix open_error;     ///< a bound of the rounding of R
-  Matrix inverse_error;  ///< |T E + N C + R - I|, where the backend rounds outward
-  double TB_norm = 0;
+  Matrix inverse_error;  ///< a bound of |T E + N C + R - I|; 0×0: negligible, and the backend does
+                         ///< not round outward
+  Matrix TA_terms;       ///< |T| |A|
+  double TB_norm = 0, TA_norm = 0;
   Vector disturbance, disturbance_widths;  ///< center and half widths of T Bw W ⊕ (-N Dv V)
   double least_width = 0;
   // of the sample before
   Matrix noise_generators;  ///< Dv Gv
   Matrix C_transposed;
-  double D_norm;
+  double C_norm, D_norm;
 };
 
 /// All outputs of the model, in order.

@@ -27,14 +27,26 @@ RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn ter
     if (!stands && !is_small)
       rows.push_back(i);  // NaN, of terms that overflow, is left to the backend's refusal
   }
-  columns_ = Matrix::Zero(sum.size(), static_cast<Index>(rows.size()));
+  make(rows, terms);
+}
+
+RoundingRoom::RoundingRoom(const SetBackend& backend, VectorIn terms) : backend_(backend) {
+  std::vector<Index> rows;
+  for (Index i = 0; i < terms.size(); ++i) {
+    if (terms[i] > 0) rows.push_back(i);
+  }
+  make(rows, terms);
+}
+
+void RoundingRoom::make(const std::vector<Index>& rows, VectorIn terms) {
+  columns_ = Matrix::Zero(terms.size(), static_cast<Index>(rows.size()));
   if (rows.empty()) return;
   for (Index column = 0; column < columns_.cols(); ++column) {
     const Index i = rows[static_cast<std::size_t>(column)];
     columns_(i, column) = share * terms[i];
   }
   const Vector ones = Vector::Ones(columns_.cols());
-  factors_ = backend.box({-ones, ones});
+  factors_ = backend_.box({-ones, ones});
 }
 
 bool RoundingRoom::may_be_needed(double most, double least_width) {
@@ -47,6 +59,15 @@ Enclosure RoundingRoom::correct(const Enclosure& X, const CorrectionArgs& measur
   T << measurement.noise.T, columns_;
   return backend_.correct(
       X, {measurement.C, measurement.z, {T, backend_.product(measurement.noise.set, factors_)}});
+}
+
+Box reach_of(const Set& X) {
+  const Complexity size = X.complexity();
+  if (size.constraints == 0 && size.lines == 0) return X.interval_hull();
+  if (!X.backend().info().exact_exchange) return X.interval_hull();
+  const LineForm form = X.line_form();
+  const Vector widths = half_widths(form, Matrix::Identity(form.dim(), form.dim()));
+  return {form.c - widths, form.c + widths};
 }
 
 Vector half_widths(const LineForm& X, MatrixIn T) {

@@ -2,6 +2,8 @@
 // Room for the rounding errors of vectors that an observer adds up before a backend sees them.
 #pragma once
 
+#include <vector>
+
 #include "cordon/interfaces/backend.hpp"
 
 namespace cordon::estimators {
@@ -18,6 +20,9 @@ class RoundingRoom {
   /// the center of (may be +inf).
   RoundingRoom(const SetBackend& backend, VectorIn sum, VectorIn terms, VectorIn half_widths);
 
+  /// The same in every row, whatever the sum and the set are, and for every backend.
+  RoundingRoom(const SetBackend& backend, VectorIn terms);
+
   /// Can any row need room whose terms add up to `most`, and whose set is no narrower than
   /// `least_width`? At no cost.
   static bool may_be_needed(double most, double least_width);
@@ -25,14 +30,21 @@ class RoundingRoom {
   bool is_needed() const { return columns_.cols() > 0; }
   /// The box, to be added to what is predicted. Lives as long as the room.
   Term term() const { return {columns_, factors_}; }
+  Vector half_widths() const { return columns_.rowwise().sum(); }
   /// {x ∈ X : z - C x ∈ T V}, with room in its rows.
   Enclosure correct(const Enclosure& X, const CorrectionArgs& measurement) const;
 
  private:
+  void make(const std::vector<Index>& rows, VectorIn terms);
+
   const SetBackend& backend_;
   Matrix columns_;
   Enclosure factors_;
 };
+
+/// A box around a set: exact where the set has neither constraints nor lines; else around it
+/// without its constraints, with infinite sides along lines. At little cost.
+Box reach_of(const Set& X);
 
 /// Half widths of {T x : x ∈ X} without its constraints; infinite along lines.
 Vector half_widths(const LineForm& X, MatrixIn T);

@@ -91,8 +91,11 @@ Enclosure WideningLimit::apply(const SetBackend& backend, const Enclosure& X) co
   if (!half.allFinite()) return X;
   const Box hull = X->interval_hull();
   if (((hull.upper - hull.lower).array() <= 2 * limit_ * half.array()).all()) return X;
-  Enclosure box =
-      backend.box({hull.lower.cwiseMax(center_ - half), hull.upper.cwiseMin(center_ + half)});
+  // both hold the state; where a coordinate is known exactly they may lie beside each other by
+  // what rounding made of each, which is no proof that there is nothing in both
+  const Vector lower = hull.lower.cwiseMax(center_ - half),
+               upper = hull.upper.cwiseMin(center_ + half);
+  Enclosure box = backend.box({lower.cwiseMin(upper), lower.cwiseMax(upper)});
   box.tightness = Tightness::outer;
   return box;
 }

@@ -11,6 +11,8 @@ namespace cordon::estimators {
 
 namespace {
 
+constexpr double rounding_share = 1e-14;  ///< of the terms of a sum, which it is off by
+
 /// What is nearer to 0 than this may be rounding: a share of the numbers that a residual was made
 /// of, and of its own bounds.
 Vector rounding_slack(const Box& hull, const Vector& size) {
@@ -95,6 +97,7 @@ void ObserverBank::do_start() {
     m.copy.reset();
     m.bound.reset();
     m.drift.start();
+    m.rounding.start();
     m.evidence = {};
   }
 }
@@ -136,6 +139,11 @@ void ObserverBank::advance(Index j, const Sample& before) {
   if (m.copy) m.copy = advanced(*m.copy, m.copy_limit);
   m.X = advanced(m.X, m.X_limit);
   m.size = recursion->next_size(m.center, sample);
+  if (before.is_complete()) {
+    m.rounding.step(m.size);
+  } else {
+    m.rounding.step_by(recursion->error_map(), m.size);
+  }
   m.center = recursion->next(m.center, sample);
   if (residuals_.empty()) return;
   const auto at = static_cast<std::size_t>(j);
@@ -195,6 +203,8 @@ void ObserverBank::reset(Index j, const Sample& now) {
     const LineForm moved = make_zonotope(-drift.c, drift.G);
     E = m.recursion.reduced(backend().sum(E, backend().import(moved)));
   }
+  const Vector off = rounding_share * m.rounding.bound();
+  E = m.recursion.reduced(backend().sum(E, backend().box({-off, off})));
   Enclosure errors = E, start = E;
   if (sample.y.size() > 0) {
     std::optional<Matrix> gain;

@@ -12,6 +12,7 @@
 #include "diagnosers/mode_workers.hpp"
 #include "diagnosers/observer_bank/fdi_conditions.hpp"
 #include "diagnosers/observer_bank/point_drift.hpp"
+#include "observers/error_memory.hpp"
 #include "observers/luenberger_recursion.hpp"
 #include "observers/present_outputs.hpp"
 #include "observers/widening_limit.hpp"
@@ -57,11 +58,15 @@ class ObserverBank final : public Diagnoser {
   struct Member {
     Member(const Model& model, const Matrix& L, const std::shared_ptr<const SetBackend>& backend,
            Budget budget, double widening)
-        : recursion(model, L, backend, budget), X_limit(widening), copy_limit(widening) {}
+        : recursion(model, L, backend, budget),
+          X_limit(widening),
+          copy_limit(widening),
+          rounding(recursion.error_map()) {}
     LuenbergerRecursion recursion;  ///< for all outputs
     PerOutputs<LuenbergerRecursion> others;
     WideningLimit X_limit, copy_limit;
     PointDrift drift;               ///< Δ
+    ErrorMemory rounding;           ///< of the numbers that x̂ has been made of: what it is off by
     Enclosure X, residual;          ///< X̂, R; of the outputs that are there
     Box hull;                       ///< of R
     Vector center;                  ///< x̂

@@ -142,7 +142,7 @@ bool AssumptionCheck::excuses_by_rounding(Index k, bool barely) {
   const Record* before = nullptr;
   for (const Record& now : kept_) {
     const Index time = now.sample.k;
-    if (time > k || other_) break;
+    if (time > k || (other_ && other_->from() <= k)) break;
     const Index from = before ? mode_of(*before) : -1, shown = mode_of(now);
     if (from >= 0 && contradicts_dynamics(bank_[from].model, *before, now)) {
       if (leaves_W(bank_[from].model, *before, now)) return false;  // that is no rounding

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "observers/error_memory.hpp"
+
+#include "cordon/core/linalg.hpp"
+
+namespace cordon::estimators {
+
+namespace {
+
+constexpr Index longest_block = 4096;
+
+double norm(const Matrix& M) { return M.size() ? M.cwiseAbs().rowwise().sum().maxCoeff() : 0.0; }
+
+}  // namespace
+
+ErrorMemory::ErrorMemory(const Matrix& F) {
+  const Index n = F.rows();
+  Matrix power = Matrix::Identity(n, n);
+  largest_ = sum_ = Matrix::Zero(n, n);
+  block_ = 0;
+  for (Index next = 1; next <= longest_block; next *= 2) {
+    for (; block_ < next; ++block_) {
+      largest_ = largest_.cwiseMax(power.cwiseAbs());
+      sum_ += power.cwiseAbs();
+      power = linalg::product(F, power);
+    }
+    if (norm(power) <= 0.5) break;
+  }
+  power_ = power.cwiseAbs();
+  start();
+}
+
+void ErrorMemory::start() {
+  steps_ = 0;
+  past_ = now_ = Vector::Zero(power_.rows());
+}
+
+void ErrorMemory::step(VectorIn sizes) {
+  now_ = now_.cwiseMax(sizes);
+  if (++steps_ < block_) return;
+  past_ = power_ * past_ + sum_ * now_;
+  now_.setZero();
+  steps_ = 0;
+}
+
+void ErrorMemory::step_by(const Matrix& F, VectorIn sizes) {
+  past_ = F.cwiseAbs() * bound() + sizes;
+  now_.setZero();
+  steps_ = 0;
+}
+
+Vector ErrorMemory::bound() const { return largest_ * past_ + sum_ * now_; }
+
+}  // namespace cordon::estimators

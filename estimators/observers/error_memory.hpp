@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the errors of all steps so far add up to in a stable recursion.
+#pragma once
+
+#include "cordon/core/types.hpp"
+
+namespace cordon::estimators {
+
+/// Bounds |e_k| of e⁺ = F e + δ, e₀ = 0, for |δ_j| ≤ s_j that become known step by step. With the
+/// least m, a power of two, of which ‖Fᵐ‖∞ ≤ 1/2, time is cut into blocks of m steps:
+///   |e| ≤ max_{i<m} |Fⁱ| p + (Σ_{i<m} |Fⁱ|) max s of this block,
+/// where p bounds |e| at the block's beginning. What is long past is forgotten as F decays, however
+/// large |F| is. Where no m up to 4096 is found bounds hold as well, and may grow. O(n) per step,
+/// O(n²) per block and for a bound, O(n³ m) once.
+class ErrorMemory {
+ public:
+  explicit ErrorMemory(const Matrix& F);
+
+  void start();
+  void step(VectorIn sizes);
+  /// A step by another F.
+  void step_by(const Matrix& F, VectorIn sizes);
+  Vector bound() const;
+
+ private:
+  Matrix power_, largest_, sum_;  ///< |Fᵐ|, max |Fⁱ|, Σ |Fⁱ|
+  Index block_ = 1, steps_ = 0;
+  Vector past_, now_;  ///< p, max s
+};
+
+}  // namespace cordon::estimators
