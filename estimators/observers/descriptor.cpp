@@ -27,9 +27,8 @@ void check_semi_explicit(const ObserverContext& context, const Params& params,
   } catch (const Error& error) {
     problems.push_back({"", error.what(), "write the equations in other units"});
   }
-  if (params.has("admissible_set")) {
-    check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
-  } else if (!info.unbounded && m.is_descriptor() && descriptor_rank(m.E) < m.states()) {
+  if (!params.has("admissible_set") && !info.unbounded && m.is_descriptor() &&
+      descriptor_rank(m.E) < m.states()) {
     problems.push_back(
         {"/admissible_set",
          "is missing: the backend \"" + info.name +
@@ -43,8 +42,6 @@ void check_pseudo_inverse(const ObserverContext& context, const Params& params,
                           std::vector<Diagnostic>& problems) {
   const LinearModel& m = context.model.linear;
   const BackendInfo& info = context.backend->info();
-  if (params.has("admissible_set"))
-    check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
   if (params.flag("static_at_start")) {
     problems.push_back(
         {"/static_at_start",

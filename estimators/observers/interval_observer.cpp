@@ -6,6 +6,13 @@
 
 namespace cordon::estimators {
 
+namespace {
+
+/// A box cut by an admissible set: what is carried on is the box around it.
+constexpr Budget unlimited{100'000, 100'000};
+
+}  // namespace
+
 IntervalObserver::IntervalObserver(const ObserverContext& context, const Params& params, Gain upper,
                                    std::optional<Gain> lower)
     : Observer(context.model, context.backend),
@@ -18,6 +25,7 @@ IntervalObserver::IntervalObserver(const ObserverContext& context, const Params&
   const Index n = model().linear.states();
   for (Vector* v : {&c_, &r_, &c_next_, &r_next_, &c_low_, &r_low_, &hull_.lower, &hull_.upper})
     v->resize(n);
+  if (params.has("admissible_set")) admit(params.set_form("admissible_set"), unlimited);
 }
 
 std::vector<Gain> IntervalObserver::gains() const {
@@ -119,6 +127,8 @@ bool check_interval_observer(const ObserverContext& context, const Params& param
     return false;
   }
   check_bounded_start(context, params, problems);
+  if (params.has("admissible_set"))
+    check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
   check_noises(context, problems);
   if (!problems.empty()) return false;  // gains are designed for these sets
   InnerEnvelope::check(context, params, problems);
@@ -127,6 +137,7 @@ bool check_interval_observer(const ObserverContext& context, const Params& param
 
 void add_interval_parameters(ParamSchema& schema) {
   schema.set("initial_set", "set of initial states in place of the system's X0");
+  add_admissible_set(schema);
   InnerEnvelope::add_parameters(schema);
 }
 

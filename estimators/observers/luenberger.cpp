@@ -21,7 +21,9 @@ class Luenberger final : public Observer {
         X0_(initial_set_from(model(), params)),
         recursion_(model(), observer_gain(context, params, "gain", steady_kalman()),
                    context.backend, budget_from(params)),
-        limit_(recursion_.is_time_varying() ? 0 : params.real("widening_limit")) {}
+        limit_(recursion_.is_time_varying() ? 0 : params.real("widening_limit")) {
+    if (params.has("admissible_set")) admit(params.set_form("admissible_set"), budget_from(params));
+  }
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override { return {recursion_.gain().gain}; }
@@ -72,6 +74,7 @@ std::vector<Diagnostic> check_luenberger(const ObserverContext& context, const P
 
 void register_luenberger(Registrar& registrar) {
   ParamSchema schema = common_parameters();
+  add_admissible_set(schema);
   add_widening_limit(schema);
   add_gain_parameter(schema, "gain",
                      "L, a matrix with a row per state and a column per output that makes A - L C "

@@ -33,6 +33,12 @@ void add_widening_limit(ParamSchema& schema) {
               2, 0, 1e300);
 }
 
+void add_admissible_set(ParamSchema& schema) {
+  schema.set("admissible_set",
+             "set that holds the state at all times, a level that is not negative for example: "
+             "estimates are cut by it");
+}
+
 Budget budget_from(const Params& params) {
   return {params.integer("max_generators"), params.integer("max_constraints")};
 }
@@ -60,6 +66,8 @@ void check_set(const ObserverContext& context, const LineForm& set, const std::s
 
 std::vector<Diagnostic> check_common(const ObserverContext& context, const Params& params) {
   std::vector<Diagnostic> problems;
+  if (params.has("admissible_set"))
+    check_set(context, params.set_form("admissible_set"), "/admissible_set", problems);
   const Index n = context.model.linear.states();
   if (params.integer("max_generators") < n) {
     problems.push_back({"/max_generators",

@@ -17,6 +17,9 @@ Budget budget_from(const Params& params);
 /// `widening_limit` of observers with a constant gain: see widening_limit.hpp.
 void add_widening_limit(ParamSchema& schema);
 
+/// `admissible_set`, which is given to Observer::admit.
+void add_admissible_set(ParamSchema& schema);
+
 /// X0 of the model, or the parameter `initial_set` in its place.
 const LineForm& initial_set_from(const Model& model, const Params& params);
 

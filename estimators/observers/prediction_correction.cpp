@@ -29,7 +29,9 @@ class PredictionCorrection final : public Observer {
         disturbance_(linalg::product(model().linear.Bw, model().W.c)),
         disturbance_widths_(half_widths(model().W, model().linear.Bw)),
         effectiveness_(model(), backend()),
-        recursion_(effectiveness_.recursion({&model().linear.B, &model().linear.D})) {}
+        recursion_(effectiveness_.recursion({&model().linear.B, &model().linear.D})) {
+    if (params.has("admissible_set")) admit(params.set_form("admissible_set"), budget_from(params));
+  }
 
   LineForm initial_set() const override { return X0_; }
   Tightness claim() const override { return recursion_; }
@@ -102,11 +104,13 @@ std::vector<Diagnostic> check_prediction_correction(const ObserverContext& conte
 }  // namespace
 
 void register_prediction_correction(Registrar& registrar) {
+  ParamSchema schema = common_parameters();
+  add_admissible_set(schema);
   registrar.add(ObserverEntry{
       {"prediction_correction",
        "prediction by the model, correction by the measurement; standard linear systems, any "
        "backend",
-       "Combastel2003; Scott2016", common_parameters()},
+       "Combastel2003; Scott2016", std::move(schema)},
       check_prediction_correction,
       [](const ObserverContext& context, const Params& params) -> std::unique_ptr<Observer> {
         return std::make_unique<PredictionCorrection>(context, params);

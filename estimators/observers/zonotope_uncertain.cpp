@@ -22,7 +22,9 @@ class ZonotopeUncertain final : public Observer {
         X0_(initial_set_from(model(), params)),
         recursion_(model(), std::move(gain), context.backend, budget_from(params)),
         limit_(recursion_.is_time_varying() ? 0 : params.real("widening_limit")),
-        inner_(model(), recursion_.gain().gain.L, params) {}
+        inner_(model(), recursion_.gain().gain.L, params) {
+    if (params.has("admissible_set")) admit(params.set_form("admissible_set"), budget_from(params));
+  }
 
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override { return {recursion_.gain().gain}; }
@@ -106,6 +108,7 @@ constexpr const char* zonotope_uncertain_details =
 
 void register_zonotope_uncertain(Registrar& registrar) {
   ParamSchema schema = common_parameters();
+  add_admissible_set(schema);
   add_widening_limit(schema);
   add_gain_parameter(schema, "gain",
                      "output gain, with A - L C stable; absent: the steady gain \"kalman\"");

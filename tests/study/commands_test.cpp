@@ -9,6 +9,7 @@
 #include "run/program.hpp"
 #include "study/fakes.hpp"
 
+using namespace cordon;
 using namespace study_test;
 using test::Outcome;
 

@@ -2,6 +2,7 @@
 #include "cordon/interfaces/observer.hpp"
 
 #include <chrono>
+#include <cmath>
 
 #include "cordon/core/error.hpp"
 #include "sample_check.hpp"
@@ -14,6 +15,20 @@ long long now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::steady_clock::now().time_since_epoch())
       .count();
+}
+
+/// Is the mean width smaller, in units of the widths of `than`? Widths of 0 stay, and one that has
+/// become finite counts more than others.
+bool is_narrower(const Box& box, const Box& than) {
+  double share = 0, all = 0;
+  for (Index i = 0; i < box.dim(); ++i) {
+    const double width = box.upper[i] - box.lower[i], before = than.upper[i] - than.lower[i];
+    if (std::isinf(before) && std::isfinite(width)) return true;
+    if (!(before > 0) || std::isinf(before)) continue;
+    share += width / before;
+    all += 1;
+  }
+  return share < all;
 }
 
 }  // namespace
@@ -33,6 +48,30 @@ void Observer::start(std::optional<Enclosure> X0) {
   times_ = {};
 }
 
+void Observer::admit(const LineForm& admissible, Budget budget) {
+  admissible_ = backend_->import(admissible);
+  if (admissible_->dim() != model_.linear.states())
+    throw Error(Errc::dimension, "the admissible set has another dimension than the state");
+  admissible_budget_ = budget;
+}
+
+bool Observer::cut(Enclosure& X) {
+  const Box hull = X->interval_hull();
+  if (hull.is_empty()) return false;
+  if (hull.is_bounded() && backend_->box(hull)->is_subset_of(*admissible_) == Answer::yes)
+    return false;
+  const Index n = hull.dim();
+  const Enclosure narrowed = timed(Phase::correct, [&] {
+    return backend_->intersection(X, Matrix::Identity(n, n), admissible_);
+  });
+  Enclosure reduced =
+      timed(Phase::reduce, [&] { return backend_->reduce(narrowed, admissible_budget_); });
+  const Box now = reduced->interval_hull();
+  if (!now.is_empty() && !is_narrower(now, hull)) return false;
+  X = std::move(reduced);
+  return true;
+}
+
 Estimate Observer::step(const Sample& now) {
   detail::check_sample(now, before_, model_.linear);
   if (!now.is_complete() && !takes_missing_outputs()) detail::refuse_missing(now, "observer");
@@ -45,9 +84,13 @@ Estimate Observer::step(const Sample& now) {
   } else {
     estimate.set = before_ ? do_step(*before_, now) : do_start(X0_, now);
     estimate.set.tightness = meet(estimate.set.tightness, claim());
-    const Stopwatch watch(times_.question);
-    estimate.consistent = negate(estimate.set->is_empty(&estimate.why));
+    const bool is_cut = admissible_.set && cut(estimate.set);
+    {
+      const Stopwatch watch(times_.question);
+      estimate.consistent = negate(estimate.set->is_empty(&estimate.why));
+    }
     inconsistent_ = estimate.consistent == Answer::no;
+    if (is_cut && !inconsistent_) do_replace(estimate.set);
   }
   before_ = now;
   return estimate;

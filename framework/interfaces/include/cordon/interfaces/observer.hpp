@@ -49,8 +49,8 @@ class Observer {
   virtual LineForm initial_set() const { return model_.X0; }
 
   /// A set that the observer assumes to contain the true state at all times (beyond the model's
-  /// bounds), or none. Guarantees hold while it does.
-  virtual const Set* admissible_set() const { return nullptr; }
+  /// bounds), or none. Guarantees hold while it does. By default that of `admit`.
+  virtual const Set* admissible_set() const { return admissible_.set.get(); }
 
   /// The gains it works with, with what is known about them; of gains that vary in time those of
   /// the steady state.
@@ -85,6 +85,13 @@ class Observer {
   const Model& model() const { return model_; }
   const SetBackend& backend() const { return *backend_; }
 
+  /// For constructors: `admissible` holds the state at all times. From now on an estimate that is
+  /// not within it is cut by it, reduced to the budget, and takes the place of the observer's own
+  /// set, as by `replace`. A cut by which the set's interval hull becomes no narrower is left out:
+  /// representations without exact intersections may enclose it by more than there was. Costs the
+  /// hull of every estimate, and an intersection where it is cut.
+  void admit(const LineForm& admissible, Budget budget);
+
   enum class Phase { predict, correct, reduce };
   /// Runs `work` and books its time to the phase.
   template <class Work>
@@ -111,8 +118,13 @@ class Observer {
     long long begin_;
   };
 
+  /// Cuts the estimate by the admissible set; false: it is as it was.
+  bool cut(Enclosure& X);
+
   Model model_;
   std::shared_ptr<const SetBackend> backend_;
+  Enclosure admissible_;  ///< no set: none
+  Budget admissible_budget_;
   std::optional<Enclosure> X0_;
   std::optional<Sample> before_;
   bool inconsistent_ = false;
