@@ -35,10 +35,16 @@ std::string separation(Answer claimed, const ExactPair* exact) {
                      proven ? "proven" : "claimed");
 }
 
-/// What is said of the cost of every separating input.
+/// " with κ ≥ 0.0001": what is searched for.
+std::string margin_text(const DesignOutcome& outcome) {
+  return outcome.epsilon > 0 ? fmt::format(" with κ ≥ {}", six_digits(outcome.epsilon)) : "";
+}
+
+/// What is said of the cost of every input that is searched for.
 std::string bound_text(const DesignOutcome& outcome) {
   if (outcome.lower_bound == -infinity) return "no lower bound is known";
-  return fmt::format("claimed lower bound {}", six_digits(outcome.lower_bound));
+  return fmt::format("claimed lower bound {}{}", six_digits(outcome.lower_bound),
+                     margin_text(outcome));
 }
 
 /// The separation that is proven, or else the one that is claimed: green, red or yellow.
@@ -137,8 +143,8 @@ std::string status_text(const DesignOutcome& outcome, const std::string& designe
     }
     case DesignStatus::infeasible:
       return paint.yellow("Infeasible") +
-             fmt::format(" (claimed by {}): no input of the input set separates the modes",
-                         designer);
+             fmt::format(" (claimed by {}): no input of the input set separates the modes{}",
+                         designer, margin_text(outcome));
     case DesignStatus::unknown:
       return paint.yellow(outcome.stopped ? "No answer within the limit" : "No answer") + ": " +
              bound_text(outcome);

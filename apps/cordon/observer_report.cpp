@@ -48,10 +48,14 @@ std::string norm_text(const GainCertificate& known) {
   return lower == upper ? lower : fmt::format("[{}, {}]", lower, upper);
 }
 
+constexpr double optimum_share = 1e-3;
+
 std::string objective_text(const GainCertificate& known) {
-  return known.objective.empty()
-             ? "-"
-             : fmt::format("{} = {}", known.objective, number_text(known.optimum));
+  if (known.objective.empty()) return "-";
+  const std::string text = fmt::format("{} = {}", known.objective, number_text(known.optimum));
+  // the least value, as far as it is known: said where it may be less
+  const bool is_close = known.optimum_bound >= known.optimum * (1 - optimum_share);
+  return is_close ? text : text + fmt::format(", least ≥ {}", number_text(known.optimum_bound));
 }
 
 ordered_json numbers(const Vector& values) {

@@ -99,10 +99,11 @@ std::string sweep_report_text(const SweepOutcome& outcome, const std::filesystem
   text += comparison_text(comparison_table(table, summarise(table)), most_rows) + "\n";
   text += failures_text(table);
   text += fmt::format(
-      "{} points are in {}: report.html to look at, summary.tex and summary.md to print, "
-      "points.csv and summary.csv to go on "
-      "with\n",
-      table.rows.size(), out.string());
+      "{} points are in {}: {}summary.tex and summary.md to print, points.csv and summary.csv to "
+      "go "
+      "on with\n",
+      table.rows.size(), out.string(),
+      std::filesystem::exists(out / "report.html") ? "report.html to look at, " : "");
   return text;
 }
 

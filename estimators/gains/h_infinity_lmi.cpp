@@ -105,6 +105,12 @@ GainDesign accepted(const Model& model, const Matrix& theta, const ErrorDynamics
                    "the bound of the matrix inequality is none: its gain has a smaller norm");
   }
   if (!monotone) c.optimum_bound = std::min(c.optimum_bound, c.norm_upper);
+  // no gain at all is one as well; with a diagonal P its value may lie above its norm, but for 0
+  const Matrix none = Matrix::Zero(design.gain.L.rows(), design.gain.L.cols());
+  if (gain_problem(model, none).empty() && (!monotone || is_monotone(errors.A, errors.C, none))) {
+    const double norm = certify(model, none, theta).norm_upper;
+    if (!monotone || norm == 0) c.optimum_bound = std::min(c.optimum_bound, norm);
+  }
   if (!(c.norm_lower <= c.optimum * (1 + 1e-4))) {
     return no_gain(Answer::unknown,
                    "the gain of the matrix inequality does not keep what the inequality promises: "

@@ -309,7 +309,7 @@ ForbiddenSet forbidden_set(const PairProgram& pair, const InputSequences& U, dou
                   "the inputs that may be chosen have no effect on what tells one from the other");
   } else if (empty == Answer::no) {
     set = of_kind(ForbiddenSet::Kind::unknown,
-                  "the inputs that may be chosen have hardly more effect than rounding");
+                  "what the inputs that may be chosen change is not told from rounding");
   } else {
     set = of_kind(ForbiddenSet::Kind::unknown,
                   "whether they are told apart without inputs is a matter of rounding");

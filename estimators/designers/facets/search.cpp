@@ -97,6 +97,7 @@ class FacetSearch {
   void conclude();
   void conclude_without_input();
   bool is_hopeless(const OpenPair& open);
+  std::string with_margin() const;
 
   const SeparationProblem& problem_;
   FacetLimits limits_;
@@ -152,7 +153,8 @@ bool FacetSearch::keep_pair(const PairProgram& pair, ForbiddenSet set) {
     case ForbiddenSet::Kind::facets:
       if (set.facets.empty()) {
         result_.status = DesignStatus::infeasible;
-        result_.reason = "no input of the input set separates " + modes_of(problem_, pair);
+        result_.reason =
+            "no input of the input set separates " + modes_of(problem_, pair) + with_margin();
         result_.suggestion = more_room;
         return false;
       }
@@ -372,7 +374,13 @@ void FacetSearch::conclude_without_input() {
     if (result_.nodes > 0 && is_hopeless(open))
       hopeless += (hopeless.empty() ? "" : "; ") + modes_of(problem_, *open.pair);
   }
-  if (!hopeless.empty()) result_.reason = "no input of the input set separates " + hopeless;
+  if (!hopeless.empty())
+    result_.reason = "no input of the input set separates " + hopeless + with_margin();
+}
+
+/// What every input is searched to reach.
+std::string FacetSearch::with_margin() const {
+  return problem_.epsilon > 0 ? fmt::format(" with κ ≥ {:.6g}", problem_.epsilon) : "";
 }
 
 /// Is no input beyond any of the facets?

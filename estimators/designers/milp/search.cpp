@@ -100,9 +100,16 @@ bool MilpSearch::settled(const PairProgram& pair) {
                          (pair.N_magnitude.array() == 0).all();  // by inputs, not just by rounding
   const bool exactly = untouched && apart.disjoint == Answer::no;
   result_.status = exactly ? DesignStatus::infeasible : DesignStatus::unknown;
-  result_.reason = fmt::format(
-      "no input changes how far the outputs of {} are apart, and that is not enough (κ = {:.4g})",
-      modes_of(problem_, pair), apart.kappa);
+  const std::string pair_name = modes_of(problem_, pair);
+  result_.reason =
+      exactly ? fmt::format(
+                    "no input changes how far the outputs of {} are apart, and that is not "
+                    "enough (κ = {:.4g})",
+                    pair_name, apart.kappa)
+              : fmt::format(
+                    "what inputs change between the outputs of {} is not told from "
+                    "rounding (κ = {:.4g} without it)",
+                    pair_name, apart.kappa);
   result_.suggestion = "a longer horizon";
   return false;
 }

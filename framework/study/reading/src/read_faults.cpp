@@ -265,7 +265,7 @@ bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::i
   if (at.problems().met() != before) return false;
   if (to < from) {
     to_at->error("is below \"from\": " + std::to_string(to) + " < " + std::to_string(from),
-                 "the fault acts for k = from ... to");
+                 "it acts for k = from ... to");
     return false;
   }
   if (steps > 0 && from > steps) {

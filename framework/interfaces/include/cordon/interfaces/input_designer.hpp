@@ -45,11 +45,12 @@ struct InputDesign {
 
 /// What became of a search at one horizon, as the designer says. That `best` keeps to the input set
 /// and to a first input, and that it separates the modes, the host checks; that nothing is cheaper,
-/// or that there is no such input, it does not.
+/// or that there is no such input, it does not. What is searched for separates with κ ≥ ε: one with
+/// less may be cheaper, or there where nothing is.
 enum class DesignStatus {
   optimal,   ///< `best` costs at most the designer's gap more than its lower bound
   feasible,  ///< an input was found; how much cheaper another one may be is told by the lower bound
-  infeasible,  ///< no input of the input set separates the modes
+  infeasible,  ///< no input of the input set separates the modes with κ ≥ ε
   unknown,     ///< nothing was found in the limit, and nothing is proven
   given        ///< the input was given, nothing was searched for
 };
@@ -74,7 +75,7 @@ struct DesignOutcome {
   DesignStatus status = DesignStatus::unknown;
   Index horizon = 0;                ///< N: inputs u_0 … u_N, outputs y_0 … y_N
   std::optional<InputDesign> best;  ///< `optimal`, `feasible`, `given`
-  double lower_bound = -infinity;   ///< of the cost of every separating input; +inf if infeasible
+  double lower_bound = -infinity;  ///< of the cost of every input with κ ≥ ε; +inf if infeasible
   std::optional<RestrictedProblem> restriction = {};  ///< the search looked at this one only
   bool stopped = false;     ///< the search ended early: time limit, or from outside
   std::string reason = {};  ///< why there is no better answer, for people; empty if `optimal`
