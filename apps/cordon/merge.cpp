@@ -21,7 +21,8 @@ struct MergeArguments {
 Exit merge(const MergeArguments& arguments) {
   const SweepOutcome outcome = merge_sweeps(arguments.parts, arguments.out);
   if (!arguments.quiet)
-    print(arguments.json ? sweep_report_json(outcome) : sweep_report_text(outcome, arguments.out));
+    print(arguments.json ? sweep_report_json(outcome)
+                         : sweep_report_text(outcome, arguments.out, outcome.report_error.empty()));
   if (!outcome.report_error.empty()) warn(no_report + outcome.report_error);
   if (outcome.violated > 0)
     complain(fmt::format("a guarantee was violated at {} of {} points", outcome.violated,

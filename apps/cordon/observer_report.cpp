@@ -54,7 +54,7 @@ std::string objective_text(const GainCertificate& known) {
   if (known.objective.empty()) return "-";
   const std::string text = fmt::format("{} = {}", known.objective, number_text(known.optimum));
   // the least value, as far as it is known: said where it may be less
-  const bool is_close = known.optimum_bound >= known.optimum * (1 - optimum_share);
+  const bool is_close = !(known.optimum_bound < known.optimum * (1 - optimum_share));
   return is_close ? text : text + fmt::format(", least ≥ {}", number_text(known.optimum_bound));
 }
 

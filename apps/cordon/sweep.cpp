@@ -95,7 +95,9 @@ Exit run_all_points(const Study& study, const Registry& registry, const RunArgum
   if (!arguments.quiet) {
     if (outcome.files.empty())
       note(fmt::format("finished before: {} holds this sweep, nothing was run", out.string()));
-    print(arguments.json ? sweep_report_json(outcome) : sweep_report_text(outcome, out));
+    print(arguments.json
+              ? sweep_report_json(outcome)
+              : sweep_report_text(outcome, out, options.report && outcome.report_error.empty()));
   }
   if (!outcome.report_error.empty()) warn(no_report + outcome.report_error);
   if (outcome.violated > 0)

@@ -93,7 +93,8 @@ std::string comparison_text(const ComparisonTable& table, std::size_t limit) {
   return text.ends_with('\n') ? text : text + "\n";
 }
 
-std::string sweep_report_text(const SweepOutcome& outcome, const std::filesystem::path& out) {
+std::string sweep_report_text(const SweepOutcome& outcome, const std::filesystem::path& out,
+                              bool has_page) {
   const ResultTable& table = outcome.table;
   std::string text = table.title.empty() ? "" : Paint(stdout).bold(table.title) + "\n\n";
   text += comparison_text(comparison_table(table, summarise(table)), most_rows) + "\n";
@@ -102,8 +103,7 @@ std::string sweep_report_text(const SweepOutcome& outcome, const std::filesystem
       "{} points are in {}: {}summary.tex and summary.md to print, points.csv and summary.csv to "
       "go "
       "on with\n",
-      table.rows.size(), out.string(),
-      std::filesystem::exists(out / "report.html") ? "report.html to look at, " : "");
+      table.rows.size(), out.string(), has_page ? "report.html to look at, " : "");
   return text;
 }
 

@@ -15,8 +15,9 @@ namespace cordon::apps {
 std::string comparison_text(const ComparisonTable& table, std::size_t limit);
 
 /// Title, comparison of the pipelines over the repetitions, points that failed, and where the files
-/// are.
-std::string sweep_report_text(const SweepOutcome& outcome, const std::filesystem::path& out);
+/// are; `has_page`: report.html is among them.
+std::string sweep_report_text(const SweepOutcome& outcome, const std::filesystem::path& out,
+                              bool has_page = true);
 std::string sweep_report_json(const SweepOutcome& outcome);
 
 }  // namespace cordon::apps

@@ -117,6 +117,14 @@ TEST_CASE("the least widths of disturbances of any size") {
   }
 }
 
+TEST_CASE("a plant so slow that the solver takes it for an integrator") {
+  const Model model = with_unit_boxes(Matrix{{.9999999}}, Matrix(1, 0), Matrix{{1}}, 1e-9, 1);
+  const GainDesign slow = design(model, {});  // h(0) = 1e-9 / 1e-7
+  REQUIRE(slow.feasible == Answer::yes);
+  CHECK(slow.gain.certificate.optimum <= .01 * (1 + 1e-6));
+  CHECK(slow.gain.certificate.optimum_bound <= .01 * (1 + 1e-6));
+}
+
 TEST_CASE("no monotone gain: proven, and why") {
   const GainDesign found = design(three_states(-.1), Matrix(Matrix::Identity(3, 3)));
   CHECK(found.feasible == Answer::no);

@@ -94,6 +94,17 @@ const Case cases[] = {
       "V": {"type": "box", "lower": [-1e-14], "upper": [1e-14]}},
      "data": {"simulate": {"steps": 5}},
      "pipelines": [{"backend": "zonotope", "observer": {"type": "descriptor"}}]})",
+     ""},
+    {"an optimal input without a margin leaves tubes that touch",
+     R"({"cordon": 1, "system": {"type": "lti", "A": [[1]], "B": [[1]], "C": [[1]],
+      "X0": {"type": "box", "lower": [0], "upper": [0]},
+      "W": {"type": "box", "lower": [-0.125], "upper": [0.125]},
+      "V": {"type": "box", "lower": [-0.125], "upper": [0.125]},
+      "U": {"type": "box", "lower": [-1], "upper": [1]},
+      "modes": [{"name": "weak", "actuator": [0.5]}]},
+     "data": {"simulate": {"seed": 1, "noise": "uniform"}},
+     "pipelines": [{"backend": "zonotope",
+      "designer": {"type": "facets", "horizon": 1, "epsilon": 0}}]})",
      ""}};
 
 }  // namespace
