@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observers/luenberger_recursion.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/invariant/zonotope_enclosure.hpp"
@@ -109,17 +112,17 @@ void LuenbergerRecursion::take_sizes() {
 }
 
 std::optional<RoundingRoom> LuenbergerRecursion::room_of(const Enclosure& X, VectorIn shift,
-                                                         const Sample& now) const {
+                                                         const Sample& now, const Box* hull) const {
   const bool outward = backend_->info().rounding == Rounding::outward;
-  const Box reach = reach_of(*X);
-  if (reach.is_empty() || !reach.is_bounded()) return std::nullopt;
-  const Vector x = largest_entries(reach);
+  const Box own = hull ? Box{} : reach_of(*X), &reach = hull ? *hull : own;
   const auto largest = [](VectorIn v) { return v.size() ? v.cwiseAbs().maxCoeff() : 0.0; };
+  const double most_x = std::max(largest(reach.lower), largest(reach.upper));
+  if (!std::isfinite(most_x) || reach.is_empty()) return std::nullopt;
   const double most =
-      x_norm_ * largest(x) + y_norm_ * largest(now.y) + u_norm_ * largest(now.u) + constant_norm_;
+      x_norm_ * most_x + y_norm_ * largest(now.y) + u_norm_ * largest(now.u) + constant_norm_;
   if (!outward && !RoundingRoom::may_be_needed(most, least_width_)) return std::nullopt;
-  const Vector terms =
-      x_terms_ * x + y_terms_ * now.y.cwiseAbs() + u_terms_ * now.u.cwiseAbs() + constant_terms_;
+  const Vector terms = x_terms_ * largest_entries(reach) + y_terms_ * now.y.cwiseAbs() +
+                       u_terms_ * now.u.cwiseAbs() + constant_terms_;
   if (outward) return std::optional<RoundingRoom>(std::in_place, *backend_, terms);
   const Vector sum = shift + w_ + product(Ao_, reach.center());
   return std::optional<RoundingRoom>(std::in_place, *backend_, sum, terms, widths_);
@@ -181,14 +184,15 @@ void LuenbergerRecursion::add_open(Summands& to, Target target, const Enclosure&
   }
 }
 
-Enclosure LuenbergerRecursion::next(const Enclosure& X, const Sample& now, Vector* open) const {
+Enclosure LuenbergerRecursion::next(const Enclosure& X, const Sample& now, Vector* open,
+                                    const Box* hull) const {
   Summands summands;
   summands.terms.reserve(6);
   summands.terms.push_back({minus_LDv_, V_});
   summands.terms.push_back({Bw_, W_});
   add_open(summands, Target::state, X, now.u, false);
   const Vector shift = product(L_, now.y) + product(input_, now.u);
-  const std::optional<RoundingRoom> room = room_of(X, shift, now);
+  const std::optional<RoundingRoom> room = room_of(X, shift, now, hull);
   if (room && room->is_needed()) {
     summands.terms.push_back(room->term());
     if (summands.half_widths.size() == 0) summands.half_widths = Vector::Zero(shift.size());

@@ -37,8 +37,9 @@ class LuenbergerRecursion {
 
   /// X̂⁺ before reduction, from X̂ and the sample of the same time. `open`, if asked for: the half
   /// widths of the part of P that is not W or V, of no entries where there is none. The room for
-  /// rounding is part of it.
-  Enclosure next(const Enclosure& X, const Sample& now, Vector* open = nullptr) const;
+  /// rounding is part of it. `hull`: that of X̂, where it is known already.
+  Enclosure next(const Enclosure& X, const Sample& now, Vector* open = nullptr,
+                 const Box* hull = nullptr) const;
   Enclosure reduced(const Enclosure& X) const { return backend_->reduce(X, budget_); }
   /// R, in the space of outputs.
   Enclosure residual(const Enclosure& X, const Sample& now) const;
@@ -84,7 +85,8 @@ class LuenbergerRecursion {
   void add_open(Summands& to, Target target, const Enclosure& X, VectorIn u, bool twice) const;
   Vector output_widths(const Enclosure& X, const Vector& largest, VectorIn u) const;
   /// For X̂⁺, whose shift has been added up already.
-  std::optional<RoundingRoom> room_of(const Enclosure& X, VectorIn shift, const Sample& now) const;
+  std::optional<RoundingRoom> room_of(const Enclosure& X, VectorIn shift, const Sample& now,
+                                      const Box* hull) const;
   void take_sizes();
   Enclosure bounded_box(const Vector& widths, const std::string& cause) const;
 

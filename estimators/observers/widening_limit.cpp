@@ -83,19 +83,23 @@ void WideningLimit::step_with_gap(const LuenbergerRecursion& recursion,
   errors_.emplace(recursion.error_map(), recursion.error_noise(), h * (1 + rounding_share));
 }
 
-Enclosure WideningLimit::apply(const SetBackend& backend, const Enclosure& X) const {
+Enclosure WideningLimit::apply(const SetBackend& backend, const Enclosure& X, Box* known) const {
+  if (known) *known = {};
   if (!errors_) return X;
   const Complexity size = X->complexity();
   if (size.constraints > 0 || size.lines > 0) return X;
   const Vector half = errors_->half_widths() + rounding_share * center_.cwiseAbs();
   if (!half.allFinite()) return X;
-  const Box hull = X->interval_hull();
+  Box hull = X->interval_hull();
+  if (known) *known = hull;
   if (((hull.upper - hull.lower).array() <= 2 * limit_ * half.array()).all()) return X;
   // both hold the state; where a coordinate is known exactly they may lie beside each other by
   // what rounding made of each, which is no proof that there is nothing in both
   const Vector lower = hull.lower.cwiseMax(center_ - half),
                upper = hull.upper.cwiseMin(center_ + half);
-  Enclosure box = backend.box({lower.cwiseMin(upper), lower.cwiseMax(upper)});
+  hull = {lower.cwiseMin(upper), lower.cwiseMax(upper)};
+  if (known) *known = hull;
+  Enclosure box = backend.box(hull);
   box.tightness = Tightness::outer;
   return box;
 }

@@ -59,8 +59,9 @@ class WideningLimit {
                      const Sample& before, const Vector& open);
   void stop() { errors_.reset(); }
 
-  /// X, reduced, or the box in its place.
-  Enclosure apply(const SetBackend& backend, const Enclosure& X) const;
+  /// X, reduced, or the box in its place. `hull`, if asked for: that of the result; of dimension 0
+  /// where it was not needed.
+  Enclosure apply(const SetBackend& backend, const Enclosure& X, Box* hull = nullptr) const;
 
  private:
   double limit_;

@@ -61,13 +61,16 @@ void ask(const SetBackend& backend, const Enclosure& R, const Box& hull, const V
 }
 
 /// Entries of the outputs that are there among those of all; others are 0, or free.
-Vector among(const Vector& values, const std::vector<Index>& present, Index outputs) {
-  Vector all = Vector::Zero(outputs);
-  all(present) = values;
+Vector among_all(const Vector& values, const Sample& sample) {
+  if (sample.is_complete()) return values;
+  Vector all = Vector::Zero(sample.y.size());
+  all(present_outputs(sample)) = values;
   return all;
 }
-Box among(const Box& box, const std::vector<Index>& present, Index outputs) {
-  Box all = Box::space(outputs);
+Box among_all(const Box& box, const Sample& sample) {
+  if (sample.is_complete()) return box;
+  const std::vector<Index> present = present_outputs(sample);
+  Box all = Box::space(sample.y.size());
   all.lower(present) = box.lower;
   all.upper(present) = box.upper;
   return all;
@@ -110,44 +113,50 @@ void ObserverBank::expect_input(const Sample& now) const {
                                  "bank's error set rests; widen /system/U");
 }
 
-ObserverBank::Seen ObserverBank::seen(Index j, const Sample& sample) {
+void ObserverBank::see(Index j, const Sample& sample, Seen& seen) {
   Member& m = member(j);
-  if (sample.is_complete()) return {{std::shared_ptr<void>(), &m.recursion}, sample};
-  const auto make = [&](const std::vector<Index>& present) {
+  seen.recursion = &m.recursion;
+  seen.sample = &sample;
+  if (sample.is_complete()) return;
+  seen.others = m.others.at(sample, [&](const std::vector<Index>& present) {
     const Matrix L = options_.gains[static_cast<std::size_t>(j)](Eigen::all, present);
     return std::make_shared<LuenbergerRecursion>(with_outputs(bank()[j].model, present), L,
                                                  shared_backend(), options_.budget);
-  };
-  return {m.others.at(sample, make), without_missing(sample)};
+  });
+  seen.without = without_missing(sample);
+  seen.recursion = seen.others.get();
+  seen.sample = &seen.without;
 }
 
 void ObserverBank::advance(Index j, const Sample& before) {
   Member& m = member(j);
-  const auto [recursion, sample] = seen(j, before);
-  if (m.bound) m.bound = m.recursion.reduced(recursion->next_bound(*m.bound, m.X, sample));
-  const auto advanced = [&, &by = recursion, &of = sample](const Enclosure& X,
-                                                           WideningLimit& limit) {
+  Seen seen;
+  see(j, before, seen);
+  const LuenbergerRecursion& recursion = *seen.recursion;
+  const Sample& sample = *seen.sample;
+  if (m.bound) m.bound = m.recursion.reduced(recursion.next_bound(*m.bound, m.X, sample));
+  const auto advanced = [&](const Enclosure& X, Box& hull, WideningLimit& limit) {
     Vector open;
-    const Enclosure next = by->next(X, of, &open);
+    const Enclosure next = recursion.next(X, sample, &open, hull.dim() > 0 ? &hull : nullptr);
     if (before.is_complete()) {
       limit.step(m.recursion, before, open);
     } else {
-      limit.step_with_gap(m.recursion, *by, of, open);
+      limit.step_with_gap(m.recursion, recursion, sample, open);
     }
-    return limit.apply(backend(), m.recursion.reduced(next));
+    return limit.apply(backend(), m.recursion.reduced(next), &hull);
   };
-  if (m.copy) m.copy = advanced(*m.copy, m.copy_limit);
-  m.X = advanced(m.X, m.X_limit);
-  m.size = recursion->next_size(m.center, sample);
+  if (m.copy) m.copy = advanced(*m.copy, m.copy_hull, m.copy_limit);
+  m.X = advanced(m.X, m.X_hull, m.X_limit);
+  m.size = recursion.next_size(m.center, sample);
   if (before.is_complete()) {
     m.rounding.step(m.size);
   } else {
-    m.rounding.step_by(recursion->error_map(), m.size);
+    m.rounding.step_by(recursion.error_map(), m.size);
   }
-  m.center = recursion->next(m.center, sample);
+  m.center = recursion.next(m.center, sample);
   if (residuals_.empty()) return;
   const auto at = static_cast<std::size_t>(j);
-  m.drift.step(before, recursion->error_map(), options_.gains[at], residuals_[at]);
+  m.drift.step(before, recursion.error_map(), options_.gains[at], residuals_[at]);
 }
 
 /// Residual sets at k, and what those of candidates prove.
@@ -155,31 +164,32 @@ void ObserverBank::judge(Index j, const Sample& now) {
   Member& m = member(j);
   m.evidence = {};
   m.bound_violated = false;
-  const auto [recursion, sample] = seen(j, now);
-  const Index outputs = now.y.size();
-  m.hull = Box::space(0);
-  m.residual_size = Vector(0);
+  Seen seen;
+  see(j, now, seen);
+  const LuenbergerRecursion& recursion = *seen.recursion;
+  const Sample& sample = *seen.sample;
   if (sample.y.size() == 0) {
-    m.evidence.residual = Box::space(outputs);
+    m.hull = Box::space(0);
+    m.residual_size = Vector(0);
+    m.evidence.residual = Box::space(now.y.size());
     return;
   }
-  const std::vector<Index> present = present_outputs(now);
-  m.residual = recursion->residual(m.X, sample);
-  m.residual_size = recursion->residual_size(m.size, sample);
+  m.residual = recursion.residual(m.X, sample);
+  m.residual_size = recursion.residual_size(m.size, sample);
   m.hull = m.residual->interval_hull();
-  m.evidence.residual = among(m.hull, present, outputs);
+  m.evidence.residual = among_all(m.hull, now);
   if (m.copy) {
-    const Enclosure copy = recursion->residual(*m.copy, sample);
+    const Enclosure copy = recursion.residual(*m.copy, sample);
     const Box hull = copy->interval_hull();
     ask(backend(), copy, hull, m.residual_size, m.evidence);
-    if (!hull.is_empty()) m.evidence.reset_residual = among(hull, present, outputs);
+    if (!hull.is_empty()) m.evidence.reset_residual = among_all(hull, now);
   } else if (!was_reset_ && elimination_.is_candidate(j)) {
     ask(backend(), m.residual, m.hull, m.residual_size, m.evidence);
   }
-  if (m.evidence.why.kind == Certificate::Kind::direction)
-    m.evidence.why.data = among(m.evidence.why.data, present, outputs);
+  if (m.evidence.why.kind == Certificate::Kind::direction && !now.is_complete())
+    m.evidence.why.data = among_all(m.evidence.why.data, now);
   if (m.bound) {
-    const Enclosure allowed = recursion->residual_bound(*m.bound, m.X, sample);
+    const Enclosure allowed = recursion.residual_bound(*m.bound, m.X, sample);
     const Box all = allowed->interval_hull();
     const double size =
         sample.y.cwiseAbs().maxCoeff() +
@@ -194,7 +204,10 @@ void ObserverBank::judge(Index j, const Sample& now) {
 
 void ObserverBank::reset(Index j, const Sample& now) {
   Member& m = member(j);
-  const auto [recursion, sample] = seen(j, now);
+  Seen seen;
+  see(j, now, seen);
+  const LuenbergerRecursion& recursion = *seen.recursion;
+  const Sample& sample = *seen.sample;
   const Index n = m.center.size();
   const Matrix unit = Matrix::Identity(n, n);
   Enclosure E = error_set_;
@@ -210,11 +223,12 @@ void ObserverBank::reset(Index j, const Sample& now) {
     std::optional<Matrix> gain;
     if (options_.strip_gain) gain = (*options_.strip_gain)(Eigen::all, present_outputs(now));
     const Matrix* const by = gain ? &*gain : nullptr;
-    errors = recursion->errors_within(E, recursion->explained_outputs(E, m.center, sample), by);
-    start = recursion->errors_within(E, backend().box(m.hull), by);
+    errors = recursion.errors_within(E, recursion.explained_outputs(E, m.center, sample), by);
+    start = recursion.errors_within(E, backend().box(m.hull), by);
   }
   m.copy = m.recursion.reduced(backend().affine_map(errors, unit, m.center));
   m.copy_limit.start(m.recursion, *m.copy);
+  m.copy_hull = {};
   m.bound = m.recursion.reduced(start);
 }
 
@@ -233,6 +247,7 @@ Diagnosis ObserverBank::do_step(const Sample* before, const Sample& now) {
       const LineForm& start = options_.initial_sets[static_cast<std::size_t>(j)];
       member(j).X = member(j).recursion.reduced(backend().import(start));
       member(j).X_limit.start(member(j).recursion, member(j).X);
+      member(j).X_hull = {};
       member(j).center = invariant::enclosing_zonotope(start).c;
       member(j).size = member(j).center.cwiseAbs();
     }

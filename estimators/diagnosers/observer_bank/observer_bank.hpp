@@ -68,6 +68,7 @@ class ObserverBank final : public Diagnoser {
     PointDrift drift;               ///< Δ
     ErrorMemory rounding;           ///< of the numbers that x̂ has been made of: what it is off by
     Enclosure X, residual;          ///< X̂, R; of the outputs that are there
+    Box X_hull, copy_hull;          ///< of X̂ and X̂'; of dimension 0: not known
     Box hull;                       ///< of R
     Vector center;                  ///< x̂
     Vector size, residual_size;     ///< of the numbers that x̂ and its residual are made of
@@ -86,10 +87,12 @@ class ObserverBank final : public Diagnoser {
   void expect_input(const Sample& now) const;
   /// A sample's outputs, and the recursion of one mode for them.
   struct Seen {
-    std::shared_ptr<const LuenbergerRecursion> recursion;
-    Sample sample;
+    std::shared_ptr<const LuenbergerRecursion> others;
+    Sample without;  ///< the missing outputs
+    const LuenbergerRecursion* recursion;
+    const Sample* sample;
   };
-  Seen seen(Index j, const Sample& sample);
+  void see(Index j, const Sample& sample, Seen& seen);
   void advance(Index j, const Sample& before);
   void judge(Index j, const Sample& now);
   void reset(Index j, const Sample& now);
