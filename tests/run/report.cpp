@@ -272,7 +272,7 @@ TEST_CASE(
             "PIPELINE  PARAMETER   GAIN        L                      SPECTRAL RADIUS ≤  MONOTONE  "
             "‖G‖∞    OPTIMUM\n"
             "offers    upper_gain  h_infinity  [0.5 0.3333; -0.25 0]  0.75               yes       "
-            "2.5     γ = 2.5\n"
+            "2.5     γ = 2.5, least ≥ 2.4375\n"
             "offers    gain        given       6×6                    0.5                no        "
             "[1, ∞]  -\n"
             "\n"
