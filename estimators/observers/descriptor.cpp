@@ -58,9 +58,9 @@ void check_pseudo_inverse(const ObserverContext& context, const Params& params,
   if (!has_pseudo_inverse(m)) {
     problems.push_back(
         {"",
-         std::string("[E; C] does not have full column rank") +
+         std::string("[E; C] does not have full column rank as far as doubles tell") +
              (m.sensor.dim() ? " without the outputs whose sensors can fail altogether" : "") +
-             ", so that no T, N with T E + N C = I exist",
+             ", so that no T, N with T E + N C = I are found",
          "measure more, or use \"line_zonotope\""});
   }
 }

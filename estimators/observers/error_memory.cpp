@@ -43,12 +43,6 @@ void ErrorMemory::step(VectorIn sizes) {
   steps_ = 0;
 }
 
-void ErrorMemory::step_by(const Matrix& F, VectorIn sizes) {
-  past_ = F.cwiseAbs() * bound() + sizes;
-  now_.setZero();
-  steps_ = 0;
-}
-
 Vector ErrorMemory::bound() const { return largest_ * past_ + sum_ * now_; }
 
 }  // namespace cordon::estimators

@@ -18,8 +18,6 @@ class ErrorMemory {
 
   void start();
   void step(VectorIn sizes);
-  /// A step by another F.
-  void step_by(const Matrix& F, VectorIn sizes);
   Vector bound() const;
 
  private:

@@ -180,6 +180,26 @@ TEST_CASE("a set that is wrong is refuted, however loose the one before it was")
   }
 }
 
+TEST_CASE("a proof that does not even hold for a larger set is refuted") {
+  const Run run(
+      R"({"type": "lti", "A": [[0.5]], "Bw": [[1]], "C": [[1]], "X0": {"type": "box", "lower": [-1], "upper": [1]},
+                    "W": {"type": "box", "lower": [-0.125], "upper": [0.125]},
+                    "V": {"type": "box", "lower": [-1], "upper": [1]}})",
+      R"({"steps": 2})",
+      R"({"name": "P", "backend": "constrained_zonotope", "observer": "prediction_correction"})");
+  run.change_step(1, [](Json& step) { step["tightness"] = "outer"; });
+  Outcome outcome = run.with_set(1, [](Json& set) {
+    set["exchange"] = "outer";
+    set["tightness"] = "outer";
+  });
+  CAPTURE(outcome.out);
+  CHECK(outcome.code != 4);
+  outcome = run.with_set(1, [](Json& set) { set["proof"]["kind"] = "farkas"; });
+  CAPTURE(outcome.out);
+  CHECK(outcome.code == 4);
+  CHECK(names(outcome, "stored proof does not hold"));
+}
+
 TEST_CASE("with outward rounding a claim of exact is taken literally") {
   const Run run(
       scalar, R"({"steps": 1, "noise": "zero"})",

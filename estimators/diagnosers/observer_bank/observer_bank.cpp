@@ -148,15 +148,14 @@ void ObserverBank::advance(Index j, const Sample& before) {
   if (m.copy) m.copy = advanced(*m.copy, m.copy_hull, m.copy_limit);
   m.X = advanced(m.X, m.X_hull, m.X_limit);
   m.size = recursion.next_size(m.center, sample);
-  if (before.is_complete()) {
+  m.center = recursion.next(m.center, sample);
+  if (m.drift.is_none() && before.is_complete()) {
     m.rounding.step(m.size);
   } else {
-    m.rounding.step_by(recursion.error_map(), m.size);
+    const auto at = static_cast<std::size_t>(j);
+    m.drift.step(before, recursion.error_map(), options_.gains[at], residuals_[at],
+                 rounding_share * m.size, rounding_share * m.rounding.bound());
   }
-  m.center = recursion.next(m.center, sample);
-  if (residuals_.empty()) return;
-  const auto at = static_cast<std::size_t>(j);
-  m.drift.step(before, recursion.error_map(), options_.gains[at], residuals_[at]);
 }
 
 /// Residual sets at k, and what those of candidates prove.
@@ -211,13 +210,15 @@ void ObserverBank::reset(Index j, const Sample& now) {
   const Index n = m.center.size();
   const Matrix unit = Matrix::Identity(n, n);
   Enclosure E = error_set_;
-  if (!m.drift.is_none()) {
+  if (m.drift.is_none()) {
+    const Vector off = rounding_share * m.rounding.bound();
+    E = backend().sum(E, backend().box({-off, off}));
+  } else {
     const sets::Zonotope& drift = m.drift.set();
     const LineForm moved = make_zonotope(-drift.c, drift.G);
-    E = m.recursion.reduced(backend().sum(E, backend().import(moved)));
+    E = backend().sum(E, backend().import(moved));
   }
-  const Vector off = rounding_share * m.rounding.bound();
-  E = m.recursion.reduced(backend().sum(E, backend().box({-off, off})));
+  E = m.recursion.reduced(E);
   Enclosure errors = E, start = E;
   if (sample.y.size() > 0) {
     std::optional<Matrix> gain;

@@ -66,7 +66,7 @@ class ObserverBank final : public Diagnoser {
     PerOutputs<LuenbergerRecursion> others;
     WideningLimit X_limit, copy_limit;
     PointDrift drift;               ///< Δ
-    ErrorMemory rounding;           ///< of the numbers that x̂ has been made of: what it is off by
+    ErrorMemory rounding;           ///< the same by rounding alone, in units of its share of terms
     Enclosure X, residual;          ///< X̂, R; of the outputs that are there
     Box X_hull, copy_hull;          ///< of X̂ and X̂'; of dimension 0: not known
     Box hull;                       ///< of R

@@ -11,16 +11,20 @@ constexpr Index columns_per_state = 20;
 
 }  // namespace
 
-void PointDrift::step(const Sample& sample, MatrixIn error_map, MatrixIn L, const Box& residuals) {
+void PointDrift::step(const Sample& sample, MatrixIn error_map, MatrixIn L, const Box& residuals,
+                      VectorIn rounding, VectorIn before_gap) {
   if (!set_ && sample.is_complete()) return;
   const Index n = L.rows(), missing = static_cast<Index>(sample.missing.size());
-  if (!set_) set_ = sets::Zonotope{Vector::Zero(n), Matrix(n, 0)};
-  const Matrix minus_L = -L(Eigen::all, sample.missing);
-  const Vector center = residuals.center()(sample.missing);
-  const sets::Zonotope unknown{center, residuals.radius()(sample.missing).asDiagonal()};
-  const sets::MappedZonotope added{minus_L, unknown};
-  sets::Zonotope next =
-      sets::affine_sum(*set_, error_map, Vector::Zero(n), {&added, missing > 0 ? 1u : 0u});
+  if (!set_) set_ = sets::Zonotope{Vector::Zero(n), before_gap.asDiagonal()};
+  // of the missing outputs, and of the roundings
+  Matrix into(n, missing + n);
+  into << -L(Eigen::all, sample.missing), Matrix::Identity(n, n);
+  Vector center = Vector::Zero(missing + n), radius(missing + n);
+  center.head(missing) = residuals.center()(sample.missing);
+  radius << residuals.radius()(sample.missing), rounding;
+  const sets::Zonotope unknown{std::move(center), radius.asDiagonal()};
+  const sets::MappedZonotope added{into, unknown};
+  sets::Zonotope next = sets::affine_sum(*set_, error_map, Vector::Zero(n), {&added, 1});
   const Index most = columns_per_state * n;
   if (next.generators() > most) next.G = sets::reduce_generators(next.G, most);
   set_ = std::move(next);
