@@ -2,14 +2,13 @@
 #include "observers/error_memory.hpp"
 
 #include "cordon/core/linalg.hpp"
+#include "observers/rounding_room.hpp"
 
 namespace cordon::estimators {
 
 namespace {
 
 constexpr Index longest_block = 4096;
-
-double norm(const Matrix& M) { return M.size() ? M.cwiseAbs().rowwise().sum().maxCoeff() : 0.0; }
 
 }  // namespace
 
@@ -24,7 +23,7 @@ ErrorMemory::ErrorMemory(const Matrix& F) {
       sum_ += power.cwiseAbs();
       power = linalg::product(F, power);
     }
-    if (norm(power) <= 0.5) break;
+    if (row_norm(power) <= 0.5) break;
   }
   power_ = power.cwiseAbs();
   start();

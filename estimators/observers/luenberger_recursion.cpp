@@ -96,18 +96,15 @@ void LuenbergerRecursion::use_gain(Matrix L) {
 
 /// Magnitudes of what A - L C̄, L Dv and the sums of X̂⁺ are made of, and their largest.
 void LuenbergerRecursion::take_sizes() {
-  const auto norm = [](const Matrix& M) {
-    return M.size() ? M.cwiseAbs().rowwise().sum().maxCoeff() : 0.0;
-  };
   y_terms_ = L_.cwiseAbs();
   x_terms_ = A_.cwiseAbs() + y_terms_ * C_.cwiseAbs();
   u_terms_ = (B_.cwiseAbs() + y_terms_ * D_.cwiseAbs()) * f_.cwiseAbs().asDiagonal();
   constant_terms_ = Bw_.cwiseAbs() * W_size_ + y_terms_ * (Dv_.cwiseAbs() * V_size_);
   widths_ = error_noise().cwiseAbs().rowwise().sum();
-  x_norm_ = norm(x_terms_);
-  y_norm_ = norm(y_terms_);
-  u_norm_ = norm(u_terms_);
-  constant_norm_ = norm(constant_terms_);
+  x_norm_ = row_norm(x_terms_);
+  y_norm_ = row_norm(y_terms_);
+  u_norm_ = row_norm(u_terms_);
+  constant_norm_ = row_norm(constant_terms_);
   least_width_ = widths_.size() ? widths_.minCoeff() : 0.0;
 }
 

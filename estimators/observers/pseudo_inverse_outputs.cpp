@@ -66,10 +66,6 @@ std::vector<Index> all_outputs(const LinearModel& model) {
   return all;
 }
 
-double row_norm(const Matrix& A) {
-  return A.size() ? A.cwiseAbs().rowwise().sum().maxCoeff() : 0.0;
-}
-
 double accumulated_rounding(const LinearModel& m) {
   const Index terms =
       3 * m.states() + m.inputs() + 2 * m.outputs() + m.disturbances() + m.noises() + 8;

@@ -42,9 +42,6 @@ std::vector<Index> all_outputs(const LinearModel& model);
 /// Do E x and these outputs determine the state?
 bool determine_state(const LinearModel& model, const std::vector<Index>& outputs);
 
-/// The largest sum of magnitudes of a row.
-double row_norm(const Matrix& A);
-
 /// Relative error of sums of as many terms as a step of the observer has.
 double accumulated_rounding(const LinearModel& model);
 

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/tolerances.hpp"
 
 namespace cordon::estimators {
 
 namespace {
 
-constexpr double share = 1e-14;
+constexpr double share = tolerances::product_noise;
 constexpr double negligible = 1e-10;  // of a half width
 constexpr double cancelled = 0.25;
 
@@ -68,6 +69,10 @@ Box reach_of(const Set& X) {
   const LineForm form = X.line_form();
   const Vector widths = half_widths(form, Matrix::Identity(form.dim(), form.dim()));
   return {form.c - widths, form.c + widths};
+}
+
+double row_norm(const Matrix& A) {
+  return A.size() ? A.cwiseAbs().rowwise().sum().maxCoeff() : 0.0;
 }
 
 Vector half_widths(const LineForm& X, MatrixIn T) {

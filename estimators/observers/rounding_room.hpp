@@ -46,6 +46,9 @@ class RoundingRoom {
 /// without its constraints, with infinite sides along lines. At little cost.
 Box reach_of(const Set& X);
 
+/// The largest sum of magnitudes of a row.
+double row_norm(const Matrix& A);
+
 /// Half widths of {T x : x ∈ X} without its constraints; infinite along lines.
 Vector half_widths(const LineForm& X, MatrixIn T);
 

@@ -71,3 +71,26 @@ TEST_CASE("a state outside the admissible set is a failed assumption") {
   CHECK(ran.code != 4);
   CHECK(ran.says("admissible set"));
 }
+
+TEST_CASE("a state that lies outside by rounding alone proves nothing empty") {
+  for (const double level : {-5.55e-17, -1e-12, -1e-9}) {
+    CAPTURE(level);
+    Json study = tanks(3);
+    study["system"]["X0"] = {{"type", "box"}, {"lower", {level, 1}}, {"upper", {level, 1}}};
+    study["system"]["W"] = {{"type", "box"}, {"lower", {0, 0}}, {"upper", {0, 0}}};
+    study["data"]["simulate"]["x0"] = {level, 1};
+    study["data"]["simulate"]["steps"] = 3;
+    const Scratch scratch;
+    const std::string file = scratch.write("s.json", study.dump()).string(),
+                      out = (scratch.path() / "out").string();
+    const Outcome ran =
+        test::cordon_with("run --quiet --no-report --out " + out + " " + file + " 2>&1");
+    CAPTURE(ran.out);
+    CHECK(ran.code == 0);
+    const Json results = Json::parse(bytes_of(out + "/results.json"));
+    for (const Json& pipeline : results["pipelines"]) {
+      CAPTURE(pipeline["name"].get<std::string>());
+      for (const Json& step : pipeline["steps"]) CHECK(step["consistent"] != "no");
+    }
+  }
+}

@@ -216,7 +216,8 @@ TEST_CASE("samples that lack outputs are told of, run and verified") {
     "W": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]},
     "V": {"type": "box", "lower": [-0.1, -0.1], "upper": [0.1, 0.1]}},
     "data": {"simulate": {"steps": 20, "dropouts": [
-      {"outputs": [1], "probability": 0.5}, {"outputs": [2], "from": 1, "every": 5}, {"from": 7, "to": 9}]}},
+      {"outputs": [1], "probability": 0.5}, {"outputs": [2], "from": 1, "every": 5},
+      {"from": 7, "to": 9}]}},
     "pipelines": [{"backend": "constrained_zonotope", "observer": "prediction_correction"}]})";
   const std::string file = scratch.write("gaps.json", study).string(),
                     out = (scratch.path() / "out").string();

@@ -11,8 +11,6 @@ namespace cordon::estimators {
 
 namespace {
 
-constexpr double rounding_share = 1e-14;  ///< of the terms of a sum, which it is off by
-
 /// What is nearer to 0 than this may be rounding: a share of the numbers that a residual was made
 /// of, and of its own bounds.
 Vector rounding_slack(const Box& hull, const Vector& size) {
@@ -154,7 +152,8 @@ void ObserverBank::advance(Index j, const Sample& before) {
   } else {
     const auto at = static_cast<std::size_t>(j);
     m.drift.step(before, recursion.error_map(), options_.gains[at], residuals_[at],
-                 rounding_share * m.size, rounding_share * m.rounding.bound());
+                 tolerances::product_noise * m.size,
+                 tolerances::product_noise * m.rounding.bound());
   }
 }
 
@@ -211,7 +210,7 @@ void ObserverBank::reset(Index j, const Sample& now) {
   const Matrix unit = Matrix::Identity(n, n);
   Enclosure E = error_set_;
   if (m.drift.is_none()) {
-    const Vector off = rounding_share * m.rounding.bound();
+    const Vector off = tolerances::product_noise * m.rounding.bound();
     E = backend().sum(E, backend().box({-off, off}));
   } else {
     const sets::Zonotope& drift = m.drift.set();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "sample_check.hpp"
 
 namespace cordon {
@@ -29,6 +30,16 @@ bool is_narrower(const Box& box, const Box& than) {
     all += 1;
   }
   return share < all;
+}
+
+/// By how much sets of these hulls may miss each other where they meet: infinite sides do not
+/// count.
+Vector rounding_between(const Box& X, const Box& Y) {
+  Vector sizes = Vector::Zero(X.dim());
+  for (const Vector* bound : {&X.lower, &X.upper, &Y.lower, &Y.upper})
+    sizes = sizes.cwiseMax(bound->array().isFinite().select(bound->cwiseAbs(), 0.0));
+  const double largest = sizes.size() > 0 ? sizes.maxCoeff() : 0.0;
+  return tolerances::reported * sizes.array() + tolerances::product_noise * largest;
 }
 
 }  // namespace
@@ -60,10 +71,14 @@ bool Observer::cut(Enclosure& X) {
   if (hull.is_empty()) return false;
   if (hull.is_bounded() && backend_->box(hull)->is_subset_of(*admissible_) == Answer::yes)
     return false;
-  const Index n = hull.dim();
-  const Enclosure narrowed = timed(Phase::correct, [&] {
-    return backend_->intersection(X, Matrix::Identity(n, n), admissible_);
-  });
+  const Matrix unit = Matrix::Identity(hull.dim(), hull.dim());
+  Enclosure narrowed =
+      timed(Phase::correct, [&] { return backend_->intersection(X, unit, admissible_); });
+  if (narrowed->is_empty() == Answer::yes) {  // by more than rounding, if it is to say anything
+    const Vector room = rounding_between(hull, admissible_->interval_hull());
+    const Enclosure wider = backend_->sum(admissible_, backend_->box({-room, room}));
+    narrowed = timed(Phase::correct, [&] { return backend_->intersection(X, unit, wider); });
+  }
   Enclosure reduced =
       timed(Phase::reduce, [&] { return backend_->reduce(narrowed, admissible_budget_); });
   const Box now = reduced->interval_hull();
