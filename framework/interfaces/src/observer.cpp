@@ -78,6 +78,7 @@ bool Observer::cut(Enclosure& X) {
     const Vector room = rounding_between(hull, admissible_->interval_hull());
     const Enclosure wider = backend_->sum(admissible_, backend_->box({-room, room}));
     narrowed = timed(Phase::correct, [&] { return backend_->intersection(X, unit, wider); });
+    narrowed.tightness = Tightness::outer;
   }
   Enclosure reduced =
       timed(Phase::reduce, [&] { return backend_->reduce(narrowed, admissible_budget_); });
