@@ -4,11 +4,12 @@
 
 #include "nothing.hpp"
 
-/// Asks for 16 GiB.
+/// Asks for more with every piece: the last one is refused before a byte of it is touched, however
+/// slow memory is.
 static void register_components(cordon::Registrar& registrar) {
   std::vector<std::unique_ptr<char[]>> pieces;
-  for (int i = 0; i < 1024; ++i)
-    pieces.push_back(std::make_unique_for_overwrite<char[]>(16u << 20));
+  for (std::size_t size = std::size_t{1} << 20; size <= std::size_t{1} << 34; size <<= 4)
+    pieces.push_back(std::make_unique_for_overwrite<char[]>(size));
   registrar.add(nothing("large"));
 }
 
