@@ -9,8 +9,17 @@
 #include "cordon/core/rounding.hpp"
 #include "cordon/solvers/boxed_program.hpp"
 #include "cordon/solvers/lp.hpp"
+#include "tubes/line_proof.hpp"
 
 namespace cordon::designers {
+
+/// S δ + A ξ + U u = b.
+struct PairRows {
+  Matrix S, A, U;
+  Vector b, terms;     ///< of b and A, ‖ξ‖∞ ≤ 1
+  Matrix input_terms;  ///< of U
+  LinesEliminated rest;
+};
 
 namespace {
 
@@ -76,6 +85,21 @@ bool is_exact_difference(MatrixIn A, MatrixIn B) {
   return true;
 }
 
+/// Do multipliers of the rows that are left prove that the tubes are disjoint under u?
+bool stands(const PairProgram& pair, VectorIn u, const Vector& multipliers) {
+  if (!pair.whole) return true;
+  const auto& [S, A, U, b, terms, input_terms, rest] = *pair.whole;
+  const Index factors = A.cols(), lines = S.cols();
+  const LineForm rows{Matrix(0, lines),         Matrix(0, factors), Vector(0), S, A,
+                      b - linalg::product(U, u)};
+  const Matrix& by = rest.lines_by_factors;  // and by inputs, behind them
+  const Vector offset = rest.lines_offset + linalg::product(by.rightCols(U.cols()), u);
+  const LinesReached reached{offset.cwiseAbs() + by.leftCols(factors).cwiseAbs().rowwise().sum(),
+                             rest.free_lines};
+  return stands(rows, terms + linalg::product(input_terms, u.cwiseAbs()),
+                linalg::transposed_product(rest.rows, multipliers), reached);
+}
+
 }  // namespace
 
 PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTube& Yj) {
@@ -96,18 +120,26 @@ PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTub
   const Vector factor_terms = A.leftCols(g_i + g_j).cwiseAbs().rowwise().sum();
   Matrix input_terms = A.rightCols(inputs).cwiseAbs();
   input_terms.topRows(outputs) = Yi.H.cwiseAbs() + Yj.H.cwiseAbs();
-  const LinesEliminated rest = eliminate_lines_traced(
-      {Matrix(0, lines), Matrix(0, columns), Vector(0), std::move(S), std::move(A), std::move(b)},
-      magnitude);
+  const auto whole = std::make_shared<PairRows>();
+  whole->rest =
+      eliminate_lines_traced({Matrix(0, lines), Matrix(0, columns), Vector(0), S, A, b}, magnitude);
+  const LinesEliminated& rest = whole->rest;
   const Matrix shares = rest.rows.cwiseAbs();
+  whole->S = std::move(S);
+  whole->A = A.leftCols(g_i + g_j);
+  whole->U = A.rightCols(inputs);
+  whole->b = std::move(b);
+  whole->terms = magnitude + factor_terms;
+  whole->input_terms = input_terms;
   return {i,
           j,
           rest.set.A.leftCols(g_i + g_j),
           -rest.set.b,
           -rest.set.A.rightCols(inputs),
-          linalg::product(shares, magnitude + factor_terms),
+          linalg::product(shares, whole->terms),
           linalg::product(shares, input_terms),
-          rest.follow && is_exact ? 0 : rest.vanished};
+          rest.follow && is_exact ? 0 : rest.vanished,
+          whole};
 }
 
 Vector PairProgram::terms(VectorIn reach) const {
@@ -144,6 +176,11 @@ PairSeparation separation(const PairProgram& pair, VectorIn u) {
     result.disjoint = Answer::unknown;
     result.why = {};
   }
+  const bool falls = result.disjoint == Answer::yes && !stands(pair, u, result.why.data);
+  if (falls) {
+    result.disjoint = Answer::unknown;
+    result.why = {};
+  }
   result.kappa = std::numeric_limits<double>::quiet_NaN();
   std::optional<Proposal> proposal = propose(pair.G, d);
   if (proposal) {
@@ -156,6 +193,7 @@ PairSeparation separation(const PairProgram& pair, VectorIn u) {
     result.kappa_lower =
         std::max(result.kappa_lower, proven_kappa(pair.G, d, error, result.why.data));
   }
+  if (falls) result.kappa_lower = -1;
   // the solver's κ is right to its tolerance; it does not contradict what is proven
   if (result.kappa < result.kappa_lower) result.kappa = result.kappa_lower;
   if (result.disjoint == Answer::yes && result.kappa < 0) result.kappa = 0;

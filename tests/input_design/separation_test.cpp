@@ -161,3 +161,59 @@ TEST_CASE("Without disturbances every difference separates") {
   CHECK(separation(pair, numbers({0, 0.1, 0})).disjoint !=
         Answer::yes);  // felt at k = 2 alike by both
 }
+
+namespace {
+
+/// Two modes of two states, all numbers short decimals: E = (1, 3)ᵀ(.1, .3) up to rounding or of
+/// rank 1 in decimals, states from anywhere.
+ModeBank singular_in_decimals(std::mt19937& random) {
+  std::uniform_int_distribution<int> tenth(-30, 30), small(1, 9);
+  const auto decimal = [&] { return tenth(random) / 10.0; };
+  const double a = small(random), b = small(random), c = small(random), d = small(random);
+  Model model;
+  LinearModel& m = model.linear;
+  m.E = (Matrix(2, 2) << a * b / 10, a * c / 10, d * b / 10, d * c / 10).finished();
+  // in half of them the static equation holds x_1 by what rounding leaves of it
+  m.A = (Matrix(2, 2) << a / d, decimal(), 1, decimal()).finished();
+  if (random() % 2) m.A.col(0) << decimal(), decimal();
+  m.B = (Matrix(2, 1) << decimal(), decimal()).finished();
+  m.Bw = Matrix::Identity(2, 2);
+  m.C = (Matrix(1, 2) << 0, 1).finished();
+  m.D = Matrix::Zero(1, 1);
+  m.Dv = Matrix::Identity(1, 1);
+  model.X0 = make_space(2);
+  model.W = make_box({numbers({0, -.3}), numbers({0, .3})});
+  model.V = examples::cube(1, .1);
+  model.U = examples::cube(1, 3);
+  ModeBank bank;
+  bank.modes = {{"healthy", model}, {"weak", model}};
+  bank.modes[1].model.linear.B(1, 0) = decimal();
+  return bank;
+}
+
+}  // namespace
+
+TEST_CASE("tubes of states from anywhere are disjoint on the rows as they were, lines and all") {
+  std::mt19937 random(7);
+  int disjoint = 0, open = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const std::vector<OutputTube> tubes = tubes_of(singular_in_decimals(random), 1);
+    const PairProgram pair = pair_program(0, tubes[0], 1, tubes[1]);
+    for (const double u : {.7, 3.}) {
+      const PairSeparation found = separation(pair, numbers({u, u}));
+      const Vector at = numbers({u, u});
+      const Answer exact =
+          exact::is_empty(intersection(tubes[0].at(at), Matrix::Identity(2, 2), tubes[1].at(at)));
+      CAPTURE(trial);
+      CAPTURE(u);
+      if (found.disjoint == Answer::yes) CHECK(exact == Answer::yes);
+      if (found.kappa_lower > 0) CHECK(exact == Answer::yes);
+      if (found.disjoint == Answer::no) CHECK(exact == Answer::no);
+      disjoint += found.disjoint == Answer::yes;
+      open += found.disjoint == Answer::unknown;
+    }
+  }
+  CHECK(disjoint > 20);
+  CHECK(open < 300);
+  MESSAGE(disjoint, " of 600 pairs disjoint, ", open, " open");
+}

@@ -7,9 +7,8 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
-#include "cordon/core/rounding.hpp"
 #include "cordon/solvers/boxed_program.hpp"
-#include "cordon/solvers/certificate.hpp"
+#include "tubes/line_proof.hpp"
 
 namespace cordon::diagnosers {
 
@@ -25,27 +24,6 @@ Certificate traced(const LinesEliminated& rest, const Certificate& own) {
   Vector both(rest.lines_offset.size() + xi.size());
   both << rest.lines_offset + linalg::product(rest.lines_by_factors, xi), xi;
   return {Certificate::Kind::point, std::move(both), own.margin};
-}
-
-/// Do multipliers that were led back over the lines prove that the rows have no solution, for
-/// every b within rounding? By rational arithmetic where that is affordable. Else with Sᵀy = r ≠ 0
-/// by rounding, for lines of the length that the solved rows give them:
-///   bᵀy - ‖Aᵀy‖₁ > 2 |r|ᵀ|δ|.
-bool stands(const LineForm& rows, const LinesEliminated& rest, const Vector& terms,
-            const Certificate& proof) {
-  const Vector& y = proof.data;
-  if (y.size() != rows.constraints() || !y.allFinite()) return false;
-  const double margin = farkas_margin(rows.A, rows.b, y, designers::row_noise * terms);
-  if (!(margin > 0)) return false;
-  if (is_quickly_proven_empty(rows)) return proves_empty(rows, proof);
-  const Vector open = linalg::transposed_product(rows.S, y).cwiseAbs() +
-                      rounding::product_error(rows.S.transpose(), y);
-  for (const Index j : rest.free_lines) {
-    if (!rows.S.col(j).isZero(0)) return false;
-  }
-  const Vector reach =
-      rest.lines_offset.cwiseAbs() + rest.lines_by_factors.cwiseAbs().rowwise().sum();
-  return margin > 2 * open.dot(reach);
 }
 
 /// The entries of y that are no NaN.
@@ -96,7 +74,10 @@ Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y, Cer
   if (empty == Answer::no && rest.vanished > 0)
     empty = Answer::unknown;  // what vanished is not shown to hold
   Certificate whole = empty == Answer::unknown ? Certificate{} : traced(rest, proof);
-  if (empty == Answer::yes && !stands(rows, rest, terms, whole)) {
+  const designers::LinesReached reached{
+      rest.lines_offset.cwiseAbs() + rest.lines_by_factors.cwiseAbs().rowwise().sum(),
+      rest.free_lines};
+  if (empty == Answer::yes && !designers::stands(rows, terms, whole.data, reached)) {
     empty = Answer::unknown;  // what the elimination has lost is as large as the proof
     whole = {};
   }

@@ -168,7 +168,7 @@ struct LineTableau {
       const bool is_rounding =
           std::abs(entry) <= 8 * rounding::unit * std::max(std::abs(left), std::abs(right));
       sizes[j] = std::max(sizes[j], passed_on(j));
-      cuts = cuts || (is_rounding && entry != 0);
+      cuts = cuts || (is_rounding && left != 0);  // also where rounding happens to leave 0
       entries[j] = is_rounding ? 0 : entry;
     }
     for (Index j = std::max(run.first, lines); j < run.last; ++j) {

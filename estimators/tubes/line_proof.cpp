@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tubes/line_proof.hpp"
+
+#include "cordon/core/linalg.hpp"
+#include "cordon/core/rounding.hpp"
+#include "cordon/solvers/boxed_program.hpp"
+#include "cordon/solvers/certificate.hpp"
+#include "tubes/output_tube.hpp"
+
+namespace cordon::designers {
+
+bool stands(const LineForm& rows, const Vector& terms, const Vector& y, const LinesReached& lines) {
+  if (y.size() != rows.constraints() || !y.allFinite()) return false;
+  const double margin = farkas_margin(rows.A, rows.b, y, row_noise * terms);
+  if (!(margin > 0)) return false;
+  if (is_quickly_proven_empty(rows))
+    return proves_empty(rows, {Certificate::Kind::farkas, y, margin});
+  const Vector open = linalg::transposed_product(rows.S, y).cwiseAbs() +
+                      rounding::product_error(rows.S.transpose(), y);
+  for (const Index j : lines.free) {
+    if (!rows.S.col(j).isZero(0)) return false;
+  }
+  return margin > 2 * open.dot(lines.reach);
+}
+
+}  // namespace cordon::designers
