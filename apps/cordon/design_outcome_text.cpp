@@ -58,11 +58,14 @@ std::string separated_text(const InputDesign& best, const ExactSeparation* exact
                                                        : "not proven to be separated");
 }
 
-std::string inputs_table(const Matrix& u, const Paint& paint) {
+std::string inputs_table(const Matrix& u, const Labels& labels, const Paint& paint) {
+  const double seconds = labels.sampling_time;
   Rows rows{{"k"}};
-  for (Index i = 1; i <= u.cols(); ++i) rows[0].push_back(fmt::format("u_{}", i));
+  if (seconds > 0) rows[0].push_back("t [s]");
+  for (Index i = 0; i < u.cols(); ++i) rows[0].push_back(label_of(labels.inputs, "u", i));
   for (Index k = 0; k < u.rows(); ++k) {
     rows.push_back({fmt::format("{}", k)});
+    if (seconds > 0) rows.back().push_back(fmt::format("{:.6g}", static_cast<double>(k) * seconds));
     for (Index i = 0; i < u.cols(); ++i) rows.back().push_back(fmt::format("{:.8g}", u(k, i)));
   }
   return table(rows, paint);
@@ -205,9 +208,9 @@ std::string refuted_text(const Names& refuted, const Paint& paint) {
   return text;
 }
 
-std::string input_text(const Names& modes, const InputDesign& best, const ExactSeparation* exact,
-                       const Paint& paint) {
-  std::string text = fmt::format("\n{}\n{}\n", inputs_table(best.u, paint),
+std::string input_text(const Labels& labels, const Names& modes, const InputDesign& best,
+                       const ExactSeparation* exact, const Paint& paint) {
+  std::string text = fmt::format("\n{}\n{}\n", inputs_table(best.u, labels, paint),
                                  pairs_table(modes, best, exact, paint));
   const Names empty = empty_modes(modes, best.empty, exact);
   if (!empty.empty()) text += paint.red("Modelling error") + ": " + empty_text(empty) + "\n";

@@ -26,8 +26,8 @@ std::string search_text(const DesignOutcome& outcome, double design_s);
 std::string refuted_text(const Names& refuted, const Paint& paint);
 
 /// What there is to say of an input: the sequence, the pairs of modes, and what is proven of them.
-std::string input_text(const Names& modes, const InputDesign& best, const ExactSeparation* exact,
-                       const Paint& paint);
+std::string input_text(const Labels& labels, const Names& modes, const InputDesign& best,
+                       const ExactSeparation* exact, const Paint& paint);
 
 /// Modes whose tube is empty, as the designer says or by the exact proof.
 Names empty_modes(const Names& modes, const std::vector<Answer>& empty,

@@ -19,7 +19,8 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 using nlohmann::ordered_json;
 
-std::string design_text(const Names& modes, const PipelineDesign& design, const Paint& paint) {
+std::string design_text(const Study& study, const PipelineDesign& design, const Paint& paint) {
+  const Names modes = mode_names(study);
   std::string text =
       fmt::format("{}  {}, {}\n", paint.bold(design.name), design.backend, design.designer);
   if (design.outcome) {
@@ -27,7 +28,7 @@ std::string design_text(const Names& modes, const PipelineDesign& design, const 
     const ExactSeparation* exact = design.exact ? &*design.exact : nullptr;
     text += status_text(outcome, design.designer, exact, paint) + "\n" + restriction_text(outcome) +
             horizon_text(outcome) + reason_text(outcome);
-    if (outcome.best) text += input_text(modes, *outcome.best, exact, paint);
+    if (outcome.best) text += input_text(study.labels, modes, *outcome.best, exact, paint);
     text += refuted_text(design.refuted, paint) + search_text(outcome, design.design_s);
   }
   if (!design.error.empty()) text += paint.red(fmt::format("Stopped: {}", design.error)) + "\n";
@@ -80,11 +81,10 @@ bool open(const PipelineDesign& design) {
 
 std::string designs_text(const Study& study, const std::vector<PipelineDesign>& designs,
                          const Paint& paint) {
-  const Names modes = mode_names(study);
   std::string text = study.title.empty() ? "" : paint.bold(study.title) + "\n";
   for (const PipelineDesign& design : designs) {
     if (!text.empty()) text += '\n';
-    text += design_text(modes, design, paint);
+    text += design_text(study, design, paint);
   }
   return text;
 }
@@ -189,7 +189,7 @@ std::string design_text(const Study& study, const PipelineOutcome& pipeline, con
     text += status_text(outcome, found.designer, exact, paint) + "\n" + restriction_text(outcome) +
             horizon_text(outcome) + reason_text(outcome);
     if (outcome.best) {
-      text += input_text(modes, *outcome.best, exact, paint);
+      text += input_text(study.labels, modes, *outcome.best, exact, paint);
       if (found.diagnoser.empty())
         text +=
             "\nNo experiments: name a \"diagnoser\" beside the designer to try the input on every "

@@ -82,7 +82,9 @@ std::string event_name(const DiagnosisEvent& event, std::optional<Index> truth_b
 
 /// One row per event; `left` counts those that are not shown.
 Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& left) {
-  Rows rows{{"k", "EVENT", "MODE", "EVIDENCE"}};
+  const double seconds = study.labels.sampling_time;
+  Rows rows{seconds > 0 ? std::vector<std::string>{"k", "t [s]", "EVENT", "MODE", "EVIDENCE"}
+                        : std::vector<std::string>{"k", "EVENT", "MODE", "EVIDENCE"}};
   std::optional<Index> truth;
   for (const DiagnosisEvent& event : found.events) {
     const std::optional<Index> before = truth;
@@ -99,6 +101,10 @@ Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& l
     if (event.what == Kind::truth && event.mode < 0) mode = outside_name(study, event.k);
     rows.push_back({fmt::format("{}", event.k), event_name(event, before), mode,
                     evidence_text(event.evidence)});
+    if (seconds > 0) {
+      rows.back().insert(rows.back().begin() + 1,
+                         fmt::format("{:.6g}", static_cast<double>(event.k) * seconds));
+    }
   }
   return rows;
 }
@@ -156,9 +162,9 @@ std::string score_text(const Study& study, const DiagnosisOutcome& found, const 
   }
   if (const auto& excluded = found.true_mode_excluded) {
     text += paint.red(fmt::format(
-                "True mode excluded: {} at k = {}, although true since k = {} (run {} of {})",
-                name_of(found.modes, excluded->mode), excluded->k, excluded->since,
-                excluded->seed_offset + 1, found.runs)) +
+                "True mode excluded: {} at {}, although true since {} (run {} of {})",
+                name_of(found.modes, excluded->mode), time_text(study.labels, excluded->k),
+                time_text(study.labels, excluded->since), excluded->seed_offset + 1, found.runs)) +
             "\n";
   } else {
     text += "True mode excluded: never\n";
@@ -172,15 +178,19 @@ std::string number_text(double value) {
   return std::isinf(value) ? "unbounded" : fmt::format("{:.6g}", value);
 }
 
-std::string faults_text(const DiagnosisOutcome& found, const Paint& paint) {
+/// Its name, or its number.
+std::string fault_name(const Labels& labels, Index fault) {
+  return labels.faults.empty() ? fmt::format("{}", fault + 1) : label_of(labels.faults, "n", fault);
+}
+
+std::string faults_text(const DiagnosisOutcome& found, const Labels& labels, const Paint& paint) {
   if (found.faults.empty()) return "";
   Rows rows{{"FAULT", "DELAY", "BOUNDS", "WITHOUT 0", "OUTSIDE", "HALF WIDTH: LAST", "MEAN",
              "RMS ERROR", "LARGEST SHARE"}};
   for (const FaultStatistics& counts : found.faults) {
     const bool any = counts.bounds > 0, checked = counts.checked > 0;
-    rows.push_back({fmt::format("{}", counts.fault + 1),
-                    any ? fmt::format("{}", counts.delay) : "-", fmt::format("{}", counts.bounds),
-                    fmt::format("{}", counts.excluded_0),
+    rows.push_back({fault_name(labels, counts.fault), any ? fmt::format("{}", counts.delay) : "-",
+                    fmt::format("{}", counts.bounds), fmt::format("{}", counts.excluded_0),
                     checked ? fmt::format("{} of {}", counts.outside, counts.checked) : "-",
                     any ? number_text(counts.last_half_width) : "-",
                     any ? number_text(counts.mean_half_width) : "-",
@@ -191,11 +201,11 @@ std::string faults_text(const DiagnosisOutcome& found, const Paint& paint) {
       fmt::format("\nAdditive faults over {} (share: error of the estimate / half width)\n{}",
                   runs_text(found.runs), table(rows, paint));
   if (const auto& outside = found.fault_outside) {
-    text +=
-        paint.red(fmt::format(
-            "True fault outside its bounds: fault {} of k = {}, bounded at k = {} (run {} of {})",
-            outside->fault + 1, outside->at, outside->k, outside->seed_offset + 1, found.runs)) +
-        "\n";
+    text += paint.red(fmt::format(
+                "True fault outside its bounds: fault {} of {}, bounded at {} (run {} of {})",
+                fault_name(labels, outside->fault), time_text(labels, outside->at),
+                time_text(labels, outside->k), outside->seed_offset + 1, found.runs)) +
+            "\n";
   }
   return text;
 }
@@ -217,14 +227,15 @@ std::string error_set_text(const ErrorSetCheck& check, const Names& modes) {
                      check.factor, steady, check.factor <= 1 ? "large enough" : "too small");
 }
 
-std::string fault_guarantees_text(const Guarantees& guarantees, const Paint& paint) {
+std::string fault_guarantees_text(const Guarantees& guarantees, const Labels& labels,
+                                  const Paint& paint) {
   if (guarantees.faults.empty()) return "";
   Rows rows{{"ADDITIVE FAULT", "DELAY", "HALF WIDTH IN STEADY STATE, BUT FOR ROUNDING"}};
   for (const FaultGuarantee& fault : guarantees.faults) {
     const std::string width = std::isinf(fault.half_width)
                                   ? "no bound is proven"
                                   : fmt::format("{:.6g}", fault.half_width);
-    rows.push_back({fmt::format("{}", fault.fault + 1), fmt::format("{}", fault.delay), width});
+    rows.push_back({fault_name(labels, fault.fault), fmt::format("{}", fault.delay), width});
   }
   return table(rows, paint);
 }
@@ -259,7 +270,7 @@ std::string diagnosis_text(const Study& study, const PipelineOutcome& pipeline,
   text += "\n";
   if (!pipeline.error.empty())
     return text + paint.red(fmt::format("Stopped: {}", pipeline.error)) + "\n";
-  return text + score_text(study, found, paint) + faults_text(found, paint) +
+  return text + score_text(study, found, paint) + faults_text(found, study.labels, paint) +
          assumption_text(study, pipeline, paint);
 }
 
@@ -277,30 +288,33 @@ std::string assumption_text(const Study& study, const PipelineOutcome& pipeline,
   if (failed.what == What::U) suggestion = "widen the set, or choose smaller inputs";
   const std::string seed =
       failed.seed_offset > 0 ? fmt::format(" (seed offset {})", failed.seed_offset) : "";
-  return fmt::format("{}: {}{}. What is said from k = {} on rests on it and proves nothing: {}\n",
-                     paint.yellow("Assumption failed"), text_of(failed, modes), seed, failed.from(),
-                     suggestion);
+  return fmt::format("{}: {}{}. What is said from {} on rests on it and proves nothing: {}\n",
+                     paint.yellow("Assumption failed"), text_of(failed, modes), seed,
+                     time_text(study.labels, failed.from()), suggestion);
 }
 
-std::string diagnosis_violation(const PipelineOutcome& pipeline) {
+std::string diagnosis_violation(const Labels& labels, const PipelineOutcome& pipeline) {
   if (const auto& outside = pipeline.diagnosis()->fault_outside;
       outside && outside->k == pipeline.violated_at) {
     return fmt::format(
-        "pipeline \"{}\" violates its guarantee: at k = {} the true additive fault {} of k = {} "
+        "pipeline \"{}\" violates its guarantee: at {} the true additive fault {} of {} "
         "lies outside its bounds (seed "
         "offset {}). This is a defect of its backend or diagnoser",
-        pipeline.name, outside->k, outside->fault + 1, outside->at, outside->seed_offset);
+        pipeline.name, time_text(labels, outside->k), fault_name(labels, outside->fault),
+        time_text(labels, outside->at), outside->seed_offset);
   }
   const TrueModeExcluded& excluded = *pipeline.diagnosis()->true_mode_excluded;
   return fmt::format(
-      "pipeline \"{}\" violates its guarantee: at k = {} it excludes the mode \"{}\", in which the "
-      "plant has been since k = {} "
+      "pipeline \"{}\" violates its guarantee: at {} it excludes the mode \"{}\", in which the "
+      "plant has been since {} "
       "(seed offset {}). This is a defect of its backend or diagnoser",
-      pipeline.name, excluded.k, name_of(pipeline.diagnosis()->modes, excluded.mode),
-      excluded.since, excluded.seed_offset);
+      pipeline.name, time_text(labels, excluded.k),
+      name_of(pipeline.diagnosis()->modes, excluded.mode), time_text(labels, excluded.since),
+      excluded.seed_offset);
 }
 
-std::string guarantees_text(const Guarantees& guarantees, const Names& modes, const Paint& paint) {
+std::string guarantees_text(const Guarantees& guarantees, const Labels& labels, const Names& modes,
+                            const Paint& paint) {
   Rows rows{{"OBSERVER", "TRUE MODE", "RESIDUALS", "CONDITION", "HOLDS"}};
   for (const PairGuarantee& pair : guarantees.pairs) {
     rows.push_back({name_of(modes, pair.observer), name_of(modes, pair.mode),
@@ -309,8 +323,8 @@ std::string guarantees_text(const Guarantees& guarantees, const Names& modes, co
                     pair.mode == pair.observer ? "0 inside" : "0 outside",
                     answer_text(pair.holds)});
   }
-  std::string text =
-      fmt::format("Method: {}\n", guarantees.method) + fault_guarantees_text(guarantees, paint);
+  std::string text = fmt::format("Method: {}\n", guarantees.method) +
+                     fault_guarantees_text(guarantees, labels, paint);
   if (guarantees.pairs.empty() && !guarantees.faults.empty()) return text;
   text += table(rows, paint);
   if (guarantees.error_set) text += error_set_text(*guarantees.error_set, modes);

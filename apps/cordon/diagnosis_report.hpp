@@ -24,11 +24,11 @@ std::string assumption_text(const Study& study, const PipelineOutcome& pipeline,
 
 /// What to say of a pipeline that has excluded the true mode, or bounds without the true fault
 /// (`violated_at`).
-std::string diagnosis_violation(const PipelineOutcome& pipeline);
+std::string diagnosis_violation(const Labels& labels, const PipelineOutcome& pipeline);
 
 /// Statements made in advance: tables, one row per additive fault, and one per observer and true
 /// mode.
-std::string guarantees_text(const Guarantees& guarantees, const std::vector<std::string>& modes,
-                            const Paint& paint);
+std::string guarantees_text(const Guarantees& guarantees, const Labels& labels,
+                            const std::vector<std::string>& modes, const Paint& paint);
 
 }  // namespace cordon::apps

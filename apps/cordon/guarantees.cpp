@@ -78,7 +78,7 @@ std::string report_text(const Study& study, const std::vector<Promise>& all) {
     }
     text += fmt::format("{}  {}, {}\n", paint.bold(pipeline->name), pipeline->backend.type,
                         diagnoser->type);
-    text += guarantees ? guarantees_text(*guarantees, mode_names(study), paint)
+    text += guarantees ? guarantees_text(*guarantees, study.labels, mode_names(study), paint)
                        : fmt::format("{} makes no statements in advance\n", diagnoser->type);
   }
   return text;

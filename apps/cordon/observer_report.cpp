@@ -64,6 +64,10 @@ ordered_json numbers(const Vector& values) {
   return all;
 }
 
+std::string state_name(const Labels& labels, Index i) {
+  return labels.states.empty() ? fmt::format("x{}", i + 1) : label_of(labels.states, "x", i);
+}
+
 }  // namespace
 
 std::string gains_text(const RunOutcome& outcome, const Paint& paint) {
@@ -82,13 +86,13 @@ std::string gains_text(const RunOutcome& outcome, const Paint& paint) {
   return titled("Gains", rows, paint);
 }
 
-std::string widths_text(const RunOutcome& outcome, const Paint& paint) {
+std::string widths_text(const RunOutcome& outcome, const Labels& labels, const Paint& paint) {
   Rows rows{{"PIPELINE"}};
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     const Box& hull = pipeline.estimation()->last_hull;
     if (hull.dim() == 0 || hull.dim() > most_states) continue;
     for (Index i = static_cast<Index>(rows[0].size()); i <= hull.dim(); ++i)
-      rows[0].push_back(fmt::format("x{}", i));
+      rows[0].push_back(state_name(labels, i - 1));
     rows.push_back({pipeline.name});
     for (Index i = 0; i < hull.dim(); ++i) {
       rows.back().push_back(hull.is_empty() ? "empty" : width_text(hull.upper[i] - hull.lower[i]));
@@ -97,7 +101,7 @@ std::string widths_text(const RunOutcome& outcome, const Paint& paint) {
   return titled("Widths at the last step", rows, paint);
 }
 
-std::string inner_text(const RunOutcome& outcome, const Paint& paint) {
+std::string inner_text(const RunOutcome& outcome, const Labels& labels, const Paint& paint) {
   Rows rows{{"PIPELINE", "STEPS", "MEAN SHARE OF THE WIDTH", "INSIDE THE HULL"}};
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     const EstimationOutcome& found = *pipeline.estimation();
@@ -105,20 +109,20 @@ std::string inner_text(const RunOutcome& outcome, const Paint& paint) {
     const bool inside = found.inner_outside < 0;
     rows.push_back({pipeline.name, fmt::format("{}", found.inner_steps),
                     number_text(found.inner_share),
-                    inside ? "always" : fmt::format("NOT at k = {}", found.inner_outside)});
+                    inside ? "always" : "NOT at " + time_text(labels, found.inner_outside)});
   }
   return titled("Inner estimates", rows, paint);
 }
 
-std::string growth_text(const RunOutcome& outcome, const Paint& paint) {
+std::string growth_text(const RunOutcome& outcome, const Labels& labels, const Paint& paint) {
   Rows rows{{"PIPELINE", "STATE", "SMALLEST WIDTH", "AT k", "LAST WIDTH", "FACTOR"}};
   std::string advice;
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
     if (!pipeline.estimation()->growth) continue;
     const WidthGrowth& growth = *pipeline.estimation()->growth;
-    rows.push_back({pipeline.name, fmt::format("x{}", growth.state + 1),
-                    width_text(growth.smallest), fmt::format("{}", growth.smallest_at),
-                    width_text(growth.last), fmt::format("{:.4g}", growth.factor)});
+    rows.push_back({pipeline.name, state_name(labels, growth.state), width_text(growth.smallest),
+                    fmt::format("{}", growth.smallest_at), width_text(growth.last),
+                    fmt::format("{:.4g}", growth.factor)});
     advice = advice_on(growth);
   }
   const std::string text = titled("Warning: bounds that grow", rows, paint);

@@ -18,11 +18,11 @@ namespace cordon::apps {
 /// One row per gain.
 std::string gains_text(const RunOutcome& outcome, const Paint& paint);
 /// One row per pipeline, one column per state, up to eight states.
-std::string widths_text(const RunOutcome& outcome, const Paint& paint);
+std::string widths_text(const RunOutcome& outcome, const Labels& labels, const Paint& paint);
 /// One row per pipeline that offers an inner estimate.
-std::string inner_text(const RunOutcome& outcome, const Paint& paint);
+std::string inner_text(const RunOutcome& outcome, const Labels& labels, const Paint& paint);
 /// One row per pipeline whose bounds grow, and what to do about it.
-std::string growth_text(const RunOutcome& outcome, const Paint& paint);
+std::string growth_text(const RunOutcome& outcome, const Labels& labels, const Paint& paint);
 
 /// The number, null for NaN, "inf" and "-inf".
 nlohmann::ordered_json json_number(double value);

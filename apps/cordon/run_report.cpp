@@ -59,13 +59,13 @@ std::string value_text(const PipelineOutcome& pipeline, const Measure& measure) 
                                               : text(metric);
 }
 
-std::string consistency(const PipelineOutcome& pipeline) {
+std::string consistency(const Labels& labels, const PipelineOutcome& pipeline) {
   if (!pipeline.error.empty()) return fmt::format("error after {} steps", pipeline.steps);
-  if (pipeline.violated_at >= 0) return fmt::format("VIOLATED at k = {}", pipeline.violated_at);
+  if (pipeline.violated_at >= 0) return "VIOLATED at " + time_text(labels, pipeline.violated_at);
   const EstimationOutcome& found = *pipeline.estimation();
-  if (found.inner_outside >= 0) return fmt::format("VIOLATED at k = {}", found.inner_outside);
+  if (found.inner_outside >= 0) return "VIOLATED at " + time_text(labels, found.inner_outside);
   if (found.inconsistent_from >= 0)
-    return fmt::format("empty from k = {}", found.inconsistent_from);
+    return "empty from " + time_text(labels, found.inconsistent_from);
   if (found.undecided > 0) return fmt::format("undecided at {} steps", found.undecided);
   return "consistent";
 }
@@ -110,10 +110,11 @@ std::vector<Column> metric_columns(const RunOutcome& outcome) {
   return found;
 }
 
-std::vector<Column> columns(const RunOutcome& outcome) {
-  std::vector<Column> found{{"PIPELINE", [](const PipelineOutcome& p) { return p.name; }},
-                            {"BACKEND", [](const PipelineOutcome& p) { return p.backend; }},
-                            {"CONSISTENCY", consistency}};
+std::vector<Column> columns(const RunOutcome& outcome, const Labels& labels) {
+  std::vector<Column> found{
+      {"PIPELINE", [](const PipelineOutcome& p) { return p.name; }},
+      {"BACKEND", [](const PipelineOutcome& p) { return p.backend; }},
+      {"CONSISTENCY", [&labels](const PipelineOutcome& p) { return consistency(labels, p); }}};
   for (Column& column : metric_columns(outcome)) found.push_back(std::move(column));
   found.push_back({"µs/STEP", [](const PipelineOutcome& p) {
                      return p.steps ? fmt::format("{:.1f}", p.median_step_us) : "-";
@@ -124,8 +125,8 @@ std::vector<Column> columns(const RunOutcome& outcome) {
   return found;
 }
 
-std::string observer_table(const RunOutcome& outcome, const Paint& paint) {
-  const std::vector<Column> shown = columns(outcome);
+std::string observer_table(const RunOutcome& outcome, const Labels& labels, const Paint& paint) {
+  const std::vector<Column> shown = columns(outcome, labels);
   std::vector<std::vector<std::string>> rows(1);
   for (const Column& column : shown) rows[0].push_back(column.header);
   for (const PipelineOutcome& pipeline : outcome.pipelines) {
@@ -253,18 +254,18 @@ ordered_json json_of(const PipelineOutcome& p, const std::vector<std::string>& m
 }
 
 /// A guarantee that was violated at `violated_at`.
-std::string violation(const PipelineOutcome& pipeline) {
-  if (pipeline.diagnosis()) return diagnosis_violation(pipeline);
+std::string violation(const Labels& labels, const PipelineOutcome& pipeline) {
+  if (pipeline.diagnosis()) return diagnosis_violation(labels, pipeline);
   if (pipeline.design()) {
     return fmt::format(
-        "pipeline \"{}\" violates its guarantee: at k = {} of an experiment its diagnoser excludes "
+        "pipeline \"{}\" violates its guarantee: at {} of an experiment its diagnoser excludes "
         "the true mode. This is a defect of its backend or diagnoser",
-        pipeline.name, pipeline.violated_at);
+        pipeline.name, time_text(labels, pipeline.violated_at));
   }
   return fmt::format(
-      "pipeline \"{}\" violates its guarantee: at k = {} the true state is proven outside the "
+      "pipeline \"{}\" violates its guarantee: at {} the true state is proven outside the "
       "estimate. This is a defect of its backend or observer",
-      pipeline.name, pipeline.violated_at);
+      pipeline.name, time_text(labels, pipeline.violated_at));
 }
 
 void add_complaints(const Study& study, const PipelineOutcome& pipeline,
@@ -304,16 +305,16 @@ std::string report_text(const Study& study, const RunOutcome& outcome,
   const std::string title = study.title.empty() ? "" : paint.bold(study.title) + "\n\n";
   const std::string comparison = observed.pipelines.empty() && !diagnoses.empty()
                                      ? ""
-                                     : observer_table(observed, paint) + "\n";
+                                     : observer_table(observed, study.labels, paint) + "\n";
   std::string assumptions;
   for (const PipelineOutcome& pipeline : observed.pipelines) {
     const std::string failed = assumption_text(study, pipeline, paint);
     if (!failed.empty()) assumptions += pipeline.name + ": " + failed;
   }
   if (!assumptions.empty()) assumptions += "\n";
-  const std::string details = assumptions + gains_text(observed, paint) +
-                              widths_text(observed, paint) + inner_text(observed, paint) +
-                              growth_text(observed, paint);
+  const std::string details =
+      assumptions + gains_text(observed, paint) + widths_text(observed, study.labels, paint) +
+      inner_text(observed, study.labels, paint) + growth_text(observed, study.labels, paint);
   return title + comparison + details + diagnoses + "Results are in " + out.string() + "\n";
 }
 
@@ -337,11 +338,11 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
     }
     if (const DesignedOutcome* const designed = pipeline.design())
       add_complaints(study, pipeline, *designed, found);
-    if (pipeline.violated_at >= 0) found.push_back(violation(pipeline));
+    if (pipeline.violated_at >= 0) found.push_back(violation(study.labels, pipeline));
     const EstimationOutcome* const estimated = pipeline.estimation();
     if (estimated && estimated->inner_outside >= 0) {
       found.push_back(fmt::format(
-          "pipeline \"{}\" violates its guarantee: at k = {} its inner estimate, of trajectories "
+          "pipeline \"{}\" violates its guarantee: at {} its inner estimate, of trajectories "
           "that it must enclose, "
           "leaves the hull of its estimate. This is a defect of its backend or observer",
           pipeline.name, estimated->inner_outside));

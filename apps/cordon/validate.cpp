@@ -57,18 +57,21 @@ std::string describe_data(const Study& study) {
 }
 
 /// "weak from k = 3 to 5"; the last one may have no end.
-std::string describe_fault(const FaultSpec& fault, std::int64_t steps) {
+std::string describe_fault(const Study& study, const FaultSpec& fault, std::int64_t steps) {
   const std::string until = fault.to < steps ? fmt::format(" to {}", fault.to) : "";
-  return fmt::format("{} from k = {}{}{}", fault.name, fault.from, until,
+  return fmt::format("{} from {}{}{}", fault.name, time_text(study.labels, fault.from), until,
                      fault.mode < 0 ? " (not in the bank)" : "");
 }
 
 /// "outputs 1, 2 from k = 3 to 5, with probability 0.3, there every 5 steps".
-std::string describe_dropout(const DropoutSpec& dropout, std::int64_t steps) {
-  std::vector<Index> numbers;
-  for (const Index output : dropout.outputs) numbers.push_back(output + 1);
-  std::string text = fmt::format("{} {} from k = {}", numbers.size() == 1 ? "output" : "outputs",
-                                 fmt::join(numbers, ", "), dropout.from);
+std::string describe_dropout(const Labels& labels, const DropoutSpec& dropout, std::int64_t steps) {
+  std::vector<std::string> outputs;
+  for (const Index output : dropout.outputs) {
+    outputs.push_back(labels.outputs.empty() ? fmt::format("{}", output + 1)
+                                             : label_of(labels.outputs, "y", output));
+  }
+  std::string text = fmt::format("{} {} from {}", outputs.size() == 1 ? "output" : "outputs",
+                                 fmt::join(outputs, ", "), time_text(labels, dropout.from));
   if (dropout.to < steps) text += fmt::format(" to {}", dropout.to);
   if (dropout.probability < 1) text += fmt::format(", with probability {}", dropout.probability);
   if (dropout.every > 0) text += fmt::format(", there every {}", count(dropout.every, "step"));
@@ -86,19 +89,23 @@ std::string describe_modes(const Study& study) {
   if (!simulate) return text;
   const char* label = "faults";
   for (const FaultSpec& fault : simulate->faults) {
-    text += fmt::format("  {:<9} {}\n", label, describe_fault(fault, simulate->steps));
+    text += fmt::format("  {:<9} {}\n", label, describe_fault(study, fault, simulate->steps));
     label = "";
   }
   label = "additive";
   for (const AdditiveFaultSpec& fault : simulate->additive_faults) {
     const std::string until = fault.to < simulate->steps ? fmt::format(" to {}", fault.to) : "";
-    text +=
-        fmt::format("  {:<9} fault {} from k = {}{}\n", label, fault.fault + 1, fault.from, until);
+    const std::string name = study.labels.faults.empty()
+                                 ? fmt::format("fault {}", fault.fault + 1)
+                                 : label_of(study.labels.faults, "n", fault.fault);
+    text += fmt::format("  {:<9} {} from {}{}\n", label, name, time_text(study.labels, fault.from),
+                        until);
     label = "";
   }
   label = "dropouts";
   for (const DropoutSpec& dropout : simulate->dropouts) {
-    text += fmt::format("  {:<9} {}\n", label, describe_dropout(dropout, simulate->steps));
+    text += fmt::format("  {:<9} {}\n", label,
+                        describe_dropout(study.labels, dropout, simulate->steps));
     label = "";
   }
   return text;

@@ -96,7 +96,7 @@ TEST_CASE("data that are wrong") {
   CHECK(problems_of(data("", Matrix())).empty());
   expect_problem(data("u", Matrix{{1, 2, 3}}), "/data/u", "has 3 samples, the others have 2");
   expect_problem(data("u", Matrix(0, 0)), "/data/u", "is missing");
-  expect_problem(data("y", Matrix{{1, std::nan("")}}), "/data/y", "holds NaN or Inf in sample 2");
+  expect_problem(data("y", Matrix{{1, INFINITY}}), "/data/y", "holds Inf in sample 2");
   expect_problem(data("y", Matrix{{1, 2, 3}, {4, 5, 6}}), "/data/y", "is 2 × 3, must have 1 row");
   expect_problem(data("mode", Matrix{{0, 1}}), "/data/mode", "holds 1 in sample 2");
   expect_problem(data("mode", Matrix{{0, -2}}), "/data/mode", "holds -2 in sample 2");

@@ -226,8 +226,8 @@ void check_design(const Report& report, const Json& pipeline, int p) {
   const Json& design = pipeline["design"];
   if (design.is_null() || design["u"].is_null()) return;
   for (std::size_t i = 0; i < design["u"][0].size(); ++i) {
-    const Series input =
-        series_of(content<Plot>(report, "input_" + std::to_string(i + 1)), p, pipeline["name"]);
+    const Series input = series_of(content<Plot>(report, "designed_input_" + std::to_string(i + 1)),
+                                   p, pipeline["name"]);
     REQUIRE(input.y.size() == design["u"].size());
     for (std::size_t k = 0; k < input.y.size(); ++k) CHECK(input.y[k] == number(design["u"][k][i]));
   }

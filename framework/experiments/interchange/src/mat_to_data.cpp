@@ -19,8 +19,10 @@ class DataReader {
   DataReader(const Value& data, const std::string& pointer, Problems& problems)
       : data_(data), pointer_(pointer), problems_(problems) {}
 
-  /// Reports a signal that is wrong, or absent although `required`.
-  std::optional<Matrix> signal(const char* name, Index channels, const char* of, bool required);
+  /// Reports a signal that is wrong, or absent although `required`; NaN where values may be
+  /// `missing`.
+  std::optional<Matrix> signal(const char* name, Index channels, const char* of, bool required,
+                               bool missing = false);
   Index samples() const { return samples_; }
   std::string place(const char* name) const { return json::child(pointer_, name); }
 
@@ -32,7 +34,7 @@ class DataReader {
 };
 
 std::optional<Matrix> DataReader::signal(const char* name, Index channels, const char* of,
-                                         bool required) {
+                                         bool required, bool missing) {
   const Value* value = data_.field(name);
   const auto report = [&](const std::string& message, const std::string& suggestion = "") {
     problems_.add(place(name), 0, message, suggestion);
@@ -57,9 +59,12 @@ std::optional<Matrix> DataReader::signal(const char* name, Index channels, const
                   std::to_string(samples_));
   samples_ = rows.cols();
   for (Index k = 0; k < rows.cols(); ++k) {
-    if (!rows.col(k).array().isFinite().all()) {
-      return report("holds NaN or Inf in sample " + std::to_string(k + 1),
-                    "recorded data are complete: cut or repair them first");
+    for (const double x : rows.col(k)) {
+      if (std::isfinite(x) || (missing && std::isnan(x))) continue;
+      return report(
+          (missing ? "holds Inf in sample " : "holds NaN or Inf in sample ") +
+              std::to_string(k + 1),
+          "only outputs may be missing, which NaN says: cut the samples, or repair them first");
     }
   }
   return rows;
@@ -93,7 +98,7 @@ std::optional<CsvData> data_of(const Value& data, const json::SystemPart& system
   const LinearModel& m = system.model.linear;
   DataReader reader(data, pointer, problems);
   const std::size_t before = problems.count();
-  const auto y = reader.signal("y", m.outputs(), "one per row of C", true);
+  const auto y = reader.signal("y", m.outputs(), "one per row of C", true, true);
   std::optional<Matrix> u;
   if (m.inputs() > 0) u = reader.signal("u", m.inputs(), "one per column of B", true);
   const auto x = reader.signal("x", m.states(), "one per state", false);
@@ -114,11 +119,13 @@ std::optional<CsvData> data_of(const Value& data, const json::SystemPart& system
   add("y_", y, csv.spec.outputs);
   add("x_", x, csv.spec.truth);
   if (mode) header.push_back(csv.spec.mode = "mode");
+  if (y->hasNaN()) csv.spec.missing = MissingValue::skip;
   csv.text = detail::joined(header);
   for (Index k = 0; k < reader.samples(); ++k) {
     std::vector<std::string> row{std::to_string(k)};
     for (const Matrix* part : parts) {
-      for (Index i = 0; i < part->rows(); ++i) row.push_back(detail::to_text((*part)(i, k)));
+      for (Index i = 0; i < part->rows(); ++i)
+        row.push_back(std::isnan((*part)(i, k)) ? "" : detail::to_text((*part)(i, k)));
     }
     if (mode) row.push_back(detail::csv_field(modes[static_cast<std::size_t>(k)]));
     csv.text += detail::joined(row);

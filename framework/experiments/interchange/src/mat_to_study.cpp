@@ -203,6 +203,7 @@ Json recorded(const CsvSpec& spec, const fs::path& file) {
   csv["outputs"] = spec.outputs;
   if (!spec.truth.empty()) csv["truth"] = spec.truth;
   if (!spec.mode.empty()) csv["mode"] = spec.mode;
+  if (spec.missing == MissingValue::skip) csv["missing"] = "skip";
   return {{"csv", std::move(csv)}};
 }
 

@@ -111,7 +111,25 @@ Value to_mat(const LineForm& X) {
   return std::move(set).value();
 }
 
-Value to_mat(const ModeBank& bank) {
+namespace {
+
+void add_labels(Struct& system, const Labels& labels) {
+  if (labels.sampling_time > 0) system.set("sampling_time", number(labels.sampling_time));
+  if (!labels.any()) return;
+  Struct names;
+  const std::pair<const char*, const Labels::Names*> all[]{
+      {"states", &labels.states},   {"inputs", &labels.inputs},
+      {"outputs", &labels.outputs}, {"disturbances", &labels.disturbances},
+      {"noises", &labels.noises},   {"faults", &labels.faults}};
+  for (const auto& [kind, list] : all) {
+    if (!list->empty()) names.set(kind, cell(*list));
+  }
+  system.set("names", std::move(names).value());
+}
+
+}  // namespace
+
+Value to_mat(const ModeBank& bank, const Labels& labels) {
   const Mode& nominal = bank[bank.nominal];
   Struct system = matrices(nominal.model);
   system.set("F", matrix(nominal.model.linear.F))
@@ -127,6 +145,7 @@ Value to_mat(const ModeBank& bank) {
     modes.push_back(std::move(mode));
   }
   if (!modes.empty()) system.set("modes", Struct::array(std::move(modes)));
+  add_labels(system, labels);
   return std::move(system).value();
 }
 
@@ -164,7 +183,7 @@ namespace cordon {
 
 void study_to_mat(const Study& study, const Target& target, bool with_data) {
   mat::Variables all{{"cordon", mat::about("study", study.title)},
-                     {"system", mat::to_mat(bank_of(study))}};
+                     {"system", mat::to_mat(bank_of(study), study.labels)}};
   const auto* simulate = std::get_if<SimulateSpec>(&study.data);
   if (with_data && !(simulate && simulate->steps == 0))
     all.push_back({"data", mat::to_mat(*open_data(study))});

@@ -47,15 +47,21 @@ void require_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-CsvSource::CsvSource(const CsvSpec& spec, const LinearModel& model, std::vector<std::string> modes)
+CsvSource::CsvSource(const CsvSpec& spec, const LinearModel& model, std::vector<std::string> modes,
+                     double sampling_time)
     : file_(spec.file),
       inputs_{spec.inputs, {}, "/data/csv/inputs"},
       outputs_{spec.outputs, {}, "/data/csv/outputs"},
       truth_{spec.truth, {}, "/data/csv/truth"},
       mode_{{}, {}, "/data/csv/mode"},
+      time_{{}, {}, "/data/csv/time"},
       skips_missing_(spec.missing == MissingValue::skip),
-      modes_(std::move(modes)) {
+      modes_(std::move(modes)),
+      sampling_time_(sampling_time),
+      fills_(spec.irregular == IrregularRows::gaps),
+      clock_(sampling_time, fills_) {
   if (!spec.mode.empty()) mode_.names.push_back(spec.mode);
+  if (!spec.time.empty()) time_.names.push_back(spec.time);
   check_sizes(spec, model);
   require_file(file_);
   validate();
@@ -106,8 +112,11 @@ void CsvSource::validate() {
     return;
   }
   locate(row);
+  StepClock clock(sampling_time_, fills_);
   while (!too_many() && reader.next(row)) {
     check_row(row);
+    if (row.problem.empty() && row.fields.size() == width_)
+      steps_ = step(row, clock).value_or(steps_) + 1;
     ++rows_;
   }
   if (rows_ == 0 && !too_many())
@@ -136,7 +145,8 @@ void CsvSource::locate(const CsvRow& row) {
     report("/data/csv/file", row.line,
            "the column " + json::in_quotes(name) + " appears more than once", "rename one of them");
   }
-  for (Columns* columns : {&inputs_, &outputs_, &truth_, &mode_}) find_columns(*columns, header);
+  for (Columns* columns : {&inputs_, &outputs_, &truth_, &mode_, &time_})
+    find_columns(*columns, header);
 }
 
 void CsvSource::find_columns(Columns& columns, const std::vector<std::string>& header) {
@@ -149,8 +159,9 @@ void CsvSource::find_columns(Columns& columns, const std::vector<std::string>& h
     for (const std::string& name : header) {
       if (candidates.size() < 30 && name.size() <= 60) candidates.push_back(name);
     }
-    report(&columns == &mode_ ? columns.pointer : columns.pointer + "/" + std::to_string(i), 1,
-           "there is no column " + json::in_quotes(columns.names[i]) + " in the header",
+    report(&columns == &mode_ || &columns == &time_ ? columns.pointer
+                                                    : columns.pointer + "/" + std::to_string(i),
+           1, "there is no column " + json::in_quotes(columns.names[i]) + " in the header",
            suggest(columns.names[i], candidates));
   }
 }
@@ -212,22 +223,55 @@ std::optional<Index> CsvSource::mode(const CsvRow& row) {
   return std::nullopt;
 }
 
+/// The step that a row is of; nothing after reporting what is wrong.
+std::optional<std::int64_t> CsvSource::step(const CsvRow& row, StepClock& clock) {
+  if (time_.names.empty()) return &clock == &clock_ ? k_ : steps_;
+  const std::optional<Vector> time = numbers(row, time_);
+  if (!time || time_.at.front() == nowhere) return std::nullopt;
+  StepClock::Answer answer = clock.step_at((*time)[0]);
+  if (answer.problem.empty()) return answer.k;
+  report("/data/csv/file", row.line,
+         "column " + json::in_quotes(time_.names.front()) + ": " + answer.problem,
+         std::move(answer.suggestion));
+  return std::nullopt;
+}
+
 std::optional<Record> CsvSource::next() {
+  std::optional<Record> record = waiting_ ? std::exchange(waiting_, std::nullopt) : next_row();
+  if (!record) return std::nullopt;
+  Sample& sample = record->sample;
+  if (sample.k == k_) {
+    last_input_ = sample.u;
+    ++k_;
+    return record;
+  }
+  const Index p = sample.y.size();
+  Record gap{{static_cast<Index>(k_++), last_input_,
+              Vector::Constant(p, std::numeric_limits<double>::quiet_NaN())},
+             std::nullopt,
+             std::nullopt};
+  for (Index i = 0; i < p; ++i) gap.sample.missing.push_back(i);
+  waiting_ = std::move(record);
+  return gap;
+}
+
+std::optional<Record> CsvSource::next_row() {
   CsvRow row;
   if (!reader_->next(row)) return std::nullopt;
   std::optional<Vector> u, y, truth;
   std::optional<Index> true_mode;
+  std::optional<std::int64_t> k;
   if (row.problem.empty() && row.fields.size() == width_) {
     u = numbers(row, inputs_);
     y = numbers(row, outputs_);
     truth = numbers(row, truth_);
     true_mode = mode(row);
+    k = step(row, clock_);
   }
-  if (!u || !y || !truth || (!true_mode && !mode_.names.empty()))
+  if (!k || !u || !y || !truth || (!true_mode && !mode_.names.empty()))
     throw Error(Errc::io, file_.string() + " was changed while it was read (line " +
                               std::to_string(row.line) + ")");
-  Record record{
-      {static_cast<Index>(k_++), std::move(*u), std::move(*y)}, std::nullopt, std::nullopt};
+  Record record{{static_cast<Index>(*k), std::move(*u), std::move(*y)}, std::nullopt, std::nullopt};
   Sample& sample = record.sample;
   for (Index i = 0; i < sample.y.size(); ++i) {
     if (std::isnan(sample.y[i])) sample.missing.push_back(i);

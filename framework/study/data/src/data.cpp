@@ -49,7 +49,7 @@ std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_off
   std::vector<std::string> modes{study.nominal};
   for (const Mode& mode : study.modes) modes.push_back(mode.name);
   return std::make_unique<detail::CsvSource>(std::get<CsvSpec>(study.data), study.model.linear,
-                                             std::move(modes));
+                                             std::move(modes), study.labels.sampling_time);
 }
 
 }  // namespace cordon

@@ -245,11 +245,35 @@ std::vector<std::string> read_columns(const Cursor& csv, const char* key, std::o
   return names.value_or(std::vector<std::string>{});
 }
 
-DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::path& folder) {
+/// "time" and "irregular".
+void read_time_column(const Cursor& at, const Labels& labels, CsvSpec& spec) {
+  const auto time = at.find("time"), irregular = at.find("irregular");
+  if (time) {
+    spec.time = read_text(*time, 4096).value_or("");
+    if (!(labels.sampling_time > 0)) {
+      time->error("is a column of times, and /system has no \"sampling_time\"",
+                  "give the seconds from k to k + 1 there");
+    }
+  }
+  if (!irregular) return;
+  if (!time)
+    irregular->error("says what times are that leave steps out", "name the column \"time\"");
+  const auto name = read_choice(*irregular, irregular_rows_names());
+  if (name == "gaps") spec.irregular = IrregularRows::gaps;
+  for (const char* key : {"truth", "mode"}) {
+    if (name != "gaps" || !at.find(key)) continue;
+    at.find(key)->error("is not known at steps that the rows leave out",
+                        "leave it out, or add rows for these steps");
+  }
+}
+
+DataPart read_csv(const Cursor& at, const SystemPart& system, const std::filesystem::path& folder) {
+  const Sizes& sizes = system.sizes;
   DataPart part;
   CsvSpec spec;
-  if (!at.expect_keys({"file", "inputs", "outputs", "truth", "mode", "missing"},
-                      "key of recorded data", "{\"file\": \"data.csv\", \"outputs\": [\"y\"]}"))
+  if (!at.expect_keys(
+          {"file", "inputs", "outputs", "truth", "mode", "missing", "time", "irregular"},
+          "key of recorded data", "{\"file\": \"data.csv\", \"outputs\": [\"y\"]}"))
     return part;
   const auto file_at = at.need("file", "the CSV file, relative to the folder of the study");
   if (const auto file = file_at ? read_text(*file_at, 4096) : std::nullopt) {
@@ -273,6 +297,7 @@ DataPart read_csv(const Cursor& at, const Sizes& sizes, const std::filesystem::p
     const auto name = read_choice(*missing, missing_value_names());
     spec.missing = name == "skip" ? MissingValue::skip : MissingValue::error;
   }
+  read_time_column(at, system.labels, spec);
   part.data = std::move(spec);
   return part;
 }
@@ -292,6 +317,11 @@ const std::vector<std::string>& noise_names() {
 
 const std::vector<std::string>& parameter_draw_names() {
   static const std::vector<std::string> names{"constant", "varying"};
+  return names;
+}
+
+const std::vector<std::string>& irregular_rows_names() {
+  static const std::vector<std::string> names{"error", "gaps"};
   return names;
 }
 
@@ -357,7 +387,7 @@ DataPart read_data(const Cursor& data, const SystemPart& system, const DataUse& 
           "cannot stand beside a pipeline with a designer, whose inputs are tried in simulations",
           "use simulated data, or make two studies");
     }
-    return read_csv(*csv, system.sizes, folder);
+    return read_csv(*csv, system, folder);
   } else {
     DataPart part;
     part.data = read_simulate(*simulate, system, use, context, part.written_faults);

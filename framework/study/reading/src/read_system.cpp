@@ -261,7 +261,7 @@ SystemPart SystemReader::read() {
   const auto type_at = system_.need("type", "\"lti\", \"interval_lti\", or \"descriptor\" with E");
   const auto type = type_at ? read_choice(*type_at, system_types()) : std::nullopt;
   std::vector<std::string> keys{"type", "E", "A", "B", "Bw", "C", "D", "Dv", "F", "X0", "W", "V"};
-  if (!nominal_) keys.insert(keys.end(), {"U", "nominal", "modes"});
+  if (!nominal_) keys.insert(keys.end(), {"U", "nominal", "modes", "names", "sampling_time"});
   exact_ = type == "lti";
   if (type && type != "descriptor") {
     if (const auto E = system_.find("E"))
@@ -273,6 +273,11 @@ SystemPart SystemReader::read() {
   read_faults();
   read_sets(disturbances_, noises_);
   if (nominal_) compare_with_nominal();
+  if (!nominal_) {
+    const Sizes& sizes = part_.sizes;
+    part_.labels = read_labels(
+        system_, {sizes.states, sizes.inputs, sizes.outputs, disturbances_, noises_, sizes.faults});
+  }
   part_.good = system_.problems().met() == before_;
   if (!nominal_) read_modes(system_, part_, warnings_);
   return std::move(part_);

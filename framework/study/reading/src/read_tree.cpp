@@ -94,6 +94,7 @@ void TreeReader::read_sections() {
   study.model = std::move(system.model);
   study.nominal = std::move(system.nominal);
   study.modes = std::move(system.modes);
+  study.labels = std::move(system.labels);
   written.modes = std::move(system.written);
 }
 

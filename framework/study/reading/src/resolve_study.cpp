@@ -140,6 +140,18 @@ void add(Json& object, const WrittenMode& mode) {
   if (mode.system) object["system"] = to_json(*mode.system);
 }
 
+/// Names and the time of a step, where they are given.
+void add_labels(Json& system, const Labels& labels) {
+  if (labels.sampling_time > 0) system["sampling_time"] = labels.sampling_time;
+  const std::pair<const char*, const Labels::Names*> all[]{
+      {"states", &labels.states},   {"inputs", &labels.inputs},
+      {"outputs", &labels.outputs}, {"disturbances", &labels.disturbances},
+      {"noises", &labels.noises},   {"faults", &labels.faults}};
+  for (const auto& [kind, names] : all) {
+    if (!names->empty()) system["names"][kind] = *names;
+  }
+}
+
 /// U, the name of the nominal mode and the modes, where there are any.
 void add_modes(Json& system, const Study& study, const Written& written) {
   const LineForm& U = study.model.U;
@@ -233,6 +245,9 @@ Json to_json(const CsvSpec& spec, const std::string& written_file) {
   if (!spec.mode.empty()) object["mode"] = spec.mode;
   if (spec.missing != MissingValue::error)
     object["missing"] = missing_value_names()[static_cast<std::size_t>(spec.missing)];
+  if (!spec.time.empty()) object["time"] = spec.time;
+  if (spec.irregular != IrregularRows::error)
+    object["irregular"] = irregular_rows_names()[static_cast<std::size_t>(spec.irregular)];
   return object;
 }
 
@@ -264,6 +279,7 @@ std::string resolve(const Study& study, const Written& written,
   root["title"] = study.title;
   if (!written.plugins.empty()) root["plugins"] = written.plugins;
   root["system"] = to_json(study.model);
+  add_labels(root["system"], study.labels);
   add_modes(root["system"], study, written);
   if (const auto* simulate = std::get_if<SimulateSpec>(&study.data)) {
     const bool streamed = std::any_of(study.pipelines.begin(), study.pipelines.end(),

@@ -246,6 +246,12 @@ Json data() {
                              "what outputs without a value, empty fields or NaN, are: an error, or "
                              "missing in the sample");
   csv["missing"]["default"] = "error";
+  csv["time"] = described(text(4096),
+                          "column of times in seconds, of steps of /system's "
+                          "sampling_time");
+  csv["irregular"] = described(one_of(json::irregular_rows_names()),
+                               "rows that leave steps out: an error, or steps without outputs");
+  csv["irregular"]["default"] = "error";
   return {{"oneOf",
            {object({{"simulate", object(simulate, {})}}, {"simulate"}),
             object({{"csv", object(csv, {"file", "outputs"})}}, {"csv"})}}};
@@ -261,8 +267,16 @@ Json definitions(const Registry& registry) {
   defs["bounds"] = list_of({{"anyOf", {{{"type", "number"}}, one_of({"inf", "-inf"})}}});
   defs["set"] = sets();
   defs["signal"] = signals();
+  const Json names = list_of(text(60));
+  Json kinds;
+  for (const char* kind : {"states", "inputs", "outputs", "disturbances", "noises", "faults"})
+    kinds[kind] = names;
   defs["system"] = systems(
-      {{"F",
+      {{"names", described(object(kinds, {}),
+                           "for people: one name each, with the unit in brackets, \"level [m]\"")},
+       {"sampling_time",
+        described(Json{{"type", "number"}, {"exclusiveMinimum", 0}}, "seconds from k to k + 1")},
+       {"F",
         described(reference("matrix"), "n × faults: directions of additive faults, a column each")},
        {"U", described(reference("set"), "contains every input u; the whole space by default")},
        {"nominal", described(text(200), "name of the nominal mode; \"healthy\" by default")},

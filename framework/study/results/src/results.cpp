@@ -111,7 +111,7 @@ Results::Results(const Study& study, const Registry& registry, const DirectoryLo
       run_(run_file_) {
   begin_results(registry);
   begin_run(registry);
-  if (inputs_file_) write_inputs_header(*inputs_file_, study.model.linear.inputs());
+  if (inputs_file_) write_inputs_header(*inputs_file_, study.model.linear.inputs(), study.labels);
 }
 
 void Results::begin_results(const Registry& registry) {
@@ -182,22 +182,24 @@ void Results::begin_estimation(const PipelineSpec& spec, std::optional<Rounding>
 
 void Results::data(const Record& record) {
   if (last_sample_ && record.sample.k <= *last_sample_) return;
-  const std::pair<const char*, const Vector*> parts[]{
-      {"u_", &record.sample.u},
-      {"y_", &record.sample.y},
-      {"x_", record.truth ? &*record.truth : nullptr},
-      {"n_", record.fault ? &*record.fault : nullptr}};
+  const Labels& labels = study_.labels;
+  const std::tuple<const char*, const Vector*, const Labels::Names&> parts[]{
+      {"u", &record.sample.u, labels.inputs},
+      {"y", &record.sample.y, labels.outputs},
+      {"x", record.truth ? &*record.truth : nullptr, labels.states},
+      {"n", record.fault ? &*record.fault : nullptr, labels.faults}};
   if (!last_sample_) {
     std::vector<std::string> names{"k"};
-    for (const auto& [name, part] : parts) {
-      for (Index i = 1; part && i <= part->size(); ++i) names.push_back(name + std::to_string(i));
+    for (const auto& [symbol, part, called] : parts) {
+      for (Index i = 0; part && i < part->size(); ++i)
+        names.push_back(csv_field(heading_of(called, symbol, i)));
     }
     with_mode_ = record.mode.has_value();
     if (with_mode_) names.push_back("mode");
     data_file_.write(joined(names));
   }
   std::vector<std::string> row{std::to_string(record.sample.k)};
-  for (const auto& [name, part] : parts) {
+  for (const auto& [symbol, part, called] : parts) {
     for (Index i = 0; part && i < part->size(); ++i)
       row.push_back(std::isnan((*part)[i]) ? "" : to_text((*part)[i]));
   }
@@ -240,15 +242,17 @@ void Results::estimate(const StepResult& result) {
 
 void Results::write_header(Index states) {
   std::vector<std::string> names{"pipeline", "k", "consistent", "tightness"};
-  for (const char* bound : {"lower_", "upper_"}) {
-    for (Index i = 1; i <= states; ++i) names.push_back(bound + std::to_string(i));
-  }
+  const auto add_bounds = [&](std::initializer_list<const char*> bounds) {
+    for (const char* bound : bounds) {
+      for (Index i = 0; i < states; ++i)
+        names.push_back(csv_field(heading_of(study_.labels.states, bound, i)));
+    }
+  };
+  add_bounds({"lower", "upper"});
   if (columns_) {
     for (const std::string& name : *columns_) names.push_back(csv_field(name));
   }
-  for (const char* bound : {"inner_lower_", "inner_upper_"}) {
-    for (Index i = 1; i <= states; ++i) names.push_back(bound + std::to_string(i));
-  }
+  add_bounds({"inner_lower", "inner_upper"});
   steps_file_.write(joined(names));
   header_written_ = true;
 }

@@ -58,9 +58,9 @@ const std::vector<std::string>& design_summary_columns() {
   return names;
 }
 
-void write_inputs_header(Sink& file, Index inputs) {
+void write_inputs_header(Sink& file, Index inputs, const Labels& labels) {
   std::vector<std::string> names{"pipeline", "k"};
-  for (Index i = 1; i <= inputs; ++i) names.push_back("u_" + std::to_string(i));
+  for (Index i = 0; i < inputs; ++i) names.push_back(csv_field(heading_of(labels.inputs, "u", i)));
   file.write(joined(names));
 }
 

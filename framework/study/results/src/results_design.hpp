@@ -13,6 +13,6 @@ namespace cordon::detail {
 const std::vector<std::string>& design_summary_columns();
 
 /// The first row of inputs.csv.
-void write_inputs_header(Sink& file, Index inputs);
+void write_inputs_header(Sink& file, Index inputs, const Labels& labels);
 
 }  // namespace cordon::detail

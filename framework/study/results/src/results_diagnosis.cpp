@@ -90,13 +90,14 @@ void Results::write_diagnosis_header(std::size_t modes) {
     names.push_back("candidate" + of_mode);
     names.push_back("consistent" + of_mode);
     for (const char* bound : {"lower", "upper"}) {
-      for (Index i = 1; i <= study_.model.linear.outputs(); ++i)
-        names.push_back(fmt::format("{}{}_{}", bound, of_mode, i));
+      for (Index i = 0; i < study_.model.linear.outputs(); ++i)
+        names.push_back(csv_field(heading_of(study_.labels.outputs, bound + of_mode, i)));
     }
   }
-  for (Index i = 1; i <= study_.model.linear.faults(); ++i) {
-    for (const char* name : {"at", "lower", "estimate", "upper", "truth"})
-      names.push_back(fmt::format("fault_{}_{}", name, i));
+  for (Index i = 0; i < study_.model.linear.faults(); ++i) {
+    for (const char* name :
+         {"fault_at", "fault_lower", "fault_estimate", "fault_upper", "fault_truth"})
+      names.push_back(csv_field(heading_of(study_.labels.faults, name, i)));
   }
   diagnosis_file_->write(joined(names));
   diagnosis_header_written_ = true;

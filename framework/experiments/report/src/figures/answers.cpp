@@ -32,7 +32,19 @@ std::string size_of(const Cursor& form) {
                      count("constraints"));
 }
 
-std::string assumptions_of(const Cursor& pipeline, const Cursor& summary) {
+std::string time_of(const RunFiles& files, double k) {
+  return std::abs(k) < 1e15 ? time_text(files.labels(), static_cast<std::int64_t>(k))
+                            : "k = " + shown(k, 15);
+}
+
+/// `number`: from 1 on.
+std::string state_of(const RunFiles& files, double number) {
+  const Labels::Names& names = files.labels().states;
+  const bool is_named = number >= 1 && number <= static_cast<double>(names.size());
+  return is_named ? names[static_cast<std::size_t>(number) - 1] : "x" + shown(number, 15);
+}
+
+std::string assumptions_of(const RunFiles& files, const Cursor& pipeline, const Cursor& summary) {
   const auto assumptions = object_of(pipeline, "assumptions");
   if (!assumptions) return "";
   std::string text;
@@ -41,7 +53,7 @@ std::string assumptions_of(const Cursor& pipeline, const Cursor& summary) {
   if (const auto admissible = object_of(*assumptions, "admissible_set"))
     text += "; admissible set of " + size_of(*admissible);
   const double until = value_of(summary, "assumptions_until");
-  return std::isnan(until) ? text : text + fmt::format("; left at k = {}", shown(until, 15));
+  return std::isnan(until) ? text : text + "; left at " + time_of(files, until);
 }
 
 void add_observers(const RunFiles& files, const Curves& curves, Report& report) {
@@ -63,7 +75,7 @@ void add_observers(const RunFiles& files, const Curves& curves, Report& report) 
         static_cast<double>(p < curves.pipelines.size() ? curves.pipelines[p].exact : 0), 15));
     for (const char* kind : {"emptiness", "containment", "bounds"})
       row.push_back(answers(all, kind));
-    row.push_back(text_cell(assumptions_of(tree, *summary)));
+    row.push_back(text_cell(assumptions_of(files, tree, *summary)));
     table.rows.push_back(std::move(row));
   }
   if (table.rows.empty()) return;
@@ -137,8 +149,8 @@ void add_failures(const RunFiles& files, Report& report) {
     if (!summary) continue;
     if (const double k = value_of(*summary, "violated_at"); !std::isnan(k)) {
       report.notes.push_back(
-          fmt::format("A guarantee of \"{}\" was violated at k = {}: a defect, please report it.",
-                      name, shown(k, 15)));
+          fmt::format("A guarantee of \"{}\" was violated at {}: a defect, please report it.", name,
+                      time_of(files, k)));
     }
     for (const Cursor& claim : items_of(*summary, "refuted")) {
       report.notes.push_back(fmt::format(
@@ -147,32 +159,32 @@ void add_failures(const RunFiles& files, Report& report) {
     }
     if (const auto failed = object_of(*summary, "failed_assumption")) {
       report.notes.push_back(fmt::format(
-          "An assumption of \"{}\" fails: {}. What is said from k = {} on rests on it and proves "
+          "An assumption of \"{}\" fails: {}. What is said from {} on rests on it and proves "
           "nothing.",
-          name, text_of(*failed, "text"), shown(value_of(*summary, "assumptions_until"), 15)));
+          name, text_of(*failed, "text"), time_of(files, value_of(*summary, "assumptions_until"))));
     }
     if (const double k = value_of(*summary, "inner_outside"); !std::isnan(k)) {
       report.notes.push_back(fmt::format(
-          "The inner estimate of \"{}\" leaves its bounds at k = {}: a defect, please report it.",
-          name, shown(k, 15)));
+          "The inner estimate of \"{}\" leaves its bounds at {}: a defect, please report it.", name,
+          time_of(files, k)));
     }
     if (const auto growth = object_of(*summary, "growth")) {
       report.notes.push_back(fmt::format(
-          "The bounds of \"{}\" grow: the width of x{} is {} times that at k = {}. Cause and "
+          "The bounds of \"{}\" grow: the width of {} is {} times that at {}. Cause and "
           "remedy: {}.",
-          name, shown(value_of(*growth, "state"), 15), shown(value_of(*growth, "factor"), 4),
-          shown(value_of(*growth, "smallest_at"), 15), text_of(*growth, "advice")));
+          name, state_of(files, value_of(*growth, "state")), shown(value_of(*growth, "factor"), 4),
+          time_of(files, value_of(*growth, "smallest_at")), text_of(*growth, "advice")));
     }
     if (const double k = value_of(*summary, "inconsistent_from"); !std::isnan(k)) {
       const double until = value_of(*summary, "assumptions_until");
       report.notes.push_back(fmt::format(
-          "The estimate of \"{}\" is proven empty from k = {} on: model, bounds, assumptions and "
+          "The estimate of \"{}\" is proven empty from {} on: model, bounds, assumptions and "
           "data contradict "
           "each other{}.",
-          name, shown(k, 15),
-          std::isnan(until) ? ""
-                            : fmt::format("; the true state has left what is assumed at k = {}",
-                                          shown(until, 15))));
+          name, time_of(files, k),
+          std::isnan(until)
+              ? ""
+              : "; the true state has left what is assumed at " + time_of(files, until)));
     }
     if (const std::string error = text_of(*summary, "error"); !error.empty()) {
       report.notes.push_back(fmt::format("\"{}\" stopped with an error: {}", name, error));

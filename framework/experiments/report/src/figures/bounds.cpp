@@ -17,7 +17,7 @@ bool has_inner(const Curves& curves) {
 }
 
 Plot bounds_of(const RunFiles& files, const Curves& curves, std::size_t i) {
-  Plot plot{"k", fmt::format("x_{}", i + 1), false, {}};
+  Plot plot{"k", axis_of(files.labels().states, "x", i), false, {}};
   for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
     const StepCurves& steps = curves.pipelines[p];
     const std::string& name = files.pipelines()[p].name;
@@ -29,7 +29,8 @@ Plot bounds_of(const RunFiles& files, const Curves& curves, std::size_t i) {
       plot.series.push_back(std::move(inner));
     }
     for (const std::int64_t k : steps.empty_from) {
-      plot.marks.push_back({static_cast<double>(k), fmt::format("empty from k = {}", k), pipeline});
+      plot.marks.push_back(
+          {static_cast<double>(k), "empty from " + time_text(files.labels(), k), pipeline});
     }
   }
   if (i < curves.truth.size() && curves.truth[i].has_values())
@@ -41,7 +42,8 @@ Plot bounds_of(const RunFiles& files, const Curves& curves, std::size_t i) {
 
 /// Beside a large state the bands of its bounds are too narrow to be seen.
 Plot errors_of(const RunFiles& files, const Curves& curves, std::size_t i) {
-  Plot plot{"k", fmt::format("bounds less x_{}", i + 1), false, {}, {{"true state", 0}}};
+  const std::string state = axis_of(files.labels().states, "x", i);
+  Plot plot{"k", "bounds less " + state, false, {}, {{"true state", 0}}};
   for (std::size_t p = 0; p < curves.pipelines.size(); ++p) {
     const StepCurves& steps = curves.pipelines[p];
     if (i < steps.error.size() && steps.error[i].has_values())
@@ -77,17 +79,18 @@ void add_bounds(const RunFiles& files, const Curves& curves, Report& report) {
         "price of enclosing.";
   for (std::size_t i = 0; i < curves.states; ++i) {
     report.figures.push_back({fmt::format("bounds_{}", i + 1), section::bounds,
-                              fmt::format("Bounds of state {}", i + 1), caption,
+                              "Bounds of " + title_of(files.labels().states, "state", i), caption,
                               bounds_of(files, curves, i)});
   }
   for (std::size_t i = 0; i < curves.states; ++i) {
     Plot plot = errors_of(files, curves, i);
     if (plot.series.empty()) continue;
-    report.figures.push_back({fmt::format("bounds_less_truth_{}", i + 1), section::bounds,
-                              fmt::format("Bounds of state {} less its true value", i + 1),
-                              "How far the bounds lie from the true state, which is 0 here: a band "
-                              "that leaves 0 out does not hold it.",
-                              std::move(plot)});
+    report.figures.push_back(
+        {fmt::format("bounds_less_truth_{}", i + 1), section::bounds,
+         "Bounds of " + title_of(files.labels().states, "state", i) + " less its true value",
+         "How far the bounds lie from the true state, which is 0 here: a band "
+         "that leaves 0 out does not hold it.",
+         std::move(plot)});
   }
 }
 

@@ -12,20 +12,34 @@
 
 namespace cordon::report {
 
+namespace {
+
+/// "x_1" of "x_1 level [m]".
+std::string key_of(const std::string& name) {
+  const std::size_t space = name.find(' ');
+  const bool is_labelled =
+      space != std::string::npos && space > 0 && name[space - 1] >= '0' && name[space - 1] <= '9';
+  return is_labelled ? name.substr(0, space) : name;
+}
+
+}  // namespace
+
 ColumnReader::ColumnReader(const std::filesystem::path& file) : file_(file), reader_(file) {
   if (!reader_.next(row_) || !row_.problem.empty()) refuse("has no header");
   names_ = row_.fields;
   std::set<std::string> seen;
   for (const std::string& name : names_) {
-    if (!seen.insert(name).second) refuse("names the column " + json::in_quotes(name) + " twice");
+    keys_.push_back(key_of(name));
+    if (!seen.insert(keys_.back()).second)
+      refuse("names the column " + json::in_quotes(name) + " twice");
   }
 }
 
 std::optional<std::size_t> ColumnReader::find(const std::string& name) const {
-  const auto at = std::find(names_.begin(), names_.end(), name);
-  return at == names_.end()
+  const auto at = std::find(keys_.begin(), keys_.end(), name);
+  return at == keys_.end()
              ? std::nullopt
-             : std::optional<std::size_t>(static_cast<std::size_t>(at - names_.begin()));
+             : std::optional<std::size_t>(static_cast<std::size_t>(at - keys_.begin()));
 }
 
 std::size_t ColumnReader::need(const std::string& name) const {

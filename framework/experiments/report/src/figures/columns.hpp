@@ -17,6 +17,7 @@ class ColumnReader {
   explicit ColumnReader(const std::filesystem::path& file);
 
   const std::vector<std::string>& names() const { return names_; }
+  /// Names of coordinates behind the head, "x_1 level [m]", are not part of what is looked for.
   std::optional<std::size_t> find(const std::string& name) const;
   /// Throws InputError if there is none.
   std::size_t need(const std::string& name) const;
@@ -39,7 +40,7 @@ class ColumnReader {
   std::filesystem::path file_;
   detail::CsvReader reader_;
   detail::CsvRow row_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, keys_;
 };
 
 }  // namespace cordon::report

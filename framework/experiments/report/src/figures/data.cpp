@@ -73,15 +73,16 @@ void add_data(const RunFiles& files, const Curves& curves, Report& report) {
                              samples);
     // a line would not show a value between two gaps
     const auto kind = y.missing > 0 ? Series::Kind::points : Series::Kind::line;
+    const Labels::Names& names = files.labels().outputs;
     report.figures.push_back({fmt::format("output_{}", i + 1), section::data,
-                              fmt::format("Output {}", i + 1), caption + more_outputs,
-                              plot_of(y, fmt::format("y_{}", i + 1), kind, curves)});
+                              title_of(names, "Output", i), caption + more_outputs,
+                              plot_of(y, axis_of(names, "y", i), kind, curves)});
   }
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     report.figures.push_back(
-        {fmt::format("input_{}", i + 1), section::data, fmt::format("Input {}", i + 1),
+        {fmt::format("input_{}", i + 1), section::data, title_of(files.labels().inputs, "Input", i),
          "The input, which holds from one sample to the next." + more_inputs,
-         plot_of(inputs[i], fmt::format("u_{}", i + 1), Series::Kind::steps, curves)});
+         plot_of(inputs[i], axis_of(files.labels().inputs, "u", i), Series::Kind::steps, curves)});
   }
 }
 

@@ -83,7 +83,7 @@ void add_inputs(const RunFiles& files, Report& report) {
   const std::vector<std::size_t> channels = table.numbered("u_");
   std::vector<Plot> plots;
   for (std::size_t i = 0; i < channels.size(); ++i)
-    plots.push_back({"k", fmt::format("u_{}", i + 1), false, {}});
+    plots.push_back({"k", axis_of(files.labels().inputs, "u", i), false, {}});
   while (table.next()) {
     const int pipeline = files.pipeline(table.text(name), "inputs.csv");
     for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -97,9 +97,10 @@ void add_inputs(const RunFiles& files, Report& report) {
   }
   for (std::size_t i = 0; i < plots.size(); ++i) {
     if (plots[i].series.empty()) continue;
-    report.figures.push_back(
-        {fmt::format("input_{}", i + 1), section::designs, fmt::format("Input {}", i + 1),
-         "Designed and given inputs; each value holds until the next time.", std::move(plots[i])});
+    report.figures.push_back({fmt::format("designed_input_{}", i + 1), section::designs,
+                              title_of(files.labels().inputs, "Input", i),
+                              "Designed and given inputs; each value holds until the next time.",
+                              std::move(plots[i])});
   }
 }
 
@@ -110,7 +111,8 @@ void add_tubes(const RunFiles& files, const Design& design, Report& report) {
   const Index outputs = all / times, first = design.u.rows() - times;
   if (outputs * times != all) return;
   for (Index i = 0; i < outputs; ++i) {
-    Plot plot{"k", fmt::format("y_{}", i + 1), false, {}};
+    const Labels::Names& names = files.labels().outputs;
+    Plot plot{"k", label_of(names, "y", i), false, {}};
     for (std::size_t m = 0; m < design.tubes.size(); ++m) {
       const Box& tube = design.tubes[m];
       if (tube.dim() != all || tube.is_empty()) continue;
@@ -130,7 +132,8 @@ void add_tubes(const RunFiles& files, const Design& design, Report& report) {
     if (plot.series.empty()) continue;
     report.figures.push_back({fmt::format("tube_{}_{}", design.pipeline + 1, i + 1),
                               section::designs,
-                              fmt::format("Output {} under the input of {}", i + 1,
+                              fmt::format("{} under the input of {}",
+                                          title_of(names, "Output", static_cast<std::size_t>(i)),
                                           files.pipelines()[design.pipeline].name),
                               "Hulls of the outputs that each mode can show. Modes may be apart "
                               "although their hulls overlap: by several "

@@ -88,7 +88,7 @@ void add_residuals(const RunFiles& files, const DiagnosisTable& table,
   std::size_t drawn = 0, all = 0;
   for (std::size_t j = 0; j < table.modes; ++j) {
     for (std::size_t i = 0; i < table.outputs; ++i) {
-      Plot plot{"k", fmt::format("residual {}", i + 1), false, {}};
+      Plot plot{"k", "residual of " + axis_of(files.labels().outputs, "y", i), false, {}};
       for (std::size_t p = 0; p < table.pipelines.size(); ++p) {
         const Thinner& curve = table.pipelines[p].residuals[j][i];
         if (curve.has_values())
@@ -102,7 +102,8 @@ void add_residuals(const RunFiles& files, const DiagnosisTable& table,
       for (const PlantEvent& event : events)
         plot.marks.push_back({static_cast<double>(event.k), event.text});
       report.figures.push_back({fmt::format("residual_{}_{}", j + 1, i + 1), section::diagnosis,
-                                fmt::format("Residual of {}, output {}", modes[j], i + 1),
+                                fmt::format("Residual of {}, {}", modes[j],
+                                            title_of(files.labels().outputs, "output", i)),
                                 "A box that has to contain 0 while the plant is in this mode: "
                                 "where 0 lies outside, the mode is disproved.",
                                 std::move(plot)});
@@ -115,7 +116,7 @@ void add_residuals(const RunFiles& files, const DiagnosisTable& table,
 
 void add_faults(const RunFiles& files, const DiagnosisTable& table, Report& report) {
   for (std::size_t i = 0; i < table.faults; ++i) {
-    Plot plot{"k", fmt::format("n_{}", i + 1), false, {}};
+    Plot plot{"k", axis_of(files.labels().faults, "n", i), false, {}};
     for (std::size_t p = 0; p < table.pipelines.size(); ++p) {
       const DiagnosisCurves& curves = table.pipelines[p];
       if (!curves.faults[i].has_values()) continue;
@@ -130,7 +131,7 @@ void add_faults(const RunFiles& files, const DiagnosisTable& table, Report& repo
       plot.series.push_back(table.fault_truth[i].line("true fault", of_data, Series::Kind::steps));
     plot.thresholds.emplace_back("0", 0.0);
     report.figures.push_back({fmt::format("fault_{}", i + 1), section::diagnosis,
-                              fmt::format("Fault {}", i + 1),
+                              title_of(files.labels().faults, "Fault", i),
                               "Bounds of an additive fault, over the time that they speak of. "
                               "Where 0 lies outside, the fault is proven.",
                               std::move(plot)});

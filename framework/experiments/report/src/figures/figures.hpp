@@ -35,4 +35,7 @@ void add_answers(const RunFiles& files, const Curves& curves, Report& report);
 /// Every metric that is a number, and the time of a step.
 void add_metrics(const RunFiles& files, const Curves& curves, Report& report);
 
+/// Times of plots and timelines in seconds in place of steps.
+void show_seconds(Report& report, double sampling_time);
+
 }  // namespace cordon::report

@@ -225,14 +225,21 @@ class Projector {
           "form.";
     for (std::size_t q = 0; q < pairs_.size(); ++q) {
       const auto [i, j] = pairs_[q];
-      Projection projection{fmt::format("x_{}", i + 1), fmt::format("x_{}", j + 1), {}};
+      const Labels::Names& names = files_.labels().states;
+      Projection projection{label_of(names, "x", i), label_of(names, "x", j), {}};
       for (const auto& [k, pictures] : pictures_) {
-        if (!pictures[q].sets.empty()) projection.frames.push_back(frame_of(k, pictures[q]));
+        if (pictures[q].sets.empty()) continue;
+        projection.frames.push_back(frame_of(k, pictures[q]));
+        if (files_.labels().sampling_time > 0)
+          projection.frames.back().time = time_text(files_.labels(), k);
       }
       if (projection.frames.empty()) continue;
-      report.figures.push_back({fmt::format("sets_{}_{}", i + 1, j + 1), section::sets,
-                                fmt::format("Sets in states {} and {}", i + 1, j + 1), caption,
-                                std::move(projection)});
+      report.figures.push_back(
+          {fmt::format("sets_{}_{}", i + 1, j + 1), section::sets,
+           names.empty()
+               ? fmt::format("Sets in states {} and {}", i + 1, j + 1)
+               : fmt::format("Sets in {} and {}", label_of(names, "x", i), label_of(names, "x", j)),
+           caption, std::move(projection)});
     }
   }
 

@@ -48,6 +48,7 @@ Report read_report(const std::filesystem::path& directory, Detail detail) {
   } else {
     add_run(files, report);
   }
+  if (files.labels().sampling_time > 0) show_seconds(report, files.labels().sampling_time);
   files.check();
   return report;
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/text.hpp"
+#include "study/reading/read_parts.hpp"
 #include "study/results/recorded_head.hpp"
 #include "study/text/large_json.hpp"
 
@@ -60,6 +61,14 @@ void add_texts(const Cursor& object, const std::string& prefix,
 }
 
 }  // namespace
+
+std::string axis_of(const Labels::Names& names, const std::string& symbol, std::size_t i) {
+  return label_of(names, symbol, static_cast<Index>(i));
+}
+
+std::string title_of(const Labels::Names& names, const std::string& noun, std::size_t i) {
+  return i < names.size() ? names[i] : fmt::format("{} {}", noun, i + 1);
+}
 
 double value_of(const Cursor& object, std::string_view key) {
   const auto at = object.find(key);
@@ -120,7 +129,7 @@ void RunFiles::read_head(const Cursor& root) {
         pipelines->item(i).error("repeats the name " + in_quotes(name), not_as_written);
     }
   }
-  read_modes(root);
+  read_system(root);
   if (const auto cordon = root.find("cordon"); cordon && cordon->is(Kind::object)) {
     versions_.emplace_back("cordon", text_of(*cordon, "version"));
   }
@@ -132,10 +141,13 @@ void RunFiles::read_head(const Cursor& root) {
   versions_.emplace_back("study", text_of(root, "study_hash"));
 }
 
-void RunFiles::read_modes(const Cursor& root) {
+void RunFiles::read_system(const Cursor& root) {
   const auto study = root.find("study");
   const auto system = study && study->is(Kind::object) ? study->find("system") : std::nullopt;
   if (!system || !system->is(Kind::object)) return;
+  labels_ = read_labels(*system, {});
+  for (Labels::Names* names : {&labels_.states, &labels_.inputs, &labels_.outputs, &labels_.faults})
+    std::transform(names->begin(), names->end(), names->begin(), printable);
   const std::vector<Cursor> modes = items_of(*system, "modes");
   if (modes.empty()) return;
   const std::string nominal = text_of(*system, "nominal");

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cordon/study/labels.hpp"
 #include "cordon/study/pipeline_task.hpp"
 #include "experiments/report/figure.hpp"
 #include "experiments/report/read_report.hpp"
@@ -49,6 +50,7 @@ class RunFiles {
     return modes_;
   }                                            ///< of the bank; empty if there is one mode only
   std::string mode(std::int64_t index) const;  ///< "outside the bank" for -1
+  const Labels& labels() const { return labels_; }  ///< printable
   const std::vector<std::pair<std::string, std::string>>& versions() const { return versions_; }
   const std::vector<Thinner>& step_times() const { return step_times_; }  ///< µs by pipeline
 
@@ -61,7 +63,7 @@ class RunFiles {
 
  private:
   void read_head(const json::Cursor& root);
-  void read_modes(const json::Cursor& root);
+  void read_system(const json::Cursor& root);
   void read_times();
 
   detail::RecordedFiles files_;
@@ -73,9 +75,14 @@ class RunFiles {
   std::vector<PipelineHead> pipelines_;
   std::vector<std::string> keys_;  ///< their names as the files have them
   std::vector<std::string> modes_;
+  Labels labels_;
   std::vector<std::pair<std::string, std::string>> versions_;
   std::vector<Thinner> step_times_;
 };
+
+/// For axes: the coordinate's name, or "x_2"; for titles: its name, or "state 2".
+std::string axis_of(const Labels::Names& names, const std::string& symbol, std::size_t i);
+std::string title_of(const Labels::Names& names, const std::string& noun, std::size_t i);
 
 /// A number, "inf", "-inf" or null (NaN); NaN if it is missing.
 double value_of(const json::Cursor& object, std::string_view key);

@@ -157,6 +157,7 @@ void write(JsonWriter& json, const Projection& projection) {
         .member("k", frame.k)
         .member("left", frame.left)
         .member("right", frame.right);
+    if (!frame.time.empty()) json.member("time", frame.time);
     json.member("bottom", frame.bottom).member("top", frame.top).key("sets").begin_array();
     for (const Polygon& set : frame.sets) {
       json.begin_object()
@@ -236,7 +237,7 @@ std::string plain_text(double value) { return fmt::format("{:.6g}", value); }
 }  // namespace
 
 Numbers numbers_of(const Timeline& timeline) {
-  Numbers numbers{{"row", "from k", "to k", "state"}, {}};
+  Numbers numbers{{"row", "from " + timeline.x_label, "to " + timeline.x_label, "state"}, {}};
   for (const Timeline::Span& span : timeline.spans) {
     numbers.rows.push_back({timeline.rows.at(span.row), plain_text(span.from), plain_text(span.to),
                             std::string(name_of(span.state))});

@@ -91,10 +91,11 @@ function projectionView(figure) {
     frameBox.removeAttribute('class');
     svg.replaceChildren(drawn('defs', {}, drawn('clipPath', { id: clip }, frameBox)), ...axes.parts, sets);
     if (frame.truth) svg.append(drawn('circle', { class: 'truth', cx: axes.x(frame.truth[0]), cy: axes.y(frame.truth[1]), r: 5 }));
-    output.textContent = `k = ${frame.k}`;
-    slider.setAttribute('aria-valuetext', `k = ${frame.k}`);
+    const time = frame.time ?? `k = ${frame.k}`;
+    output.textContent = time;
+    slider.setAttribute('aria-valuetext', time);
     told.textContent = stageWords(frame);
-    svg.setAttribute('aria-label', `${figure.title} at k = ${frame.k}. ${told.textContent}`);
+    svg.setAttribute('aria-label', `${figure.title} at ${time}. ${told.textContent}`);
     numbers.refresh();
   };
   slider.addEventListener('input', () => { at = Number(slider.value); draw(); });

@@ -33,7 +33,8 @@ bool draw_time(Drawing& drawing, const Projection& projection, const SetFrame& t
                double size) {
   const Axis y{time.bottom, time.top, corner.second + size - 48, corner.second + 24};
   const Axis x{time.left, time.right, corner.first + room_beside(y), corner.first + size};
-  drawing.text({x.begin, corner.second + 15}, fmt::format("k = {}", time.k),
+  drawing.text({x.begin, corner.second + 15},
+               time.time.empty() ? fmt::format("k = {}", time.k) : time.time,
                std::string(ink) + " font-weight=\"bold\"");
   draw_frame(drawing, {x, y, projection.x_label, projection.y_label});
   drawing.begin_clip({x.begin - 2, y.end - 2}, x.end - x.begin + 4, y.begin - y.end + 4);

@@ -45,7 +45,8 @@ std::string draw(const Timeline& timeline, const Figure& figure) {
     states.insert(span.state);
   }
   if (first > last) first = last = 0;
-  const Axis x{first - 0.5, last + 0.5, left, right};
+  const double half = timeline.step / 2;
+  const Axis x{first - half, last + half, left, right};
 
   std::vector<LegendEntry> legend;
   for (const Timeline::State state : states) {
@@ -55,11 +56,11 @@ std::string draw(const Timeline& timeline, const Figure& figure) {
   const double legend_top = bottom + 60;
   Drawing drawing(width, legend_top + draw_legend(nullptr, legend, left, right, legend_top),
                   figure.title);
-  for (const double tick : x.ticks(10, true)) {
+  for (const double tick : x.ticks(10, timeline.step == 1)) {
     drawing.line({x(tick), top}, {x(tick), bottom}, rule);
     drawing.text({x(tick), bottom + 17}, short_text(tick), at_middle(soft));
   }
-  drawing.text({(left + right) / 2, bottom + 36}, "k", at_middle(ink));
+  drawing.text({(left + right) / 2, bottom + 36}, timeline.x_label, at_middle(ink));
   for (std::size_t i = 0; i < timeline.rows.size(); ++i) {
     const double y = top + row_height * static_cast<double>(i);
     drawing.text({left - 12, y + row_height / 2 + 4}, shortened(timeline.rows[i], most),
@@ -67,8 +68,8 @@ std::string draw(const Timeline& timeline, const Figure& figure) {
     drawing.line({left, y + row_height}, {right, y + row_height}, rule);
   }
   for (const Timeline::Span& span : timeline.spans) {
-    const double y = top + row_height * static_cast<double>(span.row), from = x(span.from - 0.5),
-                 to = x(span.to + 0.5);
+    const double y = top + row_height * static_cast<double>(span.row), from = x(span.from - half),
+                 to = x(span.to + half);
     if (span.state == Timeline::State::truth) {
       drawing.rectangle({from, y + row_height - 8}, std::max(1.0, to - from), 4,
                         style_of(span.state));

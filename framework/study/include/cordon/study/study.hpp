@@ -15,6 +15,7 @@
 
 #include "cordon/interfaces/model.hpp"
 #include "cordon/registry/registry.hpp"
+#include "cordon/study/labels.hpp"
 #include "cordon/study/pipeline_task.hpp"
 
 namespace cordon {
@@ -111,12 +112,20 @@ enum class MissingValue {
   skip    ///< missing in this sample
 };
 
+/// What rows are whose times leave steps out.
+enum class IrregularRows {
+  error,  ///< the file is refused
+  gaps    ///< steps without outputs; the input is that of the row before
+};
+
 /// Recorded data: a CSV file with a header row and named columns.
 struct CsvSpec {
   std::filesystem::path file;  ///< absolute, or relative to the study's folder (resolved when read)
   std::vector<std::string> inputs, outputs, truth;  ///< column names; truth may be empty
   std::string mode = {};  ///< column with the names of the true modes; empty: not known
   MissingValue missing = MissingValue::error;
+  std::string time = {};  ///< column of times in seconds; empty: rows are the steps
+  IrregularRows irregular = IrregularRows::error;
 };
 
 struct EstimationSpec {
@@ -158,6 +167,7 @@ struct Study {
   Model model;                      ///< of the nominal mode
   std::string nominal = "healthy";  ///< its name
   std::vector<Mode> modes;          ///< the other modes
+  Labels labels = {};               ///< what states, inputs and so on are called
   std::variant<SimulateSpec, CsvSpec>
       data;  ///< pipelines with a designer take seed, seeds, noise and start of simulated data
   std::vector<PipelineSpec> pipelines;

@@ -216,15 +216,19 @@ bool may_have_gaps(const Cursor& study) {
   const auto data = study.find("data");
   const auto simulate = data ? data->find("simulate") : std::nullopt,
              csv = data ? data->find("csv") : std::nullopt;
-  return (simulate && simulate->find("dropouts")) || (csv && csv->find("missing"));
+  return (simulate && simulate->find("dropouts")) ||
+         (csv && (csv->find("missing") || csv->find("irregular")));
 }
 
-CsvSpec data_of(std::filesystem::path file, const LinearModel& model, MissingValue missing) {
+CsvSpec data_of(std::filesystem::path file, const LinearModel& model, const Labels& labels,
+                MissingValue missing) {
   CsvSpec spec;
   spec.missing = missing;
   spec.file = std::move(file);
-  for (Index i = 1; i <= model.inputs(); ++i) spec.inputs.push_back("u_" + std::to_string(i));
-  for (Index i = 1; i <= model.outputs(); ++i) spec.outputs.push_back("y_" + std::to_string(i));
+  for (Index i = 0; i < model.inputs(); ++i)
+    spec.inputs.push_back(heading_of(labels.inputs, "u", i));
+  for (Index i = 0; i < model.outputs(); ++i)
+    spec.outputs.push_back(heading_of(labels.outputs, "y", i));
   return spec;
 }
 
@@ -265,14 +269,15 @@ std::optional<Index> time_of(const std::string& text) {
 }  // namespace
 
 RecordedRun read_run(const std::filesystem::path& directory) {
-  RecordedRun run{detail::RecordedFiles(directory), {}, {}, {}, {}};
+  RecordedRun run{detail::RecordedFiles(directory), {}, {}, {}, {}, {}};
   const std::filesystem::path file = run.files.file("results.json");
   Problems problems;
   StepReader steps;
   const Value tree =
       read_large(file,
                  {.kept = {"/cordon_results", "/study/system", "/study/data/simulate/dropouts",
-                           "/study/data/csv/missing", "/points", "/pipelines"},
+                           "/study/data/csv/missing", "/study/data/csv/irregular", "/points",
+                           "/pipelines"},
                   .streamed = {"/pipelines/*/steps/*", "/points/*"},
                   .take =
                       [&](const Cursor& at, const std::vector<std::size_t>& place) {
@@ -305,9 +310,10 @@ RecordedRun read_run(const std::filesystem::path& directory) {
     run.bank.modes.push_back({std::move(part.nominal), part.model});
     run.bank.modes.insert(run.bank.modes.end(), part.modes.begin(), part.modes.end());
     run.model = std::move(part.model);
+    run.labels = std::move(part.labels);
   }
   if (problems.any()) throw InputError(file.string(), problems.sorted());
-  run.data = data_of(run.files.file("data.csv"), run.model.linear, run.data.missing);
+  run.data = data_of(run.files.file("data.csv"), run.model.linear, run.labels, run.data.missing);
   check_times(run.data.file);
   return run;
 }

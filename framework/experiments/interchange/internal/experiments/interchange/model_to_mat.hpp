@@ -16,8 +16,8 @@ Value to_mat(const LineForm& X);
 /// The box that `make_box` makes this form of, if there is one whose bounds are exactly those of
 /// the set.
 std::optional<Box> as_box(const LineForm& X);
-/// Of the nominal mode, with the name of it and the other modes.
-Value to_mat(const ModeBank& bank);
+/// Of the nominal mode, with the name of it, the other modes, and what coordinates are called.
+Value to_mat(const ModeBank& bank, const Labels& labels);
 /// k, u, y, x, n, mode with a column per sample; those that the data do not tell are left out.
 /// Throws Errc::invalid beyond `max_numbers`.
 Value to_mat(DataSource& data);

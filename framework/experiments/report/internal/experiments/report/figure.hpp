@@ -63,6 +63,7 @@ struct SetFrame {
   double left = 0, right = 1, bottom = 0, top = 1;  ///< of what is drawn
   std::vector<Polygon> sets;
   std::optional<std::pair<double, double>> truth = {};
+  std::string time = {};  ///< for people, "k = 12 (6 s)"; empty: k is enough
 };
 
 /// Projections to two coordinates, one time after another (a slider).
@@ -76,12 +77,14 @@ struct Timeline {
   enum class State { candidate, monitored, excluded, truth, outside };
   struct Span {
     std::size_t row = 0;
-    double from = 0, to = 0;  ///< k, both included
+    double from = 0, to = 0;  ///< both included
     State state = State::candidate;
   };
   std::vector<std::string> rows;
   std::vector<Span> spans;
   std::vector<Mark> marks;
+  std::string x_label = "k";
+  double step = 1;  ///< from one sample to the next
 };
 
 /// Intervals that must not overlap, in rows: two tubes seen along the direction that separates

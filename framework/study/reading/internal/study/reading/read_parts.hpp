@@ -25,6 +25,13 @@ struct Sizes {
   std::optional<Index> faults;  ///< columns of F
 };
 
+/// How many there are of what has names, as far as it is known.
+struct LabelSizes {
+  std::optional<Index> states, inputs, outputs, disturbances, noises, faults;
+};
+/// The keys "names" and "sampling_time" of a system.
+Labels read_labels(const Cursor& system, const LabelSizes& sizes);
+
 /// A matrix, which has a radius of size 0×0, or {"center", "radius"} or {"lower", "upper"}. Centre
 /// and radius enclose the bounds that were written, in exact arithmetic.
 std::optional<IntervalMatrix> read_interval_matrix(const Cursor& at);
@@ -59,6 +66,7 @@ struct SystemPart {
   std::vector<Mode> modes;
   std::vector<WrittenMode> written;  ///< of `modes`
   bool modes_good = false;
+  Labels labels;
 };
 const std::vector<std::string>& system_types();
 /// A system with its modes.
@@ -99,6 +107,7 @@ const std::vector<std::string>& signal_types();
 const std::vector<std::string>& noise_names();
 const std::vector<std::string>& parameter_draw_names();
 const std::vector<std::string>& missing_value_names();
+const std::vector<std::string>& irregular_rows_names();
 std::vector<std::string> signal_keys(
     Signal::Type type);                               ///< without "type"; the required ones first
 std::size_t required_signal_keys(Signal::Type type);  ///< how many of them are required

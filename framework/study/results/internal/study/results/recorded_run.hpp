@@ -75,6 +75,7 @@ struct RecordedRun {
   detail::RecordedFiles files;
   Model model;
   ModeBank bank;
+  Labels labels;
   CsvSpec data;  ///< data.csv
   std::vector<RecordedPipeline> pipelines;
 };
