@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "cordon/core/error.hpp"
+#include "cordon/core/exact_rank.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
 #include "cordon/sets/constrained_zonotope.hpp"
@@ -90,11 +91,46 @@ Box ConstrainedForm::interval_hull(const Value& X, std::vector<Certificate>* why
   return outward ? cordon::outward::interval_hull(X, why) : cordon::interval_hull(X, why);
 }
 
+namespace {
+
+/// Leads points that miss the rows A ξ = b by rounding back to them.
+class RowRepair {
+ public:
+  explicit RowRepair(const LineForm& X) : G_(X.G) {
+    if (X.constraints() == 0) return;
+    const Vector scale = linalg::row_scales(X.A);
+    const linalg::Svd parts = linalg::svd(scale.asDiagonal() * X.A);
+    const double least = independent * (parts.sigma.size() > 0 ? parts.sigma[0] : 0.0);
+    const Index r = (parts.sigma.array() > least).count();
+    is_known_ = r == rank_modulo_prime(X.A);
+    inverse_ = parts.V.leftCols(r) * parts.sigma.head(r).cwiseInverse().asDiagonal() *
+               parts.U.leftCols(r).transpose() * scale.asDiagonal();
+  }
+
+  /// Which rows follow from others is no matter of rounding.
+  bool is_known() const { return is_known_; }
+  /// By how much dᵀx changes.
+  double moves(const Vector& d, const Vector& gap) const {
+    if (gap.size() == 0) return 0;
+    const Vector by = linalg::product(inverse_, gap);
+    return std::abs(d.dot(Vector(linalg::product(G_, by))));
+  }
+
+ private:
+  static constexpr double independent = 1e-11;  ///< of the largest singular value
+  Matrix G_, inverse_;
+  bool is_known_ = true;
+};
+
+}  // namespace
+
 std::optional<Volume> ConstrainedForm::volume(const Value& X) const {
   constexpr double resolved = 1e-8;
   const LineForm Y = eliminate_lines(X);
   const Index n = Y.dim();
   if (Y.lines() > 0 || n > 3) return std::nullopt;
+  const RowRepair repair(Y);
+  if (!repair.is_known()) return std::nullopt;
   BoxedProgram program(Y.A, Y.b);  // one program, warm from direction to direction
   bool solved = true;
   // moved to the origin, so that no digits go to the centre
@@ -111,7 +147,8 @@ std::optional<Volume> ConstrainedForm::volume(const Value& X) const {
     const bool feasible =
         (gap.array().abs() <= 1e-7 * (Y.b.cwiseAbs() + Y.A.cwiseAbs().rowwise().sum()).array())
             .all();
-    solved = solved && feasible && bound.upper - g.dot(*bound.xi) <= size;
+    solved = solved && feasible && bound.upper - g.dot(*bound.xi) <= size &&
+             repair.moves(d, gap) <= size;
     return {bound.upper, linalg::product(Y.G, *bound.xi)};
   };
   // where constraints leave so little of the terms, the digits of its widths are theirs

@@ -251,4 +251,8 @@ std::string range_text(const ParamSpec& spec) {
   return above ? fmt::format("≤ {}", spec.highest) : "";
 }
 
+std::string count(std::int64_t number, const char* noun) {
+  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
+
 }  // namespace cordon::apps

@@ -87,4 +87,7 @@ std::vector<Component> components(const Registry& registry);  ///< by kind, then
 std::string default_text(const ParamSpec& spec);
 std::string range_text(const ParamSpec& spec);
 
+/// "1 step", "2 steps".
+std::string count(std::int64_t number, const char* noun);
+
 }  // namespace cordon::apps

@@ -64,11 +64,45 @@ ordered_json numbers(const Vector& values) {
   return all;
 }
 
+/// "gauge 1 [m] lies 0.3 beyond what the samples before allow".
+std::string missed_text(const Labels& labels, const Contradiction& found) {
+  if (found.output < 0) return "all outputs together contradict the samples before, and none alone";
+  return fmt::format("{} lies {:.4g} beyond what the samples before allow",
+                     label_of(labels.outputs, "y", found.output), found.distance);
+}
+
 std::string state_name(const Labels& labels, Index i) {
   return labels.states.empty() ? fmt::format("x{}", i + 1) : label_of(labels.states, "x", i);
 }
 
 }  // namespace
+
+std::string contradictions_text(const Study& study, const RunOutcome& outcome, const Paint& paint) {
+  const Labels& labels = study.labels;
+  std::string text;
+  for (const PipelineOutcome& pipeline : outcome.pipelines) {
+    const EstimationOutcome& found = *pipeline.estimation();
+    if (const auto& first = found.contradiction) {
+      text += fmt::format("{}: {}: at {} {}. {}\n", pipeline.name, paint.yellow("Empty"),
+                          time_text(labels, first->k), missed_text(labels, *first),
+                          "Model, bounds, assumptions or this sample are wrong");
+    }
+    if (found.restarts > 0) {
+      text += fmt::format(
+          "{}: {} anew from the restart set: what follows rests on the state being in it\n",
+          pipeline.name,
+          found.restarts == 1 ? "begun once" : fmt::format("begun {} times", found.restarts));
+    }
+    if (found.outliers == 0) continue;
+    const LeftOut& one = found.left_out.front();
+    text += fmt::format(
+        "{}: outputs of {} left out as outliers, assumed not to keep to V; the first at {}, where "
+        "{}\n",
+        pipeline.name, count(found.outliers, "sample"), time_text(labels, one.worst.k),
+        missed_text(labels, one.worst));
+  }
+  return text;
+}
 
 std::string gains_text(const RunOutcome& outcome, const Paint& paint) {
   Rows rows{

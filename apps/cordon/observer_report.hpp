@@ -16,6 +16,9 @@ namespace cordon::apps {
 // pipelines of the outcome estimate.
 
 /// One row per gain.
+/// Samples that contradict the model: why the first estimate is empty, what was left out, and how
+/// often an observer has begun anew.
+std::string contradictions_text(const Study& study, const RunOutcome& outcome, const Paint& paint);
 std::string gains_text(const RunOutcome& outcome, const Paint& paint);
 /// One row per pipeline, one column per state, up to eight states.
 std::string widths_text(const RunOutcome& outcome, const Labels& labels, const Paint& paint);

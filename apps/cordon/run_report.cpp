@@ -64,6 +64,8 @@ std::string consistency(const Labels& labels, const PipelineOutcome& pipeline) {
   if (pipeline.violated_at >= 0) return "VIOLATED at " + time_text(labels, pipeline.violated_at);
   const EstimationOutcome& found = *pipeline.estimation();
   if (found.inner_outside >= 0) return "VIOLATED at " + time_text(labels, found.inner_outside);
+  if (found.restarts > 0)
+    return fmt::format("{}, begun anew", count(found.inconsistent, "empty set"));
   if (found.inconsistent_from >= 0)
     return "empty from " + time_text(labels, found.inconsistent_from);
   if (found.undecided > 0) return fmt::format("undecided at {} steps", found.undecided);
@@ -134,6 +136,25 @@ std::string observer_table(const RunOutcome& outcome, const Labels& labels, cons
     for (const Column& column : shown) rows.back().push_back(column.cell(pipeline));
   }
   return table(rows, paint);
+}
+
+/// Of metrics that compare states of different units as they are.
+std::string units_text(const RunOutcome& outcome, const Labels& labels) {
+  std::vector<std::string> units, titles;
+  for (const std::string& state : labels.states) {
+    const std::string unit = unit_of(state);
+    if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
+  }
+  for (const Measure& measure : outcome.measures) {
+    if (measure.mixes_states && is_shown(outcome, measure))
+      titles.push_back(measure.title.empty() ? measure.name : measure.title);
+  }
+  if (units.size() < 2 || titles.empty()) return "";
+  std::replace(units.begin(), units.end(), std::string(), std::string("1"));
+  return fmt::format(
+      "Units: {} take{} states in {} as they are; to weigh them, see \"cordon info\" of the "
+      "metric\n",
+      fmt::join(titles, ", "), titles.size() == 1 ? "s" : "", fmt::join(units, ", "));
 }
 
 ordered_json time_or_null(std::int64_t k) {
@@ -305,12 +326,14 @@ std::string report_text(const Study& study, const RunOutcome& outcome,
   const std::string title = study.title.empty() ? "" : paint.bold(study.title) + "\n\n";
   const std::string comparison = observed.pipelines.empty() && !diagnoses.empty()
                                      ? ""
-                                     : observer_table(observed, study.labels, paint) + "\n";
+                                     : observer_table(observed, study.labels, paint) +
+                                           units_text(observed, study.labels) + "\n";
   std::string assumptions;
   for (const PipelineOutcome& pipeline : observed.pipelines) {
     const std::string failed = assumption_text(study, pipeline, paint);
     if (!failed.empty()) assumptions += pipeline.name + ": " + failed;
   }
+  assumptions += contradictions_text(study, observed, paint);
   if (!assumptions.empty()) assumptions += "\n";
   const std::string details =
       assumptions + gains_text(observed, paint) + widths_text(observed, study.labels, paint) +
@@ -345,7 +368,7 @@ std::vector<std::string> complaints(const Study& study, const RunOutcome& outcom
           "pipeline \"{}\" violates its guarantee: at {} its inner estimate, of trajectories "
           "that it must enclose, "
           "leaves the hull of its estimate. This is a defect of its backend or observer",
-          pipeline.name, estimated->inner_outside));
+          pipeline.name, time_text(study.labels, estimated->inner_outside)));
     }
   }
   return found;

@@ -26,10 +26,6 @@ struct ValidateArguments {
   bool json = false;
 };
 
-std::string count(Index number, const char* noun) {
-  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
-}
-
 std::string describe_system(const LinearModel& model) {
   const std::string faults =
       model.faults() > 0 ? ", " + count(model.faults(), "additive fault") : "";

@@ -81,6 +81,13 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
     if (p.kind == PipelineKind::design && p.proofs + p.undecided > 0)
       passed_over += fmt::format(
           "not re-checked: the experiments of {} (of its design, the separation is)\n", p.name);
+    if (p.exact_claims_unproven > 0) {
+      passed_over += fmt::format(
+          "not proven: {} claims of \"exact\" of {}, held against directions only, which can "
+          "refute "
+          "them\n",
+          p.exact_claims_unproven, p.name);
+    }
     rows.push_back({p.name, p.backend, std::string(to_string(p.rounding)), std::to_string(p.steps),
                     std::to_string(p.by_polytopes), std::to_string(p.by_supports),
                     std::to_string(p.proofs), std::to_string(p.exact_claims),
@@ -120,6 +127,7 @@ std::string report_json(const VerifyOutcome& outcome) {
                                    {"by_supports", p.by_supports},
                                    {"proofs", p.proofs},
                                    {"exact_claims", p.exact_claims},
+                                   {"exact_claims_unproven", p.exact_claims_unproven},
                                    {"undecided", p.undecided},
                                    {"first_undecided", p.first_undecided},
                                    {"failed_assumption", assumption_json(p)}});

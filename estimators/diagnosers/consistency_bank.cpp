@@ -51,8 +51,8 @@ class ConsistencyBank final : public Diagnoser {
   static std::optional<Enclosure> restart_set(const DiagnoserContext& context, const Params& params,
                                               const Observer& observer) {
     if (params.has("restart_set")) return context.backend->import(params.set_form("restart_set"));
-    if (const Set* admissible = observer.admissible_set())
-      return context.backend->import(admissible->line_form());
+    if (const auto admissible = observer.admissible_set())
+      return context.backend->import(*admissible);
     if (context.backend->info().unbounded)
       return context.backend->space(context.bank[0].model.linear.states());
     return {};

@@ -43,9 +43,16 @@ class Average {
 bool is_set(const StepView& view) { return view.estimate.consistent != Answer::no; }
 
 class Radius final : public Metric {
+ public:
+  explicit Radius(const Params& params) {
+    if (params.has("scales")) scales_ = params.vector("scales");
+  }
+
+ private:
   std::vector<MetricValue> do_step(const StepView& view) override {
     if (!is_set(view)) return {{"radius", not_available}};
-    const double radius = view.hull.longest_half_edge();
+    const double radius = scales_.size() > 0 ? view.hull.radius().cwiseQuotient(scales_).maxCoeff()
+                                             : view.hull.longest_half_edge();
     average_.add(radius);
     return {{"radius", radius}};
   }
@@ -55,21 +62,42 @@ class Radius final : public Metric {
             {"radius_unbounded_steps", average_.unbounded()}};
   }
   std::vector<Measure> do_measures() const override {
-    return {
-        {.name = "radius_mean", .title = "mean radius", .better = Preference::less, .ranked = true},
-        {.name = "radius_max",
-         .title = "max radius",
-         .better = Preference::less,
-         .in_comparison = Shown::never},
-        {.name = "radius_unbounded_steps",
-         .title = "unbounded steps",
-         .better = Preference::less,
-         .in_run = Shown::never,
-         .in_comparison = Shown::if_any}};
+    const bool mixes = scales_.size() == 0;
+    return {{.name = "radius_mean",
+             .title = "mean radius",
+             .better = Preference::less,
+             .ranked = true,
+             .mixes_states = mixes},
+            {.name = "radius_max",
+             .title = "max radius",
+             .better = Preference::less,
+             .in_comparison = Shown::never,
+             .mixes_states = mixes},
+            {.name = "radius_unbounded_steps",
+             .title = "unbounded steps",
+             .better = Preference::less,
+             .in_run = Shown::never,
+             .in_comparison = Shown::if_any}};
   }
 
+  Vector scales_;  ///< dimension 0: none
   Average average_;
 };
+
+std::vector<Diagnostic> check_radius(const MetricContext& context, const Params& params) {
+  if (!params.has("scales")) return {};
+  const Vector& scales = params.vector("scales");
+  const Index n = context.model.linear.states();
+  if (scales.size() != n) {
+    return {
+        {"/scales",
+         "has " + std::to_string(scales.size()) + " numbers, the state has " + std::to_string(n),
+         "give one per state"}};
+  }
+  if ((scales.array() > 0).all()) return {};
+  return {{"/scales", "holds a number that is not larger than 0",
+           "give the size that counts as 1, for every state"}};
+}
 
 class VolumeOfSet final : public Metric {
   std::vector<MetricValue> do_step(const StepView& view) override {
@@ -221,7 +249,16 @@ void add(Registrar& registrar, const char* name, const char* summary) {
 }  // namespace
 
 void register_metrics(Registrar& registrar) {
-  add<Radius>(registrar, "radius", "half the longest edge of the interval hull");
+  ParamSchema of_radius;
+  of_radius.vector("scales",
+                   "each half edge is divided by the number of its state: what counts as 1, in the "
+                   "state's unit");
+  registrar.add(MetricEntry{
+      {"radius", "half the longest edge of the interval hull", "", std::move(of_radius)},
+      [](const Params& params) -> std::unique_ptr<Metric> {
+        return std::make_unique<Radius>(params);
+      },
+      check_radius});
   add<VolumeOfSet>(
       registrar, "volume",
       "volume of the set where its representation has an exact one, else of its interval hull");

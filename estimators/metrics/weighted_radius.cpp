@@ -83,6 +83,7 @@ class Weighted {
  public:
   explicit Weighted(const Params& params) {
     if (!params.has("weight")) return;
+    given_ = true;
     weight_ = params.matrix("weight");
     if (!is_weight(weight_))
       throw Error(Errc::invalid, "/weight must be symmetric and positive definite");
@@ -107,9 +108,11 @@ class Weighted {
     return View{view.hull.radius().asDiagonal(), false};
   }
   const Matrix& weight() const { return weight_; }
+  bool is_given() const { return given_; }
 
  private:
   Matrix weight_;
+  bool given_ = false;
 };
 
 /// Both metrics: a value per step, what it is the value of, and their mean and largest.
@@ -143,11 +146,13 @@ class WeightedRadius final : public Metric {
     return {{.name = name + "_mean",
              .title = "mean " + title,
              .better = Preference::less,
-             .ranked = true},
+             .ranked = true,
+             .mixes_states = !weighted_.is_given()},
             {.name = name + "_max",
              .title = "max " + title,
              .better = Preference::less,
-             .in_comparison = Measure::Shown::never}};
+             .in_comparison = Measure::Shown::never,
+             .mixes_states = !weighted_.is_given()}};
   }
 
   Weighted weighted_;

@@ -50,8 +50,10 @@ class PseudoInverseObserver final : public Observer {
         rounds_outward_(backend().info().rounding == Rounding::outward),
         complete_(std::make_shared<PseudoInverseOutputs>(model(), all_outputs(model().linear),
                                                          rounds_outward_)) {
-    if (params.has("admissible_set"))
-      admissible_ = backend().import(params.set_form("admissible_set"));
+    if (params.has("admissible_set")) {
+      admissible_form_ = params.set_form("admissible_set");
+      admissible_ = backend().import(*admissible_form_);
+    }
     const Index n = model().linear.states(), p = model().linear.outputs();
     identity_ = Matrix::Identity(n, n);
     zero_ = Vector::Zero(n);
@@ -66,7 +68,7 @@ class PseudoInverseObserver final : public Observer {
   }
 
   LineForm initial_set() const override { return X0_; }
-  const Set* admissible_set() const override { return admissible_.set.get(); }
+  std::optional<LineForm> admissible_set() const override { return admissible_form_; }
   bool follows_its_sets() const override { return true; }
   bool takes_missing_outputs() const override { return true; }
 
@@ -315,6 +317,7 @@ class PseudoInverseObserver final : public Observer {
 
   Budget budget_;
   LineForm X0_;
+  std::optional<LineForm> admissible_form_;
   Enclosure W_, V_, X_, admissible_;
   Effectiveness effectiveness_;
   bool rounds_outward_;

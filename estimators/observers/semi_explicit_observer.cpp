@@ -69,7 +69,8 @@ class SemiExplicitObserver final : public Observer {
     if (model().linear.is_uncertain() || is_rounded_) recursion_ = Tightness::outer;
     if (params.has("admissible_set")) {
       recursion_ = Tightness::outer;  // of the set only the part that E does not determine is used
-      admissible_ = backend().import(params.set_form("admissible_set"));
+      admissible_form_ = params.set_form("admissible_set");
+      admissible_ = backend().import(*admissible_form_);
       const Matrix lower = transformed_.T_inverse.bottomRows(free);
       free_ = backend().affine_map(admissible_, lower, Vector::Zero(free));
     } else {
@@ -86,7 +87,7 @@ class SemiExplicitObserver final : public Observer {
   }
 
   LineForm initial_set() const override { return X0_; }
-  const Set* admissible_set() const override { return admissible_.set.get(); }
+  std::optional<LineForm> admissible_set() const override { return admissible_form_; }
   Tightness claim() const override { return recursion_; }
   bool follows_its_sets() const override { return true; }
   bool takes_missing_outputs() const override { return true; }
@@ -252,6 +253,7 @@ class SemiExplicitObserver final : public Observer {
   bool inputs_enter_as_sets_;         ///< B u and B̌ u are left to the backend
   Matrix stacked_A_, stacked_B_, stacked_Bw_, stacked_rows_, dynamic_rows_;
   Tightness recursion_ = Tightness::exact;
+  std::optional<LineForm> admissible_form_;
   Enclosure admissible_, free_, Z_;
 };
 

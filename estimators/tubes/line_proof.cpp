@@ -9,6 +9,14 @@
 
 namespace cordon::designers {
 
+TermsOfLines::TermsOfLines(MatrixIn S, const LinesEliminated& rest, Index inputs) {
+  const Matrix size = S.cwiseAbs(), by = rest.lines_by_factors.cwiseAbs();
+  const Vector reach =
+      rest.lines_offset.cwiseAbs() + by.leftCols(by.cols() - inputs).rowwise().sum();
+  terms = linalg::product(size, reach);
+  input_terms = linalg::product(size, by.rightCols(inputs));
+}
+
 bool stands(const LineForm& rows, const Vector& terms, const Vector& y, const LinesReached& lines) {
   if (y.size() != rows.constraints() || !y.allFinite()) return false;
   const double margin = farkas_margin(rows.A, rows.b, y, row_noise * terms);

@@ -4,9 +4,19 @@
 
 #include <vector>
 
-#include "cordon/core/line_form.hpp"
+#include "cordon/core/line_elimination.hpp"
 
 namespace cordon::designers {
+
+/// Sizes of S δ in rows S δ + A ξ + U u = b whose lines were eliminated, as far as rows were solved
+/// for them: what an elimination rounds in coefficients of lines is multiplied by these. The
+/// columns of U were behind those of A.
+struct TermsOfLines {
+  Vector terms;        ///< for ‖ξ‖∞ ≤ 1 and u = 0
+  Matrix input_terms;  ///< per input, a column each
+
+  TermsOfLines(MatrixIn S, const LinesEliminated& rest, Index inputs);
+};
 
 /// What an elimination tells of the lines δ that satisfy the rows it used up.
 struct LinesReached {

@@ -7,6 +7,7 @@
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/line_elimination.hpp"
 #include "cordon/interfaces/descriptor_matrix.hpp"
+#include "tubes/line_proof.hpp"
 
 namespace cordon::designers {
 
@@ -230,11 +231,12 @@ TubeConditions conditions_of(const OutputTube& tube) {
       {Matrix(0, tube.S.cols()), Matrix(0, all), Vector(0), tube.S, std::move(columns), tube.b},
       Vector(0));
   const Matrix shares = rest.rows.cwiseAbs();
+  const TermsOfLines of_lines(tube.S, rest, tube.inputs());
   return {rest.set.A.leftCols(tube.A.cols()),
           -rest.set.A.rightCols(tube.inputs()),
           rest.set.b,
-          linalg::product(shares, tube.b_size + tube.A.cwiseAbs().rowwise().sum()),
-          linalg::product(shares, tube.Omega.cwiseAbs()),
+          linalg::product(shares, tube.b_size + tube.A.cwiseAbs().rowwise().sum() + of_lines.terms),
+          linalg::product(shares, tube.Omega.cwiseAbs() + of_lines.input_terms),
           rest.follow && tube.is_exact ? 0 : rest.vanished};
 }
 

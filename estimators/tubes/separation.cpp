@@ -125,6 +125,7 @@ PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTub
       eliminate_lines_traced({Matrix(0, lines), Matrix(0, columns), Vector(0), S, A, b}, magnitude);
   const LinesEliminated& rest = whole->rest;
   const Matrix shares = rest.rows.cwiseAbs();
+  const TermsOfLines of_lines(S, rest, inputs);
   whole->S = std::move(S);
   whole->A = A.leftCols(g_i + g_j);
   whole->U = A.rightCols(inputs);
@@ -136,8 +137,8 @@ PairProgram pair_program(Index i, const OutputTube& Yi, Index j, const OutputTub
           rest.set.A.leftCols(g_i + g_j),
           -rest.set.b,
           -rest.set.A.rightCols(inputs),
-          linalg::product(shares, whole->terms),
-          linalg::product(shares, input_terms),
+          linalg::product(shares, whole->terms + of_lines.terms),
+          linalg::product(shares, input_terms + of_lines.input_terms),
           rest.follow && is_exact ? 0 : rest.vanished,
           whole};
 }

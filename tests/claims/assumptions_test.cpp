@@ -189,7 +189,7 @@ TEST_CASE("what an assumption does not hold is not excused before it fails") {
   };
   detail::PipelineAssumptions assumed;
   assumed.restart_set = make_box({-Vector::Ones(1), Vector::Ones(1)});
-  assumed.admissible_sets = {make_box({-Vector::Constant(1, 9), Vector::Constant(1, 9)})};
+  assumed.admissible_sets = {{make_box({-Vector::Constant(1, 9), Vector::Constant(1, 9)}), 0}};
   assumed.inputs = true;
   detail::AssumptionCheck check(study, assumed);
   SUBCASE("nothing fails") {

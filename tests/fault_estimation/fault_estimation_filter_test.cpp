@@ -323,3 +323,35 @@ TEST_CASE("nor what is left of large numbers that cancel") {
       });
   CHECK(moved);
 }
+
+TEST_CASE("guarantees hold after gaps, where the filter begins anew from another set than X0") {
+  Model model;
+  model.linear = {{},
+                  Matrix{{.5, 0}, {0, 1}},
+                  Matrix(2, 0),
+                  Matrix::Identity(2, 2),
+                  Matrix{{.01, .01}, {0, .01}},
+                  Matrix(2, 0),
+                  Matrix::Identity(2, 2)};
+  model.linear.F = Vector{{1, 0}};
+  const auto cube = [](double radius) {
+    return make_box({Vector::Constant(2, -radius), Vector::Constant(2, radius)});
+  };
+  model.X0 = cube(10);
+  model.W = cube(.001);
+  model.V = cube(.01);
+  model.U = make_space(0);
+  const auto diagnoser =
+      filter(model, Params().set("max_columns", std::int64_t{0}).set("admissible_set", cube(.01)));
+  const double promised = diagnoser->guarantees()->faults[0].half_width;
+  diagnoser->start();
+  double last = 0;
+  for (Index k = 0; k < 6000; ++k) {
+    Sample sample{k, Vector(0), Vector::Zero(2)};
+    if (k == 500) sample = missing_outputs(sample, {0});
+    const Diagnosis now = diagnoser->step(sample);
+    for (const FaultBound& bound : now.faults) last = (bound.upper - bound.lower) / 2;
+  }
+  CHECK(last > 2.8);
+  CHECK(last <= promised * (1 + 1e-6));
+}

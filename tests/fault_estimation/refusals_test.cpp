@@ -135,3 +135,23 @@ TEST_CASE("bounds that outgrow the numbers end the run, until it begins anew") {
   CHECK_THROWS_WITH_AS(diagnoser->step({k, Vector::Zero(1), Vector::Zero(1)}),
                        doctest::Contains("start anew"), Error);
 }
+
+TEST_CASE("a response that is too weak to be one, and no rounding") {
+  // C T f = 1e-12, and what the fault shows a step later is not much more: 22 % of a fault in the
+  // step before would be taken for one
+  Model model;
+  model.linear = {{},
+                  Matrix{{.5, 0}, {0, .5 - 4e-12}},
+                  Matrix(2, 0),
+                  Matrix(2, 0),
+                  Matrix{{1, 1}},
+                  Matrix(1, 0),
+                  Matrix(1, 0)};
+  model.linear.F = Vector{{1, -1 + 1e-12}};
+  model.X0 = make_point(Vector::Zero(2));
+  model.W = model.V = model.U = make_point(Vector(0));
+  CHECK(tells(problems(alone(model), {}), "/type", "shows in the outputs before the response"));
+  model.linear.F = Vector{{1, -1}};  // none before, exactly
+  model.linear.A(1, 1) = .25;
+  CHECK(problems(alone(model), {}).empty());
+}

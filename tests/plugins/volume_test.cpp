@@ -209,3 +209,24 @@ TEST_CASE("the volume of a set thinner than rounding shows is bounded and not ca
     }
   }
 }
+
+TEST_CASE("rows that nearly depend on each other do not make a volume that is none") {
+  // .3 ξ₁ + .1 ξ₂ + ξ₃ = .25 twice, but for a hair of ξ₁: ξ₁ = 0
+  const Plugins plugins;
+  for (int digits = 6; digits <= 16; ++digits) {
+    const double hair = std::pow(10.0, -digits);
+    for (const Index n : {1, 2}) {
+      LineForm X{Matrix(n, 0), Matrix::Zero(n, 3), Vector::Zero(n),
+                 Matrix(2, 0), Matrix(2, 3),       Vector{{.25, .25}}};
+      X.G.leftCols(n) = Matrix::Identity(n, n);
+      X.A << .3, .1, 1, .3 + hair, .1, 1;
+      if (X.A.row(0) == X.A.row(1)) continue;
+      for (const char* name : {"constrained_zonotope", "line_zonotope"}) {
+        const auto found = plugins.backend(name)->import(X)->volume();
+        CAPTURE(hair);
+        CAPTURE(n);
+        CHECK_FALSE((found.exact && found.value > 1e-6));
+      }
+    }
+  }
+}

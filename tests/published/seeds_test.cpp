@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cordon/solvers/set_questions.hpp"
 #include "cordon/study/data.hpp"
 #include "cordon/study/study.hpp"
 #include "study_models.hpp"
@@ -32,8 +33,8 @@ void run(const Study& study, const PipelineSpec& pipeline, const Registry& regis
   while (const auto record = source->next()) {
     const Estimate estimate = observer->step(record->sample);
     const Index k = record->sample.k;
-    if (const Set* set = observer->admissible_set())
-      admissible = admissible && set->contains(*record->truth) != Answer::no;
+    if (const auto set = observer->admissible_set())
+      admissible = admissible && contains(*set, *record->truth) != Answer::no;
     if (!admissible) return;
     INFO(pipeline.name << ", k = " << k);
     REQUIRE(estimate.consistent != Answer::no);  // never empty before the truth leaves

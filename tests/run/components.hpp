@@ -141,10 +141,9 @@ class Claiming final : public Observer {
       : Observer(context.model, context.backend), radius_(radius) {
     const Index n = model().linear.states();
     if (admissible > 0)
-      admissible_ =
-          backend().box({Vector::Constant(n, -admissible), Vector::Constant(n, admissible)});
+      admissible_ = make_box({Vector::Constant(n, -admissible), Vector::Constant(n, admissible)});
   }
-  const Set* admissible_set() const override { return admissible_.set.get(); }
+  std::optional<LineForm> admissible_set() const override { return admissible_; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>&, const Sample&) override {
@@ -159,7 +158,7 @@ class Claiming final : public Observer {
   void do_replace(const Enclosure&) override {}
 
   double radius_;
-  Enclosure admissible_;
+  std::optional<LineForm> admissible_;
 };
 
 class Radius final : public Metric {

@@ -142,8 +142,8 @@ TEST_CASE("an excluded true mode, data without modes, and a pipeline that stoppe
   const apps::Paint paint(stdout);
   CHECK(has(apps::diagnosis_text(study(), p, paint),
             "True mode excluded: fault 1 at k = 77, although true since k = 52 (run 5 of 60)"));
-  CHECK(has(apps::diagnosis_violation(p), "\"fault 1\""));
-  CHECK(has(apps::diagnosis_violation(p), "k = 77"));
+  CHECK(has(apps::diagnosis_violation({}, p), "\"fault 1\""));
+  CHECK(has(apps::diagnosis_violation({}, p), "k = 77"));
   p.diagnosis()->runs_with_wrong_mode = 4;
   CHECK(has(apps::diagnosis_text(study(), p, paint), "A wrong mode: in 4 of 60 runs"));
   p.diagnosis()->truth_known = false;
@@ -197,7 +197,7 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
                {}};
   const std::vector<std::string> modes{"healthy", "fault 1"};
   const apps::Paint paint(stdout);
-  std::string text = apps::guarantees_text(g, modes, paint);
+  std::string text = apps::guarantees_text(g, {}, modes, paint);
   CHECK(text ==
         "Method: outer iteration, 30 steps\n"
         "OBSERVER  TRUE MODE  RESIDUALS                 CONDITION  HOLDS\n"
@@ -209,7 +209,7 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
         "these sets, which may be larger than those of the residuals\n");
   g.all = Answer::yes;
   g.error_set = ErrorSetCheck{make_box(interval(-1, 1)), false, .86, .5, 1, 0};
-  text = apps::guarantees_text(g, modes, paint);
+  text = apps::guarantees_text(g, {}, modes, paint);
   CHECK(has(text,
             "all errors lie in 0.86 times the set; in steady state 0.5, attained in mode \"fault "
             "1\" by the observer of "
@@ -217,10 +217,10 @@ TEST_CASE("statements in advance: the table, the error set, the answer") {
   CHECK(has(text, "Guaranteed in steady state: "));
   g.all = Answer::unknown;
   g.error_set->factor = 1.163;
-  CHECK(has(apps::guarantees_text(g, modes, paint), "too small"));
-  CHECK(has(apps::guarantees_text(g, modes, paint), "Not guaranteed: "));
+  CHECK(has(apps::guarantees_text(g, {}, modes, paint), "too small"));
+  CHECK(has(apps::guarantees_text(g, {}, modes, paint), "Not guaranteed: "));
   g.error_set->computed = true;
-  CHECK(has(apps::guarantees_text(g, modes, paint), "by construction"));
+  CHECK(has(apps::guarantees_text(g, {}, modes, paint), "by construction"));
   CHECK(apps::box_text({Vector{{-1., 0.}}, Vector{{1., 2.5}}}) == "[-1, 1] × [0, 2.5]");
   CHECK(apps::box_text(Box::empty(2)) == "∅");
   CHECK(apps::box_text(interval(-2e-5, 1e-5), apps::Digits::decimals) == "[-2e-05, 1e-05]");
@@ -364,11 +364,11 @@ TEST_CASE("additive faults: names in the timeline, a table, and what is outside 
   CHECK(has(apps::diagnosis_text(s, p, paint),
             "True fault outside its bounds: fault 2 of k = 9, bounded at k = 12 (run 5 of 60)"));
   CHECK(
-      has(apps::diagnosis_violation(p),
+      has(apps::diagnosis_violation({}, p),
           "at k = 12 the true additive fault 2 of k = 9 lies outside its bounds (seed offset 4)"));
   p.diagnosis()->true_mode_excluded = TrueModeExcluded{11, 10, 0, 0};
   p.violated_at = 11;
-  CHECK(has(apps::diagnosis_violation(p), "it excludes the mode \"healthy\""));
+  CHECK(has(apps::diagnosis_violation({}, p), "it excludes the mode \"healthy\""));
   simulate.faults = {{120, 130, "leak", -1, {}, {}, {}}};
   CHECK(has(apps::diagnosis_text(s, p, paint), "\noutside the bank  60 "));
 }
@@ -383,9 +383,9 @@ TEST_CASE("statements in advance about additive faults") {
       "ADDITIVE FAULT  DELAY  HALF WIDTH IN STEADY STATE, BUT FOR ROUNDING\n"
       "1               1      0.123457\n"
       "2               4      no bound is proven\n";
-  CHECK(apps::guarantees_text(g, {"healthy"}, paint) == table);
+  CHECK(apps::guarantees_text(g, {}, {"healthy"}, paint) == table);
   g.pairs = {{0, 0, interval(-1, 1), Answer::yes}};
-  CHECK(has(apps::guarantees_text(g, {"healthy"}, paint), table + "OBSERVER"));
+  CHECK(has(apps::guarantees_text(g, {}, {"healthy"}, paint), table + "OBSERVER"));
   const json data = json::parse(json_of(g, {"healthy"}));
   CHECK(data["faults"][1] == json{{"fault", 2}, {"delay", 4}, {"half_width", "inf"}});
 }

@@ -22,7 +22,7 @@ constexpr double flat_tolerance = 1e-9;  ///< of the terms
 constexpr double flat_distance = 1e-6;   ///< of the terms, see forbidden_set
 constexpr double outer_rounding =
     1e-14;  ///< of the terms: γ_n of the sums below, with room for thousands of them
-constexpr double inner_rounding = 1e-12;      ///< of the terms, see forbidden_set
+constexpr double inner_rounding = row_noise;  ///< of the terms, see forbidden_set
 constexpr double point_accuracy = 1e-13;      ///< of the terms
 constexpr double residual_tolerance = 1e-11;  ///< of the terms
 

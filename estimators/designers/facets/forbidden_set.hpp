@@ -40,9 +40,9 @@ struct ForbiddenSet {
 ///   yᵀ(N u - c) ≥ (1+ε) ‖Gᵀy‖₁:   `out`, with rounding errors bounded; neither the hull nor R and
 ///   L need to be exact for it.
 /// `in` rests on the hull: the points that the facets pass through are basic solutions, each
-/// checked to satisfy its rows to 1e-11. It lies by 1e-12 of the terms of the facet below the hull,
-/// more than what rounding (one roundoff of the terms per operation) can add. So a relaxation by
-/// `in` misses no separating input, and the difference out - in is part of the reported gap.
+/// checked to satisfy its rows to 1e-11. It lies by `row_noise` of the terms of the facet below the
+/// hull, more than what rounding (one roundoff of the terms per operation) can add. So a relaxation
+/// by `in` misses no separating input, and the difference out - in is part of the reported gap.
 ///
 /// Where Q is flat (no width up to 1e-9 of the terms), every input off it separates, however near:
 /// there is no cheapest one. `out` then asks for a distance of 1e-6 of the terms, so that a proof

@@ -199,7 +199,9 @@ class FaultEstimationFilter final : public Diagnoser {
                         : "the filter's own recursion of gains and error sets, which does not "
                           "depend on the data, and from its last gain on "
                           "the sum of the powers of its error map";
-    const Vector widths = lasting_half_widths(recursion_, model_.X0.G);
+    Vector widths = lasting_half_widths(recursion_, model_.X0.G);
+    if (admissible_)  // where it begins anew after a gap, its gains may come to rest elsewhere
+      widths = widths.cwiseMax(lasting_half_widths(recursion_, admissible_->G));
     for (Index i = 0; i < widths.size(); ++i) {
       result.faults.push_back({i, design_.delays[static_cast<std::size_t>(i)], widths[i]});
     }

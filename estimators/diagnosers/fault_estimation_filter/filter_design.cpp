@@ -19,6 +19,8 @@ namespace {
 constexpr double response_tolerance = 1e-12;
 /// An equation that the design rests on holds to this.
 constexpr double identity_tolerance = 1e-11;
+/// Of a fault, by which estimates may be wrong: rounding.
+constexpr double negligible_share = 1e-9;
 /// Relative size of a direction's entries that messages name.
 constexpr double visible_entry = 1e-6;
 
@@ -55,8 +57,9 @@ bool is_identity(const Matrix& A) {
 
 /// How a fault first shows in the outputs.
 struct Response {
-  Index delay;   ///< ρ
-  Vector state;  ///< (TA)^(ρ-1) T f
+  Index delay;      ///< ρ
+  Vector state;     ///< (TA)^(ρ-1) T f
+  Vector left_out;  ///< of the responses before
 };
 
 /// After n steps of silence there is never a response.
@@ -64,12 +67,13 @@ std::optional<Response> first_response(const Matrix& T, const Matrix& A, const M
                                        VectorIn f) {
   const Matrix TA = product(T, A), TA_size = product(T.cwiseAbs(), A.cwiseAbs());
   Vector state = product(T, f);
-  Vector size = product(T.cwiseAbs(), f.cwiseAbs());
+  Vector size = product(T.cwiseAbs(), f.cwiseAbs()), left_out = Vector::Zero(C.rows());
   for (Index delay = 1; delay <= state.size(); ++delay) {
     const Vector response = product(C, state);
     if ((response.cwiseAbs().array() > response_tolerance * product(C.cwiseAbs(), size).array())
             .any())
-      return Response{delay, state};
+      return Response{delay, state, left_out};
+    left_out += response.cwiseAbs();
     state = product(TA, state);
     size = product(TA_size, size);
   }
@@ -108,6 +112,7 @@ bool find_responses(const LinearModel& model, FilterDesign& design,
   const Matrix TA = product(design.T, model.A);
   const Index q = model.faults();
   design.Psi = Matrix(model.states(), q);
+  design.left_out = Matrix::Zero(model.outputs(), q);
   std::vector<Index> silent;
   for (Index i = 0; i < q; ++i) {
     const auto response = first_response(design.T, model.A, model.C, model.F.col(i));
@@ -117,6 +122,7 @@ bool find_responses(const LinearModel& model, FilterDesign& design,
     }
     design.delays.push_back(response->delay);
     design.Psi.col(i) = response->state;
+    design.left_out.col(i) = response->left_out;
   }
   design.Upsilon = product(model.C, design.Psi);
   design.Phi = product(TA, design.Psi);
@@ -169,6 +175,24 @@ bool find_M_and_Omega(FilterDesign& design, std::vector<Diagnostic>& problems) {
   return true;
 }
 
+/// Estimates n̂ = M (y - …) hold M times what faults show before their first response: where that is
+/// no rounding, they would be wrong by it, whatever the size of the fault.
+bool is_first_response_clear(const FilterDesign& design, std::vector<Diagnostic>& problems) {
+  const Matrix wrong = product(design.M.cwiseAbs(), design.left_out);
+  Index estimate = 0, fault = 0;
+  const double share = wrong.maxCoeff(&estimate, &fault);
+  if (!(share > negligible_share)) return true;
+  char number[32];
+  std::snprintf(number, sizeof number, "%.3g", share);
+  problems.push_back({"/type",
+                      names_of({fault}) +
+                          " shows in the outputs before the response that it is told by, so weakly "
+                          "that it is taken for none: bounds of " +
+                          names_of({estimate}) + " would be wrong by " + number + " of it",
+                      "measure it better, or scale states and outputs to like sizes"});
+  return false;
+}
+
 }  // namespace
 
 std::optional<FilterDesign> design_filter(const LinearModel& model, const Matrix& S,
@@ -180,6 +204,7 @@ std::optional<FilterDesign> design_filter(const LinearModel& model, const Matrix
     return {};
   if (!find_responses(model, design, problems)) return {};
   if (!find_M_and_Omega(design, problems)) return {};
+  if (!is_first_response_clear(design, problems)) return {};
   return design;
 }
 

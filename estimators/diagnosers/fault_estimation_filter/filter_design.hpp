@@ -20,7 +20,8 @@ struct FilterDesign {
   Matrix T, N;                ///< n×n, n×m
   std::vector<Index> delays;  ///< ρ_i
   Matrix Psi, Upsilon;        ///< n×q, m×q
-  Matrix M, Phi, Omega;       ///< q×m, n×q, (m-q)×m
+  Matrix left_out;  ///< m×q: sum of the responses before ρ_i, in magnitude, that were taken for 0
+  Matrix M, Phi, Omega;  ///< q×m, n×q, (m-q)×m
 };
 
 /// S is n×(n+m). Or nothing, and every condition that fails in words, with pointers relative to the

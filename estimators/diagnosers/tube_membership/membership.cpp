@@ -68,7 +68,8 @@ Answer membership(const designers::OutputTube& tube, VectorIn u, VectorIn y, Cer
                       std::move(S),     std::move(A),       std::move(b)};
   const LinesEliminated rest = eliminate_lines_traced(rows, magnitude);
   Certificate proof;
-  const Vector row_terms = linalg::product(rest.rows.cwiseAbs(), terms);
+  const Vector row_terms =
+      linalg::product(rest.rows.cwiseAbs(), terms + designers::TermsOfLines(rows.S, rest, 0).terms);
   Answer empty = BoxedProgram(rest.set.A, rest.set.b, {row_terms, designers::row_noise * row_terms})
                      .is_empty(&proof);
   if (empty == Answer::no && rest.vanished > 0)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/interfaces/model.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "cordon/core/error.hpp"
 
@@ -103,6 +106,15 @@ std::vector<Index> present_outputs(const Sample& sample) {
     }
   }
   return present;
+}
+
+Sample missing_outputs(Sample sample, const std::vector<Index>& outputs) {
+  std::vector<Index> missing;
+  std::set_union(sample.missing.begin(), sample.missing.end(), outputs.begin(), outputs.end(),
+                 std::back_inserter(missing));
+  for (const Index i : outputs) sample.y[i] = std::numeric_limits<double>::quiet_NaN();
+  sample.missing = std::move(missing);
+  return sample;
 }
 
 Sample without_missing(const Sample& sample) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/interfaces/observer.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -32,6 +33,15 @@ bool is_narrower(const Box& box, const Box& than) {
   return share < all;
 }
 
+/// The largest finite bound.
+double finite_size(const Box& box) {
+  double size = 0;
+  for (const Vector* bound : {&box.lower, &box.upper}) {
+    for (const double x : *bound) size = std::isfinite(x) ? std::max(size, std::abs(x)) : size;
+  }
+  return size;
+}
+
 /// By how much sets of these hulls may miss each other where they meet: infinite sides do not
 /// count.
 Vector rounding_between(const Box& X, const Box& Y) {
@@ -56,10 +66,14 @@ void Observer::start(std::optional<Enclosure> X0) {
   X0_ = std::move(X0);
   before_.reset();
   inconsistent_ = false;
+  outlier_times_.clear();
+  left_out_.clear();
+  contradiction_.reset();
   times_ = {};
 }
 
 void Observer::admit(const LineForm& admissible, Budget budget) {
+  admissible_form_ = admissible;
   admissible_ = backend_->import(admissible);
   if (admissible_->dim() != model_.linear.states())
     throw Error(Errc::dimension, "the admissible set has another dimension than the state");
@@ -69,8 +83,10 @@ void Observer::admit(const LineForm& admissible, Budget budget) {
 bool Observer::cut(Enclosure& X) {
   const Box hull = X->interval_hull();
   if (hull.is_empty()) return false;
-  if (hull.is_bounded() && backend_->box(hull)->is_subset_of(*admissible_) == Answer::yes)
+  if (hull.is_bounded() && backend_->box(hull)->is_subset_of(*admissible_) == Answer::yes) {
+    X.tightness = meet(X.tightness, admissible_.tightness);  // it may reach beyond what was given
     return false;
+  }
   const Matrix unit = Matrix::Identity(hull.dim(), hull.dim());
   Enclosure narrowed =
       timed(Phase::correct, [&] { return backend_->intersection(X, unit, admissible_); });
@@ -83,32 +99,140 @@ bool Observer::cut(Enclosure& X) {
   Enclosure reduced =
       timed(Phase::reduce, [&] { return backend_->reduce(narrowed, admissible_budget_); });
   const Box now = reduced->interval_hull();
-  if (!now.is_empty() && !is_narrower(now, hull)) return false;
+  if (!now.is_empty() && !is_narrower(now, hull)) {
+    X.tightness = Tightness::outer;  // what is known of the state is not all used
+    return false;
+  }
   X = std::move(reduced);
+  // beside a set of such size the estimate is rounding, though operations call it exact
+  const double size = finite_size(admissible_->interval_hull());
+  if (tolerances::product_noise * size > tolerances::reported * finite_size(now))
+    X.tightness = Tightness::outer;
   return true;
+}
+
+void Observer::leave_out_outliers(Index most, Index window) {
+  if (most < 0 || window < 1)
+    throw Error(Errc::invalid, "outliers: a number of samples in a window of 1 at least");
+  if (most > 0 && !takes_missing_outputs()) {
+    throw Error(Errc::unsupported,
+                "outliers are left out like missing outputs, which this observer does not take");
+  }
+  most_outliers_ = most;
+  outlier_window_ = window;
+}
+
+Estimate Observer::advance(const Sample& now) {
+  Estimate estimate{now.k, {}, Answer::unknown, {}};
+  estimate.set = before_ ? do_step(*before_, now) : do_start(X0_, now);
+  estimate.set.tightness = meet(estimate.set.tightness, claim());
+  const bool is_cut = admissible_.set && cut(estimate.set);
+  {
+    const Stopwatch watch(times_.question);
+    estimate.consistent = negate(estimate.set->is_empty(&estimate.why));
+  }
+  if (is_cut && estimate.consistent != Answer::no) do_replace(estimate.set);
+  return estimate;
+}
+
+void Observer::go_back() {
+  if (before_) do_replace(last_);
+}
+
+std::vector<Index> Observer::outliers(const Set& X, const Sample& now) {
+  const LinearModel& m = model_.linear;
+  if (!noise_.set) noise_ = backend_->import(model_.V);
+  std::vector<Index> found;
+  double worst = 0;
+  for (const Index i : present_outputs(now)) {
+    const Vector c = m.C.row(i).transpose(), v = m.Dv.row(i).transpose();
+    const double direct = m.D.row(i).dot(now.u), y = now.y[i];
+    const double upper = direct + X.support(c) + noise_->support(v),
+                 lower = direct - X.support(-c) - noise_->support(-v);
+    const double distance = std::max(y - upper, lower - y);  // NaN: open on both sides
+    const double size = std::max({std::abs(y), std::abs(direct), std::isfinite(upper) ? upper : 0,
+                                  std::isfinite(lower) ? -lower : 0});
+    if (!(distance > tolerances::reported * size)) continue;
+    found.push_back(i);
+    const double share = distance / std::max(upper - lower, tolerances::reported * size);
+    if (contradiction_ && !(share > worst)) continue;
+    worst = share;
+    contradiction_ = {now.k, i, distance};
+  }
+  return found;
+}
+
+bool Observer::may_leave_out(Index k) const {
+  const auto recent = std::count_if(outlier_times_.begin(), outlier_times_.end(),
+                                    [&](Index t) { return t > k - outlier_window_; });
+  return recent < most_outliers_;
+}
+
+std::optional<Sample> Observer::without_outliers(const Sample& now, Estimate& estimate) {
+  const bool empty = estimate.consistent == Answer::no, may = may_leave_out(now.k);
+  const std::vector<Index> present = present_outputs(now);
+  if (present.empty() || !takes_missing_outputs() || !(empty || may)) return std::nullopt;
+  Estimate predicted = estimate;
+  if (empty) {
+    go_back();
+    predicted = advance(missing_outputs(now, present));
+    if (predicted.consistent == Answer::no) return std::nullopt;  // whatever the outputs are
+  }
+  std::vector<Index> missed = outliers(*predicted.set, now);
+  if (missed.empty() && !empty) return std::nullopt;
+  if (missed.empty()) {
+    contradiction_ = Contradiction{now.k};
+    missed = present;
+  }
+  if (!may) return std::nullopt;
+  std::optional<Sample> used = missing_outputs(now, missed);
+  if (empty) {
+    go_back();
+    estimate = advance(*used);
+    if (estimate.consistent == Answer::no) {  // the others together
+      missed = present;
+      used = missing_outputs(now, missed);
+      go_back();
+      estimate = advance(*used);
+    }
+  }
+  left_out_ = std::move(missed);
+  std::erase_if(outlier_times_, [&](Index t) { return t <= now.k - outlier_window_; });
+  outlier_times_.push_back(now.k);
+  return used;
 }
 
 Estimate Observer::step(const Sample& now) {
   detail::check_sample(now, before_, model_.linear);
   if (!now.is_complete() && !takes_missing_outputs()) detail::refuse_missing(now, "observer");
   times_ = {};
-  Estimate estimate{now.k, {}, Answer::unknown, {}};
+  left_out_.clear();
+  contradiction_.reset();
   if (inconsistent_) {
-    estimate.set = backend_->empty(model_.linear.states());
-    estimate.consistent = Answer::no;
+    Estimate estimate{now.k, backend_->empty(model_.linear.states()), Answer::no, {}};
     estimate.set->is_empty(&estimate.why);
-  } else {
-    estimate.set = before_ ? do_step(*before_, now) : do_start(X0_, now);
-    estimate.set.tightness = meet(estimate.set.tightness, claim());
-    const bool is_cut = admissible_.set && cut(estimate.set);
-    {
-      const Stopwatch watch(times_.question);
-      estimate.consistent = negate(estimate.set->is_empty(&estimate.why));
-    }
-    inconsistent_ = estimate.consistent == Answer::no;
-    if (is_cut && !inconsistent_) do_replace(estimate.set);
+    before_ = now;
+    return estimate;
   }
-  before_ = now;
+  Estimate estimate = advance(now);
+  std::optional<Sample> used;
+  if (estimate.consistent == Answer::no || most_outliers_ > 0) {
+    Estimate others = estimate;
+    const PhaseTimes times = times_;
+    try {
+      used = without_outliers(now, others);
+    } catch (const Error& error) {  // why an estimate is empty was not asked for
+      if (error.code() != Errc::unsupported || may_leave_out(now.k)) throw;
+    }
+    if (used) {
+      estimate = std::move(others);
+    } else {
+      times_ = times;
+    }
+  }
+  inconsistent_ = estimate.consistent == Answer::no;
+  last_ = estimate.set;
+  before_ = used ? std::move(*used) : now;
   return estimate;
 }
 
@@ -120,6 +244,7 @@ void Observer::replace(Enclosure X) {
   if (X->dim() != model_.linear.states())
     throw Error(Errc::dimension, "the replacing set has another dimension than the state");
   inconsistent_ = false;
+  last_ = X;
   do_replace(X);
 }
 

@@ -6,7 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/solvers/exact_questions.hpp"
+#include "cordon/solvers/set_questions.hpp"
 #include "rounded_data.hpp"
 #include "study/checks/outside.hpp"
 
@@ -24,14 +27,14 @@ bool is_by_plant(const Study& study) {
   return simulate && (simulate->plant || simulate->made_plant);
 }
 
-void collect(const ComponentSpec& spec, PipelineAssumptions& found) {
+void collect(const ComponentSpec& spec, Index from, PipelineAssumptions& found) {
   for (const auto& [name, value] : spec.params.values()) {
     if (const auto* set = std::get_if<LineForm>(&value)) {
-      if (name == "admissible_set") found.admissible_sets.push_back(*set);
+      if (name == "admissible_set") found.admissible_sets.push_back({*set, from});
       if (name == "restart_set") found.restart_set = *set;
     }
     const auto* nested = std::get_if<std::shared_ptr<const ComponentSpec>>(&value);
-    if (nested && *nested) collect(**nested, found);
+    if (nested && *nested) collect(**nested, 0, found);
   }
 }
 
@@ -83,6 +86,18 @@ bool leaves_V(const Model& model, const Record& now) {
   return is_missing(model.V, m.Dv, v, radius, terms);
 }
 
+/// By next to nothing as well: where the solver does not tell, rational arithmetic does.
+bool is_proven_outside(const LineForm& set, const Vector& x) {
+  const Answer answer = contains(set, x);
+  if (answer != Answer::unknown) return answer == Answer::no;
+  try {
+    return exact::contains(set, x) == Answer::no;
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported) throw;
+    return false;
+  }
+}
+
 bool earlier(const FailedAssumption& a, const std::optional<FailedAssumption>& b) {
   return !b || a.from() < b->from();
 }
@@ -92,8 +107,7 @@ bool earlier(const FailedAssumption& a, const std::optional<FailedAssumption>& b
 PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser,
                                    std::optional<Rounding> rounding) {
   PipelineAssumptions found;
-  collect(diagnoser, found);
-  found.admissible_from = 1;
+  collect(diagnoser, 1, found);
   found.inputs = true;
   found.exact_data = rounding && *rounding != Rounding::nominal;
   return found;
@@ -111,11 +125,18 @@ void AssumptionCheck::begin_run(std::int64_t seed_offset) {
   kept_.clear();
   start_.reset();
   other_.reset();
+  slight_.reset();
 }
 
 void AssumptionCheck::step(const Record& record) {
   if (!last_) check_start(record);
   if (!other_ && leaves_modes(record)) fail(What::modes, record.sample.k);
+  const auto is_used = [&](Index output) {
+    const std::vector<Index>& missing = record.sample.missing;
+    return std::find(missing.begin(), missing.end(), output) == missing.end();
+  };
+  if (!other_ && std::any_of(record.outliers.begin(), record.outliers.end(), is_used))
+    fail(What::V, record.sample.k, mode_of(record));
   if (!other_) {
     check_sets(record);
     if (by_plant_) check_plant(record);
@@ -133,11 +154,21 @@ void AssumptionCheck::restarted() {
   if (clearly_outside(*assumed_.restart_set, *last_->truth)) fail(What::restart_set, k);
 }
 
+void AssumptionCheck::begun_anew_from(const LineForm& set) {
+  if (last_ && last_->truth && is_left(set, *last_->truth, What::initial_set, last_->sample.k))
+    fail(What::initial_set, last_->sample.k);
+}
+
 bool AssumptionCheck::excuses(Index k, Index since) const {
   return (start_ && since <= start_->k && start_->from() <= k) || (other_ && other_->from() <= k);
 }
 
-bool AssumptionCheck::excuses_by_rounding(Index k, bool barely) {
+bool AssumptionCheck::excuses_by_rounding(Index k, bool barely, Index since) {
+  const bool rests_on_start = slight_ && since <= slight_->k;
+  if (slight_ && slight_->k <= k && (rests_on_start || slight_->what != What::initial_set)) {
+    fail(slight_->what, slight_->k, slight_->mode);
+    return true;
+  }
   if (!assumed_.exact_data && !barely) return false;
   const Record* before = nullptr;
   for (const Record& now : kept_) {
@@ -161,10 +192,20 @@ void AssumptionCheck::check_start(const Record& record) {
   if (!record.truth) return;
   const Index k = record.sample.k, mode = record.mode.value_or(bank_.nominal);
   if (assumed_.initial_set) {
-    if (clearly_outside(*assumed_.initial_set, *record.truth)) fail(What::initial_set, k);
-  } else if (mode >= 0 && k == 0 && clearly_outside(bank_[mode].model.X0, *record.truth)) {
+    if (is_left(*assumed_.initial_set, *record.truth, What::initial_set, k))
+      fail(What::initial_set, k);
+  } else if (mode >= 0 && k == 0 &&
+             is_left(bank_[mode].model.X0, *record.truth, What::initial_set, k, mode)) {
     fail(What::initial_set, k, mode);
   }
+}
+
+/// Outside by more than rounding; by less is remembered.
+bool AssumptionCheck::is_left(const LineForm& set, const Vector& x, What what, Index k,
+                              Index mode) {
+  if (set.dim() != x.size() || !is_proven_outside(set, x)) return false;
+  if (!slight_) slight_ = FailedAssumption{what, k, mode, seed_offset_};
+  return clearly_outside(set, x);
 }
 
 bool AssumptionCheck::leaves_modes(const Record& record) const {
@@ -178,9 +219,10 @@ bool AssumptionCheck::leaves_modes(const Record& record) const {
 
 void AssumptionCheck::check_sets(const Record& record) {
   const Index k = record.sample.k;
-  for (const LineForm& set : assumed_.admissible_sets) {
-    if (other_ || !record.truth || k < assumed_.admissible_from) break;
-    if (clearly_outside(set, *record.truth)) fail(What::admissible_set, k);
+  for (const auto& [set, from] : assumed_.admissible_sets) {
+    if (other_ || !record.truth) break;
+    if (k >= from && is_left(set, *record.truth, What::admissible_set, k))
+      fail(What::admissible_set, k);
   }
   if (!other_ && assumed_.inputs && clearly_outside(study_.model.U, record.sample.u))
     fail(What::U, k);

@@ -43,8 +43,8 @@ std::unique_ptr<DataSource> open_data(const Study& study, std::uint64_t seed_off
     const bool modes =
         !study.modes.empty() || !spec.faults.empty();  // with one mode there is nothing to tell
     std::unique_ptr<DataSource> source = simulated(study, spec, modes);
-    if (spec.dropouts.empty()) return source;
-    return std::make_unique<detail::DropoutData>(std::move(source), spec.dropouts, spec.seed);
+    if (spec.dropouts.empty() && spec.outliers.empty()) return source;
+    return std::make_unique<detail::DisturbedData>(std::move(source), spec);
   }
   std::vector<std::string> modes{study.nominal};
   for (const Mode& mode : study.modes) modes.push_back(mode.name);

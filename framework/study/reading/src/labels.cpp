@@ -25,6 +25,12 @@ std::string label_of(const Labels::Names& names, const std::string& symbol, Inde
   return name ? *name : fmt::format("{}_{}", symbol, i + 1);
 }
 
+std::string unit_of(const std::string& name) {
+  const std::size_t begin = name.rfind('[');
+  const bool has_unit = begin != std::string::npos && name.ends_with(']');
+  return has_unit ? name.substr(begin + 1, name.size() - begin - 2) : "";
+}
+
 std::string heading_of(const Labels::Names& names, const std::string& symbol, Index i) {
   const std::string* const name = name_of(names, i);
   return fmt::format("{}_{}{}{}", symbol, i + 1, name ? " " : "", name ? *name : "");

@@ -186,6 +186,8 @@ void read_stream(const Cursor& at, const SystemPart& system, const DataUse& use,
     AdditiveFaultReader(spec, system.sizes.faults, context.warnings).read(*additive);
   if (const auto dropouts = at.find("dropouts"))
     read_dropouts(*dropouts, system.sizes.outputs, spec, context.warnings);
+  if (const auto outliers = at.find("outliers"))
+    read_outliers(*outliers, system.sizes.outputs, spec, context.warnings);
 }
 
 /// All pipelines have a designer.
@@ -195,7 +197,8 @@ void refuse_stream(const Cursor& at) {
       found->error("belongs to the designer, which every pipeline has",
                    "remove it: horizon and inputs are parameters of designers");
   }
-  for (const char* key : {"parameters", "plant", "faults", "additive_faults", "dropouts"}) {
+  for (const char* key :
+       {"parameters", "plant", "faults", "additive_faults", "dropouts", "outliers"}) {
     if (const auto found = at.find(key)) {
       found->error(
           "has no meaning where every pipeline has a designer",
@@ -209,7 +212,7 @@ SimulateSpec read_simulate(const Cursor& at, const SystemPart& system, const Dat
                            std::vector<WrittenFault>& written_faults) {
   SimulateSpec spec;
   if (!at.expect_keys({"steps", "seed", "seeds", "noise", "x0", "input", "plant", "faults",
-                       "additive_faults", "parameters", "dropouts"},
+                       "additive_faults", "parameters", "dropouts", "outliers"},
                       "key of simulated data", "{\"steps\": 100, \"input\": [...]}"))
     return spec;
   if (const auto seed = at.find("seed"))

@@ -10,6 +10,7 @@ namespace {
 using Kind = Value::Kind;
 constexpr std::size_t max_dropouts = 10'000;
 constexpr const char* dropout_form = "{\"outputs\": [1], \"probability\": 0.3}";
+constexpr const char* outlier_form = "{\"outputs\": [1], \"probability\": 0.02, \"shift\": 5}";
 
 std::vector<Index> all_of(std::optional<Index> outputs) {
   std::vector<Index> all;
@@ -41,12 +42,10 @@ std::vector<Index> read_outputs(const Cursor& at, std::optional<Index> outputs) 
   return read;
 }
 
-DropoutSpec read_dropout(const Cursor& at, std::optional<Index> outputs, std::int64_t steps,
-                         std::vector<std::string>& warnings) {
+/// The keys of a dropout are there and known.
+DropoutSpec read_drawn(const Cursor& at, std::optional<Index> outputs, std::int64_t steps,
+                       std::vector<std::string>& warnings) {
   DropoutSpec dropout;
-  if (!at.expect_keys({"outputs", "from", "to", "probability", "every"}, "key of a dropout",
-                      dropout_form))
-    return dropout;
   const auto list = at.find("outputs");
   dropout.outputs = list ? read_outputs(*list, outputs) : all_of(outputs);
   read_times(at, steps, dropout.from, dropout.to, warnings);
@@ -60,17 +59,40 @@ DropoutSpec read_dropout(const Cursor& at, std::optional<Index> outputs, std::in
   return dropout;
 }
 
+/// A list of so many things at most.
+bool expect_list(const Cursor& list, const std::string& noun, const char* form) {
+  if (!list.expect(Kind::array, "a list of " + noun + ": [" + form + "]")) return false;
+  if (list.size() <= max_dropouts) return true;
+  list.error("holds more than " + std::to_string(max_dropouts) + " " + noun);
+  return false;
+}
+
 }  // namespace
+
+void read_outliers(const Cursor& list, std::optional<Index> outputs, SimulateSpec& spec,
+                   std::vector<std::string>& warnings) {
+  if (!expect_list(list, "outliers", outlier_form)) return;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Cursor at = list.item(i);
+    if (!at.expect_keys({"outputs", "from", "to", "probability", "every", "shift"},
+                        "key of outliers", outlier_form))
+      continue;
+    OutlierSpec& outlier =
+        spec.outliers.emplace_back(OutlierSpec{read_drawn(at, outputs, spec.steps, warnings), 0});
+    if (const auto shift = at.need("shift", "by how much the output is wrong, up or down"))
+      outlier.shift = read_number(*shift).value_or(0);
+  }
+}
 
 void read_dropouts(const Cursor& list, std::optional<Index> outputs, SimulateSpec& spec,
                    std::vector<std::string>& warnings) {
-  if (!list.expect(Kind::array, std::string("a list of dropouts: [") + dropout_form + "]")) return;
-  if (list.size() > max_dropouts) {
-    list.error("holds more than " + std::to_string(max_dropouts) + " dropouts");
-    return;
+  if (!expect_list(list, "dropouts", dropout_form)) return;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Cursor at = list.item(i);
+    if (at.expect_keys({"outputs", "from", "to", "probability", "every"}, "key of a dropout",
+                       dropout_form))
+      spec.dropouts.push_back(read_drawn(at, outputs, spec.steps, warnings));
   }
-  for (std::size_t i = 0; i < list.size(); ++i)
-    spec.dropouts.push_back(read_dropout(list.item(i), outputs, spec.steps, warnings));
 }
 
 }  // namespace cordon::json

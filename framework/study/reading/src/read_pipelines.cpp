@@ -13,6 +13,20 @@ namespace {
 using Kind = Value::Kind;
 constexpr std::size_t max_pipelines = 1000;
 
+/// Can the backend hold the set that the observer begins anew from?
+void check_restart(const Cursor& pipeline, const EstimationSpec& spec, const SetBackend& backend) {
+  if (spec.on_empty != OnEmpty::restart) return;
+  try {
+    backend.import(spec.restart_set);
+  } catch (const Error& error) {
+    const auto set = pipeline.find("restart_set");
+    (set ? *set : *pipeline.find("on_empty"))
+        .error(std::string(set ? "" : "the observer would begin anew from the whole space: ") +
+                   error.what(),
+               "give a \"restart_set\" that holds every state");
+  }
+}
+
 /// Makes the backend and asks the algorithms whether they can work with it on this model, or on
 /// these modes.
 void check_together(const Cursor& pipeline, const PipelineSpec& spec, const SystemPart& system,
@@ -24,6 +38,8 @@ void check_together(const Cursor& pipeline, const PipelineSpec& spec, const Syst
   } catch (const Error& error) {
     return report_failure(*pipeline.find("backend"), error, context);
   }
+  if (const EstimationSpec* const estimation = spec.estimation())
+    check_restart(pipeline, *estimation, *backend);
   for (const auto& [kind, component] : algorithms_of(spec)) {
     const ComponentSpec& algorithm = *component;
     ask(*pipeline.find(kind), context, [&] {
@@ -35,6 +51,42 @@ void check_together(const Cursor& pipeline, const PipelineSpec& spec, const Syst
                                            algorithm.params);
     });
   }
+}
+
+/// What becomes of samples that contradict the model: keys that belong to an observer.
+void read_options(const Cursor& at, const SystemPart& system, const ComponentContext& context,
+                  PipelineSpec& spec) {
+  EstimationSpec* const estimation = spec.estimation();
+  const auto on_empty = at.find("on_empty"), restart_set = at.find("restart_set"),
+             outliers = at.find("outliers");
+  for (const auto& option : {on_empty, restart_set, outliers}) {
+    if (option && !estimation)
+      option->error("belongs to pipelines with an observer", "remove it here");
+  }
+  if (!estimation) return;
+  if (on_empty && read_choice(*on_empty, on_empty_names()) == "restart")
+    estimation->on_empty = OnEmpty::restart;
+  if (system.sizes.states) estimation->restart_set = make_space(*system.sizes.states);
+  if (restart_set) {
+    if (estimation->on_empty != OnEmpty::restart)
+      restart_set->error("is not used", "give \"on_empty\": \"restart\" as well");
+    auto set = read_set(*restart_set, context.warnings);
+    if (set && system.sizes.states && set->dim() != *system.sizes.states) {
+      restart_set->error("has dimension " + std::to_string(set->dim()) + ", the state has " +
+                         std::to_string(*system.sizes.states));
+    } else if (set) {
+      estimation->restart_set = std::move(*set);
+    }
+  }
+  if (!outliers ||
+      !outliers->expect_keys({"most", "in"}, "key of outliers", "{\"most\": 1, \"in\": 20}"))
+    return;
+  const auto most = outliers->need("most", "how many samples may have outliers"),
+             in = outliers->need("in", "of how many that follow each other");
+  estimation->outliers = most ? read_integer(*most, 1, max_integer).value_or(0) : 0;
+  estimation->outlier_window = in ? read_integer(*in, 1, max_integer).value_or(1) : 1;
+  if (most && in && estimation->outliers > estimation->outlier_window)
+    most->error("is larger than \"in\"", "the samples that may have outliers are some of these");
 }
 
 /// The observer, or the designer and the diagnoser of a pipeline; false if they are not right.
@@ -77,8 +129,9 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   PipelineSpec spec;
   const std::string form =
       "{\"name\": ..., \"backend\": {\"type\": ...}, \"observer\": {\"type\": ...}}";
-  if (!at.expect_keys({"name", "backend", "observer", "diagnoser", "designer"}, "key of a pipeline",
-                      form))
+  if (!at.expect_keys({"name", "backend", "observer", "diagnoser", "designer", "on_empty",
+                       "restart_set", "outliers"},
+                      "key of a pipeline", form))
     return spec;
   const auto backend_at = at.need("backend", "the set representation: {\"type\": ...}");
   const auto backend = backend_at ? read_component(*backend_at, "backend", context) : std::nullopt;
@@ -88,6 +141,7 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
   } else if (backend) {
     spec.name = backend->type;
   }
+  if (algorithm) read_options(at, system, context, spec);
   if (!backend || !algorithm) return spec;
   spec.backend = *backend;
   if (asks && (spec.estimation() ? system.good : system.modes_good))
@@ -96,6 +150,11 @@ PipelineSpec read_pipeline(const Cursor& at, const SystemPart& system, const Mod
 }
 
 }  // namespace
+
+const std::vector<std::string>& on_empty_names() {
+  static const std::vector<std::string> names{"stop", "restart"};
+  return names;
+}
 
 void read_plant(const Cursor& at, const SystemPart& system, SimulateSpec& spec,
                 const ComponentContext& context) {

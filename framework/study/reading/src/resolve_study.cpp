@@ -233,6 +233,10 @@ Json to_json(const SimulateSpec& spec, const LinearModel& model, bool streamed,
   for (const AdditiveFaultSpec& fault : spec.additive_faults)
     object["additive_faults"].push_back(to_json(fault));
   for (const DropoutSpec& dropout : spec.dropouts) object["dropouts"].push_back(to_json(dropout));
+  for (const OutlierSpec& outlier : spec.outliers) {
+    object["outliers"].push_back(to_json(outlier.when));
+    object["outliers"].back()["shift"] = outlier.shift;
+  }
   return object;
 }
 
@@ -249,6 +253,15 @@ Json to_json(const CsvSpec& spec, const std::string& written_file) {
   if (spec.irregular != IrregularRows::error)
     object["irregular"] = irregular_rows_names()[static_cast<std::size_t>(spec.irregular)];
   return object;
+}
+
+void add_options(Json& pipeline, const EstimationSpec& spec) {
+  if (spec.on_empty != OnEmpty::stop) {
+    pipeline["on_empty"] = on_empty_names()[static_cast<std::size_t>(spec.on_empty)];
+    pipeline["restart_set"] = to_json(spec.restart_set);
+  }
+  if (spec.outliers > 0)
+    pipeline["outliers"] = {{"most", spec.outliers}, {"in", spec.outlier_window}};
 }
 
 /// Like dump(2), but a list of plain values stays on one line: a matrix takes a line per row.
@@ -295,6 +308,8 @@ std::string resolve(const Study& study, const Written& written,
     pipeline["backend"] = to_json(spec.backend, "backend", registry);
     for (const auto& [kind, component] : algorithms_of(spec))
       pipeline[kind] = to_json(*component, kind, registry);
+    if (const EstimationSpec* const estimation = spec.estimation())
+      add_options(pipeline, *estimation);
     root["pipelines"].push_back(std::move(pipeline));
   }
   root["metrics"] = Json::array();

@@ -194,21 +194,33 @@ Json additive_faults() {
   return list_of(object(properties, {"fault", "signal"}));
 }
 
-Json dropouts() {
+/// The times and outputs of dropouts and outliers.
+Json drawn_outputs(const char* spared) {
   const Json time = integer(0, static_cast<std::int64_t>(json::max_integer));
   Json properties;
   properties["outputs"] = described(
       Json{{"type", "array"}, {"items", integer(1, json::max_dimension)}, {"minItems", 1}},
       "numbers of rows of C, from 1 on; all by default");
-  properties["from"] = described(time, "the first k that the dropout is about");
+  properties["from"] = described(time, "the first k that this is about");
   properties["from"]["default"] = 0;
   properties["to"] = described(time, "the last such k; the end by default");
   properties["probability"] =
       described(Json{{"type", "number"}, {"minimum", 0}, {"maximum", 1}, {"default", 1}},
                 "of every output at every step, each by itself");
-  properties["every"] = described(integer(1, static_cast<std::int64_t>(json::max_integer)),
-                                  "the outputs are there at every so many steps from `from` on");
-  return list_of(object(properties, {}));
+  properties["every"] = described(integer(1, static_cast<std::int64_t>(json::max_integer)), spared);
+  return properties;
+}
+
+Json dropouts() {
+  return list_of(
+      object(drawn_outputs("the outputs are there at every so many steps from `from` on"), {}));
+}
+
+Json outliers() {
+  Json properties = drawn_outputs("the outputs are right at every so many steps from `from` on");
+  properties["shift"] =
+      described(Json{{"type", "number"}}, "by how much the output is too large or too small");
+  return list_of(object(properties, {"shift"}));
 }
 
 Json data() {
@@ -234,6 +246,7 @@ Json data() {
   simulate["additive_faults"] =
       described(additive_faults(), "values of the faults in the directions of F; 0 otherwise");
   simulate["dropouts"] = described(dropouts(), "outputs that are missing in samples");
+  simulate["outliers"] = described(outliers(), "outputs that are wrong in samples");
   const Json names{{"type", "array"}, {"items", text(4096)}, {"uniqueItems", true}};
   Json csv;
   csv["file"] = described(text(4096), "relative to the folder of the study");
@@ -289,9 +302,25 @@ Json definitions(const Registry& registry) {
   defs["fault"] = faults();
   defs["data"] = data();
   for (const std::string& kind : Registry::kinds()) defs[kind] = components(registry, kind);
+  Json on_empty = described(one_of(json::on_empty_names()),
+                            "after an estimate that is proven empty: it stays empty, or the "
+                            "observer begins anew with the next sample");
+  on_empty["default"] = "stop";
+  const Json count = integer(1, static_cast<std::int64_t>(json::max_integer));
+  const Json outliers =
+      described(object({{"most", described(count, "samples of which outputs may be left out")},
+                        {"in", described(count, "so many samples that follow each other")}},
+                       {"most", "in"}),
+                "outputs that miss the prediction are left out");
   Json pipeline = object({{"name", described(text(200), "unique; the backend's name by default")},
                           {"backend", reference("backend")},
                           {"observer", reference("observer")},
+                          {"on_empty", on_empty},
+                          {"restart_set", described(reference("set"),
+                                                    "holds the state where the "
+                                                    "observer begins anew; the whole space by "
+                                                    "default")},
+                          {"outliers", outliers},
                           {"diagnoser", reference("diagnoser")},
                           {"designer", reference("designer")}},
                          {"backend"});
@@ -335,8 +364,8 @@ Json conditions() {
   const Json designer{{"required", {"designer"}}};
   Json all_designed{{"properties", {{"pipelines", {{"items", designer}}}}}};
   Json refused;
-  for (const char* key :
-       {"steps", "input", "parameters", "plant", "faults", "additive_faults", "dropouts"})
+  for (const char* key : {"steps", "input", "parameters", "plant", "faults", "additive_faults",
+                          "dropouts", "outliers"})
     refused[key] = false;
   Json streamed = with_simulate(Json::object(), {"steps"});
   streamed["required"] = {"data"};

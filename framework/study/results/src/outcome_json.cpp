@@ -71,4 +71,42 @@ void write_growth(JsonWriter& json, const EstimationOutcome& outcome) {
   json.member("advice", advice_on(growth)).end_object();
 }
 
+void write_outputs(JsonWriter& json, const char* name, const std::vector<Index>& outputs) {
+  json.key(name).begin_array();
+  for (const Index output : outputs) json.value(output + 1);
+  json.end_array();
+}
+
+namespace {
+
+/// The members output and distance, null where no output contradicts by itself.
+void write_worst(JsonWriter& json, const Contradiction& found) {
+  const bool any = found.output >= 0;
+  json.key("output");
+  any ? json.value(found.output + 1) : json.null();
+  json.key("distance");
+  any ? json.value(found.distance) : json.null();
+}
+
+}  // namespace
+
+void write_contradictions(JsonWriter& json, const EstimationOutcome& outcome) {
+  if (outcome.contradiction) {
+    json.key("contradiction").begin_object().member("k", outcome.contradiction->k);
+    write_worst(json, *outcome.contradiction);
+    json.end_object();
+  }
+  if (outcome.restarts > 0) json.member("restarts", outcome.restarts);
+  if (outcome.outliers == 0) return;
+  json.key("outliers").begin_object().member("samples", outcome.outliers);
+  json.key("left_out").begin_array(JsonWriter::Layout::lines);
+  for (const LeftOut& one : outcome.left_out) {
+    json.begin_object().member("k", one.worst.k);
+    write_outputs(json, "outputs", one.outputs);
+    write_worst(json, one.worst);
+    json.end_object();
+  }
+  json.end_array().end_object();
+}
+
 }  // namespace cordon::detail

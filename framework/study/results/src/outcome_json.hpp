@@ -21,4 +21,10 @@ void write_last(JsonWriter& json, Index k, const Box& hull);
 void write_inner(JsonWriter& json, const EstimationOutcome& outcome);
 void write_growth(JsonWriter& json, const EstimationOutcome& outcome);
 
+/// NAME: [outputs, from 1 on].
+void write_outputs(JsonWriter& json, const char* name, const std::vector<Index>& outputs);
+/// "contradiction": {k, output, distance} of the first empty estimate; "restarts"; "outliers":
+/// {samples, left_out: [{k, outputs, output, distance}]}: those that there are.
+void write_contradictions(JsonWriter& json, const EstimationOutcome& outcome);
+
 }  // namespace cordon::detail

@@ -172,6 +172,10 @@ void Results::begin_estimation(const PipelineSpec& spec, std::optional<Rounding>
     results_.key("admissible_set");
     assumptions->admissible_set ? write(results_, *assumptions->admissible_set)
                                 : void(results_.null());
+    if (assumptions->restart_set) {
+      results_.key("restart_set");
+      write(results_, *assumptions->restart_set);
+    }
     results_.member("follows_its_sets", assumptions->follows_its_sets).end_object();
   } else {
     results_.null();
@@ -227,6 +231,7 @@ void Results::estimate(const StepResult& result) {
   results_.begin_object().member("k", estimate.k);
   write_box(results_, "hull", result.hull);
   if (result.inner) write_box(results_, "inner", *result.inner);
+  if (!result.left_out.empty()) write_outputs(results_, "left_out", result.left_out);
   results_.member("consistent", to_string(estimate.consistent))
       .member("tightness", to_string(estimate.set.tightness));
   for (const MetricValue& metric : result.metrics.reproducible) write(results_, metric);
@@ -307,6 +312,7 @@ void Results::end_estimation(const PipelineOutcome& outcome, const MetricValues&
       .member("inconsistent", found.inconsistent);
   results_.member("undecided", found.undecided);
   write_time(results_, "inconsistent_from", found.inconsistent_from);
+  write_contradictions(results_, found);
   write_assumptions(results_, outcome, mode_names(study_));
   write_time(results_, "outside_from", found.outside_from);
   write_time(results_, "violated_at", outcome.violated_at);

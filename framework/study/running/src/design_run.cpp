@@ -73,7 +73,7 @@ class DesignRun final : public PipelineRun {
     PipelineAssumptions assumed = assumptions_of(spec, rounding());
     assumed.inputs = false;  // the input of an experiment is known beforehand
     if (const auto& admissible = design().admissible_set)
-      assumed.admissible_sets.push_back(*admissible);
+      assumed.admissible_sets.push_back({*admissible, 1});
     auto diagnoser =
         context_.registry.make<DiagnoserEntry>(spec.type, {bank_, backend()}, spec.params);
     check_.emplace(context_.study, std::move(assumed));

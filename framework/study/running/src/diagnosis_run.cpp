@@ -155,7 +155,8 @@ class DiagnosisRun final : public PipelineRun {
   /// A statement that is proven false: a defect where the data are made by the model itself, and
   /// keep to what is assumed.
   bool blame(Index k, Index since) {
-    if (!own_model_ || check_->excuses(k, since) || check_->excuses_by_rounding(k)) return false;
+    if (!own_model_ || check_->excuses(k, since) || check_->excuses_by_rounding(k, false, since))
+      return false;
     violated_in_run_ = std::min(k, violated_in_run_.value_or(k));
     return true;
   }

@@ -28,7 +28,8 @@ struct Medians {
   }
 };
 
-constexpr Index nominal_mode = 0;  // in bank_of(study)
+constexpr Index nominal_mode = 0;              // in bank_of(study)
+constexpr std::size_t most_left_out = 10'000;  // in results
 
 /// An observer over its own stream of the data, and what became of it so far.
 class EstimationRun final : public PipelineRun {
@@ -50,14 +51,16 @@ class EstimationRun final : public PipelineRun {
     observer_ = context_.registry.make<ObserverEntry>(
         observer_spec_.type, {context_.study.model, backend()}, observer_spec_.params);
     board_.emplace(context_.study.metrics, context_.registry);
+    const EstimationSpec& spec = *spec_.estimation();
+    observer_->leave_out_outliers(spec.outliers, spec.outlier_window);
     observer_->start();
     assumptions_ = {observer_->initial_set(), std::nullopt, observer_->follows_its_sets()};
-    if (const Set* admissible = observer_->admissible_set())
-      assumptions_->admissible_set = admissible->line_form();
+    assumptions_->admissible_set = observer_->admissible_set();
     PipelineAssumptions assumed{.initial_set = assumptions_->initial_set,
                                 .exact_data = rounding() != Rounding::nominal};
+    if (restarts()) assumptions_->restart_set = spec.restart_set;
     if (assumptions_->admissible_set)
-      assumed.admissible_sets.push_back(*assumptions_->admissible_set);
+      assumed.admissible_sets.push_back({*assumptions_->admissible_set, 0});
     check_.emplace(context_.study, std::move(assumed));
     rounding_.emplace(context_.study.model, assumptions_->initial_set, *rounding());
     found_.gains = observer_->gains();
@@ -76,16 +79,50 @@ class EstimationRun final : public PipelineRun {
     return true;
   }
 
-  void estimate(const Record& record) {
+  bool restarts() const { return spec_.estimation()->on_empty == OnEmpty::restart; }
+
+  /// An estimate that was proven empty is followed by one that knows nothing of what was before.
+  void begin_anew(Index k) {
+    since_ = k;
+    const LineForm& set = spec_.estimation()->restart_set;
+    observer_->start(backend()->import(set));
+    rounding_.emplace(context_.study.model, set, *rounding());
+    before_.reset();
+    passed_.clear();
+    ++found_.restarts;
+  }
+
+  /// What was left out of the sample, or contradicts what was known.
+  void tell_contradiction(const Record& record) {
+    const std::optional<Contradiction>& contradiction = observer_->contradiction();
+    if (!contradiction) return;
+    if (observer_->left_out().empty()) {
+      if (!found_.contradiction) found_.contradiction = contradiction;
+      return;
+    }
+    ++found_.outliers;
+    if (found_.left_out.size() < most_left_out)
+      found_.left_out.push_back({*contradiction, observer_->left_out()});
+    seen_ = record;
+    seen_->sample = missing_outputs(std::move(seen_->sample), observer_->left_out());
+  }
+
+  void estimate(const Record& given) {
     Results* const results = context_.results;
     std::optional<Estimate> estimate;
     Box hull;
     std::optional<Box> inner;
     const MetricValues* values = nullptr;
     double hull_us = 0;
-    nominal_ = nominal_ && record.mode.value_or(nominal_mode) == nominal_mode;
+    nominal_ = nominal_ && given.mode.value_or(nominal_mode) == nominal_mode;
+    const bool anew = restarts() && was_empty_;
+    seen_.reset();
     guarded([&] {
-      estimate = observer_->step(record.sample);
+      if (anew) begin_anew(given.sample.k);
+      estimate = observer_->step(given.sample);
+      tell_contradiction(given);
+      const Record& record = seen_ ? *seen_ : given;
+      was_empty_ = estimate->consistent == Answer::no;
       const Clock::time_point begin = Clock::now();
       hull = estimate->consistent == Answer::no
                  ? Box::empty(estimate->set->dim())
@@ -93,18 +130,18 @@ class EstimationRun final : public PipelineRun {
       hull_us = seconds_since(begin) * 1e6;
       inner = observer_->inner_estimate();
       if (inner) inner_.step(estimate->k, *inner, hull);
-      const Vector* truth = judge(record, *estimate);
-      const bool assumptions_hold = nominal_ && !check_->excuses(record.sample.k);
+      const Vector* truth = judge(record, *estimate, anew);
+      const bool assumptions_hold = nominal_ && !check_->excuses(record.sample.k, since_);
       values = &board_->step({*estimate, hull, truth, assumptions_hold, observer_->times()});
       if (results) results->check_columns(*values);
     });
     if (failed()) return;
-    if (found_.inconsistent_from < 0)
+    if (found_.inconsistent_from < 0 || (restarts() && !was_empty_))
       medians_.add(observer_->times(), hull_us);  // ∅ stays ∅ without any work
     count(*estimate, hull);
     if (results)
-      results->estimate(
-          {*estimate, hull, hull_proofs_, inner, *values, observer_->times(), hull_us});
+      results->estimate({*estimate, hull, hull_proofs_, inner, *values, observer_->times(), hull_us,
+                         observer_->left_out()});
     growth_.step(estimate->k, hull);
     found_.last_hull = std::move(hull);
   }
@@ -131,8 +168,9 @@ class EstimationRun final : public PipelineRun {
 
   /// Looks at assumptions and containment; returns the truth at the estimate's time, if the data
   /// have it.
-  const Vector* judge(const Record& record, const Estimate& estimate) {
+  const Vector* judge(const Record& record, const Estimate& estimate, bool anew) {
     check_->step(record);
+    if (anew) check_->begun_anew_from(spec_.estimation()->restart_set);
     if (!record.truth) return nullptr;
     passed_.push_back({record.sample, *record.truth});
     while (!passed_.empty() &&
@@ -145,8 +183,8 @@ class EstimationRun final : public PipelineRun {
     if (found_.outside_from < 0 && is_outside(estimate, truth)) {
       found_.outside_from = estimate.k;
       const Index k = record.sample.k;
-      if (own_model_ && nominal_ && !check_->excuses(k) &&
-          !check_->excuses_by_rounding(k, barely_outside(estimate.set->line_form(), truth)))
+      if (own_model_ && nominal_ && !check_->excuses(k, since_) &&
+          !check_->excuses_by_rounding(k, barely_outside(estimate.set->line_form(), truth), since_))
         outcome_.violated_at = estimate.k;
     }
     return &truth;
@@ -193,7 +231,10 @@ class EstimationRun final : public PipelineRun {
 
   const ComponentSpec& observer_spec_;
   bool own_model_;
-  bool nominal_ = true;  ///< the plant has had no fault so far, as far as the data tell
+  Index since_ = 0;             ///< the observer has begun anew
+  bool was_empty_ = false;      ///< the last estimate
+  std::optional<Record> seen_;  ///< the record without what was left out
+  bool nominal_ = true;         ///< the plant has had no fault so far, as far as the data tell
   std::unique_ptr<DataSource> data_;
   std::int64_t total_;
   std::shared_ptr<Observer> observer_;

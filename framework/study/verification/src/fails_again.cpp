@@ -21,9 +21,12 @@ Answer fails_again(const RecordedRun& run, const RecordedPipeline& pipeline) {
   const bool by_rounding = failed.what == What::W_exactly || failed.what == What::V_exactly;
   detail::PipelineAssumptions assumed{.inputs = failed.what == What::U, .exact_data = by_rounding};
   const bool from_start = failed.what == What::initial_set || failed.k == 0;
-  if (estimation && from_start) assumed.initial_set = estimation->initial_set;
+  if (estimation && from_start) {
+    const bool anew = failed.k > 0 && estimation->restart_set;
+    assumed.initial_set = anew ? *estimation->restart_set : estimation->initial_set;
+  }
   if (estimation && estimation->admissible_set)
-    assumed.admissible_sets.push_back(*estimation->admissible_set);
+    assumed.admissible_sets.push_back({*estimation->admissible_set, 0});
   CsvSpec with_truth = run.data;
   for (Index i = 0; i < run.model.linear.states(); ++i)
     with_truth.truth.push_back(heading_of(run.labels.states, "x", i));

@@ -28,22 +28,30 @@ bool same_assumptions(const RecordedEstimation& a, const RecordedEstimation& b) 
 }  // namespace
 
 FeasibleSequence::FeasibleSequence(const Model& model, const RecordedEstimation& estimation)
-    : estimation_(estimation), uncertain_(model.linear.is_uncertain()) {
-  if (model.linear.states() > most_states_of_polytopes) return;
+    : model_(model), estimation_(estimation), uncertain_(model.linear.is_uncertain()) {
+  if (model.linear.states() <= most_states_of_polytopes) begin_from(estimation.initial_set);
+}
+
+void FeasibleSequence::begin_from(const LineForm& initial_set) {
   try {
-    sets_.emplace(model, estimation.initial_set, estimation.admissible_set);
+    sets_.emplace(model_, initial_set, estimation_.admissible_set);
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported) throw;
   }
 }
 
 bool FeasibleSequence::serves(const RecordedEstimation& other) const {
-  return same_assumptions(estimation_, other);
+  const auto is_plain = [](const RecordedEstimation& one) {
+    return !one.restart_set && !one.leaves_out();
+  };
+  return is_plain(estimation_) && is_plain(other) && same_assumptions(estimation_, other);
 }
 
 std::optional<Polytope> FeasibleSequence::at(std::size_t i, const Sample& sample) {
   if (i < kept_.size()) return kept_[i];
   std::optional<Polytope> F;
+  if (sets_ && i < estimation_.steps.size() && estimation_.begins_anew(i))
+    begin_from(*estimation_.restart_set);
   if (sets_) {
     try {
       F = sets_->step(sample);

@@ -21,6 +21,9 @@ class FeasibleSequence {
   bool complete(std::size_t steps) const { return keeps_ || steps <= kept_.size(); }
 
  private:
+  void begin_from(const LineForm& initial_set);
+
+  const Model& model_;
   const RecordedEstimation& estimation_;
   bool uncertain_;
   std::optional<FeasibleSets> sets_;

@@ -63,6 +63,8 @@ class StepCheck {
   std::int64_t undecided() const { return undecided_; }
   const std::string& first_undecided() const { return first_undecided_; }
   bool exact_claim_holds() const { return exact_holds_; }
+  /// It was held against directions alone, which cannot prove it.
+  bool exact_claim_stays() const { return exact_stays_; }
 
  private:
   struct Along;
@@ -102,7 +104,7 @@ class StepCheck {
   std::optional<Finding> violation_;
   std::int64_t proofs_ = 0, undecided_ = 0;
   std::string first_undecided_;
-  bool exact_holds_ = false;
+  bool exact_holds_ = false, exact_stays_ = false;
 };
 
 }  // namespace cordon::verification

@@ -87,7 +87,7 @@ void StepCheck::against(const Successors& of_the_set_before, const Matrix& direc
     if (stop && stop->load()) return;
     along(directions.col(j), by);
   }
-  exact_holds_ = claims && !violation_;
+  exact_stays_ = claims && !violation_;
 }
 
 void StepCheck::along(const Vector& d, Along& by) {

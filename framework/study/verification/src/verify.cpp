@@ -130,6 +130,13 @@ class Verification {
           static_cast<int>(line)}});
   }
 
+  [[noreturn]] void refuse_left_out(std::size_t p, std::size_t i) const {
+    throw InputError((run_.files.directory() / "results.json").string(),
+                     {{fmt::format("/pipelines/{}/steps/{}/left_out", p, i),
+                       "names an output that data.csv does not have there",
+                       "the file is not as \"cordon run\" wrote it; run the study again", 0}});
+  }
+
   [[noreturn]] void refuse_missing(Index k, const RecordedPipeline& pipeline) const {
     refuse(0, fmt::format("has no step k = {} of pipeline \"{}\", which data.csv has", k,
                           pipeline.name));
@@ -207,7 +214,8 @@ class Verification {
     const std::unique_ptr<DataSource> data = open_data(study);
     std::optional<Sample> sample, before;
     std::optional<RecordedSet> row, row_before;
-    detail::RoundingMargin rounding(run_.model, estimation.initial_set, pipeline.rounding);
+    std::optional<detail::RoundingMargin> rounding;
+    rounding.emplace(run_.model, estimation.initial_set, pipeline.rounding);
     std::size_t read = 0;
     Clock::time_point told = Clock::now();
     for (std::size_t i = 0; i < estimation.steps.size(); ++i) {
@@ -225,17 +233,25 @@ class Verification {
         if (record->sample.k < step.k) refuse_missing(record->sample.k, pipeline);
         before = std::move(sample);
         sample = std::move(record->sample);
+        if (sample->k == step.k) {
+          const auto is_there = [&](Index output) { return !std::isnan(sample->y[output]); };
+          if (!std::all_of(step.left_out.begin(), step.left_out.end(), is_there))
+            refuse_left_out(p, i);
+          *sample = missing_outputs(std::move(*sample), step.left_out);
+        }
         F = feasible.at(read++, *sample);
       }
       row_before = std::move(row);
       row = set_of(pipeline, step);
+      const bool anew = estimation.begins_anew(i);
+      if (anew) rounding.emplace(run_.model, *estimation.restart_set, pipeline.rounding);
       const bool follows =
-          row_before && before && row_before->k + 1 == step.k && before->k + 1 == step.k;
+          !anew && row_before && before && row_before->k + 1 == step.k && before->k + 1 == step.k;
       const Transition transition{follows ? &*before : nullptr, *sample};
-      const Vector outputs_before = rounding.of_outputs(),
-                   margin = rounding.next(row->set, transition.before, *sample);
-      const Vector outputs =
-          follows ? Vector(rounding.of_outputs().cwiseMax(outputs_before)) : rounding.of_outputs();
+      const Vector outputs_before = rounding->of_outputs(),
+                   margin = rounding->next(row->set, transition.before, *sample);
+      const Vector outputs = follows ? Vector(rounding->of_outputs().cwiseMax(outputs_before))
+                                     : rounding->of_outputs();
       const bool is_checked = static_cast<std::int64_t>(i) % options_.every == 0;
       if (is_checked)
         check_step(p, i, *row, {margin, outputs}, F, follows ? &*row_before : nullptr, transition);
@@ -270,7 +286,10 @@ class Verification {
     const bool uncertain = run_.model.linear.is_uncertain();
     const RecordedStep step = uncertain ? without_claim(estimation.steps[i]) : estimation.steps[i];
     StepCheck check(step, row, pipeline.rounding, margins.states);
-    const LineForm& start = row_before ? row_before->set : estimation.initial_set;
+    const bool anew = estimation.begins_anew(i);
+    const LineForm& start = row_before ? row_before->set
+                            : anew     ? *estimation.restart_set
+                                       : estimation.initial_set;
     if ((start.lines() > 0 || row.set.lines() > 0) && hides_directions(run_.model.linear.A))
       check.lines_have_few_digits();
     check.proofs();
@@ -287,7 +306,7 @@ class Verification {
           },
           [&] { return enclosed_successors(model, start, estimation.admissible_set, transition); }};
     };
-    const bool follows = i == 0 || row_before;
+    const bool follows = i == 0 || anew || row_before;
     if (!check.violation()) {
       if (F &&
           against_polytope(
@@ -309,6 +328,7 @@ class Verification {
     ++found.steps;
     found.proofs += check.proofs_that_hold();
     found.exact_claims += check.exact_claim_holds() ? 1 : 0;
+    found.exact_claims_unproven += check.exact_claim_stays() ? 1 : 0;
     if (check.undecided() > 0 && found.undecided == 0) {
       found.first_undecided = fmt::format("k = {}: {}", row.k, check.first_undecided());
     }

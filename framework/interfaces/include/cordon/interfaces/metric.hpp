@@ -36,6 +36,8 @@ struct Measure {
   std::vector<std::string> rest = {};   ///< values that make a count up to the whole: "71/101"
   Shown in_run = Shown::always;         ///< in the table of a run
   Shown in_comparison = Shown::always;  ///< in tables that compare the pipelines of a run or sweep
+  bool mixes_states = false;  ///< compares or adds up lengths of different states as they are,
+                              ///< which means little where their units differ
 
   friend bool operator==(const Measure&, const Measure&) = default;
 };

@@ -122,6 +122,9 @@ struct Sample {
 /// The outputs that the sample has, in ascending order.
 std::vector<Index> present_outputs(const Sample& sample);
 
+/// The sample without these outputs, ascending, as well.
+Sample missing_outputs(Sample sample, const std::vector<Index>& outputs);
+
 /// The complete sample of these outputs alone.
 Sample without_missing(const Sample& sample);
 

@@ -19,6 +19,16 @@ struct Estimate {
   Certificate why;      ///< proof of `consistent` (of the emptiness of `set`)
 };
 
+/// A sample that contradicts what was known before it. The prediction is the estimate of the same
+/// time without the sample's outputs; y_i misses it by the distance of y_i from the interval of
+/// C x + D u + Dv v over the prediction and V (of centres, where matrices are known by intervals).
+struct Contradiction {
+  Index k = 0;
+  Index output = -1;  ///< of those that miss it the one that does so by the most of its interval's
+                      ///< size; -1: none by itself, all together contradict what was known
+  double distance = 0;  ///< of that output, in its unit; computed to nearest
+};
+
 /// Wall-clock time of the last step by phase, in microseconds; `question` is the emptiness test.
 struct PhaseTimes {
   double predict = 0, correct = 0, reduce = 0, question = 0;
@@ -42,15 +52,28 @@ class Observer {
   /// Replaces the current set and keeps the time.
   void replace(Enclosure X);
 
+  /// From now on outputs that miss the prediction are left out, as if they were missing, in at most
+  /// `most` samples of any `window` that follow each other (0: none; window ≥ 1). What is left out
+  /// is no longer assumed to keep to V. Only for observers that take missing outputs: throws
+  /// Errc::unsupported. Costs a second step wherever an estimate would be empty, and with gains the
+  /// bounds of the outputs at every step.
+  void leave_out_outliers(Index most, Index window);
+
   const PhaseTimes& times() const { return times_; }
+  /// Of the last sample: outputs that were left out, in ascending order.
+  const std::vector<Index>& left_out() const { return left_out_; }
+  /// Of the last sample: what it contradicts, if its estimate is the first one that is proven empty
+  /// or outputs were left out, and the observer takes missing outputs.
+  const std::optional<Contradiction>& contradiction() const { return contradiction_; }
 
   /// The set that the observer assumes to contain the state at the first sample: the model's X0, or
   /// what its parameters put there.
   virtual LineForm initial_set() const { return model_.X0; }
 
   /// A set that the observer assumes to contain the true state at all times (beyond the model's
-  /// bounds), or none. Guarantees hold while it does. By default that of `admit`.
-  virtual const Set* admissible_set() const { return admissible_.set.get(); }
+  /// bounds), or none: as it was given, not as the backend represents it. Guarantees hold while it
+  /// does. By default that of `admit`.
+  virtual std::optional<LineForm> admissible_set() const { return admissible_form_; }
 
   /// The gains it works with, with what is known about them; of gains that vary in time those of
   /// the steady state.
@@ -88,8 +111,9 @@ class Observer {
   /// For constructors: `admissible` holds the state at all times. From now on an estimate that is
   /// not within it is cut by it, reduced to the budget, and takes the place of the observer's own
   /// set, as by `replace`. A cut by which the set's interval hull becomes no narrower is left out:
-  /// representations without exact intersections may enclose it by more than there was. Costs the
-  /// hull of every estimate, and an intersection where it is cut.
+  /// representations without exact intersections may enclose it by more than there was; the
+  /// estimate is claimed `outer` then. Costs the hull of every estimate, and an intersection where
+  /// it is cut.
   void admit(const LineForm& admissible, Budget budget);
 
   enum class Phase { predict, correct, reduce };
@@ -120,14 +144,30 @@ class Observer {
 
   /// Cuts the estimate by the admissible set; false: it is as it was.
   bool cut(Enclosure& X);
+  /// One step, with what is asked of its estimate.
+  Estimate advance(const Sample& now);
+  /// Goes back to the sample before.
+  void go_back();
+  /// The outputs of a sample that miss the set by more than rounding; fills in `contradiction_`.
+  std::vector<Index> outliers(const Set& X, const Sample& now);
+  bool may_leave_out(Index k) const;
+  /// The sample that is used in place of `now`; `estimate` becomes that of it.
+  std::optional<Sample> without_outliers(const Sample& now, Estimate& estimate);
 
   Model model_;
   std::shared_ptr<const SetBackend> backend_;
-  Enclosure admissible_;  ///< no set: none
+  std::optional<LineForm> admissible_form_;
+  Enclosure admissible_;  ///< the same in the backend; no set: none
   Budget admissible_budget_;
   std::optional<Enclosure> X0_;
   std::optional<Sample> before_;
+  Enclosure last_;  ///< estimate of `before_`
   bool inconsistent_ = false;
+  Index most_outliers_ = 0, outlier_window_ = 1;
+  std::vector<Index> outlier_times_;  ///< of the window
+  std::vector<Index> left_out_;
+  std::optional<Contradiction> contradiction_;
+  Enclosure noise_;  ///< V, where it was asked for
   PhaseTimes times_;
 };
 

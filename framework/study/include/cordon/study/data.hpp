@@ -17,6 +17,7 @@ struct Record {
       {};  ///< index of the true mode in the study's bank, -1: outside the bank
   std::optional<Vector> fault =
       {};  ///< n_k, one entry per column of F; while one is not 0, the mode is -1
+  std::vector<Index> outliers = {};  ///< outputs that are known not to keep to the model
   std::optional<Index> mode_without_fault = {};  ///< then: the mode that it would be otherwise
 };
 

@@ -26,6 +26,9 @@ struct Labels {
 /// "level [m]", or "x_2" where coordinate i (from 0) of `symbol` "x" has no name.
 std::string label_of(const Labels::Names& names, const std::string& symbol, Index i);
 
+/// "m" of "level [m]"; empty: it has no unit.
+std::string unit_of(const std::string& name);
+
 /// Head of a column: "x_2", and the name behind it where there is one, "x_2 level [m]". What stands
 /// before the first space does not depend on names.
 std::string heading_of(const Labels::Names& names, const std::string& symbol, Index i);

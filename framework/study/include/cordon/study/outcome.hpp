@@ -176,12 +176,22 @@ std::string_view to_string(FailedAssumption::What what) noexcept;
 /// "W of mode \"healthy\" does not hold what leads from x_4 to x_5": for people.
 std::string text_of(const FailedAssumption& failed, const std::vector<std::string>& modes);
 
+/// Outputs that missed the prediction, and were left out.
+struct LeftOut {
+  Contradiction worst;
+  std::vector<Index> outputs;
+};
+
 /// What an observer has estimated.
 struct EstimationOutcome {
   std::string observer;
   std::int64_t consistent = 0, inconsistent = 0,
-               undecided = 0;           ///< answers to "is the estimate non-empty?"
-  std::int64_t inconsistent_from = -1;  ///< first k with an estimate proven empty
+               undecided = 0;                       ///< answers to "is the estimate non-empty?"
+  std::int64_t inconsistent_from = -1;              ///< first k with an estimate proven empty
+  std::optional<Contradiction> contradiction = {};  ///< of that k
+  std::int64_t restarts = 0;  ///< times that the observer began anew after an empty estimate
+  std::vector<LeftOut> left_out = {};  ///< the first 10,000 samples with outliers
+  std::int64_t outliers = 0;           ///< such samples in all
   std::int64_t outside_from = -1;  ///< first k with the truth proven outside the estimate, by more
                                    ///< than `tolerances::reported` (1e-9)
   AnswerCount emptiness;           ///< of every estimate

@@ -77,6 +77,13 @@ struct DropoutSpec {
   std::int64_t every = 0;
 };
 
+/// Samples of simulated data with outputs that are wrong: at the times that are drawn as those of
+/// dropouts are, y_i is larger or smaller by `shift`, as a coin falls, and does not keep to V.
+struct OutlierSpec {
+  DropoutSpec when;
+  double shift = 0;
+};
+
 /// What the matrices of an uncertain model are in a simulation; drawn by the kind of its noise:
 /// uniform in their intervals, at vertices, or in the middle (zero, sine).
 enum class ParameterDraw {
@@ -104,6 +111,7 @@ struct SimulateSpec {
   ParameterDraw parameters = ParameterDraw::constant;
   std::int64_t seeds = 1;  ///< diagnosers are tried on the seeds seed … seed + seeds - 1
   std::vector<DropoutSpec> dropouts = {};
+  std::vector<OutlierSpec> outliers = {};
 };
 
 /// What an output without a value, an empty field or NaN, is in recorded data.
@@ -128,8 +136,18 @@ struct CsvSpec {
   IrregularRows irregular = IrregularRows::error;
 };
 
+/// What follows an estimate that is proven empty.
+enum class OnEmpty {
+  stop,    ///< it stays empty
+  restart  ///< the observer begins anew from a set, with the next sample
+};
+
 struct EstimationSpec {
   ComponentSpec observer;
+  OnEmpty on_empty = OnEmpty::stop;
+  LineForm restart_set = {};        ///< holds the state where the observer begins anew
+  std::int64_t outliers = 0;        ///< samples of which outputs may be left out
+  std::int64_t outlier_window = 1;  ///< in so many that follow each other
 };
 
 struct DiagnosisSpec {

@@ -83,6 +83,22 @@ std::optional<Certificate> read_certificate(const Cursor& at) {
   return why;
 }
 
+/// Outputs from 1 on, ascending.
+std::vector<Index> read_left_out(const Cursor& step) {
+  std::vector<Index> outputs;
+  const auto list = step.find("left_out");
+  if (!list || !list->expect(Kind::array, not_as_written)) return outputs;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const auto output = read_integer(list->item(i), 1, max_dimension);
+    if (!output) continue;
+    const auto index = static_cast<Index>(*output) - 1;
+    if (!outputs.empty() && index <= outputs.back())
+      list->item(i).error("does not ascend", not_as_written);
+    outputs.push_back(index);
+  }
+  return outputs;
+}
+
 /// A step whose hull may still be of another size than the state.
 std::optional<RecordedStep> read_step(const Cursor& at) {
   if (!at.expect(Kind::object, not_as_written)) return std::nullopt;
@@ -96,8 +112,12 @@ std::optional<RecordedStep> read_step(const Cursor& at) {
   auto lower = lower_at ? read_bounds(*lower_at) : std::nullopt,
        upper = upper_at ? read_bounds(*upper_at) : std::nullopt;
   if (!k || !consistent || !tightness || !lower || !upper) return std::nullopt;
-  return RecordedStep{
-      *k, {std::move(*lower), std::move(*upper)}, *consistent, *tightness, at.value().line};
+  return RecordedStep{*k,
+                      {std::move(*lower), std::move(*upper)},
+                      *consistent,
+                      *tightness,
+                      at.value().line,
+                      read_left_out(at)};
 }
 
 /// The steps of all pipelines, read one after another before it is known of which kind a pipeline
@@ -116,7 +136,7 @@ class StepReader {
   }
 
   /// Those of one pipeline with an observer, whose hulls must be boxes of the state.
-  std::vector<RecordedStep> of(const Cursor& pipeline, std::size_t index, Index n) {
+  std::vector<RecordedStep> of(const Cursor& pipeline, std::size_t index, Index n, Index p) {
     if (index >= steps_.size()) return {};
     Steps& own = steps_[index];
     Problems& problems = pipeline.problems();
@@ -124,6 +144,11 @@ class StepReader {
       problems.add(one.pointer, one.line, one.message, one.suggestion);
     for (std::size_t i = 0; i < own.read.size(); ++i) {
       const Box& hull = own.read[i].hull;
+      const std::vector<Index>& left_out = own.read[i].left_out;
+      if (!left_out.empty() && left_out.back() >= p) {
+        problems.add(child(child(pipeline.pointer(), "steps"), i) + "/left_out", own.read[i].line,
+                     "names an output that there is not", not_as_written);
+      }
       if (hull.lower.size() == n && hull.upper.size() == n) continue;
       problems.add(child(child(pipeline.pointer(), "steps"), i) + "/hull", own.read[i].line,
                    "is no box of the state, which has dimension " + std::to_string(n),
@@ -165,6 +190,8 @@ std::optional<RecordedEstimation> read_estimation(const Cursor& at, Index n,
       admissible && !admissible->is(Kind::null)) {
     estimation.admissible_set = read_form(*admissible, n);
   }
+  if (const auto restart = assumed->find("restart_set"))
+    estimation.restart_set = read_form(*restart, n);
   if (const auto follows = assumed->find("follows_its_sets"))
     estimation.follows_its_sets = read_flag(*follows).value_or(false);
   estimation.contradictions = contradictions_of(at, estimation.steps);
@@ -198,7 +225,7 @@ std::optional<RecordedPipeline> read_pipeline(const Cursor& at, const SystemPart
     pipeline.task = RecordedDiagnosis{};
   } else {
     const Index n = system.model.linear.states();
-    auto estimation = read_estimation(at, n, steps.of(at, index, n));
+    auto estimation = read_estimation(at, n, steps.of(at, index, n, system.model.linear.outputs()));
     if (estimation) pipeline.task = std::move(*estimation);  // else the run is refused
   }
   read_summary(at, system, pipeline);

@@ -11,12 +11,17 @@
 
 namespace cordon::detail {
 
+/// Holds x_k for k ≥ `from`.
+struct AdmissibleSet {
+  LineForm set;
+  Index from = 0;
+};
+
 /// What a pipeline assumes beside X0, W and V of the modes.
 struct PipelineAssumptions {
   std::optional<LineForm> initial_set =
       {};  ///< holds x at the first sample, in place of X0 of the true mode
-  std::vector<LineForm> admissible_sets = {};  ///< hold x_k for k ≥ `admissible_from`
-  Index admissible_from = 0;
+  std::vector<AdmissibleSet> admissible_sets = {};
   std::optional<LineForm> restart_set = {};  ///< holds x_k where a diagnoser begins anew at k
   /// Of a diagnoser, which rests on them at all times, not only at that of a statement.
   enum class Modes {
@@ -31,7 +36,8 @@ struct PipelineAssumptions {
 
 /// What a diagnoser assumes by the word of the study: its parameters "admissible_set" and
 /// "restart_set", those of components nested in it, and U. Of x_0 it is X0 of the mode that is
-/// assumed.
+/// assumed. Admissible sets of nested observers hold from the first sample on, that of the
+/// diagnoser itself from k = 1 on.
 PipelineAssumptions assumptions_of(const ComponentSpec& diagnoser,
                                    std::optional<Rounding> rounding);
 
@@ -53,6 +59,8 @@ class AssumptionCheck {
   void step(const Record& record);
   /// The diagnoser has begun anew at the last record.
   void restarted();
+  /// An observer has begun anew from this set with the last record.
+  void begun_anew_from(const LineForm& set);
 
   /// Does a statement of time k about the times from `since` on rest on an assumption that has
   /// failed? What has begun anew does not rest on the initial set.
@@ -62,14 +70,18 @@ class AssumptionCheck {
   /// simulation rounds: without noise, or at the boundary of W and V, no w or v may lead to the
   /// very doubles that it shows, and outward rounding excludes the truth rightly. Proven in exact
   /// arithmetic. Nominal rounding leaves room for it, but later steps may amplify it beyond that:
-  /// there it is an excuse for what excludes the truth `barely` only.
-  bool excuses_by_rounding(Index k, bool barely = false);
+  /// there it is an excuse for what excludes the truth `barely` only. And did the truth leave the
+  /// initial or an admissible set by so little that it does not count as outside? Estimates that
+  /// were cut by the set may be so much smaller than it that they miss the truth by far.
+  bool excuses_by_rounding(Index k, bool barely = false, Index since = 0);
   /// The earliest over all runs.
   const std::optional<FailedAssumption>& failed() const { return earliest_; }
 
  private:
   void check_start(const Record& record);
   void check_sets(const Record& record);
+  bool is_left(const LineForm& set, const Vector& x, FailedAssumption::What what, Index k,
+               Index mode = -1);
   void check_plant(const Record& record);
   bool leaves_modes(const Record& record) const;
   Index mode_of(const Record& record) const { return record.mode.value_or(bank_.nominal); }
@@ -85,6 +97,7 @@ class AssumptionCheck {
   std::optional<FailedAssumption> start_,
       other_;  ///< of this run: of the initial set, and the first of the others
   std::optional<FailedAssumption> earliest_;
+  std::optional<FailedAssumption> slight_;  ///< of this run: the first set that was left at all
 };
 
 /// Writes it where results are made of it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples that lack outputs.
+// Samples that lack outputs, or have wrong ones.
 #pragma once
 
 #include <memory>
@@ -10,25 +10,29 @@
 
 namespace cordon::detail {
 
-/// The records of another source without the outputs that its dropouts take. Every output of a
-/// dropout has random numbers of its own, one per step from `from` on: what is lost of one depends
-/// on no other, and nothing else that is drawn depends on it.
-class DropoutData final : public DataSource {
+/// The records of another source with the outliers of a simulation, and without the outputs that
+/// its dropouts take. Every output of a dropout or outlier has random numbers of its own, one per
+/// step from `from` on: what becomes of one depends on no other, and nothing else that is drawn
+/// depends on it.
+class DisturbedData final : public DataSource {
  public:
-  DropoutData(std::unique_ptr<DataSource> source, const std::vector<DropoutSpec>& specs,
-              std::uint64_t seed);
+  DisturbedData(std::unique_ptr<DataSource> source, const SimulateSpec& spec);
 
   std::optional<Record> next() override;
   std::optional<std::int64_t> size() const override { return source_->size(); }
 
  private:
-  struct Dropout {
+  /// Outputs at times that are drawn.
+  struct Drawn {
     DropoutSpec spec;
+    double shift = 0;
     std::vector<RandomStream> streams;  ///< one per output
   };
+  static Drawn drawn(const DropoutSpec& spec, double shift, std::uint64_t seed, Purpose purpose,
+                     std::size_t number);
 
   std::unique_ptr<DataSource> source_;
-  std::vector<Dropout> dropouts_;
+  std::vector<Drawn> dropouts_, outliers_;
 };
 
 }  // namespace cordon::detail

@@ -20,7 +20,8 @@ enum class Purpose : std::uint64_t {
   parameters = 6,
   additive_fault = 7,
   start = 8,
-  dropout = 9
+  dropout = 9,
+  outlier = 10
 };
 
 class RandomStream {

@@ -108,6 +108,7 @@ const std::vector<std::string>& noise_names();
 const std::vector<std::string>& parameter_draw_names();
 const std::vector<std::string>& missing_value_names();
 const std::vector<std::string>& irregular_rows_names();
+const std::vector<std::string>& on_empty_names();
 std::vector<std::string> signal_keys(
     Signal::Type type);                               ///< without "type"; the required ones first
 std::size_t required_signal_keys(Signal::Type type);  ///< how many of them are required
@@ -146,7 +147,9 @@ bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::i
 /// Reads /data/simulate/faults.
 void read_faults(const Cursor& faults, const SystemPart& system, SimulateSpec& spec,
                  std::vector<WrittenFault>& written, std::vector<std::string>& warnings);
-/// Reads /data/simulate/dropouts; `outputs`: rows of C, if known.
+/// Reads /data/simulate/outliers and dropouts; `outputs`: rows of C, if known.
+void read_outliers(const Cursor& list, std::optional<Index> outputs, SimulateSpec& spec,
+                   std::vector<std::string>& warnings);
 void read_dropouts(const Cursor& list, std::optional<Index> outputs, SimulateSpec& spec,
                    std::vector<std::string>& warnings);
 /// Reads /data/simulate/plant and makes it.

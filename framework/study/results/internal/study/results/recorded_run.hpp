@@ -25,7 +25,8 @@ struct RecordedStep {
   Box hull;
   Answer consistent = Answer::unknown;
   Tightness tightness = Tightness::outer;
-  int line = 0;  ///< of the file
+  int line = 0;                      ///< of the file
+  std::vector<Index> left_out = {};  ///< outputs of the sample, ascending
 };
 
 struct RecordedEstimation {
@@ -34,8 +35,20 @@ struct RecordedEstimation {
   bool follows_its_sets = false;
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
+  std::optional<LineForm> restart_set = {};  ///< where it begins anew after an empty estimate
   std::vector<RecordedStep> steps;
   std::vector<Diagnostic> contradictions;  ///< where the summary says what the steps do not
+
+  /// Does the observer begin anew with step i > 0?
+  bool begins_anew(std::size_t i) const {
+    return restart_set && i > 0 && steps[i - 1].consistent == Answer::no;
+  }
+  bool leaves_out() const {
+    for (const RecordedStep& step : steps) {
+      if (!step.left_out.empty()) return true;
+    }
+    return false;
+  }
 };
 
 /// Nothing is read: no sets are stored.

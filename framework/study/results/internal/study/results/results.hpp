@@ -24,6 +24,7 @@ struct StepResult {
   const MetricValues& metrics;
   const PhaseTimes& times;
   double hull_us;
+  const std::vector<Index>& left_out;  ///< outputs of the sample
 };
 
 /// The same of a diagnosis.
@@ -38,7 +39,8 @@ struct DiagnosisResult {
 struct Assumptions {
   LineForm initial_set;
   std::optional<LineForm> admissible_set;
-  bool follows_its_sets = false;  ///< as the observer says
+  bool follows_its_sets = false;             ///< as the observer says
+  std::optional<LineForm> restart_set = {};  ///< where it begins anew after an empty estimate
 };
 
 /// Writes into `out`:
