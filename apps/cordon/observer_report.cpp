@@ -77,6 +77,24 @@ std::string state_name(const Labels& labels, Index i) {
 
 }  // namespace
 
+std::string units_text(const RunOutcome& outcome, const Labels& labels) {
+  std::vector<std::string> units, titles;
+  for (const std::string& state : labels.states) {
+    const std::string unit = unit_of(state);
+    if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
+  }
+  for (const Measure& measure : outcome.measures) {
+    if (measure.mixes_states && measure.in_run != Measure::Shown::never)
+      titles.push_back(measure.title.empty() ? measure.name : measure.title);
+  }
+  if (units.size() < 2 || titles.empty()) return "";
+  std::replace(units.begin(), units.end(), std::string(), std::string("1"));
+  return fmt::format(
+      "Units: {} take{} states in {} as they are; to weigh them, see \"cordon info\" of the "
+      "metric\n",
+      fmt::join(titles, ", "), titles.size() == 1 ? "s" : "", fmt::join(units, ", "));
+}
+
 std::string contradictions_text(const Study& study, const RunOutcome& outcome, const Paint& paint) {
   const Labels& labels = study.labels;
   std::string text;

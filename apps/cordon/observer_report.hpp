@@ -16,6 +16,8 @@ namespace cordon::apps {
 // pipelines of the outcome estimate.
 
 /// One row per gain.
+/// Which metrics compare states of different units as they are.
+std::string units_text(const RunOutcome& outcome, const Labels& labels);
 /// Samples that contradict the model: why the first estimate is empty, what was left out, and how
 /// often an observer has begun anew.
 std::string contradictions_text(const Study& study, const RunOutcome& outcome, const Paint& paint);

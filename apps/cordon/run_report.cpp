@@ -138,25 +138,6 @@ std::string observer_table(const RunOutcome& outcome, const Labels& labels, cons
   return table(rows, paint);
 }
 
-/// Of metrics that compare states of different units as they are.
-std::string units_text(const RunOutcome& outcome, const Labels& labels) {
-  std::vector<std::string> units, titles;
-  for (const std::string& state : labels.states) {
-    const std::string unit = unit_of(state);
-    if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
-  }
-  for (const Measure& measure : outcome.measures) {
-    if (measure.mixes_states && is_shown(outcome, measure))
-      titles.push_back(measure.title.empty() ? measure.name : measure.title);
-  }
-  if (units.size() < 2 || titles.empty()) return "";
-  std::replace(units.begin(), units.end(), std::string(), std::string("1"));
-  return fmt::format(
-      "Units: {} take{} states in {} as they are; to weigh them, see \"cordon info\" of the "
-      "metric\n",
-      fmt::join(titles, ", "), titles.size() == 1 ? "s" : "", fmt::join(units, ", "));
-}
-
 ordered_json time_or_null(std::int64_t k) {
   return k < 0 ? ordered_json(nullptr) : ordered_json(k);
 }

@@ -112,3 +112,16 @@ TEST_CASE("options of times that do not fit together") {
   check_refused(regular, "/data/csv/truth", {{"irregular", "gaps"}, {"truth", Json::array({"y"})}});
   check_refused(regular, "did you mean \"gaps\"?", {{"irregular", "gap"}});
 }
+
+TEST_CASE("a mistake that is made again and again is told once, with its first and last place") {
+  std::string csv = "t,u,y\n";
+  for (int k = 0; k < 18; ++k) csv += std::to_string(10 + k / 2) + (k % 2 ? ".5" : "") + ",1,x\n";
+  const Run run(csv);
+  CAPTURE(run.outcome.out);
+  CHECK(run.outcome.code == 2);
+  CHECK(run.outcome.says("18 errors"));
+  CHECK(
+      run.outcome.says("/data/csv/file (line 2) and 17 other places, the last /data/csv/file "
+                       "(line 19): column \"y\""));
+  CHECK_FALSE(run.outcome.says("(line 3)"));
+}

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "core/text.hpp"
 
@@ -11,12 +13,29 @@ namespace cordon {
 
 namespace {
 
+std::string place_of(const Diagnostic& d) {
+  const std::string pointer = d.pointer.empty() ? "(document)" : detail::printable(d.pointer);
+  return pointer + (d.line > 0 ? " (line " + std::to_string(d.line) + ")" : "");
+}
+
+/// One mistake that was made in many places is told once, with the first place and the last.
 std::string render(const std::string& file, const std::vector<Diagnostic>& diagnostics) {
+  constexpr std::size_t many = 6;
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> alike;
+  for (std::size_t i = 0; i < diagnostics.size(); ++i)
+    alike[{diagnostics[i].message, diagnostics[i].suggestion}].push_back(i);
   std::string text = detail::printable(file) + ": " + std::to_string(diagnostics.size()) +
                      (diagnostics.size() == 1 ? " error" : " errors");
-  for (const Diagnostic& d : diagnostics) {
-    text += "\n  " + (d.pointer.empty() ? std::string("(document)") : detail::printable(d.pointer));
-    if (d.line > 0) text += " (line " + std::to_string(d.line) + ")";
+  for (std::size_t i = 0; i < diagnostics.size(); ++i) {
+    const Diagnostic& d = diagnostics[i];
+    const std::vector<std::size_t>& same = alike[{d.message, d.suggestion}];
+    const bool repeats = same.size() >= many;
+    if (repeats && i != same.front()) continue;
+    text += "\n  " + place_of(d);
+    if (repeats) {
+      text += " and " + std::to_string(same.size() - 1) + " other places, the last " +
+              place_of(diagnostics[same.back()]);
+    }
     text += ": " + detail::printable_lines(d.message);
     if (!d.suggestion.empty()) text += "; " + detail::printable_lines(d.suggestion);
   }

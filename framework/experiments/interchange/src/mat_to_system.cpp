@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mat_labels.hpp"
 #include "study/reading/read_sets.hpp"
 #include "study/text/json_cursor.hpp"
 
@@ -348,35 +349,6 @@ Json set_of(const Value& set, Index element, const std::string& pointer, Problem
   return out;
 }
 
-namespace {
-
-/// Cell arrays of texts, one per kind of coordinates.
-Json names_of(const Value& names, Problems& problems) {
-  Json all = Json::object();
-  if (!names.is(Value::Kind::structs)) {
-    problems.add("/names", 0, kind_of(names) + ", must be a struct of cell arrays of texts");
-    return all;
-  }
-  for (const std::string& kind : names.names) {
-    const Value& list = *names.field(kind);
-    bool good = list.is(Value::Kind::cell);
-    Json texts = Json::array();
-    for (const Value& item : list.items) {
-      good = good && item.is(Value::Kind::text);
-      if (good) texts.push_back(item.text);
-    }
-    if (!good) {
-      problems.add(child("/names", kind), 0, kind_of(list) + ", must be a cell array of texts",
-                   "{'level [m]', 'flow [L/s]'}");
-    } else {
-      all[kind] = std::move(texts);
-    }
-  }
-  return all;
-}
-
-}  // namespace
-
 Json system_of(const Value& value, std::vector<std::string>& ignored, Problems& problems) {
   SystemReader reader(value, 0, "", problems);
   Json system = reader.read();
@@ -384,14 +356,7 @@ Json system_of(const Value& value, std::vector<std::string>& ignored, Problems& 
   if (const Value* F = value.field("F"); F && is_given(F))
     system["F"] = matrix_of(*F, "/F", problems);
   if (const Value* U = value.field("U"); is_given(U)) system["U"] = set_of(*U, 0, "/U", problems);
-  for (const char* name : {"Ts", "dt", "sampling_time"}) {
-    const Value* time = value.field(name);
-    if (!is_given(time) || time->numbers.size() != 1) continue;
-    const double seconds = time->numbers(0, 0);
-    if (seconds > 0 || name[0] == 's') system["sampling_time"] = seconds;  // Ts = -1: not known
-  }
-  if (const Value* names = value.field("names"); is_given(names))
-    system["names"] = names_of(*names, problems);
+  read_labels(value, system, problems);
   const std::string nominal = reader.text_of("nominal", "");
   if (!nominal.empty()) system["nominal"] = nominal;
   if (const Value* modes = value.field("modes"); is_given(modes)) {

@@ -8,6 +8,7 @@
 #include "cordon/core/error.hpp"
 #include "cordon/registry/build.hpp"
 #include "experiments/interchange/mat_file.hpp"
+#include "mat_labels.hpp"
 #include "write_files.hpp"
 
 namespace cordon::mat {
@@ -110,24 +111,6 @@ Value to_mat(const LineForm& X) {
   if (bounds) set.set("lower", matrix(box->lower)).set("upper", matrix(box->upper));
   return std::move(set).value();
 }
-
-namespace {
-
-void add_labels(Struct& system, const Labels& labels) {
-  if (labels.sampling_time > 0) system.set("sampling_time", number(labels.sampling_time));
-  if (!labels.any()) return;
-  Struct names;
-  const std::pair<const char*, const Labels::Names*> all[]{
-      {"states", &labels.states},   {"inputs", &labels.inputs},
-      {"outputs", &labels.outputs}, {"disturbances", &labels.disturbances},
-      {"noises", &labels.noises},   {"faults", &labels.faults}};
-  for (const auto& [kind, list] : all) {
-    if (!list->empty()) names.set(kind, cell(*list));
-  }
-  system.set("names", std::move(names).value());
-}
-
-}  // namespace
 
 Value to_mat(const ModeBank& bank, const Labels& labels) {
   const Mode& nominal = bank[bank.nominal];

@@ -140,6 +140,8 @@ struct DataUse {
 DataUse data_use(const Cursor& root);
 DataPart read_data(const Cursor& data, const SystemPart& system, const DataUse& use,
                    const std::filesystem::path& folder, const ComponentContext& context);
+/// Reads /data/csv.
+DataPart read_csv(const Cursor& at, const SystemPart& system, const std::filesystem::path& folder);
 /// Reads "from" and "to" of something that acts for k = from … to; warns where data of so many
 /// steps (0: not known) end before. False: reported.
 bool read_times(const Cursor& at, std::int64_t steps, std::int64_t& from, std::int64_t& to,
