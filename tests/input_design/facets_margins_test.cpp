@@ -111,3 +111,42 @@ TEST_CASE(
   CHECK(found.status != DesignStatus::infeasible);
   CHECK(found.status != DesignStatus::optimal);
 }
+
+TEST_CASE("outputs that differ by a hair pin a disturbance, and no bound lies above the optimum") {
+  // y = (s w₁ + .2 w₂ + w₃ + u, the same + hair w₁), against w = (.1, 0, 0) and u / 2: w₁ = .1,
+  // |u| / 2 ≥ 1.2 (1 + ε)
+  constexpr double epsilon = 1e-4, optimum = 2.4 * (1 + epsilon);
+  for (const double s : {3., 7.}) {
+    for (const double hair : {1e-6, 1e-7, 1e-8, 1e-9, 5e-10, 1e-11, 1e-13}) {
+      Model one;
+      LinearModel& m = one.linear;
+      m.A = Matrix::Zero(3, 3);
+      m.B = Matrix{{0}, {0}, {1}};
+      m.Bw = Matrix::Identity(3, 3);
+      m.C = Matrix{{s, .2, 1}, {s + hair, .2, 1}};
+      m.D = Matrix::Zero(2, 1);
+      m.Dv = Matrix::Identity(2, 2);
+      one.X0 = make_point(Vector::Zero(3));
+      one.W = cube(3, 1);
+      one.V = make_point(Vector::Zero(2));
+      one.U = make_box({Vector{{-20}}, Vector{{20}}});
+      Model other = one;
+      other.linear.B *= .5;
+      other.W = make_point(Vector{{.1, 0, 0}});
+      std::vector<OutputTube> tubes;
+      for (const Model* model : {&one, &other})
+        tubes.push_back(output_tube(*model, *backend("line_zonotope"), {1}));
+      const auto pairs = pair_programs(tubes);
+      const SearchResult found =
+          search(problem_of(pairs, boxed_inputs(2, 20), Cost::Kind::norm_1, epsilon));
+      CAPTURE(s);
+      CAPTURE(hair);
+      CHECK(found.status != DesignStatus::infeasible);
+      CHECK(found.lower_bound <= optimum * (1 + 1e-9));
+      for (const double u : {-2.4002, -2.400241, -3., -10.}) {
+        const PairSeparation apart = separation(pairs[0], Vector{{u, 0}});
+        CHECK(apart.kappa_lower <= -u / 2.4 - 1 + 1e-12);
+      }
+    }
+  }
+}

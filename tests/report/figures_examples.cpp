@@ -55,12 +55,18 @@ Series series_of(const Plot& plot, int pipeline, const std::string& name) {
   return *found;
 }
 
+/// From one sample to the next on the axes of plots.
+double step_of(const Report& report) {
+  return Json::parse(report.study)["system"].value("sampling_time", 1.0);
+}
+
 void check_bounds(const Report& report, const Json& pipeline, int p) {
   const std::string name = pipeline["name"];
   const Json& steps = pipeline["steps"];
   REQUIRE(steps.size() <= 1000);  // else they are thinned out
   if (steps.empty()) return;
   const std::size_t states = steps[0]["hull"]["lower"].size();
+  const double step = step_of(report);
   for (std::size_t i = 0; i < states; ++i) {
     const Series band =
         series_of(content<Plot>(report, "bounds_" + std::to_string(i + 1)), p, name);
@@ -68,7 +74,7 @@ void check_bounds(const Report& report, const Json& pipeline, int p) {
     bool good = true;
     for (std::size_t s = 0; s < steps.size(); ++s) {
       const bool empty = steps[s]["consistent"] == "no";
-      good = good && band.x[s] == steps[s]["k"].get<double>();
+      good = good && band.x[s] == steps[s]["k"].get<double>() * step;
       good = good && same(band.y[s], empty ? std::nan("") : number(steps[s]["hull"]["lower"][i]));
       good =
           good && same(band.upper[s], empty ? std::nan("") : number(steps[s]["hull"]["upper"][i]));
@@ -100,8 +106,9 @@ void check_sets(const Report& report, const Json& pipeline, int p, bool with_all
   for (const Figure& figure : report.figures) {
     const auto* projection = std::get_if<Projection>(&figure.content);
     if (!projection) continue;
-    const std::size_t i = std::stoul(projection->x_label.substr(2)) - 1,
-                      j = std::stoul(projection->y_label.substr(2)) - 1;
+    const std::size_t between = figure.id.rfind('_');  // of "sets_1_2"
+    const std::size_t i = std::stoul(figure.id.substr(5, between - 5)) - 1,
+                      j = std::stoul(figure.id.substr(between + 1)) - 1;
     for (const SetFrame& frame : projection->frames) {
       for (const Polygon& set : frame.sets) {
         if (set.pipeline != p) continue;

@@ -57,9 +57,10 @@ bool concerns_nominal(const Json& study, const std::string& message) {
   return false;
 }
 
-/// Runs what the program takes of the study; false if that is nothing.
+/// Runs what the program takes of the study; false if that is nothing. A reason that several
+/// pipelines are refused for is told of the first alone.
 bool run(Json study, const fs::path& home, Outcome& outcome) {
-  for (int tries = 0; tries < 10 && !study["pipelines"].empty(); ++tries) {
+  for (int tries = 0; tries < 60 && !study["pipelines"].empty(); ++tries) {
     std::ofstream(home / "study.json") << study.dump(1) << '\n';
     fs::remove_all(home / "out");
     outcome = program("run --quiet --no-report --out " + (home / "out").string() + " " +

@@ -89,6 +89,7 @@ class EstimationRun final : public PipelineRun {
     rounding_.emplace(context_.study.model, set, *rounding());
     before_.reset();
     passed_.clear();
+    growth_ = {};
     ++found_.restarts;
   }
 

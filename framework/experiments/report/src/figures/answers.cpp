@@ -140,6 +140,42 @@ void add_guarantees(const RunFiles& files, Report& report) {
        std::move(table)});
 }
 
+/// "gauge 1 [m] lies 0.3 beyond what the samples before allow".
+std::string missed(const RunFiles& files, const Cursor& worst) {
+  const double output = value_of(worst, "output");
+  const Labels::Names& names = files.labels().outputs;
+  if (std::isnan(output)) return "all outputs together contradict the samples before";
+  const std::string name = output >= 1 && output <= static_cast<double>(names.size())
+                               ? names[static_cast<std::size_t>(output) - 1]
+                               : "y_" + shown(output, 15);
+  return fmt::format("{} lies {} beyond what the samples before allow", name,
+                     shown(value_of(worst, "distance")));
+}
+
+/// Samples that contradict the model, and what became of them.
+void add_contradictions(const RunFiles& files, const std::string& name, const Cursor& summary,
+                        Report& report) {
+  if (const auto first = object_of(summary, "contradiction")) {
+    report.notes.push_back(fmt::format("The first empty estimate of \"{}\", at {}: {}.", name,
+                                       time_of(files, value_of(*first, "k")),
+                                       missed(files, *first)));
+  }
+  if (const double restarts = value_of(summary, "restarts"); !std::isnan(restarts)) {
+    report.notes.push_back(
+        fmt::format("\"{}\" began anew from its restart set, {} times: what follows rests on the "
+                    "state being in "
+                    "it.",
+                    name, shown(restarts, 15)));
+  }
+  const auto outliers = object_of(summary, "outliers");
+  if (!outliers) return;
+  report.notes.push_back(
+      fmt::format("\"{}\" left outputs of {} samples out as outliers: they are assumed not to keep "
+                  "to V, and all "
+                  "others to keep to it.",
+                  name, shown(value_of(*outliers, "samples"), 15)));
+}
+
 }  // namespace
 
 void add_failures(const RunFiles& files, Report& report) {
@@ -186,6 +222,7 @@ void add_failures(const RunFiles& files, Report& report) {
               ? ""
               : "; the true state has left what is assumed at " + time_of(files, until)));
     }
+    add_contradictions(files, name, *summary, report);
     if (const std::string error = text_of(*summary, "error"); !error.empty()) {
       report.notes.push_back(fmt::format("\"{}\" stopped with an error: {}", name, error));
     }

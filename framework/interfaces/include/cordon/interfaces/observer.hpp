@@ -55,8 +55,8 @@ class Observer {
   /// From now on outputs that miss the prediction are left out, as if they were missing, in at most
   /// `most` samples of any `window` that follow each other (0: none; window ≥ 1). What is left out
   /// is no longer assumed to keep to V. Only for observers that take missing outputs: throws
-  /// Errc::unsupported. Costs a second step wherever an estimate would be empty, and with gains the
-  /// bounds of the outputs at every step.
+  /// Errc::unsupported. Costs the bounds of the outputs over every estimate, and a second step
+  /// wherever one would be empty.
   void leave_out_outliers(Index most, Index window);
 
   const PhaseTimes& times() const { return times_; }
