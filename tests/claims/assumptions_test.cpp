@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An assumption that the simulated truth does not keep is named, with its step, and not put down to
 // the program.
+#include <cmath>
 #include <functional>
 
 #include <doctest/doctest.h>
@@ -198,6 +199,21 @@ TEST_CASE("what an assumption does not hold is not excused before it fails") {
     check.restarted();
     CHECK_FALSE(check.failed());
     CHECK_FALSE(check.excuses(3));
+  }
+  SUBCASE("rounding alone leaves no set, next to nothing beside a large one does") {
+    assumed.admissible_sets = {{make_box({Vector{{-1.}}, Vector{{1.}}}), 0},
+                               {make_box({Vector{{-.5}}, Vector{{1e6}}}), 0}};
+    detail::AssumptionCheck sets(study, assumed);
+    sets.begin_run(0);
+    sets.step(record(0, std::nextafter(1, 2)));
+    CHECK_FALSE(sets.excuses_by_rounding(0, true));
+    sets.begin_run(1);
+    sets.step(record(0, -.5001));
+    CHECK_FALSE(sets.failed());
+    CHECK_FALSE(sets.excuses(0));
+    CHECK(sets.excuses_by_rounding(0, true));
+    REQUIRE(sets.failed());
+    CHECK(sets.failed()->what == FailedAssumption::What::admissible_set);
   }
   SUBCASE("the start: statements since then are excused, not those of what has begun anew") {
     check.begin_run(3);

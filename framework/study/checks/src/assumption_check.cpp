@@ -8,6 +8,7 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
+#include "cordon/core/tolerances.hpp"
 #include "cordon/solvers/exact_questions.hpp"
 #include "cordon/solvers/set_questions.hpp"
 #include "rounded_data.hpp"
@@ -86,12 +87,16 @@ bool leaves_V(const Model& model, const Record& now) {
   return is_missing(model.V, m.Dv, v, radius, terms);
 }
 
-/// By next to nothing as well: where the solver does not tell, rational arithmetic does.
+/// By more than rounding of x, though it may be next to nothing beside a set of any size: where the
+/// solver does not tell, rational arithmetic does.
 bool is_proven_outside(const LineForm& set, const Vector& x) {
-  const Answer answer = contains(set, x);
-  if (answer != Answer::unknown) return answer == Answer::no;
+  if (contains(set, x) == Answer::yes) return false;
+  const double margin = tolerances::reported * (x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0);
+  const Vector room = Vector::Constant(x.size(), margin);
+  const LineForm common =
+      intersection(set, Matrix::Identity(x.size(), x.size()), make_box({x - room, x + room}));
   try {
-    return exact::contains(set, x) == Answer::no;
+    return exact::is_empty(common) == Answer::yes;
   } catch (const Error& error) {
     if (error.code() != Errc::unsupported) throw;
     return false;
@@ -203,9 +208,11 @@ void AssumptionCheck::check_start(const Record& record) {
 /// Outside by more than rounding; by less is remembered.
 bool AssumptionCheck::is_left(const LineForm& set, const Vector& x, What what, Index k,
                               Index mode) {
-  if (set.dim() != x.size() || !is_proven_outside(set, x)) return false;
-  if (!slight_) slight_ = FailedAssumption{what, k, mode, seed_offset_};
-  return clearly_outside(set, x);
+  if (set.dim() != x.size()) return false;
+  if (clearly_outside(set, x)) return true;
+  if (!slight_ && is_proven_outside(set, x))
+    slight_ = FailedAssumption{what, k, mode, seed_offset_};
+  return false;
 }
 
 bool AssumptionCheck::leaves_modes(const Record& record) const {
