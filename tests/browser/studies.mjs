@@ -49,16 +49,22 @@ async function trySwitches(page, data) {
   }
 }
 
-async function trySliders(page, data) {
+/** A step as reports write it: its time in seconds beside it where the study has a sampling time. */
+const stepText = (k, results) => {
+  const seconds = results.study.system.sampling_time;
+  return seconds ? `k = ${k} (${k * seconds} s)` : `k = ${k}`;
+};
+
+async function trySliders(page, data, results) {
   for (const figure of data.figures.filter((one) => one.kind === 'projection' && one.projection.frames.length > 1)) {
     const article = await show(page, figure.id);
     const slider = article.getByRole('slider'), drawing = article.locator('.stage svg');
     const last = figure.projection.frames.at(-1).k, previous = figure.projection.frames.at(-2).k;
-    assert.equal(await article.locator('output').innerText(), `k = ${last}`);
+    assert.equal(await article.locator('output').innerText(), stepText(last, results));
     const before = await drawing.innerHTML();
     await slider.focus();
     await page.keyboard.press('ArrowLeft');
-    assert.equal(await article.locator('output').innerText(), `k = ${previous}`);
+    assert.equal(await article.locator('output').innerText(), stepText(previous, results));
     assert.notEqual(await drawing.innerHTML(), before);
   }
 }
@@ -79,6 +85,7 @@ const parsed = (text) => {
 /** Bounds of the state: what the curves are made of, and what their table shows, against the results. */
 async function compareBounds(page, data, results) {
   let compared = 0;
+  const seconds = results.study.system.sampling_time ?? 1;
   const thinned = data.notes.some((note) => note.includes('thinned'));
   for (const figure of data.figures.filter((one) => /^bounds_\d+$/.test(one.id) && !thinned)) {
     const i = Number(figure.id.split('_')[1]) - 1;
@@ -87,7 +94,9 @@ async function compareBounds(page, data, results) {
       .map((set) => ({ name: set.label, pipeline: set.series.pipeline, kind: set.series.kind, x: set.series.x, y: set.series.y, upper: set.series.upper, top: set.upper ?? false })), figure.id);
     for (const curve of drawn.filter((one) => one.kind === 'band' && !one.top && data.pipelines[one.pipeline] === one.name)) {
       const steps = new Map(results.pipelines[curve.pipeline].steps.map((step) => [step.k, step]));
-      curve.x.forEach((k, at) => {
+      curve.x.forEach((time, at) => {
+        const k = Math.round(time / seconds);
+        assert.ok(Math.abs(time - k * seconds) <= 1e-9 * Math.max(1, time), `${figure.id}: ${time} is no step's time`);
         const hull = steps.get(k)?.hull;
         if (!hull || Number.isNaN(curve.y[at])) return;
         isNear(curve.y[at], hull.lower[i], `${figure.id}, ${curve.name}, k = ${k}`);
@@ -100,7 +109,7 @@ async function compareBounds(page, data, results) {
     const header = await article.locator('.numbers th').allInnerTexts();
     const row = await article.locator('.numbers tbody tr').last().locator('td').allInnerTexts();
     results.pipelines.forEach((pipeline) => {
-      const hull = pipeline.steps?.find((step) => step.k === Number(row[0]))?.hull;
+      const hull = pipeline.steps?.find((step) => step.k === Math.round(Number(row[0]) / seconds))?.hull;
       const column = header.indexOf(`${pipeline.name}, lower`);
       if (!hull || column < 0) return;
       if (hull.lower[0] > hull.upper[0]) assert.equal(row[column], '–', `table, ${pipeline.name}: an empty set`);
@@ -121,7 +130,7 @@ for (const name of readdirSync(examples).filter((file) => file.endsWith('.json')
     assert.ok(data.figures.length > 0);
     for (const figure of data.figures) await show(page, figure.id);
     await trySwitches(page, data);
-    await trySliders(page, data);
+    await trySliders(page, data, results);
     const hulls = results.pipelines.some((pipeline) => pipeline.steps?.some((step) => step.hull));
     const compared = await compareBounds(page, data, results);
     if (hulls && !data.notes.some((note) => note.includes('thinned'))) assert.ok(compared > 0, 'no bound was compared');
