@@ -26,14 +26,19 @@ struct ValidateArguments {
   bool json = false;
 };
 
-std::string describe_system(const LinearModel& model) {
+std::string describe_system(const Study& study) {
+  const LinearModel& model = study.model.linear;
   const std::string faults =
       model.faults() > 0 ? ", " + count(model.faults(), "additive fault") : "";
-  return fmt::format("{}{}, {}, {}, {}, {}, {}{}", model.is_uncertain() ? "uncertain " : "",
+  const std::string sampled =
+      study.continuous
+          ? fmt::format(", sampled every {:.6g} s from continuous time", study.labels.sampling_time)
+          : "";
+  return fmt::format("{}{}, {}, {}, {}, {}, {}{}{}", model.is_uncertain() ? "uncertain " : "",
                      model.is_descriptor() ? "descriptor" : "lti", count(model.states(), "state"),
                      count(model.inputs(), "input"), count(model.outputs(), "output"),
                      count(model.disturbances(), "disturbance"), count(model.noises(), "noise"),
-                     faults);
+                     faults, sampled);
 }
 
 std::string describe_data(const Study& study) {
@@ -131,9 +136,9 @@ std::string describe_sweep(const Study& study) {
 
 std::string describe(const Study& study) {
   const Paint paint(stdout);
-  std::string text = fmt::format("{}: {}\n  title     {}\n  system    {}\n  data      {}\n",
-                                 study.file.string(), paint.green("ok"), study.title,
-                                 describe_system(study.model.linear), describe_data(study));
+  std::string text =
+      fmt::format("{}: {}\n  title     {}\n  system    {}\n  data      {}\n", study.file.string(),
+                  paint.green("ok"), study.title, describe_system(study), describe_data(study));
   text += describe_modes(study);
   const char* label = "pipelines";
   for (const PipelineSpec& pipeline : study.pipelines) {

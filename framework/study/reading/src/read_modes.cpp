@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <map>
 
-#include "study/reading/read_parts.hpp"
+#include "read_continuous.hpp"
 #include "study/reading/read_sets.hpp"
 #include "study/text/numbers.hpp"
 
@@ -201,10 +201,15 @@ std::optional<WrittenMode> read_mode(const Cursor& at, const SystemPart& nominal
   if (const auto sensor = at.find("sensor"))
     mode.sensor = read_effectiveness(*sensor, linear.outputs(), "the rows of /system/C");
   if (at.problems().met() != before) return std::nullopt;
-  mode.W = read_mode_set(at, "W", linear.disturbances(), "/system/Bw", warnings);
+  const auto& continuous = nominal.continuous;
+  const Index disturbances = continuous ? continuous->Bw.cols() : linear.disturbances();
+  mode.W = read_mode_set(at, "W", disturbances, "/system/Bw", warnings);
+  if (mode.W && continuous && !continuous->sampling->keeps_matrices() && disturbances > 0)
+    mode.W = sample(*at.find("W"), *continuous, continuous->Bw, *mode.W);
   mode.V = read_mode_set(at, "V", linear.noises(), "/system/Dv", warnings);
   if (const auto additive = at.find("additive"))
     mode.additive = read_additive(*additive, nominal, warnings);
+  if (mode.additive && continuous) sample(*at.find("additive"), *continuous, *mode.additive);
   return at.problems().met() == before ? std::optional<WrittenMode>(std::move(mode)) : std::nullopt;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/interfaces/descriptor_matrix.hpp"
+#include "read_continuous.hpp"
 #include "study/reading/read_parts.hpp"
 #include "study/reading/read_sets.hpp"
 
@@ -261,7 +262,9 @@ SystemPart SystemReader::read() {
   const auto type_at = system_.need("type", "\"lti\", \"interval_lti\", or \"descriptor\" with E");
   const auto type = type_at ? read_choice(*type_at, system_types()) : std::nullopt;
   std::vector<std::string> keys{"type", "E", "A", "B", "Bw", "C", "D", "Dv", "F", "X0", "W", "V"};
-  if (!nominal_) keys.insert(keys.end(), {"U", "nominal", "modes", "names", "sampling_time"});
+  if (!nominal_)
+    keys.insert(keys.end(),
+                {"U", "nominal", "modes", "names", "sampling_time", "continuous", "disturbance"});
   exact_ = type == "lti";
   if (type && type != "descriptor") {
     if (const auto E = system_.find("E"))
@@ -273,10 +276,16 @@ SystemPart SystemReader::read() {
   read_faults();
   read_sets(disturbances_, noises_);
   if (nominal_) compare_with_nominal();
+  part_.continuous = nominal_ ? nominal_->continuous : read_continuous(system_);
   if (!nominal_) {
     const Sizes& sizes = part_.sizes;
     part_.labels = read_labels(
         system_, {sizes.states, sizes.inputs, sizes.outputs, disturbances_, noises_, sizes.faults});
+  }
+  if (system_.problems().met() == before_ && part_.continuous) {
+    part_.continuous = sample(system_, *part_.continuous, part_.model);
+    if (part_.continuous && !part_.continuous->sampling->keeps_matrices())
+      part_.labels.disturbances.clear();
   }
   part_.good = system_.problems().met() == before_;
   if (!nominal_) read_modes(system_, part_, warnings_);

@@ -95,6 +95,7 @@ void TreeReader::read_sections() {
   study.nominal = std::move(system.nominal);
   study.modes = std::move(system.modes);
   study.labels = std::move(system.labels);
+  study.continuous = system.continuous != nullptr;
   written.modes = std::move(system.written);
 }
 

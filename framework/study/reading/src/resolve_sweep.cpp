@@ -90,7 +90,23 @@ std::string text_to_compare(const Value& value) {
   return nlohmann::json(written_json(value)).dump();
 }
 
+namespace {
+
+/// A continuous model stays one, so that axes find it: with all that is sampled with it.
+void keep_continuous(Json& resolved, const Value& tree) {
+  const Value& system = *tree.find("system");
+  const Value* const continuous = system.find("continuous");
+  if (!continuous || !continuous->flag) return;
+  resolved["system"] = written_json(system);
+  const Value* part = tree.find("data");
+  for (const char* key : {"simulate", "faults"}) part = part ? part->find(key) : nullptr;
+  if (part) resolved["data"]["simulate"]["faults"] = written_json(*part);
+}
+
+}  // namespace
+
 void add_sweep(Json& resolved, const Value& tree, const std::vector<WrittenAxis>& axes) {
+  keep_continuous(resolved, tree);
   Json list = Json::array();
   for (const WrittenAxis& axis : axes) {
     if (axis.path.steps.front().key == "system") {

@@ -41,6 +41,9 @@ inline Json typed(const std::string& type, Json properties, std::vector<std::str
   return object(std::move(all), required);
 }
 
+/// The section "data".
+Json data();
+
 /// Components of one kind: the name alone where no parameter is required, or an object by "type".
 Json components(const Registry& registry, const std::string& kind);
 

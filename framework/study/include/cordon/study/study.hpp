@@ -186,6 +186,7 @@ struct Study {
   std::string nominal = "healthy";  ///< its name
   std::vector<Mode> modes;          ///< the other modes
   Labels labels = {};               ///< what states, inputs and so on are called
+  bool continuous = false;  ///< the model was written in continuous time, and is sampled here
   std::variant<SimulateSpec, CsvSpec>
       data;  ///< pipelines with a designer take seed, seeds, noise and start of simulated data
   std::vector<PipelineSpec> pipelines;

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,7 @@ struct WrittenMode {
 /// ones.
 Model model_of(const WrittenMode& mode, const Model& nominal);
 
+struct ContinuousPart;
 struct SystemPart {
   Model model;  ///< of the nominal mode
   Sizes sizes;
@@ -67,6 +69,8 @@ struct SystemPart {
   std::vector<WrittenMode> written;  ///< of `modes`
   bool modes_good = false;
   Labels labels;
+  /// What it was before it was sampled; nothing of a system that is written from k to k + 1.
+  std::shared_ptr<const ContinuousPart> continuous;
 };
 const std::vector<std::string>& system_types();
 /// A system with its modes.
@@ -103,6 +107,7 @@ struct DataPart {
   std::string written_file;  ///< of recorded data
   std::vector<WrittenFault> written_faults;
 };
+const std::vector<std::string>& disturbance_signal_names();
 const std::vector<std::string>& signal_types();
 const std::vector<std::string>& noise_names();
 const std::vector<std::string>& parameter_draw_names();
