@@ -64,10 +64,11 @@ ordered_json numbers(const Vector& values) {
   return all;
 }
 
-/// "gauge 1 [m] lies 0.3 beyond what the samples before allow".
+/// "gauge 1 [m] lies 0.3 beyond its prediction".
 std::string missed_text(const Labels& labels, const Contradiction& found) {
-  if (found.output < 0) return "all outputs together contradict the samples before, and none alone";
-  return fmt::format("{} lies {:.4g} beyond what the samples before allow",
+  if (found.before) return "no state is left, whatever the outputs are";
+  if (found.output < 0) return "the outputs together contradict the prediction, which none misses";
+  return fmt::format("{} lies {:.4g} beyond its prediction",
                      label_of(labels.outputs, "y", found.output), found.distance);
 }
 
@@ -103,7 +104,8 @@ std::string contradictions_text(const Study& study, const RunOutcome& outcome, c
     if (const auto& first = found.contradiction) {
       text += fmt::format("{}: {}: at {} {}. {}\n", pipeline.name, paint.yellow("Empty"),
                           time_text(labels, first->k), missed_text(labels, *first),
-                          "Model, bounds, assumptions or this sample are wrong");
+                          first->before ? "Model, bounds, assumptions or a sample before are wrong"
+                                        : "Model, bounds, assumptions or this sample are wrong");
     }
     if (found.restarts > 0) {
       text += fmt::format(

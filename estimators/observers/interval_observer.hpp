@@ -22,6 +22,7 @@ class IntervalObserver final : public Observer {
   LineForm initial_set() const override { return X0_; }
   std::vector<Gain> gains() const override;
   bool takes_missing_outputs() const override { return true; }
+  bool uses_outputs_of_its_time() const override { return false; }
   std::optional<Box> inner_estimate() const override { return inner_.hull(); }
 
  private:

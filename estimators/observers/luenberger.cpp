@@ -29,6 +29,7 @@ class Luenberger final : public Observer {
   std::vector<Gain> gains() const override { return {recursion_.gain().gain}; }
   bool follows_its_sets() const override { return !limit_.is_set(); }
   bool takes_missing_outputs() const override { return true; }
+  bool uses_outputs_of_its_time() const override { return false; }
 
  private:
   Enclosure do_start(const std::optional<Enclosure>& X0, const Sample&) override {

@@ -30,6 +30,7 @@ class ZonotopeUncertain final : public Observer {
   std::vector<Gain> gains() const override { return {recursion_.gain().gain}; }
   bool follows_its_sets() const override { return !limit_.is_set(); }
   bool takes_missing_outputs() const override { return true; }
+  bool uses_outputs_of_its_time() const override { return false; }
   std::optional<Box> inner_estimate() const override { return inner_.hull(); }
 
  private:

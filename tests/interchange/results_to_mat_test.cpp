@@ -42,7 +42,7 @@ TEST_CASE("steps become rows") {
   const json::Value observer = json::parse(
       R"([{"k": 0, "hull": {"lower": [1, "-inf"], "upper": [2, "inf"]}, "consistent": "yes", "tightness": "exact", "radius": 0.5, "what": "a"},
           {"k": 1, "hull": {"lower": [3, 4], "upper": [5, 6]}, "inner": {"lower": [3, 4], "upper": [4, 5]}, "consistent": "unknown",
-           "tightness": "outer", "radius": null, "what": "b"}])",
+           "tightness": "outer", "radius": null, "what": "b", "left_out": [1, 3]}])",
       problems);
   mat::Struct out;
   mat::add_steps(out, observer.items());
@@ -55,6 +55,8 @@ TEST_CASE("steps become rows") {
   CHECK(steps.field("consistent")->numbers(0, 0) == 1);
   CHECK(std::isnan(steps.field("consistent")->numbers(0, 1)));
   CHECK(steps.field("exact")->numbers == Matrix{{1, 0}});
+  CHECK(steps.field("left_out")->numbers == Matrix{{0, 1}, {0, 0}, {0, 1}});
+  CHECK_FALSE(steps.field("metrics")->field("left_out"));
   CHECK(steps.field("metrics")->field("radius")->numbers(0, 0) == 0.5);
   CHECK(steps.field("metrics")->field("what")->items[1].text == "b");
   const json::Value diagnoser = json::parse(

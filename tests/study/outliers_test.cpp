@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "run/program.hpp"
+#include "study/study_run.hpp"
 
 using Json = nlohmann::ordered_json;
 using test::Outcome;
@@ -17,33 +17,7 @@ const char* const backends[] = {"interval", "zonotope", "constrained_zonotope", 
 const char* const observers[] = {"prediction_correction", "luenberger", "zonotope_uncertain",
                                  "interval_trajectory", "integrated"};
 
-class Run {
- public:
-  Run(const Json& study, const std::string& csv = "") {
-    scratch_.write("s.json", study.dump(1));
-    if (!csv.empty()) scratch_.write("d.csv", csv);
-    outcome = (*this)("run s.json --out out --no-report");
-  }
-  Outcome operator()(const std::string& arguments) const {
-    return test::cordon_with(arguments + " 2>&1", "cd \"" + scratch_.path().string() + "\" &&");
-  }
-  Json pipeline(std::size_t i = 0) const {
-    return Json::parse(bytes_of(scratch_ / "out/results.json"))["pipelines"][i];
-  }
-  void exchange(const std::string& from, const std::string& to) const {
-    std::string results = bytes_of(scratch_ / "out/results.json");
-    const std::size_t at = results.find(from);
-    REQUIRE(at != std::string::npos);
-    results.replace(at, from.size(), to);
-    scratch_.write("out/results.json", results);
-    std::filesystem::remove(scratch_ / "out/manifest.json");
-  }
-
-  Outcome outcome;
-
- private:
-  Scratch scratch_;
-};
+using Run = test::StudyRun;
 
 /// Two levels with two gauges, and outliers that no bound overlooks.
 Json tanks(std::int64_t seed, double shift) {
@@ -102,7 +76,7 @@ TEST_CASE("an empty estimate tells the sample, the output, and by how much it mi
     CHECK(run.outcome.code == 0);
     // x_0 within 0.1 of 0, x_1 within 0.15, y_1 within 0.25
     CHECK(run.outcome.says("P: Empty: at k = 1 (2 s) gauge [m] lies 0.7"));
-    CHECK(run.outcome.says(" beyond what the samples before allow."));
+    CHECK(run.outcome.says(" beyond its prediction."));
     const Json found = run.pipeline()["summary"]["contradiction"];
     CHECK(found["k"] == 1);
     CHECK(found["output"] == 1);

@@ -7,7 +7,6 @@
 #include "cordon/core/error.hpp"
 #include "cordon/core/linalg.hpp"
 #include "cordon/core/tolerances.hpp"
-#include "cordon/sets/generator_reduction.hpp"
 
 namespace cordon::estimators {
 
@@ -15,7 +14,8 @@ using linalg::product;
 
 namespace {
 
-constexpr Index columns_per_state = 4;
+constexpr Index most_steps = 64;      // whose rounding is carried in generators of its own
+constexpr double contraction = 0.25;  // of their box, until it is made
 
 Vector row_sums(const Matrix& A) { return A.cwiseAbs().rowwise().sum(); }
 
@@ -48,6 +48,27 @@ Vector fixed_point(const Matrix& K, const Vector& b) {
   return Vector::Constant(b.size(), infinity);
 }
 
+/// After how many steps of this map a box comes back smaller: the least N, or the most that is tried,
+/// with ρ(|Fᴺ|) ≤ 1/4, by max_i (|Fᴺ| v)_i / v_i for a v > 0 [Feingold1962].
+Index steps_to_contract(const Matrix& F) {
+  constexpr int rounds = 20;
+  constexpr double positive = 1e-6;
+  const Index n = F.rows();
+  Matrix power = F;
+  for (Index steps = 1; steps < most_steps; ++steps, power = product(F, power)) {
+    const Matrix size = power.cwiseAbs();
+    Vector v = Vector::Ones(n);
+    for (int round = 0; round < rounds; ++round) {
+      const Vector next = product(size, v);
+      const double largest = next.maxCoeff();
+      if (!(largest > 0)) return steps;
+      v = (next.array() / largest + positive).matrix();
+    }
+    if ((product(size, v).array() <= contraction * v.array()).all()) return steps;
+  }
+  return most_steps;
+}
+
 }  // namespace
 
 FilterRounding::FilterRounding(const FilterDesign& design, const LinearModel& model,
@@ -77,6 +98,7 @@ FilterRounding::FilterRounding(const FilterDesign& design, const LinearModel& mo
 
 void FilterRounding::start(const Input& first, const FilterRecursion& recursion) {
   size_ = first.x.cwiseAbs();
+  steps_ = 1;
   settle(first, recursion, Matrix(size_.size(), 0), Vector::Zero(size_.size()));
 }
 
@@ -93,7 +115,12 @@ void FilterRounding::advance(const Input& next, const FilterRecursion& recursion
   size_ = step_size(recursion, u_size, constant) + product(N_size_, next.output + Dv_size_);
   const Matrix faults = (TA_Psi_ - product(recursion.gain(), Upsilon_)).cwiseAbs();
   const Vector left = tolerances::product_noise * size_ + product(faults, now_.fault_size);
-  settle(next, recursion, product(recursion.error_map(), generators_), left);
+  const Matrix map = recursion.error_map();
+  if (generators_.cols() >= steps_ * generators_.rows()) {
+    generators_ = row_sums(generators_).asDiagonal().toDenseMatrix();
+    steps_ = steps_to_contract(map) + 1;
+  }
+  settle(next, recursion, product(map, generators_), left);
 }
 
 /// The faults that are seen now, and with them the errors of this step.
@@ -116,8 +143,7 @@ void FilterRounding::settle(Input input, const FilterRecursion& recursion, const
   Matrix kept(n, old.cols() + n);
   kept << old,
       (left + product(defect_, input.x.cwiseAbs() + error_size_)).asDiagonal().toDenseMatrix();
-  generators_ =
-      sets::reduce_generators(kept, columns_per_state * n, sets::GeneratorReduction::combastel);
+  generators_ = std::move(kept);
   now_ = std::move(input);
 }
 

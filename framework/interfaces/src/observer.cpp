@@ -66,7 +66,7 @@ void Observer::start(std::optional<Enclosure> X0) {
   X0_ = std::move(X0);
   before_.reset();
   inconsistent_ = false;
-  outlier_times_.clear();
+  inherited_ = last_inherited_ = Tightness::exact;
   left_out_.clear();
   contradiction_.reset();
   times_ = {};
@@ -125,8 +125,10 @@ void Observer::leave_out_outliers(Index most, Index window) {
 Estimate Observer::advance(const Sample& now) {
   Estimate estimate{now.k, {}, Answer::unknown, {}};
   estimate.set = before_ ? do_step(*before_, now) : do_start(X0_, now);
-  estimate.set.tightness = meet(estimate.set.tightness, claim());
+  const Tightness claimed = meet(meet(estimate.set.tightness, claim()), inherited_);
+  estimate.set.tightness = claimed;
   const bool is_cut = admissible_.set && cut(estimate.set);
+  if (estimate.set.tightness != claimed) inherited_ = meet(inherited_, estimate.set.tightness);
   {
     const Stopwatch watch(times_.question);
     estimate.consistent = negate(estimate.set->is_empty(&estimate.why));
@@ -137,18 +139,27 @@ Estimate Observer::advance(const Sample& now) {
 
 void Observer::go_back() {
   if (before_) do_replace(last_);
+  inherited_ = last_inherited_;
 }
 
 std::vector<Index> Observer::outliers(const Set& X, const Sample& now) {
   const LinearModel& m = model_.linear;
   if (!noise_.set) noise_ = backend_->import(model_.V);
+  const Box hull = m.C_radius.size() > 0 ? X.interval_hull() : Box{};
   std::vector<Index> found;
   double worst = 0;
   for (const Index i : present_outputs(now)) {
     const Vector c = m.C.row(i).transpose(), v = m.Dv.row(i).transpose();
+    double spread = 0;
+    if (m.C_radius.size() > 0) {
+      for (Index j = 0; j < hull.dim(); ++j) {
+        if (m.C_radius(i, j) > 0)
+          spread += m.C_radius(i, j) * std::max(std::abs(hull.lower[j]), std::abs(hull.upper[j]));
+      }
+    }
     const double direct = m.D.row(i).dot(now.u), y = now.y[i];
-    const double upper = direct + X.support(c) + noise_->support(v),
-                 lower = direct - X.support(-c) - noise_->support(-v);
+    const double upper = direct + X.support(c) + noise_->support(v) + spread,
+                 lower = direct - X.support(-c) - noise_->support(-v) - spread;
     const double distance = std::max(y - upper, lower - y);  // NaN: open on both sides
     const double size = std::max({std::abs(y), std::abs(direct), std::isfinite(upper) ? upper : 0,
                                   std::isfinite(lower) ? -lower : 0});
@@ -168,38 +179,51 @@ bool Observer::may_leave_out(Index k) const {
   return recent < most_outliers_;
 }
 
-std::optional<Sample> Observer::without_outliers(const Sample& now, Estimate& estimate) {
-  const bool empty = estimate.consistent == Answer::no, may = may_leave_out(now.k);
+Estimate Observer::advance_without_outliers(const Sample& now, std::optional<Sample>& used) {
   const std::vector<Index> present = present_outputs(now);
-  if (present.empty() || !takes_missing_outputs() || !(empty || may)) return std::nullopt;
-  Estimate predicted = estimate;
-  if (empty) {
+  const Sample none = missing_outputs(now, present);
+  const bool two_steps = uses_outputs_of_its_time();
+  Estimate estimate = advance(two_steps ? none : now);
+  std::vector<Index> missed;
+  const bool empty_before = estimate.consistent == Answer::no;
+  if (!empty_before) missed = outliers(*estimate.set, now);
+  if (two_steps) {
     go_back();
-    predicted = advance(missing_outputs(now, present));
-    if (predicted.consistent == Answer::no) return std::nullopt;  // whatever the outputs are
-  }
-  std::vector<Index> missed = outliers(*predicted.set, now);
-  if (missed.empty() && !empty) return std::nullopt;
-  if (missed.empty()) {
-    contradiction_ = Contradiction{now.k};
-    missed = present;
-  }
-  if (!may) return std::nullopt;
-  std::optional<Sample> used = missing_outputs(now, missed);
-  if (empty) {
-    go_back();
-    estimate = advance(*used);
-    if (estimate.consistent == Answer::no) {  // the others together
+    estimate = advance(missed.empty() ? now : missing_outputs(now, missed));
+    if (estimate.consistent == Answer::no && !empty_before) {  // the others together
+      if (missed.empty()) contradiction_ = Contradiction{now.k};
       missed = present;
-      used = missing_outputs(now, missed);
       go_back();
-      estimate = advance(*used);
+      estimate = advance(none);
     }
   }
+  if (empty_before && estimate.consistent == Answer::no)
+    contradiction_ = Contradiction{now.k, -1, 0, true};
+  if (missed.empty()) return estimate;
+  used = missing_outputs(now, missed);
   left_out_ = std::move(missed);
   std::erase_if(outlier_times_, [&](Index t) { return t <= now.k - outlier_window_; });
   outlier_times_.push_back(now.k);
-  return used;
+  return estimate;
+}
+
+void Observer::explain(const Sample& now) {
+  const PhaseTimes times = times_;
+  try {
+    const std::vector<Index> present = present_outputs(now);
+    bool before = present.empty() || !uses_outputs_of_its_time();
+    if (!before) {
+      go_back();
+      const Estimate predicted = advance(missing_outputs(now, present));
+      before = predicted.consistent == Answer::no;
+      if (!before && outliers(*predicted.set, now).empty()) contradiction_ = Contradiction{now.k};
+    }
+    if (before) contradiction_ = Contradiction{now.k, -1, 0, true};
+  } catch (const Error& error) {  // why an estimate is empty was not asked for
+    if (error.code() != Errc::unsupported) throw;
+    contradiction_.reset();
+  }
+  times_ = times;
 }
 
 Estimate Observer::step(const Sample& now) {
@@ -214,24 +238,15 @@ Estimate Observer::step(const Sample& now) {
     before_ = now;
     return estimate;
   }
-  Estimate estimate = advance(now);
+  if (!before_)  // of other data
+    std::erase_if(outlier_times_, [&](Index t) { return t >= now.k; });
   std::optional<Sample> used;
-  if (estimate.consistent == Answer::no || most_outliers_ > 0) {
-    Estimate others = estimate;
-    const PhaseTimes times = times_;
-    try {
-      used = without_outliers(now, others);
-    } catch (const Error& error) {  // why an estimate is empty was not asked for
-      if (error.code() != Errc::unsupported || may_leave_out(now.k)) throw;
-    }
-    if (used) {
-      estimate = std::move(others);
-    } else {
-      times_ = times;
-    }
-  }
+  const bool watches = may_leave_out(now.k) && !present_outputs(now).empty();
+  Estimate estimate = watches ? advance_without_outliers(now, used) : advance(now);
   inconsistent_ = estimate.consistent == Answer::no;
+  if (inconsistent_ && !watches && takes_missing_outputs()) explain(now);
   last_ = estimate.set;
+  last_inherited_ = inherited_;
   before_ = used ? std::move(*used) : now;
   return estimate;
 }
@@ -244,6 +259,7 @@ void Observer::replace(Enclosure X) {
   if (X->dim() != model_.linear.states())
     throw Error(Errc::dimension, "the replacing set has another dimension than the state");
   inconsistent_ = false;
+  inherited_ = last_inherited_ = Tightness::exact;
   last_ = X;
   do_replace(X);
 }

@@ -143,6 +143,28 @@ std::vector<std::string> keys_of(const Steps& steps) {
   return keys;
 }
 
+constexpr double most_outputs = 1000;
+
+/// A row per output, as far as any was left out, and a column per step: 1 where it was.
+Matrix left_out(const Steps& values) {
+  Matrix marks = Matrix::Zero(0, static_cast<Index>(values.size()));
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!values[k] || values[k]->kind != JsonKind::array) continue;
+    for (const json::Value& output : values[k]->items()) {
+      const double number = output.kind == JsonKind::number ? output.number : 0;
+      if (!(number >= 1 && number <= most_outputs)) continue;
+      const auto row = static_cast<Index>(number) - 1;
+      const Index before = marks.rows();
+      if (row >= before) {
+        marks.conservativeResize(row + 1, marks.cols());
+        marks.bottomRows(row + 1 - before).setZero();
+      }
+      marks(row, static_cast<Index>(k)) = 1;
+    }
+  }
+  return marks;
+}
+
 }  // namespace
 
 void add_steps(Struct& pipeline, const std::vector<json::Value>& list) {
@@ -170,8 +192,9 @@ void add_steps(Struct& pipeline, const std::vector<json::Value>& list) {
       pipeline.set(key, texts(values));
     if (key == "modes") pipeline.set("evidence", modes(values));
     if (key == "faults") pipeline.set("faults", faults(values));
+    if (key == "left_out") pipeline.set("left_out", matrix(left_out(values)));
     if (!is_among(key, {"k", "hull", "inner", "consistent", "since", "reset", "tightness",
-                        "decision", "mode", "true_mode", "suggested", "modes", "faults"})) {
+                        "decision", "mode", "true_mode", "suggested", "modes", "faults", "left_out"})) {
       metric_names.push_back(key);
     }
   }

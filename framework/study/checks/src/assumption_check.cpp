@@ -140,7 +140,9 @@ void AssumptionCheck::step(const Record& record) {
     const std::vector<Index>& missing = record.sample.missing;
     return std::find(missing.begin(), missing.end(), output) == missing.end();
   };
-  if (!other_ && std::any_of(record.outliers.begin(), record.outliers.end(), is_used))
+  if (!other_ && record.truth && mode_of(record) >= 0 &&
+      std::any_of(record.outliers.begin(), record.outliers.end(), is_used) &&
+      leaves_V(bank_[mode_of(record)].model, record))
     fail(What::V, record.sample.k, mode_of(record));
   if (!other_) {
     check_sets(record);
@@ -292,7 +294,11 @@ std::string text_of(const FailedAssumption& failed, const std::vector<std::strin
   const Index k = failed.k;
   switch (failed.what) {
     case FailedAssumption::What::initial_set:
-      return fmt::format("x_{} lies outside {}{}", k, named ? "X0" : "the initial set", of);
+      return fmt::format("x_{} lies outside {}{}", k,
+                         named   ? "X0"
+                         : k > 0 ? "the restart set, from which estimates begin anew there"
+                                 : "the initial set",
+                         of);
     case FailedAssumption::What::restart_set:
       return fmt::format(
           "x_{} lies outside the restart set, from which all modes begin anew at k = {}", k, k);

@@ -94,6 +94,7 @@ void write_contradictions(JsonWriter& json, const EstimationOutcome& outcome) {
   if (outcome.contradiction) {
     json.key("contradiction").begin_object().member("k", outcome.contradiction->k);
     write_worst(json, *outcome.contradiction);
+    if (outcome.contradiction->before) json.member("before", true);
     json.end_object();
   }
   if (outcome.restarts > 0) json.member("restarts", outcome.restarts);

@@ -98,7 +98,7 @@ class EstimationRun final : public PipelineRun {
     const std::optional<Contradiction>& contradiction = observer_->contradiction();
     if (!contradiction) return;
     if (observer_->left_out().empty()) {
-      if (!found_.contradiction) found_.contradiction = contradiction;
+      if (found_.inconsistent_from < 0) found_.contradiction = contradiction;
       return;
     }
     ++found_.outliers;

@@ -140,15 +140,17 @@ void add_guarantees(const RunFiles& files, Report& report) {
        std::move(table)});
 }
 
-/// "gauge 1 [m] lies 0.3 beyond what the samples before allow".
+/// "gauge 1 [m] lies 0.3 beyond its prediction".
 std::string missed(const RunFiles& files, const Cursor& worst) {
   const double output = value_of(worst, "output");
   const Labels::Names& names = files.labels().outputs;
-  if (std::isnan(output)) return "all outputs together contradict the samples before";
+  if (const auto before = worst.find("before"); before && before->value().flag)
+    return "no state is left, whatever the outputs are";
+  if (std::isnan(output)) return "the outputs together contradict the prediction, which none misses";
   const std::string name = output >= 1 && output <= static_cast<double>(names.size())
                                ? names[static_cast<std::size_t>(output) - 1]
                                : "y_" + shown(output, 15);
-  return fmt::format("{} lies {} beyond what the samples before allow", name,
+  return fmt::format("{} lies {} beyond its prediction", name,
                      shown(value_of(worst, "distance")));
 }
 

@@ -19,14 +19,16 @@ struct Estimate {
   Certificate why;      ///< proof of `consistent` (of the emptiness of `set`)
 };
 
-/// A sample that contradicts what was known before it. The prediction is the estimate of the same
-/// time without the sample's outputs; y_i misses it by the distance of y_i from the interval of
-/// C x + D u + Dv v over the prediction and V (of centres, where matrices are known by intervals).
+/// A sample that contradicts what was known before it. The prediction is the observer's estimate of
+/// the same time without the sample's outputs; y_i misses it by the distance of y_i from the
+/// interval of C x + D u + Dv v over the prediction, the matrices and V.
 struct Contradiction {
   Index k = 0;
-  Index output = -1;  ///< of those that miss it the one that does so by the most of its interval's
-                      ///< size; -1: none by itself, all together contradict what was known
+  /// Of those that miss the prediction the one that does so by the most of its interval's size; -1:
+  /// none by itself, though all together contradict what was known.
+  Index output = -1;
   double distance = 0;  ///< of that output, in its unit; computed to nearest
+  bool before = false;  ///< the prediction itself is empty: the outputs do not matter
 };
 
 /// Wall-clock time of the last step by phase, in microseconds; `question` is the emptiness test.
@@ -55,8 +57,9 @@ class Observer {
   /// From now on outputs that miss the prediction are left out, as if they were missing, in at most
   /// `most` samples of any `window` that follow each other (0: none; window ≥ 1). What is left out
   /// is no longer assumed to keep to V. Only for observers that take missing outputs: throws
-  /// Errc::unsupported. Costs the bounds of the outputs over every estimate, and a second step
-  /// wherever one would be empty.
+  /// Errc::unsupported. The limit lasts when the observer begins anew while time goes on. Costs the
+  /// bounds of the outputs over every prediction and, where estimates use the outputs of their
+  /// time, a second step at every sample.
   void leave_out_outliers(Index most, Index window);
 
   const PhaseTimes& times() const { return times_; }
@@ -95,6 +98,9 @@ class Observer {
   /// Does it take samples with missing outputs, and enclose every state that is consistent with the
   /// outputs that are there? Otherwise `step` refuses such samples.
   virtual bool takes_missing_outputs() const { return false; }
+
+  /// Do estimates use the outputs of their time? Those that do not are their own predictions.
+  virtual bool uses_outputs_of_its_time() const { return true; }
 
   /// A box inside the hull of the last estimate, made of trajectories that the observer must
   /// enclose: what is left between the two is the price of the enclosure. Never an enclosure
@@ -151,8 +157,11 @@ class Observer {
   /// The outputs of a sample that miss the set by more than rounding; fills in `contradiction_`.
   std::vector<Index> outliers(const Set& X, const Sample& now);
   bool may_leave_out(Index k) const;
-  /// The sample that is used in place of `now`; `estimate` becomes that of it.
-  std::optional<Sample> without_outliers(const Sample& now, Estimate& estimate);
+  /// One step without the outputs that miss the prediction; `used`: the sample without these, if
+  /// there were any.
+  Estimate advance_without_outliers(const Sample& now, std::optional<Sample>& used);
+  /// Finds out what the sample contradicts, the estimate of which is empty.
+  void explain(const Sample& now);
 
   Model model_;
   std::shared_ptr<const SetBackend> backend_;
@@ -162,9 +171,12 @@ class Observer {
   std::optional<Enclosure> X0_;
   std::optional<Sample> before_;
   Enclosure last_;  ///< estimate of `before_`
+  /// What later estimates can claim at most, for the observer's own set may not tell what a cut has
+  /// left out; and at `before_`.
+  Tightness inherited_ = Tightness::exact, last_inherited_ = Tightness::exact;
   bool inconsistent_ = false;
   Index most_outliers_ = 0, outlier_window_ = 1;
-  std::vector<Index> outlier_times_;  ///< of the window
+  std::vector<Index> outlier_times_;  ///< of the window, ascending
   std::vector<Index> left_out_;
   std::optional<Contradiction> contradiction_;
   Enclosure noise_;  ///< V, where it was asked for

@@ -152,7 +152,8 @@ std::string advice_on(const WidthGrowth& growth);
 /// outward rounding excludes the truth, by rounding alone.
 struct FailedAssumption {
   enum class What {
-    initial_set,     ///< x_0: the observer's initial set, of a diagnoser X0 of the true mode
+    initial_set,     ///< x_0: the observer's initial set, of a diagnoser X0 of the true mode; later
+                     ///< the set that an observer begins anew from
     restart_set,     ///< x_k: the set that a diagnoser begins anew from, at a reset at k
     admissible_set,  ///< x_k
     U,               ///< u_k, of statements made in advance
