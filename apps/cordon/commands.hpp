@@ -25,6 +25,9 @@ struct Program {
   Exit exit = Exit::done;
 };
 
+/// `cordon list`.
+Exit list_components(const Program& program, bool json);
+
 void add_run(CLI::App& app, Program& program);
 void add_merge(CLI::App& app, Program& program);
 void add_report(CLI::App& app, Program& program);

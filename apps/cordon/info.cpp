@@ -114,10 +114,15 @@ void add_info(CLI::App& app, Program& program) {
   CLI::App* command = app.add_subcommand("info", "Explain a component and its parameters");
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("COMPONENT", *name, "Name of a component of any kind (see `cordon list`)")
-      ->required();
+  CLI::Option* const given = command->add_option(
+      "COMPONENT", *name,
+      "Name of a component of any kind; without one all are listed");
   command->add_flag("--json", *json, "Print JSON for programs");
-  command->callback([&program, name, json] { program.exit = info(program, *name, *json); });
+  command->callback([&program, name, json, given] {
+    const bool all = given->count() == 0;
+    program.exit = all ? list_components(program, *json) : info(program, *name, *json);
+    if (all && !*json) print("\n\"cordon info NAME\" explains one of them.\n");
+  });
 }
 
 }  // namespace cordon::apps

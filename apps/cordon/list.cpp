@@ -31,7 +31,9 @@ std::string as_table(const std::vector<Component>& found) {
   return table(rows, Paint(stdout));
 }
 
-Exit list(const Program& program, bool json) {
+}  // namespace
+
+Exit list_components(const Program& program, bool json) {
   Registry registry;
   load_plugins(registry, program.plugins);
   warn_refused(registry);
@@ -42,15 +44,13 @@ Exit list(const Program& program, bool json) {
   return Exit::done;
 }
 
-}  // namespace
-
 void add_list(CLI::App& app, Program& program) {
   CLI::App* command =
       app.add_subcommand("list", fmt::format("List components with their plugins, by kind: {}",
                                              fmt::join(Registry::kinds(), ", ")));
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON for programs");
-  command->callback([&program, json] { program.exit = list(program, *json); });
+  command->callback([&program, json] { program.exit = list_components(program, *json); });
 }
 
 }  // namespace cordon::apps

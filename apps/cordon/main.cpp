@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <csignal>
 #include <iostream>
+#include <memory>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
@@ -21,13 +22,62 @@ std::string unknown_command(const CLI::App& app) {
   return "no command \"" + words.front() + "\"; " + cordon::suggest(words.front(), names);
 }
 
+/// Options that are none, each with a suggestion; "" if there is none among what was left over.
+std::string unknown_options(const CLI::App& app) {
+  const CLI::App* command = &app;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().back();
+  std::vector<std::string> known;
+  for (const CLI::App* one = command; one; one = one->get_parent()) {
+    for (const CLI::Option* option : one->get_options({})) {
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    }
+  }
+  std::string text;
+  for (const std::string& word : app.remaining(true)) {
+    if (word.size() < 2 || word.front() != '-') continue;
+    const std::string option = word.substr(0, word.find('='));
+    text += (text.empty() ? "" : "\n") + command->get_display_name() + " has no option \"" + option +
+            "\"; " + cordon::suggest(option, known);
+  }
+  return text;
+}
+
+/// The help of all, or of one command.
+void add_help(CLI::App& app, Program& program) {
+  CLI::App* const command = app.add_subcommand("help", "Show what a command does and takes");
+  const auto words = std::make_shared<std::vector<std::string>>();
+  command->add_option("COMMAND", *words, "The command; all commands without one");
+  command->callback([&app, &program, words] {
+    const CLI::App* about = &app;
+    std::string called = app.get_name();
+    for (const std::string& word : *words) {
+      std::vector<std::string> names;
+      const CLI::App* found = nullptr;
+      for (const CLI::App* one : about->get_subcommands({})) {
+        names.push_back(one->get_name());
+        if (one->get_name() == word) found = one;
+      }
+      if (!found) {
+        complain("no command \"" + word + "\"; " + cordon::suggest(word, names));
+        program.exit = Exit::invalid;
+        return;
+      }
+      about = found;
+      called += " " + word;
+    }
+    print(app.get_formatter()->make_help(about, called, CLI::AppFormatMode::Normal));
+    program.exit = Exit::done;
+  });
+}
+
 /// What CLI11 has to say (help, version, usage errors); its own code is replaced by ours.
 Exit answer(const CLI::App& app, const CLI::ParseError& outcome) {
   std::ostringstream out, err;
   const bool failed = app.exit(outcome, out, err) != 0;
   print(out.str());
   if (!failed) return Exit::done;
-  const std::string unknown = unknown_command(app);
+  std::string unknown = unknown_command(app);
+  if (unknown.empty()) unknown = unknown_options(app);
   complain(unknown.empty() ? err.str().substr(0, err.str().find_last_not_of('\n') + 1) : unknown);
   return Exit::invalid;
 }
@@ -64,6 +114,7 @@ Exit run(int argc, char** argv) {
   add_new(app, program);
   add_doctor(app, program);
   add_conform(app, program);
+  add_help(app, program);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& outcome) {

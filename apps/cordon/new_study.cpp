@@ -106,11 +106,20 @@ void add_new_study(CLI::App& command, Program& program) {
   const auto kind = std::make_shared<std::string>("estimation");
   std::vector<std::string> kinds;
   for (const StudyTemplate& one : study_templates) kinds.emplace_back(one.kind);
-  study->add_option("NAME", *name, "Its title; the file is NAME.json")->required();
+  CLI::Option* const given = study->add_option(
+      "NAME", *name, "Its title; the file is NAME.json. Without one the kinds are listed");
   study->add_option("--kind", *kind, "What it is about (default: estimation)")
       ->check(CLI::IsMember(kinds))
       ->option_text("KIND");
-  study->callback([&program, name, kind] { program.exit = new_study(*name, *kind); });
+  study->callback([&program, name, kind, kinds, given] {
+    if (given->count() > 0) {
+      program.exit = new_study(*name, *kind);
+      return;
+    }
+    print(fmt::format("\"cordon new study NAME --kind KIND\" writes NAME.json. Kinds: {}.\n",
+                      fmt::join(kinds, ", ")));
+    program.exit = Exit::done;
+  });
 }
 
 }  // namespace cordon::apps

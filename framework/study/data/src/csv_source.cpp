@@ -31,6 +31,14 @@ bool is_missing(const std::string& field) {
   return text.empty() || text == "nan";
 }
 
+bool is_utf8(std::string_view text) {
+  for (std::size_t length = 0; !text.empty(); text.remove_prefix(length)) {
+    length = utf8_length(text);
+    if (length == 0) return false;
+  }
+  return true;
+}
+
 void require_file(const std::filesystem::path& file) {
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
@@ -138,6 +146,16 @@ void CsvSource::locate(const CsvRow& row) {
         "/data/csv/file", row.line,
         std::string("the header seems to be separated by ") + (semicolon ? "semicolons" : "tabs"),
         "only commas separate columns, with a decimal point in numbers");
+  }
+  if (first.starts_with('#') || first.starts_with('%')) {
+    report("/data/csv/file", row.line, "the first line is a comment, the header row must be first",
+           "remove lines that begin with " + first.substr(0, 1));
+    return;
+  }
+  if (std::any_of(header.begin(), header.end(), [](const auto& name) { return !is_utf8(name); })) {
+    report("/data/csv/file", row.line, "the header is not UTF-8 (it may be Latin-1)",
+           "save the file as UTF-8");
+    return;
   }
   std::set<std::string> seen, told;
   for (const std::string& name : header) {

@@ -117,6 +117,12 @@ Study StudyReader::read() {
   source_->text = read_file(source_->file.string());
   source_->tree = parse(source_->text, problems_);
   const Cursor root(source_->tree, "", problems_);
+  if (root.is(Value::Kind::object) && root.find("cordon_results")) {
+    root.error("these are the results of a run, not a study",
+               "\"cordon verify\", \"cordon report\" and \"cordon compare\" take their directory; "
+               "the study that was run is their member \"study\"");
+    finish({});
+  }
   if (root.is(Value::Kind::object)) load_plugins(root);
   source_->sweep = read_sweep(root);
   TreeReading reading = read_first_values(*source_, registry_, !problems_.any(), problems_);

@@ -16,6 +16,25 @@ std::string quoted(std::string_view text) {
   return out + (text.size() > 40 ? "…\"" : "\"");
 }
 
+/// What is foreign in a text that would be a number otherwise; empty: nothing that is known.
+std::string foreign_sign(std::string_view text) {
+  constexpr std::string_view minus = "\xE2\x88\x92";  // U+2212
+  std::string plain(text);
+  std::string found;
+  if (plain.starts_with(minus)) {
+    plain.replace(0, minus.size(), "-");
+    found = ", its minus is the sign U+2212: write \"-\"";
+  }
+  if (const std::size_t comma = plain.find(','); comma != std::string::npos) {
+    plain[comma] = '.';
+    found += ", decimals are separated by a point";
+  }
+  if (found.empty()) return "";
+  double value = 0;
+  const auto [end, error] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
+  return error == std::errc{} && end == plain.data() + plain.size() ? found : "";
+}
+
 }  // namespace
 
 std::string to_text(double value) {
@@ -35,7 +54,7 @@ ParsedNumber parse_number(std::string_view text) {
   if (error == std::errc::result_out_of_range)
     return {0, quoted(text) + " is beyond the range of a double"};
   if (error != std::errc{} || end != digits.data() + digits.size())
-    return {0, quoted(text) + " is not a number"};
+    return {0, quoted(text) + " is not a number" + foreign_sign(text)};
   if (!std::isfinite(value)) return {0, quoted(text) + " is not finite"};
   return {value, ""};
 }
