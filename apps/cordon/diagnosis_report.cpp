@@ -80,6 +80,26 @@ std::string event_name(const DiagnosisEvent& event, std::optional<Index> truth_b
   return std::string(to_string(event.what));
 }
 
+/// Why something is said that has no proof of its own.
+std::string reason_text(const DiagnosisEvent& event) {
+  switch (event.what) {
+    case Kind::truth:
+      return "by the data";
+    case Kind::starts:
+      return event.mode < 0 ? "every mode is possible" : "assumed by the study";
+    case Kind::isolated:
+      return "no other mode is left";
+    case Kind::isolating:
+      return "several modes are possible";
+    case Kind::ambiguous:
+      return "several modes are left after the waiting time";
+    case Kind::unknown_fault:
+      return "every mode is excluded: not yet identified, or none of these";
+    default:
+      return "";
+  }
+}
+
 /// One row per event; `left` counts those that are not shown.
 Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& left) {
   const double seconds = study.labels.sampling_time;
@@ -99,8 +119,10 @@ Rows timeline(const Study& study, const DiagnosisOutcome& found, std::int64_t& l
     std::string mode = event.mode >= 0 ? name_of(found.modes, event.mode) : "";
     if (event.what == Kind::starts && event.mode < 0) mode = "any";
     if (event.what == Kind::truth && event.mode < 0) mode = outside_name(study, event.k);
+    if (event.what == Kind::detected) mode = "departure from " + mode;
+    const std::string evidence = evidence_text(event.evidence);
     rows.push_back({fmt::format("{}", event.k), event_name(event, before), mode,
-                    evidence_text(event.evidence)});
+                    evidence.empty() ? reason_text(event) : evidence});
     if (seconds > 0) {
       rows.back().insert(rows.back().begin() + 1,
                          fmt::format("{:.6g}", static_cast<double>(event.k) * seconds));
@@ -117,7 +139,7 @@ std::string delay_text(const DelayStatistics& delays) {
 Rows statistics(const Study& study, const DiagnosisOutcome& found) {
   const bool outside = std::any_of(found.statistics.begin(), found.statistics.end(),
                                    [](const auto& m) { return m.mode < 0; });
-  Rows rows{{"TRUE MODE", "TIMES", "DETECTED", "ISOLATED", "MISSED", "WRONG MODE",
+  Rows rows{{"TRUE MODE", "TIMES", "DETECTED", "ISOLATED", "NOT ISOLATED", "WRONG MODE",
              "DETECTION DELAY", "ISOLATION DELAY"}};
   if (outside) rows[0].insert(rows[0].begin() + 6, "UNKNOWN FAULT");
   std::vector<ModeStatistics> all = found.statistics;

@@ -71,32 +71,34 @@ bool has(const std::string& text, const std::string& part) {
 
 TEST_CASE("the timeline: one line per event, with its evidence") {
   const std::string text = apps::diagnosis_text(study(), diagnosis(), apps::Paint(stdout));
-  CHECK(text ==
-        "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step, at most 98.8\n"
-        "\n"
-        "k    EVENT          MODE                    EVIDENCE\n"
-        "0    starts         healthy\n"
-        "50   fault begins   fault 1\n"
-        "51   detected       healthy                 residual [0.0125, 0.5], 0 is 0.0125 outside, "
-        "proof direction, margin 0.0125\n"
-        "52   excluded       fault 2                 residual since the reset [-0.75, -0.25], 0 is "
-        "0.25 outside, proof direction, "
-        "margin 0.0125\n"
-        "52   isolated       fault 1\n"
-        "100  fault ends     healthy\n"
-        "120  fault begins   leak, outside the bank\n"
-        "123  unknown_fault\n"
-        "\n"
-        "Over 60 runs (delays in steps: smallest / median / largest)\n"
-        "TRUE MODE         TIMES  DETECTED  ISOLATED  MISSED  WRONG MODE  UNKNOWN FAULT  DETECTION "
-        "DELAY  ISOLATION DELAY\n"
-        "fault 1           60     59        58        2       1           0              1 / 1.5 / "
-        "3      2 / 2 / 9\n"
-        "outside the bank  60     60        -         -       0           57             1 / 1 / 1 "
-        "       3 / 3 / 4\n"
-        "\n"
-        "False alarms: 3 in 2 of 60 runs\n"
-        "True mode excluded: never\n");
+  CHECK(
+      text ==
+      "Bank of zonotopes  zonotope, observer_bank, 3 modes, 12.3 µs/step, at most 98.8\n"
+      "\n"
+      "k    EVENT          MODE                    EVIDENCE\n"
+      "0    starts         healthy                 assumed by the study\n"
+      "50   fault begins   fault 1                 by the data\n"
+      "51   detected       departure from healthy  residual [0.0125, 0.5], 0 is 0.0125 outside, "
+      "proof direction, margin 0.0125\n"
+      "52   excluded       fault 2                 residual since the reset [-0.75, -0.25], 0 is "
+      "0.25 outside, proof direction, "
+      "margin 0.0125\n"
+      "52   isolated       fault 1                 no other mode is left\n"
+      "100  fault ends     healthy                 by the data\n"
+      "120  fault begins   leak, outside the bank  by the data\n"
+      "123  unknown_fault                          every mode is excluded: not yet identified, or "
+      "none of these\n"
+      "\n"
+      "Over 60 runs (delays in steps: smallest / median / largest)\n"
+      "TRUE MODE         TIMES  DETECTED  ISOLATED  NOT ISOLATED  WRONG MODE  UNKNOWN FAULT  "
+      "DETECTION DELAY  ISOLATION DELAY\n"
+      "fault 1           60     59        58        2             1           0              "
+      "1 / 1.5 / 3      2 / 2 / 9\n"
+      "outside the bank  60     60        -         -             0           57             "
+      "1 / 1 / 1        3 / 3 / 4\n"
+      "\n"
+      "False alarms: 3 in 2 of 60 runs\n"
+      "True mode excluded: never\n");
 }
 
 TEST_CASE("a run of diagnosers only has no table of observers, a mixed one has both") {
@@ -349,8 +351,8 @@ TEST_CASE("additive faults: names in the timeline, a table, and what is outside 
   const apps::Paint paint(stdout);
   std::string text = apps::diagnosis_text(s, p, paint);
   CHECK(has(text, "zonotope, observer_bank, 1 mode, 12.3"));
-  CHECK(has(text, "7   fault begins   additive faults 1, 2\n"));
-  CHECK(has(text, "30  fault changes  additive fault 1\n"));
+  CHECK(has(text, "7   fault begins   additive faults 1, 2  by the data\n"));
+  CHECK(has(text, "30  fault changes  additive fault 1      by the data\n"));
   CHECK(has(text, "\nadditive fault  60 "));
   CHECK(has(
       text,
