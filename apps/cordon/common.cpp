@@ -28,7 +28,7 @@ const char* const exit_codes_help =
     "  6    not enough memory, or threads that cannot be started\n"
     "  130  interrupted by SIGINT or SIGTERM\n"
     "Plugins are searched in: --plugins, the study's \"plugins\" (with --trust-plugins), "
-    "CORDON_PLUGIN_PATH, beside the program, "
+    "CORDON_PLUGIN_PATH, beside the program or its library, "
     "the installed directory.";
 
 Exit exit_for(Errc code) noexcept {

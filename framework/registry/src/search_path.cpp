@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <dlfcn.h>
 #include <string_view>
 #include <system_error>
 
@@ -30,6 +31,8 @@ void append(SearchPath& path, const fs::path& directory) {
   path.directories.push_back(std::move(absolute));
 }
 
+const char own_address = 0;
+
 }  // namespace
 
 std::vector<fs::path> registry::shipped_directories() {
@@ -37,6 +40,9 @@ std::vector<fs::path> registry::shipped_directories() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) append(path, program.parent_path().parent_path() / "lib/cordon/plugins-v1");
+  Dl_info library{};  // of this code: a program of somebody else may lie elsewhere
+  if (dladdr(&own_address, &library) != 0 && library.dli_fname)
+    append(path, fs::path(library.dli_fname).parent_path() / "cordon/plugins-v1");
   append(path, CORDON_INSTALLED_PLUGINS);
   return path.directories;
 }

@@ -44,7 +44,8 @@ struct SearchPath {
   std::vector<std::filesystem::path> directories;
 };
 /// `extra` (from the command line), CORDON_PLUGIN_PATH (colon-separated),
-/// `<exe>/../lib/cordon/plugins-v1`, the installed directory.
+/// `<exe>/../lib/cordon/plugins-v1`, `cordon/plugins-v1` beside the library, the installed
+/// directory.
 SearchPath default_search_path(std::span<const std::filesystem::path> extra = {});
 
 /// Loading, unloading and adding are for one thread; everything that is const may be used from
