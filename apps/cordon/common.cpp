@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -253,6 +254,15 @@ std::string range_text(const ParamSpec& spec) {
 
 std::string count(std::int64_t number, const char* noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
+
+std::string time_problem(const std::string& text) {
+  double seconds = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, seconds);
+  const bool good =
+      read.ec == std::errc() && read.ptr == end && std::isfinite(seconds) && seconds > 0;
+  return good ? "" : text + " is no time; write seconds, above 0";
 }
 
 }  // namespace cordon::apps

@@ -90,4 +90,7 @@ std::string range_text(const ParamSpec& spec);
 /// "1 step", "2 steps".
 std::string count(std::int64_t number, const char* noun);
 
+/// Empty for a text that is a number of seconds above 0; else what is wrong.
+std::string time_problem(const std::string& text);
+
 }  // namespace cordon::apps

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/run.hpp"
 
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <unistd.h>
@@ -31,16 +29,6 @@ std::filesystem::path directory_for(const RunArguments& arguments) {
   const Shard shard = shard_of(arguments.shard);
   return std::filesystem::path("results") /
          fmt::format("{}-part-{}-of-{}", name, shard.part, shard.of);
-}
-
-/// Empty for a number of seconds.
-std::string time_problem(const std::string& text) {
-  double seconds = 0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, seconds);
-  const bool good =
-      read.ec == std::errc() && read.ptr == end && std::isfinite(seconds) && seconds > 0;
-  return good ? "" : text + " is no time; write seconds, above 0";
 }
 
 Exit run_once(const Study& study, const Registry& registry, const RunArguments& arguments,

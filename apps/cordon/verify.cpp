@@ -22,10 +22,13 @@ namespace {
 struct VerifyArguments {
   std::filesystem::path directory;
   VerifyOptions options;
+  std::optional<double> limit_s = {};
   bool json = false, quiet = false;
 };
 
-bool is_checked(const VerifiedPipeline& p) { return p.kind != PipelineKind::diagnosis; }
+bool is_checked(const VerifiedPipeline& p) {
+  return p.asked_for && p.kind != PipelineKind::diagnosis;
+}
 
 using Count = SecondOpinionFindings::Count;
 
@@ -67,6 +70,10 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
                                               "undecided"}};
   std::string passed_over;
   for (const VerifiedPipeline& p : outcome.pipelines) {
+    if (!p.asked_for) {
+      passed_over += fmt::format("not asked for: {}\n", p.name);
+      continue;
+    }
     if (!p.failed_assumption.empty()) {
       passed_over += fmt::format(
           "{} of {}: {}. What is said from k = {} on rests on it and proves nothing{}\n",
@@ -169,6 +176,11 @@ Exit verify(VerifyArguments& arguments) {
     bar->show(pipeline, done, total);
   };
   options.stop = stop_on_signals();
+  if (arguments.limit_s) {
+    const std::chrono::duration<double> limit(std::min(*arguments.limit_s, 1e9));
+    options.deadline = std::chrono::steady_clock::now() +
+                       std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);
+  }
   const VerifyOutcome outcome = verify_run(arguments.directory, options);
   if (bar) bar->clear();
   if (outcome.interrupted) {
@@ -217,6 +229,16 @@ void add_verify(CLI::App& app, Program& program) {
       ->check(CLI::Range(0, 100000));
   command->add_option("--seed", arguments->options.seed, "Seed of these directions")
       ->option_text("N [1]");
+  command
+      ->add_option("--pipeline", arguments->options.pipelines,
+                   "Check this pipeline only (may be repeated)")
+      ->option_text("NAME")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--time-limit", arguments->limit_s,
+                   "End after this time; what is not checked by then is undecided")
+      ->option_text("SECONDS")
+      ->check(CLI::Validator(time_problem, "", ""));
   command->add_flag("--second-opinion", arguments->options.second_opinion,
                     "Repeat conversions of polyhedra and exact linear programs by cddlib");
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of the table");

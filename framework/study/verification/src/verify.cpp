@@ -85,6 +85,11 @@ class Verification {
       : run_(read_run(directory)), options_(options), sets_(run_.files) {
     if (options.second_opinion) cddlib_.emplace(options.stop);
     for (const RecordedPipeline& pipeline : run_.pipelines) names_.push_back(pipeline.name);
+    for (const std::string& name : options.pipelines) {
+      if (std::find(names_.begin(), names_.end(), name) == names_.end())
+        throw Error(Errc::invalid, fmt::format("there is no pipeline {} in the results; {}",
+                                               json::in_quotes(name), suggest(name, names_)));
+    }
   }
 
   VerifyOutcome run() {
@@ -106,21 +111,40 @@ class Verification {
       outcome_.pipelines.back().backend = pipeline.backend;
       outcome_.pipelines.back().rounding = pipeline.rounding;
       outcome_.pipelines.back().kind = pipeline.kind();
+      const bool asked = is_asked_for(pipeline.name);
+      outcome_.pipelines.back().asked_for = asked;
       if (cddlib_) cddlib_->asked_by(pipeline.name);
-      repeat(p);
+      if (asked) repeat(p);
       if (outcome_.violation) return;
-      if (const RecordedDesign* const design = pipeline.design(); design && design->design)
+      if (const RecordedDesign* const design = pipeline.design(); asked && design && design->design)
         check_input(p, *design);
       if (const RecordedEstimation* const estimation = pipeline.estimation()) {
         const bool serves = feasible && feasible->serves(*estimation) &&
                             feasible->complete(estimation->steps.size());
-        if (!serves) feasible.emplace(run_.model, *estimation);
-        check(p, *estimation, *feasible);
+        if (asked && !serves) feasible.emplace(run_.model, *estimation);
+        check(p, *estimation, asked ? &*feasible : nullptr);
       }
       if (outcome_.violation || outcome_.interrupted) return;
     }
     if (const auto extra = sets_.next())
       refuse(extra->line, "has more lines than results.json has steps");
+  }
+
+  bool is_asked_for(const std::string& name) const {
+    const std::vector<std::string>& asked = options_.pipelines;
+    return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
+  }
+
+  bool is_late() {
+    late_ = late_ || (options_.deadline && Clock::now() > *options_.deadline);
+    return late_;
+  }
+
+  /// What is not checked for want of time.
+  void leave_open(Index k) {
+    VerifiedPipeline& found = outcome_.pipelines.back();
+    if (found.undecided++ == 0)
+      found.first_undecided = fmt::format("k = {}: the time limit came before its check", k);
   }
 
   [[noreturn]] void refuse(std::int64_t line, const std::string& reason) const {
@@ -188,6 +212,7 @@ class Verification {
   /// A design claims nothing if there is no input.
   void check_input(std::size_t p, const RecordedDesign& recorded) {
     VerifiedPipeline& found = outcome_.pipelines.back();
+    if (is_late()) return leave_open(recorded.design->horizon);
     DesignFindings claims =
         compare_recorded(run_.bank, *recorded.design,
                          {recorded.claimed_separation, recorded.proven_separation, recorded.proven},
@@ -205,7 +230,8 @@ class Verification {
     }
   }
 
-  void check(std::size_t p, const RecordedEstimation& estimation, FeasibleSequence& feasible) {
+  /// `feasible`: null where the pipeline is not asked for, of which only the files are read.
+  void check(std::size_t p, const RecordedEstimation& estimation, FeasibleSequence* feasible) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
     Study study;
     study.file = run_.files.directory() / "results.json";
@@ -239,7 +265,7 @@ class Verification {
             refuse_left_out(p, i);
           *sample = missing_outputs(std::move(*sample), step.left_out);
         }
-        F = feasible.at(read++, *sample);
+        if (feasible && !is_late()) F = feasible->at(read++, *sample);
       }
       row_before = std::move(row);
       row = set_of(pipeline, step);
@@ -252,7 +278,9 @@ class Verification {
                    margin = rounding->next(row->set, transition.before, *sample);
       const Vector outputs = follows ? Vector(rounding->of_outputs().cwiseMax(outputs_before))
                                      : rounding->of_outputs();
-      const bool is_checked = static_cast<std::int64_t>(i) % options_.every == 0;
+      const bool is_wanted = feasible && static_cast<std::int64_t>(i) % options_.every == 0,
+                 is_checked = is_wanted && !is_late();
+      if (is_wanted && !is_checked) leave_open(step.k);
       if (is_checked)
         check_step(p, i, *row, {margin, outputs}, F, follows ? &*row_before : nullptr, transition);
       if (outcome_.violation) return;
@@ -345,6 +373,7 @@ class Verification {
   const VerifyOptions& options_;
   SetReader sets_;
   std::vector<std::string> names_;
+  bool late_ = false;  ///< the deadline has passed
   VerifyOutcome outcome_;
   std::optional<CddlibListener> cddlib_;
 };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -23,6 +24,9 @@ struct VerifyOptions {
       32;  ///< random directions per step where polytopes are too large, beside the coordinates
   std::uint64_t seed = 1;       ///< of these directions
   bool second_opinion = false;  ///< repeat conversions and exact programs by another engine
+  std::vector<std::string> pipelines = {};  ///< check these only; empty: all
+  /// When to end: steps that are not checked by then count as undecided.
+  std::optional<std::chrono::steady_clock::time_point> deadline = {};
   const std::atomic<bool>* stop = nullptr;  ///< set from a signal handler: the check ends early
   /// Called now and then: names of the pipelines, index of the one at work, steps done, steps in
   /// all.
@@ -42,6 +46,7 @@ struct VerifiedPipeline {
   std::string name, backend;
   Rounding rounding = Rounding::nominal;
   PipelineKind kind = PipelineKind::estimation;  ///< of a diagnosis no sets are stored
+  bool asked_for = true;                         ///< else nothing of it is checked
   std::int64_t steps = 0;                        ///< checked
   std::int64_t by_polytopes = 0;                 ///< of them against the exact feasible set
   std::int64_t by_supports =
