@@ -319,7 +319,13 @@ std::string report_text(const Study& study, const RunOutcome& outcome,
   const std::string details =
       assumptions + gains_text(observed, paint) + widths_text(observed, study.labels, paint) +
       inner_text(observed, study.labels, paint) + growth_text(observed, study.labels, paint);
-  return title + comparison + details + diagnoses + "Results are in " + out.string() + "\n";
+  const std::string sampled =
+      study.continuous
+          ? fmt::format("Sampled every {:.6g} s: what is said is said of the sampled model\n",
+                        study.labels.sampling_time)
+          : "";
+  return title + comparison + details + diagnoses + sampled + "Results are in " + out.string() +
+         "\n";
 }
 
 std::string report_json(const Study& study, const RunOutcome& outcome) {

@@ -115,6 +115,7 @@ TEST_CASE("a system in continuous time is sampled, and told so") {
   CHECK(system["B"][0][0].get<double>() == doctest::Approx(0.009770462447114).epsilon(1e-12));
   CHECK(system["Bw"] == Json::parse("[[1.0, 0.0], [0.0, 1.0]]"));
   CHECK_FALSE(system["names"].contains("disturbances"));
+  CHECK(files("run --no-report s.json --out out").says("Sampled every 0.1 s: what is said"));
   Json held = motor();
   held["system"]["disturbance"] = "held";
   files.scratch.write("held.json", held.dump(1));
@@ -226,6 +227,49 @@ TEST_CASE("what cannot be sampled is told with its place") {
   study = with_modes(motor());
   study["system"]["modes"][3]["system"]["continuous"] = true;
   check_refused(study, "unknown key of a mode's system");
+}
+
+TEST_CASE("an interval model without radii encloses the last digits") {
+  // x_1 = 2^60 / e = 424136118829305329.67…, and no double next to e^-1 is exact enough.
+  const Files files;
+  Json study = Json::parse(R"({"cordon": 1, "title": "decay", "system": {"type": "interval_lti",
+    "continuous": true, "sampling_time": 1, "A": [[-1]], "C": [[1]],
+    "X0": {"type": "point", "center": [1152921504606846976]}, "W": {"type": "point", "center": [0]},
+    "V": {"type": "box", "lower": [-1e18], "upper": [1e18]}},
+    "data": {"csv": {"file": "d.csv", "outputs": ["y"]}}, "pipelines": [{"name": "P",
+    "backend": {"type": "interval", "rounding": "outward"}, "observer":
+      {"type": "interval_trajectory", "gain": [[0]]}}]})");
+  files.scratch.write("d.csv", "y\n0\n0\n");
+  files.scratch.write("s.json", study.dump(1));
+  CHECK(resolved(files, "s.json")["system"]["A"]["radius"][0][0].get<double>() > 0);
+  const Outcome ran = files("run --quiet --no-report --out out s.json");
+  REQUIRE_MESSAGE(ran.code == 0, ran.out);
+  const Json hull = files.results("out")["pipelines"][0]["steps"][1]["hull"];
+  CHECK(hull["lower"][0].get<double>() <= 424136118829305280.0);
+  CHECK(hull["upper"][0].get<double>() >= 424136118829305344.0);
+  // so do modes of their own
+  study["system"]["modes"] = Json::parse(R"([{"name": "slow", "system": {"type": "interval_lti",
+    "A": [[-0.5]], "C": [[1]], "W": {"type": "point", "center": [0]},
+    "V": {"type": "box", "lower": [-1e18], "upper": [1e18]}}}])");
+  files.scratch.write("modes.json", study.dump(1));
+  const Json mode = resolved(files, "modes.json")["system"]["modes"][0]["system"];
+  CHECK(mode["A"]["radius"][0][0].get<double>() > 0);
+}
+
+TEST_CASE("what is enclosed badly, or not at all, is told") {
+  Json study = motor();
+  study["system"]["A"] = Json::parse("[[0, 1], [-1000000, 0]]");
+  const Files files;
+  files.scratch.write("s.json", study.dump(1));
+  const Outcome told = files("validate s.json");
+  CHECK_MESSAGE(told.says("sample more often"), told.out);
+  study = motor();
+  study["system"]["type"] = "interval_lti";
+  study["system"]["A"] = Json::parse(R"({"center": [[-10]], "radius": [[8000]]})");
+  study["system"]["B"] = study["system"]["Bw"] = study["system"]["C"] = Json::parse("[[1]]");
+  study["system"]["X0"] = Json::parse(R"({"type": "box", "lower": [-1], "upper": [1]})");
+  study["system"].erase("names");
+  check_refused(study, "radii of e^(A h) are too large");
 }
 
 TEST_CASE("an interval model is sampled to an interval model") {

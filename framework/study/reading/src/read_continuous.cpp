@@ -14,7 +14,7 @@ const char* const write_sampled =
     "write the model from sample to sample instead, without \"continuous\"";
 
 /// Reports what cannot be sampled.
-bool can_sample(const Cursor& system, const ContinuousPart& part, const Model& model) {
+bool can_sample(const Cursor& system, const ContinuousPart& part, bool exact, const Model& model) {
   const LinearModel& linear = model.linear;
   const std::size_t before = system.problems().met();
   if (linear.is_descriptor()) {
@@ -26,7 +26,6 @@ bool can_sample(const Cursor& system, const ContinuousPart& part, const Model& m
                                 std::to_string(sampling::max_states) + " is sampled",
                             write_sampled);
   }
-  const bool exact = !linear.is_uncertain();
   if (linear.faults() > 0 && !exact) {
     system.find("F")->error("cannot be sampled with an A that is known by an interval",
                             "F is exact from sample to sample: " + std::string(write_sampled));
@@ -75,12 +74,21 @@ std::shared_ptr<const ContinuousPart> read_continuous(const Cursor& system) {
 }
 
 std::shared_ptr<const ContinuousPart> sample(const Cursor& system, const ContinuousPart& part,
-                                             Model& model) {
-  if (!can_sample(system, part, model)) return nullptr;
+                                             sampling::Matrices matrices, Model& model,
+                                             std::vector<std::string>& warnings) {
+  const bool exact = matrices == sampling::Matrices::doubles && !model.linear.is_uncertain();
+  if (!can_sample(system, part, exact, model)) return nullptr;
   try {
     auto made = std::make_shared<ContinuousPart>(part);
-    made->sampling = std::make_shared<const Sampling>(model.linear, part.time, part.disturbance);
+    made->sampling =
+        std::make_shared<const Sampling>(model.linear, part.time, part.disturbance, matrices);
     made->Bw = model.linear.Bw;
+    if (!made->sampling->is_fine(made->Bw, model.W)) {
+      warnings.push_back(system.pointer() + " (line " + std::to_string(system.value().line) +
+                         "): the state turns or decays so often within a sampling time that the "
+                         "set of what w does to it is enclosed by one that may be nearly twice as "
+                         "wide; sample more often");
+    }
     model = sampling::sampled(model, *made->sampling);
     return made;
   } catch (const Error& e) {
@@ -99,7 +107,9 @@ bool sample(const Cursor& additive, const ContinuousPart& part, Additive& fault)
   }
   if (fault.Fy) {
     additive.error("holds F and Fy, and its f is not the same set in both from sample to sample",
-                   "write \"disturbance\": \"held\", or a mode each for F and for Fy");
+                   part.sampling->encloses_matrices()
+                       ? "write a mode each for F and for Fy"
+                       : "write \"disturbance\": \"held\", or a mode each for F and for Fy");
     return false;
   }
   const auto f = sample(*additive.find("f"), part, *fault.F, fault.f);

@@ -19,7 +19,8 @@ struct ContinuousPart {
 std::shared_ptr<const ContinuousPart> read_continuous(const Cursor& system);
 /// Samples the model, which is written at `system`, and tells what it was; nothing: reported.
 std::shared_ptr<const ContinuousPart> sample(const Cursor& system, const ContinuousPart& part,
-                                             Model& model);
+                                             sampling::Matrices matrices, Model& model,
+                                             std::vector<std::string>& warnings);
 /// Samples an additive fault of a mode.
 bool sample(const Cursor& additive, const ContinuousPart& part, Additive& fault);
 /// What B w adds to the state from sample to sample, w ∈ W, where matrices are not kept.

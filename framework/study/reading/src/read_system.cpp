@@ -283,7 +283,9 @@ SystemPart SystemReader::read() {
         system_, {sizes.states, sizes.inputs, sizes.outputs, disturbances_, noises_, sizes.faults});
   }
   if (system_.problems().met() == before_ && part_.continuous) {
-    part_.continuous = sample(system_, *part_.continuous, part_.model);
+    const auto matrices =
+        type == "lti" ? sampling::Matrices::doubles : sampling::Matrices::enclosed;
+    part_.continuous = sample(system_, *part_.continuous, matrices, part_.model, warnings_);
     if (part_.continuous && !part_.continuous->sampling->keeps_matrices())
       part_.labels.disturbances.clear();
   }

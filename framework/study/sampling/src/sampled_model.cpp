@@ -42,6 +42,8 @@ IntervalMatrix rounded(const Enclosed& X, const LongMatrix& more = {}) {
     Long off = abs(X.value.data()[i] - center.data()[i]) + X.error.data()[i];
     if (more.size() > 0) off += more.data()[i];
     radius.data()[i] = rounding::up(above(off));
+    if (!(radius.data()[i] < infinity))
+      throw Error(Errc::invalid, "radii of e^(A h) are too large for a double");
   }
   return {center, radius};
 }
@@ -122,7 +124,10 @@ struct Sampling::Enclosures {
 
   Long length(std::size_t level) const { return ldexp(h, -static_cast<int>(level)); }
   Piece piece(std::size_t level, Enclosed begin, Enclosed end) const;
-  std::vector<Piece> pieces(const Matrix& B, const Matrix& G) const;
+  /// Of [0, h], so fine that neither curvatures matter nor, where |e^{A s} B w| changes its sign
+  /// within a piece in some direction, what a trapezoid is above its integral. `fine`: it was
+  /// possible.
+  std::vector<Piece> pieces(const Matrix& B, const Matrix& G, bool& fine) const;
   // What a box has to add is added to the column `more`.
   LineForm held_disturbances(const Matrix& B, const LineForm& W, LongMatrix& more) const;
   LineForm any_disturbances(const Matrix& B, const LineForm& W, LongMatrix& more) const;
@@ -141,12 +146,12 @@ Piece Sampling::Enclosures::piece(std::size_t level, Enclosed begin, Enclosed en
           std::move(bend)};
 }
 
-/// Of [0, h], so fine that neither curvatures matter nor, where |e^{A s} B w| changes its sign
-/// within a piece in some direction, what a trapezoid is above its integral.
-std::vector<Piece> Sampling::Enclosures::pieces(const Matrix& B, const Matrix& G) const {
+std::vector<Piece> Sampling::Enclosures::pieces(const Matrix& B, const Matrix& G,
+                                                bool& fine) const {
   const Enclosed first = product(exactly(to_long(B)), G);
   std::vector<Piece> all{piece(0, first, product(center.power[0], first))};
-  while (all.size() < max_pieces) {
+  fine = false;
+  for (;;) {
     LongMatrix extent = LongMatrix::Zero(B.rows(), 1), curvature = extent;
     for (const Piece& one : all) extent += one.extent, curvature += one.curvature;
     const auto more = [&](const Piece& x, const Piece& y) {
@@ -155,9 +160,9 @@ std::vector<Piece> Sampling::Enclosures::pieces(const Matrix& B, const Matrix& G
     };
     const auto worst = std::max_element(all.begin(), all.end(), more);
     const std::size_t level = worst->level + 1;
-    const bool fine = largest_share(curvature, extent) <= small_share &&
-                      largest_share(worst->bend, extent) <= small_share;
-    if (fine || level == powers) break;
+    fine = largest_share(curvature, extent) <= small_share &&
+           largest_share(worst->bend, extent) <= small_share;
+    if (fine || level == powers || all.size() == max_pieces) break;
     Enclosed middle = product(center.power[level], worst->begin);
     Piece left = piece(level, worst->begin, middle),
           right = piece(level, std::move(middle), worst->end);
@@ -167,8 +172,10 @@ std::vector<Piece> Sampling::Enclosures::pieces(const Matrix& B, const Matrix& G
   return all;
 }
 
-Sampling::Sampling(const LinearModel& continuous, double h, DisturbanceSignal disturbance)
-    : disturbance_(disturbance), uncertain_(continuous.is_uncertain()) {
+Sampling::Sampling(const LinearModel& continuous, double h, DisturbanceSignal disturbance,
+                   Matrices matrices)
+    : disturbance_(disturbance),
+      uncertain_(continuous.is_uncertain() || matrices == Matrices::enclosed) {
   const Matrix& A = continuous.A;
   const Matrix R =
       continuous.A_radius.size() ? continuous.A_radius : Matrix(Matrix::Zero(A.rows(), A.cols()));
@@ -227,6 +234,12 @@ LineForm Sampling::disturbances(const Matrix& B, const LineForm& W) const {
   return with_box(std::move(X), above(more * (Long(1) + 1e-30)).col(0));
 }
 
+bool Sampling::is_fine(const Matrix& B, const LineForm& W) const {
+  bool fine = true;
+  if (disturbance_ == DisturbanceSignal::any) enclosures_->pieces(B, W.G, fine);
+  return fine;
+}
+
 LineForm Sampling::Enclosures::held_disturbances(const Matrix& B, const LineForm& W,
                                                  LongMatrix& more) const {
   const Enclosed map = product(center.integral, B);
@@ -244,7 +257,8 @@ LineForm Sampling::Enclosures::any_disturbances(const Matrix& B, const LineForm&
   const IntervalMatrix middle = rounded(product(product(center.integral, B), W.c));
   more += row_sums(to_long(middle.radius));
   const Index n = B.rows(), g = W.generators(), m = W.constraints();
-  const std::vector<Piece> all = pieces(B, W.G);
+  bool fine = false;
+  const std::vector<Piece> all = pieces(B, W.G, fine);
   const auto ends = static_cast<Index>(all.size()) + 1;
   LineForm X{Matrix(n, 0),
              Matrix(n, ends * g),
@@ -273,7 +287,7 @@ Model sampled(const Model& continuous, const Sampling& sampling) {
   const LinearModel& from = continuous.linear;
   LinearModel& to = model.linear;
   const IntervalMatrix A = sampling.transition(), B = sampling.integral(from.B, from.B_radius);
-  if (from.is_uncertain()) {
+  if (sampling.encloses_matrices()) {
     to.A = A.center, to.A_radius = A.radius;
     to.B = B.center, to.B_radius = B.radius;
   } else {
