@@ -198,7 +198,7 @@ TEST_CASE("the limit of outliers lasts over restarts, and a restart set is calle
 
 TEST_CASE("random plants with outliers: no state is lost, and what is left out is verified") {
   std::int64_t left_out = 0;
-  for (unsigned seed = 1; seed <= 25; ++seed) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
     std::mt19937 engine(seed);
     const auto draw = [&](double low, double high) {
       return std::uniform_real_distribution<double>(low, high)(engine);
@@ -218,30 +218,30 @@ TEST_CASE("random plants with outliers: no state is lost, and what is left out i
     std::vector<Json> kinds{"interval", "constrained_zonotope", "line_zonotope"};
     for (const char* strip : {"segment", "bravo", "volume"})
       kinds.push_back({{"type", "zonotope"}, {"strip", strip}});
-    for (const Json& backend : kinds) {
-      for (const char* observer : {"prediction_correction", "descriptor"}) {
-        const bool descriptor = observer[0] == 'd';
-        Json one = study;
-        if (descriptor) {
-          one["system"]["type"] = "descriptor";
-          one["system"]["E"] = Json::parse("[[1, 0], [0, 1]]");
-        }
-        one["pipelines"] = Json::array({{{"name", "P"},
-                                         {"backend", backend},
-                                         {"observer", {{"type", observer}}},
-                                         {"outliers", outliers(12, 12)}}});
-        const Run run(one);
-        CAPTURE(seed);
-        CAPTURE(backend.dump());
-        CAPTURE(observer);
-        CAPTURE(run.outcome.out);
-        CHECK(run.outcome.code == 0);
-        const Json summary = run.pipeline()["summary"];
+    for (const char* observer : {"prediction_correction", "descriptor"}) {
+      Json one = study;
+      if (observer[0] == 'd') {
+        one["system"]["type"] = "descriptor";
+        one["system"]["E"] = Json::parse("[[1, 0], [0, 1]]");
+      }
+      for (const Json& backend : kinds) {
+        one["pipelines"].push_back({{"name", backend.dump()},
+                                    {"backend", backend},
+                                    {"observer", {{"type", observer}}},
+                                    {"outliers", outliers(12, 12)}});
+      }
+      const Run run(one);
+      CAPTURE(seed);
+      CAPTURE(observer);
+      CAPTURE(run.outcome.out);
+      CHECK(run.outcome.code == 0);
+      for (std::size_t p = 0; p < kinds.size(); ++p) {
+        const Json summary = run.pipeline(p)["summary"];
         if (summary.contains("outliers"))
           left_out += summary["outliers"]["samples"].get<std::int64_t>();
-        const Outcome verified = run("verify out --directions 2");
-        CHECK_MESSAGE(verified.code == 0, verified.out);
       }
+      const Outcome verified = run("verify out --directions 2");
+      CHECK_MESSAGE(verified.code == 0, verified.out);
     }
   }
   CHECK(left_out > 100);
