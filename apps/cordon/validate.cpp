@@ -64,7 +64,7 @@ std::string describe_fault(const Study& study, const FaultSpec& fault, std::int6
                      fault.mode < 0 ? " (not in the bank)" : "");
 }
 
-/// "outputs 1, 2 from k = 3 to 5, with probability 0.3, there every 5 steps".
+/// "outputs 1, 2 from k = 3 to 5, with probability 0.3, spared every 5 steps".
 std::string describe_dropout(const Labels& labels, const DropoutSpec& dropout, std::int64_t steps) {
   std::vector<std::string> outputs;
   for (const Index output : dropout.outputs) {
@@ -75,7 +75,7 @@ std::string describe_dropout(const Labels& labels, const DropoutSpec& dropout, s
                                  fmt::join(outputs, ", "), time_text(labels, dropout.from));
   if (dropout.to < steps) text += fmt::format(" to {}", dropout.to);
   if (dropout.probability < 1) text += fmt::format(", with probability {}", dropout.probability);
-  if (dropout.every > 0) text += fmt::format(", there every {}", count(dropout.every, "step"));
+  if (dropout.every > 0) text += fmt::format(", spared every {}", count(dropout.every, "step"));
   return text;
 }
 
@@ -107,6 +107,13 @@ std::string describe_modes(const Study& study) {
   for (const DropoutSpec& dropout : simulate->dropouts) {
     text += fmt::format("  {:<9} {}\n", label,
                         describe_dropout(study.labels, dropout, simulate->steps));
+    label = "";
+  }
+  label = "outliers";
+  for (const OutlierSpec& outlier : simulate->outliers) {
+    text +=
+        fmt::format("  {:<9} {}, off by {}\n", label,
+                    describe_dropout(study.labels, outlier.when, simulate->steps), outlier.shift);
     label = "";
   }
   return text;

@@ -144,8 +144,12 @@ TEST_CASE("other separators and encodings are named") {
   CHECK(mentions(problems("u;y\n1;2\n").front(), "semicolons"));
   CHECK(mentions(problems("# of Monday\nu,y\n1,2\n").front(), "the first line is a comment"));
   CHECK(mentions(problems("u,y,m\xE8tre\n1,2,3\n").front(), "Latin-1"));
+  CHECK(problems("u,y\n1,5,2,5\n").front().suggestion.find("decimal comma") != std::string::npos);
   CHECK(mentions(problems("u,y\n\"1,5\",2\n").front(), "decimals are separated by a point"));
-  CHECK(mentions(problems("u,y\n\xE2\x88\x92" "1.5,2\n").front(), "U+2212"));
+  CHECK(mentions(problems("u,y\n\xE2\x88\x92"
+                          "1.5,2\n")
+                     .front(),
+                 "U+2212"));
   CHECK(mentions(problems("u\ty\n1\t2\n").front(), "tabs"));
   CHECK(mentions(problems(std::string("\xFF\xFEu\0,\0y\0\n\0", 10)).front(), "UTF-16"));
 }

@@ -224,7 +224,7 @@ TEST_CASE("samples that lack outputs are told of, run and verified") {
   const Outcome valid = run("validate " + file, "2>&1");
   CAPTURE(valid.out);
   CHECK(valid.out.find("  dropouts  output 1 from k = 0, with probability 0.5\n"
-                       "            output 2 from k = 1, there every 5 steps\n"
+                       "            output 2 from k = 1, spared every 5 steps\n"
                        "            outputs 1, 2 from k = 7 to 9\n") != std::string::npos);
   expect_resolved_again(scratch, file);
   CHECK(run("run --quiet --no-report --out " + out + " " + file, "2>&1").code == 0);

@@ -188,10 +188,12 @@ void CsvSource::check_row(const CsvRow& row) {
   if (!row.problem.empty()) {
     report("/data/csv/file", row.line, row.problem);
   } else if (row.fields.size() != width_) {
-    report("/data/csv/file", row.line,
-           "the row has " + std::to_string(row.fields.size()) +
-               (row.fields.size() == 1 ? " field" : " fields") + ", the header " +
-               std::to_string(width_));
+    report(
+        "/data/csv/file", row.line,
+        "the row has " + std::to_string(row.fields.size()) +
+            (row.fields.size() == 1 ? " field" : " fields") + ", the header " +
+            std::to_string(width_),
+        row.fields.size() > width_ ? "numbers with a decimal comma fall apart: write a point" : "");
   } else {
     for (const Columns* columns : {&inputs_, &outputs_, &truth_}) numbers(row, *columns);
     mode(row);
