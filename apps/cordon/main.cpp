@@ -36,8 +36,8 @@ std::string unknown_options(const CLI::App& app) {
   for (const std::string& word : app.remaining(true)) {
     if (word.size() < 2 || word.front() != '-') continue;
     const std::string option = word.substr(0, word.find('='));
-    text += (text.empty() ? "" : "\n") + command->get_display_name() + " has no option \"" + option +
-            "\"; " + cordon::suggest(option, known);
+    text += (text.empty() ? "" : "\n") + command->get_display_name() + " has no option \"" +
+            option + "\"; " + cordon::suggest(option, known);
   }
   return text;
 }
@@ -78,6 +78,9 @@ Exit answer(const CLI::App& app, const CLI::ParseError& outcome) {
   if (!failed) return Exit::done;
   std::string unknown = unknown_command(app);
   if (unknown.empty()) unknown = unknown_options(app);
+  if (unknown.empty() && app.get_subcommands().empty() && app.remaining().empty() &&
+      outcome.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError))
+    unknown = "no command is given; \"cordon help\" lists them";
   complain(unknown.empty() ? err.str().substr(0, err.str().find_last_not_of('\n') + 1) : unknown);
   return Exit::invalid;
 }

@@ -117,6 +117,13 @@ Study StudyReader::read() {
   source_->text = read_file(source_->file.string());
   source_->tree = parse(source_->text, problems_);
   const Cursor root(source_->tree, "", problems_);
+  const std::string ending = source_->file.extension().string();
+  if (problems_.any() && (ending == ".csv" || ending == ".mat")) {
+    throw InputError(source_->file.string(),
+                     {{"", "is no study: a study is a JSON file",
+                       ending == ".csv" ? "name the data in its /data/csv"
+                                        : "\"cordon convert\" makes a study of a MAT-file"}});
+  }
   if (root.is(Value::Kind::object) && root.find("cordon_results")) {
     root.error("these are the results of a run, not a study",
                "\"cordon verify\", \"cordon report\" and \"cordon compare\" take their directory; "

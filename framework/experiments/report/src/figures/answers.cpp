@@ -59,7 +59,7 @@ std::string assumptions_of(const RunFiles& files, const Cursor& pipeline, const 
 void add_observers(const RunFiles& files, const Curves& curves, Report& report) {
   Table table{
       {"Pipeline", "Backend", "Observer", "Rounding", "Steps", "Proven non-empty", "Proven empty",
-       "Undecided", "Claimed exact", "Emptiness", "Truth inside", "Bounds", "Assumed"},
+       "Undecided", "Claimed exact", "Emptiness", "Containment", "Bounds", "Assumed"},
       {}};
   for (std::size_t p = 0; p < files.pipelines().size(); ++p) {
     const PipelineHead& head = files.pipelines()[p];
@@ -80,8 +80,9 @@ void add_observers(const RunFiles& files, const Curves& curves, Report& report) 
   }
   if (table.rows.empty()) return;
   report.figures.push_back({"answers", section::answers, "Answers",
-                            "Questions as proven / unknown: is the estimate empty, is the true "
-                            "state inside, is a bound finite or proven infinite.",
+                            "Questions that were decided / left open, whatever the answer: is the "
+                            "estimate empty, does it hold the true state, is a bound finite or "
+                            "proven infinite.",
                             std::move(table)});
 }
 
@@ -146,12 +147,12 @@ std::string missed(const RunFiles& files, const Cursor& worst) {
   const Labels::Names& names = files.labels().outputs;
   if (const auto before = worst.find("before"); before && before->value().flag)
     return "no state is left, whatever the outputs are";
-  if (std::isnan(output)) return "the outputs together contradict the prediction, which none misses";
+  if (std::isnan(output))
+    return "the outputs together contradict the prediction, which none misses";
   const std::string name = output >= 1 && output <= static_cast<double>(names.size())
                                ? names[static_cast<std::size_t>(output) - 1]
                                : "y_" + shown(output, 15);
-  return fmt::format("{} lies {} beyond its prediction", name,
-                     shown(value_of(worst, "distance")));
+  return fmt::format("{} lies {} beyond its prediction", name, shown(value_of(worst, "distance")));
 }
 
 /// Samples that contradict the model, and what became of them.
