@@ -115,8 +115,7 @@ void add_info(CLI::App& app, Program& program) {
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   CLI::Option* const given = command->add_option(
-      "COMPONENT", *name,
-      "Name of a component of any kind; without one all are listed");
+      "COMPONENT", *name, "Name of a component of any kind; without one all are listed");
   command->add_flag("--json", *json, "Print JSON for programs");
   command->callback([&program, name, json, given] {
     const bool all = given->count() == 0;

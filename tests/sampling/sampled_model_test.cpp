@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/sampling/sampled_model.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -6,7 +8,6 @@
 
 #include "cordon/core/error.hpp"
 #include "cordon/solvers/set_questions.hpp"
-#include "study/sampling/sampled_model.hpp"
 
 using namespace cordon;
 using namespace cordon::sampling;

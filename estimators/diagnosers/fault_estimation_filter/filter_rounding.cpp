@@ -48,8 +48,8 @@ Vector fixed_point(const Matrix& K, const Vector& b) {
   return Vector::Constant(b.size(), infinity);
 }
 
-/// After how many steps of this map a box comes back smaller: the least N, or the most that is tried,
-/// with ρ(|Fᴺ|) ≤ 1/4, by max_i (|Fᴺ| v)_i / v_i for a v > 0 [Feingold1962].
+/// After how many steps of this map a box comes back smaller: the least N, or the most that is
+/// tried, with ρ(|Fᴺ|) ≤ 1/4, by max_i (|Fᴺ| v)_i / v_i for a v > 0 [Feingold1962].
 Index steps_to_contract(const Matrix& F) {
   constexpr int rounds = 20;
   constexpr double positive = 1e-6;

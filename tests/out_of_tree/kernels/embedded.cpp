@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A program that embeds the library: it loads the plugins and takes a step of an observer.
-#include <iostream>
-
 #include <cordon/registry/registry.hpp>
+#include <iostream>
 
 int main() {
   using namespace cordon;
@@ -14,8 +13,7 @@ int main() {
   model.X0 = model.W = model.V = make_zonotope(Vector::Zero(1), Matrix::Identity(1, 1));
   model.U = make_point(Vector(0));
   const auto backend = registry.make<BackendEntry>("zonotope", {});
-  const auto observer =
-      registry.make<ObserverEntry>("prediction_correction", {model, backend}, {});
+  const auto observer = registry.make<ObserverEntry>("prediction_correction", {model, backend}, {});
   observer->start();
   const Estimate estimate = observer->step({0, Vector(0), Vector::Ones(1)});
   std::cout << "prediction_correction estimates " << estimate.set->interval_hull().upper[0] << '\n';

@@ -193,8 +193,9 @@ void add_steps(Struct& pipeline, const std::vector<json::Value>& list) {
     if (key == "modes") pipeline.set("evidence", modes(values));
     if (key == "faults") pipeline.set("faults", faults(values));
     if (key == "left_out") pipeline.set("left_out", matrix(left_out(values)));
-    if (!is_among(key, {"k", "hull", "inner", "consistent", "since", "reset", "tightness",
-                        "decision", "mode", "true_mode", "suggested", "modes", "faults", "left_out"})) {
+    if (!is_among(key,
+                  {"k", "hull", "inner", "consistent", "since", "reset", "tightness", "decision",
+                   "mode", "true_mode", "suggested", "modes", "faults", "left_out"})) {
       metric_names.push_back(key);
     }
   }

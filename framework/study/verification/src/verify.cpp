@@ -230,6 +230,19 @@ class Verification {
     }
   }
 
+  /// The next sample up to step i of the pipeline, without what that has left out.
+  Sample sample_of(std::size_t p, std::size_t i, std::optional<Record> record) const {
+    const RecordedPipeline& pipeline = run_.pipelines[p];
+    const RecordedStep& step = pipeline.estimation()->steps[i];
+    if (!record) refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
+    Sample& sample = record->sample;
+    if (sample.k < step.k) refuse_missing(sample.k, pipeline);
+    if (sample.k > step.k) return std::move(sample);
+    const auto is_there = [&](Index output) { return !std::isnan(sample.y[output]); };
+    if (!std::all_of(step.left_out.begin(), step.left_out.end(), is_there)) refuse_left_out(p, i);
+    return missing_outputs(std::move(sample), step.left_out);
+  }
+
   /// `feasible`: null where the pipeline is not asked for, of which only the files are read.
   void check(std::size_t p, const RecordedEstimation& estimation, FeasibleSequence* feasible) {
     const RecordedPipeline& pipeline = run_.pipelines[p];
@@ -253,18 +266,8 @@ class Verification {
       if (cddlib_) cddlib_->asked_by(pipeline.name, step.k);
       std::optional<Polytope> F;
       while (!sample || sample->k < step.k) {
-        std::optional<Record> record = data->next();
-        if (!record)
-          refuse(0, fmt::format("tells of k = {}, which data.csv does not have", step.k));
-        if (record->sample.k < step.k) refuse_missing(record->sample.k, pipeline);
         before = std::move(sample);
-        sample = std::move(record->sample);
-        if (sample->k == step.k) {
-          const auto is_there = [&](Index output) { return !std::isnan(sample->y[output]); };
-          if (!std::all_of(step.left_out.begin(), step.left_out.end(), is_there))
-            refuse_left_out(p, i);
-          *sample = missing_outputs(std::move(*sample), step.left_out);
-        }
+        sample = sample_of(p, i, data->next());
         if (feasible && !is_late()) F = feasible->at(read++, *sample);
       }
       row_before = std::move(row);
