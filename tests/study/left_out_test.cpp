@@ -64,6 +64,22 @@ TEST_CASE("an output that is left out is used by nobody") {
   CHECK(run("verify out").code == 0);
 }
 
+TEST_CASE("a state that outputs alone determine is not predicted without them, and that is said") {
+  Json study = scalar(box(-0.1, 0.1), Json::array({{{"name", "z"},
+                                                    {"backend", "zonotope"},
+                                                    {"observer", "descriptor"},
+                                                    {"outliers", outliers(1, 10)}}}));
+  study["system"]["type"] = "descriptor";
+  study["system"]["E"] = Json::parse("[[0]]");
+  const Run refused(study, "y\n0\n0.1\n0\n");
+  CHECK_MESSAGE(refused.outcome.says("to look for outliers"), refused.outcome.out);
+  CHECK(refused.outcome.says("admissible_set"));
+  study["pipelines"][0]["observer"] = {{"type", "descriptor"}, {"admissible_set", box(-1, 1)}};
+  const Run run(study, "y\n0\n0.1\n0\n");
+  CHECK_MESSAGE(run.outcome.code == 0, run.outcome.out);
+  CHECK(run("verify out").code == 0);
+}
+
 TEST_CASE("a narrow strip loses no state, and no outlier is seen where there is none") {
   Json study = Json::parse(R"({"cordon": 1, "title": "strips", "system": {"type": "lti",
     "A": [[1, 0], [0, 1]], "C": [[0, 1], [1, -1], [0, -2]]},

@@ -183,7 +183,16 @@ Estimate Observer::advance_without_outliers(const Sample& now, std::optional<Sam
   const std::vector<Index> present = present_outputs(now);
   const Sample none = missing_outputs(now, present);
   const bool two_steps = uses_outputs_of_its_time();
-  Estimate estimate = advance(two_steps ? none : now);
+  Estimate estimate;
+  try {
+    estimate = advance(two_steps ? none : now);
+  } catch (const Error& error) {
+    if (error.code() != Errc::unsupported || !two_steps) throw;
+    throw Error(Errc::unsupported,
+                std::string("to look for outliers, each state is predicted without the outputs of "
+                            "its time: ") +
+                    error.what());
+  }
   std::vector<Index> missed;
   const bool empty_before = estimate.consistent == Answer::no;
   if (!empty_before) missed = outliers(*estimate.set, now);
