@@ -114,11 +114,23 @@ std::size_t lines_of(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
+/// Plugins are searched beside the libraries too: the program alone has its own.
+void copy_libraries() {
+  const fs::path built = fs::path(CORDON_BUILT_PROGRAM).parent_path().parent_path() / "lib";
+  for (const fs::directory_entry& entry : fs::directory_iterator(built)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("libcordon") && name.ends_with(".so.0"))
+      fs::copy_file(entry.path(), fs::path(CORDON_ALONE "/lib") / name,
+                    fs::copy_options::overwrite_existing);
+  }
+}
+
 /// What `cordon list` says of the file; whatever that is, the other plugin must work. A working one
 /// adds its components, under whatever name is left of theirs.
 Became listed(const fs::path& file, const std::string& cache) {
   const Outcome outcome =
-      cordon_with("list --plugins " + file.parent_path().string(), "XDG_CACHE_HOME=" + cache);
+      cordon_with("list --plugins " + file.parent_path().string(),
+                  "LD_LIBRARY_PATH=" CORDON_ALONE "/lib XDG_CACHE_HOME=" + cache);
   CHECK_MESSAGE(outcome.code == 0, outcome.err);
   CHECK_MESSAGE(contains(outcome.out, "throws_own"), outcome.out);
   const std::size_t reason = outcome.err.find("warning: " + file.string() + " was refused: ");
@@ -141,6 +153,7 @@ TEST_CASE("a damaged plugin file is refused or works, and nothing else suffers")
   fs::copy_file(CORDON_BUILT_PROGRAM, CORDON_PROGRAM, fs::copy_options::overwrite_existing);
   fs::copy_file(CORDON_OTHER_PLUGIN, CORDON_ALONE "/lib/cordon/plugins-v1/other.so",
                 fs::copy_options::overwrite_existing);
+  copy_libraries();
   const TemporaryDirectory directory, cache;
   const std::string bytes = read(CORDON_DAMAGED_PLUGIN);
   const fs::path file = directory.write("damaged.so", bytes);
