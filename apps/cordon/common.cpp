@@ -265,4 +265,10 @@ std::string time_problem(const std::string& text) {
   return good ? "" : text + " is no time; write seconds, above 0";
 }
 
+std::chrono::steady_clock::time_point time_after(double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const std::chrono::duration<double> limit(std::min(seconds, 1e9));
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
+}
+
 }  // namespace cordon::apps

@@ -2,6 +2,7 @@
 // What every command does alike: exit codes, output, colours, loading of plugins.
 #pragma once
 
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -92,5 +93,7 @@ std::string count(std::int64_t number, const char* noun);
 
 /// Empty for a text that is a number of seconds above 0; else what is wrong.
 std::string time_problem(const std::string& text);
+/// So many seconds from now, some thirty years at most.
+std::chrono::steady_clock::time_point time_after(double seconds);
 
 }  // namespace cordon::apps

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/run.hpp"
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <unistd.h>
@@ -40,11 +39,7 @@ Exit run_once(const Study& study, const Registry& registry, const RunArguments& 
   options.stop = stop;
   options.out = directory_for(arguments);
   if (!arguments.no_report) options.report = cordon::add_report;
-  if (arguments.point_limit_s) {
-    const std::chrono::duration<double> limit(std::min(*arguments.point_limit_s, 1e9));
-    options.deadline = std::chrono::steady_clock::now() +
-                       std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);
-  }
+  if (arguments.point_limit_s) options.deadline = time_after(*arguments.point_limit_s);
   options.progress = [&](std::size_t pipeline, std::int64_t done, std::int64_t total) {
     bar.show(pipeline, done, total);
   };

@@ -176,11 +176,7 @@ Exit verify(VerifyArguments& arguments) {
     bar->show(pipeline, done, total);
   };
   options.stop = stop_on_signals();
-  if (arguments.limit_s) {
-    const std::chrono::duration<double> limit(std::min(*arguments.limit_s, 1e9));
-    options.deadline = std::chrono::steady_clock::now() +
-                       std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);
-  }
+  if (arguments.limit_s) options.deadline = time_after(*arguments.limit_s);
   const VerifyOutcome outcome = verify_run(arguments.directory, options);
   if (bar) bar->clear();
   if (outcome.interrupted) {

@@ -30,7 +30,8 @@ Json motor() {
 
 Json with_modes(Json study) {
   study["system"]["modes"] = Json::parse(R"([{"name": "weak", "actuator": [0.5]},
-    {"name": "brake", "additive": {"F": [[0], [1]], "f": {"type": "box", "lower": [-1], "upper": [-0.5]}}},
+    {"name": "brake", "additive": {"F": [[0], [1]],
+      "f": {"type": "box", "lower": [-1], "upper": [-0.5]}}},
     {"name": "gusts", "W": {"type": "box", "lower": [-1], "upper": [1]}},
     {"name": "stiff", "system": {"type": "lti", "A": [[0, 1], [-9, -0.6]], "B": [[0], [2]],
       "Bw": [[0], [1]], "C": [[1, 0]], "W": {"type": "box", "lower": [-0.1], "upper": [0.3]},
@@ -269,7 +270,28 @@ TEST_CASE("what is enclosed badly, or not at all, is told") {
   study["system"]["B"] = study["system"]["Bw"] = study["system"]["C"] = Json::parse("[[1]]");
   study["system"]["X0"] = Json::parse(R"({"type": "box", "lower": [-1], "upper": [1]})");
   study["system"].erase("names");
-  check_refused(study, "radii of e^(A h) are too large");
+  check_refused(study, "are too large for a double");
+  study = with_modes(motor());
+  study["system"]["modes"][2]["W"] =
+      Json::parse(R"({"type": "box", "lower": [-1e308], "upper": [1e308]})");
+  study["system"]["Bw"] = Json::parse("[[0], [1e10]]");
+  check_refused(study, "/system/modes/2/W");
+  study = with_modes(motor());
+  study["system"]["disturbance"] = "held";
+  study["system"]["sampling_time"] = 100;
+  study["system"]["modes"][1]["additive"]["F"] = Json::parse("[[0], [1e308]]");
+  study["system"]["A"] = Json::parse("[[0, 1], [0, 0]]");
+  check_refused(study, "/system/modes/1/additive/F");
+}
+
+TEST_CASE("what has decayed within a sample is 0") {
+  Json study = motor();
+  study["system"]["A"] = Json::parse("[[-1e10, 0], [0, -1e11]]");
+  study["system"]["W"] = Json::parse(R"({"type": "point", "center": [0]})");
+  const Files files;
+  files.scratch.write("s.json", study.dump(1));
+  const Json A = resolved(files, "s.json")["system"]["A"];
+  CHECK(A == Json::parse("[[0.0, 0.0], [0.0, 0.0]]"));
 }
 
 TEST_CASE("an interval model is sampled to an interval model") {

@@ -84,7 +84,8 @@ TEST_CASE("a narrow strip loses no state, and no outlier is seen where there is 
   Json study = Json::parse(R"({"cordon": 1, "title": "strips", "system": {"type": "lti",
     "A": [[1, 0], [0, 1]], "C": [[0, 1], [1, -1], [0, -2]]},
     "data": {"csv": {"file": "d.csv", "outputs": ["y1", "y2", "y3"]}}, "pipelines": [{"name": "z",
-    "backend": "zonotope", "observer": "prediction_correction", "outliers": {"most": 1, "in": 1}}]})");
+    "backend": "zonotope", "observer": "prediction_correction",
+    "outliers": {"most": 1, "in": 1}}]})");
   study["system"]["X0"] = box(-1, 1, 2);
   study["system"]["W"] = box(0, 0, 2);
   study["system"]["V"] = box(-0.25, 0.25, 3);

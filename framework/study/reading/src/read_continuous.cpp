@@ -13,6 +13,12 @@ using sampling::Sampling;
 const char* const write_sampled =
     "write the model from sample to sample instead, without \"continuous\"";
 
+void refuse(const Cursor& at, const ContinuousPart& part, const Error& why,
+            const std::string& suggestion) {
+  at.error("cannot be sampled every " + detail::to_text(part.time) + " s: " + why.what(),
+           suggestion);
+}
+
 /// Reports what cannot be sampled.
 bool can_sample(const Cursor& system, const ContinuousPart& part, bool exact, const Model& model) {
   const LinearModel& linear = model.linear;
@@ -92,9 +98,8 @@ std::shared_ptr<const ContinuousPart> sample(const Cursor& system, const Continu
     model = sampling::sampled(model, *made->sampling);
     return made;
   } catch (const Error& e) {
-    system.find("A")->error(
-        "cannot be sampled every " + detail::to_text(part.time) + " s: " + e.what(),
-        "is A in 1/s? choose other units or a shorter \"sampling_time\"");
+    refuse(*system.find("A"), part, e,
+           "is A in 1/s? choose other units or a shorter \"sampling_time\"");
     return nullptr;
   }
 }
@@ -102,8 +107,13 @@ std::shared_ptr<const ContinuousPart> sample(const Cursor& system, const Continu
 bool sample(const Cursor& additive, const ContinuousPart& part, Additive& fault) {
   if (!fault.F) return true;
   if (part.sampling->keeps_matrices()) {
-    fault.F = part.sampling->nearest_integral(*fault.F);
-    return true;
+    try {
+      fault.F = part.sampling->nearest_integral(*fault.F);
+      return true;
+    } catch (const Error& e) {
+      refuse(*additive.find("F"), part, e, "choose other units");
+      return false;
+    }
   }
   if (fault.Fy) {
     additive.error("holds F and Fy, and its f is not the same set in both from sample to sample",
@@ -121,7 +131,12 @@ bool sample(const Cursor& additive, const ContinuousPart& part, Additive& fault)
 
 std::optional<LineForm> sample(const Cursor& at, const ContinuousPart& part, const Matrix& B,
                                const LineForm& W) {
-  if (W.lines() == 0) return part.sampling->disturbances(B, W);
+  try {
+    if (W.lines() == 0) return part.sampling->disturbances(B, W);
+  } catch (const Error& e) {
+    refuse(at, part, e, "choose other units");
+    return std::nullopt;
+  }
   at.error(
       "must be bounded: what of an unbounded signal is left from sample to sample is no "
       "subspace that is known in advance",

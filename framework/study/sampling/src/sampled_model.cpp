@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t powers = 13;  // e^{A h 2⁻ʲ}, as far as pieces are divided
 constexpr std::size_t max_pieces = 64;
 constexpr double small_share = 0.02;  // of the whole, for what is not reached
+constexpr double nothing = 1e-280;    // what decays to less is 0
 constexpr double longest = 1e12;      // ‖A‖ h
 
 LongMatrix to_long(const Matrix& A) { return A.cast<Long>(); }
@@ -38,12 +39,12 @@ IntervalMatrix rounded(const Enclosed& X, const LongMatrix& more = {}) {
   for (Index i = 0; i < center.size(); ++i) {
     center.data()[i] = X.value.data()[i].convert_to<double>();
     if (!(std::abs(center.data()[i]) < infinity))
-      throw Error(Errc::invalid, "e^(A h) is too large for a double");
+      throw Error(Errc::invalid, "e^(A h), or its integral, is too large for a double");
     Long off = abs(X.value.data()[i] - center.data()[i]) + X.error.data()[i];
     if (more.size() > 0) off += more.data()[i];
     radius.data()[i] = rounding::up(above(off));
     if (!(radius.data()[i] < infinity))
-      throw Error(Errc::invalid, "radii of e^(A h) are too large for a double");
+      throw Error(Errc::invalid, "radii of e^(A h), or its integral, are too large for a double");
   }
   return {center, radius};
 }
@@ -53,7 +54,7 @@ Matrix nearest(const IntervalMatrix& X) {
   const double size = X.center.size() == 0 ? 0 : X.center.cwiseAbs().maxCoeff();
   for (Index i = 0; i < X.center.size(); ++i) {
     const double x = std::abs(X.center.data()[i]);
-    if (X.radius.data()[i] > 2 * (rounding::up(x) - x) && X.radius.data()[i] > 1e-30 * size)
+    if (X.radius.data()[i] > std::max({2 * (rounding::up(x) - x), 1e-30 * size, nothing}))
       throw Error(Errc::invalid, "numbers of e^(A h) differ too much in size to be known");
   }
   return X.center;
@@ -104,8 +105,9 @@ double largest_share(const LongMatrix& x, const LongMatrix& whole) {
   double largest = 0;
   for (Index i = 0; i < x.rows(); ++i) {
     if (x(i, 0) == 0) continue;
-    if (whole(i, 0) == 0) return infinity;
-    largest = std::max(largest, Long(x(i, 0) / whole(i, 0)).convert_to<double>());
+    const double share =
+        whole(i, 0) == 0 ? infinity : Long(x(i, 0) / whole(i, 0)).convert_to<double>();
+    if (!(share <= largest)) largest = std::isnan(share) ? infinity : share;
   }
   return largest;
 }
@@ -231,7 +233,10 @@ LineForm Sampling::disturbances(const Matrix& B, const LineForm& W) const {
     more = all.spread_of_integral * (to_long(B).cwiseAbs() * largest_values(W)) * (Long(1) + 1e-30);
   LineForm X = disturbance_ == DisturbanceSignal::held ? all.held_disturbances(B, W, more)
                                                        : all.any_disturbances(B, W, more);
-  return with_box(std::move(X), above(more * (Long(1) + 1e-30)).col(0));
+  const Vector box = above(more * (Long(1) + 1e-30)).col(0);
+  if (!box.allFinite())
+    throw Error(Errc::invalid, "what w does to the state is not bounded by a double");
+  return with_box(std::move(X), box);
 }
 
 bool Sampling::is_fine(const Matrix& B, const LineForm& W) const {
