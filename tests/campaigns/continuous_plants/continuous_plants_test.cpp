@@ -25,6 +25,7 @@ struct Plant {
   Model model;
   double h = 1;
   DisturbanceSignal signal = DisturbanceSignal::any;
+  Vector units;  ///< of the states: powers of two
   bool uncertain() const { return model.linear.is_uncertain(); }
 };
 
@@ -74,10 +75,11 @@ Plant draw(Draws& any) {
     default:
       for (Index i = 0; i < n; ++i) linear.A(i, i) -= std::pow(10, any.in(-1, 1));
   }
+  plant.units = Vector::Ones(n);
   if (any.coin()) {
-    Vector units(n);
-    for (Index i = 0; i < n; ++i) units[i] = std::pow(10, any.in(-3, 3));
-    linear.A = Matrix(units.asDiagonal() * linear.A * units.cwiseInverse().asDiagonal());
+    for (Index i = 0; i < n; ++i) plant.units[i] = std::exp2(std::round(any.in(-10, 10)));
+    linear.A =
+        Matrix(plant.units.asDiagonal() * linear.A * plant.units.cwiseInverse().asDiagonal());
   }
   plant.h = std::pow(10, any.in(-2, 0.5));
   linear.B = any.matrix(n, 1);
@@ -94,16 +96,19 @@ Plant draw(Draws& any) {
 using Real = long double;
 using Dense = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// e^{A t} and the integral that goes with it.
+/// e^{A t} and the integral that goes with it: of states in units of their own, where all are of
+/// one size, for the exponential has errors of the size of its norm.
 struct Step {
-  Step(const Matrix& A, double t) {
-    const Index n = A.rows();
+  Step(const Matrix& scaled, double t, const Vector& units) {
+    const Index n = scaled.rows();
+    const Matrix A = units.cwiseInverse().asDiagonal() * scaled * units.asDiagonal();
+    const Eigen::Matrix<Real, Eigen::Dynamic, 1> to = units.cast<Real>(), from = to.cwiseInverse();
     Dense both = Dense::Zero(2 * n, 2 * n);
     both.topLeftCorner(n, n) = A.cast<Real>() * Real(t);
     both.topRightCorner(n, n) = Dense::Identity(n, n) * Real(t);
     const Dense e = both.exp();
-    transition = e.topLeftCorner(n, n);
-    integral = e.topRightCorner(n, n);
+    transition = to.asDiagonal() * e.topLeftCorner(n, n) * from.asDiagonal();
+    integral = to.asDiagonal() * e.topRightCorner(n, n) * from.asDiagonal();
   }
   Dense transition, integral;
 };
@@ -120,7 +125,7 @@ class DenseSimulation {
         A += any.signs(A.rows(), A.cols()).cwiseProduct(linear.A_radius);
         B_.back() += any.signs(linear.B.rows(), 1).cwiseProduct(linear.B_radius);
       }
-      steps_.emplace_back(A, plant.h / substeps);
+      steps_.emplace_back(A, plant.h / substeps, plant.units);
     }
   }
 
