@@ -37,7 +37,8 @@ class DirectObserver {
     f[2] = 0;
     const LineForm open = sets::affine_sum(X_, dynamic_A_, f, summands).set;
     const Vector right = -linalg::product(m_.linear.B.bottomRows(1), now.u);
-    const LineForm predicted = sets::strip_intersection(open, static_A_, right, static_Bw_, m_.W);
+    const LineForm predicted =
+        sets::strip_intersection(open, static_A_, right, static_Bw_, m_.W).set;
     X_ = sets::reduce(measured(predicted, now), 30, 5).set;
   }
 
@@ -45,7 +46,7 @@ class DirectObserver {
 
  private:
   LineForm measured(const LineForm& X, const Sample& now) const {
-    return sets::strip_intersection(X, m_.linear.C, now.y, m_.linear.Dv, m_.V);
+    return sets::strip_intersection(X, m_.linear.C, now.y, m_.linear.Dv, m_.V).set;
   }
 
   const Model& m_;

@@ -192,7 +192,7 @@ ConstrainedForm::Result ConstrainedForm::predict(const Value& X, MatrixIn A, Vec
 ConstrainedForm::Result ConstrainedForm::correct(const Value& X, MatrixIn C, VectorIn z,
                                                  const Operand<Value>& noise) const {
   if (outward) return made(sets::outward::strip_intersection(X, C, z, noise.T, noise.value));
-  return {sets::strip_intersection(X, C, z, noise.T, noise.value), Tightness::exact};
+  return made(sets::strip_intersection(X, C, z, noise.T, noise.value));
 }
 
 ConstrainedForm::Result ConstrainedForm::interval_map(const Value& X,

@@ -26,8 +26,8 @@ namespace {
 StaticRows rows_for(const LinearModel& model, const SetBackend& backend, const Params& params) {
   StaticRows rows(model);
   const bool outward = backend.info().rounding == Rounding::outward;
-  const bool keep_states =
-      outward && !rows.is_exact && backend.info().unbounded && !params.has("admissible_set");
+  const bool keep_states = outward && !(rows.is_exact && rows.outputs_exact) &&
+                           backend.info().unbounded && !params.has("admissible_set");
   return keep_states ? StaticRows(model, true) : rows;
 }
 
@@ -45,13 +45,15 @@ class SemiExplicitObserver final : public Observer {
         static_W_(effectiveness_.has_input_ranges()
                       ? backend().product(W_, effectiveness_.input_factors())
                       : W_),
-        measured_(linalg::product(model().linear.C, transformed_.T)),
         inputs_enter_as_sets_(effectiveness_.inputs_enter_as_sets() &&
                               model().linear.inputs() > 0) {
     const Index n = model().linear.states(), free = transformed_.static_rows();
     keeps_states_ = transformed_.E.rows() > 0;
     rows_come_last_ = keeps_states_ && !transformed_.static_exact;
-    is_rounded_ = backend().info().rounding == Rounding::outward && !transformed_.is_exact;
+    const bool outward = backend().info().rounding == Rounding::outward;
+    is_rounded_ = outward && !transformed_.is_exact;
+    measures_states_ = has_spread(model().linear.C_radius) || is_rounded_ ||
+                       (outward && !transformed_.outputs_exact);
     // Without the static rows of k = 0 every estimate is that of a larger initial set.
     const bool whole = transformed_.static_rows() == 0 || static_at_start_;
     recursion_ =
@@ -223,9 +225,7 @@ class SemiExplicitObserver final : public Observer {
 
   Enclosure finish(const Enclosure& predicted, const Sample& now, bool has_static_rows) {
     const Enclosure corrected = timed(Phase::correct, [&] {
-      const bool as_it_stands =
-          has_spread(model().linear.C_radius) || is_rounded_;  // C T is rounded
-      if (!as_it_stands) return effectiveness_.correct(predicted, measured_, now);
+      if (!measures_states_) return effectiveness_.correct(predicted, transformed_.C, now);
       const Enclosure measured =
           to_z(effectiveness_.correct(to_x(predicted), model().linear.C, now));
       return has_static_rows && rows_come_last_ ? with_static_rows(measured, now.u) : measured;
@@ -235,9 +235,10 @@ class SemiExplicitObserver final : public Observer {
   }
 
   StaticRows transformed_;
-  bool same_coordinates_;      ///< z = x
-  bool keeps_states_ = false;  ///< and dynamic rows stand as Ẽ x
-  bool is_rounded_ = false;    ///< numbers were rounded, and operations round outward
+  bool same_coordinates_;         ///< z = x
+  bool keeps_states_ = false;     ///< and dynamic rows stand as Ẽ x
+  bool is_rounded_ = false;       ///< numbers were rounded, and operations round outward
+  bool measures_states_ = false;  ///< C as it stands, since C T is rounded or an interval
   bool rows_come_last_ =
       false;  ///< static rows that were rounded need states that the outputs have bounded
   Budget budget_;
@@ -249,7 +250,6 @@ class SemiExplicitObserver final : public Observer {
   Vector disturbance_, disturbance_widths_;    ///< center and half widths of Bw W, dynamic rows
   Vector static_disturbance_, static_widths_;  ///< the same, static rows
   Vector largest_w_, free_rounding_;  ///< magnitudes of W; what the rounding of T⁻¹ adds to z̃
-  Matrix measured_;                   ///< C T
   bool inputs_enter_as_sets_;         ///< B u and B̌ u are left to the backend
   Matrix stacked_A_, stacked_B_, stacked_Bw_, stacked_rows_, dynamic_rows_;
   Tightness recursion_ = Tightness::exact;

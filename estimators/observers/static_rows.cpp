@@ -34,6 +34,7 @@ StaticRows::StaticRows(const LinearModel& m, bool keep_states) {
     B = m.B(pivots, Eigen::all);
     Bw = m.Bw(pivots, Eigen::all);
     rows = Matrix::Identity(n, n)(pivots, Eigen::all);
+    C = m.C;
     is_exact = static_exact;
     return;
   }
@@ -44,6 +45,7 @@ StaticRows::StaticRows(const LinearModel& m, bool keep_states) {
   B = take(form.dynamic_part(m.B), is_exact);
   Bw = take(form.dynamic_part(m.Bw), is_exact);
   rows = take(form.dynamic_part(Matrix::Identity(n, n)), is_exact);
+  C = take(form.outputs_of_state(m.C), outputs_exact);
   free_part = Matrix::Zero(n, n - rank());
   free_part.bottomRows(n - rank()).setIdentity();
 }

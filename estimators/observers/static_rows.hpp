@@ -25,9 +25,11 @@ struct StaticRows {
   Matrix rows,
       static_rows_map;  ///< what makes the dynamic and the static rows of those of the model
   Matrix free_part;     ///< [0; I]: where ž enters
+  Matrix C;             ///< C T: the outputs are C T z
 
-  bool is_exact = true;      ///< no number was rounded
-  bool static_exact = true;  ///< none of the static rows
+  bool is_exact = true;       ///< no number was rounded, but perhaps of C T
+  bool static_exact = true;   ///< none of the static rows
+  bool outputs_exact = true;  ///< none of C T
 
   explicit StaticRows(const LinearModel& model, bool keep_states = false);
 

@@ -49,11 +49,14 @@ void keep_rows(LineZonotope& X, Terms& terms, const std::vector<Index>& kept) {
   terms.rows = Vector(terms.rows(kept));
 }
 
-/// Does this row say nothing that could be told from rounding? One that misses the set by less than
-/// proofs need is such a row.
-bool is_vague(double terms, double reach, double b) {
-  return reach + std::abs(b) <= tolerances::product_noise * terms ||
-         (std::abs(b) > reach && std::abs(b) <= tolerances::proof_margin * terms);
+/// What a row of this reach says: nothing that could be told from rounding, or that no point fits,
+/// by less than proofs need. Without the latter the set is larger, perhaps by much.
+enum class RowContent { statement, rounding, unproven_miss };
+
+RowContent content_of_row(double terms, double reach, double b) {
+  if (reach + std::abs(b) <= tolerances::product_noise * terms) return RowContent::rounding;
+  const bool misses = std::abs(b) > reach && std::abs(b) <= tolerances::proof_margin * terms;
+  return misses ? RowContent::unproven_miss : RowContent::statement;
 }
 
 }  // namespace
@@ -107,8 +110,8 @@ Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f,
   return {with_residue(std::move(Y), terms), exact};
 }
 
-LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T,
-                                const LineZonotope& V) {
+Reduced strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T,
+                           const LineZonotope& V) {
   constexpr const char* name = "intersection with a measurement";
   const Index p = C.rows(), lines = X.lines(), g = X.generators(),
               old = X.constraints() + V.constraints();
@@ -141,6 +144,7 @@ LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, M
   std::vector<Index> kept(static_cast<std::size_t>(old));
   std::iota(kept.begin(), kept.end(), Index{0});
   kept.reserve(static_cast<std::size_t>(old + p));
+  bool exact = true;
   for (Index k = 0; k < p; ++k) {
     double right = z[k], center_terms = std::abs(z[k]), all_terms = std::abs(z[k]);
     const auto subtract = [&](MatrixIn map, const Vector& center, const Vector& reach) {
@@ -155,14 +159,16 @@ LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, M
     // z - T c_V - C c_X cancels where the sets touch: a residue is no statement
     Y.b[old + k] = std::abs(right) <= tolerances::product_noise * center_terms ? 0 : right;
     terms.rows[old + k] = all_terms;
-    if (!(Y.lines() > 0 && !Y.S.row(old + k).isZero(0)) &&
-        is_vague(all_terms, Y.A.row(old + k).lpNorm<1>(), Y.b[old + k]))
-      continue;
-    kept.push_back(old + k);
+    const bool has_lines = Y.lines() > 0 && !Y.S.row(old + k).isZero(0);
+    const RowContent content =
+        has_lines ? RowContent::statement
+                  : content_of_row(all_terms, Y.A.row(old + k).lpNorm<1>(), Y.b[old + k]);
+    if (content == RowContent::statement) kept.push_back(old + k);
+    exact = exact && content != RowContent::unproven_miss;
   }
   require_no_overflow(Y);
   keep_rows(Y, terms, kept);
-  return with_residue(std::move(Y), terms);
+  return {with_residue(std::move(Y), terms), exact};
 }
 
 namespace {
@@ -180,8 +186,10 @@ Computed without_lines(const LineZonotope& X) {
   LinesSolved made = solve_for_lines(X);
   std::vector<Index> kept;
   for (Index i = 0; i < made.set.constraints(); ++i) {
-    if (!is_vague(made.row_magnitude[i], made.set.A.row(i).lpNorm<1>(), made.set.b[i]))
-      kept.push_back(i);
+    const RowContent content =
+        content_of_row(made.row_magnitude[i], made.set.A.row(i).lpNorm<1>(), made.set.b[i]);
+    if (content == RowContent::statement) kept.push_back(i);
+    made.is_whole = made.is_whole && content != RowContent::unproven_miss;
   }
   Terms terms{std::move(made.row_magnitude), std::move(made.state_magnitude)};
   keep_rows(made.set, terms, kept);

@@ -3,6 +3,7 @@
 // enclosed: sets hold every state of a sequence that satisfies the model to the last digit, at
 // vertices of all sets, as decided in rational arithmetic.
 #include <cmath>
+#include <cstdint>
 #include <random>
 
 #include <doctest/doctest.h>
@@ -41,14 +42,33 @@ struct Sequence {
   std::vector<Sample> samples;
 };
 
-Sequence drawn(std::mt19937& random, Index n, Index rank, bool noisy) {
+/// Outputs of many digits, with large entries for a state that is 0 at all times: C x is a double,
+/// and C T is none.
+Matrix fine_outputs(std::mt19937& random, Index rows, Index n, Index zero) {
+  std::uniform_int_distribution<std::int64_t> entry(-(std::int64_t{1} << 38),
+                                                    std::int64_t{1} << 38);
+  Matrix C(rows, n);
+  for (double& c : C.reshaped()) c = std::ldexp(static_cast<double>(entry(random)), -36);
+  C.col(zero) *= std::ldexp(1.0, static_cast<int>(random() % 30));
+  return C;
+}
+
+Sequence drawn(std::mt19937& random, Index n, Index rank, bool noisy, bool fine = false) {
   Sequence made;
   LinearModel& m = made.model.linear;
+  const Index zero = fine ? static_cast<Index>(random()) % n : -1;
   m.E = dyadics(random, n, rank, 5) * dyadics(random, rank, n, 5);
+  if (fine) {  // coordinates that are doubles
+    std::uniform_int_distribution<int> small(-1, 1);
+    Matrix rows(rank, n);
+    for (double& entry : rows.reshaped()) entry = small(random);
+    m.E = dyadics(random, n, rank, 5) * rows;
+  }
   m.A = dyadics(random, n, n);
   m.B = Matrix::Identity(n, n);
   m.Bw = dyadics(random, n, 2, 12);
   m.C = dyadics(random, 1 + static_cast<Index>(random() % 2), n);
+  if (fine) m.C = fine_outputs(random, m.C.rows(), n, zero);
   m.D = Matrix(m.C.rows(), n);
   m.D.setZero();
   m.Dv = Matrix::Identity(m.C.rows(), m.C.rows());
@@ -57,11 +77,13 @@ Sequence drawn(std::mt19937& random, Index n, Index rank, bool noisy) {
   made.model.W = box(Vector::Zero(2), w);
   made.model.V = box(Vector::Zero(v.size()), v);
   made.model.U = make_space(n);
-  const Vector center = dyadics(random, n, 1), radius = dyadics(random, n, 1).cwiseAbs();
+  Vector center = dyadics(random, n, 1), radius = dyadics(random, n, 1).cwiseAbs();
+  if (fine) center[zero] = radius[zero] = 0;
   made.model.X0 = box(center, radius);
   made.x.push_back(center + vertex(random, radius));
   for (Index k = 0; k < 8; ++k) {
     made.x.push_back(dyadics(random, n, 1, 60));
+    if (fine) made.x.back()[zero] = 0;
     const Vector& now = made.x[static_cast<std::size_t>(k)];
     const Vector u = m.E * made.x.back() - m.A * now - m.Bw * vertex(random, w);
     made.samples.push_back({k, u, m.C * now + vertex(random, v)});
@@ -119,4 +141,26 @@ TEST_CASE("no state is lost by the rounding of coordinates") {
     }
   }
   CHECK(pseudo_inverses > 50);
+}
+
+TEST_CASE("no state is lost by the rounding of what the outputs are in other coordinates") {
+  std::mt19937 random(5);
+  int checked = 0;
+  for (int sample = 0; sample < 100; ++sample) {
+    const Index n = 2 + sample % 2, rank = 1 + sample % (n - 1);
+    const Sequence sequence = drawn(random, n, rank, sample % 3 == 0, true);
+    CAPTURE(sample);
+    for (const Index constraints : {0, 2, 6}) {
+      CAPTURE(constraints);
+      for (const bool bounded : {false, true}) {
+        const Count count = followed(sequence, "line_zonotope", bounded, constraints);
+        CHECK(count.lost == 0);
+        checked += count.checked;
+      }
+      CHECK(followed(sequence, "constrained_zonotope", true, constraints).lost == 0);
+    }
+    for (const char* representation : {"zonotope", "interval"})
+      CHECK(followed(sequence, representation, false, 0).lost == 0);
+  }
+  CHECK(checked > 3000);
 }

@@ -248,7 +248,7 @@ TEST_CASE("predictions and corrections assembled in place") {
     }
 
     const Matrix C = arbitrary_matrix(p, n), N = Matrix::Identity(p, p);
-    const LineForm cut = sets::strip_intersection(X, C, arbitrary_vector(p), N, W);
+    const LineForm cut = sets::strip_intersection(X, C, arbitrary_vector(p), N, W).set;
     RC_ASSERT(near(cut.G.leftCols(X.generators()), X.G, 0));
     RC_ASSERT(near(cut.A.topLeftCorner(X.constraints(), X.generators()), X.A, 0));
   }));
@@ -261,8 +261,8 @@ TEST_CASE("a measurement is an intersection") {
                    V = wide_set(p, 0, 0);
     const Matrix C = arbitrary_matrix(p, n), T = 2 * Matrix::Identity(p, p);
     const Vector z = arbitrary_vector(p);
-    RC_ASSERT(
-        near(sets::strip_intersection(X, C, z, T, V), intersection(X, C, affine_map(V, -T, z))));
+    RC_ASSERT(near(sets::strip_intersection(X, C, z, T, V).set,
+                   intersection(X, C, affine_map(V, -T, z))));
   }));
 }
 

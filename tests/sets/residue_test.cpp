@@ -12,7 +12,7 @@ namespace {
 
 /// X ∩ {x : C x = z}.
 LineForm measured(const LineForm& X, const Matrix& C, const Vector& z) {
-  return sets::strip_intersection(X, C, z, Matrix(z.size(), 0), make_point(Vector(0)));
+  return sets::strip_intersection(X, C, z, Matrix(z.size(), 0), make_point(Vector(0))).set;
 }
 
 LineForm interval(double center, double radius) {
@@ -103,4 +103,18 @@ TEST_CASE("what elimination cancels is as wide as its errors") {
   CHECK(hull.upper[0] > 0);
   CHECK(hull.upper[0] < 1e-13);
   CHECK(sets::eliminate_constraints(interval(0, 1e-300), 0).set.generators() == 1);
+}
+
+TEST_CASE("a row that is missed by less than proofs need leaves the set as it is, and larger") {
+  // 1e9 x - (1e9 + 0.16) x = 0.16 + 1e-9 and x in [-1, 1]: nearly x = -1
+  const LineForm X = make_zonotope(Vector{{0, 0}}, Matrix{{1}, {1}});
+  const Matrix C{{1e9, -(1e9 + .16)}};
+  const double reach = std::abs(1e9 - (1e9 + .16));
+  const auto cut = [&](double z) {
+    return sets::strip_intersection(X, C, Vector{{z}}, Matrix(1, 0), make_point(Vector(0)));
+  };
+  CHECK_FALSE(cut(reach * 1.0001).exact);
+  CHECK(cut(reach * 1.0001).set.constraints() == 0);
+  CHECK(cut(reach * .9999).exact);
+  CHECK(cut(reach * .9999).set.constraints() == 1);
 }

@@ -186,6 +186,25 @@ TEST_CASE("an output that an interval matrix allows is no outlier") {
   }
 }
 
+TEST_CASE("the distance of an output is taken over all matrices of an interval C") {
+  // C x for x in [1, 2] and C in [0.5, 1.5]: [0.5, 3]; for x in [-1, 2]: [-1.5, 3]
+  for (const double low : {1.0, -1.0}) {
+    CAPTURE(low);
+    Json study = scalar(box(-0.01, 0.01), Json::array({{{"name", "c"},
+                                                        {"backend", "constrained_zonotope"},
+                                                        {"observer", "prediction_correction"},
+                                                        {"outliers", outliers(1, 2)}}}));
+    study["system"]["type"] = "interval_lti";
+    study["system"]["C"] = Json::parse(R"({"center": [[1]], "radius": [[0.5]]})");
+    study["system"]["X0"] = box(low, 2);
+    const Run run(study, "y\n-2\n");
+    CAPTURE(run.outcome.out);
+    const double least = low > 0 ? 0.5 : -1.5;
+    CHECK(run.pipeline(0)["summary"]["outliers"]["left_out"][0]["distance"].get<double>() ==
+          doctest::Approx(least - 0.01 + 2).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("the limit of outliers lasts over restarts, and a restart set is called so") {
   const Json pipeline = {{"name", "cz"},
                          {"backend", "constrained_zonotope"},

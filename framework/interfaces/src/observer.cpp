@@ -52,6 +52,34 @@ Vector rounding_between(const Box& X, const Box& Y) {
   return tolerances::reported * sizes.array() + tolerances::product_noise * largest;
 }
 
+/// The largest dᵀx for x ∈ X and d within `radius` (empty: 0) of c. |x_j| is x_j or -x_j where the
+/// hull has one sign; of few others both are tried, and more are bounded by the hull.
+double row_support(const Set& X, Vector c, const Vector& radius, const Box& hull) {
+  constexpr std::size_t most_tried = 6;
+  std::vector<Index> both;
+  double spread = 0;
+  for (Index j = 0; j < radius.size(); ++j) {
+    if (!(radius[j] > 0)) continue;
+    if (hull.lower[j] >= 0) {
+      c[j] += radius[j];
+    } else if (hull.upper[j] <= 0) {
+      c[j] -= radius[j];
+    } else if (both.size() < most_tried) {
+      both.push_back(j);
+    } else {
+      spread += radius[j] * std::max(-hull.lower[j], hull.upper[j]);
+    }
+  }
+  double most = -infinity;
+  for (std::size_t signs = 0; signs < std::size_t{1} << both.size(); ++signs) {
+    Vector d = c;
+    for (std::size_t b = 0; b < both.size(); ++b)
+      d[both[b]] += (signs >> b & 1) != 0 ? radius[both[b]] : -radius[both[b]];
+    most = std::max(most, X.support(d));
+  }
+  return most + spread;
+}
+
 }  // namespace
 
 Observer::Stopwatch::Stopwatch(double& total) : total_(total), begin_(now_ns()) {}
@@ -150,16 +178,10 @@ std::vector<Index> Observer::outliers(const Set& X, const Sample& now) {
   double worst = 0;
   for (const Index i : present_outputs(now)) {
     const Vector c = m.C.row(i).transpose(), v = m.Dv.row(i).transpose();
-    double spread = 0;
-    if (m.C_radius.size() > 0) {
-      for (Index j = 0; j < hull.dim(); ++j) {
-        if (m.C_radius(i, j) > 0)
-          spread += m.C_radius(i, j) * std::max(std::abs(hull.lower[j]), std::abs(hull.upper[j]));
-      }
-    }
+    const Vector radius = m.C_radius.size() > 0 ? Vector(m.C_radius.row(i)) : Vector();
     const double direct = m.D.row(i).dot(now.u), y = now.y[i];
-    const double upper = direct + X.support(c) + noise_->support(v) + spread,
-                 lower = direct - X.support(-c) - noise_->support(-v) - spread;
+    const double upper = direct + row_support(X, c, radius, hull) + noise_->support(v),
+                 lower = direct - row_support(X, -c, radius, hull) - noise_->support(-v);
     const double distance = std::max(y - upper, lower - y);  // NaN: open on both sides
     const double size = std::max({std::abs(y), std::abs(direct), std::isfinite(upper) ? upper : 0,
                                   std::isfinite(lower) ? -lower : 0});

@@ -132,4 +132,9 @@ SemiExplicitForm::Part SemiExplicitForm::static_part_of_state(MatrixIn A) const 
       product(rows_->fixed, product(rational::exact_matrix(A), rational::exact_matrix(T_))));
 }
 
+SemiExplicitForm::Part SemiExplicitForm::outputs_of_state(MatrixIn C) const {
+  if (!rows_) return {C, true};
+  return rounded(product(rational::exact_matrix(C), rational::exact_matrix(T_)));
+}
+
 }  // namespace cordon

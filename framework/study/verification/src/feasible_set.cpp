@@ -154,8 +154,7 @@ Model widened(Model model, const Vector& radius) {
   return model;
 }
 
-LineForm widened(LineForm X) {
-  constexpr double share = 1e-13;
+LineForm widened(LineForm X, double share) {
   const Index n = X.dim(), m = X.constraints(), g = X.generators();
   const Vector rows = share * (X.b.cwiseAbs() + X.A.cwiseAbs().rowwise().sum());
   const Vector coordinates = share * (X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());

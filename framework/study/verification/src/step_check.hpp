@@ -38,7 +38,8 @@ class StepCheck {
   /// short: the rounding of rows that nearly depend on each other, or that leave hardly anything,
   /// moves a set by far more than itself.
   struct Successors {
-    std::function<LineForm()> exact, relaxed;
+    std::function<LineForm()> exact;
+    std::function<LineForm(double share)> relaxed;  ///< by this share of the rounding that may be
     std::function<std::optional<Enclosure>()> enclosed;  ///< of the exact ones, if there is one
   };
 
@@ -71,6 +72,14 @@ class StepCheck {
   void along(const Vector& d, Along& by);
   void violated(std::string what, bool in_sets_file);
   void missed(std::string what, bool in_sets_file);
+  /// By how much farther the successors reach, coordinate by coordinate, if rows are relaxed by
+  /// rounding: than if they are relaxed by next to nothing, and than as they are. The latter may be
+  /// the whole set, where rows say one thing twice and leave no room between them: it decides
+  /// nothing.
+  struct Moved {
+    Vector surely, perhaps;
+  };
+
   void open(std::string what);
   void emptiness_proof();
   void emptiness_without_proof();
@@ -78,7 +87,8 @@ class StepCheck {
   void contains_vertex(const rational::RationalVector& exact, const Successors& successors);
   std::optional<Index> outside_hull(const rational::RationalVector& exact,
                                     const Vector& margin) const;
-  Vector moved_by_rounding(const Successors& successors);
+  const Moved& moved_by_rounding(const Successors& successors);
+  bool fits(const rational::RationalVector& exact, const Vector& margin) const;
   bool holds_nearby(const Vector& x);
   void contains_direction(const Vector& d, bool line);
   Vector turned_by(const Vector& x) const;
@@ -89,16 +99,15 @@ class StepCheck {
 
   const RecordedStep& step_;
   const RecordedSet& row_;
-  bool nominal_;             ///< operations were rounded to nearest
-  bool few_digits_ = false;  ///< of the directions of lines
-  double line_tolerance_;    ///< of the directions of lines
-  Vector size_;              ///< of each coordinate
-  Vector margin_;            ///< within which F_k has to lie in X_k and in the hull
-  Vector claim_margin_;      ///< within which X_k has to lie in F_k, if it is claimed exact
-  Vector row_margin_;        ///< within which constraints of X_k have to hold
-  LineForm widened_;         ///< X_k ⊕ margin_
-  std::optional<Vector>
-      moved_;  ///< per coordinate, by how much the rounding of rows moves the set, once asked for
+  bool nominal_;                ///< operations were rounded to nearest
+  bool few_digits_ = false;     ///< of the directions of lines
+  double line_tolerance_;       ///< of the directions of lines
+  Vector size_;                 ///< of each coordinate
+  Vector margin_;               ///< within which F_k has to lie in X_k and in the hull
+  Vector claim_margin_;         ///< within which X_k has to lie in F_k, if it is claimed exact
+  Vector row_margin_;           ///< within which constraints of X_k have to hold
+  LineForm widened_;            ///< X_k ⊕ margin_
+  std::optional<Moved> moved_;  ///< along the coordinates, once asked for
   std::optional<std::optional<Vector>>
       center_;  ///< factors of a point well inside X_k, once asked for
   std::optional<Finding> violation_;

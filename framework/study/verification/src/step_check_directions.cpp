@@ -20,6 +20,7 @@ namespace {
 constexpr double direction_tolerance = 1e-12;  ///< of bounds that floating-point proofs attain
 /// Of a margin: what a proof in rational arithmetic of a bound found in floating point may take.
 constexpr double share_of_proof = 0.125;
+constexpr double almost_nothing = 1.0 / 64;  ///< of the rounding that may be
 
 /// A bound of dᵀx in X, and whether rational arithmetic proves it but for a share of the slack.
 struct Bound {
@@ -61,15 +62,20 @@ double least_support(const LineForm& X, const Vector& d) {
 struct StepCheck::Along {
   LineForm successors;
   std::optional<Enclosure> enclosed;
-  std::function<LineForm()> relax;
-  bool nominal, claims, holds_them_all;
-  std::optional<LineForm> relaxed = std::nullopt;
+  std::function<LineForm(double)> relax;
+  bool claims, holds_them_all;
+  std::optional<LineForm> relaxed = std::nullopt, barely = std::nullopt;
 
-  /// By how much farther they reach if rows are relaxed, which nominal operations may have done.
-  double moved(const Vector& d, double needed) {
-    if (!nominal) return 0;
-    if (!relaxed) relaxed = relax();
-    return std::max(0.0, support(*relaxed, d) - needed);
+  /// How far they reach if rows are relaxed, which nominal operations may have done.
+  double reach(const Vector& d) {
+    if (!relaxed) relaxed = relax(1);
+    return support(*relaxed, d);
+  }
+  /// By how much farther that is than if rows are relaxed by next to nothing.
+  double moved(const Vector& d) {
+    if (!barely) barely = relax(almost_nothing);
+    const double least = lower_support(*barely, d), most = reach(d);
+    return std::isfinite(least) && std::isfinite(most) ? std::max(0.0, most - least) : 0.0;
   }
 };
 
@@ -77,12 +83,8 @@ void StepCheck::against(const Successors& of_the_set_before, const Matrix& direc
                         bool holds_them_all, const std::atomic<bool>* stop) {
   const bool claims =
       step_.tightness == Tightness::exact && !reported_empty() && row_.exact_exchange;
-  Along by{of_the_set_before.exact(),
-           of_the_set_before.enclosed(),
-           of_the_set_before.relaxed,
-           nominal_,
-           claims,
-           holds_them_all};
+  Along by{of_the_set_before.exact(), of_the_set_before.enclosed(), of_the_set_before.relaxed,
+           claims, holds_them_all};
   for (Index j = 0; j < directions.cols() && !violation_; ++j) {
     if (stop && stop->load()) return;
     along(directions.col(j), by);
@@ -112,8 +114,13 @@ void StepCheck::along(const Vector& d, Along& by) {
   }
   const Bound bound(by.successors, d, slack);
   const double needed = bound.value;
-  if (by.claims && needed != -infinity && reached > needed + slack &&
-      reached > needed + slack + by.moved(d, needed)) {
+  const bool beyond = by.claims && needed != -infinity && reached > needed + slack &&
+                      (!nominal_ || reached > needed + slack + by.moved(d));
+  if (beyond && nominal_ && reached <= by.reach(d) + slack) {
+    return open(fmt::format(
+        "whether the estimate keeps to the successors of the set before along {}", text(d)));
+  }
+  if (beyond) {
     return violated(fmt::format("the estimate is claimed exact, but reaches {:.17g} along {} where "
                                 "no successor of the set before that is "
                                 "consistent with the data lies beyond {:.17g}",
@@ -127,9 +134,12 @@ void StepCheck::along(const Vector& d, Along& by) {
   if (settled(bound)) return;
   try {
     const rounding::Range exact = exact::support(by.successors, d);
-    if (exact.lower > allowed + slack && exact.lower < infinity) slack += by.moved(d, exact.lower);
+    const bool misses = exact.lower > allowed + slack && exact.lower < infinity;
+    if (misses && nominal_) slack += by.moved(d);
+    const bool by_rounding =
+        misses && nominal_ && exact.lower <= allowed + slack + (by.reach(d) - exact.lower);
     if (std::isfinite(slack)) {
-      if (exact.lower > allowed + slack && by.holds_them_all) {
+      if (exact.lower > allowed + slack && by.holds_them_all && !by_rounding) {
         const bool of_hull = allowed == hull && coordinate;
         return violated(fmt::format("a successor of the set before, consistent with the data, "
                                     "reaches {:.17g} along {}; the "

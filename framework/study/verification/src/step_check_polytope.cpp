@@ -29,6 +29,7 @@ constexpr double underflow =
     1e-300;  ///< of bounds that are 0 but for the smallest numbers there are
 constexpr double ill_conditioned =
     1e-6;  ///< rounding moves an inequality by more than this share of it
+constexpr double next_to_nothing = 1.0 / 64;  ///< of the rounding that may be
 
 /// The largest entry of each coordinate among the lines: how far off their directions are is a
 /// share of it.
@@ -113,21 +114,30 @@ std::optional<Index> StepCheck::outside_hull(const RationalVector& x, const Vect
   return std::nullopt;
 }
 
-/// By how much farther the successors reach along each coordinate if rows are relaxed; infinity for
-/// what cannot be found out.
-Vector StepCheck::moved_by_rounding(const Successors& successors) {
+const StepCheck::Moved& StepCheck::moved_by_rounding(const Successors& successors) {
   if (moved_) return *moved_;
-  moved_ = Vector::Zero(size_.size());
-  const LineForm strict = successors.exact(), relaxed = successors.relaxed();
-  if (empty_by_rounding(strict, relaxed)) moved_->setConstant(infinity);
+  moved_ = Moved{Vector::Zero(size_.size()), Vector::Zero(size_.size())};
+  const LineForm strict = successors.exact(), barely = successors.relaxed(next_to_nothing),
+                 relaxed = successors.relaxed(1);
+  if (empty_by_rounding(strict, relaxed)) moved_->perhaps.setConstant(infinity);
   for (Index i = 0; i < size_.size(); ++i) {
     for (const double sign : {-1.0, 1.0}) {
       const Vector d = sign * Vector::Unit(size_.size(), i);
-      const double least = exact::support(strict, d).lower;
-      if (std::isfinite(least)) (*moved_)[i] = std::max((*moved_)[i], support(relaxed, d) - least);
+      const double most = support(relaxed, d);
+      const auto reaches_beyond = [&](const LineForm& X, double& moved) {
+        const double least = exact::support(X, d).lower;
+        if (std::isfinite(least)) moved = std::max(moved, most - least);
+      };
+      reaches_beyond(strict, moved_->perhaps[i]);
+      reaches_beyond(barely, moved_->surely[i]);
     }
   }
   return *moved_;
+}
+
+/// Is x in the hull and in X_k, within the margin?
+bool StepCheck::fits(const RationalVector& exact, const Vector& margin) const {
+  return !outside_hull(exact, margin) && exact::contains(row_.set, exact, margin, row_margin_);
 }
 
 void StepCheck::contains_vertex(const RationalVector& exact, const Successors& successors) {
@@ -143,23 +153,22 @@ void StepCheck::contains_vertex(const RationalVector& exact, const Successors& s
   const std::string whether =
       fmt::format("whether the reported set contains the vertex {} of the exact one", text(x));
   const bool has_room = (margin_.array() > 0).all();
-  Vector margin = margin_ + turned_by(x);
+  const Vector margin = margin_ + turned_by(x);
   try {
-    if (nominal_ && outside_hull(exact, margin)) margin += moved_by_rounding(successors);
-    if (!margin.allFinite()) return open(whether);
+    const bool in_hull = !outside_hull(exact, margin);
+    if (in_hull && has_room && (holds_nearby(x) || contains(widened_, x) == Answer::yes)) return;
+    if (fits(exact, margin)) return;
+    if (nominal_) {
+      const auto& [surely, perhaps] = moved_by_rounding(successors);
+      if (surely.allFinite() && fits(exact, margin + surely)) return;
+      if (!perhaps.allFinite() || fits(exact, margin + perhaps)) return open(whether);
+    }
     if (const auto i = outside_hull(exact, margin)) {
       return missed(fmt::format("the state {} is consistent with model and data, but lies outside "
                                 "the hull in coordinate {}: {:.17g} is not "
                                 "in [{:.17g}, {:.17g}]",
                                 text(x), *i + 1, x[*i], step_.hull.lower[*i], step_.hull.upper[*i]),
                     false);
-    }
-    if (has_room && (holds_nearby(x) || contains(widened_, x) == Answer::yes)) return;
-    if (exact::contains(row_.set, exact, margin, row_margin_)) return;
-    if (nominal_) {
-      margin = margin_ + turned_by(x) + moved_by_rounding(successors);
-      if (!margin.allFinite()) return open(whether);
-      if (exact::contains(row_.set, exact, margin, row_margin_)) return;
     }
     missed(fmt::format(
                "the state {} is consistent with model and data, but lies outside the reported set",
@@ -226,17 +235,21 @@ void StepCheck::within(const RationalVector& normal, const Rational& h,
         false;  // two rows that are parallel but for rounding, of which nominal operations make one
     if (nominal_) {
       const exact::Support strict = exact::support(successors.exact(), normal);
-      const exact::Support relaxed = exact::support(successors.relaxed(), normal);
+      const exact::Support relaxed = exact::support(successors.relaxed(1), normal);
       if (strict.kind == Kind::empty && relaxed.kind != Kind::empty) {
         return open(fmt::format("whether the estimate keeps to the exact set along {}", text(d)));
       }
-      if (strict.kind == Kind::finite && relaxed.kind == Kind::unbounded) return;
+      may_be_one = strict.kind == Kind::finite && relaxed.kind == Kind::unbounded;
       if (strict.kind == Kind::finite && relaxed.kind == Kind::finite) {
-        const Rational moved = relaxed.value - strict.value;
-        if (reached.kind == Kind::finite && reached.value <= h + slack + moved) return;
+        const exact::Support barely = exact::support(successors.relaxed(next_to_nothing), normal);
+        const Rational surely =
+            barely.kind == Kind::finite ? Rational(relaxed.value - barely.value) : Rational(0);
+        if (reached.kind == Kind::finite && reached.value <= h + slack + surely) return;
+        const Rational perhaps = relaxed.value - strict.value;
         const double size = std::abs(limit) + d.cwiseAbs().dot(size_ + reach_of(row_.set.M));
-        may_be_one =
-            reached.kind == Kind::unbounded && moved > rational::exact(ill_conditioned * size);
+        may_be_one = reached.kind == Kind::unbounded
+                         ? perhaps > rational::exact(ill_conditioned * size)
+                         : reached.value <= h + slack + perhaps;
       }
     }
     if (row_.exact_exchange &&
@@ -269,8 +282,9 @@ void StepCheck::against(const Polytope& F, const Successors& successors) {
   if (F.is_empty()) {
     // data are rounded: where nominal operations have room for that, there is nothing to compare
     // with
-    const bool by_rounding = nominal_ && !is_proven_empty(successors.relaxed());
+    const bool by_rounding = nominal_ && !is_proven_empty(successors.relaxed(1));
     exact_holds_ = claim_margin_.isZero(0) && is_proven_empty(row_.set);
+    exact_stays_ = !exact_holds_ && by_rounding;
     if (!exact_holds_ && !by_rounding)
       open(
           "the estimate is claimed exact and is not called empty, but no state is consistent with "

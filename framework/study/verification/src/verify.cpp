@@ -76,7 +76,7 @@ bool against_polytope(StepCheck& check, const Polytope& F,
 /// Where the set before is not recorded: rounding is not taken to move anything.
 StepCheck::Successors unknown_successors(Index n) {
   const auto none = [n] { return make_empty(n); };
-  return {none, none, [] { return std::nullopt; }};
+  return {none, [none](double) { return none(); }, [] { return std::nullopt; }};
 }
 
 class Verification {
@@ -331,9 +331,10 @@ class Verification {
     const auto successors_in = [&](const Model& model) {
       return StepCheck::Successors{
           [&] { return successors(model, start, estimation.admissible_set, transition); },
-          [&] {
-            return successors(widened(model, margins.outputs), widened(start),
-                              estimation.admissible_set, transition);
+          [&](double share) {
+            return successors(widened(model, share * margins.outputs),
+                              widened(start, share * rounding_share), estimation.admissible_set,
+                              transition);
           },
           [&] { return enclosed_successors(model, start, estimation.admissible_set, transition); }};
     };

@@ -30,14 +30,15 @@ struct Summand {
 Reduced affine_sum(const LineZonotope& X, MatrixIn A, VectorIn f,
                    std::span<const Summand> summands);
 
-/// {x ∈ X : z - C x ∈ T V}; exact. Rows: those of X, those of V, then C M δ + C G ξ + T(M_V δ_V +
+/// {x ∈ X : z - C x ∈ T V}. Rows: those of X, those of V, then C M δ + C G ξ + T(M_V δ_V +
 /// G_V ξ_V) = z - C c - T c_V. Of these last rows, those without lines are left out where they say
-/// nothing beyond rounding (all of the row below `tolerances::product_noise` (1e-14) of its terms,
-/// or a violation below `tolerances::proof_margin` (1e-10)), and where all rows together are so
+/// nothing beyond rounding (all of the row below `tolerances::product_noise` (1e-14) of its terms),
+/// or are missed by less than `tolerances::proof_margin` (1e-10) of them: the set is larger then,
+/// else it is `exact`. And where all rows together are so
 /// nearly dependent that rounding matters, each gets a slack of `tolerances::product_noise` (1e-14)
 /// of its terms.
-LineZonotope strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T,
-                                const LineZonotope& V);
+Reduced strip_intersection(const LineZonotope& X, MatrixIn C, VectorIn z, MatrixIn T,
+                           const LineZonotope& V);
 
 /// How a line zonotope is reduced.
 struct LineReduction {

@@ -49,6 +49,8 @@ class SemiExplicitForm {
   /// The same of f = A x = A T z.
   Part dynamic_part_of_state(MatrixIn A) const;
   Part static_part_of_state(MatrixIn A) const;
+  /// C T: the outputs of z.
+  Part outputs_of_state(MatrixIn C) const;
 
  private:
   struct Rows;  // in rationals; none: the identity

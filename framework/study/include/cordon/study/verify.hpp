@@ -52,10 +52,12 @@ struct VerifiedPipeline {
   std::int64_t by_supports =
       0;                    ///< of them against the successors of the set before, in directions
   std::int64_t proofs = 0;  ///< proofs of (non-)emptiness and of bounds that hold
-  std::int64_t exact_claims = 0;           ///< claims of `exact` that are true
-  std::int64_t exact_claims_unproven = 0;  ///< those that directions do not refute
-  std::int64_t undecided = 0;              ///< single checks that neither succeeded nor failed
-  std::string first_undecided;             ///< the first of them
+  std::int64_t exact_claims = 0;  ///< claims of `exact` that are true
+  /// Those that directions do not refute, or that there is nothing to compare with: rounded data
+  /// contradict each other in the last digits, and no state is consistent with them.
+  std::int64_t exact_claims_unproven = 0;
+  std::int64_t undecided = 0;   ///< single checks that neither succeeded nor failed
+  std::string first_undecided;  ///< the first of them
   /// An assumption that the simulated truth does not keep, as the run has told it: nothing is
   /// promised from `assumptions_until` on.
   std::string failed_assumption = {};
