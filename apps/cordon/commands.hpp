@@ -25,6 +25,9 @@ struct Program {
   Exit exit = Exit::done;
 };
 
+/// The pipelines of this name, or all if it is empty. Throws InputError if there is none.
+std::vector<const PipelineSpec*> pipelines_called(const Study& study, const std::string& name);
+
 /// `cordon list`.
 Exit list_components(const Program& program, bool json);
 
@@ -34,6 +37,7 @@ void add_report(CLI::App& app, Program& program);
 void add_validate(CLI::App& app, Program& program);
 void add_verify(CLI::App& app, Program& program);
 void add_compare(CLI::App& app, Program& program);
+void add_gain(CLI::App& app, Program& program);
 void add_guarantees(CLI::App& app, Program& program);
 void add_design(CLI::App& app, Program& program);
 void add_list(CLI::App& app, Program& program);

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "commands.hpp"
 #include "core/text.hpp"
 
 namespace cordon::apps {
@@ -254,6 +255,20 @@ std::string range_text(const ParamSpec& spec) {
 
 std::string count(std::int64_t number, const char* noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
+
+std::vector<const PipelineSpec*> pipelines_called(const Study& study, const std::string& name) {
+  std::vector<const PipelineSpec*> found;
+  std::vector<std::string> names;
+  for (const PipelineSpec& pipeline : study.pipelines) {
+    names.push_back(pipeline.name);
+    if (name.empty() || pipeline.name == name) found.push_back(&pipeline);
+  }
+  if (found.empty() && !name.empty()) {
+    throw InputError(study.file.string(), {{"/pipelines", "there is no pipeline \"" + name + "\"",
+                                            suggest(name, names)}});
+  }
+  return found;
 }
 
 std::string time_problem(const std::string& text) {

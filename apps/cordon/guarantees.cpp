@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "cordon/study/run.hpp"
+#include "design_outcome_text.hpp"
 #include "diagnosis_report.hpp"
 #include "json_text.hpp"
 
@@ -40,31 +40,18 @@ const ComponentSpec* diagnoser_of(const PipelineSpec& pipeline) {
 std::vector<Promise> promises(const Study& study, const Registry& registry,
                               const std::string& name) {
   std::vector<Promise> found;
-  std::vector<std::string> names;
-  for (const PipelineSpec& pipeline : study.pipelines) {
-    names.push_back(pipeline.name);
-    if (!name.empty() && pipeline.name != name) continue;
-    const ComponentSpec* const diagnoser = diagnoser_of(pipeline);
-    found.push_back({&pipeline, diagnoser});
+  for (const PipelineSpec* pipeline : pipelines_called(study, name)) {
+    const ComponentSpec* const diagnoser = diagnoser_of(*pipeline);
+    found.push_back({pipeline, diagnoser});
     if (!diagnoser) continue;
     const auto backend =
-        registry.make<BackendEntry>(pipeline.backend.type, pipeline.backend.params);
+        registry.make<BackendEntry>(pipeline->backend.type, pipeline->backend.params);
     found.back().guarantees =
         registry
             .make<DiagnoserEntry>(diagnoser->type, {bank_of(study), backend}, diagnoser->params)
             ->guarantees();
   }
-  if (found.empty() && !name.empty()) {
-    throw InputError(study.file.string(), {{"/pipelines", "there is no pipeline \"" + name + "\"",
-                                            suggest(name, names)}});
-  }
   return found;
-}
-
-std::vector<std::string> mode_names(const Study& study) {
-  std::vector<std::string> names;
-  for (const Mode& mode : bank_of(study).modes) names.push_back(mode.name);
-  return names;
 }
 
 std::string report_text(const Study& study, const std::vector<Promise>& all) {
@@ -100,8 +87,8 @@ std::string report_json(const Study& study, const std::vector<Promise>& all) {
 Exit guarantees(const Program& program, const GuaranteesArguments& arguments) {
   Registry registry;
   registry.load({program.plugins});
-  const Study study =
-      read_study(arguments.study, registry, default_search_path(), program.study_plugins());
+  const Study study = read_study(arguments.study, registry, default_search_path(),
+                                 program.study_plugins(), StudyData::optional);
   for (const std::string& warning : study.warnings) warn(warning);
   const std::vector<Promise> all = promises(study, registry, arguments.pipeline);
   print(arguments.json ? report_json(study, all) : report_text(study, all));

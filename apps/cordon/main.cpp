@@ -108,6 +108,7 @@ Exit run(int argc, char** argv) {
   add_validate(app, program);
   add_verify(app, program);
   add_compare(app, program);
+  add_gain(app, program);
   add_guarantees(app, program);
   add_design(app, program);
   add_list(app, program);

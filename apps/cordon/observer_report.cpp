@@ -124,13 +124,20 @@ std::string contradictions_text(const Study& study, const RunOutcome& outcome, c
   return text;
 }
 
-std::string gains_text(const RunOutcome& outcome, const Paint& paint) {
+NamedGains gains_of(const RunOutcome& outcome) {
+  NamedGains all;
+  for (const PipelineOutcome& pipeline : outcome.pipelines)
+    all.emplace_back(pipeline.name, pipeline.estimation()->gains);
+  return all;
+}
+
+std::string gains_text(const NamedGains& all, const Paint& paint) {
   Rows rows{
       {"PIPELINE", "PARAMETER", "GAIN", "L", "SPECTRAL RADIUS ≤", "MONOTONE", "‖G‖∞", "OPTIMUM"}};
-  for (const PipelineOutcome& pipeline : outcome.pipelines) {
-    for (const Gain& gain : pipeline.estimation()->gains) {
+  for (const auto& [pipeline, gains] : all) {
+    for (const Gain& gain : gains) {
       const GainCertificate& known = gain.certificate;
-      rows.push_back({pipeline.name, gain.name, gain.type, matrix_text(gain.L),
+      rows.push_back({pipeline, gain.name, gain.type, matrix_text(gain.L),
                       number_text(known.spectral_radius),
                       known.monotone == Answer::unknown ? "but for rounding"
                                                         : std::string(to_string(known.monotone)),
@@ -201,18 +208,22 @@ ordered_json json_number(double value) {
   return value;
 }
 
-ordered_json gains_json(const EstimationOutcome& found) {
+ordered_json matrix_json(const Matrix& matrix) {
+  ordered_json rows = ordered_json::array();
+  for (Index i = 0; i < matrix.rows(); ++i) rows.push_back(numbers(matrix.row(i).transpose()));
+  return rows;
+}
+
+ordered_json gains_json(const std::vector<Gain>& gains) {
   ordered_json all = ordered_json::array();
-  for (const Gain& gain : found.gains) {
+  for (const Gain& gain : gains) {
     const GainCertificate& known = gain.certificate;
-    ordered_json matrix = ordered_json::array();
-    for (Index i = 0; i < gain.L.rows(); ++i) matrix.push_back(numbers(gain.L.row(i).transpose()));
     const bool has_norm = !std::isnan(known.norm_lower) || !std::isnan(known.norm_upper);
     const ordered_json norm{{"lower", json_number(known.norm_lower)},
                             {"upper", json_number(known.norm_upper)}};
     ordered_json one{{"name", gain.name},
                      {"type", gain.type},
-                     {"matrix", std::move(matrix)},
+                     {"matrix", matrix_json(gain.L)},
                      {"spectral_radius", json_number(known.spectral_radius)},
                      {"monotone", known.monotone == Answer::unknown
                                       ? ordered_json(nullptr)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/run.hpp"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <unistd.h>
@@ -39,6 +40,16 @@ Exit run_once(const Study& study, const Registry& registry, const RunArguments& 
   options.stop = stop;
   options.out = directory_for(arguments);
   if (!arguments.no_report) options.report = cordon::add_report;
+  options.sets = arguments.sets.value_or(KeptSets::all);
+  if (!arguments.quiet) {
+    options.many_sets = [&](double bytes) {
+      bar.clear();
+      warn(fmt::format(
+          "sets.jsonl {}; --sets last keeps the last set of each pipeline, --sets "
+          "none keeps none (cordon verify needs all)",
+          bytes > 0 ? fmt::format("will take about {:.0f} MB", bytes / 1e6) : "has taken 100 MB"));
+    };
+  }
   if (arguments.point_limit_s) options.deadline = time_after(*arguments.point_limit_s);
   options.progress = [&](std::size_t pipeline, std::int64_t done, std::int64_t total) {
     bar.show(pipeline, done, total);
@@ -90,6 +101,15 @@ void add_run(CLI::App& app, Program& program) {
   command->add_flag("--json", arguments->json, "Print JSON for programs instead of tables");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->add_flag("--no-report", arguments->no_report, "Write no report.html");
+  command
+      ->add_option(
+          "--sets", arguments->sets,
+          "Whose sets sets.jsonl keeps: those of all steps, of the last one, or none [all]")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, KeptSets>{
+              {"all", KeptSets::all}, {"last", KeptSets::last}, {"none", KeptSets::none}},
+          CLI::ignore_case))
+      ->option_text("all|last|none");
   const char* const group = "Sweeps (studies with a \"sweep\"; docs/sweeps.md)";
   command->add_option("--jobs", arguments->jobs, "Points at a time [the number of cores]")
       ->check(CLI::Range(1, 1024))

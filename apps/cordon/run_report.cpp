@@ -240,7 +240,7 @@ ordered_json json_of(const PipelineOutcome& p, const EstimationOutcome& found,
            found.inner_steps > 0 ? json_number(found.inner_share) : ordered_json(nullptr)},
           {"inner_outside", time_or_null(found.inner_outside)},
           {"growth", growth_json(found)},
-          {"gains", gains_json(found)},
+          {"gains", gains_json(found.gains)},
           {"last", last_json(found)},
           {"error", error_of(p)},
           {"metrics", std::move(metrics)},
@@ -304,21 +304,22 @@ std::string report_text(const Study& study, const RunOutcome& outcome,
       observed.pipelines.push_back(pipeline);
     }
   }
-  const std::string title = study.title.empty() ? "" : paint.bold(study.title) + "\n\n";
-  const std::string comparison = observed.pipelines.empty() && !diagnoses.empty()
+  const std::string title = study.title.empty() ? "" : paint.bold(study.title) + "\n\n",
+                    comparison = observed.pipelines.empty() && !diagnoses.empty()
                                      ? ""
                                      : observer_table(observed, study.labels, paint) +
                                            units_text(observed, study.labels) + "\n";
   std::string assumptions;
   for (const PipelineOutcome& pipeline : observed.pipelines) {
     const std::string failed = assumption_text(study, pipeline, paint);
-    if (!failed.empty()) assumptions += pipeline.name + ": " + failed;
+    assumptions += failed.empty() ? "" : pipeline.name + ": " + failed;
   }
   assumptions += contradictions_text(study, observed, paint);
   if (!assumptions.empty()) assumptions += "\n";
-  const std::string details =
-      assumptions + gains_text(observed, paint) + widths_text(observed, study.labels, paint) +
-      inner_text(observed, study.labels, paint) + growth_text(observed, study.labels, paint);
+  const std::string details = assumptions + gains_text(gains_of(observed), paint) +
+                              widths_text(observed, study.labels, paint) +
+                              inner_text(observed, study.labels, paint) +
+                              growth_text(observed, study.labels, paint);
   const std::string sampled =
       study.continuous
           ? fmt::format("Sampled every {:.6g} s: what is said is said of the sampled model\n",

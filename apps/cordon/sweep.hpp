@@ -8,6 +8,7 @@
 
 #include "common.hpp"
 #include "cordon/experiments/sweep.hpp"
+#include "cordon/study/run.hpp"
 
 namespace cordon::apps {
 
@@ -20,6 +21,7 @@ struct RunArguments {
   std::optional<double> point_limit_s;
   std::string shard;
   std::optional<std::int64_t> point;
+  std::optional<KeptSets> sets;
 };
 
 /// "I/N". Throws Errc::invalid.

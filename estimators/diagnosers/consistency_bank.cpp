@@ -23,6 +23,7 @@
 #include "components.hpp"
 #include "cordon/core/error.hpp"
 #include "diagnosers/mode_elimination.hpp"
+#include "diagnosers/mode_gain.hpp"
 #include "diagnosers/mode_workers.hpp"
 #include "observers/observer_parameters.hpp"
 
@@ -45,6 +46,15 @@ class ConsistencyBank final : public Diagnoser {
           context.make->make_observer(params.component("observer"), {mode.model, context.backend}));
     }
     restart_ = restart_set(context, params, *observers_.front());
+  }
+
+  std::vector<Gain> gains() const override {
+    std::vector<Gain> all;
+    for (Index j = 0; j < bank().size(); ++j) {
+      for (Gain& gain : observers_[static_cast<std::size_t>(j)]->gains())
+        all.push_back(of_mode(std::move(gain), bank()[j]));
+    }
+    return all;
   }
 
   /// The set from which modes begin anew; none: they cannot.
@@ -218,12 +228,11 @@ void register_consistency_bank(Registrar& registrar) {
   ParamSchema schema;
   schema.component("observer", "observer of every mode, on the mode's own model", "observer")
       .required();
-  schema
-      .integer(
-          "waiting_time",
-          "steps that a mode lasts at least; several modes that are left after it are ambiguous",
-          {}, 1, longest_wait)
-      .required();
+  schema.integer(
+      "waiting_time",
+      "steps that a mode lasts at least; several modes that are left after it are ambiguous; 1: "
+      "nothing is assumed",
+      1, 1, longest_wait);
   schema.choice("start",
                 "modes that are possible at the first sample: \"any\", or the \"nominal\" one",
                 {"any", "nominal"}, "any");

@@ -230,7 +230,7 @@ TEST_CASE("parameters that cannot be are refused") {
   };
   using Pointers = std::vector<std::string>;
   CHECK(pointers(with_observer("prediction_correction", {}, 0)) == Pointers{"/waiting_time"});
-  CHECK(pointers({}) == Pointers{"/observer", "/waiting_time"});
+  CHECK(pointers({}) == Pointers{"/observer"});
   Params params = with_observer("prediction_correction", {}, 5);
   params.set("restart_set", make_box(cube(3, 1)));
   CHECK(pointers(params) == Pointers{"/restart_set"});

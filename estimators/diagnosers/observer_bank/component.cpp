@@ -19,12 +19,10 @@ constexpr std::int64_t most_bank_steps = 100'000;
 ParamSchema bank_parameters() {
   ParamSchema schema = common_parameters();
   add_widening_limit(schema);
-  schema
-      .integer("waiting_time",
-               "T: a mode lasts at least so many steps; decides between ambiguous and isolated, "
-               "switch and unknown fault",
-               {}, 1, most_bank_steps)
-      .required();
+  schema.integer("waiting_time",
+                 "T: a mode lasts at least so many steps; decides between ambiguous and isolated, "
+                 "switch and unknown fault; 1: nothing is assumed",
+                 1, 1, most_bank_steps);
   add_gain_parameter(schema, "gain",
                      "L of all modes, a matrix with a row per state and a column per output, or a "
                      "designer, asked for each mode and "
@@ -66,14 +64,23 @@ ObserverContext context_of(const DiagnoserContext& context, const Mode& mode) {
 }
 
 /// One per mode, as given or designed.
-std::vector<Matrix> gains_of(const DiagnoserContext& context, const Params& params) {
-  if (params.has("gains")) return params.matrices("gains");
-  std::vector<Matrix> gains;
+std::vector<Gain> gains_of(const DiagnoserContext& context, const Params& params) {
+  std::vector<Gain> gains;
   for (const Mode& mode : context.bank.modes) {
-    gains.push_back(
-        observer_gain(context_of(context, mode), params, "gain", default_gain()).gain.L);
+    if (params.has("gains")) {
+      gains.push_back({"gains", "given", params.matrices("gains")[gains.size()]});
+    } else {
+      gains.push_back(
+          observer_gain(context_of(context, mode), params, "gain", default_gain()).gain);
+    }
   }
   return gains;
+}
+
+std::vector<Matrix> matrices_of(const std::vector<Gain>& gains) {
+  std::vector<Matrix> matrices;
+  for (const Gain& gain : gains) matrices.push_back(gain.L);
+  return matrices;
 }
 
 std::string of_mode(const Mode& mode) { return " (mode \"" + mode.name + "\")"; }
@@ -107,7 +114,8 @@ OfflineOptions offline_options(const Params& params) {
 ObserverBankOptions options_of(const DiagnoserContext& context, const Params& params) {
   const ModeBank& bank = context.bank;
   ObserverBankOptions options;
-  options.gains = gains_of(context, params);
+  options.described = gains_of(context, params);
+  options.gains = matrices_of(options.described);
   options.budget = budget_from(params);
   options.widening_limit = params.real("widening_limit");
   for (const Mode& mode : bank.modes)
@@ -217,7 +225,7 @@ std::vector<Diagnostic> check_observer_bank(const DiagnoserContext& context, con
   check_gains(context, params, problems);
   check_shapes(bank, params, problems);
   if (!problems.empty()) return problems;
-  return check_offline(bank, gains_of(context, params), offline_options(params));
+  return check_offline(bank, matrices_of(gains_of(context, params)), offline_options(params));
 }
 
 }  // namespace

@@ -2,10 +2,13 @@
 #include "diagnosers/observer_bank/observer_bank.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cordon/core/error.hpp"
 #include "cordon/core/tolerances.hpp"
 #include "cordon/solvers/set_questions.hpp"
+#include "diagnosers/mode_gain.hpp"
+#include "gains/gain_certificate.hpp"
 
 namespace cordon::estimators {
 
@@ -319,6 +322,17 @@ Diagnosis ObserverBank::report(const Sample& now) const {
     diagnosis.estimate = m.copy ? *m.copy : m.X;
   }
   return diagnosis;
+}
+
+std::vector<Gain> ObserverBank::gains() const {
+  std::vector<Gain> all;
+  for (const Gain& gain : options_.described) {
+    const Mode& mode = bank()[static_cast<Index>(all.size())];
+    all.push_back(of_mode(gain, mode));
+    if (std::isnan(gain.certificate.spectral_radius))
+      all.back().certificate = certify(mode.model, gain.L, Matrix(0, 0));
+  }
+  return all;
 }
 
 std::optional<Guarantees> ObserverBank::do_guarantees() const {

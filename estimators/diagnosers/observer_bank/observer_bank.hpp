@@ -20,7 +20,8 @@
 namespace cordon::estimators {
 
 struct ObserverBankOptions {
-  std::vector<Matrix> gains;  ///< one per mode
+  std::vector<Matrix> gains;    ///< one per mode
+  std::vector<Gain> described;  ///< the same with their origin; those that are given, uncertified
   Budget budget;
   std::vector<LineForm> initial_sets;  ///< one per mode
   double widening_limit = 0;
@@ -52,6 +53,8 @@ class ObserverBank final : public Diagnoser {
  public:
   ObserverBank(ModeBank bank, std::shared_ptr<const SetBackend> backend,
                ObserverBankOptions options);
+
+  std::vector<Gain> gains() const override;
 
  private:
   /// The observer of one mode.

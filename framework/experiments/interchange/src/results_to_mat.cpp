@@ -215,7 +215,7 @@ void results_to_mat(const fs::path& directory, const Target& target, bool with_s
   const json::Value tree =
       json::read_large(
           file,
-          {.kept = {"/cordon_results", "/title", "/study/system", "/points", "/pipelines"},
+          {.kept = {"/cordon_results", "/title", "/study/system", "/sets", "/points", "/pipelines"},
            .streamed = {"/pipelines/*/steps/*", "/points/*"},
            .take =
                [&](const Cursor& at, const std::vector<std::size_t>& place) {
@@ -231,6 +231,7 @@ void results_to_mat(const fs::path& directory, const Target& target, bool with_s
                study = root.need("study", not_as_written),
                pipelines = root.need("pipelines", not_as_written);
     const bool sweep = root.find("points") != std::nullopt;
+    if (with_sets) json::expect_all_sets(root);
     const std::string name = title ? json::read_text(*title, 100'000).value_or("") : "";
     all.push_back({"cordon", mat::about(sweep ? "sweep" : "results", name)});
     const auto system = study && study->expect(Kind::object, not_as_written)

@@ -41,6 +41,7 @@ Study read_point(const Study& study, const std::vector<std::size_t>& at,
                                  source.sweep, at, registry, problems);
   TreeOptions options{source.file, source.folder};
   options.only = only;
+  options.data = source.data;
   options.asks = [&](std::size_t pipeline) { return !source.is_known(registry, pipeline, at); };
   options.known = source.system;
   TreeReading reading = read_tree(tree, registry, options, problems);

@@ -12,12 +12,13 @@ using namespace json;
 class StudyReader {
  public:
   StudyReader(const std::filesystem::path& file, Registry& registry, const SearchPath& path,
-              StudyPlugins plugins)
+              StudyPlugins plugins, StudyData data)
       : registry_(registry),
         path_(path),
         plugins_(plugins),
         source_(std::make_shared<StudySource>()) {
     source_->file = file;
+    source_->data = data;
     std::error_code
         failure;  // absolute, so that a later change of the working directory does not matter
     const std::filesystem::path absolute = std::filesystem::absolute(file, failure);
@@ -156,8 +157,8 @@ Study StudyReader::read() {
 }  // namespace
 
 Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path,
-                 StudyPlugins plugins) {
-  return StudyReader(file, registry, path, plugins).read();
+                 StudyPlugins plugins, StudyData data) {
+  return StudyReader(file, registry, path, plugins, data).read();
 }
 
 std::vector<std::pair<std::string, const ComponentSpec*>> algorithms_of(const PipelineSpec& spec) {

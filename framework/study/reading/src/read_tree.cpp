@@ -75,7 +75,7 @@ void TreeReader::read_sections() {
     system = read_known_system(*at);
   const DataUse use = data_use(root_);
   const auto data =
-      use.streamed()
+      use.streamed() && options_.data == StudyData::needed
           ? root_.need("data", "{\"simulate\": {...}} or {\"csv\": {...}}" + use.reason())
           : root_.find("data");
   if (data) {

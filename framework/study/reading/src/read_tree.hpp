@@ -18,6 +18,7 @@ struct KnownSystem {
 
 struct TreeOptions {
   std::filesystem::path file, folder;  ///< of the study; the folder absolute
+  StudyData data = StudyData::needed;
   bool checks = true;  ///< nothing was wrong with the text: check the study as a whole
   std::optional<std::size_t> only = {};  ///< the only pipeline that must go together with the rest
   std::function<bool(std::size_t)> asks =

@@ -17,6 +17,7 @@ namespace cordon::json {
 struct StudySource {
   std::string text;
   std::filesystem::path file, folder;
+  StudyData data = StudyData::needed;
   Value tree;  ///< of studies with a sweep: the file, with a name in every pipeline
   std::vector<WrittenAxis> sweep;
   std::shared_ptr<const KnownSystem> system;  ///< of the first values

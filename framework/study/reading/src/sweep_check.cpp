@@ -59,6 +59,7 @@ class SweepChecker {
   TreeOptions options(const std::vector<std::size_t>& at) const {
     TreeOptions result{source_.file, source_.folder};
     result.checks = checks_;
+    result.data = source_.data;
     result.asks = [this, at](std::size_t pipeline) {
       return !source_.is_known(registry_, pipeline, at);
     };

@@ -9,9 +9,11 @@
 #include "results_diagnosis.hpp"
 #include "study/results/file_heads.hpp"
 #include "study/results/results_parts.hpp"
+#include "study/results/sets_file.hpp"
 #include "study/results/table_builder.hpp"
 #include "study/text/host.hpp"
 #include "study/text/numbers.hpp"
+#include "study/text/string_sink.hpp"
 
 namespace cordon::detail {
 
@@ -44,6 +46,12 @@ void write_times(JsonWriter& json, const PhaseTimes& times, double hull_us) {
       .member("correct", times.correct)
       .member("reduce", times.reduce);
   json.member("question", times.question).member("hull", hull_us).end_object();
+}
+
+std::size_t observers_of(const Study& study) {
+  return static_cast<std::size_t>(
+      std::count_if(study.pipelines.begin(), study.pipelines.end(),
+                    [](const PipelineSpec& spec) { return spec.estimation() != nullptr; }));
 }
 
 bool has_diagnosers(const Study& study) {
@@ -95,11 +103,13 @@ void write_algorithms(JsonWriter& json, const PipelineSpec& spec) {
 
 }  // namespace
 
-Results::Results(const Study& study, const Registry& registry, const DirectoryLock& out)
+Results::Results(const Study& study, const Registry& registry, const DirectoryLock& out,
+                 const RunOptions& options)
     : study_(study),
       directory_(out),
       data_file_(directory_.create("data.csv")),
-      sets_file_(directory_.create("sets.jsonl")),
+      sets_(std::make_unique<SetsFile>(directory_.create("sets.jsonl"), observers_of(study),
+                                       options.sets, options.many_sets)),
       steps_file_(directory_.create("steps.csv")),
       summary_file_(directory_.create("summary.csv")),
       diagnosis_file_(has_diagnosers(study) ? &directory_.create("diagnosis.csv") : nullptr),
@@ -114,8 +124,11 @@ Results::Results(const Study& study, const Registry& registry, const DirectoryLo
   if (inputs_file_) write_inputs_header(*inputs_file_, study.model.linear.inputs(), study.labels);
 }
 
+Results::~Results() = default;
+
 void Results::begin_results(const Registry& registry) {
   begin_results_file(results_, study_, registry, measures_of(study_.metrics, registry));
+  if (sets_->kept() != KeptSets::all) results_.member("sets", to_string(sets_->kept()));
   results_.key("pipelines").begin_array(Layout::lines);
 }
 
@@ -163,8 +176,9 @@ void Results::end_pipeline(const PipelineOutcome& outcome, Summary row,
 
 void Results::begin_estimation(const PipelineSpec& spec, std::optional<Rounding> rounding,
                                const std::optional<Assumptions>& assumptions,
-                               const std::vector<Gain>& gains) {
+                               const std::vector<Gain>& gains, std::int64_t samples) {
   begin_pipeline(spec, rounding);
+  sets_->begin_pipeline(samples);
   results_.key("assumptions");
   if (assumptions) {
     results_.begin_object(Layout::lines).key("initial_set");
@@ -282,10 +296,12 @@ void Results::write_row(const StepResult& result) {
 }
 
 void Results::write_set(const StepResult& result) {
+  if (sets_->kept() == KeptSets::none) return;
   const Estimate& estimate = result.estimate;
   const LineForm X = estimate.set->line_form();
   const bool exact = estimate.set->backend().info().exact_exchange;
-  JsonWriter json(sets_file_);
+  StringSink line;
+  JsonWriter json(line);
   json.begin_object().key("pipeline").raw(pipeline_json_).member("k", estimate.k);
   json.member("tightness", to_string(estimate.set.tightness));
   json.member("exchange", to_string(exact ? Tightness::exact : Tightness::outer));
@@ -299,11 +315,13 @@ void Results::write_set(const StepResult& result) {
     json.end_array();
   }
   json.end_object();
-  sets_file_.write("\n");
+  line.write("\n");
+  sets_->write(std::move(line.text));
 }
 
 void Results::end_estimation(const PipelineOutcome& outcome, const MetricValues& summary) {
   const EstimationOutcome& found = *outcome.estimation();
+  sets_->end_pipeline();
   results_.end_array();
   write_last(results_, last_estimate_, found.last_hull);
   results_.key("summary").begin_object(Layout::lines);

@@ -68,7 +68,7 @@ class EstimationRun final : public PipelineRun {
 
   void written_begin() override {
     if (context_.results)
-      context_.results->begin_estimation(spec_, rounding(), assumptions_, found_.gains);
+      context_.results->begin_estimation(spec_, rounding(), assumptions_, found_.gains, total_);
   }
 
   bool work() override {

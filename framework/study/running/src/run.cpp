@@ -87,7 +87,7 @@ RunOutcome detail::run_on(const OpenData& open, const Study& study, const Regist
   };
   std::optional<DirectoryLock> lock;
   std::optional<Results> results;
-  if (!options.out.empty()) results.emplace(study, registry, lock.emplace(options.out));
+  if (!options.out.empty()) results.emplace(study, registry, lock.emplace(options.out), options);
   const RunContext context{study, registry, options, limit, next, results ? &*results : nullptr};
   RunOutcome outcome;
   outcome.measures = measures_of(study.metrics, registry);

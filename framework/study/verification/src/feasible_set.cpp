@@ -154,7 +154,8 @@ Model widened(Model model, const Vector& radius) {
   return model;
 }
 
-LineForm widened(LineForm X, double share) {
+LineForm widened(LineForm X, double part) {
+  const double share = part * rounding_share;
   const Index n = X.dim(), m = X.constraints(), g = X.generators();
   const Vector rows = share * (X.b.cwiseAbs() + X.A.cwiseAbs().rowwise().sum());
   const Vector coordinates = share * (X.c.cwiseAbs() + X.G.cwiseAbs().rowwise().sum());

@@ -332,9 +332,8 @@ class Verification {
       return StepCheck::Successors{
           [&] { return successors(model, start, estimation.admissible_set, transition); },
           [&](double share) {
-            return successors(widened(model, share * margins.outputs),
-                              widened(start, share * rounding_share), estimation.admissible_set,
-                              transition);
+            return successors(widened(model, share * margins.outputs), widened(start, share),
+                              estimation.admissible_set, transition);
           },
           [&] { return enclosed_successors(model, start, estimation.admissible_set, transition); }};
     };

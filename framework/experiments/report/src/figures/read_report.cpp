@@ -22,6 +22,11 @@ void add_run(const RunFiles& files, Report& report) {
   add_failures(files, report);
   if (has_numbers(files)) add_comparisons(files, report);
   add_bounds(files, curves, report);
+  if (const std::string kept = text_of(files.root(), "sets"); kept == "last") {
+    report.notes.emplace_back("Only the last sets were kept (--sets last).");
+  } else if (kept == "none") {
+    report.notes.emplace_back("No sets were kept (--sets none).");
+  }
   add_projections(files, curves, report);
   if (files.any(PipelineKind::diagnosis)) add_diagnosis(files, curves, report);
   if (files.any(PipelineKind::design)) add_designs(files, report);

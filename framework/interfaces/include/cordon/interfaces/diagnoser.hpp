@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cordon/interfaces/backend.hpp"
+#include "cordon/interfaces/gain_designer.hpp"
 #include "cordon/interfaces/model.hpp"
 
 namespace cordon {
@@ -111,6 +112,10 @@ class Diagnoser {
 
   /// What can be said before any experiment; nothing if the method has no such statements.
   std::optional<Guarantees> guarantees() const { return do_guarantees(); }
+
+  /// The gains of the observers that it is made of, with what is known about them; their names say
+  /// of which mode.
+  virtual std::vector<Gain> gains() const { return {}; }
 
   /// Does it take samples with missing outputs, and exclude only what the outputs that are there
   /// contradict? Otherwise `step` refuses such samples.

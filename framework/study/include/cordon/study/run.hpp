@@ -18,8 +18,18 @@
 
 namespace cordon {
 
+/// Which estimates' sets go into sets.jsonl: of every step, of each pipeline's last one, or none.
+enum class KeptSets { all, last, none };
+
+std::string_view to_string(KeptSets sets);
+
 struct RunOptions {
   std::filesystem::path out;  ///< directory of the results; empty: none are written
+  KeptSets sets = KeptSets::all;
+  /// Called once, early, where all sets take more than 100 MB: how many bytes they will take if
+  /// they go on as they began, or 0 where the number of samples is not known, once they have taken
+  /// so many.
+  std::function<void(double bytes)> many_sets = {};
   std::string pipeline = {};  ///< run this one only; empty: all
   const std::atomic<bool>* stop =
       nullptr;  ///< set from a signal handler: the run ends with `interrupted`, old results stay

@@ -210,6 +210,9 @@ enum class StudyPlugins {
   load     ///< trusted too
 };
 
+/// Must a study have data where its pipelines take samples? Not for what is asked of models alone.
+enum class StudyData { needed, optional };
+
 /// Reads, loads plugins from the directories that the study names, as far as `plugins` says, and
 /// then from `path` (the first plugin of a name wins), validates against the registry, and
 /// resolves. Throws InputError with every problem at once (pointer, line, reason, suggestion), or
@@ -217,7 +220,7 @@ enum class StudyPlugins {
 /// refused, or directories that are not trusted. Writes nothing.
 Study read_study(const std::filesystem::path& file, Registry& registry,
                  const SearchPath& path = default_search_path(),
-                 StudyPlugins plugins = StudyPlugins::refuse);
+                 StudyPlugins plugins = StudyPlugins::refuse, StudyData data = StudyData::needed);
 
 /// JSON Schema (2020-12) of study files, with the components that the registry knows. For editors.
 std::string study_json_schema(const Registry& registry);

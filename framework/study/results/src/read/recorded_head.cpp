@@ -13,4 +13,19 @@ bool expect_results(const Cursor& root) {
   return number && *number == 1;
 }
 
+bool expect_all_sets(const Cursor& root) {
+  const auto kept = root.find("sets");
+  const auto text = kept ? read_text(*kept, 10) : std::nullopt;
+  if (!kept || !text) return !kept;
+  if (*text == "last" || *text == "none") {
+    kept->error(*text == "last" ? "only the last sets were kept (--sets last)"
+                                : "no sets were kept (--sets none)",
+                "run the study again without --sets");
+  } else {
+    kept->error("must be \"last\" or \"none\"",
+                "the file is not as \"cordon run\" wrote it; run the study again");
+  }
+  return false;
+}
+
 }  // namespace cordon::json

@@ -303,8 +303,8 @@ RecordedRun read_run(const std::filesystem::path& directory) {
   const Value tree =
       read_large(file,
                  {.kept = {"/cordon_results", "/study/system", "/study/data/simulate/dropouts",
-                           "/study/data/csv/missing", "/study/data/csv/irregular", "/points",
-                           "/pipelines"},
+                           "/study/data/csv/missing", "/study/data/csv/irregular", "/sets",
+                           "/points", "/pipelines"},
                   .streamed = {"/pipelines/*/steps/*", "/points/*"},
                   .take =
                       [&](const Cursor& at, const std::vector<std::size_t>& place) {
@@ -334,6 +334,10 @@ RecordedRun read_run(const std::filesystem::path& directory) {
         }
       }
     }
+    const bool observes =
+        std::any_of(run.pipelines.begin(), run.pipelines.end(),
+                    [](const RecordedPipeline& one) { return one.estimation() != nullptr; });
+    if (observes) expect_all_sets(root);
     run.bank.modes.push_back({std::move(part.nominal), part.model});
     run.bank.modes.insert(run.bank.modes.end(), part.modes.begin(), part.modes.end());
     run.model = std::move(part.model);

@@ -10,4 +10,7 @@ namespace cordon::json {
 /// Otherwise the problem is reported.
 bool expect_results(const Cursor& root);
 
+/// Are the sets of all steps there? Otherwise the problem is reported.
+bool expect_all_sets(const Cursor& root);
+
 }  // namespace cordon::json

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 
 #include "cordon/study/run.hpp"
@@ -43,6 +44,8 @@ struct Assumptions {
   std::optional<LineForm> restart_set = {};  ///< where it begins anew after an empty estimate
 };
 
+class SetsFile;
+
 /// Writes into `out`:
 ///   results.json  resolved study, versions, and per pipeline gains, steps[] {k, hull, consistent,
 ///   tightness, metrics}, last
@@ -61,11 +64,14 @@ struct Assumptions {
 class Results {
  public:
   /// Into the directory of `out`, which lives longer.
-  Results(const Study& study, const Registry& registry, const DirectoryLock& out);
+  Results(const Study& study, const Registry& registry, const DirectoryLock& out,
+          const RunOptions& options);
+  ~Results();
 
+  /// `samples`: how many there will be; 0: not known.
   void begin_estimation(const PipelineSpec& spec, std::optional<Rounding> rounding,
                         const std::optional<Assumptions>& assumptions,
-                        const std::vector<Gain>& gains);
+                        const std::vector<Gain>& gains, std::int64_t samples);
   /// Every pipeline hands over its records; each is written once.
   void data(const Record& record);
   /// Throws Errc::plugin, before anything is written, if the metrics have names that they had not
@@ -100,7 +106,7 @@ class Results {
   const Study& study_;
   AtomicDirectory directory_;
   OutputFile& data_file_;
-  OutputFile& sets_file_;
+  std::unique_ptr<SetsFile> sets_;
   OutputFile& steps_file_;
   OutputFile& summary_file_;
   OutputFile* diagnosis_file_ = nullptr;  ///< if there are diagnosers

@@ -63,10 +63,10 @@ LineForm successors(const Model& model, const LineForm& X,
                     const std::optional<LineForm>& admissible_set, const Transition& transition);
 
 /// The model with each output widened by `radius`, and X with each coordinate and constraint
-/// widened by a share of its terms (`rounding_share`, 1e-13): what nominal operations may make of
-/// them.
+/// widened by `part` of a share of its terms (`rounding_share`, 1e-13): what nominal operations may
+/// make of them.
 inline constexpr double rounding_share = 1e-13;
 Model widened(Model model, const Vector& radius);
-LineForm widened(LineForm X, double share);
+LineForm widened(LineForm X, double part);
 
 }  // namespace cordon::verification
