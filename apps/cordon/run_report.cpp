@@ -309,17 +309,15 @@ std::string report_text(const Study& study, const RunOutcome& outcome,
                                      ? ""
                                      : observer_table(observed, study.labels, paint) +
                                            units_text(observed, study.labels) + "\n";
-  std::string assumptions;
+  std::string details;
   for (const PipelineOutcome& pipeline : observed.pipelines) {
     const std::string failed = assumption_text(study, pipeline, paint);
-    assumptions += failed.empty() ? "" : pipeline.name + ": " + failed;
+    details += failed.empty() ? "" : pipeline.name + ": " + failed;
   }
-  assumptions += contradictions_text(study, observed, paint);
-  if (!assumptions.empty()) assumptions += "\n";
-  const std::string details = assumptions + gains_text(gains_of(observed), paint) +
-                              widths_text(observed, study.labels, paint) +
-                              inner_text(observed, study.labels, paint) +
-                              growth_text(observed, study.labels, paint);
+  details += contradictions_text(study, observed, paint);
+  if (!details.empty()) details += "\n";
+  details += gains_text(gains_of(observed), paint) + widths_text(observed, study.labels, paint) +
+             inner_text(observed, study.labels, paint) + growth_text(observed, study.labels, paint);
   const std::string sampled =
       study.continuous
           ? fmt::format("Sampled every {:.6g} s: what is said is said of the sampled model\n",
