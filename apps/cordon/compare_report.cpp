@@ -35,7 +35,7 @@ std::string value_text(const std::string& json) {
 std::string mean_text(const ComparedNumber& number) {
   const Statistics& found = number.statistics;
   std::string text = found.count > 0 ? number_text(found.mean) : found.infinite > 0 ? "∞" : "–";
-  if (found.count > 0 && found.deviation > 0) text += " ± " + number_text(found.deviation, 2);
+  if (found.count > 0 && varies(found)) text += " ± " + number_text(found.deviation, 2);
   if (found.count > 0 && found.infinite > 0) text += fmt::format(" (∞: {})", found.infinite);
   return number.failed > 0 ? text + fmt::format(" (failed: {}/{})", number.failed, number.points)
                            : text;

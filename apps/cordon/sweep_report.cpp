@@ -9,6 +9,7 @@
 #include "common.hpp"
 #include "json_text.hpp"
 #include "observer_report.hpp"
+#include "study/results/table_text.hpp"
 
 namespace cordon::apps {
 
@@ -22,7 +23,7 @@ constexpr std::size_t most_rows = 120, most_failures = 5;
 std::string place_of(const ResultTable& table, const ResultRow& row) {
   std::string text = table.pipelines[row.pipeline];
   for (std::size_t i = 0; i < table.axes.size(); ++i) {
-    text += fmt::format(", {} = {}", table.axes[i].name, table.axes[i].values[row.at[i]]);
+    text += fmt::format(", {} = {}", table.axes[i].name, detail::axis_value(table, i, row.at[i]));
   }
   return text;
 }

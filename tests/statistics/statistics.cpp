@@ -264,3 +264,12 @@ TEST_CASE("which way is better: of numbers of the host, and as metrics tell") {
   table.measures.clear();
   CHECK(better("cost") == Preference::less);
 }
+
+TEST_CASE("rounding is no deviation worth a word") {
+  const std::vector<double> rounded{0.1 + 0.2, 0.3}, apart{0.3, 0.3 + 1e-9}, zeros{0, 0};
+  CHECK(statistics_of(rounded).deviation > 0);
+  CHECK_FALSE(varies(statistics_of(rounded)));
+  CHECK(varies(statistics_of(apart)));
+  CHECK_FALSE(varies(statistics_of(zeros)));
+  CHECK_FALSE(varies(statistics_of(std::vector<double>{})));
+}

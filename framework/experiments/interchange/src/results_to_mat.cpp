@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The files of a finished run or sweep as one MAT-file.
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -152,6 +153,8 @@ Value to_mat(const ResultTable& table) {
   Struct sweep, columns;
   std::vector<Struct> axes;
   const auto rows = static_cast<Index>(table.rows.size());
+  const bool labelled = std::any_of(table.axes.begin(), table.axes.end(),
+                                    [](const SweepAxis& axis) { return !axis.labels.empty(); });
   for (const SweepAxis& axis : table.axes) {
     std::vector<Value> values;
     for (const std::string& one : axis.values) values.push_back(value_of(one));
@@ -161,6 +164,7 @@ Value to_mat(const ResultTable& table) {
         .set("path", text(axis.path))
         .set("repeat", number(axis.repeat ? 1 : 0));
     axes.back().set("values", cell(std::move(values)));
+    if (labelled) axes.back().set("labels", cell(axis.labels));
   }
   std::vector<std::string> names{"point", "pipeline", "error"};
   for (const SweepAxis& axis : table.axes) names.push_back(axis.name);

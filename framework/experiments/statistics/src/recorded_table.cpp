@@ -163,6 +163,13 @@ void TableReader::read_axes(const Cursor& root) {
     const auto values = at.need("values", not_as_written);
     if (!values || !values->expect(Kind::array, not_as_written)) continue;
     for (const Value& value : values->value().items()) axis.values.push_back(canonical_text(value));
+    if (const auto labels = at.find("labels");
+        labels && labels->expect(Kind::array, not_as_written)) {
+      for (std::size_t j = 0; j < labels->size(); ++j)
+        axis.labels.push_back(read_text(labels->item(j), 1000).value_or(""));
+      if (axis.labels.size() != axis.values.size())
+        labels->error("does not name every value", not_as_written);
+    }
   }
 }
 

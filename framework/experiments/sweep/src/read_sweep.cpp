@@ -98,6 +98,12 @@ void read_axis(const Cursor& at, Study& study) {
   axis.repeat = repeat && json::read_flag(*repeat).value_or(false);
   if (values && values->expect(Kind::array, not_as_written) && values->size() == 0)
     values->error("is empty", not_as_written);
+  const auto labels = at.find("labels");
+  if (!labels || !labels->expect(Kind::array, not_as_written)) return;
+  for (std::size_t i = 0; i < labels->size(); ++i)
+    axis.labels.push_back(json::read_text(labels->item(i), 1000).value_or(""));
+  if (values && labels->size() != values->size())
+    labels->error("does not name every value", not_as_written);
 }
 
 void read_names(const Cursor& root, SweepFiles& sweep) {

@@ -115,6 +115,8 @@ void write_table(Sink& file, const ResultTable& table) {
   for (const SweepAxis& axis : table.axes) {
     fields.push_back(csv_field(column_of(table, axis)));
     values.emplace_back();
+    for (const std::string& label : axis.labels) values.back().push_back(csv_field(label));
+    if (!axis.labels.empty()) continue;
     for (const std::string& value : axis.values) values.back().push_back(csv_value(value));
   }
   for (const ResultColumn& column : table.columns) {

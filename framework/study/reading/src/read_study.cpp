@@ -139,8 +139,8 @@ Study StudyReader::read() {
   Study study = std::move(reading.study);
   add_plugin_warnings(study);
   for (const WrittenAxis& axis : source_->sweep) {
-    SweepAxis& made =
-        study.sweep.emplace_back(SweepAxis{axis.name, axis.path.text, {}, axis.repeat});
+    SweepAxis& made = study.sweep.emplace_back(
+        SweepAxis{axis.name, axis.path.text, {}, axis.repeat, axis.labels});
     for (const Value& value : axis.values) made.values.push_back(canonical_text(value));
   }
   if (std::string warning = overlapping_seeds(study, source_->sweep); !warning.empty())

@@ -110,8 +110,30 @@ std::vector<Value> read_range(const Cursor& at) {
   return values;
 }
 
+/// One per value, none twice.
+std::vector<std::string> read_labels(const Cursor& at, const std::vector<Value>& values) {
+  if (!at.expect(Kind::array, "a list of texts, one per value: [\"quiet\", \"loud\"]")) return {};
+  std::vector<std::string> labels;
+  std::map<std::string, std::size_t> seen;
+  for (std::size_t i = 0; i < std::min(at.size(), max_values); ++i) {
+    const auto label = read_line(at.item(i), max_name);
+    if (!label) continue;
+    const auto [first, fresh] = seen.emplace(*label, i);
+    if (!fresh)
+      at.item(i).error("repeats " + child(at.pointer(), first->second), "choose another one");
+    labels.push_back(*label);
+  }
+  if (!values.empty() && at.size() != values.size()) {
+    at.error("has " + counted(static_cast<Index>(at.size()), "text") + " for " +
+                 counted(static_cast<Index>(values.size()), "value"),
+             "give one per value");
+  }
+  return labels;
+}
+
 std::optional<WrittenAxis> read_axis(const Cursor& at) {
-  if (!at.expect_keys({"name", "path", "values", "range", "repeat"}, "key of an axis", axis_form))
+  if (!at.expect_keys({"name", "path", "values", "labels", "range", "repeat"}, "key of an axis",
+                      axis_form))
     return std::nullopt;
   WrittenAxis axis;
   axis.pointer = at.pointer();
@@ -132,6 +154,7 @@ std::optional<WrittenAxis> read_axis(const Cursor& at) {
   axis.range = !values_at;
   if (values_at) axis.values = read_values(*values_at);
   if (range_at) axis.values = read_range(*range_at);
+  if (const auto labels_at = at.find("labels")) axis.labels = read_labels(*labels_at, axis.values);
   const auto repeat_at = at.find("repeat");
   axis.repeat =
       repeat_at ? read_flag(*repeat_at).value_or(false) : path && path->steps.back().key == "seed";

@@ -119,6 +119,7 @@ void add_sweep(Json& resolved, const Value& tree, const std::vector<WrittenAxis>
                {"repeat", axis.repeat},
                {"values", Json::array()}};
     for (const Value& value : axis.values) entry["values"].push_back(written_json(value));
+    if (!axis.labels.empty()) entry["labels"] = axis.labels;
     list.push_back(std::move(entry));
   }
   resolved["sweep"] = std::move(list);

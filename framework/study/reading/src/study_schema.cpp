@@ -270,6 +270,9 @@ Json sweep() {
   properties["values"] = described(
       Json{{"type", "array"}, {"minItems", 1}, {"maxItems", 100'000}, {"uniqueItems", true}},
       "they take the place of what stands there, one after another");
+  properties["labels"] =
+      described(Json{{"type", "array"}, {"items", text(200)}, {"uniqueItems", true}},
+                "what the values are called in tables and figures, one per value");
   properties["range"] =
       described(Json{{"type", "array"}, {"items", whole}, {"minItems", 2}, {"maxItems", 3}},
                 "[first, last] or [first, last, step]: integers, in place of values");

@@ -166,6 +166,7 @@ std::vector<std::vector<Pool>> pools_of(const ResultTable& table, const Summary&
 
 /// The values of an axis as numbers, if all are.
 std::optional<std::vector<double>> numbers_of_axis(const SweepAxis& axis) {
+  if (!axis.labels.empty()) return std::nullopt;
   std::vector<double> numbers;
   for (const std::string& value : axis.values) {
     const detail::ParsedNumber parsed = detail::parse_number(value);
@@ -279,7 +280,10 @@ void add_failed(const ResultTable& table, Report& report) {
 ResultTable shown(ResultTable table) {
   table.title = detail::printable(table.title);
   for (std::string& name : table.pipelines) name = detail::printable(name);
-  for (SweepAxis& axis : table.axes) axis.name = detail::printable(axis.name);
+  for (SweepAxis& axis : table.axes) {
+    axis.name = detail::printable(axis.name);
+    for (std::string& label : axis.labels) label = detail::printable(label);
+  }
   for (ResultColumn& column : table.columns) column.name = detail::printable(column.name);
   for (ResultRow& row : table.rows) row.error = detail::printable_lines(row.error);
   return table;

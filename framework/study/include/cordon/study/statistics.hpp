@@ -21,6 +21,8 @@ struct Statistics {
   double min = 0, q05 = 0, q25 = 0, median = 0, q75 = 0, q95 = 0, max = 0;
 };
 Statistics statistics_of(std::span<const double> values);
+/// Is the deviation more than what rounding makes of equal numbers? Tables show no other.
+bool varies(const Statistics& found);
 
 /// One pipeline under one combination of the axes that are not repetitions.
 struct SummaryRow {

@@ -176,6 +176,7 @@ struct SweepAxis {
   std::string path;  ///< JSON pointer into the study; "*" stands for every element of an array
   std::vector<std::string> values;  ///< JSON texts, none twice
   bool repeat = false;  ///< repetitions, seeds for example: statistics are taken over this axis
+  std::vector<std::string> labels = {};  ///< what the values are called; empty: they have no names
 };
 
 /// Of a study with a sweep everything but `sweep` is that of the first values of all axes.

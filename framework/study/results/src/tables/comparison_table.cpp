@@ -57,7 +57,7 @@ std::string value_text(const SummaryRow& row, const Statistics& found, bool perc
   const std::int64_t finished = row.points - row.failed;
   if (found.count == 0) return found.infinite > 0 ? "∞" : "–";
   std::string text = number_text(scale * found.mean);
-  if (found.deviation > 0) text += " ± " + number_text(scale * found.deviation, 2);
+  if (varies(found)) text += " ± " + number_text(scale * found.deviation, 2);
   if (percent) text += " %";
   if (found.infinite > 0) text += fmt::format(" (∞: {})", found.infinite);
   if (found.count + found.infinite < finished) text += fmt::format(" [{}]", found.count);

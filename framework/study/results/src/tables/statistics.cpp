@@ -53,6 +53,11 @@ void add_relative(const ResultTable& table, std::span<SummaryRow> rows, std::siz
 
 }  // namespace
 
+bool varies(const Statistics& found) {
+  constexpr double rounding = 1e-12;
+  return found.deviation > rounding * std::max(std::abs(found.min), std::abs(found.max));
+}
+
 Statistics statistics_of(std::span<const double> values) {
   Statistics found;
   std::vector<double> sorted;

@@ -42,7 +42,9 @@ std::string axis_value(const ResultTable& table, std::size_t axis, std::size_t i
                        std::size_t limit) {
   const std::vector<std::string>& values = table.axes.at(axis).values;
   std::string text = index < values.size() ? values[index] : "?";
-  if (text.starts_with('"')) {
+  if (index < table.axes[axis].labels.size()) {
+    text = table.axes[axis].labels[index];
+  } else if (text.starts_with('"')) {
     const nlohmann::json parsed = nlohmann::json::parse(text, nullptr, false);
     if (parsed.is_string()) text = parsed.get<std::string>();
   }

@@ -15,7 +15,8 @@ namespace cordon::json {
 struct WrittenAxis {
   std::string name;
   SweepPath path;
-  std::vector<Value> values;  ///< at least one
+  std::vector<Value> values;             ///< at least one
+  std::vector<std::string> labels = {};  ///< one per value, or none
   bool repeat = false;
   bool range = false;   ///< written as a range
   std::string pointer;  ///< of the axis
