@@ -73,8 +73,8 @@ Exit run(const Program& program, const RunArguments& arguments) {
       stop_on_signals();  // reading checks what was read, which may take a while
   Registry registry;
   registry.load({program.plugins});  // the study's own directories and the usual ones follow
-  const Study study =
-      read_study(arguments.study, registry, default_search_path(), program.study_plugins());
+  const Study study = read_study(arguments.study, registry, default_search_path(),
+                                 program.study_plugins(), StudyData::needed, arguments.settings);
   check_options(arguments, study);
   if (!arguments.quiet) {
     for (const std::string& warning : study.warnings) warn(warning);
@@ -85,6 +85,30 @@ Exit run(const Program& program, const RunArguments& arguments) {
   }
   if (study.sweep.empty()) return run_once(study, registry, arguments, stop);
   return run_all_points(study, registry, arguments, directory_for(arguments), stop);
+}
+
+void add_sweep_options(CLI::App& command, const std::shared_ptr<RunArguments>& arguments) {
+  const char* const group = "Sweeps (studies with a \"sweep\"; docs/sweeps.md)";
+  command.add_option("--jobs", arguments->jobs, "Points at a time [the number of cores]")
+      ->check(CLI::Range(1, 1024))
+      ->option_text("N")
+      ->group(group);
+  command.add_flag("--resume", arguments->resume, "Go on after what an interrupted run has left")
+      ->group(group);
+  command.add_flag("--restart", arguments->restart, "Throw away what an interrupted run has left")
+      ->group(group);
+  command.add_option("--point-limit", arguments->point_limit_s, "Give a point up after this time")
+      ->check(CLI::Validator(time_problem, "", ""))
+      ->option_text("SECONDS")
+      ->group(group);
+  command.add_option("--shard", arguments->shard, "Run part I of N parts; cordon merge joins them")
+      ->option_text("I/N")
+      ->group(group);
+  command
+      .add_option("--point", arguments->point,
+                  "Run this one point like a study of its own, with all files")
+      ->option_text("INDEX")
+      ->group(group);
 }
 
 }  // namespace
@@ -102,6 +126,11 @@ void add_run(CLI::App& app, Program& program) {
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->add_flag("--no-report", arguments->no_report, "Write no report.html");
   command
+      ->add_option("--set", arguments->settings,
+                   "Put a value into the study, may be repeated: --set /data/simulate/seed=3")
+      ->option_text("/PATH=VALUE")
+      ->allow_extra_args(false);
+  command
       ->add_option(
           "--sets", arguments->sets,
           "Whose sets sets.jsonl keeps: those of all steps, of the last one, or none [all]")
@@ -110,27 +139,7 @@ void add_run(CLI::App& app, Program& program) {
               {"all", KeptSets::all}, {"last", KeptSets::last}, {"none", KeptSets::none}},
           CLI::ignore_case))
       ->option_text("all|last|none");
-  const char* const group = "Sweeps (studies with a \"sweep\"; docs/sweeps.md)";
-  command->add_option("--jobs", arguments->jobs, "Points at a time [the number of cores]")
-      ->check(CLI::Range(1, 1024))
-      ->option_text("N")
-      ->group(group);
-  command->add_flag("--resume", arguments->resume, "Go on after what an interrupted run has left")
-      ->group(group);
-  command->add_flag("--restart", arguments->restart, "Throw away what an interrupted run has left")
-      ->group(group);
-  command->add_option("--point-limit", arguments->point_limit_s, "Give a point up after this time")
-      ->check(CLI::Validator(time_problem, "", ""))
-      ->option_text("SECONDS")
-      ->group(group);
-  command->add_option("--shard", arguments->shard, "Run part I of N parts; cordon merge joins them")
-      ->option_text("I/N")
-      ->group(group);
-  command
-      ->add_option("--point", arguments->point,
-                   "Run this one point like a study of its own, with all files")
-      ->option_text("INDEX")
-      ->group(group);
+  add_sweep_options(*command, arguments);
   command->footer(
       "Results appear when all are complete: results.json, sets.jsonl, data.csv, steps.csv, "
       "summary.csv, run.json, and\n"

@@ -19,6 +19,7 @@ namespace {
 std::string command_to_go_on(const RunArguments& arguments, const std::filesystem::path& out) {
   std::string command = "cordon run " + quoted(arguments.study.string()) + " --out " +
                         quoted(out.string()) + " --resume";
+  for (const std::string& setting : arguments.settings) command += " --set " + quoted(setting);
   if (arguments.jobs) command += fmt::format(" --jobs {}", *arguments.jobs);
   if (arguments.point_limit_s)
     command += fmt::format(" --point-limit {}", *arguments.point_limit_s);

@@ -22,6 +22,7 @@ struct RunArguments {
   std::string shard;
   std::optional<std::int64_t> point;
   std::optional<KeptSets> sets;
+  std::vector<std::string> settings;
 };
 
 /// "I/N". Throws Errc::invalid.

@@ -91,7 +91,7 @@ std::string report_text(const VerifyOutcome& outcome, const Paint& paint) {
     if (p.exact_claims_unproven > 0) {
       passed_over += fmt::format(
           "not proven: {} claims of \"exact\" of {}, held against directions only, which can "
-          "refute them, or against data whose last digits leave no state at all\n",
+          "refute them, or not at all where model and data leave no state\n",
           p.exact_claims_unproven, p.name);
     }
     rows.push_back({p.name, p.backend, std::string(to_string(p.rounding)), std::to_string(p.steps),

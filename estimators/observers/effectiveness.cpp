@@ -164,7 +164,8 @@ Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& n
   const Vector terms = has_inputs
                            ? Vector(now.y.cwiseAbs() + g_.cwiseProduct(input_terms(m.D, now.u)))
                            : Vector(now.y.cwiseAbs());
-  const Vector z = now.y - g_.cwiseProduct(through);
+  const bool as_set = has_inputs && inputs_enter_as_sets();  // g D u, which is rounded otherwise
+  const Vector z = as_set ? Vector(now.y) : Vector(now.y - g_.cwiseProduct(through));
   if (plain_outputs_)
     return RoundingRoom(backend_, z, terms, noise_widths_).correct(X, {C, z, {m.Dv, V_}});
 
@@ -183,13 +184,15 @@ Enclosure Effectiveness::correct(const Enclosure& X, MatrixIn C, const Sample& n
     if (std::isfinite(zeta[i]) && std::isfinite(open[i])) used.push_back(i);
   }
   if (used.empty()) return {X.set, Tightness::outer};  // what the outputs say is left out
-  Matrix T(m.outputs(), noise_->dim());
+  const Index inputs = as_set ? m.inputs() : 0;
+  const Enclosure noise = as_set ? backend_.product(noise_, backend_.point(now.u)) : noise_;
+  Matrix T(m.outputs(), noise->dim());
   T << m.Dv, g_.asDiagonal() * input_spread(m.D, now.u), output_spread(zeta),
-      interval_columns(open);
+      interval_columns(open), g_.asDiagonal() * m.D.leftCols(inputs);
   const Matrix scaled = g_.asDiagonal() * C;
   const RoundingRoom room(backend_, z(used), terms(used), noise_widths_(used));
   Enclosure corrected =
-      room.correct(X, {scaled(used, Eigen::all), z(used), {T(used, Eigen::all), noise_}});
+      room.correct(X, {scaled(used, Eigen::all), z(used), {T(used, Eigen::all), noise}});
   if (has_output_ranges() || !interval_outputs_.empty()) corrected.tightness = Tightness::outer;
   return corrected;
 }

@@ -71,3 +71,41 @@ TEST_CASE("rounded products of inputs are enclosed") {
   }
   expect_product_inside("descriptor", "line_zonotope", true);
 }
+
+TEST_CASE("so are those of outputs, beside outputs of an interval C as well") {
+  // y_1 = x + 0.1 u without noise, y_2 = c x + v with c in [0.5, 1.5]
+  Model model;
+  LinearModel& m = model.linear;
+  m.A = Matrix{{1}};
+  m.B = Matrix{{0}};
+  m.C = Matrix{{1}, {1}};
+  m.C_radius = Matrix{{0}, {.5}};
+  m.D = Matrix{{.1}, {0}};
+  m.Bw = Matrix(1, 0);
+  m.Dv = Matrix::Identity(2, 2);
+  model.X0 = make_box({Vector{{-10}}, Vector{{10}}});
+  model.W = make_space(0);
+  model.V = make_box({Vector{{0, -20}}, Vector{{0, 20}}});
+  model.U = make_space(1);
+  for (const char* representation :
+       {"zonotope", "constrained_zonotope", "line_zonotope", "interval"}) {
+    CAPTURE(representation);
+    const auto outward = registry().make<BackendEntry>(
+        representation, Params().set("rounding", std::string("outward")));
+    for (const bool exact_outputs : {true, false}) {
+      CAPTURE(exact_outputs);
+      Model known = model;
+      if (exact_outputs) known.linear.C_radius = Matrix(0, 0);
+      const auto observer =
+          registry().make<ObserverEntry>("prediction_correction", {known, outward}, {});
+      for (int k = 1; k <= 20; ++k) {
+        const double u = 1000 * std::sin(k), y = .1 * u + .3;
+        CAPTURE(u);
+        observer->start();
+        const LineForm X = observer->step({0, Vector{{u}}, Vector{{y, .3}}}).set->line_form();
+        const Rational x = rational::exact(y) - rational::exact(.1) * rational::exact(u);
+        CHECK(exact::contains(X, rational::RationalVector{x}, Vector::Zero(1)));
+      }
+    }
+  }
+}

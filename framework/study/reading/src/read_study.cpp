@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/study.hpp"
+#include "resolve_sweep.hpp"
+#include "settings.hpp"
 #include "sweep_check.hpp"
 
 namespace cordon {
@@ -25,9 +27,10 @@ class StudyReader {
     source_->folder = (failure ? file : absolute).parent_path();
   }
 
-  Study read();
+  Study read(const std::vector<std::string>& settings);
 
  private:
+  void parse_file(const std::vector<std::string>& settings);
   void load_plugins(const Cursor& root);
   bool is_trusted(const std::filesystem::path& directory) const;
   void pass_over(const Cursor& at, const std::filesystem::path& directory);
@@ -114,7 +117,8 @@ void StudyReader::finish(const std::vector<Diagnostic>& refusals) {
   throw all;
 }
 
-Study StudyReader::read() {
+/// The file's tree, with the settings, and what is no study refused.
+void StudyReader::parse_file(const std::vector<std::string>& settings) {
   source_->text = read_file(source_->file.string());
   source_->tree = parse(source_->text, problems_);
   const Cursor root(source_->tree, "", problems_);
@@ -131,8 +135,16 @@ Study StudyReader::read() {
                "the study that was run is their member \"study\"");
     finish({});
   }
-  if (root.is(Value::Kind::object)) load_plugins(root);
-  source_->sweep = read_sweep(root);
+  if (!root.is(Value::Kind::object)) return;
+  load_plugins(root);
+  if (settings.empty()) return;
+  source_->tree = with_settings(source_->tree, settings, registry_, problems_);
+  source_->text = written_json(source_->tree).dump(1);
+}
+
+Study StudyReader::read(const std::vector<std::string>& settings) {
+  parse_file(settings);
+  source_->sweep = read_sweep(Cursor(source_->tree, "", problems_));
   TreeReading reading = read_first_values(*source_, registry_, !problems_.any(), problems_);
   reading.refusals.insert(reading.refusals.begin(), untrusted_.begin(), untrusted_.end());
   finish(reading.refusals);
@@ -157,8 +169,8 @@ Study StudyReader::read() {
 }  // namespace
 
 Study read_study(const std::filesystem::path& file, Registry& registry, const SearchPath& path,
-                 StudyPlugins plugins, StudyData data) {
-  return StudyReader(file, registry, path, plugins, data).read();
+                 StudyPlugins plugins, StudyData data, const std::vector<std::string>& settings) {
+  return StudyReader(file, registry, path, plugins, data).read(settings);
 }
 
 std::vector<std::pair<std::string, const ComponentSpec*>> algorithms_of(const PipelineSpec& spec) {

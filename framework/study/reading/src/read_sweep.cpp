@@ -19,8 +19,9 @@ constexpr double max_points = 1e7;
 constexpr const char* axis_form =
     "{\"name\": \"seed\", \"path\": \"/data/simulate/seed\", \"range\": [1, 50]}";
 
-/// Why no axis may write there; empty: it may.
-std::string refusal(const std::vector<PathStep>& steps) {
+}  // namespace
+
+std::string why_not_varied(const std::vector<PathStep>& steps) {
   const std::string& first = steps.front().key;
   if (first == "cordon" || first == "plugins" || first == "sweep")
     return "leads into /" + first + ", which is the same for all points";
@@ -31,6 +32,8 @@ std::string refusal(const std::vector<PathStep>& steps) {
       return "leads into " + step.key + ", which is not read";
   return "";
 }
+
+namespace {
 
 std::optional<SweepPath> read_path(const Cursor& at) {
   const auto text = read_line(at, 4096);
@@ -47,7 +50,7 @@ std::optional<SweepPath> read_path(const Cursor& at) {
     at.error("is nested deeper than " + std::to_string(max_depth) + " levels");
     return std::nullopt;
   }
-  if (const std::string reason = refusal(*steps); !reason.empty()) {
+  if (const std::string reason = why_not_varied(*steps); !reason.empty()) {
     at.error(reason, "name a parameter of the system, the data, the components or the metrics");
     return std::nullopt;
   }

@@ -280,8 +280,8 @@ void StepCheck::against(const Polytope& F, const Successors& successors) {
   if (violation_ || step_.tightness != Tightness::exact || reported_empty()) return;
   const std::int64_t before = undecided_;
   if (F.is_empty()) {
-    // data are rounded: where nominal operations have room for that, there is nothing to compare
-    // with
+    // data are rounded, or contradicted each other before: where nominal operations have room for
+    // that, there is nothing to compare with
     const bool by_rounding = nominal_ && !is_proven_empty(successors.relaxed(1));
     exact_holds_ = claim_margin_.isZero(0) && is_proven_empty(row_.set);
     exact_stays_ = !exact_holds_ && by_rounding;

@@ -218,10 +218,12 @@ enum class StudyData { needed, optional };
 /// then from `path` (the first plugin of a name wins), validates against the registry, and
 /// resolves. Throws InputError with every problem at once (pointer, line, reason, suggestion), or
 /// Errc::plugin if nothing is wrong but components that are missing because their plugin was
-/// refused, or directories that are not trusted. Writes nothing.
+/// refused, or directories that are not trusted. Writes nothing. `settings`, "/path=value" each,
+/// take the place of what the file has there: paths are those of sweeps, values JSON or texts.
 Study read_study(const std::filesystem::path& file, Registry& registry,
                  const SearchPath& path = default_search_path(),
-                 StudyPlugins plugins = StudyPlugins::refuse, StudyData data = StudyData::needed);
+                 StudyPlugins plugins = StudyPlugins::refuse, StudyData data = StudyData::needed,
+                 const std::vector<std::string>& settings = {});
 
 /// JSON Schema (2020-12) of study files, with the components that the registry knows. For editors.
 std::string study_json_schema(const Registry& registry);

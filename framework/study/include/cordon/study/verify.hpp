@@ -53,8 +53,8 @@ struct VerifiedPipeline {
       0;                    ///< of them against the successors of the set before, in directions
   std::int64_t proofs = 0;  ///< proofs of (non-)emptiness and of bounds that hold
   std::int64_t exact_claims = 0;  ///< claims of `exact` that are true
-  /// Those that directions do not refute, or that there is nothing to compare with: rounded data
-  /// contradict each other in the last digits, and no state is consistent with them.
+  /// Those that directions do not refute, or that there is nothing to compare with: no state is
+  /// consistent with model and data, perhaps since data are rounded.
   std::int64_t exact_claims_unproven = 0;
   std::int64_t undecided = 0;   ///< single checks that neither succeeded nor failed
   std::string first_undecided;  ///< the first of them

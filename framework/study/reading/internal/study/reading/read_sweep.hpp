@@ -23,6 +23,9 @@ struct WrittenAxis {
   int path_line = 0;
 };
 
+/// Why no axis may write there; empty: it may.
+std::string why_not_varied(const std::vector<PathStep>& steps);
+
 /// Reads /sweep: none if there is no such key, or if anything is wrong with it. Two axes do not
 /// meet, no value comes twice, and there are at most 10 million points.
 std::vector<WrittenAxis> read_sweep(const Cursor& root);
