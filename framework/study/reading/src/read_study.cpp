@@ -10,6 +10,15 @@ namespace {
 
 using namespace json;
 
+bool holds_plugins(const std::filesystem::path& directory) {
+  std::error_code failure;
+  for (std::filesystem::directory_iterator file(directory, failure), end; !failure && file != end;
+       file.increment(failure)) {
+    if (file->path().extension() == ".so") return true;
+  }
+  return false;
+}
+
 /// Reads one file.
 class StudyReader {
  public:
@@ -42,6 +51,7 @@ class StudyReader {
   const StudyPlugins plugins_;
   Problems problems_;
   std::vector<Diagnostic> untrusted_;  ///< directories
+  std::vector<std::string> barren_;    ///< directories without plugins
   std::shared_ptr<StudySource> source_;
 };
 
@@ -83,6 +93,7 @@ void StudyReader::load_plugins(const Cursor& root) {
                           "the path is relative to the folder of the study");
       } else if (is_trusted(directory)) {
         path.directories.push_back(directory);
+        if (!holds_plugins(directory)) barren_.push_back(names[i]);
       } else {
         pass_over(at->item(i), directory.lexically_normal());
       }
@@ -94,6 +105,10 @@ void StudyReader::load_plugins(const Cursor& root) {
 }
 
 void StudyReader::add_plugin_warnings(Study& study) const {
+  for (const std::string& name : barren_) {
+    study.warnings.push_back("/plugins: there is no plugin (no .so file) in " +
+                             in_quotes(name, 1000));
+  }
   for (const PluginReport& report : registry_.reports()) {
     for (const std::string& component : report.left_out) {
       study.warnings.push_back("plugin " + report.file.string() + ": " + component +
@@ -150,6 +165,13 @@ Study StudyReader::read(const std::vector<std::string>& settings) {
   finish(reading.refusals);
   Study study = std::move(reading.study);
   add_plugin_warnings(study);
+  const bool measured =
+      std::any_of(study.pipelines.begin(), study.pipelines.end(),
+                  [](const PipelineSpec& spec) { return spec.estimation() != nullptr; });
+  if (!study.metrics.empty() && !measured) {
+    study.warnings.push_back(
+        "/metrics: they measure pipelines with an observer, and there is none: they are not used");
+  }
   for (const WrittenAxis& axis : source_->sweep) {
     SweepAxis& made = study.sweep.emplace_back(
         SweepAxis{axis.name, axis.path.text, {}, axis.repeat, axis.labels});
