@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cordon/study/run.hpp"
 
-#include <map>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <unistd.h>
@@ -19,6 +19,16 @@
 namespace cordon::apps {
 
 namespace {
+
+constexpr KeptSets kinds_of_sets[] = {KeptSets::all, KeptSets::last, KeptSets::none};
+
+/// Empty for the name of one of them; else what is wrong.
+std::string sets_problem(const std::string& text) {
+  std::vector<std::string> names;
+  for (const KeptSets kept : kinds_of_sets) names.emplace_back(to_string(kept));
+  if (std::find(names.begin(), names.end(), text) != names.end()) return "";
+  return fmt::format("\"{}\" is no choice; {}", text, suggest(text, names));
+}
 
 std::filesystem::path directory_for(const RunArguments& arguments) {
   if (!arguments.out.empty()) return arguments.out;
@@ -40,7 +50,9 @@ Exit run_once(const Study& study, const Registry& registry, const RunArguments& 
   options.stop = stop;
   options.out = directory_for(arguments);
   if (!arguments.no_report) options.report = cordon::add_report;
-  options.sets = arguments.sets.value_or(KeptSets::all);
+  for (const KeptSets kept : kinds_of_sets) {
+    if (arguments.sets == to_string(kept)) options.sets = kept;
+  }
   if (!arguments.quiet) {
     options.many_sets = [&](double bytes) {
       bar.clear();
@@ -134,10 +146,7 @@ void add_run(CLI::App& app, Program& program) {
       ->add_option(
           "--sets", arguments->sets,
           "Whose sets sets.jsonl keeps: those of all steps, of the last one, or none [all]")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, KeptSets>{
-              {"all", KeptSets::all}, {"last", KeptSets::last}, {"none", KeptSets::none}},
-          CLI::ignore_case))
+      ->check(CLI::Validator(sets_problem, "", ""))
       ->option_text("all|last|none");
   add_sweep_options(*command, arguments);
   command->footer(

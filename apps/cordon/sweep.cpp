@@ -52,7 +52,7 @@ void check_options(const RunArguments& arguments, const Study& study) {
   add(arguments.resume, "--resume");
   add(arguments.restart, "--restart");
   add(!arguments.shard.empty(), "--shard");
-  if (!study.sweep.empty() && !arguments.point && arguments.sets)
+  if (!study.sweep.empty() && !arguments.point && !arguments.sets.empty())
     throw Error(Errc::invalid, "--sets: a sweep keeps no sets; --point runs one point with them");
   if (study.sweep.empty()) {
     add(arguments.point_limit_s.has_value(), "--point-limit");

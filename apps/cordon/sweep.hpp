@@ -21,7 +21,7 @@ struct RunArguments {
   std::optional<double> point_limit_s;
   std::string shard;
   std::optional<std::int64_t> point;
-  std::optional<KeptSets> sets;
+  std::string sets;  ///< "all", "last" or "none"; empty: not said
   std::vector<std::string> settings;
 };
 

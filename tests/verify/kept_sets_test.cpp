@@ -106,7 +106,7 @@ TEST_CASE("what needs all sets says which were kept") {
   }
   const test::Outcome wrong = cordon_with("run " + study + " --sets some");
   CHECK(wrong.code == 2);
-  CHECK_MESSAGE(wrong.complains("--sets"), wrong.err);
+  CHECK_MESSAGE(wrong.complains("--sets: \"some\" is no choice; there are"), wrong.err);
 }
 
 TEST_CASE("large files of sets are foreseen, once and early") {

@@ -302,3 +302,47 @@ TEST_CASE("sets with more factors than rational arithmetic takes are decided alo
     CHECK_FALSE(names(verified, "undecided at"));
   }
 }
+
+TEST_CASE("what rows hide that say the same twice confirms nothing") {
+  // Each set keeps the row of its output, without noise; with that of the sample once more next to
+  // nothing is left, and relaxed by rounding all of the set.
+  const Run run(
+      R"({"type": "lti", "A": [[-0.37, 0], [0, 0.89]], "C": [[1.09, 0.07]],
+                    "X0": {"type": "box", "lower": [-4, -4], "upper": [4, 4]},
+                    "W": {"type": "box", "lower": [-0.08, -0.079], "upper": [0.066, 0.083]},
+                    "V": {"type": "box", "lower": [0], "upper": [0]}})",
+      R"({"steps": 8, "x0": [0.1, 0.2]})",
+      R"({"name": "P", "backend": "constrained_zonotope",
+          "observer": {"type": "prediction_correction", "max_generators": 4, "max_constraints": 1}})");
+  CHECK(run.verify().code == 0);
+  const auto claim_exact = [](Json& part) { part["tightness"] = "exact"; };
+  SUBCASE("a set that is larger is called exact") {
+    run.change_step(4, claim_exact);
+    CHECK(run.with_set(4, claim_exact).code != 0);
+  }
+  SUBCASE("a point takes the place of a set") {
+    std::vector<double> point(2);
+    run.change_step(2, [&](Json& step) {
+      for (std::size_t i = 0; i < 2; ++i)
+        point[i] =
+            (step["hull"]["lower"][i].get<double>() + step["hull"]["upper"][i].get<double>()) / 2;
+      step["hull"] = {{"lower", point}, {"upper", point}};
+      step["tightness"] = "outer";
+    });
+    const Outcome outcome = run.with_set(2, [&](Json& set) {
+      const Json none = Json::array(), rows = Json::array({none, none}),
+                 structure{{"kind", "structure"}, {"margin", 1}};
+      set = {{"pipeline", "P"}, {"k", 2},     {"tightness", "outer"}, {"exchange", "exact"},
+             {"dim", 2},        {"lines", 0}, {"generators", 0},      {"constraints", 0},
+             {"M", rows},       {"G", rows},  {"c", point},           {"S", none},
+             {"A", none},       {"b", none},  {"consistent", "yes"},  {"proof", structure}};
+      set["hull_proofs"] = Json::array();
+      for (std::size_t i = 0; i < 2; ++i) {
+        set["hull_proofs"].push_back({{"kind", "structure"}, {"margin", point[i]}});
+        set["hull_proofs"].push_back({{"kind", "structure"}, {"margin", -point[i]}});
+      }
+    });
+    CAPTURE(outcome.out);
+    CHECK((outcome.code == 4 || outcome.code == 5));
+  }
+}

@@ -40,6 +40,7 @@ class StepCheck {
   struct Successors {
     std::function<LineForm()> exact;
     std::function<LineForm(double share)> relaxed;  ///< by this share of the rounding that may be
+    static constexpr double next_to_nothing = 1.0 / 64;  ///< such a share
     std::function<std::optional<Enclosure>()> enclosed;  ///< of the exact ones, if there is one
   };
 

@@ -20,7 +20,6 @@ namespace {
 constexpr double direction_tolerance = 1e-12;  ///< of bounds that floating-point proofs attain
 /// Of a margin: what a proof in rational arithmetic of a bound found in floating point may take.
 constexpr double share_of_proof = 0.125;
-constexpr double almost_nothing = 1.0 / 64;  ///< of the rounding that may be
 
 /// A bound of dᵀx in X, and whether rational arithmetic proves it but for a share of the slack.
 struct Bound {
@@ -73,7 +72,7 @@ struct StepCheck::Along {
   }
   /// By how much farther that is than if rows are relaxed by next to nothing.
   double moved(const Vector& d) {
-    if (!barely) barely = relax(almost_nothing);
+    if (!barely) barely = relax(Successors::next_to_nothing);
     const double least = lower_support(*barely, d), most = reach(d);
     return std::isfinite(least) && std::isfinite(most) ? std::max(0.0, most - least) : 0.0;
   }

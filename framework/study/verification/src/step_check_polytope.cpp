@@ -29,7 +29,6 @@ constexpr double underflow =
     1e-300;  ///< of bounds that are 0 but for the smallest numbers there are
 constexpr double ill_conditioned =
     1e-6;  ///< rounding moves an inequality by more than this share of it
-constexpr double next_to_nothing = 1.0 / 64;  ///< of the rounding that may be
 
 /// The largest entry of each coordinate among the lines: how far off their directions are is a
 /// share of it.
@@ -117,7 +116,8 @@ std::optional<Index> StepCheck::outside_hull(const RationalVector& x, const Vect
 const StepCheck::Moved& StepCheck::moved_by_rounding(const Successors& successors) {
   if (moved_) return *moved_;
   moved_ = Moved{Vector::Zero(size_.size()), Vector::Zero(size_.size())};
-  const LineForm strict = successors.exact(), barely = successors.relaxed(next_to_nothing),
+  const LineForm strict = successors.exact(),
+                 barely = successors.relaxed(Successors::next_to_nothing),
                  relaxed = successors.relaxed(1);
   if (empty_by_rounding(strict, relaxed)) moved_->perhaps.setConstant(infinity);
   for (Index i = 0; i < size_.size(); ++i) {
@@ -241,7 +241,8 @@ void StepCheck::within(const RationalVector& normal, const Rational& h,
       }
       may_be_one = strict.kind == Kind::finite && relaxed.kind == Kind::unbounded;
       if (strict.kind == Kind::finite && relaxed.kind == Kind::finite) {
-        const exact::Support barely = exact::support(successors.relaxed(next_to_nothing), normal);
+        const exact::Support barely =
+            exact::support(successors.relaxed(Successors::next_to_nothing), normal);
         const Rational surely =
             barely.kind == Kind::finite ? Rational(relaxed.value - barely.value) : Rational(0);
         if (reached.kind == Kind::finite && reached.value <= h + slack + surely) return;
