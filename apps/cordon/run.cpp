@@ -59,7 +59,9 @@ Exit run_once(const Study& study, const Registry& registry, const RunArguments& 
       warn(fmt::format(
           "sets.jsonl {}; --sets last keeps the last set of each pipeline, --sets "
           "none keeps none (cordon verify needs all)",
-          bytes > 0 ? fmt::format("will take about {:.0f} MB", bytes / 1e6) : "has taken 100 MB"));
+          bytes > 0
+              ? fmt::format("will take about {:.0f} MB, going by the sets so far", bytes / 1e6)
+              : "has taken 100 MB"));
     };
   }
   if (arguments.point_limit_s) options.deadline = time_after(*arguments.point_limit_s);
